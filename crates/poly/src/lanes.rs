@@ -1,0 +1,116 @@
+//! Eight complex numbers side by side, in planes: eight real parts, then eight imaginary parts.
+
+use crate::scalar::{Lane, Scalar};
+use num_complex::Complex64;
+
+/// Eight independent complex numbers, one a path.
+///
+/// The loops over lanes are plain Rust; inside [`Isa::run`](crate::simd::Isa::run) the compiler turns each
+/// into one or two vector instructions. Each lane computes bit for bit what `Complex64` computes as a [`Scalar`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(64))]
+pub struct Lanes8 {
+    /// Real parts.
+    pub re: [f64; 8],
+    /// Imaginary parts.
+    pub im: [f64; 8],
+}
+
+/// Builds a result lane by lane from a formula that mirrors the one-lane type.
+macro_rules! lanes {
+    ($l:ident => $z:expr) => {{
+        let mut out = Lanes8::ZERO;
+        for $l in 0..8 {
+            let z: Complex64 = $z;
+            out.re[$l] = z.re;
+            out.im[$l] = z.im;
+        }
+        out
+    }};
+}
+
+impl Lanes8 {
+    #[inline(always)]
+    fn lane(&self, l: usize) -> Complex64 {
+        Complex64::new(self.re[l], self.im[l])
+    }
+}
+
+impl Scalar for Lanes8 {
+    const ZERO: Self = Lanes8 { re: [0.0; 8], im: [0.0; 8] };
+    const ONE: Self = Lanes8 { re: [1.0; 8], im: [0.0; 8] };
+
+    #[inline(always)]
+    fn from_c64(z: Complex64) -> Self {
+        Lanes8 { re: [z.re; 8], im: [z.im; 8] }
+    }
+    #[inline(always)]
+    fn add(a: &Self, b: &Self) -> Self {
+        lanes!(l => <Complex64 as Scalar>::add(&a.lane(l), &b.lane(l)))
+    }
+    #[inline(always)]
+    fn sub(a: &Self, b: &Self) -> Self {
+        lanes!(l => <Complex64 as Scalar>::sub(&a.lane(l), &b.lane(l)))
+    }
+    #[inline(always)]
+    fn mul(a: &Self, b: &Self) -> Self {
+        lanes!(l => <Complex64 as Scalar>::mul(&a.lane(l), &b.lane(l)))
+    }
+    #[inline(always)]
+    fn div(a: &Self, b: &Self) -> Self {
+        lanes!(l => <Complex64 as Scalar>::div(&a.lane(l), &b.lane(l)))
+    }
+    #[inline(always)]
+    fn neg(a: &Self) -> Self {
+        lanes!(l => <Complex64 as Scalar>::neg(&a.lane(l)))
+    }
+    #[inline(always)]
+    fn sqr(a: &Self) -> Self {
+        lanes!(l => <Complex64 as Scalar>::sqr(&a.lane(l)))
+    }
+    #[inline(always)]
+    fn inv(a: &Self) -> Self {
+        lanes!(l => <Complex64 as Scalar>::inv(&a.lane(l)))
+    }
+    #[inline(always)]
+    fn scale(a: &Self, r: f64) -> Self {
+        lanes!(l => <Complex64 as Scalar>::scale(&a.lane(l), r))
+    }
+    #[inline(always)]
+    fn mul_add(a: &Self, b: &Self, c: &Self) -> Self {
+        lanes!(l => <Complex64 as Scalar>::mul_add(&a.lane(l), &b.lane(l), &c.lane(l)))
+    }
+    #[inline(always)]
+    fn mul_sub(a: &Self, b: &Self, c: &Self) -> Self {
+        lanes!(l => <Complex64 as Scalar>::mul_sub(&a.lane(l), &b.lane(l), &c.lane(l)))
+    }
+    #[inline(always)]
+    fn sub_mul(a: &Self, b: &Self, c: &Self) -> Self {
+        lanes!(l => <Complex64 as Scalar>::sub_mul(&a.lane(l), &b.lane(l), &c.lane(l)))
+    }
+    #[inline(always)]
+    fn mul_mul_add(a: &Self, b: &Self, c: &Self, d: &Self) -> Self {
+        lanes!(l => <Complex64 as Scalar>::mul_mul_add(&a.lane(l), &b.lane(l), &c.lane(l), &d.lane(l)))
+    }
+    #[inline(always)]
+    fn mul_mul_sub(a: &Self, b: &Self, c: &Self, d: &Self) -> Self {
+        lanes!(l => <Complex64 as Scalar>::mul_mul_sub(&a.lane(l), &b.lane(l), &c.lane(l), &d.lane(l)))
+    }
+}
+
+impl Lane for Lanes8 {
+    const LANES: usize = 8;
+    #[inline(always)]
+    fn get(&self, l: usize) -> Complex64 {
+        self.lane(l)
+    }
+    #[inline(always)]
+    fn set(&mut self, l: usize, z: Complex64) {
+        self.re[l] = z.re;
+        self.im[l] = z.im;
+    }
+    #[inline(always)]
+    fn select(a: &Self, b: &Self, mask: u8) -> Self {
+        lanes!(l => if mask >> l & 1 == 1 { b.lane(l) } else { a.lane(l) })
+    }
+}

@@ -1,0 +1,11 @@
+//! Polynomials, expressions and straight-line programs.
+//!
+//! The layer below continuation: formulas become programs that run over any [`Scalar`]: one complex
+//! number, eight paths at once ([`Lanes8`]), double-double and more.
+
+pub mod lanes;
+pub mod scalar;
+pub mod simd;
+
+pub use lanes::Lanes8;
+pub use scalar::{Lane, Scalar};

@@ -1,0 +1,151 @@
+//! What a straight-line program needs of its numbers.
+
+use num_complex::Complex64;
+
+/// A complex-number type that a straight-line program can run over.
+///
+/// Every operation takes its operands by reference and is inlined, so that wide types
+/// ([`Lanes8`](crate::Lanes8)) stay in vector registers. The fused forms are *written* fused, not rounded
+/// once: `mul_add` is a product, rounded, then a sum, rounded, so that every implementation of one
+/// type agrees bit for bit on every instruction set.
+pub trait Scalar: Copy + Send + Sync + std::fmt::Debug + 'static {
+    /// The additive identity.
+    const ZERO: Self;
+    /// The multiplicative identity.
+    const ONE: Self;
+
+    /// The same complex number in every lane.
+    fn from_c64(z: Complex64) -> Self;
+
+    /// `a + b`
+    fn add(a: &Self, b: &Self) -> Self;
+    /// `a - b`
+    fn sub(a: &Self, b: &Self) -> Self;
+    /// `a * b`
+    fn mul(a: &Self, b: &Self) -> Self;
+    /// `a / b`; a zero divisor gives non-finite values, never a panic.
+    fn div(a: &Self, b: &Self) -> Self;
+
+    /// `-a`
+    #[inline(always)]
+    fn neg(a: &Self) -> Self {
+        Self::sub(&Self::ZERO, a)
+    }
+    /// `a * a`
+    #[inline(always)]
+    fn sqr(a: &Self) -> Self {
+        Self::mul(a, a)
+    }
+    /// `1 / a`; zero gives non-finite values, never a panic.
+    #[inline(always)]
+    fn inv(a: &Self) -> Self {
+        Self::div(&Self::ONE, a)
+    }
+    /// `r * a` for a real factor
+    #[inline(always)]
+    fn scale(a: &Self, r: f64) -> Self {
+        Self::mul(a, &Self::from_c64(Complex64::new(r, 0.0)))
+    }
+    /// `a * b + c`
+    #[inline(always)]
+    fn mul_add(a: &Self, b: &Self, c: &Self) -> Self {
+        Self::add(&Self::mul(a, b), c)
+    }
+    /// `a * b - c`
+    #[inline(always)]
+    fn mul_sub(a: &Self, b: &Self, c: &Self) -> Self {
+        Self::sub(&Self::mul(a, b), c)
+    }
+    /// `c - a * b`
+    #[inline(always)]
+    fn sub_mul(a: &Self, b: &Self, c: &Self) -> Self {
+        Self::sub(c, &Self::mul(a, b))
+    }
+    /// `a * b + c * d`
+    #[inline(always)]
+    fn mul_mul_add(a: &Self, b: &Self, c: &Self, d: &Self) -> Self {
+        Self::add(&Self::mul(a, b), &Self::mul(c, d))
+    }
+    /// `a * b - c * d`
+    #[inline(always)]
+    fn mul_mul_sub(a: &Self, b: &Self, c: &Self, d: &Self) -> Self {
+        Self::sub(&Self::mul(a, b), &Self::mul(c, d))
+    }
+}
+
+/// A [`Scalar`] of double precision that carries one or several independent paths.
+///
+/// Lanes never mix: the value in lane `l` of a result depends on lane `l` of the operands alone and is
+/// bit for bit what the one-lane type computes. The tracker is written once over this trait.
+pub trait Lane: Scalar {
+    /// How many paths travel side by side.
+    const LANES: usize;
+    /// The number in lane `l < LANES`.
+    fn get(&self, l: usize) -> Complex64;
+    /// Replaces the number in lane `l < LANES`.
+    fn set(&mut self, l: usize, z: Complex64);
+    /// Takes lane `l` from `b` where `mask` has bit `l` set, from `a` elsewhere.
+    fn select(a: &Self, b: &Self, mask: u8) -> Self;
+}
+
+impl Scalar for Complex64 {
+    const ZERO: Self = Complex64::new(0.0, 0.0);
+    const ONE: Self = Complex64::new(1.0, 0.0);
+
+    #[inline(always)]
+    fn from_c64(z: Complex64) -> Self {
+        z
+    }
+    #[inline(always)]
+    fn add(a: &Self, b: &Self) -> Self {
+        Complex64::new(a.re + b.re, a.im + b.im)
+    }
+    #[inline(always)]
+    fn sub(a: &Self, b: &Self) -> Self {
+        Complex64::new(a.re - b.re, a.im - b.im)
+    }
+    #[inline(always)]
+    fn mul(a: &Self, b: &Self) -> Self {
+        Complex64::new(a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re)
+    }
+    #[inline(always)]
+    fn div(a: &Self, b: &Self) -> Self {
+        let r = 1.0 / (b.re * b.re + b.im * b.im);
+        let (re, im) = (b.re * r, -b.im * r);
+        Complex64::new(a.re * re - a.im * im, a.re * im + a.im * re)
+    }
+    #[inline(always)]
+    fn neg(a: &Self) -> Self {
+        Complex64::new(-a.re, -a.im)
+    }
+    #[inline(always)]
+    fn sqr(a: &Self) -> Self {
+        let cross = a.re * a.im;
+        Complex64::new((a.re + a.im) * (a.re - a.im), cross + cross)
+    }
+    #[inline(always)]
+    fn inv(a: &Self) -> Self {
+        let r = 1.0 / (a.re * a.re + a.im * a.im);
+        Complex64::new(a.re * r, -a.im * r)
+    }
+    #[inline(always)]
+    fn scale(a: &Self, r: f64) -> Self {
+        Complex64::new(a.re * r, a.im * r)
+    }
+}
+
+impl Lane for Complex64 {
+    const LANES: usize = 1;
+    #[inline(always)]
+    fn get(&self, _: usize) -> Complex64 {
+        *self
+    }
+    #[inline(always)]
+    fn set(&mut self, _: usize, z: Complex64) {
+        *self = z;
+    }
+    #[inline(always)]
+    fn select(a: &Self, b: &Self, mask: u8) -> Self {
+        if mask & 1 == 1 { *b } else { *a }
+    }
+}

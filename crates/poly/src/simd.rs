@@ -1,0 +1,85 @@
+//! Run-time choice of the instruction set for lane kernels.
+//!
+//! A kernel is plain inlined code over [`Lanes8`](crate::Lanes8); [`Isa::run`] compiles it once for each
+//! instruction set and calls the version that the machine has. Fused multiply-add is never enabled, so
+//! that all versions agree bit for bit.
+
+/// An instruction set for which kernels are compiled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Isa {
+    /// What the target always has (SSE2 on x86-64).
+    Portable,
+    /// AVX2, four doubles a register.
+    Avx2,
+    /// AVX-512 (F, VL, DQ), eight doubles a register.
+    Avx512,
+}
+
+/// Code to be compiled for several instruction sets: `run` must be `#[inline(always)]`.
+pub trait Kernel {
+    /// What the kernel returns.
+    type Output;
+    /// The work itself.
+    fn run(self) -> Self::Output;
+}
+
+impl Isa {
+    /// The widest instruction set of this machine.
+    pub fn detect() -> Isa {
+        #[cfg(target_arch = "x86_64")]
+        {
+            if Isa::Avx512.available() {
+                return Isa::Avx512;
+            }
+            if Isa::Avx2.available() {
+                return Isa::Avx2;
+            }
+        }
+        Isa::Portable
+    }
+
+    /// Whether this machine can run it.
+    pub fn available(self) -> bool {
+        match self {
+            Isa::Portable => true,
+            #[cfg(target_arch = "x86_64")]
+            Isa::Avx2 => std::arch::is_x86_feature_detected!("avx2"),
+            #[cfg(target_arch = "x86_64")]
+            Isa::Avx512 => {
+                std::arch::is_x86_feature_detected!("avx512f")
+                    && std::arch::is_x86_feature_detected!("avx512vl")
+                    && std::arch::is_x86_feature_detected!("avx512dq")
+            }
+            #[cfg(not(target_arch = "x86_64"))]
+            _ => false,
+        }
+    }
+
+    /// Runs a kernel compiled for this instruction set; falls back to [`Isa::Portable`] where the machine lacks it.
+    #[inline]
+    pub fn run<K: Kernel>(self, kernel: K) -> K::Output {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: the guard has just asked the machine for every feature that the function enables
+            // (the answer is cached by the standard library; asking costs one load).
+            Isa::Avx512 if self.available() => unsafe { run_avx512(kernel) },
+            #[cfg(target_arch = "x86_64")]
+            // SAFETY: as above.
+            Isa::Avx2 if self.available() => unsafe { run_avx2(kernel) },
+            _ => kernel.run(),
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512vl,avx512dq")]
+fn run_avx512<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run()
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn run_avx2<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run()
+}

@@ -1,0 +1,1 @@
+//! TDOA self-calibration.
