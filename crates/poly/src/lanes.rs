@@ -19,7 +19,7 @@ pub struct Lanes8 {
 /// Builds a result lane by lane from a formula that mirrors the one-lane type.
 macro_rules! lanes {
     ($l:ident => $z:expr) => {{
-        let mut out = Lanes8::ZERO;
+        let mut out = Lanes8::zero();
         for $l in 0..8 {
             let z: Complex64 = $z;
             out.re[$l] = z.re;
@@ -37,9 +37,14 @@ impl Lanes8 {
 }
 
 impl Scalar for Lanes8 {
-    const ZERO: Self = Lanes8 { re: [0.0; 8], im: [0.0; 8] };
-    const ONE: Self = Lanes8 { re: [1.0; 8], im: [0.0; 8] };
-
+    #[inline(always)]
+    fn zero() -> Self {
+        Lanes8 { re: [0.0; 8], im: [0.0; 8] }
+    }
+    #[inline(always)]
+    fn one() -> Self {
+        Lanes8 { re: [1.0; 8], im: [0.0; 8] }
+    }
     #[inline(always)]
     fn from_c64(z: Complex64) -> Self {
         Lanes8 { re: [z.re; 8], im: [z.im; 8] }

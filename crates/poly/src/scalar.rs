@@ -8,14 +8,21 @@ use num_complex::Complex64;
 /// ([`Lanes8`](crate::Lanes8)) stay in vector registers. The fused forms are *written* fused, not rounded
 /// once: `mul_add` is a product, rounded, then a sum, rounded, so that every implementation of one
 /// type agrees bit for bit on every instruction set.
-pub trait Scalar: Copy + Send + Sync + std::fmt::Debug + 'static {
+pub trait Scalar: Clone + Send + Sync + std::fmt::Debug + 'static {
     /// The additive identity.
-    const ZERO: Self;
+    fn zero() -> Self;
     /// The multiplicative identity.
-    const ONE: Self;
+    fn one() -> Self;
 
     /// The same complex number in every lane.
     fn from_c64(z: Complex64) -> Self;
+
+    /// A constant known to about 32 digits, as unevaluated sums `re[0] + re[1]` and `im[0] + im[1]`
+    /// (high part first); types of double precision drop the low parts.
+    #[inline(always)]
+    fn from_parts(re: [f64; 2], im: [f64; 2]) -> Self {
+        Self::from_c64(Complex64::new(re[0], im[0]))
+    }
 
     /// `a + b`
     fn add(a: &Self, b: &Self) -> Self;
@@ -29,7 +36,7 @@ pub trait Scalar: Copy + Send + Sync + std::fmt::Debug + 'static {
     /// `-a`
     #[inline(always)]
     fn neg(a: &Self) -> Self {
-        Self::sub(&Self::ZERO, a)
+        Self::sub(&Self::zero(), a)
     }
     /// `a * a`
     #[inline(always)]
@@ -39,7 +46,7 @@ pub trait Scalar: Copy + Send + Sync + std::fmt::Debug + 'static {
     /// `1 / a`; zero gives non-finite values, never a panic.
     #[inline(always)]
     fn inv(a: &Self) -> Self {
-        Self::div(&Self::ONE, a)
+        Self::div(&Self::one(), a)
     }
     /// `r * a` for a real factor
     #[inline(always)]
@@ -77,7 +84,7 @@ pub trait Scalar: Copy + Send + Sync + std::fmt::Debug + 'static {
 ///
 /// Lanes never mix: the value in lane `l` of a result depends on lane `l` of the operands alone and is
 /// bit for bit what the one-lane type computes. The tracker is written once over this trait.
-pub trait Lane: Scalar {
+pub trait Lane: Scalar + Copy {
     /// How many paths travel side by side.
     const LANES: usize;
     /// The number in lane `l < LANES`.
@@ -89,9 +96,14 @@ pub trait Lane: Scalar {
 }
 
 impl Scalar for Complex64 {
-    const ZERO: Self = Complex64::new(0.0, 0.0);
-    const ONE: Self = Complex64::new(1.0, 0.0);
-
+    #[inline(always)]
+    fn zero() -> Self {
+        Complex64::new(0.0, 0.0)
+    }
+    #[inline(always)]
+    fn one() -> Self {
+        Complex64::new(1.0, 0.0)
+    }
     #[inline(always)]
     fn from_c64(z: Complex64) -> Self {
         z
