@@ -9,5 +9,5 @@ pub mod scalar;
 pub mod simd;
 
 pub use evaluate::Evaluate;
-pub use lanes::Lanes8;
+pub use lanes::{Lanes8, Reals8};
 pub use scalar::{Lane, Scalar};

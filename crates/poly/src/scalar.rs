@@ -87,6 +87,14 @@ pub trait Scalar: Clone + Send + Sync + std::fmt::Debug + 'static {
 pub trait Lane: Scalar + Copy {
     /// How many paths travel side by side.
     const LANES: usize;
+    /// One real number a lane.
+    type Real: Copy + Send + Sync + std::fmt::Debug + AsRef<[f64]> + AsMut<[f64]> + 'static;
+    /// The same real number in every lane.
+    fn real(r: f64) -> Self::Real;
+    /// `|a|^2` lane by lane.
+    fn norm_sqr(&self) -> Self::Real;
+    /// `r * a` lane by lane.
+    fn scale_by(&self, r: &Self::Real) -> Self;
     /// The number in lane `l < LANES`.
     fn get(&self, l: usize) -> Complex64;
     /// Replaces the number in lane `l < LANES`.
@@ -148,6 +156,19 @@ impl Scalar for Complex64 {
 
 impl Lane for Complex64 {
     const LANES: usize = 1;
+    type Real = [f64; 1];
+    #[inline(always)]
+    fn real(r: f64) -> [f64; 1] {
+        [r]
+    }
+    #[inline(always)]
+    fn norm_sqr(&self) -> [f64; 1] {
+        [self.re * self.re + self.im * self.im]
+    }
+    #[inline(always)]
+    fn scale_by(&self, r: &[f64; 1]) -> Self {
+        Complex64::new(self.re * r[0], self.im * r[0])
+    }
     #[inline(always)]
     fn get(&self, _: usize) -> Complex64 {
         *self
