@@ -101,6 +101,14 @@ impl Scalar for Lanes8 {
         lanes!(l => <Complex64 as Scalar>::scale(&a.lane(l), r))
     }
     #[inline(always)]
+    fn mul_real(a: &Self, r: &Self) -> Self {
+        lanes!(l => <Complex64 as Scalar>::mul_real(&a.lane(l), &r.lane(l)))
+    }
+    #[inline(always)]
+    fn mul_real_add(a: &Self, r: &Self, c: &Self) -> Self {
+        lanes!(l => <Complex64 as Scalar>::mul_real_add(&a.lane(l), &r.lane(l), &c.lane(l)))
+    }
+    #[inline(always)]
     fn mul_add(a: &Self, b: &Self, c: &Self) -> Self {
         lanes!(l => <Complex64 as Scalar>::mul_add(&a.lane(l), &b.lane(l), &c.lane(l)))
     }

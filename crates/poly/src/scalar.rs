@@ -1,5 +1,6 @@
 //! What a straight-line program needs of its numbers.
 
+use crate::exact::{self, Exact};
 use num_complex::Complex64;
 
 /// A complex-number type that a straight-line program can run over.
@@ -22,6 +23,11 @@ pub trait Scalar: Clone + Send + Sync + std::fmt::Debug + 'static {
     #[inline(always)]
     fn from_parts(re: [f64; 2], im: [f64; 2]) -> Self {
         Self::from_c64(Complex64::new(re[0], im[0]))
+    }
+
+    /// An exact constant, as near as the type allows; types that hold more than 32 digits override it.
+    fn from_exact(z: &Exact) -> Self {
+        Self::from_parts(exact::to_parts(&z.re), exact::to_parts(&z.im))
     }
 
     /// `a + b`
@@ -52,6 +58,16 @@ pub trait Scalar: Clone + Send + Sync + std::fmt::Debug + 'static {
     #[inline(always)]
     fn scale(a: &Self, r: f64) -> Self {
         Self::mul(a, &Self::from_c64(Complex64::new(r, 0.0)))
+    }
+    /// `a * r`, where `r` is known to be real
+    #[inline(always)]
+    fn mul_real(a: &Self, r: &Self) -> Self {
+        Self::mul(a, r)
+    }
+    /// `a * r + c`, where `r` is known to be real
+    #[inline(always)]
+    fn mul_real_add(a: &Self, r: &Self, c: &Self) -> Self {
+        Self::add(&Self::mul_real(a, r), c)
     }
     /// `a * b + c`
     #[inline(always)]
@@ -151,6 +167,10 @@ impl Scalar for Complex64 {
     #[inline(always)]
     fn scale(a: &Self, r: f64) -> Self {
         Complex64::new(a.re * r, a.im * r)
+    }
+    #[inline(always)]
+    fn mul_real(a: &Self, r: &Self) -> Self {
+        Complex64::new(a.re * r.re, a.im * r.re)
     }
 }
 
