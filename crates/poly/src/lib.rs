@@ -6,6 +6,7 @@
 mod display;
 mod exact;
 mod graph;
+mod instantiate;
 
 pub mod dd;
 pub mod evaluate;
