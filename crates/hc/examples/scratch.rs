@@ -17,7 +17,23 @@ fn main(){
   let r=monodromy::monodromy(&sys,&start,accept,&o);
   println!("monodromy {:?} {} {:?} loops {} paths {}",t.elapsed(),r.fibre.len(),r.stop,r.loops,r.paths);
   let f=r.fibre;
-  for seed in 0..5u64 {
+  for (bo,bt,bl) in [(3.0,0.4,0.3),(2.0,0.4,0.3),(1.5,0.4,0.3),(2.0,0.75,0.4),(1.5,0.75,0.5),(1.2,0.9,0.7)] {
+  let mut fo=fibre::FibreOptions::default(); fo.tracker.beta_omega=bo; fo.tracker.beta_tau=bt; fo.tracker.beta_tau_last=bl;fo.retries=2;
+  let (mut el,mut st,mut re,mut ja,mut fail,mut ret,mut ext)=(0.0,0,0,0,0,0,0);
+  for seed in 0..20u64 {
+    let mut rnd=random::Random::new(seed,99);
+    let target:Vec<_>=(0..f.parameters.len()).map(|_|num_complex::Complex64::new(rnd.normal().re*1.4,0.)).collect();
+    let t=Instant::now();
+    let (ends,c)=fibre::track_fibre(&sys,&f,&target,&fo);
+    el+=t.elapsed().as_secs_f64();
+    st+=ends.results().iter().map(|r|r.accepted).sum::<usize>(); re+=ends.results().iter().map(|r|r.rejected).sum::<usize>();ja+=ends.results().iter().map(|r|r.jacobians).sum::<usize>();
+    for r in ends.results().iter().filter(|r|!r.end.is_good()||r.accepted>1000) {println!("   {seed} {r:?}");}
+    fail+=c.failed;ret+=c.retracked;ext+=ends.results().iter().filter(|r|r.extended).count();
+  }
+  let k=20.*180.;
+  println!("bo {bo} bt {bt} bl {bl}: {:.1} ms steps {:.1} rej {:.2} jac {:.1} fail {fail} retracked {ret} ext {ext}",el/20.*1e3,st as f64/k,re as f64/k,ja as f64/k);
+  }
+  for seed in 0..0u64 {
     let mut rnd=random::Random::new(seed,99);
     let target:Vec<_>=(0..f.parameters.len()).map(|_|num_complex::Complex64::new(rnd.normal().re*1.4,0.)).collect();
     let t=Instant::now();

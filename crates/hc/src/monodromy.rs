@@ -94,7 +94,7 @@ pub fn monodromy<E: Evaluate>(
         let before = fibre.len();
         paths += 3 * before;
         go_round(system, &mut fibre, &corners, &accept, options);
-        loops += 1;
+        loops += 1; if std::env::var("HCDBG").is_ok() {eprintln!("loop {loops}: {}", fibre.len());}
         idle = if fibre.len() > before { 0 } else { idle + 1 };
     };
     MonodromyResult { fibre, stop, loops, paths }

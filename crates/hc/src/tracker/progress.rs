@@ -12,6 +12,8 @@ const HARD_CUT: f64 = 0.25;
 /// Assumed `omega` at the start of a path; the first steps replace it.
 const INITIAL_OMEGA: f64 = 10.0;
 const MIN_OMEGA: f64 = 0.1;
+/// Corrections up to this multiple of the noise are taken for noise.
+const NOISE_MARGIN: f64 = 16.0;
 
 /// `h(a) = 2a (sqrt(4a^2 + 1) - 2a)` (Timme 2020, lemma 4.2).
 fn h(a: f64) -> f64 {
@@ -89,6 +91,8 @@ pub(crate) struct Progress {
     omega: f64,
     omega_before: f64,
     mu: f64,
+    /// Size of corrections that are rounding error alone, as far as seen.
+    noise: f64,
     accepted: usize,
     rejected: usize,
     pub(crate) jacobians: usize,
@@ -117,6 +121,7 @@ impl Progress {
             omega: INITIAL_OMEGA,
             omega_before: INITIAL_OMEGA,
             mu: f64::EPSILON,
+            noise: f64::EPSILON,
             accepted: 0,
             rejected: 0,
             jacobians: 0,
@@ -201,7 +206,7 @@ impl Progress {
                 self.stage = Stage::Rejected { theta: f64::INFINITY };
                 return;
             }
-        } else {
+        } else if norm > NOISE_MARGIN * self.noise {
             let theta = norm / self.last;
             if i == 1 {
                 self.omega_now = 2.0 * norm / (self.last * self.last);
@@ -211,6 +216,12 @@ impl Progress {
                 return;
             }
             self.theta_bound *= self.theta_bound;
+        } else {
+            // Rounding error: it says nothing about contraction, and no correction will be smaller.
+            self.omega_now = if i == 1 { 0.5 * self.omega } else { self.omega_now };
+            self.last = norm;
+            self.stage = Stage::Converged;
+            return;
         }
         self.last = norm;
         if self.omega_now.max(MIN_OMEGA) * norm <= bounds.options.corrector_tolerance {
@@ -232,13 +243,15 @@ impl Progress {
         }
         if self.omega_now == self.omega && self.first == self.last {
             // One iteration only: the closing correction tells omega, unless it is rounding error.
-            self.omega_now = if norm > 64.0 * f64::EPSILON {
-                (2.0 * norm / (self.first * self.first)).min(4.0 * self.omega)
+            self.omega_now = if norm > NOISE_MARGIN * self.noise {
+                (2.0 * norm / (self.first * self.first)).min(self.omega)
             } else {
                 0.5 * self.omega
             };
         }
         let omega = self.omega_now.max(0.5 * self.omega).max(MIN_OMEGA);
+        // More than quadratic convergence leaves is rounding error.
+        self.noise = if norm > omega * self.last * self.last { norm } else { self.noise.min(norm) }.max(f64::EPSILON);
         let noise = omega * norm;
         if noise > bounds.leave_double && !self.extended && bounds.options.extended_precision {
             self.extended = true;
