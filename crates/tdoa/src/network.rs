@@ -1,0 +1,180 @@
+//! The answer: positions and offsets, and what a minimal solver says beside them.
+
+use serde::Serialize;
+
+use crate::pseudoranges::Pseudoranges;
+
+/// A complete network in the plane: every receiver, every transmitter and its offset, all in metres.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct Network {
+    /// Positions of the receivers.
+    pub receivers: Vec<[f64; 2]>,
+    /// Positions of the transmitters.
+    pub transmitters: Vec<[f64; 2]>,
+    /// Offsets o_j of the transmitters: send time times propagation speed.
+    pub offsets: Vec<f64>,
+}
+
+impl Network {
+    /// Distance of receiver `i` and transmitter `j`.
+    pub fn distance(&self, i: usize, j: usize) -> f64 {
+        distance(self.receivers[i], self.transmitters[j])
+    }
+
+    /// What receiver `i` measures of transmitter `j` without noise: |r_i - s_j| + o_j.
+    pub fn pseudorange(&self, i: usize, j: usize) -> f64 {
+        self.distance(i, j) + self.offsets[j]
+    }
+
+    /// The unsquared residuals f_ij - o_j - |r_i - s_j| in metres, row-major, NaN where the measurement is missing.
+    ///
+    /// # Panics
+    /// If the network and the measurements differ in size.
+    pub fn residuals(&self, measured: &Pseudoranges) -> Vec<f64> {
+        self.check_size(measured);
+        let n = self.transmitters.len();
+        (0..self.receivers.len() * n).map(|k| measured.values()[k] - self.pseudorange(k / n, k % n)).collect()
+    }
+
+    /// Root mean square of the unsquared residuals over the measured cells, in metres; 0 if nothing was measured.
+    ///
+    /// # Panics
+    /// If the network and the measurements differ in size.
+    pub fn rms(&self, measured: &Pseudoranges) -> f64 {
+        let (mut sum, mut count) = (0.0, 0usize);
+        for residual in self.residuals(measured) {
+            if !residual.is_nan() {
+                sum += residual * residual;
+                count += 1;
+            }
+        }
+        if count == 0 { 0.0 } else { (sum / count as f64).sqrt() }
+    }
+
+    /// Whether every measured f_ij - o_j, which is a distance, is at least `-tolerance` (metres). The squared equations
+    /// lose this condition; a network that breaks it is a wrong-sign branch.
+    ///
+    /// # Panics
+    /// If the network and the measurements differ in size.
+    pub fn is_physical(&self, measured: &Pseudoranges, tolerance: f64) -> bool {
+        self.check_size(measured);
+        let n = self.transmitters.len();
+        // A missing cell is NaN and passes.
+        measured.values().iter().enumerate().all(|(k, f)| {
+            let distance = f - self.offsets[k % n];
+            distance.is_nan() || distance >= -tolerance
+        })
+    }
+
+    /// Whether every number of the network is finite.
+    pub fn is_finite(&self) -> bool {
+        self.receivers.iter().chain(&self.transmitters).flatten().chain(&self.offsets).all(|x| x.is_finite())
+    }
+
+    /// The network's size: root mean square distance of the receivers from their centroid, in metres.
+    pub fn size(&self) -> f64 {
+        let m = self.receivers.len().max(1) as f64;
+        let centre = [0, 1].map(|k| self.receivers.iter().map(|r| r[k]).sum::<f64>() / m);
+        (self.receivers.iter().map(|&r| distance(r, centre).powi(2)).sum::<f64>() / m).sqrt()
+    }
+
+    fn check_size(&self, measured: &Pseudoranges) {
+        assert_eq!(self.receivers.len(), measured.receivers(), "receivers of network and measurements");
+        assert_eq!(self.transmitters.len(), measured.transmitters(), "transmitters of network and measurements");
+        assert_eq!(self.transmitters.len(), self.offsets.len(), "transmitters and offsets");
+    }
+}
+
+/// Euclidean distance in the plane.
+pub(crate) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    let (dx, dy) = (a[0] - b[0], a[1] - b[1]);
+    (dx * dx + dy * dy).sqrt()
+}
+
+/// One network that a minimal solver proposes.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Candidate {
+    /// The network.
+    #[serde(flatten)]
+    pub network: Network,
+    /// Root mean square of the unsquared residuals, in metres.
+    pub residual: f64,
+    /// Whether every f_ij - o_j is at least minus the tolerance.
+    pub physical: bool,
+    /// Condition number of the Jacobian at the candidate: how much an error of the data may grow.
+    pub condition: f64,
+}
+
+/// How the paths of a homotopy ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct PathCounts {
+    /// Paths tracked.
+    pub tracked: usize,
+    /// Paths that ended at a finite solution.
+    pub finite: usize,
+    /// Paths shown to diverge.
+    pub at_infinity: usize,
+    /// Paths that ended neither way.
+    pub failed: usize,
+    /// Paths that needed a second attempt, whatever its end.
+    pub retracked: usize,
+}
+
+/// How many roots pass each condition; each is a part of the one before.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct RootCounts {
+    /// Complex roots.
+    pub complex: usize,
+    /// Real roots.
+    pub real: usize,
+    /// Real roots with positive definite H, that is with real positions.
+    pub positive_definite: usize,
+    /// Of these, roots with all f_ij - o_j >= 0 up to the tolerance.
+    pub physical: usize,
+}
+
+/// All that a minimal solver finds for one matrix.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MinimalSolution {
+    /// The size of the matrix, such as `6r/3s`.
+    pub configuration: String,
+    /// The solver that was used, such as `6r/3s` on a larger matrix.
+    pub solver: &'static str,
+    /// How its paths ended.
+    pub paths: PathCounts,
+    /// How many roots there are.
+    pub counts: RootCounts,
+    /// The candidates, best first.
+    #[serde(rename = "solutions")]
+    pub candidates: Vec<Candidate>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square() -> Network {
+        Network {
+            receivers: vec![[0.0, 0.0], [3.0, 0.0], [0.0, 4.0]],
+            transmitters: vec![[3.0, 4.0], [0.0, 0.0]],
+            offsets: vec![1.0, -2.0],
+        }
+    }
+
+    #[test]
+    fn residuals_are_measured_minus_modelled() {
+        // By hand: distances 5, 0; 4, 3; 3, 4, with offsets 1 and -2 added.
+        let f = Pseudoranges::new(3, 2, vec![6.0, -2.0, 5.0, 1.5, f64::NAN, 2.0]).unwrap();
+        let residuals = square().residuals(&f);
+        assert_eq!(residuals[..4], [0.0, 0.0, 0.0, 0.5]);
+        assert!(residuals[4].is_nan());
+        assert_eq!(square().rms(&f), (0.25f64 / 5.0).sqrt());
+    }
+
+    #[test]
+    fn physical_means_no_negative_distance() {
+        let f = Pseudoranges::new(3, 2, vec![6.0, -2.5, 5.0, 1.0, 4.0, f64::NAN]).unwrap();
+        assert!(!square().is_physical(&f, 0.4));
+        assert!(square().is_physical(&f, 0.5));
+    }
+}

@@ -1,0 +1,293 @@
+//! The measurement matrix.
+
+use thiserror::Error;
+
+/// Largest number of cells (receivers times transmitters) of a matrix: 4 million, 32 MB of values.
+pub const MAX_CELLS: usize = 4_000_000;
+
+/// Largest magnitude of a value, in metres. Above it a double cannot resolve a tenth of a millimetre.
+pub const MAX_MAGNITUDE: f64 = 1e12;
+
+/// Why numbers do not form a [`Pseudoranges`] matrix. Receivers and transmitters are given by name, or counted from 1.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum PseudorangeError {
+    /// No receivers or no transmitters.
+    #[error("the matrix is empty ({receivers} receivers, {transmitters} transmitters)")]
+    Empty {
+        /// Number of rows.
+        receivers: usize,
+        /// Number of columns.
+        transmitters: usize,
+    },
+    /// More than [`MAX_CELLS`] cells.
+    #[error(
+        "{receivers} receivers times {transmitters} transmitters are more than {MAX_CELLS} cells; split the recording"
+    )]
+    TooLarge {
+        /// Number of rows.
+        receivers: usize,
+        /// Number of columns.
+        transmitters: usize,
+    },
+    /// The number of values is not receivers times transmitters.
+    #[error("{expected} {what} are needed, one a {per}, but {found} were given")]
+    Count {
+        /// What is counted.
+        what: &'static str,
+        /// What each of them belongs to.
+        per: &'static str,
+        /// How many there should be.
+        expected: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// An infinite value, or one above [`MAX_MAGNITUDE`].
+    #[error(
+        "receiver {receiver}, transmitter {transmitter}: {value} is not a usable pseudorange (metres, magnitude at \
+         most {MAX_MAGNITUDE:e}); leave the cell empty or write nan if it was not measured, and subtract a common \
+         time from each transmitter's column if the clock starts long ago"
+    )]
+    Unusable {
+        /// Name of the receiver.
+        receiver: String,
+        /// Name of the transmitter.
+        transmitter: String,
+        /// The value.
+        value: f64,
+    },
+    /// A standard deviation that is not positive and finite.
+    #[error(
+        "receiver {receiver}, transmitter {transmitter}: the standard deviation must be positive and finite, not {value}"
+    )]
+    Sigma {
+        /// Name of the receiver.
+        receiver: String,
+        /// Name of the transmitter.
+        transmitter: String,
+        /// The value.
+        value: f64,
+    },
+    /// Two receivers, or two transmitters, with the same name.
+    #[error("two {kind}s are named {name:?}; names must differ")]
+    DuplicateName {
+        /// "receiver" or "transmitter".
+        kind: &'static str,
+        /// The name.
+        name: String,
+    },
+}
+
+/// The matrix f_ij of pseudoranges in metres: f_ij = |r_i - s_j| + o_j + noise, receivers i in rows, transmitters j in
+/// columns. Cells that were not measured are missing.
+///
+/// ```
+/// use tdoa::Pseudoranges;
+/// let f = Pseudoranges::new(2, 3, vec![1.0, 2.0, f64::NAN, 4.0, 5.0, 6.0])?;
+/// assert_eq!(f.get(0, 1), Some(2.0));
+/// assert_eq!(f.get(0, 2), None);
+/// assert_eq!(f.observed(), 5);
+/// # Ok::<(), tdoa::PseudorangeError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Pseudoranges {
+    receivers: usize,
+    transmitters: usize,
+    values: Vec<f64>,
+    sigmas: Option<Vec<f64>>,
+    receiver_names: Vec<String>,
+    transmitter_names: Vec<String>,
+}
+
+impl Pseudoranges {
+    /// A matrix of `receivers` rows and `transmitters` columns from row-major `values` in metres; NaN is a missing
+    /// cell. Nodes are named `r1`, `r2`, ... and `s1`, `s2`, ...
+    ///
+    /// # Errors
+    /// An empty or too large matrix, a wrong number of values, an infinite or huge value.
+    pub fn new(receivers: usize, transmitters: usize, values: Vec<f64>) -> Result<Self, PseudorangeError> {
+        if receivers == 0 || transmitters == 0 {
+            return Err(PseudorangeError::Empty { receivers, transmitters });
+        }
+        let cells = receivers
+            .checked_mul(transmitters)
+            .filter(|&cells| cells <= MAX_CELLS)
+            .ok_or(PseudorangeError::TooLarge { receivers, transmitters })?;
+        check_count("values", "cell", cells, values.len())?;
+        let matrix = Pseudoranges {
+            receivers,
+            transmitters,
+            values,
+            sigmas: None,
+            receiver_names: (1..=receivers).map(|i| format!("r{i}")).collect(),
+            transmitter_names: (1..=transmitters).map(|j| format!("s{j}")).collect(),
+        };
+        matrix.check_values()?;
+        Ok(matrix)
+    }
+
+    fn check_values(&self) -> Result<(), PseudorangeError> {
+        match self.values.iter().position(|v| v.is_infinite() || v.abs() > MAX_MAGNITUDE) {
+            None => Ok(()),
+            Some(k) => Err(PseudorangeError::Unusable {
+                receiver: self.receiver_names[k / self.transmitters].clone(),
+                transmitter: self.transmitter_names[k % self.transmitters].clone(),
+                value: self.values[k],
+            }),
+        }
+    }
+
+    /// The same matrix with these names of receivers and transmitters.
+    ///
+    /// # Errors
+    /// A wrong number of names, or a name given twice.
+    pub fn with_names(mut self, receivers: Vec<String>, transmitters: Vec<String>) -> Result<Self, PseudorangeError> {
+        check_count("names", "receiver", self.receivers, receivers.len())?;
+        check_count("names", "transmitter", self.transmitters, transmitters.len())?;
+        for (kind, names) in [("receiver", &receivers), ("transmitter", &transmitters)] {
+            let mut seen = std::collections::HashSet::new();
+            if let Some(name) = names.iter().find(|name| !seen.insert(name.as_str())) {
+                return Err(PseudorangeError::DuplicateName { kind, name: name.clone() });
+            }
+        }
+        self.receiver_names = receivers;
+        self.transmitter_names = transmitters;
+        Ok(self)
+    }
+
+    /// The same matrix with a standard deviation (metres) for each cell, row-major; those of missing cells are ignored.
+    ///
+    /// # Errors
+    /// A wrong number of them, or one that is not positive and finite.
+    pub fn with_sigmas(mut self, sigmas: Vec<f64>) -> Result<Self, PseudorangeError> {
+        check_count("standard deviations", "cell", self.values.len(), sigmas.len())?;
+        let good = |k: usize| self.values[k].is_nan() || (sigmas[k].is_finite() && sigmas[k] > 0.0);
+        if let Some(k) = (0..sigmas.len()).find(|&k| !good(k)) {
+            return Err(PseudorangeError::Sigma {
+                receiver: self.receiver_names[k / self.transmitters].clone(),
+                transmitter: self.transmitter_names[k % self.transmitters].clone(),
+                value: sigmas[k],
+            });
+        }
+        self.sigmas = Some(sigmas);
+        Ok(self)
+    }
+
+    /// Number of receivers (rows).
+    pub fn receivers(&self) -> usize {
+        self.receivers
+    }
+
+    /// Number of transmitters (columns).
+    pub fn transmitters(&self) -> usize {
+        self.transmitters
+    }
+
+    /// The pseudorange of receiver `i` and transmitter `j` in metres, `None` where it is missing or out of range.
+    pub fn get(&self, i: usize, j: usize) -> Option<f64> {
+        if i >= self.receivers || j >= self.transmitters {
+            return None;
+        }
+        let value = self.values[i * self.transmitters + j];
+        if value.is_nan() { None } else { Some(value) }
+    }
+
+    /// The standard deviation (metres) given for a cell, `None` where there is none.
+    pub fn sigma(&self, i: usize, j: usize) -> Option<f64> {
+        self.get(i, j)?;
+        self.sigmas.as_ref().map(|sigmas| sigmas[i * self.transmitters + j])
+    }
+
+    /// Whether the cells carry their own standard deviations.
+    pub fn has_sigmas(&self) -> bool {
+        self.sigmas.is_some()
+    }
+
+    /// The values row by row, NaN where missing.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// Number of measured cells.
+    pub fn observed(&self) -> usize {
+        self.values.iter().filter(|v| !v.is_nan()).count()
+    }
+
+    /// Whether no cell is missing.
+    pub fn is_complete(&self) -> bool {
+        self.values.iter().all(|v| !v.is_nan())
+    }
+
+    /// Names of the receivers.
+    pub fn receiver_names(&self) -> &[String] {
+        &self.receiver_names
+    }
+
+    /// Names of the transmitters.
+    pub fn transmitter_names(&self) -> &[String] {
+        &self.transmitter_names
+    }
+
+    /// The size as the literature writes it, such as `6r/3s`.
+    pub fn configuration(&self) -> String {
+        format!("{}r/{}s", self.receivers, self.transmitters)
+    }
+
+    /// The matrix of these receivers and transmitters, in this order, with their names and standard deviations.
+    ///
+    /// # Panics
+    /// If an index is out of range.
+    pub fn select(&self, receivers: &[usize], transmitters: &[usize]) -> Pseudoranges {
+        let pick = |all: &[f64]| -> Vec<f64> {
+            receivers
+                .iter()
+                .flat_map(|&i| transmitters.iter().map(move |&j| (i, j)))
+                .map(|(i, j)| all[i * self.transmitters + j])
+                .collect()
+        };
+        Pseudoranges {
+            receivers: receivers.len(),
+            transmitters: transmitters.len(),
+            values: pick(&self.values),
+            sigmas: self.sigmas.as_deref().map(pick),
+            receiver_names: receivers.iter().map(|&i| self.receiver_names[i].clone()).collect(),
+            transmitter_names: transmitters.iter().map(|&j| self.transmitter_names[j].clone()).collect(),
+        }
+    }
+}
+
+fn check_count(what: &'static str, per: &'static str, expected: usize, found: usize) -> Result<(), PseudorangeError> {
+    if expected == found { Ok(()) } else { Err(PseudorangeError::Count { what, per, expected, found }) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn select_keeps_order_names_and_sigmas() {
+        let f = Pseudoranges::new(2, 3, vec![0.0, 1.0, 2.0, 10.0, 11.0, f64::NAN]).unwrap();
+        let f = f.with_sigmas(vec![0.1, 0.2, 0.3, 0.4, 0.5, f64::NAN]).unwrap();
+        let g = f.select(&[1, 0], &[2, 0]);
+        assert_eq!((g.get(0, 0), g.get(0, 1), g.get(1, 0), g.get(1, 1)), (None, Some(10.0), Some(2.0), Some(0.0)));
+        assert_eq!(g.receiver_names(), ["r2", "r1"]);
+        assert_eq!(g.transmitter_names(), ["s3", "s1"]);
+        assert_eq!((g.sigma(0, 0), g.sigma(1, 0)), (None, Some(0.3)));
+        assert_eq!(g.configuration(), "2r/2s");
+    }
+
+    #[test]
+    fn refuses_what_is_no_matrix() {
+        assert!(matches!(Pseudoranges::new(0, 3, vec![]), Err(PseudorangeError::Empty { .. })));
+        assert!(matches!(Pseudoranges::new(usize::MAX, 2, vec![]), Err(PseudorangeError::TooLarge { .. })));
+        assert!(matches!(Pseudoranges::new(2, 2, vec![0.0; 3]), Err(PseudorangeError::Count { found: 3, .. })));
+        for bad in [f64::INFINITY, f64::NEG_INFINITY, 2e12] {
+            let error = Pseudoranges::new(1, 2, vec![0.0, bad]).unwrap_err();
+            assert!(error.to_string().starts_with("receiver r1, transmitter s2"), "{error}");
+        }
+        let f = Pseudoranges::new(1, 2, vec![0.0, 1.0]).unwrap();
+        assert!(matches!(f.clone().with_sigmas(vec![1.0, 0.0]), Err(PseudorangeError::Sigma { .. })));
+        let twice = f.with_names(vec!["a".into()], vec!["b".into(), "b".into()]);
+        assert!(matches!(twice, Err(PseudorangeError::DuplicateName { kind: "transmitter", .. })));
+    }
+}
