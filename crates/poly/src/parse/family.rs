@@ -53,7 +53,7 @@ struct FamilyText {
 ///
 /// # Errors
 /// If the text is not TOML, misses a key or has one too many, declares a name twice, or if a formula does not parse;
-/// line and column then count within the formula that [`ParseError::within`] names.
+/// line and column then count within the formula that the field `within` of the error names.
 pub fn family(text: &str) -> Result<Family, ParseError> {
     let fields: FamilyText = toml::from_str(text)
         .map_err(|e| ParseError::at(text, e.span().map_or(0, |span| span.start), e.message().to_owned()))?;

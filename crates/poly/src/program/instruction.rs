@@ -81,3 +81,14 @@ pub(crate) struct Tape {
     /// What is written where: slot of the output and its value; slots that are not listed are zero.
     pub(crate) outputs: Vec<(u32, Operand)>,
 }
+
+impl Tape {
+    /// Those of the first `slots` output slots that no instruction writes.
+    pub(crate) fn zeros(&self, slots: usize) -> Vec<u32> {
+        let mut written = vec![false; slots];
+        for &(slot, _) in &self.outputs {
+            written[slot as usize] = true;
+        }
+        (0u32..).zip(written).filter(|&(_, written)| !written).map(|(slot, _)| slot).collect()
+    }
+}

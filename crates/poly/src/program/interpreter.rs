@@ -3,7 +3,8 @@
 use super::Program;
 use super::instruction::Op;
 use super::registers::{Code, Layout, RegisterTape, allocate};
-use super::taylor::TaylorTape;
+use super::series::Series;
+use super::taylor::{TaylorTape, resident};
 use crate::evaluate::Evaluate;
 use crate::scalar::Scalar;
 use crate::simd::{Isa, Kernel};
@@ -30,8 +31,8 @@ pub struct InterpreterMemory<S> {
     isa: Isa,
     values: Vec<S>,
     jacobian: Vec<S>,
-    /// Four Taylor coefficients for every operand and every instruction, made by the first use.
-    taylor: Vec<S>,
+    /// Taylor coefficients of every operand and every result.
+    taylor: Vec<Series<S>>,
 }
 
 impl Interpreter {
@@ -39,8 +40,8 @@ impl Interpreter {
     pub fn new(program: Program) -> Interpreter {
         let layout =
             Layout { constants: program.constants.len(), parameters: program.parameters, variables: program.variables };
-        let values = allocate(&program.values, layout);
-        let jacobian = allocate(&program.jacobian, layout);
+        let values = allocate(&program.values, layout, program.equations);
+        let jacobian = allocate(&program.jacobian, layout, program.equations * (1 + program.variables));
         let taylor = TaylorTape::new(&program.values, layout);
         Interpreter { compiled: Arc::new(Compiled { program, layout, values, jacobian, taylor }) }
     }
@@ -76,7 +77,7 @@ impl Evaluate for Interpreter {
             isa,
             values: array(compiled.values.size),
             jacobian: array(compiled.jacobian.size),
-            taylor: compiled.taylor.memory(&constants),
+            taylor: resident(&constants, compiled.taylor.size),
         }
     }
 
@@ -85,7 +86,6 @@ impl Evaluate for Interpreter {
         compiled.load(&mut memory.values, x, p);
         memory.isa.run(Run { code: &compiled.values.code, array: &mut memory.values });
         let outputs = &mut values[..compiled.program.equations];
-        outputs.fill(S::zero());
         for &(slot, register) in &compiled.values.outputs {
             outputs[slot as usize] = memory.values[register as usize].clone();
         }
@@ -103,8 +103,10 @@ impl Evaluate for Interpreter {
         let rows = compiled.program.equations;
         compiled.load(&mut memory.jacobian, x, p);
         memory.isa.run(Run { code: &compiled.jacobian.code, array: &mut memory.jacobian });
-        let jacobian = &mut jacobian[..rows * compiled.program.variables];
-        jacobian.fill(S::zero());
+        let (values, jacobian) = (&mut values[..rows], &mut jacobian[..rows * compiled.program.variables]);
+        for &slot in &compiled.jacobian.zeros {
+            jacobian[slot as usize - rows] = S::zero();
+        }
         for &(slot, register) in &compiled.jacobian.outputs {
             let value = memory.jacobian[register as usize].clone();
             match (slot as usize).checked_sub(rows) {

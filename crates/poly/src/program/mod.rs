@@ -5,15 +5,21 @@
 //! instructions. [`Interpreter`] runs a program over any [`Scalar`](crate::Scalar).
 
 mod derivative;
+#[cfg(feature = "emit")]
+mod emit;
+pub mod generated;
 mod instruction;
 mod interpreter;
 mod lower;
 mod registers;
 mod schedule;
+pub mod series;
 mod taylor;
 #[cfg(test)]
 mod tests;
 
+#[cfg(feature = "emit")]
+pub use emit::{EmitError, EmitOptions, emit};
 pub use interpreter::{Interpreter, InterpreterMemory};
 
 use crate::exact::Exact;
@@ -21,6 +27,7 @@ use crate::graph::{Graph, Id, Node};
 use crate::system::System;
 use instruction::{Operand, Tape};
 use lower::Builder;
+use registers::Layout;
 
 /// Most nodes of a formula graph, derivatives included.
 const NODE_LIMIT: usize = 20_000_000;
@@ -100,6 +107,11 @@ impl Program {
     /// Number of instructions for values and Jacobian together.
     pub fn jacobian_operations(&self) -> usize {
         self.jacobian.instructions.len()
+    }
+
+    /// How inputs are laid out before results.
+    fn layout(&self) -> Layout {
+        Layout { constants: self.constants.len(), parameters: self.parameters, variables: self.variables }
     }
 }
 

@@ -19,6 +19,8 @@ pub(crate) struct RegisterTape {
     pub(crate) code: Vec<Code>,
     /// Slot of the output and the register that holds it at the end.
     pub(crate) outputs: Vec<(u32, u32)>,
+    /// Slots that are zero whatever the input.
+    pub(crate) zeros: Vec<u32>,
     /// Length of the whole array.
     pub(crate) size: usize,
 }
@@ -49,7 +51,7 @@ pub(crate) fn place(operand: Operand, layout: Layout, temporary: impl Fn(u32) ->
 }
 
 /// Assigns registers by linear scan; outputs keep theirs to the end.
-pub(crate) fn allocate(tape: &Tape, layout: Layout) -> RegisterTape {
+pub(crate) fn allocate(tape: &Tape, layout: Layout, slots: usize) -> RegisterTape {
     const FOREVER: usize = usize::MAX;
     let mut last_use = vec![0; tape.instructions.len()];
     for (k, instruction) in tape.instructions.iter().enumerate() {
@@ -89,5 +91,5 @@ pub(crate) fn allocate(tape: &Tape, layout: Layout) -> RegisterTape {
     }
     let outputs =
         tape.outputs.iter().map(|&(slot, operand)| (slot, place(operand, layout, |j| register[j as usize]))).collect();
-    RegisterTape { code, outputs, size }
+    RegisterTape { code, outputs, zeros: tape.zeros(slots), size }
 }
