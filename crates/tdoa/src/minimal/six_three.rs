@@ -8,7 +8,7 @@ use crate::pseudoranges::Pseudoranges;
 use hc::distinct::coincidences;
 use hc::fibre::{Fibre, track_fibre_with};
 use hc::homotopy::Segment;
-use hc::poly::{Evaluate, Isa, Lanes8};
+use hc::poly::{Evaluate, Lanes8};
 use hc::refine::Refiner;
 use hc::tracker::{PathEnd, PathSet, Tracker};
 use num_complex::Complex64;
@@ -197,5 +197,45 @@ impl Normalised {
     fn restore(&self, network: &mut crate::network::Network) {
         network.receivers.iter_mut().chain(&mut network.transmitters).flatten().for_each(|x| *x *= self.size);
         network.offsets.iter_mut().zip(self.first).for_each(|(o, first)| *o = *o * self.size + first);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::SixThree;
+    use crate::minimal::SolveOptions;
+    use crate::network::Network;
+    use crate::pseudoranges::Pseudoranges;
+    use hc::random::Random;
+
+    /// Positions and offsets standard normal, as in the paper.
+    fn instance(seed: u64) -> (Network, Pseudoranges) {
+        let mut random = Random::new(seed, 63);
+        let mut normal = || random.normal().re * 2f64.sqrt();
+        let network = Network {
+            receivers: (0..6).map(|_| [normal(), normal()]).collect(),
+            transmitters: (0..3).map(|_| [normal(), normal()]).collect(),
+            offsets: (0..3).map(|_| normal()).collect(),
+        };
+        let values = (0..18).map(|k| network.pseudorange(k / 3, k % 3)).collect();
+        (network, Pseudoranges::new(6, 3, values).unwrap())
+    }
+
+    #[test]
+    fn finds_the_truth_among_all_180_roots() {
+        let mut solver = SixThree::new();
+        for seed in 0..40 {
+            let (truth, measured) = instance(seed);
+            let solution = solver.solve(&measured, &SolveOptions::default()).unwrap();
+            assert_eq!((solution.paths.finite, solution.paths.failed), (180, 0), "seed {seed}: {:?}", solution.paths);
+            // The number of roots with H > 0 is even: real configurations meet and vanish in pairs.
+            assert_eq!(solution.counts.positive_definite % 2, 0, "seed {seed}: {:?}", solution.counts);
+            let error = |offsets: &[f64]| {
+                offsets.iter().zip(&truth.offsets).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+            };
+            let best = solution.candidates.iter().filter(|c| c.physical).map(|c| error(&c.network.offsets));
+            let best = best.fold(f64::INFINITY, f64::min);
+            assert!(best < 1e-8, "seed {seed}: {best:.1e}");
+        }
     }
 }
