@@ -89,6 +89,11 @@ impl SixThree {
         })
     }
 
+    /// The records of the paths of the last call.
+    pub fn records(&self) -> &[hc::tracker::PathResult] {
+        self.paths.results()
+    }
+
     /// Tracks all paths; those that fail in the first chart are tried in the others.
     fn track(&mut self, target: &[Complex64], options: &SolveOptions) -> PathCounts {
         let path = Segment::new(&self.fibres[0].parameters, target);
