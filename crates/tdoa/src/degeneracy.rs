@@ -101,6 +101,9 @@ pub fn usable(measured: &Pseudoranges) -> Result<Usable, Degeneracy> {
         return Err(Degeneracy::NothingMeasured(measured.values().len()));
     }
     let (m, n) = (measured.receivers(), measured.transmitters());
+    if !is_solvable(m, n) {
+        return Err(Degeneracy::TooSmall { receivers: m, transmitters: n, left: String::new(), remedy: remedy(m, n) });
+    }
     let mut kept = Kept { measured, receivers: vec![true; m], transmitters: vec![true; n] };
     let mut warnings = Vec::new();
     kept.drop_sparse();

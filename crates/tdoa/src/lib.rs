@@ -11,6 +11,7 @@ pub mod loss;
 pub mod multilateration;
 pub mod network;
 mod observations;
+pub mod picture;
 pub mod pseudoranges;
 pub mod read;
 mod refine;

@@ -120,6 +120,31 @@ impl Calibration {
         self.transmitter_std = std(&self.transmitter_covariance);
     }
 
+    /// Multiplies all lengths of the result by a factor, as if the propagation speed were that much larger. A comparison
+    /// with the truth keeps its figures.
+    pub fn rescale(&mut self, factor: f64) {
+        let positions = self.truth.as_ref().map(|truth| truth.positions.clone());
+        let map = Transform { rotation: [[1.0, 0.0], [0.0, 1.0]], scale: factor, translation: [0.0; 2] };
+        self.transform(&map);
+        let lengths = self.offsets.iter_mut().chain(&mut self.offset_std);
+        let lengths = lengths.chain(self.residuals.iter_mut().flatten());
+        lengths.chain(self.alternatives.iter_mut().flat_map(|a| &mut a.offsets)).flatten().for_each(|x| *x *= factor);
+        self.alternatives.iter_mut().for_each(|a| a.residual *= factor);
+        self.sigma *= factor;
+        self.residual_rms *= factor;
+        // The truth stays as large as it is, about the middle of the scaled network.
+        if let (Some(positions), Some(truth)) = (positions, &mut self.truth) {
+            let known: Vec<[f64; 2]> = positions.iter().flatten().copied().collect();
+            let pairs = positions.iter().zip(&self.receivers).filter_map(|(p, r)| Some(((*p)?, (*r)?)));
+            let (from, to): (Vec<_>, Vec<_>) = pairs.unzip();
+            if !known.is_empty()
+                && let Some(back) = align(&from, &to, false)
+            {
+                truth.positions = positions.iter().map(|p| p.map(|p| back.transform.apply(p))).collect();
+            }
+        }
+    }
+
     /// Compares with true positions of receivers, in the order of the receivers, as far as they are known. Does nothing
     /// with fewer than two.
     pub fn compare(&mut self, truth: &[Option<[f64; 2]>]) {
