@@ -60,7 +60,9 @@ pub(crate) fn refill(family: &Family, seed: u64, with_trace: bool) -> Result<Sta
 fn place(system: &Interpreter, fibre: &Fibre, seed: u64) -> Result<Fibre> {
     let m = fibre.parameters.len();
     let targets: Vec<Vec<Complex64>> = (0..TARGETS)
-        .map(|k| Random::new(seed, 1000 + k).normals(m).iter().map(|z| Complex64::new(z.re * 2f64.sqrt(), 0.0)).collect())
+        .map(|k| {
+            Random::new(seed, 1000 + k).normals(m).iter().map(|z| Complex64::new(z.re * 2f64.sqrt(), 0.0)).collect()
+        })
         .collect();
     let mut best: Option<(usize, Fibre)> = None;
     for k in 0..PLACES {

@@ -5,8 +5,8 @@
 //! influence each other, and a lane gives bit for bit what the one-lane factorisation gives.
 
 use num_complex::Complex64;
-use poly::simd::{Isa, Kernel};
 use poly::Lane;
+use poly::simd::{Isa, Kernel};
 
 /// Workspace and result of a factorisation of one `n x n` matrix a lane.
 #[derive(Debug)]
@@ -23,13 +23,7 @@ pub struct Lu<S: Lane> {
 impl<S: Lane> Lu<S> {
     /// Workspace for matrices of order `n`.
     pub fn new(n: usize, isa: Isa) -> Self {
-        Lu {
-            n,
-            isa,
-            factors: vec![S::zero(); n * n],
-            row_scale: vec![S::real(0.0); n],
-            pivots: vec![0; n * S::LANES],
-        }
+        Lu { n, isa, factors: vec![S::zero(); n * n], row_scale: vec![S::real(0.0); n], pivots: vec![0; n * S::LANES] }
     }
 
     /// The order `n` of the matrices.

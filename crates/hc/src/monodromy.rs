@@ -30,13 +30,7 @@ pub struct MonodromyOptions {
 
 impl Default for MonodromyOptions {
     fn default() -> Self {
-        MonodromyOptions {
-            seed: 0,
-            roots: None,
-            patience: 8,
-            max_solutions: 100_000,
-            fibre: FibreOptions::default(),
-        }
+        MonodromyOptions { seed: 0, roots: None, patience: 8, max_solutions: 100_000, fibre: FibreOptions::default() }
     }
 }
 
@@ -94,7 +88,10 @@ pub fn monodromy<E: Evaluate>(
         let before = fibre.len();
         paths += 3 * before;
         go_round(system, &mut fibre, &corners, &accept, options);
-        loops += 1; if std::env::var("HCDBG").is_ok() {eprintln!("loop {loops}: {}", fibre.len());}
+        loops += 1;
+        if std::env::var("HCDBG").is_ok() {
+            eprintln!("loop {loops}: {}", fibre.len());
+        }
         idle = if fibre.len() > before { 0 } else { idle + 1 };
     };
     MonodromyResult { fibre, stop, loops, paths }

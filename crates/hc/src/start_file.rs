@@ -22,7 +22,9 @@ pub struct StartFile {
 #[non_exhaustive]
 pub enum StartFileError {
     /// Not the expected JSON.
-    #[error("not a start file: {0}; expected {{\"parameters\": [[re, im], ...], \"solutions\": [[[re, im], ...], ...]}}")]
+    #[error(
+        "not a start file: {0}; expected {{\"parameters\": [[re, im], ...], \"solutions\": [[[re, im], ...], ...]}}"
+    )]
     Format(String),
     /// A number is infinite or not a number.
     #[error("{place} holds a number that is not finite; write the start file anew")]

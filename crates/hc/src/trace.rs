@@ -97,8 +97,7 @@ fn enlarge(system: &System) -> Option<System> {
         // Names cannot clash: those of the system are not used.
         let unknowns: Vec<_> = (0..system.variables().len()).map(|j| s.variable(&format!("x{j}"))).collect();
         let lambda = s.variable("lambda");
-        let group =
-            |name: &str, len: usize| (0..len).map(|k| s.parameter(&format!("{name}{k}"))).collect::<Vec<_>>();
+        let group = |name: &str, len: usize| (0..len).map(|k| s.parameter(&format!("{name}{k}"))).collect::<Vec<_>>();
         let m = system.parameters().len();
         let (p, v, a) = (group("p", m), group("v", m), group("a", unknowns.len()));
         let (c, tau) = (s.parameter("c"), s.parameter("tau"));

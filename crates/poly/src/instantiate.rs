@@ -1,7 +1,7 @@
 //! A system's formulas with other formulas put in for its unknowns and parameters.
 
-use crate::expression::{Expr, Expressions};
 use crate::exact::Exact;
+use crate::expression::{Expr, Expressions};
 use crate::graph::{Id, Node};
 use crate::system::System;
 use num_traits::Zero;

@@ -233,6 +233,14 @@ impl Pseudoranges {
         format!("{}r/{}s", self.receivers, self.transmitters)
     }
 
+    /// The same matrix with a number subtracted from each column, as if the transmitters' clocks were set differently.
+    pub(crate) fn shifted(&self, shifts: &[f64]) -> Pseudoranges {
+        let mut moved = self.clone();
+        let n = self.transmitters;
+        moved.values.iter_mut().enumerate().for_each(|(k, value)| *value -= shifts[k % n]);
+        moved
+    }
+
     /// The matrix of these receivers and transmitters, in this order, with their names and standard deviations.
     ///
     /// # Panics

@@ -304,11 +304,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         for (x, next) in self.taylor.iter_mut().zip(&self.taylor_next) {
             *x = S::select(x, next, accepted);
         }
-        let radius = self.isa.run(Radius {
-            n,
-            taylor: &self.taylor,
-            inverse_weights_sqr: &self.inverse_weights_sqr,
-        });
+        let radius = self.isa.run(Radius { n, taylor: &self.taylor, inverse_weights_sqr: &self.inverse_weights_sqr });
         for (l, lane) in self.lanes.iter_mut().enumerate() {
             if accepted >> l & 1 == 1 {
                 lane.advance(distance.as_ref()[l].sqrt(), radius.as_ref()[l].sqrt());

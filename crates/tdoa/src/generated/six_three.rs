@@ -898,9 +898,6 @@ impl<S: Scalar> Kernel for Taylor3Part0<'_, S> {
         series::sub::<S, 2, 3>(m, 133, 132, 120);
     }
 }
-
-/// Number of solutions for generic parameters.
-pub const ROOTS: usize = 180;
 /// A generic parameter point, `[re, im]` each.
 pub const PARAMETERS: [[f64; 2]; 15] = [
     [-0.06734317196646326, -0.26338477024026186],

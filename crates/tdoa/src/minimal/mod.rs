@@ -67,7 +67,9 @@ pub enum SolveError {
         instead: &'static str,
     },
     /// A missing measurement.
-    #[error("receiver {receiver} did not hear transmitter {transmitter}: the exact solvers need every measurement; use `calibrate`")]
+    #[error(
+        "receiver {receiver} did not hear transmitter {transmitter}: the exact solvers need every measurement; use `calibrate`"
+    )]
     Missing {
         /// Name of the receiver.
         receiver: String,

@@ -80,13 +80,7 @@ impl SixThree {
             data.restore(&mut candidate.network);
             candidate.residual = candidate.network.rms(measured);
         }
-        Ok(MinimalSolution {
-            configuration: measured.configuration(),
-            solver: "6r/3s",
-            paths,
-            counts,
-            candidates,
-        })
+        Ok(MinimalSolution { configuration: measured.configuration(), solver: "6r/3s", paths, counts, candidates })
     }
 
     /// The records of the paths of the last call.
@@ -97,8 +91,7 @@ impl SixThree {
     /// Tracks all paths; those that fail in the first chart are tried in the others.
     fn track(&mut self, target: &[Complex64], options: &SolveOptions) -> PathCounts {
         let path = Segment::new(&self.fibres[0].parameters, target);
-        let counts =
-            track_fibre_with(&mut self.tracker, &self.fibres[0], &path, &options.paths, &mut self.paths);
+        let counts = track_fibre_with(&mut self.tracker, &self.fibres[0], &path, &options.paths, &mut self.paths);
         let mut retracked = counts.retracked;
         let coincidence = options.paths.coincidence;
         let mut refiner = Refiner::new(&SYSTEM);
@@ -235,9 +228,8 @@ mod tests {
             assert_eq!((solution.paths.finite, solution.paths.failed), (180, 0), "seed {seed}: {:?}", solution.paths);
             // The number of roots with H > 0 is even: real configurations meet and vanish in pairs.
             assert_eq!(solution.counts.positive_definite % 2, 0, "seed {seed}: {:?}", solution.counts);
-            let error = |offsets: &[f64]| {
-                offsets.iter().zip(&truth.offsets).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
-            };
+            let error =
+                |offsets: &[f64]| offsets.iter().zip(&truth.offsets).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             let best = solution.candidates.iter().filter(|c| c.physical).map(|c| error(&c.network.offsets));
             let best = best.fold(f64::INFINITY, f64::min);
             assert!(best < 1e-8, "seed {seed}: {best:.1e}");

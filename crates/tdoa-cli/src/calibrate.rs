@@ -1,0 +1,212 @@
+//! `tdoa calibrate`.
+
+use std::cell::Cell;
+use std::io::IsTerminal;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use tdoa::align::frame;
+use tdoa::picture::picture;
+use tdoa::read::{Units, read, read_nodes};
+use tdoa::{CalibrateError, CalibrateOptions, Calibration, Control, Progress, Pseudoranges, calibrate_with};
+
+use crate::{Failure, output, summary};
+
+/// Finds positions and offsets of a whole network from its pseudoranges.
+///
+/// FILE is a CSV matrix (receivers in rows, transmitters in columns, empty or nan where nothing was measured, optionally a
+/// first line with the transmitters' names), a CSV list with the header receiver,transmitter,value[,sigma], or a .npy array.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The measurements.
+    file: PathBuf,
+    /// Unit of the measurements.
+    #[arg(long, value_parser = ["m", "s"], default_value = "m")]
+    units: String,
+    /// Propagation speed in metres a second, for --units s; sound in air: 343, radio: 299792458.
+    #[arg(long, allow_negative_numbers = true)]
+    speed: Option<f64>,
+    /// Standard deviation of the measurements in metres; estimated if not given.
+    #[arg(long, allow_negative_numbers = true)]
+    sigma: Option<f64>,
+    /// Fits a common scale when comparing with --truth and presents the network with it (the propagation speed is then
+    /// wrong by that factor).
+    #[arg(long, requires = "truth")]
+    scale: bool,
+    /// Puts the node ORIGIN at (0, 0), XAXIS on the positive x axis and UP above it.
+    #[arg(long, value_name = "ORIGIN,XAXIS,UP")]
+    frame: Option<String>,
+    /// True positions of receivers (id,x,y) to compare with.
+    #[arg(long, value_name = "RECEIVERS.csv")]
+    truth: Option<PathBuf>,
+    /// Seed of the search.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Threads; all cores if not given. The result does not depend on it.
+    #[arg(long)]
+    threads: Option<usize>,
+    /// Most starts of the search.
+    #[arg(long, default_value_t = CalibrateOptions::default().max_starts)]
+    max_starts: usize,
+    /// Writes the result as JSON; - for standard output instead of the summary.
+    #[arg(long)]
+    json: Option<PathBuf>,
+    /// Writes a picture of the network.
+    #[arg(long)]
+    svg: Option<PathBuf>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let units = match (arguments.units.as_str(), arguments.speed) {
+        ("m", None) => Units::Metres,
+        ("m", Some(_)) => return Err(Failure::Unusable("--speed needs --units s".to_string())),
+        (_, Some(speed)) => Units::Seconds { speed },
+        (_, None) => {
+            return Err(Failure::Unusable("--units s needs --speed in m/s, such as 343 for sound in air".to_string()));
+        }
+    };
+    let measured = read(&arguments.file, units).map_err(Failure::unusable)?;
+    let truth = arguments.truth.as_deref().map(|path| true_positions(path, &measured)).transpose()?;
+    let frame = arguments.frame.as_deref().map(|text| frame_nodes(text, &measured)).transpose()?;
+    let mut options = CalibrateOptions::default();
+    options.sigma = arguments.sigma;
+    options.seed = arguments.seed;
+    options.max_starts = arguments.max_starts;
+    options.min_starts = options.min_starts.min(arguments.max_starts);
+
+    let started = Instant::now();
+    let solved = crate::on_threads(arguments.threads, || {
+        let bar = Bar::new();
+        let show = |progress: Progress| bar.show(progress);
+        let control = Control { progress: Some(&show), cancelled: None };
+        calibrate_with(&measured, &options, &[], &control)
+    })?;
+    let mut calibration = solved.map_err(|error| match error {
+        CalibrateError::Degenerate(_) | CalibrateError::NotFound(_) => {
+            Failure::Undetermined(format!("{}: {error}", arguments.file.display()))
+        }
+        other => Failure::unusable(other),
+    })?;
+    if let Some(truth) = &truth {
+        calibration.compare(truth);
+        if let Some(found) = calibration.truth.as_ref().filter(|_| arguments.scale) {
+            calibration.rescale(found.scale);
+        }
+    }
+    if let Some(nodes) = frame {
+        put_in_frame(&mut calibration, nodes)?;
+    }
+    if let Some(path) = &arguments.svg {
+        output::write(path, picture(&calibration).as_bytes())?;
+    }
+    if let Some(path) = &arguments.json {
+        output::json(path, &calibration)?;
+    }
+    if arguments.json.as_ref().is_none_or(|path| path.as_os_str() != "-") {
+        output::print(&summary::text(&calibration, started.elapsed()))?;
+    }
+    if calibration.planar {
+        Ok(())
+    } else {
+        Err(Failure::Undetermined(format!(
+            "{}: the measurements do not fit a network in the plane (see the warnings); the network is not to be trusted",
+            arguments.file.display()
+        )))
+    }
+}
+
+fn true_positions(path: &std::path::Path, measured: &Pseudoranges) -> Result<Vec<Option<[f64; 2]>>, Failure> {
+    let nodes = read_nodes(path).map_err(Failure::unusable)?;
+    let found = nodes.in_order(measured.receiver_names()).ok_or_else(|| {
+        Failure::Unusable(format!(
+            "{}: has {} positions for {} receivers, and no name in common; give one line id,x,y for each receiver, in order \
+             or with its name",
+            path.display(),
+            nodes.positions.len(),
+            measured.receivers()
+        ))
+    })?;
+    if found.iter().flatten().count() < 2 {
+        return Err(Failure::Unusable(format!("{}: fewer than two receivers are known by name", path.display())));
+    }
+    Ok(found)
+}
+
+/// A node by its place among the receivers or the transmitters.
+#[derive(Clone, Copy)]
+enum Node {
+    Receiver(usize),
+    Transmitter(usize),
+}
+
+fn frame_nodes(text: &str, measured: &Pseudoranges) -> Result<[Node; 3], Failure> {
+    let names: Vec<&str> = text.split(',').map(str::trim).collect();
+    let &[origin, x_axis, up] = names.as_slice() else {
+        return Err(Failure::Unusable(format!("--frame needs three names of nodes, ORIGIN,XAXIS,UP, not {text:?}")));
+    };
+    let find = |name: &str| -> Result<Node, Failure> {
+        let place = |names: &[String]| names.iter().position(|other| other == name);
+        place(measured.receiver_names())
+            .map(Node::Receiver)
+            .or_else(|| place(measured.transmitter_names()).map(Node::Transmitter))
+            .ok_or_else(|| {
+                Failure::Unusable(format!(
+                    "--frame: no node is named {name:?}; receivers are {}, ..., transmitters {}, ...",
+                    measured.receiver_names()[0],
+                    measured.transmitter_names()[0]
+                ))
+            })
+    };
+    Ok([find(origin)?, find(x_axis)?, find(up)?])
+}
+
+fn put_in_frame(calibration: &mut Calibration, nodes: [Node; 3]) -> Result<(), Failure> {
+    let position = |node: Node| match node {
+        Node::Receiver(i) => calibration.receivers[i],
+        Node::Transmitter(j) => calibration.transmitters[j],
+    };
+    let [a, b, c] = nodes.map(position);
+    let (Some(a), Some(b), Some(c)) = (a, b, c) else {
+        return Err(Failure::Undetermined("--frame: a node of the frame could not be located".to_string()));
+    };
+    let map = frame(a, b, c).ok_or_else(|| {
+        Failure::Undetermined("--frame: the three nodes lie in one line or in one place; choose others".to_string())
+    })?;
+    calibration.transform(&map);
+    Ok(())
+}
+
+/// A progress bar on a terminal, once the search takes over a second.
+struct Bar {
+    started: Instant,
+    bar: Cell<Option<indicatif::ProgressBar>>,
+}
+
+impl Bar {
+    fn new() -> Self {
+        Bar { started: Instant::now(), bar: Cell::new(None) }
+    }
+
+    fn show(&self, progress: Progress) {
+        if self.started.elapsed() < Duration::from_secs(1) || !std::io::stderr().is_terminal() {
+            return;
+        }
+        let bar = self.bar.take().unwrap_or_else(|| {
+            let bar = indicatif::ProgressBar::new(progress.max_starts as u64);
+            let style = indicatif::ProgressStyle::with_template("{bar:40} {pos} of at most {len} starts, {msg}");
+            bar.set_style(style.unwrap_or_else(|_| indicatif::ProgressStyle::default_bar()));
+            bar
+        });
+        bar.set_position(progress.starts as u64);
+        bar.set_message(format!("{} agree", progress.agreeing));
+        self.bar.set(Some(bar));
+    }
+}
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        if let Some(bar) = self.bar.take() {
+            bar.finish_and_clear();
+        }
+    }
+}

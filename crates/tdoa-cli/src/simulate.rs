@@ -1,0 +1,121 @@
+//! `tdoa simulate`.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use tdoa::{Layout, SimulateOptions, simulate};
+
+use crate::Failure;
+use crate::output;
+
+/// Makes a random network and its measurements: pseudoranges.csv, receivers.csv, transmitters.csv and offsets.csv.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Number of receivers.
+    #[arg(long, default_value_t = 8)]
+    receivers: usize,
+    /// Number of transmitters.
+    #[arg(long, default_value_t = 12)]
+    transmitters: usize,
+    /// Standard deviation of the noise, metres.
+    #[arg(long, default_value_t = 0.0)]
+    noise: f64,
+    /// Share of outliers among the measurements, 0 to 1; their number is rounded.
+    #[arg(long, default_value_t = 0.0)]
+    outliers: f64,
+    /// Largest error of an outlier, metres.
+    #[arg(long, default_value_t = 10.0)]
+    outlier_size: f64,
+    /// Share of missing measurements, 0 to 1; their number is rounded.
+    #[arg(long, default_value_t = 0.0)]
+    missing: f64,
+    /// Positions uniform in a room of WIDTHxHEIGHT metres, or `normal` for standard normal positions and offsets.
+    #[arg(long, default_value = "10x10")]
+    layout: String,
+    /// Seed of the random numbers.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Threads; accepted everywhere, simulation needs only one.
+    #[arg(long)]
+    threads: Option<usize>,
+    /// Directory for the files; made if it is not there.
+    #[arg(long)]
+    output: PathBuf,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let mut options = SimulateOptions::default();
+    options.receivers = arguments.receivers;
+    options.transmitters = arguments.transmitters;
+    options.noise = arguments.noise;
+    options.outliers = arguments.outliers;
+    options.outlier_size = arguments.outlier_size;
+    options.missing = arguments.missing;
+    options.layout = layout(&arguments.layout)?;
+    options.seed = arguments.seed;
+    let simulation = crate::on_threads(arguments.threads, || simulate(&options))?.map_err(Failure::unusable)?;
+    let measured = &simulation.pseudoranges;
+
+    let directory = &arguments.output;
+    std::fs::create_dir_all(directory).map_err(|error| {
+        Failure::Unusable(format!("{}: cannot be made ({error}); choose another --output", directory.display()))
+    })?;
+    let mut table = format!("receiver,{}\n", measured.transmitter_names().join(","));
+    for (i, name) in measured.receiver_names().iter().enumerate() {
+        table += name;
+        for j in 0..measured.transmitters() {
+            // A micrometre is finer than any measurement, but tests of exact data want all digits.
+            match measured.get(i, j) {
+                Some(value) if arguments.noise > 0.0 => write!(table, ",{value:.6}"),
+                Some(value) => write!(table, ",{value}"),
+                None => write!(table, ","),
+            }
+            .map_err(Failure::unusable)?;
+        }
+        table += "\n";
+    }
+    let network = &simulation.network;
+    output::write(&directory.join("pseudoranges.csv"), table.as_bytes())?;
+    let receivers = positions(measured.receiver_names(), &network.receivers);
+    output::write(&directory.join("receivers.csv"), receivers.as_bytes())?;
+    let transmitters = positions(measured.transmitter_names(), &network.transmitters);
+    output::write(&directory.join("transmitters.csv"), transmitters.as_bytes())?;
+    let rows = measured.transmitter_names().iter().zip(&network.offsets);
+    let offsets: String = rows.map(|(name, offset)| format!("{name},{offset}\n")).collect();
+    output::write(&directory.join("offsets.csv"), format!("id,offset\n{offsets}").as_bytes())?;
+
+    let outliers: Vec<String> = (0..simulation.outliers.len())
+        .filter(|&k| simulation.outliers[k])
+        .map(|k| {
+            let (i, j) = (k / measured.transmitters(), k % measured.transmitters());
+            format!("{}-{}", measured.receiver_names()[i], measured.transmitter_names()[j])
+        })
+        .collect();
+    let mut text = format!(
+        "{} with {} of {} cells measured, written to {}\n",
+        measured.configuration(),
+        measured.observed(),
+        measured.values().len(),
+        directory.display()
+    );
+    if !outliers.is_empty() {
+        text += &format!("outliers: {}\n", outliers.join(" "));
+    }
+    output::print(&text)
+}
+
+fn layout(text: &str) -> Result<Layout, Failure> {
+    if text == "normal" {
+        return Ok(Layout::Normal);
+    }
+    let sides = text.split_once('x').and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    match sides {
+        Some((width, height)) => Ok(Layout::Room { width, height }),
+        None => Err(Failure::Unusable(format!("--layout must be normal or WIDTHxHEIGHT in metres, not {text:?}"))),
+    }
+}
+
+fn positions(names: &[String], positions: &[[f64; 2]]) -> String {
+    let rows: String = names.iter().zip(positions).map(|(name, p)| format!("{name},{},{}\n", p[0], p[1])).collect();
+    format!("id,x,y\n{rows}")
+}

@@ -1,0 +1,99 @@
+//! The readable result.
+
+use std::time::Duration;
+
+use tdoa::Calibration;
+
+/// Nodes of each kind that are listed; the rest is in the JSON.
+const LISTED: usize = 40;
+
+/// A calibration in words and two tables.
+pub(crate) fn text(calibration: &Calibration, time: Duration) -> String {
+    let measured = calibration.residuals.iter().flatten().flatten().count();
+    let inliers = calibration.inliers.iter().flatten().filter(|&&inlier| inlier).count();
+    let mut text = format!(
+        "{}: {measured} measurements, {} of them outliers, standard deviation {} m{}\n",
+        calibration.configuration,
+        measured - inliers,
+        length(calibration.sigma),
+        if calibration.sigma_estimated { " (estimated)" } else { " (given)" },
+    );
+    text += &format!(
+        "{} of {} starts agree, {:.1} s; {}\n",
+        calibration.agreeing,
+        calibration.starts,
+        time.as_secs_f64(),
+        if calibration.unique { "no other network found" } else { "OTHER NETWORKS FIT AS WELL, see alternatives" },
+    );
+    if !calibration.planar {
+        text += "NOT TO BE TRUSTED: the measurements do not fit a network in the plane, see the warnings\n";
+    }
+    if let Some(truth) = &calibration.truth {
+        text += &format!(
+            "against the truth: {} receivers, {} m root mean square, {} m with scale {:.4}\n",
+            truth.receivers,
+            length(truth.receiver_rms),
+            length(truth.receiver_rms_scaled),
+            truth.scale,
+        );
+    }
+    text += "\nreceiver                 x            y      std x      std y\n";
+    let rows = calibration.receiver_names.iter().zip(&calibration.receivers).zip(&calibration.receiver_std);
+    for ((name, position), std) in rows.take(LISTED) {
+        text += &row(name, *position, *std, None);
+    }
+    text += &more(calibration.receivers.len());
+    text += "\ntransmitter              x            y      std x      std y       offset\n";
+    let rows = calibration.transmitter_names.iter().zip(&calibration.transmitters);
+    let rows = rows.zip(&calibration.transmitter_std).zip(&calibration.offsets);
+    for (((name, position), std), offset) in rows.take(LISTED) {
+        text += &row(name, *position, *std, *offset);
+    }
+    text += &more(calibration.transmitters.len());
+    let outliers: Vec<String> = outliers(calibration);
+    if !outliers.is_empty() {
+        text += &format!(
+            "\noutliers: {}{}\n",
+            outliers[..outliers.len().min(LISTED)].join(", "),
+            if outliers.len() > LISTED { ", ..." } else { "" }
+        );
+    }
+    for warning in &calibration.warnings {
+        text += &format!("\nwarning: {warning}\n");
+    }
+    text
+}
+
+fn outliers(calibration: &Calibration) -> Vec<String> {
+    let mut all = Vec::new();
+    for (i, (residuals, inliers)) in calibration.residuals.iter().zip(&calibration.inliers).enumerate() {
+        for (j, (residual, inlier)) in residuals.iter().zip(inliers).enumerate() {
+            if let Some(residual) = residual.filter(|_| !inlier) {
+                let (receiver, transmitter) = (&calibration.receiver_names[i], &calibration.transmitter_names[j]);
+                all.push(format!("{receiver}-{transmitter} ({residual:+.3} m)"));
+            }
+        }
+    }
+    all
+}
+
+fn row(name: &str, position: Option<[f64; 2]>, std: Option<[f64; 2]>, offset: Option<f64>) -> String {
+    let Some([x, y]) = position else {
+        return format!("{name:<12} not determined\n");
+    };
+    let std = std.map_or_else(
+        || format!("{:>10} {:>10}", "-", "-"),
+        |[sx, sy]| format!("{:>10} {:>10}", length(sx), length(sy)),
+    );
+    let offset = offset.map_or_else(String::new, |offset| format!(" {offset:>12.4}"));
+    format!("{name:<12} {x:>13.4}{y:>13.4} {std}{offset}\n")
+}
+
+fn more(count: usize) -> String {
+    if count > LISTED { format!("... and {} more, all in --json\n", count - LISTED) } else { String::new() }
+}
+
+/// A length with about three digits.
+fn length(value: f64) -> String {
+    if value == 0.0 || value.abs() >= 1e-4 { format!("{value:.4}") } else { format!("{value:.1e}") }
+}

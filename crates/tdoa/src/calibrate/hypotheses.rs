@@ -1,0 +1,54 @@
+//! Where the search gets its starting networks from.
+
+use rand::SeedableRng;
+use rand_pcg::Pcg64Mcg;
+
+use crate::observations::Observations;
+use crate::pseudoranges::Pseudoranges;
+use crate::refine::PartialNetwork;
+use crate::restart::Restarts;
+
+/// A source of starting networks for the robust search.
+pub trait Hypotheses: Sync {
+    /// Networks, complete or of some nodes only, to start from; the rest of the nodes is located by multilateration and
+    /// the most promising are refined. Must depend on its arguments alone: `index` counts the calls, `seed` is the
+    /// user's, and calls come from several threads in any order.
+    fn propose(&self, measured: &Pseudoranges, index: usize, seed: u64) -> Vec<PartialNetwork>;
+}
+
+/// A random number generator for one call.
+pub fn generator(seed: u64, index: usize) -> Pcg64Mcg {
+    // An odd multiplier keeps different indices of one seed apart.
+    Pcg64Mcg::seed_from_u64(seed ^ (index as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(17))
+}
+
+/// Networks from random distances between the receivers; see the module `restart`.
+pub(crate) struct RandomRestarts<'a> {
+    observations: &'a Observations,
+    restarts: Restarts,
+    nu: f64,
+}
+
+impl<'a> RandomRestarts<'a> {
+    pub(crate) fn new(observations: &'a Observations, nu: f64) -> Self {
+        RandomRestarts { observations, restarts: Restarts::new(observations), nu }
+    }
+
+    /// A guess of the network's diameter in metres.
+    pub(crate) fn diameter(&self) -> f64 {
+        self.restarts.diameter
+    }
+}
+
+impl Hypotheses for RandomRestarts<'_> {
+    fn propose(&self, _: &Pseudoranges, index: usize, seed: u64) -> Vec<PartialNetwork> {
+        // From the plain guess to anything: neither is best on all data.
+        let spread = [1.0, 0.3, 1.0, 0.7][index % 4];
+        let network = self.restarts.draw(self.observations, spread, self.nu, &mut generator(seed, index));
+        let located = network.transmitters.iter().zip(&network.offsets);
+        vec![PartialNetwork {
+            receivers: network.receivers.iter().copied().map(Some).collect(),
+            transmitters: located.map(|(&position, &offset)| Some((position, offset))).collect(),
+        }]
+    }
+}

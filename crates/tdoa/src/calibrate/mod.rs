@@ -1,0 +1,214 @@
+//! From any matrix of pseudoranges to a network: leave out what cannot be determined, search from many starts, refine the
+//! best, say how sure the result is.
+
+mod hypotheses;
+mod options;
+mod report;
+mod search;
+
+pub use hypotheses::{Hypotheses, generator};
+pub use options::{CalibrateError, CalibrateOptions, Control, Progress};
+pub use report::{Alternative, Calibration, Truth};
+
+use crate::degeneracy::{Usable, usable};
+use crate::loss::{Loss, degrees_of_freedom, normal_deviation};
+use crate::observations::Observations;
+use crate::pseudoranges::Pseudoranges;
+use crate::refine::{PartialNetwork, RefineOptions, Refined, Refiner, SEARCH, extend};
+use hypotheses::RandomRestarts;
+use report::Solved;
+use search::{Search, distinct};
+
+/// Scale of the Cauchy loss, in standard deviations, that is 95 % efficient on normal noise (Holland and Welsch 1977).
+const CAUCHY: f64 = 2.385;
+
+/// No measurement is trusted beyond this share of the network's diameter.
+const RESOLUTION: f64 = 1e-9;
+
+/// Calibrates a network from its pseudoranges, by restarts of the robust refinement alone.
+///
+/// ```
+/// let mut options = tdoa::SimulateOptions::default();
+/// options.noise = 0.01;
+/// let simulation = tdoa::simulate(&options)?;
+/// let calibration = tdoa::calibrate(&simulation.pseudoranges, &tdoa::CalibrateOptions::default())?;
+/// let receivers: Vec<[f64; 2]> = calibration.receivers.iter().flatten().copied().collect();
+/// let alignment = tdoa::align::align(&receivers, &simulation.network.receivers, false).unwrap();
+/// assert!(alignment.rms < 0.1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// Data that cannot determine a network, options outside their range, or no network found.
+pub fn calibrate(measured: &Pseudoranges, options: &CalibrateOptions) -> Result<Calibration, CalibrateError> {
+    calibrate_with(measured, options, &[], &Control::default())
+}
+
+/// [`calibrate`] with further sources of starts beside the restarts, which take turns, and with progress and
+/// cancellation.
+///
+/// # Errors
+/// As [`calibrate`], and [`CalibrateError::Cancelled`].
+pub fn calibrate_with(
+    measured: &Pseudoranges,
+    options: &CalibrateOptions,
+    sources: &[&dyn Hypotheses],
+    control: &Control<'_>,
+) -> Result<Calibration, CalibrateError> {
+    options.validate()?;
+    let usable = usable(measured)?;
+    let (centred, shifts) = centre(&measured.select(&usable.receivers, &usable.transmitters));
+    let observations = Observations::new(&centred, |_, _| true);
+    let nu = degrees_of_freedom(observations.len(), observations.unknowns());
+
+    let part = search_part(&centred, options);
+    let small = centred.select(&part.receivers, &part.transmitters);
+    let small_observations = Observations::new(&small, |_, _| true);
+    let small_nu = degrees_of_freedom(small_observations.len(), small_observations.unknowns());
+    let restarts = RandomRestarts::new(&small_observations, small_nu);
+    let diameter = restarts.diameter();
+    let known = options.sigma.or(if centred.has_sigmas() { Some(1.0) } else { None });
+    // Where measurements carry deviations, residuals are multiples of them, and so is the network's size.
+    let unit = typical_deviation(&centred);
+    let refine = RefineOptions {
+        scale: known.map(|sigma| sigma / normal_deviation(small_nu)),
+        anneal_from: Some(0.1 * diameter / unit),
+        floor: RESOLUTION * diameter / unit,
+        ..SEARCH
+    };
+    let mut all: Vec<&dyn Hypotheses> = vec![&restarts];
+    all.extend(sources);
+    let search = Search {
+        measured: &small,
+        observations: &small_observations,
+        nu: small_nu,
+        refine,
+        sources: all,
+        wide: Loss { nu: small_nu, scale: 0.03 * diameter / unit },
+    };
+    let found = search.run(options, control)?;
+
+    let best = found.networks[0].objective;
+    let close = found.networks.into_iter().filter(|r| r.objective <= best + 4.0 * options.alternative_margin);
+    let whole: Vec<Refined> =
+        if part.receivers.len() == centred.receivers() && part.transmitters.len() == centred.transmitters() {
+            close.collect()
+        } else {
+            let refine = RefineOptions { scale: known.map(|sigma| sigma / normal_deviation(nu)), ..refine };
+            complete(&observations, nu, &part, close.take(4), &refine)
+        };
+    let Some(scale) = whole.iter().min_by(|a, b| a.objective.total_cmp(&b.objective)).map(|r| r.scale) else {
+        return Err(CalibrateError::NotFound(found.starts));
+    };
+    let deviation = known.unwrap_or(scale * normal_deviation(nu)).max(refine.floor);
+    let ranked = finish(&observations, whole, deviation, refine.floor);
+    let solved = Solved {
+        measured,
+        usable: &usable,
+        observations: &observations,
+        centred: &centred,
+        shifts: &shifts,
+        ranked,
+        deviation,
+        known,
+        starts: found.starts,
+        agreeing: found.agreeing,
+    };
+    Ok(solved.report(options))
+}
+
+/// Subtracts each column's median, which the offsets take back at the end: large common times cost digits.
+fn centre(measured: &Pseudoranges) -> (Pseudoranges, Vec<f64>) {
+    let shifts: Vec<f64> = (0..measured.transmitters())
+        .map(|j| {
+            let mut column: Vec<f64> = (0..measured.receivers()).filter_map(|i| measured.get(i, j)).collect();
+            column.sort_by(f64::total_cmp);
+            column.get(column.len() / 2).copied().unwrap_or(0.0)
+        })
+        .collect();
+    (measured.shifted(&shifts), shifts)
+}
+
+/// Median of the deviations that measurements carry; 1 where they carry none.
+fn typical_deviation(measured: &Pseudoranges) -> f64 {
+    let cells = (0..measured.receivers()).flat_map(|i| (0..measured.transmitters()).map(move |j| (i, j)));
+    let mut all: Vec<f64> = cells.filter_map(|(i, j)| measured.sigma(i, j)).collect();
+    all.sort_by(f64::total_cmp);
+    all.get(all.len() / 2).copied().unwrap_or(1.0)
+}
+
+/// The nodes that the search works on: where there are many, some of the better observed half, evenly spaced, because
+/// neighbours in a recording are often neighbours in the plane.
+fn search_part(measured: &Pseudoranges, options: &CalibrateOptions) -> Usable {
+    let (m, n) = (measured.receivers(), measured.transmitters());
+    let pick = |total: usize, most: usize, count: &dyn Fn(usize) -> usize| -> Vec<usize> {
+        if total <= most {
+            return (0..total).collect();
+        }
+        let mut order: Vec<usize> = (0..total).collect();
+        order.sort_by_key(|&k| std::cmp::Reverse(count(k)));
+        let better = most.max(total / 2);
+        let mut better: Vec<usize> = order[..better].to_vec();
+        better.sort_unstable();
+        (0..most).map(|k| better[k * better.len() / most]).collect()
+    };
+    let receivers = pick(m, options.search_receivers, &|i| (0..n).filter(|&j| measured.get(i, j).is_some()).count());
+    let heard = |j: usize| receivers.iter().filter(|&&i| measured.get(i, j).is_some()).count();
+    let transmitters = pick(n, options.search_transmitters, &heard);
+    // A part that cannot be solved on its own is no help.
+    match usable(&measured.select(&receivers, &transmitters)) {
+        Ok(part) => Usable {
+            receivers: part.receivers.iter().map(|&i| receivers[i]).collect(),
+            transmitters: part.transmitters.iter().map(|&j| transmitters[j]).collect(),
+            warnings: Vec::new(),
+        },
+        Err(_) => Usable { receivers: (0..m).collect(), transmitters: (0..n).collect(), warnings: Vec::new() },
+    }
+}
+
+/// Extends networks of a part of the nodes to all of them and refines them.
+fn complete(
+    observations: &Observations,
+    nu: f64,
+    part: &Usable,
+    networks: impl Iterator<Item = Refined>,
+    refine: &RefineOptions,
+) -> Vec<Refined> {
+    let mut refiner = Refiner::with_nu(observations, nu);
+    let refine = RefineOptions { anneal_from: None, ..*refine };
+    networks
+        .filter_map(|refined| {
+            let mut known = PartialNetwork::unknown(observations.receivers, observations.transmitters);
+            known.place(&refined.network, &part.receivers, &part.transmitters);
+            let network = extend(observations, &known, &Loss { nu, scale: refined.scale })?;
+            Some(refiner.refine(network, &refine))
+        })
+        .filter(|refined| refined.objective.is_finite() && refined.network.is_finite())
+        .collect()
+}
+
+/// Refines all networks with the same fixed loss, which makes their objectives differences of log-likelihood, and puts
+/// the best first.
+fn finish(observations: &Observations, networks: Vec<Refined>, deviation: f64, floor: f64) -> Vec<Refined> {
+    let mut refiner = Refiner::with_nu(observations, 1.0);
+    let options = RefineOptions {
+        scale: Some(CAUCHY * deviation),
+        anneal_from: None,
+        floor,
+        steps: 100,
+        tolerance: 1e-12,
+        ..SEARCH
+    };
+    let mut refined: Vec<Refined> = networks
+        .into_iter()
+        .map(|r| {
+            let mut refined = refiner.refine(r.network, &options);
+            // The loss is c^2/2 ln(1 + (e/c)^2) in deviations e; `objective` lacks the factor and has a constant.
+            let constant = refiner.constant(CAUCHY * deviation);
+            refined.objective = (refined.objective - constant) * CAUCHY * CAUCHY / 2.0;
+            refined
+        })
+        .collect();
+    refined.sort_by(|a, b| a.objective.total_cmp(&b.objective));
+    distinct(refined, 12)
+}

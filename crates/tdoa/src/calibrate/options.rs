@@ -1,0 +1,135 @@
+//! What calibration is asked for, and how it ends early.
+
+use std::sync::atomic::AtomicBool;
+
+use thiserror::Error;
+
+use crate::degeneracy::Degeneracy;
+
+/// How to calibrate. All fields have defaults; start from `CalibrateOptions::default()`.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct CalibrateOptions {
+    /// Standard deviation of the measurements in metres; where measurements carry their own, a factor on those. Default
+    /// `None`: estimated, or 1 where measurements carry their own.
+    pub sigma: Option<f64>,
+    /// Seed of all random draws: the same seed gives the same result, whatever the number of threads. Default 0.
+    pub seed: u64,
+    /// Fewest starts of the search. Default 48: a basin that catches one start in sixteen is then missed with a probability
+    /// of 5 %.
+    pub min_starts: usize,
+    /// Most starts of the search. Default 480.
+    pub max_starts: usize,
+    /// The search ends, after the fewest starts, when this many starts have ended in the best basin. Default 3.
+    pub agreeing: usize,
+    /// Most transmitters that the search works on; the others are located when it has ended. Default 48.
+    pub search_transmitters: usize,
+    /// Most receivers that the search works on; the others are located when it has ended. Default 32.
+    pub search_receivers: usize,
+    /// Measurements whose residual exceeds this many standard deviations are outliers. Default 3.5.
+    pub inlier_threshold: f64,
+    /// Another network is an alternative if the data are less likely under it by at most this (natural logarithm).
+    /// Default 8.
+    pub alternative_margin: f64,
+    /// Above this ratio of the residuals' deviation to the network's size (root mean square distance of the receivers
+    /// from their centroid) the data are called not planar. Default 0.04.
+    pub planar_limit: f64,
+}
+
+impl Default for CalibrateOptions {
+    fn default() -> Self {
+        CalibrateOptions {
+            sigma: None,
+            seed: 0,
+            min_starts: 48,
+            max_starts: 480,
+            agreeing: 3,
+            search_transmitters: 48,
+            search_receivers: 32,
+            inlier_threshold: 3.5,
+            alternative_margin: 8.0,
+            planar_limit: 0.04,
+        }
+    }
+}
+
+impl CalibrateOptions {
+    /// Checks the numbers.
+    ///
+    /// # Errors
+    /// The first that is outside its range.
+    pub fn validate(&self) -> Result<(), CalibrateError> {
+        let positive = |name, value: f64| {
+            if value > 0.0 && value.is_finite() {
+                Ok(())
+            } else {
+                Err(CalibrateError::Option { name, range: "positive and finite", value })
+            }
+        };
+        if let Some(sigma) = self.sigma {
+            positive("sigma", sigma)?;
+        }
+        positive("inlier_threshold", self.inlier_threshold)?;
+        positive("alternative_margin", self.alternative_margin)?;
+        positive("planar_limit", self.planar_limit)?;
+        for (name, value, least) in [
+            ("max_starts", self.max_starts, 1),
+            ("agreeing", self.agreeing, 1),
+            ("search_transmitters", self.search_transmitters, 8),
+            ("search_receivers", self.search_receivers, 8),
+        ] {
+            if value < least {
+                let range = if least == 1 { "at least 1" } else { "at least 8" };
+                return Err(CalibrateError::Option { name, range, value: value as f64 });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Where the search stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Progress {
+    /// Starts that have ended.
+    pub starts: usize,
+    /// Starts after which the search ends at the latest.
+    pub max_starts: usize,
+    /// Starts that ended in the best basin so far.
+    pub agreeing: usize,
+}
+
+/// Ways to watch and to stop a calibration from outside. The default does neither.
+#[derive(Default, Clone, Copy)]
+pub struct Control<'a> {
+    /// Called from the calling thread after every batch of starts.
+    pub progress: Option<&'a dyn Fn(Progress)>,
+    /// Calibration ends with [`CalibrateError::Cancelled`] soon after this becomes true.
+    pub cancelled: Option<&'a AtomicBool>,
+}
+
+/// Why there is no calibration.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum CalibrateError {
+    /// The data cannot determine a network.
+    #[error(transparent)]
+    Degenerate(#[from] Degeneracy),
+    /// No start led to a complete, finite network.
+    #[error(
+        "no network was found in {0} starts; check the units, and that receivers are rows and transmitters columns"
+    )]
+    NotFound(usize),
+    /// An option outside its range.
+    #[error("option {name} must be {range}, not {value}")]
+    Option {
+        /// Its name.
+        name: &'static str,
+        /// What is allowed.
+        range: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// Stopped through [`Control::cancelled`].
+    #[error("calibration was cancelled")]
+    Cancelled,
+}

@@ -1,0 +1,441 @@
+//! The result: the network in a frame, its uncertainty, what may be wrong with it.
+
+use serde::Serialize;
+
+use super::options::CalibrateOptions;
+use crate::align::{Transform, align, frame};
+use crate::degeneracy::{Usable, list};
+use crate::network::{Network, distance};
+use crate::observations::Observations;
+use crate::pseudoranges::Pseudoranges;
+use crate::refine::{Covariance, Refined, covariance};
+
+/// A calibrated network. Lengths are in metres; `None` stands for what could not be determined.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Calibration {
+    /// Size of the matrix, such as `6r/46s`.
+    pub configuration: String,
+    /// Names of the receivers.
+    pub receiver_names: Vec<String>,
+    /// Names of the transmitters.
+    pub transmitter_names: Vec<String>,
+    /// Positions of the receivers. Unless another frame is asked for, the first receiver is the origin, the second lies
+    /// on the positive x axis and the third above it.
+    pub receivers: Vec<Option<[f64; 2]>>,
+    /// Positions of the transmitters.
+    pub transmitters: Vec<Option<[f64; 2]>>,
+    /// Offsets of the transmitters.
+    pub offsets: Vec<Option<f64>>,
+    /// Which measurements agree with the network; false where there is none.
+    pub inliers: Vec<Vec<bool>>,
+    /// Residuals f_ij - o_j - |r_i - s_j|, where measured.
+    pub residuals: Vec<Vec<Option<f64>>>,
+    /// Standard deviation of the measurements: as given, or estimated from the inliers. A factor on the deviations that
+    /// measurements carry, if they do.
+    pub sigma: f64,
+    /// Whether `sigma` was estimated.
+    pub sigma_estimated: bool,
+    /// Root mean square of the inliers' residuals.
+    pub residual_rms: f64,
+    /// Standard deviations of the receivers' coordinates in the gauge.
+    pub receiver_std: Vec<Option<[f64; 2]>>,
+    /// Covariances of the receivers in the gauge.
+    pub receiver_covariance: Vec<Option<[[f64; 2]; 2]>>,
+    /// Standard deviations of the transmitters' coordinates in the gauge.
+    pub transmitter_std: Vec<Option<[f64; 2]>>,
+    /// Covariances of the transmitters in the gauge.
+    pub transmitter_covariance: Vec<Option<[[f64; 2]; 2]>>,
+    /// Standard deviations of the offsets.
+    pub offset_std: Vec<Option<f64>>,
+    /// What the covariances are relative to.
+    pub gauge: &'static str,
+    /// Whether no other network that was found explains the measurements about as well.
+    pub unique: bool,
+    /// Other networks that do, best first.
+    pub alternatives: Vec<Alternative>,
+    /// Whether the measurements fit a network in the plane.
+    pub planar: bool,
+    /// What may be wrong, with names and a remedy.
+    pub warnings: Vec<String>,
+    /// Seed of the search.
+    pub seed: u64,
+    /// Starts of the search.
+    pub starts: usize,
+    /// Starts that ended in the best basin.
+    pub agreeing: usize,
+    /// Probability that a basin which catches one start in twenty would have been seen.
+    pub confidence: f64,
+    /// Comparison with the truth, if that was given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub truth: Option<Truth>,
+}
+
+/// Another network that explains the measurements.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Alternative {
+    /// Positions of the receivers.
+    pub receivers: Vec<Option<[f64; 2]>>,
+    /// Positions of the transmitters.
+    pub transmitters: Vec<Option<[f64; 2]>>,
+    /// Offsets of the transmitters.
+    pub offsets: Vec<Option<f64>>,
+    /// Root mean square of the residuals of its own inliers.
+    pub residual: f64,
+    /// By how much the measurements are less likely than under the best network, natural logarithm.
+    pub log_likelihood_loss: f64,
+}
+
+/// Comparison with known positions of receivers.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Truth {
+    /// Root mean square distance of the receivers after the best rigid alignment (reflection allowed).
+    pub receiver_rms: f64,
+    /// The same with a common scale fitted as well.
+    pub receiver_rms_scaled: f64,
+    /// That scale, from the calibration to the truth.
+    pub scale: f64,
+    /// Receivers that were compared.
+    pub receivers: usize,
+    /// The true positions in the frame of the calibration (rigid alignment), in the order of the receivers.
+    pub positions: Vec<Option<[f64; 2]>>,
+}
+
+impl Calibration {
+    /// Moves the whole result into another frame.
+    pub fn transform(&mut self, map: &Transform) {
+        let point = |p: &mut Option<[f64; 2]>| *p = p.map(|p| map.apply(p));
+        self.receivers.iter_mut().chain(&mut self.transmitters).for_each(point);
+        for other in &mut self.alternatives {
+            other.receivers.iter_mut().chain(&mut other.transmitters).for_each(point);
+        }
+        if let Some(truth) = &mut self.truth {
+            truth.positions.iter_mut().for_each(point);
+        }
+        let turn = |c: &mut Option<[[f64; 2]; 2]>| *c = c.map(|c| map.apply_covariance(c));
+        self.receiver_covariance.iter_mut().chain(&mut self.transmitter_covariance).for_each(turn);
+        let std = |all: &[Option<[[f64; 2]; 2]>]| -> Vec<Option<[f64; 2]>> {
+            all.iter().map(|c| c.map(|c| [c[0][0].max(0.0).sqrt(), c[1][1].max(0.0).sqrt()])).collect()
+        };
+        self.receiver_std = std(&self.receiver_covariance);
+        self.transmitter_std = std(&self.transmitter_covariance);
+    }
+
+    /// Multiplies all lengths of the result by a factor, as if the propagation speed were that much larger. A comparison
+    /// with the truth keeps its figures.
+    pub fn rescale(&mut self, factor: f64) {
+        let positions = self.truth.as_ref().map(|truth| truth.positions.clone());
+        let map = Transform { rotation: [[1.0, 0.0], [0.0, 1.0]], scale: factor, translation: [0.0; 2] };
+        self.transform(&map);
+        let lengths = self.offsets.iter_mut().chain(&mut self.offset_std);
+        let lengths = lengths.chain(self.residuals.iter_mut().flatten());
+        lengths.chain(self.alternatives.iter_mut().flat_map(|a| &mut a.offsets)).flatten().for_each(|x| *x *= factor);
+        self.alternatives.iter_mut().for_each(|a| a.residual *= factor);
+        self.sigma *= factor;
+        self.residual_rms *= factor;
+        // The truth stays as large as it is, about the middle of the scaled network.
+        if let (Some(positions), Some(truth)) = (positions, &mut self.truth) {
+            let known: Vec<[f64; 2]> = positions.iter().flatten().copied().collect();
+            let pairs = positions.iter().zip(&self.receivers).filter_map(|(p, r)| Some(((*p)?, (*r)?)));
+            let (from, to): (Vec<_>, Vec<_>) = pairs.unzip();
+            if !known.is_empty()
+                && let Some(back) = align(&from, &to, false)
+            {
+                truth.positions = positions.iter().map(|p| p.map(|p| back.transform.apply(p))).collect();
+            }
+        }
+    }
+
+    /// Compares with true positions of receivers, in the order of the receivers, as far as they are known. Does nothing
+    /// with fewer than two.
+    pub fn compare(&mut self, truth: &[Option<[f64; 2]>]) {
+        let pairs: Vec<([f64; 2], [f64; 2])> =
+            self.receivers.iter().zip(truth).filter_map(|(a, b)| Some(((*a)?, (*b)?))).collect();
+        let (found, known): (Vec<_>, Vec<_>) = pairs.into_iter().unzip();
+        if found.len() < 2 {
+            return;
+        }
+        let (Some(rigid), Some(scaled)) = (align(&found, &known, false), align(&found, &known, true)) else { return };
+        let Some(back) = align(&known, &found, false) else { return };
+        self.truth = Some(Truth {
+            receiver_rms: rigid.rms,
+            receiver_rms_scaled: scaled.rms,
+            scale: scaled.transform.scale,
+            receivers: found.len(),
+            positions: truth.iter().map(|p| p.map(|p| back.transform.apply(p))).collect(),
+        });
+    }
+}
+
+/// What the search and the refinement leave to report.
+pub(super) struct Solved<'a> {
+    pub(super) measured: &'a Pseudoranges,
+    pub(super) usable: &'a Usable,
+    pub(super) observations: &'a Observations,
+    pub(super) centred: &'a Pseudoranges,
+    pub(super) shifts: &'a [f64],
+    /// At least one network.
+    pub(super) ranked: Vec<Refined>,
+    pub(super) deviation: f64,
+    pub(super) known: Option<f64>,
+    pub(super) starts: usize,
+    pub(super) agreeing: usize,
+}
+
+impl Solved<'_> {
+    pub(super) fn report(&self, options: &CalibrateOptions) -> Calibration {
+        let best = &self.ranked[0].network;
+        let estimated = self.estimate_sigma(best, options.inlier_threshold);
+        let sigma = self.known.unwrap_or(estimated);
+        let inlier = |network: &Network, i: usize, j: usize| -> bool {
+            let residual = self.centred.get(i, j).map(|f| f - network.pseudorange(i, j));
+            let deviation = sigma * self.centred.sigma(i, j).unwrap_or(1.0);
+            residual.is_some_and(|e| e.abs() <= options.inlier_threshold * deviation)
+        };
+        let kept = Observations::new(self.centred, |i, j| inlier(best, i, j));
+        let uncertainty = covariance(&kept, best, sigma).unwrap_or_default();
+        let mut warnings = self.usable.warnings.clone();
+        let planar = self.planar(best, estimated, options, &mut warnings);
+        warn_of_nodes(self.centred, best, &kept, &uncertainty, &mut warnings);
+
+        let (m, n) = (self.measured.receivers(), self.measured.transmitters());
+        let (rows, columns) = (&self.usable.receivers, &self.usable.transmitters);
+        let spread_rows = |all: &[[f64; 2]]| scatter(m, rows, all);
+        let spread_columns = |all: &[[f64; 2]]| scatter(n, columns, all);
+        let offsets = |network: &Network| -> Vec<Option<f64>> {
+            let moved: Vec<f64> = network.offsets.iter().zip(self.shifts).map(|(o, shift)| o + shift).collect();
+            scatter(n, columns, &moved)
+        };
+        let mut inliers = vec![vec![false; n]; m];
+        let mut residuals = vec![vec![None; n]; m];
+        for (a, &i) in rows.iter().enumerate() {
+            for (b, &j) in columns.iter().enumerate() {
+                inliers[i][j] = inlier(best, a, b);
+                residuals[i][j] = self.centred.get(a, b).map(|f| f - best.pseudorange(a, b));
+            }
+        }
+        let rms = |network: &Network| -> f64 {
+            let cells = (0..rows.len()).flat_map(|a| (0..columns.len()).map(move |b| (a, b)));
+            let squares: Vec<f64> = cells
+                .filter(|&(a, b)| inlier(network, a, b))
+                .filter_map(|(a, b)| self.centred.get(a, b).map(|f| (f - network.pseudorange(a, b)).powi(2)))
+                .collect();
+            (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
+        };
+        let alternatives: Vec<Alternative> = self.ranked[1..]
+            .iter()
+            .map(|other| (other, other.objective - self.ranked[0].objective))
+            .filter(|(_, loss)| *loss <= options.alternative_margin)
+            .filter_map(|(other, loss)| {
+                let map = align(&other.network.receivers, &best.receivers, false)?.transform;
+                let network = map.apply_network(&other.network);
+                Some(Alternative {
+                    receivers: spread_rows(&network.receivers),
+                    transmitters: spread_columns(&network.transmitters),
+                    offsets: offsets(&network),
+                    residual: rms(&network),
+                    log_likelihood_loss: loss,
+                })
+            })
+            .collect();
+        if !alternatives.is_empty() {
+            warnings.push(format!(
+                "{} other network{} explain{} the measurements about as well (see alternatives); add receivers or transmitters, \
+                 or give --sigma if the noise is known",
+                alternatives.len(),
+                if alternatives.len() == 1 { "" } else { "s" },
+                if alternatives.len() == 1 { "s" } else { "" },
+            ));
+        }
+        let located = |c: &Option<[[f64; 3]; 3]>| c.map(|c| [[c[0][0], c[0][1]], [c[1][0], c[1][1]]]);
+        let transmitters: Vec<_> = uncertainty.transmitters.iter().map(located).collect();
+        let offset_std: Vec<_> = uncertainty.transmitters.iter().map(|c| c.map(|c| c[2][2].max(0.0).sqrt())).collect();
+        let mut calibration = Calibration {
+            configuration: self.measured.configuration(),
+            receiver_names: self.measured.receiver_names().to_vec(),
+            transmitter_names: self.measured.transmitter_names().to_vec(),
+            receivers: spread_rows(&best.receivers),
+            transmitters: spread_columns(&best.transmitters),
+            offsets: offsets(best),
+            inliers,
+            residuals,
+            sigma,
+            sigma_estimated: self.known.is_none(),
+            residual_rms: rms(best),
+            receiver_std: Vec::new(),
+            receiver_covariance: scatter(m, rows, &uncertainty.receivers),
+            transmitter_std: Vec::new(),
+            transmitter_covariance: scatter(n, columns, &transmitters).into_iter().map(Option::flatten).collect(),
+            offset_std: scatter(n, columns, &offset_std).into_iter().map(Option::flatten).collect(),
+            gauge: "inner constraint over the receivers: relative to their best rigid alignment",
+            unique: alternatives.is_empty(),
+            alternatives,
+            planar,
+            warnings,
+            seed: options.seed,
+            starts: self.starts,
+            agreeing: self.agreeing,
+            confidence: 1.0 - 0.95f64.powi(self.starts.min(100_000) as i32),
+            truth: None,
+        };
+        for i in &uncertainty.loose {
+            calibration.receiver_covariance[rows[*i]] = None;
+        }
+        let map = default_frame(&best.receivers);
+        calibration.transform(&map);
+        calibration
+    }
+
+    /// Deviation of the inliers' residuals, corrected for the unknowns, repeated until the inliers stay the same.
+    fn estimate_sigma(&self, network: &Network, threshold: f64) -> f64 {
+        let mut sigma = self.deviation;
+        for _ in 0..20 {
+            let (mut sum, mut count) = (0.0, 0usize);
+            for o in self.observations.all() {
+                let e = o.residual(network);
+                if e.abs() <= threshold * sigma {
+                    sum += e * e;
+                    count += 1;
+                }
+            }
+            let redundancy = count.saturating_sub(self.observations.unknowns());
+            if redundancy == 0 {
+                return sigma;
+            }
+            // Without the floor, exact data would shrink the limit to nothing and lose inliers to rounding.
+            let next = (sum / redundancy as f64).sqrt().max(0.1 * self.deviation);
+            if (next - sigma).abs() < 1e-6 * sigma {
+                return next;
+            }
+            sigma = next;
+        }
+        sigma
+    }
+
+    fn planar(&self, best: &Network, estimated: f64, options: &CalibrateOptions, warnings: &mut Vec<String>) -> bool {
+        // In metres also where measurements carry their own deviations.
+        let misfit = estimated * super::typical_deviation(self.centred);
+        let size = best.size();
+        if let Some(sigma) = self.known
+            && estimated > 3.0 * sigma
+        {
+            warnings.push(format!(
+                "the residuals are {:.1} times as large as the given standard deviation: it is too small, or the network is \
+                 not planar",
+                estimated / sigma
+            ));
+        }
+        if misfit > options.planar_limit * size {
+            warnings.push(format!(
+                "the measurements do not fit a network in the plane: the residuals' deviation is {misfit:.3} m, {:.1} % of \
+                 the network's size {size:.3} m; receivers and transmitters must lie in one plane, and at most about a \
+                 third of the measurements may be wrong",
+                100.0 * misfit / size
+            ));
+            return false;
+        }
+        true
+    }
+}
+
+/// Values at these indices of a longer list.
+fn scatter<T: Copy>(length: usize, at: &[usize], values: &[T]) -> Vec<Option<T>> {
+    let mut all = vec![None; length];
+    for (&k, &value) in at.iter().zip(values) {
+        all[k] = Some(value);
+    }
+    all
+}
+
+/// First receiver at the origin, second on the x axis, third above; other receivers take their place where these
+/// coincide or are in line.
+fn default_frame(receivers: &[[f64; 2]]) -> Transform {
+    let identity = Transform { rotation: [[1.0, 0.0], [0.0, 1.0]], scale: 1.0, translation: [0.0; 2] };
+    let origin = receivers[0];
+    let candidates = receivers[1..].iter().flat_map(|&x| receivers[1..].iter().map(move |&up| (x, up)));
+    candidates.filter_map(|(x, up)| frame(origin, x, up)).next().unwrap_or(identity)
+}
+
+/// Warnings about the geometry: in line, in one place, poorly tied down.
+fn warn_of_nodes(
+    measured: &Pseudoranges,
+    network: &Network,
+    kept: &Observations,
+    uncertainty: &Covariance,
+    warnings: &mut Vec<String>,
+) {
+    let size = network.size();
+    for (kind, points) in [("receivers", &network.receivers), ("transmitters", &network.transmitters)] {
+        let flat = flatness(points);
+        if flat < 0.02 {
+            warnings.push(format!(
+                "the {kind} lie nearly in one line (width {:.1} % of length): on which side of it the other nodes lie is \
+                 poorly determined; move some {kind} off the line",
+                100.0 * flat
+            ));
+        }
+    }
+    let names = measured.receiver_names();
+    for (a, p) in network.receivers.iter().enumerate() {
+        for (b, q) in network.receivers.iter().enumerate().skip(a + 1) {
+            if distance(*p, *q) < 1e-3 * size {
+                warnings.push(format!("receivers {} and {} stand in the same place; remove one", names[a], names[b]));
+            }
+        }
+    }
+    if !uncertainty.loose.is_empty() {
+        let loose: Vec<String> = uncertainty.loose.iter().map(|&i| names[i].clone()).collect();
+        warnings.push(format!("the measurements do not determine where {} are; measure more of them", list(&loose)));
+    }
+    let weak = |names: &[String], std: &dyn Fn(usize) -> f64| -> Vec<String> {
+        (0..names.len()).filter(|&k| std(k) > 0.1 * size).map(|k| names[k].clone()).collect()
+    };
+    let receivers =
+        weak(names, &|i| uncertainty.receivers.get(i).map_or(f64::INFINITY, |c| (c[0][0] + c[1][1]).max(0.0).sqrt()));
+    let transmitters = weak(measured.transmitter_names(), &|j| {
+        uncertainty.transmitters.get(j).and_then(|c| *c).map_or(f64::INFINITY, |c| (c[0][0] + c[1][1]).max(0.0).sqrt())
+    });
+    for (kind, nodes) in [("receivers", receivers), ("transmitters", transmitters)] {
+        if !nodes.is_empty() {
+            warnings.push(format!(
+                "poorly determined {kind} (standard deviation above a tenth of the network's size): {}; measure more, or \
+                 from more directions",
+                list(&nodes)
+            ));
+        }
+    }
+    let doubtful: Vec<String> = (0..measured.transmitters())
+        .filter(|&j| {
+            let all = (0..measured.receivers()).filter(|&i| measured.get(i, j).is_some()).count();
+            let good = kept.of_transmitter(j).len();
+            good < 4 || 2 * good < all
+        })
+        .map(|j| measured.transmitter_names()[j].clone())
+        .collect();
+    if !doubtful.is_empty() {
+        warnings.push(format!("transmitters most of whose measurements are outliers: {}; check them", list(&doubtful)));
+    }
+    let doubtful: Vec<String> = (0..measured.receivers())
+        .filter(|&i| {
+            let all = (0..measured.transmitters()).filter(|&j| measured.get(i, j).is_some()).count();
+            2 * kept.of_receiver(i).len() < all
+        })
+        .map(|i| names[i].clone())
+        .collect();
+    if !doubtful.is_empty() {
+        warnings.push(format!("receivers most of whose measurements are outliers: {}; check them", list(&doubtful)));
+    }
+}
+
+/// Ratio of the standard deviations across and along a set of points; 1 for fewer than three.
+fn flatness(points: &[[f64; 2]]) -> f64 {
+    if points.len() < 3 {
+        return 1.0;
+    }
+    let count = points.len() as f64;
+    let centre = [0, 1].map(|k| points.iter().map(|p| p[k]).sum::<f64>() / count);
+    let moment = |a: usize, b: usize| points.iter().map(|p| (p[a] - centre[a]) * (p[b] - centre[b])).sum::<f64>();
+    let (xx, xy, yy) = (moment(0, 0), moment(0, 1), moment(1, 1));
+    let root = (0.25 * (xx - yy).powi(2) + xy * xy).sqrt();
+    let (large, small) = (0.5 * (xx + yy) + root, (xx * yy - xy * xy) / (0.5 * (xx + yy) + root));
+    if large > 0.0 { (small.max(0.0) / large).sqrt() } else { 0.0 }
+}

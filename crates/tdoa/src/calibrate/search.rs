@@ -1,0 +1,147 @@
+//! The search: many starts, each refined on its own, until enough of them agree.
+
+use std::sync::atomic::Ordering;
+
+use rayon::prelude::{IntoParallelIterator, ParallelIterator};
+
+use super::hypotheses::Hypotheses;
+use super::options::{CalibrateError, CalibrateOptions, Control, Progress};
+use crate::align::align;
+use crate::loss::Loss;
+use crate::network::Network;
+use crate::observations::Observations;
+use crate::pseudoranges::Pseudoranges;
+use crate::refine::{RefineOptions, Refined, Refiner, extend, residuals};
+
+/// Starts that run between two looks at the result. Fixed, so that the result does not depend on the number of threads.
+const BATCH: usize = 16;
+
+/// Proposals of one call that are refined; the others look worse before it.
+const REFINED: usize = 3;
+
+/// A start counts for a basin if its objective is this close to it (units of log-likelihood).
+const SAME_BASIN: f64 = 1.0;
+
+/// Networks are the same if their nodes differ by less than this share of the network's size, root mean square.
+const SAME_NETWORK: f64 = 0.02;
+
+/// What the search found.
+pub(crate) struct Found {
+    /// Different networks, best objective first.
+    pub(crate) networks: Vec<Refined>,
+    /// Starts that were made.
+    pub(crate) starts: usize,
+    /// Starts that ended in the best basin.
+    pub(crate) agreeing: usize,
+}
+
+/// The measurements to search and how.
+pub(crate) struct Search<'a> {
+    pub(crate) measured: &'a Pseudoranges,
+    pub(crate) observations: &'a Observations,
+    pub(crate) nu: f64,
+    pub(crate) refine: RefineOptions,
+    /// Sources of starts, which take turns.
+    pub(crate) sources: Vec<&'a dyn Hypotheses>,
+    /// Loss with which proposals are completed and ranked.
+    pub(crate) wide: Loss,
+}
+
+impl Search<'_> {
+    pub(crate) fn run(&self, options: &CalibrateOptions, control: &Control<'_>) -> Result<Found, CalibrateError> {
+        let mut refined: Vec<Refined> = Vec::new();
+        let mut starts = 0;
+        let cancelled = control.cancelled;
+        let stopped = || cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed));
+        loop {
+            let batch = BATCH.min(options.max_starts - starts);
+            let ended: Vec<Option<Refined>> = (starts..starts + batch)
+                .into_par_iter()
+                .map_init(
+                    || Refiner::with_nu(self.observations, self.nu),
+                    |refiner, index| {
+                        if stopped() { None } else { self.start(refiner, index, options.seed) }
+                    },
+                )
+                .collect();
+            if stopped() {
+                return Err(CalibrateError::Cancelled);
+            }
+            starts += batch;
+            refined.extend(ended.into_iter().flatten());
+            let best = refined.iter().map(|r| r.objective).fold(f64::INFINITY, f64::min);
+            let agreeing = refined.iter().filter(|r| r.objective < best + SAME_BASIN).count();
+            if let Some(progress) = control.progress {
+                progress(Progress { starts, max_starts: options.max_starts, agreeing });
+            }
+            let enough = starts >= options.min_starts && agreeing >= options.agreeing;
+            if enough || starts >= options.max_starts {
+                if refined.is_empty() {
+                    return Err(CalibrateError::NotFound(starts));
+                }
+                refined.sort_by(|a, b| a.objective.total_cmp(&b.objective));
+                return Ok(Found { networks: distinct(refined, 12), starts, agreeing });
+            }
+        }
+    }
+
+    fn start(&self, refiner: &mut Refiner<'_>, index: usize, seed: u64) -> Option<Refined> {
+        let source = self.sources[index % self.sources.len()];
+        let proposals = source.propose(self.measured, index / self.sources.len(), seed);
+        let mut ranked: Vec<(f64, Network)> = proposals
+            .iter()
+            .filter_map(|part| extend(self.observations, part, &self.wide))
+            .filter(|network| network.is_finite())
+            .map(|network| (self.rank(&network), network))
+            .collect();
+        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+        ranked
+            .into_iter()
+            .take(REFINED)
+            .map(|(_, network)| refiner.refine(network, &self.refine))
+            .filter(|refined| refined.objective.is_finite() && refined.network.is_finite())
+            .min_by(|a, b| a.objective.total_cmp(&b.objective))
+    }
+
+    fn rank(&self, network: &Network) -> f64 {
+        let mut all = vec![0.0; self.observations.len()];
+        residuals(self.observations, network, &mut all);
+        all.iter().map(|&e| self.wide.cost(e)).sum()
+    }
+}
+
+/// The first of each kind of network in a list sorted by objective, at most `most` of them.
+pub(crate) fn distinct(sorted: Vec<Refined>, most: usize) -> Vec<Refined> {
+    let mut kept: Vec<Refined> = Vec::new();
+    for candidate in sorted {
+        if kept.len() == most {
+            break;
+        }
+        if !kept.iter().any(|k| same(&k.network, &candidate.network)) {
+            kept.push(candidate);
+        }
+    }
+    kept
+}
+
+/// Whether two networks agree up to a rigid motion or reflection. Transmitters far outside count in proportion to their
+/// distance, since their range is hardly determined.
+pub(crate) fn same(a: &Network, b: &Network) -> bool {
+    let size = a.size().max(b.size());
+    let Some(alignment) = align(&b.receivers, &a.receivers, false) else { return true };
+    if alignment.rms > SAME_NETWORK * size {
+        return false;
+    }
+    let centre = [0, 1].map(|k| a.receivers.iter().map(|r| r[k]).sum::<f64>() / a.receivers.len() as f64);
+    let differing = a
+        .transmitters
+        .iter()
+        .zip(&b.transmitters)
+        .filter(|(s, t)| {
+            let reach = size.max(crate::network::distance(**s, centre));
+            crate::network::distance(**s, alignment.transform.apply(**t)) > 5.0 * SAME_NETWORK * reach
+        })
+        .count();
+    // One stray transmitter is an ambiguity of that transmitter, not another network.
+    differing <= a.transmitters.len() / 10
+}

@@ -1,0 +1,395 @@
+//! What the data cannot determine, said before anything is solved.
+
+use thiserror::Error;
+
+use crate::pseudoranges::Pseudoranges;
+
+/// The smallest configurations that determine a network: the minimal ones 6r/3s and 4r/5s, and 5r/4s, which has one
+/// constraint to spare. A matrix is solvable if it holds one of them.
+pub const SMALLEST: &str = "6 receivers and 3 transmitters, 5 and 4, or 4 and 5";
+
+/// A node needs this many measurements to be kept: a transmitter three for its position and offset and one to fix which
+/// of two solutions is meant, a receiver two and one.
+const LEAST_PER_TRANSMITTER: usize = 4;
+const LEAST_PER_RECEIVER: usize = 3;
+
+/// Number of equations minus number of unknowns of m receivers and n transmitters, all measured: mn - 2m - 3n + 3.
+pub fn excess(receivers: usize, transmitters: usize) -> i64 {
+    let (m, n) = (receivers as i64, transmitters as i64);
+    m * n - 2 * m - 3 * n + 3
+}
+
+/// Whether a complete matrix of this size has finitely many solutions: at least four receivers, three transmitters, and
+/// no more unknowns than equations.
+pub fn is_solvable(receivers: usize, transmitters: usize) -> bool {
+    receivers >= 4 && transmitters >= 3 && excess(receivers, transmitters) >= 0
+}
+
+/// Why measurements cannot determine a network.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum Degeneracy {
+    /// All cells are empty.
+    #[error("nothing was measured: all {0} cells are missing")]
+    NothingMeasured(usize),
+    /// Too few nodes.
+    #[error(
+        "{receivers} receivers and {transmitters} transmitters cannot be calibrated{left}: the smallest solvable sizes are \
+         {SMALLEST}; add {remedy}"
+    )]
+    TooSmall {
+        /// Receivers that can be used.
+        receivers: usize,
+        /// Transmitters that can be used.
+        transmitters: usize,
+        /// Which nodes were left out, or empty.
+        left: String,
+        /// What would help.
+        remedy: String,
+    },
+    /// More unknowns than measurements.
+    #[error(
+        "{measurements} measurements of {receivers} receivers and {transmitters} transmitters cannot determine {unknowns} \
+         unknowns{left}; measure at least {missing} of the missing cells, or add nodes"
+    )]
+    TooFew {
+        /// Receivers that can be used.
+        receivers: usize,
+        /// Transmitters that can be used.
+        transmitters: usize,
+        /// Measured cells among them.
+        measurements: usize,
+        /// Unknowns.
+        unknowns: usize,
+        /// How many measurements more are needed.
+        missing: usize,
+        /// Which nodes were left out, or empty.
+        left: String,
+    },
+    /// Two receivers whose measurements differ by a constant.
+    #[error(
+        "receivers {first} and {second} measure the same up to a constant ({constant} m): they stand in the same place or \
+         one is a copy of the other, which determines nothing; remove one of them"
+    )]
+    IdenticalReceivers {
+        /// Name of one.
+        first: String,
+        /// Name of the other.
+        second: String,
+        /// The constant, metres.
+        constant: String,
+    },
+}
+
+/// The part of the measurements that can be calibrated.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Usable {
+    /// Receivers kept.
+    pub receivers: Vec<usize>,
+    /// Transmitters kept.
+    pub transmitters: Vec<usize>,
+    /// What was left out and why, with names and a remedy.
+    pub warnings: Vec<String>,
+}
+
+/// Leaves out what too few measurements tie down and checks that the rest can be determined.
+///
+/// # Errors
+/// When nothing solvable is left, or receivers coincide.
+pub fn usable(measured: &Pseudoranges) -> Result<Usable, Degeneracy> {
+    if measured.observed() == 0 {
+        return Err(Degeneracy::NothingMeasured(measured.values().len()));
+    }
+    let (m, n) = (measured.receivers(), measured.transmitters());
+    if !is_solvable(m, n) {
+        return Err(Degeneracy::TooSmall { receivers: m, transmitters: n, left: String::new(), remedy: remedy(m, n) });
+    }
+    let mut kept = Kept { measured, receivers: vec![true; m], transmitters: vec![true; n] };
+    let mut warnings = Vec::new();
+    kept.drop_sparse();
+    let dropped = kept.names(false);
+    if !dropped.is_empty() {
+        warnings.push(format!(
+            "left out for too few measurements: {dropped}; a transmitter needs at least {LEAST_PER_TRANSMITTER} receivers \
+             that hear it, a receiver {LEAST_PER_RECEIVER} transmitters"
+        ));
+    }
+    if let Some(rest) = kept.largest_component() {
+        warnings.push(format!(
+            "the measurements fall into parts that share no node; only the largest is calibrated, without {rest}; \
+             measure between the parts"
+        ));
+    }
+    let left = kept.names(false);
+    let left = if left.is_empty() { String::new() } else { format!(" (left out: {left})") };
+    let index = |flags: &[bool]| -> Vec<usize> { (0..flags.len()).filter(|&k| flags[k]).collect() };
+    let (receivers, transmitters) = (index(&kept.receivers), index(&kept.transmitters));
+    if let Some((a, b, constant)) = identical_receivers(measured, &receivers, &transmitters) {
+        return Err(Degeneracy::IdenticalReceivers {
+            first: measured.receiver_names()[a].clone(),
+            second: measured.receiver_names()[b].clone(),
+            constant: format!("{constant:.3}"),
+        });
+    }
+    let distinct = transmitters.len() - repeated_transmitters(measured, &receivers, &transmitters);
+    if !is_solvable(receivers.len(), distinct) {
+        let remedy = remedy(receivers.len(), distinct);
+        return Err(Degeneracy::TooSmall { receivers: receivers.len(), transmitters: distinct, left, remedy });
+    }
+    let measurements = measured.select(&receivers, &transmitters).observed();
+    let unknowns = 2 * receivers.len() + 3 * transmitters.len() - 3;
+    if measurements < unknowns {
+        return Err(Degeneracy::TooFew {
+            receivers: receivers.len(),
+            transmitters: transmitters.len(),
+            measurements,
+            unknowns,
+            missing: unknowns - measurements,
+            left,
+        });
+    }
+    Ok(Usable { receivers, transmitters, warnings })
+}
+
+/// The fewest nodes to add, receivers or transmitters, in words.
+fn remedy(receivers: usize, transmitters: usize) -> String {
+    let more_receivers = (0..=6).find(|k| is_solvable(receivers + k, transmitters));
+    let more_transmitters = (0..=6).find(|k| is_solvable(receivers, transmitters + k));
+    let count = |k: usize, what: &str| format!("{k} {what}{}", if k == 1 { "" } else { "s" });
+    match (more_receivers, more_transmitters) {
+        (Some(a), Some(b)) => format!("{} or {}", count(a, "receiver"), count(b, "transmitter")),
+        (Some(a), None) => count(a, "receiver"),
+        (None, Some(b)) => count(b, "transmitter"),
+        (None, None) => "receivers and transmitters".to_string(),
+    }
+}
+
+struct Kept<'a> {
+    measured: &'a Pseudoranges,
+    receivers: Vec<bool>,
+    transmitters: Vec<bool>,
+}
+
+impl Kept<'_> {
+    fn links(&self, i: usize, j: usize) -> bool {
+        self.receivers[i] && self.transmitters[j] && self.measured.get(i, j).is_some()
+    }
+
+    fn drop_sparse(&mut self) {
+        let (m, n) = (self.receivers.len(), self.transmitters.len());
+        loop {
+            let mut dropped = false;
+            for j in 0..n {
+                if self.transmitters[j] && (0..m).filter(|&i| self.links(i, j)).count() < LEAST_PER_TRANSMITTER {
+                    self.transmitters[j] = false;
+                    dropped = true;
+                }
+            }
+            for i in 0..m {
+                if self.receivers[i] && (0..n).filter(|&j| self.links(i, j)).count() < LEAST_PER_RECEIVER {
+                    self.receivers[i] = false;
+                    dropped = true;
+                }
+            }
+            if !dropped {
+                return;
+            }
+        }
+    }
+
+    /// Keeps the largest connected part; the names of the others if there are any.
+    fn largest_component(&mut self) -> Option<String> {
+        let (m, n) = (self.receivers.len(), self.transmitters.len());
+        let mut part = vec![usize::MAX; m];
+        let mut sizes = Vec::new();
+        for start in 0..m {
+            if !self.receivers[start] || part[start] != usize::MAX {
+                continue;
+            }
+            let label = sizes.len();
+            part[start] = label;
+            let mut stack = vec![start];
+            let mut heard = vec![false; n];
+            let mut size = 0;
+            while let Some(i) = stack.pop() {
+                size += 1;
+                for j in (0..n).filter(|&j| self.links(i, j)) {
+                    if !std::mem::replace(&mut heard[j], true) {
+                        for k in (0..m).filter(|&k| self.links(k, j)) {
+                            if part[k] == usize::MAX {
+                                part[k] = label;
+                                stack.push(k);
+                            }
+                        }
+                    }
+                }
+            }
+            sizes.push(size + heard.iter().filter(|&&h| h).count());
+        }
+        if sizes.len() < 2 {
+            return None;
+        }
+        let largest = (0..sizes.len()).max_by_key(|&k| (sizes[k], usize::MAX - k))?;
+        let before = (self.receivers.clone(), self.transmitters.clone());
+        for j in 0..n {
+            self.transmitters[j] &= (0..m).any(|i| part[i] == largest && self.measured.get(i, j).is_some());
+        }
+        for i in 0..m {
+            self.receivers[i] &= part[i] == largest;
+        }
+        let gone = |before: &[bool], now: &[bool], names: &[String]| -> Vec<String> {
+            (0..now.len()).filter(|&k| before[k] && !now[k]).map(|k| names[k].clone()).collect()
+        };
+        let mut rest = gone(&before.0, &self.receivers, self.measured.receiver_names());
+        rest.extend(gone(&before.1, &self.transmitters, self.measured.transmitter_names()));
+        Some(list(&rest))
+    }
+
+    fn names(&self, kept: bool) -> String {
+        let pick = |flags: &[bool], names: &[String]| -> Vec<String> {
+            (0..flags.len()).filter(|&k| flags[k] == kept).map(|k| names[k].clone()).collect()
+        };
+        let mut all = pick(&self.receivers, self.measured.receiver_names());
+        all.extend(pick(&self.transmitters, self.measured.transmitter_names()));
+        list(&all)
+    }
+}
+
+/// Names in a row, at most twelve of them.
+pub(crate) fn list(names: &[String]) -> String {
+    if names.len() <= 12 {
+        return names.join(", ");
+    }
+    format!("{} and {} more", names[..12].join(", "), names.len() - 12)
+}
+
+/// Two receivers whose rows differ by a constant to rounding, over at least three common transmitters.
+fn identical_receivers(
+    measured: &Pseudoranges,
+    receivers: &[usize],
+    transmitters: &[usize],
+) -> Option<(usize, usize, f64)> {
+    for (k, &a) in receivers.iter().enumerate() {
+        for &b in &receivers[k + 1..] {
+            let pairs = transmitters.iter().filter_map(|&j| Some((measured.get(a, j)?, measured.get(b, j)?)));
+            if let Some(constant) = constant_difference(pairs) {
+                return Some((a, b, constant));
+            }
+        }
+    }
+    None
+}
+
+/// How many transmitters repeat the column of an earlier one up to a constant (same place, another time): they are no
+/// new information.
+fn repeated_transmitters(measured: &Pseudoranges, receivers: &[usize], transmitters: &[usize]) -> usize {
+    // Only small networks can fail for it, and comparing all pairs of many is slow.
+    if transmitters.len() > 64 {
+        return 0;
+    }
+    let repeats = |k: usize| {
+        transmitters[..k].iter().any(|&a| {
+            let b = transmitters[k];
+            let pairs = receivers.iter().filter_map(|&i| Some((measured.get(i, a)?, measured.get(i, b)?)));
+            constant_difference(pairs).is_some()
+        })
+    };
+    (0..transmitters.len()).filter(|&k| repeats(k)).count()
+}
+
+/// The difference of the pairs if it is the same for all of at least three, up to the rounding of printed numbers: a
+/// millionth of how much the values themselves vary.
+fn constant_difference(pairs: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> {
+    let (mut least, mut most, mut size) = (f64::INFINITY, f64::NEG_INFINITY, 0.0f64);
+    for (x, y) in pairs.clone() {
+        least = least.min(x);
+        most = most.max(x);
+        size = size.max(x.abs()).max(y.abs());
+    }
+    let tolerance = 1e-6 * (most - least) + 1e-14 * size;
+    let (mut low, mut high, mut count) = (f64::INFINITY, f64::NEG_INFINITY, 0);
+    for (x, y) in pairs {
+        low = low.min(y - x);
+        high = high.max(y - x);
+        if high - low > tolerance {
+            return None;
+        }
+        count += 1;
+    }
+    if count >= 3 { Some(0.5 * (low + high)) } else { None }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulate::{SimulateOptions, simulate};
+
+    fn measured(receivers: usize, transmitters: usize) -> Pseudoranges {
+        let options = SimulateOptions { receivers, transmitters, ..Default::default() };
+        simulate(&options).unwrap().pseudoranges
+    }
+
+    #[test]
+    fn smallest_sizes_are_the_named_ones() {
+        // From the excess formula: (m-3)(n-2) - 3.
+        for (m, n) in [(6, 3), (5, 4), (4, 5), (100, 3), (4, 100)] {
+            assert!(is_solvable(m, n), "{m}r/{n}s");
+            assert_eq!(excess(m, n), (m as i64 - 3) * (n as i64 - 2) - 3);
+        }
+        for (m, n) in [(5, 3), (4, 4), (3, 100), (100, 2), (2, 2), (0, 0)] {
+            assert!(!is_solvable(m, n), "{m}r/{n}s");
+        }
+    }
+
+    #[test]
+    fn too_small_says_what_to_add() {
+        let error = usable(&measured(5, 3)).unwrap_err();
+        assert!(error.to_string().contains("add 1 receiver or 1 transmitter"), "{error}");
+        let error = usable(&measured(4, 2)).unwrap_err();
+        assert!(error.to_string().contains("6 receivers and 3 transmitters"), "{error}");
+        assert!(usable(&measured(6, 3)).is_ok());
+    }
+
+    #[test]
+    fn sparse_nodes_are_named_and_left_out() {
+        let full = measured(7, 8);
+        let mut values = full.values().to_vec();
+        (0..4).for_each(|i| values[i * 8 + 5] = f64::NAN);
+        let found = usable(&Pseudoranges::new(7, 8, values).unwrap()).unwrap();
+        assert_eq!(found.transmitters, [0, 1, 2, 3, 4, 6, 7]);
+        assert!(found.warnings[0].contains("s6"), "{:?}", found.warnings);
+        let nothing = Pseudoranges::new(7, 8, vec![f64::NAN; 56]).unwrap();
+        assert_eq!(usable(&nothing), Err(Degeneracy::NothingMeasured(56)));
+    }
+
+    #[test]
+    fn parts_that_share_no_node_are_told_apart() {
+        let full = measured(12, 12);
+        let block = |k: usize| (k / 12 < 7) == (k % 12 < 7);
+        let values = (0..144).map(|k| if block(k) { full.values()[k] } else { f64::NAN }).collect();
+        let found = usable(&Pseudoranges::new(12, 12, values).unwrap()).unwrap();
+        assert_eq!((found.receivers.len(), found.transmitters.len()), (7, 7));
+        assert!(found.warnings[0].contains("r8"), "{:?}", found.warnings);
+    }
+
+    #[test]
+    fn identical_receivers_are_named() {
+        let full = measured(7, 6);
+        let mut values = full.values().to_vec();
+        (0..6).for_each(|j| values[4 * 6 + j] = values[6 + j] + 0.25);
+        let error = usable(&Pseudoranges::new(7, 6, values).unwrap()).unwrap_err();
+        assert!(error.to_string().contains("receivers r2 and r5"), "{error}");
+    }
+
+    #[test]
+    fn repeated_transmitters_add_nothing() {
+        let full = measured(5, 5);
+        let mut values = full.values().to_vec();
+        for i in 0..5 {
+            values[i * 5 + 1] = values[i * 5] + 3.0;
+            values[i * 5 + 2] = values[i * 5] - 1.0;
+        }
+        let error = usable(&Pseudoranges::new(5, 5, values).unwrap()).unwrap_err();
+        assert!(matches!(error, Degeneracy::TooSmall { transmitters: 3, .. }), "{error}");
+    }
+}

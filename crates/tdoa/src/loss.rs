@@ -1,0 +1,89 @@
+//! The robust loss: residuals as draws of Student's t distribution.
+//!
+//! With nu degrees of freedom and scale s, a residual e costs (nu + 1)/2 ln(1 + (e/s)^2/nu), up to the term ln s that
+//! matters when s is estimated as well; nu = 1 is the Cauchy loss, an infinite nu least squares.
+
+/// Student's t loss.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Loss {
+    /// Degrees of freedom; infinite for least squares.
+    pub nu: f64,
+    /// Scale of the residuals, metres (or a factor on the standard deviations where measurements carry their own).
+    pub scale: f64,
+}
+
+impl Loss {
+    /// Cost of a residual.
+    pub fn cost(&self, residual: f64) -> f64 {
+        let u2 = (residual / self.scale).powi(2);
+        if self.nu.is_infinite() { 0.5 * u2 } else { 0.5 * (self.nu + 1.0) * (u2 / self.nu).ln_1p() }
+    }
+
+    /// Weight of a residual in iteratively reweighted least squares, without the factor 1/scale^2: cost'(u)/u.
+    pub fn weight(&self, residual: f64) -> f64 {
+        let u2 = (residual / self.scale).powi(2);
+        if self.nu.is_infinite() { 1.0 } else { (self.nu + 1.0) / (self.nu + u2) }
+    }
+}
+
+/// Factor from the scale that maximises the likelihood to the standard deviation, for residuals that are in truth normal:
+/// the tau with E[(nu + 1) z^2/(nu + z^2)] = 1 for z normal with deviation tau.
+pub fn normal_deviation(nu: f64) -> f64 {
+    if nu.is_infinite() {
+        return 1.0;
+    }
+    let mean = |tau: f64| -> f64 {
+        // The trapezoid rule is as good as exact for a smooth integrand that dies out at both ends.
+        let density = |z: f64| (-0.5 * z * z).exp() / std::f64::consts::TAU.sqrt();
+        let term = |z: f64| (nu + 1.0) * (tau * z).powi(2) / (nu + (tau * z).powi(2)) * density(z);
+        (-320..=320).map(|k| term(k as f64 / 40.0)).sum::<f64>() / 40.0
+    };
+    let (mut low, mut high) = (1.0, 4.0);
+    for _ in 0..50 {
+        let middle = 0.5 * (low + high);
+        if mean(middle) < 1.0 { low = middle } else { high = middle }
+    }
+    low
+}
+
+/// Degrees of freedom for this number of measurements and unknowns.
+///
+/// With the scale estimated by plain maximum likelihood, there is a spurious maximum at scale 0 as soon as a share
+/// nu/(nu + 1) of the residuals can be made zero at once; as many can as there are unknowns. On the other side the
+/// estimate breaks down when a share 1/(nu + 1) are outliers. This choice leaves half of the redundancy to either side:
+/// 1/(nu + 1) = (1 - unknowns/measurements)/2.
+pub fn degrees_of_freedom(measurements: usize, unknowns: usize) -> f64 {
+    let taken = (unknowns as f64 / measurements.max(1) as f64).min(0.9);
+    (1.0 + taken) / (1.0 - taken)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn weight_is_the_derivative_over_the_residual() {
+        for nu in [1.0, 3.5, f64::INFINITY] {
+            let loss = Loss { nu, scale: 0.3 };
+            for e in [-2.0, 0.1, 0.7] {
+                let slope = (loss.cost(e + 1e-6) - loss.cost(e - 1e-6)) / 2e-6;
+                assert!((slope - loss.weight(e) * e / loss.scale.powi(2)).abs() < 1e-6 * slope.abs().max(1.0));
+            }
+        }
+    }
+
+    #[test]
+    fn normal_deviation_of_the_cauchy_loss() {
+        // E[2 z^2/(1 + z^2)] = 1 means E[1/(1 + z^2)] = 1/2; with z = tau x that is sqrt(pi/2)/tau e^(1/(2 tau^2))
+        // erfc(1/(tau sqrt 2)) = 1/2, solved by tau = 1.6335.
+        assert!((normal_deviation(1.0) - 1.6335).abs() < 1e-3, "{}", normal_deviation(1.0));
+        assert!((normal_deviation(1e6) - 1.0).abs() < 1e-5);
+    }
+
+    #[test]
+    fn half_of_the_redundancy_may_be_outliers() {
+        assert_eq!(degrees_of_freedom(100, 0), 1.0);
+        assert_eq!(degrees_of_freedom(100, 50), 3.0);
+        assert!(degrees_of_freedom(10, 20).is_finite());
+    }
+}

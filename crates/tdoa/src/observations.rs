@@ -1,0 +1,101 @@
+//! The measured cells as flat lists, for the inner loops.
+
+use crate::network::{Network, distance};
+use crate::pseudoranges::Pseudoranges;
+
+/// One measured cell.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Observation {
+    pub(crate) receiver: usize,
+    pub(crate) transmitter: usize,
+    /// Pseudorange, metres.
+    pub(crate) value: f64,
+    /// One over the standard deviation given for the cell, or 1 where none is given.
+    pub(crate) precision: f64,
+}
+
+impl Observation {
+    /// Residual divided by the cell's standard deviation.
+    #[inline]
+    pub(crate) fn residual(&self, network: &Network) -> f64 {
+        let (i, j) = (self.receiver, self.transmitter);
+        let d = distance(network.receivers[i], network.transmitters[j]);
+        (self.value - network.offsets[j] - d) * self.precision
+    }
+}
+
+/// All measured cells, transmitter by transmitter, and the same cells receiver by receiver.
+#[derive(Debug, Clone)]
+pub(crate) struct Observations {
+    pub(crate) receivers: usize,
+    pub(crate) transmitters: usize,
+    entries: Vec<Observation>,
+    columns: Vec<usize>,
+    rows: Vec<usize>,
+    row_entries: Vec<usize>,
+}
+
+impl Observations {
+    /// The measured cells for which `keep(receiver, transmitter)` holds.
+    pub(crate) fn new(measured: &Pseudoranges, keep: impl Fn(usize, usize) -> bool) -> Self {
+        let (m, n) = (measured.receivers(), measured.transmitters());
+        let mut entries = Vec::with_capacity(measured.observed());
+        let mut columns = vec![0];
+        for j in 0..n {
+            for i in 0..m {
+                if let Some(value) = measured.get(i, j).filter(|_| keep(i, j)) {
+                    let precision = measured.sigma(i, j).map_or(1.0, |sigma| 1.0 / sigma);
+                    entries.push(Observation { receiver: i, transmitter: j, value, precision });
+                }
+            }
+            columns.push(entries.len());
+        }
+        let mut row_entries: Vec<usize> = (0..entries.len()).collect();
+        row_entries.sort_by_key(|&k| entries[k].receiver);
+        let rows = (0..=m).map(|i| row_entries.partition_point(|&k| entries[k].receiver < i)).collect();
+        Observations { receivers: m, transmitters: n, entries, columns, rows, row_entries }
+    }
+
+    /// All of them, transmitter by transmitter.
+    pub(crate) fn all(&self) -> &[Observation] {
+        &self.entries
+    }
+
+    /// Those of one transmitter, by receiver.
+    pub(crate) fn of_transmitter(&self, j: usize) -> &[Observation] {
+        &self.entries[self.columns[j]..self.columns[j + 1]]
+    }
+
+    /// Those of one receiver, by transmitter.
+    pub(crate) fn of_receiver(&self, i: usize) -> impl ExactSizeIterator<Item = &Observation> {
+        self.row_entries[self.rows[i]..self.rows[i + 1]].iter().map(|&k| &self.entries[k])
+    }
+
+    /// Number of measurements.
+    pub(crate) fn len(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// Number of unknowns of the network: positions and offsets up to a rigid motion of the plane.
+    pub(crate) fn unknowns(&self) -> usize {
+        (2 * self.receivers + 3 * self.transmitters).saturating_sub(3)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_and_columns_list_the_same_cells() {
+        let nan = f64::NAN;
+        let f = Pseudoranges::new(3, 2, vec![1.0, nan, 3.0, 4.0, nan, 6.0]).unwrap();
+        let observations = Observations::new(&f, |i, _| i != 1 || f.observed() == 4);
+        assert_eq!(observations.len(), 4);
+        let column: Vec<_> = observations.of_transmitter(1).iter().map(|o| (o.receiver, o.value)).collect();
+        assert_eq!(column, [(1, 4.0), (2, 6.0)]);
+        let row: Vec<_> = observations.of_receiver(1).map(|o| (o.transmitter, o.value)).collect();
+        assert_eq!(row, [(0, 3.0), (1, 4.0)]);
+        assert_eq!(Observations::new(&f, |i, _| i != 2).len(), 3);
+    }
+}

@@ -1,0 +1,200 @@
+//! A calibration as an SVG picture: the network with 95 % ellipses, names, a scale bar, the truth and error vectors where
+//! it is given, outliers, and a histogram of the residuals.
+
+mod canvas;
+mod histogram;
+
+use crate::calibrate::Calibration;
+use crate::network::distance;
+use canvas::{Canvas, Map, nice};
+
+const WIDTH: f64 = 900.0;
+const MAP_HEIGHT: f64 = 620.0;
+const FOOT_HEIGHT: f64 = 230.0;
+
+/// Radius of the 95 % ellipse in standard deviations: the square root of the 95 % quantile 5.991 of chi-squared with two
+/// degrees of freedom.
+const RADIUS_95: f64 = 2.4477;
+
+/// Transmitters farther than this many network sizes from the centre are left out of the picture.
+const REACH: f64 = 5.0;
+
+/// Most nodes of a kind that get their names.
+const NAMED: usize = 80;
+
+/// Most outliers that are drawn as lines.
+const OUTLIERS: usize = 200;
+
+/// The picture as SVG text.
+pub fn picture(calibration: &Calibration) -> String {
+    let mut canvas = Canvas::new(WIDTH, MAP_HEIGHT + FOOT_HEIGHT);
+    let (map, outside) = map_of(calibration);
+    let visible = |p: &[f64; 2]| map.shows(*p);
+    canvas.text([20.0, 28.0], "start", 16.0, &title(calibration));
+
+    outliers(&mut canvas, calibration, &map);
+    let blue = "#0072B2";
+    let orange = "#D55E00";
+    let nodes = calibration.transmitters.iter().zip(&calibration.transmitter_covariance);
+    for (position, covariance) in nodes {
+        if let Some(p) = position.filter(visible) {
+            ellipse(&mut canvas, &map, p, *covariance, orange);
+            canvas.circle(map.to(p), 3.0, orange);
+        }
+    }
+    let nodes = calibration.receivers.iter().zip(&calibration.receiver_covariance);
+    for (position, covariance) in nodes {
+        if let Some(p) = position.filter(visible) {
+            ellipse(&mut canvas, &map, p, *covariance, blue);
+            canvas.triangle(map.to(p), 6.0, blue);
+        }
+    }
+    if let Some(truth) = &calibration.truth {
+        for (found, known) in calibration.receivers.iter().zip(&truth.positions) {
+            if let (Some(found), Some(known)) = (found, known) {
+                canvas.line(map.to(*found), map.to(*known), "#000", 1.5, "");
+                canvas.cross(map.to(*known), 5.0);
+            }
+        }
+    }
+    let named = |names: &[String], positions: &[Option<[f64; 2]>]| -> Vec<([f64; 2], String)> {
+        let nodes = names.iter().zip(positions).filter_map(|(name, p)| Some(((*p)?, name.clone())));
+        nodes.filter(|(p, _)| visible(p)).map(|(p, name)| (map.to(p), name)).collect()
+    };
+    let receivers = named(&calibration.receiver_names, &calibration.receivers);
+    let transmitters = named(&calibration.transmitter_names, &calibration.transmitters);
+    let points: Vec<[f64; 2]> = receivers.iter().chain(&transmitters).map(|(p, _)| *p).collect();
+    canvas.labels(&receivers[..receivers.len().min(NAMED)], &points, blue);
+    if transmitters.len() <= NAMED {
+        canvas.labels(&transmitters, &points, orange);
+    }
+    scale_bar(&mut canvas, &map);
+    histogram::draw(&mut canvas, calibration, [60.0, MAP_HEIGHT + 40.0], [480.0, 130.0]);
+    legend(&mut canvas, calibration, outside, [600.0, MAP_HEIGHT + 40.0]);
+    canvas.finish()
+}
+
+fn title(calibration: &Calibration) -> String {
+    let mut title = format!("{}, standard deviation {:.4} m", calibration.configuration, calibration.sigma);
+    if let Some(truth) = &calibration.truth {
+        title += &format!(", receivers {:.3} m from the truth (rms)", truth.receiver_rms);
+    }
+    if !calibration.planar {
+        title += ", NOT PLANAR";
+    }
+    title
+}
+
+/// The map from metres to the picture, and how many transmitters lie outside it.
+fn map_of(calibration: &Calibration) -> (Map, usize) {
+    let receivers: Vec<[f64; 2]> = calibration.receivers.iter().flatten().copied().collect();
+    let count = receivers.len().max(1) as f64;
+    let centre = [0, 1].map(|k| receivers.iter().map(|p| p[k]).sum::<f64>() / count);
+    let size = (receivers.iter().map(|p| distance(*p, centre).powi(2)).sum::<f64>() / count).sqrt();
+    let near = |p: &&[f64; 2]| distance(**p, centre) <= REACH * size;
+    let transmitters: Vec<[f64; 2]> = calibration.transmitters.iter().flatten().copied().collect();
+    let shown: Vec<[f64; 2]> = receivers
+        .iter()
+        .chain(transmitters.iter().filter(near))
+        .chain(calibration.truth.iter().flat_map(|truth| truth.positions.iter().flatten()))
+        .copied()
+        .collect();
+    let outside = transmitters.iter().filter(|p| !near(p)).count();
+    (Map::fit(&shown, [20.0, 50.0], [WIDTH - 40.0, MAP_HEIGHT - 60.0]), outside)
+}
+
+fn ellipse(canvas: &mut Canvas, map: &Map, at: [f64; 2], covariance: Option<[[f64; 2]; 2]>, colour: &str) {
+    let Some([[xx, xy], [_, yy]]) = covariance else { return };
+    let root = (0.25 * (xx - yy).powi(2) + xy * xy).sqrt();
+    let axes = [0.5 * (xx + yy) + root, 0.5 * (xx + yy) - root].map(|v| RADIUS_95 * v.max(0.0).sqrt() * map.scale);
+    let angle = 0.5 * (2.0 * xy).atan2(xx - yy);
+    // Beyond the picture it would be a wash of colour; below a pixel nothing is seen.
+    if axes[0] < 2.0 * WIDTH && axes[0] > 0.5 {
+        canvas.ellipse(map.to(at), axes, -angle.to_degrees(), colour);
+    }
+}
+
+fn outliers(canvas: &mut Canvas, calibration: &Calibration, map: &Map) {
+    let mut drawn = 0;
+    for (i, (residuals, inliers)) in calibration.residuals.iter().zip(&calibration.inliers).enumerate() {
+        for (j, (residual, inlier)) in residuals.iter().zip(inliers).enumerate() {
+            let ends = (calibration.receivers[i], calibration.transmitters[j]);
+            if let (Some(r), Some(s), true) = (ends.0, ends.1, residual.is_some() && !inlier)
+                && map.shows(s)
+                && drawn < OUTLIERS
+            {
+                canvas.line(map.to(r), map.to(s), "#CC79A7", 1.0, "5 3");
+                drawn += 1;
+            }
+        }
+    }
+}
+
+fn scale_bar(canvas: &mut Canvas, map: &Map) {
+    let length = nice(150.0 / map.scale);
+    let [x, y] = [20.0, MAP_HEIGHT + 8.0];
+    let end = x + length * map.scale;
+    canvas.line([x, y], [end, y], "#000", 2.0, "");
+    canvas.line([x, y - 4.0], [x, y + 4.0], "#000", 2.0, "");
+    canvas.line([end, y - 4.0], [end, y + 4.0], "#000", 2.0, "");
+    canvas.text([end + 8.0, y + 4.0], "start", 12.0, &format!("{length} m"));
+}
+
+fn legend(canvas: &mut Canvas, calibration: &Calibration, outside: usize, at: [f64; 2]) {
+    let mut y = at[1];
+    let mut row = |canvas: &mut Canvas, text: &str| {
+        canvas.text([at[0] + 20.0, y + 4.0], "start", 12.0, text);
+        y += 22.0;
+        y - 22.0
+    };
+    let h = row(canvas, "receiver, with 95 % ellipse");
+    canvas.triangle([at[0], h], 6.0, "#0072B2");
+    let h = row(canvas, "transmitter, with 95 % ellipse");
+    canvas.circle([at[0], h], 3.0, "#D55E00");
+    let outlying = calibration
+        .residuals
+        .iter()
+        .flatten()
+        .zip(calibration.inliers.iter().flatten())
+        .filter(|(r, i)| r.is_some() && !**i);
+    let h = row(canvas, &format!("outliers: {} measurements", outlying.count()));
+    canvas.line([at[0] - 10.0, h], [at[0] + 12.0, h], "#CC79A7", 1.0, "5 3");
+    if calibration.truth.is_some() {
+        let h = row(canvas, "true receiver, and the error");
+        canvas.cross([at[0], h], 5.0);
+    }
+    if outside > 0 {
+        row(canvas, &format!("{outside} transmitters lie outside the picture"));
+    }
+    if !calibration.unique {
+        row(canvas, &format!("not unique: {} alternatives", calibration.alternatives.len()));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{CalibrateOptions, SimulateOptions, calibrate, simulate};
+
+    #[test]
+    fn shows_every_node_and_escapes_names() {
+        let mut options = SimulateOptions { noise: 0.01, outliers: 0.02, ..Default::default() };
+        options.missing = 0.02;
+        let simulation = simulate(&options).unwrap();
+        let names = |kind: &str, count: usize| (0..count).map(|k| format!("{kind}<{k}&\"")).collect();
+        let measured = simulation.pseudoranges.with_names(names("r", 8), names("s", 12)).unwrap();
+        let mut calibration = calibrate(&measured, &CalibrateOptions::default()).unwrap();
+        let truth: Vec<_> = simulation.network.receivers.iter().copied().map(Some).collect();
+        calibration.compare(&truth);
+        let svg = picture(&calibration);
+        assert!(svg.starts_with("<svg ") && svg.trim_end().ends_with("</svg>"));
+        for name in ["r&lt;0&amp;&quot;", "r&lt;7&amp;&quot;", "s&lt;11&amp;&quot;", "true receiver"] {
+            assert!(svg.contains(name), "{name}");
+        }
+        assert!(!svg.contains("NaN") && !svg.contains("inf"));
+        // Eight receivers and one in the legend; twelve transmitters and one.
+        assert_eq!(svg.matches("class=\"receiver\"").count(), 9);
+        assert_eq!(svg.matches("class=\"transmitter\"").count(), 13);
+        assert_eq!(svg.matches("class=\"truth\"").count(), 9);
+    }
+}

@@ -1,0 +1,202 @@
+//! The few SVG shapes that a picture needs.
+
+use std::fmt::Write;
+
+/// From metres to the picture, y upwards.
+pub(super) struct Map {
+    pub(super) scale: f64,
+    centre: [f64; 2],
+    middle: [f64; 2],
+    half: [f64; 2],
+}
+
+impl Map {
+    /// The largest scale at which all points fit into the box, with a margin for names.
+    pub(super) fn fit(points: &[[f64; 2]], corner: [f64; 2], size: [f64; 2]) -> Map {
+        let bound = |k: usize| {
+            let low = points.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min);
+            let high = points.iter().map(|p| p[k]).fold(f64::NEG_INFINITY, f64::max);
+            if low <= high { (low, high) } else { (0.0, 0.0) }
+        };
+        let (x, y) = (bound(0), bound(1));
+        let margin = [50.0, 25.0];
+        let fits = |range: (f64, f64), k: usize| (size[k] - 2.0 * margin[k]) / (range.1 - range.0).max(1e-9);
+        Map {
+            scale: fits(x, 0).min(fits(y, 1)).min(1e9),
+            centre: [0.5 * (x.0 + x.1), 0.5 * (y.0 + y.1)],
+            middle: [corner[0] + 0.5 * size[0], corner[1] + 0.5 * size[1]],
+            half: [0.5 * size[0], 0.5 * size[1]],
+        }
+    }
+
+    pub(super) fn to(&self, p: [f64; 2]) -> [f64; 2] {
+        let x = self.middle[0] + (p[0] - self.centre[0]) * self.scale;
+        [x, self.middle[1] - (p[1] - self.centre[1]) * self.scale]
+    }
+
+    pub(super) fn shows(&self, p: [f64; 2]) -> bool {
+        let at = self.to(p);
+        (0..2).all(|k| (at[k] - self.middle[k]).abs() <= self.half[k])
+    }
+}
+
+/// The largest of 1, 2, 5 times a power of ten that is at most `length`.
+pub(super) fn nice(length: f64) -> f64 {
+    let power = 10f64.powf(length.log10().floor());
+    let step = [5.0, 2.0, 1.0].into_iter().find(|step| step * power <= length).unwrap_or(1.0);
+    // 2 * 10^-2 is not the double nearest to 0.02; printing and reading makes it so.
+    format!("{:.1e}", step * power).parse().unwrap_or(step * power)
+}
+
+/// SVG text that grows.
+pub(super) struct Canvas {
+    body: String,
+    width: f64,
+    height: f64,
+}
+
+impl Canvas {
+    pub(super) fn new(width: f64, height: f64) -> Self {
+        Canvas { body: String::new(), width, height }
+    }
+
+    fn add(&mut self, element: std::fmt::Arguments<'_>) {
+        // Writing to a string does not fail.
+        let _ = self.body.write_fmt(element);
+        self.body.push('\n');
+    }
+
+    pub(super) fn line(&mut self, a: [f64; 2], b: [f64; 2], colour: &str, width: f64, dashes: &str) {
+        self.add(format_args!(
+            r#"<line x1="{:.2}" y1="{:.2}" x2="{:.2}" y2="{:.2}" stroke="{colour}" stroke-width="{width}" stroke-dasharray="{dashes}"/>"#,
+            a[0], a[1], b[0], b[1]
+        ));
+    }
+
+    pub(super) fn circle(&mut self, at: [f64; 2], radius: f64, colour: &str) {
+        self.add(format_args!(
+            r#"<circle class="transmitter" cx="{:.2}" cy="{:.2}" r="{radius}" fill="{colour}"/>"#,
+            at[0], at[1]
+        ));
+    }
+
+    pub(super) fn triangle(&mut self, at: [f64; 2], radius: f64, colour: &str) {
+        let (dx, dy) = (0.866 * radius, 0.5 * radius);
+        self.add(format_args!(
+            r#"<path class="receiver" d="M{:.2} {:.2}l{:.2} {:.2}h{:.2}z" fill="{colour}"/>"#,
+            at[0],
+            at[1] - radius,
+            dx,
+            radius + dy,
+            -2.0 * dx
+        ));
+    }
+
+    pub(super) fn cross(&mut self, at: [f64; 2], radius: f64) {
+        let d = 2.0 * radius;
+        self.add(format_args!(
+            r##"<path class="truth" d="M{:.2} {:.2}h{d}m{:.2} {:.2}v{d}" stroke="#000" stroke-width="1.5" fill="none"/>"##,
+            at[0] - radius,
+            at[1],
+            -radius,
+            -radius
+        ));
+    }
+
+    pub(super) fn ellipse(&mut self, at: [f64; 2], axes: [f64; 2], degrees: f64, colour: &str) {
+        self.add(format_args!(
+            r#"<ellipse transform="translate({:.2} {:.2}) rotate({degrees:.2})" rx="{:.2}" ry="{:.2}" fill="{colour}" fill-opacity="0.15" stroke="{colour}" stroke-opacity="0.6"/>"#,
+            at[0], at[1], axes[0], axes[1]
+        ));
+    }
+
+    pub(super) fn rectangle(&mut self, corner: [f64; 2], size: [f64; 2], colour: &str) {
+        self.add(format_args!(
+            r#"<rect x="{:.2}" y="{:.2}" width="{:.2}" height="{:.2}" fill="{colour}"/>"#,
+            corner[0], corner[1], size[0], size[1]
+        ));
+    }
+
+    pub(super) fn text(&mut self, at: [f64; 2], anchor: &str, size: f64, text: &str) {
+        self.coloured(at, anchor, size, "#222", text);
+    }
+
+    fn coloured(&mut self, at: [f64; 2], anchor: &str, size: f64, colour: &str, text: &str) {
+        let text = escape(text);
+        self.add(format_args!(
+            r#"<text x="{:.2}" y="{:.2}" text-anchor="{anchor}" font-size="{size}" fill="{colour}">{text}</text>"#,
+            at[0], at[1]
+        ));
+    }
+
+    /// Names beside their points, on the side where the fewest points are close.
+    pub(super) fn labels(&mut self, nodes: &[([f64; 2], String)], points: &[[f64; 2]], colour: &str) {
+        for (at, name) in nodes {
+            let width = 6.2 * name.chars().count() as f64;
+            let sides = [(8.0, 4.0, "start"), (-8.0, 4.0, "end"), (0.0, -9.0, "middle"), (0.0, 17.0, "middle")];
+            let crowd = |(dx, dy, anchor): (f64, f64, &str)| -> usize {
+                let left = at[0] + dx
+                    - if anchor == "end" {
+                        width
+                    } else if anchor == "middle" {
+                        0.5 * width
+                    } else {
+                        0.0
+                    };
+                let covers = |p: &&[f64; 2]| {
+                    p[0] > left - 6.0
+                        && p[0] < left + width + 6.0
+                        && p[1] > at[1] + dy - 15.0
+                        && p[1] < at[1] + dy + 7.0
+                };
+                points.iter().filter(covers).count()
+            };
+            let Some((dx, dy, anchor)) = sides.into_iter().min_by_key(|&side| crowd(side)) else { continue };
+            self.coloured([at[0] + dx, at[1] + dy], anchor, 11.0, colour, name);
+        }
+    }
+
+    pub(super) fn finish(self) -> String {
+        let (width, height) = (self.width, self.height);
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
+             font-family=\"sans-serif\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n{}</svg>\n",
+            self.body
+        )
+    }
+}
+
+/// Text that is safe between tags and in attributes; control characters are not allowed in XML.
+pub(crate) fn escape(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => safe.push_str("&amp;"),
+            '<' => safe.push_str("&lt;"),
+            '>' => safe.push_str("&gt;"),
+            '"' => safe.push_str("&quot;"),
+            '\'' => safe.push_str("&#39;"),
+            c if c.is_control() => safe.push(' '),
+            c => safe.push(c),
+        }
+    }
+    safe
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn map_fits_and_turns_y_up() {
+        let map = Map::fit(&[[0.0, 0.0], [4.0, 2.0]], [0.0, 0.0], [500.0, 250.0]);
+        assert!(map.shows([0.0, 0.0]) && map.shows([4.0, 2.0]) && !map.shows([9.0, 0.0]));
+        assert!(map.to([0.0, 2.0])[1] < map.to([0.0, 0.0])[1]);
+        assert!((map.scale - 100.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn nice_lengths() {
+        assert_eq!([nice(7.3), nice(0.024), nice(1.0), nice(4900.0)], [5.0, 0.02, 1.0, 2000.0]);
+    }
+}

@@ -1,0 +1,71 @@
+//! Known positions: `id,x,y` with a header (further columns are ignored), or `x,y` without one.
+
+use std::path::Path;
+
+use super::ReadError;
+use super::table::{number, records, shorten};
+
+/// Positions with the names that the file gives.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Nodes {
+    /// Names, if the file has them.
+    pub names: Option<Vec<String>>,
+    /// Positions in metres.
+    pub positions: Vec<[f64; 2]>,
+}
+
+impl Nodes {
+    /// The positions in the order of these names. By name if the file names any of them, else in the file's order, which
+    /// needs as many positions as names. `None` if neither works.
+    pub fn in_order(&self, names: &[String]) -> Option<Vec<Option<[f64; 2]>>> {
+        if let Some(own) = &self.names
+            && own.iter().any(|name| names.contains(name))
+        {
+            let find = |name: &String| own.iter().position(|other| other == name).map(|k| self.positions[k]);
+            return Some(names.iter().map(find).collect());
+        }
+        if self.positions.len() == names.len() {
+            return Some(self.positions.iter().copied().map(Some).collect());
+        }
+        None
+    }
+}
+
+/// Reads positions of nodes in metres.
+///
+/// # Errors
+/// A file that cannot be read, lines without two numbers.
+pub fn read_nodes(path: &Path) -> Result<Nodes, ReadError> {
+    let file = path.display().to_string();
+    let text = super::text(super::open(path, &file)?, &file)?;
+    let mut names = Vec::new();
+    let mut positions = Vec::new();
+    let mut columns = None;
+    for record in records(&text, &file) {
+        let record = record?;
+        let bad = |problem: String| ReadError::Line { file: file.clone(), line: record.line, problem };
+        if columns.is_none() {
+            let at = |name: &str| record.cells.iter().position(|c| c.eq_ignore_ascii_case(name));
+            if let (Some(x), Some(y)) = (at("x"), at("y")) {
+                let name = (0..record.cells.len()).find(|k| *k < x.min(y));
+                columns = Some((name, x, y));
+                continue;
+            }
+            let named = record.cells.len() > 2 && number(&record.cells[0]).is_none();
+            columns = Some(if named { (Some(0), 1, 2) } else { (None, 0, 1) });
+        }
+        let Some((name, x, y)) = columns else { continue };
+        let read = |k: usize| -> Result<f64, ReadError> {
+            let cell = record.cells.get(k).ok_or_else(|| bad(format!("has no column {}; expected id,x,y", k + 1)))?;
+            number(cell)
+                .filter(|v| v.is_finite())
+                .ok_or_else(|| bad(format!("column {}: {:?} is not a coordinate in metres", k + 1, shorten(cell))))
+        };
+        positions.push([read(x)?, read(y)?]);
+        names.extend(name.and_then(|k| record.cells.get(k).cloned()));
+    }
+    if positions.is_empty() {
+        return Err(ReadError::Line { file, line: 1, problem: "has no positions; expected lines id,x,y".to_string() });
+    }
+    Ok(Nodes { names: if names.len() == positions.len() { Some(names) } else { None }, positions })
+}

@@ -1,0 +1,182 @@
+//! Covariance of all nodes.
+//!
+//! Arrival times leave a rigid motion of the plane open, so a covariance needs a gauge. Here it is the inner constraint
+//! over the receivers: of all covariances that explain the same data the one of smallest trace over the receivers, which
+//! is sigma^2 times the pseudo-inverse of the normal equations reduced to the receivers. It says how well the nodes lie
+//! relative to the receivers as a whole after the best rigid alignment of the receivers.
+
+use faer::Mat;
+use faer::Side;
+
+use super::{Refiner, backward, forward};
+use crate::loss::Loss;
+use crate::network::Network;
+use crate::observations::Observations;
+
+/// Eigenvalues of the reduced normal equations below this share of the largest count as zero.
+const RANK_TOLERANCE: f64 = 1e-11;
+
+/// Covariances of the nodes, metres squared.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Covariance {
+    /// Per receiver.
+    pub(crate) receivers: Vec<[[f64; 2]; 2]>,
+    /// Per transmitter: x, y, offset; `None` where its own measurements do not determine it.
+    pub(crate) transmitters: Vec<Option<[[f64; 3]; 3]>>,
+    /// Receivers that could move without a change of the measurements (to first order) beyond a rigid motion.
+    pub(crate) loose: Vec<usize>,
+}
+
+/// The covariance at `network` of least squares over `observations` with deviation `sigma` (a factor on the deviations
+/// of the measurements where they have their own). `None` if the decomposition fails.
+pub(crate) fn covariance(observations: &Observations, network: &Network, sigma: f64) -> Option<Covariance> {
+    let m = observations.receivers;
+    let mut refiner = Refiner::with_nu(observations, f64::INFINITY);
+    let normal = refiner.normal_at(network, &Loss { nu: f64::INFINITY, scale: 1.0 });
+    let size = 2 * m;
+    let lower = normal.schur();
+    let schur = Mat::from_fn(size, size, |a, b| lower[a.min(b) * size + a.max(b)]);
+    let eigen = schur.self_adjoint_eigen(Side::Lower).ok()?;
+    let largest = eigen.S()[size - 1];
+    if !(largest.is_finite() && largest > 0.0) {
+        return None;
+    }
+    // Eigenvalues ascend; the three smallest belong to the rigid motions.
+    let zero = (0..size).filter(|&k| eigen.S()[k] < RANK_TOLERANCE * largest).count().max(3).min(size);
+    let mut inverse = Mat::<f64>::zeros(size, size);
+    for k in zero..size {
+        let factor = sigma * sigma / eigen.S()[k];
+        for a in 0..size {
+            for b in 0..size {
+                inverse[(a, b)] += factor * eigen.U()[(a, k)] * eigen.U()[(b, k)];
+            }
+        }
+    }
+    let receivers = (0..m).map(|i| [0, 1].map(|a| [0, 1].map(|b| inverse[(2 * i + a, 2 * i + b)]))).collect();
+    let mut first = 0;
+    let mut transmitters = Vec::with_capacity(observations.transmitters);
+    for j in 0..observations.transmitters {
+        let column = observations.of_transmitter(j);
+        let rays = &normal.rays()[first..first + column.len()];
+        first += column.len();
+        transmitters.push(normal.inverse_factor(j).map(|factor| {
+            // dt = C^-1 (own noise + sum_i w g u^T dr_i), so Cov = sigma^2 C^-1 + K Cov_r K^T with K_i = C^-1 g w u^T.
+            let gains: Vec<([f64; 3], [f64; 2], usize)> = column
+                .iter()
+                .zip(rays)
+                .map(|(o, (u, w))| (backward(factor, forward(factor, [w * u[0], w * u[1], *w])), *u, 2 * o.receiver))
+                .collect();
+            let mut sum = [[0.0; 3]; 3];
+            for (a, u, i) in &gains {
+                for (b, v, k) in &gains {
+                    let between = (0..2)
+                        .map(|p| u[p] * (inverse[(i + p, *k)] * v[0] + inverse[(i + p, k + 1)] * v[1]))
+                        .sum::<f64>();
+                    for x in 0..3 {
+                        for y in 0..3 {
+                            sum[x][y] += between * a[x] * b[y];
+                        }
+                    }
+                }
+            }
+            for y in 0..3 {
+                let mut unit = [0.0; 3];
+                unit[y] = sigma * sigma;
+                let column = backward(factor, forward(factor, unit));
+                (0..3).for_each(|x| sum[x][y] += column[x]);
+            }
+            sum
+        }));
+    }
+    Some(Covariance { receivers, transmitters, loose: loose(&eigen.U(), zero, network) })
+}
+
+/// Receivers that take part in the zero modes beyond the rigid motions.
+fn loose(modes: &faer::MatRef<'_, f64>, zero: usize, network: &Network) -> Vec<usize> {
+    if zero <= 3 {
+        return Vec::new();
+    }
+    let m = network.receivers.len();
+    let centre = [0, 1].map(|k| network.receivers.iter().map(|r| r[k]).sum::<f64>() / m as f64);
+    let spread = network.size().max(f64::MIN_POSITIVE) * (m as f64).sqrt();
+    // Orthonormal rigid motions: two translations and the rotation about the centroid.
+    let rigid = |i: usize, axis: usize| -> [f64; 3] {
+        let root = (m as f64).sqrt();
+        let r = [network.receivers[i][0] - centre[0], network.receivers[i][1] - centre[1]];
+        if axis == 0 { [1.0 / root, 0.0, -r[1] / spread] } else { [0.0, 1.0 / root, r[0] / spread] }
+    };
+    let freedom = |i: usize| -> f64 {
+        (0..2)
+            .map(|axis| {
+                let all: f64 = (0..zero).map(|k| modes[(2 * i + axis, k)].powi(2)).sum();
+                all - rigid(i, axis).iter().map(|x| x * x).sum::<f64>()
+            })
+            .sum()
+    };
+    (0..m).filter(|&i| freedom(i) > 0.01).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulate::{SimulateOptions, simulate};
+
+    /// The same covariance from the full normal equations with the inner constraint as a border, by dense algebra.
+    #[test]
+    fn agrees_with_the_bordered_normal_equations() {
+        let mut options = SimulateOptions { receivers: 6, transmitters: 5, ..Default::default() };
+        options.missing = 0.05;
+        let simulation = simulate(&options).unwrap();
+        let network = &simulation.network;
+        let observations = Observations::new(&simulation.pseudoranges, |_, _| true);
+        let (m, n) = (6, 5);
+        let size = 2 * m + 3 * n;
+        let mut bordered = Mat::<f64>::zeros(size + 3, size + 3);
+        for o in observations.all() {
+            let (r, s) = (network.receivers[o.receiver], network.transmitters[o.transmitter]);
+            let d = network.distance(o.receiver, o.transmitter);
+            let u = [(s[0] - r[0]) / d, (s[1] - r[1]) / d];
+            let at = 2 * m + 3 * o.transmitter;
+            let row = [(2 * o.receiver, -u[0]), (2 * o.receiver + 1, -u[1]), (at, u[0]), (at + 1, u[1]), (at + 2, 1.0)];
+            for (a, x) in row {
+                for (b, y) in row {
+                    bordered[(a, b)] += x * y;
+                }
+            }
+        }
+        for (i, r) in network.receivers.iter().enumerate() {
+            for (k, g) in [[1.0, 0.0], [0.0, 1.0], [-r[1], r[0]]].iter().enumerate() {
+                for axis in 0..2 {
+                    bordered[(2 * i + axis, size + k)] = g[axis];
+                    bordered[(size + k, 2 * i + axis)] = g[axis];
+                }
+            }
+        }
+        use faer::linalg::solvers::DenseSolveCore;
+        let expected = bordered.partial_piv_lu().inverse();
+        let sigma = 0.02;
+        let found = covariance(&observations, network, sigma).unwrap();
+        assert!(found.loose.is_empty());
+        for a in 0..2 {
+            for b in 0..2 {
+                for i in 0..m {
+                    let want = sigma * sigma * expected[(2 * i + a, 2 * i + b)];
+                    assert!(
+                        (found.receivers[i][a][b] - want).abs() < 1e-8 * want.abs().max(sigma * sigma),
+                        "receiver {i}"
+                    );
+                }
+            }
+        }
+        for j in 0..n {
+            let at = 2 * m + 3 * j;
+            let found = found.transmitters[j].unwrap();
+            for a in 0..3 {
+                for b in 0..3 {
+                    let want = sigma * sigma * expected[(at + a, at + b)];
+                    assert!((found[a][b] - want).abs() < 1e-8 * want.abs().max(sigma * sigma), "transmitter {j}");
+                }
+            }
+        }
+    }
+}

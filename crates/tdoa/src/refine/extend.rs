@@ -1,0 +1,154 @@
+//! From a part of a network to all of it: nodes are located one after the other from those that are already there.
+
+use crate::loss::Loss;
+use crate::multilateration::{self, Sight};
+use crate::network::Network;
+use crate::observations::{Observation, Observations};
+
+/// A network of which some nodes are known.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct PartialNetwork {
+    /// Positions of receivers, metres.
+    pub receivers: Vec<Option<[f64; 2]>>,
+    /// Positions of transmitters, metres, with their offsets.
+    pub transmitters: Vec<Option<([f64; 2], f64)>>,
+}
+
+impl PartialNetwork {
+    /// With these numbers of receivers and transmitters, none known.
+    pub fn unknown(receivers: usize, transmitters: usize) -> Self {
+        PartialNetwork { receivers: vec![None; receivers], transmitters: vec![None; transmitters] }
+    }
+
+    /// Puts a network of the nodes with these indices into place.
+    pub fn place(&mut self, network: &Network, receivers: &[usize], transmitters: &[usize]) {
+        for (&i, &position) in receivers.iter().zip(&network.receivers) {
+            self.receivers[i] = Some(position);
+        }
+        for (k, &j) in transmitters.iter().enumerate() {
+            self.transmitters[j] = Some((network.transmitters[k], network.offsets[k]));
+        }
+    }
+}
+
+/// Locates all unknown nodes, best observed ones first: transmitters from at least four known receivers, receivers from
+/// at least three known transmitters, and with one less of them when nothing else is left. `None` if some node cannot be
+/// located at all.
+pub(crate) fn extend(observations: &Observations, part: &PartialNetwork, loss: &Loss) -> Option<Network> {
+    let mut part = part.clone();
+    let mut sights = Vec::new();
+    for spare in [1, 0] {
+        loop {
+            let transmitters = locate_transmitters(observations, &mut part, 3 + spare, loss, &mut sights);
+            let receivers = locate_receivers(observations, &mut part, 2 + spare, loss, &mut sights);
+            if transmitters + receivers == 0 {
+                break;
+            }
+        }
+    }
+    let located: Vec<_> = part.transmitters.into_iter().collect::<Option<_>>()?;
+    Some(Network {
+        receivers: part.receivers.into_iter().collect::<Option<_>>()?,
+        transmitters: located.iter().map(|t| t.0).collect(),
+        offsets: located.iter().map(|t| t.1).collect(),
+    })
+}
+
+fn locate_transmitters(
+    observations: &Observations,
+    part: &mut PartialNetwork,
+    least: usize,
+    loss: &Loss,
+    sights: &mut Vec<Sight>,
+) -> usize {
+    let mut found = 0;
+    for j in 0..observations.transmitters {
+        if part.transmitters[j].is_some() {
+            continue;
+        }
+        let sight = |o: &Observation| {
+            let position = part.receivers[o.receiver]?;
+            Some(Sight { position, length: o.value, precision: o.precision })
+        };
+        sights.clear();
+        sights.extend(observations.of_transmitter(j).iter().filter_map(sight));
+        if sights.len() >= least
+            && let Some(located) = multilateration::transmitter(sights, loss)
+        {
+            part.transmitters[j] = Some((located.position, located.offset));
+            found += 1;
+        }
+    }
+    found
+}
+
+fn locate_receivers(
+    observations: &Observations,
+    part: &mut PartialNetwork,
+    least: usize,
+    loss: &Loss,
+    sights: &mut Vec<Sight>,
+) -> usize {
+    let mut found = 0;
+    for i in 0..observations.receivers {
+        if part.receivers[i].is_some() {
+            continue;
+        }
+        let sight = |o: &Observation| {
+            let (position, offset) = part.transmitters[o.transmitter]?;
+            Some(Sight { position, length: o.value - offset, precision: o.precision })
+        };
+        sights.clear();
+        sights.extend(observations.of_receiver(i).filter_map(sight));
+        if sights.len() >= least
+            && let Some(located) = multilateration::receiver(sights, loss)
+        {
+            part.receivers[i] = Some(located.position);
+            found += 1;
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::align::align;
+    use crate::simulate::{Layout, SimulateOptions, simulate};
+
+    #[test]
+    fn six_receivers_and_three_transmitters_carry_the_rest() {
+        for seed in 0..50 {
+            let mut options = SimulateOptions { receivers: 9, transmitters: 8, seed, ..Default::default() };
+            options.layout = Layout::Normal;
+            options.missing = 0.1;
+            let simulation = simulate(&options).unwrap();
+            let truth = &simulation.network;
+            let small = Network {
+                receivers: truth.receivers[..6].to_vec(),
+                transmitters: truth.transmitters[..3].to_vec(),
+                offsets: truth.offsets[..3].to_vec(),
+            };
+            let mut part = PartialNetwork::unknown(9, 8);
+            part.place(&small, &[0, 1, 2, 3, 4, 5], &[0, 1, 2]);
+            let observations = Observations::new(&simulation.pseudoranges, |_, _| true);
+            let found = extend(&observations, &part, &Loss { nu: 2.0, scale: 1e-3 }).unwrap();
+            let nodes = |n: &Network| [n.receivers.clone(), n.transmitters.clone()].concat();
+            // A node seen by as few as determine it may be its mirror image: most, not all, must be right.
+            let wrong = nodes(&found)
+                .iter()
+                .zip(nodes(truth))
+                .filter(|(a, b)| crate::network::distance(**a, *b) > 1e-4)
+                .count();
+            assert!(wrong <= 1, "seed {seed}: {wrong} nodes");
+            assert!(wrong > 0 || align(&found.receivers, &truth.receivers, false).unwrap().rms < 1e-4);
+        }
+    }
+
+    #[test]
+    fn nothing_grows_from_nothing() {
+        let simulation = simulate(&SimulateOptions::default()).unwrap();
+        let observations = Observations::new(&simulation.pseudoranges, |_, _| true);
+        assert!(extend(&observations, &PartialNetwork::unknown(8, 12), &Loss { nu: 2.0, scale: 1.0 }).is_none());
+    }
+}

@@ -1,0 +1,243 @@
+//! The damped normal equations of all nodes, reduced to the receivers by the Schur complement over the transmitters.
+//!
+//! Residual e = f - o - |r - s|. With u the unit vector from receiver to transmitter and g = (u, 1), its derivatives are
+//! u by the receiver and -g by transmitter and offset. Each transmitter j has a 3x3 block C_j = sum w g g^T and couples
+//! to its receivers by -w u g^T, so that eliminating it subtracts w_i w_k (g_i^T C_j^-1 g_k) u_i u_k^T from block (i, k).
+
+use faer::MatMut;
+use faer::Par;
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt;
+use faer::prelude::default;
+
+use crate::loss::Loss;
+use crate::network::Network;
+use crate::observations::Observations;
+
+/// Buffers for one problem size; nothing is allocated after `new`.
+pub(crate) struct Normal {
+    receivers: usize,
+    /// Per observation: unit vector and weight.
+    rays: Vec<([f64; 2], f64)>,
+    /// Per receiver: xx, xy, yy of its block, and its gradient.
+    receiver_blocks: Vec<([f64; 3], [f64; 2])>,
+    /// Per transmitter: lower triangle of its block by rows, and its gradient.
+    transmitter_blocks: Vec<([f64; 6], [f64; 3])>,
+    /// Inverse Cholesky factors of the damped transmitter blocks, by rows.
+    inverse_factors: Vec<Option<[f64; 6]>>,
+    schur: Vec<f64>,
+    receiver_steps: Vec<f64>,
+    transmitter_steps: Vec<[f64; 3]>,
+    reduced: Vec<[f64; 3]>,
+    scratch: MemBuffer,
+}
+
+impl Normal {
+    pub(crate) fn new(observations: &Observations) -> Self {
+        let (m, n) = (observations.receivers, observations.transmitters);
+        let factor = llt::factor::cholesky_in_place_scratch::<f64>(2 * m, Par::Seq, default());
+        let solve = llt::solve::solve_in_place_scratch::<f64>(2 * m, 1, Par::Seq);
+        Normal {
+            receivers: m,
+            rays: vec![([0.0; 2], 0.0); observations.len()],
+            receiver_blocks: vec![([0.0; 3], [0.0; 2]); m],
+            transmitter_blocks: vec![([0.0; 6], [0.0; 3]); n],
+            inverse_factors: vec![None; n],
+            schur: vec![0.0; 4 * m * m],
+            receiver_steps: vec![0.0; 2 * m],
+            transmitter_steps: vec![[0.0; 3]; n],
+            reduced: vec![[0.0; 3]; m],
+            scratch: MemBuffer::new(factor.or(solve)),
+        }
+    }
+
+    /// Takes the derivatives at `network`; `residuals` are those of `observations.all()`, over their deviations.
+    pub(crate) fn linearise(&mut self, observations: &Observations, network: &Network, residuals: &[f64], loss: &Loss) {
+        self.receiver_blocks.fill(([0.0; 3], [0.0; 2]));
+        self.transmitter_blocks.fill(([0.0; 6], [0.0; 3]));
+        for ((o, ray), &e) in observations.all().iter().zip(&mut self.rays).zip(residuals) {
+            let (r, s) = (network.receivers[o.receiver], network.transmitters[o.transmitter]);
+            let (dx, dy) = (s[0] - r[0], s[1] - r[1]);
+            let d = (dx * dx + dy * dy).sqrt();
+            let u = if d > 0.0 { [dx / d, dy / d] } else { [0.0; 2] };
+            let we = loss.weight(e) * o.precision;
+            let w = we * o.precision;
+            *ray = (u, w);
+            let (h, g) = &mut self.receiver_blocks[o.receiver];
+            let (xx, xy, yy) = (w * u[0] * u[0], w * u[0] * u[1], w * u[1] * u[1]);
+            *h = [h[0] + xx, h[1] + xy, h[2] + yy];
+            *g = [g[0] - we * e * u[0], g[1] - we * e * u[1]];
+            let (h, g) = &mut self.transmitter_blocks[o.transmitter];
+            *h = [h[0] + xx, h[1] + xy, h[2] + yy, h[3] + w * u[0], h[4] + w * u[1], h[5] + w];
+            *g = [g[0] + we * e * u[0], g[1] + we * e * u[1], g[2] + we * e];
+        }
+    }
+
+    /// Solves for a step with this damping (a factor on the diagonal); false if the equations are singular.
+    pub(crate) fn solve(&mut self, observations: &Observations, damping: f64) -> bool {
+        self.reduce(observations, damping);
+        let size = 2 * self.receivers;
+        let stack = MemStack::new(&mut self.scratch);
+        let mut schur = MatMut::from_column_major_slice_mut(&mut self.schur, size, size);
+        if llt::factor::cholesky_in_place(schur.as_mut(), default(), Par::Seq, stack, default()).is_err() {
+            return false;
+        }
+        let rhs = MatMut::from_column_major_slice_mut(&mut self.receiver_steps, size, 1);
+        llt::solve::solve_in_place(schur.as_ref(), rhs, Par::Seq, stack);
+        self.substitute_back(observations);
+        self.receiver_steps.iter().all(|x| x.is_finite())
+    }
+
+    /// Forms the Schur complement (lower triangle) and its right-hand side. A transmitter whose block is singular takes
+    /// no part: it stays where it is and its measurements hold nothing.
+    pub(crate) fn reduce(&mut self, observations: &Observations, damping: f64) {
+        let size = 2 * self.receivers;
+        let grow = 1.0 + damping;
+        // A node without usable measurements keeps a regular block and does not move.
+        let floor = 1e-12 * self.receiver_blocks.iter().map(|(h, _)| h[0] + h[2]).fold(1e-300, f64::max);
+        self.schur.fill(0.0);
+        for (i, (h, g)) in self.receiver_blocks.iter().enumerate() {
+            let at = 2 * i * size + 2 * i;
+            self.schur[at] = h[0] * grow + floor * damping;
+            self.schur[at + 1] = h[1];
+            self.schur[at + size + 1] = h[2] * grow + floor * damping;
+            self.receiver_steps[2 * i] = g[0];
+            self.receiver_steps[2 * i + 1] = g[1];
+        }
+        let mut first = 0;
+        for j in 0..observations.transmitters {
+            let column = observations.of_transmitter(j);
+            let rays = &self.rays[first..first + column.len()];
+            first += column.len();
+            let (h, g) = &self.transmitter_blocks[j];
+            self.inverse_factors[j] = inverse_factor(h, grow, floor * damping);
+            let Some(inverse) = self.inverse_factors[j] else {
+                for (o, (u, w)) in column.iter().zip(rays) {
+                    let at = 2 * o.receiver * size + 2 * o.receiver;
+                    self.schur[at] -= w * u[0] * u[0];
+                    self.schur[at + 1] -= w * u[0] * u[1];
+                    self.schur[at + size + 1] -= w * u[1] * u[1];
+                }
+                continue;
+            };
+            let z = forward(&inverse, *g);
+            for (reduced, (u, w)) in self.reduced.iter_mut().zip(rays) {
+                *reduced = forward(&inverse, [w * u[0], w * u[1], *w]);
+            }
+            for (k, (b, (u, _))) in column.iter().zip(rays).enumerate() {
+                let y = self.reduced[k];
+                let along = y[0] * z[0] + y[1] * z[1] + y[2] * z[2];
+                self.receiver_steps[2 * b.receiver] += along * u[0];
+                self.receiver_steps[2 * b.receiver + 1] += along * u[1];
+                // Receivers ascend within a column, so that this fills the lower triangle.
+                for (l, (c, (v, _))) in column.iter().zip(rays).enumerate().skip(k) {
+                    let t = self.reduced[l];
+                    let q = y[0] * t[0] + y[1] * t[1] + y[2] * t[2];
+                    let at = 2 * b.receiver * size + 2 * c.receiver;
+                    self.schur[at] -= q * u[0] * v[0];
+                    self.schur[at + 1] -= q * u[0] * v[1];
+                    self.schur[at + size] -= q * u[1] * v[0];
+                    self.schur[at + size + 1] -= q * u[1] * v[1];
+                }
+            }
+        }
+    }
+
+    fn substitute_back(&mut self, observations: &Observations) {
+        let mut first = 0;
+        for j in 0..observations.transmitters {
+            let column = observations.of_transmitter(j);
+            let mut rhs = self.transmitter_blocks[j].1;
+            for (o, (u, w)) in column.iter().zip(&self.rays[first..]) {
+                let i = 2 * o.receiver;
+                let along = w * (u[0] * self.receiver_steps[i] + u[1] * self.receiver_steps[i + 1]);
+                rhs = [rhs[0] + along * u[0], rhs[1] + along * u[1], rhs[2] + along];
+            }
+            first += column.len();
+            self.transmitter_steps[j] = match &self.inverse_factors[j] {
+                Some(inverse) => backward(inverse, forward(inverse, rhs)),
+                None => [0.0; 3],
+            };
+        }
+    }
+
+    /// `target` = `network` + step.
+    pub(crate) fn step(&self, network: &Network, target: &mut Network) {
+        for (k, (to, from)) in target.receivers.iter_mut().zip(&network.receivers).enumerate() {
+            *to = [from[0] + self.receiver_steps[2 * k], from[1] + self.receiver_steps[2 * k + 1]];
+        }
+        for (j, step) in self.transmitter_steps.iter().enumerate() {
+            let from = network.transmitters[j];
+            target.transmitters[j] = [from[0] + step[0], from[1] + step[1]];
+            target.offsets[j] = network.offsets[j] + step[2];
+        }
+    }
+
+    /// The Schur complement of the last `reduce`, lower triangle, column-major, 2m x 2m.
+    pub(crate) fn schur(&self) -> &[f64] {
+        &self.schur
+    }
+
+    /// Inverse Cholesky factor of a transmitter's block, of the last `reduce`; `None` if the block is singular.
+    pub(crate) fn inverse_factor(&self, j: usize) -> Option<&[f64; 6]> {
+        self.inverse_factors[j].as_ref()
+    }
+
+    /// Unit vectors and weights of the last `linearise`, in the order of the observations.
+    pub(crate) fn rays(&self) -> &[([f64; 2], f64)] {
+        &self.rays
+    }
+}
+
+/// Inverse of the Cholesky factor of a 3x3 block with its diagonal times `grow` plus `floor`.
+fn inverse_factor(h: &[f64; 6], grow: f64, floor: f64) -> Option<[f64; 6]> {
+    let a = h[0] * grow + floor;
+    let l0 = a.sqrt();
+    let l1 = h[1] / l0;
+    let b = h[2] * grow + floor - l1 * l1;
+    let l2 = b.sqrt();
+    let l3 = h[3] / l0;
+    let l4 = (h[4] - l1 * l3) / l2;
+    let c = h[5] * grow + floor - l3 * l3 - l4 * l4;
+    let l5 = c.sqrt();
+    if !(a > 0.0 && b > 0.0 && c > 0.0 && (1.0 / (l0 * l2 * l5)).is_finite()) {
+        return None;
+    }
+    let (i0, i2, i5) = (1.0 / l0, 1.0 / l2, 1.0 / l5);
+    let i1 = -l1 * i0 * i2;
+    let i4 = -l4 * i2 * i5;
+    let i3 = -(l3 * i0 + l4 * i1) * i5;
+    Some([i0, i1, i2, i3, i4, i5])
+}
+
+/// Lower triangular times vector.
+pub(crate) fn forward(l: &[f64; 6], x: [f64; 3]) -> [f64; 3] {
+    [l[0] * x[0], l[1] * x[0] + l[2] * x[1], l[3] * x[0] + l[4] * x[1] + l[5] * x[2]]
+}
+
+/// Its transpose times vector.
+pub(crate) fn backward(l: &[f64; 6], x: [f64; 3]) -> [f64; 3] {
+    [l[0] * x[0] + l[1] * x[1] + l[3] * x[2], l[2] * x[1] + l[4] * x[2], l[5] * x[2]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inverse_factor_inverts_the_block() {
+        let h = [4.0, 1.0, 3.0, -0.5, 0.7, 2.0];
+        let inverse = inverse_factor(&h, 1.0, 0.0).unwrap();
+        let x = [0.3, -1.2, 0.8];
+        let hx = [
+            h[0] * x[0] + h[1] * x[1] + h[3] * x[2],
+            h[1] * x[0] + h[2] * x[1] + h[4] * x[2],
+            h[3] * x[0] + h[4] * x[1] + h[5] * x[2],
+        ];
+        let back = backward(&inverse, forward(&inverse, hx));
+        for k in 0..3 {
+            assert!((back[k] - x[k]).abs() < 1e-14);
+        }
+        assert!(inverse_factor(&[1.0, 2.0, 1.0, 0.0, 0.0, 1.0], 1.0, 0.0).is_none());
+    }
+}

@@ -1,0 +1,74 @@
+//! Single nodes located anew from all others: a joint minimisation cannot carry a node across a ridge of its own cost,
+//! multilateration can.
+
+use crate::loss::Loss;
+use crate::multilateration::{self, Located, Sight};
+use crate::network::Network;
+use crate::observations::{Observation, Observations};
+
+/// A node moves only if the cost of its measurements falls by more than this (units of log-likelihood).
+const GAIN: f64 = 0.01;
+
+/// Locates every transmitter from the receivers, which alone of `network` are used. Transmitters that cannot be located
+/// keep their place; their number is returned.
+pub(crate) fn place_transmitters(observations: &Observations, network: &mut Network, loss: &Loss) -> usize {
+    let mut sights = Vec::new();
+    let mut kept = 0;
+    for j in 0..observations.transmitters {
+        sights_of_transmitter(observations, network, j, &mut sights);
+        match multilateration::transmitter(&sights, loss) {
+            Some(found) => {
+                network.transmitters[j] = found.position;
+                network.offsets[j] = found.offset;
+            }
+            None => kept += 1,
+        }
+    }
+    kept
+}
+
+/// Locates every transmitter, then every receiver, from all other nodes and moves those whose measurements then fit
+/// better. Returns how many moved.
+pub(crate) fn reseed(observations: &Observations, network: &mut Network, loss: &Loss) -> usize {
+    let mut sights = Vec::new();
+    let mut moved = 0;
+    for j in 0..observations.transmitters {
+        sights_of_transmitter(observations, network, j, &mut sights);
+        let now = multilateration::cost(&sights, network.transmitters[j], network.offsets[j], loss);
+        if let Some(found) = better(multilateration::transmitter(&sights, loss), now) {
+            network.transmitters[j] = found.position;
+            network.offsets[j] = found.offset;
+            moved += 1;
+        }
+    }
+    for i in 0..observations.receivers {
+        sights_of_receiver(observations, network, i, &mut sights);
+        let now = multilateration::cost(&sights, network.receivers[i], 0.0, loss);
+        if let Some(found) = better(multilateration::receiver(&sights, loss), now) {
+            network.receivers[i] = found.position;
+            moved += 1;
+        }
+    }
+    moved
+}
+
+fn better(found: Option<Located>, now: f64) -> Option<Located> {
+    found.filter(|f| f.cost < now - GAIN)
+}
+
+fn sights_of_transmitter(observations: &Observations, network: &Network, j: usize, sights: &mut Vec<Sight>) {
+    let sight =
+        |o: &Observation| Sight { position: network.receivers[o.receiver], length: o.value, precision: o.precision };
+    sights.clear();
+    sights.extend(observations.of_transmitter(j).iter().map(sight));
+}
+
+fn sights_of_receiver(observations: &Observations, network: &Network, i: usize, sights: &mut Vec<Sight>) {
+    let sight = |o: &Observation| Sight {
+        position: network.transmitters[o.transmitter],
+        length: o.value - network.offsets[o.transmitter],
+        precision: o.precision,
+    };
+    sights.clear();
+    sights.extend(observations.of_receiver(i).map(sight));
+}

@@ -1,0 +1,103 @@
+//! Networks to start the refinement from, when no minimal solver proposes any.
+//!
+//! A transmitter's pseudoranges of two receivers differ by at most the distance of the two, and by nearly that much if
+//! the transmitter lies near the line through them. The largest difference over all transmitters is therefore a guess
+//! of each distance from below; classical multidimensional scaling turns the guesses into positions. Starts differ in
+//! random factors on the guesses and in a random displacement of the positions. The transmitters are then located by
+//! multilateration.
+
+use faer::Mat;
+use faer::Side;
+use rand::RngExt;
+use rand_distr::StandardNormal;
+use rand_pcg::Pcg64Mcg;
+
+use crate::loss::Loss;
+use crate::network::Network;
+use crate::observations::Observations;
+use crate::refine::place_transmitters;
+
+/// Guessed distances between receivers, from which starts are drawn.
+#[derive(Debug, Clone)]
+pub(crate) struct Restarts {
+    receivers: usize,
+    /// Row-major m x m guesses in metres.
+    distances: Vec<f64>,
+    /// A guess of the network's diameter in metres.
+    pub(crate) diameter: f64,
+}
+
+impl Restarts {
+    pub(crate) fn new(observations: &Observations) -> Self {
+        let m = observations.receivers;
+        let mut differences = vec![Vec::new(); m * m];
+        for j in 0..observations.transmitters {
+            let column = observations.of_transmitter(j);
+            for (k, a) in column.iter().enumerate() {
+                for b in &column[k + 1..] {
+                    differences[a.receiver * m + b.receiver].push((a.value - b.value).abs());
+                }
+            }
+        }
+        let mut distances = vec![f64::NAN; m * m];
+        for i in 0..m {
+            for k in i + 1..m {
+                let list = &mut differences[i * m + k];
+                list.sort_by(f64::total_cmp);
+                // Gross errors sit at the top of the list: leave out its upper tenth.
+                if !list.is_empty() {
+                    let value = list[(list.len() - 1) * 9 / 10];
+                    distances[i * m + k] = value;
+                    distances[k * m + i] = value;
+                }
+            }
+            distances[i * m + i] = 0.0;
+        }
+        let mut known: Vec<f64> = distances.iter().copied().filter(|&d| d > 0.0).collect();
+        known.sort_by(f64::total_cmp);
+        let diameter = known.get(known.len() * 9 / 10).copied().unwrap_or(1.0);
+        let median = known.get(known.len() / 2).copied().unwrap_or(1.0);
+        distances.iter_mut().filter(|d| d.is_nan()).for_each(|d| *d = median);
+        Restarts { receivers: m, distances, diameter }
+    }
+
+    /// One start; `spread` says how far it may be from the plain guess (0: the guess itself, 1: anywhere).
+    pub(crate) fn draw(&self, observations: &Observations, spread: f64, nu: f64, rng: &mut Pcg64Mcg) -> Network {
+        let mut normal = || -> f64 { rng.sample(StandardNormal) };
+        let m = self.receivers;
+        let mut squares = Mat::<f64>::zeros(m, m);
+        for i in 0..m {
+            for k in i + 1..m {
+                let d = self.distances[i * m + k] * (0.5 * spread * normal()).exp();
+                squares[(i, k)] = d * d;
+                squares[(k, i)] = d * d;
+            }
+        }
+        let mut receivers = scaled(&squares).unwrap_or_else(|| vec![[0.0; 2]; m]);
+        let jitter = 0.3 * spread * self.diameter;
+        for r in &mut receivers {
+            *r = [r[0] + jitter * normal(), r[1] + jitter * normal()];
+        }
+        let n = observations.transmitters;
+        let transmitters = (0..n).map(|_| [self.diameter * normal() / 2.0, self.diameter * normal() / 2.0]).collect();
+        let mut network = Network { receivers, transmitters, offsets: vec![0.0; n] };
+        place_transmitters(observations, &mut network, &Loss { nu, scale: 0.1 * self.diameter });
+        network
+    }
+}
+
+/// Classical multidimensional scaling: positions in the plane for squared distances.
+fn scaled(squares: &Mat<f64>) -> Option<Vec<[f64; 2]>> {
+    let m = squares.nrows();
+    let mean_of = |i: usize| (0..m).map(|k| squares[(i, k)]).sum::<f64>() / m as f64;
+    let means: Vec<f64> = (0..m).map(mean_of).collect();
+    let mean = means.iter().sum::<f64>() / m as f64;
+    let gram = Mat::from_fn(m, m, |i, k| -0.5 * (squares[(i, k)] - means[i] - means[k] + mean));
+    let eigen = gram.self_adjoint_eigen(Side::Lower).ok()?;
+    // Eigenvalues ascend.
+    let axis = |back: usize, i: usize| {
+        let k = m - back;
+        eigen.S()[k].max(0.0).sqrt() * eigen.U()[(i, k)]
+    };
+    if m < 2 { None } else { Some((0..m).map(|i| [axis(1, i), axis(2, i)]).collect()) }
+}
