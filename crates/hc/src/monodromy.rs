@@ -24,12 +24,16 @@ pub struct MonodromyOptions {
     pub patience: usize,
     /// Solutions at most; a fibre that exceeds it is given up. Default 100,000.
     pub max_solutions: usize,
-    /// Settings for the paths.
+    /// Settings for the paths. By default difficult paths are given up early (2,000 steps, one retry): what they would have found, easier
+    /// paths of later loops find.
     pub fibre: FibreOptions,
 }
 
 impl Default for MonodromyOptions {
     fn default() -> Self {
+        let mut fibre = FibreOptions::default();
+        fibre.tracker.max_steps = 2_000;
+        fibre.retries = 1;
         MonodromyOptions { seed: 0, roots: None, patience: 8, max_solutions: 100_000, fibre: FibreOptions::default() }
     }
 }
@@ -89,9 +93,6 @@ pub fn monodromy<E: Evaluate>(
         paths += 3 * before;
         go_round(system, &mut fibre, &corners, &accept, options);
         loops += 1;
-        if std::env::var("HCDBG").is_ok() {
-            eprintln!("loop {loops}: {}", fibre.len());
-        }
         idle = if fibre.len() > before { 0 } else { idle + 1 };
     };
     MonodromyResult { fibre, stop, loops, paths }
