@@ -20,7 +20,8 @@ pub struct MonodromyOptions {
     pub seed: u64,
     /// The known number of solutions, if any: reaching it ends the search. Default `None`.
     pub roots: Option<usize>,
-    /// Loops without a new solution after which the search ends. Default 8.
+    /// Loops without a new solution after which the search ends, provided that they had at least 64 chances (loops times solutions)
+    /// to bring one. Default 8.
     pub patience: usize,
     /// Solutions at most; a fibre that exceeds it is given up. Default 100,000.
     pub max_solutions: usize,
@@ -81,7 +82,7 @@ pub fn monodromy<E: Evaluate>(
         if options.roots.is_some_and(|roots| fibre.len() >= roots) {
             break Stop::RootsReached;
         }
-        if idle >= options.patience {
+        if idle >= options.patience && idle * fibre.len() >= 64 {
             break Stop::NoProgress;
         }
         if fibre.len() > options.max_solutions {
