@@ -1,2 +1,25 @@
-//! Development tasks.
-fn main() {}
+//! Development tasks: `cargo xtask codegen | experiments | compare`.
+
+mod codegen;
+mod refill;
+
+use clap::{Parser, Subcommand};
+
+#[derive(Parser)]
+#[command(name = "cargo xtask", about = "Development tasks of this workspace")]
+struct Arguments {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Subcommand)]
+enum Task {
+    /// Write the generated solvers from the families and their stored fibres.
+    Codegen(codegen::CodegenArguments),
+}
+
+fn main() -> anyhow::Result<()> {
+    match Arguments::parse().task {
+        Task::Codegen(arguments) => codegen::run(&arguments),
+    }
+}

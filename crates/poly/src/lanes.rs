@@ -16,6 +16,25 @@ pub struct Lanes8 {
     pub im: [f64; 8],
 }
 
+/// Eight real numbers, one a lane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(64))]
+pub struct Reals8(pub [f64; 8]);
+
+impl AsRef<[f64]> for Reals8 {
+    #[inline(always)]
+    fn as_ref(&self) -> &[f64] {
+        &self.0
+    }
+}
+
+impl AsMut<[f64]> for Reals8 {
+    #[inline(always)]
+    fn as_mut(&mut self) -> &mut [f64] {
+        &mut self.0
+    }
+}
+
 /// Builds a result lane by lane from a formula that mirrors the one-lane type.
 macro_rules! lanes {
     ($l:ident => $z:expr) => {{
@@ -82,6 +101,14 @@ impl Scalar for Lanes8 {
         lanes!(l => <Complex64 as Scalar>::scale(&a.lane(l), r))
     }
     #[inline(always)]
+    fn mul_real(a: &Self, r: &Self) -> Self {
+        lanes!(l => <Complex64 as Scalar>::mul_real(&a.lane(l), &r.lane(l)))
+    }
+    #[inline(always)]
+    fn mul_real_add(a: &Self, r: &Self, c: &Self) -> Self {
+        lanes!(l => <Complex64 as Scalar>::mul_real_add(&a.lane(l), &r.lane(l), &c.lane(l)))
+    }
+    #[inline(always)]
     fn mul_add(a: &Self, b: &Self, c: &Self) -> Self {
         lanes!(l => <Complex64 as Scalar>::mul_add(&a.lane(l), &b.lane(l), &c.lane(l)))
     }
@@ -105,6 +132,23 @@ impl Scalar for Lanes8 {
 
 impl Lane for Lanes8 {
     const LANES: usize = 8;
+    type Real = Reals8;
+    #[inline(always)]
+    fn real(r: f64) -> Reals8 {
+        Reals8([r; 8])
+    }
+    #[inline(always)]
+    fn norm_sqr(&self) -> Reals8 {
+        let mut out = Reals8([0.0; 8]);
+        for l in 0..8 {
+            out.0[l] = self.re[l] * self.re[l] + self.im[l] * self.im[l];
+        }
+        out
+    }
+    #[inline(always)]
+    fn scale_by(&self, r: &Reals8) -> Self {
+        lanes!(l => <Complex64 as Scalar>::scale(&self.lane(l), r.0[l]))
+    }
     #[inline(always)]
     fn get(&self, l: usize) -> Complex64 {
         self.lane(l)

@@ -3,11 +3,28 @@
 //! The layer below continuation: formulas become programs that run over any [`Scalar`]: one complex
 //! number, eight paths at once ([`Lanes8`]), double-double and more.
 
+mod display;
+mod exact;
+mod graph;
+mod instantiate;
+
+pub mod dd;
 pub mod evaluate;
+pub mod expression;
 pub mod lanes;
+pub mod parse;
+pub mod program;
 pub mod scalar;
 pub mod simd;
+pub mod system;
 
+pub use dd::ComplexDd;
 pub use evaluate::Evaluate;
-pub use lanes::Lanes8;
+pub use exact::Exact;
+pub use expression::{Expr, Expressions};
+pub use lanes::{Lanes8, Reals8};
+pub use parse::{Family, ParseError};
+pub use program::{CompileError, Interpreter, Program};
 pub use scalar::{Lane, Scalar};
+pub use simd::Isa;
+pub use system::{System, SystemError};

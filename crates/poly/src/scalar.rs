@@ -1,5 +1,6 @@
 //! What a straight-line program needs of its numbers.
 
+use crate::exact::{self, Exact};
 use num_complex::Complex64;
 
 /// A complex-number type that a straight-line program can run over.
@@ -22,6 +23,11 @@ pub trait Scalar: Clone + Send + Sync + std::fmt::Debug + 'static {
     #[inline(always)]
     fn from_parts(re: [f64; 2], im: [f64; 2]) -> Self {
         Self::from_c64(Complex64::new(re[0], im[0]))
+    }
+
+    /// An exact constant, as near as the type allows; types that hold more than 32 digits override it.
+    fn from_exact(z: &Exact) -> Self {
+        Self::from_parts(exact::to_parts(&z.re), exact::to_parts(&z.im))
     }
 
     /// `a + b`
@@ -52,6 +58,16 @@ pub trait Scalar: Clone + Send + Sync + std::fmt::Debug + 'static {
     #[inline(always)]
     fn scale(a: &Self, r: f64) -> Self {
         Self::mul(a, &Self::from_c64(Complex64::new(r, 0.0)))
+    }
+    /// `a * r`, where `r` is known to be real
+    #[inline(always)]
+    fn mul_real(a: &Self, r: &Self) -> Self {
+        Self::mul(a, r)
+    }
+    /// `a * r + c`, where `r` is known to be real
+    #[inline(always)]
+    fn mul_real_add(a: &Self, r: &Self, c: &Self) -> Self {
+        Self::add(&Self::mul_real(a, r), c)
     }
     /// `a * b + c`
     #[inline(always)]
@@ -87,6 +103,14 @@ pub trait Scalar: Clone + Send + Sync + std::fmt::Debug + 'static {
 pub trait Lane: Scalar + Copy {
     /// How many paths travel side by side.
     const LANES: usize;
+    /// One real number a lane.
+    type Real: Copy + Send + Sync + std::fmt::Debug + AsRef<[f64]> + AsMut<[f64]> + 'static;
+    /// The same real number in every lane.
+    fn real(r: f64) -> Self::Real;
+    /// `|a|^2` lane by lane.
+    fn norm_sqr(&self) -> Self::Real;
+    /// `r * a` lane by lane.
+    fn scale_by(&self, r: &Self::Real) -> Self;
     /// The number in lane `l < LANES`.
     fn get(&self, l: usize) -> Complex64;
     /// Replaces the number in lane `l < LANES`.
@@ -144,10 +168,27 @@ impl Scalar for Complex64 {
     fn scale(a: &Self, r: f64) -> Self {
         Complex64::new(a.re * r, a.im * r)
     }
+    #[inline(always)]
+    fn mul_real(a: &Self, r: &Self) -> Self {
+        Complex64::new(a.re * r.re, a.im * r.re)
+    }
 }
 
 impl Lane for Complex64 {
     const LANES: usize = 1;
+    type Real = [f64; 1];
+    #[inline(always)]
+    fn real(r: f64) -> [f64; 1] {
+        [r]
+    }
+    #[inline(always)]
+    fn norm_sqr(&self) -> [f64; 1] {
+        [self.re * self.re + self.im * self.im]
+    }
+    #[inline(always)]
+    fn scale_by(&self, r: &[f64; 1]) -> Self {
+        Complex64::new(self.re * r[0], self.im * r[0])
+    }
     #[inline(always)]
     fn get(&self, _: usize) -> Complex64 {
         *self

@@ -7,7 +7,9 @@
 pub mod align;
 pub mod calibrate;
 pub mod degeneracy;
+mod generated;
 pub mod loss;
+pub mod minimal;
 pub mod multilateration;
 pub mod network;
 mod observations;

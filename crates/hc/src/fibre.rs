@@ -1,0 +1,144 @@
+//! Parameter families: from all solutions for one generic parameter point to all solutions for any other.
+
+use crate::distinct::coincidences;
+use crate::homotopy::Segment;
+use crate::tracker::{PathEnd, PathSet, Tracker, TrackerOptions, track};
+use num_complex::Complex64;
+use poly::{Evaluate, Lane};
+
+/// The solutions of a family for one parameter point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fibre {
+    /// The parameter point.
+    pub parameters: Vec<Complex64>,
+    /// Number of unknowns `n`.
+    pub dimension: usize,
+    /// The solutions, `n` coordinates each, one after the other.
+    pub solutions: Vec<Complex64>,
+}
+
+impl Fibre {
+    /// Number of solutions.
+    pub fn len(&self) -> usize {
+        self.solutions.len().checked_div(self.dimension).unwrap_or(0)
+    }
+
+    /// Whether there are no solutions.
+    pub fn is_empty(&self) -> bool {
+        self.solutions.is_empty()
+    }
+
+    /// The `k`-th solution.
+    pub fn solution(&self, k: usize) -> &[Complex64] {
+        &self.solutions[k * self.dimension..(k + 1) * self.dimension]
+    }
+}
+
+/// Settings for tracking whole fibres.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct FibreOptions {
+    /// Settings of the tracker in the first pass.
+    pub tracker: TrackerOptions,
+    /// How often jumped and failed paths are tracked again, each time with steps half as long. Default 4.
+    pub retries: u32,
+    /// Relative distance below which two endpoints are one point. Default 1e-8.
+    pub coincidence: f64,
+}
+
+impl Default for FibreOptions {
+    fn default() -> Self {
+        FibreOptions { tracker: TrackerOptions::default(), retries: 4, coincidence: 1e-8 }
+    }
+}
+
+/// How the paths of a fibre ended; `tracked` is the sum of the next three.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PathCounts {
+    /// Paths tracked, one a start solution.
+    pub tracked: usize,
+    /// Paths that ended at a regular solution of their own.
+    pub finite: usize,
+    /// Paths that are shown to diverge.
+    pub at_infinity: usize,
+    /// Paths that ended otherwise, those included that still share their end with another.
+    pub failed: usize,
+    /// How many tracks were run a second time or more often.
+    pub retracked: usize,
+}
+
+/// Tracks all solutions of a fibre to the parameters `target`, on the threads of the current rayon pool.
+///
+/// Regular endpoints that coincide prove that a path has jumped: all paths that share an end, and all that failed, are tracked
+/// again with stricter steps. What is still not whole afterwards is counted as failed.
+///
+/// # Panics
+/// If the system is not square or `target` or the fibre do not fit it.
+pub fn track_fibre<E: Evaluate>(
+    system: &E,
+    fibre: &Fibre,
+    target: &[Complex64],
+    options: &FibreOptions,
+) -> (PathSet, PathCounts) {
+    let path = Segment::new(&fibre.parameters, target);
+    let mut paths = PathSet::new(fibre.dimension);
+    let counts = complete(fibre.len(), options, &mut paths, |which, tracker, out| {
+        *out = track(system, &path, &fibre.solutions, which, tracker);
+    });
+    (paths, counts)
+}
+
+/// The same on one thread with a tracker that is kept from call to call; `paths` and `spare` are overwritten.
+pub fn track_fibre_with<E: Evaluate, S: Lane>(
+    tracker: &mut Tracker<'_, E, S>,
+    fibre: &Fibre,
+    path: &Segment,
+    options: &FibreOptions,
+    paths: &mut PathSet,
+) -> PathCounts {
+    complete(fibre.len(), options, paths, |which, settings, out| {
+        tracker.set_options(settings);
+        out.clear(fibre.dimension);
+        tracker.track(path, &fibre.solutions, which.iter().copied(), out);
+        out.sort();
+    })
+}
+
+/// Tracks `len` paths with `run`, then again those that jumped or failed.
+fn complete(
+    len: usize,
+    options: &FibreOptions,
+    paths: &mut PathSet,
+    mut run: impl FnMut(&[usize], &TrackerOptions, &mut PathSet),
+) -> PathCounts {
+    let mut which: Vec<usize> = (0..len).collect();
+    run(&which, &options.tracker, paths);
+    let mut retracked = 0;
+    for level in 1..=options.retries {
+        which = doubtful(paths, options.coincidence);
+        if which.is_empty() {
+            break;
+        }
+        retracked += which.len();
+        let mut again = PathSet::new(paths.dimension());
+        run(&which, &options.tracker.stricter(level), &mut again);
+        for (result, point) in again.iter() {
+            let k = result.path;
+            if result.end.is_good() || !paths.results()[k].end.is_good() {
+                paths.replace(k, *result, point);
+            }
+        }
+    }
+    let lost = doubtful(paths, options.coincidence).len();
+    let at_infinity = paths.count(PathEnd::AtInfinity);
+    PathCounts { tracked: len, finite: len - at_infinity - lost, at_infinity, failed: lost, retracked }
+}
+
+/// Paths that failed or share a regular end with another.
+fn doubtful(paths: &PathSet, tolerance: f64) -> Vec<usize> {
+    let regular = paths.iter().filter(|(r, _)| r.end == PathEnd::Success).map(|(r, x)| (r.path, x));
+    let mut which: Vec<usize> = coincidences(regular, tolerance).concat();
+    which.extend(paths.results().iter().filter(|r| !r.end.is_good()).map(|r| r.path));
+    which.sort_unstable();
+    which
+}

@@ -1,0 +1,51 @@
+//! Homotopies `H(x, t) = F(x; p(t))`: a system and a path in its parameters, from `t = 1` (start) to `t = 0` (target).
+//!
+//! Every homotopy of this crate has that form: the straight line, the parameter, coefficient and toric
+//! homotopies differ only in their [`ParameterPath`].
+
+use num_complex::Complex64;
+use poly::Lane;
+
+/// A path `p(t)`, `t` from 1 to 0, in the parameters of a system.
+pub trait ParameterPath: Send + Sync {
+    /// Number of parameters `m`.
+    fn parameters(&self) -> usize;
+
+    /// Taylor coefficients of orders 0 to 3 at `t` (one `t` a lane): `p[k * m + i]` is coefficient `k` of parameter `i`.
+    fn coefficients<S: Lane>(&self, t: &S::Real, p: &mut [S]);
+}
+
+/// The straight segment from `start` (at `t = 1`) to `target` (at `t = 0`).
+#[derive(Clone, Debug)]
+pub struct Segment {
+    target: Vec<Complex64>,
+    direction: Vec<Complex64>,
+}
+
+impl Segment {
+    /// Joins two parameter points of equal length.
+    ///
+    /// # Panics
+    /// If the lengths differ.
+    pub fn new(start: &[Complex64], target: &[Complex64]) -> Self {
+        assert_eq!(start.len(), target.len(), "both ends of a segment have the same number of parameters");
+        let direction = start.iter().zip(target).map(|(s, t)| s - t).collect();
+        Segment { target: target.to_vec(), direction }
+    }
+}
+
+impl ParameterPath for Segment {
+    fn parameters(&self) -> usize {
+        self.target.len()
+    }
+
+    fn coefficients<S: Lane>(&self, t: &S::Real, p: &mut [S]) {
+        let m = self.target.len();
+        for i in 0..m {
+            let direction = S::from_c64(self.direction[i]);
+            p[i] = S::add(&S::from_c64(self.target[i]), &direction.scale_by(t));
+            p[m + i] = direction;
+        }
+        p[2 * m..4 * m].fill(S::zero());
+    }
+}

@@ -1,0 +1,141 @@
+//! The file form of a fibre: what `hc monodromy` and `cargo xtask codegen` write and read.
+
+use crate::fibre::Fibre;
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+
+/// A stored generic fibre. Numbers are written so that they are read back bit for bit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StartFile {
+    /// The parameter point, `[re, im]` each.
+    pub parameters: Vec<[f64; 2]>,
+    /// The solutions, one list of `[re, im]` each, in the order of the family's unknowns.
+    pub solutions: Vec<Vec<[f64; 2]>>,
+    /// Deviation found by the [trace test](crate::trace), if it was run: rounding error shows that the fibre is whole.
+    pub trace_test: Option<f64>,
+    /// Why the search ended: `roots reached`, `trace` or `no progress`.
+    pub stopped: String,
+}
+
+/// Why a start file cannot be used.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum StartFileError {
+    /// Not the expected JSON.
+    #[error(
+        "not a start file: {0}; expected {{\"parameters\": [[re, im], ...], \"solutions\": [[[re, im], ...], ...]}}"
+    )]
+    Format(String),
+    /// A number is infinite or not a number.
+    #[error("{place} holds a number that is not finite; write the start file anew")]
+    NotFinite {
+        /// Where.
+        place: String,
+    },
+    /// The solutions do not all have the same number of coordinates.
+    #[error("solution {index} (counted from 1) has {found} coordinates, the first has {expected}")]
+    Ragged {
+        /// The solution, counted from 1.
+        index: usize,
+        /// Coordinates of the first solution.
+        expected: usize,
+        /// Coordinates of this one.
+        found: usize,
+    },
+}
+
+impl StartFile {
+    /// The file form of a fibre.
+    pub fn new(fibre: &Fibre, trace_test: Option<f64>, stopped: &str) -> Self {
+        let pair = |z: &Complex64| [z.re, z.im];
+        StartFile {
+            parameters: fibre.parameters.iter().map(pair).collect(),
+            solutions: (0..fibre.len()).map(|k| fibre.solution(k).iter().map(pair).collect()).collect(),
+            trace_test,
+            stopped: stopped.to_owned(),
+        }
+    }
+
+    /// Reads the JSON form.
+    ///
+    /// # Errors
+    /// If the text is not JSON of this form.
+    pub fn from_json(text: &str) -> Result<Self, StartFileError> {
+        serde_json::from_str(text).map_err(|e| StartFileError::Format(e.to_string()))
+    }
+
+    /// The JSON form, one solution a line, ended by a newline.
+    pub fn to_json(&self) -> String {
+        let list = |pairs: &[[f64; 2]]| {
+            let items: Vec<String> = pairs.iter().map(|[re, im]| format!("[{re:?}, {im:?}]")).collect();
+            format!("[{}]", items.join(", "))
+        };
+        let solutions: Vec<String> = self.solutions.iter().map(|s| format!("    {}", list(s))).collect();
+        let trace = self.trace_test.filter(|t| t.is_finite()).map_or("null".to_owned(), |t| format!("{t:?}"));
+        format!(
+            "{{\n  \"parameters\": {},\n  \"solutions\": [\n{}\n  ],\n  \"trace_test\": {trace},\n  \"stopped\": {:?}\n}}\n",
+            list(&self.parameters),
+            solutions.join(",\n"),
+            self.stopped
+        )
+    }
+
+    /// The fibre itself.
+    ///
+    /// # Errors
+    /// If a number is not finite or solutions differ in length.
+    pub fn fibre(&self) -> Result<Fibre, StartFileError> {
+        let number = |[re, im]: [f64; 2], place: &dyn Fn() -> String| {
+            let finite = re.is_finite() && im.is_finite();
+            if finite { Ok(Complex64::new(re, im)) } else { Err(StartFileError::NotFinite { place: place() }) }
+        };
+        let parameters = (self.parameters.iter().enumerate())
+            .map(|(i, &p)| number(p, &|| format!("parameter {}", i + 1)))
+            .collect::<Result<_, _>>()?;
+        let dimension = self.solutions.first().map_or(0, Vec::len);
+        let mut solutions = Vec::new();
+        for (k, solution) in self.solutions.iter().enumerate() {
+            if solution.len() != dimension {
+                return Err(StartFileError::Ragged { index: k + 1, expected: dimension, found: solution.len() });
+            }
+            for (j, &z) in solution.iter().enumerate() {
+                solutions.push(number(z, &|| format!("solution {}, coordinate {}", k + 1, j + 1))?);
+            }
+        }
+        Ok(Fibre { parameters, dimension, solutions })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{StartFile, StartFileError};
+    use crate::fibre::Fibre;
+    use crate::random::Random;
+    use proptest::prelude::proptest;
+
+    #[test]
+    fn is_read_back_bit_for_bit() {
+        let mut random = Random::new(3, 0);
+        let fibre = Fibre { parameters: random.normals(5), dimension: 2, solutions: random.normals(14) };
+        let file = StartFile::new(&fibre, Some(1.5e-13), "roots reached");
+        let again = StartFile::from_json(&file.to_json()).unwrap();
+        assert_eq!(again, file);
+        assert_eq!(again.fibre().unwrap(), fibre);
+    }
+
+    #[test]
+    fn says_which_solution_is_ragged() {
+        let text = r#"{"parameters": [], "solutions": [[[1, 0], [2, 0]], [[1, 0]]], "stopped": "trace"}"#;
+        let error = StartFile::from_json(text).unwrap().fibre().unwrap_err();
+        assert_eq!(error, StartFileError::Ragged { index: 2, expected: 2, found: 1 });
+    }
+
+    proptest! {
+        #[test]
+        fn no_text_panics(text in ".{0,200}") {
+            if let Ok(file) = StartFile::from_json(&text) {
+                let _ = file.fibre();
+            }
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! The trace test: numerical proof that a fibre of a parameter family is whole.
+//!
+//! On a generic line `p + lambda v` through the parameter point, the solutions `(x, lambda)` form a curve. The fibre is its intersection with
+//! `lambda = 0`; intersected with `(a x - c) lambda = tau` instead, the curve has the points of the fibre and further ones
+//! near `a x = c`. Over parallel such hypersurfaces (in `tau`) the sum of all points moves linearly if, and for a generic
+//! choice only if, no point is missing (Leykin, Rodriguez, Sottile 2018, arXiv:1608.00540, for the bilinear case).
+//! The further points are found by monodromy in the enlarged family, starting from the fibre.
+
+use crate::fibre::{Fibre, track_fibre};
+use crate::monodromy::{MonodromyOptions, monodromy};
+use crate::random::Random;
+use crate::tracker::PathEnd;
+use num_complex::Complex64;
+use poly::{CompileError, System};
+
+/// What the trace test found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TraceTest {
+    /// Deviation of the sum of the points from linear motion, relative to the size of that motion; rounding error if the
+    /// fibre is whole, of the order of one if a point is missing.
+    pub deviation: f64,
+    /// Points of the fibre that were counted where the further points had been added.
+    pub fibre: usize,
+    /// Further points.
+    pub further: usize,
+    /// Whether every path of the test ended well, without which the deviation means nothing.
+    pub complete: bool,
+}
+
+impl TraceTest {
+    /// Whether the test shows that a fibre of `len` points is whole.
+    pub fn passed(&self, len: usize) -> bool {
+        self.complete && self.fibre == len && self.deviation < 1e-8
+    }
+}
+
+/// Runs the trace test on a fibre of `system`.
+///
+/// The test takes several times as long as finding the fibre. `patience` of the options counts for the search of the further points.
+///
+/// # Errors
+/// If the formulas of the enlarged family cannot be compiled.
+///
+/// # Panics
+/// If the fibre does not fit the system.
+pub fn trace_test(system: &System, fibre: &Fibre, options: &MonodromyOptions) -> Result<TraceTest, CompileError> {
+    let (n, m) = (system.variables().len(), system.parameters().len());
+    let failed = TraceTest { deviation: f64::INFINITY, fibre: 0, further: 0, complete: false };
+    let Some(enlarged) = enlarge(system) else { return Ok(failed) };
+    let enlarged = enlarged.compile()?;
+
+    // Parameters of the enlarged family: p, v, a, c, tau.
+    let mut random = Random::new(options.seed, 0x7ACE);
+    let mut parameters = fibre.parameters.clone();
+    parameters.extend(random.normals(m + n + 1));
+    let tau = random.unit();
+    let at = |factor: f64| {
+        let mut p = parameters.clone();
+        p.push(tau * factor);
+        p
+    };
+    let mut solutions = Vec::with_capacity(fibre.len() * (n + 1));
+    for k in 0..fibre.len() {
+        solutions.extend_from_slice(fibre.solution(k));
+        solutions.push(Complex64::new(0.0, 0.0));
+    }
+    let on_fibre = Fibre { parameters: at(0.0), dimension: n + 1, solutions };
+    let Some(start) = moved(&enlarged, &on_fibre, &at(1.0), options) else { return Ok(failed) };
+    let mut search = options.clone();
+    search.roots = None;
+    let filled = monodromy(&enlarged, &start, |_, _| true, &search).fibre;
+
+    let (Some(second), Some(third)) =
+        (moved(&enlarged, &filled, &at(2.0), options), moved(&enlarged, &filled, &at(3.0), options))
+    else {
+        return Ok(failed);
+    };
+    let sums = [&filled, &second, &third].map(sum);
+    let norm = |f: &dyn Fn(usize) -> Complex64| (0..=n).map(|j| f(j).norm()).fold(0.0, f64::max);
+    let bend = norm(&|j| sums[0][j] - 2.0 * sums[1][j] + sums[2][j]);
+    let motion = norm(&|j| sums[2][j] - sums[0][j]).max(norm(&|j| sums[0][j]));
+
+    // Back on lambda = 0: every point of the curve there must be one of the fibre.
+    let (ends, counts) = track_fibre(&enlarged, &filled, &at(0.0), &options.fibre);
+    let back = ends.iter().filter(|(r, x)| r.end == PathEnd::Success && x[n].norm() < 1e-8).count();
+    Ok(TraceTest {
+        deviation: bend / motion,
+        fibre: back,
+        further: filled.len() - back,
+        complete: counts.failed == 0 && counts.finite == filled.len(),
+    })
+}
+
+/// `F(x; p + lambda v) = 0`, `(a x - c) lambda = tau`.
+fn enlarge(system: &System) -> Option<System> {
+    System::build(|s| {
+        // Names cannot clash: those of the system are not used.
+        let unknowns: Vec<_> = (0..system.variables().len()).map(|j| s.variable(&format!("x{j}"))).collect();
+        let lambda = s.variable("lambda");
+        let group = |name: &str, len: usize| (0..len).map(|k| s.parameter(&format!("{name}{k}"))).collect::<Vec<_>>();
+        let m = system.parameters().len();
+        let (p, v, a) = (group("p", m), group("v", m), group("a", unknowns.len()));
+        let (c, tau) = (s.parameter("c"), s.parameter("tau"));
+        let line: Vec<_> = p.iter().zip(&v).map(|(&p, &v)| p + lambda * v).collect();
+        let mut equations = system.instantiate(s, &unknowns, &line);
+        let plane = s.sum(a.iter().zip(&unknowns).map(|(&a, &x)| a * x)) - c;
+        equations.push(plane * lambda - tau);
+        equations
+    })
+    .ok()
+}
+
+/// The whole fibre at other parameters, or `None` if a path was lost.
+fn moved<E: poly::Evaluate>(
+    system: &E,
+    fibre: &Fibre,
+    target: &[Complex64],
+    options: &MonodromyOptions,
+) -> Option<Fibre> {
+    let (ends, counts) = track_fibre(system, fibre, target, &options.fibre);
+    (counts.finite == fibre.len()).then(|| Fibre {
+        parameters: target.to_vec(),
+        dimension: fibre.dimension,
+        solutions: ends.iter().flat_map(|(_, x)| x.iter().copied()).collect(),
+    })
+}
+
+fn sum(fibre: &Fibre) -> Vec<Complex64> {
+    let mut sum = vec![Complex64::new(0.0, 0.0); fibre.dimension];
+    for k in 0..fibre.len() {
+        sum.iter_mut().zip(fibre.solution(k)).for_each(|(s, x)| *s += x);
+    }
+    sum
+}

@@ -1,0 +1,384 @@
+//! The tracking loop: one path a lane, lanes refilled as paths end.
+//!
+//! All lanes share every evaluation, factorisation and vector operation; what is decided is decided lane by
+//! lane in [`Progress`]. A lane that has finished its part of a step is evaluated again at the same point until the others
+//! have finished theirs, so its numbers do not depend on its neighbours. Nothing is allocated in the loop.
+
+use super::kernels::{Correct, Distance, Predict, Radius, Weigh};
+use super::options::TrackerOptions;
+use super::progress::{Bounds, MAX_ITERATIONS, Progress, Stage};
+use super::result::{PathEnd, PathSet};
+use crate::homotopy::ParameterPath;
+use crate::linalg::Lu;
+use num_complex::Complex64;
+use poly::simd::Isa;
+use poly::{ComplexDd, Evaluate, Lane};
+
+/// Tracks paths of one system, `S::LANES` at a time; keeps its memory from call to call.
+pub struct Tracker<'a, E: Evaluate, S: Lane> {
+    system: &'a E,
+    bounds: Bounds,
+    isa: Isa,
+    n: usize,
+    lanes: Vec<Progress>,
+    memory: E::Memory<S>,
+    /// Taylor coefficients of the paths at their current points, orders 0 to 3.
+    taylor: Vec<S>,
+    /// The same at the point just reached.
+    taylor_next: Vec<S>,
+    parameters: Vec<S>,
+    predicted: Vec<S>,
+    /// Where the Jacobian is evaluated.
+    point: Vec<S>,
+    corrected: Vec<S>,
+    values: Vec<S>,
+    jacobian: Vec<S>,
+    lu: Lu<S>,
+    /// The correction that residuals of double precision give where better ones are used.
+    rough: Vec<S>,
+    weights_sqr: Vec<S::Real>,
+    inverse_weights_sqr: Vec<S::Real>,
+    precise: Precise<E>,
+    valuations: Vec<f64>,
+}
+
+/// Residuals in double-double for single paths.
+struct Precise<E: Evaluate> {
+    memory: E::Memory<ComplexDd>,
+    x: Vec<ComplexDd>,
+    p: Vec<ComplexDd>,
+    values: Vec<ComplexDd>,
+}
+
+impl<E: Evaluate> Precise<E> {
+    fn new(system: &E) -> Self {
+        let zero = ComplexDd::from(Complex64::new(0.0, 0.0));
+        Precise {
+            memory: system.memory(Isa::Portable),
+            x: vec![zero; system.variables()],
+            p: vec![zero; system.parameters()],
+            values: vec![zero; system.equations()],
+        }
+    }
+
+    /// Overwrites lane `l` of `values` with residuals at the point `x` for the parameters `p`, both exact doubles.
+    fn overwrite<S: Lane>(&mut self, system: &E, l: usize, x: &[S], p: &[S], values: &mut [S]) {
+        self.x.iter_mut().zip(x).for_each(|(d, s)| *d = s.get(l).into());
+        self.p.iter_mut().zip(p).for_each(|(d, s)| *d = s.get(l).into());
+        system.values(&mut self.memory, &self.x, &self.p, &mut self.values);
+        values.iter_mut().zip(&self.values).for_each(|(d, s)| d.set(l, Complex64::from(*s)));
+    }
+}
+
+impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
+    /// A tracker for a square system.
+    ///
+    /// # Panics
+    /// If the system does not have as many equations as unknowns.
+    pub fn new(system: &'a E, options: &TrackerOptions) -> Self {
+        let (n, m) = (system.variables(), system.parameters());
+        assert_eq!(system.equations(), n, "paths are tracked for square systems");
+        let isa = options.isa.unwrap_or_else(Isa::detect);
+        let zeros = |len: usize| vec![S::zero(); len];
+        Tracker {
+            system,
+            bounds: Bounds::new(options),
+            isa,
+            n,
+            lanes: vec![Progress::idle(); S::LANES],
+            memory: system.memory(isa),
+            taylor: zeros(4 * n),
+            taylor_next: zeros(4 * n),
+            parameters: zeros(4 * m),
+            predicted: zeros(n),
+            point: zeros(n),
+            corrected: zeros(n),
+            values: zeros(n),
+            jacobian: zeros(n * n),
+            lu: Lu::new(n, isa),
+            rough: zeros(n),
+            weights_sqr: vec![S::real(1.0); n],
+            inverse_weights_sqr: vec![S::real(1.0); n],
+            precise: Precise::new(system),
+            valuations: vec![0.0; n],
+        }
+    }
+
+    /// Replaces the settings for the paths to come.
+    pub fn set_options(&mut self, options: &TrackerOptions) {
+        self.bounds = Bounds::new(options);
+    }
+
+    /// Tracks the paths with the given indices into `starts` (`n` coordinates a path) along `path` from `t = 1` to 0 and
+    /// appends their ends to `out`, in the order in which they end.
+    ///
+    /// # Panics
+    /// If an index lies outside `starts` or `path` has another number of parameters than the system.
+    pub fn track<P: ParameterPath>(
+        &mut self,
+        path: &P,
+        starts: &[Complex64],
+        which: impl IntoIterator<Item = usize>,
+        out: &mut PathSet,
+    ) {
+        assert_eq!(path.parameters(), self.system.parameters(), "parameters of path and system");
+        let mut which = which.into_iter();
+        self.lanes.fill(Progress::idle());
+        // Idle lanes compute too; harmless numbers keep them from slow exceptional arithmetic.
+        self.taylor.fill(S::zero());
+        loop {
+            for l in 0..S::LANES {
+                if !self.lanes[l].is_live()
+                    && let Some(index) = which.next()
+                {
+                    self.lanes[l] = Progress::start(index);
+                    let start = &starts[index * self.n..(index + 1) * self.n];
+                    self.taylor.iter_mut().zip(start).for_each(|(x, z)| x.set(l, *z));
+                }
+            }
+            if !self.lanes.iter().any(Progress::is_live) {
+                return;
+            }
+            self.step(path, out);
+        }
+    }
+
+    /// One step, accepted or not, of every live path.
+    fn step<P: ParameterPath>(&mut self, path: &P, out: &mut PathSet) {
+        self.predict();
+        let mut t = S::real(1.0);
+        t.as_mut().iter_mut().zip(&self.lanes).for_each(|(t, lane)| *t = lane.t_next);
+        path.coefficients::<S>(&t, &mut self.parameters);
+        self.correct();
+        self.close();
+
+        let mut accepted = 0u8;
+        for l in 0..S::LANES {
+            accepted |= u8::from(self.lanes[l].stage == Stage::Accepted) << l;
+            if let Some(end) = self.lanes[l].retreat(&self.bounds) {
+                self.finish(l, end, out);
+            }
+        }
+        if accepted != 0 {
+            self.move_on(accepted);
+            for l in (0..S::LANES).filter(|l| accepted >> l & 1 == 1) {
+                self.watch_valuations(l);
+                if let Some(end) = self.lanes[l].finished(&self.bounds) {
+                    self.finish(l, end, out);
+                }
+            }
+        }
+        for l in 0..S::LANES {
+            // Paths that only ever reject must come to an end too.
+            if matches!(self.lanes[l].stage, Stage::Rejected { .. })
+                && let Some(end) = self.lanes[l].finished(&self.bounds)
+            {
+                self.finish(l, end, out);
+            }
+        }
+    }
+
+    fn predict(&mut self) {
+        let (mut step, mut radius_sqr) = (S::real(0.0), S::real(0.0));
+        let mut fresh = 0u8;
+        for (l, lane) in self.lanes.iter_mut().enumerate() {
+            if lane.is_live() {
+                lane.choose_step(&self.bounds);
+                step.as_mut()[l] = lane.signed_step();
+                radius_sqr.as_mut()[l] = lane.radius * lane.radius;
+                fresh |= u8::from(lane.fresh) << l;
+            }
+        }
+        self.isa.run(Predict { taylor: &self.taylor, step, radius_sqr, out: &mut self.predicted });
+        if fresh != 0 {
+            for j in 0..self.n {
+                self.predicted[j] = S::select(&self.predicted[j], &self.taylor[j], fresh);
+            }
+        }
+        self.isa.run(Weigh {
+            x: &self.predicted,
+            fresh,
+            weights_sqr: &mut self.weights_sqr,
+            inverse: &mut self.inverse_weights_sqr,
+        });
+    }
+
+    /// Newton's method from the predicted points until every lane has converged or is rejected.
+    fn correct(&mut self) {
+        self.point.copy_from_slice(&self.predicted);
+        self.lanes.iter_mut().for_each(|lane| lane.begin_correction(&self.bounds));
+        for i in 0..MAX_ITERATIONS {
+            let m = self.system.parameters();
+            let p = &self.parameters[..m];
+            self.system.jacobian(&mut self.memory, &self.point, p, &mut self.values, &mut self.jacobian);
+            for l in 0..S::LANES {
+                if self.lanes[l].extended && self.lanes[l].stage == Stage::Iterating {
+                    self.precise.overwrite(self.system, l, &self.point, p, &mut self.values);
+                }
+            }
+            self.lu.factor(&self.jacobian, &self.weights_sqr);
+            self.lu.solve(&mut self.values);
+            // The lanes that have stopped keep what they have in `corrected`.
+            let mut running = 0u8;
+            for (l, lane) in self.lanes.iter().enumerate() {
+                running |= u8::from(lane.stage == Stage::Iterating) << l;
+            }
+            let norm = self.isa.run(Correct {
+                x: &self.point,
+                dx: &self.values,
+                inverse_weights_sqr: &self.inverse_weights_sqr,
+                running,
+                out: &mut self.corrected,
+            });
+            let mut again = 0u8;
+            for (l, lane) in self.lanes.iter_mut().enumerate() {
+                lane.judge(i, norm.as_ref()[l].sqrt(), &self.bounds);
+                again |= u8::from(lane.stage == Stage::Iterating) << l;
+            }
+            if again == 0 {
+                return;
+            }
+            for j in 0..self.n {
+                self.point[j] = S::select(&self.point[j], &self.corrected[j], again);
+            }
+        }
+    }
+
+    /// One more correction with the last Jacobian: it makes the points accurate and measures how accurate.
+    fn close(&mut self) {
+        if !self.lanes.iter().any(|lane| lane.stage == Stage::Converged) {
+            return;
+        }
+        let p = &self.parameters[..self.system.parameters()];
+        self.system.values(&mut self.memory, &self.corrected, p, &mut self.values);
+        let converged = |lane: &Progress| lane.stage == Stage::Converged;
+        let any_extended = self.lanes.iter().any(|lane| lane.extended && converged(lane));
+        let mut rough = S::real(0.0);
+        if any_extended {
+            self.rough.copy_from_slice(&self.values);
+            self.lu.solve(&mut self.rough);
+            for l in 0..S::LANES {
+                if self.lanes[l].extended && converged(&self.lanes[l]) {
+                    self.precise.overwrite(self.system, l, &self.corrected, p, &mut self.values);
+                }
+            }
+        }
+        self.lu.solve(&mut self.values);
+        if any_extended {
+            rough = self.isa.run(Distance {
+                a: &self.rough,
+                b: &self.values,
+                inverse_weights_sqr: &self.inverse_weights_sqr,
+            });
+        }
+        self.point.copy_from_slice(&self.corrected);
+        let norm = self.isa.run(Correct {
+            x: &self.point,
+            dx: &self.values,
+            inverse_weights_sqr: &self.inverse_weights_sqr,
+            running: u8::MAX,
+            out: &mut self.corrected,
+        });
+        for (l, lane) in self.lanes.iter_mut().enumerate() {
+            let double = lane.extended.then(|| rough.as_ref()[l].sqrt());
+            lane.judge_closing(norm.as_ref()[l].sqrt(), double, &self.bounds);
+        }
+    }
+
+    /// Derivatives at the accepted points, and with them the radius of trust for the next step.
+    fn move_on(&mut self, accepted: u8) {
+        let (n, m) = (self.n, self.system.parameters());
+        let distance = self.isa.run(Distance {
+            a: &self.predicted,
+            b: &self.corrected,
+            inverse_weights_sqr: &self.inverse_weights_sqr,
+        });
+        self.taylor_next[..n].copy_from_slice(&self.corrected);
+        for order in 1..=3 {
+            let (known, next) = self.taylor_next.split_at_mut(order * n);
+            let p = &self.parameters[..(order + 1) * m];
+            self.system.taylor(&mut self.memory, order, known, p, &mut next[..n]);
+            self.lu.solve(&mut next[..n]);
+            next[..n].iter_mut().for_each(|x| *x = S::neg(x));
+        }
+        for (x, next) in self.taylor.iter_mut().zip(&self.taylor_next) {
+            *x = S::select(x, next, accepted);
+        }
+        let radius = self.isa.run(Radius { n, taylor: &self.taylor, inverse_weights_sqr: &self.inverse_weights_sqr });
+        for (l, lane) in self.lanes.iter_mut().enumerate() {
+            if accepted >> l & 1 == 1 {
+                lane.advance(distance.as_ref()[l].sqrt(), radius.as_ref()[l].sqrt());
+            }
+        }
+    }
+
+    /// Near the target: are some valuations `v_j = d log|x_j| / d log t` negative and settled?
+    fn watch_valuations(&mut self, l: usize) {
+        let t = self.lanes[l].t;
+        if t == 0.0 || t > self.bounds.options.endgame_start {
+            return;
+        }
+        let n = self.n;
+        let mut settled = false;
+        for j in 0..n {
+            let c = |k: usize| self.taylor[k * n + j].get(l);
+            let (v, drift) = valuation(t, [c(0), c(1), c(2), c(3)]);
+            self.valuations[j] = v;
+            settled |= v + drift < -0.05 && drift < 0.01;
+        }
+        self.lanes[l].watch(settled);
+    }
+
+    fn finish(&mut self, l: usize, end: PathEnd, out: &mut PathSet) {
+        let result = self.lanes[l].result(end);
+        out.push(result, self.taylor[..self.n].iter().map(|x| x.get(l)));
+        self.lanes[l] = Progress::idle();
+    }
+}
+
+/// Valuation of a coordinate `x ~ c t^v` from its Taylor coefficients at `t`, and how far the estimate is from being constant.
+///
+/// `v = t Re(x' / x)`; its drift is the larger of its own logarithmic derivative and of its distance to the valuation of `t x'`.
+fn valuation(t: f64, [x, x1, x2, x3]: [Complex64; 4]) -> (f64, f64) {
+    let log_derivative = |x: Complex64, d: Complex64, dd: Complex64| {
+        let size = x.norm_sqr();
+        let l = (x.conj() * d).re / size;
+        let slope = ((x.conj() * dd).re + d.norm_sqr()) / size - 2.0 * l * l;
+        (t * l, t * (t * slope + l))
+    };
+    let (v, dv) = log_derivative(x, x1, 2.0 * x2);
+    let (w, dw) = log_derivative(x1, 2.0 * x2, 6.0 * x3);
+    let w = w + 1.0;
+    let drift = (1.0 - w / v).abs().max((dv / v).abs()).max((dw / w).abs());
+    (v, if drift.is_nan() { f64::INFINITY } else { drift })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::valuation;
+    use num_complex::Complex64;
+
+    #[test]
+    fn valuations_of_powers_are_exact() {
+        for v in [-2.0, -0.5, 1.0 / 3.0, 1.5] {
+            let t = 0.01f64;
+            let c = Complex64::new(0.3, -2.0);
+            let series = [
+                c * t.powf(v),
+                c * v * t.powf(v - 1.0),
+                c * v * (v - 1.0) / 2.0 * t.powf(v - 2.0),
+                c * v * (v - 1.0) * (v - 2.0) / 6.0 * t.powf(v - 3.0),
+            ];
+            let (found, drift) = valuation(t, series);
+            assert!((found - v).abs() < 1e-12 && drift < 1e-10, "{v}: {found} {drift}");
+        }
+    }
+
+    #[test]
+    fn a_regular_coordinate_has_not_settled_to_a_negative_valuation() {
+        // x = 1 - t
+        let one = Complex64::new(1.0, 0.0);
+        let (v, drift) = valuation(0.01, [one * 0.99, -one, 0.0 * one, 0.0 * one]);
+        assert!(!(v + drift < -0.05 && drift < 0.01));
+    }
+}

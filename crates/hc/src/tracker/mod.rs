@@ -1,0 +1,66 @@
+//! The path tracker.
+//!
+//! A step of a path: the *predictor* extrapolates from Taylor coefficients of order 3 by Pade approximants of type
+//! [2/1]; the *corrector* is Newton's method, given up as soon as its first corrections show that it
+//! would not converge quadratically (estimates of the Lipschitz constant `omega` of Newton's method and of the limiting accuracy `mu`; Timme 2020,
+//! arXiv:1902.02968; Deuflhard 2004). The next step is bounded by the distance to the nearest pole of the approximants and
+//! by the length for which Newton's method is predicted to converge at once. When `omega mu` says that double precision
+//! ends, residuals are computed in double-double.
+//!
+//! Paths travel in lanes, eight at once or alone ([`Tracker`] is generic over [`poly::Lane`]); a path takes the same steps to the
+//! same bits in either. [`track`] is the front door: it spreads paths over threads and returns them in order.
+
+mod batch;
+mod kernels;
+mod options;
+mod progress;
+mod result;
+
+pub use batch::Tracker;
+pub use options::TrackerOptions;
+pub use result::{PathEnd, PathResult, PathSet};
+
+use crate::homotopy::ParameterPath;
+use num_complex::Complex64;
+use poly::{Evaluate, Lanes8};
+use rayon::prelude::{IntoParallelIterator, ParallelIterator};
+
+/// Paths that one thread takes at a time: enough to keep eight lanes full most of the time.
+const CHUNK: usize = 64;
+
+/// Tracks the paths with the given indices into `starts` (`n` coordinates a start solution) from `t = 1` to `t = 0`, in lanes of eight
+/// and on the threads of the current rayon pool.
+///
+/// The results stand in the order of `which` if that is ascending; they are the same, bit for bit, for any number of threads.
+///
+/// # Panics
+/// If the system is not square, an index lies outside `starts`, or the numbers of parameters differ.
+pub fn track<E: Evaluate, P: ParameterPath>(
+    system: &E,
+    path: &P,
+    starts: &[Complex64],
+    which: &[usize],
+    options: &TrackerOptions,
+) -> PathSet {
+    let n = system.variables();
+    let threads = rayon::current_num_threads();
+    let size = which.len().div_ceil(threads.max(1)).clamp(8, CHUNK);
+    let parts: Vec<PathSet> = (0..which.len().div_ceil(size))
+        .into_par_iter()
+        .map_init(
+            || Tracker::<E, Lanes8>::new(system, options),
+            |tracker, part| {
+                let mut out = PathSet::new(n);
+                let end = which.len().min((part + 1) * size);
+                tracker.track(path, starts, which[part * size..end].iter().copied(), &mut out);
+                out
+            },
+        )
+        .collect();
+    let mut all = PathSet::new(n);
+    for part in &parts {
+        part.iter().for_each(|(result, point)| all.push(*result, point.iter().copied()));
+    }
+    all.sort();
+    all
+}

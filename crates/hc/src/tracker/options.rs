@@ -1,0 +1,72 @@
+//! Settings of the tracker, with presets.
+
+use poly::simd::Isa;
+
+/// Settings of the path tracker. Steps are bounded twice: by the radius of trust of the predictor (`beta_tau`) and by the
+/// bound under which Newton's method converges at once (`beta_omega`), see [`crate::tracker`].
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct TrackerOptions {
+    /// Largest contraction `|dx_1| / |dx_0|` of Newton's method that is accepted (dimensionless). Default 1/8 (Timme 2020).
+    pub contraction: f64,
+    /// Safety factor of the Newton bound: the step is divided by it. Default 3; fast 2; conservative 4.
+    pub beta_omega: f64,
+    /// Share of the radius of trust that a step may cover. Default 0.4; fast 0.75; conservative 0.25.
+    pub beta_tau: f64,
+    /// The same for the step that reaches the target. Default 0.3; fast 0.4; conservative 0.1875.
+    pub beta_tau_last: f64,
+    /// Newton's method stops when `omega |dx|` falls below this (dimensionless); one correction with the last Jacobian follows, which
+    /// leaves a relative error of about its third power. Default 1e-4.
+    pub corrector_tolerance: f64,
+    /// Steps, accepted and rejected, before a path is given up. Default 10,000.
+    pub max_steps: usize,
+    /// A path whose `t` has fallen below this without reaching the target ends as singular or at infinity. Default 1e-14.
+    pub min_t: f64,
+    /// From this `t` on valuations are watched for divergence. Default 0.1.
+    pub endgame_start: f64,
+    /// Whether residuals may be computed in double-double where double precision ends. Default true.
+    pub extended_precision: bool,
+    /// Instruction set of the lane kernels; `None` takes the widest of the machine. The result does not depend on it. Default `None`.
+    pub isa: Option<Isa>,
+}
+
+impl Default for TrackerOptions {
+    fn default() -> Self {
+        TrackerOptions {
+            contraction: 0.125,
+            beta_omega: 3.0,
+            beta_tau: 0.4,
+            beta_tau_last: 0.3,
+            corrector_tolerance: 1e-4,
+            max_steps: 10_000,
+            min_t: 1e-14,
+            endgame_start: 0.1,
+            extended_precision: true,
+            isa: None,
+        }
+    }
+}
+
+impl TrackerOptions {
+    /// Longer steps; more paths need a second pass (the factors of HomotopyContinuation.jl's fast preset).
+    pub fn fast() -> Self {
+        TrackerOptions { beta_omega: 2.0, beta_tau: 0.75, beta_tau_last: 0.4, ..Self::default() }
+    }
+
+    /// Shorter steps (the factors of HomotopyContinuation.jl's conservative preset).
+    pub fn conservative() -> Self {
+        TrackerOptions { beta_omega: 4.0, beta_tau: 0.25, beta_tau_last: 0.1875, ..Self::default() }
+    }
+
+    /// Shorter steps than these, for paths that are tracked again: `level` 1 is about half as long, each further level half of that.
+    pub fn stricter(&self, level: u32) -> Self {
+        let factor = 0.5f64.powi(level as i32);
+        TrackerOptions {
+            beta_omega: self.beta_omega / factor,
+            beta_tau: self.beta_tau.min(0.4) * factor,
+            beta_tau_last: self.beta_tau_last.min(0.3) * factor,
+            max_steps: self.max_steps.saturating_mul(1 << level.min(10)),
+            ..self.clone()
+        }
+    }
+}

@@ -1,0 +1,382 @@
+//! The state of one path and all decisions about it: convergence, precision, step size, divergence.
+//!
+//! Nothing here looks at other paths, so a path takes the same steps alone and among seven others.
+
+use super::options::TrackerOptions;
+use super::result::{PathEnd, PathResult};
+
+/// Newton iterations in one step, at most.
+pub(crate) const MAX_ITERATIONS: usize = 6;
+/// Share of a step that is left after a rejection without a usable contraction.
+const HARD_CUT: f64 = 0.25;
+/// Assumed `omega` at the start of a path; the first steps replace it.
+const INITIAL_OMEGA: f64 = 10.0;
+const MIN_OMEGA: f64 = 0.1;
+/// Corrections up to this multiple of the noise are taken for noise.
+const NOISE_MARGIN: f64 = 16.0;
+
+/// `h(a) = 2a (sqrt(4a^2 + 1) - 2a)` (Timme 2020, lemma 4.2).
+fn h(a: f64) -> f64 {
+    2.0 * a * ((4.0 * a * a + 1.0).sqrt() - 2.0 * a)
+}
+
+/// What the corrector is doing for this path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Stage {
+    /// No path in this lane.
+    Idle,
+    /// More iterations are needed.
+    Iterating,
+    /// Quadratic convergence was seen; the closing correction comes next.
+    Converged,
+    /// The step is too long; `theta` is the contraction seen, infinite where none was.
+    Rejected { theta: f64 },
+    /// The path has come to an end for this reason.
+    Failed(PathEnd),
+    /// The same step is to be tried again with residuals in double-double.
+    Retry,
+    /// The step was accepted.
+    Accepted,
+}
+
+/// Constants derived from the options once.
+#[derive(Clone, Debug)]
+pub(crate) struct Bounds {
+    pub(crate) options: TrackerOptions,
+    h: f64,
+    /// `sqrt(1 + 2 h) - 1`
+    reach: f64,
+    h_half: f64,
+    reach_half: f64,
+    /// `omega mu` above which double precision is left.
+    leave_double: f64,
+    /// `omega mu` (of double precision) below which it is taken up again.
+    enter_double: f64,
+    /// `omega mu` above which even extended precision ends.
+    limit: f64,
+}
+
+impl Bounds {
+    pub(crate) fn new(options: &TrackerOptions) -> Self {
+        let a = options.contraction;
+        let (h_a, h_half) = (h(a), h(0.5 * a));
+        Bounds {
+            h: h_a,
+            reach: (1.0 + 2.0 * h_a).sqrt() - 1.0,
+            h_half,
+            reach_half: (1.0 + 2.0 * h_half).sqrt() - 1.0,
+            leave_double: a.powi(5) * h_a,
+            enter_double: a.powi(7) * h_a,
+            limit: a.powi(3) * h_a,
+            options: options.clone(),
+        }
+    }
+}
+
+/// One path on its way.
+#[derive(Clone, Debug)]
+pub(crate) struct Progress {
+    pub(crate) path: usize,
+    pub(crate) stage: Stage,
+    /// Whether the start point has still to be checked and the first derivatives taken.
+    pub(crate) fresh: bool,
+    pub(crate) t: f64,
+    pub(crate) t_next: f64,
+    pub(crate) radius: f64,
+    pub(crate) extended: bool,
+    step: f64,
+    failed_before: bool,
+    /// `|predicted - corrected| / step^4` of the last accepted step.
+    local_error: f64,
+    omega: f64,
+    omega_before: f64,
+    mu: f64,
+    /// Size of corrections that are rounding error alone, as far as seen.
+    noise: f64,
+    accepted: usize,
+    rejected: usize,
+    pub(crate) jacobians: usize,
+    used_extended: bool,
+    /// `t` since when the valuations say that the path diverges.
+    diverges_since: Option<f64>,
+    first: f64,
+    last: f64,
+    omega_now: f64,
+    theta_bound: f64,
+}
+
+impl Progress {
+    pub(crate) fn idle() -> Self {
+        Progress {
+            path: usize::MAX,
+            stage: Stage::Idle,
+            fresh: false,
+            t: 1.0,
+            t_next: 1.0,
+            radius: 0.0,
+            extended: false,
+            step: 0.0,
+            failed_before: false,
+            local_error: f64::NAN,
+            omega: INITIAL_OMEGA,
+            omega_before: INITIAL_OMEGA,
+            mu: f64::EPSILON,
+            noise: f64::EPSILON,
+            accepted: 0,
+            rejected: 0,
+            jacobians: 0,
+            used_extended: false,
+            diverges_since: None,
+            first: 0.0,
+            last: 0.0,
+            omega_now: INITIAL_OMEGA,
+            theta_bound: 0.0,
+        }
+    }
+
+    pub(crate) fn start(path: usize) -> Self {
+        Progress { path, stage: Stage::Accepted, fresh: true, ..Self::idle() }
+    }
+
+    pub(crate) fn is_live(&self) -> bool {
+        self.stage != Stage::Idle
+    }
+
+    /// Signed step in `t` that the predictor has to make.
+    pub(crate) fn signed_step(&self) -> f64 {
+        self.t_next - self.t
+    }
+
+    /// Chooses the next step from the radius of trust and the Newton bound (reference: Timme 2020, section 5).
+    pub(crate) fn choose_step(&mut self, bounds: &Bounds) {
+        if self.fresh || self.stage == Stage::Retry {
+            return;
+        }
+        if let Stage::Rejected { .. } = self.stage {
+            self.t_next = self.t - self.step; // shortened when it was rejected
+            return;
+        }
+        let o = &bounds.options;
+        let error = if self.local_error.is_finite() { self.local_error } else { self.radius.powi(-4) };
+        let omega = (self.omega + 2.0 * (self.omega - self.omega_before)).clamp(self.omega, 8.0 * self.omega);
+        let newton = (bounds.reach / (omega * error)).sqrt().sqrt() / o.beta_omega;
+        let mut trust = o.beta_tau * self.radius;
+        if self.t < trust {
+            trust = o.beta_tau_last * self.radius;
+        }
+        let mut step = newton.min(trust); // ignores NaN
+        if self.step > 0.0 {
+            step = step.min(10.0 * self.step);
+            if self.failed_before {
+                step = step.min(self.step);
+            }
+        }
+        if step >= self.t || step.is_nan() {
+            self.step = self.t;
+            self.t_next = 0.0;
+        } else {
+            self.step = step;
+            self.t_next = self.t - step;
+        }
+    }
+
+    pub(crate) fn begin_correction(&mut self, bounds: &Bounds) {
+        if self.is_live() {
+            self.stage = Stage::Iterating;
+            self.theta_bound = bounds.options.contraction;
+            self.omega_now = self.omega;
+        }
+    }
+
+    /// Judges the correction of size `norm` in iteration `i`.
+    pub(crate) fn judge(&mut self, i: usize, norm: f64, bounds: &Bounds) {
+        if self.stage != Stage::Iterating {
+            return;
+        }
+        self.jacobians += 1;
+        if !norm.is_finite() {
+            self.stage = Stage::Rejected { theta: f64::INFINITY };
+            return;
+        }
+        if i == 0 {
+            self.first = norm;
+            // Predicted not to be an approximate zero (the Newton-Kantorovich bound with a margin of 4).
+            if !self.fresh && 0.125 * self.omega * norm > bounds.h {
+                self.last = norm;
+                self.stage = Stage::Rejected { theta: f64::INFINITY };
+                return;
+            }
+        } else if norm > NOISE_MARGIN * self.noise {
+            let theta = norm / self.last;
+            if i == 1 {
+                self.omega_now = 2.0 * norm / (self.last * self.last);
+            }
+            if theta > self.theta_bound {
+                self.stage = Stage::Rejected { theta: if i == 1 { theta } else { f64::INFINITY } };
+                return;
+            }
+            self.theta_bound *= self.theta_bound;
+        } else {
+            // Rounding error: it says nothing about contraction, and no correction will be smaller.
+            self.omega_now = if i == 1 { 0.5 * self.omega } else { self.omega_now };
+            self.last = norm;
+            self.stage = Stage::Converged;
+            return;
+        }
+        self.last = norm;
+        if self.omega_now.max(MIN_OMEGA) * norm <= bounds.options.corrector_tolerance {
+            self.stage = Stage::Converged;
+        } else if i + 1 == MAX_ITERATIONS {
+            self.stage = Stage::Rejected { theta: f64::INFINITY };
+        }
+    }
+
+    /// Judges the closing correction with the last Jacobian, of size `norm` (an upper bound for the limiting accuracy `mu`);
+    /// `double` is the size that residuals in double precision give at the same point, for paths in extended precision.
+    pub(crate) fn judge_closing(&mut self, norm: f64, double: Option<f64>, bounds: &Bounds) {
+        if self.stage != Stage::Converged {
+            return;
+        }
+        if !norm.is_finite() {
+            self.stage = Stage::Rejected { theta: f64::INFINITY };
+            return;
+        }
+        if self.omega_now == self.omega && self.first == self.last {
+            // One iteration only: the closing correction tells omega, unless it is rounding error.
+            self.omega_now = if norm > NOISE_MARGIN * self.noise {
+                (2.0 * norm / (self.first * self.first)).min(self.omega)
+            } else {
+                0.5 * self.omega
+            };
+        }
+        let omega = self.omega_now.max(0.5 * self.omega).max(MIN_OMEGA);
+        // More than quadratic convergence leaves is rounding error.
+        self.noise = if norm > omega * self.last * self.last { norm } else { self.noise.min(norm) }.max(f64::EPSILON);
+        let noise = omega * norm;
+        if noise > bounds.leave_double && !self.extended && bounds.options.extended_precision {
+            self.extended = true;
+            self.used_extended = true;
+            self.stage = Stage::Retry;
+            return;
+        }
+        if noise > bounds.limit {
+            self.stage = Stage::Failed(PathEnd::AccuracyLimit);
+            return;
+        }
+        if let Some(double) = double
+            && omega * double < bounds.enter_double
+        {
+            self.extended = false;
+        }
+        self.omega_before = self.omega;
+        self.omega = omega;
+        self.mu = norm.max(f64::EPSILON);
+        self.stage = Stage::Accepted;
+    }
+
+    /// Takes the accepted step; `distance` is that of the corrected from the predicted point.
+    pub(crate) fn advance(&mut self, distance: f64, radius: f64) {
+        if self.fresh {
+            self.fresh = false;
+        } else {
+            self.accepted += 1;
+            let step = self.t - self.t_next;
+            // Never zero, so that one lucky step does not free the next from the Newton bound.
+            self.local_error = distance.max(f64::EPSILON) / (step * step * step * step);
+            self.t = self.t_next;
+        }
+        self.failed_before = false;
+        self.radius = radius;
+    }
+
+    /// Shortens the step after a rejection, or ends the path.
+    pub(crate) fn retreat(&mut self, bounds: &Bounds) -> Option<PathEnd> {
+        let theta = match self.stage {
+            Stage::Rejected { theta } => theta,
+            Stage::Failed(end) => return Some(end),
+            _ => return None,
+        };
+        if self.fresh {
+            return Some(PathEnd::InvalidStart);
+        }
+        self.rejected += 1;
+        self.failed_before = true;
+        let h_theta = if theta.is_finite() { h(theta) } else { 0.0 };
+        let factor = if h_theta < bounds.h_half {
+            HARD_CUT
+        } else {
+            (bounds.reach_half / ((1.0 + 2.0 * h_theta).sqrt() - 1.0)).sqrt().sqrt().max(HARD_CUT)
+        };
+        self.step *= factor;
+        if self.t - self.step == self.t || self.step < 4.0 * f64::EPSILON * self.t {
+            if !self.extended && bounds.options.extended_precision {
+                // The corrector may have failed for rounding errors alone: once more from a workable step.
+                self.extended = true;
+                self.used_extended = true;
+                self.step = 1e-3 * self.radius.min(self.t);
+                return None;
+            }
+            return Some(PathEnd::StepTooSmall);
+        }
+        None
+    }
+
+    /// The end of the path, if it has come to one.
+    pub(crate) fn finished(&self, bounds: &Bounds) -> Option<PathEnd> {
+        if self.fresh {
+            return None;
+        }
+        if self.t == 0.0 {
+            return Some(PathEnd::Success);
+        }
+        if self.diverges_since.is_some() && self.t < 1e-10 {
+            return Some(PathEnd::AtInfinity);
+        }
+        if self.t < bounds.options.min_t {
+            return Some(PathEnd::Singular);
+        }
+        (self.accepted + self.rejected >= bounds.options.max_steps).then_some(PathEnd::MaxSteps)
+    }
+
+    /// Watches the valuations: `settled` says that some are negative and constant at the current point.
+    pub(crate) fn watch(&mut self, settled: bool) {
+        self.diverges_since = if settled { self.diverges_since.or(Some(self.t)) } else { None };
+    }
+
+    /// The record of the path; a path that breaks off while it has long been diverging ends at infinity.
+    pub(crate) fn result(&self, end: PathEnd) -> PathResult {
+        let long = self.diverges_since.is_some_and(|since| self.t < 1e-3 * since);
+        let end = match end {
+            PathEnd::AccuracyLimit | PathEnd::StepTooSmall | PathEnd::MaxSteps | PathEnd::Singular if long => {
+                PathEnd::AtInfinity
+            }
+            other => other,
+        };
+        PathResult {
+            path: self.path,
+            end,
+            t: self.t,
+            accuracy: self.mu,
+            omega: self.omega,
+            accepted: self.accepted,
+            rejected: self.rejected,
+            jacobians: self.jacobians,
+            extended: self.used_extended,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Bounds, h};
+    use crate::tracker::TrackerOptions;
+
+    #[test]
+    fn constants_of_the_paper() {
+        // Timme 2020 with a = 1/8.
+        assert!((h(0.125) - 0.195194).abs() < 1e-6);
+        let bounds = Bounds::new(&TrackerOptions::default());
+        assert!((bounds.reach - 0.179147).abs() < 1e-6);
+        assert!((bounds.leave_double - 5.96e-6).abs() < 1e-8);
+    }
+}

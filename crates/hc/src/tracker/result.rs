@@ -1,0 +1,137 @@
+//! How paths ended.
+
+use num_complex::Complex64;
+
+/// Why a path ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum PathEnd {
+    /// A regular solution of the target system.
+    Success,
+    /// Some coordinates grow without bound: their valuations are negative and settled.
+    AtInfinity,
+    /// The path stays bounded up to a `t` of nearly zero, but its end is not a regular solution.
+    Singular,
+    /// The start point is not a solution of the start system.
+    InvalidStart,
+    /// The Jacobian is so ill-conditioned that even residuals in double-double do not help.
+    AccuracyLimit,
+    /// The step size fell below the resolution of `t`.
+    StepTooSmall,
+    /// The step limit was reached.
+    MaxSteps,
+}
+
+impl PathEnd {
+    /// Whether the path ended as a path should: at a regular solution or at infinity.
+    pub fn is_good(self) -> bool {
+        matches!(self, PathEnd::Success | PathEnd::AtInfinity)
+    }
+}
+
+/// The record of one path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathResult {
+    /// Index of the start solution.
+    pub path: usize,
+    /// Why it ended.
+    pub end: PathEnd,
+    /// Where it ended: 0 where the target was reached.
+    pub t: f64,
+    /// Size of the last correction relative to the point (weighted maximum norm): a bound for the relative error.
+    pub accuracy: f64,
+    /// Estimate of the Lipschitz constant `omega` of Newton's method at the end (a reciprocal relative length): no
+    /// other solution lies much nearer than `1 / omega`.
+    pub omega: f64,
+    /// Accepted steps.
+    pub accepted: usize,
+    /// Rejected steps.
+    pub rejected: usize,
+    /// Evaluations of the Jacobian, each with a factorisation.
+    pub jacobians: usize,
+    /// Whether residuals in double-double were used.
+    pub extended: bool,
+}
+
+/// The records and last points of some paths, in one piece of memory that can be used again.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PathSet {
+    dimension: usize,
+    results: Vec<PathResult>,
+    points: Vec<Complex64>,
+}
+
+impl PathSet {
+    /// An empty set of paths in `dimension` unknowns.
+    pub fn new(dimension: usize) -> Self {
+        PathSet { dimension, ..Self::default() }
+    }
+
+    /// Number of unknowns.
+    pub fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    /// Number of paths.
+    pub fn len(&self) -> usize {
+        self.results.len()
+    }
+
+    /// Whether there are no paths.
+    pub fn is_empty(&self) -> bool {
+        self.results.is_empty()
+    }
+
+    /// The records, in the order in which they were stored.
+    pub fn results(&self) -> &[PathResult] {
+        &self.results
+    }
+
+    /// Last point of the `k`-th record.
+    pub fn point(&self, k: usize) -> &[Complex64] {
+        &self.points[k * self.dimension..(k + 1) * self.dimension]
+    }
+
+    /// Records with their last points.
+    pub fn iter(&self) -> impl Iterator<Item = (&PathResult, &[Complex64])> {
+        self.results.iter().enumerate().map(|(k, r)| (r, self.point(k)))
+    }
+
+    /// Number of paths that ended in one way.
+    pub fn count(&self, end: PathEnd) -> usize {
+        self.results.iter().filter(|r| r.end == end).count()
+    }
+
+    /// Forgets the paths but keeps the memory.
+    pub fn clear(&mut self, dimension: usize) {
+        self.dimension = dimension;
+        self.results.clear();
+        self.points.clear();
+    }
+
+    /// Adds a path; `point` has one entry an unknown.
+    pub fn push(&mut self, result: PathResult, point: impl IntoIterator<Item = Complex64>) {
+        self.results.push(result);
+        self.points.extend(point);
+        debug_assert_eq!(self.points.len(), self.results.len() * self.dimension);
+    }
+
+    /// Replaces the `k`-th record.
+    pub fn replace(&mut self, k: usize, result: PathResult, point: &[Complex64]) {
+        self.results[k] = result;
+        self.points[k * self.dimension..(k + 1) * self.dimension].copy_from_slice(point);
+    }
+
+    /// Sorts by the index of the start solution.
+    pub(crate) fn sort(&mut self) {
+        let mut order: Vec<usize> = (0..self.len()).collect();
+        order.sort_by_key(|&k| self.results[k].path);
+        if order.iter().enumerate().all(|(i, &k)| i == k) {
+            return;
+        }
+        let results = order.iter().map(|&k| self.results[k]).collect();
+        let points = order.iter().flat_map(|&k| self.point(k).iter().copied()).collect();
+        self.results = results;
+        self.points = points;
+    }
+}

@@ -1,0 +1,63 @@
+//! Exact complex constants and their conversion to floating point.
+
+use num_bigint::BigInt;
+use num_complex::Complex;
+use num_rational::BigRational;
+use num_traits::{ToPrimitive, Zero};
+
+/// A complex number with rational parts: how constants of expressions and coefficients of parsed
+/// polynomials are kept until they become floating point.
+pub type Exact = Complex<BigRational>;
+
+/// Constants are folded only while numerators and denominators stay below this many bits, so that a short
+/// text such as `9^9^9` cannot ask for unbounded memory.
+pub(crate) const FOLD_BITS: u64 = 1 << 14;
+
+/// The rational as an unevaluated sum `high + low` of two doubles, about 32 digits.
+pub(crate) fn to_parts(q: &BigRational) -> [f64; 2] {
+    let high = q.to_f64().unwrap_or(f64::NAN);
+    let low = match BigRational::from_float(high) {
+        Some(h) => (q - h).to_f64().unwrap_or(0.0),
+        None => 0.0,
+    };
+    [high, low]
+}
+
+/// The exact value of a double, `None` where it is not finite.
+pub(crate) fn from_f64(x: f64) -> Option<Exact> {
+    Some(Complex::new(BigRational::from_float(x)?, BigRational::zero()))
+}
+
+/// An integer constant.
+pub(crate) fn from_i64(k: i64) -> Exact {
+    Complex::new(BigRational::from_integer(BigInt::from(k)), BigRational::zero())
+}
+
+/// Whether the constant is real.
+pub(crate) fn is_real(z: &Exact) -> bool {
+    z.im.is_zero()
+}
+
+fn rational_bits(q: &BigRational) -> u64 {
+    q.numer().bits() + q.denom().bits()
+}
+
+/// Total size of numerators and denominators in bits.
+pub(crate) fn bits(z: &Exact) -> u64 {
+    rational_bits(&z.re) + rational_bits(&z.im)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_add_up_to_a_third() {
+        let third = BigRational::new(1.into(), 3.into());
+        let [high, low] = to_parts(&third);
+        assert_eq!(high, 1.0 / 3.0);
+        let sum = BigRational::from_float(high).unwrap() + BigRational::from_float(low).unwrap();
+        let error = (sum - third).to_f64().unwrap().abs();
+        assert!(error < 1e-32, "{error}");
+    }
+}

@@ -1,0 +1,55 @@
+//! A system's formulas with other formulas put in for its unknowns and parameters.
+
+use crate::exact::Exact;
+use crate::expression::{Expr, Expressions};
+use crate::graph::{Id, Node};
+use crate::system::System;
+use num_traits::Zero;
+
+impl System {
+    /// The equations, built anew in `arena` with `unknowns[j]` in place of unknown `j` and `parameters[i]` in place of
+    /// parameter `i`: so that a system becomes a part of another one.
+    ///
+    /// ```
+    /// use poly::System;
+    /// let circle = System::build(|s| vec![s.variable("x").powi(2) + s.variable("y").powi(2) - s.parameter("r")])?;
+    /// // On the line (x, y) = (u, 2u), with the parameter as an unknown.
+    /// let both = System::build(|s| {
+    ///     let (u, r) = (s.variable("u"), s.variable("r"));
+    ///     circle.instantiate(s, &[u, u * 2], &[r])
+    /// })?;
+    /// assert_eq!(both.variables(), ["u", "r"]);
+    /// # Ok::<(), poly::SystemError>(())
+    /// ```
+    ///
+    /// # Panics
+    /// If there is not one formula for every unknown and parameter.
+    pub fn instantiate<'a>(
+        &self,
+        arena: &'a Expressions,
+        unknowns: &[Expr<'a>],
+        parameters: &[Expr<'a>],
+    ) -> Vec<Expr<'a>> {
+        assert_eq!(unknowns.len(), self.variables().len(), "one formula an unknown");
+        assert_eq!(parameters.len(), self.parameters().len(), "one formula a parameter");
+        let graph = &self.arena.graph;
+        let mut built: Vec<Expr<'a>> = Vec::with_capacity(graph.len());
+        // Operands have smaller indices than the nodes that use them.
+        for k in 0..graph.len() {
+            let operand = |id: Id| built[id as usize];
+            let id = k as Id;
+            built.push(match graph.node(id) {
+                Node::Constant(_) => arena.constant(graph.as_constant(id).cloned().unwrap_or_else(Exact::zero)),
+                Node::Variable(j) => unknowns[j as usize],
+                Node::Parameter(i) => parameters[i as usize],
+                Node::Add(a, b) => operand(a) + operand(b),
+                Node::Sub(a, b) => operand(a) - operand(b),
+                Node::Mul(a, b) => operand(a) * operand(b),
+                Node::Div(a, b) => operand(a) / operand(b),
+                Node::Neg(a) => -operand(a),
+                Node::Pow(a, e) => operand(a).powi(e),
+            });
+        }
+        self.equations.iter().map(|&id| built[id as usize]).collect()
+    }
+}

@@ -1,0 +1,155 @@
+//! Parameter families in TOML.
+
+use super::ParseError;
+use super::formula::{FormulaParser, Names};
+use super::token::{Token, Tokens};
+use crate::expression::Arena;
+use crate::system::{System, is_name};
+use serde::Deserialize;
+use std::collections::HashMap;
+
+/// A parameter family: a system whose parameters are to be given values later.
+#[derive(Clone, Debug)]
+pub struct Family {
+    /// Name of the family.
+    pub name: String,
+    /// The equations.
+    pub system: System,
+    /// The number of isolated solutions for generic parameters, where known.
+    pub roots: Option<usize>,
+    /// Factors whose vanishing is degenerate: the same unknowns and parameters, one equation a factor (none where
+    /// the family states none).
+    pub nonzero: System,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FamilyText {
+    name: String,
+    unknowns: Vec<String>,
+    #[serde(default)]
+    parameters: Vec<String>,
+    equations: Vec<String>,
+    roots: Option<usize>,
+    #[serde(default)]
+    nonzero: Vec<String>,
+}
+
+/// Reads a parameter family.
+///
+/// ```
+/// let family = poly::parse::family(r#"
+///     name = "circle and line"
+///     unknowns = ["x", "y"]
+///     parameters = ["r", "a"]
+///     equations = ["x^2 + y^2 - r^2", "y - a*x"]
+///     roots = 2
+///     nonzero = ["r"]
+/// "#)?;
+/// assert_eq!(family.system.len(), 2);
+/// assert_eq!(family.roots, Some(2));
+/// # Ok::<(), poly::parse::ParseError>(())
+/// ```
+///
+/// # Errors
+/// If the text is not TOML, misses a key or has one too many, declares a name twice, or if a formula does not parse;
+/// line and column then count within the formula that the field `within` of the error names.
+pub fn family(text: &str) -> Result<Family, ParseError> {
+    let fields: FamilyText = toml::from_str(text)
+        .map_err(|e| ParseError::at(text, e.span().map_or(0, |span| span.start), e.message().to_owned()))?;
+    let system = system(text, &fields, "equation", &fields.equations)?;
+    let nonzero = self::system(text, &fields, "nonzero factor", &fields.nonzero)?;
+    Ok(Family { name: fields.name, system, roots: fields.roots, nonzero })
+}
+
+fn system(text: &str, fields: &FamilyText, part: &str, formulas: &[String]) -> Result<System, ParseError> {
+    let mut arena = Arena::default();
+    let mut declared = HashMap::new();
+    let names = fields.unknowns.iter().map(|n| (n, true)).chain(fields.parameters.iter().map(|n| (n, false)));
+    for (name, unknown) in names {
+        if !is_name(name) {
+            let message = format!("`{name}` cannot be a name (letters, digits, `_`; `i` is the imaginary unit)");
+            return Err(ParseError::at(text, text.find(name.as_str()).unwrap_or(0), message));
+        }
+        let id = if unknown { arena.variable(name) } else { arena.parameter(name) };
+        if declared.insert(name.clone(), id).is_some() {
+            let message = format!("`{name}` is declared twice");
+            return Err(ParseError::at(text, text.find(name.as_str()).unwrap_or(0), message));
+        }
+    }
+    let mut names = Names::Declared(declared);
+    let mut equations = Vec::with_capacity(formulas.len());
+    for (k, formula) in formulas.iter().enumerate() {
+        let equation = parse_whole(&mut arena, &mut names, formula);
+        equations.push(equation.map_err(|e| e.within(format!("{part} {}", k + 1)))?);
+    }
+    Ok(System { arena, equations })
+}
+
+/// A formula that takes up the whole text.
+fn parse_whole(arena: &mut Arena, names: &mut Names, text: &str) -> Result<crate::graph::Id, ParseError> {
+    let mut tokens = Tokens::new(text, 0)?;
+    let id = FormulaParser::new(arena, names).sum(&mut tokens)?;
+    if *tokens.current() != Token::End {
+        return Err(tokens.error(format!("expected an operator, found {}", tokens.current().describe())));
+    }
+    Ok(id)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const P3P: &str = r#"
+        name = "p3p"
+        unknowns = ["d1", "d2", "d3"]
+        parameters = ["g12", "g13", "g23", "D12", "D13", "D23"]
+        equations = ["d1^2 + d2^2 - 2*g12*d1*d2 - D12", "d1**2 + d3^2 - 2*g13*d1*d3 - D13",
+                     "d2^2 + d3^2 - 2*g23*(d2*d3) - D23"]
+        roots = 8
+        nonzero = ["g12 - 1"]
+    "#;
+
+    #[test]
+    fn reads_the_example_of_the_design() {
+        let family = family(P3P).unwrap();
+        assert_eq!(family.name, "p3p");
+        assert_eq!(family.system.variables(), ["d1", "d2", "d3"]);
+        assert_eq!(family.system.parameters().len(), 6);
+        assert_eq!(family.system.len(), 3);
+        assert_eq!(family.nonzero.len(), 1);
+        assert_eq!(family.nonzero.variables(), family.system.variables());
+        assert_eq!(family.roots, Some(8));
+    }
+
+    #[test]
+    fn points_at_an_unknown_name() {
+        let text = P3P.replace("(d2*d3)", "(d2*z)");
+        let error = family(&text).unwrap_err();
+        assert_eq!((error.within.as_deref(), error.line, error.column), (Some("equation 3"), 1, 25));
+        let shown = error.to_string();
+        let (line, caret) = (shown.lines().nth(1).unwrap(), shown.lines().nth(2).unwrap());
+        assert_eq!(line.chars().nth(caret.find('^').unwrap()), Some('z'), "{shown}");
+    }
+
+    #[test]
+    fn refuses_what_is_wrong() {
+        for (from, to, word) in [
+            ("roots = 8", "rots = 8", "rots"),
+            ("\"d3\"]", "\"d1\"]", "twice"),
+            ("\"d3\"]", "\"i\"]", "imaginary"),
+            ("- D12", "- D12)", "expected an operator"),
+            ("- D12", "- D12/0", "division by zero"),
+            ("- D12", "- D12^1.5", "whole number"),
+            ("- D12", "- D12^99999999999", "exponent"),
+            ("- D12", "- 1e99999", "exponent"),
+            ("- D12", "- ", "end of the text"),
+            ("- D12", "2", "expected an operator"),
+        ] {
+            let error = family(&P3P.replacen(from, to, 1)).unwrap_err();
+            assert!(error.to_string().contains(word), "{error}");
+        }
+        let deep = P3P.replacen("- D12", &format!("- {}D12", "(".repeat(100_000)), 1);
+        assert!(family(&deep).unwrap_err().message.contains("nested"));
+    }
+}

@@ -1,0 +1,181 @@
+//! Formulas by operator precedence, straight into the hash-consed graph.
+
+use super::ParseError;
+use super::token::{Token, Tokens};
+use crate::exact::Exact;
+use crate::expression::Arena;
+use crate::graph::Id;
+use num_complex::Complex;
+use num_rational::BigRational;
+use num_traits::{One, ToPrimitive, Zero};
+use std::collections::HashMap;
+
+/// Deepest nesting of parentheses.
+const DEPTH_LIMIT: usize = 256;
+
+/// What names mean.
+pub(super) enum Names {
+    /// Declared beforehand; anything else is an error.
+    Declared(HashMap<String, Id>),
+    /// Every new name is an unknown, in order of appearance.
+    Discovered(HashMap<String, Id>),
+}
+
+/// Parses formulas into one arena.
+pub(super) struct FormulaParser<'a> {
+    pub(super) arena: &'a mut Arena,
+    pub(super) names: &'a mut Names,
+    depth: usize,
+}
+
+impl<'a> FormulaParser<'a> {
+    pub(super) fn new(arena: &'a mut Arena, names: &'a mut Names) -> FormulaParser<'a> {
+        FormulaParser { arena, names, depth: 0 }
+    }
+
+    /// A sum of terms; stops at the first token that cannot continue it.
+    pub(super) fn sum(&mut self, tokens: &mut Tokens<'_>) -> Result<Id, ParseError> {
+        let mut value = self.term(tokens)?;
+        loop {
+            let subtract = match tokens.current() {
+                Token::Plus => false,
+                Token::Minus => true,
+                _ => return Ok(value),
+            };
+            tokens.advance()?;
+            let term = self.term(tokens)?;
+            let graph = &mut self.arena.graph;
+            value = if subtract { graph.sub(value, term) } else { graph.add(value, term) };
+        }
+    }
+
+    /// Products and quotients, after any number of signs.
+    fn term(&mut self, tokens: &mut Tokens<'_>) -> Result<Id, ParseError> {
+        let negative = signs(tokens)?;
+        let mut value = self.power(tokens)?;
+        loop {
+            let divide = match tokens.current() {
+                Token::Times => false,
+                Token::Over => true,
+                _ => break,
+            };
+            tokens.advance()?;
+            let place = tokens.offset();
+            let negative = signs(tokens)?;
+            let factor = self.power(tokens)?;
+            let graph = &mut self.arena.graph;
+            if divide && graph.is_zero(factor) {
+                return Err(tokens.error_at(place, "division by zero"));
+            }
+            value = if divide { graph.div(value, factor) } else { graph.mul(value, factor) };
+            if negative {
+                value = graph.neg(value);
+            }
+        }
+        Ok(if negative { self.arena.graph.neg(value) } else { value })
+    }
+
+    fn power(&mut self, tokens: &mut Tokens<'_>) -> Result<Id, ParseError> {
+        let place = tokens.offset();
+        let base = self.atom(tokens)?;
+        if *tokens.current() != Token::Power {
+            return Ok(base);
+        }
+        tokens.advance()?;
+        let exponent = exponent(tokens)?;
+        if *tokens.current() == Token::Power {
+            return Err(tokens.error("a power of a power needs parentheses"));
+        }
+        if exponent < 0 && self.arena.graph.is_zero(base) {
+            return Err(tokens.error_at(place, "zero to a negative power"));
+        }
+        Ok(self.arena.graph.pow(base, exponent))
+    }
+
+    fn atom(&mut self, tokens: &mut Tokens<'_>) -> Result<Id, ParseError> {
+        let id = match tokens.current().clone() {
+            Token::Number(value) => self.arena.graph.constant(value),
+            Token::Name(name) => self.name(name, tokens)?,
+            Token::Open => {
+                if self.depth == DEPTH_LIMIT {
+                    return Err(tokens.error(format!("parentheses nested deeper than {DEPTH_LIMIT}")));
+                }
+                self.depth += 1;
+                tokens.advance()?;
+                let inner = self.sum(tokens)?;
+                self.depth -= 1;
+                if *tokens.current() != Token::Close {
+                    let found = tokens.current().describe();
+                    return Err(tokens.error(format!("expected an operator or `)`, found {found}")));
+                }
+                inner
+            }
+            other => {
+                return Err(tokens.error(format!("expected a number, a name or `(`, found {}", other.describe())));
+            }
+        };
+        tokens.advance()?;
+        Ok(id)
+    }
+
+    fn name(&mut self, name: &str, tokens: &Tokens<'_>) -> Result<Id, ParseError> {
+        if name == "i" || name == "I" {
+            let unit: Exact = Complex::new(BigRational::zero(), BigRational::one());
+            return Ok(self.arena.graph.constant(unit));
+        }
+        match self.names {
+            Names::Declared(names) => names.get(name).copied().ok_or_else(|| {
+                tokens.error(format!("`{name}` is neither an unknown nor a parameter; declare it or correct the name"))
+            }),
+            Names::Discovered(names) => {
+                if let Some(&id) = names.get(name) {
+                    return Ok(id);
+                }
+                let id = self.arena.variable(name);
+                names.insert(name.to_owned(), id);
+                Ok(id)
+            }
+        }
+    }
+}
+
+/// Skips signs and tells whether they amount to a minus.
+fn signs(tokens: &mut Tokens<'_>) -> Result<bool, ParseError> {
+    let mut negative = false;
+    loop {
+        match tokens.current() {
+            Token::Minus => negative = !negative,
+            Token::Plus => {}
+            _ => return Ok(negative),
+        }
+        tokens.advance()?;
+    }
+}
+
+/// A whole number, signed or in parentheses, that fits in 32 bits.
+fn exponent(tokens: &mut Tokens<'_>) -> Result<i32, ParseError> {
+    let place = tokens.offset();
+    let parentheses = *tokens.current() == Token::Open;
+    if parentheses {
+        tokens.advance()?;
+    }
+    let negative = signs(tokens)?;
+    let Token::Number(value) = tokens.current() else {
+        return Err(tokens.error("an exponent must be a whole number"));
+    };
+    if !value.re.is_integer() {
+        return Err(tokens.error("an exponent must be a whole number"));
+    }
+    let magnitude = value.re.to_i32().filter(|&k| k < i32::MAX);
+    let Some(magnitude) = magnitude else {
+        return Err(tokens.error_at(place, "an exponent beyond 2^31"));
+    };
+    tokens.advance()?;
+    if parentheses {
+        if *tokens.current() != Token::Close {
+            return Err(tokens.error("expected `)` after the exponent"));
+        }
+        tokens.advance()?;
+    }
+    Ok(if negative { -magnitude } else { magnitude })
+}

@@ -1,0 +1,154 @@
+//! Tokens of formulas.
+
+use super::ParseError;
+use crate::exact::Exact;
+use num_bigint::BigInt;
+use num_complex::Complex;
+use num_rational::BigRational;
+use num_traits::Zero;
+
+/// Longest decimal exponent: `1e-400` is kept exactly, `1e999999999` would not fit in memory.
+const EXPONENT_LIMIT: i64 = 4_000;
+/// Most digits of one number.
+const DIGIT_LIMIT: usize = 10_000;
+
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Token<'t> {
+    Number(Exact),
+    Name(&'t str),
+    Plus,
+    Minus,
+    Times,
+    Over,
+    Power,
+    Open,
+    Close,
+    Semicolon,
+    End,
+}
+
+impl Token<'_> {
+    /// How the token is named in messages.
+    pub(super) fn describe(&self) -> String {
+        match self {
+            Token::Number(_) => "a number".to_owned(),
+            Token::Name(name) => format!("`{name}`"),
+            Token::Plus => "`+`".to_owned(),
+            Token::Minus => "`-`".to_owned(),
+            Token::Times => "`*`".to_owned(),
+            Token::Over => "`/`".to_owned(),
+            Token::Power => "`^`".to_owned(),
+            Token::Open => "`(`".to_owned(),
+            Token::Close => "`)`".to_owned(),
+            Token::Semicolon => "`;`".to_owned(),
+            Token::End => "the end of the text".to_owned(),
+        }
+    }
+}
+
+/// Reads tokens one at a time with one token of look-ahead.
+pub(super) struct Tokens<'t> {
+    text: &'t str,
+    /// Where the next unread character is.
+    position: usize,
+    current: Token<'t>,
+    /// Where the current token begins.
+    start: usize,
+}
+
+impl<'t> Tokens<'t> {
+    /// Begins at a byte offset of the text.
+    pub(super) fn new(text: &'t str, position: usize) -> Result<Tokens<'t>, ParseError> {
+        let mut tokens = Tokens { text, position, current: Token::End, start: position };
+        tokens.advance()?;
+        Ok(tokens)
+    }
+
+    pub(super) fn current(&self) -> &Token<'t> {
+        &self.current
+    }
+
+    /// Byte offset of the current token.
+    pub(super) fn offset(&self) -> usize {
+        self.start
+    }
+
+    /// An error at the current token.
+    pub(super) fn error(&self, message: impl Into<String>) -> ParseError {
+        ParseError::at(self.text, self.start, message)
+    }
+
+    /// An error at a byte offset.
+    pub(super) fn error_at(&self, offset: usize, message: impl Into<String>) -> ParseError {
+        ParseError::at(self.text, offset, message)
+    }
+
+    /// Steps to the next token and returns the one left behind.
+    pub(super) fn advance(&mut self) -> Result<Token<'t>, ParseError> {
+        let rest = &self.text[self.position..];
+        let trimmed = rest.trim_start();
+        self.start = self.position + (rest.len() - trimmed.len());
+        let Some(first) = trimmed.chars().next() else {
+            self.position = self.start;
+            return Ok(std::mem::replace(&mut self.current, Token::End));
+        };
+        let (token, length) = match first {
+            '+' => (Token::Plus, 1),
+            '-' => (Token::Minus, 1),
+            '*' if trimmed[1..].starts_with('*') => (Token::Power, 2),
+            '*' => (Token::Times, 1),
+            '/' => (Token::Over, 1),
+            '^' => (Token::Power, 1),
+            '(' => (Token::Open, 1),
+            ')' => (Token::Close, 1),
+            ';' => (Token::Semicolon, 1),
+            c if c.is_ascii_digit() || c == '.' => {
+                let (value, length) = self.number(trimmed)?;
+                (Token::Number(value), length)
+            }
+            c if c.is_alphabetic() || c == '_' => {
+                let length = trimmed.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(trimmed.len());
+                (Token::Name(&trimmed[..length]), length)
+            }
+            c => return Err(self.error(format!("unexpected character {c:?}"))),
+        };
+        self.position = self.start + length;
+        Ok(std::mem::replace(&mut self.current, token))
+    }
+
+    /// An unsigned decimal number, kept exactly, and its length in bytes.
+    fn number(&self, text: &str) -> Result<(Exact, usize), ParseError> {
+        let bytes = text.as_bytes();
+        let digits_from = |from: usize| from + bytes[from..].iter().take_while(|b| b.is_ascii_digit()).count();
+        let whole = digits_from(0);
+        let mut end = whole;
+        let mut fraction = "";
+        if bytes.get(whole) == Some(&b'.') {
+            end = digits_from(whole + 1);
+            fraction = &text[whole + 1..end];
+        }
+        if whole + fraction.len() == 0 {
+            return Err(self.error("a number needs digits"));
+        }
+        if whole + fraction.len() > DIGIT_LIMIT {
+            return Err(self.error(format!("a number of more than {DIGIT_LIMIT} digits")));
+        }
+        let mut exponent = 0;
+        if matches!(bytes.get(end), Some(b'e' | b'E')) {
+            let signed = end + 1 + usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
+            let stop = digits_from(signed.min(bytes.len()));
+            if stop > signed {
+                exponent = text[end + 1..stop].parse::<i64>().unwrap_or(i64::MAX);
+                if exponent.unsigned_abs() > EXPONENT_LIMIT.unsigned_abs() {
+                    return Err(self.error(format!("a decimal exponent beyond {EXPONENT_LIMIT} in size")));
+                }
+                end = stop;
+            }
+        }
+        let digits: BigInt = format!("0{}{fraction}", &text[..whole]).parse().unwrap_or_default();
+        let scale = exponent - i64::try_from(fraction.len()).unwrap_or(0);
+        let power = BigInt::from(10).pow(u32::try_from(scale.unsigned_abs()).unwrap_or(0));
+        let value = if scale < 0 { BigRational::new(digits, power) } else { BigRational::from_integer(digits * power) };
+        Ok((Complex::new(value, BigRational::zero()), end))
+    }
+}

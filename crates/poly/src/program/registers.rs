@@ -1,0 +1,95 @@
+//! Register allocation: results share registers as soon as their last use is past.
+
+use super::instruction::{Op, Operand, Tape};
+
+/// An instruction over one array `[constants | parameters | unknowns | registers]`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Code {
+    pub(crate) op: Op,
+    pub(crate) target: u32,
+    pub(crate) a: u32,
+    pub(crate) b: u32,
+    pub(crate) c: u32,
+    pub(crate) d: u32,
+}
+
+/// A tape ready to run.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct RegisterTape {
+    pub(crate) code: Vec<Code>,
+    /// Slot of the output and the register that holds it at the end.
+    pub(crate) outputs: Vec<(u32, u32)>,
+    /// Slots that are zero whatever the input.
+    pub(crate) zeros: Vec<u32>,
+    /// Length of the whole array.
+    pub(crate) size: usize,
+}
+
+/// How inputs lie in the array.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Layout {
+    pub(crate) constants: usize,
+    pub(crate) parameters: usize,
+    pub(crate) variables: usize,
+}
+
+impl Layout {
+    /// Where the first register lies.
+    pub(crate) fn inputs(self) -> usize {
+        self.constants + self.parameters + self.variables
+    }
+}
+
+/// Where a result lies: for results the given table, for inputs their fixed place.
+pub(crate) fn place(operand: Operand, layout: Layout, temporary: impl Fn(u32) -> u32) -> u32 {
+    match operand {
+        Operand::Constant(k) => k,
+        Operand::Parameter(k) => layout.constants as u32 + k,
+        Operand::Variable(k) => (layout.constants + layout.parameters) as u32 + k,
+        Operand::Temporary(k) => temporary(k),
+    }
+}
+
+/// Assigns registers by linear scan; outputs keep theirs to the end.
+pub(crate) fn allocate(tape: &Tape, layout: Layout, slots: usize) -> RegisterTape {
+    const FOREVER: usize = usize::MAX;
+    let mut last_use = vec![0; tape.instructions.len()];
+    for (k, instruction) in tape.instructions.iter().enumerate() {
+        for operand in instruction.operands() {
+            if let Operand::Temporary(j) = *operand {
+                last_use[j as usize] = k;
+            }
+        }
+    }
+    for &(_, operand) in &tape.outputs {
+        if let Operand::Temporary(j) = operand {
+            last_use[j as usize] = FOREVER;
+        }
+    }
+    let mut register = vec![0u32; tape.instructions.len()];
+    let mut free: Vec<u32> = Vec::new();
+    let mut size = layout.inputs();
+    let mut code = Vec::with_capacity(tape.instructions.len());
+    for (k, instruction) in tape.instructions.iter().enumerate() {
+        let [a, b, c, d] = instruction.args.map(|operand| place(operand, layout, |j| register[j as usize]));
+        let operands = instruction.operands();
+        for (n, operand) in operands.iter().enumerate() {
+            if let Operand::Temporary(j) = *operand
+                && last_use[j as usize] == k
+                && !operands[..n].contains(operand)
+            {
+                free.push(register[j as usize]);
+            }
+        }
+        // The most recently freed register is still in the nearest cache.
+        let target = free.pop().unwrap_or_else(|| {
+            size += 1;
+            (size - 1) as u32
+        });
+        register[k] = target;
+        code.push(Code { op: instruction.op, target, a, b, c, d });
+    }
+    let outputs =
+        tape.outputs.iter().map(|&(slot, operand)| (slot, place(operand, layout, |j| register[j as usize]))).collect();
+    RegisterTape { code, outputs, zeros: tape.zeros(slots), size }
+}

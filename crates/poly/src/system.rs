@@ -1,0 +1,127 @@
+//! Systems of equations: ordered unknowns, ordered parameters, formulas that are to vanish.
+
+use crate::expression::{Arena, Expr, Expressions};
+use crate::graph::Id;
+use crate::program::{CompileError, Interpreter, Program};
+use std::collections::HashSet;
+
+/// Equations `F(x; p) = 0` in named unknowns and parameters, as formulas that are not expanded.
+///
+/// ```
+/// use poly::System;
+/// let system = System::build(|s| {
+///     let (x, y, r) = (s.variable("x"), s.variable("y"), s.parameter("r"));
+///     vec![x * x + y * y - r * r, x - y]
+/// })?;
+/// assert_eq!(system.variables(), ["x", "y"]);
+/// assert_eq!(system.parameters(), ["r"]);
+/// assert_eq!(system.len(), 2);
+/// # Ok::<(), poly::SystemError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct System {
+    pub(crate) arena: Arena,
+    pub(crate) equations: Vec<Id>,
+}
+
+/// Why formulas do not make a system.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SystemError {
+    /// A name cannot be read back by the parsers.
+    #[error(
+        "`{0}` cannot be a name: names are letters, digits and underscores, do not begin with a digit, and `i` and `I` mean the imaginary unit"
+    )]
+    Name(String),
+    /// One name for two things.
+    #[error("the name `{0}` stands for two things; rename one of them")]
+    Duplicate(String),
+    /// A floating-point constant was infinite or not a number.
+    #[error("a constant in the formulas is not finite")]
+    NonFinite,
+}
+
+impl System {
+    /// Makes a system from the formulas that a closure builds.
+    ///
+    /// Unknowns and parameters are ordered by first mention.
+    ///
+    /// # Errors
+    /// If a name is used twice or could not be parsed back, or if a constant is not finite.
+    pub fn build<F>(formulas: F) -> Result<System, SystemError>
+    where
+        F: for<'a> FnOnce(&'a Expressions) -> Vec<Expr<'a>>,
+    {
+        let expressions = Expressions::new();
+        let mut equations = Vec::new();
+        for formula in formulas(&expressions) {
+            assert!(std::ptr::eq(formula.arena(), &expressions), "every equation must be built in the closure's arena");
+            equations.push(formula.id());
+        }
+        System::from_arena(expressions.into_arena(), equations)
+    }
+
+    pub(crate) fn from_arena(arena: Arena, equations: Vec<Id>) -> Result<System, SystemError> {
+        let mut seen = HashSet::new();
+        for name in arena.variables.iter().chain(&arena.parameters) {
+            if !is_name(name) {
+                return Err(SystemError::Name(name.clone()));
+            }
+            if !seen.insert(name) {
+                return Err(SystemError::Duplicate(name.clone()));
+            }
+        }
+        if arena.non_finite {
+            return Err(SystemError::NonFinite);
+        }
+        Ok(System { arena, equations })
+    }
+
+    /// Names of the unknowns, in order.
+    pub fn variables(&self) -> &[String] {
+        &self.arena.variables
+    }
+
+    /// Names of the parameters, in order.
+    pub fn parameters(&self) -> &[String] {
+        &self.arena.parameters
+    }
+
+    /// Number of equations.
+    pub fn len(&self) -> usize {
+        self.equations.len()
+    }
+
+    /// Whether there are no equations.
+    pub fn is_empty(&self) -> bool {
+        self.equations.is_empty()
+    }
+
+    /// The straight-line programs of the system, ready to run.
+    ///
+    /// # Errors
+    /// If a formula divides by the constant zero or the programs would be unreasonably long.
+    pub fn compile(&self) -> Result<Interpreter, CompileError> {
+        Ok(Interpreter::new(Program::new(self)?))
+    }
+}
+
+/// Whether the parsers would read this as one name.
+pub(crate) fn is_name(name: &str) -> bool {
+    let mut chars = name.chars();
+    chars.next().is_some_and(|c| c.is_alphabetic() || c == '_')
+        && chars.all(|c| c.is_alphanumeric() || c == '_')
+        && name != "i"
+        && name != "I"
+}
+
+impl std::fmt::Display for System {
+    /// One equation a line, each ended by `;`.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        for &equation in &self.equations {
+            crate::display::write_node(f, &self.arena, equation)?;
+            f.write_str(";\n")?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,74 @@
+//! Generated code computes bit for bit what the interpreter computes.
+
+#[path = "../benches/common/mod.rs"]
+mod common;
+#[path = "../benches/generated/mod.rs"]
+mod generated;
+
+use num_complex::Complex64;
+use poly::{ComplexDd, Evaluate, Interpreter, Isa, Lane, Lanes8, Scalar};
+
+/// A fixed sequence of numbers of modulus about one.
+fn numbers<S: Lane>(count: usize) -> Vec<S> {
+    let mut state = 1u64;
+    let mut next = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    };
+    let mut number = || {
+        let mut z = S::zero();
+        (0..S::LANES).for_each(|l| z.set(l, Complex64::new(next(), next())));
+        z
+    };
+    (0..count).map(|_| number()).collect()
+}
+
+/// Everything that a system computes at one point.
+fn all<E: Evaluate, S: Scalar>(f: &E, isa: Isa, x: &[S], p: &[S]) -> Vec<S> {
+    let (m, n, k) = (f.equations(), f.variables(), f.parameters());
+    let mut memory = f.memory::<S>(isa);
+    let junk = S::from_c64(Complex64::new(f64::NAN, 7.0));
+    let mut out = vec![junk; 2 * m + m * n + 3 * m];
+    let (values, rest) = out.split_at_mut(m);
+    f.values(&mut memory, &x[..n], &p[..k], values);
+    let (values, rest) = rest.split_at_mut(m);
+    let (jacobian, rest) = rest.split_at_mut(m * n);
+    f.jacobian(&mut memory, &x[..n], &p[..k], values, jacobian);
+    for (order, coefficients) in (1..=3).zip(rest.chunks_mut(m)) {
+        f.taylor(&mut memory, order, &x[..order * n], &p[..(order + 1) * k], coefficients);
+    }
+    out
+}
+
+fn agrees<E: Evaluate>(interpreter: &Interpreter, f: &E, case: &str) {
+    assert_eq!(
+        (f.equations(), f.variables(), f.parameters()),
+        (interpreter.equations(), interpreter.variables(), interpreter.parameters())
+    );
+    let (n, k) = (f.variables(), f.parameters());
+    let (x, p) = (numbers::<Complex64>(4 * n), numbers::<Complex64>(4 * k));
+    assert_eq!(all(interpreter, Isa::Portable, &x, &p), all(f, Isa::detect(), &x, &p), "{case}");
+    let wide = |z: &[Complex64]| z.iter().map(|&z| ComplexDd::new(z)).collect::<Vec<_>>();
+    let (xd, pd) = (wide(&x), wide(&p));
+    assert_eq!(all(interpreter, Isa::Portable, &xd, &pd), all(f, Isa::detect(), &xd, &pd), "{case}");
+    let (x, p) = (numbers::<Lanes8>(4 * n), numbers::<Lanes8>(4 * k));
+    for isa in [Isa::Portable, Isa::Avx2, Isa::Avx512] {
+        assert_eq!(all(interpreter, Isa::Portable, &x, &p), all(f, isa, &x, &p), "{case} {isa:?}");
+    }
+}
+
+#[test]
+fn generated_code_agrees_with_the_interpreter() {
+    for case in common::cases() {
+        let f = case.system.compile().unwrap();
+        match case.name {
+            "cyclic-7" => agrees(&f, &generated::cyclic_7::Cyclic7, case.name),
+            "katsura-8" => agrees(&f, &generated::katsura_8::Katsura8, case.name),
+            "noon-5" => agrees(&f, &generated::noon_5::Noon5, case.name),
+            "6r/3s" => agrees(&f, &generated::s6r_3s::S6r3s, case.name),
+            "4r/5s" => agrees(&f, &generated::s4r_5s::S4r5s, case.name),
+            "pencils" => agrees(&f, &generated::pencils::Pencils, case.name),
+            other => panic!("no generated code for {other}"),
+        }
+    }
+}

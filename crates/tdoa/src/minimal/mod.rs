@@ -1,0 +1,159 @@
+//! Solvers for small networks: every network that explains a few arrival times exactly.
+//!
+//! [`solve`] picks the solver by the size of the matrix. All work by homotopy continuation from stored solutions of a generic
+//! instance; all paths are accounted for in [`MinimalSolution::paths`].
+
+mod chart;
+mod dual;
+mod polish;
+mod six_three;
+
+pub use six_three::SixThree;
+
+use crate::network::MinimalSolution;
+use crate::pseudoranges::Pseudoranges;
+use hc::fibre::FibreOptions;
+use thiserror::Error;
+
+/// Settings of the minimal solvers.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct SolveOptions {
+    /// How far below zero a distance f_ij - o_j may lie for a candidate to count as physical, relative to the size of the data
+    /// (root mean square of f_ij - f_1j). Default 1e-6; for noisy data take the noise.
+    pub tolerance: f64,
+    /// Roots whose imaginary parts are at most this share of the size of the data are tried as real ones too: noise can
+    /// make two real roots complex. Default 0: real roots only.
+    pub near_real: f64,
+    /// Whether candidates are polished in the primal coordinates. Default true.
+    pub polish: bool,
+    /// Settings for the paths.
+    pub paths: FibreOptions,
+}
+
+impl Default for SolveOptions {
+    fn default() -> Self {
+        let mut paths = FibreOptions::default();
+        paths.tracker.beta_omega = 1.5;
+        paths.tracker.beta_tau = 0.75;
+        paths.tracker.beta_tau_last = 0.5;
+        SolveOptions { tolerance: 1e-6, near_real: 0.0, polish: true, paths }
+    }
+}
+
+/// Why a matrix cannot be solved.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum SolveError {
+    /// Fewer constraints than unknowns.
+    #[error(
+        "{configuration} is underdetermined: {constraints} measurements for {unknowns} unknowns (positions up to a rigid motion, \
+         offsets); the smallest solvable networks are 6 receivers with 3 transmitters, 5 with 4, and 4 with 5"
+    )]
+    Underdetermined {
+        /// Size, such as `4r/4s`.
+        configuration: String,
+        /// Measurements.
+        constraints: usize,
+        /// Unknowns.
+        unknowns: usize,
+    },
+    /// A size without a solver.
+    #[error("there is no exact solver for {configuration}; use `calibrate`, which takes any size, or select {instead}")]
+    Unsupported {
+        /// Size, such as `5r/4s`.
+        configuration: String,
+        /// What would do.
+        instead: &'static str,
+    },
+    /// A missing measurement.
+    #[error(
+        "receiver {receiver} did not hear transmitter {transmitter}: the exact solvers need every measurement; use `calibrate`"
+    )]
+    Missing {
+        /// Name of the receiver.
+        receiver: String,
+        /// Name of the transmitter.
+        transmitter: String,
+    },
+    /// Two receivers that cannot be told apart.
+    #[error(
+        "receivers {first} and {second} measure the same up to a constant: they coincide (or lie on one line with every transmitter); \
+         remove one of them"
+    )]
+    IdenticalReceivers {
+        /// Name of one.
+        first: String,
+        /// Name of the other.
+        second: String,
+    },
+    /// Two transmitters that cannot be told apart.
+    #[error("transmitters {first} and {second} are heard alike up to a constant: they coincide; remove one of them")]
+    IdenticalTransmitters {
+        /// Name of one.
+        first: String,
+        /// Name of the other.
+        second: String,
+    },
+}
+
+/// Every network that explains the measurements, best first.
+///
+/// # Errors
+/// If the matrix is too small or of a size without a solver, a measurement is missing, or two nodes coincide.
+pub fn solve(measured: &Pseudoranges, options: &SolveOptions) -> Result<MinimalSolution, SolveError> {
+    let (m, n) = (measured.receivers(), measured.transmitters());
+    let (constraints, unknowns) = (m * n, (2 * m + 3 * n).saturating_sub(3));
+    // Three transmitters in the plane need six receivers, and so on: more measurements of one kind alone do not help.
+    if m < 4 || n < 3 || constraints < unknowns {
+        return Err(SolveError::Underdetermined { configuration: measured.configuration(), constraints, unknowns });
+    }
+    match (m, n) {
+        (6, 3) => SixThree::new().solve(measured, options),
+        _ => Err(SolveError::Unsupported {
+            configuration: measured.configuration(),
+            instead: "six receivers and three transmitters",
+        }),
+    }
+}
+
+/// Refuses missing measurements and nodes that coincide.
+fn check(measured: &Pseudoranges) -> Result<(), SolveError> {
+    let (m, n) = (measured.receivers(), measured.transmitters());
+    for i in 0..m {
+        for j in 0..n {
+            if measured.get(i, j).is_none() {
+                return Err(SolveError::Missing {
+                    receiver: measured.receiver_names()[i].clone(),
+                    transmitter: measured.transmitter_names()[j].clone(),
+                });
+            }
+        }
+    }
+    let f = |i: usize, j: usize| measured.values()[i * n + j];
+    let largest = measured.values().iter().fold(0.0f64, |a, v| a.max(v.abs()));
+    let spread = |differences: &mut dyn Iterator<Item = f64>| {
+        let (low, high) =
+            differences.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), d| (low.min(d), high.max(d)));
+        high - low
+    };
+    // What rounding of the input alone can tell apart.
+    let resolution = 64.0 * f64::EPSILON * largest;
+    for i in 0..m {
+        for k in i + 1..m {
+            if spread(&mut (0..n).map(|j| f(i, j) - f(k, j))) <= resolution {
+                let names = measured.receiver_names();
+                return Err(SolveError::IdenticalReceivers { first: names[i].clone(), second: names[k].clone() });
+            }
+        }
+    }
+    for j in 0..n {
+        for k in j + 1..n {
+            if spread(&mut (0..m).map(|i| f(i, j) - f(i, k))) <= resolution {
+                let names = measured.transmitter_names();
+                return Err(SolveError::IdenticalTransmitters { first: names[j].clone(), second: names[k].clone() });
+            }
+        }
+    }
+    Ok(())
+}

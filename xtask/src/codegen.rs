@@ -1,0 +1,171 @@
+//! `cargo xtask codegen`: families and stored fibres in, Rust source out.
+//!
+//! A generated module holds the evaluator of a family and the solutions for one generic parameter point. Both come from
+//! committed inputs alone (`NAME.toml` and `NAME.start.json`), so that the bytes are the same on any machine.
+
+use crate::refill::{self, nondegenerate};
+use anyhow::{Context, Result, bail, ensure};
+use clap::Args;
+use hc::distinct::coincidences;
+use hc::poly::program::{EmitOptions, emit};
+use hc::poly::{Evaluate, Family};
+use hc::refine::Refiner;
+use hc::start_file::StartFile;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+/// The families of this workspace and the modules generated from them.
+const FAMILIES: &[(&str, &str)] = &[("6r3s", "six_three")];
+
+#[derive(Args)]
+pub(crate) struct CodegenArguments {
+    /// Change nothing; name the generated files that are stale and verify the stored fibres.
+    #[arg(long, conflicts_with = "refill")]
+    check: bool,
+    /// Compute the stored fibres anew before generating.
+    #[arg(long)]
+    refill: bool,
+    /// With --refill: leave out the trace test, which takes minutes.
+    #[arg(long, requires = "refill")]
+    no_trace: bool,
+    /// Only this family of the workspace, such as 6r3s.
+    #[arg(long)]
+    only: Option<String>,
+    /// Seed of --refill.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// A family of your own (TOML) instead of those of the workspace.
+    #[arg(long, requires_all = ["start", "output"], conflicts_with_all = ["only", "refill"])]
+    family: Option<PathBuf>,
+    /// Its stored fibre (the JSON of `hc monodromy`).
+    #[arg(long, requires = "family")]
+    start: Option<PathBuf>,
+    /// The Rust file to write.
+    #[arg(long, requires = "family")]
+    output: Option<PathBuf>,
+}
+
+pub(crate) fn run(arguments: &CodegenArguments) -> Result<()> {
+    if let (Some(family), Some(start), Some(output)) = (&arguments.family, &arguments.start, &arguments.output) {
+        let name = family.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        return write_or_check(arguments, &name, family, start, output).map(|_| ());
+    }
+    let crate_root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/tdoa");
+    let chosen: Vec<_> =
+        FAMILIES.iter().filter(|(name, _)| arguments.only.as_deref().is_none_or(|only| only == *name)).collect();
+    ensure!(!chosen.is_empty(), "no family of that name; there are: {}", FAMILIES.map_names());
+    let mut stale = Vec::new();
+    for (name, module) in chosen {
+        let family = crate_root.join(format!("families/{name}.toml"));
+        let start = crate_root.join(format!("families/{name}.start.json"));
+        let output = crate_root.join(format!("src/generated/{module}.rs"));
+        if arguments.refill {
+            let file = refill::refill(&read_family(&family)?, arguments.seed, !arguments.no_trace)?;
+            std::fs::write(&start, file.to_json()).with_context(|| format!("cannot write {}", start.display()))?;
+        }
+        if write_or_check(arguments, &format!("families/{name}.toml"), &family, &start, &output)? {
+            stale.push(format!("crates/tdoa/src/generated/{module}.rs"));
+        }
+    }
+    if !stale.is_empty() {
+        bail!("stale: {}; run `cargo xtask codegen` and commit what it writes", stale.join(", "));
+    }
+    Ok(())
+}
+
+trait Names {
+    fn map_names(&self) -> String;
+}
+
+impl Names for [(&str, &str)] {
+    fn map_names(&self) -> String {
+        self.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ")
+    }
+}
+
+fn read_family(path: &Path) -> Result<Family> {
+    let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
+    poly::parse::family(&text).with_context(|| format!("{} is not a family", path.display()))
+}
+
+/// Writes one module, or with `--check` says whether the one on disk is stale.
+fn write_or_check(
+    arguments: &CodegenArguments,
+    source: &str,
+    family: &Path,
+    start: &Path,
+    output: &Path,
+) -> Result<bool> {
+    let family = read_family(family)?;
+    let text = std::fs::read_to_string(start).with_context(|| format!("cannot read {}", start.display()))?;
+    let start_file = StartFile::from_json(&text).with_context(|| start.display().to_string())?;
+    verify(&family, &start_file).with_context(|| start.display().to_string())?;
+    let module = generate(&family, &start_file, source)?;
+    if arguments.check {
+        return Ok(std::fs::read_to_string(output).ok().as_deref() != Some(&module));
+    }
+    if let Some(folder) = output.parent() {
+        std::fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
+    }
+    std::fs::write(output, module).with_context(|| format!("cannot write {}", output.display()))?;
+    eprintln!("wrote {}", output.display());
+    Ok(false)
+}
+
+/// The stored fibre solves the family's equations, its solutions are distinct and regular, and their number is the stated one.
+fn verify(family: &Family, start: &StartFile) -> Result<()> {
+    let fibre = start.fibre()?;
+    let system = family.system.compile()?;
+    let nonzero = family.nonzero.compile()?;
+    ensure!(
+        fibre.parameters.len() == system.parameters() && fibre.dimension == system.variables(),
+        "{} parameters and {} unknowns, but the family has {} and {}",
+        fibre.parameters.len(),
+        fibre.dimension,
+        system.parameters(),
+        system.variables()
+    );
+    if let Some(roots) = family.roots {
+        ensure!(fibre.len() == roots, "{} solutions, but the family states {roots}", fibre.len());
+    }
+    let mut refiner = Refiner::new(&system);
+    for k in 0..fibre.len() {
+        let x = fibre.solution(k);
+        let refined = refiner.refine(&fibre.parameters, x);
+        let moved = hc::distinct::relative_distance(x, &refined.point);
+        ensure!(moved < 1e-12, "solution {} is off by {moved:.1e}", k + 1);
+        ensure!(refined.condition < 1e12, "solution {} is singular (condition {:.1e})", k + 1, refined.condition);
+        ensure!(nondegenerate(&nonzero, &fibre.parameters, x), "solution {} is degenerate", k + 1);
+    }
+    let same = coincidences((0..fibre.len()).map(|k| (k, fibre.solution(k))), 1e-8);
+    ensure!(same.is_empty(), "solutions {:?} (counted from 0) coincide", same[0]);
+    Ok(())
+}
+
+/// The Rust source of a family with its fibre.
+fn generate(family: &Family, start: &StartFile, source: &str) -> Result<String> {
+    let system = family.system.compile()?;
+    let mut options = EmitOptions::default();
+    options.crate_path = "hc::poly".to_owned();
+    options.source = source.to_owned();
+    let mut text = emit(system.program(), &options)?;
+    let trace = start.trace_test.map_or("not run".to_owned(), |t| format!("deviation {t:.1e}"));
+    writeln!(text, "\n/// Number of solutions for generic parameters.")?;
+    writeln!(text, "pub const ROOTS: usize = {};", start.solutions.len())?;
+    writeln!(text, "/// A generic parameter point, `[re, im]` each.")?;
+    writeln!(text, "pub const PARAMETERS: [[f64; 2]; {}] = [", start.parameters.len())?;
+    rows(&mut text, &start.parameters)?;
+    writeln!(text, "];")?;
+    writeln!(text, "/// All solutions there, {} coordinates each, one after the other.", system.variables())?;
+    writeln!(text, "///\n/// Search ended: {}; trace test: {trace}.", start.stopped)?;
+    writeln!(text, "pub static SOLUTIONS: [[f64; 2]; {}] = [", start.solutions.len() * system.variables())?;
+    for solution in &start.solutions {
+        rows(&mut text, solution)?;
+    }
+    writeln!(text, "];")?;
+    Ok(text)
+}
+
+fn rows(text: &mut String, numbers: &[[f64; 2]]) -> std::fmt::Result {
+    numbers.iter().try_for_each(|[re, im]| writeln!(text, "    [{re:?}, {im:?}],"))
+}

@@ -1,0 +1,93 @@
+//! Computes the generic fibre of a family anew: first pair, monodromy, trace test, and a well-placed parameter point.
+
+use anyhow::{Context, Result, bail, ensure};
+use hc::fibre::{Fibre, FibreOptions, track_fibre};
+use hc::monodromy::{MonodromyOptions, Stop, monodromy};
+use hc::pair::find_pair;
+use hc::poly::{Evaluate, Family, Interpreter, Isa};
+use hc::random::Random;
+use hc::start_file::StartFile;
+use hc::trace::trace_test;
+use num_complex::Complex64;
+
+/// Parameter points that are tried as the place of the fibre, and real targets that each is judged by.
+const PLACES: u64 = 24;
+const TARGETS: u64 = 12;
+
+/// Whether no factor of `nonzero` vanishes at a solution.
+pub(crate) fn nondegenerate(nonzero: &Interpreter, p: &[Complex64], x: &[Complex64]) -> bool {
+    let mut memory = nonzero.memory(Isa::Portable);
+    let mut values = vec![Complex64::new(0.0, 0.0); nonzero.equations()];
+    nonzero.values(&mut memory, x, p, &mut values);
+    values.iter().all(|z| z.norm() > 1e-9)
+}
+
+/// The fibre of a family, found from nothing.
+pub(crate) fn refill(family: &Family, seed: u64, with_trace: bool) -> Result<StartFile> {
+    let system = family.system.compile()?;
+    let nonzero = family.nonzero.compile()?;
+    let accept = |p: &[Complex64], x: &[Complex64]| nondegenerate(&nonzero, p, x);
+    let pair = find_pair(&family.system, accept, seed)?
+        .with_context(|| format!("{}: no first solution was found; state one with a seed pair", family.name))?;
+    let mut options = MonodromyOptions::default();
+    options.seed = seed;
+    options.roots = family.roots;
+    let found = monodromy(&system, &pair, accept, &options);
+    eprintln!("{}: {} roots after {} loops and {} paths", family.name, found.fibre.len(), found.loops, found.paths);
+    let mut stopped = match found.stop {
+        Stop::RootsReached => "roots reached",
+        _ => "no progress",
+    };
+    if let Some(roots) = family.roots {
+        ensure!(found.fibre.len() == roots, "{}: {} roots instead of {roots}", family.name, found.fibre.len());
+    }
+    let fibre = place(&system, &found.fibre, seed)?;
+    let mut deviation = None;
+    if with_trace {
+        let test = trace_test(&family.system, &fibre, &options)?;
+        eprintln!("{}: trace test {test:?}", family.name);
+        deviation = Some(test.deviation);
+        if test.passed(fibre.len()) && family.roots.is_none() {
+            stopped = "trace";
+        } else if !test.passed(fibre.len()) {
+            bail!("{}: the trace test does not confirm {} roots: {test:?}", family.name, fibre.len());
+        }
+    }
+    Ok(StartFile::new(&fibre, deviation, stopped))
+}
+
+/// Moves the fibre to the parameter point, out of some random ones, from which random real targets are reached in the fewest steps.
+fn place(system: &Interpreter, fibre: &Fibre, seed: u64) -> Result<Fibre> {
+    let m = fibre.parameters.len();
+    let targets: Vec<Vec<Complex64>> = (0..TARGETS)
+        .map(|k| {
+            Random::new(seed, 1000 + k).normals(m).iter().map(|z| Complex64::new(z.re * 2f64.sqrt(), 0.0)).collect()
+        })
+        .collect();
+    let mut best: Option<(usize, Fibre)> = None;
+    for k in 0..PLACES {
+        let point = Random::new(seed, 2000 + k).normals(m);
+        let Some(moved) = whole(system, fibre, &point) else { continue };
+        let mut steps = 0;
+        for target in &targets {
+            let (ends, counts) = track_fibre(system, &moved, target, &FibreOptions::default());
+            steps += ends.results().iter().map(|r| r.accepted + r.rejected).sum::<usize>();
+            steps += 10_000 * (counts.failed + counts.retracked);
+        }
+        if best.as_ref().is_none_or(|(least, _)| steps < *least) {
+            eprintln!("place {k}: {:.1} steps a path", steps as f64 / (TARGETS as usize * moved.len()) as f64);
+            best = Some((steps, moved));
+        }
+    }
+    best.map(|(_, fibre)| fibre).context("the fibre could not be moved whole to any other parameter point")
+}
+
+fn whole(system: &Interpreter, fibre: &Fibre, target: &[Complex64]) -> Option<Fibre> {
+    let (ends, counts) = track_fibre(system, fibre, target, &FibreOptions::default());
+    if counts.finite != fibre.len() {
+        return None;
+    }
+    let mut refiner = hc::refine::Refiner::new(system);
+    let solutions = ends.iter().flat_map(|(_, x)| refiner.refine(target, x).point).collect();
+    Some(Fibre { parameters: target.to_vec(), dimension: fibre.dimension, solutions })
+}
