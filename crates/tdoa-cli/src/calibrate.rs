@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use tdoa::align::frame;
 use tdoa::picture::picture;
-use tdoa::read::{Units, read, read_nodes};
+use tdoa::read::{read, read_nodes};
 use tdoa::{CalibrateError, CalibrateOptions, Calibration, Control, Progress, Pseudoranges, calibrate_with};
 
 use crate::{Failure, output, summary};
@@ -20,12 +20,8 @@ use crate::{Failure, output, summary};
 pub(crate) struct Arguments {
     /// The measurements.
     file: PathBuf,
-    /// Unit of the measurements.
-    #[arg(long, value_parser = ["m", "s"], default_value = "m")]
-    units: String,
-    /// Propagation speed in metres a second, for --units s; sound in air: 343, radio: 299792458.
-    #[arg(long, allow_negative_numbers = true)]
-    speed: Option<f64>,
+    #[command(flatten)]
+    units: crate::units::Arguments,
     /// Standard deviation of the measurements in metres; estimated if not given.
     #[arg(long, allow_negative_numbers = true)]
     sigma: Option<f64>,
@@ -57,15 +53,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let units = match (arguments.units.as_str(), arguments.speed) {
-        ("m", None) => Units::Metres,
-        ("m", Some(_)) => return Err(Failure::Unusable("--speed needs --units s".to_string())),
-        (_, Some(speed)) => Units::Seconds { speed },
-        (_, None) => {
-            return Err(Failure::Unusable("--units s needs --speed in m/s, such as 343 for sound in air".to_string()));
-        }
-    };
-    let measured = read(&arguments.file, units).map_err(Failure::unusable)?;
+    let measured = read(&arguments.file, arguments.units.units()?).map_err(Failure::unusable)?;
     let truth = arguments.truth.as_deref().map(|path| true_positions(path, &measured)).transpose()?;
     let frame = arguments.frame.as_deref().map(|text| frame_nodes(text, &measured)).transpose()?;
     let mut options = CalibrateOptions::default();

@@ -1,9 +1,12 @@
 //! The program `tdoa`: calibration of sensor networks from arrival times alone.
 
 mod calibrate;
+mod experiment;
 mod output;
 mod simulate;
+mod solve;
 mod summary;
+mod units;
 
 use std::process::ExitCode;
 
@@ -22,7 +25,9 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Calibrate(calibrate::Arguments),
+    Experiment(experiment::Arguments),
     Simulate(simulate::Arguments),
+    Solve(solve::Arguments),
 }
 
 /// Why the program ends without success.
@@ -43,7 +48,9 @@ fn main() -> ExitCode {
     // clap ends the program itself, with status 2, if the arguments are wrong.
     let result = match Arguments::parse().command {
         Command::Calibrate(arguments) => calibrate::run(&arguments),
+        Command::Experiment(arguments) => experiment::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
+        Command::Solve(arguments) => solve::run(&arguments),
     };
     let (message, status) = match result {
         Ok(()) => return ExitCode::SUCCESS,

@@ -7,6 +7,7 @@
 pub mod align;
 pub mod calibrate;
 pub mod degeneracy;
+pub mod experiment;
 mod generated;
 pub mod loss;
 pub mod minimal;

@@ -235,10 +235,13 @@ impl Pseudoranges {
 
     /// The same matrix with a number subtracted from each column, as if the transmitters' clocks were set differently.
     pub(crate) fn shifted(&self, shifts: &[f64]) -> Pseudoranges {
-        let mut moved = self.clone();
         let n = self.transmitters;
-        moved.values.iter_mut().enumerate().for_each(|(k, value)| *value -= shifts[k % n]);
-        moved
+        self.with_values(self.values.iter().enumerate().map(|(k, value)| value - shifts[k % n]).collect())
+    }
+
+    /// The same matrix with other values, as many as before and none larger.
+    pub(crate) fn with_values(&self, values: Vec<f64>) -> Pseudoranges {
+        Pseudoranges { values, ..self.clone() }
     }
 
     /// The matrix of these receivers and transmitters, in this order, with their names and standard deviations.

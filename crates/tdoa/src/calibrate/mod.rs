@@ -2,11 +2,13 @@
 //! best, say how sure the result is.
 
 mod hypotheses;
+mod minimal;
 mod options;
 mod report;
 mod search;
 
 pub use hypotheses::{Hypotheses, generator};
+pub use minimal::MinimalHypotheses;
 pub use options::{CalibrateError, CalibrateOptions, Control, Progress};
 pub use report::{Alternative, Calibration, Truth};
 

@@ -1,0 +1,128 @@
+//! `tdoa solve`.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use serde::Serialize;
+use tdoa::MinimalSolution;
+use tdoa::minimal::{SolveError, SolveOptions, solve};
+use tdoa::read::read;
+
+use crate::{Failure, output};
+
+/// Finds every network that explains the pseudoranges of a small configuration (6r/3s and other minimal or near-minimal
+/// ones), best first.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The measurements, in the forms that `calibrate` takes; none may be missing.
+    file: PathBuf,
+    #[command(flatten)]
+    units: crate::units::Arguments,
+    /// How far below zero a distance may lie for a network to count as physical, as a share of the size of the data; for
+    /// noisy data the noise.
+    #[arg(long, default_value_t = SolveOptions::default().tolerance)]
+    tolerance: f64,
+    /// Accepted everywhere; the solvers draw no random numbers.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Threads; all cores if not given. The result does not depend on it.
+    #[arg(long)]
+    threads: Option<usize>,
+    /// Writes the result as JSON; - for standard output instead of the summary.
+    #[arg(long)]
+    json: Option<PathBuf>,
+}
+
+/// The JSON form.
+#[derive(Serialize)]
+struct Report<'a> {
+    #[serde(flatten)]
+    solution: &'a MinimalSolution,
+    receiver_names: &'a [String],
+    transmitter_names: &'a [String],
+    seconds: f64,
+    seed: u64,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let measured = read(&arguments.file, arguments.units.units()?).map_err(Failure::unusable)?;
+    if arguments.tolerance.is_nan() || arguments.tolerance < 0.0 {
+        return Err(Failure::Unusable("--tolerance must not be negative".to_string()));
+    }
+    let mut options = SolveOptions::default();
+    options.tolerance = arguments.tolerance;
+    let started = Instant::now();
+    let solved = crate::on_threads(arguments.threads, || solve(&measured, &options))?;
+    let solution = solved.map_err(|error| {
+        let message = format!("{}: {error}", arguments.file.display());
+        match error {
+            SolveError::Unsupported { .. } => Failure::Unusable(message),
+            _ => Failure::Undetermined(message),
+        }
+    })?;
+    let seconds = started.elapsed().as_secs_f64();
+    if let Some(path) = &arguments.json {
+        let report = Report {
+            solution: &solution,
+            receiver_names: measured.receiver_names(),
+            transmitter_names: measured.transmitter_names(),
+            seconds,
+            seed: arguments.seed,
+        };
+        output::json(path, &report)?;
+    }
+    if arguments.json.as_ref().is_none_or(|path| path.as_os_str() != "-") {
+        output::print(&summary(&solution, seconds))?;
+    }
+    if solution.candidates.iter().any(|candidate| candidate.physical) {
+        return Ok(());
+    }
+    Err(Failure::Undetermined(format!(
+        "{}: no physical network explains the measurements exactly; if they are noisy, give the noise as --tolerance or use \
+         `tdoa calibrate`",
+        arguments.file.display()
+    )))
+}
+
+fn summary(solution: &MinimalSolution, seconds: f64) -> String {
+    let (paths, counts) = (solution.paths, solution.counts);
+    let mut text = format!(
+        "{} by {} in {:.1} ms\npaths: {} tracked, {} finite, {} at infinity, {} failed, {} tracked again\n\
+         roots: {} complex, {} real, {} with real positions, {} of these physical\n\n\
+         {:>4} {:>12} {:>10} {:>10}\n",
+        solution.configuration,
+        solution.solver,
+        1e3 * seconds,
+        paths.tracked,
+        paths.finite,
+        paths.at_infinity,
+        paths.failed,
+        paths.retracked,
+        counts.complex,
+        counts.real,
+        counts.positive_definite,
+        counts.physical,
+        "rank",
+        "residual m",
+        "physical",
+        "condition",
+    );
+    for (k, candidate) in solution.candidates.iter().take(20).enumerate() {
+        let physical = if candidate.physical { "yes" } else { "no" };
+        text +=
+            &format!("{:>4} {:>12.2e} {:>10} {:>10.1e}\n", k + 1, candidate.residual, physical, candidate.condition);
+    }
+    if solution.candidates.len() > 20 {
+        text += &format!("... and {} more, all in --json\n", solution.candidates.len() - 20);
+    }
+    if let Some(best) = solution.candidates.first() {
+        text += "\nbest network\n";
+        for (i, p) in best.network.receivers.iter().enumerate() {
+            text += &format!("receiver    {:>3} {:>13.6} {:>13.6}\n", i + 1, p[0], p[1]);
+        }
+        for (j, (p, o)) in best.network.transmitters.iter().zip(&best.network.offsets).enumerate() {
+            text += &format!("transmitter {:>3} {:>13.6} {:>13.6}   offset {o:>13.6}\n", j + 1, p[0], p[1]);
+        }
+    }
+    text
+}

@@ -1,0 +1,162 @@
+//! Trials of the calibration on simulated networks: how far from the truth, compared with what the noise allows.
+
+use std::time::Instant;
+
+use rand::seq::SliceRandom;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use serde::Serialize;
+
+use crate::align::align;
+use crate::calibrate::{CalibrateError, CalibrateOptions, Calibration, calibrate};
+use crate::network::Network;
+use crate::observations::Observations;
+use crate::pseudoranges::Pseudoranges;
+use crate::refine::covariance;
+use crate::simulate::Simulation;
+
+/// 95 % quantile of chi-squared with two degrees of freedom.
+const CHI_SQUARED_95: f64 = 5.991;
+
+/// One calibration of a simulated network.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Trial {
+    /// Seed of the simulation.
+    pub seed: u64,
+    /// Root mean square distance of the receivers from the truth after the best rigid alignment, metres; `None` if there
+    /// was no calibration.
+    pub receiver_rms: Option<f64>,
+    /// The Cramer-Rao bound on it, from the measurements that are no outliers, metres.
+    pub bound: f64,
+    /// Receivers whose truth lies in the 95 % ellipse.
+    pub covered: usize,
+    /// Receivers with an ellipse.
+    pub ellipses: usize,
+    /// Whether the calibration said that the network is unique.
+    pub unique: bool,
+    /// Smallest receiver error (as `receiver_rms`) over the calibration and its alternatives.
+    pub best_of_alternatives: Option<f64>,
+    /// Estimated standard deviation of the measurements, metres.
+    pub sigma: Option<f64>,
+    /// Starts of the search.
+    pub starts: usize,
+    /// Seconds on the clock.
+    pub seconds: f64,
+    /// Why there was no calibration.
+    pub error: Option<String>,
+}
+
+impl Trial {
+    /// Whether the receivers are within three times the Cramer-Rao bound.
+    pub fn success(&self) -> bool {
+        self.receiver_rms.is_some_and(|rms| rms <= 3.0 * self.bound)
+    }
+}
+
+/// Calibrates a simulated network whose noise had the standard deviation `noise` (metres) and compares with the truth.
+pub fn trial(simulation: &Simulation, noise: f64, seed: u64, options: &CalibrateOptions) -> Trial {
+    let started = Instant::now();
+    let result = calibrate(&simulation.pseudoranges, options);
+    let seconds = started.elapsed().as_secs_f64();
+    judge(simulation, noise, seed, seconds, &result)
+}
+
+fn judge(
+    simulation: &Simulation,
+    noise: f64,
+    seed: u64,
+    seconds: f64,
+    result: &Result<Calibration, CalibrateError>,
+) -> Trial {
+    let truth = &simulation.network;
+    let bound = cramer_rao(&simulation.pseudoranges, &simulation.outliers, truth, noise);
+    let mut trial = Trial {
+        seed,
+        receiver_rms: None,
+        bound,
+        covered: 0,
+        ellipses: 0,
+        unique: false,
+        best_of_alternatives: None,
+        sigma: None,
+        starts: 0,
+        seconds,
+        error: None,
+    };
+    let calibration = match result {
+        Ok(calibration) => calibration,
+        Err(error) => {
+            trial.error = Some(error.to_string());
+            return trial;
+        }
+    };
+    trial.receiver_rms = distance_from(&calibration.receivers, truth);
+    let others = calibration.alternatives.iter().filter_map(|other| distance_from(&other.receivers, truth));
+    trial.best_of_alternatives = others.chain(trial.receiver_rms).reduce(f64::min);
+    trial.unique = calibration.unique;
+    trial.sigma = Some(calibration.sigma);
+    trial.starts = calibration.starts;
+    (trial.covered, trial.ellipses) = coverage(calibration, truth);
+    trial
+}
+
+/// Root mean square over the receivers of the smallest standard deviation that any unbiased estimate can have, metres.
+pub fn cramer_rao(measured: &Pseudoranges, outliers: &[bool], truth: &Network, noise: f64) -> f64 {
+    let n = measured.transmitters();
+    let observations = Observations::new(measured, |i, j| !outliers[i * n + j]);
+    let Some(found) = covariance(&observations, truth, noise).filter(|found| found.loose.is_empty()) else {
+        return f64::INFINITY;
+    };
+    let trace: f64 = found.receivers.iter().map(|c| c[0][0] + c[1][1]).sum();
+    (trace / found.receivers.len() as f64).sqrt()
+}
+
+fn distance_from(receivers: &[Option<[f64; 2]>], truth: &Network) -> Option<f64> {
+    let pairs = receivers.iter().zip(&truth.receivers).filter_map(|(found, known)| Some(((*found)?, *known)));
+    let (found, known): (Vec<_>, Vec<_>) = pairs.unzip();
+    align(&found, &known, false).map(|alignment| alignment.rms)
+}
+
+/// In the gauge of the covariances the truth is aligned to the calibration by its receivers.
+fn coverage(calibration: &Calibration, truth: &Network) -> (usize, usize) {
+    let pairs = calibration.receivers.iter().zip(&truth.receivers).filter_map(|(f, t)| Some(((*f)?, *t)));
+    let (found, known): (Vec<_>, Vec<_>) = pairs.unzip();
+    let Some(alignment) = align(&known, &found, false) else { return (0, 0) };
+    let nodes = calibration.receivers.iter().zip(&truth.receivers).zip(&calibration.receiver_covariance);
+    let (mut covered, mut ellipses) = (0, 0);
+    for ((found, known), covariance) in nodes {
+        let (Some(found), Some([[xx, xy], [_, yy]])) = (found, covariance) else { continue };
+        let at = alignment.transform.apply(*known);
+        let (dx, dy) = (at[0] - found[0], at[1] - found[1]);
+        let squared = (dx * dx * yy - 2.0 * dx * dy * xy + dy * dy * xx) / (xx * yy - xy * xy);
+        ellipses += 1;
+        covered += usize::from(squared <= CHI_SQUARED_95);
+    }
+    (covered, ellipses)
+}
+
+/// The measurements with this share of the cells removed and then this share of the rest replaced by numbers uniform
+/// over the range of all measurements of their transmitter: gross errors.
+pub fn damage(measured: &Pseudoranges, missing: f64, outliers: f64, seed: u64) -> Pseudoranges {
+    let mut rng = Pcg64Mcg::seed_from_u64(seed);
+    let (m, n) = (measured.receivers(), measured.transmitters());
+    let mut values = measured.values().to_vec();
+    let ranges: Vec<(f64, f64)> = (0..n)
+        .map(|j| {
+            let column = (0..m).filter_map(|i| measured.get(i, j));
+            column.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
+        })
+        .collect();
+    let mut order: Vec<usize> = (0..values.len()).filter(|&k| !values[k].is_nan()).collect();
+    order.shuffle(&mut rng);
+    let gone = (missing.clamp(0.0, 1.0) * order.len() as f64).round() as usize;
+    let wrong = (outliers.clamp(0.0, 1.0) * (order.len() - gone) as f64).round() as usize;
+    for &k in &order[..gone] {
+        values[k] = f64::NAN;
+    }
+    for &k in &order[gone..gone + wrong] {
+        let (low, high) = ranges[k % n];
+        values[k] = low + (high - low) * rng.random::<f64>();
+    }
+    measured.with_values(values)
+}
