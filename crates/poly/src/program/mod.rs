@@ -13,7 +13,7 @@ mod interpreter;
 mod lower;
 mod registers;
 mod schedule;
-pub mod series;
+mod series;
 mod taylor;
 #[cfg(test)]
 mod tests;
@@ -25,7 +25,7 @@ pub use interpreter::{Interpreter, InterpreterMemory};
 use crate::exact::Exact;
 use crate::graph::{Graph, Id, Node};
 use crate::system::System;
-use instruction::{Operand, Tape};
+use instruction::{Op, Operand, Tape};
 use lower::Builder;
 use registers::Layout;
 
