@@ -42,6 +42,9 @@ pub struct TaylorTape {
 }
 
 impl TaylorTape {
+    /// Coefficients kept for each value.
+    pub(crate) const WIDTH: usize = WIDTH;
+
     pub(super) fn new(tape: &Tape, layout: Layout) -> TaylorTape {
         let base = layout.inputs() as u32;
         let at = |operand| place(operand, layout, |k| base + k);
@@ -91,7 +94,7 @@ impl TaylorTape {
     }
 
     /// One call of [`Evaluate::taylor`](crate::Evaluate::taylor).
-    pub(super) fn run<S: Scalar>(&self, isa: Isa, memory: &mut [S], order: usize, x: &[S], p: &[S], out: &mut [S]) {
+    pub(crate) fn run<S: Scalar>(&self, isa: Isa, memory: &mut [S], order: usize, x: &[S], p: &[S], out: &mut [S]) {
         assert!((1..WIDTH).contains(&order), "Taylor coefficients are of order 1, 2 or 3, not {order}");
         let [constants, parameters, variables] = self.inputs;
         let (before, rest) = memory.split_at_mut(2 * self.size);
