@@ -29,7 +29,14 @@ pub struct Lu<S: Lane> {
 impl<S: Lane> Lu<S> {
     /// Workspace for matrices of order `n`.
     pub fn new(n: usize, isa: Isa) -> Self {
-        Lu { n, isa, factors: vec![S::zero(); n * n], row_scale: vec![S::real(0.0); n], pivots: vec![0; n * S::LANES], moved: vec![false; n] }
+        Lu {
+            n,
+            isa,
+            factors: vec![S::zero(); n * n],
+            row_scale: vec![S::real(0.0); n],
+            pivots: vec![0; n * S::LANES],
+            moved: vec![false; n],
+        }
     }
 
     /// The order `n` of the matrices.

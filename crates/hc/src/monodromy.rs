@@ -35,7 +35,7 @@ impl Default for MonodromyOptions {
         let mut fibre = FibreOptions::default();
         fibre.tracker.max_steps = 2_000;
         fibre.retries = 1;
-        MonodromyOptions { seed: 0, roots: None, patience: 8, max_solutions: 100_000, fibre: FibreOptions::default() }
+        MonodromyOptions { seed: 0, roots: None, patience: 8, max_solutions: 100_000, fibre }
     }
 }
 

@@ -117,12 +117,7 @@ fn enlarge(system: &System) -> Option<System> {
 }
 
 /// The whole fibre at other parameters, or `None` if a path was lost.
-fn moved<E: poly::Evaluate>(
-    system: &E,
-    fibre: &Fibre,
-    target: &[Complex64],
-    options: &FibreOptions,
-) -> Option<Fibre> {
+fn moved<E: poly::Evaluate>(system: &E, fibre: &Fibre, target: &[Complex64], options: &FibreOptions) -> Option<Fibre> {
     let (ends, counts) = track_fibre(system, fibre, target, options);
     let mut refiner = Refiner::new(system);
     (counts.finite == fibre.len()).then(|| Fibre {
