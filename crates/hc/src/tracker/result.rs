@@ -123,7 +123,7 @@ impl PathSet {
     }
 
     /// Sorts by the index of the start solution.
-    pub(crate) fn sort(&mut self) {
+    pub fn sort(&mut self) {
         let mut order: Vec<usize> = (0..self.len()).collect();
         order.sort_by_key(|&k| self.results[k].path);
         if order.iter().enumerate().all(|(i, &k)| i == k) {

@@ -1,66 +1,104 @@
-//! Charts of the 6r/3s equations: the same network seen with another reference transmitter.
+//! Charts of the 6r/3s equations: the same network with its transmitters in another order.
 //!
-//! A path that comes near a far transmitter is hard in one chart and easy in another. The equations keep their form when the columns of
-//! the measurements are permuted, so a path continues in another chart with the same family: its start solution is
-//! carried over, and its end carried back.
+//! A path that comes near a far transmitter, or near a triangle of transmitters whose first side is isotropic, is hard in one chart and
+//! easy in another. The equations keep their form when the columns of the measurements are permuted, so a path continues in another
+//! chart with the same family: its start solution is carried over, and its end carried back.
 
-use hc::linalg::Lu;
-use hc::poly::Isa;
 use num_complex::Complex64;
 
 /// Number of receivers besides the reference.
 pub(crate) const ROWS: usize = 5;
 /// Number of transmitters.
 pub(crate) const COLUMNS: usize = 3;
-/// Unknowns `p1 p2 p3 H11 H12 H22 b1 b2`.
+/// Unknowns `p1 p2 p3 k l m u v`.
 pub(crate) const UNKNOWNS: usize = 8;
 /// Parameters `f_ij - f_1j`, rows `i = 2..6`.
 pub(crate) const PARAMETERS: usize = ROWS * COLUMNS;
 
-/// Orders of the transmitters; the first one listed is the reference.
-pub(crate) const CHARTS: [[usize; COLUMNS]; 3] = [[0, 1, 2], [1, 2, 0], [2, 0, 1]];
+/// Orders of the transmitters, that of the data first.
+pub(crate) const CHARTS: [[usize; COLUMNS]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [1, 0, 2], [0, 2, 1], [2, 1, 0]];
 
 /// Parameters with columns in the order of a chart.
 pub(crate) fn permute_parameters(f: &[Complex64], chart: &[usize; COLUMNS]) -> Vec<Complex64> {
     (0..ROWS).flat_map(|i| chart.map(|j| f[i * COLUMNS + j])).collect()
 }
 
-/// Carries a solution over into a chart: `p` permuted, `H` and `b` from the equations (C), which are linear in them.
+/// Carries a solution over into a chart.
 ///
-/// `f` are the parameters in the chart. Not finite where the five equations are dependent.
-pub(crate) fn enter(f: &[Complex64], chart: &[usize; COLUMNS], x: &[Complex64]) -> [Complex64; UNKNOWNS] {
-    with_linear_part(f, chart.map(|j| x[j]))
+/// In the basis `L e_1 = -2 (s_2 - s_1)`, `L e_2 = -2 (s_3 - s_1)` with Gram matrix `G = L'L` the transmitters are `b`, `b - e_1 / 2` and
+/// `b - e_2 / 2`. The basis of the chart is `L T` with an integer matrix `T` of determinant one or minus one, so
+/// `G' = T' G T` and `b' = T^{-1} s`, `s` the new first transmitter; `det G = 1 / (k m)` stays.
+pub(crate) fn enter(chart: &[usize; COLUMNS], x: &[Complex64]) -> [Complex64; UNKNOWNS] {
+    let &[_, _, _, k, l, m, u, v] = x else { return [Complex64::new(f64::NAN, 0.0); UNKNOWNS] };
+    let b = [u - l * v, v];
+    // Twice the displacement of each transmitter from the first, in the basis: integers.
+    const SHIFT: [[f64; 2]; COLUMNS] = [[0.0, 0.0], [-1.0, 0.0], [0.0, -1.0]];
+    let [first, second, third] = chart.map(|j| SHIFT[j]);
+    let column = |to: [f64; 2]| [first[0] - to[0], first[1] - to[1]];
+    let (t1, t2) = (column(second), column(third));
+    let det = t1[0] * t2[1] - t2[0] * t1[1];
+    // t' G s with G = (1, l; l, l^2) / k + (0, 0; 0, 1) / m
+    let gram = |s: [f64; 2], t: [f64; 2]| (s[0] + l * s[1]) * (t[0] + l * t[1]) / k + s[1] * t[1] / m;
+    let g11 = gram(t1, t1);
+    let l_new = gram(t1, t2) / g11;
+    let s = [b[0] + 0.5 * first[0], b[1] + 0.5 * first[1]];
+    let b_new = [(t2[1] * s[0] - t2[0] * s[1]) / det, (t1[0] * s[1] - t1[1] * s[0]) / det];
+    let p = chart.map(|j| x[j]);
+    [p[0], p[1], p[2], 1.0 / g11, l_new, k * m * g11, b_new[0] + l_new * b_new[1], b_new[1]]
 }
 
-/// Carries a solution of a chart back into the first one; `f` are the parameters there.
-pub(crate) fn leave(f: &[Complex64], chart: &[usize; COLUMNS], x: &[Complex64]) -> [Complex64; UNKNOWNS] {
-    let mut p = [Complex64::new(0.0, 0.0); COLUMNS];
-    chart.iter().enumerate().for_each(|(k, &j)| p[j] = x[k]);
-    with_linear_part(f, p)
+/// Carries a solution of a chart back.
+pub(crate) fn leave(chart: &[usize; COLUMNS], x: &[Complex64]) -> [Complex64; UNKNOWNS] {
+    let mut inverse = [0; COLUMNS];
+    chart.iter().enumerate().for_each(|(k, &j)| inverse[j] = k);
+    enter(&inverse, x)
 }
 
-/// The rows `(q_i1, D_i1, D_i2)`, `q_ij = f_ij (f_ij - 2 p_j)`, `D_ik = q_i,k+1 - q_i1`.
-pub(crate) fn compaction(f: &[Complex64], p: &[Complex64; COLUMNS]) -> [[Complex64; 3]; ROWS] {
-    std::array::from_fn(|i| {
-        let q: [Complex64; COLUMNS] = std::array::from_fn(|j| {
-            let f = f[i * COLUMNS + j];
-            f * (f - 2.0 * p[j])
-        });
-        [q[0], q[1] - q[0], q[2] - q[0]]
-    })
-}
+#[cfg(test)]
+mod tests {
+    use super::{CHARTS, PARAMETERS, UNKNOWNS, enter, leave, permute_parameters};
+    use crate::generated::six_three;
+    use hc::poly::Evaluate;
+    use hc::poly::Isa;
+    use hc::random::Random;
+    use num_complex::Complex64;
 
-fn with_linear_part(f: &[Complex64], p: [Complex64; COLUMNS]) -> [Complex64; UNKNOWNS] {
-    let rows = compaction(f, &p);
-    let mut matrix = [Complex64::new(0.0, 0.0); ROWS * ROWS];
-    let mut b = [Complex64::new(0.0, 0.0); ROWS];
-    for (i, [q, d1, d2]) in rows.iter().enumerate() {
-        let row = [d1 * d1, 2.0 * d1 * d2, d2 * d2, -2.0 * d1, -2.0 * d2];
-        (0..ROWS).for_each(|j| matrix[j * ROWS + i] = row[j]);
-        b[i] = *q;
+    #[test]
+    fn solutions_stay_solutions_in_every_chart() {
+        let pair = |&[re, im]: &[f64; 2]| Complex64::new(re, im);
+        let f: Vec<Complex64> = six_three::PARAMETERS.iter().map(pair).collect();
+        let all: Vec<Complex64> = six_three::SOLUTIONS.iter().map(pair).collect();
+        let mut memory = six_three::System.memory(Isa::Portable);
+        for x in all.chunks_exact(UNKNOWNS) {
+            for chart in &CHARTS {
+                let y = enter(chart, x);
+                let mut values = [Complex64::new(0.0, 0.0); UNKNOWNS];
+                let mut jacobian = [Complex64::new(0.0, 0.0); UNKNOWNS * UNKNOWNS];
+                six_three::System.jacobian(&mut memory, &y, &permute_parameters(&f, chart), &mut values, &mut jacobian);
+                for i in 0..UNKNOWNS {
+                    let scale: f64 = (0..UNKNOWNS).map(|j| (jacobian[j * UNKNOWNS + i] * y[j]).norm()).sum();
+                    assert!(
+                        values[i].norm() < 1e-9 * scale,
+                        "chart {chart:?}, equation {i}: {}",
+                        values[i].norm() / scale
+                    );
+                }
+                let back = leave(chart, &y);
+                assert!(hc::distinct::relative_distance(&back, x) < 1e-9);
+            }
+        }
     }
-    let mut lu = Lu::new(ROWS, Isa::Portable);
-    lu.factor(&matrix, &[[1.0]; ROWS]);
-    lu.solve(&mut b);
-    [p[0], p[1], p[2], b[0], b[1], b[2], b[3], b[4]]
+
+    #[test]
+    fn charts_there_and_back() {
+        let mut random = Random::new(0, 0);
+        for _ in 0..100 {
+            let x = random.normals(UNKNOWNS);
+            assert_eq!(permute_parameters(&random.normals(PARAMETERS), &CHARTS[3]).len(), PARAMETERS);
+            for chart in &CHARTS {
+                let back = leave(chart, &enter(chart, &x));
+                assert!(hc::distinct::relative_distance(&back, &x) < 1e-8, "{chart:?}");
+            }
+        }
+    }
 }

@@ -1,35 +1,32 @@
 //! From a real root of the dual formulation to positions.
 
-use super::chart::{COLUMNS, ROWS, compaction};
+use super::chart::{COLUMNS, ROWS};
 use crate::network::Network;
-use num_complex::Complex64;
 
-/// The network of a real root `p1 p2 p3 H11 H12 H22 b1 b2` with positive definite `H`, `None` if `H` is not.
+/// The network of a real root `p1 p2 p3 k l m u v`, `None` unless `H` is positive definite, that is `k > 0` and `m > 0`.
 ///
-/// With the upper triangular `L`, `L'L = H^{-1}`: `r_i = L^{-T} D_i'`, `s_1 = L b`, `s_j = s_1 - L e_{j-1} / 2` (paper,
-/// equation (5)); the first receiver is the origin. Offsets are relative to the first receiver: `o_j - f_1j = p_j`.
+/// With the upper triangular `L`, `L'L = H^{-1}`, which is `(1 / sqrt k) (1, l; 0, sqrt(k / m))`: `r_i = L^{-T} D_i'`, `s_1 = L b`,
+/// `s_j = s_1 - L e_{j-1} / 2` (paper, equation (5)); the first receiver is the origin. Offsets are relative to the first
+/// receiver's measurements: `o_j - f_1j = p_j`. `f` holds `f_ij - f_1j` for `i = 2..6`, row-major.
 pub(crate) fn network(f: &[f64], x: &[f64]) -> Option<Network> {
-    let &[p1, p2, p3, h11, h12, h22, b1, b2] = x else { return None };
-    let det = h11 * h22 - h12 * h12;
-    if !(h11 > 0.0 && h22 > 0.0 && det > 0.0) {
+    let &[p1, p2, p3, k, l, m, u, v] = x else { return None };
+    if !(k > 0.0 && m > 0.0) {
         return None;
     }
-    // G = H^{-1} = L'L
-    let g = [h22 / det, -h12 / det, h11 / det];
-    let l11 = g[0].sqrt();
-    let l12 = g[1] / l11;
-    // g22 - l12^2 = 1 / h22, without the cancellation.
-    let l22 = (1.0 / h22).sqrt();
-    let complex_f: Vec<Complex64> = f.iter().map(|&f| f.into()).collect();
-    let rows = compaction(&complex_f, &[p1.into(), p2.into(), p3.into()]);
+    let p = [p1, p2, p3];
+    let (root_k, root_m) = (k.sqrt(), m.sqrt());
     let mut receivers = vec![[0.0, 0.0]];
-    receivers.extend(rows[..ROWS].iter().map(|[_, d1, d2]| {
-        let x = d1.re / l11;
-        [x, (d2.re - l12 * x) / l22]
+    receivers.extend((0..ROWS).map(|i| {
+        let q: [f64; COLUMNS] = std::array::from_fn(|j| {
+            let f = f[i * COLUMNS + j];
+            f * (f - 2.0 * p[j])
+        });
+        let (d1, d2) = (q[1] - q[0], q[2] - q[0]);
+        [d1 * root_k, (d2 - l * d1) * root_m]
     }));
-    let first = [l11 * b1 + l12 * b2, l22 * b2];
-    let transmitters = vec![first, [first[0] - 0.5 * l11, first[1]], [first[0] - 0.5 * l12, first[1] - 0.5 * l22]];
-    let network = Network { receivers, transmitters, offsets: vec![p1, p2, p3] };
-    debug_assert_eq!(network.transmitters.len(), COLUMNS);
+    let first = [u / root_k, v / root_m];
+    let transmitters =
+        vec![first, [first[0] - 0.5 / root_k, first[1]], [first[0] - 0.5 * l / root_k, first[1] - 0.5 / root_m]];
+    let network = Network { receivers, transmitters, offsets: p.to_vec() };
     network.is_finite().then_some(network)
 }

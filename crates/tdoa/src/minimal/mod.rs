@@ -37,6 +37,8 @@ impl Default for SolveOptions {
         paths.tracker.beta_omega = 1.5;
         paths.tracker.beta_tau = 0.75;
         paths.tracker.beta_tau_last = 0.5;
+        // Most paths take 60 steps. One that takes many more is quicker in another chart.
+        paths.tracker.max_steps = 400;
         SolveOptions { tolerance: 1e-6, near_real: 0.0, polish: true, paths }
     }
 }

@@ -6,7 +6,7 @@ use crate::generated::six_three as generated;
 use crate::network::{Candidate, MinimalSolution, PathCounts, RootCounts};
 use crate::pseudoranges::Pseudoranges;
 use hc::distinct::coincidences;
-use hc::fibre::{Fibre, track_fibre_with};
+use hc::fibre::Fibre;
 use hc::homotopy::Segment;
 use hc::poly::{Evaluate, Lanes8};
 use hc::refine::Refiner;
@@ -39,7 +39,7 @@ impl SixThree {
         };
         let fibres = CHARTS.map(|chart| {
             let parameters = permute_parameters(&first.parameters, &chart);
-            let solutions = (0..first.len()).flat_map(|k| enter(&parameters, &chart, first.solution(k))).collect();
+            let solutions: Vec<Complex64> = (0..first.len()).flat_map(|k| enter(&chart, first.solution(k))).collect();
             Fibre { parameters, dimension: UNKNOWNS, solutions }
         });
         SixThree {
@@ -88,37 +88,46 @@ impl SixThree {
         self.paths.results()
     }
 
-    /// Tracks all paths; those that fail in the first chart are tried in the others.
+    /// Tracks all paths. Those that fail, jump or take too many steps are continued in the other charts, then with more and shorter
+    /// steps in all of them.
     fn track(&mut self, target: &[Complex64], options: &SolveOptions) -> PathCounts {
-        let path = Segment::new(&self.fibres[0].parameters, target);
-        let counts = track_fibre_with(&mut self.tracker, &self.fibres[0], &path, &options.paths, &mut self.paths);
-        let mut retracked = counts.retracked;
-        let coincidence = options.paths.coincidence;
+        let settings = &options.paths;
         let mut refiner = Refiner::new(&SYSTEM);
-        for (chart, fibre) in CHARTS.iter().zip(&self.fibres).skip(1) {
-            let lost = doubtful(&self.paths, coincidence);
-            if lost.is_empty() {
-                break;
-            }
-            retracked += lost.len();
-            let path = Segment::new(&fibre.parameters, &permute_parameters(target, chart));
-            self.tracker.set_options(&options.paths.tracker.stricter(1));
-            let mut again = PathSet::new(UNKNOWNS);
-            self.tracker.track(&path, &fibre.solutions, lost, &mut again);
-            for (result, point) in again.iter().filter(|(r, _)| r.end == PathEnd::Success) {
-                let back = refiner.refine(target, &leave(target, chart, point));
-                if back.accuracy < 1e-8 {
-                    self.paths.replace(result.path, *result, &back.point);
+        let mut retracked = 0;
+        let mut lost: Vec<usize> = (0..self.fibres[0].len()).collect();
+        let mut again = PathSet::new(UNKNOWNS);
+        'levels: for level in 0..=settings.retries {
+            let tracker = if level == 0 { settings.tracker.clone() } else { settings.tracker.stricter(level) };
+            self.tracker.set_options(&tracker);
+            for (k, (chart, fibre)) in CHARTS.iter().zip(&self.fibres).enumerate() {
+                let first = level == 0 && k == 0;
+                let path = Segment::new(&fibre.parameters, &permute_parameters(target, chart));
+                let out = if first { &mut self.paths } else { &mut again };
+                out.clear(UNKNOWNS);
+                self.tracker.track(&path, &fibre.solutions, lost.iter().copied(), out);
+                if first {
+                    self.paths.sort();
+                } else {
+                    retracked += lost.len();
+                    for (result, point) in again.iter().filter(|(r, _)| r.end == PathEnd::Success) {
+                        let back = refiner.refine(target, &leave(chart, point));
+                        if back.accuracy < 1e-8 {
+                            self.paths.replace(result.path, *result, &back.point);
+                        }
+                    }
+                }
+                lost = doubtful(&self.paths, settings.coincidence);
+                if lost.is_empty() {
+                    break 'levels;
                 }
             }
         }
-        let lost = doubtful(&self.paths, coincidence).len();
         let at_infinity = self.paths.count(PathEnd::AtInfinity);
         PathCounts {
             tracked: self.paths.len(),
-            finite: self.paths.len() - at_infinity - lost,
+            finite: self.paths.len() - at_infinity - lost.len(),
             at_infinity,
-            failed: lost,
+            failed: lost.len(),
             retracked,
         }
     }
