@@ -26,12 +26,11 @@ pub fn generator(seed: u64, index: usize) -> Pcg64Mcg {
 pub(crate) struct RandomRestarts<'a> {
     observations: &'a Observations,
     restarts: Restarts,
-    nu: f64,
 }
 
 impl<'a> RandomRestarts<'a> {
-    pub(crate) fn new(observations: &'a Observations, nu: f64) -> Self {
-        RandomRestarts { observations, restarts: Restarts::new(observations), nu }
+    pub(crate) fn new(observations: &'a Observations) -> Self {
+        RandomRestarts { observations, restarts: Restarts::new(observations) }
     }
 
     /// A guess of the network's diameter in metres.
@@ -44,7 +43,7 @@ impl Hypotheses for RandomRestarts<'_> {
     fn propose(&self, _: &Pseudoranges, index: usize, seed: u64) -> Vec<PartialNetwork> {
         // From the plain guess to anything: neither is best on all data.
         let spread = [1.0, 0.3, 1.0, 0.7][index % 4];
-        let network = self.restarts.draw(self.observations, spread, self.nu, &mut generator(seed, index));
+        let network = self.restarts.draw(self.observations, spread, &mut generator(seed, index));
         let located = network.transmitters.iter().zip(&network.offsets);
         vec![PartialNetwork {
             receivers: network.receivers.iter().copied().map(Some).collect(),

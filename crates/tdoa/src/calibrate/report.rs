@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::inlier_deviation;
 use super::options::CalibrateOptions;
 use crate::align::{Transform, align, frame};
 use crate::degeneracy::{Usable, list};
@@ -184,7 +185,7 @@ pub(super) struct Solved<'a> {
 impl Solved<'_> {
     pub(super) fn report(&self, options: &CalibrateOptions) -> Calibration {
         let best = &self.ranked[0].network;
-        let estimated = self.estimate_sigma(best, options.inlier_threshold);
+        let estimated = inlier_deviation(self.observations, best, self.deviation, options.inlier_threshold);
         let sigma = self.known.unwrap_or(estimated);
         let inlier = |network: &Network, i: usize, j: usize| -> bool {
             let residual = self.centred.get(i, j).map(|f| f - network.pseudorange(i, j));
@@ -283,32 +284,6 @@ impl Solved<'_> {
         let map = default_frame(&best.receivers);
         calibration.transform(&map);
         calibration
-    }
-
-    /// Deviation of the inliers' residuals, corrected for the unknowns, repeated until the inliers stay the same.
-    fn estimate_sigma(&self, network: &Network, threshold: f64) -> f64 {
-        let mut sigma = self.deviation;
-        for _ in 0..20 {
-            let (mut sum, mut count) = (0.0, 0usize);
-            for o in self.observations.all() {
-                let e = o.residual(network);
-                if e.abs() <= threshold * sigma {
-                    sum += e * e;
-                    count += 1;
-                }
-            }
-            let redundancy = count.saturating_sub(self.observations.unknowns());
-            if redundancy == 0 {
-                return sigma;
-            }
-            // Without the floor, exact data would shrink the limit to nothing and lose inliers to rounding.
-            let next = (sum / redundancy as f64).sqrt().max(0.1 * self.deviation);
-            if (next - sigma).abs() < 1e-6 * sigma {
-                return next;
-            }
-            sigma = next;
-        }
-        sigma
     }
 
     fn planar(&self, best: &Network, estimated: f64, options: &CalibrateOptions, warnings: &mut Vec<String>) -> bool {

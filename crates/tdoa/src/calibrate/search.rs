@@ -7,7 +7,7 @@ use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 use super::hypotheses::Hypotheses;
 use super::options::{CalibrateError, CalibrateOptions, Control, Progress};
 use crate::align::align;
-use crate::loss::Loss;
+use crate::loss::{Loss, SEARCH_NU};
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
@@ -19,8 +19,9 @@ const BATCH: usize = 16;
 /// Proposals of one call that are refined; the others look worse before it.
 const REFINED: usize = 3;
 
-/// A start counts for a basin if its objective is this close to it (units of log-likelihood).
-const SAME_BASIN: f64 = 1.0;
+/// A start counts for the best network if it found the same one with an objective this close to it (units of
+/// log-likelihood): where few measurements are left over, one network has many minima of nearly the same objective.
+const SAME_BASIN: f64 = 20.0;
 
 /// Networks are the same if their nodes differ by less than this share of the network's size, root mean square.
 const SAME_NETWORK: f64 = 0.02;
@@ -39,7 +40,6 @@ pub(crate) struct Found {
 pub(crate) struct Search<'a> {
     pub(crate) measured: &'a Pseudoranges,
     pub(crate) observations: &'a Observations,
-    pub(crate) nu: f64,
     pub(crate) refine: RefineOptions,
     /// Sources of starts, which take turns.
     pub(crate) sources: Vec<&'a dyn Hypotheses>,
@@ -58,7 +58,7 @@ impl Search<'_> {
             let ended: Vec<Option<Refined>> = (starts..starts + batch)
                 .into_par_iter()
                 .map_init(
-                    || Refiner::with_nu(self.observations, self.nu),
+                    || Refiner::new(self.observations, SEARCH_NU),
                     |refiner, index| {
                         if stopped() { None } else { self.start(refiner, index, options.seed) }
                     },
@@ -69,8 +69,11 @@ impl Search<'_> {
             }
             starts += batch;
             refined.extend(ended.into_iter().flatten());
-            let best = refined.iter().map(|r| r.objective).fold(f64::INFINITY, f64::min);
-            let agreeing = refined.iter().filter(|r| r.objective < best + SAME_BASIN).count();
+            let best = refined.iter().min_by(|a, b| a.objective.total_cmp(&b.objective));
+            let agrees = |r: &&Refined| {
+                best.is_some_and(|best| r.objective < best.objective + SAME_BASIN && same(&r.network, &best.network))
+            };
+            let agreeing = refined.iter().filter(agrees).count();
             if let Some(progress) = control.progress {
                 progress(Progress { starts, max_starts: options.max_starts, agreeing });
             }
