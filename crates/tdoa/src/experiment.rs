@@ -8,7 +8,9 @@ use rand_pcg::Pcg64Mcg;
 use serde::Serialize;
 
 use crate::align::align;
-use crate::calibrate::{CalibrateError, CalibrateOptions, Calibration, calibrate};
+use crate::calibrate::{
+    CalibrateError, CalibrateOptions, Calibration, Control, KnownReceivers, calibrate, calibrate_with,
+};
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
@@ -98,6 +100,24 @@ fn judge(
     trial.starts = calibration.starts;
     (trial.covered, trial.ellipses) = coverage(calibration, truth);
     trial
+}
+
+/// The same calibration started at known positions of the receivers instead of searched: the oracle that shows what the
+/// data and the loss allow.
+///
+/// # Errors
+/// As [`calibrate`].
+pub fn oracle(
+    measured: &Pseudoranges,
+    truth: &[Option<[f64; 2]>],
+    options: &CalibrateOptions,
+) -> Result<Calibration, CalibrateError> {
+    let named = measured.receiver_names().iter().cloned().zip(truth.iter().copied());
+    let positions = named.filter_map(|(name, position)| Some((name, position?))).collect();
+    let options = CalibrateOptions { restarts: false, min_starts: 1, max_starts: 1, ..options.clone() };
+    let mut calibration = calibrate_with(measured, &options, &[&KnownReceivers { positions }], &Control::default())?;
+    calibration.compare(truth);
+    Ok(calibration)
 }
 
 /// Root mean square over the receivers of the smallest standard deviation that any unbiased estimate can have, metres.

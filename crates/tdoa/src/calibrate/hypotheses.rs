@@ -16,6 +16,22 @@ pub trait Hypotheses: Sync {
     fn propose(&self, measured: &Pseudoranges, index: usize, seed: u64) -> Vec<PartialNetwork>;
 }
 
+/// Starts from known positions of the receivers: with the truth, the oracle that a calibration is compared with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct KnownReceivers {
+    /// Names and positions in metres; receivers that are not among them are located by multilateration.
+    pub positions: Vec<(String, [f64; 2])>,
+}
+
+impl Hypotheses for KnownReceivers {
+    fn propose(&self, measured: &Pseudoranges, _: usize, _: u64) -> Vec<PartialNetwork> {
+        let find =
+            |name: &String| self.positions.iter().find(|(other, _)| other == name).map(|(_, position)| *position);
+        let receivers = measured.receiver_names().iter().map(find).collect();
+        vec![PartialNetwork { receivers, transmitters: vec![None; measured.transmitters()] }]
+    }
+}
+
 /// A random number generator for one call.
 pub fn generator(seed: u64, index: usize) -> Pcg64Mcg {
     // An odd multiplier keeps different indices of one seed apart.

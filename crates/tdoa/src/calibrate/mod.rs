@@ -7,7 +7,7 @@ mod options;
 mod report;
 mod search;
 
-pub use hypotheses::{Hypotheses, generator};
+pub use hypotheses::{Hypotheses, KnownReceivers, generator};
 pub use minimal::MinimalHypotheses;
 pub use options::{CalibrateError, CalibrateOptions, Control, Progress};
 pub use report::{Alternative, Calibration, Truth};
@@ -78,8 +78,10 @@ pub fn calibrate_with(
         floor: RESOLUTION * diameter / unit,
         ..SEARCH
     };
-    let mut all: Vec<&dyn Hypotheses> = vec![&restarts];
-    all.extend(sources);
+    let mut all: Vec<&dyn Hypotheses> = sources.to_vec();
+    if options.restarts || all.is_empty() {
+        all.insert(0, &restarts);
+    }
     let search = Search {
         measured: &small,
         observations: &small_observations,
