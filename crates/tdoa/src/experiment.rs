@@ -17,9 +17,6 @@ use crate::pseudoranges::Pseudoranges;
 use crate::refine::covariance;
 use crate::simulate::Simulation;
 
-/// 95 % quantile of chi-squared with two degrees of freedom.
-const CHI_SQUARED_95: f64 = 5.991;
-
 /// One calibration of a simulated network.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Trial {
@@ -142,6 +139,7 @@ fn coverage(calibration: &Calibration, truth: &Network) -> (usize, usize) {
     let pairs = calibration.receivers.iter().zip(&truth.receivers).filter_map(|(f, t)| Some(((*f)?, *t)));
     let (found, known): (Vec<_>, Vec<_>) = pairs.unzip();
     let Some(alignment) = align(&known, &found, false) else { return (0, 0) };
+    let Some(radius) = calibration.ellipse_radius else { return (0, 0) };
     let nodes = calibration.receivers.iter().zip(&truth.receivers).zip(&calibration.receiver_covariance);
     let (mut covered, mut ellipses) = (0, 0);
     for ((found, known), covariance) in nodes {
@@ -150,7 +148,7 @@ fn coverage(calibration: &Calibration, truth: &Network) -> (usize, usize) {
         let (dx, dy) = (at[0] - found[0], at[1] - found[1]);
         let squared = (dx * dx * yy - 2.0 * dx * dy * xy + dy * dy * xx) / (xx * yy - xy * xy);
         ellipses += 1;
-        covered += usize::from(squared <= CHI_SQUARED_95);
+        covered += usize::from(squared <= radius * radius);
     }
     (covered, ellipses)
 }

@@ -28,7 +28,15 @@ const CAUCHY: f64 = 2.385;
 /// No measurement is trusted beyond this share of the network's diameter.
 const RESOLUTION: f64 = 1e-9;
 
-/// Calibrates a network from its pseudoranges, by restarts of the robust refinement alone.
+/// Up to this many transmitters the 6r/3s solver is asked too: with few transmitters, restarts miss networks that fit as
+/// well.
+const FEW_TRANSMITTERS: usize = 4;
+
+/// Subsets that it solves then.
+const MINIMAL_CALLS: usize = 6;
+
+/// Calibrates a network from its pseudoranges: by restarts of the robust refinement, and for few transmitters from the
+/// 6r/3s solver's networks on subsets too.
 ///
 /// ```
 /// let mut options = tdoa::SimulateOptions::default();
@@ -79,8 +87,12 @@ pub fn calibrate_with(
         ..SEARCH
     };
     let mut all: Vec<&dyn Hypotheses> = sources.to_vec();
+    let minimal = MinimalHypotheses::at_most(MINIMAL_CALLS);
     if options.restarts || all.is_empty() {
         all.insert(0, &restarts);
+        if small.transmitters() <= FEW_TRANSMITTERS && small.receivers() >= 6 {
+            all.push(&minimal);
+        }
     }
     let search = Search {
         measured: &small,

@@ -16,8 +16,12 @@ use crate::refine::{RefineOptions, Refined, Refiner, extend, residuals};
 /// Starts that run between two looks at the result. Fixed, so that the result does not depend on the number of threads.
 const BATCH: usize = 16;
 
-/// Proposals of one call that are refined; the others look worse before it.
+/// Proposals of one call that are refined in any case, and at most; also the most networks that the search returns.
 const REFINED: usize = 3;
+const MOST_REFINED: usize = 40;
+
+/// Further proposals are refined if they fit about as well as the best (units of log-likelihood).
+const AS_GOOD: f64 = 4.0;
 
 /// A start counts for the best network if it found the same one with an objective this close to it (units of
 /// log-likelihood): where few measurements are left over, one network has many minima of nearly the same objective.
@@ -55,12 +59,12 @@ impl Search<'_> {
         let stopped = || cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed));
         loop {
             let batch = BATCH.min(options.max_starts - starts);
-            let ended: Vec<Option<Refined>> = (starts..starts + batch)
+            let ended: Vec<Vec<Refined>> = (starts..starts + batch)
                 .into_par_iter()
                 .map_init(
                     || Refiner::new(self.observations, SEARCH_NU),
                     |refiner, index| {
-                        if stopped() { None } else { self.start(refiner, index, options.seed) }
+                        if stopped() { Vec::new() } else { self.start(refiner, index, options.seed) }
                     },
                 )
                 .collect();
@@ -83,12 +87,12 @@ impl Search<'_> {
                     return Err(CalibrateError::NotFound(starts));
                 }
                 refined.sort_by(|a, b| a.objective.total_cmp(&b.objective));
-                return Ok(Found { networks: distinct(refined, 12), starts, agreeing });
+                return Ok(Found { networks: distinct(refined, MOST_REFINED), starts, agreeing });
             }
         }
     }
 
-    fn start(&self, refiner: &mut Refiner<'_>, index: usize, seed: u64) -> Option<Refined> {
+    fn start(&self, refiner: &mut Refiner<'_>, index: usize, seed: u64) -> Vec<Refined> {
         let source = self.sources[index % self.sources.len()];
         let proposals = source.propose(self.measured, index / self.sources.len(), seed);
         let mut ranked: Vec<(f64, Network)> = proposals
@@ -98,12 +102,16 @@ impl Search<'_> {
             .map(|network| (self.rank(&network), network))
             .collect();
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
-        ranked
+        let limit = ranked.first().map_or(0.0, |best| best.0 + AS_GOOD);
+        let promising = ranked.iter().take(MOST_REFINED).filter(|(cost, _)| *cost <= limit).count();
+        let mut refined: Vec<Refined> = ranked
             .into_iter()
-            .take(REFINED)
+            .take(promising.max(REFINED))
             .map(|(_, network)| refiner.refine(network, &self.refine))
             .filter(|refined| refined.objective.is_finite() && refined.network.is_finite())
-            .min_by(|a, b| a.objective.total_cmp(&b.objective))
+            .collect();
+        refined.sort_by(|a, b| a.objective.total_cmp(&b.objective));
+        distinct(refined, MOST_REFINED)
     }
 
     fn rank(&self, network: &Network) -> f64 {
