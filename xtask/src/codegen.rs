@@ -150,8 +150,6 @@ fn generate(family: &Family, start: &StartFile, source: &str) -> Result<String> 
     options.source = source.to_owned();
     let mut text = emit(system.program(), &options)?;
     let trace = start.trace_test.map_or("not run".to_owned(), |t| format!("deviation {t:.1e}"));
-    writeln!(text, "\n/// Number of solutions for generic parameters.")?;
-    writeln!(text, "pub const ROOTS: usize = {};", start.solutions.len())?;
     writeln!(text, "/// A generic parameter point, `[re, im]` each.")?;
     writeln!(text, "pub const PARAMETERS: [[f64; 2]; {}] = [", start.parameters.len())?;
     rows(&mut text, &start.parameters)?;

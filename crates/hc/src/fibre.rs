@@ -5,6 +5,7 @@ use crate::homotopy::Segment;
 use crate::tracker::{PathEnd, PathSet, Tracker, TrackerOptions, track};
 use num_complex::Complex64;
 use poly::{Evaluate, Lane};
+use serde::Serialize;
 
 /// The solutions of a family for one parameter point.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,7 +54,7 @@ impl Default for FibreOptions {
 }
 
 /// How the paths of a fibre ended; `tracked` is the sum of the next three.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct PathCounts {
     /// Paths tracked, one a start solution.
     pub tracked: usize,

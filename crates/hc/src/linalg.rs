@@ -1,12 +1,16 @@
 //! LU factorisation of small complex matrices, one or several at once.
 //!
-//! Partial pivoting is done lane by lane with implicitly scaled rows (Skeel 1979): the pivot of column `k` is the
-//! row that maximises `|a_ik| / max_j |a_ij| w_j`, `w` the weights of the unknowns. Lanes therefore never
-//! influence each other, and a lane gives bit for bit what the one-lane factorisation gives.
+//! Threshold pivoting is done lane by lane with implicitly scaled rows (Skeel 1979): rows are measured by
+//! `|a_ik| / max_j |a_ij| w_j`, `w` the weights of the unknowns, and the row on the diagonal stays where it measures at
+//! least [`THRESHOLD`] of the largest. Lanes therefore never influence each other, a lane gives bit for bit what the
+//! one-lane factorisation gives, and rows are moved only where it matters, which is what costs time in lanes.
 
 use num_complex::Complex64;
 use poly::Lane;
 use poly::simd::{Isa, Kernel};
+
+/// Share of the largest candidate from which on the diagonal is kept as the pivot.
+pub const THRESHOLD: f64 = 0.1;
 
 /// Workspace and result of a factorisation of one `n x n` matrix a lane.
 #[derive(Debug)]
@@ -18,12 +22,21 @@ pub struct Lu<S: Lane> {
     row_scale: Vec<S::Real>,
     /// Row exchanged with row `k` in step `k`, for lane `l`: `pivots[k * LANES + l]`.
     pivots: Vec<u32>,
+    /// Whether any lane exchanges rows in step `k`.
+    moved: Vec<bool>,
 }
 
 impl<S: Lane> Lu<S> {
     /// Workspace for matrices of order `n`.
     pub fn new(n: usize, isa: Isa) -> Self {
-        Lu { n, isa, factors: vec![S::zero(); n * n], row_scale: vec![S::real(0.0); n], pivots: vec![0; n * S::LANES] }
+        Lu {
+            n,
+            isa,
+            factors: vec![S::zero(); n * n],
+            row_scale: vec![S::real(0.0); n],
+            pivots: vec![0; n * S::LANES],
+            moved: vec![false; n],
+        }
     }
 
     /// The order `n` of the matrices.
@@ -64,7 +77,7 @@ impl Lu<Complex64> {
             }
             b[k] = s;
         }
-        for k in (0..n).rev() {
+        for k in (0..n).rev().filter(|&k| self.moved[k]) {
             b.swap(k, self.pivots[k] as usize);
         }
     }
@@ -127,32 +140,23 @@ impl<S: Lane> Kernel for Factor<'_, S> {
 
     #[inline(always)]
     fn run(self) {
-        let Lu { n, factors, row_scale, pivots, .. } = self.lu;
+        let Lu { n, factors, row_scale, pivots, moved, .. } = self.lu;
         let n = *n;
         let f = &mut factors[..n * n];
         f.copy_from_slice(&self.a[..n * n]);
 
         let scale = &mut row_scale[..n];
-        scale.fill(S::real(0.0));
-        for j in 0..n {
-            let w = self.weights_sqr[j];
-            let column = &f[j * n..(j + 1) * n];
-            for i in 0..n {
-                let size = column[i].norm_sqr();
-                let row = scale[i].as_mut();
-                for l in 0..S::LANES {
-                    row[l] = row[l].max(size.as_ref()[l] * w.as_ref()[l]);
-                }
+        for i in 0..n {
+            // One row at a time: the running maximum keeps the compiler from vectorising across rows, with gathers, instead of lanes.
+            let mut largest = S::real(0.0);
+            for j in 0..n {
+                largest = S::real_max(&S::real_mul(&f[j * n + i].norm_sqr(), &self.weights_sqr[j]), &largest);
             }
-        }
-        for row in scale.iter_mut() {
-            for r in row.as_mut() {
-                *r = 1.0 / *r;
-            }
+            scale[i] = reciprocal::<S>(&largest);
         }
 
         for k in 0..n {
-            choose_pivots::<S>(n, k, f, scale, &mut pivots[k * S::LANES..(k + 1) * S::LANES]);
+            moved[k] = exchange_rows::<S>(n, k, f, scale, &mut pivots[k * S::LANES..(k + 1) * S::LANES]);
             let inverse = S::inv(&f[k * n + k]);
             f[k * n + k] = inverse;
             for i in k + 1..n {
@@ -171,41 +175,54 @@ impl<S: Lane> Kernel for Factor<'_, S> {
     }
 }
 
-/// Finds the pivot row of column `k` in every lane and exchanges it with row `k`.
+/// Finds the pivot row of column `k` in every lane and exchanges it with row `k` where the diagonal is too small.
 #[inline(always)]
-fn choose_pivots<S: Lane>(n: usize, k: usize, f: &mut [S], scale: &mut [S::Real], pivots: &mut [u32]) {
-    let mut best = S::real(-1.0);
-    for i in k..n {
-        let size = f[k * n + i].norm_sqr();
-        let best = best.as_mut();
-        for l in 0..S::LANES {
-            let score = size.as_ref()[l] * scale[i].as_ref()[l];
-            let better = score > best[l];
-            best[l] = if better { score } else { best[l] };
-            pivots[l] = if better || i == k { i as u32 } else { pivots[l] };
-        }
-    }
+fn exchange_rows<S: Lane>(n: usize, k: usize, f: &mut [S], scale: &mut [S::Real], pivots: &mut [u32]) -> bool {
+    let diagonal = S::real_mul(&f[k * n + k].norm_sqr(), &scale[k]);
+    let (mut best, mut row) = (diagonal, S::real(k as f64));
     for i in k + 1..n {
-        let mut mask = 0u8;
-        for l in 0..S::LANES {
-            mask |= u8::from(pivots[l] == i as u32) << l;
-        }
-        if mask == 0 {
+        let score = S::real_mul(&f[k * n + i].norm_sqr(), &scale[i]);
+        row = S::real_where_less(&best, &score, &S::real(i as f64), &row);
+        best = S::real_max(&score, &best);
+    }
+    let limit = S::real_mul(&best, &S::real(THRESHOLD * THRESHOLD));
+    // The row to exchange with; -1 where the diagonal stays.
+    let row = S::real_where_less(&diagonal, &limit, &row, &S::real(-1.0));
+    let mut moved = false;
+    for i in k + 1..n {
+        if !S::any_equal(&row, i as f64) {
             continue;
         }
+        moved = true;
         for j in 0..n {
             let (upper, lower) = (f[j * n + k], f[j * n + i]);
-            f[j * n + k] = S::select(&upper, &lower, mask);
-            f[j * n + i] = S::select(&lower, &upper, mask);
+            f[j * n + k] = S::select_equal(&upper, &lower, &row, i as f64);
+            f[j * n + i] = S::select_equal(&lower, &upper, &row, i as f64);
         }
         // The scale of the row that moved down goes with it; row k is not looked at again.
         let upper = scale[k];
         for l in 0..S::LANES {
-            if mask >> l & 1 == 1 {
+            if row.as_ref()[l] == i as f64 {
                 scale[i].as_mut()[l] = upper.as_ref()[l];
             }
         }
     }
+    if moved {
+        for l in 0..S::LANES {
+            let row = row.as_ref()[l];
+            pivots[l] = if row < 0.0 { k as u32 } else { row as u32 };
+        }
+    }
+    moved
+}
+
+#[inline(always)]
+fn reciprocal<S: Lane>(a: &S::Real) -> S::Real {
+    let mut out = *a;
+    for l in 0..S::LANES {
+        out.as_mut()[l] = 1.0 / a.as_ref()[l];
+    }
+    out
 }
 
 struct Solve<'a, S: Lane> {
@@ -221,7 +238,7 @@ impl<S: Lane> Kernel for Solve<'_, S> {
         let n = self.lu.n;
         let f = &self.lu.factors[..n * n];
         let b = &mut self.b[..n];
-        for k in 0..n {
+        for k in (0..n).filter(|&k| self.lu.moved[k]) {
             for l in 0..S::LANES {
                 let i = self.lu.pivots[k * S::LANES + l] as usize;
                 if i != k {

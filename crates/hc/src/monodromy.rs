@@ -20,17 +20,22 @@ pub struct MonodromyOptions {
     pub seed: u64,
     /// The known number of solutions, if any: reaching it ends the search. Default `None`.
     pub roots: Option<usize>,
-    /// Loops without a new solution after which the search ends. Default 8.
+    /// Loops without a new solution after which the search ends, provided that they had at least 64 chances (loops times solutions)
+    /// to bring one. Default 8.
     pub patience: usize,
     /// Solutions at most; a fibre that exceeds it is given up. Default 100,000.
     pub max_solutions: usize,
-    /// Settings for the paths.
+    /// Settings for the paths. By default difficult paths are given up early (2,000 steps, one retry): what they would have found, easier
+    /// paths of later loops find.
     pub fibre: FibreOptions,
 }
 
 impl Default for MonodromyOptions {
     fn default() -> Self {
-        MonodromyOptions { seed: 0, roots: None, patience: 8, max_solutions: 100_000, fibre: FibreOptions::default() }
+        let mut fibre = FibreOptions::default();
+        fibre.tracker.max_steps = 2_000;
+        fibre.retries = 1;
+        MonodromyOptions { seed: 0, roots: None, patience: 8, max_solutions: 100_000, fibre }
     }
 }
 
@@ -77,7 +82,7 @@ pub fn monodromy<E: Evaluate>(
         if options.roots.is_some_and(|roots| fibre.len() >= roots) {
             break Stop::RootsReached;
         }
-        if idle >= options.patience {
+        if idle >= options.patience && idle * fibre.len() >= 64 {
             break Stop::NoProgress;
         }
         if fibre.len() > options.max_solutions {
@@ -89,9 +94,6 @@ pub fn monodromy<E: Evaluate>(
         paths += 3 * before;
         go_round(system, &mut fibre, &corners, &accept, options);
         loops += 1;
-        if std::env::var("HCDBG").is_ok() {
-            eprintln!("loop {loops}: {}", fibre.len());
-        }
         idle = if fibre.len() > before { 0 } else { idle + 1 };
     };
     MonodromyResult { fibre, stop, loops, paths }

@@ -40,7 +40,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         Refiner {
             system,
             memory: system.memory(Isa::Portable),
-            precise: system.memory(Isa::Portable),
+            precise: system.memory(Isa::detect()),
             values: vec![zero; n],
             jacobian: vec![zero; n * n],
             lu: Lu::new(n, Isa::Portable),

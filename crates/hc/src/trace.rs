@@ -6,9 +6,10 @@
 //! choice only if, no point is missing (Leykin, Rodriguez, Sottile 2018, arXiv:1608.00540, for the bilinear case).
 //! The further points are found by monodromy in the enlarged family, starting from the fibre.
 
-use crate::fibre::{Fibre, track_fibre};
+use crate::fibre::{Fibre, FibreOptions, track_fibre};
 use crate::monodromy::{MonodromyOptions, monodromy};
 use crate::random::Random;
+use crate::refine::Refiner;
 use crate::tracker::PathEnd;
 use num_complex::Complex64;
 use poly::{CompileError, System};
@@ -30,7 +31,7 @@ pub struct TraceTest {
 impl TraceTest {
     /// Whether the test shows that a fibre of `len` points is whole.
     pub fn passed(&self, len: usize) -> bool {
-        self.complete && self.fibre == len && self.deviation < 1e-8
+        self.complete && self.fibre == len && self.deviation < 1e-6
     }
 }
 
@@ -65,26 +66,31 @@ pub fn trace_test(system: &System, fibre: &Fibre, options: &MonodromyOptions) ->
         solutions.push(Complex64::new(0.0, 0.0));
     }
     let on_fibre = Fibre { parameters: at(0.0), dimension: n + 1, solutions };
-    let Some(start) = moved(&enlarged, &on_fibre, &at(1.0), options) else { return Ok(failed) };
+    let Some(start) = moved(&enlarged, &on_fibre, &at(1.0), &FibreOptions::default()) else { return Ok(failed) };
     let mut search = options.clone();
     search.roots = None;
     let filled = monodromy(&enlarged, &start, |_, _| true, &search).fibre;
+    let careful = FibreOptions::default();
 
     let (Some(second), Some(third)) =
-        (moved(&enlarged, &filled, &at(2.0), options), moved(&enlarged, &filled, &at(3.0), options))
+        (moved(&enlarged, &filled, &at(2.0), &careful), moved(&enlarged, &filled, &at(3.0), &careful))
     else {
         return Ok(failed);
     };
     let sums = [&filled, &second, &third].map(sum);
-    let norm = |f: &dyn Fn(usize) -> Complex64| (0..=n).map(|j| f(j).norm()).fold(0.0, f64::max);
-    let bend = norm(&|j| sums[0][j] - 2.0 * sums[1][j] + sums[2][j]);
-    let motion = norm(&|j| sums[2][j] - sums[0][j]).max(norm(&|j| sums[0][j]));
+    // Each coordinate on its own scale: a few far points would drown the others.
+    let deviation = (0..=n)
+        .map(|j| {
+            let [a, b, c] = [0, 1, 2].map(|k: usize| sums[k][j]);
+            (a - 2.0 * b + c).norm() / (c - a).norm().max(a.norm()).max(f64::MIN_POSITIVE)
+        })
+        .fold(0.0, f64::max);
 
     // Back on lambda = 0: every point of the curve there must be one of the fibre.
-    let (ends, counts) = track_fibre(&enlarged, &filled, &at(0.0), &options.fibre);
+    let (ends, counts) = track_fibre(&enlarged, &filled, &at(0.0), &careful);
     let back = ends.iter().filter(|(r, x)| r.end == PathEnd::Success && x[n].norm() < 1e-8).count();
     Ok(TraceTest {
-        deviation: bend / motion,
+        deviation,
         fibre: back,
         further: filled.len() - back,
         complete: counts.failed == 0 && counts.finite == filled.len(),
@@ -111,17 +117,14 @@ fn enlarge(system: &System) -> Option<System> {
 }
 
 /// The whole fibre at other parameters, or `None` if a path was lost.
-fn moved<E: poly::Evaluate>(
-    system: &E,
-    fibre: &Fibre,
-    target: &[Complex64],
-    options: &MonodromyOptions,
-) -> Option<Fibre> {
-    let (ends, counts) = track_fibre(system, fibre, target, &options.fibre);
+fn moved<E: poly::Evaluate>(system: &E, fibre: &Fibre, target: &[Complex64], options: &FibreOptions) -> Option<Fibre> {
+    let (ends, counts) = track_fibre(system, fibre, target, options);
+    let mut refiner = Refiner::new(system);
     (counts.finite == fibre.len()).then(|| Fibre {
         parameters: target.to_vec(),
         dimension: fibre.dimension,
-        solutions: ends.iter().flat_map(|(_, x)| x.iter().copied()).collect(),
+        // To the last digit: the test adds up thousands of points.
+        solutions: ends.iter().flat_map(|(_, x)| refiner.refine(target, x).point).collect(),
     })
 }
 

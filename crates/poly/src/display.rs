@@ -12,7 +12,7 @@ const PRINT_LIMIT: usize = 100_000;
 
 /// How tightly a formula binds.
 const SUM: u8 = 1;
-const PRODUCT: u8 = 2;
+pub(crate) const PRODUCT: u8 = 2;
 const POWER: u8 = 3;
 const ATOM: u8 = 4;
 

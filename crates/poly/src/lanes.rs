@@ -138,6 +138,42 @@ impl Lane for Lanes8 {
         Reals8([r; 8])
     }
     #[inline(always)]
+    fn real_mul(a: &Reals8, b: &Reals8) -> Reals8 {
+        let mut out = Reals8([0.0; 8]);
+        for l in 0..8 {
+            out.0[l] = a.0[l] * b.0[l];
+        }
+        out
+    }
+    #[inline(always)]
+    fn real_max(a: &Reals8, b: &Reals8) -> Reals8 {
+        let mut out = Reals8([0.0; 8]);
+        for l in 0..8 {
+            out.0[l] = if a.0[l] > b.0[l] { a.0[l] } else { b.0[l] };
+        }
+        out
+    }
+    #[inline(always)]
+    fn real_where_less(a: &Reals8, limit: &Reals8, b: &Reals8, c: &Reals8) -> Reals8 {
+        let mut out = Reals8([0.0; 8]);
+        for l in 0..8 {
+            out.0[l] = if a.0[l] < limit.0[l] { b.0[l] } else { c.0[l] };
+        }
+        out
+    }
+    #[inline(always)]
+    fn any_equal(labels: &Reals8, label: f64) -> bool {
+        let mut found = 0u64;
+        for l in 0..8 {
+            found += u64::from(labels.0[l] == label);
+        }
+        found > 0
+    }
+    #[inline(always)]
+    fn select_equal(a: &Self, b: &Self, labels: &Reals8, label: f64) -> Self {
+        lanes!(l => if labels.0[l] == label { b.lane(l) } else { a.lane(l) })
+    }
+    #[inline(always)]
     fn norm_sqr(&self) -> Reals8 {
         let mut out = Reals8([0.0; 8]);
         for l in 0..8 {

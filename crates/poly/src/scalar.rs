@@ -107,6 +107,16 @@ pub trait Lane: Scalar + Copy {
     type Real: Copy + Send + Sync + std::fmt::Debug + AsRef<[f64]> + AsMut<[f64]> + 'static;
     /// The same real number in every lane.
     fn real(r: f64) -> Self::Real;
+    /// `a * b` lane by lane.
+    fn real_mul(a: &Self::Real, b: &Self::Real) -> Self::Real;
+    /// The larger of `a` and `b` lane by lane; `b` where either is not a number.
+    fn real_max(a: &Self::Real, b: &Self::Real) -> Self::Real;
+    /// `b` where `a < limit`, `c` elsewhere, lane by lane.
+    fn real_where_less(a: &Self::Real, limit: &Self::Real, b: &Self::Real, c: &Self::Real) -> Self::Real;
+    /// Whether any lane holds exactly `label`.
+    fn any_equal(labels: &Self::Real, label: f64) -> bool;
+    /// Takes `b` where `labels` holds exactly `label`, `a` elsewhere.
+    fn select_equal(a: &Self, b: &Self, labels: &Self::Real, label: f64) -> Self;
     /// `|a|^2` lane by lane.
     fn norm_sqr(&self) -> Self::Real;
     /// `r * a` lane by lane.
@@ -180,6 +190,26 @@ impl Lane for Complex64 {
     #[inline(always)]
     fn real(r: f64) -> [f64; 1] {
         [r]
+    }
+    #[inline(always)]
+    fn real_mul(a: &[f64; 1], b: &[f64; 1]) -> [f64; 1] {
+        [a[0] * b[0]]
+    }
+    #[inline(always)]
+    fn real_max(a: &[f64; 1], b: &[f64; 1]) -> [f64; 1] {
+        [if a[0] > b[0] { a[0] } else { b[0] }]
+    }
+    #[inline(always)]
+    fn real_where_less(a: &[f64; 1], limit: &[f64; 1], b: &[f64; 1], c: &[f64; 1]) -> [f64; 1] {
+        [if a[0] < limit[0] { b[0] } else { c[0] }]
+    }
+    #[inline(always)]
+    fn any_equal(labels: &[f64; 1], label: f64) -> bool {
+        labels[0] == label
+    }
+    #[inline(always)]
+    fn select_equal(a: &Self, b: &Self, labels: &[f64; 1], label: f64) -> Self {
+        if labels[0] == label { *b } else { *a }
     }
     #[inline(always)]
     fn norm_sqr(&self) -> [f64; 1] {

@@ -2,6 +2,7 @@
 
 use crate::expression::{Arena, Expr, Expressions};
 use crate::graph::Id;
+use crate::polynomial::{Coefficient, Polynomial};
 use crate::program::{CompileError, Interpreter, Program};
 use std::collections::HashSet;
 
@@ -59,6 +60,40 @@ impl System {
             equations.push(formula.id());
         }
         System::from_arena(expressions.into_arena(), equations)
+    }
+
+    /// A system of given polynomials, its unknowns named in order.
+    ///
+    /// # Errors
+    /// If a name is used twice or could not be parsed back, or if a coefficient is not finite.
+    ///
+    /// # Panics
+    /// If a polynomial is not in as many unknowns as there are names.
+    pub fn from_polynomials<R: Coefficient>(
+        names: &[&str],
+        polynomials: &[Polynomial<R>],
+    ) -> Result<System, SystemError> {
+        let mut arena = Arena::default();
+        let unknowns: Vec<Id> = names.iter().map(|name| arena.variable(name)).collect();
+        if let Some(k) = (1..names.len()).find(|&k| names[..k].contains(&names[k])) {
+            return Err(SystemError::Duplicate(names[k].to_owned()));
+        }
+        let mut equations = Vec::with_capacity(polynomials.len());
+        for polynomial in polynomials {
+            assert_eq!(polynomial.variables(), names.len(), "a name for each unknown");
+            let graph = &mut arena.graph;
+            let mut sum = graph.integer(0);
+            for (monomial, coefficient) in polynomial.terms() {
+                let mut term = graph.constant(coefficient.to_exact().ok_or(SystemError::NonFinite)?);
+                for (&unknown, &exponent) in unknowns.iter().zip(monomial.exponents()) {
+                    let power = graph.pow(unknown, exponent);
+                    term = graph.mul(term, power);
+                }
+                sum = graph.add(sum, term);
+            }
+            equations.push(sum);
+        }
+        System::from_arena(arena, equations)
     }
 
     pub(crate) fn from_arena(arena: Arena, equations: Vec<Id>) -> Result<System, SystemError> {

@@ -1,5 +1,7 @@
 //! `tdoa experiment`.
 
+mod clean;
+
 use std::path::PathBuf;
 
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
@@ -18,6 +20,7 @@ pub(crate) struct Arguments {
 #[derive(clap::Subcommand)]
 enum Kind {
     Calibrate(CalibrateArguments),
+    Clean(clean::Arguments),
 }
 
 /// Calibrates random networks in a room of 10 m by 10 m and compares the errors with the Cramer-Rao bound.
@@ -53,7 +56,10 @@ struct CalibrateArguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Kind::Calibrate(arguments) = &arguments.kind;
+    let arguments = match &arguments.kind {
+        Kind::Clean(arguments) => return clean::run(arguments),
+        Kind::Calibrate(arguments) => arguments,
+    };
     let sizes = arguments.configuration.split_once("r/");
     let sizes = sizes.and_then(|(m, n)| Some((m.parse().ok()?, n.strip_suffix('s')?.parse().ok()?)));
     let Some((receivers, transmitters)) = sizes else {

@@ -1,5 +1,7 @@
 //! Trials of the calibration on simulated networks: how far from the truth, compared with what the noise allows.
 
+pub mod clean;
+
 use std::time::Instant;
 
 use rand::seq::SliceRandom;

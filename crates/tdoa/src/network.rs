@@ -1,5 +1,6 @@
 //! The answer: positions and offsets, and what a minimal solver says beside them.
 
+pub use hc::fibre::PathCounts;
 use serde::Serialize;
 
 use crate::pseudoranges::Pseudoranges;
@@ -103,21 +104,6 @@ pub struct Candidate {
     pub physical: bool,
     /// Condition number of the Jacobian at the candidate: how much an error of the data may grow.
     pub condition: f64,
-}
-
-/// How the paths of a homotopy ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-pub struct PathCounts {
-    /// Paths tracked.
-    pub tracked: usize,
-    /// Paths that ended at a finite solution.
-    pub finite: usize,
-    /// Paths shown to diverge.
-    pub at_infinity: usize,
-    /// Paths that ended neither way.
-    pub failed: usize,
-    /// Paths that needed a second attempt, whatever its end.
-    pub retracked: usize,
 }
 
 /// How many roots pass each condition; each is a part of the one before.

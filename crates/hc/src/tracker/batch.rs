@@ -4,7 +4,7 @@
 //! lane in [`Progress`]. A lane that has finished its part of a step is evaluated again at the same point until the others
 //! have finished theirs, so its numbers do not depend on its neighbours. Nothing is allocated in the loop.
 
-use super::kernels::{Correct, Distance, Predict, Radius, Weigh};
+use super::kernels::{Correct, Distance, Negate, Predict, Radius, Take, Weigh};
 use super::options::TrackerOptions;
 use super::progress::{Bounds, MAX_ITERATIONS, Progress, Stage};
 use super::result::{PathEnd, PathSet};
@@ -51,10 +51,10 @@ struct Precise<E: Evaluate> {
 }
 
 impl<E: Evaluate> Precise<E> {
-    fn new(system: &E) -> Self {
+    fn new(system: &E, isa: Isa) -> Self {
         let zero = ComplexDd::from(Complex64::new(0.0, 0.0));
         Precise {
-            memory: system.memory(Isa::Portable),
+            memory: system.memory(isa),
             x: vec![zero; system.variables()],
             p: vec![zero; system.parameters()],
             values: vec![zero; system.equations()],
@@ -99,7 +99,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             rough: zeros(n),
             weights_sqr: vec![S::real(1.0); n],
             inverse_weights_sqr: vec![S::real(1.0); n],
-            precise: Precise::new(system),
+            precise: Precise::new(system, isa),
             valuations: vec![0.0; n],
         }
     }
@@ -191,9 +191,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         }
         self.isa.run(Predict { taylor: &self.taylor, step, radius_sqr, out: &mut self.predicted });
         if fresh != 0 {
-            for j in 0..self.n {
-                self.predicted[j] = S::select(&self.predicted[j], &self.taylor[j], fresh);
-            }
+            self.isa.run(Take { from: &self.taylor[..self.n], mask: fresh, to: &mut self.predicted });
         }
         self.isa.run(Weigh {
             x: &self.predicted,
@@ -238,9 +236,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             if again == 0 {
                 return;
             }
-            for j in 0..self.n {
-                self.point[j] = S::select(&self.point[j], &self.corrected[j], again);
-            }
+            self.isa.run(Take { from: &self.corrected, mask: again, to: &mut self.point });
         }
     }
 
@@ -299,11 +295,9 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             let p = &self.parameters[..(order + 1) * m];
             self.system.taylor(&mut self.memory, order, known, p, &mut next[..n]);
             self.lu.solve(&mut next[..n]);
-            next[..n].iter_mut().for_each(|x| *x = S::neg(x));
+            self.isa.run(Negate { x: &mut next[..n] });
         }
-        for (x, next) in self.taylor.iter_mut().zip(&self.taylor_next) {
-            *x = S::select(x, next, accepted);
-        }
+        self.isa.run(Take { from: &self.taylor_next, mask: accepted, to: &mut self.taylor });
         let radius = self.isa.run(Radius { n, taylor: &self.taylor, inverse_weights_sqr: &self.inverse_weights_sqr });
         for (l, lane) in self.lanes.iter_mut().enumerate() {
             if accepted >> l & 1 == 1 {

@@ -187,6 +187,38 @@ impl<S: Lane> Kernel for Distance<'_, S> {
     }
 }
 
+/// Overwrites `to` with `from` in the lanes of `mask`.
+pub(crate) struct Take<'a, S: Lane> {
+    pub(crate) from: &'a [S],
+    pub(crate) mask: u8,
+    pub(crate) to: &'a mut [S],
+}
+
+impl<S: Lane> Kernel for Take<'_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for (to, from) in self.to.iter_mut().zip(self.from) {
+            *to = S::select(to, from, self.mask);
+        }
+    }
+}
+
+/// Changes the sign of every number.
+pub(crate) struct Negate<'a, S: Lane> {
+    pub(crate) x: &'a mut [S],
+}
+
+impl<S: Lane> Kernel for Negate<'_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        self.x.iter_mut().for_each(|x| *x = S::neg(x));
+    }
+}
+
 #[inline(always)]
 fn norm_sqr<S: Lane>(v: &[S], inverse_weights_sqr: &[S::Real]) -> S::Real {
     let mut norm = S::real(0.0);

@@ -39,12 +39,11 @@ fn cyclic(n: usize) -> System {
 fn katsura(n: usize) -> System {
     System::build(|s| {
         let u: Vec<Expr<'_>> = (0..=n).map(|j| s.variable(&format!("u{j}"))).collect();
-        let at = |j: usize, m: usize| if j > m { j - m } else { m - j };
         let mut equations: Vec<Expr<'_>> = (0..n)
             .map(|m| {
                 let products = (0..=2 * n).filter_map(|shifted| {
                     // The index runs from -n to n.
-                    let (j, k) = (shifted.abs_diff(n), at(shifted, m + n));
+                    let (j, k) = (shifted.abs_diff(n), shifted.abs_diff(m + n));
                     (k <= n).then(|| u[j] * u[k])
                 });
                 s.sum(products) - u[m]
@@ -92,7 +91,7 @@ fn determinant<'a>(matrix: &[Vec<Expr<'a>>], columns: &[usize]) -> Expr<'a> {
     let term = |k: usize| {
         let rest: Vec<usize> = columns.iter().copied().filter(|&c| c != columns[k]).collect();
         let product = matrix[row][columns[k]] * determinant(matrix, &rest);
-        if (row + k) % 2 == 0 { product } else { -product }
+        if (row + k).is_multiple_of(2) { product } else { -product }
     };
     (1..columns.len()).fold(term(0), |sum, k| sum + term(k))
 }

@@ -5,21 +5,94 @@
 
 //! `F(x; p)`: 7 equations, 7 unknowns, 0 parameters, as straight-line code.
 #![cfg_attr(rustfmt, rustfmt_skip)]
-#![allow(unreachable_pub, clippy::all)]
+#![allow(unreachable_pub, unused_imports, clippy::all)]
 use poly::evaluate::Evaluate;
-use poly::program::generated::{Memory, Shape, series};
+use poly::program::generated::{Memory, Op, TaylorTape, code};
 use poly::scalar::Scalar;
 use poly::simd::{Isa, Kernel};
+use std::borrow::Cow;
 /// The system; inputs and outputs are ordered as [`Evaluate`] says.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Cyclic7;
-/// Sizes and constants.
-static SHAPE: Shape = Shape {
-    parameters: 0,
-    variables: 7,
-    constants: &[[-1.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]],
-    live: 0,
-    series: 75,
+/// Real part (high, low) and imaginary part (high, low).
+static CONSTANTS: [[f64; 4]; 2] = [[-1.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]];
+/// Instructions for Taylor coefficients.
+static TAYLOR: TaylorTape = TaylorTape {
+    parameters_only: Cow::Borrowed(&[]),
+    variables_only: Cow::Borrowed(
+        &[
+            code(Op::Add, 0, 9, [2, 3, 2, 2]),
+            code(Op::Add, 0, 10, [4, 9, 4, 4]),
+            code(Op::Add, 0, 11, [5, 10, 5, 5]),
+            code(Op::Add, 0, 12, [6, 11, 6, 6]),
+            code(Op::Add, 0, 13, [7, 12, 7, 7]),
+            code(Op::Add, 0, 14, [8, 13, 8, 8]),
+            code(Op::Mul, 2, 15, [3, 2, 2, 2]),
+            code(Op::Mul, 2, 16, [4, 3, 3, 3]),
+            code(Op::Add, 0, 17, [15, 16, 15, 15]),
+            code(Op::Mul, 2, 18, [5, 4, 4, 4]),
+            code(Op::Add, 0, 19, [17, 18, 17, 17]),
+            code(Op::Mul, 2, 20, [6, 5, 5, 5]),
+            code(Op::Add, 0, 21, [19, 20, 19, 19]),
+            code(Op::Mul, 2, 22, [7, 6, 6, 6]),
+            code(Op::Add, 0, 23, [21, 22, 21, 21]),
+            code(Op::Mul, 2, 24, [8, 7, 7, 7]),
+            code(Op::Add, 0, 25, [23, 24, 23, 23]),
+            code(Op::Mul, 2, 26, [8, 2, 2, 2]),
+            code(Op::Add, 0, 27, [25, 26, 25, 25]),
+            code(Op::Mul, 1, 28, [15, 4, 4, 4]),
+            code(Op::Mul, 1, 29, [16, 5, 5, 5]),
+            code(Op::Add, 0, 30, [28, 29, 28, 28]),
+            code(Op::Mul, 1, 31, [18, 6, 6, 6]),
+            code(Op::Add, 0, 32, [30, 31, 30, 30]),
+            code(Op::Mul, 1, 33, [20, 7, 7, 7]),
+            code(Op::Add, 0, 34, [32, 33, 32, 32]),
+            code(Op::Mul, 1, 35, [22, 8, 8, 8]),
+            code(Op::Add, 0, 36, [34, 35, 34, 34]),
+            code(Op::Mul, 1, 37, [24, 2, 2, 2]),
+            code(Op::Add, 0, 38, [36, 37, 36, 36]),
+            code(Op::Mul, 1, 39, [26, 3, 3, 3]),
+            code(Op::Add, 0, 40, [38, 39, 38, 38]),
+            code(Op::Mul, 1, 41, [28, 5, 5, 5]),
+            code(Op::Mul, 1, 42, [29, 6, 6, 6]),
+            code(Op::Add, 0, 43, [41, 42, 41, 41]),
+            code(Op::Mul, 1, 44, [31, 7, 7, 7]),
+            code(Op::Add, 0, 45, [43, 44, 43, 43]),
+            code(Op::Mul, 1, 46, [33, 8, 8, 8]),
+            code(Op::Add, 0, 47, [45, 46, 45, 45]),
+            code(Op::Mul, 1, 48, [35, 2, 2, 2]),
+            code(Op::Add, 0, 49, [47, 48, 47, 47]),
+            code(Op::Mul, 1, 50, [37, 3, 3, 3]),
+            code(Op::Add, 0, 51, [49, 50, 49, 49]),
+            code(Op::Mul, 1, 52, [39, 4, 4, 4]),
+            code(Op::Add, 0, 53, [51, 52, 51, 51]),
+            code(Op::Mul, 1, 54, [41, 6, 6, 6]),
+            code(Op::Mul, 1, 55, [42, 7, 7, 7]),
+            code(Op::Add, 0, 56, [54, 55, 54, 54]),
+            code(Op::Mul, 1, 57, [44, 8, 8, 8]),
+            code(Op::Add, 0, 58, [56, 57, 56, 56]),
+            code(Op::Mul, 1, 59, [46, 2, 2, 2]),
+            code(Op::Add, 0, 60, [58, 59, 58, 58]),
+            code(Op::Mul, 1, 61, [48, 3, 3, 3]),
+            code(Op::Add, 0, 62, [60, 61, 60, 60]),
+            code(Op::Mul, 1, 63, [50, 4, 4, 4]),
+            code(Op::Add, 0, 64, [62, 63, 62, 62]),
+            code(Op::Mul, 1, 65, [52, 5, 5, 5]),
+            code(Op::Add, 0, 66, [64, 65, 64, 64]),
+            code(Op::Mul, 1, 67, [54, 7, 7, 7]),
+            code(Op::MulAdd, 1, 68, [55, 8, 67, 8]),
+            code(Op::MulAdd, 1, 69, [57, 2, 68, 2]),
+            code(Op::MulAdd, 1, 70, [59, 3, 69, 3]),
+            code(Op::MulAdd, 1, 71, [61, 4, 70, 4]),
+            code(Op::MulAdd, 1, 72, [63, 5, 71, 5]),
+            code(Op::MulAdd, 1, 73, [65, 6, 72, 6]),
+            code(Op::MulAdd, 1, 74, [67, 8, 0, 8]),
+        ],
+    ),
+    mixed: Cow::Borrowed(&[]),
+    outputs: Cow::Borrowed(&[14, 27, 40, 53, 66, 73, 74]),
+    inputs: [2, 0, 7],
+    size: 75,
 };
 impl Evaluate for Cyclic7 {
     type Memory<S: Scalar> = Memory<S>;
@@ -33,7 +106,7 @@ impl Evaluate for Cyclic7 {
         0
     }
     fn memory<S: Scalar>(&self, isa: Isa) -> Memory<S> {
-        Memory::new(isa, &SHAPE)
+        Memory::new(isa, &CONSTANTS, 0, &TAYLOR)
     }
     fn values<S: Scalar>(
         &self,
@@ -82,44 +155,7 @@ impl Evaluate for Cyclic7 {
         p: &[S],
         out: &mut [S],
     ) {
-        memory.load(&SHAPE, order, x, p);
-        match order {
-            1 => {
-                memory
-                    .isa
-                    .run(
-                        Taylor1Part0(
-                            memory.series.first_chunk_mut().expect("made by Memory::new"),
-                        ),
-                    );
-            }
-            2 => {
-                memory
-                    .isa
-                    .run(
-                        Taylor2Part0(
-                            memory.series.first_chunk_mut().expect("made by Memory::new"),
-                        ),
-                    );
-            }
-            _ => {
-                memory
-                    .isa
-                    .run(
-                        Taylor3Part0(
-                            memory.series.first_chunk_mut().expect("made by Memory::new"),
-                        ),
-                    );
-            }
-        }
-        let out = &mut out[..7];
-        out[0] = memory.series[14][order].clone();
-        out[1] = memory.series[27][order].clone();
-        out[2] = memory.series[40][order].clone();
-        out[3] = memory.series[53][order].clone();
-        out[4] = memory.series[66][order].clone();
-        out[5] = memory.series[73][order].clone();
-        out[6] = memory.series[74][order].clone();
+        memory.taylor(&TAYLOR, order, x, p, out);
     }
 }
 struct Values0<'a, S> {
@@ -416,293 +452,5 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         jacobian[27] = S::mul(&t26, &t79);
         jacobian[34] = S::mul(&t15, &t53);
         jacobian[41] = S::mul(&x[6], &t94);
-    }
-}
-struct Taylor1Part0<'a, S>(&'a mut [[S; 4]; 75]);
-impl<S: Scalar> Kernel for Taylor1Part0<'_, S> {
-    type Output = ();
-    #[inline(always)]
-    fn run(self) {
-        let Self(m) = self;
-        series::add::<S, 0, 0>(m, 9, 2, 3);
-        m[9][1] = S::zero();
-        series::add::<S, 0, 0>(m, 10, 4, 9);
-        m[10][1] = S::zero();
-        series::add::<S, 0, 0>(m, 11, 5, 10);
-        m[11][1] = S::zero();
-        series::add::<S, 0, 0>(m, 12, 6, 11);
-        m[12][1] = S::zero();
-        series::add::<S, 0, 0>(m, 13, 7, 12);
-        m[13][1] = S::zero();
-        series::add::<S, 0, 0>(m, 14, 8, 13);
-        m[14][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 15, 2, 3);
-        m[15][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 16, 3, 4);
-        m[16][1] = S::zero();
-        series::add::<S, 0, 0>(m, 17, 15, 16);
-        m[17][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 18, 4, 5);
-        m[18][1] = S::zero();
-        series::add::<S, 0, 0>(m, 19, 17, 18);
-        m[19][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 20, 5, 6);
-        m[20][1] = S::zero();
-        series::add::<S, 0, 0>(m, 21, 19, 20);
-        m[21][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 22, 6, 7);
-        m[22][1] = S::zero();
-        series::add::<S, 0, 0>(m, 23, 21, 22);
-        m[23][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 24, 7, 8);
-        m[24][1] = S::zero();
-        series::add::<S, 0, 0>(m, 25, 23, 24);
-        m[25][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 26, 2, 8);
-        m[26][1] = S::zero();
-        series::add::<S, 0, 0>(m, 27, 25, 26);
-        m[27][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 28, 4, 15);
-        m[28][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 29, 5, 16);
-        m[29][1] = S::zero();
-        series::add::<S, 0, 0>(m, 30, 28, 29);
-        m[30][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 31, 6, 18);
-        m[31][1] = S::zero();
-        series::add::<S, 0, 0>(m, 32, 30, 31);
-        m[32][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 33, 7, 20);
-        m[33][1] = S::zero();
-        series::add::<S, 0, 0>(m, 34, 32, 33);
-        m[34][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 35, 8, 22);
-        m[35][1] = S::zero();
-        series::add::<S, 0, 0>(m, 36, 34, 35);
-        m[36][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 37, 2, 24);
-        m[37][1] = S::zero();
-        series::add::<S, 0, 0>(m, 38, 36, 37);
-        m[38][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 39, 3, 26);
-        m[39][1] = S::zero();
-        series::add::<S, 0, 0>(m, 40, 38, 39);
-        m[40][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 41, 5, 28);
-        m[41][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 42, 6, 29);
-        m[42][1] = S::zero();
-        series::add::<S, 0, 0>(m, 43, 41, 42);
-        m[43][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 44, 7, 31);
-        m[44][1] = S::zero();
-        series::add::<S, 0, 0>(m, 45, 43, 44);
-        m[45][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 46, 8, 33);
-        m[46][1] = S::zero();
-        series::add::<S, 0, 0>(m, 47, 45, 46);
-        m[47][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 48, 2, 35);
-        m[48][1] = S::zero();
-        series::add::<S, 0, 0>(m, 49, 47, 48);
-        m[49][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 50, 3, 37);
-        m[50][1] = S::zero();
-        series::add::<S, 0, 0>(m, 51, 49, 50);
-        m[51][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 52, 4, 39);
-        m[52][1] = S::zero();
-        series::add::<S, 0, 0>(m, 53, 51, 52);
-        m[53][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 54, 6, 41);
-        m[54][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 55, 7, 42);
-        m[55][1] = S::zero();
-        series::add::<S, 0, 0>(m, 56, 54, 55);
-        m[56][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 57, 8, 44);
-        m[57][1] = S::zero();
-        series::add::<S, 0, 0>(m, 58, 56, 57);
-        m[58][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 59, 2, 46);
-        m[59][1] = S::zero();
-        series::add::<S, 0, 0>(m, 60, 58, 59);
-        m[60][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 61, 3, 48);
-        m[61][1] = S::zero();
-        series::add::<S, 0, 0>(m, 62, 60, 61);
-        m[62][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 63, 4, 50);
-        m[63][1] = S::zero();
-        series::add::<S, 0, 0>(m, 64, 62, 63);
-        m[64][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 65, 5, 52);
-        m[65][1] = S::zero();
-        series::add::<S, 0, 0>(m, 66, 64, 65);
-        m[66][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 67, 7, 54);
-        m[67][1] = S::zero();
-        series::mul_add::<S, 0, 0>(m, 68, 8, 55, 67);
-        m[68][1] = S::zero();
-        series::mul_add::<S, 0, 0>(m, 69, 2, 57, 68);
-        m[69][1] = S::zero();
-        series::mul_add::<S, 0, 0>(m, 70, 3, 59, 69);
-        m[70][1] = S::zero();
-        series::mul_add::<S, 0, 0>(m, 71, 4, 61, 70);
-        m[71][1] = S::zero();
-        series::mul_add::<S, 0, 0>(m, 72, 5, 63, 71);
-        m[72][1] = S::zero();
-        series::mul_add::<S, 0, 0>(m, 73, 6, 65, 72);
-        m[73][1] = S::zero();
-        series::mul_add::<S, 0, 0>(m, 74, 8, 67, 0);
-        m[74][1] = S::zero();
-    }
-}
-struct Taylor2Part0<'a, S>(&'a mut [[S; 4]; 75]);
-impl<S: Scalar> Kernel for Taylor2Part0<'_, S> {
-    type Output = ();
-    #[inline(always)]
-    fn run(self) {
-        let Self(m) = self;
-        series::add::<S, 1, 2>(m, 9, 2, 3);
-        series::add::<S, 1, 2>(m, 10, 4, 9);
-        series::add::<S, 1, 2>(m, 11, 5, 10);
-        series::add::<S, 1, 2>(m, 12, 6, 11);
-        series::add::<S, 1, 2>(m, 13, 7, 12);
-        series::add::<S, 1, 2>(m, 14, 8, 13);
-        series::mul::<S, 1, 2>(m, 15, 2, 3);
-        series::mul::<S, 1, 2>(m, 16, 3, 4);
-        series::add::<S, 1, 2>(m, 17, 15, 16);
-        series::mul::<S, 1, 2>(m, 18, 4, 5);
-        series::add::<S, 1, 2>(m, 19, 17, 18);
-        series::mul::<S, 1, 2>(m, 20, 5, 6);
-        series::add::<S, 1, 2>(m, 21, 19, 20);
-        series::mul::<S, 1, 2>(m, 22, 6, 7);
-        series::add::<S, 1, 2>(m, 23, 21, 22);
-        series::mul::<S, 1, 2>(m, 24, 7, 8);
-        series::add::<S, 1, 2>(m, 25, 23, 24);
-        series::mul::<S, 1, 2>(m, 26, 2, 8);
-        series::add::<S, 1, 2>(m, 27, 25, 26);
-        series::mul::<S, 1, 2>(m, 28, 4, 15);
-        series::mul::<S, 1, 2>(m, 29, 5, 16);
-        series::add::<S, 1, 2>(m, 30, 28, 29);
-        series::mul::<S, 1, 2>(m, 31, 6, 18);
-        series::add::<S, 1, 2>(m, 32, 30, 31);
-        series::mul::<S, 1, 2>(m, 33, 7, 20);
-        series::add::<S, 1, 2>(m, 34, 32, 33);
-        series::mul::<S, 1, 2>(m, 35, 8, 22);
-        series::add::<S, 1, 2>(m, 36, 34, 35);
-        series::mul::<S, 1, 2>(m, 37, 2, 24);
-        series::add::<S, 1, 2>(m, 38, 36, 37);
-        series::mul::<S, 1, 2>(m, 39, 3, 26);
-        series::add::<S, 1, 2>(m, 40, 38, 39);
-        series::mul::<S, 1, 2>(m, 41, 5, 28);
-        series::mul::<S, 1, 2>(m, 42, 6, 29);
-        series::add::<S, 1, 2>(m, 43, 41, 42);
-        series::mul::<S, 1, 2>(m, 44, 7, 31);
-        series::add::<S, 1, 2>(m, 45, 43, 44);
-        series::mul::<S, 1, 2>(m, 46, 8, 33);
-        series::add::<S, 1, 2>(m, 47, 45, 46);
-        series::mul::<S, 1, 2>(m, 48, 2, 35);
-        series::add::<S, 1, 2>(m, 49, 47, 48);
-        series::mul::<S, 1, 2>(m, 50, 3, 37);
-        series::add::<S, 1, 2>(m, 51, 49, 50);
-        series::mul::<S, 1, 2>(m, 52, 4, 39);
-        series::add::<S, 1, 2>(m, 53, 51, 52);
-        series::mul::<S, 1, 2>(m, 54, 6, 41);
-        series::mul::<S, 1, 2>(m, 55, 7, 42);
-        series::add::<S, 1, 2>(m, 56, 54, 55);
-        series::mul::<S, 1, 2>(m, 57, 8, 44);
-        series::add::<S, 1, 2>(m, 58, 56, 57);
-        series::mul::<S, 1, 2>(m, 59, 2, 46);
-        series::add::<S, 1, 2>(m, 60, 58, 59);
-        series::mul::<S, 1, 2>(m, 61, 3, 48);
-        series::add::<S, 1, 2>(m, 62, 60, 61);
-        series::mul::<S, 1, 2>(m, 63, 4, 50);
-        series::add::<S, 1, 2>(m, 64, 62, 63);
-        series::mul::<S, 1, 2>(m, 65, 5, 52);
-        series::add::<S, 1, 2>(m, 66, 64, 65);
-        series::mul::<S, 1, 2>(m, 67, 7, 54);
-        series::mul_add::<S, 1, 2>(m, 68, 8, 55, 67);
-        series::mul_add::<S, 1, 2>(m, 69, 2, 57, 68);
-        series::mul_add::<S, 1, 2>(m, 70, 3, 59, 69);
-        series::mul_add::<S, 1, 2>(m, 71, 4, 61, 70);
-        series::mul_add::<S, 1, 2>(m, 72, 5, 63, 71);
-        series::mul_add::<S, 1, 2>(m, 73, 6, 65, 72);
-        series::mul_add::<S, 1, 2>(m, 74, 8, 67, 0);
-    }
-}
-struct Taylor3Part0<'a, S>(&'a mut [[S; 4]; 75]);
-impl<S: Scalar> Kernel for Taylor3Part0<'_, S> {
-    type Output = ();
-    #[inline(always)]
-    fn run(self) {
-        let Self(m) = self;
-        series::add::<S, 2, 3>(m, 9, 2, 3);
-        series::add::<S, 2, 3>(m, 10, 4, 9);
-        series::add::<S, 2, 3>(m, 11, 5, 10);
-        series::add::<S, 2, 3>(m, 12, 6, 11);
-        series::add::<S, 2, 3>(m, 13, 7, 12);
-        series::add::<S, 2, 3>(m, 14, 8, 13);
-        series::mul::<S, 2, 3>(m, 15, 2, 3);
-        series::mul::<S, 2, 3>(m, 16, 3, 4);
-        series::add::<S, 2, 3>(m, 17, 15, 16);
-        series::mul::<S, 2, 3>(m, 18, 4, 5);
-        series::add::<S, 2, 3>(m, 19, 17, 18);
-        series::mul::<S, 2, 3>(m, 20, 5, 6);
-        series::add::<S, 2, 3>(m, 21, 19, 20);
-        series::mul::<S, 2, 3>(m, 22, 6, 7);
-        series::add::<S, 2, 3>(m, 23, 21, 22);
-        series::mul::<S, 2, 3>(m, 24, 7, 8);
-        series::add::<S, 2, 3>(m, 25, 23, 24);
-        series::mul::<S, 2, 3>(m, 26, 2, 8);
-        series::add::<S, 2, 3>(m, 27, 25, 26);
-        series::mul::<S, 2, 3>(m, 28, 4, 15);
-        series::mul::<S, 2, 3>(m, 29, 5, 16);
-        series::add::<S, 2, 3>(m, 30, 28, 29);
-        series::mul::<S, 2, 3>(m, 31, 6, 18);
-        series::add::<S, 2, 3>(m, 32, 30, 31);
-        series::mul::<S, 2, 3>(m, 33, 7, 20);
-        series::add::<S, 2, 3>(m, 34, 32, 33);
-        series::mul::<S, 2, 3>(m, 35, 8, 22);
-        series::add::<S, 2, 3>(m, 36, 34, 35);
-        series::mul::<S, 2, 3>(m, 37, 2, 24);
-        series::add::<S, 2, 3>(m, 38, 36, 37);
-        series::mul::<S, 2, 3>(m, 39, 3, 26);
-        series::add::<S, 2, 3>(m, 40, 38, 39);
-        series::mul::<S, 2, 3>(m, 41, 5, 28);
-        series::mul::<S, 2, 3>(m, 42, 6, 29);
-        series::add::<S, 2, 3>(m, 43, 41, 42);
-        series::mul::<S, 2, 3>(m, 44, 7, 31);
-        series::add::<S, 2, 3>(m, 45, 43, 44);
-        series::mul::<S, 2, 3>(m, 46, 8, 33);
-        series::add::<S, 2, 3>(m, 47, 45, 46);
-        series::mul::<S, 2, 3>(m, 48, 2, 35);
-        series::add::<S, 2, 3>(m, 49, 47, 48);
-        series::mul::<S, 2, 3>(m, 50, 3, 37);
-        series::add::<S, 2, 3>(m, 51, 49, 50);
-        series::mul::<S, 2, 3>(m, 52, 4, 39);
-        series::add::<S, 2, 3>(m, 53, 51, 52);
-        series::mul::<S, 2, 3>(m, 54, 6, 41);
-        series::mul::<S, 2, 3>(m, 55, 7, 42);
-        series::add::<S, 2, 3>(m, 56, 54, 55);
-        series::mul::<S, 2, 3>(m, 57, 8, 44);
-        series::add::<S, 2, 3>(m, 58, 56, 57);
-        series::mul::<S, 2, 3>(m, 59, 2, 46);
-        series::add::<S, 2, 3>(m, 60, 58, 59);
-        series::mul::<S, 2, 3>(m, 61, 3, 48);
-        series::add::<S, 2, 3>(m, 62, 60, 61);
-        series::mul::<S, 2, 3>(m, 63, 4, 50);
-        series::add::<S, 2, 3>(m, 64, 62, 63);
-        series::mul::<S, 2, 3>(m, 65, 5, 52);
-        series::add::<S, 2, 3>(m, 66, 64, 65);
-        series::mul::<S, 2, 3>(m, 67, 7, 54);
-        series::mul_add::<S, 2, 3>(m, 68, 8, 55, 67);
-        series::mul_add::<S, 2, 3>(m, 69, 2, 57, 68);
-        series::mul_add::<S, 2, 3>(m, 70, 3, 59, 69);
-        series::mul_add::<S, 2, 3>(m, 71, 4, 61, 70);
-        series::mul_add::<S, 2, 3>(m, 72, 5, 63, 71);
-        series::mul_add::<S, 2, 3>(m, 73, 6, 65, 72);
-        series::mul_add::<S, 2, 3>(m, 74, 8, 67, 0);
     }
 }

@@ -5,26 +5,194 @@
 
 //! `F(x; p)`: 9 equations, 9 unknowns, 0 parameters, as straight-line code.
 #![cfg_attr(rustfmt, rustfmt_skip)]
-#![allow(unreachable_pub, clippy::all)]
+#![allow(unreachable_pub, unused_imports, clippy::all)]
 use poly::evaluate::Evaluate;
-use poly::program::generated::{Memory, Shape, series};
+use poly::program::generated::{Memory, Op, TaylorTape, code};
 use poly::scalar::Scalar;
 use poly::simd::{Isa, Kernel};
+use std::borrow::Cow;
 /// The system; inputs and outputs are ordered as [`Evaluate`] says.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Katsura8;
-/// Sizes and constants.
-static SHAPE: Shape = Shape {
-    parameters: 0,
-    variables: 9,
-    constants: &[
-        [2.0, 0.0, 0.0, 0.0],
-        [-1.0, 0.0, 0.0, 0.0],
-        [1.0, 0.0, 0.0, 0.0],
-        [4.0, 0.0, 0.0, 0.0],
-    ],
-    live: 0,
-    series: 174,
+/// Real part (high, low) and imaginary part (high, low).
+static CONSTANTS: [[f64; 4]; 4] = [
+    [2.0, 0.0, 0.0, 0.0],
+    [-1.0, 0.0, 0.0, 0.0],
+    [1.0, 0.0, 0.0, 0.0],
+    [4.0, 0.0, 0.0, 0.0],
+];
+/// Instructions for Taylor coefficients.
+static TAYLOR: TaylorTape = TaylorTape {
+    parameters_only: Cow::Borrowed(&[]),
+    variables_only: Cow::Borrowed(
+        &[
+            code(Op::Sqr, 2, 13, [12, 12, 12, 12]),
+            code(Op::Sqr, 2, 14, [11, 11, 11, 11]),
+            code(Op::Add, 0, 15, [13, 14, 13, 13]),
+            code(Op::Sqr, 2, 16, [10, 10, 10, 10]),
+            code(Op::Add, 0, 17, [15, 16, 15, 15]),
+            code(Op::Sqr, 2, 18, [9, 9, 9, 9]),
+            code(Op::Add, 0, 19, [17, 18, 17, 17]),
+            code(Op::Sqr, 2, 20, [8, 8, 8, 8]),
+            code(Op::Add, 0, 21, [19, 20, 19, 19]),
+            code(Op::Sqr, 2, 22, [7, 7, 7, 7]),
+            code(Op::Add, 0, 23, [21, 22, 21, 21]),
+            code(Op::Sqr, 2, 24, [6, 6, 6, 6]),
+            code(Op::Add, 0, 25, [23, 24, 23, 23]),
+            code(Op::Sqr, 2, 26, [5, 5, 5, 5]),
+            code(Op::Add, 0, 27, [25, 26, 25, 25]),
+            code(Op::Sqr, 2, 28, [4, 4, 4, 4]),
+            code(Op::Add, 0, 29, [27, 28, 27, 27]),
+            code(Op::Add, 0, 30, [26, 29, 26, 26]),
+            code(Op::Add, 0, 31, [24, 30, 24, 24]),
+            code(Op::Add, 0, 32, [22, 31, 22, 22]),
+            code(Op::Add, 0, 33, [20, 32, 20, 20]),
+            code(Op::Add, 0, 34, [18, 33, 18, 18]),
+            code(Op::Add, 0, 35, [16, 34, 16, 16]),
+            code(Op::Add, 0, 36, [14, 35, 14, 14]),
+            code(Op::Add, 0, 37, [13, 36, 13, 13]),
+            code(Op::Sub, 0, 38, [37, 4, 37, 37]),
+            code(Op::Mul, 2, 39, [12, 11, 11, 11]),
+            code(Op::Mul, 2, 40, [11, 10, 10, 10]),
+            code(Op::Add, 0, 41, [39, 40, 39, 39]),
+            code(Op::Mul, 2, 42, [10, 9, 9, 9]),
+            code(Op::Add, 0, 43, [41, 42, 41, 41]),
+            code(Op::Mul, 2, 44, [9, 8, 8, 8]),
+            code(Op::Add, 0, 45, [43, 44, 43, 43]),
+            code(Op::Mul, 2, 46, [8, 7, 7, 7]),
+            code(Op::Add, 0, 47, [45, 46, 45, 45]),
+            code(Op::Mul, 2, 48, [7, 6, 6, 6]),
+            code(Op::Add, 0, 49, [47, 48, 47, 47]),
+            code(Op::Mul, 2, 50, [6, 5, 5, 5]),
+            code(Op::Add, 0, 51, [49, 50, 49, 49]),
+            code(Op::Mul, 2, 52, [5, 4, 4, 4]),
+            code(Op::Add, 0, 53, [51, 52, 51, 51]),
+            code(Op::Add, 0, 54, [52, 53, 52, 52]),
+            code(Op::Add, 0, 55, [50, 54, 50, 50]),
+            code(Op::Add, 0, 56, [48, 55, 48, 48]),
+            code(Op::Add, 0, 57, [46, 56, 46, 46]),
+            code(Op::Add, 0, 58, [44, 57, 44, 44]),
+            code(Op::Add, 0, 59, [42, 58, 42, 42]),
+            code(Op::Add, 0, 60, [40, 59, 40, 40]),
+            code(Op::Add, 0, 61, [39, 60, 39, 39]),
+            code(Op::Sub, 0, 62, [61, 5, 61, 61]),
+            code(Op::Mul, 2, 63, [12, 10, 10, 10]),
+            code(Op::Mul, 2, 64, [11, 9, 9, 9]),
+            code(Op::Add, 0, 65, [63, 64, 63, 63]),
+            code(Op::Mul, 2, 66, [10, 8, 8, 8]),
+            code(Op::Add, 0, 67, [65, 66, 65, 65]),
+            code(Op::Mul, 2, 68, [9, 7, 7, 7]),
+            code(Op::Add, 0, 69, [67, 68, 67, 67]),
+            code(Op::Mul, 2, 70, [8, 6, 6, 6]),
+            code(Op::Add, 0, 71, [69, 70, 69, 69]),
+            code(Op::Mul, 2, 72, [7, 5, 5, 5]),
+            code(Op::Add, 0, 73, [71, 72, 71, 71]),
+            code(Op::Mul, 2, 74, [6, 4, 4, 4]),
+            code(Op::Add, 0, 75, [73, 74, 73, 73]),
+            code(Op::Add, 0, 76, [26, 75, 26, 26]),
+            code(Op::Add, 0, 77, [74, 76, 74, 74]),
+            code(Op::Add, 0, 78, [72, 77, 72, 72]),
+            code(Op::Add, 0, 79, [70, 78, 70, 70]),
+            code(Op::Add, 0, 80, [68, 79, 68, 68]),
+            code(Op::Add, 0, 81, [66, 80, 66, 66]),
+            code(Op::Add, 0, 82, [64, 81, 64, 64]),
+            code(Op::Add, 0, 83, [63, 82, 63, 63]),
+            code(Op::Sub, 0, 84, [83, 6, 83, 83]),
+            code(Op::Mul, 2, 85, [12, 9, 9, 9]),
+            code(Op::Mul, 2, 86, [11, 8, 8, 8]),
+            code(Op::Add, 0, 87, [85, 86, 85, 85]),
+            code(Op::Mul, 2, 88, [10, 7, 7, 7]),
+            code(Op::Add, 0, 89, [87, 88, 87, 87]),
+            code(Op::Mul, 2, 90, [9, 6, 6, 6]),
+            code(Op::Add, 0, 91, [89, 90, 89, 89]),
+            code(Op::Mul, 2, 92, [8, 5, 5, 5]),
+            code(Op::Add, 0, 93, [91, 92, 91, 91]),
+            code(Op::Mul, 2, 94, [7, 4, 4, 4]),
+            code(Op::Add, 0, 95, [93, 94, 93, 93]),
+            code(Op::Add, 0, 96, [50, 95, 50, 50]),
+            code(Op::Add, 0, 97, [50, 96, 50, 50]),
+            code(Op::Add, 0, 98, [94, 97, 94, 94]),
+            code(Op::Add, 0, 99, [92, 98, 92, 92]),
+            code(Op::Add, 0, 100, [90, 99, 90, 90]),
+            code(Op::Add, 0, 101, [88, 100, 88, 88]),
+            code(Op::Add, 0, 102, [86, 101, 86, 86]),
+            code(Op::Add, 0, 103, [85, 102, 85, 85]),
+            code(Op::Sub, 0, 104, [103, 7, 103, 103]),
+            code(Op::Mul, 2, 105, [12, 8, 8, 8]),
+            code(Op::Mul, 2, 106, [11, 7, 7, 7]),
+            code(Op::Add, 0, 107, [105, 106, 105, 105]),
+            code(Op::Mul, 2, 108, [10, 6, 6, 6]),
+            code(Op::Add, 0, 109, [107, 108, 107, 107]),
+            code(Op::Mul, 2, 110, [9, 5, 5, 5]),
+            code(Op::Add, 0, 111, [109, 110, 109, 109]),
+            code(Op::Mul, 2, 112, [8, 4, 4, 4]),
+            code(Op::Add, 0, 113, [111, 112, 111, 111]),
+            code(Op::Add, 0, 114, [72, 113, 72, 72]),
+            code(Op::Add, 0, 115, [24, 114, 24, 24]),
+            code(Op::Add, 0, 116, [72, 115, 72, 72]),
+            code(Op::Add, 0, 117, [112, 116, 112, 112]),
+            code(Op::Add, 0, 118, [110, 117, 110, 110]),
+            code(Op::Add, 0, 119, [108, 118, 108, 108]),
+            code(Op::Add, 0, 120, [106, 119, 106, 106]),
+            code(Op::Add, 0, 121, [105, 120, 105, 105]),
+            code(Op::Sub, 0, 122, [121, 8, 121, 121]),
+            code(Op::Mul, 2, 123, [12, 7, 7, 7]),
+            code(Op::Mul, 2, 124, [11, 6, 6, 6]),
+            code(Op::Add, 0, 125, [123, 124, 123, 123]),
+            code(Op::Mul, 2, 126, [10, 5, 5, 5]),
+            code(Op::Add, 0, 127, [125, 126, 125, 125]),
+            code(Op::Mul, 2, 128, [9, 4, 4, 4]),
+            code(Op::Add, 0, 129, [127, 128, 127, 127]),
+            code(Op::Add, 0, 130, [92, 129, 92, 92]),
+            code(Op::Add, 0, 131, [48, 130, 48, 48]),
+            code(Op::Add, 0, 132, [48, 131, 48, 48]),
+            code(Op::Add, 0, 133, [92, 132, 92, 92]),
+            code(Op::Add, 0, 134, [128, 133, 128, 128]),
+            code(Op::Add, 0, 135, [126, 134, 126, 126]),
+            code(Op::Add, 0, 136, [124, 135, 124, 124]),
+            code(Op::Add, 0, 137, [123, 136, 123, 123]),
+            code(Op::Sub, 0, 138, [137, 9, 137, 137]),
+            code(Op::Mul, 2, 139, [12, 6, 6, 6]),
+            code(Op::Mul, 2, 140, [11, 5, 5, 5]),
+            code(Op::Add, 0, 141, [139, 140, 139, 139]),
+            code(Op::Mul, 2, 142, [10, 4, 4, 4]),
+            code(Op::Add, 0, 143, [141, 142, 141, 141]),
+            code(Op::Add, 0, 144, [110, 143, 110, 110]),
+            code(Op::Add, 0, 145, [70, 144, 70, 70]),
+            code(Op::Add, 0, 146, [22, 145, 22, 22]),
+            code(Op::Add, 0, 147, [70, 146, 70, 70]),
+            code(Op::Add, 0, 148, [110, 147, 110, 110]),
+            code(Op::Add, 0, 149, [142, 148, 142, 142]),
+            code(Op::Add, 0, 150, [140, 149, 140, 140]),
+            code(Op::Add, 0, 151, [139, 150, 139, 139]),
+            code(Op::Sub, 0, 152, [151, 10, 151, 151]),
+            code(Op::Mul, 2, 153, [12, 5, 5, 5]),
+            code(Op::Mul, 2, 154, [11, 4, 4, 4]),
+            code(Op::Add, 0, 155, [153, 154, 153, 153]),
+            code(Op::Add, 0, 156, [126, 155, 126, 126]),
+            code(Op::Add, 0, 157, [90, 156, 90, 90]),
+            code(Op::Add, 0, 158, [46, 157, 46, 46]),
+            code(Op::Add, 0, 159, [46, 158, 46, 46]),
+            code(Op::Add, 0, 160, [90, 159, 90, 90]),
+            code(Op::Add, 0, 161, [126, 160, 126, 126]),
+            code(Op::Add, 0, 162, [154, 161, 154, 154]),
+            code(Op::Add, 0, 163, [153, 162, 153, 153]),
+            code(Op::Sub, 0, 164, [163, 11, 163, 163]),
+            code(Op::Add, 0, 165, [5, 6, 5, 5]),
+            code(Op::Add, 0, 166, [7, 165, 7, 7]),
+            code(Op::Add, 0, 167, [8, 166, 8, 8]),
+            code(Op::Add, 0, 168, [9, 167, 9, 9]),
+            code(Op::Add, 0, 169, [10, 168, 10, 10]),
+            code(Op::Add, 0, 170, [11, 169, 11, 11]),
+            code(Op::Add, 0, 171, [12, 170, 12, 12]),
+            code(Op::MulRealAdd, 0, 172, [171, 0, 4, 171]),
+            code(Op::Add, 0, 173, [1, 172, 1, 1]),
+        ],
+    ),
+    mixed: Cow::Borrowed(&[]),
+    outputs: Cow::Borrowed(&[38, 62, 84, 104, 122, 138, 152, 164, 173]),
+    inputs: [4, 0, 9],
+    size: 174,
 };
 impl Evaluate for Katsura8 {
     type Memory<S: Scalar> = Memory<S>;
@@ -38,7 +206,7 @@ impl Evaluate for Katsura8 {
         0
     }
     fn memory<S: Scalar>(&self, isa: Isa) -> Memory<S> {
-        Memory::new(isa, &SHAPE)
+        Memory::new(isa, &CONSTANTS, 0, &TAYLOR)
     }
     fn values<S: Scalar>(
         &self,
@@ -87,46 +255,7 @@ impl Evaluate for Katsura8 {
         p: &[S],
         out: &mut [S],
     ) {
-        memory.load(&SHAPE, order, x, p);
-        match order {
-            1 => {
-                memory
-                    .isa
-                    .run(
-                        Taylor1Part0(
-                            memory.series.first_chunk_mut().expect("made by Memory::new"),
-                        ),
-                    );
-            }
-            2 => {
-                memory
-                    .isa
-                    .run(
-                        Taylor2Part0(
-                            memory.series.first_chunk_mut().expect("made by Memory::new"),
-                        ),
-                    );
-            }
-            _ => {
-                memory
-                    .isa
-                    .run(
-                        Taylor3Part0(
-                            memory.series.first_chunk_mut().expect("made by Memory::new"),
-                        ),
-                    );
-            }
-        }
-        let out = &mut out[..9];
-        out[0] = memory.series[38][order].clone();
-        out[1] = memory.series[62][order].clone();
-        out[2] = memory.series[84][order].clone();
-        out[3] = memory.series[104][order].clone();
-        out[4] = memory.series[122][order].clone();
-        out[5] = memory.series[138][order].clone();
-        out[6] = memory.series[152][order].clone();
-        out[7] = memory.series[164][order].clone();
-        out[8] = memory.series[173][order].clone();
+        memory.taylor(&TAYLOR, order, x, p, out);
     }
 }
 struct Values0<'a, S> {
@@ -584,673 +713,5 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t191 = S::add(&x[8], &t190);
         let t192 = S::mul_real_add(&t191, &c0, &x[0]);
         values[8] = S::add(&c1, &t192);
-    }
-}
-struct Taylor1Part0<'a, S>(&'a mut [[S; 4]; 174]);
-impl<S: Scalar> Kernel for Taylor1Part0<'_, S> {
-    type Output = ();
-    #[inline(always)]
-    fn run(self) {
-        let Self(m) = self;
-        series::sqr::<S, 0, 0>(m, 13, 12);
-        m[13][1] = S::zero();
-        series::sqr::<S, 0, 0>(m, 14, 11);
-        m[14][1] = S::zero();
-        series::add::<S, 0, 0>(m, 15, 13, 14);
-        m[15][1] = S::zero();
-        series::sqr::<S, 0, 0>(m, 16, 10);
-        m[16][1] = S::zero();
-        series::add::<S, 0, 0>(m, 17, 15, 16);
-        m[17][1] = S::zero();
-        series::sqr::<S, 0, 0>(m, 18, 9);
-        m[18][1] = S::zero();
-        series::add::<S, 0, 0>(m, 19, 17, 18);
-        m[19][1] = S::zero();
-        series::sqr::<S, 0, 0>(m, 20, 8);
-        m[20][1] = S::zero();
-        series::add::<S, 0, 0>(m, 21, 19, 20);
-        m[21][1] = S::zero();
-        series::sqr::<S, 0, 0>(m, 22, 7);
-        m[22][1] = S::zero();
-        series::add::<S, 0, 0>(m, 23, 21, 22);
-        m[23][1] = S::zero();
-        series::sqr::<S, 0, 0>(m, 24, 6);
-        m[24][1] = S::zero();
-        series::add::<S, 0, 0>(m, 25, 23, 24);
-        m[25][1] = S::zero();
-        series::sqr::<S, 0, 0>(m, 26, 5);
-        m[26][1] = S::zero();
-        series::add::<S, 0, 0>(m, 27, 25, 26);
-        m[27][1] = S::zero();
-        series::sqr::<S, 0, 0>(m, 28, 4);
-        m[28][1] = S::zero();
-        series::add::<S, 0, 0>(m, 29, 27, 28);
-        m[29][1] = S::zero();
-        series::add::<S, 0, 0>(m, 30, 26, 29);
-        m[30][1] = S::zero();
-        series::add::<S, 0, 0>(m, 31, 24, 30);
-        m[31][1] = S::zero();
-        series::add::<S, 0, 0>(m, 32, 22, 31);
-        m[32][1] = S::zero();
-        series::add::<S, 0, 0>(m, 33, 20, 32);
-        m[33][1] = S::zero();
-        series::add::<S, 0, 0>(m, 34, 18, 33);
-        m[34][1] = S::zero();
-        series::add::<S, 0, 0>(m, 35, 16, 34);
-        m[35][1] = S::zero();
-        series::add::<S, 0, 0>(m, 36, 14, 35);
-        m[36][1] = S::zero();
-        series::add::<S, 0, 0>(m, 37, 13, 36);
-        m[37][1] = S::zero();
-        series::sub::<S, 0, 0>(m, 38, 37, 4);
-        m[38][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 39, 11, 12);
-        m[39][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 40, 10, 11);
-        m[40][1] = S::zero();
-        series::add::<S, 0, 0>(m, 41, 39, 40);
-        m[41][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 42, 9, 10);
-        m[42][1] = S::zero();
-        series::add::<S, 0, 0>(m, 43, 41, 42);
-        m[43][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 44, 8, 9);
-        m[44][1] = S::zero();
-        series::add::<S, 0, 0>(m, 45, 43, 44);
-        m[45][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 46, 7, 8);
-        m[46][1] = S::zero();
-        series::add::<S, 0, 0>(m, 47, 45, 46);
-        m[47][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 48, 6, 7);
-        m[48][1] = S::zero();
-        series::add::<S, 0, 0>(m, 49, 47, 48);
-        m[49][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 50, 5, 6);
-        m[50][1] = S::zero();
-        series::add::<S, 0, 0>(m, 51, 49, 50);
-        m[51][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 52, 4, 5);
-        m[52][1] = S::zero();
-        series::add::<S, 0, 0>(m, 53, 51, 52);
-        m[53][1] = S::zero();
-        series::add::<S, 0, 0>(m, 54, 52, 53);
-        m[54][1] = S::zero();
-        series::add::<S, 0, 0>(m, 55, 50, 54);
-        m[55][1] = S::zero();
-        series::add::<S, 0, 0>(m, 56, 48, 55);
-        m[56][1] = S::zero();
-        series::add::<S, 0, 0>(m, 57, 46, 56);
-        m[57][1] = S::zero();
-        series::add::<S, 0, 0>(m, 58, 44, 57);
-        m[58][1] = S::zero();
-        series::add::<S, 0, 0>(m, 59, 42, 58);
-        m[59][1] = S::zero();
-        series::add::<S, 0, 0>(m, 60, 40, 59);
-        m[60][1] = S::zero();
-        series::add::<S, 0, 0>(m, 61, 39, 60);
-        m[61][1] = S::zero();
-        series::sub::<S, 0, 0>(m, 62, 61, 5);
-        m[62][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 63, 10, 12);
-        m[63][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 64, 9, 11);
-        m[64][1] = S::zero();
-        series::add::<S, 0, 0>(m, 65, 63, 64);
-        m[65][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 66, 8, 10);
-        m[66][1] = S::zero();
-        series::add::<S, 0, 0>(m, 67, 65, 66);
-        m[67][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 68, 7, 9);
-        m[68][1] = S::zero();
-        series::add::<S, 0, 0>(m, 69, 67, 68);
-        m[69][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 70, 6, 8);
-        m[70][1] = S::zero();
-        series::add::<S, 0, 0>(m, 71, 69, 70);
-        m[71][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 72, 5, 7);
-        m[72][1] = S::zero();
-        series::add::<S, 0, 0>(m, 73, 71, 72);
-        m[73][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 74, 4, 6);
-        m[74][1] = S::zero();
-        series::add::<S, 0, 0>(m, 75, 73, 74);
-        m[75][1] = S::zero();
-        series::add::<S, 0, 0>(m, 76, 26, 75);
-        m[76][1] = S::zero();
-        series::add::<S, 0, 0>(m, 77, 74, 76);
-        m[77][1] = S::zero();
-        series::add::<S, 0, 0>(m, 78, 72, 77);
-        m[78][1] = S::zero();
-        series::add::<S, 0, 0>(m, 79, 70, 78);
-        m[79][1] = S::zero();
-        series::add::<S, 0, 0>(m, 80, 68, 79);
-        m[80][1] = S::zero();
-        series::add::<S, 0, 0>(m, 81, 66, 80);
-        m[81][1] = S::zero();
-        series::add::<S, 0, 0>(m, 82, 64, 81);
-        m[82][1] = S::zero();
-        series::add::<S, 0, 0>(m, 83, 63, 82);
-        m[83][1] = S::zero();
-        series::sub::<S, 0, 0>(m, 84, 83, 6);
-        m[84][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 85, 9, 12);
-        m[85][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 86, 8, 11);
-        m[86][1] = S::zero();
-        series::add::<S, 0, 0>(m, 87, 85, 86);
-        m[87][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 88, 7, 10);
-        m[88][1] = S::zero();
-        series::add::<S, 0, 0>(m, 89, 87, 88);
-        m[89][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 90, 6, 9);
-        m[90][1] = S::zero();
-        series::add::<S, 0, 0>(m, 91, 89, 90);
-        m[91][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 92, 5, 8);
-        m[92][1] = S::zero();
-        series::add::<S, 0, 0>(m, 93, 91, 92);
-        m[93][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 94, 4, 7);
-        m[94][1] = S::zero();
-        series::add::<S, 0, 0>(m, 95, 93, 94);
-        m[95][1] = S::zero();
-        series::add::<S, 0, 0>(m, 96, 50, 95);
-        m[96][1] = S::zero();
-        series::add::<S, 0, 0>(m, 97, 50, 96);
-        m[97][1] = S::zero();
-        series::add::<S, 0, 0>(m, 98, 94, 97);
-        m[98][1] = S::zero();
-        series::add::<S, 0, 0>(m, 99, 92, 98);
-        m[99][1] = S::zero();
-        series::add::<S, 0, 0>(m, 100, 90, 99);
-        m[100][1] = S::zero();
-        series::add::<S, 0, 0>(m, 101, 88, 100);
-        m[101][1] = S::zero();
-        series::add::<S, 0, 0>(m, 102, 86, 101);
-        m[102][1] = S::zero();
-        series::add::<S, 0, 0>(m, 103, 85, 102);
-        m[103][1] = S::zero();
-        series::sub::<S, 0, 0>(m, 104, 103, 7);
-        m[104][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 105, 8, 12);
-        m[105][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 106, 7, 11);
-        m[106][1] = S::zero();
-        series::add::<S, 0, 0>(m, 107, 105, 106);
-        m[107][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 108, 6, 10);
-        m[108][1] = S::zero();
-        series::add::<S, 0, 0>(m, 109, 107, 108);
-        m[109][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 110, 5, 9);
-        m[110][1] = S::zero();
-        series::add::<S, 0, 0>(m, 111, 109, 110);
-        m[111][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 112, 4, 8);
-        m[112][1] = S::zero();
-        series::add::<S, 0, 0>(m, 113, 111, 112);
-        m[113][1] = S::zero();
-        series::add::<S, 0, 0>(m, 114, 72, 113);
-        m[114][1] = S::zero();
-        series::add::<S, 0, 0>(m, 115, 24, 114);
-        m[115][1] = S::zero();
-        series::add::<S, 0, 0>(m, 116, 72, 115);
-        m[116][1] = S::zero();
-        series::add::<S, 0, 0>(m, 117, 112, 116);
-        m[117][1] = S::zero();
-        series::add::<S, 0, 0>(m, 118, 110, 117);
-        m[118][1] = S::zero();
-        series::add::<S, 0, 0>(m, 119, 108, 118);
-        m[119][1] = S::zero();
-        series::add::<S, 0, 0>(m, 120, 106, 119);
-        m[120][1] = S::zero();
-        series::add::<S, 0, 0>(m, 121, 105, 120);
-        m[121][1] = S::zero();
-        series::sub::<S, 0, 0>(m, 122, 121, 8);
-        m[122][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 123, 7, 12);
-        m[123][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 124, 6, 11);
-        m[124][1] = S::zero();
-        series::add::<S, 0, 0>(m, 125, 123, 124);
-        m[125][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 126, 5, 10);
-        m[126][1] = S::zero();
-        series::add::<S, 0, 0>(m, 127, 125, 126);
-        m[127][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 128, 4, 9);
-        m[128][1] = S::zero();
-        series::add::<S, 0, 0>(m, 129, 127, 128);
-        m[129][1] = S::zero();
-        series::add::<S, 0, 0>(m, 130, 92, 129);
-        m[130][1] = S::zero();
-        series::add::<S, 0, 0>(m, 131, 48, 130);
-        m[131][1] = S::zero();
-        series::add::<S, 0, 0>(m, 132, 48, 131);
-        m[132][1] = S::zero();
-        series::add::<S, 0, 0>(m, 133, 92, 132);
-        m[133][1] = S::zero();
-        series::add::<S, 0, 0>(m, 134, 128, 133);
-        m[134][1] = S::zero();
-        series::add::<S, 0, 0>(m, 135, 126, 134);
-        m[135][1] = S::zero();
-        series::add::<S, 0, 0>(m, 136, 124, 135);
-        m[136][1] = S::zero();
-        series::add::<S, 0, 0>(m, 137, 123, 136);
-        m[137][1] = S::zero();
-        series::sub::<S, 0, 0>(m, 138, 137, 9);
-        m[138][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 139, 6, 12);
-        m[139][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 140, 5, 11);
-        m[140][1] = S::zero();
-        series::add::<S, 0, 0>(m, 141, 139, 140);
-        m[141][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 142, 4, 10);
-        m[142][1] = S::zero();
-        series::add::<S, 0, 0>(m, 143, 141, 142);
-        m[143][1] = S::zero();
-        series::add::<S, 0, 0>(m, 144, 110, 143);
-        m[144][1] = S::zero();
-        series::add::<S, 0, 0>(m, 145, 70, 144);
-        m[145][1] = S::zero();
-        series::add::<S, 0, 0>(m, 146, 22, 145);
-        m[146][1] = S::zero();
-        series::add::<S, 0, 0>(m, 147, 70, 146);
-        m[147][1] = S::zero();
-        series::add::<S, 0, 0>(m, 148, 110, 147);
-        m[148][1] = S::zero();
-        series::add::<S, 0, 0>(m, 149, 142, 148);
-        m[149][1] = S::zero();
-        series::add::<S, 0, 0>(m, 150, 140, 149);
-        m[150][1] = S::zero();
-        series::add::<S, 0, 0>(m, 151, 139, 150);
-        m[151][1] = S::zero();
-        series::sub::<S, 0, 0>(m, 152, 151, 10);
-        m[152][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 153, 5, 12);
-        m[153][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 154, 4, 11);
-        m[154][1] = S::zero();
-        series::add::<S, 0, 0>(m, 155, 153, 154);
-        m[155][1] = S::zero();
-        series::add::<S, 0, 0>(m, 156, 126, 155);
-        m[156][1] = S::zero();
-        series::add::<S, 0, 0>(m, 157, 90, 156);
-        m[157][1] = S::zero();
-        series::add::<S, 0, 0>(m, 158, 46, 157);
-        m[158][1] = S::zero();
-        series::add::<S, 0, 0>(m, 159, 46, 158);
-        m[159][1] = S::zero();
-        series::add::<S, 0, 0>(m, 160, 90, 159);
-        m[160][1] = S::zero();
-        series::add::<S, 0, 0>(m, 161, 126, 160);
-        m[161][1] = S::zero();
-        series::add::<S, 0, 0>(m, 162, 154, 161);
-        m[162][1] = S::zero();
-        series::add::<S, 0, 0>(m, 163, 153, 162);
-        m[163][1] = S::zero();
-        series::sub::<S, 0, 0>(m, 164, 163, 11);
-        m[164][1] = S::zero();
-        series::add::<S, 0, 0>(m, 165, 5, 6);
-        m[165][1] = S::zero();
-        series::add::<S, 0, 0>(m, 166, 7, 165);
-        m[166][1] = S::zero();
-        series::add::<S, 0, 0>(m, 167, 8, 166);
-        m[167][1] = S::zero();
-        series::add::<S, 0, 0>(m, 168, 9, 167);
-        m[168][1] = S::zero();
-        series::add::<S, 0, 0>(m, 169, 10, 168);
-        m[169][1] = S::zero();
-        series::add::<S, 0, 0>(m, 170, 11, 169);
-        m[170][1] = S::zero();
-        series::add::<S, 0, 0>(m, 171, 12, 170);
-        m[171][1] = S::zero();
-        series::mul_real_add::<S, 0, 0>(m, 172, 171, 0, 4);
-        m[172][1] = S::zero();
-        series::add::<S, 0, 0>(m, 173, 1, 172);
-        m[173][1] = S::zero();
-    }
-}
-struct Taylor2Part0<'a, S>(&'a mut [[S; 4]; 174]);
-impl<S: Scalar> Kernel for Taylor2Part0<'_, S> {
-    type Output = ();
-    #[inline(always)]
-    fn run(self) {
-        let Self(m) = self;
-        series::sqr::<S, 1, 2>(m, 13, 12);
-        series::sqr::<S, 1, 2>(m, 14, 11);
-        series::add::<S, 1, 2>(m, 15, 13, 14);
-        series::sqr::<S, 1, 2>(m, 16, 10);
-        series::add::<S, 1, 2>(m, 17, 15, 16);
-        series::sqr::<S, 1, 2>(m, 18, 9);
-        series::add::<S, 1, 2>(m, 19, 17, 18);
-        series::sqr::<S, 1, 2>(m, 20, 8);
-        series::add::<S, 1, 2>(m, 21, 19, 20);
-        series::sqr::<S, 1, 2>(m, 22, 7);
-        series::add::<S, 1, 2>(m, 23, 21, 22);
-        series::sqr::<S, 1, 2>(m, 24, 6);
-        series::add::<S, 1, 2>(m, 25, 23, 24);
-        series::sqr::<S, 1, 2>(m, 26, 5);
-        series::add::<S, 1, 2>(m, 27, 25, 26);
-        series::sqr::<S, 1, 2>(m, 28, 4);
-        series::add::<S, 1, 2>(m, 29, 27, 28);
-        series::add::<S, 1, 2>(m, 30, 26, 29);
-        series::add::<S, 1, 2>(m, 31, 24, 30);
-        series::add::<S, 1, 2>(m, 32, 22, 31);
-        series::add::<S, 1, 2>(m, 33, 20, 32);
-        series::add::<S, 1, 2>(m, 34, 18, 33);
-        series::add::<S, 1, 2>(m, 35, 16, 34);
-        series::add::<S, 1, 2>(m, 36, 14, 35);
-        series::add::<S, 1, 2>(m, 37, 13, 36);
-        series::sub::<S, 1, 2>(m, 38, 37, 4);
-        series::mul::<S, 1, 2>(m, 39, 11, 12);
-        series::mul::<S, 1, 2>(m, 40, 10, 11);
-        series::add::<S, 1, 2>(m, 41, 39, 40);
-        series::mul::<S, 1, 2>(m, 42, 9, 10);
-        series::add::<S, 1, 2>(m, 43, 41, 42);
-        series::mul::<S, 1, 2>(m, 44, 8, 9);
-        series::add::<S, 1, 2>(m, 45, 43, 44);
-        series::mul::<S, 1, 2>(m, 46, 7, 8);
-        series::add::<S, 1, 2>(m, 47, 45, 46);
-        series::mul::<S, 1, 2>(m, 48, 6, 7);
-        series::add::<S, 1, 2>(m, 49, 47, 48);
-        series::mul::<S, 1, 2>(m, 50, 5, 6);
-        series::add::<S, 1, 2>(m, 51, 49, 50);
-        series::mul::<S, 1, 2>(m, 52, 4, 5);
-        series::add::<S, 1, 2>(m, 53, 51, 52);
-        series::add::<S, 1, 2>(m, 54, 52, 53);
-        series::add::<S, 1, 2>(m, 55, 50, 54);
-        series::add::<S, 1, 2>(m, 56, 48, 55);
-        series::add::<S, 1, 2>(m, 57, 46, 56);
-        series::add::<S, 1, 2>(m, 58, 44, 57);
-        series::add::<S, 1, 2>(m, 59, 42, 58);
-        series::add::<S, 1, 2>(m, 60, 40, 59);
-        series::add::<S, 1, 2>(m, 61, 39, 60);
-        series::sub::<S, 1, 2>(m, 62, 61, 5);
-        series::mul::<S, 1, 2>(m, 63, 10, 12);
-        series::mul::<S, 1, 2>(m, 64, 9, 11);
-        series::add::<S, 1, 2>(m, 65, 63, 64);
-        series::mul::<S, 1, 2>(m, 66, 8, 10);
-        series::add::<S, 1, 2>(m, 67, 65, 66);
-        series::mul::<S, 1, 2>(m, 68, 7, 9);
-        series::add::<S, 1, 2>(m, 69, 67, 68);
-        series::mul::<S, 1, 2>(m, 70, 6, 8);
-        series::add::<S, 1, 2>(m, 71, 69, 70);
-        series::mul::<S, 1, 2>(m, 72, 5, 7);
-        series::add::<S, 1, 2>(m, 73, 71, 72);
-        series::mul::<S, 1, 2>(m, 74, 4, 6);
-        series::add::<S, 1, 2>(m, 75, 73, 74);
-        series::add::<S, 1, 2>(m, 76, 26, 75);
-        series::add::<S, 1, 2>(m, 77, 74, 76);
-        series::add::<S, 1, 2>(m, 78, 72, 77);
-        series::add::<S, 1, 2>(m, 79, 70, 78);
-        series::add::<S, 1, 2>(m, 80, 68, 79);
-        series::add::<S, 1, 2>(m, 81, 66, 80);
-        series::add::<S, 1, 2>(m, 82, 64, 81);
-        series::add::<S, 1, 2>(m, 83, 63, 82);
-        series::sub::<S, 1, 2>(m, 84, 83, 6);
-        series::mul::<S, 1, 2>(m, 85, 9, 12);
-        series::mul::<S, 1, 2>(m, 86, 8, 11);
-        series::add::<S, 1, 2>(m, 87, 85, 86);
-        series::mul::<S, 1, 2>(m, 88, 7, 10);
-        series::add::<S, 1, 2>(m, 89, 87, 88);
-        series::mul::<S, 1, 2>(m, 90, 6, 9);
-        series::add::<S, 1, 2>(m, 91, 89, 90);
-        series::mul::<S, 1, 2>(m, 92, 5, 8);
-        series::add::<S, 1, 2>(m, 93, 91, 92);
-        series::mul::<S, 1, 2>(m, 94, 4, 7);
-        series::add::<S, 1, 2>(m, 95, 93, 94);
-        series::add::<S, 1, 2>(m, 96, 50, 95);
-        series::add::<S, 1, 2>(m, 97, 50, 96);
-        series::add::<S, 1, 2>(m, 98, 94, 97);
-        series::add::<S, 1, 2>(m, 99, 92, 98);
-        series::add::<S, 1, 2>(m, 100, 90, 99);
-        series::add::<S, 1, 2>(m, 101, 88, 100);
-        series::add::<S, 1, 2>(m, 102, 86, 101);
-        series::add::<S, 1, 2>(m, 103, 85, 102);
-        series::sub::<S, 1, 2>(m, 104, 103, 7);
-        series::mul::<S, 1, 2>(m, 105, 8, 12);
-        series::mul::<S, 1, 2>(m, 106, 7, 11);
-        series::add::<S, 1, 2>(m, 107, 105, 106);
-        series::mul::<S, 1, 2>(m, 108, 6, 10);
-        series::add::<S, 1, 2>(m, 109, 107, 108);
-        series::mul::<S, 1, 2>(m, 110, 5, 9);
-        series::add::<S, 1, 2>(m, 111, 109, 110);
-        series::mul::<S, 1, 2>(m, 112, 4, 8);
-        series::add::<S, 1, 2>(m, 113, 111, 112);
-        series::add::<S, 1, 2>(m, 114, 72, 113);
-        series::add::<S, 1, 2>(m, 115, 24, 114);
-        series::add::<S, 1, 2>(m, 116, 72, 115);
-        series::add::<S, 1, 2>(m, 117, 112, 116);
-        series::add::<S, 1, 2>(m, 118, 110, 117);
-        series::add::<S, 1, 2>(m, 119, 108, 118);
-        series::add::<S, 1, 2>(m, 120, 106, 119);
-        series::add::<S, 1, 2>(m, 121, 105, 120);
-        series::sub::<S, 1, 2>(m, 122, 121, 8);
-        series::mul::<S, 1, 2>(m, 123, 7, 12);
-        series::mul::<S, 1, 2>(m, 124, 6, 11);
-        series::add::<S, 1, 2>(m, 125, 123, 124);
-        series::mul::<S, 1, 2>(m, 126, 5, 10);
-        series::add::<S, 1, 2>(m, 127, 125, 126);
-        series::mul::<S, 1, 2>(m, 128, 4, 9);
-        series::add::<S, 1, 2>(m, 129, 127, 128);
-        series::add::<S, 1, 2>(m, 130, 92, 129);
-        series::add::<S, 1, 2>(m, 131, 48, 130);
-        series::add::<S, 1, 2>(m, 132, 48, 131);
-        series::add::<S, 1, 2>(m, 133, 92, 132);
-        series::add::<S, 1, 2>(m, 134, 128, 133);
-        series::add::<S, 1, 2>(m, 135, 126, 134);
-        series::add::<S, 1, 2>(m, 136, 124, 135);
-        series::add::<S, 1, 2>(m, 137, 123, 136);
-        series::sub::<S, 1, 2>(m, 138, 137, 9);
-        series::mul::<S, 1, 2>(m, 139, 6, 12);
-        series::mul::<S, 1, 2>(m, 140, 5, 11);
-        series::add::<S, 1, 2>(m, 141, 139, 140);
-        series::mul::<S, 1, 2>(m, 142, 4, 10);
-        series::add::<S, 1, 2>(m, 143, 141, 142);
-        series::add::<S, 1, 2>(m, 144, 110, 143);
-        series::add::<S, 1, 2>(m, 145, 70, 144);
-        series::add::<S, 1, 2>(m, 146, 22, 145);
-        series::add::<S, 1, 2>(m, 147, 70, 146);
-        series::add::<S, 1, 2>(m, 148, 110, 147);
-        series::add::<S, 1, 2>(m, 149, 142, 148);
-        series::add::<S, 1, 2>(m, 150, 140, 149);
-        series::add::<S, 1, 2>(m, 151, 139, 150);
-        series::sub::<S, 1, 2>(m, 152, 151, 10);
-        series::mul::<S, 1, 2>(m, 153, 5, 12);
-        series::mul::<S, 1, 2>(m, 154, 4, 11);
-        series::add::<S, 1, 2>(m, 155, 153, 154);
-        series::add::<S, 1, 2>(m, 156, 126, 155);
-        series::add::<S, 1, 2>(m, 157, 90, 156);
-        series::add::<S, 1, 2>(m, 158, 46, 157);
-        series::add::<S, 1, 2>(m, 159, 46, 158);
-        series::add::<S, 1, 2>(m, 160, 90, 159);
-        series::add::<S, 1, 2>(m, 161, 126, 160);
-        series::add::<S, 1, 2>(m, 162, 154, 161);
-        series::add::<S, 1, 2>(m, 163, 153, 162);
-        series::sub::<S, 1, 2>(m, 164, 163, 11);
-        series::add::<S, 1, 2>(m, 165, 5, 6);
-        series::add::<S, 1, 2>(m, 166, 7, 165);
-        series::add::<S, 1, 2>(m, 167, 8, 166);
-        series::add::<S, 1, 2>(m, 168, 9, 167);
-        series::add::<S, 1, 2>(m, 169, 10, 168);
-        series::add::<S, 1, 2>(m, 170, 11, 169);
-        series::add::<S, 1, 2>(m, 171, 12, 170);
-        series::mul_real_add::<S, 1, 2>(m, 172, 171, 0, 4);
-        series::add::<S, 1, 2>(m, 173, 1, 172);
-    }
-}
-struct Taylor3Part0<'a, S>(&'a mut [[S; 4]; 174]);
-impl<S: Scalar> Kernel for Taylor3Part0<'_, S> {
-    type Output = ();
-    #[inline(always)]
-    fn run(self) {
-        let Self(m) = self;
-        series::sqr::<S, 2, 3>(m, 13, 12);
-        series::sqr::<S, 2, 3>(m, 14, 11);
-        series::add::<S, 2, 3>(m, 15, 13, 14);
-        series::sqr::<S, 2, 3>(m, 16, 10);
-        series::add::<S, 2, 3>(m, 17, 15, 16);
-        series::sqr::<S, 2, 3>(m, 18, 9);
-        series::add::<S, 2, 3>(m, 19, 17, 18);
-        series::sqr::<S, 2, 3>(m, 20, 8);
-        series::add::<S, 2, 3>(m, 21, 19, 20);
-        series::sqr::<S, 2, 3>(m, 22, 7);
-        series::add::<S, 2, 3>(m, 23, 21, 22);
-        series::sqr::<S, 2, 3>(m, 24, 6);
-        series::add::<S, 2, 3>(m, 25, 23, 24);
-        series::sqr::<S, 2, 3>(m, 26, 5);
-        series::add::<S, 2, 3>(m, 27, 25, 26);
-        series::sqr::<S, 2, 3>(m, 28, 4);
-        series::add::<S, 2, 3>(m, 29, 27, 28);
-        series::add::<S, 2, 3>(m, 30, 26, 29);
-        series::add::<S, 2, 3>(m, 31, 24, 30);
-        series::add::<S, 2, 3>(m, 32, 22, 31);
-        series::add::<S, 2, 3>(m, 33, 20, 32);
-        series::add::<S, 2, 3>(m, 34, 18, 33);
-        series::add::<S, 2, 3>(m, 35, 16, 34);
-        series::add::<S, 2, 3>(m, 36, 14, 35);
-        series::add::<S, 2, 3>(m, 37, 13, 36);
-        series::sub::<S, 2, 3>(m, 38, 37, 4);
-        series::mul::<S, 2, 3>(m, 39, 11, 12);
-        series::mul::<S, 2, 3>(m, 40, 10, 11);
-        series::add::<S, 2, 3>(m, 41, 39, 40);
-        series::mul::<S, 2, 3>(m, 42, 9, 10);
-        series::add::<S, 2, 3>(m, 43, 41, 42);
-        series::mul::<S, 2, 3>(m, 44, 8, 9);
-        series::add::<S, 2, 3>(m, 45, 43, 44);
-        series::mul::<S, 2, 3>(m, 46, 7, 8);
-        series::add::<S, 2, 3>(m, 47, 45, 46);
-        series::mul::<S, 2, 3>(m, 48, 6, 7);
-        series::add::<S, 2, 3>(m, 49, 47, 48);
-        series::mul::<S, 2, 3>(m, 50, 5, 6);
-        series::add::<S, 2, 3>(m, 51, 49, 50);
-        series::mul::<S, 2, 3>(m, 52, 4, 5);
-        series::add::<S, 2, 3>(m, 53, 51, 52);
-        series::add::<S, 2, 3>(m, 54, 52, 53);
-        series::add::<S, 2, 3>(m, 55, 50, 54);
-        series::add::<S, 2, 3>(m, 56, 48, 55);
-        series::add::<S, 2, 3>(m, 57, 46, 56);
-        series::add::<S, 2, 3>(m, 58, 44, 57);
-        series::add::<S, 2, 3>(m, 59, 42, 58);
-        series::add::<S, 2, 3>(m, 60, 40, 59);
-        series::add::<S, 2, 3>(m, 61, 39, 60);
-        series::sub::<S, 2, 3>(m, 62, 61, 5);
-        series::mul::<S, 2, 3>(m, 63, 10, 12);
-        series::mul::<S, 2, 3>(m, 64, 9, 11);
-        series::add::<S, 2, 3>(m, 65, 63, 64);
-        series::mul::<S, 2, 3>(m, 66, 8, 10);
-        series::add::<S, 2, 3>(m, 67, 65, 66);
-        series::mul::<S, 2, 3>(m, 68, 7, 9);
-        series::add::<S, 2, 3>(m, 69, 67, 68);
-        series::mul::<S, 2, 3>(m, 70, 6, 8);
-        series::add::<S, 2, 3>(m, 71, 69, 70);
-        series::mul::<S, 2, 3>(m, 72, 5, 7);
-        series::add::<S, 2, 3>(m, 73, 71, 72);
-        series::mul::<S, 2, 3>(m, 74, 4, 6);
-        series::add::<S, 2, 3>(m, 75, 73, 74);
-        series::add::<S, 2, 3>(m, 76, 26, 75);
-        series::add::<S, 2, 3>(m, 77, 74, 76);
-        series::add::<S, 2, 3>(m, 78, 72, 77);
-        series::add::<S, 2, 3>(m, 79, 70, 78);
-        series::add::<S, 2, 3>(m, 80, 68, 79);
-        series::add::<S, 2, 3>(m, 81, 66, 80);
-        series::add::<S, 2, 3>(m, 82, 64, 81);
-        series::add::<S, 2, 3>(m, 83, 63, 82);
-        series::sub::<S, 2, 3>(m, 84, 83, 6);
-        series::mul::<S, 2, 3>(m, 85, 9, 12);
-        series::mul::<S, 2, 3>(m, 86, 8, 11);
-        series::add::<S, 2, 3>(m, 87, 85, 86);
-        series::mul::<S, 2, 3>(m, 88, 7, 10);
-        series::add::<S, 2, 3>(m, 89, 87, 88);
-        series::mul::<S, 2, 3>(m, 90, 6, 9);
-        series::add::<S, 2, 3>(m, 91, 89, 90);
-        series::mul::<S, 2, 3>(m, 92, 5, 8);
-        series::add::<S, 2, 3>(m, 93, 91, 92);
-        series::mul::<S, 2, 3>(m, 94, 4, 7);
-        series::add::<S, 2, 3>(m, 95, 93, 94);
-        series::add::<S, 2, 3>(m, 96, 50, 95);
-        series::add::<S, 2, 3>(m, 97, 50, 96);
-        series::add::<S, 2, 3>(m, 98, 94, 97);
-        series::add::<S, 2, 3>(m, 99, 92, 98);
-        series::add::<S, 2, 3>(m, 100, 90, 99);
-        series::add::<S, 2, 3>(m, 101, 88, 100);
-        series::add::<S, 2, 3>(m, 102, 86, 101);
-        series::add::<S, 2, 3>(m, 103, 85, 102);
-        series::sub::<S, 2, 3>(m, 104, 103, 7);
-        series::mul::<S, 2, 3>(m, 105, 8, 12);
-        series::mul::<S, 2, 3>(m, 106, 7, 11);
-        series::add::<S, 2, 3>(m, 107, 105, 106);
-        series::mul::<S, 2, 3>(m, 108, 6, 10);
-        series::add::<S, 2, 3>(m, 109, 107, 108);
-        series::mul::<S, 2, 3>(m, 110, 5, 9);
-        series::add::<S, 2, 3>(m, 111, 109, 110);
-        series::mul::<S, 2, 3>(m, 112, 4, 8);
-        series::add::<S, 2, 3>(m, 113, 111, 112);
-        series::add::<S, 2, 3>(m, 114, 72, 113);
-        series::add::<S, 2, 3>(m, 115, 24, 114);
-        series::add::<S, 2, 3>(m, 116, 72, 115);
-        series::add::<S, 2, 3>(m, 117, 112, 116);
-        series::add::<S, 2, 3>(m, 118, 110, 117);
-        series::add::<S, 2, 3>(m, 119, 108, 118);
-        series::add::<S, 2, 3>(m, 120, 106, 119);
-        series::add::<S, 2, 3>(m, 121, 105, 120);
-        series::sub::<S, 2, 3>(m, 122, 121, 8);
-        series::mul::<S, 2, 3>(m, 123, 7, 12);
-        series::mul::<S, 2, 3>(m, 124, 6, 11);
-        series::add::<S, 2, 3>(m, 125, 123, 124);
-        series::mul::<S, 2, 3>(m, 126, 5, 10);
-        series::add::<S, 2, 3>(m, 127, 125, 126);
-        series::mul::<S, 2, 3>(m, 128, 4, 9);
-        series::add::<S, 2, 3>(m, 129, 127, 128);
-        series::add::<S, 2, 3>(m, 130, 92, 129);
-        series::add::<S, 2, 3>(m, 131, 48, 130);
-        series::add::<S, 2, 3>(m, 132, 48, 131);
-        series::add::<S, 2, 3>(m, 133, 92, 132);
-        series::add::<S, 2, 3>(m, 134, 128, 133);
-        series::add::<S, 2, 3>(m, 135, 126, 134);
-        series::add::<S, 2, 3>(m, 136, 124, 135);
-        series::add::<S, 2, 3>(m, 137, 123, 136);
-        series::sub::<S, 2, 3>(m, 138, 137, 9);
-        series::mul::<S, 2, 3>(m, 139, 6, 12);
-        series::mul::<S, 2, 3>(m, 140, 5, 11);
-        series::add::<S, 2, 3>(m, 141, 139, 140);
-        series::mul::<S, 2, 3>(m, 142, 4, 10);
-        series::add::<S, 2, 3>(m, 143, 141, 142);
-        series::add::<S, 2, 3>(m, 144, 110, 143);
-        series::add::<S, 2, 3>(m, 145, 70, 144);
-        series::add::<S, 2, 3>(m, 146, 22, 145);
-        series::add::<S, 2, 3>(m, 147, 70, 146);
-        series::add::<S, 2, 3>(m, 148, 110, 147);
-        series::add::<S, 2, 3>(m, 149, 142, 148);
-        series::add::<S, 2, 3>(m, 150, 140, 149);
-        series::add::<S, 2, 3>(m, 151, 139, 150);
-        series::sub::<S, 2, 3>(m, 152, 151, 10);
-        series::mul::<S, 2, 3>(m, 153, 5, 12);
-        series::mul::<S, 2, 3>(m, 154, 4, 11);
-        series::add::<S, 2, 3>(m, 155, 153, 154);
-        series::add::<S, 2, 3>(m, 156, 126, 155);
-        series::add::<S, 2, 3>(m, 157, 90, 156);
-        series::add::<S, 2, 3>(m, 158, 46, 157);
-        series::add::<S, 2, 3>(m, 159, 46, 158);
-        series::add::<S, 2, 3>(m, 160, 90, 159);
-        series::add::<S, 2, 3>(m, 161, 126, 160);
-        series::add::<S, 2, 3>(m, 162, 154, 161);
-        series::add::<S, 2, 3>(m, 163, 153, 162);
-        series::sub::<S, 2, 3>(m, 164, 163, 11);
-        series::add::<S, 2, 3>(m, 165, 5, 6);
-        series::add::<S, 2, 3>(m, 166, 7, 165);
-        series::add::<S, 2, 3>(m, 167, 8, 166);
-        series::add::<S, 2, 3>(m, 168, 9, 167);
-        series::add::<S, 2, 3>(m, 169, 10, 168);
-        series::add::<S, 2, 3>(m, 170, 11, 169);
-        series::add::<S, 2, 3>(m, 171, 12, 170);
-        series::mul_real_add::<S, 2, 3>(m, 172, 171, 0, 4);
-        series::add::<S, 2, 3>(m, 173, 1, 172);
     }
 }

@@ -5,26 +5,65 @@
 
 //! `F(x; p)`: 5 equations, 5 unknowns, 0 parameters, as straight-line code.
 #![cfg_attr(rustfmt, rustfmt_skip)]
-#![allow(unreachable_pub, clippy::all)]
+#![allow(unreachable_pub, unused_imports, clippy::all)]
 use poly::evaluate::Evaluate;
-use poly::program::generated::{Memory, Shape, series};
+use poly::program::generated::{Memory, Op, TaylorTape, code};
 use poly::scalar::Scalar;
 use poly::simd::{Isa, Kernel};
+use std::borrow::Cow;
 /// The system; inputs and outputs are ordered as [`Evaluate`] says.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Noon5;
-/// Sizes and constants.
-static SHAPE: Shape = Shape {
-    parameters: 0,
-    variables: 5,
-    constants: &[
-        [1.1, -8.881784197001253e-17, 0.0, 0.0],
-        [1.0, 0.0, 0.0, 0.0],
-        [-1.1, 8.881784197001253e-17, 0.0, 0.0],
-        [2.0, 0.0, 0.0, 0.0],
-    ],
-    live: 0,
-    series: 41,
+/// Real part (high, low) and imaginary part (high, low).
+static CONSTANTS: [[f64; 4]; 4] = [
+    [1.1, -8.881784197001253e-17, 0.0, 0.0],
+    [1.0, 0.0, 0.0, 0.0],
+    [-1.1, 8.881784197001253e-17, 0.0, 0.0],
+    [2.0, 0.0, 0.0, 0.0],
+];
+/// Instructions for Taylor coefficients.
+static TAYLOR: TaylorTape = TaylorTape {
+    parameters_only: Cow::Borrowed(&[]),
+    variables_only: Cow::Borrowed(
+        &[
+            code(Op::Sqr, 2, 9, [5, 5, 5, 5]),
+            code(Op::Sqr, 2, 10, [6, 6, 6, 6]),
+            code(Op::Add, 0, 11, [9, 10, 9, 9]),
+            code(Op::Sqr, 2, 12, [7, 7, 7, 7]),
+            code(Op::Add, 0, 13, [11, 12, 11, 11]),
+            code(Op::Sqr, 2, 14, [8, 8, 8, 8]),
+            code(Op::Add, 0, 15, [13, 14, 13, 13]),
+            code(Op::MulReal, 0, 16, [4, 0, 4, 4]),
+            code(Op::MulSub, 1, 17, [15, 4, 16, 4]),
+            code(Op::Add, 0, 18, [1, 17, 1, 1]),
+            code(Op::Sqr, 2, 19, [4, 4, 4, 4]),
+            code(Op::Add, 0, 20, [10, 19, 10, 10]),
+            code(Op::Add, 0, 21, [12, 20, 12, 12]),
+            code(Op::Add, 0, 22, [14, 21, 14, 14]),
+            code(Op::MulReal, 0, 23, [5, 0, 5, 5]),
+            code(Op::MulSub, 1, 24, [22, 5, 23, 5]),
+            code(Op::Add, 0, 25, [1, 24, 1, 1]),
+            code(Op::Add, 0, 26, [9, 19, 9, 9]),
+            code(Op::Add, 0, 27, [12, 26, 12, 12]),
+            code(Op::Add, 0, 28, [14, 27, 14, 14]),
+            code(Op::MulReal, 0, 29, [6, 0, 6, 6]),
+            code(Op::MulSub, 1, 30, [28, 6, 29, 6]),
+            code(Op::Add, 0, 31, [1, 30, 1, 1]),
+            code(Op::Add, 0, 32, [10, 26, 10, 10]),
+            code(Op::Add, 0, 33, [14, 32, 14, 14]),
+            code(Op::MulReal, 0, 34, [7, 0, 7, 7]),
+            code(Op::MulSub, 1, 35, [33, 7, 34, 7]),
+            code(Op::Add, 0, 36, [1, 35, 1, 1]),
+            code(Op::Add, 0, 37, [12, 32, 12, 12]),
+            code(Op::MulReal, 0, 38, [8, 0, 8, 8]),
+            code(Op::MulSub, 1, 39, [37, 8, 38, 8]),
+            code(Op::Add, 0, 40, [1, 39, 1, 1]),
+        ],
+    ),
+    mixed: Cow::Borrowed(&[]),
+    outputs: Cow::Borrowed(&[18, 25, 31, 36, 40]),
+    inputs: [4, 0, 5],
+    size: 41,
 };
 impl Evaluate for Noon5 {
     type Memory<S: Scalar> = Memory<S>;
@@ -38,7 +77,7 @@ impl Evaluate for Noon5 {
         0
     }
     fn memory<S: Scalar>(&self, isa: Isa) -> Memory<S> {
-        Memory::new(isa, &SHAPE)
+        Memory::new(isa, &CONSTANTS, 0, &TAYLOR)
     }
     fn values<S: Scalar>(
         &self,
@@ -87,42 +126,7 @@ impl Evaluate for Noon5 {
         p: &[S],
         out: &mut [S],
     ) {
-        memory.load(&SHAPE, order, x, p);
-        match order {
-            1 => {
-                memory
-                    .isa
-                    .run(
-                        Taylor1Part0(
-                            memory.series.first_chunk_mut().expect("made by Memory::new"),
-                        ),
-                    );
-            }
-            2 => {
-                memory
-                    .isa
-                    .run(
-                        Taylor2Part0(
-                            memory.series.first_chunk_mut().expect("made by Memory::new"),
-                        ),
-                    );
-            }
-            _ => {
-                memory
-                    .isa
-                    .run(
-                        Taylor3Part0(
-                            memory.series.first_chunk_mut().expect("made by Memory::new"),
-                        ),
-                    );
-            }
-        }
-        let out = &mut out[..5];
-        out[0] = memory.series[18][order].clone();
-        out[1] = memory.series[25][order].clone();
-        out[2] = memory.series[31][order].clone();
-        out[3] = memory.series[36][order].clone();
-        out[4] = memory.series[40][order].clone();
+        memory.taylor(&TAYLOR, order, x, p, out);
     }
 }
 struct Values0<'a, S> {
@@ -265,157 +269,5 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t54 = S::mul_sub(&x[4], &t52, &t53);
         values[4] = S::add(&c1, &t54);
         jacobian[24] = S::add(&c2, &t52);
-    }
-}
-struct Taylor1Part0<'a, S>(&'a mut [[S; 4]; 41]);
-impl<S: Scalar> Kernel for Taylor1Part0<'_, S> {
-    type Output = ();
-    #[inline(always)]
-    fn run(self) {
-        let Self(m) = self;
-        series::sqr::<S, 0, 0>(m, 9, 5);
-        m[9][1] = S::zero();
-        series::sqr::<S, 0, 0>(m, 10, 6);
-        m[10][1] = S::zero();
-        series::add::<S, 0, 0>(m, 11, 9, 10);
-        m[11][1] = S::zero();
-        series::sqr::<S, 0, 0>(m, 12, 7);
-        m[12][1] = S::zero();
-        series::add::<S, 0, 0>(m, 13, 11, 12);
-        m[13][1] = S::zero();
-        series::sqr::<S, 0, 0>(m, 14, 8);
-        m[14][1] = S::zero();
-        series::add::<S, 0, 0>(m, 15, 13, 14);
-        m[15][1] = S::zero();
-        series::mul_real::<S, 0, 0>(m, 16, 4, 0);
-        m[16][1] = S::zero();
-        series::mul_sub::<S, 0, 0>(m, 17, 4, 15, 16);
-        m[17][1] = S::zero();
-        series::add::<S, 0, 0>(m, 18, 1, 17);
-        m[18][1] = S::zero();
-        series::sqr::<S, 0, 0>(m, 19, 4);
-        m[19][1] = S::zero();
-        series::add::<S, 0, 0>(m, 20, 10, 19);
-        m[20][1] = S::zero();
-        series::add::<S, 0, 0>(m, 21, 12, 20);
-        m[21][1] = S::zero();
-        series::add::<S, 0, 0>(m, 22, 14, 21);
-        m[22][1] = S::zero();
-        series::mul_real::<S, 0, 0>(m, 23, 5, 0);
-        m[23][1] = S::zero();
-        series::mul_sub::<S, 0, 0>(m, 24, 5, 22, 23);
-        m[24][1] = S::zero();
-        series::add::<S, 0, 0>(m, 25, 1, 24);
-        m[25][1] = S::zero();
-        series::add::<S, 0, 0>(m, 26, 9, 19);
-        m[26][1] = S::zero();
-        series::add::<S, 0, 0>(m, 27, 12, 26);
-        m[27][1] = S::zero();
-        series::add::<S, 0, 0>(m, 28, 14, 27);
-        m[28][1] = S::zero();
-        series::mul_real::<S, 0, 0>(m, 29, 6, 0);
-        m[29][1] = S::zero();
-        series::mul_sub::<S, 0, 0>(m, 30, 6, 28, 29);
-        m[30][1] = S::zero();
-        series::add::<S, 0, 0>(m, 31, 1, 30);
-        m[31][1] = S::zero();
-        series::add::<S, 0, 0>(m, 32, 10, 26);
-        m[32][1] = S::zero();
-        series::add::<S, 0, 0>(m, 33, 14, 32);
-        m[33][1] = S::zero();
-        series::mul_real::<S, 0, 0>(m, 34, 7, 0);
-        m[34][1] = S::zero();
-        series::mul_sub::<S, 0, 0>(m, 35, 7, 33, 34);
-        m[35][1] = S::zero();
-        series::add::<S, 0, 0>(m, 36, 1, 35);
-        m[36][1] = S::zero();
-        series::add::<S, 0, 0>(m, 37, 12, 32);
-        m[37][1] = S::zero();
-        series::mul_real::<S, 0, 0>(m, 38, 8, 0);
-        m[38][1] = S::zero();
-        series::mul_sub::<S, 0, 0>(m, 39, 8, 37, 38);
-        m[39][1] = S::zero();
-        series::add::<S, 0, 0>(m, 40, 1, 39);
-        m[40][1] = S::zero();
-    }
-}
-struct Taylor2Part0<'a, S>(&'a mut [[S; 4]; 41]);
-impl<S: Scalar> Kernel for Taylor2Part0<'_, S> {
-    type Output = ();
-    #[inline(always)]
-    fn run(self) {
-        let Self(m) = self;
-        series::sqr::<S, 1, 2>(m, 9, 5);
-        series::sqr::<S, 1, 2>(m, 10, 6);
-        series::add::<S, 1, 2>(m, 11, 9, 10);
-        series::sqr::<S, 1, 2>(m, 12, 7);
-        series::add::<S, 1, 2>(m, 13, 11, 12);
-        series::sqr::<S, 1, 2>(m, 14, 8);
-        series::add::<S, 1, 2>(m, 15, 13, 14);
-        series::mul_real::<S, 1, 2>(m, 16, 4, 0);
-        series::mul_sub::<S, 1, 2>(m, 17, 4, 15, 16);
-        series::add::<S, 1, 2>(m, 18, 1, 17);
-        series::sqr::<S, 1, 2>(m, 19, 4);
-        series::add::<S, 1, 2>(m, 20, 10, 19);
-        series::add::<S, 1, 2>(m, 21, 12, 20);
-        series::add::<S, 1, 2>(m, 22, 14, 21);
-        series::mul_real::<S, 1, 2>(m, 23, 5, 0);
-        series::mul_sub::<S, 1, 2>(m, 24, 5, 22, 23);
-        series::add::<S, 1, 2>(m, 25, 1, 24);
-        series::add::<S, 1, 2>(m, 26, 9, 19);
-        series::add::<S, 1, 2>(m, 27, 12, 26);
-        series::add::<S, 1, 2>(m, 28, 14, 27);
-        series::mul_real::<S, 1, 2>(m, 29, 6, 0);
-        series::mul_sub::<S, 1, 2>(m, 30, 6, 28, 29);
-        series::add::<S, 1, 2>(m, 31, 1, 30);
-        series::add::<S, 1, 2>(m, 32, 10, 26);
-        series::add::<S, 1, 2>(m, 33, 14, 32);
-        series::mul_real::<S, 1, 2>(m, 34, 7, 0);
-        series::mul_sub::<S, 1, 2>(m, 35, 7, 33, 34);
-        series::add::<S, 1, 2>(m, 36, 1, 35);
-        series::add::<S, 1, 2>(m, 37, 12, 32);
-        series::mul_real::<S, 1, 2>(m, 38, 8, 0);
-        series::mul_sub::<S, 1, 2>(m, 39, 8, 37, 38);
-        series::add::<S, 1, 2>(m, 40, 1, 39);
-    }
-}
-struct Taylor3Part0<'a, S>(&'a mut [[S; 4]; 41]);
-impl<S: Scalar> Kernel for Taylor3Part0<'_, S> {
-    type Output = ();
-    #[inline(always)]
-    fn run(self) {
-        let Self(m) = self;
-        series::sqr::<S, 2, 3>(m, 9, 5);
-        series::sqr::<S, 2, 3>(m, 10, 6);
-        series::add::<S, 2, 3>(m, 11, 9, 10);
-        series::sqr::<S, 2, 3>(m, 12, 7);
-        series::add::<S, 2, 3>(m, 13, 11, 12);
-        series::sqr::<S, 2, 3>(m, 14, 8);
-        series::add::<S, 2, 3>(m, 15, 13, 14);
-        series::mul_real::<S, 2, 3>(m, 16, 4, 0);
-        series::mul_sub::<S, 2, 3>(m, 17, 4, 15, 16);
-        series::add::<S, 2, 3>(m, 18, 1, 17);
-        series::sqr::<S, 2, 3>(m, 19, 4);
-        series::add::<S, 2, 3>(m, 20, 10, 19);
-        series::add::<S, 2, 3>(m, 21, 12, 20);
-        series::add::<S, 2, 3>(m, 22, 14, 21);
-        series::mul_real::<S, 2, 3>(m, 23, 5, 0);
-        series::mul_sub::<S, 2, 3>(m, 24, 5, 22, 23);
-        series::add::<S, 2, 3>(m, 25, 1, 24);
-        series::add::<S, 2, 3>(m, 26, 9, 19);
-        series::add::<S, 2, 3>(m, 27, 12, 26);
-        series::add::<S, 2, 3>(m, 28, 14, 27);
-        series::mul_real::<S, 2, 3>(m, 29, 6, 0);
-        series::mul_sub::<S, 2, 3>(m, 30, 6, 28, 29);
-        series::add::<S, 2, 3>(m, 31, 1, 30);
-        series::add::<S, 2, 3>(m, 32, 10, 26);
-        series::add::<S, 2, 3>(m, 33, 14, 32);
-        series::mul_real::<S, 2, 3>(m, 34, 7, 0);
-        series::mul_sub::<S, 2, 3>(m, 35, 7, 33, 34);
-        series::add::<S, 2, 3>(m, 36, 1, 35);
-        series::add::<S, 2, 3>(m, 37, 12, 32);
-        series::mul_real::<S, 2, 3>(m, 38, 8, 0);
-        series::mul_sub::<S, 2, 3>(m, 39, 8, 37, 38);
-        series::add::<S, 2, 3>(m, 40, 1, 39);
     }
 }

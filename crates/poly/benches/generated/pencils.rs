@@ -5,21 +5,223 @@
 
 //! `F(x; p)`: 3 equations, 3 unknowns, 192 parameters, as straight-line code.
 #![cfg_attr(rustfmt, rustfmt_skip)]
-#![allow(unreachable_pub, clippy::all)]
+#![allow(unreachable_pub, unused_imports, clippy::all)]
 use poly::evaluate::Evaluate;
-use poly::program::generated::{Memory, Shape, series};
+use poly::program::generated::{Memory, Op, TaylorTape, code};
 use poly::scalar::Scalar;
 use poly::simd::{Isa, Kernel};
+use std::borrow::Cow;
 /// The system; inputs and outputs are ordered as [`Evaluate`] says.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Pencils;
-/// Sizes and constants.
-static SHAPE: Shape = Shape {
-    parameters: 192,
-    variables: 3,
-    constants: &[],
-    live: 0,
-    series: 390,
+/// Real part (high, low) and imaginary part (high, low).
+static CONSTANTS: [[f64; 4]; 0] = [];
+/// Instructions for Taylor coefficients.
+static TAYLOR: TaylorTape = TaylorTape {
+    parameters_only: Cow::Borrowed(&[]),
+    variables_only: Cow::Borrowed(&[]),
+    mixed: Cow::Borrowed(
+        &[
+            code(Op::MulAdd, 1, 195, [9, 192, 8, 9]),
+            code(Op::MulAdd, 1, 196, [10, 193, 195, 10]),
+            code(Op::MulAdd, 1, 197, [11, 194, 196, 11]),
+            code(Op::MulAdd, 1, 198, [13, 192, 12, 13]),
+            code(Op::MulAdd, 1, 199, [14, 193, 198, 14]),
+            code(Op::MulAdd, 1, 200, [15, 194, 199, 15]),
+            code(Op::MulAdd, 1, 201, [25, 192, 24, 25]),
+            code(Op::MulAdd, 1, 202, [26, 193, 201, 26]),
+            code(Op::MulAdd, 1, 203, [27, 194, 202, 27]),
+            code(Op::MulAdd, 1, 204, [29, 192, 28, 29]),
+            code(Op::MulAdd, 1, 205, [30, 193, 204, 30]),
+            code(Op::MulAdd, 1, 206, [31, 194, 205, 31]),
+            code(Op::MulMulSub, 0, 207, [197, 206, 200, 203]),
+            code(Op::MulAdd, 1, 208, [5, 192, 4, 5]),
+            code(Op::MulAdd, 1, 209, [6, 193, 208, 6]),
+            code(Op::MulAdd, 1, 210, [7, 194, 209, 7]),
+            code(Op::MulAdd, 1, 211, [21, 192, 20, 21]),
+            code(Op::MulAdd, 1, 212, [22, 193, 211, 22]),
+            code(Op::MulAdd, 1, 213, [23, 194, 212, 23]),
+            code(Op::MulMulSub, 0, 214, [210, 206, 200, 213]),
+            code(Op::MulAdd, 1, 215, [37, 192, 36, 37]),
+            code(Op::MulAdd, 1, 216, [38, 193, 215, 38]),
+            code(Op::MulAdd, 1, 217, [39, 194, 216, 39]),
+            code(Op::MulAdd, 1, 218, [41, 192, 40, 41]),
+            code(Op::MulAdd, 1, 219, [42, 193, 218, 42]),
+            code(Op::MulAdd, 1, 220, [43, 194, 219, 43]),
+            code(Op::MulMulSub, 0, 221, [217, 207, 220, 214]),
+            code(Op::MulMulSub, 0, 222, [210, 203, 197, 213]),
+            code(Op::MulAdd, 1, 223, [45, 192, 44, 45]),
+            code(Op::MulAdd, 1, 224, [46, 193, 223, 46]),
+            code(Op::MulAdd, 1, 225, [47, 194, 224, 47]),
+            code(Op::MulAdd, 0, 226, [225, 222, 221, 225]),
+            code(Op::MulAdd, 1, 227, [1, 192, 0, 1]),
+            code(Op::MulAdd, 1, 228, [2, 193, 227, 2]),
+            code(Op::MulAdd, 1, 229, [3, 194, 228, 3]),
+            code(Op::MulAdd, 1, 230, [17, 192, 16, 17]),
+            code(Op::MulAdd, 1, 231, [18, 193, 230, 18]),
+            code(Op::MulAdd, 1, 232, [19, 194, 231, 19]),
+            code(Op::MulMulSub, 0, 233, [229, 206, 200, 232]),
+            code(Op::MulAdd, 1, 234, [33, 192, 32, 33]),
+            code(Op::MulAdd, 1, 235, [34, 193, 234, 34]),
+            code(Op::MulAdd, 1, 236, [35, 194, 235, 35]),
+            code(Op::MulMulSub, 0, 237, [236, 207, 220, 233]),
+            code(Op::MulMulSub, 0, 238, [229, 203, 197, 232]),
+            code(Op::MulAdd, 0, 239, [225, 238, 237, 225]),
+            code(Op::MulAdd, 1, 240, [49, 192, 48, 49]),
+            code(Op::MulAdd, 1, 241, [50, 193, 240, 50]),
+            code(Op::MulAdd, 1, 242, [51, 194, 241, 51]),
+            code(Op::MulAdd, 1, 243, [53, 192, 52, 53]),
+            code(Op::MulAdd, 1, 244, [54, 193, 243, 54]),
+            code(Op::MulAdd, 1, 245, [55, 194, 244, 55]),
+            code(Op::MulMulSub, 0, 246, [245, 239, 242, 226]),
+            code(Op::MulMulSub, 0, 247, [236, 214, 217, 233]),
+            code(Op::MulMulSub, 0, 248, [229, 213, 210, 232]),
+            code(Op::MulAdd, 0, 249, [225, 248, 247, 225]),
+            code(Op::MulAdd, 1, 250, [57, 192, 56, 57]),
+            code(Op::MulAdd, 1, 251, [58, 193, 250, 58]),
+            code(Op::MulAdd, 1, 252, [59, 194, 251, 59]),
+            code(Op::SubMul, 0, 253, [252, 249, 246, 252]),
+            code(Op::MulMulSub, 0, 254, [236, 222, 217, 238]),
+            code(Op::MulAdd, 0, 255, [220, 248, 254, 220]),
+            code(Op::MulAdd, 1, 256, [61, 192, 60, 61]),
+            code(Op::MulAdd, 1, 257, [62, 193, 256, 62]),
+            code(Op::MulAdd, 1, 258, [63, 194, 257, 63]),
+            code(Op::MulAdd, 0, 259, [258, 255, 253, 258]),
+            code(Op::MulAdd, 1, 260, [73, 192, 72, 73]),
+            code(Op::MulAdd, 1, 261, [74, 193, 260, 74]),
+            code(Op::MulAdd, 1, 262, [75, 194, 261, 75]),
+            code(Op::MulAdd, 1, 263, [77, 192, 76, 77]),
+            code(Op::MulAdd, 1, 264, [78, 193, 263, 78]),
+            code(Op::MulAdd, 1, 265, [79, 194, 264, 79]),
+            code(Op::MulAdd, 1, 266, [89, 192, 88, 89]),
+            code(Op::MulAdd, 1, 267, [90, 193, 266, 90]),
+            code(Op::MulAdd, 1, 268, [91, 194, 267, 91]),
+            code(Op::MulAdd, 1, 269, [93, 192, 92, 93]),
+            code(Op::MulAdd, 1, 270, [94, 193, 269, 94]),
+            code(Op::MulAdd, 1, 271, [95, 194, 270, 95]),
+            code(Op::MulMulSub, 0, 272, [262, 271, 265, 268]),
+            code(Op::MulAdd, 1, 273, [69, 192, 68, 69]),
+            code(Op::MulAdd, 1, 274, [70, 193, 273, 70]),
+            code(Op::MulAdd, 1, 275, [71, 194, 274, 71]),
+            code(Op::MulAdd, 1, 276, [85, 192, 84, 85]),
+            code(Op::MulAdd, 1, 277, [86, 193, 276, 86]),
+            code(Op::MulAdd, 1, 278, [87, 194, 277, 87]),
+            code(Op::MulMulSub, 0, 279, [275, 271, 265, 278]),
+            code(Op::MulAdd, 1, 280, [101, 192, 100, 101]),
+            code(Op::MulAdd, 1, 281, [102, 193, 280, 102]),
+            code(Op::MulAdd, 1, 282, [103, 194, 281, 103]),
+            code(Op::MulAdd, 1, 283, [105, 192, 104, 105]),
+            code(Op::MulAdd, 1, 284, [106, 193, 283, 106]),
+            code(Op::MulAdd, 1, 285, [107, 194, 284, 107]),
+            code(Op::MulMulSub, 0, 286, [282, 272, 285, 279]),
+            code(Op::MulMulSub, 0, 287, [275, 268, 262, 278]),
+            code(Op::MulAdd, 1, 288, [109, 192, 108, 109]),
+            code(Op::MulAdd, 1, 289, [110, 193, 288, 110]),
+            code(Op::MulAdd, 1, 290, [111, 194, 289, 111]),
+            code(Op::MulAdd, 0, 291, [290, 287, 286, 290]),
+            code(Op::MulAdd, 1, 292, [65, 192, 64, 65]),
+            code(Op::MulAdd, 1, 293, [66, 193, 292, 66]),
+            code(Op::MulAdd, 1, 294, [67, 194, 293, 67]),
+            code(Op::MulAdd, 1, 295, [81, 192, 80, 81]),
+            code(Op::MulAdd, 1, 296, [82, 193, 295, 82]),
+            code(Op::MulAdd, 1, 297, [83, 194, 296, 83]),
+            code(Op::MulMulSub, 0, 298, [294, 271, 265, 297]),
+            code(Op::MulAdd, 1, 299, [97, 192, 96, 97]),
+            code(Op::MulAdd, 1, 300, [98, 193, 299, 98]),
+            code(Op::MulAdd, 1, 301, [99, 194, 300, 99]),
+            code(Op::MulMulSub, 0, 302, [301, 272, 285, 298]),
+            code(Op::MulMulSub, 0, 303, [294, 268, 262, 297]),
+            code(Op::MulAdd, 0, 304, [290, 303, 302, 290]),
+            code(Op::MulAdd, 1, 305, [113, 192, 112, 113]),
+            code(Op::MulAdd, 1, 306, [114, 193, 305, 114]),
+            code(Op::MulAdd, 1, 307, [115, 194, 306, 115]),
+            code(Op::MulAdd, 1, 308, [117, 192, 116, 117]),
+            code(Op::MulAdd, 1, 309, [118, 193, 308, 118]),
+            code(Op::MulAdd, 1, 310, [119, 194, 309, 119]),
+            code(Op::MulMulSub, 0, 311, [310, 304, 307, 291]),
+            code(Op::MulMulSub, 0, 312, [301, 279, 282, 298]),
+            code(Op::MulMulSub, 0, 313, [294, 278, 275, 297]),
+            code(Op::MulAdd, 0, 314, [290, 313, 312, 290]),
+            code(Op::MulAdd, 1, 315, [121, 192, 120, 121]),
+            code(Op::MulAdd, 1, 316, [122, 193, 315, 122]),
+            code(Op::MulAdd, 1, 317, [123, 194, 316, 123]),
+            code(Op::SubMul, 0, 318, [317, 314, 311, 317]),
+            code(Op::MulMulSub, 0, 319, [301, 287, 282, 303]),
+            code(Op::MulAdd, 0, 320, [285, 313, 319, 285]),
+            code(Op::MulAdd, 1, 321, [125, 192, 124, 125]),
+            code(Op::MulAdd, 1, 322, [126, 193, 321, 126]),
+            code(Op::MulAdd, 1, 323, [127, 194, 322, 127]),
+            code(Op::MulAdd, 0, 324, [323, 320, 318, 323]),
+            code(Op::MulAdd, 1, 325, [137, 192, 136, 137]),
+            code(Op::MulAdd, 1, 326, [138, 193, 325, 138]),
+            code(Op::MulAdd, 1, 327, [139, 194, 326, 139]),
+            code(Op::MulAdd, 1, 328, [141, 192, 140, 141]),
+            code(Op::MulAdd, 1, 329, [142, 193, 328, 142]),
+            code(Op::MulAdd, 1, 330, [143, 194, 329, 143]),
+            code(Op::MulAdd, 1, 331, [153, 192, 152, 153]),
+            code(Op::MulAdd, 1, 332, [154, 193, 331, 154]),
+            code(Op::MulAdd, 1, 333, [155, 194, 332, 155]),
+            code(Op::MulAdd, 1, 334, [157, 192, 156, 157]),
+            code(Op::MulAdd, 1, 335, [158, 193, 334, 158]),
+            code(Op::MulAdd, 1, 336, [159, 194, 335, 159]),
+            code(Op::MulMulSub, 0, 337, [327, 336, 330, 333]),
+            code(Op::MulAdd, 1, 338, [133, 192, 132, 133]),
+            code(Op::MulAdd, 1, 339, [134, 193, 338, 134]),
+            code(Op::MulAdd, 1, 340, [135, 194, 339, 135]),
+            code(Op::MulAdd, 1, 341, [149, 192, 148, 149]),
+            code(Op::MulAdd, 1, 342, [150, 193, 341, 150]),
+            code(Op::MulAdd, 1, 343, [151, 194, 342, 151]),
+            code(Op::MulMulSub, 0, 344, [340, 336, 330, 343]),
+            code(Op::MulAdd, 1, 345, [165, 192, 164, 165]),
+            code(Op::MulAdd, 1, 346, [166, 193, 345, 166]),
+            code(Op::MulAdd, 1, 347, [167, 194, 346, 167]),
+            code(Op::MulAdd, 1, 348, [169, 192, 168, 169]),
+            code(Op::MulAdd, 1, 349, [170, 193, 348, 170]),
+            code(Op::MulAdd, 1, 350, [171, 194, 349, 171]),
+            code(Op::MulMulSub, 0, 351, [347, 337, 350, 344]),
+            code(Op::MulMulSub, 0, 352, [340, 333, 327, 343]),
+            code(Op::MulAdd, 1, 353, [173, 192, 172, 173]),
+            code(Op::MulAdd, 1, 354, [174, 193, 353, 174]),
+            code(Op::MulAdd, 1, 355, [175, 194, 354, 175]),
+            code(Op::MulAdd, 0, 356, [355, 352, 351, 355]),
+            code(Op::MulAdd, 1, 357, [129, 192, 128, 129]),
+            code(Op::MulAdd, 1, 358, [130, 193, 357, 130]),
+            code(Op::MulAdd, 1, 359, [131, 194, 358, 131]),
+            code(Op::MulAdd, 1, 360, [145, 192, 144, 145]),
+            code(Op::MulAdd, 1, 361, [146, 193, 360, 146]),
+            code(Op::MulAdd, 1, 362, [147, 194, 361, 147]),
+            code(Op::MulMulSub, 0, 363, [359, 336, 330, 362]),
+            code(Op::MulAdd, 1, 364, [161, 192, 160, 161]),
+            code(Op::MulAdd, 1, 365, [162, 193, 364, 162]),
+            code(Op::MulAdd, 1, 366, [163, 194, 365, 163]),
+            code(Op::MulMulSub, 0, 367, [366, 337, 350, 363]),
+            code(Op::MulMulSub, 0, 368, [359, 333, 327, 362]),
+            code(Op::MulAdd, 0, 369, [355, 368, 367, 355]),
+            code(Op::MulAdd, 1, 370, [177, 192, 176, 177]),
+            code(Op::MulAdd, 1, 371, [178, 193, 370, 178]),
+            code(Op::MulAdd, 1, 372, [179, 194, 371, 179]),
+            code(Op::MulAdd, 1, 373, [181, 192, 180, 181]),
+            code(Op::MulAdd, 1, 374, [182, 193, 373, 182]),
+            code(Op::MulAdd, 1, 375, [183, 194, 374, 183]),
+            code(Op::MulMulSub, 0, 376, [375, 369, 372, 356]),
+            code(Op::MulMulSub, 0, 377, [366, 344, 347, 363]),
+            code(Op::MulMulSub, 0, 378, [359, 343, 340, 362]),
+            code(Op::MulAdd, 0, 379, [355, 378, 377, 355]),
+            code(Op::MulAdd, 1, 380, [185, 192, 184, 185]),
+            code(Op::MulAdd, 1, 381, [186, 193, 380, 186]),
+            code(Op::MulAdd, 1, 382, [187, 194, 381, 187]),
+            code(Op::SubMul, 0, 383, [382, 379, 376, 382]),
+            code(Op::MulMulSub, 0, 384, [366, 352, 347, 368]),
+            code(Op::MulAdd, 0, 385, [350, 378, 384, 350]),
+            code(Op::MulAdd, 1, 386, [189, 192, 188, 189]),
+            code(Op::MulAdd, 1, 387, [190, 193, 386, 190]),
+            code(Op::MulAdd, 1, 388, [191, 194, 387, 191]),
+            code(Op::MulAdd, 0, 389, [388, 385, 383, 388]),
+        ],
+    ),
+    outputs: Cow::Borrowed(&[259, 324, 389]),
+    inputs: [0, 192, 3],
+    size: 390,
 };
 impl Evaluate for Pencils {
     type Memory<S: Scalar> = Memory<S>;
@@ -33,7 +235,7 @@ impl Evaluate for Pencils {
         192
     }
     fn memory<S: Scalar>(&self, isa: Isa) -> Memory<S> {
-        Memory::new(isa, &SHAPE)
+        Memory::new(isa, &CONSTANTS, 0, &TAYLOR)
     }
     fn values<S: Scalar>(
         &self,
@@ -82,40 +284,7 @@ impl Evaluate for Pencils {
         p: &[S],
         out: &mut [S],
     ) {
-        memory.load(&SHAPE, order, x, p);
-        match order {
-            1 => {
-                memory
-                    .isa
-                    .run(
-                        Taylor1Part0(
-                            memory.series.first_chunk_mut().expect("made by Memory::new"),
-                        ),
-                    );
-            }
-            2 => {
-                memory
-                    .isa
-                    .run(
-                        Taylor2Part0(
-                            memory.series.first_chunk_mut().expect("made by Memory::new"),
-                        ),
-                    );
-            }
-            _ => {
-                memory
-                    .isa
-                    .run(
-                        Taylor3Part0(
-                            memory.series.first_chunk_mut().expect("made by Memory::new"),
-                        ),
-                    );
-            }
-        }
-        let out = &mut out[..3];
-        out[0] = memory.series[259][order].clone();
-        out[1] = memory.series[324][order].clone();
-        out[2] = memory.series[389][order].clone();
+        memory.taylor(&TAYLOR, order, x, p, out);
     }
 }
 struct Values0<'a, S> {
@@ -812,614 +981,5 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t471 = S::mul_add(&p[139], &t436, &t470);
         let t472 = S::mul_add(&p[135], &t439, &t471);
         jacobian[8] = S::mul_add(&p[131], &t442, &t472);
-    }
-}
-struct Taylor1Part0<'a, S>(&'a mut [[S; 4]; 390]);
-impl<S: Scalar> Kernel for Taylor1Part0<'_, S> {
-    type Output = ();
-    #[inline(always)]
-    fn run(self) {
-        let Self(m) = self;
-        series::mul_add::<S, 0, 1>(m, 195, 9, 192, 8);
-        series::mul_add::<S, 0, 1>(m, 196, 10, 193, 195);
-        series::mul_add::<S, 0, 1>(m, 197, 11, 194, 196);
-        series::mul_add::<S, 0, 1>(m, 198, 13, 192, 12);
-        series::mul_add::<S, 0, 1>(m, 199, 14, 193, 198);
-        series::mul_add::<S, 0, 1>(m, 200, 15, 194, 199);
-        series::mul_add::<S, 0, 1>(m, 201, 25, 192, 24);
-        series::mul_add::<S, 0, 1>(m, 202, 26, 193, 201);
-        series::mul_add::<S, 0, 1>(m, 203, 27, 194, 202);
-        series::mul_add::<S, 0, 1>(m, 204, 29, 192, 28);
-        series::mul_add::<S, 0, 1>(m, 205, 30, 193, 204);
-        series::mul_add::<S, 0, 1>(m, 206, 31, 194, 205);
-        series::mul_mul_sub::<S, 0, 1>(m, 207, 197, 206, 200, 203);
-        series::mul_add::<S, 0, 1>(m, 208, 5, 192, 4);
-        series::mul_add::<S, 0, 1>(m, 209, 6, 193, 208);
-        series::mul_add::<S, 0, 1>(m, 210, 7, 194, 209);
-        series::mul_add::<S, 0, 1>(m, 211, 21, 192, 20);
-        series::mul_add::<S, 0, 1>(m, 212, 22, 193, 211);
-        series::mul_add::<S, 0, 1>(m, 213, 23, 194, 212);
-        series::mul_mul_sub::<S, 0, 1>(m, 214, 210, 206, 200, 213);
-        series::mul_add::<S, 0, 1>(m, 215, 37, 192, 36);
-        series::mul_add::<S, 0, 1>(m, 216, 38, 193, 215);
-        series::mul_add::<S, 0, 1>(m, 217, 39, 194, 216);
-        series::mul_add::<S, 0, 1>(m, 218, 41, 192, 40);
-        series::mul_add::<S, 0, 1>(m, 219, 42, 193, 218);
-        series::mul_add::<S, 0, 1>(m, 220, 43, 194, 219);
-        series::mul_mul_sub::<S, 0, 1>(m, 221, 217, 207, 220, 214);
-        series::mul_mul_sub::<S, 0, 1>(m, 222, 210, 203, 197, 213);
-        series::mul_add::<S, 0, 1>(m, 223, 45, 192, 44);
-        series::mul_add::<S, 0, 1>(m, 224, 46, 193, 223);
-        series::mul_add::<S, 0, 1>(m, 225, 47, 194, 224);
-        series::mul_add::<S, 0, 1>(m, 226, 225, 222, 221);
-        series::mul_add::<S, 0, 1>(m, 227, 1, 192, 0);
-        series::mul_add::<S, 0, 1>(m, 228, 2, 193, 227);
-        series::mul_add::<S, 0, 1>(m, 229, 3, 194, 228);
-        series::mul_add::<S, 0, 1>(m, 230, 17, 192, 16);
-        series::mul_add::<S, 0, 1>(m, 231, 18, 193, 230);
-        series::mul_add::<S, 0, 1>(m, 232, 19, 194, 231);
-        series::mul_mul_sub::<S, 0, 1>(m, 233, 229, 206, 200, 232);
-        series::mul_add::<S, 0, 1>(m, 234, 33, 192, 32);
-        series::mul_add::<S, 0, 1>(m, 235, 34, 193, 234);
-        series::mul_add::<S, 0, 1>(m, 236, 35, 194, 235);
-        series::mul_mul_sub::<S, 0, 1>(m, 237, 236, 207, 220, 233);
-        series::mul_mul_sub::<S, 0, 1>(m, 238, 229, 203, 197, 232);
-        series::mul_add::<S, 0, 1>(m, 239, 225, 238, 237);
-        series::mul_add::<S, 0, 1>(m, 240, 49, 192, 48);
-        series::mul_add::<S, 0, 1>(m, 241, 50, 193, 240);
-        series::mul_add::<S, 0, 1>(m, 242, 51, 194, 241);
-        series::mul_add::<S, 0, 1>(m, 243, 53, 192, 52);
-        series::mul_add::<S, 0, 1>(m, 244, 54, 193, 243);
-        series::mul_add::<S, 0, 1>(m, 245, 55, 194, 244);
-        series::mul_mul_sub::<S, 0, 1>(m, 246, 245, 239, 242, 226);
-        series::mul_mul_sub::<S, 0, 1>(m, 247, 236, 214, 217, 233);
-        series::mul_mul_sub::<S, 0, 1>(m, 248, 229, 213, 210, 232);
-        series::mul_add::<S, 0, 1>(m, 249, 225, 248, 247);
-        series::mul_add::<S, 0, 1>(m, 250, 57, 192, 56);
-        series::mul_add::<S, 0, 1>(m, 251, 58, 193, 250);
-        series::mul_add::<S, 0, 1>(m, 252, 59, 194, 251);
-        series::sub_mul::<S, 0, 1>(m, 253, 252, 249, 246);
-        series::mul_mul_sub::<S, 0, 1>(m, 254, 236, 222, 217, 238);
-        series::mul_add::<S, 0, 1>(m, 255, 220, 248, 254);
-        series::mul_add::<S, 0, 1>(m, 256, 61, 192, 60);
-        series::mul_add::<S, 0, 1>(m, 257, 62, 193, 256);
-        series::mul_add::<S, 0, 1>(m, 258, 63, 194, 257);
-        series::mul_add::<S, 0, 1>(m, 259, 258, 255, 253);
-        series::mul_add::<S, 0, 1>(m, 260, 73, 192, 72);
-        series::mul_add::<S, 0, 1>(m, 261, 74, 193, 260);
-        series::mul_add::<S, 0, 1>(m, 262, 75, 194, 261);
-        series::mul_add::<S, 0, 1>(m, 263, 77, 192, 76);
-        series::mul_add::<S, 0, 1>(m, 264, 78, 193, 263);
-        series::mul_add::<S, 0, 1>(m, 265, 79, 194, 264);
-        series::mul_add::<S, 0, 1>(m, 266, 89, 192, 88);
-        series::mul_add::<S, 0, 1>(m, 267, 90, 193, 266);
-        series::mul_add::<S, 0, 1>(m, 268, 91, 194, 267);
-        series::mul_add::<S, 0, 1>(m, 269, 93, 192, 92);
-        series::mul_add::<S, 0, 1>(m, 270, 94, 193, 269);
-        series::mul_add::<S, 0, 1>(m, 271, 95, 194, 270);
-        series::mul_mul_sub::<S, 0, 1>(m, 272, 262, 271, 265, 268);
-        series::mul_add::<S, 0, 1>(m, 273, 69, 192, 68);
-        series::mul_add::<S, 0, 1>(m, 274, 70, 193, 273);
-        series::mul_add::<S, 0, 1>(m, 275, 71, 194, 274);
-        series::mul_add::<S, 0, 1>(m, 276, 85, 192, 84);
-        series::mul_add::<S, 0, 1>(m, 277, 86, 193, 276);
-        series::mul_add::<S, 0, 1>(m, 278, 87, 194, 277);
-        series::mul_mul_sub::<S, 0, 1>(m, 279, 275, 271, 265, 278);
-        series::mul_add::<S, 0, 1>(m, 280, 101, 192, 100);
-        series::mul_add::<S, 0, 1>(m, 281, 102, 193, 280);
-        series::mul_add::<S, 0, 1>(m, 282, 103, 194, 281);
-        series::mul_add::<S, 0, 1>(m, 283, 105, 192, 104);
-        series::mul_add::<S, 0, 1>(m, 284, 106, 193, 283);
-        series::mul_add::<S, 0, 1>(m, 285, 107, 194, 284);
-        series::mul_mul_sub::<S, 0, 1>(m, 286, 282, 272, 285, 279);
-        series::mul_mul_sub::<S, 0, 1>(m, 287, 275, 268, 262, 278);
-        series::mul_add::<S, 0, 1>(m, 288, 109, 192, 108);
-        series::mul_add::<S, 0, 1>(m, 289, 110, 193, 288);
-        series::mul_add::<S, 0, 1>(m, 290, 111, 194, 289);
-        series::mul_add::<S, 0, 1>(m, 291, 290, 287, 286);
-        series::mul_add::<S, 0, 1>(m, 292, 65, 192, 64);
-        series::mul_add::<S, 0, 1>(m, 293, 66, 193, 292);
-        series::mul_add::<S, 0, 1>(m, 294, 67, 194, 293);
-        series::mul_add::<S, 0, 1>(m, 295, 81, 192, 80);
-        series::mul_add::<S, 0, 1>(m, 296, 82, 193, 295);
-        series::mul_add::<S, 0, 1>(m, 297, 83, 194, 296);
-        series::mul_mul_sub::<S, 0, 1>(m, 298, 294, 271, 265, 297);
-        series::mul_add::<S, 0, 1>(m, 299, 97, 192, 96);
-        series::mul_add::<S, 0, 1>(m, 300, 98, 193, 299);
-        series::mul_add::<S, 0, 1>(m, 301, 99, 194, 300);
-        series::mul_mul_sub::<S, 0, 1>(m, 302, 301, 272, 285, 298);
-        series::mul_mul_sub::<S, 0, 1>(m, 303, 294, 268, 262, 297);
-        series::mul_add::<S, 0, 1>(m, 304, 290, 303, 302);
-        series::mul_add::<S, 0, 1>(m, 305, 113, 192, 112);
-        series::mul_add::<S, 0, 1>(m, 306, 114, 193, 305);
-        series::mul_add::<S, 0, 1>(m, 307, 115, 194, 306);
-        series::mul_add::<S, 0, 1>(m, 308, 117, 192, 116);
-        series::mul_add::<S, 0, 1>(m, 309, 118, 193, 308);
-        series::mul_add::<S, 0, 1>(m, 310, 119, 194, 309);
-        series::mul_mul_sub::<S, 0, 1>(m, 311, 310, 304, 307, 291);
-        series::mul_mul_sub::<S, 0, 1>(m, 312, 301, 279, 282, 298);
-        series::mul_mul_sub::<S, 0, 1>(m, 313, 294, 278, 275, 297);
-        series::mul_add::<S, 0, 1>(m, 314, 290, 313, 312);
-        series::mul_add::<S, 0, 1>(m, 315, 121, 192, 120);
-        series::mul_add::<S, 0, 1>(m, 316, 122, 193, 315);
-        series::mul_add::<S, 0, 1>(m, 317, 123, 194, 316);
-        series::sub_mul::<S, 0, 1>(m, 318, 317, 314, 311);
-        series::mul_mul_sub::<S, 0, 1>(m, 319, 301, 287, 282, 303);
-        series::mul_add::<S, 0, 1>(m, 320, 285, 313, 319);
-        series::mul_add::<S, 0, 1>(m, 321, 125, 192, 124);
-        series::mul_add::<S, 0, 1>(m, 322, 126, 193, 321);
-        series::mul_add::<S, 0, 1>(m, 323, 127, 194, 322);
-        series::mul_add::<S, 0, 1>(m, 324, 323, 320, 318);
-        series::mul_add::<S, 0, 1>(m, 325, 137, 192, 136);
-        series::mul_add::<S, 0, 1>(m, 326, 138, 193, 325);
-        series::mul_add::<S, 0, 1>(m, 327, 139, 194, 326);
-        series::mul_add::<S, 0, 1>(m, 328, 141, 192, 140);
-        series::mul_add::<S, 0, 1>(m, 329, 142, 193, 328);
-        series::mul_add::<S, 0, 1>(m, 330, 143, 194, 329);
-        series::mul_add::<S, 0, 1>(m, 331, 153, 192, 152);
-        series::mul_add::<S, 0, 1>(m, 332, 154, 193, 331);
-        series::mul_add::<S, 0, 1>(m, 333, 155, 194, 332);
-        series::mul_add::<S, 0, 1>(m, 334, 157, 192, 156);
-        series::mul_add::<S, 0, 1>(m, 335, 158, 193, 334);
-        series::mul_add::<S, 0, 1>(m, 336, 159, 194, 335);
-        series::mul_mul_sub::<S, 0, 1>(m, 337, 327, 336, 330, 333);
-        series::mul_add::<S, 0, 1>(m, 338, 133, 192, 132);
-        series::mul_add::<S, 0, 1>(m, 339, 134, 193, 338);
-        series::mul_add::<S, 0, 1>(m, 340, 135, 194, 339);
-        series::mul_add::<S, 0, 1>(m, 341, 149, 192, 148);
-        series::mul_add::<S, 0, 1>(m, 342, 150, 193, 341);
-        series::mul_add::<S, 0, 1>(m, 343, 151, 194, 342);
-        series::mul_mul_sub::<S, 0, 1>(m, 344, 340, 336, 330, 343);
-        series::mul_add::<S, 0, 1>(m, 345, 165, 192, 164);
-        series::mul_add::<S, 0, 1>(m, 346, 166, 193, 345);
-        series::mul_add::<S, 0, 1>(m, 347, 167, 194, 346);
-        series::mul_add::<S, 0, 1>(m, 348, 169, 192, 168);
-        series::mul_add::<S, 0, 1>(m, 349, 170, 193, 348);
-        series::mul_add::<S, 0, 1>(m, 350, 171, 194, 349);
-        series::mul_mul_sub::<S, 0, 1>(m, 351, 347, 337, 350, 344);
-        series::mul_mul_sub::<S, 0, 1>(m, 352, 340, 333, 327, 343);
-        series::mul_add::<S, 0, 1>(m, 353, 173, 192, 172);
-        series::mul_add::<S, 0, 1>(m, 354, 174, 193, 353);
-        series::mul_add::<S, 0, 1>(m, 355, 175, 194, 354);
-        series::mul_add::<S, 0, 1>(m, 356, 355, 352, 351);
-        series::mul_add::<S, 0, 1>(m, 357, 129, 192, 128);
-        series::mul_add::<S, 0, 1>(m, 358, 130, 193, 357);
-        series::mul_add::<S, 0, 1>(m, 359, 131, 194, 358);
-        series::mul_add::<S, 0, 1>(m, 360, 145, 192, 144);
-        series::mul_add::<S, 0, 1>(m, 361, 146, 193, 360);
-        series::mul_add::<S, 0, 1>(m, 362, 147, 194, 361);
-        series::mul_mul_sub::<S, 0, 1>(m, 363, 359, 336, 330, 362);
-        series::mul_add::<S, 0, 1>(m, 364, 161, 192, 160);
-        series::mul_add::<S, 0, 1>(m, 365, 162, 193, 364);
-        series::mul_add::<S, 0, 1>(m, 366, 163, 194, 365);
-        series::mul_mul_sub::<S, 0, 1>(m, 367, 366, 337, 350, 363);
-        series::mul_mul_sub::<S, 0, 1>(m, 368, 359, 333, 327, 362);
-        series::mul_add::<S, 0, 1>(m, 369, 355, 368, 367);
-        series::mul_add::<S, 0, 1>(m, 370, 177, 192, 176);
-        series::mul_add::<S, 0, 1>(m, 371, 178, 193, 370);
-        series::mul_add::<S, 0, 1>(m, 372, 179, 194, 371);
-        series::mul_add::<S, 0, 1>(m, 373, 181, 192, 180);
-        series::mul_add::<S, 0, 1>(m, 374, 182, 193, 373);
-        series::mul_add::<S, 0, 1>(m, 375, 183, 194, 374);
-        series::mul_mul_sub::<S, 0, 1>(m, 376, 375, 369, 372, 356);
-        series::mul_mul_sub::<S, 0, 1>(m, 377, 366, 344, 347, 363);
-        series::mul_mul_sub::<S, 0, 1>(m, 378, 359, 343, 340, 362);
-        series::mul_add::<S, 0, 1>(m, 379, 355, 378, 377);
-        series::mul_add::<S, 0, 1>(m, 380, 185, 192, 184);
-        series::mul_add::<S, 0, 1>(m, 381, 186, 193, 380);
-        series::mul_add::<S, 0, 1>(m, 382, 187, 194, 381);
-        series::sub_mul::<S, 0, 1>(m, 383, 382, 379, 376);
-        series::mul_mul_sub::<S, 0, 1>(m, 384, 366, 352, 347, 368);
-        series::mul_add::<S, 0, 1>(m, 385, 350, 378, 384);
-        series::mul_add::<S, 0, 1>(m, 386, 189, 192, 188);
-        series::mul_add::<S, 0, 1>(m, 387, 190, 193, 386);
-        series::mul_add::<S, 0, 1>(m, 388, 191, 194, 387);
-        series::mul_add::<S, 0, 1>(m, 389, 388, 385, 383);
-    }
-}
-struct Taylor2Part0<'a, S>(&'a mut [[S; 4]; 390]);
-impl<S: Scalar> Kernel for Taylor2Part0<'_, S> {
-    type Output = ();
-    #[inline(always)]
-    fn run(self) {
-        let Self(m) = self;
-        series::mul_add::<S, 1, 2>(m, 195, 9, 192, 8);
-        series::mul_add::<S, 1, 2>(m, 196, 10, 193, 195);
-        series::mul_add::<S, 1, 2>(m, 197, 11, 194, 196);
-        series::mul_add::<S, 1, 2>(m, 198, 13, 192, 12);
-        series::mul_add::<S, 1, 2>(m, 199, 14, 193, 198);
-        series::mul_add::<S, 1, 2>(m, 200, 15, 194, 199);
-        series::mul_add::<S, 1, 2>(m, 201, 25, 192, 24);
-        series::mul_add::<S, 1, 2>(m, 202, 26, 193, 201);
-        series::mul_add::<S, 1, 2>(m, 203, 27, 194, 202);
-        series::mul_add::<S, 1, 2>(m, 204, 29, 192, 28);
-        series::mul_add::<S, 1, 2>(m, 205, 30, 193, 204);
-        series::mul_add::<S, 1, 2>(m, 206, 31, 194, 205);
-        series::mul_mul_sub::<S, 1, 2>(m, 207, 197, 206, 200, 203);
-        series::mul_add::<S, 1, 2>(m, 208, 5, 192, 4);
-        series::mul_add::<S, 1, 2>(m, 209, 6, 193, 208);
-        series::mul_add::<S, 1, 2>(m, 210, 7, 194, 209);
-        series::mul_add::<S, 1, 2>(m, 211, 21, 192, 20);
-        series::mul_add::<S, 1, 2>(m, 212, 22, 193, 211);
-        series::mul_add::<S, 1, 2>(m, 213, 23, 194, 212);
-        series::mul_mul_sub::<S, 1, 2>(m, 214, 210, 206, 200, 213);
-        series::mul_add::<S, 1, 2>(m, 215, 37, 192, 36);
-        series::mul_add::<S, 1, 2>(m, 216, 38, 193, 215);
-        series::mul_add::<S, 1, 2>(m, 217, 39, 194, 216);
-        series::mul_add::<S, 1, 2>(m, 218, 41, 192, 40);
-        series::mul_add::<S, 1, 2>(m, 219, 42, 193, 218);
-        series::mul_add::<S, 1, 2>(m, 220, 43, 194, 219);
-        series::mul_mul_sub::<S, 1, 2>(m, 221, 217, 207, 220, 214);
-        series::mul_mul_sub::<S, 1, 2>(m, 222, 210, 203, 197, 213);
-        series::mul_add::<S, 1, 2>(m, 223, 45, 192, 44);
-        series::mul_add::<S, 1, 2>(m, 224, 46, 193, 223);
-        series::mul_add::<S, 1, 2>(m, 225, 47, 194, 224);
-        series::mul_add::<S, 1, 2>(m, 226, 225, 222, 221);
-        series::mul_add::<S, 1, 2>(m, 227, 1, 192, 0);
-        series::mul_add::<S, 1, 2>(m, 228, 2, 193, 227);
-        series::mul_add::<S, 1, 2>(m, 229, 3, 194, 228);
-        series::mul_add::<S, 1, 2>(m, 230, 17, 192, 16);
-        series::mul_add::<S, 1, 2>(m, 231, 18, 193, 230);
-        series::mul_add::<S, 1, 2>(m, 232, 19, 194, 231);
-        series::mul_mul_sub::<S, 1, 2>(m, 233, 229, 206, 200, 232);
-        series::mul_add::<S, 1, 2>(m, 234, 33, 192, 32);
-        series::mul_add::<S, 1, 2>(m, 235, 34, 193, 234);
-        series::mul_add::<S, 1, 2>(m, 236, 35, 194, 235);
-        series::mul_mul_sub::<S, 1, 2>(m, 237, 236, 207, 220, 233);
-        series::mul_mul_sub::<S, 1, 2>(m, 238, 229, 203, 197, 232);
-        series::mul_add::<S, 1, 2>(m, 239, 225, 238, 237);
-        series::mul_add::<S, 1, 2>(m, 240, 49, 192, 48);
-        series::mul_add::<S, 1, 2>(m, 241, 50, 193, 240);
-        series::mul_add::<S, 1, 2>(m, 242, 51, 194, 241);
-        series::mul_add::<S, 1, 2>(m, 243, 53, 192, 52);
-        series::mul_add::<S, 1, 2>(m, 244, 54, 193, 243);
-        series::mul_add::<S, 1, 2>(m, 245, 55, 194, 244);
-        series::mul_mul_sub::<S, 1, 2>(m, 246, 245, 239, 242, 226);
-        series::mul_mul_sub::<S, 1, 2>(m, 247, 236, 214, 217, 233);
-        series::mul_mul_sub::<S, 1, 2>(m, 248, 229, 213, 210, 232);
-        series::mul_add::<S, 1, 2>(m, 249, 225, 248, 247);
-        series::mul_add::<S, 1, 2>(m, 250, 57, 192, 56);
-        series::mul_add::<S, 1, 2>(m, 251, 58, 193, 250);
-        series::mul_add::<S, 1, 2>(m, 252, 59, 194, 251);
-        series::sub_mul::<S, 1, 2>(m, 253, 252, 249, 246);
-        series::mul_mul_sub::<S, 1, 2>(m, 254, 236, 222, 217, 238);
-        series::mul_add::<S, 1, 2>(m, 255, 220, 248, 254);
-        series::mul_add::<S, 1, 2>(m, 256, 61, 192, 60);
-        series::mul_add::<S, 1, 2>(m, 257, 62, 193, 256);
-        series::mul_add::<S, 1, 2>(m, 258, 63, 194, 257);
-        series::mul_add::<S, 1, 2>(m, 259, 258, 255, 253);
-        series::mul_add::<S, 1, 2>(m, 260, 73, 192, 72);
-        series::mul_add::<S, 1, 2>(m, 261, 74, 193, 260);
-        series::mul_add::<S, 1, 2>(m, 262, 75, 194, 261);
-        series::mul_add::<S, 1, 2>(m, 263, 77, 192, 76);
-        series::mul_add::<S, 1, 2>(m, 264, 78, 193, 263);
-        series::mul_add::<S, 1, 2>(m, 265, 79, 194, 264);
-        series::mul_add::<S, 1, 2>(m, 266, 89, 192, 88);
-        series::mul_add::<S, 1, 2>(m, 267, 90, 193, 266);
-        series::mul_add::<S, 1, 2>(m, 268, 91, 194, 267);
-        series::mul_add::<S, 1, 2>(m, 269, 93, 192, 92);
-        series::mul_add::<S, 1, 2>(m, 270, 94, 193, 269);
-        series::mul_add::<S, 1, 2>(m, 271, 95, 194, 270);
-        series::mul_mul_sub::<S, 1, 2>(m, 272, 262, 271, 265, 268);
-        series::mul_add::<S, 1, 2>(m, 273, 69, 192, 68);
-        series::mul_add::<S, 1, 2>(m, 274, 70, 193, 273);
-        series::mul_add::<S, 1, 2>(m, 275, 71, 194, 274);
-        series::mul_add::<S, 1, 2>(m, 276, 85, 192, 84);
-        series::mul_add::<S, 1, 2>(m, 277, 86, 193, 276);
-        series::mul_add::<S, 1, 2>(m, 278, 87, 194, 277);
-        series::mul_mul_sub::<S, 1, 2>(m, 279, 275, 271, 265, 278);
-        series::mul_add::<S, 1, 2>(m, 280, 101, 192, 100);
-        series::mul_add::<S, 1, 2>(m, 281, 102, 193, 280);
-        series::mul_add::<S, 1, 2>(m, 282, 103, 194, 281);
-        series::mul_add::<S, 1, 2>(m, 283, 105, 192, 104);
-        series::mul_add::<S, 1, 2>(m, 284, 106, 193, 283);
-        series::mul_add::<S, 1, 2>(m, 285, 107, 194, 284);
-        series::mul_mul_sub::<S, 1, 2>(m, 286, 282, 272, 285, 279);
-        series::mul_mul_sub::<S, 1, 2>(m, 287, 275, 268, 262, 278);
-        series::mul_add::<S, 1, 2>(m, 288, 109, 192, 108);
-        series::mul_add::<S, 1, 2>(m, 289, 110, 193, 288);
-        series::mul_add::<S, 1, 2>(m, 290, 111, 194, 289);
-        series::mul_add::<S, 1, 2>(m, 291, 290, 287, 286);
-        series::mul_add::<S, 1, 2>(m, 292, 65, 192, 64);
-        series::mul_add::<S, 1, 2>(m, 293, 66, 193, 292);
-        series::mul_add::<S, 1, 2>(m, 294, 67, 194, 293);
-        series::mul_add::<S, 1, 2>(m, 295, 81, 192, 80);
-        series::mul_add::<S, 1, 2>(m, 296, 82, 193, 295);
-        series::mul_add::<S, 1, 2>(m, 297, 83, 194, 296);
-        series::mul_mul_sub::<S, 1, 2>(m, 298, 294, 271, 265, 297);
-        series::mul_add::<S, 1, 2>(m, 299, 97, 192, 96);
-        series::mul_add::<S, 1, 2>(m, 300, 98, 193, 299);
-        series::mul_add::<S, 1, 2>(m, 301, 99, 194, 300);
-        series::mul_mul_sub::<S, 1, 2>(m, 302, 301, 272, 285, 298);
-        series::mul_mul_sub::<S, 1, 2>(m, 303, 294, 268, 262, 297);
-        series::mul_add::<S, 1, 2>(m, 304, 290, 303, 302);
-        series::mul_add::<S, 1, 2>(m, 305, 113, 192, 112);
-        series::mul_add::<S, 1, 2>(m, 306, 114, 193, 305);
-        series::mul_add::<S, 1, 2>(m, 307, 115, 194, 306);
-        series::mul_add::<S, 1, 2>(m, 308, 117, 192, 116);
-        series::mul_add::<S, 1, 2>(m, 309, 118, 193, 308);
-        series::mul_add::<S, 1, 2>(m, 310, 119, 194, 309);
-        series::mul_mul_sub::<S, 1, 2>(m, 311, 310, 304, 307, 291);
-        series::mul_mul_sub::<S, 1, 2>(m, 312, 301, 279, 282, 298);
-        series::mul_mul_sub::<S, 1, 2>(m, 313, 294, 278, 275, 297);
-        series::mul_add::<S, 1, 2>(m, 314, 290, 313, 312);
-        series::mul_add::<S, 1, 2>(m, 315, 121, 192, 120);
-        series::mul_add::<S, 1, 2>(m, 316, 122, 193, 315);
-        series::mul_add::<S, 1, 2>(m, 317, 123, 194, 316);
-        series::sub_mul::<S, 1, 2>(m, 318, 317, 314, 311);
-        series::mul_mul_sub::<S, 1, 2>(m, 319, 301, 287, 282, 303);
-        series::mul_add::<S, 1, 2>(m, 320, 285, 313, 319);
-        series::mul_add::<S, 1, 2>(m, 321, 125, 192, 124);
-        series::mul_add::<S, 1, 2>(m, 322, 126, 193, 321);
-        series::mul_add::<S, 1, 2>(m, 323, 127, 194, 322);
-        series::mul_add::<S, 1, 2>(m, 324, 323, 320, 318);
-        series::mul_add::<S, 1, 2>(m, 325, 137, 192, 136);
-        series::mul_add::<S, 1, 2>(m, 326, 138, 193, 325);
-        series::mul_add::<S, 1, 2>(m, 327, 139, 194, 326);
-        series::mul_add::<S, 1, 2>(m, 328, 141, 192, 140);
-        series::mul_add::<S, 1, 2>(m, 329, 142, 193, 328);
-        series::mul_add::<S, 1, 2>(m, 330, 143, 194, 329);
-        series::mul_add::<S, 1, 2>(m, 331, 153, 192, 152);
-        series::mul_add::<S, 1, 2>(m, 332, 154, 193, 331);
-        series::mul_add::<S, 1, 2>(m, 333, 155, 194, 332);
-        series::mul_add::<S, 1, 2>(m, 334, 157, 192, 156);
-        series::mul_add::<S, 1, 2>(m, 335, 158, 193, 334);
-        series::mul_add::<S, 1, 2>(m, 336, 159, 194, 335);
-        series::mul_mul_sub::<S, 1, 2>(m, 337, 327, 336, 330, 333);
-        series::mul_add::<S, 1, 2>(m, 338, 133, 192, 132);
-        series::mul_add::<S, 1, 2>(m, 339, 134, 193, 338);
-        series::mul_add::<S, 1, 2>(m, 340, 135, 194, 339);
-        series::mul_add::<S, 1, 2>(m, 341, 149, 192, 148);
-        series::mul_add::<S, 1, 2>(m, 342, 150, 193, 341);
-        series::mul_add::<S, 1, 2>(m, 343, 151, 194, 342);
-        series::mul_mul_sub::<S, 1, 2>(m, 344, 340, 336, 330, 343);
-        series::mul_add::<S, 1, 2>(m, 345, 165, 192, 164);
-        series::mul_add::<S, 1, 2>(m, 346, 166, 193, 345);
-        series::mul_add::<S, 1, 2>(m, 347, 167, 194, 346);
-        series::mul_add::<S, 1, 2>(m, 348, 169, 192, 168);
-        series::mul_add::<S, 1, 2>(m, 349, 170, 193, 348);
-        series::mul_add::<S, 1, 2>(m, 350, 171, 194, 349);
-        series::mul_mul_sub::<S, 1, 2>(m, 351, 347, 337, 350, 344);
-        series::mul_mul_sub::<S, 1, 2>(m, 352, 340, 333, 327, 343);
-        series::mul_add::<S, 1, 2>(m, 353, 173, 192, 172);
-        series::mul_add::<S, 1, 2>(m, 354, 174, 193, 353);
-        series::mul_add::<S, 1, 2>(m, 355, 175, 194, 354);
-        series::mul_add::<S, 1, 2>(m, 356, 355, 352, 351);
-        series::mul_add::<S, 1, 2>(m, 357, 129, 192, 128);
-        series::mul_add::<S, 1, 2>(m, 358, 130, 193, 357);
-        series::mul_add::<S, 1, 2>(m, 359, 131, 194, 358);
-        series::mul_add::<S, 1, 2>(m, 360, 145, 192, 144);
-        series::mul_add::<S, 1, 2>(m, 361, 146, 193, 360);
-        series::mul_add::<S, 1, 2>(m, 362, 147, 194, 361);
-        series::mul_mul_sub::<S, 1, 2>(m, 363, 359, 336, 330, 362);
-        series::mul_add::<S, 1, 2>(m, 364, 161, 192, 160);
-        series::mul_add::<S, 1, 2>(m, 365, 162, 193, 364);
-        series::mul_add::<S, 1, 2>(m, 366, 163, 194, 365);
-        series::mul_mul_sub::<S, 1, 2>(m, 367, 366, 337, 350, 363);
-        series::mul_mul_sub::<S, 1, 2>(m, 368, 359, 333, 327, 362);
-        series::mul_add::<S, 1, 2>(m, 369, 355, 368, 367);
-        series::mul_add::<S, 1, 2>(m, 370, 177, 192, 176);
-        series::mul_add::<S, 1, 2>(m, 371, 178, 193, 370);
-        series::mul_add::<S, 1, 2>(m, 372, 179, 194, 371);
-        series::mul_add::<S, 1, 2>(m, 373, 181, 192, 180);
-        series::mul_add::<S, 1, 2>(m, 374, 182, 193, 373);
-        series::mul_add::<S, 1, 2>(m, 375, 183, 194, 374);
-        series::mul_mul_sub::<S, 1, 2>(m, 376, 375, 369, 372, 356);
-        series::mul_mul_sub::<S, 1, 2>(m, 377, 366, 344, 347, 363);
-        series::mul_mul_sub::<S, 1, 2>(m, 378, 359, 343, 340, 362);
-        series::mul_add::<S, 1, 2>(m, 379, 355, 378, 377);
-        series::mul_add::<S, 1, 2>(m, 380, 185, 192, 184);
-        series::mul_add::<S, 1, 2>(m, 381, 186, 193, 380);
-        series::mul_add::<S, 1, 2>(m, 382, 187, 194, 381);
-        series::sub_mul::<S, 1, 2>(m, 383, 382, 379, 376);
-        series::mul_mul_sub::<S, 1, 2>(m, 384, 366, 352, 347, 368);
-        series::mul_add::<S, 1, 2>(m, 385, 350, 378, 384);
-        series::mul_add::<S, 1, 2>(m, 386, 189, 192, 188);
-        series::mul_add::<S, 1, 2>(m, 387, 190, 193, 386);
-        series::mul_add::<S, 1, 2>(m, 388, 191, 194, 387);
-        series::mul_add::<S, 1, 2>(m, 389, 388, 385, 383);
-    }
-}
-struct Taylor3Part0<'a, S>(&'a mut [[S; 4]; 390]);
-impl<S: Scalar> Kernel for Taylor3Part0<'_, S> {
-    type Output = ();
-    #[inline(always)]
-    fn run(self) {
-        let Self(m) = self;
-        series::mul_add::<S, 2, 3>(m, 195, 9, 192, 8);
-        series::mul_add::<S, 2, 3>(m, 196, 10, 193, 195);
-        series::mul_add::<S, 2, 3>(m, 197, 11, 194, 196);
-        series::mul_add::<S, 2, 3>(m, 198, 13, 192, 12);
-        series::mul_add::<S, 2, 3>(m, 199, 14, 193, 198);
-        series::mul_add::<S, 2, 3>(m, 200, 15, 194, 199);
-        series::mul_add::<S, 2, 3>(m, 201, 25, 192, 24);
-        series::mul_add::<S, 2, 3>(m, 202, 26, 193, 201);
-        series::mul_add::<S, 2, 3>(m, 203, 27, 194, 202);
-        series::mul_add::<S, 2, 3>(m, 204, 29, 192, 28);
-        series::mul_add::<S, 2, 3>(m, 205, 30, 193, 204);
-        series::mul_add::<S, 2, 3>(m, 206, 31, 194, 205);
-        series::mul_mul_sub::<S, 2, 3>(m, 207, 197, 206, 200, 203);
-        series::mul_add::<S, 2, 3>(m, 208, 5, 192, 4);
-        series::mul_add::<S, 2, 3>(m, 209, 6, 193, 208);
-        series::mul_add::<S, 2, 3>(m, 210, 7, 194, 209);
-        series::mul_add::<S, 2, 3>(m, 211, 21, 192, 20);
-        series::mul_add::<S, 2, 3>(m, 212, 22, 193, 211);
-        series::mul_add::<S, 2, 3>(m, 213, 23, 194, 212);
-        series::mul_mul_sub::<S, 2, 3>(m, 214, 210, 206, 200, 213);
-        series::mul_add::<S, 2, 3>(m, 215, 37, 192, 36);
-        series::mul_add::<S, 2, 3>(m, 216, 38, 193, 215);
-        series::mul_add::<S, 2, 3>(m, 217, 39, 194, 216);
-        series::mul_add::<S, 2, 3>(m, 218, 41, 192, 40);
-        series::mul_add::<S, 2, 3>(m, 219, 42, 193, 218);
-        series::mul_add::<S, 2, 3>(m, 220, 43, 194, 219);
-        series::mul_mul_sub::<S, 2, 3>(m, 221, 217, 207, 220, 214);
-        series::mul_mul_sub::<S, 2, 3>(m, 222, 210, 203, 197, 213);
-        series::mul_add::<S, 2, 3>(m, 223, 45, 192, 44);
-        series::mul_add::<S, 2, 3>(m, 224, 46, 193, 223);
-        series::mul_add::<S, 2, 3>(m, 225, 47, 194, 224);
-        series::mul_add::<S, 2, 3>(m, 226, 225, 222, 221);
-        series::mul_add::<S, 2, 3>(m, 227, 1, 192, 0);
-        series::mul_add::<S, 2, 3>(m, 228, 2, 193, 227);
-        series::mul_add::<S, 2, 3>(m, 229, 3, 194, 228);
-        series::mul_add::<S, 2, 3>(m, 230, 17, 192, 16);
-        series::mul_add::<S, 2, 3>(m, 231, 18, 193, 230);
-        series::mul_add::<S, 2, 3>(m, 232, 19, 194, 231);
-        series::mul_mul_sub::<S, 2, 3>(m, 233, 229, 206, 200, 232);
-        series::mul_add::<S, 2, 3>(m, 234, 33, 192, 32);
-        series::mul_add::<S, 2, 3>(m, 235, 34, 193, 234);
-        series::mul_add::<S, 2, 3>(m, 236, 35, 194, 235);
-        series::mul_mul_sub::<S, 2, 3>(m, 237, 236, 207, 220, 233);
-        series::mul_mul_sub::<S, 2, 3>(m, 238, 229, 203, 197, 232);
-        series::mul_add::<S, 2, 3>(m, 239, 225, 238, 237);
-        series::mul_add::<S, 2, 3>(m, 240, 49, 192, 48);
-        series::mul_add::<S, 2, 3>(m, 241, 50, 193, 240);
-        series::mul_add::<S, 2, 3>(m, 242, 51, 194, 241);
-        series::mul_add::<S, 2, 3>(m, 243, 53, 192, 52);
-        series::mul_add::<S, 2, 3>(m, 244, 54, 193, 243);
-        series::mul_add::<S, 2, 3>(m, 245, 55, 194, 244);
-        series::mul_mul_sub::<S, 2, 3>(m, 246, 245, 239, 242, 226);
-        series::mul_mul_sub::<S, 2, 3>(m, 247, 236, 214, 217, 233);
-        series::mul_mul_sub::<S, 2, 3>(m, 248, 229, 213, 210, 232);
-        series::mul_add::<S, 2, 3>(m, 249, 225, 248, 247);
-        series::mul_add::<S, 2, 3>(m, 250, 57, 192, 56);
-        series::mul_add::<S, 2, 3>(m, 251, 58, 193, 250);
-        series::mul_add::<S, 2, 3>(m, 252, 59, 194, 251);
-        series::sub_mul::<S, 2, 3>(m, 253, 252, 249, 246);
-        series::mul_mul_sub::<S, 2, 3>(m, 254, 236, 222, 217, 238);
-        series::mul_add::<S, 2, 3>(m, 255, 220, 248, 254);
-        series::mul_add::<S, 2, 3>(m, 256, 61, 192, 60);
-        series::mul_add::<S, 2, 3>(m, 257, 62, 193, 256);
-        series::mul_add::<S, 2, 3>(m, 258, 63, 194, 257);
-        series::mul_add::<S, 2, 3>(m, 259, 258, 255, 253);
-        series::mul_add::<S, 2, 3>(m, 260, 73, 192, 72);
-        series::mul_add::<S, 2, 3>(m, 261, 74, 193, 260);
-        series::mul_add::<S, 2, 3>(m, 262, 75, 194, 261);
-        series::mul_add::<S, 2, 3>(m, 263, 77, 192, 76);
-        series::mul_add::<S, 2, 3>(m, 264, 78, 193, 263);
-        series::mul_add::<S, 2, 3>(m, 265, 79, 194, 264);
-        series::mul_add::<S, 2, 3>(m, 266, 89, 192, 88);
-        series::mul_add::<S, 2, 3>(m, 267, 90, 193, 266);
-        series::mul_add::<S, 2, 3>(m, 268, 91, 194, 267);
-        series::mul_add::<S, 2, 3>(m, 269, 93, 192, 92);
-        series::mul_add::<S, 2, 3>(m, 270, 94, 193, 269);
-        series::mul_add::<S, 2, 3>(m, 271, 95, 194, 270);
-        series::mul_mul_sub::<S, 2, 3>(m, 272, 262, 271, 265, 268);
-        series::mul_add::<S, 2, 3>(m, 273, 69, 192, 68);
-        series::mul_add::<S, 2, 3>(m, 274, 70, 193, 273);
-        series::mul_add::<S, 2, 3>(m, 275, 71, 194, 274);
-        series::mul_add::<S, 2, 3>(m, 276, 85, 192, 84);
-        series::mul_add::<S, 2, 3>(m, 277, 86, 193, 276);
-        series::mul_add::<S, 2, 3>(m, 278, 87, 194, 277);
-        series::mul_mul_sub::<S, 2, 3>(m, 279, 275, 271, 265, 278);
-        series::mul_add::<S, 2, 3>(m, 280, 101, 192, 100);
-        series::mul_add::<S, 2, 3>(m, 281, 102, 193, 280);
-        series::mul_add::<S, 2, 3>(m, 282, 103, 194, 281);
-        series::mul_add::<S, 2, 3>(m, 283, 105, 192, 104);
-        series::mul_add::<S, 2, 3>(m, 284, 106, 193, 283);
-        series::mul_add::<S, 2, 3>(m, 285, 107, 194, 284);
-        series::mul_mul_sub::<S, 2, 3>(m, 286, 282, 272, 285, 279);
-        series::mul_mul_sub::<S, 2, 3>(m, 287, 275, 268, 262, 278);
-        series::mul_add::<S, 2, 3>(m, 288, 109, 192, 108);
-        series::mul_add::<S, 2, 3>(m, 289, 110, 193, 288);
-        series::mul_add::<S, 2, 3>(m, 290, 111, 194, 289);
-        series::mul_add::<S, 2, 3>(m, 291, 290, 287, 286);
-        series::mul_add::<S, 2, 3>(m, 292, 65, 192, 64);
-        series::mul_add::<S, 2, 3>(m, 293, 66, 193, 292);
-        series::mul_add::<S, 2, 3>(m, 294, 67, 194, 293);
-        series::mul_add::<S, 2, 3>(m, 295, 81, 192, 80);
-        series::mul_add::<S, 2, 3>(m, 296, 82, 193, 295);
-        series::mul_add::<S, 2, 3>(m, 297, 83, 194, 296);
-        series::mul_mul_sub::<S, 2, 3>(m, 298, 294, 271, 265, 297);
-        series::mul_add::<S, 2, 3>(m, 299, 97, 192, 96);
-        series::mul_add::<S, 2, 3>(m, 300, 98, 193, 299);
-        series::mul_add::<S, 2, 3>(m, 301, 99, 194, 300);
-        series::mul_mul_sub::<S, 2, 3>(m, 302, 301, 272, 285, 298);
-        series::mul_mul_sub::<S, 2, 3>(m, 303, 294, 268, 262, 297);
-        series::mul_add::<S, 2, 3>(m, 304, 290, 303, 302);
-        series::mul_add::<S, 2, 3>(m, 305, 113, 192, 112);
-        series::mul_add::<S, 2, 3>(m, 306, 114, 193, 305);
-        series::mul_add::<S, 2, 3>(m, 307, 115, 194, 306);
-        series::mul_add::<S, 2, 3>(m, 308, 117, 192, 116);
-        series::mul_add::<S, 2, 3>(m, 309, 118, 193, 308);
-        series::mul_add::<S, 2, 3>(m, 310, 119, 194, 309);
-        series::mul_mul_sub::<S, 2, 3>(m, 311, 310, 304, 307, 291);
-        series::mul_mul_sub::<S, 2, 3>(m, 312, 301, 279, 282, 298);
-        series::mul_mul_sub::<S, 2, 3>(m, 313, 294, 278, 275, 297);
-        series::mul_add::<S, 2, 3>(m, 314, 290, 313, 312);
-        series::mul_add::<S, 2, 3>(m, 315, 121, 192, 120);
-        series::mul_add::<S, 2, 3>(m, 316, 122, 193, 315);
-        series::mul_add::<S, 2, 3>(m, 317, 123, 194, 316);
-        series::sub_mul::<S, 2, 3>(m, 318, 317, 314, 311);
-        series::mul_mul_sub::<S, 2, 3>(m, 319, 301, 287, 282, 303);
-        series::mul_add::<S, 2, 3>(m, 320, 285, 313, 319);
-        series::mul_add::<S, 2, 3>(m, 321, 125, 192, 124);
-        series::mul_add::<S, 2, 3>(m, 322, 126, 193, 321);
-        series::mul_add::<S, 2, 3>(m, 323, 127, 194, 322);
-        series::mul_add::<S, 2, 3>(m, 324, 323, 320, 318);
-        series::mul_add::<S, 2, 3>(m, 325, 137, 192, 136);
-        series::mul_add::<S, 2, 3>(m, 326, 138, 193, 325);
-        series::mul_add::<S, 2, 3>(m, 327, 139, 194, 326);
-        series::mul_add::<S, 2, 3>(m, 328, 141, 192, 140);
-        series::mul_add::<S, 2, 3>(m, 329, 142, 193, 328);
-        series::mul_add::<S, 2, 3>(m, 330, 143, 194, 329);
-        series::mul_add::<S, 2, 3>(m, 331, 153, 192, 152);
-        series::mul_add::<S, 2, 3>(m, 332, 154, 193, 331);
-        series::mul_add::<S, 2, 3>(m, 333, 155, 194, 332);
-        series::mul_add::<S, 2, 3>(m, 334, 157, 192, 156);
-        series::mul_add::<S, 2, 3>(m, 335, 158, 193, 334);
-        series::mul_add::<S, 2, 3>(m, 336, 159, 194, 335);
-        series::mul_mul_sub::<S, 2, 3>(m, 337, 327, 336, 330, 333);
-        series::mul_add::<S, 2, 3>(m, 338, 133, 192, 132);
-        series::mul_add::<S, 2, 3>(m, 339, 134, 193, 338);
-        series::mul_add::<S, 2, 3>(m, 340, 135, 194, 339);
-        series::mul_add::<S, 2, 3>(m, 341, 149, 192, 148);
-        series::mul_add::<S, 2, 3>(m, 342, 150, 193, 341);
-        series::mul_add::<S, 2, 3>(m, 343, 151, 194, 342);
-        series::mul_mul_sub::<S, 2, 3>(m, 344, 340, 336, 330, 343);
-        series::mul_add::<S, 2, 3>(m, 345, 165, 192, 164);
-        series::mul_add::<S, 2, 3>(m, 346, 166, 193, 345);
-        series::mul_add::<S, 2, 3>(m, 347, 167, 194, 346);
-        series::mul_add::<S, 2, 3>(m, 348, 169, 192, 168);
-        series::mul_add::<S, 2, 3>(m, 349, 170, 193, 348);
-        series::mul_add::<S, 2, 3>(m, 350, 171, 194, 349);
-        series::mul_mul_sub::<S, 2, 3>(m, 351, 347, 337, 350, 344);
-        series::mul_mul_sub::<S, 2, 3>(m, 352, 340, 333, 327, 343);
-        series::mul_add::<S, 2, 3>(m, 353, 173, 192, 172);
-        series::mul_add::<S, 2, 3>(m, 354, 174, 193, 353);
-        series::mul_add::<S, 2, 3>(m, 355, 175, 194, 354);
-        series::mul_add::<S, 2, 3>(m, 356, 355, 352, 351);
-        series::mul_add::<S, 2, 3>(m, 357, 129, 192, 128);
-        series::mul_add::<S, 2, 3>(m, 358, 130, 193, 357);
-        series::mul_add::<S, 2, 3>(m, 359, 131, 194, 358);
-        series::mul_add::<S, 2, 3>(m, 360, 145, 192, 144);
-        series::mul_add::<S, 2, 3>(m, 361, 146, 193, 360);
-        series::mul_add::<S, 2, 3>(m, 362, 147, 194, 361);
-        series::mul_mul_sub::<S, 2, 3>(m, 363, 359, 336, 330, 362);
-        series::mul_add::<S, 2, 3>(m, 364, 161, 192, 160);
-        series::mul_add::<S, 2, 3>(m, 365, 162, 193, 364);
-        series::mul_add::<S, 2, 3>(m, 366, 163, 194, 365);
-        series::mul_mul_sub::<S, 2, 3>(m, 367, 366, 337, 350, 363);
-        series::mul_mul_sub::<S, 2, 3>(m, 368, 359, 333, 327, 362);
-        series::mul_add::<S, 2, 3>(m, 369, 355, 368, 367);
-        series::mul_add::<S, 2, 3>(m, 370, 177, 192, 176);
-        series::mul_add::<S, 2, 3>(m, 371, 178, 193, 370);
-        series::mul_add::<S, 2, 3>(m, 372, 179, 194, 371);
-        series::mul_add::<S, 2, 3>(m, 373, 181, 192, 180);
-        series::mul_add::<S, 2, 3>(m, 374, 182, 193, 373);
-        series::mul_add::<S, 2, 3>(m, 375, 183, 194, 374);
-        series::mul_mul_sub::<S, 2, 3>(m, 376, 375, 369, 372, 356);
-        series::mul_mul_sub::<S, 2, 3>(m, 377, 366, 344, 347, 363);
-        series::mul_mul_sub::<S, 2, 3>(m, 378, 359, 343, 340, 362);
-        series::mul_add::<S, 2, 3>(m, 379, 355, 378, 377);
-        series::mul_add::<S, 2, 3>(m, 380, 185, 192, 184);
-        series::mul_add::<S, 2, 3>(m, 381, 186, 193, 380);
-        series::mul_add::<S, 2, 3>(m, 382, 187, 194, 381);
-        series::sub_mul::<S, 2, 3>(m, 383, 382, 379, 376);
-        series::mul_mul_sub::<S, 2, 3>(m, 384, 366, 352, 347, 368);
-        series::mul_add::<S, 2, 3>(m, 385, 350, 378, 384);
-        series::mul_add::<S, 2, 3>(m, 386, 189, 192, 188);
-        series::mul_add::<S, 2, 3>(m, 387, 190, 193, 386);
-        series::mul_add::<S, 2, 3>(m, 388, 191, 194, 387);
-        series::mul_add::<S, 2, 3>(m, 389, 388, 385, 383);
     }
 }

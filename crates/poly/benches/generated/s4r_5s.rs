@@ -5,21 +5,150 @@
 
 //! `F(x; p)`: 5 equations, 5 unknowns, 15 parameters, as straight-line code.
 #![cfg_attr(rustfmt, rustfmt_skip)]
-#![allow(unreachable_pub, clippy::all)]
+#![allow(unreachable_pub, unused_imports, clippy::all)]
 use poly::evaluate::Evaluate;
-use poly::program::generated::{Memory, Shape, series};
+use poly::program::generated::{Memory, Op, TaylorTape, code};
 use poly::scalar::Scalar;
 use poly::simd::{Isa, Kernel};
+use std::borrow::Cow;
 /// The system; inputs and outputs are ordered as [`Evaluate`] says.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct S4r5s;
-/// Sizes and constants.
-static SHAPE: Shape = Shape {
-    parameters: 15,
-    variables: 5,
-    constants: &[[2.0, 0.0, 0.0, 0.0], [-2.0, 0.0, 0.0, 0.0]],
-    live: 0,
-    series: 138,
+/// Real part (high, low) and imaginary part (high, low).
+static CONSTANTS: [[f64; 4]; 2] = [[2.0, 0.0, 0.0, 0.0], [-2.0, 0.0, 0.0, 0.0]];
+/// Instructions for Taylor coefficients.
+static TAYLOR: TaylorTape = TaylorTape {
+    parameters_only: Cow::Borrowed(
+        &[
+            code(Op::Sqr, 0, 22, [2, 2, 2, 2]),
+            code(Op::Sqr, 0, 23, [3, 3, 3, 3]),
+            code(Op::Sqr, 0, 25, [4, 4, 4, 4]),
+            code(Op::Sqr, 0, 54, [5, 5, 5, 5]),
+            code(Op::Sqr, 0, 55, [6, 6, 6, 6]),
+            code(Op::Sqr, 0, 57, [7, 7, 7, 7]),
+            code(Op::Sqr, 0, 75, [8, 8, 8, 8]),
+            code(Op::Sqr, 0, 76, [9, 9, 9, 9]),
+            code(Op::Sqr, 0, 78, [10, 10, 10, 10]),
+            code(Op::Sqr, 0, 96, [11, 11, 11, 11]),
+            code(Op::Sqr, 0, 97, [12, 12, 12, 12]),
+            code(Op::Sqr, 0, 99, [13, 13, 13, 13]),
+            code(Op::Sqr, 0, 117, [14, 14, 14, 14]),
+            code(Op::Sqr, 0, 118, [15, 15, 15, 15]),
+            code(Op::Sqr, 0, 120, [16, 16, 16, 16]),
+        ],
+    ),
+    variables_only: Cow::Borrowed(
+        &[
+            code(Op::Sqr, 2, 27, [17, 17, 17, 17]),
+            code(Op::Mul, 2, 28, [18, 17, 17, 17]),
+            code(Op::Mul, 1, 29, [28, 20, 20, 20]),
+            code(Op::MulReal, 0, 30, [29, 0, 29, 29]),
+            code(Op::MulAdd, 1, 31, [27, 19, 30, 19]),
+            code(Op::Sqr, 2, 32, [18, 18, 18, 18]),
+            code(Op::MulAdd, 1, 33, [32, 21, 31, 21]),
+            code(Op::SubMul, 2, 34, [19, 17, 33, 17]),
+            code(Op::SubMul, 2, 35, [21, 18, 34, 18]),
+            code(Op::Sqr, 2, 51, [20, 20, 20, 20]),
+            code(Op::MulSub, 2, 52, [21, 19, 51, 19]),
+        ],
+    ),
+    mixed: Cow::Borrowed(
+        &[
+            code(Op::MulMulAdd, 1, 24, [22, 17, 23, 18]),
+            code(Op::Sub, 0, 26, [24, 25, 24, 24]),
+            code(Op::Add, 0, 36, [26, 35, 26, 26]),
+            code(Op::Sub, 0, 37, [19, 22, 19, 19]),
+            code(Op::MulMulAdd, 1, 38, [2, 17, 3, 18]),
+            code(Op::Sub, 0, 39, [38, 4, 38, 38]),
+            code(Op::MulMulAdd, 0, 40, [37, 39, 2, 36]),
+            code(Op::Mul, 1, 41, [40, 20, 20, 20]),
+            code(Op::Sub, 0, 42, [21, 23, 21, 21]),
+            code(Op::MulMulAdd, 0, 43, [39, 42, 3, 36]),
+            code(Op::Mul, 0, 44, [41, 43, 41, 41]),
+            code(Op::MulReal, 0, 45, [44, 0, 44, 44]),
+            code(Op::Sqr, 0, 46, [40, 40, 40, 40]),
+            code(Op::MulSub, 1, 47, [46, 21, 45, 21]),
+            code(Op::Sqr, 0, 48, [43, 43, 43, 43]),
+            code(Op::MulAdd, 1, 49, [48, 19, 47, 19]),
+            code(Op::Sqr, 0, 50, [36, 36, 36, 36]),
+            code(Op::SubMul, 0, 53, [52, 50, 49, 52]),
+            code(Op::MulMulAdd, 1, 56, [54, 17, 55, 18]),
+            code(Op::Sub, 0, 58, [56, 57, 56, 56]),
+            code(Op::Add, 0, 59, [35, 58, 35, 35]),
+            code(Op::Sub, 0, 60, [19, 54, 19, 19]),
+            code(Op::MulMulAdd, 1, 61, [5, 17, 6, 18]),
+            code(Op::Sub, 0, 62, [61, 7, 61, 61]),
+            code(Op::MulMulAdd, 0, 63, [60, 62, 5, 59]),
+            code(Op::Mul, 1, 64, [63, 20, 20, 20]),
+            code(Op::Sub, 0, 65, [21, 55, 21, 21]),
+            code(Op::MulMulAdd, 0, 66, [62, 65, 6, 59]),
+            code(Op::Mul, 0, 67, [64, 66, 64, 64]),
+            code(Op::MulReal, 0, 68, [67, 0, 67, 67]),
+            code(Op::Sqr, 0, 69, [63, 63, 63, 63]),
+            code(Op::MulSub, 1, 70, [69, 21, 68, 21]),
+            code(Op::Sqr, 0, 71, [66, 66, 66, 66]),
+            code(Op::MulAdd, 1, 72, [71, 19, 70, 19]),
+            code(Op::Sqr, 0, 73, [59, 59, 59, 59]),
+            code(Op::SubMul, 0, 74, [52, 73, 72, 52]),
+            code(Op::MulMulAdd, 1, 77, [75, 17, 76, 18]),
+            code(Op::Sub, 0, 79, [77, 78, 77, 77]),
+            code(Op::Add, 0, 80, [35, 79, 35, 35]),
+            code(Op::Sub, 0, 81, [19, 75, 19, 19]),
+            code(Op::MulMulAdd, 1, 82, [8, 17, 9, 18]),
+            code(Op::Sub, 0, 83, [82, 10, 82, 82]),
+            code(Op::MulMulAdd, 0, 84, [81, 83, 8, 80]),
+            code(Op::Mul, 1, 85, [84, 20, 20, 20]),
+            code(Op::Sub, 0, 86, [21, 76, 21, 21]),
+            code(Op::MulMulAdd, 0, 87, [83, 86, 9, 80]),
+            code(Op::Mul, 0, 88, [85, 87, 85, 85]),
+            code(Op::MulReal, 0, 89, [88, 0, 88, 88]),
+            code(Op::Sqr, 0, 90, [84, 84, 84, 84]),
+            code(Op::MulSub, 1, 91, [90, 21, 89, 21]),
+            code(Op::Sqr, 0, 92, [87, 87, 87, 87]),
+            code(Op::MulAdd, 1, 93, [92, 19, 91, 19]),
+            code(Op::Sqr, 0, 94, [80, 80, 80, 80]),
+            code(Op::SubMul, 0, 95, [52, 94, 93, 52]),
+            code(Op::MulMulAdd, 1, 98, [96, 17, 97, 18]),
+            code(Op::Sub, 0, 100, [98, 99, 98, 98]),
+            code(Op::Add, 0, 101, [35, 100, 35, 35]),
+            code(Op::Sub, 0, 102, [19, 96, 19, 19]),
+            code(Op::MulMulAdd, 1, 103, [11, 17, 12, 18]),
+            code(Op::Sub, 0, 104, [103, 13, 103, 103]),
+            code(Op::MulMulAdd, 0, 105, [102, 104, 11, 101]),
+            code(Op::Mul, 1, 106, [105, 20, 20, 20]),
+            code(Op::Sub, 0, 107, [21, 97, 21, 21]),
+            code(Op::MulMulAdd, 0, 108, [104, 107, 12, 101]),
+            code(Op::Mul, 0, 109, [106, 108, 106, 106]),
+            code(Op::MulReal, 0, 110, [109, 0, 109, 109]),
+            code(Op::Sqr, 0, 111, [105, 105, 105, 105]),
+            code(Op::MulSub, 1, 112, [111, 21, 110, 21]),
+            code(Op::Sqr, 0, 113, [108, 108, 108, 108]),
+            code(Op::MulAdd, 1, 114, [113, 19, 112, 19]),
+            code(Op::Sqr, 0, 115, [101, 101, 101, 101]),
+            code(Op::SubMul, 0, 116, [52, 115, 114, 52]),
+            code(Op::MulMulAdd, 1, 119, [117, 17, 118, 18]),
+            code(Op::Sub, 0, 121, [119, 120, 119, 119]),
+            code(Op::Add, 0, 122, [35, 121, 35, 35]),
+            code(Op::Sub, 0, 123, [19, 117, 19, 19]),
+            code(Op::MulMulAdd, 1, 124, [14, 17, 15, 18]),
+            code(Op::Sub, 0, 125, [124, 16, 124, 124]),
+            code(Op::MulMulAdd, 0, 126, [123, 125, 14, 122]),
+            code(Op::Mul, 1, 127, [126, 20, 20, 20]),
+            code(Op::Sub, 0, 128, [21, 118, 21, 21]),
+            code(Op::MulMulAdd, 0, 129, [125, 128, 15, 122]),
+            code(Op::Mul, 0, 130, [127, 129, 127, 127]),
+            code(Op::MulReal, 0, 131, [130, 0, 130, 130]),
+            code(Op::Sqr, 0, 132, [126, 126, 126, 126]),
+            code(Op::MulSub, 1, 133, [132, 21, 131, 21]),
+            code(Op::Sqr, 0, 134, [129, 129, 129, 129]),
+            code(Op::MulAdd, 1, 135, [134, 19, 133, 19]),
+            code(Op::Sqr, 0, 136, [122, 122, 122, 122]),
+            code(Op::SubMul, 0, 137, [52, 136, 135, 52]),
+        ],
+    ),
+    outputs: Cow::Borrowed(&[53, 74, 95, 116, 137]),
+    inputs: [2, 15, 5],
+    size: 138,
 };
 impl Evaluate for S4r5s {
     type Memory<S: Scalar> = Memory<S>;
@@ -33,7 +162,7 @@ impl Evaluate for S4r5s {
         15
     }
     fn memory<S: Scalar>(&self, isa: Isa) -> Memory<S> {
-        Memory::new(isa, &SHAPE)
+        Memory::new(isa, &CONSTANTS, 0, &TAYLOR)
     }
     fn values<S: Scalar>(
         &self,
@@ -82,42 +211,7 @@ impl Evaluate for S4r5s {
         p: &[S],
         out: &mut [S],
     ) {
-        memory.load(&SHAPE, order, x, p);
-        match order {
-            1 => {
-                memory
-                    .isa
-                    .run(
-                        Taylor1Part0(
-                            memory.series.first_chunk_mut().expect("made by Memory::new"),
-                        ),
-                    );
-            }
-            2 => {
-                memory
-                    .isa
-                    .run(
-                        Taylor2Part0(
-                            memory.series.first_chunk_mut().expect("made by Memory::new"),
-                        ),
-                    );
-            }
-            _ => {
-                memory
-                    .isa
-                    .run(
-                        Taylor3Part0(
-                            memory.series.first_chunk_mut().expect("made by Memory::new"),
-                        ),
-                    );
-            }
-        }
-        let out = &mut out[..5];
-        out[0] = memory.series[53][order].clone();
-        out[1] = memory.series[74][order].clone();
-        out[2] = memory.series[95][order].clone();
-        out[3] = memory.series[116][order].clone();
-        out[4] = memory.series[137][order].clone();
+        memory.taylor(&TAYLOR, order, x, p, out);
     }
 }
 struct Values0<'a, S> {
@@ -589,388 +683,5 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t322 = S::sub_mul(&x[2], &t282, &t321);
         let t323 = S::sub_mul(&x[1], &t294, &t322);
         jacobian[24] = S::mul_add(&t10, &t294, &t323);
-    }
-}
-struct Taylor1Part0<'a, S>(&'a mut [[S; 4]; 138]);
-impl<S: Scalar> Kernel for Taylor1Part0<'_, S> {
-    type Output = ();
-    #[inline(always)]
-    fn run(self) {
-        let Self(m) = self;
-        series::sqr::<S, 0, 1>(m, 22, 2);
-        series::sqr::<S, 0, 1>(m, 23, 3);
-        series::sqr::<S, 0, 1>(m, 25, 4);
-        series::sqr::<S, 0, 1>(m, 54, 5);
-        series::sqr::<S, 0, 1>(m, 55, 6);
-        series::sqr::<S, 0, 1>(m, 57, 7);
-        series::sqr::<S, 0, 1>(m, 75, 8);
-        series::sqr::<S, 0, 1>(m, 76, 9);
-        series::sqr::<S, 0, 1>(m, 78, 10);
-        series::sqr::<S, 0, 1>(m, 96, 11);
-        series::sqr::<S, 0, 1>(m, 97, 12);
-        series::sqr::<S, 0, 1>(m, 99, 13);
-        series::sqr::<S, 0, 1>(m, 117, 14);
-        series::sqr::<S, 0, 1>(m, 118, 15);
-        series::sqr::<S, 0, 1>(m, 120, 16);
-        series::sqr::<S, 0, 0>(m, 27, 17);
-        m[27][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 28, 17, 18);
-        m[28][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 29, 20, 28);
-        m[29][1] = S::zero();
-        series::mul_real::<S, 0, 0>(m, 30, 29, 0);
-        m[30][1] = S::zero();
-        series::mul_add::<S, 0, 0>(m, 31, 19, 27, 30);
-        m[31][1] = S::zero();
-        series::sqr::<S, 0, 0>(m, 32, 18);
-        m[32][1] = S::zero();
-        series::mul_add::<S, 0, 0>(m, 33, 21, 32, 31);
-        m[33][1] = S::zero();
-        series::sub_mul::<S, 0, 0>(m, 34, 17, 19, 33);
-        m[34][1] = S::zero();
-        series::sub_mul::<S, 0, 0>(m, 35, 18, 21, 34);
-        m[35][1] = S::zero();
-        series::sqr::<S, 0, 0>(m, 51, 20);
-        m[51][1] = S::zero();
-        series::mul_sub::<S, 0, 0>(m, 52, 19, 21, 51);
-        m[52][1] = S::zero();
-        series::mul_mul_add::<S, 0, 1>(m, 24, 17, 22, 18, 23);
-        series::sub::<S, 0, 1>(m, 26, 24, 25);
-        series::add::<S, 0, 1>(m, 36, 26, 35);
-        series::sub::<S, 0, 1>(m, 37, 19, 22);
-        series::mul_mul_add::<S, 0, 1>(m, 38, 2, 17, 3, 18);
-        series::sub::<S, 0, 1>(m, 39, 38, 4);
-        series::mul_mul_add::<S, 0, 1>(m, 40, 37, 39, 2, 36);
-        series::mul::<S, 0, 1>(m, 41, 20, 40);
-        series::sub::<S, 0, 1>(m, 42, 21, 23);
-        series::mul_mul_add::<S, 0, 1>(m, 43, 39, 42, 3, 36);
-        series::mul::<S, 0, 1>(m, 44, 41, 43);
-        series::mul_real::<S, 0, 1>(m, 45, 44, 0);
-        series::sqr::<S, 0, 1>(m, 46, 40);
-        series::mul_sub::<S, 0, 1>(m, 47, 21, 46, 45);
-        series::sqr::<S, 0, 1>(m, 48, 43);
-        series::mul_add::<S, 0, 1>(m, 49, 19, 48, 47);
-        series::sqr::<S, 0, 1>(m, 50, 36);
-        series::sub_mul::<S, 0, 1>(m, 53, 52, 50, 49);
-        series::mul_mul_add::<S, 0, 1>(m, 56, 17, 54, 18, 55);
-        series::sub::<S, 0, 1>(m, 58, 56, 57);
-        series::add::<S, 0, 1>(m, 59, 35, 58);
-        series::sub::<S, 0, 1>(m, 60, 19, 54);
-        series::mul_mul_add::<S, 0, 1>(m, 61, 5, 17, 6, 18);
-        series::sub::<S, 0, 1>(m, 62, 61, 7);
-        series::mul_mul_add::<S, 0, 1>(m, 63, 60, 62, 5, 59);
-        series::mul::<S, 0, 1>(m, 64, 20, 63);
-        series::sub::<S, 0, 1>(m, 65, 21, 55);
-        series::mul_mul_add::<S, 0, 1>(m, 66, 62, 65, 6, 59);
-        series::mul::<S, 0, 1>(m, 67, 64, 66);
-        series::mul_real::<S, 0, 1>(m, 68, 67, 0);
-        series::sqr::<S, 0, 1>(m, 69, 63);
-        series::mul_sub::<S, 0, 1>(m, 70, 21, 69, 68);
-        series::sqr::<S, 0, 1>(m, 71, 66);
-        series::mul_add::<S, 0, 1>(m, 72, 19, 71, 70);
-        series::sqr::<S, 0, 1>(m, 73, 59);
-        series::sub_mul::<S, 0, 1>(m, 74, 52, 73, 72);
-        series::mul_mul_add::<S, 0, 1>(m, 77, 17, 75, 18, 76);
-        series::sub::<S, 0, 1>(m, 79, 77, 78);
-        series::add::<S, 0, 1>(m, 80, 35, 79);
-        series::sub::<S, 0, 1>(m, 81, 19, 75);
-        series::mul_mul_add::<S, 0, 1>(m, 82, 8, 17, 9, 18);
-        series::sub::<S, 0, 1>(m, 83, 82, 10);
-        series::mul_mul_add::<S, 0, 1>(m, 84, 81, 83, 8, 80);
-        series::mul::<S, 0, 1>(m, 85, 20, 84);
-        series::sub::<S, 0, 1>(m, 86, 21, 76);
-        series::mul_mul_add::<S, 0, 1>(m, 87, 83, 86, 9, 80);
-        series::mul::<S, 0, 1>(m, 88, 85, 87);
-        series::mul_real::<S, 0, 1>(m, 89, 88, 0);
-        series::sqr::<S, 0, 1>(m, 90, 84);
-        series::mul_sub::<S, 0, 1>(m, 91, 21, 90, 89);
-        series::sqr::<S, 0, 1>(m, 92, 87);
-        series::mul_add::<S, 0, 1>(m, 93, 19, 92, 91);
-        series::sqr::<S, 0, 1>(m, 94, 80);
-        series::sub_mul::<S, 0, 1>(m, 95, 52, 94, 93);
-        series::mul_mul_add::<S, 0, 1>(m, 98, 17, 96, 18, 97);
-        series::sub::<S, 0, 1>(m, 100, 98, 99);
-        series::add::<S, 0, 1>(m, 101, 35, 100);
-        series::sub::<S, 0, 1>(m, 102, 19, 96);
-        series::mul_mul_add::<S, 0, 1>(m, 103, 11, 17, 12, 18);
-        series::sub::<S, 0, 1>(m, 104, 103, 13);
-        series::mul_mul_add::<S, 0, 1>(m, 105, 102, 104, 11, 101);
-        series::mul::<S, 0, 1>(m, 106, 20, 105);
-        series::sub::<S, 0, 1>(m, 107, 21, 97);
-        series::mul_mul_add::<S, 0, 1>(m, 108, 104, 107, 12, 101);
-        series::mul::<S, 0, 1>(m, 109, 106, 108);
-        series::mul_real::<S, 0, 1>(m, 110, 109, 0);
-        series::sqr::<S, 0, 1>(m, 111, 105);
-        series::mul_sub::<S, 0, 1>(m, 112, 21, 111, 110);
-        series::sqr::<S, 0, 1>(m, 113, 108);
-        series::mul_add::<S, 0, 1>(m, 114, 19, 113, 112);
-        series::sqr::<S, 0, 1>(m, 115, 101);
-        series::sub_mul::<S, 0, 1>(m, 116, 52, 115, 114);
-        series::mul_mul_add::<S, 0, 1>(m, 119, 17, 117, 18, 118);
-        series::sub::<S, 0, 1>(m, 121, 119, 120);
-        series::add::<S, 0, 1>(m, 122, 35, 121);
-        series::sub::<S, 0, 1>(m, 123, 19, 117);
-        series::mul_mul_add::<S, 0, 1>(m, 124, 14, 17, 15, 18);
-        series::sub::<S, 0, 1>(m, 125, 124, 16);
-        series::mul_mul_add::<S, 0, 1>(m, 126, 123, 125, 14, 122);
-        series::mul::<S, 0, 1>(m, 127, 20, 126);
-        series::sub::<S, 0, 1>(m, 128, 21, 118);
-        series::mul_mul_add::<S, 0, 1>(m, 129, 125, 128, 15, 122);
-        series::mul::<S, 0, 1>(m, 130, 127, 129);
-        series::mul_real::<S, 0, 1>(m, 131, 130, 0);
-        series::sqr::<S, 0, 1>(m, 132, 126);
-        series::mul_sub::<S, 0, 1>(m, 133, 21, 132, 131);
-        series::sqr::<S, 0, 1>(m, 134, 129);
-        series::mul_add::<S, 0, 1>(m, 135, 19, 134, 133);
-        series::sqr::<S, 0, 1>(m, 136, 122);
-        series::sub_mul::<S, 0, 1>(m, 137, 52, 136, 135);
-    }
-}
-struct Taylor2Part0<'a, S>(&'a mut [[S; 4]; 138]);
-impl<S: Scalar> Kernel for Taylor2Part0<'_, S> {
-    type Output = ();
-    #[inline(always)]
-    fn run(self) {
-        let Self(m) = self;
-        series::sqr::<S, 2, 2>(m, 22, 2);
-        series::sqr::<S, 2, 2>(m, 23, 3);
-        series::sqr::<S, 2, 2>(m, 25, 4);
-        series::sqr::<S, 2, 2>(m, 54, 5);
-        series::sqr::<S, 2, 2>(m, 55, 6);
-        series::sqr::<S, 2, 2>(m, 57, 7);
-        series::sqr::<S, 2, 2>(m, 75, 8);
-        series::sqr::<S, 2, 2>(m, 76, 9);
-        series::sqr::<S, 2, 2>(m, 78, 10);
-        series::sqr::<S, 2, 2>(m, 96, 11);
-        series::sqr::<S, 2, 2>(m, 97, 12);
-        series::sqr::<S, 2, 2>(m, 99, 13);
-        series::sqr::<S, 2, 2>(m, 117, 14);
-        series::sqr::<S, 2, 2>(m, 118, 15);
-        series::sqr::<S, 2, 2>(m, 120, 16);
-        series::sqr::<S, 1, 2>(m, 27, 17);
-        series::mul::<S, 1, 2>(m, 28, 17, 18);
-        series::mul::<S, 1, 2>(m, 29, 20, 28);
-        series::mul_real::<S, 1, 2>(m, 30, 29, 0);
-        series::mul_add::<S, 1, 2>(m, 31, 19, 27, 30);
-        series::sqr::<S, 1, 2>(m, 32, 18);
-        series::mul_add::<S, 1, 2>(m, 33, 21, 32, 31);
-        series::sub_mul::<S, 1, 2>(m, 34, 17, 19, 33);
-        series::sub_mul::<S, 1, 2>(m, 35, 18, 21, 34);
-        series::sqr::<S, 1, 2>(m, 51, 20);
-        series::mul_sub::<S, 1, 2>(m, 52, 19, 21, 51);
-        series::mul_mul_add::<S, 1, 2>(m, 24, 17, 22, 18, 23);
-        series::sub::<S, 1, 2>(m, 26, 24, 25);
-        series::add::<S, 1, 2>(m, 36, 26, 35);
-        series::sub::<S, 1, 2>(m, 37, 19, 22);
-        series::mul_mul_add::<S, 1, 2>(m, 38, 2, 17, 3, 18);
-        series::sub::<S, 1, 2>(m, 39, 38, 4);
-        series::mul_mul_add::<S, 1, 2>(m, 40, 37, 39, 2, 36);
-        series::mul::<S, 1, 2>(m, 41, 20, 40);
-        series::sub::<S, 1, 2>(m, 42, 21, 23);
-        series::mul_mul_add::<S, 1, 2>(m, 43, 39, 42, 3, 36);
-        series::mul::<S, 1, 2>(m, 44, 41, 43);
-        series::mul_real::<S, 1, 2>(m, 45, 44, 0);
-        series::sqr::<S, 1, 2>(m, 46, 40);
-        series::mul_sub::<S, 1, 2>(m, 47, 21, 46, 45);
-        series::sqr::<S, 1, 2>(m, 48, 43);
-        series::mul_add::<S, 1, 2>(m, 49, 19, 48, 47);
-        series::sqr::<S, 1, 2>(m, 50, 36);
-        series::sub_mul::<S, 1, 2>(m, 53, 52, 50, 49);
-        series::mul_mul_add::<S, 1, 2>(m, 56, 17, 54, 18, 55);
-        series::sub::<S, 1, 2>(m, 58, 56, 57);
-        series::add::<S, 1, 2>(m, 59, 35, 58);
-        series::sub::<S, 1, 2>(m, 60, 19, 54);
-        series::mul_mul_add::<S, 1, 2>(m, 61, 5, 17, 6, 18);
-        series::sub::<S, 1, 2>(m, 62, 61, 7);
-        series::mul_mul_add::<S, 1, 2>(m, 63, 60, 62, 5, 59);
-        series::mul::<S, 1, 2>(m, 64, 20, 63);
-        series::sub::<S, 1, 2>(m, 65, 21, 55);
-        series::mul_mul_add::<S, 1, 2>(m, 66, 62, 65, 6, 59);
-        series::mul::<S, 1, 2>(m, 67, 64, 66);
-        series::mul_real::<S, 1, 2>(m, 68, 67, 0);
-        series::sqr::<S, 1, 2>(m, 69, 63);
-        series::mul_sub::<S, 1, 2>(m, 70, 21, 69, 68);
-        series::sqr::<S, 1, 2>(m, 71, 66);
-        series::mul_add::<S, 1, 2>(m, 72, 19, 71, 70);
-        series::sqr::<S, 1, 2>(m, 73, 59);
-        series::sub_mul::<S, 1, 2>(m, 74, 52, 73, 72);
-        series::mul_mul_add::<S, 1, 2>(m, 77, 17, 75, 18, 76);
-        series::sub::<S, 1, 2>(m, 79, 77, 78);
-        series::add::<S, 1, 2>(m, 80, 35, 79);
-        series::sub::<S, 1, 2>(m, 81, 19, 75);
-        series::mul_mul_add::<S, 1, 2>(m, 82, 8, 17, 9, 18);
-        series::sub::<S, 1, 2>(m, 83, 82, 10);
-        series::mul_mul_add::<S, 1, 2>(m, 84, 81, 83, 8, 80);
-        series::mul::<S, 1, 2>(m, 85, 20, 84);
-        series::sub::<S, 1, 2>(m, 86, 21, 76);
-        series::mul_mul_add::<S, 1, 2>(m, 87, 83, 86, 9, 80);
-        series::mul::<S, 1, 2>(m, 88, 85, 87);
-        series::mul_real::<S, 1, 2>(m, 89, 88, 0);
-        series::sqr::<S, 1, 2>(m, 90, 84);
-        series::mul_sub::<S, 1, 2>(m, 91, 21, 90, 89);
-        series::sqr::<S, 1, 2>(m, 92, 87);
-        series::mul_add::<S, 1, 2>(m, 93, 19, 92, 91);
-        series::sqr::<S, 1, 2>(m, 94, 80);
-        series::sub_mul::<S, 1, 2>(m, 95, 52, 94, 93);
-        series::mul_mul_add::<S, 1, 2>(m, 98, 17, 96, 18, 97);
-        series::sub::<S, 1, 2>(m, 100, 98, 99);
-        series::add::<S, 1, 2>(m, 101, 35, 100);
-        series::sub::<S, 1, 2>(m, 102, 19, 96);
-        series::mul_mul_add::<S, 1, 2>(m, 103, 11, 17, 12, 18);
-        series::sub::<S, 1, 2>(m, 104, 103, 13);
-        series::mul_mul_add::<S, 1, 2>(m, 105, 102, 104, 11, 101);
-        series::mul::<S, 1, 2>(m, 106, 20, 105);
-        series::sub::<S, 1, 2>(m, 107, 21, 97);
-        series::mul_mul_add::<S, 1, 2>(m, 108, 104, 107, 12, 101);
-        series::mul::<S, 1, 2>(m, 109, 106, 108);
-        series::mul_real::<S, 1, 2>(m, 110, 109, 0);
-        series::sqr::<S, 1, 2>(m, 111, 105);
-        series::mul_sub::<S, 1, 2>(m, 112, 21, 111, 110);
-        series::sqr::<S, 1, 2>(m, 113, 108);
-        series::mul_add::<S, 1, 2>(m, 114, 19, 113, 112);
-        series::sqr::<S, 1, 2>(m, 115, 101);
-        series::sub_mul::<S, 1, 2>(m, 116, 52, 115, 114);
-        series::mul_mul_add::<S, 1, 2>(m, 119, 17, 117, 18, 118);
-        series::sub::<S, 1, 2>(m, 121, 119, 120);
-        series::add::<S, 1, 2>(m, 122, 35, 121);
-        series::sub::<S, 1, 2>(m, 123, 19, 117);
-        series::mul_mul_add::<S, 1, 2>(m, 124, 14, 17, 15, 18);
-        series::sub::<S, 1, 2>(m, 125, 124, 16);
-        series::mul_mul_add::<S, 1, 2>(m, 126, 123, 125, 14, 122);
-        series::mul::<S, 1, 2>(m, 127, 20, 126);
-        series::sub::<S, 1, 2>(m, 128, 21, 118);
-        series::mul_mul_add::<S, 1, 2>(m, 129, 125, 128, 15, 122);
-        series::mul::<S, 1, 2>(m, 130, 127, 129);
-        series::mul_real::<S, 1, 2>(m, 131, 130, 0);
-        series::sqr::<S, 1, 2>(m, 132, 126);
-        series::mul_sub::<S, 1, 2>(m, 133, 21, 132, 131);
-        series::sqr::<S, 1, 2>(m, 134, 129);
-        series::mul_add::<S, 1, 2>(m, 135, 19, 134, 133);
-        series::sqr::<S, 1, 2>(m, 136, 122);
-        series::sub_mul::<S, 1, 2>(m, 137, 52, 136, 135);
-    }
-}
-struct Taylor3Part0<'a, S>(&'a mut [[S; 4]; 138]);
-impl<S: Scalar> Kernel for Taylor3Part0<'_, S> {
-    type Output = ();
-    #[inline(always)]
-    fn run(self) {
-        let Self(m) = self;
-        series::sqr::<S, 3, 3>(m, 22, 2);
-        series::sqr::<S, 3, 3>(m, 23, 3);
-        series::sqr::<S, 3, 3>(m, 25, 4);
-        series::sqr::<S, 3, 3>(m, 54, 5);
-        series::sqr::<S, 3, 3>(m, 55, 6);
-        series::sqr::<S, 3, 3>(m, 57, 7);
-        series::sqr::<S, 3, 3>(m, 75, 8);
-        series::sqr::<S, 3, 3>(m, 76, 9);
-        series::sqr::<S, 3, 3>(m, 78, 10);
-        series::sqr::<S, 3, 3>(m, 96, 11);
-        series::sqr::<S, 3, 3>(m, 97, 12);
-        series::sqr::<S, 3, 3>(m, 99, 13);
-        series::sqr::<S, 3, 3>(m, 117, 14);
-        series::sqr::<S, 3, 3>(m, 118, 15);
-        series::sqr::<S, 3, 3>(m, 120, 16);
-        series::sqr::<S, 2, 3>(m, 27, 17);
-        series::mul::<S, 2, 3>(m, 28, 17, 18);
-        series::mul::<S, 2, 3>(m, 29, 20, 28);
-        series::mul_real::<S, 2, 3>(m, 30, 29, 0);
-        series::mul_add::<S, 2, 3>(m, 31, 19, 27, 30);
-        series::sqr::<S, 2, 3>(m, 32, 18);
-        series::mul_add::<S, 2, 3>(m, 33, 21, 32, 31);
-        series::sub_mul::<S, 2, 3>(m, 34, 17, 19, 33);
-        series::sub_mul::<S, 2, 3>(m, 35, 18, 21, 34);
-        series::sqr::<S, 2, 3>(m, 51, 20);
-        series::mul_sub::<S, 2, 3>(m, 52, 19, 21, 51);
-        series::mul_mul_add::<S, 2, 3>(m, 24, 17, 22, 18, 23);
-        series::sub::<S, 2, 3>(m, 26, 24, 25);
-        series::add::<S, 2, 3>(m, 36, 26, 35);
-        series::sub::<S, 2, 3>(m, 37, 19, 22);
-        series::mul_mul_add::<S, 2, 3>(m, 38, 2, 17, 3, 18);
-        series::sub::<S, 2, 3>(m, 39, 38, 4);
-        series::mul_mul_add::<S, 2, 3>(m, 40, 37, 39, 2, 36);
-        series::mul::<S, 2, 3>(m, 41, 20, 40);
-        series::sub::<S, 2, 3>(m, 42, 21, 23);
-        series::mul_mul_add::<S, 2, 3>(m, 43, 39, 42, 3, 36);
-        series::mul::<S, 2, 3>(m, 44, 41, 43);
-        series::mul_real::<S, 2, 3>(m, 45, 44, 0);
-        series::sqr::<S, 2, 3>(m, 46, 40);
-        series::mul_sub::<S, 2, 3>(m, 47, 21, 46, 45);
-        series::sqr::<S, 2, 3>(m, 48, 43);
-        series::mul_add::<S, 2, 3>(m, 49, 19, 48, 47);
-        series::sqr::<S, 2, 3>(m, 50, 36);
-        series::sub_mul::<S, 2, 3>(m, 53, 52, 50, 49);
-        series::mul_mul_add::<S, 2, 3>(m, 56, 17, 54, 18, 55);
-        series::sub::<S, 2, 3>(m, 58, 56, 57);
-        series::add::<S, 2, 3>(m, 59, 35, 58);
-        series::sub::<S, 2, 3>(m, 60, 19, 54);
-        series::mul_mul_add::<S, 2, 3>(m, 61, 5, 17, 6, 18);
-        series::sub::<S, 2, 3>(m, 62, 61, 7);
-        series::mul_mul_add::<S, 2, 3>(m, 63, 60, 62, 5, 59);
-        series::mul::<S, 2, 3>(m, 64, 20, 63);
-        series::sub::<S, 2, 3>(m, 65, 21, 55);
-        series::mul_mul_add::<S, 2, 3>(m, 66, 62, 65, 6, 59);
-        series::mul::<S, 2, 3>(m, 67, 64, 66);
-        series::mul_real::<S, 2, 3>(m, 68, 67, 0);
-        series::sqr::<S, 2, 3>(m, 69, 63);
-        series::mul_sub::<S, 2, 3>(m, 70, 21, 69, 68);
-        series::sqr::<S, 2, 3>(m, 71, 66);
-        series::mul_add::<S, 2, 3>(m, 72, 19, 71, 70);
-        series::sqr::<S, 2, 3>(m, 73, 59);
-        series::sub_mul::<S, 2, 3>(m, 74, 52, 73, 72);
-        series::mul_mul_add::<S, 2, 3>(m, 77, 17, 75, 18, 76);
-        series::sub::<S, 2, 3>(m, 79, 77, 78);
-        series::add::<S, 2, 3>(m, 80, 35, 79);
-        series::sub::<S, 2, 3>(m, 81, 19, 75);
-        series::mul_mul_add::<S, 2, 3>(m, 82, 8, 17, 9, 18);
-        series::sub::<S, 2, 3>(m, 83, 82, 10);
-        series::mul_mul_add::<S, 2, 3>(m, 84, 81, 83, 8, 80);
-        series::mul::<S, 2, 3>(m, 85, 20, 84);
-        series::sub::<S, 2, 3>(m, 86, 21, 76);
-        series::mul_mul_add::<S, 2, 3>(m, 87, 83, 86, 9, 80);
-        series::mul::<S, 2, 3>(m, 88, 85, 87);
-        series::mul_real::<S, 2, 3>(m, 89, 88, 0);
-        series::sqr::<S, 2, 3>(m, 90, 84);
-        series::mul_sub::<S, 2, 3>(m, 91, 21, 90, 89);
-        series::sqr::<S, 2, 3>(m, 92, 87);
-        series::mul_add::<S, 2, 3>(m, 93, 19, 92, 91);
-        series::sqr::<S, 2, 3>(m, 94, 80);
-        series::sub_mul::<S, 2, 3>(m, 95, 52, 94, 93);
-        series::mul_mul_add::<S, 2, 3>(m, 98, 17, 96, 18, 97);
-        series::sub::<S, 2, 3>(m, 100, 98, 99);
-        series::add::<S, 2, 3>(m, 101, 35, 100);
-        series::sub::<S, 2, 3>(m, 102, 19, 96);
-        series::mul_mul_add::<S, 2, 3>(m, 103, 11, 17, 12, 18);
-        series::sub::<S, 2, 3>(m, 104, 103, 13);
-        series::mul_mul_add::<S, 2, 3>(m, 105, 102, 104, 11, 101);
-        series::mul::<S, 2, 3>(m, 106, 20, 105);
-        series::sub::<S, 2, 3>(m, 107, 21, 97);
-        series::mul_mul_add::<S, 2, 3>(m, 108, 104, 107, 12, 101);
-        series::mul::<S, 2, 3>(m, 109, 106, 108);
-        series::mul_real::<S, 2, 3>(m, 110, 109, 0);
-        series::sqr::<S, 2, 3>(m, 111, 105);
-        series::mul_sub::<S, 2, 3>(m, 112, 21, 111, 110);
-        series::sqr::<S, 2, 3>(m, 113, 108);
-        series::mul_add::<S, 2, 3>(m, 114, 19, 113, 112);
-        series::sqr::<S, 2, 3>(m, 115, 101);
-        series::sub_mul::<S, 2, 3>(m, 116, 52, 115, 114);
-        series::mul_mul_add::<S, 2, 3>(m, 119, 17, 117, 18, 118);
-        series::sub::<S, 2, 3>(m, 121, 119, 120);
-        series::add::<S, 2, 3>(m, 122, 35, 121);
-        series::sub::<S, 2, 3>(m, 123, 19, 117);
-        series::mul_mul_add::<S, 2, 3>(m, 124, 14, 17, 15, 18);
-        series::sub::<S, 2, 3>(m, 125, 124, 16);
-        series::mul_mul_add::<S, 2, 3>(m, 126, 123, 125, 14, 122);
-        series::mul::<S, 2, 3>(m, 127, 20, 126);
-        series::sub::<S, 2, 3>(m, 128, 21, 118);
-        series::mul_mul_add::<S, 2, 3>(m, 129, 125, 128, 15, 122);
-        series::mul::<S, 2, 3>(m, 130, 127, 129);
-        series::mul_real::<S, 2, 3>(m, 131, 130, 0);
-        series::sqr::<S, 2, 3>(m, 132, 126);
-        series::mul_sub::<S, 2, 3>(m, 133, 21, 132, 131);
-        series::sqr::<S, 2, 3>(m, 134, 129);
-        series::mul_add::<S, 2, 3>(m, 135, 19, 134, 133);
-        series::sqr::<S, 2, 3>(m, 136, 122);
-        series::sub_mul::<S, 2, 3>(m, 137, 52, 136, 135);
     }
 }

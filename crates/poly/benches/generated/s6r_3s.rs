@@ -5,26 +5,157 @@
 
 //! `F(x; p)`: 8 equations, 8 unknowns, 15 parameters, as straight-line code.
 #![cfg_attr(rustfmt, rustfmt_skip)]
-#![allow(unreachable_pub, clippy::all)]
+#![allow(unreachable_pub, unused_imports, clippy::all)]
 use poly::evaluate::Evaluate;
-use poly::program::generated::{Memory, Shape, series};
+use poly::program::generated::{Memory, Op, TaylorTape, code};
 use poly::scalar::Scalar;
 use poly::simd::{Isa, Kernel};
+use std::borrow::Cow;
 /// The system; inputs and outputs are ordered as [`Evaluate`] says.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct S6r3s;
-/// Sizes and constants.
-static SHAPE: Shape = Shape {
-    parameters: 15,
-    variables: 8,
-    constants: &[
-        [2.0, 0.0, 0.0, 0.0],
-        [0.25, 0.0, 0.0, 0.0],
-        [-2.0, 0.0, 0.0, 0.0],
-        [-1.0, 0.0, 0.0, 0.0],
-    ],
-    live: 0,
-    series: 145,
+/// Real part (high, low) and imaginary part (high, low).
+static CONSTANTS: [[f64; 4]; 4] = [
+    [2.0, 0.0, 0.0, 0.0],
+    [0.25, 0.0, 0.0, 0.0],
+    [-2.0, 0.0, 0.0, 0.0],
+    [-1.0, 0.0, 0.0, 0.0],
+];
+/// Instructions for Taylor coefficients.
+static TAYLOR: TaylorTape = TaylorTape {
+    parameters_only: Cow::Borrowed(
+        &[
+            code(Op::Sqr, 0, 50, [5, 5, 5, 5]),
+            code(Op::Sqr, 0, 53, [4, 4, 4, 4]),
+            code(Op::Sqr, 0, 57, [6, 6, 6, 6]),
+            code(Op::Sqr, 0, 69, [8, 8, 8, 8]),
+            code(Op::Sqr, 0, 72, [7, 7, 7, 7]),
+            code(Op::Sqr, 0, 76, [9, 9, 9, 9]),
+            code(Op::Sqr, 0, 88, [11, 11, 11, 11]),
+            code(Op::Sqr, 0, 91, [10, 10, 10, 10]),
+            code(Op::Sqr, 0, 95, [12, 12, 12, 12]),
+            code(Op::Sqr, 0, 107, [14, 14, 14, 14]),
+            code(Op::Sqr, 0, 110, [13, 13, 13, 13]),
+            code(Op::Sqr, 0, 114, [15, 15, 15, 15]),
+            code(Op::Sqr, 0, 126, [17, 17, 17, 17]),
+            code(Op::Sqr, 0, 129, [16, 16, 16, 16]),
+            code(Op::Sqr, 0, 133, [18, 18, 18, 18]),
+        ],
+    ),
+    variables_only: Cow::Borrowed(
+        &[
+            code(Op::Sqr, 2, 27, [25, 25, 25, 25]),
+            code(Op::Mul, 2, 28, [25, 23, 23, 23]),
+            code(Op::Mul, 1, 29, [28, 26, 26, 26]),
+            code(Op::MulReal, 0, 30, [29, 0, 29, 29]),
+            code(Op::MulSub, 1, 31, [27, 24, 30, 24]),
+            code(Op::Sqr, 2, 32, [26, 26, 26, 26]),
+            code(Op::MulAdd, 1, 33, [32, 22, 31, 22]),
+            code(Op::Sqr, 2, 34, [19, 19, 19, 19]),
+            code(Op::Sqr, 2, 35, [23, 23, 23, 23]),
+            code(Op::MulSub, 2, 36, [24, 22, 35, 22]),
+            code(Op::SubMul, 0, 37, [34, 36, 33, 34]),
+            code(Op::MulReal, 0, 38, [24, 1, 24, 24]),
+            code(Op::MulMulSub, 2, 39, [25, 24, 26, 23]),
+            code(Op::Sub, 0, 40, [38, 39, 38, 38]),
+            code(Op::Sqr, 2, 41, [20, 20, 20, 20]),
+            code(Op::Sub, 0, 42, [41, 34, 41, 41]),
+            code(Op::SubMul, 0, 43, [36, 42, 40, 36]),
+            code(Op::MulReal, 0, 44, [22, 1, 22, 22]),
+            code(Op::MulSub, 2, 45, [26, 22, 28, 22]),
+            code(Op::Sub, 0, 46, [44, 45, 44, 44]),
+            code(Op::Sqr, 2, 47, [21, 21, 21, 21]),
+            code(Op::Sub, 0, 48, [47, 34, 47, 47]),
+            code(Op::SubMul, 0, 49, [36, 48, 46, 36]),
+        ],
+    ),
+    mixed: Cow::Borrowed(
+        &[
+            code(Op::Mul, 1, 51, [5, 20, 5, 5]),
+            code(Op::MulRealAdd, 0, 52, [51, 2, 50, 51]),
+            code(Op::Mul, 1, 54, [4, 19, 4, 4]),
+            code(Op::MulRealAdd, 0, 55, [54, 2, 53, 54]),
+            code(Op::Sub, 0, 56, [52, 55, 52, 52]),
+            code(Op::Mul, 1, 58, [6, 21, 6, 6]),
+            code(Op::MulRealAdd, 0, 59, [58, 2, 57, 58]),
+            code(Op::Sub, 0, 60, [59, 55, 59, 59]),
+            code(Op::Mul, 1, 61, [60, 23, 23, 23]),
+            code(Op::MulReal, 0, 62, [61, 0, 61, 61]),
+            code(Op::MulAdd, 1, 63, [56, 22, 62, 22]),
+            code(Op::Sqr, 0, 64, [60, 60, 60, 60]),
+            code(Op::MulMulAdd, 0, 65, [56, 63, 64, 24]),
+            code(Op::MulMulAdd, 1, 66, [56, 25, 60, 26]),
+            code(Op::MulRealAdd, 0, 67, [66, 2, 65, 66]),
+            code(Op::Sub, 0, 68, [67, 55, 67, 67]),
+            code(Op::Mul, 1, 70, [8, 20, 8, 8]),
+            code(Op::MulRealAdd, 0, 71, [70, 2, 69, 70]),
+            code(Op::Mul, 1, 73, [7, 19, 7, 7]),
+            code(Op::MulRealAdd, 0, 74, [73, 2, 72, 73]),
+            code(Op::Sub, 0, 75, [71, 74, 71, 71]),
+            code(Op::Mul, 1, 77, [9, 21, 9, 9]),
+            code(Op::MulRealAdd, 0, 78, [77, 2, 76, 77]),
+            code(Op::Sub, 0, 79, [78, 74, 78, 78]),
+            code(Op::Mul, 1, 80, [79, 23, 23, 23]),
+            code(Op::MulReal, 0, 81, [80, 0, 80, 80]),
+            code(Op::MulAdd, 1, 82, [75, 22, 81, 22]),
+            code(Op::Sqr, 0, 83, [79, 79, 79, 79]),
+            code(Op::MulMulAdd, 0, 84, [75, 82, 83, 24]),
+            code(Op::MulMulAdd, 1, 85, [75, 25, 79, 26]),
+            code(Op::MulRealAdd, 0, 86, [85, 2, 84, 85]),
+            code(Op::Sub, 0, 87, [86, 74, 86, 86]),
+            code(Op::Mul, 1, 89, [11, 20, 11, 11]),
+            code(Op::MulRealAdd, 0, 90, [89, 2, 88, 89]),
+            code(Op::Mul, 1, 92, [10, 19, 10, 10]),
+            code(Op::MulRealAdd, 0, 93, [92, 2, 91, 92]),
+            code(Op::Sub, 0, 94, [90, 93, 90, 90]),
+            code(Op::Mul, 1, 96, [12, 21, 12, 12]),
+            code(Op::MulRealAdd, 0, 97, [96, 2, 95, 96]),
+            code(Op::Sub, 0, 98, [97, 93, 97, 97]),
+            code(Op::Mul, 1, 99, [98, 23, 23, 23]),
+            code(Op::MulReal, 0, 100, [99, 0, 99, 99]),
+            code(Op::MulAdd, 1, 101, [94, 22, 100, 22]),
+            code(Op::Sqr, 0, 102, [98, 98, 98, 98]),
+            code(Op::MulMulAdd, 0, 103, [94, 101, 102, 24]),
+            code(Op::MulMulAdd, 1, 104, [94, 25, 98, 26]),
+            code(Op::MulRealAdd, 0, 105, [104, 2, 103, 104]),
+            code(Op::Sub, 0, 106, [105, 93, 105, 105]),
+            code(Op::Mul, 1, 108, [14, 20, 14, 14]),
+            code(Op::MulRealAdd, 0, 109, [108, 2, 107, 108]),
+            code(Op::Mul, 1, 111, [13, 19, 13, 13]),
+            code(Op::MulRealAdd, 0, 112, [111, 2, 110, 111]),
+            code(Op::Sub, 0, 113, [109, 112, 109, 109]),
+            code(Op::Mul, 1, 115, [15, 21, 15, 15]),
+            code(Op::MulRealAdd, 0, 116, [115, 2, 114, 115]),
+            code(Op::Sub, 0, 117, [116, 112, 116, 116]),
+            code(Op::Mul, 1, 118, [117, 23, 23, 23]),
+            code(Op::MulReal, 0, 119, [118, 0, 118, 118]),
+            code(Op::MulAdd, 1, 120, [113, 22, 119, 22]),
+            code(Op::Sqr, 0, 121, [117, 117, 117, 117]),
+            code(Op::MulMulAdd, 0, 122, [113, 120, 121, 24]),
+            code(Op::MulMulAdd, 1, 123, [113, 25, 117, 26]),
+            code(Op::MulRealAdd, 0, 124, [123, 2, 122, 123]),
+            code(Op::Sub, 0, 125, [124, 112, 124, 124]),
+            code(Op::Mul, 1, 127, [17, 20, 17, 17]),
+            code(Op::MulRealAdd, 0, 128, [127, 2, 126, 127]),
+            code(Op::Mul, 1, 130, [16, 19, 16, 16]),
+            code(Op::MulRealAdd, 0, 131, [130, 2, 129, 130]),
+            code(Op::Sub, 0, 132, [128, 131, 128, 128]),
+            code(Op::Mul, 1, 134, [18, 21, 18, 18]),
+            code(Op::MulRealAdd, 0, 135, [134, 2, 133, 134]),
+            code(Op::Sub, 0, 136, [135, 131, 135, 135]),
+            code(Op::Mul, 1, 137, [136, 23, 23, 23]),
+            code(Op::MulReal, 0, 138, [137, 0, 137, 137]),
+            code(Op::MulAdd, 1, 139, [132, 22, 138, 22]),
+            code(Op::Sqr, 0, 140, [136, 136, 136, 136]),
+            code(Op::MulMulAdd, 0, 141, [132, 139, 140, 24]),
+            code(Op::MulMulAdd, 1, 142, [132, 25, 136, 26]),
+            code(Op::MulRealAdd, 0, 143, [142, 2, 141, 142]),
+            code(Op::Sub, 0, 144, [143, 131, 143, 143]),
+        ],
+    ),
+    outputs: Cow::Borrowed(&[37, 43, 49, 68, 87, 106, 125, 144]),
+    inputs: [4, 15, 8],
+    size: 145,
 };
 impl Evaluate for S6r3s {
     type Memory<S: Scalar> = Memory<S>;
@@ -38,7 +169,7 @@ impl Evaluate for S6r3s {
         15
     }
     fn memory<S: Scalar>(&self, isa: Isa) -> Memory<S> {
-        Memory::new(isa, &SHAPE)
+        Memory::new(isa, &CONSTANTS, 0, &TAYLOR)
     }
     fn values<S: Scalar>(
         &self,
@@ -90,45 +221,7 @@ impl Evaluate for S6r3s {
         p: &[S],
         out: &mut [S],
     ) {
-        memory.load(&SHAPE, order, x, p);
-        match order {
-            1 => {
-                memory
-                    .isa
-                    .run(
-                        Taylor1Part0(
-                            memory.series.first_chunk_mut().expect("made by Memory::new"),
-                        ),
-                    );
-            }
-            2 => {
-                memory
-                    .isa
-                    .run(
-                        Taylor2Part0(
-                            memory.series.first_chunk_mut().expect("made by Memory::new"),
-                        ),
-                    );
-            }
-            _ => {
-                memory
-                    .isa
-                    .run(
-                        Taylor3Part0(
-                            memory.series.first_chunk_mut().expect("made by Memory::new"),
-                        ),
-                    );
-            }
-        }
-        let out = &mut out[..8];
-        out[0] = memory.series[37][order].clone();
-        out[1] = memory.series[43][order].clone();
-        out[2] = memory.series[49][order].clone();
-        out[3] = memory.series[68][order].clone();
-        out[4] = memory.series[87][order].clone();
-        out[5] = memory.series[106][order].clone();
-        out[6] = memory.series[125][order].clone();
-        out[7] = memory.series[144][order].clone();
+        memory.taylor(&TAYLOR, order, x, p, out);
     }
 }
 struct Values0<'a, S> {
@@ -542,406 +635,5 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         jacobian[39] = S::mul_real(&t248, &c0);
         jacobian[55] = S::mul_real(&t220, &c2);
         jacobian[63] = S::mul_real(&t225, &c2);
-    }
-}
-struct Taylor1Part0<'a, S>(&'a mut [[S; 4]; 145]);
-impl<S: Scalar> Kernel for Taylor1Part0<'_, S> {
-    type Output = ();
-    #[inline(always)]
-    fn run(self) {
-        let Self(m) = self;
-        series::sqr::<S, 0, 1>(m, 50, 5);
-        series::sqr::<S, 0, 1>(m, 53, 4);
-        series::sqr::<S, 0, 1>(m, 57, 6);
-        series::sqr::<S, 0, 1>(m, 69, 8);
-        series::sqr::<S, 0, 1>(m, 72, 7);
-        series::sqr::<S, 0, 1>(m, 76, 9);
-        series::sqr::<S, 0, 1>(m, 88, 11);
-        series::sqr::<S, 0, 1>(m, 91, 10);
-        series::sqr::<S, 0, 1>(m, 95, 12);
-        series::sqr::<S, 0, 1>(m, 107, 14);
-        series::sqr::<S, 0, 1>(m, 110, 13);
-        series::sqr::<S, 0, 1>(m, 114, 15);
-        series::sqr::<S, 0, 1>(m, 126, 17);
-        series::sqr::<S, 0, 1>(m, 129, 16);
-        series::sqr::<S, 0, 1>(m, 133, 18);
-        series::sqr::<S, 0, 0>(m, 27, 25);
-        m[27][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 28, 23, 25);
-        m[28][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 29, 26, 28);
-        m[29][1] = S::zero();
-        series::mul_real::<S, 0, 0>(m, 30, 29, 0);
-        m[30][1] = S::zero();
-        series::mul_sub::<S, 0, 0>(m, 31, 24, 27, 30);
-        m[31][1] = S::zero();
-        series::sqr::<S, 0, 0>(m, 32, 26);
-        m[32][1] = S::zero();
-        series::mul_add::<S, 0, 0>(m, 33, 22, 32, 31);
-        m[33][1] = S::zero();
-        series::sqr::<S, 0, 0>(m, 34, 19);
-        m[34][1] = S::zero();
-        series::sqr::<S, 0, 0>(m, 35, 23);
-        m[35][1] = S::zero();
-        series::mul_sub::<S, 0, 0>(m, 36, 22, 24, 35);
-        m[36][1] = S::zero();
-        series::sub_mul::<S, 0, 0>(m, 37, 34, 36, 33);
-        m[37][1] = S::zero();
-        series::mul_real::<S, 0, 0>(m, 38, 24, 1);
-        m[38][1] = S::zero();
-        series::mul_mul_sub::<S, 0, 0>(m, 39, 24, 25, 23, 26);
-        m[39][1] = S::zero();
-        series::sub::<S, 0, 0>(m, 40, 38, 39);
-        m[40][1] = S::zero();
-        series::sqr::<S, 0, 0>(m, 41, 20);
-        m[41][1] = S::zero();
-        series::sub::<S, 0, 0>(m, 42, 41, 34);
-        m[42][1] = S::zero();
-        series::sub_mul::<S, 0, 0>(m, 43, 36, 42, 40);
-        m[43][1] = S::zero();
-        series::mul_real::<S, 0, 0>(m, 44, 22, 1);
-        m[44][1] = S::zero();
-        series::mul_sub::<S, 0, 0>(m, 45, 22, 26, 28);
-        m[45][1] = S::zero();
-        series::sub::<S, 0, 0>(m, 46, 44, 45);
-        m[46][1] = S::zero();
-        series::sqr::<S, 0, 0>(m, 47, 21);
-        m[47][1] = S::zero();
-        series::sub::<S, 0, 0>(m, 48, 47, 34);
-        m[48][1] = S::zero();
-        series::sub_mul::<S, 0, 0>(m, 49, 36, 48, 46);
-        m[49][1] = S::zero();
-        series::mul::<S, 0, 1>(m, 51, 5, 20);
-        series::mul_real_add::<S, 0, 1>(m, 52, 51, 2, 50);
-        series::mul::<S, 0, 1>(m, 54, 4, 19);
-        series::mul_real_add::<S, 0, 1>(m, 55, 54, 2, 53);
-        series::sub::<S, 0, 1>(m, 56, 52, 55);
-        series::mul::<S, 0, 1>(m, 58, 6, 21);
-        series::mul_real_add::<S, 0, 1>(m, 59, 58, 2, 57);
-        series::sub::<S, 0, 1>(m, 60, 59, 55);
-        series::mul::<S, 0, 1>(m, 61, 23, 60);
-        series::mul_real::<S, 0, 1>(m, 62, 61, 0);
-        series::mul_add::<S, 0, 1>(m, 63, 22, 56, 62);
-        series::sqr::<S, 0, 1>(m, 64, 60);
-        series::mul_mul_add::<S, 0, 1>(m, 65, 56, 63, 24, 64);
-        series::mul_mul_add::<S, 0, 1>(m, 66, 25, 56, 26, 60);
-        series::mul_real_add::<S, 0, 1>(m, 67, 66, 2, 65);
-        series::sub::<S, 0, 1>(m, 68, 67, 55);
-        series::mul::<S, 0, 1>(m, 70, 8, 20);
-        series::mul_real_add::<S, 0, 1>(m, 71, 70, 2, 69);
-        series::mul::<S, 0, 1>(m, 73, 7, 19);
-        series::mul_real_add::<S, 0, 1>(m, 74, 73, 2, 72);
-        series::sub::<S, 0, 1>(m, 75, 71, 74);
-        series::mul::<S, 0, 1>(m, 77, 9, 21);
-        series::mul_real_add::<S, 0, 1>(m, 78, 77, 2, 76);
-        series::sub::<S, 0, 1>(m, 79, 78, 74);
-        series::mul::<S, 0, 1>(m, 80, 23, 79);
-        series::mul_real::<S, 0, 1>(m, 81, 80, 0);
-        series::mul_add::<S, 0, 1>(m, 82, 22, 75, 81);
-        series::sqr::<S, 0, 1>(m, 83, 79);
-        series::mul_mul_add::<S, 0, 1>(m, 84, 75, 82, 24, 83);
-        series::mul_mul_add::<S, 0, 1>(m, 85, 25, 75, 26, 79);
-        series::mul_real_add::<S, 0, 1>(m, 86, 85, 2, 84);
-        series::sub::<S, 0, 1>(m, 87, 86, 74);
-        series::mul::<S, 0, 1>(m, 89, 11, 20);
-        series::mul_real_add::<S, 0, 1>(m, 90, 89, 2, 88);
-        series::mul::<S, 0, 1>(m, 92, 10, 19);
-        series::mul_real_add::<S, 0, 1>(m, 93, 92, 2, 91);
-        series::sub::<S, 0, 1>(m, 94, 90, 93);
-        series::mul::<S, 0, 1>(m, 96, 12, 21);
-        series::mul_real_add::<S, 0, 1>(m, 97, 96, 2, 95);
-        series::sub::<S, 0, 1>(m, 98, 97, 93);
-        series::mul::<S, 0, 1>(m, 99, 23, 98);
-        series::mul_real::<S, 0, 1>(m, 100, 99, 0);
-        series::mul_add::<S, 0, 1>(m, 101, 22, 94, 100);
-        series::sqr::<S, 0, 1>(m, 102, 98);
-        series::mul_mul_add::<S, 0, 1>(m, 103, 94, 101, 24, 102);
-        series::mul_mul_add::<S, 0, 1>(m, 104, 25, 94, 26, 98);
-        series::mul_real_add::<S, 0, 1>(m, 105, 104, 2, 103);
-        series::sub::<S, 0, 1>(m, 106, 105, 93);
-        series::mul::<S, 0, 1>(m, 108, 14, 20);
-        series::mul_real_add::<S, 0, 1>(m, 109, 108, 2, 107);
-        series::mul::<S, 0, 1>(m, 111, 13, 19);
-        series::mul_real_add::<S, 0, 1>(m, 112, 111, 2, 110);
-        series::sub::<S, 0, 1>(m, 113, 109, 112);
-        series::mul::<S, 0, 1>(m, 115, 15, 21);
-        series::mul_real_add::<S, 0, 1>(m, 116, 115, 2, 114);
-        series::sub::<S, 0, 1>(m, 117, 116, 112);
-        series::mul::<S, 0, 1>(m, 118, 23, 117);
-        series::mul_real::<S, 0, 1>(m, 119, 118, 0);
-        series::mul_add::<S, 0, 1>(m, 120, 22, 113, 119);
-        series::sqr::<S, 0, 1>(m, 121, 117);
-        series::mul_mul_add::<S, 0, 1>(m, 122, 113, 120, 24, 121);
-        series::mul_mul_add::<S, 0, 1>(m, 123, 25, 113, 26, 117);
-        series::mul_real_add::<S, 0, 1>(m, 124, 123, 2, 122);
-        series::sub::<S, 0, 1>(m, 125, 124, 112);
-        series::mul::<S, 0, 1>(m, 127, 17, 20);
-        series::mul_real_add::<S, 0, 1>(m, 128, 127, 2, 126);
-        series::mul::<S, 0, 1>(m, 130, 16, 19);
-        series::mul_real_add::<S, 0, 1>(m, 131, 130, 2, 129);
-        series::sub::<S, 0, 1>(m, 132, 128, 131);
-        series::mul::<S, 0, 1>(m, 134, 18, 21);
-        series::mul_real_add::<S, 0, 1>(m, 135, 134, 2, 133);
-        series::sub::<S, 0, 1>(m, 136, 135, 131);
-        series::mul::<S, 0, 1>(m, 137, 23, 136);
-        series::mul_real::<S, 0, 1>(m, 138, 137, 0);
-        series::mul_add::<S, 0, 1>(m, 139, 22, 132, 138);
-        series::sqr::<S, 0, 1>(m, 140, 136);
-        series::mul_mul_add::<S, 0, 1>(m, 141, 132, 139, 24, 140);
-        series::mul_mul_add::<S, 0, 1>(m, 142, 25, 132, 26, 136);
-        series::mul_real_add::<S, 0, 1>(m, 143, 142, 2, 141);
-        series::sub::<S, 0, 1>(m, 144, 143, 131);
-    }
-}
-struct Taylor2Part0<'a, S>(&'a mut [[S; 4]; 145]);
-impl<S: Scalar> Kernel for Taylor2Part0<'_, S> {
-    type Output = ();
-    #[inline(always)]
-    fn run(self) {
-        let Self(m) = self;
-        series::sqr::<S, 2, 2>(m, 50, 5);
-        series::sqr::<S, 2, 2>(m, 53, 4);
-        series::sqr::<S, 2, 2>(m, 57, 6);
-        series::sqr::<S, 2, 2>(m, 69, 8);
-        series::sqr::<S, 2, 2>(m, 72, 7);
-        series::sqr::<S, 2, 2>(m, 76, 9);
-        series::sqr::<S, 2, 2>(m, 88, 11);
-        series::sqr::<S, 2, 2>(m, 91, 10);
-        series::sqr::<S, 2, 2>(m, 95, 12);
-        series::sqr::<S, 2, 2>(m, 107, 14);
-        series::sqr::<S, 2, 2>(m, 110, 13);
-        series::sqr::<S, 2, 2>(m, 114, 15);
-        series::sqr::<S, 2, 2>(m, 126, 17);
-        series::sqr::<S, 2, 2>(m, 129, 16);
-        series::sqr::<S, 2, 2>(m, 133, 18);
-        series::sqr::<S, 1, 2>(m, 27, 25);
-        series::mul::<S, 1, 2>(m, 28, 23, 25);
-        series::mul::<S, 1, 2>(m, 29, 26, 28);
-        series::mul_real::<S, 1, 2>(m, 30, 29, 0);
-        series::mul_sub::<S, 1, 2>(m, 31, 24, 27, 30);
-        series::sqr::<S, 1, 2>(m, 32, 26);
-        series::mul_add::<S, 1, 2>(m, 33, 22, 32, 31);
-        series::sqr::<S, 1, 2>(m, 34, 19);
-        series::sqr::<S, 1, 2>(m, 35, 23);
-        series::mul_sub::<S, 1, 2>(m, 36, 22, 24, 35);
-        series::sub_mul::<S, 1, 2>(m, 37, 34, 36, 33);
-        series::mul_real::<S, 1, 2>(m, 38, 24, 1);
-        series::mul_mul_sub::<S, 1, 2>(m, 39, 24, 25, 23, 26);
-        series::sub::<S, 1, 2>(m, 40, 38, 39);
-        series::sqr::<S, 1, 2>(m, 41, 20);
-        series::sub::<S, 1, 2>(m, 42, 41, 34);
-        series::sub_mul::<S, 1, 2>(m, 43, 36, 42, 40);
-        series::mul_real::<S, 1, 2>(m, 44, 22, 1);
-        series::mul_sub::<S, 1, 2>(m, 45, 22, 26, 28);
-        series::sub::<S, 1, 2>(m, 46, 44, 45);
-        series::sqr::<S, 1, 2>(m, 47, 21);
-        series::sub::<S, 1, 2>(m, 48, 47, 34);
-        series::sub_mul::<S, 1, 2>(m, 49, 36, 48, 46);
-        series::mul::<S, 1, 2>(m, 51, 5, 20);
-        series::mul_real_add::<S, 1, 2>(m, 52, 51, 2, 50);
-        series::mul::<S, 1, 2>(m, 54, 4, 19);
-        series::mul_real_add::<S, 1, 2>(m, 55, 54, 2, 53);
-        series::sub::<S, 1, 2>(m, 56, 52, 55);
-        series::mul::<S, 1, 2>(m, 58, 6, 21);
-        series::mul_real_add::<S, 1, 2>(m, 59, 58, 2, 57);
-        series::sub::<S, 1, 2>(m, 60, 59, 55);
-        series::mul::<S, 1, 2>(m, 61, 23, 60);
-        series::mul_real::<S, 1, 2>(m, 62, 61, 0);
-        series::mul_add::<S, 1, 2>(m, 63, 22, 56, 62);
-        series::sqr::<S, 1, 2>(m, 64, 60);
-        series::mul_mul_add::<S, 1, 2>(m, 65, 56, 63, 24, 64);
-        series::mul_mul_add::<S, 1, 2>(m, 66, 25, 56, 26, 60);
-        series::mul_real_add::<S, 1, 2>(m, 67, 66, 2, 65);
-        series::sub::<S, 1, 2>(m, 68, 67, 55);
-        series::mul::<S, 1, 2>(m, 70, 8, 20);
-        series::mul_real_add::<S, 1, 2>(m, 71, 70, 2, 69);
-        series::mul::<S, 1, 2>(m, 73, 7, 19);
-        series::mul_real_add::<S, 1, 2>(m, 74, 73, 2, 72);
-        series::sub::<S, 1, 2>(m, 75, 71, 74);
-        series::mul::<S, 1, 2>(m, 77, 9, 21);
-        series::mul_real_add::<S, 1, 2>(m, 78, 77, 2, 76);
-        series::sub::<S, 1, 2>(m, 79, 78, 74);
-        series::mul::<S, 1, 2>(m, 80, 23, 79);
-        series::mul_real::<S, 1, 2>(m, 81, 80, 0);
-        series::mul_add::<S, 1, 2>(m, 82, 22, 75, 81);
-        series::sqr::<S, 1, 2>(m, 83, 79);
-        series::mul_mul_add::<S, 1, 2>(m, 84, 75, 82, 24, 83);
-        series::mul_mul_add::<S, 1, 2>(m, 85, 25, 75, 26, 79);
-        series::mul_real_add::<S, 1, 2>(m, 86, 85, 2, 84);
-        series::sub::<S, 1, 2>(m, 87, 86, 74);
-        series::mul::<S, 1, 2>(m, 89, 11, 20);
-        series::mul_real_add::<S, 1, 2>(m, 90, 89, 2, 88);
-        series::mul::<S, 1, 2>(m, 92, 10, 19);
-        series::mul_real_add::<S, 1, 2>(m, 93, 92, 2, 91);
-        series::sub::<S, 1, 2>(m, 94, 90, 93);
-        series::mul::<S, 1, 2>(m, 96, 12, 21);
-        series::mul_real_add::<S, 1, 2>(m, 97, 96, 2, 95);
-        series::sub::<S, 1, 2>(m, 98, 97, 93);
-        series::mul::<S, 1, 2>(m, 99, 23, 98);
-        series::mul_real::<S, 1, 2>(m, 100, 99, 0);
-        series::mul_add::<S, 1, 2>(m, 101, 22, 94, 100);
-        series::sqr::<S, 1, 2>(m, 102, 98);
-        series::mul_mul_add::<S, 1, 2>(m, 103, 94, 101, 24, 102);
-        series::mul_mul_add::<S, 1, 2>(m, 104, 25, 94, 26, 98);
-        series::mul_real_add::<S, 1, 2>(m, 105, 104, 2, 103);
-        series::sub::<S, 1, 2>(m, 106, 105, 93);
-        series::mul::<S, 1, 2>(m, 108, 14, 20);
-        series::mul_real_add::<S, 1, 2>(m, 109, 108, 2, 107);
-        series::mul::<S, 1, 2>(m, 111, 13, 19);
-        series::mul_real_add::<S, 1, 2>(m, 112, 111, 2, 110);
-        series::sub::<S, 1, 2>(m, 113, 109, 112);
-        series::mul::<S, 1, 2>(m, 115, 15, 21);
-        series::mul_real_add::<S, 1, 2>(m, 116, 115, 2, 114);
-        series::sub::<S, 1, 2>(m, 117, 116, 112);
-        series::mul::<S, 1, 2>(m, 118, 23, 117);
-        series::mul_real::<S, 1, 2>(m, 119, 118, 0);
-        series::mul_add::<S, 1, 2>(m, 120, 22, 113, 119);
-        series::sqr::<S, 1, 2>(m, 121, 117);
-        series::mul_mul_add::<S, 1, 2>(m, 122, 113, 120, 24, 121);
-        series::mul_mul_add::<S, 1, 2>(m, 123, 25, 113, 26, 117);
-        series::mul_real_add::<S, 1, 2>(m, 124, 123, 2, 122);
-        series::sub::<S, 1, 2>(m, 125, 124, 112);
-        series::mul::<S, 1, 2>(m, 127, 17, 20);
-        series::mul_real_add::<S, 1, 2>(m, 128, 127, 2, 126);
-        series::mul::<S, 1, 2>(m, 130, 16, 19);
-        series::mul_real_add::<S, 1, 2>(m, 131, 130, 2, 129);
-        series::sub::<S, 1, 2>(m, 132, 128, 131);
-        series::mul::<S, 1, 2>(m, 134, 18, 21);
-        series::mul_real_add::<S, 1, 2>(m, 135, 134, 2, 133);
-        series::sub::<S, 1, 2>(m, 136, 135, 131);
-        series::mul::<S, 1, 2>(m, 137, 23, 136);
-        series::mul_real::<S, 1, 2>(m, 138, 137, 0);
-        series::mul_add::<S, 1, 2>(m, 139, 22, 132, 138);
-        series::sqr::<S, 1, 2>(m, 140, 136);
-        series::mul_mul_add::<S, 1, 2>(m, 141, 132, 139, 24, 140);
-        series::mul_mul_add::<S, 1, 2>(m, 142, 25, 132, 26, 136);
-        series::mul_real_add::<S, 1, 2>(m, 143, 142, 2, 141);
-        series::sub::<S, 1, 2>(m, 144, 143, 131);
-    }
-}
-struct Taylor3Part0<'a, S>(&'a mut [[S; 4]; 145]);
-impl<S: Scalar> Kernel for Taylor3Part0<'_, S> {
-    type Output = ();
-    #[inline(always)]
-    fn run(self) {
-        let Self(m) = self;
-        series::sqr::<S, 3, 3>(m, 50, 5);
-        series::sqr::<S, 3, 3>(m, 53, 4);
-        series::sqr::<S, 3, 3>(m, 57, 6);
-        series::sqr::<S, 3, 3>(m, 69, 8);
-        series::sqr::<S, 3, 3>(m, 72, 7);
-        series::sqr::<S, 3, 3>(m, 76, 9);
-        series::sqr::<S, 3, 3>(m, 88, 11);
-        series::sqr::<S, 3, 3>(m, 91, 10);
-        series::sqr::<S, 3, 3>(m, 95, 12);
-        series::sqr::<S, 3, 3>(m, 107, 14);
-        series::sqr::<S, 3, 3>(m, 110, 13);
-        series::sqr::<S, 3, 3>(m, 114, 15);
-        series::sqr::<S, 3, 3>(m, 126, 17);
-        series::sqr::<S, 3, 3>(m, 129, 16);
-        series::sqr::<S, 3, 3>(m, 133, 18);
-        series::sqr::<S, 2, 3>(m, 27, 25);
-        series::mul::<S, 2, 3>(m, 28, 23, 25);
-        series::mul::<S, 2, 3>(m, 29, 26, 28);
-        series::mul_real::<S, 2, 3>(m, 30, 29, 0);
-        series::mul_sub::<S, 2, 3>(m, 31, 24, 27, 30);
-        series::sqr::<S, 2, 3>(m, 32, 26);
-        series::mul_add::<S, 2, 3>(m, 33, 22, 32, 31);
-        series::sqr::<S, 2, 3>(m, 34, 19);
-        series::sqr::<S, 2, 3>(m, 35, 23);
-        series::mul_sub::<S, 2, 3>(m, 36, 22, 24, 35);
-        series::sub_mul::<S, 2, 3>(m, 37, 34, 36, 33);
-        series::mul_real::<S, 2, 3>(m, 38, 24, 1);
-        series::mul_mul_sub::<S, 2, 3>(m, 39, 24, 25, 23, 26);
-        series::sub::<S, 2, 3>(m, 40, 38, 39);
-        series::sqr::<S, 2, 3>(m, 41, 20);
-        series::sub::<S, 2, 3>(m, 42, 41, 34);
-        series::sub_mul::<S, 2, 3>(m, 43, 36, 42, 40);
-        series::mul_real::<S, 2, 3>(m, 44, 22, 1);
-        series::mul_sub::<S, 2, 3>(m, 45, 22, 26, 28);
-        series::sub::<S, 2, 3>(m, 46, 44, 45);
-        series::sqr::<S, 2, 3>(m, 47, 21);
-        series::sub::<S, 2, 3>(m, 48, 47, 34);
-        series::sub_mul::<S, 2, 3>(m, 49, 36, 48, 46);
-        series::mul::<S, 2, 3>(m, 51, 5, 20);
-        series::mul_real_add::<S, 2, 3>(m, 52, 51, 2, 50);
-        series::mul::<S, 2, 3>(m, 54, 4, 19);
-        series::mul_real_add::<S, 2, 3>(m, 55, 54, 2, 53);
-        series::sub::<S, 2, 3>(m, 56, 52, 55);
-        series::mul::<S, 2, 3>(m, 58, 6, 21);
-        series::mul_real_add::<S, 2, 3>(m, 59, 58, 2, 57);
-        series::sub::<S, 2, 3>(m, 60, 59, 55);
-        series::mul::<S, 2, 3>(m, 61, 23, 60);
-        series::mul_real::<S, 2, 3>(m, 62, 61, 0);
-        series::mul_add::<S, 2, 3>(m, 63, 22, 56, 62);
-        series::sqr::<S, 2, 3>(m, 64, 60);
-        series::mul_mul_add::<S, 2, 3>(m, 65, 56, 63, 24, 64);
-        series::mul_mul_add::<S, 2, 3>(m, 66, 25, 56, 26, 60);
-        series::mul_real_add::<S, 2, 3>(m, 67, 66, 2, 65);
-        series::sub::<S, 2, 3>(m, 68, 67, 55);
-        series::mul::<S, 2, 3>(m, 70, 8, 20);
-        series::mul_real_add::<S, 2, 3>(m, 71, 70, 2, 69);
-        series::mul::<S, 2, 3>(m, 73, 7, 19);
-        series::mul_real_add::<S, 2, 3>(m, 74, 73, 2, 72);
-        series::sub::<S, 2, 3>(m, 75, 71, 74);
-        series::mul::<S, 2, 3>(m, 77, 9, 21);
-        series::mul_real_add::<S, 2, 3>(m, 78, 77, 2, 76);
-        series::sub::<S, 2, 3>(m, 79, 78, 74);
-        series::mul::<S, 2, 3>(m, 80, 23, 79);
-        series::mul_real::<S, 2, 3>(m, 81, 80, 0);
-        series::mul_add::<S, 2, 3>(m, 82, 22, 75, 81);
-        series::sqr::<S, 2, 3>(m, 83, 79);
-        series::mul_mul_add::<S, 2, 3>(m, 84, 75, 82, 24, 83);
-        series::mul_mul_add::<S, 2, 3>(m, 85, 25, 75, 26, 79);
-        series::mul_real_add::<S, 2, 3>(m, 86, 85, 2, 84);
-        series::sub::<S, 2, 3>(m, 87, 86, 74);
-        series::mul::<S, 2, 3>(m, 89, 11, 20);
-        series::mul_real_add::<S, 2, 3>(m, 90, 89, 2, 88);
-        series::mul::<S, 2, 3>(m, 92, 10, 19);
-        series::mul_real_add::<S, 2, 3>(m, 93, 92, 2, 91);
-        series::sub::<S, 2, 3>(m, 94, 90, 93);
-        series::mul::<S, 2, 3>(m, 96, 12, 21);
-        series::mul_real_add::<S, 2, 3>(m, 97, 96, 2, 95);
-        series::sub::<S, 2, 3>(m, 98, 97, 93);
-        series::mul::<S, 2, 3>(m, 99, 23, 98);
-        series::mul_real::<S, 2, 3>(m, 100, 99, 0);
-        series::mul_add::<S, 2, 3>(m, 101, 22, 94, 100);
-        series::sqr::<S, 2, 3>(m, 102, 98);
-        series::mul_mul_add::<S, 2, 3>(m, 103, 94, 101, 24, 102);
-        series::mul_mul_add::<S, 2, 3>(m, 104, 25, 94, 26, 98);
-        series::mul_real_add::<S, 2, 3>(m, 105, 104, 2, 103);
-        series::sub::<S, 2, 3>(m, 106, 105, 93);
-        series::mul::<S, 2, 3>(m, 108, 14, 20);
-        series::mul_real_add::<S, 2, 3>(m, 109, 108, 2, 107);
-        series::mul::<S, 2, 3>(m, 111, 13, 19);
-        series::mul_real_add::<S, 2, 3>(m, 112, 111, 2, 110);
-        series::sub::<S, 2, 3>(m, 113, 109, 112);
-        series::mul::<S, 2, 3>(m, 115, 15, 21);
-        series::mul_real_add::<S, 2, 3>(m, 116, 115, 2, 114);
-        series::sub::<S, 2, 3>(m, 117, 116, 112);
-        series::mul::<S, 2, 3>(m, 118, 23, 117);
-        series::mul_real::<S, 2, 3>(m, 119, 118, 0);
-        series::mul_add::<S, 2, 3>(m, 120, 22, 113, 119);
-        series::sqr::<S, 2, 3>(m, 121, 117);
-        series::mul_mul_add::<S, 2, 3>(m, 122, 113, 120, 24, 121);
-        series::mul_mul_add::<S, 2, 3>(m, 123, 25, 113, 26, 117);
-        series::mul_real_add::<S, 2, 3>(m, 124, 123, 2, 122);
-        series::sub::<S, 2, 3>(m, 125, 124, 112);
-        series::mul::<S, 2, 3>(m, 127, 17, 20);
-        series::mul_real_add::<S, 2, 3>(m, 128, 127, 2, 126);
-        series::mul::<S, 2, 3>(m, 130, 16, 19);
-        series::mul_real_add::<S, 2, 3>(m, 131, 130, 2, 129);
-        series::sub::<S, 2, 3>(m, 132, 128, 131);
-        series::mul::<S, 2, 3>(m, 134, 18, 21);
-        series::mul_real_add::<S, 2, 3>(m, 135, 134, 2, 133);
-        series::sub::<S, 2, 3>(m, 136, 135, 131);
-        series::mul::<S, 2, 3>(m, 137, 23, 136);
-        series::mul_real::<S, 2, 3>(m, 138, 137, 0);
-        series::mul_add::<S, 2, 3>(m, 139, 22, 132, 138);
-        series::sqr::<S, 2, 3>(m, 140, 136);
-        series::mul_mul_add::<S, 2, 3>(m, 141, 132, 139, 24, 140);
-        series::mul_mul_add::<S, 2, 3>(m, 142, 25, 132, 26, 136);
-        series::mul_real_add::<S, 2, 3>(m, 143, 142, 2, 141);
-        series::sub::<S, 2, 3>(m, 144, 143, 131);
     }
 }

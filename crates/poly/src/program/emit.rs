@@ -66,8 +66,7 @@ pub fn emit(program: &Program, options: &EmitOptions) -> Result<String, EmitErro
 
     let values = Straight { program, tape: &program.values, prefix: "Values", with_jacobian: false }.emit(most);
     let jacobian = Straight { program, tape: &program.jacobian, prefix: "Jacobian", with_jacobian: true }.emit(most);
-    let taylor_tape = TaylorTape::new(&program.values, program.layout());
-    let taylor = emit_taylor(&taylor_tape, most);
+    let taylor = taylor_table(&TaylorTape::new(&program.values, program.layout()));
 
     let (m, n, k) = (program.equations, program.variables, program.parameters);
     let constants = program.constants.iter().map(|c| {
@@ -75,41 +74,36 @@ pub fn emit(program: &Program, options: &EmitOptions) -> Result<String, EmitErro
         quote!([#(#parts),*])
     });
     let live = values.live.max(jacobian.live);
-    let series = taylor_tape.size;
     let (run_values, run_jacobian) = (&values.calls, &jacobian.calls);
     let zeros = zero_fill(&program.jacobian, m, n);
-    let taylor_arms = &taylor.arms;
-    let taylor_outputs = taylor_tape.outputs.iter().map(|&(slot, place)| {
-        let (slot, place) = (index(slot), index(place));
-        quote!(out[#slot] = memory.series[#place][order].clone();)
-    });
-    let kernels = [&values.kernels, &jacobian.kernels, &taylor.kernels];
+    let kernels = [&values.kernels, &jacobian.kernels];
     let module_doc = format!(" `F(x; p)`: {m} equations, {n} unknowns, {k} parameters, as straight-line code.");
     let type_doc = " The system; inputs and outputs are ordered as [`Evaluate`] says.";
-    let shape_doc = " Sizes and constants.";
-    let [m, n, k, entries, live, series] = [m, n, k, m * n, live, series].map(Literal::usize_unsuffixed);
+    let constants_doc = " Real part (high, low) and imaginary part (high, low).";
+    let taylor_doc = " Instructions for Taylor coefficients.";
+    let constant_count = program.constants.len();
+    let [m, n, k, entries, live, constant_count] =
+        [m, n, k, m * n, live, constant_count].map(Literal::usize_unsuffixed);
     let tokens = quote! {
         #![doc = #module_doc]
         #![cfg_attr(rustfmt, rustfmt_skip)]
-        #![allow(unreachable_pub, clippy::all)]
+        #![allow(unreachable_pub, unused_imports, clippy::all)]
 
         use #path::evaluate::Evaluate;
-        use #path::program::generated::{Memory, Shape, series};
+        use #path::program::generated::{Memory, Op, TaylorTape, code};
         use #path::scalar::Scalar;
         use #path::simd::{Isa, Kernel};
+        use std::borrow::Cow;
 
         #[doc = #type_doc]
         #[derive(Clone, Copy, Debug, Default)]
         pub struct #name;
 
-        #[doc = #shape_doc]
-        static SHAPE: Shape = Shape {
-            parameters: #k,
-            variables: #n,
-            constants: &[#(#constants),*],
-            live: #live,
-            series: #series,
-        };
+        #[doc = #constants_doc]
+        static CONSTANTS: [[f64; 4]; #constant_count] = [#(#constants),*];
+
+        #[doc = #taylor_doc]
+        static TAYLOR: TaylorTape = #taylor;
 
         impl Evaluate for #name {
             type Memory<S: Scalar> = Memory<S>;
@@ -124,7 +118,7 @@ pub fn emit(program: &Program, options: &EmitOptions) -> Result<String, EmitErro
                 #k
             }
             fn memory<S: Scalar>(&self, isa: Isa) -> Memory<S> {
-                Memory::new(isa, &SHAPE)
+                Memory::new(isa, &CONSTANTS, #live, &TAYLOR)
             }
             fn values<S: Scalar>(&self, memory: &mut Memory<S>, x: &[S], p: &[S], values: &mut [S]) {
                 let (x, p, values) = (&x[..#n], &p[..#k], &mut values[..#m]);
@@ -143,12 +137,7 @@ pub fn emit(program: &Program, options: &EmitOptions) -> Result<String, EmitErro
                 #run_jacobian
             }
             fn taylor<S: Scalar>(&self, memory: &mut Memory<S>, order: usize, x: &[S], p: &[S], out: &mut [S]) {
-                memory.load(&SHAPE, order, x, p);
-                match order {
-                    #taylor_arms
-                }
-                let out = &mut out[..#m];
-                #(#taylor_outputs)*
+                memory.taylor(&TAYLOR, order, x, p, out);
             }
         }
 
@@ -211,7 +200,7 @@ fn zero_fill(tape: &Tape, m: usize, n: usize) -> TokenStream {
     }
 }
 
-/// The name of the scalar's method for an operation, the same as of the function on series.
+/// The name of the scalar's method for an operation.
 fn method(op: Op) -> proc_macro2::Ident {
     format_ident!(
         "{}",
@@ -432,62 +421,31 @@ fn value_of(operand: Operand) -> TokenStream {
     }
 }
 
-struct EmittedTaylor {
-    kernels: TokenStream,
-    arms: TokenStream,
-}
-
-/// One kernel for each order (and part), as calls of the functions on series.
-fn emit_taylor(tape: &TaylorTape, most: usize) -> EmittedTaylor {
-    let (mut kernels, mut arms) = (TokenStream::new(), TokenStream::new());
-    for order in 1..=3u32 {
-        // Coefficients that each group computes, as in the interpreter.
-        let statements: Vec<TokenStream> = match order {
-            1 => {
-                let variables_only = tape.variables_only.iter().map(|code| {
-                    let (call, place) = (series_call(code, 0, 0), index(code.target));
-                    quote!(#call m[#place][1] = S::zero();)
-                });
-                let first = tape.parameters_only.iter().map(|code| series_call(code, 0, 1));
-                first.chain(variables_only).chain(tape.mixed.iter().map(|code| series_call(code, 0, 1))).collect()
-            }
-            _ => {
-                let first = tape.parameters_only.iter().map(|code| series_call(code, order, order));
-                let rest = tape.variables_only.iter().chain(&tape.mixed);
-                first.chain(rest.map(|code| series_call(code, order - 1, order))).collect()
-            }
-        };
-        let mut calls = TokenStream::new();
-        let parts = statements.len().div_ceil(most).max(1);
-        for (part, chunk) in statements.chunks(statements.len().div_ceil(parts).max(1)).enumerate() {
-            let name = format_ident!("Taylor{order}Part{part}");
-            let size = Literal::usize_unsuffixed(tape.size);
-            kernels.extend(quote! {
-                struct #name<'a, S>(&'a mut [[S; 4]; #size]);
-
-                impl<S: Scalar> Kernel for #name<'_, S> {
-                    type Output = ();
-
-                    #[inline(always)]
-                    fn run(self) {
-                        let Self(m) = self;
-                        #(#chunk)*
-                    }
-                }
-            });
-            calls.extend(quote!(memory.isa.run(#name(memory.series.first_chunk_mut().expect("made by Memory::new")));));
+/// The Taylor program as a static table: its instructions do so much each that finding them costs little,
+/// and as straight-line code they would take minutes to compile.
+fn taylor_table(tape: &TaylorTape) -> TokenStream {
+    let codes = |group: &[TaylorCode]| {
+        let codes = group.iter().map(|code| {
+            let op = format_ident!("{}", format!("{:?}", code.op));
+            let (unknowns, target) = (Literal::u8_unsuffixed(code.unknowns), index(code.target));
+            let operands = code.operands.map(index);
+            quote!(code(Op::#op, #unknowns, #target, [#(#operands),*]))
+        });
+        quote!(Cow::Borrowed(&[#(#codes),*]))
+    };
+    let (parameters_only, variables_only) = (codes(&tape.parameters_only), codes(&tape.variables_only));
+    let mixed = codes(&tape.mixed);
+    let outputs = tape.outputs.iter().map(|&place| index(place));
+    let inputs = tape.inputs.map(Literal::usize_unsuffixed);
+    let size = Literal::usize_unsuffixed(tape.size);
+    quote! {
+        TaylorTape {
+            parameters_only: #parameters_only,
+            variables_only: #variables_only,
+            mixed: #mixed,
+            outputs: Cow::Borrowed(&[#(#outputs),*]),
+            inputs: [#(#inputs),*],
+            size: #size,
         }
-        let literal = index(order);
-        let pattern = if order == 3 { quote!(_) } else { quote!(#literal) };
-        arms.extend(quote!(#pattern => { #calls }));
     }
-    EmittedTaylor { kernels, arms }
-}
-
-/// `series::op::<S, FROM, TO>(m, target, operands)`
-fn series_call(code: &TaylorCode, from: u32, to: u32) -> TokenStream {
-    let method = method(code.op);
-    let (from, to, target) = (index(from), index(to), index(code.target));
-    let operands = code.operands[..code.op.arity()].iter().map(|&k| index(k));
-    quote!(series::#method::<S, #from, #to>(m, #target #(, #operands)*);)
 }

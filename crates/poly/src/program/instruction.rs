@@ -12,7 +12,7 @@ pub(crate) enum Operand {
 
 /// What an instruction computes from up to four operands `a`, `b`, `c`, `d`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) enum Op {
+pub enum Op {
     /// `a + b`
     Add,
     /// `a - b`

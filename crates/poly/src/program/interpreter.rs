@@ -3,8 +3,7 @@
 use super::Program;
 use super::instruction::Op;
 use super::registers::{Code, Layout, RegisterTape, allocate};
-use super::series::Series;
-use super::taylor::{TaylorTape, resident};
+use super::taylor::TaylorTape;
 use crate::evaluate::Evaluate;
 use crate::scalar::Scalar;
 use crate::simd::{Isa, Kernel};
@@ -32,7 +31,7 @@ pub struct InterpreterMemory<S> {
     values: Vec<S>,
     jacobian: Vec<S>,
     /// Taylor coefficients of every operand and every result.
-    taylor: Vec<Series<S>>,
+    taylor: Vec<S>,
 }
 
 impl Interpreter {
@@ -77,7 +76,7 @@ impl Evaluate for Interpreter {
             isa,
             values: array(compiled.values.size),
             jacobian: array(compiled.jacobian.size),
-            taylor: resident(&constants, compiled.taylor.size),
+            taylor: compiled.taylor.memory(&constants),
         }
     }
 
@@ -118,7 +117,7 @@ impl Evaluate for Interpreter {
 
     fn taylor<S: Scalar>(&self, memory: &mut InterpreterMemory<S>, order: usize, x: &[S], p: &[S], out: &mut [S]) {
         let compiled = &*self.compiled;
-        compiled.taylor.run(memory.isa, &mut memory.taylor, compiled.layout, order, x, p, out);
+        compiled.taylor.run(memory.isa, &mut memory.taylor, order, x, p, out);
     }
 }
 

@@ -1,6 +1,8 @@
 //! From the formula graph to instructions: powers by shared squarings, quotients by shared reciprocals.
 
-use super::instruction::{Instruction, Op, Operand};
+use super::instruction::{Instruction, Op, Operand, Tape};
+use super::registers::Layout;
+use super::taylor::TaylorTape;
 use crate::exact::{self, Exact};
 use crate::graph::{Graph, Id, Node};
 use num_traits::One;
@@ -99,5 +101,29 @@ impl Builder {
                 self.push(Op::Mul, &[x, rest])
             }
         }
+    }
+}
+
+/// Writes a tape directly, without a formula graph behind it.
+#[derive(Default)]
+pub(crate) struct TapeWriter {
+    instructions: Vec<Instruction>,
+}
+
+impl TapeWriter {
+    pub(crate) fn push(&mut self, op: Op, args: &[Operand]) -> Operand {
+        self.instructions.push(Instruction::new(op, args));
+        Operand::Temporary((self.instructions.len() - 1) as u32)
+    }
+
+    /// The value zero.
+    pub(crate) fn zero(&self) -> Operand {
+        Operand::Constant(0)
+    }
+
+    /// The Taylor program of the outputs; its only constant, of index 0, is zero.
+    pub(crate) fn finish(self, outputs: Vec<Operand>, parameters: usize, variables: usize) -> TaylorTape {
+        let tape = Tape { instructions: self.instructions, outputs: (0u32..).zip(outputs).collect() };
+        TaylorTape::new(&tape, Layout { constants: 1, parameters, variables })
     }
 }

@@ -13,7 +13,7 @@ mod interpreter;
 mod lower;
 mod registers;
 mod schedule;
-pub mod series;
+mod series;
 mod taylor;
 #[cfg(test)]
 mod tests;
@@ -25,8 +25,10 @@ pub use interpreter::{Interpreter, InterpreterMemory};
 use crate::exact::Exact;
 use crate::graph::{Graph, Id, Node};
 use crate::system::System;
-use instruction::{Operand, Tape};
+use instruction::Tape;
+pub(crate) use instruction::{Op, Operand};
 use lower::Builder;
+pub(crate) use lower::TapeWriter;
 use registers::Layout;
 
 /// Most nodes of a formula graph, derivatives included.

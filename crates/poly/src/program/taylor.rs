@@ -1,40 +1,50 @@
 //! Taylor coefficients along a path, one order at a time over resident memory.
 //!
-//! Every operand and every instruction keeps four coefficients. A call for order `k` first corrects coefficient
+//! Every operand and every result keeps four coefficients. A call for order `k` first corrects coefficient
 //! `k - 1` of each value (its unknowns' coefficient `k - 1` has been found since the last call), then computes
 //! coefficient `k`, in one pass.
 
 use super::instruction::{Op, Operand, Tape};
 use super::registers::{Layout, place};
-use super::series::{self, Series};
+use super::series::{BY_UNKNOWN, Columns, GENERAL, UNKNOWNS, WIDTH, step};
 use crate::scalar::Scalar;
 use crate::simd::{Isa, Kernel};
+use std::borrow::Cow;
 
 /// An instruction over the array of series `[constants | parameters | unknowns | results]`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct TaylorCode {
-    pub(super) op: Op,
-    pub(super) target: u32,
-    pub(super) operands: [u32; 4],
+pub struct TaylorCode {
+    /// The operation.
+    pub op: Op,
+    /// Which factors of its products are unknowns: 0 none, 1 the second ones, 2 both.
+    pub unknowns: u8,
+    /// Place of the result.
+    pub target: u32,
+    /// Places of the operands; unused ones repeat the first.
+    pub operands: [u32; 4],
 }
 
-/// The values' instructions in three groups, each in order of execution.
-#[derive(Debug)]
-pub(super) struct TaylorTape {
+/// A program for Taylor coefficients: instructions in three groups, each in order of execution.
+#[derive(Clone, Debug)]
+pub struct TaylorTape {
     /// Free of unknowns: coefficient `k - 1` was final at order `k - 1` already.
-    pub(super) parameters_only: Vec<TaylorCode>,
+    pub parameters_only: Cow<'static, [TaylorCode]>,
     /// Free of parameters: coefficient 1 is zero as long as the unknowns' is.
-    pub(super) variables_only: Vec<TaylorCode>,
+    pub variables_only: Cow<'static, [TaylorCode]>,
     /// With both.
-    pub(super) mixed: Vec<TaylorCode>,
-    /// Slot of the output and the place of its series.
-    pub(super) outputs: Vec<(u32, u32)>,
-    equations: usize,
-    /// Number of series, operands included.
-    pub(super) size: usize,
+    pub mixed: Cow<'static, [TaylorCode]>,
+    /// Place of the series of each output.
+    pub outputs: Cow<'static, [u32]>,
+    /// Number of constants, parameters and unknowns.
+    pub inputs: [usize; 3],
+    /// Number of series, inputs included.
+    pub size: usize,
 }
 
 impl TaylorTape {
+    /// Coefficients kept for each value.
+    pub(crate) const WIDTH: usize = WIDTH;
+
     pub(super) fn new(tape: &Tape, layout: Layout) -> TaylorTape {
         let base = layout.inputs() as u32;
         let at = |operand| place(operand, layout, |k| base + k);
@@ -57,131 +67,134 @@ impl TaylorTape {
                 (true, false) => 1,
                 (true, true) => 2,
             };
-            let operands = instruction.args.map(at);
-            groups[group].push(TaylorCode { op: instruction.op, target: base + k as u32, operands });
+            let (operands, unknowns) = unknown_factors(instruction.op, instruction.args);
+            let (target, operands) = (base + k as u32, operands.map(at));
+            groups[group].push(TaylorCode { op: instruction.op, unknowns, target, operands });
         }
-        let [parameters_only, variables_only, mixed] = groups;
-        let outputs: Vec<(u32, u32)> = tape.outputs.iter().map(|&(slot, operand)| (slot, at(operand))).collect();
+        let [parameters_only, variables_only, mixed] = groups.map(Cow::Owned);
+        let mut outputs = vec![0; tape.outputs.len()];
+        for &(slot, operand) in &tape.outputs {
+            outputs[slot as usize] = at(operand);
+        }
         TaylorTape {
             parameters_only,
             variables_only,
             mixed,
-            equations: outputs.len(),
-            outputs,
+            outputs: Cow::Owned(outputs),
+            inputs: [layout.constants, layout.parameters, layout.variables],
             size: layout.inputs() + tape.instructions.len(),
         }
     }
 
-    pub(super) fn run<S: Scalar>(
-        &self,
-        isa: Isa,
-        array: &mut [Series<S>],
-        layout: Layout,
-        order: usize,
-        x: &[S],
-        p: &[S],
-        out: &mut [S],
-    ) {
-        load(array, layout, order, x, p);
+    /// Resident coefficients, with those of the constants in place.
+    pub(super) fn memory<S: Scalar>(&self, constants: &[S]) -> Vec<S> {
+        let mut columns = vec![S::zero(); WIDTH * self.size];
+        columns[..constants.len()].clone_from_slice(constants);
+        columns
+    }
+
+    /// One call of [`Evaluate::taylor`](crate::Evaluate::taylor).
+    pub(crate) fn run<S: Scalar>(&self, isa: Isa, memory: &mut [S], order: usize, x: &[S], p: &[S], out: &mut [S]) {
+        assert!((1..WIDTH).contains(&order), "Taylor coefficients are of order 1, 2 or 3, not {order}");
+        let [constants, parameters, variables] = self.inputs;
+        let (before, rest) = memory.split_at_mut(2 * self.size);
+        let (first, second) = before.split_at_mut(self.size);
+        let (third, fourth) = rest.split_at_mut(self.size);
+        let mut columns = [first, second, third, fourth];
+        for k in [order - 1, order] {
+            columns[k][constants..][..parameters].clone_from_slice(&p[k * parameters..][..parameters]);
+        }
+        let from = constants + parameters;
+        columns[order - 1][from..][..variables].clone_from_slice(&x[(order - 1) * variables..][..variables]);
+        columns[order][from..][..variables].fill(S::zero());
         match order {
-            1 => isa.run(Order1 { tape: self, array }),
-            2 => isa.run(OrderK::<2, S> { tape: self, array }),
-            _ => isa.run(OrderK::<3, S> { tape: self, array }),
+            1 => isa.run(Order1 { tape: self, columns: &mut columns }),
+            2 => isa.run(Later::<2, S> { tape: self, columns: &mut columns }),
+            _ => isa.run(Later::<3, S> { tape: self, columns: &mut columns }),
         }
-        let out = &mut out[..self.equations];
-        for &(slot, place) in &self.outputs {
-            out[slot as usize] = array[place as usize][order].clone();
+        for (value, &place) in out[..self.outputs.len()].iter_mut().zip(&*self.outputs) {
+            *value = columns[order][place as usize].clone();
         }
     }
 }
 
-/// Resident coefficients, with those of the constants in place.
-pub(crate) fn resident<S: Scalar>(constants: &[S], size: usize) -> Vec<Series<S>> {
-    let mut array = vec![std::array::from_fn(|_| S::zero()); size];
-    for (series, c) in array.iter_mut().zip(constants) {
-        series[0] = c.clone();
+/// Puts unknowns second in products and tells which factors are unknowns.
+fn unknown_factors(op: Op, args: [Operand; 4]) -> ([Operand; 4], u8) {
+    let is_unknown = |operand: Operand| matches!(operand, Operand::Variable(_));
+    let [a, b, c, d] = args;
+    let sorted = |a: Operand, b: Operand| if is_unknown(a) { (b, a) } else { (a, b) };
+    let kind = |a: Operand, b: Operand| match (is_unknown(a), is_unknown(b)) {
+        (true, true) => UNKNOWNS,
+        (false, true) => BY_UNKNOWN,
+        _ => GENERAL,
+    };
+    match op {
+        Op::Mul | Op::MulAdd | Op::MulSub | Op::SubMul => {
+            let (a, b) = sorted(a, b);
+            ([a, b, c, d], kind(a, b))
+        }
+        Op::MulMulAdd | Op::MulMulSub => {
+            let ((a, b), (c, d)) = (sorted(a, b), sorted(c, d));
+            ([a, b, c, d], kind(a, b).min(kind(c, d)))
+        }
+        Op::Sqr => (args, if is_unknown(a) { UNKNOWNS } else { GENERAL }),
+        Op::Add | Op::Sub | Op::Neg | Op::MulReal | Op::Inv | Op::MulRealAdd => (args, GENERAL),
     }
-    array
 }
 
-/// Puts the inputs of a call in place.
-pub(crate) fn load<S: Scalar>(array: &mut [Series<S>], layout: Layout, order: usize, x: &[S], p: &[S]) {
-    assert!((1..series::WIDTH).contains(&order), "Taylor coefficients are of order 1, 2 or 3, not {order}");
-    let Layout { constants, parameters, variables } = layout;
-    for j in 0..parameters {
-        let series = &mut array[constants + j];
-        series[order - 1] = p[(order - 1) * parameters + j].clone();
-        series[order] = p[order * parameters + j].clone();
-    }
-    for j in 0..variables {
-        let series = &mut array[constants + parameters + j];
-        series[order - 1] = x[(order - 1) * variables + j].clone();
-        series[order] = S::zero();
-    }
-}
-
-struct Order1<'a, S> {
+struct Order1<'a, 'm, S> {
     tape: &'a TaylorTape,
-    array: &'a mut [Series<S>],
+    columns: &'a mut Columns<'m, S>,
 }
 
-impl<S: Scalar> Kernel for Order1<'_, S> {
+impl<S: Scalar> Kernel for Order1<'_, '_, S> {
     type Output = ();
 
     #[inline(always)]
     fn run(self) {
-        let Order1 { tape, array } = self;
-        for code in &tape.parameters_only {
-            step::<S, 0, 1>(array, code);
+        let Order1 { tape, columns } = self;
+        sweep::<S, 0, 1>(columns, &tape.parameters_only);
+        for code in &*tape.variables_only {
+            let operands = code.operands.map(|k| k as usize);
+            step::<S, 0, 0, GENERAL>(columns, code.op, code.target as usize, operands);
+            columns[1][code.target as usize] = S::zero();
         }
-        for code in &tape.variables_only {
-            step::<S, 0, 0>(array, code);
-            array[code.target as usize][1] = S::zero();
-        }
-        for code in &tape.mixed {
-            step::<S, 0, 1>(array, code);
-        }
+        sweep::<S, 0, 1>(columns, &tape.mixed);
     }
 }
 
-struct OrderK<'a, const K: usize, S> {
+/// Order `K`, 2 or 3.
+struct Later<'a, 'm, const K: usize, S> {
     tape: &'a TaylorTape,
-    array: &'a mut [Series<S>],
+    columns: &'a mut Columns<'m, S>,
 }
 
-impl<const K: usize, S: Scalar> Kernel for OrderK<'_, K, S> {
+impl<const K: usize, S: Scalar> Kernel for Later<'_, '_, K, S> {
     type Output = ();
 
     #[inline(always)]
     fn run(self) {
-        let OrderK { tape, array } = self;
-        for code in &tape.parameters_only {
-            if K == 2 { step::<S, 2, 2>(array, code) } else { step::<S, 3, 3>(array, code) }
-        }
-        for code in tape.variables_only.iter().chain(&tape.mixed) {
-            if K == 2 { step::<S, 1, 2>(array, code) } else { step::<S, 2, 3>(array, code) }
+        let Later { tape, columns } = self;
+        if K == 2 {
+            sweep::<S, 2, 2>(columns, &tape.parameters_only);
+            sweep::<S, 1, 2>(columns, &tape.variables_only);
+            sweep::<S, 1, 2>(columns, &tape.mixed);
+        } else {
+            sweep::<S, 3, 3>(columns, &tape.parameters_only);
+            sweep::<S, 2, 3>(columns, &tape.variables_only);
+            sweep::<S, 2, 3>(columns, &tape.mixed);
         }
     }
 }
 
-/// Computes coefficients `FROM ..= TO` of one instruction.
 #[inline(always)]
-fn step<S: Scalar, const FROM: usize, const TO: usize>(array: &mut [Series<S>], code: &TaylorCode) {
-    let t = code.target as usize;
-    let [a, b, c, d] = code.operands.map(|k| k as usize);
-    match code.op {
-        Op::Add => series::add::<S, FROM, TO>(array, t, a, b),
-        Op::Sub => series::sub::<S, FROM, TO>(array, t, a, b),
-        Op::Neg => series::neg::<S, FROM, TO>(array, t, a),
-        Op::Mul => series::mul::<S, FROM, TO>(array, t, a, b),
-        Op::MulReal => series::mul_real::<S, FROM, TO>(array, t, a, b),
-        Op::Sqr => series::sqr::<S, FROM, TO>(array, t, a),
-        Op::Inv => series::inv::<S, FROM, TO>(array, t, a),
-        Op::MulAdd => series::mul_add::<S, FROM, TO>(array, t, a, b, c),
-        Op::MulSub => series::mul_sub::<S, FROM, TO>(array, t, a, b, c),
-        Op::SubMul => series::sub_mul::<S, FROM, TO>(array, t, a, b, c),
-        Op::MulRealAdd => series::mul_real_add::<S, FROM, TO>(array, t, a, b, c),
-        Op::MulMulAdd => series::mul_mul_add::<S, FROM, TO>(array, t, a, b, c, d),
-        Op::MulMulSub => series::mul_mul_sub::<S, FROM, TO>(array, t, a, b, c, d),
+fn sweep<S: Scalar, const FROM: usize, const TO: usize>(columns: &mut Columns<'_, S>, codes: &[TaylorCode]) {
+    for code in codes {
+        let (t, operands) = (code.target as usize, code.operands.map(|k| k as usize));
+        match code.unknowns {
+            GENERAL => step::<S, FROM, TO, GENERAL>(columns, code.op, t, operands),
+            BY_UNKNOWN => step::<S, FROM, TO, BY_UNKNOWN>(columns, code.op, t, operands),
+            _ => step::<S, FROM, TO, UNKNOWNS>(columns, code.op, t, operands),
+        }
     }
 }

@@ -5,27 +5,143 @@
 
 //! `F(x; p)`: 8 equations, 8 unknowns, 15 parameters, as straight-line code.
 #![cfg_attr(rustfmt, rustfmt_skip)]
-#![allow(unreachable_pub, clippy::all)]
+#![allow(unreachable_pub, unused_imports, clippy::all)]
 use hc::poly::evaluate::Evaluate;
-use hc::poly::program::generated::{Memory, Shape, series};
+use hc::poly::program::generated::{Memory, Op, TaylorTape, code};
 use hc::poly::scalar::Scalar;
 use hc::poly::simd::{Isa, Kernel};
+use std::borrow::Cow;
 /// The system; inputs and outputs are ordered as [`Evaluate`] says.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct System;
-/// Sizes and constants.
-static SHAPE: Shape = Shape {
-    parameters: 15,
-    variables: 8,
-    constants: &[
-        [2.0, 0.0, 0.0, 0.0],
-        [0.25, 0.0, 0.0, 0.0],
-        [-2.0, 0.0, 0.0, 0.0],
-        [-1.0, 0.0, 0.0, 0.0],
-        [-0.25, 0.0, 0.0, 0.0],
-    ],
-    live: 0,
-    series: 134,
+/// Real part (high, low) and imaginary part (high, low).
+static CONSTANTS: [[f64; 4]; 5] = [
+    [2.0, 0.0, 0.0, 0.0],
+    [0.25, 0.0, 0.0, 0.0],
+    [-2.0, 0.0, 0.0, 0.0],
+    [-1.0, 0.0, 0.0, 0.0],
+    [-0.25, 0.0, 0.0, 0.0],
+];
+/// Instructions for Taylor coefficients.
+static TAYLOR: TaylorTape = TaylorTape {
+    parameters_only: Cow::Borrowed(&[]),
+    variables_only: Cow::Borrowed(
+        &[
+            code(Op::Sqr, 2, 28, [26, 26, 26, 26]),
+            code(Op::Mul, 2, 29, [27, 26, 26, 26]),
+            code(Op::Mul, 1, 30, [29, 24, 24, 24]),
+            code(Op::MulReal, 0, 31, [30, 0, 30, 30]),
+            code(Op::MulSub, 1, 32, [28, 25, 31, 25]),
+            code(Op::Sqr, 2, 33, [27, 27, 27, 27]),
+            code(Op::MulAdd, 1, 34, [33, 23, 32, 23]),
+            code(Op::Sqr, 2, 35, [20, 20, 20, 20]),
+            code(Op::Sqr, 2, 36, [24, 24, 24, 24]),
+            code(Op::MulSub, 2, 37, [25, 23, 36, 23]),
+            code(Op::MulSub, 0, 38, [35, 37, 34, 35]),
+            code(Op::Sqr, 2, 39, [21, 21, 21, 21]),
+            code(Op::Sub, 0, 40, [39, 35, 39, 39]),
+            code(Op::MulReal, 0, 41, [25, 1, 25, 25]),
+            code(Op::MulSub, 0, 42, [37, 40, 41, 37]),
+            code(Op::MulMulSub, 2, 43, [26, 25, 27, 24]),
+            code(Op::Add, 0, 44, [42, 43, 42, 42]),
+            code(Op::Sqr, 2, 45, [22, 22, 22, 22]),
+            code(Op::Sub, 0, 46, [45, 35, 45, 45]),
+            code(Op::MulReal, 0, 47, [23, 1, 23, 23]),
+            code(Op::MulSub, 0, 48, [37, 46, 47, 37]),
+            code(Op::MulMulSub, 2, 49, [27, 23, 26, 24]),
+            code(Op::Add, 0, 50, [48, 49, 48, 48]),
+            code(Op::MulReal, 0, 51, [21, 0, 21, 21]),
+            code(Op::MulReal, 0, 53, [20, 0, 20, 20]),
+            code(Op::MulReal, 0, 57, [22, 0, 22, 22]),
+        ],
+    ),
+    mixed: Cow::Borrowed(
+        &[
+            code(Op::Sub, 0, 52, [6, 51, 6, 6]),
+            code(Op::Sub, 0, 54, [5, 53, 5, 5]),
+            code(Op::Mul, 0, 55, [5, 54, 5, 5]),
+            code(Op::MulSub, 0, 56, [6, 52, 55, 6]),
+            code(Op::Sub, 0, 58, [7, 57, 7, 7]),
+            code(Op::MulSub, 0, 59, [7, 58, 55, 7]),
+            code(Op::Mul, 0, 60, [56, 59, 56, 56]),
+            code(Op::Mul, 1, 61, [60, 24, 24, 24]),
+            code(Op::MulReal, 0, 62, [61, 0, 61, 61]),
+            code(Op::Sqr, 0, 63, [56, 56, 56, 56]),
+            code(Op::MulAdd, 1, 64, [63, 23, 62, 23]),
+            code(Op::Sqr, 0, 65, [59, 59, 59, 59]),
+            code(Op::MulAdd, 1, 66, [65, 25, 64, 25]),
+            code(Op::MulMulAdd, 1, 67, [56, 26, 59, 27]),
+            code(Op::MulRealAdd, 0, 68, [67, 2, 66, 67]),
+            code(Op::Sub, 0, 69, [68, 55, 68, 68]),
+            code(Op::Sub, 0, 70, [9, 51, 9, 9]),
+            code(Op::Sub, 0, 71, [8, 53, 8, 8]),
+            code(Op::Mul, 0, 72, [8, 71, 8, 8]),
+            code(Op::MulSub, 0, 73, [9, 70, 72, 9]),
+            code(Op::Sub, 0, 74, [10, 57, 10, 10]),
+            code(Op::MulSub, 0, 75, [10, 74, 72, 10]),
+            code(Op::Mul, 0, 76, [73, 75, 73, 73]),
+            code(Op::Mul, 1, 77, [76, 24, 24, 24]),
+            code(Op::MulReal, 0, 78, [77, 0, 77, 77]),
+            code(Op::Sqr, 0, 79, [73, 73, 73, 73]),
+            code(Op::MulAdd, 1, 80, [79, 23, 78, 23]),
+            code(Op::Sqr, 0, 81, [75, 75, 75, 75]),
+            code(Op::MulAdd, 1, 82, [81, 25, 80, 25]),
+            code(Op::MulMulAdd, 1, 83, [73, 26, 75, 27]),
+            code(Op::MulRealAdd, 0, 84, [83, 2, 82, 83]),
+            code(Op::Sub, 0, 85, [84, 72, 84, 84]),
+            code(Op::Sub, 0, 86, [12, 51, 12, 12]),
+            code(Op::Sub, 0, 87, [11, 53, 11, 11]),
+            code(Op::Mul, 0, 88, [11, 87, 11, 11]),
+            code(Op::MulSub, 0, 89, [12, 86, 88, 12]),
+            code(Op::Sub, 0, 90, [13, 57, 13, 13]),
+            code(Op::MulSub, 0, 91, [13, 90, 88, 13]),
+            code(Op::Mul, 0, 92, [89, 91, 89, 89]),
+            code(Op::Mul, 1, 93, [92, 24, 24, 24]),
+            code(Op::MulReal, 0, 94, [93, 0, 93, 93]),
+            code(Op::Sqr, 0, 95, [89, 89, 89, 89]),
+            code(Op::MulAdd, 1, 96, [95, 23, 94, 23]),
+            code(Op::Sqr, 0, 97, [91, 91, 91, 91]),
+            code(Op::MulAdd, 1, 98, [97, 25, 96, 25]),
+            code(Op::MulMulAdd, 1, 99, [89, 26, 91, 27]),
+            code(Op::MulRealAdd, 0, 100, [99, 2, 98, 99]),
+            code(Op::Sub, 0, 101, [100, 88, 100, 100]),
+            code(Op::Sub, 0, 102, [15, 51, 15, 15]),
+            code(Op::Sub, 0, 103, [14, 53, 14, 14]),
+            code(Op::Mul, 0, 104, [14, 103, 14, 14]),
+            code(Op::MulSub, 0, 105, [15, 102, 104, 15]),
+            code(Op::Sub, 0, 106, [16, 57, 16, 16]),
+            code(Op::MulSub, 0, 107, [16, 106, 104, 16]),
+            code(Op::Mul, 0, 108, [105, 107, 105, 105]),
+            code(Op::Mul, 1, 109, [108, 24, 24, 24]),
+            code(Op::MulReal, 0, 110, [109, 0, 109, 109]),
+            code(Op::Sqr, 0, 111, [105, 105, 105, 105]),
+            code(Op::MulAdd, 1, 112, [111, 23, 110, 23]),
+            code(Op::Sqr, 0, 113, [107, 107, 107, 107]),
+            code(Op::MulAdd, 1, 114, [113, 25, 112, 25]),
+            code(Op::MulMulAdd, 1, 115, [105, 26, 107, 27]),
+            code(Op::MulRealAdd, 0, 116, [115, 2, 114, 115]),
+            code(Op::Sub, 0, 117, [116, 104, 116, 116]),
+            code(Op::Sub, 0, 118, [18, 51, 18, 18]),
+            code(Op::Sub, 0, 119, [17, 53, 17, 17]),
+            code(Op::Mul, 0, 120, [17, 119, 17, 17]),
+            code(Op::MulSub, 0, 121, [18, 118, 120, 18]),
+            code(Op::Sub, 0, 122, [19, 57, 19, 19]),
+            code(Op::MulSub, 0, 123, [19, 122, 120, 19]),
+            code(Op::Mul, 0, 124, [121, 123, 121, 121]),
+            code(Op::Mul, 1, 125, [124, 24, 24, 24]),
+            code(Op::MulReal, 0, 126, [125, 0, 125, 125]),
+            code(Op::Sqr, 0, 127, [121, 121, 121, 121]),
+            code(Op::MulAdd, 1, 128, [127, 23, 126, 23]),
+            code(Op::Sqr, 0, 129, [123, 123, 123, 123]),
+            code(Op::MulAdd, 1, 130, [129, 25, 128, 25]),
+            code(Op::MulMulAdd, 1, 131, [121, 26, 123, 27]),
+            code(Op::MulRealAdd, 0, 132, [131, 2, 130, 131]),
+            code(Op::Sub, 0, 133, [132, 120, 132, 132]),
+        ],
+    ),
+    outputs: Cow::Borrowed(&[38, 44, 50, 69, 85, 101, 117, 133]),
+    inputs: [5, 15, 8],
+    size: 134,
 };
 impl Evaluate for System {
     type Memory<S: Scalar> = Memory<S>;
@@ -39,7 +155,7 @@ impl Evaluate for System {
         15
     }
     fn memory<S: Scalar>(&self, isa: Isa) -> Memory<S> {
-        Memory::new(isa, &SHAPE)
+        Memory::new(isa, &CONSTANTS, 0, &TAYLOR)
     }
     fn values<S: Scalar>(
         &self,
@@ -91,45 +207,7 @@ impl Evaluate for System {
         p: &[S],
         out: &mut [S],
     ) {
-        memory.load(&SHAPE, order, x, p);
-        match order {
-            1 => {
-                memory
-                    .isa
-                    .run(
-                        Taylor1Part0(
-                            memory.series.first_chunk_mut().expect("made by Memory::new"),
-                        ),
-                    );
-            }
-            2 => {
-                memory
-                    .isa
-                    .run(
-                        Taylor2Part0(
-                            memory.series.first_chunk_mut().expect("made by Memory::new"),
-                        ),
-                    );
-            }
-            _ => {
-                memory
-                    .isa
-                    .run(
-                        Taylor3Part0(
-                            memory.series.first_chunk_mut().expect("made by Memory::new"),
-                        ),
-                    );
-            }
-        }
-        let out = &mut out[..8];
-        out[0] = memory.series[38][order].clone();
-        out[1] = memory.series[44][order].clone();
-        out[2] = memory.series[50][order].clone();
-        out[3] = memory.series[69][order].clone();
-        out[4] = memory.series[85][order].clone();
-        out[5] = memory.series[101][order].clone();
-        out[6] = memory.series[117][order].clone();
-        out[7] = memory.series[133][order].clone();
+        memory.taylor(&TAYLOR, order, x, p, out);
     }
 }
 struct Values0<'a, S> {
@@ -530,377 +608,6 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         jacobian[63] = S::mul_real(&t211, &c2);
     }
 }
-struct Taylor1Part0<'a, S>(&'a mut [[S; 4]; 134]);
-impl<S: Scalar> Kernel for Taylor1Part0<'_, S> {
-    type Output = ();
-    #[inline(always)]
-    fn run(self) {
-        let Self(m) = self;
-        series::sqr::<S, 0, 0>(m, 28, 26);
-        m[28][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 29, 26, 27);
-        m[29][1] = S::zero();
-        series::mul::<S, 0, 0>(m, 30, 24, 29);
-        m[30][1] = S::zero();
-        series::mul_real::<S, 0, 0>(m, 31, 30, 0);
-        m[31][1] = S::zero();
-        series::mul_sub::<S, 0, 0>(m, 32, 25, 28, 31);
-        m[32][1] = S::zero();
-        series::sqr::<S, 0, 0>(m, 33, 27);
-        m[33][1] = S::zero();
-        series::mul_add::<S, 0, 0>(m, 34, 23, 33, 32);
-        m[34][1] = S::zero();
-        series::sqr::<S, 0, 0>(m, 35, 20);
-        m[35][1] = S::zero();
-        series::sqr::<S, 0, 0>(m, 36, 24);
-        m[36][1] = S::zero();
-        series::mul_sub::<S, 0, 0>(m, 37, 23, 25, 36);
-        m[37][1] = S::zero();
-        series::mul_sub::<S, 0, 0>(m, 38, 35, 37, 34);
-        m[38][1] = S::zero();
-        series::sqr::<S, 0, 0>(m, 39, 21);
-        m[39][1] = S::zero();
-        series::sub::<S, 0, 0>(m, 40, 39, 35);
-        m[40][1] = S::zero();
-        series::mul_real::<S, 0, 0>(m, 41, 25, 1);
-        m[41][1] = S::zero();
-        series::mul_sub::<S, 0, 0>(m, 42, 37, 40, 41);
-        m[42][1] = S::zero();
-        series::mul_mul_sub::<S, 0, 0>(m, 43, 25, 26, 24, 27);
-        m[43][1] = S::zero();
-        series::add::<S, 0, 0>(m, 44, 42, 43);
-        m[44][1] = S::zero();
-        series::sqr::<S, 0, 0>(m, 45, 22);
-        m[45][1] = S::zero();
-        series::sub::<S, 0, 0>(m, 46, 45, 35);
-        m[46][1] = S::zero();
-        series::mul_real::<S, 0, 0>(m, 47, 23, 1);
-        m[47][1] = S::zero();
-        series::mul_sub::<S, 0, 0>(m, 48, 37, 46, 47);
-        m[48][1] = S::zero();
-        series::mul_mul_sub::<S, 0, 0>(m, 49, 23, 27, 24, 26);
-        m[49][1] = S::zero();
-        series::add::<S, 0, 0>(m, 50, 48, 49);
-        m[50][1] = S::zero();
-        series::mul_real::<S, 0, 0>(m, 51, 21, 0);
-        m[51][1] = S::zero();
-        series::mul_real::<S, 0, 0>(m, 53, 20, 0);
-        m[53][1] = S::zero();
-        series::mul_real::<S, 0, 0>(m, 57, 22, 0);
-        m[57][1] = S::zero();
-        series::sub::<S, 0, 1>(m, 52, 6, 51);
-        series::sub::<S, 0, 1>(m, 54, 5, 53);
-        series::mul::<S, 0, 1>(m, 55, 5, 54);
-        series::mul_sub::<S, 0, 1>(m, 56, 6, 52, 55);
-        series::sub::<S, 0, 1>(m, 58, 7, 57);
-        series::mul_sub::<S, 0, 1>(m, 59, 7, 58, 55);
-        series::mul::<S, 0, 1>(m, 60, 56, 59);
-        series::mul::<S, 0, 1>(m, 61, 24, 60);
-        series::mul_real::<S, 0, 1>(m, 62, 61, 0);
-        series::sqr::<S, 0, 1>(m, 63, 56);
-        series::mul_add::<S, 0, 1>(m, 64, 23, 63, 62);
-        series::sqr::<S, 0, 1>(m, 65, 59);
-        series::mul_add::<S, 0, 1>(m, 66, 25, 65, 64);
-        series::mul_mul_add::<S, 0, 1>(m, 67, 26, 56, 27, 59);
-        series::mul_real_add::<S, 0, 1>(m, 68, 67, 2, 66);
-        series::sub::<S, 0, 1>(m, 69, 68, 55);
-        series::sub::<S, 0, 1>(m, 70, 9, 51);
-        series::sub::<S, 0, 1>(m, 71, 8, 53);
-        series::mul::<S, 0, 1>(m, 72, 8, 71);
-        series::mul_sub::<S, 0, 1>(m, 73, 9, 70, 72);
-        series::sub::<S, 0, 1>(m, 74, 10, 57);
-        series::mul_sub::<S, 0, 1>(m, 75, 10, 74, 72);
-        series::mul::<S, 0, 1>(m, 76, 73, 75);
-        series::mul::<S, 0, 1>(m, 77, 24, 76);
-        series::mul_real::<S, 0, 1>(m, 78, 77, 0);
-        series::sqr::<S, 0, 1>(m, 79, 73);
-        series::mul_add::<S, 0, 1>(m, 80, 23, 79, 78);
-        series::sqr::<S, 0, 1>(m, 81, 75);
-        series::mul_add::<S, 0, 1>(m, 82, 25, 81, 80);
-        series::mul_mul_add::<S, 0, 1>(m, 83, 26, 73, 27, 75);
-        series::mul_real_add::<S, 0, 1>(m, 84, 83, 2, 82);
-        series::sub::<S, 0, 1>(m, 85, 84, 72);
-        series::sub::<S, 0, 1>(m, 86, 12, 51);
-        series::sub::<S, 0, 1>(m, 87, 11, 53);
-        series::mul::<S, 0, 1>(m, 88, 11, 87);
-        series::mul_sub::<S, 0, 1>(m, 89, 12, 86, 88);
-        series::sub::<S, 0, 1>(m, 90, 13, 57);
-        series::mul_sub::<S, 0, 1>(m, 91, 13, 90, 88);
-        series::mul::<S, 0, 1>(m, 92, 89, 91);
-        series::mul::<S, 0, 1>(m, 93, 24, 92);
-        series::mul_real::<S, 0, 1>(m, 94, 93, 0);
-        series::sqr::<S, 0, 1>(m, 95, 89);
-        series::mul_add::<S, 0, 1>(m, 96, 23, 95, 94);
-        series::sqr::<S, 0, 1>(m, 97, 91);
-        series::mul_add::<S, 0, 1>(m, 98, 25, 97, 96);
-        series::mul_mul_add::<S, 0, 1>(m, 99, 26, 89, 27, 91);
-        series::mul_real_add::<S, 0, 1>(m, 100, 99, 2, 98);
-        series::sub::<S, 0, 1>(m, 101, 100, 88);
-        series::sub::<S, 0, 1>(m, 102, 15, 51);
-        series::sub::<S, 0, 1>(m, 103, 14, 53);
-        series::mul::<S, 0, 1>(m, 104, 14, 103);
-        series::mul_sub::<S, 0, 1>(m, 105, 15, 102, 104);
-        series::sub::<S, 0, 1>(m, 106, 16, 57);
-        series::mul_sub::<S, 0, 1>(m, 107, 16, 106, 104);
-        series::mul::<S, 0, 1>(m, 108, 105, 107);
-        series::mul::<S, 0, 1>(m, 109, 24, 108);
-        series::mul_real::<S, 0, 1>(m, 110, 109, 0);
-        series::sqr::<S, 0, 1>(m, 111, 105);
-        series::mul_add::<S, 0, 1>(m, 112, 23, 111, 110);
-        series::sqr::<S, 0, 1>(m, 113, 107);
-        series::mul_add::<S, 0, 1>(m, 114, 25, 113, 112);
-        series::mul_mul_add::<S, 0, 1>(m, 115, 26, 105, 27, 107);
-        series::mul_real_add::<S, 0, 1>(m, 116, 115, 2, 114);
-        series::sub::<S, 0, 1>(m, 117, 116, 104);
-        series::sub::<S, 0, 1>(m, 118, 18, 51);
-        series::sub::<S, 0, 1>(m, 119, 17, 53);
-        series::mul::<S, 0, 1>(m, 120, 17, 119);
-        series::mul_sub::<S, 0, 1>(m, 121, 18, 118, 120);
-        series::sub::<S, 0, 1>(m, 122, 19, 57);
-        series::mul_sub::<S, 0, 1>(m, 123, 19, 122, 120);
-        series::mul::<S, 0, 1>(m, 124, 121, 123);
-        series::mul::<S, 0, 1>(m, 125, 24, 124);
-        series::mul_real::<S, 0, 1>(m, 126, 125, 0);
-        series::sqr::<S, 0, 1>(m, 127, 121);
-        series::mul_add::<S, 0, 1>(m, 128, 23, 127, 126);
-        series::sqr::<S, 0, 1>(m, 129, 123);
-        series::mul_add::<S, 0, 1>(m, 130, 25, 129, 128);
-        series::mul_mul_add::<S, 0, 1>(m, 131, 26, 121, 27, 123);
-        series::mul_real_add::<S, 0, 1>(m, 132, 131, 2, 130);
-        series::sub::<S, 0, 1>(m, 133, 132, 120);
-    }
-}
-struct Taylor2Part0<'a, S>(&'a mut [[S; 4]; 134]);
-impl<S: Scalar> Kernel for Taylor2Part0<'_, S> {
-    type Output = ();
-    #[inline(always)]
-    fn run(self) {
-        let Self(m) = self;
-        series::sqr::<S, 1, 2>(m, 28, 26);
-        series::mul::<S, 1, 2>(m, 29, 26, 27);
-        series::mul::<S, 1, 2>(m, 30, 24, 29);
-        series::mul_real::<S, 1, 2>(m, 31, 30, 0);
-        series::mul_sub::<S, 1, 2>(m, 32, 25, 28, 31);
-        series::sqr::<S, 1, 2>(m, 33, 27);
-        series::mul_add::<S, 1, 2>(m, 34, 23, 33, 32);
-        series::sqr::<S, 1, 2>(m, 35, 20);
-        series::sqr::<S, 1, 2>(m, 36, 24);
-        series::mul_sub::<S, 1, 2>(m, 37, 23, 25, 36);
-        series::mul_sub::<S, 1, 2>(m, 38, 35, 37, 34);
-        series::sqr::<S, 1, 2>(m, 39, 21);
-        series::sub::<S, 1, 2>(m, 40, 39, 35);
-        series::mul_real::<S, 1, 2>(m, 41, 25, 1);
-        series::mul_sub::<S, 1, 2>(m, 42, 37, 40, 41);
-        series::mul_mul_sub::<S, 1, 2>(m, 43, 25, 26, 24, 27);
-        series::add::<S, 1, 2>(m, 44, 42, 43);
-        series::sqr::<S, 1, 2>(m, 45, 22);
-        series::sub::<S, 1, 2>(m, 46, 45, 35);
-        series::mul_real::<S, 1, 2>(m, 47, 23, 1);
-        series::mul_sub::<S, 1, 2>(m, 48, 37, 46, 47);
-        series::mul_mul_sub::<S, 1, 2>(m, 49, 23, 27, 24, 26);
-        series::add::<S, 1, 2>(m, 50, 48, 49);
-        series::mul_real::<S, 1, 2>(m, 51, 21, 0);
-        series::mul_real::<S, 1, 2>(m, 53, 20, 0);
-        series::mul_real::<S, 1, 2>(m, 57, 22, 0);
-        series::sub::<S, 1, 2>(m, 52, 6, 51);
-        series::sub::<S, 1, 2>(m, 54, 5, 53);
-        series::mul::<S, 1, 2>(m, 55, 5, 54);
-        series::mul_sub::<S, 1, 2>(m, 56, 6, 52, 55);
-        series::sub::<S, 1, 2>(m, 58, 7, 57);
-        series::mul_sub::<S, 1, 2>(m, 59, 7, 58, 55);
-        series::mul::<S, 1, 2>(m, 60, 56, 59);
-        series::mul::<S, 1, 2>(m, 61, 24, 60);
-        series::mul_real::<S, 1, 2>(m, 62, 61, 0);
-        series::sqr::<S, 1, 2>(m, 63, 56);
-        series::mul_add::<S, 1, 2>(m, 64, 23, 63, 62);
-        series::sqr::<S, 1, 2>(m, 65, 59);
-        series::mul_add::<S, 1, 2>(m, 66, 25, 65, 64);
-        series::mul_mul_add::<S, 1, 2>(m, 67, 26, 56, 27, 59);
-        series::mul_real_add::<S, 1, 2>(m, 68, 67, 2, 66);
-        series::sub::<S, 1, 2>(m, 69, 68, 55);
-        series::sub::<S, 1, 2>(m, 70, 9, 51);
-        series::sub::<S, 1, 2>(m, 71, 8, 53);
-        series::mul::<S, 1, 2>(m, 72, 8, 71);
-        series::mul_sub::<S, 1, 2>(m, 73, 9, 70, 72);
-        series::sub::<S, 1, 2>(m, 74, 10, 57);
-        series::mul_sub::<S, 1, 2>(m, 75, 10, 74, 72);
-        series::mul::<S, 1, 2>(m, 76, 73, 75);
-        series::mul::<S, 1, 2>(m, 77, 24, 76);
-        series::mul_real::<S, 1, 2>(m, 78, 77, 0);
-        series::sqr::<S, 1, 2>(m, 79, 73);
-        series::mul_add::<S, 1, 2>(m, 80, 23, 79, 78);
-        series::sqr::<S, 1, 2>(m, 81, 75);
-        series::mul_add::<S, 1, 2>(m, 82, 25, 81, 80);
-        series::mul_mul_add::<S, 1, 2>(m, 83, 26, 73, 27, 75);
-        series::mul_real_add::<S, 1, 2>(m, 84, 83, 2, 82);
-        series::sub::<S, 1, 2>(m, 85, 84, 72);
-        series::sub::<S, 1, 2>(m, 86, 12, 51);
-        series::sub::<S, 1, 2>(m, 87, 11, 53);
-        series::mul::<S, 1, 2>(m, 88, 11, 87);
-        series::mul_sub::<S, 1, 2>(m, 89, 12, 86, 88);
-        series::sub::<S, 1, 2>(m, 90, 13, 57);
-        series::mul_sub::<S, 1, 2>(m, 91, 13, 90, 88);
-        series::mul::<S, 1, 2>(m, 92, 89, 91);
-        series::mul::<S, 1, 2>(m, 93, 24, 92);
-        series::mul_real::<S, 1, 2>(m, 94, 93, 0);
-        series::sqr::<S, 1, 2>(m, 95, 89);
-        series::mul_add::<S, 1, 2>(m, 96, 23, 95, 94);
-        series::sqr::<S, 1, 2>(m, 97, 91);
-        series::mul_add::<S, 1, 2>(m, 98, 25, 97, 96);
-        series::mul_mul_add::<S, 1, 2>(m, 99, 26, 89, 27, 91);
-        series::mul_real_add::<S, 1, 2>(m, 100, 99, 2, 98);
-        series::sub::<S, 1, 2>(m, 101, 100, 88);
-        series::sub::<S, 1, 2>(m, 102, 15, 51);
-        series::sub::<S, 1, 2>(m, 103, 14, 53);
-        series::mul::<S, 1, 2>(m, 104, 14, 103);
-        series::mul_sub::<S, 1, 2>(m, 105, 15, 102, 104);
-        series::sub::<S, 1, 2>(m, 106, 16, 57);
-        series::mul_sub::<S, 1, 2>(m, 107, 16, 106, 104);
-        series::mul::<S, 1, 2>(m, 108, 105, 107);
-        series::mul::<S, 1, 2>(m, 109, 24, 108);
-        series::mul_real::<S, 1, 2>(m, 110, 109, 0);
-        series::sqr::<S, 1, 2>(m, 111, 105);
-        series::mul_add::<S, 1, 2>(m, 112, 23, 111, 110);
-        series::sqr::<S, 1, 2>(m, 113, 107);
-        series::mul_add::<S, 1, 2>(m, 114, 25, 113, 112);
-        series::mul_mul_add::<S, 1, 2>(m, 115, 26, 105, 27, 107);
-        series::mul_real_add::<S, 1, 2>(m, 116, 115, 2, 114);
-        series::sub::<S, 1, 2>(m, 117, 116, 104);
-        series::sub::<S, 1, 2>(m, 118, 18, 51);
-        series::sub::<S, 1, 2>(m, 119, 17, 53);
-        series::mul::<S, 1, 2>(m, 120, 17, 119);
-        series::mul_sub::<S, 1, 2>(m, 121, 18, 118, 120);
-        series::sub::<S, 1, 2>(m, 122, 19, 57);
-        series::mul_sub::<S, 1, 2>(m, 123, 19, 122, 120);
-        series::mul::<S, 1, 2>(m, 124, 121, 123);
-        series::mul::<S, 1, 2>(m, 125, 24, 124);
-        series::mul_real::<S, 1, 2>(m, 126, 125, 0);
-        series::sqr::<S, 1, 2>(m, 127, 121);
-        series::mul_add::<S, 1, 2>(m, 128, 23, 127, 126);
-        series::sqr::<S, 1, 2>(m, 129, 123);
-        series::mul_add::<S, 1, 2>(m, 130, 25, 129, 128);
-        series::mul_mul_add::<S, 1, 2>(m, 131, 26, 121, 27, 123);
-        series::mul_real_add::<S, 1, 2>(m, 132, 131, 2, 130);
-        series::sub::<S, 1, 2>(m, 133, 132, 120);
-    }
-}
-struct Taylor3Part0<'a, S>(&'a mut [[S; 4]; 134]);
-impl<S: Scalar> Kernel for Taylor3Part0<'_, S> {
-    type Output = ();
-    #[inline(always)]
-    fn run(self) {
-        let Self(m) = self;
-        series::sqr::<S, 2, 3>(m, 28, 26);
-        series::mul::<S, 2, 3>(m, 29, 26, 27);
-        series::mul::<S, 2, 3>(m, 30, 24, 29);
-        series::mul_real::<S, 2, 3>(m, 31, 30, 0);
-        series::mul_sub::<S, 2, 3>(m, 32, 25, 28, 31);
-        series::sqr::<S, 2, 3>(m, 33, 27);
-        series::mul_add::<S, 2, 3>(m, 34, 23, 33, 32);
-        series::sqr::<S, 2, 3>(m, 35, 20);
-        series::sqr::<S, 2, 3>(m, 36, 24);
-        series::mul_sub::<S, 2, 3>(m, 37, 23, 25, 36);
-        series::mul_sub::<S, 2, 3>(m, 38, 35, 37, 34);
-        series::sqr::<S, 2, 3>(m, 39, 21);
-        series::sub::<S, 2, 3>(m, 40, 39, 35);
-        series::mul_real::<S, 2, 3>(m, 41, 25, 1);
-        series::mul_sub::<S, 2, 3>(m, 42, 37, 40, 41);
-        series::mul_mul_sub::<S, 2, 3>(m, 43, 25, 26, 24, 27);
-        series::add::<S, 2, 3>(m, 44, 42, 43);
-        series::sqr::<S, 2, 3>(m, 45, 22);
-        series::sub::<S, 2, 3>(m, 46, 45, 35);
-        series::mul_real::<S, 2, 3>(m, 47, 23, 1);
-        series::mul_sub::<S, 2, 3>(m, 48, 37, 46, 47);
-        series::mul_mul_sub::<S, 2, 3>(m, 49, 23, 27, 24, 26);
-        series::add::<S, 2, 3>(m, 50, 48, 49);
-        series::mul_real::<S, 2, 3>(m, 51, 21, 0);
-        series::mul_real::<S, 2, 3>(m, 53, 20, 0);
-        series::mul_real::<S, 2, 3>(m, 57, 22, 0);
-        series::sub::<S, 2, 3>(m, 52, 6, 51);
-        series::sub::<S, 2, 3>(m, 54, 5, 53);
-        series::mul::<S, 2, 3>(m, 55, 5, 54);
-        series::mul_sub::<S, 2, 3>(m, 56, 6, 52, 55);
-        series::sub::<S, 2, 3>(m, 58, 7, 57);
-        series::mul_sub::<S, 2, 3>(m, 59, 7, 58, 55);
-        series::mul::<S, 2, 3>(m, 60, 56, 59);
-        series::mul::<S, 2, 3>(m, 61, 24, 60);
-        series::mul_real::<S, 2, 3>(m, 62, 61, 0);
-        series::sqr::<S, 2, 3>(m, 63, 56);
-        series::mul_add::<S, 2, 3>(m, 64, 23, 63, 62);
-        series::sqr::<S, 2, 3>(m, 65, 59);
-        series::mul_add::<S, 2, 3>(m, 66, 25, 65, 64);
-        series::mul_mul_add::<S, 2, 3>(m, 67, 26, 56, 27, 59);
-        series::mul_real_add::<S, 2, 3>(m, 68, 67, 2, 66);
-        series::sub::<S, 2, 3>(m, 69, 68, 55);
-        series::sub::<S, 2, 3>(m, 70, 9, 51);
-        series::sub::<S, 2, 3>(m, 71, 8, 53);
-        series::mul::<S, 2, 3>(m, 72, 8, 71);
-        series::mul_sub::<S, 2, 3>(m, 73, 9, 70, 72);
-        series::sub::<S, 2, 3>(m, 74, 10, 57);
-        series::mul_sub::<S, 2, 3>(m, 75, 10, 74, 72);
-        series::mul::<S, 2, 3>(m, 76, 73, 75);
-        series::mul::<S, 2, 3>(m, 77, 24, 76);
-        series::mul_real::<S, 2, 3>(m, 78, 77, 0);
-        series::sqr::<S, 2, 3>(m, 79, 73);
-        series::mul_add::<S, 2, 3>(m, 80, 23, 79, 78);
-        series::sqr::<S, 2, 3>(m, 81, 75);
-        series::mul_add::<S, 2, 3>(m, 82, 25, 81, 80);
-        series::mul_mul_add::<S, 2, 3>(m, 83, 26, 73, 27, 75);
-        series::mul_real_add::<S, 2, 3>(m, 84, 83, 2, 82);
-        series::sub::<S, 2, 3>(m, 85, 84, 72);
-        series::sub::<S, 2, 3>(m, 86, 12, 51);
-        series::sub::<S, 2, 3>(m, 87, 11, 53);
-        series::mul::<S, 2, 3>(m, 88, 11, 87);
-        series::mul_sub::<S, 2, 3>(m, 89, 12, 86, 88);
-        series::sub::<S, 2, 3>(m, 90, 13, 57);
-        series::mul_sub::<S, 2, 3>(m, 91, 13, 90, 88);
-        series::mul::<S, 2, 3>(m, 92, 89, 91);
-        series::mul::<S, 2, 3>(m, 93, 24, 92);
-        series::mul_real::<S, 2, 3>(m, 94, 93, 0);
-        series::sqr::<S, 2, 3>(m, 95, 89);
-        series::mul_add::<S, 2, 3>(m, 96, 23, 95, 94);
-        series::sqr::<S, 2, 3>(m, 97, 91);
-        series::mul_add::<S, 2, 3>(m, 98, 25, 97, 96);
-        series::mul_mul_add::<S, 2, 3>(m, 99, 26, 89, 27, 91);
-        series::mul_real_add::<S, 2, 3>(m, 100, 99, 2, 98);
-        series::sub::<S, 2, 3>(m, 101, 100, 88);
-        series::sub::<S, 2, 3>(m, 102, 15, 51);
-        series::sub::<S, 2, 3>(m, 103, 14, 53);
-        series::mul::<S, 2, 3>(m, 104, 14, 103);
-        series::mul_sub::<S, 2, 3>(m, 105, 15, 102, 104);
-        series::sub::<S, 2, 3>(m, 106, 16, 57);
-        series::mul_sub::<S, 2, 3>(m, 107, 16, 106, 104);
-        series::mul::<S, 2, 3>(m, 108, 105, 107);
-        series::mul::<S, 2, 3>(m, 109, 24, 108);
-        series::mul_real::<S, 2, 3>(m, 110, 109, 0);
-        series::sqr::<S, 2, 3>(m, 111, 105);
-        series::mul_add::<S, 2, 3>(m, 112, 23, 111, 110);
-        series::sqr::<S, 2, 3>(m, 113, 107);
-        series::mul_add::<S, 2, 3>(m, 114, 25, 113, 112);
-        series::mul_mul_add::<S, 2, 3>(m, 115, 26, 105, 27, 107);
-        series::mul_real_add::<S, 2, 3>(m, 116, 115, 2, 114);
-        series::sub::<S, 2, 3>(m, 117, 116, 104);
-        series::sub::<S, 2, 3>(m, 118, 18, 51);
-        series::sub::<S, 2, 3>(m, 119, 17, 53);
-        series::mul::<S, 2, 3>(m, 120, 17, 119);
-        series::mul_sub::<S, 2, 3>(m, 121, 18, 118, 120);
-        series::sub::<S, 2, 3>(m, 122, 19, 57);
-        series::mul_sub::<S, 2, 3>(m, 123, 19, 122, 120);
-        series::mul::<S, 2, 3>(m, 124, 121, 123);
-        series::mul::<S, 2, 3>(m, 125, 24, 124);
-        series::mul_real::<S, 2, 3>(m, 126, 125, 0);
-        series::sqr::<S, 2, 3>(m, 127, 121);
-        series::mul_add::<S, 2, 3>(m, 128, 23, 127, 126);
-        series::sqr::<S, 2, 3>(m, 129, 123);
-        series::mul_add::<S, 2, 3>(m, 130, 25, 129, 128);
-        series::mul_mul_add::<S, 2, 3>(m, 131, 26, 121, 27, 123);
-        series::mul_real_add::<S, 2, 3>(m, 132, 131, 2, 130);
-        series::sub::<S, 2, 3>(m, 133, 132, 120);
-    }
-}
-
-/// Number of solutions for generic parameters.
-pub const ROOTS: usize = 180;
 /// A generic parameter point, `[re, im]` each.
 pub const PARAMETERS: [[f64; 2]; 15] = [
     [-0.06734317196646326, -0.26338477024026186],
@@ -921,7 +628,7 @@ pub const PARAMETERS: [[f64; 2]; 15] = [
 ];
 /// All solutions there, 8 coordinates each, one after the other.
 ///
-/// Search ended: roots reached; trace test: not run.
+/// Search ended: roots reached; trace test: deviation 6.2e-15.
 pub static SOLUTIONS: [[f64; 2]; 1440] = [
     [0.37951549134652707, 1.188303294390765],
     [-0.7630371565644232, -0.5712309274666426],

@@ -83,6 +83,11 @@ impl SixThree {
         Ok(MinimalSolution { configuration: measured.configuration(), solver: "6r/3s", paths, counts, candidates })
     }
 
+    /// The records of the paths of the last call.
+    pub fn records(&self) -> &[hc::tracker::PathResult] {
+        self.paths.results()
+    }
+
     /// Tracks all paths; those that fail in the first chart are tried in the others.
     fn track(&mut self, target: &[Complex64], options: &SolveOptions) -> PathCounts {
         let path = Segment::new(&self.fibres[0].parameters, target);

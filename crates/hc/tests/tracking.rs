@@ -1,0 +1,206 @@
+//! The tracker and what is built on it, on families whose solutions are known.
+
+use hc::fibre::{Fibre, FibreOptions, track_fibre};
+use hc::homotopy::Segment;
+use hc::monodromy::{MonodromyOptions, Stop, monodromy};
+use hc::pair::find_pair;
+use hc::poly::{Family, Interpreter, Isa, Lane, Lanes8, parse};
+use hc::random::Random;
+use hc::trace::trace_test;
+use hc::tracker::{PathEnd, PathSet, Tracker, TrackerOptions, track};
+use num_complex::Complex64;
+
+fn family(unknowns: &str, parameters: &str, equations: &str) -> (Family, Interpreter) {
+    let list = |names: &str, separator: char| {
+        names.split(separator).map(|n| format!("{:?}", n.trim())).collect::<Vec<_>>().join(", ")
+    };
+    let text = format!(
+        "name = \"test\"\nunknowns = [{}]\nparameters = [{}]\nequations = [{}]",
+        list(unknowns, ' '),
+        list(parameters, ' '),
+        list(equations, ';')
+    );
+    let family = parse::family(&text).unwrap();
+    let system = family.system.compile().unwrap();
+    (family, system)
+}
+
+fn reals(values: &[f64]) -> Vec<Complex64> {
+    values.iter().map(|&v| v.into()).collect()
+}
+
+/// Three distances from three angles at a camera: 8 solutions (Grunert 1841; the eight come in pairs of opposite sign).
+fn p3p() -> (Family, Interpreter) {
+    family(
+        "d1 d2 d3",
+        "g12 g13 g23 D12 D13 D23",
+        "d1^2 + d2^2 - 2*g12*d1*d2 - D12; d1^2 + d3^2 - 2*g13*d1*d3 - D13; d2^2 + d3^2 - 2*g23*d2*d3 - D23",
+    )
+}
+
+fn p3p_fibre() -> (Family, Interpreter, Fibre) {
+    let (family, system) = p3p();
+    let start = find_pair(&family.system, |_, _| true, 0).unwrap().expect("a first pair");
+    let mut options = MonodromyOptions::default();
+    options.roots = Some(8);
+    let found = monodromy(&system, &start, |_, _| true, &options);
+    assert_eq!((found.stop, found.fibre.len()), (Stop::RootsReached, 8));
+    (family, system, found.fibre)
+}
+
+#[test]
+fn one_path_in_few_steps() {
+    // From (1, 1) for (a, b) = (1, 0) to (sqrt 2, -sqrt 2) for (2, 4); HomotopyContinuation.jl asserts at most 5 steps.
+    let (_, system) = family("x y", "a b", "x^2 - a; x*y - a + b");
+    let path = Segment::new(&reals(&[1.0, 0.0]), &reals(&[2.0, 4.0]));
+    let ends = track(&system, &path, &reals(&[1.0, 1.0]), &[0], &TrackerOptions::default());
+    let (result, point) = (&ends.results()[0], ends.point(0));
+    assert_eq!(result.end, PathEnd::Success);
+    let root = std::f64::consts::SQRT_2;
+    assert!((point[0] - root).norm() < 1e-14 && (point[1] + root).norm() < 1e-14, "{point:?}");
+    assert!(result.accepted <= 5, "{result:?}");
+}
+
+#[test]
+fn a_coordinate_that_stays_zero_is_no_obstacle() {
+    // y (x - y) for the parameter x: the paths y = 0 and y = x (HomotopyContinuation.jl issue 647 lost the first).
+    let (_, system) = family("y", "x", "y*(x - y)");
+    let start = Complex64::new(0.3, -1.2);
+    let path = Segment::new(&[start], &reals(&[5.0]));
+    let ends = track(&system, &path, &[Complex64::new(0.0, 0.0), start], &[0, 1], &TrackerOptions::default());
+    assert_eq!(ends.count(PathEnd::Success), 2);
+    assert!(ends.point(0)[0].norm() < 1e-14 && (ends.point(1)[0] - 5.0).norm() < 1e-13);
+}
+
+#[test]
+fn a_point_that_is_no_solution_is_refused() {
+    let (_, system) = family("x y", "a b", "x^2 - a; x*y - a + b");
+    let path = Segment::new(&reals(&[1.0, 0.0]), &reals(&[2.0, 4.0]));
+    for start in [[100.0, -100.0], [0.0, 0.0], [f64::NAN, 1.0]] {
+        let ends = track(&system, &path, &reals(&start), &[0], &TrackerOptions::default());
+        assert_eq!(ends.results()[0].end, PathEnd::InvalidStart, "{start:?}");
+    }
+}
+
+#[test]
+fn paths_to_infinity_and_to_singular_ends_are_told_apart() {
+    // a x^2 - 2 x + b, b = 1: as a -> 0 one root goes to 1/2, the other to infinity like 2/a.
+    let (_, system) = family("x", "a b", "a*x^2 - 2*x + b");
+    let start = reals(&[1.0, -3.0]);
+    let path = Segment::new(&start, &reals(&[0.0, 1.0]));
+    let ends = track(&system, &path, &reals(&[3.0, -1.0]), &[0, 1], &TrackerOptions::default());
+    let mut kinds: Vec<PathEnd> = ends.results().iter().map(|r| r.end).collect();
+    kinds.sort_by_key(|k| *k != PathEnd::Success);
+    assert_eq!(kinds, [PathEnd::Success, PathEnd::AtInfinity]);
+    // To a = b = 1, where both roots meet at x = 1.
+    let path = Segment::new(&start, &reals(&[1.0, 1.0]));
+    let ends = track(&system, &path, &reals(&[3.0, -1.0]), &[0, 1], &TrackerOptions::default());
+    for (result, point) in ends.iter() {
+        assert!(!result.end.is_good(), "{result:?}");
+        assert!((point[0] - 1.0).norm() < 1e-5, "{point:?}");
+    }
+}
+
+#[test]
+fn alone_and_in_lanes_on_any_instruction_set_the_same_bits() {
+    let (_, system, fibre) = p3p_fibre();
+    let target = Random::new(5, 0).normals(6);
+    let path = Segment::new(&fibre.parameters, &target);
+    let run = |options: &TrackerOptions| {
+        let mut out = PathSet::new(3);
+        Tracker::<_, Lanes8>::new(&system, options).track(&path, &fibre.solutions, 0..8, &mut out);
+        sorted(&out)
+    };
+    let mut options = TrackerOptions::default();
+    let widest = run(&options);
+    for isa in [Isa::Portable, Isa::Avx2, Isa::Avx512].into_iter().filter(|isa| isa.available()) {
+        options.isa = Some(isa);
+        assert_eq!(run(&options), widest, "{isa:?}");
+    }
+    let mut alone = PathSet::new(3);
+    Tracker::<_, Complex64>::new(&system, &options).track(&path, &fibre.solutions, 0..8, &mut alone);
+    assert_eq!(Complex64::LANES, 1);
+    assert_eq!(sorted(&alone), widest);
+}
+
+#[test]
+fn any_number_of_threads_the_same_bits() {
+    let (_, system, fibre) = p3p_fibre();
+    // The same eight start solutions many times, so that there is something to share out.
+    let starts: Vec<Complex64> = (0..40).flat_map(|_| fibre.solutions.clone()).collect();
+    let which: Vec<usize> = (0..320).collect();
+    let path = Segment::new(&fibre.parameters, &Random::new(6, 0).normals(6));
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| track(&system, &path, &starts, &which, &TrackerOptions::default()))
+    };
+    let one = run(1);
+    assert!(one.results().iter().map(|r| r.path).eq(0..320));
+    assert_eq!(run(2), one);
+    assert_eq!(run(5), one);
+}
+
+fn sorted(set: &PathSet) -> Vec<(usize, String)> {
+    let mut all: Vec<_> = set.iter().map(|(r, x)| (r.path, format!("{r:?} {x:?}"))).collect();
+    all.sort();
+    all
+}
+
+#[test]
+fn the_whole_fibre_reaches_a_hundred_targets() {
+    let (_, system, fibre) = p3p_fibre();
+    for seed in 0..100 {
+        let target = Random::new(seed, 1).normals(6);
+        let (_, counts) = track_fibre(&system, &fibre, &target, &FibreOptions::default());
+        assert_eq!((counts.tracked, counts.finite, counts.failed), (8, 8, 0), "seed {seed}");
+    }
+}
+
+#[test]
+fn jumped_paths_are_found_and_mended() {
+    // Steps as long as nothing but Newton's first corrections forbids, over many targets: some paths must land on a neighbour.
+    let (_, system, fibre) = p3p_fibre();
+    let mut reckless = FibreOptions::default();
+    reckless.tracker.beta_omega = 0.1;
+    reckless.tracker.beta_tau = 50.0;
+    reckless.tracker.beta_tau_last = 50.0;
+    reckless.tracker.contraction = 0.9;
+    reckless.tracker.corrector_tolerance = 1e-2;
+    reckless.retries = 0;
+    let mut jumped = 0;
+    for seed in 0..200 {
+        let target = Random::new(seed, 2).normals(6);
+        reckless.retries = 0;
+        let (_, counts) = track_fibre(&system, &fibre, &target, &reckless);
+        if counts.failed > 0 {
+            jumped += 1;
+            reckless.retries = 12;
+            let (_, counts) = track_fibre(&system, &fibre, &target, &reckless);
+            assert_eq!((counts.finite, counts.failed), (8, 0), "seed {seed}: {counts:?}");
+            assert!(counts.retracked > 0);
+        }
+    }
+    assert!(jumped > 0, "the settings are meant to make paths jump");
+}
+
+#[test]
+fn the_trace_test_tells_a_whole_fibre_from_one_with_a_hole() {
+    let (family, _, fibre) = p3p_fibre();
+    let options = MonodromyOptions::default();
+    let test = trace_test(&family.system, &fibre, &options).unwrap();
+    assert!(test.passed(8), "{test:?}");
+    // The further points are found from the fibre, and with them the missing one: the count gives it away.
+    let mut hole = fibre.clone();
+    hole.solutions.truncate(7 * 3);
+    let test = trace_test(&family.system, &hole, &options).unwrap();
+    assert!(!test.passed(7), "{test:?}");
+}
+
+#[test]
+fn monodromy_without_a_known_count_says_that_it_only_stopped() {
+    let (family, system) = family("x y", "r a b", "x^2 + y^2 - r; y - a*x - b");
+    let start = find_pair(&family.system, |_, _| true, 3).unwrap().unwrap();
+    let found = monodromy(&system, &start, |_, _| true, &MonodromyOptions::default());
+    assert_eq!((found.stop, found.fibre.len()), (Stop::NoProgress, 2));
+    assert!(trace_test(&family.system, &found.fibre, &MonodromyOptions::default()).unwrap().passed(2));
+}
