@@ -21,7 +21,7 @@ pub(crate) struct Arguments {
     /// The measurements.
     file: PathBuf,
     #[command(flatten)]
-    units: crate::units::Arguments,
+    units: crate::units::UnitArguments,
     /// Standard deviation of the measurements in metres; estimated if not given.
     #[arg(long, allow_negative_numbers = true)]
     sigma: Option<f64>,

@@ -73,3 +73,13 @@ pub(crate) fn on_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() ->
     let pool = builder.build().map_err(|error| Failure::Unusable(format!("threads cannot be started: {error}")))?;
     Ok(pool.install(work))
 }
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_arguments_are_consistent() {
+        super::Arguments::command().debug_assert();
+    }
+}

@@ -17,7 +17,7 @@ pub(crate) struct Arguments {
     /// The measurements, in the forms that `calibrate` takes; none may be missing.
     file: PathBuf,
     #[command(flatten)]
-    units: crate::units::Arguments,
+    units: crate::units::UnitArguments,
     /// How far below zero a distance may lie for a network to count as physical, as a share of the size of the data; for
     /// noisy data the noise.
     #[arg(long, default_value_t = SolveOptions::default().tolerance)]

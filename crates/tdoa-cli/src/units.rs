@@ -6,7 +6,7 @@ use crate::Failure;
 
 /// Unit of the measurements.
 #[derive(clap::Args)]
-pub(crate) struct Arguments {
+pub(crate) struct UnitArguments {
     /// Unit of the measurements.
     #[arg(long, value_parser = ["m", "s"], default_value = "m")]
     units: String,
@@ -15,7 +15,7 @@ pub(crate) struct Arguments {
     speed: Option<f64>,
 }
 
-impl Arguments {
+impl UnitArguments {
     pub(crate) fn units(&self) -> Result<Units, Failure> {
         match (self.units.as_str(), self.speed) {
             ("m", None) => Ok(Units::Metres),

@@ -10,15 +10,14 @@ use rand_pcg::Pcg64Mcg;
 use serde::Serialize;
 
 use crate::align::align;
-use crate::calibrate::{CalibrateError, CalibrateOptions, Calibration, calibrate};
+use crate::calibrate::{
+    CalibrateError, CalibrateOptions, Calibration, Control, KnownReceivers, calibrate, calibrate_with,
+};
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::covariance;
 use crate::simulate::Simulation;
-
-/// 95 % quantile of chi-squared with two degrees of freedom.
-const CHI_SQUARED_95: f64 = 5.991;
 
 /// One calibration of a simulated network.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -102,6 +101,24 @@ fn judge(
     trial
 }
 
+/// The same calibration started at known positions of the receivers instead of searched: the oracle that shows what the
+/// data and the loss allow.
+///
+/// # Errors
+/// As [`calibrate`].
+pub fn oracle(
+    measured: &Pseudoranges,
+    truth: &[Option<[f64; 2]>],
+    options: &CalibrateOptions,
+) -> Result<Calibration, CalibrateError> {
+    let named = measured.receiver_names().iter().cloned().zip(truth.iter().copied());
+    let positions = named.filter_map(|(name, position)| Some((name, position?))).collect();
+    let options = CalibrateOptions { restarts: false, min_starts: 1, max_starts: 1, ..options.clone() };
+    let mut calibration = calibrate_with(measured, &options, &[&KnownReceivers { positions }], &Control::default())?;
+    calibration.compare(truth);
+    Ok(calibration)
+}
+
 /// Root mean square over the receivers of the smallest standard deviation that any unbiased estimate can have, metres.
 pub fn cramer_rao(measured: &Pseudoranges, outliers: &[bool], truth: &Network, noise: f64) -> f64 {
     let n = measured.transmitters();
@@ -124,6 +141,7 @@ fn coverage(calibration: &Calibration, truth: &Network) -> (usize, usize) {
     let pairs = calibration.receivers.iter().zip(&truth.receivers).filter_map(|(f, t)| Some(((*f)?, *t)));
     let (found, known): (Vec<_>, Vec<_>) = pairs.unzip();
     let Some(alignment) = align(&known, &found, false) else { return (0, 0) };
+    let Some(radius) = calibration.ellipse_radius else { return (0, 0) };
     let nodes = calibration.receivers.iter().zip(&truth.receivers).zip(&calibration.receiver_covariance);
     let (mut covered, mut ellipses) = (0, 0);
     for ((found, known), covariance) in nodes {
@@ -132,7 +150,7 @@ fn coverage(calibration: &Calibration, truth: &Network) -> (usize, usize) {
         let (dx, dy) = (at[0] - found[0], at[1] - found[1]);
         let squared = (dx * dx * yy - 2.0 * dx * dy * xy + dy * dy * xx) / (xx * yy - xy * xy);
         ellipses += 1;
-        covered += usize::from(squared <= CHI_SQUARED_95);
+        covered += usize::from(squared <= radius * radius);
     }
     (covered, ellipses)
 }

@@ -46,16 +46,13 @@ pub fn normal_deviation(nu: f64) -> f64 {
     low
 }
 
-/// Degrees of freedom for this number of measurements and unknowns.
+/// Degrees of freedom of the search.
 ///
-/// With the scale estimated by plain maximum likelihood, there is a spurious maximum at scale 0 as soon as a share
-/// nu/(nu + 1) of the residuals can be made zero at once; as many can as there are unknowns. On the other side the
-/// estimate breaks down when a share 1/(nu + 1) are outliers. This choice leaves half of the redundancy to either side:
-/// 1/(nu + 1) = (1 - unknowns/measurements)/2.
-pub fn degrees_of_freedom(measurements: usize, unknowns: usize) -> f64 {
-    let taken = (unknowns as f64 / measurements.max(1) as f64).min(0.9);
-    (1.0 + taken) / (1.0 - taken)
-}
+/// The scale is estimated from the restricted likelihood, (N - p) ln s + sum of costs for N measurements and p unknowns.
+/// With a share q = p/N it breaks down to scale 0 when more than a share 1 - (1 - q)/(nu + 1) of the residuals can be made
+/// zero at once (fitting as many as there are unknowns makes a share q zero), and grows without bound when a share
+/// (1 - q)/(nu + 1) are outliers. The Cauchy loss, nu = 1, leaves half of the redundancy to either side.
+pub const SEARCH_NU: f64 = 1.0;
 
 #[cfg(test)]
 mod tests {
@@ -78,12 +75,5 @@ mod tests {
         // erfc(1/(tau sqrt 2)) = 1/2, solved by tau = 1.6335.
         assert!((normal_deviation(1.0) - 1.6335).abs() < 1e-3, "{}", normal_deviation(1.0));
         assert!((normal_deviation(1e6) - 1.0).abs() < 1e-5);
-    }
-
-    #[test]
-    fn half_of_the_redundancy_may_be_outliers() {
-        assert_eq!(degrees_of_freedom(100, 0), 1.0);
-        assert_eq!(degrees_of_freedom(100, 50), 3.0);
-        assert!(degrees_of_freedom(10, 20).is_finite());
     }
 }

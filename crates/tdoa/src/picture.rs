@@ -12,10 +12,6 @@ const WIDTH: f64 = 900.0;
 const MAP_HEIGHT: f64 = 620.0;
 const FOOT_HEIGHT: f64 = 230.0;
 
-/// Radius of the 95 % ellipse in standard deviations: the square root of the 95 % quantile 5.991 of chi-squared with two
-/// degrees of freedom.
-const RADIUS_95: f64 = 2.4477;
-
 /// Transmitters farther than this many network sizes from the centre are left out of the picture.
 const REACH: f64 = 5.0;
 
@@ -33,19 +29,20 @@ pub fn picture(calibration: &Calibration) -> String {
     canvas.text([20.0, 28.0], "start", 16.0, &title(calibration));
 
     outliers(&mut canvas, calibration, &map);
+    let radius = calibration.ellipse_radius.unwrap_or(0.0);
     let blue = "#0072B2";
     let orange = "#D55E00";
     let nodes = calibration.transmitters.iter().zip(&calibration.transmitter_covariance);
     for (position, covariance) in nodes {
         if let Some(p) = position.filter(visible) {
-            ellipse(&mut canvas, &map, p, *covariance, orange);
+            ellipse(&mut canvas, &map, p, *covariance, radius, orange);
             canvas.circle(map.to(p), 3.0, orange);
         }
     }
     let nodes = calibration.receivers.iter().zip(&calibration.receiver_covariance);
     for (position, covariance) in nodes {
         if let Some(p) = position.filter(visible) {
-            ellipse(&mut canvas, &map, p, *covariance, blue);
+            ellipse(&mut canvas, &map, p, *covariance, radius, blue);
             canvas.triangle(map.to(p), 6.0, blue);
         }
     }
@@ -103,10 +100,10 @@ fn map_of(calibration: &Calibration) -> (Map, usize) {
     (Map::fit(&shown, [20.0, 50.0], [WIDTH - 40.0, MAP_HEIGHT - 60.0]), outside)
 }
 
-fn ellipse(canvas: &mut Canvas, map: &Map, at: [f64; 2], covariance: Option<[[f64; 2]; 2]>, colour: &str) {
+fn ellipse(canvas: &mut Canvas, map: &Map, at: [f64; 2], covariance: Option<[[f64; 2]; 2]>, radius: f64, colour: &str) {
     let Some([[xx, xy], [_, yy]]) = covariance else { return };
     let root = (0.25 * (xx - yy).powi(2) + xy * xy).sqrt();
-    let axes = [0.5 * (xx + yy) + root, 0.5 * (xx + yy) - root].map(|v| RADIUS_95 * v.max(0.0).sqrt() * map.scale);
+    let axes = [0.5 * (xx + yy) + root, 0.5 * (xx + yy) - root].map(|v| radius * v.max(0.0).sqrt() * map.scale);
     let angle = 0.5 * (2.0 * xy).atan2(xx - yy);
     // Beyond the picture it would be a wash of colour; below a pixel nothing is seen.
     if axes[0] < 2.0 * WIDTH && axes[0] > 0.5 {

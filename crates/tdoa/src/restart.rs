@@ -12,7 +12,7 @@ use rand::RngExt;
 use rand_distr::StandardNormal;
 use rand_pcg::Pcg64Mcg;
 
-use crate::loss::Loss;
+use crate::loss::{Loss, SEARCH_NU};
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::refine::place_transmitters;
@@ -62,7 +62,7 @@ impl Restarts {
     }
 
     /// One start; `spread` says how far it may be from the plain guess (0: the guess itself, 1: anywhere).
-    pub(crate) fn draw(&self, observations: &Observations, spread: f64, nu: f64, rng: &mut Pcg64Mcg) -> Network {
+    pub(crate) fn draw(&self, observations: &Observations, spread: f64, rng: &mut Pcg64Mcg) -> Network {
         let mut normal = || -> f64 { rng.sample(StandardNormal) };
         let m = self.receivers;
         let mut squares = Mat::<f64>::zeros(m, m);
@@ -81,7 +81,7 @@ impl Restarts {
         let n = observations.transmitters;
         let transmitters = (0..n).map(|_| [self.diameter * normal() / 2.0, self.diameter * normal() / 2.0]).collect();
         let mut network = Network { receivers, transmitters, offsets: vec![0.0; n] };
-        place_transmitters(observations, &mut network, &Loss { nu, scale: 0.1 * self.diameter });
+        place_transmitters(observations, &mut network, &Loss { nu: SEARCH_NU, scale: 0.1 * self.diameter });
         network
     }
 }

@@ -16,6 +16,22 @@ pub trait Hypotheses: Sync {
     fn propose(&self, measured: &Pseudoranges, index: usize, seed: u64) -> Vec<PartialNetwork>;
 }
 
+/// Starts from known positions of the receivers: with the truth, the oracle that a calibration is compared with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct KnownReceivers {
+    /// Names and positions in metres; receivers that are not among them are located by multilateration.
+    pub positions: Vec<(String, [f64; 2])>,
+}
+
+impl Hypotheses for KnownReceivers {
+    fn propose(&self, measured: &Pseudoranges, _: usize, _: u64) -> Vec<PartialNetwork> {
+        let find =
+            |name: &String| self.positions.iter().find(|(other, _)| other == name).map(|(_, position)| *position);
+        let receivers = measured.receiver_names().iter().map(find).collect();
+        vec![PartialNetwork { receivers, transmitters: vec![None; measured.transmitters()] }]
+    }
+}
+
 /// A random number generator for one call.
 pub fn generator(seed: u64, index: usize) -> Pcg64Mcg {
     // An odd multiplier keeps different indices of one seed apart.
@@ -26,12 +42,11 @@ pub fn generator(seed: u64, index: usize) -> Pcg64Mcg {
 pub(crate) struct RandomRestarts<'a> {
     observations: &'a Observations,
     restarts: Restarts,
-    nu: f64,
 }
 
 impl<'a> RandomRestarts<'a> {
-    pub(crate) fn new(observations: &'a Observations, nu: f64) -> Self {
-        RandomRestarts { observations, restarts: Restarts::new(observations), nu }
+    pub(crate) fn new(observations: &'a Observations) -> Self {
+        RandomRestarts { observations, restarts: Restarts::new(observations) }
     }
 
     /// A guess of the network's diameter in metres.
@@ -44,7 +59,7 @@ impl Hypotheses for RandomRestarts<'_> {
     fn propose(&self, _: &Pseudoranges, index: usize, seed: u64) -> Vec<PartialNetwork> {
         // From the plain guess to anything: neither is best on all data.
         let spread = [1.0, 0.3, 1.0, 0.7][index % 4];
-        let network = self.restarts.draw(self.observations, spread, self.nu, &mut generator(seed, index));
+        let network = self.restarts.draw(self.observations, spread, &mut generator(seed, index));
         let located = network.transmitters.iter().zip(&network.offsets);
         vec![PartialNetwork {
             receivers: network.receivers.iter().copied().map(Some).collect(),

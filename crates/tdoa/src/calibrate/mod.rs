@@ -7,13 +7,14 @@ mod options;
 mod report;
 mod search;
 
-pub use hypotheses::{Hypotheses, generator};
+pub use hypotheses::{Hypotheses, KnownReceivers, generator};
 pub use minimal::MinimalHypotheses;
 pub use options::{CalibrateError, CalibrateOptions, Control, Progress};
 pub use report::{Alternative, Calibration, Truth};
 
 use crate::degeneracy::{Usable, usable};
-use crate::loss::{Loss, degrees_of_freedom, normal_deviation};
+use crate::loss::{Loss, SEARCH_NU, normal_deviation};
+use crate::network::Network;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::{PartialNetwork, RefineOptions, Refined, Refiner, SEARCH, extend};
@@ -27,7 +28,15 @@ const CAUCHY: f64 = 2.385;
 /// No measurement is trusted beyond this share of the network's diameter.
 const RESOLUTION: f64 = 1e-9;
 
-/// Calibrates a network from its pseudoranges, by restarts of the robust refinement alone.
+/// Up to this many transmitters the 6r/3s solver is asked too: with few transmitters, restarts miss networks that fit as
+/// well.
+const FEW_TRANSMITTERS: usize = 4;
+
+/// Subsets that it solves then.
+const MINIMAL_CALLS: usize = 6;
+
+/// Calibrates a network from its pseudoranges: by restarts of the robust refinement, and for few transmitters from the
+/// 6r/3s solver's networks on subsets too.
 ///
 /// ```
 /// let mut options = tdoa::SimulateOptions::default();
@@ -61,32 +70,36 @@ pub fn calibrate_with(
     let usable = usable(measured)?;
     let (centred, shifts) = centre(&measured.select(&usable.receivers, &usable.transmitters));
     let observations = Observations::new(&centred, |_, _| true);
-    let nu = degrees_of_freedom(observations.len(), observations.unknowns());
 
     let part = search_part(&centred, options);
     let small = centred.select(&part.receivers, &part.transmitters);
     let small_observations = Observations::new(&small, |_, _| true);
-    let small_nu = degrees_of_freedom(small_observations.len(), small_observations.unknowns());
-    let restarts = RandomRestarts::new(&small_observations, small_nu);
+    let to_deviation = normal_deviation(SEARCH_NU);
+    let restarts = RandomRestarts::new(&small_observations);
     let diameter = restarts.diameter();
     let known = options.sigma.or(if centred.has_sigmas() { Some(1.0) } else { None });
     // Where measurements carry deviations, residuals are multiples of them, and so is the network's size.
     let unit = typical_deviation(&centred);
     let refine = RefineOptions {
-        scale: known.map(|sigma| sigma / normal_deviation(small_nu)),
+        scale: known.map(|sigma| sigma / to_deviation),
         anneal_from: Some(0.1 * diameter / unit),
         floor: RESOLUTION * diameter / unit,
         ..SEARCH
     };
-    let mut all: Vec<&dyn Hypotheses> = vec![&restarts];
-    all.extend(sources);
+    let mut all: Vec<&dyn Hypotheses> = sources.to_vec();
+    let minimal = MinimalHypotheses::at_most(MINIMAL_CALLS);
+    if options.restarts || all.is_empty() {
+        all.insert(0, &restarts);
+        if small.transmitters() <= FEW_TRANSMITTERS && small.receivers() >= 6 {
+            all.push(&minimal);
+        }
+    }
     let search = Search {
         measured: &small,
         observations: &small_observations,
-        nu: small_nu,
         refine,
         sources: all,
-        wide: Loss { nu: small_nu, scale: 0.03 * diameter / unit },
+        wide: Loss { nu: SEARCH_NU, scale: 0.03 * diameter / unit },
     };
     let found = search.run(options, control)?;
 
@@ -96,14 +109,13 @@ pub fn calibrate_with(
         if part.receivers.len() == centred.receivers() && part.transmitters.len() == centred.transmitters() {
             close.collect()
         } else {
-            let refine = RefineOptions { scale: known.map(|sigma| sigma / normal_deviation(nu)), ..refine };
-            complete(&observations, nu, &part, close.take(4), &refine)
+            complete(&observations, &part, close.take(4), &refine)
         };
     let Some(scale) = whole.iter().min_by(|a, b| a.objective.total_cmp(&b.objective)).map(|r| r.scale) else {
         return Err(CalibrateError::NotFound(found.starts));
     };
-    let deviation = known.unwrap_or(scale * normal_deviation(nu)).max(refine.floor);
-    let ranked = finish(&observations, whole, deviation, refine.floor);
+    let first = known.unwrap_or(scale * to_deviation).max(refine.floor);
+    let (ranked, deviation) = finish(&observations, whole, first, known.is_some(), refine.floor, options);
     let solved = Solved {
         measured,
         usable: &usable,
@@ -171,18 +183,17 @@ fn search_part(measured: &Pseudoranges, options: &CalibrateOptions) -> Usable {
 /// Extends networks of a part of the nodes to all of them and refines them.
 fn complete(
     observations: &Observations,
-    nu: f64,
     part: &Usable,
     networks: impl Iterator<Item = Refined>,
     refine: &RefineOptions,
 ) -> Vec<Refined> {
-    let mut refiner = Refiner::with_nu(observations, nu);
+    let mut refiner = Refiner::new(observations, SEARCH_NU);
     let refine = RefineOptions { anneal_from: None, ..*refine };
     networks
         .filter_map(|refined| {
             let mut known = PartialNetwork::unknown(observations.receivers, observations.transmitters);
             known.place(&refined.network, &part.receivers, &part.transmitters);
-            let network = extend(observations, &known, &Loss { nu, scale: refined.scale })?;
+            let network = extend(observations, &known, &Loss { nu: SEARCH_NU, scale: refined.scale })?;
             Some(refiner.refine(network, &refine))
         })
         .filter(|refined| refined.objective.is_finite() && refined.network.is_finite())
@@ -190,27 +201,67 @@ fn complete(
 }
 
 /// Refines all networks with the same fixed loss, which makes their objectives differences of log-likelihood, and puts
-/// the best first.
-fn finish(observations: &Observations, networks: Vec<Refined>, deviation: f64, floor: f64) -> Vec<Refined> {
-    let mut refiner = Refiner::with_nu(observations, 1.0);
-    let options = RefineOptions {
-        scale: Some(CAUCHY * deviation),
-        anneal_from: None,
-        floor,
-        steps: 100,
-        tolerance: 1e-12,
-        ..SEARCH
-    };
-    let mut refined: Vec<Refined> = networks
-        .into_iter()
-        .map(|r| {
-            let mut refined = refiner.refine(r.network, &options);
-            // The loss is c^2/2 ln(1 + (e/c)^2) in deviations e; `objective` lacks the factor and has a constant.
-            let constant = refiner.constant(CAUCHY * deviation);
-            refined.objective = (refined.objective - constant) * CAUCHY * CAUCHY / 2.0;
-            refined
-        })
-        .collect();
-    refined.sort_by(|a, b| a.objective.total_cmp(&b.objective));
-    distinct(refined, 12)
+/// the best first. The deviation behind the loss is the given one or that of the inliers of the best network, in turns
+/// with the refinement: the search's own scale is too small where few measurements are left over and too large where many
+/// are outliers.
+fn finish(
+    observations: &Observations,
+    mut networks: Vec<Refined>,
+    first: f64,
+    known: bool,
+    floor: f64,
+    options: &CalibrateOptions,
+) -> (Vec<Refined>, f64) {
+    let mut refiner = Refiner::new(observations, 1.0);
+    let mut deviation = first;
+    let turns = if known { 1 } else { 4 };
+    for turn in 0..turns {
+        let refine = RefineOptions {
+            scale: Some(CAUCHY * deviation),
+            anneal_from: None,
+            floor,
+            steps: if turn + 1 == turns { 100 } else { 15 },
+            tolerance: if turn + 1 == turns { 1e-12 } else { 1e-6 },
+            ..SEARCH
+        };
+        // The loss is c^2/2 ln(1 + (e/c)^2) in deviations e; the objective lacks the factor and has a constant.
+        let constant = refiner.constant(CAUCHY * deviation);
+        for network in &mut networks {
+            *network = refiner.refine(std::mem::take(&mut network.network), &refine);
+            network.objective = (network.objective - constant) * CAUCHY * CAUCHY / 2.0;
+        }
+        networks.sort_by(|a, b| a.objective.total_cmp(&b.objective));
+        if !known && turn + 1 < turns {
+            deviation = inlier_deviation(observations, &networks[0].network, deviation, options.inlier_threshold);
+            deviation = deviation.max(floor);
+        }
+    }
+    (distinct(networks, 12), deviation)
+}
+
+/// Deviation of the residuals that are within `threshold` of it, corrected for the unknowns, repeated until it stays the
+/// same.
+fn inlier_deviation(observations: &Observations, network: &Network, first: f64, threshold: f64) -> f64 {
+    let mut deviation = first;
+    for _ in 0..20 {
+        let (mut sum, mut count) = (0.0, 0usize);
+        for o in observations.all() {
+            let e = o.residual(network);
+            if e.abs() <= threshold * deviation {
+                sum += e * e;
+                count += 1;
+            }
+        }
+        let redundancy = count.saturating_sub(observations.unknowns());
+        if redundancy == 0 {
+            return deviation;
+        }
+        // Without the floor, exact data would shrink the limit to nothing and lose inliers to rounding.
+        let next = (sum / redundancy as f64).sqrt().max(0.1 * first);
+        if (next - deviation).abs() < 1e-6 * deviation {
+            return next;
+        }
+        deviation = next;
+    }
+    deviation
 }

@@ -20,8 +20,10 @@ pub struct CalibrateOptions {
     pub min_starts: usize,
     /// Most starts of the search. Default 480.
     pub max_starts: usize,
-    /// The search ends, after the fewest starts, when this many starts have ended in the best basin. Default 3.
+    /// The search ends, after the fewest starts, when this many starts have found the best network. Default 10.
     pub agreeing: usize,
+    /// Whether the search starts from random networks, besides any other sources. Default true.
+    pub restarts: bool,
     /// Most transmitters that the search works on; the others are located when it has ended. Default 48.
     pub search_transmitters: usize,
     /// Most receivers that the search works on; the others are located when it has ended. Default 32.
@@ -43,7 +45,8 @@ impl Default for CalibrateOptions {
             seed: 0,
             min_starts: 48,
             max_starts: 480,
-            agreeing: 3,
+            agreeing: 10,
+            restarts: true,
             search_transmitters: 48,
             search_receivers: 32,
             inlier_threshold: 3.5,

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::inlier_deviation;
 use super::options::CalibrateOptions;
 use crate::align::{Transform, align, frame};
 use crate::degeneracy::{Usable, list};
@@ -37,6 +38,10 @@ pub struct Calibration {
     pub sigma_estimated: bool,
     /// Root mean square of the inliers' residuals.
     pub residual_rms: f64,
+    /// Inliers minus unknowns: what the estimate of `sigma` rests on.
+    pub redundancy: usize,
+    /// Radius of 95 % ellipses in standard deviations; `None` if nothing is left over to estimate `sigma` from.
+    pub ellipse_radius: Option<f64>,
     /// Standard deviations of the receivers' coordinates in the gauge.
     pub receiver_std: Vec<Option<[f64; 2]>>,
     /// Covariances of the receivers in the gauge.
@@ -184,7 +189,7 @@ pub(super) struct Solved<'a> {
 impl Solved<'_> {
     pub(super) fn report(&self, options: &CalibrateOptions) -> Calibration {
         let best = &self.ranked[0].network;
-        let estimated = self.estimate_sigma(best, options.inlier_threshold);
+        let estimated = inlier_deviation(self.observations, best, self.deviation, options.inlier_threshold);
         let sigma = self.known.unwrap_or(estimated);
         let inlier = |network: &Network, i: usize, j: usize| -> bool {
             let residual = self.centred.get(i, j).map(|f| f - network.pseudorange(i, j));
@@ -192,10 +197,23 @@ impl Solved<'_> {
             residual.is_some_and(|e| e.abs() <= options.inlier_threshold * deviation)
         };
         let kept = Observations::new(self.centred, |i, j| inlier(best, i, j));
-        let uncertainty = covariance(&kept, best, sigma).unwrap_or_default();
         let mut warnings = self.usable.warnings.clone();
+        let redundancy = kept.len().saturating_sub(kept.unknowns());
+        let ellipse_radius = radius_95(redundancy, self.known.is_some());
+        let uncertainty = match ellipse_radius {
+            // What the robust loss loses against least squares on normal noise is added.
+            Some(_) => covariance(&kept, best, sigma / EFFICIENCY.sqrt()).unwrap_or_default(),
+            None => {
+                warnings.push(
+                    "there are only as many measurements as unknowns, so the noise cannot be estimated and no uncertainty is \
+                     given; give --sigma"
+                        .to_string(),
+                );
+                Covariance::default()
+            }
+        };
         let planar = self.planar(best, estimated, options, &mut warnings);
-        warn_of_nodes(self.centred, best, &kept, &uncertainty, &mut warnings);
+        warn_of_nodes(self.centred, best, &kept, &uncertainty, ellipse_radius.is_some(), &mut warnings);
 
         let (m, n) = (self.measured.receivers(), self.measured.transmitters());
         let (rows, columns) = (&self.usable.receivers, &self.usable.transmitters);
@@ -261,6 +279,8 @@ impl Solved<'_> {
             sigma,
             sigma_estimated: self.known.is_none(),
             residual_rms: rms(best),
+            redundancy,
+            ellipse_radius,
             receiver_std: Vec::new(),
             receiver_covariance: scatter(m, rows, &uncertainty.receivers),
             transmitter_std: Vec::new(),
@@ -283,32 +303,6 @@ impl Solved<'_> {
         let map = default_frame(&best.receivers);
         calibration.transform(&map);
         calibration
-    }
-
-    /// Deviation of the inliers' residuals, corrected for the unknowns, repeated until the inliers stay the same.
-    fn estimate_sigma(&self, network: &Network, threshold: f64) -> f64 {
-        let mut sigma = self.deviation;
-        for _ in 0..20 {
-            let (mut sum, mut count) = (0.0, 0usize);
-            for o in self.observations.all() {
-                let e = o.residual(network);
-                if e.abs() <= threshold * sigma {
-                    sum += e * e;
-                    count += 1;
-                }
-            }
-            let redundancy = count.saturating_sub(self.observations.unknowns());
-            if redundancy == 0 {
-                return sigma;
-            }
-            // Without the floor, exact data would shrink the limit to nothing and lose inliers to rounding.
-            let next = (sum / redundancy as f64).sqrt().max(0.1 * self.deviation);
-            if (next - sigma).abs() < 1e-6 * sigma {
-                return next;
-            }
-            sigma = next;
-        }
-        sigma
     }
 
     fn planar(&self, best: &Network, estimated: f64, options: &CalibrateOptions, warnings: &mut Vec<String>) -> bool {
@@ -337,6 +331,23 @@ impl Solved<'_> {
     }
 }
 
+/// Efficiency of the last refinement's Cauchy loss on normal noise.
+const EFFICIENCY: f64 = 0.95;
+
+/// Radius of the 95 % ellipse in standard deviations. With the deviation known its square is the 95 % quantile of
+/// chi-squared with two degrees of freedom, -2 ln 0.05; with one estimated from k residuals left over it is twice that of
+/// F(2, k), which is k (0.05^(-2/k) - 1).
+fn radius_95(redundancy: usize, known: bool) -> Option<f64> {
+    let k = redundancy as f64;
+    if known {
+        Some((-2.0 * 0.05f64.ln()).sqrt())
+    } else if redundancy == 0 {
+        None
+    } else {
+        Some((k * (0.05f64.powf(-2.0 / k) - 1.0)).sqrt())
+    }
+}
+
 /// Values at these indices of a longer list.
 fn scatter<T: Copy>(length: usize, at: &[usize], values: &[T]) -> Vec<Option<T>> {
     let mut all = vec![None; length];
@@ -361,6 +372,7 @@ fn warn_of_nodes(
     network: &Network,
     kept: &Observations,
     uncertainty: &Covariance,
+    noise_known: bool,
     warnings: &mut Vec<String>,
 ) {
     let size = network.size();
@@ -395,7 +407,7 @@ fn warn_of_nodes(
         uncertainty.transmitters.get(j).and_then(|c| *c).map_or(f64::INFINITY, |c| (c[0][0] + c[1][1]).max(0.0).sqrt())
     });
     for (kind, nodes) in [("receivers", receivers), ("transmitters", transmitters)] {
-        if !nodes.is_empty() {
+        if noise_known && !nodes.is_empty() {
             warnings.push(format!(
                 "poorly determined {kind} (standard deviation above a tenth of the network's size): {}; measure more, or \
                  from more directions",
@@ -438,4 +450,25 @@ fn flatness(points: &[[f64; 2]]) -> f64 {
     let root = (0.25 * (xx - yy).powi(2) + xy * xy).sqrt();
     let (large, small) = (0.5 * (xx + yy) + root, (xx * yy - xy * xy) / (0.5 * (xx + yy) + root));
     if large > 0.0 { (small.max(0.0) / large).sqrt() } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn radius_of_ellipses() {
+        // Tables: the 95 % quantile of chi-squared with 2 degrees of freedom is 5.991; of F(2, 1) 199.5, F(2, 10) 4.103.
+        assert!((radius_95(7, true).unwrap().powi(2) - 5.991).abs() < 1e-3);
+        assert!((radius_95(1, false).unwrap().powi(2) - 2.0 * 199.5).abs() < 0.1);
+        assert!((radius_95(10, false).unwrap().powi(2) - 2.0 * 4.103).abs() < 1e-3);
+        assert!((radius_95(1_000_000, false).unwrap().powi(2) - 5.991).abs() < 1e-3);
+        assert_eq!(radius_95(0, false), None);
+    }
+
+    #[test]
+    fn flat_sets_of_points() {
+        assert_eq!(flatness(&[[0.0, 0.0], [1.0, 1.0], [3.0, 3.0]]), 0.0);
+        assert!((flatness(&[[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]]) - 1.0).abs() < 1e-12);
+    }
 }

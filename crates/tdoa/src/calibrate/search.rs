@@ -7,7 +7,7 @@ use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 use super::hypotheses::Hypotheses;
 use super::options::{CalibrateError, CalibrateOptions, Control, Progress};
 use crate::align::align;
-use crate::loss::Loss;
+use crate::loss::{Loss, SEARCH_NU};
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
@@ -16,11 +16,16 @@ use crate::refine::{RefineOptions, Refined, Refiner, extend, residuals};
 /// Starts that run between two looks at the result. Fixed, so that the result does not depend on the number of threads.
 const BATCH: usize = 16;
 
-/// Proposals of one call that are refined; the others look worse before it.
+/// Proposals of one call that are refined in any case, and at most; also the most networks that the search returns.
 const REFINED: usize = 3;
+const MOST_REFINED: usize = 40;
 
-/// A start counts for a basin if its objective is this close to it (units of log-likelihood).
-const SAME_BASIN: f64 = 1.0;
+/// Further proposals are refined if they fit about as well as the best (units of log-likelihood).
+const AS_GOOD: f64 = 4.0;
+
+/// A start counts for the best network if it found the same one with an objective this close to it (units of
+/// log-likelihood): where few measurements are left over, one network has many minima of nearly the same objective.
+const SAME_BASIN: f64 = 20.0;
 
 /// Networks are the same if their nodes differ by less than this share of the network's size, root mean square.
 const SAME_NETWORK: f64 = 0.02;
@@ -39,7 +44,6 @@ pub(crate) struct Found {
 pub(crate) struct Search<'a> {
     pub(crate) measured: &'a Pseudoranges,
     pub(crate) observations: &'a Observations,
-    pub(crate) nu: f64,
     pub(crate) refine: RefineOptions,
     /// Sources of starts, which take turns.
     pub(crate) sources: Vec<&'a dyn Hypotheses>,
@@ -55,12 +59,12 @@ impl Search<'_> {
         let stopped = || cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed));
         loop {
             let batch = BATCH.min(options.max_starts - starts);
-            let ended: Vec<Option<Refined>> = (starts..starts + batch)
+            let ended: Vec<Vec<Refined>> = (starts..starts + batch)
                 .into_par_iter()
                 .map_init(
-                    || Refiner::with_nu(self.observations, self.nu),
+                    || Refiner::new(self.observations, SEARCH_NU),
                     |refiner, index| {
-                        if stopped() { None } else { self.start(refiner, index, options.seed) }
+                        if stopped() { Vec::new() } else { self.start(refiner, index, options.seed) }
                     },
                 )
                 .collect();
@@ -69,8 +73,11 @@ impl Search<'_> {
             }
             starts += batch;
             refined.extend(ended.into_iter().flatten());
-            let best = refined.iter().map(|r| r.objective).fold(f64::INFINITY, f64::min);
-            let agreeing = refined.iter().filter(|r| r.objective < best + SAME_BASIN).count();
+            let best = refined.iter().min_by(|a, b| a.objective.total_cmp(&b.objective));
+            let agrees = |r: &&Refined| {
+                best.is_some_and(|best| r.objective < best.objective + SAME_BASIN && same(&r.network, &best.network))
+            };
+            let agreeing = refined.iter().filter(agrees).count();
             if let Some(progress) = control.progress {
                 progress(Progress { starts, max_starts: options.max_starts, agreeing });
             }
@@ -80,12 +87,12 @@ impl Search<'_> {
                     return Err(CalibrateError::NotFound(starts));
                 }
                 refined.sort_by(|a, b| a.objective.total_cmp(&b.objective));
-                return Ok(Found { networks: distinct(refined, 12), starts, agreeing });
+                return Ok(Found { networks: distinct(refined, MOST_REFINED), starts, agreeing });
             }
         }
     }
 
-    fn start(&self, refiner: &mut Refiner<'_>, index: usize, seed: u64) -> Option<Refined> {
+    fn start(&self, refiner: &mut Refiner<'_>, index: usize, seed: u64) -> Vec<Refined> {
         let source = self.sources[index % self.sources.len()];
         let proposals = source.propose(self.measured, index / self.sources.len(), seed);
         let mut ranked: Vec<(f64, Network)> = proposals
@@ -95,12 +102,16 @@ impl Search<'_> {
             .map(|network| (self.rank(&network), network))
             .collect();
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
-        ranked
+        let limit = ranked.first().map_or(0.0, |best| best.0 + AS_GOOD);
+        let promising = ranked.iter().take(MOST_REFINED).filter(|(cost, _)| *cost <= limit).count();
+        let mut refined: Vec<Refined> = ranked
             .into_iter()
-            .take(REFINED)
+            .take(promising.max(REFINED))
             .map(|(_, network)| refiner.refine(network, &self.refine))
             .filter(|refined| refined.objective.is_finite() && refined.network.is_finite())
-            .min_by(|a, b| a.objective.total_cmp(&b.objective))
+            .collect();
+        refined.sort_by(|a, b| a.objective.total_cmp(&b.objective));
+        distinct(refined, MOST_REFINED)
     }
 
     fn rank(&self, network: &Network) -> f64 {

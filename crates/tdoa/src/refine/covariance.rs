@@ -31,7 +31,7 @@ pub(crate) struct Covariance {
 /// of the measurements where they have their own). `None` if the decomposition fails.
 pub(crate) fn covariance(observations: &Observations, network: &Network, sigma: f64) -> Option<Covariance> {
     let m = observations.receivers;
-    let mut refiner = Refiner::with_nu(observations, f64::INFINITY);
+    let mut refiner = Refiner::new(observations, f64::INFINITY);
     let normal = refiner.normal_at(network, &Loss { nu: f64::INFINITY, scale: 1.0 });
     let size = 2 * m;
     let lower = normal.schur();

@@ -76,8 +76,8 @@ pub(crate) struct Refiner<'a> {
 }
 
 impl<'a> Refiner<'a> {
-    /// With these degrees of freedom; infinite for least squares, which needs the scale to be given.
-    pub(crate) fn with_nu(observations: &'a Observations, nu: f64) -> Self {
+    /// With these degrees of freedom of the loss; infinite for least squares, which needs the scale to be given.
+    pub(crate) fn new(observations: &'a Observations, nu: f64) -> Self {
         Refiner {
             observations,
             nu,
