@@ -11,7 +11,7 @@ pub type Exact = Complex<BigRational>;
 
 /// Constants are folded only while numerators and denominators stay below this many bits, so that a short
 /// text such as `9^9^9` cannot ask for unbounded memory.
-pub(crate) const FOLD_BITS: u64 = 1 << 14;
+pub(crate) const FOLD_BITS: u64 = 1 << 12;
 
 /// The rational as an unevaluated sum `high + low` of two doubles, about 32 digits.
 pub(crate) fn to_parts(q: &BigRational) -> [f64; 2] {
@@ -36,6 +36,15 @@ pub(crate) fn from_i64(k: i64) -> Exact {
 /// Whether the constant is real.
 pub(crate) fn is_real(z: &Exact) -> bool {
     z.im.is_zero()
+}
+
+/// An integer power; zero to a negative power is the caller's to exclude.
+pub(crate) fn pow(z: &Exact, k: i32) -> Exact {
+    if !is_real(z) {
+        return z.powi(k);
+    }
+    // Powers of coprime numbers are coprime, so nothing needs to be cancelled.
+    Complex::new(num_traits::Pow::pow(&z.re, k), BigRational::zero())
 }
 
 fn rational_bits(q: &BigRational) -> u64 {

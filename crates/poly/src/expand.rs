@@ -2,8 +2,7 @@
 
 use crate::exact::{self, Exact};
 use crate::graph::{Id, Node};
-use crate::monomial::Monomial;
-use crate::polynomial::Polynomial;
+use crate::polynomial::{Polynomial, Terms, accumulate};
 use crate::system::System;
 use num_traits::One;
 
@@ -13,7 +12,8 @@ use num_traits::One;
 pub struct ExpandLimits {
     /// Most terms of any polynomial on the way. Default 200,000.
     pub terms: usize,
-    /// Most products of coefficients, counted in machine words, over the whole system. Default 5,000,000.
+    /// Most steps over the whole system; a step is a product of two machine words or four exponents made, about a
+    /// microsecond. Default 5,000,000.
     pub work: usize,
     /// Most bits of one coefficient, numerators and denominators together. Default 65,536.
     pub bits: u64,
@@ -180,21 +180,30 @@ impl Expansion<'_> {
         let graph = &self.system.arena.graph;
         match node {
             Node::Constant(_) => {
+                self.spend(self.term_work())?;
                 let value = graph.as_constant(id).expect("a constant").clone();
                 Ok(Polynomial::constant(self.width, value))
             }
-            Node::Variable(k) => Ok(Polynomial::variable(self.width, k as usize)),
-            Node::Parameter(k) => Ok(Polynomial::variable(self.width, self.system.variables().len() + k as usize)),
+            Node::Variable(k) => {
+                self.spend(self.term_work())?;
+                Ok(Polynomial::variable(self.width, k as usize))
+            }
+            Node::Parameter(k) => {
+                self.spend(self.term_work())?;
+                Ok(Polynomial::variable(self.width, self.system.variables().len() + k as usize))
+            }
             Node::Add(..) | Node::Sub(..) | Node::Neg(_) => {
-                let mut terms: Vec<(Monomial, Exact)> = Vec::new();
+                let mut sum = Terms::default();
                 for &(operand, negative) in operands {
-                    let value = self.take(operand);
-                    let value = if negative { -&value } else { value };
-                    self.spend(value.len())?;
-                    terms.extend(value.terms().iter().cloned());
+                    for (monomial, c) in self.take(operand).terms() {
+                        let c = if negative { -c.clone() } else { c.clone() };
+                        let total = accumulate(&mut sum, monomial.clone(), c);
+                        // Adding rationals takes a greatest common divisor, quadratic in their length.
+                        let words = (exact::bits(total) / 64) as usize;
+                        self.spend(self.term_work() + words * words / 256)?;
+                    }
                 }
-                let sum = Polynomial::from_terms(self.width, terms);
-                self.check(sum)
+                self.check(Polynomial::from_sum(self.width, sum))
             }
             Node::Mul(a, b) => {
                 let (a, b) = (self.take(a), self.take(b));
@@ -210,6 +219,11 @@ impl Expansion<'_> {
                 self.power(&a, k)
             }
         }
+    }
+
+    /// What a term costs by its exponents alone.
+    fn term_work(&self) -> usize {
+        1 + self.width / 4
     }
 
     fn spend(&mut self, work: usize) -> Result<(), Fault> {
@@ -233,7 +247,7 @@ impl Expansion<'_> {
     fn product(&mut self, a: &Polynomial<Exact>, b: &Polynomial<Exact>) -> Result<Polynomial<Exact>, Fault> {
         let words = |p: &Polynomial<Exact>| p.terms().iter().map(|(_, c)| 1 + (exact::bits(c) / 64) as usize).sum();
         let (left, right): (usize, usize) = (words(a), words(b));
-        self.spend(left.saturating_mul(right))?;
+        self.spend(left.saturating_mul(right).saturating_mul(self.term_work()))?;
         let exponents = Fault::TooLarge("exponents", i32::MAX as u64);
         if !fits(a, b) {
             return Err(exponents);
@@ -252,7 +266,7 @@ impl Expansion<'_> {
                     return Err(Fault::TooLarge("bits in a coefficient", self.limits.bits));
                 }
                 let monomial = monomial.checked_pow(k).ok_or(Fault::TooLarge("exponents", i32::MAX as u64))?;
-                let c = if c.is_one() { Exact::one() } else { c.powi(k) };
+                let c = exact::pow(c, k);
                 Ok(Polynomial::term(monomial, c))
             }
             _ if k < 0 => Err(Fault::NotPolynomial),

@@ -269,7 +269,7 @@ impl Graph {
             && exact::bits(c).saturating_mul(u64::from(k.unsigned_abs())) <= FOLD_BITS
             && !(k < 0 && c.is_zero())
         {
-            let power = c.powi(k);
+            let power = exact::pow(c, k);
             return self.constant(power);
         }
         match self.node(a) {

@@ -1,7 +1,41 @@
-//! Polynomials, expressions and straight-line programs.
+//! Polynomials, expressions and straight-line programs: fast evaluation from any formula, one path or eight at once.
 //!
-//! The layer below continuation: formulas become programs that run over any [`Scalar`]: one complex
-//! number, eight paths at once ([`Lanes8`]), double-double and more.
+//! ```
+//! use poly::{Complex64, Evaluate, Isa, System};
+//!
+//! // A circle and a line, with two parameters; formulas are never expanded.
+//! let system = System::build(|s| {
+//!     let (x, y) = (s.variable("x"), s.variable("y"));
+//!     let (r, a) = (s.parameter("r"), s.parameter("a"));
+//!     vec![x * x + y * y - r * r, y - a * x]
+//! })?;
+//! let f = system.compile()?;
+//!
+//! let real = |x: f64| Complex64::new(x, 0.0);
+//! let mut memory = f.memory(Isa::detect());
+//! let (mut values, mut jacobian) = ([real(0.0); 2], [real(0.0); 4]);
+//! f.jacobian(&mut memory, &[real(3.0), real(4.0)], &[real(5.0), real(2.0)], &mut values, &mut jacobian);
+//! assert_eq!(values, [real(0.0), real(-2.0)]);
+//! // Column-major: the derivatives by x, then those by y.
+//! assert_eq!(jacobian, [real(6.0), real(-2.0), real(8.0), real(1.0)]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # From formula to numbers
+//! | step | what |
+//! |---|---|
+//! | [`Expressions`], [`System::build`] | formulas by operators, equal subformulas stored once |
+//! | [`parse::phcpack`], [`parse::family`] | the same from text, errors with line, column and a caret |
+//! | [`System::expand`] | sparse [`Polynomial`]s where supports are needed, within [`ExpandLimits`] |
+//! | [`System::compile`] | an [`Interpreter`]: values, Jacobian by reverse or forward mode, Taylor coefficients |
+//! | [`SparseSystem`] | fixed supports, the coefficients as parameters |
+//! | [`program::emit`](program::emit()) | the program as Rust source |
+//!
+//! [`Evaluate`] is the one interface of all three kinds of system. It runs over any [`Scalar`]: [`Complex64`],
+//! [`Lanes8`] (eight paths side by side, each lane bit for bit what one path computes, on every
+//! [`Isa`]), [`ComplexDd`] (32 digits), [`ComplexInterval`] (bounds that surely hold) and [`Rational`] (exact).
+//!
+//! BENCHES.md has measured times.
 
 mod display;
 mod exact;

@@ -106,7 +106,7 @@ impl Evaluate for Cyclic7 {
         0
     }
     fn memory<S: Scalar>(&self, isa: Isa) -> Memory<S> {
-        Memory::new(isa, &CONSTANTS, 0, &TAYLOR)
+        Memory::new(isa, &CONSTANTS, 30, &TAYLOR)
     }
     fn values<S: Scalar>(
         &self,
@@ -145,6 +145,16 @@ impl Evaluate for Cyclic7 {
                 p: p.first_chunk().expect("as long as cut"),
                 values: values.first_chunk_mut().expect("as long as cut"),
                 jacobian: jacobian.first_chunk_mut().expect("as long as cut"),
+                live: memory.live.first_chunk_mut().expect("made by Memory::new"),
+            });
+        memory
+            .isa
+            .run(Jacobian1 {
+                x: x.first_chunk().expect("as long as cut"),
+                p: p.first_chunk().expect("as long as cut"),
+                values: values.first_chunk_mut().expect("as long as cut"),
+                jacobian: jacobian.first_chunk_mut().expect("as long as cut"),
+                live: memory.live.first_chunk_mut().expect("made by Memory::new"),
             });
     }
     fn taylor<S: Scalar>(
@@ -243,14 +253,14 @@ struct Jacobian0<'a, S> {
     p: &'a [S; 0],
     values: &'a mut [S; 7],
     jacobian: &'a mut [S; 49],
+    live: &'a mut [S; 30],
 }
 impl<S: Scalar> Kernel for Jacobian0<'_, S> {
     type Output = ();
     #[inline(always)]
     #[allow(unused_variables)]
     fn run(self) {
-        let Self { x, p, values, jacobian } = self;
-        let c0 = S::from_parts([-1.0, 0.0], [0.0, 0.0]);
+        let Self { x, p, values, jacobian, live } = self;
         let c1 = S::from_parts([1.0, 0.0], [0.0, 0.0]);
         jacobian[0] = c1.clone();
         jacobian[7] = c1.clone();
@@ -266,17 +276,24 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t4 = S::add(&x[5], &t3);
         values[0] = S::add(&x[6], &t4);
         let t6 = S::mul(&x[0], &x[1]);
+        live[17] = t6.clone();
         let t7 = S::mul(&x[1], &x[2]);
+        live[8] = t7.clone();
         let t8 = S::add(&t6, &t7);
         let t9 = S::mul(&x[2], &x[3]);
+        live[13] = t9.clone();
         let t10 = S::add(&t8, &t9);
         let t11 = S::mul(&x[3], &x[4]);
+        live[18] = t11.clone();
         let t12 = S::add(&t10, &t11);
         let t13 = S::mul(&x[4], &x[5]);
+        live[21] = t13.clone();
         let t14 = S::add(&t12, &t13);
         let t15 = S::mul(&x[5], &x[6]);
+        live[9] = t15.clone();
         let t16 = S::add(&t14, &t15);
         let t17 = S::mul(&x[0], &x[6]);
+        live[14] = t17.clone();
         values[1] = S::add(&t16, &t17);
         jacobian[1] = S::add(&x[1], &x[6]);
         jacobian[8] = S::add(&x[0], &x[2]);
@@ -286,17 +303,24 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         jacobian[36] = S::add(&x[4], &x[6]);
         jacobian[43] = S::add(&x[0], &x[5]);
         let t26 = S::mul(&x[2], &t6);
+        live[20] = t26.clone();
         let t27 = S::mul(&x[3], &t7);
+        live[23] = t27.clone();
         let t28 = S::add(&t26, &t27);
         let t29 = S::mul(&x[4], &t9);
+        live[26] = t29.clone();
         let t30 = S::add(&t28, &t29);
         let t31 = S::mul(&x[5], &t11);
+        live[29] = t31.clone();
         let t32 = S::add(&t30, &t31);
         let t33 = S::mul(&x[6], &t13);
+        live[7] = t33.clone();
         let t34 = S::add(&t32, &t33);
         let t35 = S::mul(&x[0], &t15);
+        live[12] = t35.clone();
         let t36 = S::add(&t34, &t35);
         let t37 = S::mul(&x[1], &t17);
+        live[16] = t37.clone();
         values[2] = S::add(&t36, &t37);
         let t39 = S::mul_add(&x[1], &x[6], &t15);
         jacobian[2] = S::add(&t7, &t39);
@@ -313,144 +337,176 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t51 = S::add(&t6, &t13);
         jacobian[44] = S::mul_add(&x[0], &x[5], &t51);
         let t53 = S::mul(&x[3], &t26);
+        live[24] = t53.clone();
         let t54 = S::mul(&x[4], &t27);
+        live[27] = t54.clone();
         let t55 = S::add(&t53, &t54);
         let t56 = S::mul(&x[5], &t29);
+        live[2] = t56.clone();
         let t57 = S::add(&t55, &t56);
         let t58 = S::mul(&x[6], &t31);
+        live[3] = t58.clone();
         let t59 = S::add(&t57, &t58);
         let t60 = S::mul(&x[0], &t33);
+        live[4] = t60.clone();
         let t61 = S::add(&t59, &t60);
         let t62 = S::mul(&x[1], &t35);
+        live[5] = t62.clone();
         let t63 = S::add(&t61, &t62);
         let t64 = S::mul(&x[2], &t37);
+        live[6] = t64.clone();
         values[3] = S::add(&t63, &t64);
         let t66 = S::mul_add(&x[1], &t15, &t33);
         let t67 = S::mul_add(&x[6], &t7, &t66);
         let t68 = S::mul(&x[1], &t9);
+        live[10] = t68.clone();
         jacobian[3] = S::add(&t67, &t68);
         let t70 = S::mul_add(&x[2], &t17, &t35);
         let t71 = S::mul(&x[2], &t11);
+        live[11] = t71.clone();
         let t72 = S::add(&t70, &t71);
         jacobian[10] = S::mul_add(&x[0], &t9, &t72);
         let t74 = S::mul_add(&x[3], &t6, &t37);
         let t75 = S::mul(&x[3], &t13);
+        live[15] = t75.clone();
         let t76 = S::add(&t74, &t75);
         jacobian[17] = S::mul_add(&x[1], &t11, &t76);
         let t78 = S::mul_add(&x[4], &t7, &t26);
         let t79 = S::mul(&x[4], &t15);
+        live[19] = t79.clone();
         let t80 = S::add(&t78, &t79);
         jacobian[24] = S::mul_add(&x[2], &t13, &t80);
         let t82 = S::mul_add(&x[5], &t9, &t27);
         let t83 = S::mul(&x[5], &t17);
+        live[22] = t83.clone();
         let t84 = S::add(&t82, &t83);
         jacobian[31] = S::mul_add(&x[3], &t15, &t84);
         let t86 = S::mul_add(&x[6], &t11, &t29);
         let t87 = S::mul(&x[6], &t6);
+        live[25] = t87.clone();
         let t88 = S::add(&t86, &t87);
         jacobian[38] = S::mul_add(&x[4], &t17, &t88);
         let t90 = S::mul_add(&x[0], &t13, &t31);
         let t91 = S::mul(&x[0], &t7);
+        live[28] = t91.clone();
         let t92 = S::add(&t90, &t91);
         jacobian[45] = S::mul_add(&x[5], &t6, &t92);
         let t94 = S::mul(&x[4], &t53);
+        live[0] = t94.clone();
         let t95 = S::mul(&x[5], &t54);
-        let t96 = S::add(&t94, &t95);
-        let t97 = S::mul(&x[6], &t56);
+        live[1] = t95.clone();
+    }
+}
+struct Jacobian1<'a, S> {
+    x: &'a [S; 7],
+    p: &'a [S; 0],
+    values: &'a mut [S; 7],
+    jacobian: &'a mut [S; 49],
+    live: &'a mut [S; 30],
+}
+impl<S: Scalar> Kernel for Jacobian1<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    #[allow(unused_variables)]
+    fn run(self) {
+        let Self { x, p, values, jacobian, live } = self;
+        let c0 = S::from_parts([-1.0, 0.0], [0.0, 0.0]);
+        let t96 = S::add(&live[0], &live[1]);
+        let t97 = S::mul(&x[6], &live[2]);
         let t98 = S::add(&t96, &t97);
-        let t99 = S::mul(&x[0], &t58);
+        let t99 = S::mul(&x[0], &live[3]);
         let t100 = S::add(&t98, &t99);
-        let t101 = S::mul(&x[1], &t60);
+        let t101 = S::mul(&x[1], &live[4]);
         let t102 = S::add(&t100, &t101);
-        let t103 = S::mul(&x[2], &t62);
+        let t103 = S::mul(&x[2], &live[5]);
         let t104 = S::add(&t102, &t103);
-        let t105 = S::mul(&x[3], &t64);
+        let t105 = S::mul(&x[3], &live[6]);
         values[4] = S::add(&t104, &t105);
-        let t107 = S::mul_add(&x[1], &t33, &t58);
-        let t108 = S::mul_add(&t7, &t15, &t107);
-        let t109 = S::mul_add(&x[6], &t68, &t108);
-        let t110 = S::mul(&x[1], &t71);
+        let t107 = S::mul_add(&x[1], &live[7], &live[3]);
+        let t108 = S::mul_add(&live[8], &live[9], &t107);
+        let t109 = S::mul_add(&x[6], &live[10], &t108);
+        let t110 = S::mul(&x[1], &live[11]);
         jacobian[4] = S::add(&t109, &t110);
-        let t112 = S::mul_add(&x[2], &t35, &t60);
-        let t113 = S::mul_add(&t9, &t17, &t112);
-        let t114 = S::mul(&x[2], &t75);
+        let t112 = S::mul_add(&x[2], &live[12], &live[4]);
+        let t113 = S::mul_add(&live[13], &live[14], &t112);
+        let t114 = S::mul(&x[2], &live[15]);
         let t115 = S::add(&t113, &t114);
-        jacobian[11] = S::mul_add(&x[0], &t71, &t115);
-        let t117 = S::mul_add(&x[3], &t37, &t62);
-        let t118 = S::mul_add(&t6, &t11, &t117);
-        let t119 = S::mul(&x[3], &t79);
+        jacobian[11] = S::mul_add(&x[0], &live[11], &t115);
+        let t117 = S::mul_add(&x[3], &live[16], &live[5]);
+        let t118 = S::mul_add(&live[17], &live[18], &t117);
+        let t119 = S::mul(&x[3], &live[19]);
         let t120 = S::add(&t118, &t119);
-        jacobian[18] = S::mul_add(&x[1], &t75, &t120);
-        let t122 = S::mul_add(&x[4], &t26, &t64);
-        let t123 = S::mul_add(&t7, &t13, &t122);
-        let t124 = S::mul(&x[4], &t83);
+        jacobian[18] = S::mul_add(&x[1], &live[15], &t120);
+        let t122 = S::mul_add(&x[4], &live[20], &live[6]);
+        let t123 = S::mul_add(&live[8], &live[21], &t122);
+        let t124 = S::mul(&x[4], &live[22]);
         let t125 = S::add(&t123, &t124);
-        jacobian[25] = S::mul_add(&x[2], &t79, &t125);
-        let t127 = S::mul_add(&x[5], &t27, &t53);
-        let t128 = S::mul_add(&t9, &t15, &t127);
-        let t129 = S::mul(&x[5], &t87);
+        jacobian[25] = S::mul_add(&x[2], &live[19], &t125);
+        let t127 = S::mul_add(&x[5], &live[23], &live[24]);
+        let t128 = S::mul_add(&live[13], &live[9], &t127);
+        let t129 = S::mul(&x[5], &live[25]);
         let t130 = S::add(&t128, &t129);
-        jacobian[32] = S::mul_add(&x[3], &t83, &t130);
-        let t132 = S::mul_add(&x[6], &t29, &t54);
-        let t133 = S::mul_add(&t11, &t17, &t132);
-        let t134 = S::mul(&x[6], &t91);
+        jacobian[32] = S::mul_add(&x[3], &live[22], &t130);
+        let t132 = S::mul_add(&x[6], &live[26], &live[27]);
+        let t133 = S::mul_add(&live[18], &live[14], &t132);
+        let t134 = S::mul(&x[6], &live[28]);
         let t135 = S::add(&t133, &t134);
-        jacobian[39] = S::mul_add(&x[4], &t87, &t135);
-        let t137 = S::mul_add(&x[0], &t31, &t56);
-        let t138 = S::mul_add(&t6, &t13, &t137);
-        let t139 = S::mul(&x[0], &t68);
+        jacobian[39] = S::mul_add(&x[4], &live[25], &t135);
+        let t137 = S::mul_add(&x[0], &live[29], &live[2]);
+        let t138 = S::mul_add(&live[17], &live[21], &t137);
+        let t139 = S::mul(&x[0], &live[10]);
         let t140 = S::add(&t138, &t139);
-        jacobian[46] = S::mul_add(&x[5], &t91, &t140);
-        let t142 = S::mul(&x[5], &t94);
+        jacobian[46] = S::mul_add(&x[5], &live[28], &t140);
+        let t142 = S::mul(&x[5], &live[0]);
         jacobian[48] = t142.clone();
-        let t143 = S::mul_add(&x[6], &t95, &t142);
+        let t143 = S::mul_add(&x[6], &live[1], &t142);
         let t144 = S::mul_add(&x[0], &t97, &t143);
         let t145 = S::mul_add(&x[1], &t99, &t144);
         let t146 = S::mul_add(&x[2], &t101, &t145);
         let t147 = S::mul_add(&x[3], &t103, &t146);
         values[5] = S::mul_add(&x[4], &t105, &t147);
-        let t149 = S::mul_add(&x[1], &t58, &t97);
-        let t150 = S::mul_add(&t7, &t33, &t149);
-        let t151 = S::mul_add(&t15, &t68, &t150);
+        let t149 = S::mul_add(&x[1], &live[3], &t97);
+        let t150 = S::mul_add(&live[8], &live[7], &t149);
+        let t151 = S::mul_add(&live[9], &live[10], &t150);
         let t152 = S::mul_add(&x[6], &t110, &t151);
         jacobian[5] = S::mul_add(&x[1], &t114, &t152);
-        let t154 = S::mul_add(&x[2], &t60, &t99);
-        let t155 = S::mul_add(&t9, &t35, &t154);
-        let t156 = S::mul_add(&t17, &t71, &t155);
+        let t154 = S::mul_add(&x[2], &live[4], &t99);
+        let t155 = S::mul_add(&live[13], &live[12], &t154);
+        let t156 = S::mul_add(&live[14], &live[11], &t155);
         let t157 = S::mul(&x[2], &t119);
         let t158 = S::add(&t156, &t157);
         jacobian[12] = S::mul_add(&x[0], &t114, &t158);
-        let t160 = S::mul_add(&x[3], &t62, &t101);
-        let t161 = S::mul_add(&t11, &t37, &t160);
-        let t162 = S::mul_add(&t6, &t75, &t161);
+        let t160 = S::mul_add(&x[3], &live[5], &t101);
+        let t161 = S::mul_add(&live[18], &live[16], &t160);
+        let t162 = S::mul_add(&live[17], &live[15], &t161);
         let t163 = S::mul_add(&x[3], &t124, &t162);
         jacobian[19] = S::mul_add(&x[1], &t119, &t163);
-        let t165 = S::mul_add(&x[4], &t64, &t103);
-        let t166 = S::mul_add(&t13, &t26, &t165);
-        let t167 = S::mul_add(&t7, &t79, &t166);
+        let t165 = S::mul_add(&x[4], &live[6], &t103);
+        let t166 = S::mul_add(&live[21], &live[20], &t165);
+        let t167 = S::mul_add(&live[8], &live[19], &t166);
         let t168 = S::mul_add(&x[4], &t129, &t167);
         jacobian[26] = S::mul_add(&x[2], &t124, &t168);
-        let t170 = S::mul_add(&x[5], &t53, &t105);
-        let t171 = S::mul_add(&t15, &t27, &t170);
-        let t172 = S::mul_add(&t9, &t83, &t171);
+        let t170 = S::mul_add(&x[5], &live[24], &t105);
+        let t171 = S::mul_add(&live[9], &live[23], &t170);
+        let t172 = S::mul_add(&live[13], &live[22], &t171);
         let t173 = S::mul_add(&x[5], &t134, &t172);
         jacobian[33] = S::mul_add(&x[3], &t129, &t173);
-        let t175 = S::mul_add(&x[6], &t54, &t94);
-        let t176 = S::mul_add(&t17, &t29, &t175);
-        let t177 = S::mul_add(&t11, &t87, &t176);
+        let t175 = S::mul_add(&x[6], &live[27], &live[0]);
+        let t176 = S::mul_add(&live[14], &live[26], &t175);
+        let t177 = S::mul_add(&live[18], &live[25], &t176);
         let t178 = S::mul_add(&x[6], &t139, &t177);
         jacobian[40] = S::mul_add(&x[4], &t134, &t178);
-        let t180 = S::mul_add(&x[0], &t56, &t95);
-        let t181 = S::mul_add(&t6, &t31, &t180);
-        let t182 = S::mul_add(&t13, &t91, &t181);
+        let t180 = S::mul_add(&x[0], &live[2], &live[1]);
+        let t181 = S::mul_add(&live[17], &live[29], &t180);
+        let t182 = S::mul_add(&live[21], &live[28], &t181);
         let t183 = S::mul_add(&x[0], &t110, &t182);
         jacobian[47] = S::mul_add(&x[5], &t139, &t183);
         values[6] = S::mul_add(&x[6], &t142, &c0);
         jacobian[6] = S::mul(&x[1], &t157);
         jacobian[13] = S::mul(&x[0], &t157);
-        jacobian[20] = S::mul(&t6, &t119);
-        jacobian[27] = S::mul(&t26, &t79);
-        jacobian[34] = S::mul(&t15, &t53);
-        jacobian[41] = S::mul(&x[6], &t94);
+        jacobian[20] = S::mul(&live[17], &t119);
+        jacobian[27] = S::mul(&live[20], &live[19]);
+        jacobian[34] = S::mul(&live[9], &live[24]);
+        jacobian[41] = S::mul(&x[6], &live[0]);
     }
 }

@@ -206,7 +206,7 @@ impl Evaluate for Katsura8 {
         0
     }
     fn memory<S: Scalar>(&self, isa: Isa) -> Memory<S> {
-        Memory::new(isa, &CONSTANTS, 0, &TAYLOR)
+        Memory::new(isa, &CONSTANTS, 16, &TAYLOR)
     }
     fn values<S: Scalar>(
         &self,
@@ -222,6 +222,15 @@ impl Evaluate for Katsura8 {
                 x: x.first_chunk().expect("as long as cut"),
                 p: p.first_chunk().expect("as long as cut"),
                 values: values.first_chunk_mut().expect("as long as cut"),
+                live: memory.live.first_chunk_mut().expect("made by Memory::new"),
+            });
+        memory
+            .isa
+            .run(Values1 {
+                x: x.first_chunk().expect("as long as cut"),
+                p: p.first_chunk().expect("as long as cut"),
+                values: values.first_chunk_mut().expect("as long as cut"),
+                live: memory.live.first_chunk_mut().expect("made by Memory::new"),
             });
     }
     fn jacobian<S: Scalar>(
@@ -245,6 +254,16 @@ impl Evaluate for Katsura8 {
                 p: p.first_chunk().expect("as long as cut"),
                 values: values.first_chunk_mut().expect("as long as cut"),
                 jacobian: jacobian.first_chunk_mut().expect("as long as cut"),
+                live: memory.live.first_chunk_mut().expect("made by Memory::new"),
+            });
+        memory
+            .isa
+            .run(Jacobian1 {
+                x: x.first_chunk().expect("as long as cut"),
+                p: p.first_chunk().expect("as long as cut"),
+                values: values.first_chunk_mut().expect("as long as cut"),
+                jacobian: jacobian.first_chunk_mut().expect("as long as cut"),
+                live: memory.live.first_chunk_mut().expect("made by Memory::new"),
             });
     }
     fn taylor<S: Scalar>(
@@ -262,15 +281,14 @@ struct Values0<'a, S> {
     x: &'a [S; 9],
     p: &'a [S; 0],
     values: &'a mut [S; 9],
+    live: &'a mut [S; 13],
 }
 impl<S: Scalar> Kernel for Values0<'_, S> {
     type Output = ();
     #[inline(always)]
     #[allow(unused_variables)]
     fn run(self) {
-        let Self { x, p, values } = self;
-        let c0 = S::from_parts([2.0, 0.0], [0.0, 0.0]);
-        let c1 = S::from_parts([-1.0, 0.0], [0.0, 0.0]);
+        let Self { x, p, values, live } = self;
         let t0 = S::sqr(&x[8]);
         let t1 = S::sqr(&x[7]);
         let t2 = S::add(&t0, &t1);
@@ -281,8 +299,10 @@ impl<S: Scalar> Kernel for Values0<'_, S> {
         let t7 = S::sqr(&x[4]);
         let t8 = S::add(&t6, &t7);
         let t9 = S::sqr(&x[3]);
+        live[11] = t9.clone();
         let t10 = S::add(&t8, &t9);
         let t11 = S::sqr(&x[2]);
+        live[8] = t11.clone();
         let t12 = S::add(&t10, &t11);
         let t13 = S::sqr(&x[1]);
         let t14 = S::add(&t12, &t13);
@@ -305,10 +325,13 @@ impl<S: Scalar> Kernel for Values0<'_, S> {
         let t31 = S::mul(&x[4], &x[5]);
         let t32 = S::add(&t30, &t31);
         let t33 = S::mul(&x[3], &x[4]);
+        live[12] = t33.clone();
         let t34 = S::add(&t32, &t33);
         let t35 = S::mul(&x[2], &x[3]);
+        live[9] = t35.clone();
         let t36 = S::add(&t34, &t35);
         let t37 = S::mul(&x[1], &x[2]);
+        live[1] = t37.clone();
         let t38 = S::add(&t36, &t37);
         let t39 = S::mul(&x[0], &x[1]);
         let t40 = S::add(&t38, &t39);
@@ -329,8 +352,10 @@ impl<S: Scalar> Kernel for Values0<'_, S> {
         let t55 = S::mul(&x[3], &x[5]);
         let t56 = S::add(&t54, &t55);
         let t57 = S::mul(&x[2], &x[4]);
+        live[10] = t57.clone();
         let t58 = S::add(&t56, &t57);
         let t59 = S::mul(&x[1], &x[3]);
+        live[7] = t59.clone();
         let t60 = S::add(&t58, &t59);
         let t61 = S::mul(&x[0], &x[2]);
         let t62 = S::add(&t60, &t61);
@@ -344,24 +369,46 @@ impl<S: Scalar> Kernel for Values0<'_, S> {
         let t70 = S::add(&t50, &t69);
         values[2] = S::sub(&t70, &x[2]);
         let t72 = S::mul(&x[5], &x[8]);
+        live[6] = t72.clone();
         let t73 = S::mul(&x[4], &x[7]);
+        live[5] = t73.clone();
         let t74 = S::add(&t72, &t73);
         let t75 = S::mul(&x[3], &x[6]);
+        live[4] = t75.clone();
         let t76 = S::add(&t74, &t75);
         let t77 = S::mul(&x[2], &x[5]);
+        live[3] = t77.clone();
         let t78 = S::add(&t76, &t77);
         let t79 = S::mul(&x[1], &x[4]);
+        live[2] = t79.clone();
         let t80 = S::add(&t78, &t79);
+        live[0] = t80.clone();
+    }
+}
+struct Values1<'a, S> {
+    x: &'a [S; 9],
+    p: &'a [S; 0],
+    values: &'a mut [S; 9],
+    live: &'a mut [S; 13],
+}
+impl<S: Scalar> Kernel for Values1<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    #[allow(unused_variables)]
+    fn run(self) {
+        let Self { x, p, values, live } = self;
+        let c0 = S::from_parts([2.0, 0.0], [0.0, 0.0]);
+        let c1 = S::from_parts([-1.0, 0.0], [0.0, 0.0]);
         let t81 = S::mul(&x[0], &x[3]);
-        let t82 = S::add(&t80, &t81);
-        let t83 = S::add(&t37, &t82);
-        let t84 = S::add(&t37, &t83);
+        let t82 = S::add(&live[0], &t81);
+        let t83 = S::add(&live[1], &t82);
+        let t84 = S::add(&live[1], &t83);
         let t85 = S::add(&t81, &t84);
-        let t86 = S::add(&t79, &t85);
-        let t87 = S::add(&t77, &t86);
-        let t88 = S::add(&t75, &t87);
-        let t89 = S::add(&t73, &t88);
-        let t90 = S::add(&t72, &t89);
+        let t86 = S::add(&live[2], &t85);
+        let t87 = S::add(&live[3], &t86);
+        let t88 = S::add(&live[4], &t87);
+        let t89 = S::add(&live[5], &t88);
+        let t90 = S::add(&live[6], &t89);
         values[3] = S::sub(&t90, &x[3]);
         let t92 = S::mul(&x[4], &x[8]);
         let t93 = S::mul(&x[3], &x[7]);
@@ -372,9 +419,9 @@ impl<S: Scalar> Kernel for Values0<'_, S> {
         let t98 = S::add(&t96, &t97);
         let t99 = S::mul(&x[0], &x[4]);
         let t100 = S::add(&t98, &t99);
-        let t101 = S::add(&t59, &t100);
-        let t102 = S::add(&t11, &t101);
-        let t103 = S::add(&t59, &t102);
+        let t101 = S::add(&live[7], &t100);
+        let t102 = S::add(&live[8], &t101);
+        let t103 = S::add(&live[7], &t102);
         let t104 = S::add(&t99, &t103);
         let t105 = S::add(&t97, &t104);
         let t106 = S::add(&t95, &t105);
@@ -388,10 +435,10 @@ impl<S: Scalar> Kernel for Values0<'_, S> {
         let t114 = S::add(&t112, &t113);
         let t115 = S::mul(&x[0], &x[5]);
         let t116 = S::add(&t114, &t115);
-        let t117 = S::add(&t79, &t116);
-        let t118 = S::add(&t35, &t117);
-        let t119 = S::add(&t35, &t118);
-        let t120 = S::add(&t79, &t119);
+        let t117 = S::add(&live[2], &t116);
+        let t118 = S::add(&live[9], &t117);
+        let t119 = S::add(&live[9], &t118);
+        let t120 = S::add(&live[2], &t119);
         let t121 = S::add(&t115, &t120);
         let t122 = S::add(&t113, &t121);
         let t123 = S::add(&t111, &t122);
@@ -403,9 +450,9 @@ impl<S: Scalar> Kernel for Values0<'_, S> {
         let t129 = S::mul(&x[0], &x[6]);
         let t130 = S::add(&t128, &t129);
         let t131 = S::add(&t97, &t130);
-        let t132 = S::add(&t57, &t131);
-        let t133 = S::add(&t9, &t132);
-        let t134 = S::add(&t57, &t133);
+        let t132 = S::add(&live[10], &t131);
+        let t133 = S::add(&live[11], &t132);
+        let t134 = S::add(&live[10], &t133);
         let t135 = S::add(&t97, &t134);
         let t136 = S::add(&t129, &t135);
         let t137 = S::add(&t127, &t136);
@@ -415,10 +462,10 @@ impl<S: Scalar> Kernel for Values0<'_, S> {
         let t141 = S::mul(&x[0], &x[7]);
         let t142 = S::add(&t140, &t141);
         let t143 = S::add(&t113, &t142);
-        let t144 = S::add(&t77, &t143);
-        let t145 = S::add(&t33, &t144);
-        let t146 = S::add(&t33, &t145);
-        let t147 = S::add(&t77, &t146);
+        let t144 = S::add(&live[3], &t143);
+        let t145 = S::add(&live[12], &t144);
+        let t146 = S::add(&live[12], &t145);
+        let t147 = S::add(&live[3], &t146);
         let t148 = S::add(&t113, &t147);
         let t149 = S::add(&t141, &t148);
         let t150 = S::add(&t140, &t149);
@@ -439,13 +486,14 @@ struct Jacobian0<'a, S> {
     p: &'a [S; 0],
     values: &'a mut [S; 9],
     jacobian: &'a mut [S; 81],
+    live: &'a mut [S; 16],
 }
 impl<S: Scalar> Kernel for Jacobian0<'_, S> {
     type Output = ();
     #[inline(always)]
     #[allow(unused_variables)]
     fn run(self) {
-        let Self { x, p, values, jacobian } = self;
+        let Self { x, p, values, jacobian, live } = self;
         let c0 = S::from_parts([2.0, 0.0], [0.0, 0.0]);
         let c1 = S::from_parts([-1.0, 0.0], [0.0, 0.0]);
         let c2 = S::from_parts([1.0, 0.0], [0.0, 0.0]);
@@ -469,8 +517,10 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t7 = S::sqr(&x[4]);
         let t8 = S::add(&t6, &t7);
         let t9 = S::sqr(&x[3]);
+        live[14] = t9.clone();
         let t10 = S::add(&t8, &t9);
         let t11 = S::sqr(&x[2]);
+        live[11] = t11.clone();
         let t12 = S::add(&t10, &t11);
         let t13 = S::sqr(&x[1]);
         let t14 = S::add(&t12, &t13);
@@ -490,6 +540,7 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         jacobian[50] = t26.clone();
         jacobian[60] = t26.clone();
         jacobian[70] = t26.clone();
+        live[9] = t26.clone();
         jacobian[9] = S::mul_real(&x[1], &c3);
         jacobian[18] = S::mul_real(&x[2], &c3);
         jacobian[27] = S::mul_real(&x[3], &c3);
@@ -506,10 +557,13 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t40 = S::mul(&x[4], &x[5]);
         let t41 = S::add(&t39, &t40);
         let t42 = S::mul(&x[3], &x[4]);
+        live[15] = t42.clone();
         let t43 = S::add(&t41, &t42);
         let t44 = S::mul(&x[2], &x[3]);
+        live[12] = t44.clone();
         let t45 = S::add(&t43, &t44);
         let t46 = S::mul(&x[1], &x[2]);
+        live[8] = t46.clone();
         let t47 = S::add(&t45, &t46);
         let t48 = S::mul(&x[0], &x[1]);
         let t49 = S::add(&t47, &t48);
@@ -531,6 +585,7 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         jacobian[69] = t59.clone();
         jacobian[61] = t59.clone();
         jacobian[79] = t59.clone();
+        live[0] = t59.clone();
         let t60 = S::mul_real(&x[2], &c0);
         jacobian[2] = t60.clone();
         jacobian[58] = t60.clone();
@@ -538,6 +593,7 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         jacobian[42] = t60.clone();
         jacobian[78] = t60.clone();
         jacobian[52] = t60.clone();
+        live[2] = t60.clone();
         jacobian[10] = S::add(&t26, &t60);
         let t62 = S::mul_real(&x[3], &c0);
         jacobian[3] = t62.clone();
@@ -546,6 +602,7 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         jacobian[77] = t62.clone();
         jacobian[33] = t62.clone();
         jacobian[43] = t62.clone();
+        live[4] = t62.clone();
         let t63 = S::add(&t59, &t62);
         jacobian[19] = t63.clone();
         jacobian[11] = t63.clone();
@@ -554,6 +611,7 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         jacobian[4] = t64.clone();
         jacobian[76] = t64.clone();
         jacobian[34] = t64.clone();
+        live[6] = t64.clone();
         let t65 = S::add(&t60, &t64);
         jacobian[28] = t65.clone();
         jacobian[12] = t65.clone();
@@ -562,22 +620,26 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         jacobian[75] = t66.clone();
         jacobian[5] = t66.clone();
         jacobian[25] = t66.clone();
+        live[1] = t66.clone();
         let t67 = S::add(&t62, &t66);
         jacobian[37] = t67.clone();
         jacobian[13] = t67.clone();
         let t68 = S::mul_real(&x[6], &c0);
         jacobian[74] = t68.clone();
         jacobian[6] = t68.clone();
+        live[3] = t68.clone();
         let t69 = S::add(&t64, &t68);
         jacobian[46] = t69.clone();
         jacobian[14] = t69.clone();
         let t70 = S::mul_real(&x[7], &c0);
         jacobian[73] = t70.clone();
         jacobian[7] = t70.clone();
+        live[5] = t70.clone();
         let t71 = S::add(&t66, &t70);
         jacobian[55] = t71.clone();
         jacobian[15] = t71.clone();
         let t72 = S::mul_real(&x[8], &c0);
+        live[7] = t72.clone();
         let t73 = S::add(&t68, &t72);
         jacobian[64] = t73.clone();
         jacobian[16] = t73.clone();
@@ -589,8 +651,10 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t79 = S::mul(&x[3], &x[5]);
         let t80 = S::add(&t78, &t79);
         let t81 = S::mul(&x[2], &x[4]);
+        live[13] = t81.clone();
         let t82 = S::add(&t80, &t81);
         let t83 = S::mul(&x[1], &x[3]);
+        live[10] = t83.clone();
         let t84 = S::add(&t82, &t83);
         let t85 = S::mul(&x[0], &x[2]);
         let t86 = S::add(&t84, &t85);
@@ -604,16 +668,33 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t94 = S::add(&t74, &t93);
         values[2] = S::sub(&t94, &x[2]);
         jacobian[20] = S::add(&t26, &t64);
-        let t97 = S::add(&t59, &t66);
+    }
+}
+struct Jacobian1<'a, S> {
+    x: &'a [S; 9],
+    p: &'a [S; 0],
+    values: &'a mut [S; 9],
+    jacobian: &'a mut [S; 81],
+    live: &'a mut [S; 16],
+}
+impl<S: Scalar> Kernel for Jacobian1<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    #[allow(unused_variables)]
+    fn run(self) {
+        let Self { x, p, values, jacobian, live } = self;
+        let c0 = S::from_parts([2.0, 0.0], [0.0, 0.0]);
+        let c1 = S::from_parts([-1.0, 0.0], [0.0, 0.0]);
+        let t97 = S::add(&live[0], &live[1]);
         jacobian[29] = t97.clone();
         jacobian[21] = t97.clone();
-        let t98 = S::add(&t60, &t68);
+        let t98 = S::add(&live[2], &live[3]);
         jacobian[38] = t98.clone();
         jacobian[22] = t98.clone();
-        let t99 = S::add(&t62, &t70);
+        let t99 = S::add(&live[4], &live[5]);
         jacobian[47] = t99.clone();
         jacobian[23] = t99.clone();
-        let t100 = S::add(&t64, &t72);
+        let t100 = S::add(&live[6], &live[7]);
         jacobian[56] = t100.clone();
         jacobian[24] = t100.clone();
         let t101 = S::mul(&x[5], &x[8]);
@@ -627,8 +708,8 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t109 = S::add(&t107, &t108);
         let t110 = S::mul(&x[0], &x[3]);
         let t111 = S::add(&t109, &t110);
-        let t112 = S::add(&t46, &t111);
-        let t113 = S::add(&t46, &t112);
+        let t112 = S::add(&live[8], &t111);
+        let t113 = S::add(&live[8], &t112);
         let t114 = S::add(&t110, &t113);
         let t115 = S::add(&t108, &t114);
         let t116 = S::add(&t106, &t115);
@@ -636,11 +717,11 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t118 = S::add(&t102, &t117);
         let t119 = S::add(&t101, &t118);
         values[3] = S::sub(&t119, &x[3]);
-        jacobian[30] = S::add(&t26, &t68);
-        let t122 = S::add(&t59, &t70);
+        jacobian[30] = S::add(&live[9], &live[3]);
+        let t122 = S::add(&live[0], &live[5]);
         jacobian[39] = t122.clone();
         jacobian[31] = t122.clone();
-        let t123 = S::add(&t60, &t72);
+        let t123 = S::add(&live[2], &live[7]);
         jacobian[48] = t123.clone();
         jacobian[32] = t123.clone();
         let t124 = S::mul(&x[4], &x[8]);
@@ -652,16 +733,16 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t130 = S::add(&t128, &t129);
         let t131 = S::mul(&x[0], &x[4]);
         let t132 = S::add(&t130, &t131);
-        let t133 = S::add(&t83, &t132);
-        let t134 = S::add(&t11, &t133);
-        let t135 = S::add(&t83, &t134);
+        let t133 = S::add(&live[10], &t132);
+        let t134 = S::add(&live[11], &t133);
+        let t135 = S::add(&live[10], &t134);
         let t136 = S::add(&t131, &t135);
         let t137 = S::add(&t129, &t136);
         let t138 = S::add(&t127, &t137);
         let t139 = S::add(&t125, &t138);
         let t140 = S::add(&t124, &t139);
         values[4] = S::sub(&t140, &x[4]);
-        jacobian[40] = S::add(&t26, &t72);
+        jacobian[40] = S::add(&live[9], &live[7]);
         let t143 = S::mul(&x[3], &x[8]);
         let t144 = S::mul(&x[2], &x[7]);
         let t145 = S::add(&t143, &t144);
@@ -670,8 +751,8 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t148 = S::mul(&x[0], &x[5]);
         let t149 = S::add(&t147, &t148);
         let t150 = S::add(&t108, &t149);
-        let t151 = S::add(&t44, &t150);
-        let t152 = S::add(&t44, &t151);
+        let t151 = S::add(&live[12], &t150);
+        let t152 = S::add(&live[12], &t151);
         let t153 = S::add(&t108, &t152);
         let t154 = S::add(&t148, &t153);
         let t155 = S::add(&t146, &t154);
@@ -684,9 +765,9 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t162 = S::mul(&x[0], &x[6]);
         let t163 = S::add(&t161, &t162);
         let t164 = S::add(&t129, &t163);
-        let t165 = S::add(&t81, &t164);
-        let t166 = S::add(&t9, &t165);
-        let t167 = S::add(&t81, &t166);
+        let t165 = S::add(&live[13], &t164);
+        let t166 = S::add(&live[14], &t165);
+        let t167 = S::add(&live[13], &t166);
         let t168 = S::add(&t129, &t167);
         let t169 = S::add(&t162, &t168);
         let t170 = S::add(&t160, &t169);
@@ -697,8 +778,8 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t175 = S::add(&t173, &t174);
         let t176 = S::add(&t146, &t175);
         let t177 = S::add(&t106, &t176);
-        let t178 = S::add(&t42, &t177);
-        let t179 = S::add(&t42, &t178);
+        let t178 = S::add(&live[15], &t177);
+        let t179 = S::add(&live[15], &t178);
         let t180 = S::add(&t106, &t179);
         let t181 = S::add(&t146, &t180);
         let t182 = S::add(&t174, &t181);

@@ -235,7 +235,7 @@ impl Evaluate for Pencils {
         192
     }
     fn memory<S: Scalar>(&self, isa: Isa) -> Memory<S> {
-        Memory::new(isa, &CONSTANTS, 0, &TAYLOR)
+        Memory::new(isa, &CONSTANTS, 92, &TAYLOR)
     }
     fn values<S: Scalar>(
         &self,
@@ -251,6 +251,15 @@ impl Evaluate for Pencils {
                 x: x.first_chunk().expect("as long as cut"),
                 p: p.first_chunk().expect("as long as cut"),
                 values: values.first_chunk_mut().expect("as long as cut"),
+                live: memory.live.first_chunk_mut().expect("made by Memory::new"),
+            });
+        memory
+            .isa
+            .run(Values1 {
+                x: x.first_chunk().expect("as long as cut"),
+                p: p.first_chunk().expect("as long as cut"),
+                values: values.first_chunk_mut().expect("as long as cut"),
+                live: memory.live.first_chunk_mut().expect("made by Memory::new"),
             });
     }
     fn jacobian<S: Scalar>(
@@ -274,6 +283,43 @@ impl Evaluate for Pencils {
                 p: p.first_chunk().expect("as long as cut"),
                 values: values.first_chunk_mut().expect("as long as cut"),
                 jacobian: jacobian.first_chunk_mut().expect("as long as cut"),
+                live: memory.live.first_chunk_mut().expect("made by Memory::new"),
+            });
+        memory
+            .isa
+            .run(Jacobian1 {
+                x: x.first_chunk().expect("as long as cut"),
+                p: p.first_chunk().expect("as long as cut"),
+                values: values.first_chunk_mut().expect("as long as cut"),
+                jacobian: jacobian.first_chunk_mut().expect("as long as cut"),
+                live: memory.live.first_chunk_mut().expect("made by Memory::new"),
+            });
+        memory
+            .isa
+            .run(Jacobian2 {
+                x: x.first_chunk().expect("as long as cut"),
+                p: p.first_chunk().expect("as long as cut"),
+                values: values.first_chunk_mut().expect("as long as cut"),
+                jacobian: jacobian.first_chunk_mut().expect("as long as cut"),
+                live: memory.live.first_chunk_mut().expect("made by Memory::new"),
+            });
+        memory
+            .isa
+            .run(Jacobian3 {
+                x: x.first_chunk().expect("as long as cut"),
+                p: p.first_chunk().expect("as long as cut"),
+                values: values.first_chunk_mut().expect("as long as cut"),
+                jacobian: jacobian.first_chunk_mut().expect("as long as cut"),
+                live: memory.live.first_chunk_mut().expect("made by Memory::new"),
+            });
+        memory
+            .isa
+            .run(Jacobian4 {
+                x: x.first_chunk().expect("as long as cut"),
+                p: p.first_chunk().expect("as long as cut"),
+                values: values.first_chunk_mut().expect("as long as cut"),
+                jacobian: jacobian.first_chunk_mut().expect("as long as cut"),
+                live: memory.live.first_chunk_mut().expect("made by Memory::new"),
             });
     }
     fn taylor<S: Scalar>(
@@ -291,13 +337,14 @@ struct Values0<'a, S> {
     x: &'a [S; 3],
     p: &'a [S; 192],
     values: &'a mut [S; 3],
+    live: &'a mut [S; 14],
 }
 impl<S: Scalar> Kernel for Values0<'_, S> {
     type Output = ();
     #[inline(always)]
     #[allow(unused_variables)]
     fn run(self) {
-        let Self { x, p, values } = self;
+        let Self { x, p, values, live } = self;
         let t0 = S::mul_add(&p[9], &x[0], &p[8]);
         let t1 = S::mul_add(&p[10], &x[1], &t0);
         let t2 = S::mul_add(&p[11], &x[2], &t1);
@@ -366,64 +413,92 @@ impl<S: Scalar> Kernel for Values0<'_, S> {
         let t65 = S::mul_add(&p[73], &x[0], &p[72]);
         let t66 = S::mul_add(&p[74], &x[1], &t65);
         let t67 = S::mul_add(&p[75], &x[2], &t66);
+        live[6] = t67.clone();
         let t68 = S::mul_add(&p[77], &x[0], &p[76]);
         let t69 = S::mul_add(&p[78], &x[1], &t68);
         let t70 = S::mul_add(&p[79], &x[2], &t69);
+        live[2] = t70.clone();
         let t71 = S::mul_add(&p[89], &x[0], &p[88]);
         let t72 = S::mul_add(&p[90], &x[1], &t71);
         let t73 = S::mul_add(&p[91], &x[2], &t72);
+        live[5] = t73.clone();
         let t74 = S::mul_add(&p[93], &x[0], &p[92]);
         let t75 = S::mul_add(&p[94], &x[1], &t74);
         let t76 = S::mul_add(&p[95], &x[2], &t75);
+        live[1] = t76.clone();
         let t77 = S::mul_mul_sub(&t67, &t76, &t70, &t73);
+        live[3] = t77.clone();
         let t78 = S::mul_add(&p[69], &x[0], &p[68]);
         let t79 = S::mul_add(&p[70], &x[1], &t78);
         let t80 = S::mul_add(&p[71], &x[2], &t79);
+        live[12] = t80.clone();
         let t81 = S::mul_add(&p[85], &x[0], &p[84]);
         let t82 = S::mul_add(&p[86], &x[1], &t81);
         let t83 = S::mul_add(&p[87], &x[2], &t82);
+        live[11] = t83.clone();
         let t84 = S::mul_mul_sub(&t80, &t76, &t70, &t83);
+        live[9] = t84.clone();
         let t85 = S::mul_add(&p[101], &x[0], &p[100]);
         let t86 = S::mul_add(&p[102], &x[1], &t85);
         let t87 = S::mul_add(&p[103], &x[2], &t86);
+        live[10] = t87.clone();
         let t88 = S::mul_add(&p[105], &x[0], &p[104]);
         let t89 = S::mul_add(&p[106], &x[1], &t88);
         let t90 = S::mul_add(&p[107], &x[2], &t89);
+        live[4] = t90.clone();
         let t91 = S::mul_mul_sub(&t87, &t77, &t90, &t84);
         let t92 = S::mul_mul_sub(&t80, &t73, &t67, &t83);
+        live[13] = t92.clone();
         let t93 = S::mul_add(&p[109], &x[0], &p[108]);
         let t94 = S::mul_add(&p[110], &x[1], &t93);
         let t95 = S::mul_add(&p[111], &x[2], &t94);
+        live[7] = t95.clone();
         let t96 = S::mul_add(&t95, &t92, &t91);
+        live[8] = t96.clone();
         let t97 = S::mul_add(&p[65], &x[0], &p[64]);
-        let t98 = S::mul_add(&p[66], &x[1], &t97);
+        live[0] = t97.clone();
+    }
+}
+struct Values1<'a, S> {
+    x: &'a [S; 3],
+    p: &'a [S; 192],
+    values: &'a mut [S; 3],
+    live: &'a mut [S; 14],
+}
+impl<S: Scalar> Kernel for Values1<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    #[allow(unused_variables)]
+    fn run(self) {
+        let Self { x, p, values, live } = self;
+        let t98 = S::mul_add(&p[66], &x[1], &live[0]);
         let t99 = S::mul_add(&p[67], &x[2], &t98);
         let t100 = S::mul_add(&p[81], &x[0], &p[80]);
         let t101 = S::mul_add(&p[82], &x[1], &t100);
         let t102 = S::mul_add(&p[83], &x[2], &t101);
-        let t103 = S::mul_mul_sub(&t99, &t76, &t70, &t102);
+        let t103 = S::mul_mul_sub(&t99, &live[1], &live[2], &t102);
         let t104 = S::mul_add(&p[97], &x[0], &p[96]);
         let t105 = S::mul_add(&p[98], &x[1], &t104);
         let t106 = S::mul_add(&p[99], &x[2], &t105);
-        let t107 = S::mul_mul_sub(&t106, &t77, &t90, &t103);
-        let t108 = S::mul_mul_sub(&t99, &t73, &t67, &t102);
-        let t109 = S::mul_add(&t95, &t108, &t107);
+        let t107 = S::mul_mul_sub(&t106, &live[3], &live[4], &t103);
+        let t108 = S::mul_mul_sub(&t99, &live[5], &live[6], &t102);
+        let t109 = S::mul_add(&live[7], &t108, &t107);
         let t110 = S::mul_add(&p[113], &x[0], &p[112]);
         let t111 = S::mul_add(&p[114], &x[1], &t110);
         let t112 = S::mul_add(&p[115], &x[2], &t111);
         let t113 = S::mul_add(&p[117], &x[0], &p[116]);
         let t114 = S::mul_add(&p[118], &x[1], &t113);
         let t115 = S::mul_add(&p[119], &x[2], &t114);
-        let t116 = S::mul_mul_sub(&t115, &t109, &t112, &t96);
-        let t117 = S::mul_mul_sub(&t106, &t84, &t87, &t103);
-        let t118 = S::mul_mul_sub(&t99, &t83, &t80, &t102);
-        let t119 = S::mul_add(&t95, &t118, &t117);
+        let t116 = S::mul_mul_sub(&t115, &t109, &t112, &live[8]);
+        let t117 = S::mul_mul_sub(&t106, &live[9], &live[10], &t103);
+        let t118 = S::mul_mul_sub(&t99, &live[11], &live[12], &t102);
+        let t119 = S::mul_add(&live[7], &t118, &t117);
         let t120 = S::mul_add(&p[121], &x[0], &p[120]);
         let t121 = S::mul_add(&p[122], &x[1], &t120);
         let t122 = S::mul_add(&p[123], &x[2], &t121);
         let t123 = S::sub_mul(&t122, &t119, &t116);
-        let t124 = S::mul_mul_sub(&t106, &t92, &t87, &t108);
-        let t125 = S::mul_add(&t90, &t118, &t124);
+        let t124 = S::mul_mul_sub(&t106, &live[13], &live[10], &t108);
+        let t125 = S::mul_add(&live[4], &t118, &t124);
         let t126 = S::mul_add(&p[125], &x[0], &p[124]);
         let t127 = S::mul_add(&p[126], &x[1], &t126);
         let t128 = S::mul_add(&p[127], &x[2], &t127);
@@ -500,32 +575,39 @@ struct Jacobian0<'a, S> {
     p: &'a [S; 192],
     values: &'a mut [S; 3],
     jacobian: &'a mut [S; 9],
+    live: &'a mut [S; 92],
 }
 impl<S: Scalar> Kernel for Jacobian0<'_, S> {
     type Output = ();
     #[inline(always)]
     #[allow(unused_variables)]
     fn run(self) {
-        let Self { x, p, values, jacobian } = self;
+        let Self { x, p, values, jacobian, live } = self;
         let t0 = S::mul_add(&p[9], &x[0], &p[8]);
         let t1 = S::mul_add(&p[10], &x[1], &t0);
         let t2 = S::mul_add(&p[11], &x[2], &t1);
+        live[13] = t2.clone();
         let t3 = S::mul_add(&p[13], &x[0], &p[12]);
         let t4 = S::mul_add(&p[14], &x[1], &t3);
         let t5 = S::mul_add(&p[15], &x[2], &t4);
+        live[9] = t5.clone();
         let t6 = S::mul_add(&p[25], &x[0], &p[24]);
         let t7 = S::mul_add(&p[26], &x[1], &t6);
         let t8 = S::mul_add(&p[27], &x[2], &t7);
+        live[22] = t8.clone();
         let t9 = S::mul_add(&p[29], &x[0], &p[28]);
         let t10 = S::mul_add(&p[30], &x[1], &t9);
         let t11 = S::mul_add(&p[31], &x[2], &t10);
+        live[23] = t11.clone();
         let t12 = S::mul_mul_sub(&t2, &t11, &t5, &t8);
         let t13 = S::mul_add(&p[5], &x[0], &p[4]);
         let t14 = S::mul_add(&p[6], &x[1], &t13);
         let t15 = S::mul_add(&p[7], &x[2], &t14);
+        live[6] = t15.clone();
         let t16 = S::mul_add(&p[21], &x[0], &p[20]);
         let t17 = S::mul_add(&p[22], &x[1], &t16);
         let t18 = S::mul_add(&p[23], &x[2], &t17);
+        live[21] = t18.clone();
         let t19 = S::mul_mul_sub(&t15, &t11, &t5, &t18);
         let t20 = S::mul_add(&p[37], &x[0], &p[36]);
         let t21 = S::mul_add(&p[38], &x[1], &t20);
@@ -533,28 +615,36 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t23 = S::mul_add(&p[41], &x[0], &p[40]);
         let t24 = S::mul_add(&p[42], &x[1], &t23);
         let t25 = S::mul_add(&p[43], &x[2], &t24);
+        live[11] = t25.clone();
         let t26 = S::mul_mul_sub(&t22, &t12, &t25, &t19);
         let t27 = S::mul_mul_sub(&t15, &t8, &t2, &t18);
         let t28 = S::mul_add(&p[45], &x[0], &p[44]);
         let t29 = S::mul_add(&p[46], &x[1], &t28);
         let t30 = S::mul_add(&p[47], &x[2], &t29);
+        live[2] = t30.clone();
         let t31 = S::mul_add(&t30, &t27, &t26);
+        live[30] = t31.clone();
         let t32 = S::mul_add(&p[1], &x[0], &p[0]);
         let t33 = S::mul_add(&p[2], &x[1], &t32);
         let t34 = S::mul_add(&p[3], &x[2], &t33);
+        live[4] = t34.clone();
         let t35 = S::mul_add(&p[17], &x[0], &p[16]);
         let t36 = S::mul_add(&p[18], &x[1], &t35);
         let t37 = S::mul_add(&p[19], &x[2], &t36);
+        live[20] = t37.clone();
         let t38 = S::mul_mul_sub(&t34, &t11, &t5, &t37);
         let t39 = S::mul_add(&p[33], &x[0], &p[32]);
         let t40 = S::mul_add(&p[34], &x[1], &t39);
         let t41 = S::mul_add(&p[35], &x[2], &t40);
+        live[0] = t41.clone();
         let t42 = S::mul_mul_sub(&t41, &t12, &t25, &t38);
         let t43 = S::mul_mul_sub(&t34, &t8, &t2, &t37);
         let t44 = S::mul_add(&t30, &t43, &t42);
+        live[29] = t44.clone();
         let t45 = S::mul_add(&p[49], &x[0], &p[48]);
         let t46 = S::mul_add(&p[50], &x[1], &t45);
         let t47 = S::mul_add(&p[51], &x[2], &t46);
+        live[3] = t47.clone();
         let t48 = S::mul_add(&p[53], &x[0], &p[52]);
         let t49 = S::mul_add(&p[54], &x[1], &t48);
         let t50 = S::mul_add(&p[55], &x[2], &t49);
@@ -562,87 +652,124 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t52 = S::mul_mul_sub(&t41, &t19, &t22, &t38);
         let t53 = S::mul_mul_sub(&t34, &t18, &t15, &t37);
         let t54 = S::mul_add(&t30, &t53, &t52);
+        live[28] = t54.clone();
         let t55 = S::mul_add(&p[57], &x[0], &p[56]);
         let t56 = S::mul_add(&p[58], &x[1], &t55);
         let t57 = S::mul_add(&p[59], &x[2], &t56);
+        live[12] = t57.clone();
         let t58 = S::sub_mul(&t57, &t54, &t51);
         let t59 = S::mul_mul_sub(&t41, &t27, &t22, &t43);
         let t60 = S::mul_add(&t25, &t53, &t59);
+        live[27] = t60.clone();
         let t61 = S::mul_add(&p[61], &x[0], &p[60]);
         let t62 = S::mul_add(&p[62], &x[1], &t61);
         let t63 = S::mul_add(&p[63], &x[2], &t62);
+        live[1] = t63.clone();
         values[0] = S::mul_add(&t63, &t60, &t58);
         let t65 = S::mul_mul_sub(&p[61], &t60, &p[57], &t54);
         let t66 = S::mul_add(&p[53], &t44, &t65);
         let t67 = S::sub_mul(&p[49], &t31, &t66);
         let t68 = S::mul_mul_sub(&t50, &t43, &t57, &t53);
         let t69 = S::sub_mul(&t47, &t27, &t68);
+        live[31] = t69.clone();
         let t70 = S::mul_add(&p[45], &t69, &t67);
         let t71 = S::mul_mul_sub(&t63, &t53, &t50, &t38);
         let t72 = S::mul_add(&t47, &t19, &t71);
+        live[32] = t72.clone();
         let t73 = S::mul_add(&p[41], &t72, &t70);
         let t74 = S::mul_mul_sub(&t57, &t38, &t63, &t43);
         let t75 = S::sub_mul(&t47, &t12, &t74);
+        live[33] = t75.clone();
         let t76 = S::mul_add(&p[37], &t75, &t73);
         let t77 = S::mul_mul_sub(&t63, &t27, &t57, &t19);
         let t78 = S::mul_add(&t50, &t12, &t77);
+        live[34] = t78.clone();
         let t79 = S::mul_add(&p[33], &t78, &t76);
         let t80 = S::mul(&t22, &t57);
+        live[19] = t80.clone();
         let t81 = S::mul(&t25, &t50);
+        live[18] = t81.clone();
         let t82 = S::sub(&t80, &t81);
+        live[26] = t82.clone();
         let t83 = S::mul(&t41, &t57);
+        live[14] = t83.clone();
         let t84 = S::mul(&t25, &t47);
+        live[15] = t84.clone();
         let t85 = S::sub(&t84, &t83);
+        live[25] = t85.clone();
         let t86 = S::mul_mul_add(&t34, &t82, &t15, &t85);
         let t87 = S::mul(&t41, &t50);
+        live[8] = t87.clone();
         let t88 = S::mul(&t22, &t47);
+        live[7] = t88.clone();
         let t89 = S::sub(&t87, &t88);
+        live[24] = t89.clone();
         let t90 = S::mul_add(&t2, &t89, &t86);
+        live[35] = t90.clone();
         let t91 = S::mul_add(&p[29], &t90, &t79);
+        live[10] = t91.clone();
         let t92 = S::mul(&t22, &t63);
+        live[16] = t92.clone();
         let t93 = S::mul(&t30, &t50);
+        live[17] = t93.clone();
         let t94 = S::sub(&t93, &t92);
-        let t95 = S::mul(&t41, &t63);
-        let t96 = S::mul(&t30, &t47);
+        live[5] = t94.clone();
+    }
+}
+struct Jacobian1<'a, S> {
+    x: &'a [S; 3],
+    p: &'a [S; 192],
+    values: &'a mut [S; 3],
+    jacobian: &'a mut [S; 9],
+    live: &'a mut [S; 92],
+}
+impl<S: Scalar> Kernel for Jacobian1<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    #[allow(unused_variables)]
+    fn run(self) {
+        let Self { x, p, values, jacobian, live } = self;
+        let t95 = S::mul(&live[0], &live[1]);
+        let t96 = S::mul(&live[2], &live[3]);
         let t97 = S::sub(&t95, &t96);
-        let t98 = S::mul_mul_add(&t34, &t94, &t15, &t97);
-        let t99 = S::sub(&t88, &t87);
-        let t100 = S::mul_add(&t5, &t99, &t98);
-        let t101 = S::mul_add(&p[25], &t100, &t91);
-        let t102 = S::mul(&t25, &t63);
-        let t103 = S::mul(&t30, &t57);
+        let t98 = S::mul_mul_add(&live[4], &live[5], &live[6], &t97);
+        let t99 = S::sub(&live[7], &live[8]);
+        let t100 = S::mul_add(&live[9], &t99, &t98);
+        let t101 = S::mul_add(&p[25], &t100, &live[10]);
+        let t102 = S::mul(&live[11], &live[1]);
+        let t103 = S::mul(&live[2], &live[12]);
         let t104 = S::sub(&t102, &t103);
         let t105 = S::sub(&t96, &t95);
-        let t106 = S::mul_mul_add(&t34, &t104, &t2, &t105);
-        let t107 = S::sub(&t83, &t84);
-        let t108 = S::mul_add(&t5, &t107, &t106);
+        let t106 = S::mul_mul_add(&live[4], &t104, &live[13], &t105);
+        let t107 = S::sub(&live[14], &live[15]);
+        let t108 = S::mul_add(&live[9], &t107, &t106);
         let t109 = S::mul_add(&p[21], &t108, &t101);
         let t110 = S::sub(&t103, &t102);
-        let t111 = S::sub(&t92, &t93);
-        let t112 = S::mul_mul_add(&t15, &t110, &t2, &t111);
-        let t113 = S::sub(&t81, &t80);
-        let t114 = S::mul_add(&t5, &t113, &t112);
+        let t111 = S::sub(&live[16], &live[17]);
+        let t112 = S::mul_mul_add(&live[6], &t110, &live[13], &t111);
+        let t113 = S::sub(&live[18], &live[19]);
+        let t114 = S::mul_add(&live[9], &t113, &t112);
         let t115 = S::mul_add(&p[17], &t114, &t109);
-        let t116 = S::mul_mul_add(&t37, &t113, &t18, &t107);
-        let t117 = S::mul_add(&t8, &t99, &t116);
+        let t116 = S::mul_mul_add(&live[20], &t113, &live[21], &t107);
+        let t117 = S::mul_add(&live[22], &t99, &t116);
         let t118 = S::mul_add(&p[13], &t117, &t115);
-        let t119 = S::mul_mul_add(&t37, &t111, &t18, &t105);
-        let t120 = S::mul_add(&t11, &t89, &t119);
+        let t119 = S::mul_mul_add(&live[20], &t111, &live[21], &t105);
+        let t120 = S::mul_add(&live[23], &live[24], &t119);
         let t121 = S::mul_add(&p[9], &t120, &t118);
-        let t122 = S::mul_mul_add(&t37, &t110, &t8, &t97);
-        let t123 = S::mul_add(&t11, &t85, &t122);
+        let t122 = S::mul_mul_add(&live[20], &t110, &live[22], &t97);
+        let t123 = S::mul_add(&live[23], &live[25], &t122);
         let t124 = S::mul_add(&p[5], &t123, &t121);
-        let t125 = S::mul_mul_add(&t18, &t104, &t8, &t94);
-        let t126 = S::mul_add(&t11, &t82, &t125);
+        let t125 = S::mul_mul_add(&live[21], &t104, &live[22], &live[5]);
+        let t126 = S::mul_add(&live[23], &live[26], &t125);
         jacobian[0] = S::mul_add(&p[1], &t126, &t124);
-        let t128 = S::mul_mul_sub(&p[62], &t60, &p[58], &t54);
-        let t129 = S::mul_add(&p[54], &t44, &t128);
-        let t130 = S::sub_mul(&p[50], &t31, &t129);
-        let t131 = S::mul_add(&p[46], &t69, &t130);
-        let t132 = S::mul_add(&p[42], &t72, &t131);
-        let t133 = S::mul_add(&p[38], &t75, &t132);
-        let t134 = S::mul_add(&p[34], &t78, &t133);
-        let t135 = S::mul_add(&p[30], &t90, &t134);
+        let t128 = S::mul_mul_sub(&p[62], &live[27], &p[58], &live[28]);
+        let t129 = S::mul_add(&p[54], &live[29], &t128);
+        let t130 = S::sub_mul(&p[50], &live[30], &t129);
+        let t131 = S::mul_add(&p[46], &live[31], &t130);
+        let t132 = S::mul_add(&p[42], &live[32], &t131);
+        let t133 = S::mul_add(&p[38], &live[33], &t132);
+        let t134 = S::mul_add(&p[34], &live[34], &t133);
+        let t135 = S::mul_add(&p[30], &live[35], &t134);
         let t136 = S::mul_add(&p[26], &t100, &t135);
         let t137 = S::mul_add(&p[22], &t108, &t136);
         let t138 = S::mul_add(&p[18], &t114, &t137);
@@ -650,14 +777,14 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t140 = S::mul_add(&p[10], &t120, &t139);
         let t141 = S::mul_add(&p[6], &t123, &t140);
         jacobian[3] = S::mul_add(&p[2], &t126, &t141);
-        let t143 = S::mul_mul_sub(&p[63], &t60, &p[59], &t54);
-        let t144 = S::mul_add(&p[55], &t44, &t143);
-        let t145 = S::sub_mul(&p[51], &t31, &t144);
-        let t146 = S::mul_add(&p[47], &t69, &t145);
-        let t147 = S::mul_add(&p[43], &t72, &t146);
-        let t148 = S::mul_add(&p[39], &t75, &t147);
-        let t149 = S::mul_add(&p[35], &t78, &t148);
-        let t150 = S::mul_add(&p[31], &t90, &t149);
+        let t143 = S::mul_mul_sub(&p[63], &live[27], &p[59], &live[28]);
+        let t144 = S::mul_add(&p[55], &live[29], &t143);
+        let t145 = S::sub_mul(&p[51], &live[30], &t144);
+        let t146 = S::mul_add(&p[47], &live[31], &t145);
+        let t147 = S::mul_add(&p[43], &live[32], &t146);
+        let t148 = S::mul_add(&p[39], &live[33], &t147);
+        let t149 = S::mul_add(&p[35], &live[34], &t148);
+        let t150 = S::mul_add(&p[31], &live[35], &t149);
         let t151 = S::mul_add(&p[27], &t100, &t150);
         let t152 = S::mul_add(&p[23], &t108, &t151);
         let t153 = S::mul_add(&p[19], &t114, &t152);
@@ -668,292 +795,393 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t158 = S::mul_add(&p[73], &x[0], &p[72]);
         let t159 = S::mul_add(&p[74], &x[1], &t158);
         let t160 = S::mul_add(&p[75], &x[2], &t159);
+        live[41] = t160.clone();
         let t161 = S::mul_add(&p[77], &x[0], &p[76]);
         let t162 = S::mul_add(&p[78], &x[1], &t161);
         let t163 = S::mul_add(&p[79], &x[2], &t162);
+        live[37] = t163.clone();
         let t164 = S::mul_add(&p[89], &x[0], &p[88]);
         let t165 = S::mul_add(&p[90], &x[1], &t164);
         let t166 = S::mul_add(&p[91], &x[2], &t165);
+        live[40] = t166.clone();
         let t167 = S::mul_add(&p[93], &x[0], &p[92]);
         let t168 = S::mul_add(&p[94], &x[1], &t167);
         let t169 = S::mul_add(&p[95], &x[2], &t168);
+        live[36] = t169.clone();
         let t170 = S::mul_mul_sub(&t160, &t169, &t163, &t166);
+        live[38] = t170.clone();
         let t171 = S::mul_add(&p[69], &x[0], &p[68]);
         let t172 = S::mul_add(&p[70], &x[1], &t171);
         let t173 = S::mul_add(&p[71], &x[2], &t172);
+        live[47] = t173.clone();
         let t174 = S::mul_add(&p[85], &x[0], &p[84]);
         let t175 = S::mul_add(&p[86], &x[1], &t174);
         let t176 = S::mul_add(&p[87], &x[2], &t175);
+        live[46] = t176.clone();
         let t177 = S::mul_mul_sub(&t173, &t169, &t163, &t176);
+        live[44] = t177.clone();
         let t178 = S::mul_add(&p[101], &x[0], &p[100]);
         let t179 = S::mul_add(&p[102], &x[1], &t178);
         let t180 = S::mul_add(&p[103], &x[2], &t179);
+        live[45] = t180.clone();
         let t181 = S::mul_add(&p[105], &x[0], &p[104]);
         let t182 = S::mul_add(&p[106], &x[1], &t181);
         let t183 = S::mul_add(&p[107], &x[2], &t182);
+        live[39] = t183.clone();
         let t184 = S::mul_mul_sub(&t180, &t170, &t183, &t177);
         let t185 = S::mul_mul_sub(&t173, &t166, &t160, &t176);
+        live[48] = t185.clone();
         let t186 = S::mul_add(&p[109], &x[0], &p[108]);
         let t187 = S::mul_add(&p[110], &x[1], &t186);
         let t188 = S::mul_add(&p[111], &x[2], &t187);
+        live[42] = t188.clone();
         let t189 = S::mul_add(&t188, &t185, &t184);
+        live[43] = t189.clone();
+    }
+}
+struct Jacobian2<'a, S> {
+    x: &'a [S; 3],
+    p: &'a [S; 192],
+    values: &'a mut [S; 3],
+    jacobian: &'a mut [S; 9],
+    live: &'a mut [S; 92],
+}
+impl<S: Scalar> Kernel for Jacobian2<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    #[allow(unused_variables)]
+    fn run(self) {
+        let Self { x, p, values, jacobian, live } = self;
         let t190 = S::mul_add(&p[65], &x[0], &p[64]);
         let t191 = S::mul_add(&p[66], &x[1], &t190);
         let t192 = S::mul_add(&p[67], &x[2], &t191);
         let t193 = S::mul_add(&p[81], &x[0], &p[80]);
         let t194 = S::mul_add(&p[82], &x[1], &t193);
         let t195 = S::mul_add(&p[83], &x[2], &t194);
-        let t196 = S::mul_mul_sub(&t192, &t169, &t163, &t195);
+        let t196 = S::mul_mul_sub(&t192, &live[36], &live[37], &t195);
         let t197 = S::mul_add(&p[97], &x[0], &p[96]);
         let t198 = S::mul_add(&p[98], &x[1], &t197);
         let t199 = S::mul_add(&p[99], &x[2], &t198);
-        let t200 = S::mul_mul_sub(&t199, &t170, &t183, &t196);
-        let t201 = S::mul_mul_sub(&t192, &t166, &t160, &t195);
-        let t202 = S::mul_add(&t188, &t201, &t200);
+        let t200 = S::mul_mul_sub(&t199, &live[38], &live[39], &t196);
+        let t201 = S::mul_mul_sub(&t192, &live[40], &live[41], &t195);
+        let t202 = S::mul_add(&live[42], &t201, &t200);
+        live[53] = t202.clone();
         let t203 = S::mul_add(&p[113], &x[0], &p[112]);
         let t204 = S::mul_add(&p[114], &x[1], &t203);
         let t205 = S::mul_add(&p[115], &x[2], &t204);
         let t206 = S::mul_add(&p[117], &x[0], &p[116]);
         let t207 = S::mul_add(&p[118], &x[1], &t206);
         let t208 = S::mul_add(&p[119], &x[2], &t207);
-        let t209 = S::mul_mul_sub(&t208, &t202, &t205, &t189);
-        let t210 = S::mul_mul_sub(&t199, &t177, &t180, &t196);
-        let t211 = S::mul_mul_sub(&t192, &t176, &t173, &t195);
-        let t212 = S::mul_add(&t188, &t211, &t210);
+        let t209 = S::mul_mul_sub(&t208, &t202, &t205, &live[43]);
+        let t210 = S::mul_mul_sub(&t199, &live[44], &live[45], &t196);
+        let t211 = S::mul_mul_sub(&t192, &live[46], &live[47], &t195);
+        let t212 = S::mul_add(&live[42], &t211, &t210);
+        live[52] = t212.clone();
         let t213 = S::mul_add(&p[121], &x[0], &p[120]);
         let t214 = S::mul_add(&p[122], &x[1], &t213);
         let t215 = S::mul_add(&p[123], &x[2], &t214);
         let t216 = S::sub_mul(&t215, &t212, &t209);
-        let t217 = S::mul_mul_sub(&t199, &t185, &t180, &t201);
-        let t218 = S::mul_add(&t183, &t211, &t217);
+        let t217 = S::mul_mul_sub(&t199, &live[48], &live[45], &t201);
+        let t218 = S::mul_add(&live[39], &t211, &t217);
+        live[51] = t218.clone();
         let t219 = S::mul_add(&p[125], &x[0], &p[124]);
         let t220 = S::mul_add(&p[126], &x[1], &t219);
         let t221 = S::mul_add(&p[127], &x[2], &t220);
         values[1] = S::mul_add(&t221, &t218, &t216);
         let t223 = S::mul_mul_sub(&p[125], &t218, &p[121], &t212);
         let t224 = S::mul_add(&p[117], &t202, &t223);
-        let t225 = S::sub_mul(&p[113], &t189, &t224);
+        let t225 = S::sub_mul(&p[113], &live[43], &t224);
         let t226 = S::mul_mul_sub(&t208, &t201, &t215, &t211);
-        let t227 = S::sub_mul(&t205, &t185, &t226);
+        let t227 = S::sub_mul(&t205, &live[48], &t226);
+        live[54] = t227.clone();
         let t228 = S::mul_add(&p[109], &t227, &t225);
         let t229 = S::mul_mul_sub(&t221, &t211, &t208, &t196);
-        let t230 = S::mul_add(&t205, &t177, &t229);
+        let t230 = S::mul_add(&t205, &live[44], &t229);
+        live[55] = t230.clone();
         let t231 = S::mul_add(&p[105], &t230, &t228);
         let t232 = S::mul_mul_sub(&t215, &t196, &t221, &t201);
-        let t233 = S::sub_mul(&t205, &t170, &t232);
+        let t233 = S::sub_mul(&t205, &live[38], &t232);
+        live[56] = t233.clone();
         let t234 = S::mul_add(&p[101], &t233, &t231);
-        let t235 = S::mul_mul_sub(&t221, &t185, &t215, &t177);
-        let t236 = S::mul_add(&t208, &t170, &t235);
+        let t235 = S::mul_mul_sub(&t221, &live[48], &t215, &live[44]);
+        let t236 = S::mul_add(&t208, &live[38], &t235);
+        live[57] = t236.clone();
         let t237 = S::mul_add(&p[97], &t236, &t234);
-        let t238 = S::mul(&t180, &t215);
-        let t239 = S::mul(&t183, &t208);
+        let t238 = S::mul(&live[45], &t215);
+        let t239 = S::mul(&live[39], &t208);
         let t240 = S::sub(&t238, &t239);
         let t241 = S::mul(&t199, &t215);
-        let t242 = S::mul(&t183, &t205);
+        let t242 = S::mul(&live[39], &t205);
         let t243 = S::sub(&t242, &t241);
-        let t244 = S::mul_mul_add(&t192, &t240, &t173, &t243);
+        let t244 = S::mul_mul_add(&t192, &t240, &live[47], &t243);
         let t245 = S::mul(&t199, &t208);
-        let t246 = S::mul(&t180, &t205);
+        let t246 = S::mul(&live[45], &t205);
         let t247 = S::sub(&t245, &t246);
-        let t248 = S::mul_add(&t160, &t247, &t244);
+        let t248 = S::mul_add(&live[41], &t247, &t244);
+        live[58] = t248.clone();
         let t249 = S::mul_add(&p[93], &t248, &t237);
-        let t250 = S::mul(&t180, &t221);
-        let t251 = S::mul(&t188, &t208);
+        let t250 = S::mul(&live[45], &t221);
+        let t251 = S::mul(&live[42], &t208);
         let t252 = S::sub(&t251, &t250);
         let t253 = S::mul(&t199, &t221);
-        let t254 = S::mul(&t188, &t205);
+        let t254 = S::mul(&live[42], &t205);
         let t255 = S::sub(&t253, &t254);
-        let t256 = S::mul_mul_add(&t192, &t252, &t173, &t255);
+        let t256 = S::mul_mul_add(&t192, &t252, &live[47], &t255);
         let t257 = S::sub(&t246, &t245);
-        let t258 = S::mul_add(&t163, &t257, &t256);
+        let t258 = S::mul_add(&live[37], &t257, &t256);
+        live[59] = t258.clone();
         let t259 = S::mul_add(&p[89], &t258, &t249);
-        let t260 = S::mul(&t183, &t221);
-        let t261 = S::mul(&t188, &t215);
+        let t260 = S::mul(&live[39], &t221);
+        let t261 = S::mul(&live[42], &t215);
         let t262 = S::sub(&t260, &t261);
         let t263 = S::sub(&t254, &t253);
-        let t264 = S::mul_mul_add(&t192, &t262, &t160, &t263);
+        let t264 = S::mul_mul_add(&t192, &t262, &live[41], &t263);
         let t265 = S::sub(&t241, &t242);
-        let t266 = S::mul_add(&t163, &t265, &t264);
+        let t266 = S::mul_add(&live[37], &t265, &t264);
+        live[60] = t266.clone();
         let t267 = S::mul_add(&p[85], &t266, &t259);
         let t268 = S::sub(&t261, &t260);
         let t269 = S::sub(&t250, &t251);
-        let t270 = S::mul_mul_add(&t173, &t268, &t160, &t269);
+        let t270 = S::mul_mul_add(&live[47], &t268, &live[41], &t269);
         let t271 = S::sub(&t239, &t238);
-        let t272 = S::mul_add(&t163, &t271, &t270);
+        let t272 = S::mul_add(&live[37], &t271, &t270);
+        live[61] = t272.clone();
         let t273 = S::mul_add(&p[81], &t272, &t267);
-        let t274 = S::mul_mul_add(&t195, &t271, &t176, &t265);
-        let t275 = S::mul_add(&t166, &t257, &t274);
+        let t274 = S::mul_mul_add(&t195, &t271, &live[46], &t265);
+        let t275 = S::mul_add(&live[40], &t257, &t274);
+        live[62] = t275.clone();
         let t276 = S::mul_add(&p[77], &t275, &t273);
-        let t277 = S::mul_mul_add(&t195, &t269, &t176, &t263);
-        let t278 = S::mul_add(&t169, &t247, &t277);
+        let t277 = S::mul_mul_add(&t195, &t269, &live[46], &t263);
+        let t278 = S::mul_add(&live[36], &t247, &t277);
+        live[63] = t278.clone();
         let t279 = S::mul_add(&p[73], &t278, &t276);
-        let t280 = S::mul_mul_add(&t195, &t268, &t166, &t255);
-        let t281 = S::mul_add(&t169, &t243, &t280);
+        let t280 = S::mul_mul_add(&t195, &t268, &live[40], &t255);
+        let t281 = S::mul_add(&live[36], &t243, &t280);
+        live[64] = t281.clone();
         let t282 = S::mul_add(&p[69], &t281, &t279);
-        let t283 = S::mul_mul_add(&t176, &t262, &t166, &t252);
-        let t284 = S::mul_add(&t169, &t240, &t283);
-        jacobian[1] = S::mul_add(&p[65], &t284, &t282);
-        let t286 = S::mul_mul_sub(&p[126], &t218, &p[122], &t212);
-        let t287 = S::mul_add(&p[118], &t202, &t286);
-        let t288 = S::sub_mul(&p[114], &t189, &t287);
-        let t289 = S::mul_add(&p[110], &t227, &t288);
-        let t290 = S::mul_add(&p[106], &t230, &t289);
-        let t291 = S::mul_add(&p[102], &t233, &t290);
-        let t292 = S::mul_add(&p[98], &t236, &t291);
-        let t293 = S::mul_add(&p[94], &t248, &t292);
-        let t294 = S::mul_add(&p[90], &t258, &t293);
-        let t295 = S::mul_add(&p[86], &t266, &t294);
-        let t296 = S::mul_add(&p[82], &t272, &t295);
-        let t297 = S::mul_add(&p[78], &t275, &t296);
-        let t298 = S::mul_add(&p[74], &t278, &t297);
-        let t299 = S::mul_add(&p[70], &t281, &t298);
-        jacobian[4] = S::mul_add(&p[66], &t284, &t299);
-        let t301 = S::mul_mul_sub(&p[127], &t218, &p[123], &t212);
-        let t302 = S::mul_add(&p[119], &t202, &t301);
-        let t303 = S::sub_mul(&p[115], &t189, &t302);
-        let t304 = S::mul_add(&p[111], &t227, &t303);
-        let t305 = S::mul_add(&p[107], &t230, &t304);
-        let t306 = S::mul_add(&p[103], &t233, &t305);
-        let t307 = S::mul_add(&p[99], &t236, &t306);
-        let t308 = S::mul_add(&p[95], &t248, &t307);
-        let t309 = S::mul_add(&p[91], &t258, &t308);
-        let t310 = S::mul_add(&p[87], &t266, &t309);
-        let t311 = S::mul_add(&p[83], &t272, &t310);
-        let t312 = S::mul_add(&p[79], &t275, &t311);
-        let t313 = S::mul_add(&p[75], &t278, &t312);
-        let t314 = S::mul_add(&p[71], &t281, &t313);
-        jacobian[7] = S::mul_add(&p[67], &t284, &t314);
+        live[50] = t282.clone();
+        let t283 = S::mul_mul_add(&live[46], &t262, &live[40], &t252);
+        let t284 = S::mul_add(&live[36], &t240, &t283);
+        live[49] = t284.clone();
+    }
+}
+struct Jacobian3<'a, S> {
+    x: &'a [S; 3],
+    p: &'a [S; 192],
+    values: &'a mut [S; 3],
+    jacobian: &'a mut [S; 9],
+    live: &'a mut [S; 92],
+}
+impl<S: Scalar> Kernel for Jacobian3<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    #[allow(unused_variables)]
+    fn run(self) {
+        let Self { x, p, values, jacobian, live } = self;
+        jacobian[1] = S::mul_add(&p[65], &live[49], &live[50]);
+        let t286 = S::mul_mul_sub(&p[126], &live[51], &p[122], &live[52]);
+        let t287 = S::mul_add(&p[118], &live[53], &t286);
+        let t288 = S::sub_mul(&p[114], &live[43], &t287);
+        let t289 = S::mul_add(&p[110], &live[54], &t288);
+        let t290 = S::mul_add(&p[106], &live[55], &t289);
+        let t291 = S::mul_add(&p[102], &live[56], &t290);
+        let t292 = S::mul_add(&p[98], &live[57], &t291);
+        let t293 = S::mul_add(&p[94], &live[58], &t292);
+        let t294 = S::mul_add(&p[90], &live[59], &t293);
+        let t295 = S::mul_add(&p[86], &live[60], &t294);
+        let t296 = S::mul_add(&p[82], &live[61], &t295);
+        let t297 = S::mul_add(&p[78], &live[62], &t296);
+        let t298 = S::mul_add(&p[74], &live[63], &t297);
+        let t299 = S::mul_add(&p[70], &live[64], &t298);
+        jacobian[4] = S::mul_add(&p[66], &live[49], &t299);
+        let t301 = S::mul_mul_sub(&p[127], &live[51], &p[123], &live[52]);
+        let t302 = S::mul_add(&p[119], &live[53], &t301);
+        let t303 = S::sub_mul(&p[115], &live[43], &t302);
+        let t304 = S::mul_add(&p[111], &live[54], &t303);
+        let t305 = S::mul_add(&p[107], &live[55], &t304);
+        let t306 = S::mul_add(&p[103], &live[56], &t305);
+        let t307 = S::mul_add(&p[99], &live[57], &t306);
+        let t308 = S::mul_add(&p[95], &live[58], &t307);
+        let t309 = S::mul_add(&p[91], &live[59], &t308);
+        let t310 = S::mul_add(&p[87], &live[60], &t309);
+        let t311 = S::mul_add(&p[83], &live[61], &t310);
+        let t312 = S::mul_add(&p[79], &live[62], &t311);
+        let t313 = S::mul_add(&p[75], &live[63], &t312);
+        let t314 = S::mul_add(&p[71], &live[64], &t313);
+        jacobian[7] = S::mul_add(&p[67], &live[49], &t314);
         let t316 = S::mul_add(&p[137], &x[0], &p[136]);
         let t317 = S::mul_add(&p[138], &x[1], &t316);
         let t318 = S::mul_add(&p[139], &x[2], &t317);
+        live[85] = t318.clone();
         let t319 = S::mul_add(&p[141], &x[0], &p[140]);
         let t320 = S::mul_add(&p[142], &x[1], &t319);
         let t321 = S::mul_add(&p[143], &x[2], &t320);
+        live[87] = t321.clone();
         let t322 = S::mul_add(&p[153], &x[0], &p[152]);
         let t323 = S::mul_add(&p[154], &x[1], &t322);
         let t324 = S::mul_add(&p[155], &x[2], &t323);
+        live[90] = t324.clone();
         let t325 = S::mul_add(&p[157], &x[0], &p[156]);
         let t326 = S::mul_add(&p[158], &x[1], &t325);
         let t327 = S::mul_add(&p[159], &x[2], &t326);
+        live[91] = t327.clone();
         let t328 = S::mul_mul_sub(&t318, &t327, &t321, &t324);
+        live[79] = t328.clone();
         let t329 = S::mul_add(&p[133], &x[0], &p[132]);
         let t330 = S::mul_add(&p[134], &x[1], &t329);
         let t331 = S::mul_add(&p[135], &x[2], &t330);
+        live[84] = t331.clone();
         let t332 = S::mul_add(&p[149], &x[0], &p[148]);
         let t333 = S::mul_add(&p[150], &x[1], &t332);
         let t334 = S::mul_add(&p[151], &x[2], &t333);
+        live[89] = t334.clone();
         let t335 = S::mul_mul_sub(&t331, &t327, &t321, &t334);
+        live[78] = t335.clone();
         let t336 = S::mul_add(&p[165], &x[0], &p[164]);
         let t337 = S::mul_add(&p[166], &x[1], &t336);
         let t338 = S::mul_add(&p[167], &x[2], &t337);
+        live[80] = t338.clone();
         let t339 = S::mul_add(&p[169], &x[0], &p[168]);
         let t340 = S::mul_add(&p[170], &x[1], &t339);
         let t341 = S::mul_add(&p[171], &x[2], &t340);
+        live[81] = t341.clone();
         let t342 = S::mul_mul_sub(&t338, &t328, &t341, &t335);
         let t343 = S::mul_mul_sub(&t331, &t324, &t318, &t334);
+        live[76] = t343.clone();
         let t344 = S::mul_add(&p[173], &x[0], &p[172]);
         let t345 = S::mul_add(&p[174], &x[1], &t344);
         let t346 = S::mul_add(&p[175], &x[2], &t345);
+        live[86] = t346.clone();
         let t347 = S::mul_add(&t346, &t343, &t342);
+        live[70] = t347.clone();
         let t348 = S::mul_add(&p[129], &x[0], &p[128]);
         let t349 = S::mul_add(&p[130], &x[1], &t348);
         let t350 = S::mul_add(&p[131], &x[2], &t349);
+        live[83] = t350.clone();
         let t351 = S::mul_add(&p[145], &x[0], &p[144]);
         let t352 = S::mul_add(&p[146], &x[1], &t351);
         let t353 = S::mul_add(&p[147], &x[2], &t352);
+        live[88] = t353.clone();
         let t354 = S::mul_mul_sub(&t350, &t327, &t321, &t353);
+        live[77] = t354.clone();
         let t355 = S::mul_add(&p[161], &x[0], &p[160]);
         let t356 = S::mul_add(&p[162], &x[1], &t355);
         let t357 = S::mul_add(&p[163], &x[2], &t356);
+        live[82] = t357.clone();
         let t358 = S::mul_mul_sub(&t357, &t328, &t341, &t354);
         let t359 = S::mul_mul_sub(&t350, &t324, &t318, &t353);
+        live[72] = t359.clone();
         let t360 = S::mul_add(&t346, &t359, &t358);
+        live[69] = t360.clone();
         let t361 = S::mul_add(&p[177], &x[0], &p[176]);
         let t362 = S::mul_add(&p[178], &x[1], &t361);
         let t363 = S::mul_add(&p[179], &x[2], &t362);
+        live[75] = t363.clone();
         let t364 = S::mul_add(&p[181], &x[0], &p[180]);
         let t365 = S::mul_add(&p[182], &x[1], &t364);
         let t366 = S::mul_add(&p[183], &x[2], &t365);
+        live[71] = t366.clone();
         let t367 = S::mul_mul_sub(&t366, &t360, &t363, &t347);
         let t368 = S::mul_mul_sub(&t357, &t335, &t338, &t354);
         let t369 = S::mul_mul_sub(&t350, &t334, &t331, &t353);
+        live[74] = t369.clone();
         let t370 = S::mul_add(&t346, &t369, &t368);
+        live[68] = t370.clone();
         let t371 = S::mul_add(&p[185], &x[0], &p[184]);
         let t372 = S::mul_add(&p[186], &x[1], &t371);
         let t373 = S::mul_add(&p[187], &x[2], &t372);
+        live[73] = t373.clone();
         let t374 = S::sub_mul(&t373, &t370, &t367);
+        live[67] = t374.clone();
         let t375 = S::mul_mul_sub(&t357, &t343, &t338, &t359);
         let t376 = S::mul_add(&t341, &t369, &t375);
+        live[66] = t376.clone();
         let t377 = S::mul_add(&p[189], &x[0], &p[188]);
         let t378 = S::mul_add(&p[190], &x[1], &t377);
         let t379 = S::mul_add(&p[191], &x[2], &t378);
-        values[2] = S::mul_add(&t379, &t376, &t374);
-        let t381 = S::mul_mul_sub(&p[189], &t376, &p[185], &t370);
-        let t382 = S::mul_add(&p[181], &t360, &t381);
-        let t383 = S::sub_mul(&p[177], &t347, &t382);
-        let t384 = S::mul_mul_sub(&t366, &t359, &t373, &t369);
-        let t385 = S::sub_mul(&t363, &t343, &t384);
+        live[65] = t379.clone();
+    }
+}
+struct Jacobian4<'a, S> {
+    x: &'a [S; 3],
+    p: &'a [S; 192],
+    values: &'a mut [S; 3],
+    jacobian: &'a mut [S; 9],
+    live: &'a mut [S; 92],
+}
+impl<S: Scalar> Kernel for Jacobian4<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    #[allow(unused_variables)]
+    fn run(self) {
+        let Self { x, p, values, jacobian, live } = self;
+        values[2] = S::mul_add(&live[65], &live[66], &live[67]);
+        let t381 = S::mul_mul_sub(&p[189], &live[66], &p[185], &live[68]);
+        let t382 = S::mul_add(&p[181], &live[69], &t381);
+        let t383 = S::sub_mul(&p[177], &live[70], &t382);
+        let t384 = S::mul_mul_sub(&live[71], &live[72], &live[73], &live[74]);
+        let t385 = S::sub_mul(&live[75], &live[76], &t384);
         let t386 = S::mul_add(&p[173], &t385, &t383);
-        let t387 = S::mul_mul_sub(&t379, &t369, &t366, &t354);
-        let t388 = S::mul_add(&t363, &t335, &t387);
+        let t387 = S::mul_mul_sub(&live[65], &live[74], &live[71], &live[77]);
+        let t388 = S::mul_add(&live[75], &live[78], &t387);
         let t389 = S::mul_add(&p[169], &t388, &t386);
-        let t390 = S::mul_mul_sub(&t373, &t354, &t379, &t359);
-        let t391 = S::sub_mul(&t363, &t328, &t390);
+        let t390 = S::mul_mul_sub(&live[73], &live[77], &live[65], &live[72]);
+        let t391 = S::sub_mul(&live[75], &live[79], &t390);
         let t392 = S::mul_add(&p[165], &t391, &t389);
-        let t393 = S::mul_mul_sub(&t379, &t343, &t373, &t335);
-        let t394 = S::mul_add(&t366, &t328, &t393);
+        let t393 = S::mul_mul_sub(&live[65], &live[76], &live[73], &live[78]);
+        let t394 = S::mul_add(&live[71], &live[79], &t393);
         let t395 = S::mul_add(&p[161], &t394, &t392);
-        let t396 = S::mul(&t338, &t373);
-        let t397 = S::mul(&t341, &t366);
+        let t396 = S::mul(&live[80], &live[73]);
+        let t397 = S::mul(&live[81], &live[71]);
         let t398 = S::sub(&t396, &t397);
-        let t399 = S::mul(&t357, &t373);
-        let t400 = S::mul(&t341, &t363);
+        let t399 = S::mul(&live[82], &live[73]);
+        let t400 = S::mul(&live[81], &live[75]);
         let t401 = S::sub(&t400, &t399);
-        let t402 = S::mul_mul_add(&t350, &t398, &t331, &t401);
-        let t403 = S::mul(&t357, &t366);
-        let t404 = S::mul(&t338, &t363);
+        let t402 = S::mul_mul_add(&live[83], &t398, &live[84], &t401);
+        let t403 = S::mul(&live[82], &live[71]);
+        let t404 = S::mul(&live[80], &live[75]);
         let t405 = S::sub(&t403, &t404);
-        let t406 = S::mul_add(&t318, &t405, &t402);
+        let t406 = S::mul_add(&live[85], &t405, &t402);
         let t407 = S::mul_add(&p[157], &t406, &t395);
-        let t408 = S::mul(&t338, &t379);
-        let t409 = S::mul(&t346, &t366);
+        let t408 = S::mul(&live[80], &live[65]);
+        let t409 = S::mul(&live[86], &live[71]);
         let t410 = S::sub(&t409, &t408);
-        let t411 = S::mul(&t357, &t379);
-        let t412 = S::mul(&t346, &t363);
+        let t411 = S::mul(&live[82], &live[65]);
+        let t412 = S::mul(&live[86], &live[75]);
         let t413 = S::sub(&t411, &t412);
-        let t414 = S::mul_mul_add(&t350, &t410, &t331, &t413);
+        let t414 = S::mul_mul_add(&live[83], &t410, &live[84], &t413);
         let t415 = S::sub(&t404, &t403);
-        let t416 = S::mul_add(&t321, &t415, &t414);
+        let t416 = S::mul_add(&live[87], &t415, &t414);
         let t417 = S::mul_add(&p[153], &t416, &t407);
-        let t418 = S::mul(&t341, &t379);
-        let t419 = S::mul(&t346, &t373);
+        let t418 = S::mul(&live[81], &live[65]);
+        let t419 = S::mul(&live[86], &live[73]);
         let t420 = S::sub(&t418, &t419);
         let t421 = S::sub(&t412, &t411);
-        let t422 = S::mul_mul_add(&t350, &t420, &t318, &t421);
+        let t422 = S::mul_mul_add(&live[83], &t420, &live[85], &t421);
         let t423 = S::sub(&t399, &t400);
-        let t424 = S::mul_add(&t321, &t423, &t422);
+        let t424 = S::mul_add(&live[87], &t423, &t422);
         let t425 = S::mul_add(&p[149], &t424, &t417);
         let t426 = S::sub(&t419, &t418);
         let t427 = S::sub(&t408, &t409);
-        let t428 = S::mul_mul_add(&t331, &t426, &t318, &t427);
+        let t428 = S::mul_mul_add(&live[84], &t426, &live[85], &t427);
         let t429 = S::sub(&t397, &t396);
-        let t430 = S::mul_add(&t321, &t429, &t428);
+        let t430 = S::mul_add(&live[87], &t429, &t428);
         let t431 = S::mul_add(&p[145], &t430, &t425);
-        let t432 = S::mul_mul_add(&t353, &t429, &t334, &t423);
-        let t433 = S::mul_add(&t324, &t415, &t432);
+        let t432 = S::mul_mul_add(&live[88], &t429, &live[89], &t423);
+        let t433 = S::mul_add(&live[90], &t415, &t432);
         let t434 = S::mul_add(&p[141], &t433, &t431);
-        let t435 = S::mul_mul_add(&t353, &t427, &t334, &t421);
-        let t436 = S::mul_add(&t327, &t405, &t435);
+        let t435 = S::mul_mul_add(&live[88], &t427, &live[89], &t421);
+        let t436 = S::mul_add(&live[91], &t405, &t435);
         let t437 = S::mul_add(&p[137], &t436, &t434);
-        let t438 = S::mul_mul_add(&t353, &t426, &t324, &t413);
-        let t439 = S::mul_add(&t327, &t401, &t438);
+        let t438 = S::mul_mul_add(&live[88], &t426, &live[90], &t413);
+        let t439 = S::mul_add(&live[91], &t401, &t438);
         let t440 = S::mul_add(&p[133], &t439, &t437);
-        let t441 = S::mul_mul_add(&t334, &t420, &t324, &t410);
-        let t442 = S::mul_add(&t327, &t398, &t441);
+        let t441 = S::mul_mul_add(&live[89], &t420, &live[90], &t410);
+        let t442 = S::mul_add(&live[91], &t398, &t441);
         jacobian[2] = S::mul_add(&p[129], &t442, &t440);
-        let t444 = S::mul_mul_sub(&p[190], &t376, &p[186], &t370);
-        let t445 = S::mul_add(&p[182], &t360, &t444);
-        let t446 = S::sub_mul(&p[178], &t347, &t445);
+        let t444 = S::mul_mul_sub(&p[190], &live[66], &p[186], &live[68]);
+        let t445 = S::mul_add(&p[182], &live[69], &t444);
+        let t446 = S::sub_mul(&p[178], &live[70], &t445);
         let t447 = S::mul_add(&p[174], &t385, &t446);
         let t448 = S::mul_add(&p[170], &t388, &t447);
         let t449 = S::mul_add(&p[166], &t391, &t448);
@@ -966,9 +1194,9 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t456 = S::mul_add(&p[138], &t436, &t455);
         let t457 = S::mul_add(&p[134], &t439, &t456);
         jacobian[5] = S::mul_add(&p[130], &t442, &t457);
-        let t459 = S::mul_mul_sub(&p[191], &t376, &p[187], &t370);
-        let t460 = S::mul_add(&p[183], &t360, &t459);
-        let t461 = S::sub_mul(&p[179], &t347, &t460);
+        let t459 = S::mul_mul_sub(&p[191], &live[66], &p[187], &live[68]);
+        let t460 = S::mul_add(&p[183], &live[69], &t459);
+        let t461 = S::sub_mul(&p[179], &live[70], &t460);
         let t462 = S::mul_add(&p[175], &t385, &t461);
         let t463 = S::mul_add(&p[171], &t388, &t462);
         let t464 = S::mul_add(&p[167], &t391, &t463);

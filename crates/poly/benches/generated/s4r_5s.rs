@@ -162,7 +162,7 @@ impl Evaluate for S4r5s {
         15
     }
     fn memory<S: Scalar>(&self, isa: Isa) -> Memory<S> {
-        Memory::new(isa, &CONSTANTS, 0, &TAYLOR)
+        Memory::new(isa, &CONSTANTS, 33, &TAYLOR)
     }
     fn values<S: Scalar>(
         &self,
@@ -178,6 +178,15 @@ impl Evaluate for S4r5s {
                 x: x.first_chunk().expect("as long as cut"),
                 p: p.first_chunk().expect("as long as cut"),
                 values: values.first_chunk_mut().expect("as long as cut"),
+                live: memory.live.first_chunk_mut().expect("made by Memory::new"),
+            });
+        memory
+            .isa
+            .run(Values1 {
+                x: x.first_chunk().expect("as long as cut"),
+                p: p.first_chunk().expect("as long as cut"),
+                values: values.first_chunk_mut().expect("as long as cut"),
+                live: memory.live.first_chunk_mut().expect("made by Memory::new"),
             });
     }
     fn jacobian<S: Scalar>(
@@ -201,6 +210,34 @@ impl Evaluate for S4r5s {
                 p: p.first_chunk().expect("as long as cut"),
                 values: values.first_chunk_mut().expect("as long as cut"),
                 jacobian: jacobian.first_chunk_mut().expect("as long as cut"),
+                live: memory.live.first_chunk_mut().expect("made by Memory::new"),
+            });
+        memory
+            .isa
+            .run(Jacobian1 {
+                x: x.first_chunk().expect("as long as cut"),
+                p: p.first_chunk().expect("as long as cut"),
+                values: values.first_chunk_mut().expect("as long as cut"),
+                jacobian: jacobian.first_chunk_mut().expect("as long as cut"),
+                live: memory.live.first_chunk_mut().expect("made by Memory::new"),
+            });
+        memory
+            .isa
+            .run(Jacobian2 {
+                x: x.first_chunk().expect("as long as cut"),
+                p: p.first_chunk().expect("as long as cut"),
+                values: values.first_chunk_mut().expect("as long as cut"),
+                jacobian: jacobian.first_chunk_mut().expect("as long as cut"),
+                live: memory.live.first_chunk_mut().expect("made by Memory::new"),
+            });
+        memory
+            .isa
+            .run(Jacobian3 {
+                x: x.first_chunk().expect("as long as cut"),
+                p: p.first_chunk().expect("as long as cut"),
+                values: values.first_chunk_mut().expect("as long as cut"),
+                jacobian: jacobian.first_chunk_mut().expect("as long as cut"),
+                live: memory.live.first_chunk_mut().expect("made by Memory::new"),
             });
     }
     fn taylor<S: Scalar>(
@@ -218,13 +255,14 @@ struct Values0<'a, S> {
     x: &'a [S; 5],
     p: &'a [S; 15],
     values: &'a mut [S; 5],
+    live: &'a mut [S; 5],
 }
 impl<S: Scalar> Kernel for Values0<'_, S> {
     type Output = ();
     #[inline(always)]
     #[allow(unused_variables)]
     fn run(self) {
-        let Self { x, p, values } = self;
+        let Self { x, p, values, live } = self;
         let c0 = S::from_parts([2.0, 0.0], [0.0, 0.0]);
         let t0 = S::sqr(&p[0]);
         let t1 = S::sqr(&p[1]);
@@ -240,6 +278,7 @@ impl<S: Scalar> Kernel for Values0<'_, S> {
         let t11 = S::mul_add(&x[4], &t10, &t9);
         let t12 = S::sub_mul(&x[0], &x[2], &t11);
         let t13 = S::sub_mul(&x[1], &x[4], &t12);
+        live[0] = t13.clone();
         let t14 = S::add(&t4, &t13);
         let t15 = S::sub(&x[2], &t0);
         let t16 = S::mul_mul_add(&p[0], &x[0], &p[1], &x[1]);
@@ -257,6 +296,7 @@ impl<S: Scalar> Kernel for Values0<'_, S> {
         let t28 = S::sqr(&t14);
         let t29 = S::sqr(&x[3]);
         let t30 = S::mul_sub(&x[2], &x[4], &t29);
+        live[4] = t30.clone();
         values[0] = S::sub_mul(&t30, &t28, &t27);
         let t32 = S::sqr(&p[3]);
         let t33 = S::sqr(&p[4]);
@@ -280,17 +320,35 @@ impl<S: Scalar> Kernel for Values0<'_, S> {
         let t51 = S::sqr(&t37);
         values[1] = S::sub_mul(&t30, &t51, &t50);
         let t53 = S::sqr(&p[6]);
+        live[2] = t53.clone();
         let t54 = S::sqr(&p[7]);
+        live[3] = t54.clone();
         let t55 = S::mul_mul_add(&x[0], &t53, &x[1], &t54);
         let t56 = S::sqr(&p[8]);
         let t57 = S::sub(&t55, &t56);
-        let t58 = S::add(&t13, &t57);
-        let t59 = S::sub(&x[2], &t53);
+        live[1] = t57.clone();
+    }
+}
+struct Values1<'a, S> {
+    x: &'a [S; 5],
+    p: &'a [S; 15],
+    values: &'a mut [S; 5],
+    live: &'a mut [S; 5],
+}
+impl<S: Scalar> Kernel for Values1<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    #[allow(unused_variables)]
+    fn run(self) {
+        let Self { x, p, values, live } = self;
+        let c0 = S::from_parts([2.0, 0.0], [0.0, 0.0]);
+        let t58 = S::add(&live[0], &live[1]);
+        let t59 = S::sub(&x[2], &live[2]);
         let t60 = S::mul_mul_add(&p[6], &x[0], &p[7], &x[1]);
         let t61 = S::sub(&t60, &p[8]);
         let t62 = S::mul_mul_add(&t59, &t61, &p[6], &t58);
         let t63 = S::mul(&x[3], &t62);
-        let t64 = S::sub(&x[4], &t54);
+        let t64 = S::sub(&x[4], &live[3]);
         let t65 = S::mul_mul_add(&t61, &t64, &p[7], &t58);
         let t66 = S::mul(&t63, &t65);
         let t67 = S::mul_real(&t66, &c0);
@@ -299,13 +357,13 @@ impl<S: Scalar> Kernel for Values0<'_, S> {
         let t70 = S::sqr(&t65);
         let t71 = S::mul_add(&x[2], &t70, &t69);
         let t72 = S::sqr(&t58);
-        values[2] = S::sub_mul(&t30, &t72, &t71);
+        values[2] = S::sub_mul(&live[4], &t72, &t71);
         let t74 = S::sqr(&p[9]);
         let t75 = S::sqr(&p[10]);
         let t76 = S::mul_mul_add(&x[0], &t74, &x[1], &t75);
         let t77 = S::sqr(&p[11]);
         let t78 = S::sub(&t76, &t77);
-        let t79 = S::add(&t13, &t78);
+        let t79 = S::add(&live[0], &t78);
         let t80 = S::sub(&x[2], &t74);
         let t81 = S::mul_mul_add(&p[9], &x[0], &p[10], &x[1]);
         let t82 = S::sub(&t81, &p[11]);
@@ -320,13 +378,13 @@ impl<S: Scalar> Kernel for Values0<'_, S> {
         let t91 = S::sqr(&t86);
         let t92 = S::mul_add(&x[2], &t91, &t90);
         let t93 = S::sqr(&t79);
-        values[3] = S::sub_mul(&t30, &t93, &t92);
+        values[3] = S::sub_mul(&live[4], &t93, &t92);
         let t95 = S::sqr(&p[12]);
         let t96 = S::sqr(&p[13]);
         let t97 = S::mul_mul_add(&x[0], &t95, &x[1], &t96);
         let t98 = S::sqr(&p[14]);
         let t99 = S::sub(&t97, &t98);
-        let t100 = S::add(&t13, &t99);
+        let t100 = S::add(&live[0], &t99);
         let t101 = S::sub(&x[2], &t95);
         let t102 = S::mul_mul_add(&p[12], &x[0], &p[13], &x[1]);
         let t103 = S::sub(&t102, &p[14]);
@@ -341,7 +399,7 @@ impl<S: Scalar> Kernel for Values0<'_, S> {
         let t112 = S::sqr(&t107);
         let t113 = S::mul_add(&x[2], &t112, &t111);
         let t114 = S::sqr(&t100);
-        values[4] = S::sub_mul(&t30, &t114, &t113);
+        values[4] = S::sub_mul(&live[4], &t114, &t113);
     }
 }
 struct Jacobian0<'a, S> {
@@ -349,13 +407,14 @@ struct Jacobian0<'a, S> {
     p: &'a [S; 15],
     values: &'a mut [S; 5],
     jacobian: &'a mut [S; 25],
+    live: &'a mut [S; 33],
 }
 impl<S: Scalar> Kernel for Jacobian0<'_, S> {
     type Output = ();
     #[inline(always)]
     #[allow(unused_variables)]
     fn run(self) {
-        let Self { x, p, values, jacobian } = self;
+        let Self { x, p, values, jacobian, live } = self;
         let c0 = S::from_parts([2.0, 0.0], [0.0, 0.0]);
         let c1 = S::from_parts([-2.0, 0.0], [0.0, 0.0]);
         let t0 = S::sqr(&p[0]);
@@ -364,14 +423,18 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t3 = S::sqr(&p[2]);
         let t4 = S::sub(&t2, &t3);
         let t5 = S::sqr(&x[0]);
+        live[6] = t5.clone();
         let t6 = S::mul(&x[0], &x[1]);
+        live[7] = t6.clone();
         let t7 = S::mul(&x[3], &t6);
         let t8 = S::mul_real(&t7, &c0);
         let t9 = S::mul_add(&x[2], &t5, &t8);
         let t10 = S::sqr(&x[1]);
+        live[8] = t10.clone();
         let t11 = S::mul_add(&x[4], &t10, &t9);
         let t12 = S::sub_mul(&x[0], &x[2], &t11);
         let t13 = S::sub_mul(&x[1], &x[4], &t12);
+        live[0] = t13.clone();
         let t14 = S::add(&t4, &t13);
         let t15 = S::sub(&x[2], &t0);
         let t16 = S::mul_mul_add(&p[0], &x[0], &p[1], &x[1]);
@@ -390,11 +453,13 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t29 = S::mul(&x[2], &x[4]);
         let t30 = S::sqr(&x[3]);
         let t31 = S::sub(&t29, &t30);
+        live[4] = t31.clone();
         values[0] = S::sub_mul(&t31, &t28, &t27);
         let t33 = S::mul(&x[2], &t21);
         let t34 = S::mul_real(&t33, &c0);
         let t35 = S::mul_real_add(&t19, &c1, &t34);
         let t36 = S::sub(&t30, &t29);
+        live[5] = t36.clone();
         let t37 = S::mul(&t14, &t36);
         let t38 = S::mul_real(&t37, &c0);
         let t39 = S::mul_add(&p[1], &t35, &t38);
@@ -436,17 +501,37 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t75 = S::sub_mul(&x[1], &t44, &t74);
         jacobian[20] = S::mul_add(&t10, &t44, &t75);
         let t77 = S::sqr(&p[3]);
+        live[2] = t77.clone();
         let t78 = S::sqr(&p[4]);
+        live[3] = t78.clone();
         let t79 = S::mul_mul_add(&x[0], &t77, &x[1], &t78);
         let t80 = S::sqr(&p[5]);
         let t81 = S::sub(&t79, &t80);
-        let t82 = S::add(&t13, &t81);
-        let t83 = S::sub(&x[2], &t77);
+        live[1] = t81.clone();
+    }
+}
+struct Jacobian1<'a, S> {
+    x: &'a [S; 5],
+    p: &'a [S; 15],
+    values: &'a mut [S; 5],
+    jacobian: &'a mut [S; 25],
+    live: &'a mut [S; 33],
+}
+impl<S: Scalar> Kernel for Jacobian1<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    #[allow(unused_variables)]
+    fn run(self) {
+        let Self { x, p, values, jacobian, live } = self;
+        let c0 = S::from_parts([2.0, 0.0], [0.0, 0.0]);
+        let c1 = S::from_parts([-2.0, 0.0], [0.0, 0.0]);
+        let t82 = S::add(&live[0], &live[1]);
+        let t83 = S::sub(&x[2], &live[2]);
         let t84 = S::mul_mul_add(&p[3], &x[0], &p[4], &x[1]);
         let t85 = S::sub(&t84, &p[5]);
         let t86 = S::mul_mul_add(&t83, &t85, &p[3], &t82);
         let t87 = S::mul(&x[3], &t86);
-        let t88 = S::sub(&x[4], &t78);
+        let t88 = S::sub(&x[4], &live[3]);
         let t89 = S::mul_mul_add(&t85, &t88, &p[4], &t82);
         let t90 = S::mul(&t87, &t89);
         let t91 = S::mul_real(&t90, &c0);
@@ -455,11 +540,11 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t94 = S::sqr(&t89);
         let t95 = S::mul_add(&x[2], &t94, &t93);
         let t96 = S::sqr(&t82);
-        values[1] = S::sub_mul(&t31, &t96, &t95);
+        values[1] = S::sub_mul(&live[4], &t96, &t95);
         let t98 = S::mul(&x[2], &t89);
         let t99 = S::mul_real(&t98, &c0);
         let t100 = S::mul_real_add(&t87, &c1, &t99);
-        let t101 = S::mul(&t82, &t36);
+        let t101 = S::mul(&t82, &live[5]);
         let t102 = S::mul_real(&t101, &c0);
         let t103 = S::mul_add(&p[4], &t100, &t102);
         let t104 = S::mul(&x[3], &t89);
@@ -468,7 +553,7 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t107 = S::mul_real_add(&t106, &c0, &t105);
         let t108 = S::mul_add(&p[3], &t107, &t103);
         let t109 = S::mul_mul_add(&t88, &t100, &t83, &t107);
-        let t110 = S::mul_mul_add(&t77, &t108, &p[3], &t109);
+        let t110 = S::mul_mul_add(&live[2], &t108, &p[3], &t109);
         let t111 = S::mul(&x[2], &t108);
         let t112 = S::sub(&t110, &t111);
         let t113 = S::mul(&x[3], &t108);
@@ -476,7 +561,7 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t115 = S::mul_real_add(&t114, &c0, &t112);
         let t116 = S::mul(&x[0], &t111);
         jacobian[1] = S::mul_real_add(&t116, &c0, &t115);
-        let t118 = S::mul_mul_add(&t78, &t108, &p[4], &t109);
+        let t118 = S::mul_mul_add(&live[3], &t108, &p[4], &t109);
         let t119 = S::mul(&x[4], &t108);
         let t120 = S::sub(&t118, &t119);
         let t121 = S::mul(&x[1], &t119);
@@ -486,8 +571,8 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t125 = S::mul_add(&t85, &t107, &t94);
         let t126 = S::sub_mul(&x[4], &t96, &t125);
         let t127 = S::sub_mul(&x[0], &t108, &t126);
-        jacobian[11] = S::mul_add(&t5, &t108, &t127);
-        let t129 = S::mul(&t6, &t108);
+        jacobian[11] = S::mul_add(&live[6], &t108, &t127);
+        let t129 = S::mul(&live[7], &t108);
         let t130 = S::mul(&t86, &t89);
         let t131 = S::mul_real(&t130, &c1);
         let t132 = S::mul(&x[3], &t96);
@@ -496,41 +581,70 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t135 = S::mul_add(&t85, &t100, &t92);
         let t136 = S::sub_mul(&x[2], &t96, &t135);
         let t137 = S::sub_mul(&x[1], &t108, &t136);
-        jacobian[21] = S::mul_add(&t10, &t108, &t137);
+        jacobian[21] = S::mul_add(&live[8], &t108, &t137);
         let t139 = S::sqr(&p[6]);
+        live[15] = t139.clone();
         let t140 = S::sqr(&p[7]);
+        live[16] = t140.clone();
         let t141 = S::mul_mul_add(&x[0], &t139, &x[1], &t140);
         let t142 = S::sqr(&p[8]);
         let t143 = S::sub(&t141, &t142);
-        let t144 = S::add(&t13, &t143);
+        let t144 = S::add(&live[0], &t143);
         let t145 = S::sub(&x[2], &t139);
+        live[14] = t145.clone();
         let t146 = S::mul_mul_add(&p[6], &x[0], &p[7], &x[1]);
         let t147 = S::sub(&t146, &p[8]);
+        live[17] = t147.clone();
         let t148 = S::mul_mul_add(&t145, &t147, &p[6], &t144);
+        live[12] = t148.clone();
         let t149 = S::mul(&x[3], &t148);
         let t150 = S::sub(&x[4], &t140);
+        live[13] = t150.clone();
         let t151 = S::mul_mul_add(&t147, &t150, &p[7], &t144);
+        live[11] = t151.clone();
         let t152 = S::mul(&t149, &t151);
         let t153 = S::mul_real(&t152, &c0);
         let t154 = S::sqr(&t148);
+        live[20] = t154.clone();
         let t155 = S::mul_sub(&x[4], &t154, &t153);
         let t156 = S::sqr(&t151);
+        live[18] = t156.clone();
         let t157 = S::mul_add(&x[2], &t156, &t155);
         let t158 = S::sqr(&t144);
-        values[2] = S::sub_mul(&t31, &t158, &t157);
+        live[19] = t158.clone();
+        values[2] = S::sub_mul(&live[4], &t158, &t157);
         let t160 = S::mul(&x[2], &t151);
         let t161 = S::mul_real(&t160, &c0);
         let t162 = S::mul_real_add(&t149, &c1, &t161);
-        let t163 = S::mul(&t144, &t36);
-        let t164 = S::mul_real(&t163, &c0);
-        let t165 = S::mul_add(&p[7], &t162, &t164);
-        let t166 = S::mul(&x[3], &t151);
+        live[10] = t162.clone();
+        let t163 = S::mul(&t144, &live[5]);
+        live[9] = t163.clone();
+    }
+}
+struct Jacobian2<'a, S> {
+    x: &'a [S; 5],
+    p: &'a [S; 15],
+    values: &'a mut [S; 5],
+    jacobian: &'a mut [S; 25],
+    live: &'a mut [S; 33],
+}
+impl<S: Scalar> Kernel for Jacobian2<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    #[allow(unused_variables)]
+    fn run(self) {
+        let Self { x, p, values, jacobian, live } = self;
+        let c0 = S::from_parts([2.0, 0.0], [0.0, 0.0]);
+        let c1 = S::from_parts([-2.0, 0.0], [0.0, 0.0]);
+        let t164 = S::mul_real(&live[9], &c0);
+        let t165 = S::mul_add(&p[7], &live[10], &t164);
+        let t166 = S::mul(&x[3], &live[11]);
         let t167 = S::mul_real(&t166, &c1);
-        let t168 = S::mul(&x[4], &t148);
+        let t168 = S::mul(&x[4], &live[12]);
         let t169 = S::mul_real_add(&t168, &c0, &t167);
         let t170 = S::mul_add(&p[6], &t169, &t165);
-        let t171 = S::mul_mul_add(&t150, &t162, &t145, &t169);
-        let t172 = S::mul_mul_add(&t139, &t170, &p[6], &t171);
+        let t171 = S::mul_mul_add(&live[13], &live[10], &live[14], &t169);
+        let t172 = S::mul_mul_add(&live[15], &t170, &p[6], &t171);
         let t173 = S::mul(&x[2], &t170);
         let t174 = S::sub(&t172, &t173);
         let t175 = S::mul(&x[3], &t170);
@@ -538,64 +652,74 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t177 = S::mul_real_add(&t176, &c0, &t174);
         let t178 = S::mul(&x[0], &t173);
         jacobian[2] = S::mul_real_add(&t178, &c0, &t177);
-        let t180 = S::mul_mul_add(&t140, &t170, &p[7], &t171);
+        let t180 = S::mul_mul_add(&live[16], &t170, &p[7], &t171);
         let t181 = S::mul(&x[4], &t170);
         let t182 = S::sub(&t180, &t181);
         let t183 = S::mul(&x[1], &t181);
         let t184 = S::mul_real_add(&t183, &c0, &t182);
         let t185 = S::mul(&x[0], &t175);
         jacobian[7] = S::mul_real_add(&t185, &c0, &t184);
-        let t187 = S::mul_add(&t147, &t169, &t156);
-        let t188 = S::sub_mul(&x[4], &t158, &t187);
+        let t187 = S::mul_add(&live[17], &t169, &live[18]);
+        let t188 = S::sub_mul(&x[4], &live[19], &t187);
         let t189 = S::sub_mul(&x[0], &t170, &t188);
-        jacobian[12] = S::mul_add(&t5, &t170, &t189);
-        let t191 = S::mul(&t6, &t170);
-        let t192 = S::mul(&t148, &t151);
+        jacobian[12] = S::mul_add(&live[6], &t170, &t189);
+        let t191 = S::mul(&live[7], &t170);
+        let t192 = S::mul(&live[12], &live[11]);
         let t193 = S::mul_real(&t192, &c1);
-        let t194 = S::mul(&x[3], &t158);
+        let t194 = S::mul(&x[3], &live[19]);
         let t195 = S::mul_real_add(&t194, &c0, &t193);
         jacobian[17] = S::mul_real_add(&t191, &c0, &t195);
-        let t197 = S::mul_add(&t147, &t162, &t154);
-        let t198 = S::sub_mul(&x[2], &t158, &t197);
+        let t197 = S::mul_add(&live[17], &live[10], &live[20]);
+        let t198 = S::sub_mul(&x[2], &live[19], &t197);
         let t199 = S::sub_mul(&x[1], &t170, &t198);
-        jacobian[22] = S::mul_add(&t10, &t170, &t199);
+        jacobian[22] = S::mul_add(&live[8], &t170, &t199);
         let t201 = S::sqr(&p[9]);
         let t202 = S::sqr(&p[10]);
         let t203 = S::mul_mul_add(&x[0], &t201, &x[1], &t202);
         let t204 = S::sqr(&p[11]);
         let t205 = S::sub(&t203, &t204);
-        let t206 = S::add(&t13, &t205);
+        let t206 = S::add(&live[0], &t205);
         let t207 = S::sub(&x[2], &t201);
         let t208 = S::mul_mul_add(&p[9], &x[0], &p[10], &x[1]);
         let t209 = S::sub(&t208, &p[11]);
+        live[24] = t209.clone();
         let t210 = S::mul_mul_add(&t207, &t209, &p[9], &t206);
+        live[29] = t210.clone();
         let t211 = S::mul(&x[3], &t210);
         let t212 = S::sub(&x[4], &t202);
         let t213 = S::mul_mul_add(&t209, &t212, &p[10], &t206);
+        live[30] = t213.clone();
         let t214 = S::mul(&t211, &t213);
         let t215 = S::mul_real(&t214, &c0);
         let t216 = S::sqr(&t210);
+        live[32] = t216.clone();
         let t217 = S::mul_sub(&x[4], &t216, &t215);
         let t218 = S::sqr(&t213);
+        live[26] = t218.clone();
         let t219 = S::mul_add(&x[2], &t218, &t217);
         let t220 = S::sqr(&t206);
-        values[3] = S::sub_mul(&t31, &t220, &t219);
+        live[27] = t220.clone();
+        values[3] = S::sub_mul(&live[4], &t220, &t219);
         let t222 = S::mul(&x[2], &t213);
         let t223 = S::mul_real(&t222, &c0);
         let t224 = S::mul_real_add(&t211, &c1, &t223);
-        let t225 = S::mul(&t206, &t36);
+        live[31] = t224.clone();
+        let t225 = S::mul(&t206, &live[5]);
         let t226 = S::mul_real(&t225, &c0);
         let t227 = S::mul_add(&p[10], &t224, &t226);
         let t228 = S::mul(&x[3], &t213);
         let t229 = S::mul_real(&t228, &c1);
         let t230 = S::mul(&x[4], &t210);
         let t231 = S::mul_real_add(&t230, &c0, &t229);
+        live[25] = t231.clone();
         let t232 = S::mul_add(&p[9], &t231, &t227);
+        live[28] = t232.clone();
         let t233 = S::mul_mul_add(&t212, &t224, &t207, &t231);
         let t234 = S::mul_mul_add(&t201, &t232, &p[9], &t233);
         let t235 = S::mul(&x[2], &t232);
         let t236 = S::sub(&t234, &t235);
         let t237 = S::mul(&x[3], &t232);
+        live[23] = t237.clone();
         let t238 = S::mul(&x[1], &t237);
         let t239 = S::mul_real_add(&t238, &c0, &t236);
         let t240 = S::mul(&x[0], &t235);
@@ -603,30 +727,49 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t242 = S::mul_mul_add(&t202, &t232, &p[10], &t233);
         let t243 = S::mul(&x[4], &t232);
         let t244 = S::sub(&t242, &t243);
+        live[22] = t244.clone();
         let t245 = S::mul(&x[1], &t243);
-        let t246 = S::mul_real_add(&t245, &c0, &t244);
-        let t247 = S::mul(&x[0], &t237);
+        live[21] = t245.clone();
+    }
+}
+struct Jacobian3<'a, S> {
+    x: &'a [S; 5],
+    p: &'a [S; 15],
+    values: &'a mut [S; 5],
+    jacobian: &'a mut [S; 25],
+    live: &'a mut [S; 33],
+}
+impl<S: Scalar> Kernel for Jacobian3<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    #[allow(unused_variables)]
+    fn run(self) {
+        let Self { x, p, values, jacobian, live } = self;
+        let c0 = S::from_parts([2.0, 0.0], [0.0, 0.0]);
+        let c1 = S::from_parts([-2.0, 0.0], [0.0, 0.0]);
+        let t246 = S::mul_real_add(&live[21], &c0, &live[22]);
+        let t247 = S::mul(&x[0], &live[23]);
         jacobian[8] = S::mul_real_add(&t247, &c0, &t246);
-        let t249 = S::mul_add(&t209, &t231, &t218);
-        let t250 = S::sub_mul(&x[4], &t220, &t249);
-        let t251 = S::sub_mul(&x[0], &t232, &t250);
-        jacobian[13] = S::mul_add(&t5, &t232, &t251);
-        let t253 = S::mul(&t6, &t232);
-        let t254 = S::mul(&t210, &t213);
+        let t249 = S::mul_add(&live[24], &live[25], &live[26]);
+        let t250 = S::sub_mul(&x[4], &live[27], &t249);
+        let t251 = S::sub_mul(&x[0], &live[28], &t250);
+        jacobian[13] = S::mul_add(&live[6], &live[28], &t251);
+        let t253 = S::mul(&live[7], &live[28]);
+        let t254 = S::mul(&live[29], &live[30]);
         let t255 = S::mul_real(&t254, &c1);
-        let t256 = S::mul(&x[3], &t220);
+        let t256 = S::mul(&x[3], &live[27]);
         let t257 = S::mul_real_add(&t256, &c0, &t255);
         jacobian[18] = S::mul_real_add(&t253, &c0, &t257);
-        let t259 = S::mul_add(&t209, &t224, &t216);
-        let t260 = S::sub_mul(&x[2], &t220, &t259);
-        let t261 = S::sub_mul(&x[1], &t232, &t260);
-        jacobian[23] = S::mul_add(&t10, &t232, &t261);
+        let t259 = S::mul_add(&live[24], &live[31], &live[32]);
+        let t260 = S::sub_mul(&x[2], &live[27], &t259);
+        let t261 = S::sub_mul(&x[1], &live[28], &t260);
+        jacobian[23] = S::mul_add(&live[8], &live[28], &t261);
         let t263 = S::sqr(&p[12]);
         let t264 = S::sqr(&p[13]);
         let t265 = S::mul_mul_add(&x[0], &t263, &x[1], &t264);
         let t266 = S::sqr(&p[14]);
         let t267 = S::sub(&t265, &t266);
-        let t268 = S::add(&t13, &t267);
+        let t268 = S::add(&live[0], &t267);
         let t269 = S::sub(&x[2], &t263);
         let t270 = S::mul_mul_add(&p[12], &x[0], &p[13], &x[1]);
         let t271 = S::sub(&t270, &p[14]);
@@ -641,11 +784,11 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t280 = S::sqr(&t275);
         let t281 = S::mul_add(&x[2], &t280, &t279);
         let t282 = S::sqr(&t268);
-        values[4] = S::sub_mul(&t31, &t282, &t281);
+        values[4] = S::sub_mul(&live[4], &t282, &t281);
         let t284 = S::mul(&x[2], &t275);
         let t285 = S::mul_real(&t284, &c0);
         let t286 = S::mul_real_add(&t273, &c1, &t285);
-        let t287 = S::mul(&t268, &t36);
+        let t287 = S::mul(&t268, &live[5]);
         let t288 = S::mul_real(&t287, &c0);
         let t289 = S::mul_add(&p[13], &t286, &t288);
         let t290 = S::mul(&x[3], &t275);
@@ -672,8 +815,8 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t311 = S::mul_add(&t271, &t293, &t280);
         let t312 = S::sub_mul(&x[4], &t282, &t311);
         let t313 = S::sub_mul(&x[0], &t294, &t312);
-        jacobian[14] = S::mul_add(&t5, &t294, &t313);
-        let t315 = S::mul(&t6, &t294);
+        jacobian[14] = S::mul_add(&live[6], &t294, &t313);
+        let t315 = S::mul(&live[7], &t294);
         let t316 = S::mul(&t272, &t275);
         let t317 = S::mul_real(&t316, &c1);
         let t318 = S::mul(&x[3], &t282);
@@ -682,6 +825,6 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t321 = S::mul_add(&t271, &t286, &t278);
         let t322 = S::sub_mul(&x[2], &t282, &t321);
         let t323 = S::sub_mul(&x[1], &t294, &t322);
-        jacobian[24] = S::mul_add(&t10, &t294, &t323);
+        jacobian[24] = S::mul_add(&live[8], &t294, &t323);
     }
 }

@@ -169,7 +169,7 @@ impl Evaluate for S6r3s {
         15
     }
     fn memory<S: Scalar>(&self, isa: Isa) -> Memory<S> {
-        Memory::new(isa, &CONSTANTS, 0, &TAYLOR)
+        Memory::new(isa, &CONSTANTS, 11, &TAYLOR)
     }
     fn values<S: Scalar>(
         &self,
@@ -185,6 +185,15 @@ impl Evaluate for S6r3s {
                 x: x.first_chunk().expect("as long as cut"),
                 p: p.first_chunk().expect("as long as cut"),
                 values: values.first_chunk_mut().expect("as long as cut"),
+                live: memory.live.first_chunk_mut().expect("made by Memory::new"),
+            });
+        memory
+            .isa
+            .run(Values1 {
+                x: x.first_chunk().expect("as long as cut"),
+                p: p.first_chunk().expect("as long as cut"),
+                values: values.first_chunk_mut().expect("as long as cut"),
+                live: memory.live.first_chunk_mut().expect("made by Memory::new"),
             });
     }
     fn jacobian<S: Scalar>(
@@ -211,6 +220,25 @@ impl Evaluate for S6r3s {
                 p: p.first_chunk().expect("as long as cut"),
                 values: values.first_chunk_mut().expect("as long as cut"),
                 jacobian: jacobian.first_chunk_mut().expect("as long as cut"),
+                live: memory.live.first_chunk_mut().expect("made by Memory::new"),
+            });
+        memory
+            .isa
+            .run(Jacobian1 {
+                x: x.first_chunk().expect("as long as cut"),
+                p: p.first_chunk().expect("as long as cut"),
+                values: values.first_chunk_mut().expect("as long as cut"),
+                jacobian: jacobian.first_chunk_mut().expect("as long as cut"),
+                live: memory.live.first_chunk_mut().expect("made by Memory::new"),
+            });
+        memory
+            .isa
+            .run(Jacobian2 {
+                x: x.first_chunk().expect("as long as cut"),
+                p: p.first_chunk().expect("as long as cut"),
+                values: values.first_chunk_mut().expect("as long as cut"),
+                jacobian: jacobian.first_chunk_mut().expect("as long as cut"),
+                live: memory.live.first_chunk_mut().expect("made by Memory::new"),
             });
     }
     fn taylor<S: Scalar>(
@@ -228,13 +256,14 @@ struct Values0<'a, S> {
     x: &'a [S; 8],
     p: &'a [S; 15],
     values: &'a mut [S; 8],
+    live: &'a mut [S; 3],
 }
 impl<S: Scalar> Kernel for Values0<'_, S> {
     type Output = ();
     #[inline(always)]
     #[allow(unused_variables)]
     fn run(self) {
-        let Self { x, p, values } = self;
+        let Self { x, p, values, live } = self;
         let c0 = S::from_parts([2.0, 0.0], [0.0, 0.0]);
         let c1 = S::from_parts([0.25, 0.0], [0.0, 0.0]);
         let c2 = S::from_parts([-2.0, 0.0], [0.0, 0.0]);
@@ -286,6 +315,7 @@ impl<S: Scalar> Kernel for Values0<'_, S> {
         let t45 = S::sqr(&p[3]);
         let t46 = S::mul(&p[3], &x[0]);
         let t47 = S::mul_real_add(&t46, &c2, &t45);
+        live[2] = t47.clone();
         let t48 = S::sub(&t44, &t47);
         let t49 = S::sqr(&p[5]);
         let t50 = S::mul(&p[5], &x[2]);
@@ -296,9 +326,27 @@ impl<S: Scalar> Kernel for Values0<'_, S> {
         let t55 = S::mul_add(&x[3], &t48, &t54);
         let t56 = S::sqr(&t52);
         let t57 = S::mul_mul_add(&t48, &t55, &x[5], &t56);
+        live[1] = t57.clone();
         let t58 = S::mul_mul_add(&x[6], &t48, &x[7], &t52);
-        let t59 = S::mul_real_add(&t58, &c2, &t57);
-        values[4] = S::sub(&t59, &t47);
+        live[0] = t58.clone();
+    }
+}
+struct Values1<'a, S> {
+    x: &'a [S; 8],
+    p: &'a [S; 15],
+    values: &'a mut [S; 8],
+    live: &'a mut [S; 3],
+}
+impl<S: Scalar> Kernel for Values1<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    #[allow(unused_variables)]
+    fn run(self) {
+        let Self { x, p, values, live } = self;
+        let c0 = S::from_parts([2.0, 0.0], [0.0, 0.0]);
+        let c2 = S::from_parts([-2.0, 0.0], [0.0, 0.0]);
+        let t59 = S::mul_real_add(&live[0], &c2, &live[1]);
+        values[4] = S::sub(&t59, &live[2]);
         let t61 = S::sqr(&p[7]);
         let t62 = S::mul(&p[7], &x[1]);
         let t63 = S::mul_real_add(&t62, &c2, &t61);
@@ -363,17 +411,17 @@ struct Jacobian0<'a, S> {
     p: &'a [S; 15],
     values: &'a mut [S; 8],
     jacobian: &'a mut [S; 64],
+    live: &'a mut [S; 11],
 }
 impl<S: Scalar> Kernel for Jacobian0<'_, S> {
     type Output = ();
     #[inline(always)]
     #[allow(unused_variables)]
     fn run(self) {
-        let Self { x, p, values, jacobian } = self;
+        let Self { x, p, values, jacobian, live } = self;
         let c0 = S::from_parts([2.0, 0.0], [0.0, 0.0]);
         let c1 = S::from_parts([0.25, 0.0], [0.0, 0.0]);
         let c2 = S::from_parts([-2.0, 0.0], [0.0, 0.0]);
-        let c3 = S::from_parts([-1.0, 0.0], [0.0, 0.0]);
         jacobian[57] = x[4].clone();
         jacobian[50] = x[4].clone();
         let t0 = S::sqr(&x[6]);
@@ -445,13 +493,17 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t64 = S::mul(&p[0], &x[0]);
         let t65 = S::mul_real_add(&t64, &c2, &t63);
         let t66 = S::sub(&t62, &t65);
+        live[3] = t66.clone();
         let t67 = S::mul(&x[3], &t66);
+        live[2] = t67.clone();
         let t68 = S::sqr(&p[2]);
         let t69 = S::mul(&p[2], &x[2]);
         let t70 = S::mul_real_add(&t69, &c2, &t68);
         let t71 = S::sub(&t70, &t65);
+        live[4] = t71.clone();
         let t72 = S::mul(&x[4], &t71);
         let t73 = S::mul_real_add(&t72, &c0, &t67);
+        live[1] = t73.clone();
         let t74 = S::sqr(&t71);
         jacobian[43] = t74.clone();
         let t75 = S::mul_mul_add(&t66, &t73, &x[5], &t74);
@@ -460,25 +512,46 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         values[3] = S::sub(&t77, &t65);
         let t79 = S::mul(&x[5], &t71);
         let t80 = S::mul_real(&x[7], &c2);
+        live[5] = t80.clone();
         let t81 = S::mul_real_add(&t79, &c0, &t80);
         let t82 = S::mul(&x[4], &t66);
         let t83 = S::mul_real_add(&t82, &c0, &t81);
-        let t84 = S::sub(&c3, &t83);
+        live[0] = t83.clone();
+    }
+}
+struct Jacobian1<'a, S> {
+    x: &'a [S; 8],
+    p: &'a [S; 15],
+    values: &'a mut [S; 8],
+    jacobian: &'a mut [S; 64],
+    live: &'a mut [S; 11],
+}
+impl<S: Scalar> Kernel for Jacobian1<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    #[allow(unused_variables)]
+    fn run(self) {
+        let Self { x, p, values, jacobian, live } = self;
+        let c0 = S::from_parts([2.0, 0.0], [0.0, 0.0]);
+        let c2 = S::from_parts([-2.0, 0.0], [0.0, 0.0]);
+        let c3 = S::from_parts([-1.0, 0.0], [0.0, 0.0]);
+        let t84 = S::sub(&c3, &live[0]);
         let t85 = S::mul_real(&x[6], &c2);
-        let t86 = S::add(&t73, &t85);
-        let t87 = S::add(&t67, &t86);
+        live[10] = t85.clone();
+        let t86 = S::add(&live[1], &t85);
+        let t87 = S::add(&live[2], &t86);
         let t88 = S::sub(&t87, &t84);
         let t89 = S::mul(&p[0], &t88);
         jacobian[3] = S::mul_real(&t89, &c0);
         let t91 = S::mul(&p[1], &t87);
         jacobian[11] = S::mul_real(&t91, &c2);
-        let t93 = S::mul(&p[2], &t83);
+        let t93 = S::mul(&p[2], &live[0]);
         jacobian[19] = S::mul_real(&t93, &c2);
-        jacobian[27] = S::sqr(&t66);
-        let t96 = S::mul(&t66, &t71);
+        jacobian[27] = S::sqr(&live[3]);
+        let t96 = S::mul(&live[3], &live[4]);
         jacobian[35] = S::mul_real(&t96, &c0);
-        jacobian[51] = S::mul_real(&t66, &c2);
-        jacobian[59] = S::mul_real(&t71, &c2);
+        jacobian[51] = S::mul_real(&live[3], &c2);
+        jacobian[59] = S::mul_real(&live[4], &c2);
         let t100 = S::sqr(&p[4]);
         let t101 = S::mul(&p[4], &x[1]);
         let t102 = S::mul_real_add(&t101, &c2, &t100);
@@ -500,7 +573,7 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t117 = S::mul_real_add(&t116, &c2, &t115);
         values[4] = S::sub(&t117, &t105);
         let t119 = S::mul(&x[5], &t111);
-        let t120 = S::mul_real_add(&t119, &c0, &t80);
+        let t120 = S::mul_real_add(&t119, &c0, &live[5]);
         let t121 = S::mul(&x[4], &t106);
         let t122 = S::mul_real_add(&t121, &c0, &t120);
         let t123 = S::sub(&c3, &t122);
@@ -525,11 +598,13 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t142 = S::mul(&p[6], &x[0]);
         let t143 = S::mul_real_add(&t142, &c2, &t141);
         let t144 = S::sub(&t140, &t143);
+        live[8] = t144.clone();
         let t145 = S::mul(&x[3], &t144);
         let t146 = S::sqr(&p[8]);
         let t147 = S::mul(&p[8], &x[2]);
         let t148 = S::mul_real_add(&t147, &c2, &t146);
         let t149 = S::sub(&t148, &t143);
+        live[9] = t149.clone();
         let t150 = S::mul(&x[4], &t149);
         let t151 = S::mul_real_add(&t150, &c0, &t145);
         let t152 = S::sqr(&t149);
@@ -539,9 +614,10 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t155 = S::mul_real_add(&t154, &c2, &t153);
         values[5] = S::sub(&t155, &t143);
         let t157 = S::mul(&x[5], &t149);
-        let t158 = S::mul_real_add(&t157, &c0, &t80);
+        let t158 = S::mul_real_add(&t157, &c0, &live[5]);
         let t159 = S::mul(&x[4], &t144);
         let t160 = S::mul_real_add(&t159, &c0, &t158);
+        live[7] = t160.clone();
         let t161 = S::sub(&c3, &t160);
         let t162 = S::add(&t151, &t85);
         let t163 = S::add(&t145, &t162);
@@ -549,14 +625,33 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t165 = S::mul(&p[6], &t164);
         jacobian[5] = S::mul_real(&t165, &c0);
         let t167 = S::mul(&p[7], &t163);
-        jacobian[13] = S::mul_real(&t167, &c2);
-        let t169 = S::mul(&p[8], &t160);
+        live[6] = t167.clone();
+    }
+}
+struct Jacobian2<'a, S> {
+    x: &'a [S; 8],
+    p: &'a [S; 15],
+    values: &'a mut [S; 8],
+    jacobian: &'a mut [S; 64],
+    live: &'a mut [S; 11],
+}
+impl<S: Scalar> Kernel for Jacobian2<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    #[allow(unused_variables)]
+    fn run(self) {
+        let Self { x, p, values, jacobian, live } = self;
+        let c0 = S::from_parts([2.0, 0.0], [0.0, 0.0]);
+        let c2 = S::from_parts([-2.0, 0.0], [0.0, 0.0]);
+        let c3 = S::from_parts([-1.0, 0.0], [0.0, 0.0]);
+        jacobian[13] = S::mul_real(&live[6], &c2);
+        let t169 = S::mul(&p[8], &live[7]);
         jacobian[21] = S::mul_real(&t169, &c2);
-        jacobian[29] = S::sqr(&t144);
-        let t172 = S::mul(&t144, &t149);
+        jacobian[29] = S::sqr(&live[8]);
+        let t172 = S::mul(&live[8], &live[9]);
         jacobian[37] = S::mul_real(&t172, &c0);
-        jacobian[53] = S::mul_real(&t144, &c2);
-        jacobian[61] = S::mul_real(&t149, &c2);
+        jacobian[53] = S::mul_real(&live[8], &c2);
+        jacobian[61] = S::mul_real(&live[9], &c2);
         let t176 = S::sqr(&p[10]);
         let t177 = S::mul(&p[10], &x[1]);
         let t178 = S::mul_real_add(&t177, &c2, &t176);
@@ -578,11 +673,11 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t193 = S::mul_real_add(&t192, &c2, &t191);
         values[6] = S::sub(&t193, &t181);
         let t195 = S::mul(&x[5], &t187);
-        let t196 = S::mul_real_add(&t195, &c0, &t80);
+        let t196 = S::mul_real_add(&t195, &c0, &live[5]);
         let t197 = S::mul(&x[4], &t182);
         let t198 = S::mul_real_add(&t197, &c0, &t196);
         let t199 = S::sub(&c3, &t198);
-        let t200 = S::add(&t189, &t85);
+        let t200 = S::add(&t189, &live[10]);
         let t201 = S::add(&t183, &t200);
         let t202 = S::sub(&t201, &t199);
         let t203 = S::mul(&p[9], &t202);
@@ -617,11 +712,11 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t231 = S::mul_real_add(&t230, &c2, &t229);
         values[7] = S::sub(&t231, &t219);
         let t233 = S::mul(&x[5], &t225);
-        let t234 = S::mul_real_add(&t233, &c0, &t80);
+        let t234 = S::mul_real_add(&t233, &c0, &live[5]);
         let t235 = S::mul(&x[4], &t220);
         let t236 = S::mul_real_add(&t235, &c0, &t234);
         let t237 = S::sub(&c3, &t236);
-        let t238 = S::add(&t227, &t85);
+        let t238 = S::add(&t227, &live[10]);
         let t239 = S::add(&t221, &t238);
         let t240 = S::sub(&t239, &t237);
         let t241 = S::mul(&p[12], &t240);

@@ -14,7 +14,7 @@ use std::collections::HashMap;
 use std::hash::BuildHasherDefault;
 
 /// Deterministic, so that nothing depends on a random seed.
-type Terms<R> = HashMap<Monomial, R, BuildHasherDefault<std::hash::DefaultHasher>>;
+pub(crate) type Terms<R> = HashMap<Monomial, R, BuildHasherDefault<std::hash::DefaultHasher>>;
 
 /// A sum of terms `coefficient * monomial`.
 ///
@@ -76,7 +76,7 @@ impl<R: Ring> Polynomial<R> {
         Polynomial::from_sum(variables, sum)
     }
 
-    fn from_sum(variables: usize, sum: Terms<R>) -> Polynomial<R> {
+    pub(crate) fn from_sum(variables: usize, sum: Terms<R>) -> Polynomial<R> {
         let mut terms: Vec<(Monomial, R)> = sum.into_iter().filter(|(_, c)| !c.is_zero()).collect();
         terms.sort_unstable_by(|a, b| b.0.cmp(&a.0));
         Polynomial { variables, terms }
@@ -154,14 +154,14 @@ fn group_degree(monomial: &Monomial, group: &[usize]) -> i64 {
     group.iter().map(|&j| i64::from(monomial.exponents()[j])).sum()
 }
 
-fn accumulate<R: Ring>(sum: &mut Terms<R>, monomial: Monomial, coefficient: R) {
+/// Adds a term and returns what its monomial has now.
+pub(crate) fn accumulate<R: Ring>(sum: &mut Terms<R>, monomial: Monomial, coefficient: R) -> &R {
     match sum.entry(monomial) {
-        std::collections::hash_map::Entry::Vacant(slot) => {
-            slot.insert(coefficient);
-        }
-        std::collections::hash_map::Entry::Occupied(mut slot) => {
-            let total = slot.get().clone() + coefficient;
-            slot.insert(total);
+        std::collections::hash_map::Entry::Vacant(slot) => slot.insert(coefficient),
+        std::collections::hash_map::Entry::Occupied(slot) => {
+            let place = slot.into_mut();
+            *place = place.clone() + coefficient;
+            place
         }
     }
 }

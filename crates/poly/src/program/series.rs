@@ -20,46 +20,54 @@ pub(crate) const BY_UNKNOWN: u8 = 1;
 /// Both factors are unknowns.
 pub(crate) const UNKNOWNS: u8 = 2;
 
+// Helpers are functions that are always inlined, not closures: a closure that the compiler leaves out of line would
+// be compiled without the instruction set of its caller.
+
+/// Term `i` of coefficient `i + j` of a product: `a_i b_j`.
+#[inline(always)]
+fn one<S: Scalar>(m: &Columns<'_, S>, a: usize, b: usize, i: usize, j: usize) -> S {
+    S::mul(&m[i][a], &m[j][b])
+}
+
+/// `a_i b_j + a_j b_i`
+#[inline(always)]
+fn two<S: Scalar>(m: &Columns<'_, S>, a: usize, b: usize, i: usize, j: usize) -> S {
+    S::mul_mul_add(&m[i][a], &m[j][b], &m[j][a], &m[i][b])
+}
+
+#[inline(always)]
+fn double<S: Scalar>(z: &S) -> S {
+    S::add(z, z)
+}
+
 /// Coefficient `k` of the product of values `a` and `b`; `top` says that their unknowns' coefficient is zero.
 #[inline(always)]
 fn product<S: Scalar, const KIND: u8>(m: &Columns<'_, S>, a: usize, b: usize, k: usize, top: bool) -> S {
-    let kind = if top { KIND } else { GENERAL };
-    let term = |i: usize| (&m[i][a], &m[k - i][b]);
-    let one = |i: usize| {
-        let (x, y) = term(i);
-        S::mul(x, y)
-    };
-    let two = |i: usize, j: usize| {
-        let ((x, y), (z, w)) = (term(i), term(j));
-        S::mul_mul_add(x, y, z, w)
-    };
-    // Term i pairs coefficient i of `a` with coefficient k - i of `b`.
-    match (k, kind) {
-        (0, _) => one(0),
-        (1, GENERAL) => two(0, 1),
-        (1, BY_UNKNOWN) => one(1),
+    match (k, if top { KIND } else { GENERAL }) {
+        (0, _) => one(m, a, b, 0, 0),
+        (1, GENERAL) => two(m, a, b, 0, 1),
+        (1, BY_UNKNOWN) => one(m, a, b, 1, 0),
         (1, _) => S::zero(),
-        (2, GENERAL) => S::add(&two(0, 2), &one(1)),
-        (2, BY_UNKNOWN) => two(1, 2),
-        (2, _) => one(1),
-        (_, GENERAL) => S::add(&two(0, 3), &two(1, 2)),
-        (_, BY_UNKNOWN) => S::add(&two(1, 2), &one(3)),
-        _ => two(1, 2),
+        (2, GENERAL) => S::add(&two(m, a, b, 0, 2), &one(m, a, b, 1, 1)),
+        (2, BY_UNKNOWN) => S::mul_add(&m[2][a], &m[0][b], &one(m, a, b, 1, 1)),
+        (2, _) => one(m, a, b, 1, 1),
+        (_, GENERAL) => S::add(&two(m, a, b, 0, 3), &two(m, a, b, 1, 2)),
+        (_, BY_UNKNOWN) => S::mul_add(&m[3][a], &m[0][b], &two(m, a, b, 1, 2)),
+        _ => two(m, a, b, 1, 2),
     }
 }
 
 /// Coefficient `k` of a square.
 #[inline(always)]
 fn square<S: Scalar, const KIND: u8>(m: &Columns<'_, S>, a: usize, k: usize, top: bool) -> S {
-    let double = |z: &S| S::add(z, z);
     match (k, if top { KIND } else { GENERAL }) {
         (0, _) => S::sqr(&m[0][a]),
-        (1, GENERAL) => double(&S::mul(&m[0][a], &m[1][a])),
+        (1, GENERAL) => double(&one(m, a, a, 0, 1)),
         (1, _) => S::zero(),
-        (2, GENERAL) => S::add(&double(&S::mul(&m[0][a], &m[2][a])), &S::sqr(&m[1][a])),
+        (2, GENERAL) => S::add(&double(&one(m, a, a, 0, 2)), &S::sqr(&m[1][a])),
         (2, _) => S::sqr(&m[1][a]),
         (_, GENERAL) => double(&S::mul_mul_add(&m[0][a], &m[3][a], &m[1][a], &m[2][a])),
-        _ => double(&S::mul(&m[1][a], &m[2][a])),
+        _ => double(&one(m, a, a, 1, 2)),
     }
 }
 
@@ -76,7 +84,7 @@ fn reciprocal<S: Scalar>(m: &Columns<'_, S>, r: usize, a: usize, k: usize) -> S 
     S::neg(&S::mul(&m[0][r], &sum))
 }
 
-/// An operation of [`Op`](super::Op) on series.
+/// An operation of [`Op`](super::Op) on series; `TO` is `FROM` or the next order.
 #[inline(always)]
 pub(crate) fn step<S: Scalar, const FROM: usize, const TO: usize, const KIND: u8>(
     m: &mut Columns<'_, S>,
@@ -86,13 +94,18 @@ pub(crate) fn step<S: Scalar, const FROM: usize, const TO: usize, const KIND: u8
 ) {
     use super::Op;
     // The operation is chosen once, outside the loop over coefficients.
+    // No range: the order must be known when the code is made, so that the match on it disappears.
     macro_rules! each {
-        ($k:ident => $value:expr) => {
-            for $k in FROM..=TO {
+        ($k:ident => $value:expr) => {{
+            if FROM < TO {
+                let $k = FROM;
                 let value = $value;
                 m[$k][t] = value;
             }
-        };
+            let $k = TO;
+            let value = $value;
+            m[$k][t] = value;
+        }};
     }
     match op {
         Op::Add => each!(k => S::add(&m[k][a], &m[k][b])),

@@ -101,7 +101,8 @@ impl TaylorTape {
         let (first, second) = before.split_at_mut(self.size);
         let (third, fourth) = rest.split_at_mut(self.size);
         let mut columns = [first, second, third, fourth];
-        for k in [order - 1, order] {
+        // Lower coefficients of the parameters are in place since the calls before.
+        for k in if order == 1 { 0..2 } else { order..order + 1 } {
             columns[k][constants..][..parameters].clone_from_slice(&p[k * parameters..][..parameters]);
         }
         let from = constants + parameters;
