@@ -37,8 +37,7 @@ pub struct InterpreterMemory<S> {
 impl Interpreter {
     /// Prepares a program to be run.
     pub fn new(program: Program) -> Interpreter {
-        let layout =
-            Layout { constants: program.constants.len(), parameters: program.parameters, variables: program.variables };
+        let layout = program.layout();
         let values = allocate(&program.values, layout, program.equations);
         let jacobian = allocate(&program.jacobian, layout, program.equations * (1 + program.variables));
         let taylor = TaylorTape::new(&program.values, layout);

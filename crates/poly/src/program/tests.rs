@@ -212,3 +212,28 @@ fn long_sums_and_deep_formulas_compile() {
     f.values(&mut f.memory(Isa::Portable), &[C::ZERO], &[], &mut out);
     assert_eq!(out[0], C::new(99_999.0, 0.0));
 }
+
+#[test]
+fn gradient_of_a_product_takes_three_products_a_factor() {
+    // Speelpenning's bound for reverse mode; column by column it would be quadratic.
+    let n = 40;
+    let system = System::build(|s| vec![s.product((0..n).map(|j| s.variable(&format!("x{j}"))))]).unwrap();
+    let f = system.compile().unwrap();
+    assert_eq!(f.program().value_operations(), n - 1);
+    assert!(f.program().jacobian_operations() <= 3 * n, "{}", f.program().jacobian_operations());
+}
+
+#[test]
+fn many_equations_in_one_unknown_are_derived_forward() {
+    // One chain of 20 squarings, used by 30 equations: row by row its derivative would be made 30 times.
+    let system = System::build(|s| {
+        let x = s.variable("x");
+        let chain = (0..20).fold(x, |y, _| y * y + x);
+        (2..32).map(|k| chain * (x + k) + x).collect()
+    })
+    .unwrap();
+    let f = system.compile().unwrap();
+    let (values, both) = (f.program().value_operations(), f.program().jacobian_operations());
+    // Each squaring gives at most three operations more, each equation at most three.
+    assert!(both <= values + 3 * 20 + 3 * 30, "{values} {both}");
+}
