@@ -129,7 +129,7 @@ impl Evaluate for System {
         15
     }
     fn memory<S: Scalar>(&self, isa: Isa) -> Memory<S> {
-        Memory::new(isa, &CONSTANTS, 0, &TAYLOR)
+        Memory::new(isa, &CONSTANTS, 16, &TAYLOR)
     }
     fn values<S: Scalar>(
         &self,
@@ -171,6 +171,25 @@ impl Evaluate for System {
                 p: p.first_chunk().expect("as long as cut"),
                 values: values.first_chunk_mut().expect("as long as cut"),
                 jacobian: jacobian.first_chunk_mut().expect("as long as cut"),
+                live: memory.live.first_chunk_mut().expect("made by Memory::new"),
+            });
+        memory
+            .isa
+            .run(Jacobian1 {
+                x: x.first_chunk().expect("as long as cut"),
+                p: p.first_chunk().expect("as long as cut"),
+                values: values.first_chunk_mut().expect("as long as cut"),
+                jacobian: jacobian.first_chunk_mut().expect("as long as cut"),
+                live: memory.live.first_chunk_mut().expect("made by Memory::new"),
+            });
+        memory
+            .isa
+            .run(Jacobian2 {
+                x: x.first_chunk().expect("as long as cut"),
+                p: p.first_chunk().expect("as long as cut"),
+                values: values.first_chunk_mut().expect("as long as cut"),
+                jacobian: jacobian.first_chunk_mut().expect("as long as cut"),
+                live: memory.live.first_chunk_mut().expect("made by Memory::new"),
             });
     }
     fn taylor<S: Scalar>(
@@ -284,13 +303,14 @@ struct Jacobian0<'a, S> {
     p: &'a [S; 15],
     values: &'a mut [S; 8],
     jacobian: &'a mut [S; 64],
+    live: &'a mut [S; 16],
 }
 impl<S: Scalar> Kernel for Jacobian0<'_, S> {
     type Output = ();
     #[inline(always)]
     #[allow(unused_variables)]
     fn run(self) {
-        let Self { x, p, values, jacobian } = self;
+        let Self { x, p, values, jacobian, live } = self;
         let c0 = S::from_parts([0.25, 0.0], [0.0, 0.0]);
         let c1 = S::from_parts([-0.25, 0.0], [0.0, 0.0]);
         let c2 = S::from_parts([2.0, 0.0], [0.0, 0.0]);
@@ -343,26 +363,38 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         jacobian[34] = S::mul_add(&x[5], &t37, &t38);
         jacobian[42] = S::mul_add(&x[4], &t37, &t25);
         let t41 = S::mul_real(&x[0], &c2);
+        live[7] = t41.clone();
         let t42 = S::sub(&p[0], &t41);
         let t43 = S::mul(&p[0], &t42);
+        live[3] = t43.clone();
         let t44 = S::mul_real(&x[2], &c2);
+        live[8] = t44.clone();
         let t45 = S::sub(&p[2], &t44);
         let t46 = S::mul_sub(&p[2], &t45, &t43);
+        live[6] = t46.clone();
         let t47 = S::mul_real(&x[1], &c2);
+        live[9] = t47.clone();
         let t48 = S::sub(&p[1], &t47);
         let t49 = S::mul(&p[1], &t48);
+        live[4] = t49.clone();
         let t50 = S::sub(&t49, &t43);
+        live[0] = t50.clone();
         let t51 = S::mul(&x[4], &t50);
+        live[5] = t51.clone();
         let t52 = S::sub(&t46, &t51);
+        live[2] = t52.clone();
         let t53 = S::mul(&x[5], &t52);
         let t54 = S::mul_real(&x[7], &c2);
+        live[10] = t54.clone();
         let t55 = S::sub(&t53, &t54);
         let t56 = S::mul(&x[3], &t50);
         let t57 = S::mul_real(&x[6], &c2);
+        live[11] = t57.clone();
         let t58 = S::sub(&t56, &t57);
         let t59 = S::mul_mul_add(&t50, &t58, &t52, &t55);
         values[3] = S::sub(&t59, &t43);
         let t61 = S::add(&t53, &t55);
+        live[1] = t61.clone();
         let t62 = S::sub(&c4, &t61);
         let t63 = S::sub_mul(&x[4], &t61, &t58);
         let t64 = S::add(&t56, &t63);
@@ -373,27 +405,45 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         jacobian[11] = S::mul_real(&t68, &c5);
         let t70 = S::mul(&p[2], &t61);
         jacobian[19] = S::mul_real(&t70, &c5);
-        jacobian[27] = S::sqr(&t50);
-        let t73 = S::mul(&t50, &t61);
+    }
+}
+struct Jacobian1<'a, S> {
+    x: &'a [S; 8],
+    p: &'a [S; 15],
+    values: &'a mut [S; 8],
+    jacobian: &'a mut [S; 64],
+    live: &'a mut [S; 16],
+}
+impl<S: Scalar> Kernel for Jacobian1<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    #[allow(unused_variables)]
+    fn run(self) {
+        let Self { x, p, values, jacobian, live } = self;
+        let c2 = S::from_parts([2.0, 0.0], [0.0, 0.0]);
+        let c4 = S::from_parts([-1.0, 0.0], [0.0, 0.0]);
+        let c5 = S::from_parts([-2.0, 0.0], [0.0, 0.0]);
+        jacobian[27] = S::sqr(&live[0]);
+        let t73 = S::mul(&live[0], &live[1]);
         jacobian[35] = S::neg(&t73);
-        jacobian[43] = S::sqr(&t52);
-        let t76 = S::sub(&t43, &t49);
+        jacobian[43] = S::sqr(&live[2]);
+        let t76 = S::sub(&live[3], &live[4]);
         jacobian[51] = S::mul_real(&t76, &c2);
-        let t78 = S::sub(&t51, &t46);
+        let t78 = S::sub(&live[5], &live[6]);
         jacobian[59] = S::mul_real(&t78, &c2);
-        let t80 = S::sub(&p[3], &t41);
+        let t80 = S::sub(&p[3], &live[7]);
         let t81 = S::mul(&p[3], &t80);
-        let t82 = S::sub(&p[5], &t44);
+        let t82 = S::sub(&p[5], &live[8]);
         let t83 = S::mul_sub(&p[5], &t82, &t81);
-        let t84 = S::sub(&p[4], &t47);
+        let t84 = S::sub(&p[4], &live[9]);
         let t85 = S::mul(&p[4], &t84);
         let t86 = S::sub(&t85, &t81);
         let t87 = S::mul(&x[4], &t86);
         let t88 = S::sub(&t83, &t87);
         let t89 = S::mul(&x[5], &t88);
-        let t90 = S::sub(&t89, &t54);
+        let t90 = S::sub(&t89, &live[10]);
         let t91 = S::mul(&x[3], &t86);
-        let t92 = S::sub(&t91, &t57);
+        let t92 = S::sub(&t91, &live[11]);
         let t93 = S::mul_mul_add(&t86, &t92, &t88, &t90);
         values[4] = S::sub(&t93, &t81);
         let t95 = S::add(&t89, &t90);
@@ -415,19 +465,23 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         jacobian[52] = S::mul_real(&t110, &c2);
         let t112 = S::sub(&t87, &t83);
         jacobian[60] = S::mul_real(&t112, &c2);
-        let t114 = S::sub(&p[6], &t41);
+        let t114 = S::sub(&p[6], &live[7]);
         let t115 = S::mul(&p[6], &t114);
-        let t116 = S::sub(&p[8], &t44);
+        live[12] = t115.clone();
+        let t116 = S::sub(&p[8], &live[8]);
         let t117 = S::mul_sub(&p[8], &t116, &t115);
-        let t118 = S::sub(&p[7], &t47);
+        live[15] = t117.clone();
+        let t118 = S::sub(&p[7], &live[9]);
         let t119 = S::mul(&p[7], &t118);
+        live[13] = t119.clone();
         let t120 = S::sub(&t119, &t115);
         let t121 = S::mul(&x[4], &t120);
+        live[14] = t121.clone();
         let t122 = S::sub(&t117, &t121);
         let t123 = S::mul(&x[5], &t122);
-        let t124 = S::sub(&t123, &t54);
+        let t124 = S::sub(&t123, &live[10]);
         let t125 = S::mul(&x[3], &t120);
-        let t126 = S::sub(&t125, &t57);
+        let t126 = S::sub(&t125, &live[11]);
         let t127 = S::mul_mul_add(&t120, &t126, &t122, &t124);
         values[5] = S::sub(&t127, &t115);
         let t129 = S::add(&t123, &t124);
@@ -445,23 +499,41 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         let t141 = S::mul(&t120, &t129);
         jacobian[37] = S::neg(&t141);
         jacobian[45] = S::sqr(&t122);
-        let t144 = S::sub(&t115, &t119);
+    }
+}
+struct Jacobian2<'a, S> {
+    x: &'a [S; 8],
+    p: &'a [S; 15],
+    values: &'a mut [S; 8],
+    jacobian: &'a mut [S; 64],
+    live: &'a mut [S; 16],
+}
+impl<S: Scalar> Kernel for Jacobian2<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    #[allow(unused_variables)]
+    fn run(self) {
+        let Self { x, p, values, jacobian, live } = self;
+        let c2 = S::from_parts([2.0, 0.0], [0.0, 0.0]);
+        let c4 = S::from_parts([-1.0, 0.0], [0.0, 0.0]);
+        let c5 = S::from_parts([-2.0, 0.0], [0.0, 0.0]);
+        let t144 = S::sub(&live[12], &live[13]);
         jacobian[53] = S::mul_real(&t144, &c2);
-        let t146 = S::sub(&t121, &t117);
+        let t146 = S::sub(&live[14], &live[15]);
         jacobian[61] = S::mul_real(&t146, &c2);
-        let t148 = S::sub(&p[9], &t41);
+        let t148 = S::sub(&p[9], &live[7]);
         let t149 = S::mul(&p[9], &t148);
-        let t150 = S::sub(&p[11], &t44);
+        let t150 = S::sub(&p[11], &live[8]);
         let t151 = S::mul_sub(&p[11], &t150, &t149);
-        let t152 = S::sub(&p[10], &t47);
+        let t152 = S::sub(&p[10], &live[9]);
         let t153 = S::mul(&p[10], &t152);
         let t154 = S::sub(&t153, &t149);
         let t155 = S::mul(&x[4], &t154);
         let t156 = S::sub(&t151, &t155);
         let t157 = S::mul(&x[5], &t156);
-        let t158 = S::sub(&t157, &t54);
+        let t158 = S::sub(&t157, &live[10]);
         let t159 = S::mul(&x[3], &t154);
-        let t160 = S::sub(&t159, &t57);
+        let t160 = S::sub(&t159, &live[11]);
         let t161 = S::mul_mul_add(&t154, &t160, &t156, &t158);
         values[6] = S::sub(&t161, &t149);
         let t163 = S::add(&t157, &t158);
@@ -483,19 +555,19 @@ impl<S: Scalar> Kernel for Jacobian0<'_, S> {
         jacobian[54] = S::mul_real(&t178, &c2);
         let t180 = S::sub(&t155, &t151);
         jacobian[62] = S::mul_real(&t180, &c2);
-        let t182 = S::sub(&p[12], &t41);
+        let t182 = S::sub(&p[12], &live[7]);
         let t183 = S::mul(&p[12], &t182);
-        let t184 = S::sub(&p[14], &t44);
+        let t184 = S::sub(&p[14], &live[8]);
         let t185 = S::mul_sub(&p[14], &t184, &t183);
-        let t186 = S::sub(&p[13], &t47);
+        let t186 = S::sub(&p[13], &live[9]);
         let t187 = S::mul(&p[13], &t186);
         let t188 = S::sub(&t187, &t183);
         let t189 = S::mul(&x[4], &t188);
         let t190 = S::sub(&t185, &t189);
         let t191 = S::mul(&x[5], &t190);
-        let t192 = S::sub(&t191, &t54);
+        let t192 = S::sub(&t191, &live[10]);
         let t193 = S::mul(&x[3], &t188);
-        let t194 = S::sub(&t193, &t57);
+        let t194 = S::sub(&t193, &live[11]);
         let t195 = S::mul_mul_add(&t188, &t194, &t190, &t192);
         values[7] = S::sub(&t195, &t183);
         let t197 = S::add(&t191, &t192);
