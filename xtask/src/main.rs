@@ -1,6 +1,7 @@
 //! Development tasks: `cargo xtask codegen | experiments | compare`.
 
 mod codegen;
+mod compare;
 mod refill;
 
 use clap::{Parser, Subcommand};
@@ -16,10 +17,13 @@ struct Arguments {
 enum Task {
     /// Write the generated solvers from the families and their stored fibres.
     Codegen(codegen::CodegenArguments),
+    /// Measure this project beside the peers that are installed.
+    Compare(compare::CompareArguments),
 }
 
 fn main() -> anyhow::Result<()> {
     match Arguments::parse().task {
         Task::Codegen(arguments) => codegen::run(&arguments),
+        Task::Compare(arguments) => compare::run(&arguments),
     }
 }

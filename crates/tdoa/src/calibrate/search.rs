@@ -51,6 +51,9 @@ pub(crate) struct Search<'a> {
     pub(crate) wide: Loss,
 }
 
+/// Number of the first call of a source in another's turn; far above the numbers of its own turns.
+const EXTRA_TURNS: usize = 1 << 24;
+
 impl Search<'_> {
     pub(crate) fn run(&self, options: &CalibrateOptions, control: &Control<'_>) -> Result<Found, CalibrateError> {
         let mut refined: Vec<Refined> = Vec::new();
@@ -94,7 +97,11 @@ impl Search<'_> {
 
     fn start(&self, refiner: &mut Refiner<'_>, index: usize, seed: u64) -> Vec<Refined> {
         let source = self.sources[index % self.sources.len()];
-        let proposals = source.propose(self.measured, index / self.sources.len(), seed);
+        let mut proposals = source.propose(self.measured, index / self.sources.len(), seed);
+        if proposals.is_empty() && self.sources.len() > 1 {
+            // A source that has nothing more to say leaves its turn to the first, under a number that no other call has.
+            proposals = self.sources[0].propose(self.measured, EXTRA_TURNS + index, seed);
+        }
         let mut ranked: Vec<(f64, Network)> = proposals
             .iter()
             .filter_map(|part| extend(self.observations, part, &self.wide))
