@@ -2,9 +2,9 @@
 
 use crate::distinct::coincidences;
 use crate::homotopy::Segment;
-use crate::tracker::{PathEnd, PathSet, Tracker, TrackerOptions, track};
+use crate::tracker::{PathEnd, PathSet, TrackerOptions, track};
 use num_complex::Complex64;
-use poly::{Evaluate, Lane};
+use poly::Evaluate;
 use serde::Serialize;
 
 /// The solutions of a family for one parameter point.
@@ -82,61 +82,38 @@ pub fn track_fibre<E: Evaluate>(
     options: &FibreOptions,
 ) -> (PathSet, PathCounts) {
     let path = Segment::new(&fibre.parameters, target);
-    let mut paths = PathSet::new(fibre.dimension);
-    let counts = complete(fibre.len(), options, &mut paths, |which, tracker, out| {
-        *out = track(system, &path, &fibre.solutions, which, tracker);
-    });
-    (paths, counts)
-}
-
-/// The same on one thread with a tracker that is kept from call to call; `paths` and `spare` are overwritten.
-pub fn track_fibre_with<E: Evaluate, S: Lane>(
-    tracker: &mut Tracker<'_, E, S>,
-    fibre: &Fibre,
-    path: &Segment,
-    options: &FibreOptions,
-    paths: &mut PathSet,
-) -> PathCounts {
-    complete(fibre.len(), options, paths, |which, settings, out| {
-        tracker.set_options(settings);
-        out.clear(fibre.dimension);
-        tracker.track(path, &fibre.solutions, which.iter().copied(), out);
-        out.sort();
-    })
-}
-
-/// Tracks `len` paths with `run`, then again those that jumped or failed.
-fn complete(
-    len: usize,
-    options: &FibreOptions,
-    paths: &mut PathSet,
-    mut run: impl FnMut(&[usize], &TrackerOptions, &mut PathSet),
-) -> PathCounts {
-    let mut which: Vec<usize> = (0..len).collect();
-    run(&which, &options.tracker, paths);
+    let run = |which: &[usize], tracker: &TrackerOptions| track(system, &path, &fibre.solutions, which, tracker);
+    let mut which: Vec<usize> = (0..fibre.len()).collect();
+    let mut paths = run(&which, &options.tracker);
     let mut retracked = 0;
     for level in 1..=options.retries {
-        which = doubtful(paths, options.coincidence);
+        which = doubtful(&paths, options.coincidence);
         if which.is_empty() {
             break;
         }
         retracked += which.len();
-        let mut again = PathSet::new(paths.dimension());
-        run(&which, &options.tracker.stricter(level), &mut again);
-        for (result, point) in again.iter() {
-            let k = result.path;
-            if result.end.is_good() || !paths.results()[k].end.is_good() {
-                paths.replace(k, *result, point);
+        for (result, point) in run(&which, &options.tracker.stricter(level)).iter() {
+            if result.end.is_good() || !paths.results()[result.path].end.is_good() {
+                paths.replace(result.path, *result, point);
             }
         }
     }
-    let lost = doubtful(paths, options.coincidence).len();
+    let lost = doubtful(&paths, options.coincidence).len();
     let at_infinity = paths.count(PathEnd::AtInfinity);
-    PathCounts { tracked: len, finite: len - at_infinity - lost, at_infinity, failed: lost, retracked }
+    let counts = PathCounts {
+        tracked: fibre.len(),
+        finite: fibre.len() - at_infinity - lost,
+        at_infinity,
+        failed: lost,
+        retracked,
+    };
+    (paths, counts)
 }
 
-/// Paths that failed or share a regular end with another.
-fn doubtful(paths: &PathSet, tolerance: f64) -> Vec<usize> {
+/// Paths that failed or share a regular end with another, by index of their start solutions: what has to be tracked again.
+///
+/// `paths` must hold the paths `0 .. len` in order.
+pub fn doubtful(paths: &PathSet, tolerance: f64) -> Vec<usize> {
     let regular = paths.iter().filter(|(r, _)| r.end == PathEnd::Success).map(|(r, x)| (r.path, x));
     let mut which: Vec<usize> = coincidences(regular, tolerance).concat();
     which.extend(paths.results().iter().filter(|r| !r.end.is_good()).map(|r| r.path));

@@ -5,8 +5,7 @@ use super::{SolveError, SolveOptions, check, dual, polish::polish};
 use crate::generated::six_three as generated;
 use crate::network::{Candidate, MinimalSolution, PathCounts, RootCounts};
 use crate::pseudoranges::Pseudoranges;
-use hc::distinct::coincidences;
-use hc::fibre::Fibre;
+use hc::fibre::{Fibre, doubtful};
 use hc::homotopy::Segment;
 use hc::poly::{Evaluate, Lanes8};
 use hc::refine::Refiner;
@@ -131,15 +130,6 @@ impl SixThree {
             retracked,
         }
     }
-}
-
-/// Paths that failed or share their end with another.
-fn doubtful(paths: &PathSet, tolerance: f64) -> Vec<usize> {
-    let ends = paths.iter().filter(|(r, _)| r.end == PathEnd::Success).map(|(r, x)| (r.path, x));
-    let mut which = coincidences(ends, tolerance).concat();
-    which.extend(paths.results().iter().filter(|r| !r.end.is_good()).map(|r| r.path));
-    which.sort_unstable();
-    which
 }
 
 fn pairs(values: &[[f64; 2]]) -> Vec<Complex64> {
