@@ -1,0 +1,149 @@
+//! The program `hc` on parameter families, as a user would run it.
+
+use end_to_end::{root, run};
+use hc::random::Random;
+use serde_json::{Value, json};
+use std::path::Path;
+
+fn text(path: &Path) -> &str {
+    path.to_str().expect("UTF-8 path")
+}
+
+fn family(name: &str) -> String {
+    text(&root().join(format!("examples/families/{name}.toml"))).to_owned()
+}
+
+/// Fills the fibre, tracks it to the targets and returns the reports.
+fn solve(name: &str, targets: &[Vec<f64>], threads: &str) -> Vec<Value> {
+    let directory = tempfile::tempdir().expect("directory");
+    let (start, target) = (directory.path().join("start.json"), directory.path().join("target.json"));
+    let output = run("hc", &["monodromy", &family(name), "--output", text(&start)]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let list: Vec<Value> = targets.iter().map(|p| json!({ "parameters": p })).collect();
+    std::fs::write(&target, serde_json::to_string(&list).unwrap()).expect("written");
+    let arguments = [
+        "track",
+        &family(name),
+        "--start",
+        text(&start),
+        "--target",
+        text(&target),
+        "--json",
+        "-",
+        "--threads",
+        threads,
+    ];
+    let output = run("hc", &arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).expect("JSON")
+}
+
+/// Whether a report has a real solution within `tolerance` of `x`.
+fn has(report: &Value, x: &[f64], tolerance: f64) -> bool {
+    report["solutions"].as_array().unwrap().iter().filter(|s| s["real"] == true).any(|s| {
+        let value = s["value"].as_array().unwrap();
+        value.iter().zip(x).all(|(z, x)| (z[0].as_f64().unwrap() - x).abs() < tolerance)
+    })
+}
+
+#[test]
+fn cameras_planted_before_three_points_are_found() {
+    let mut random = Random::new(1, 0);
+    let mut uniform = |low: f64, high: f64| low + (high - low) * (random.unit().arg() / std::f64::consts::TAU + 0.5);
+    let planted: Vec<([f64; 3], Vec<f64>)> = (0..100)
+        .map(|_| {
+            let d = [(); 3].map(|()| uniform(1.0, 5.0));
+            let g = [(); 3].map(|()| uniform(-0.9, 0.9));
+            let side = |a: usize, b: usize, g: f64| d[a] * d[a] + d[b] * d[b] - 2.0 * g * d[a] * d[b];
+            (d, vec![g[0], g[1], g[2], side(0, 1, g[0]), side(0, 2, g[1]), side(1, 2, g[2])])
+        })
+        .collect();
+    let targets: Vec<Vec<f64>> = planted.iter().map(|(_, p)| p.clone()).collect();
+    for (k, (report, (d, _))) in solve("p3p", &targets, "2").iter().zip(&planted).enumerate() {
+        assert_eq!(report["paths"]["finite"], 8, "target {k}");
+        assert!(has(report, d, 1e-6), "target {k}");
+    }
+}
+
+#[test]
+fn relative_poses_planted_behind_five_points_are_found_on_any_number_of_threads() {
+    let mut random = Random::new(2, 0);
+    let mut normal = || random.normal().re * 2f64.sqrt();
+    let planted: Vec<([f64; 5], Vec<f64>)> = (0..30)
+        .map(|_| {
+            let x @ [cx, cy, cz, u, v] = [(); 5].map(|()| 0.5 * normal());
+            let scale = 1.0 + cx * cx + cy * cy + cz * cz;
+            let rotation = [
+                [1.0 + cx * cx - cy * cy - cz * cz, 2.0 * (cx * cy - cz), 2.0 * (cx * cz + cy)],
+                [2.0 * (cx * cy + cz), 1.0 - cx * cx + cy * cy - cz * cz, 2.0 * (cy * cz - cx)],
+                [2.0 * (cx * cz - cy), 2.0 * (cy * cz + cx), 1.0 - cx * cx - cy * cy + cz * cz],
+            ];
+            let mut parameters = Vec::new();
+            for _ in 0..5 {
+                // A point in the second camera's frame; the first sees R X + t.
+                let point = [normal(), normal(), 4.0 + normal().abs()];
+                let turned = rotation.map(|row| row.iter().zip(point).map(|(r, p)| r * p).sum::<f64>() / scale);
+                let seen = [turned[0] + 1.0, turned[1] + u, turned[2] + v];
+                parameters.extend([seen[0] / seen[2], seen[1] / seen[2], point[0] / point[2], point[1] / point[2]]);
+            }
+            (x, parameters)
+        })
+        .collect();
+    let targets: Vec<Vec<f64>> = planted.iter().map(|(_, p)| p.clone()).collect();
+    let reports = solve("five_point", &targets, "1");
+    for (k, (report, (x, _))) in reports.iter().zip(&planted).enumerate() {
+        assert_eq!(report["paths"]["failed"], 0, "target {k}: {}", report["paths"]);
+        assert!(has(report, x, 1e-5), "target {k}");
+    }
+    for (one, two) in reports.iter().zip(solve("five_point", &targets, "2")) {
+        assert_eq!((&one["solutions"], &one["paths"]), (&two["solutions"], &two["paths"]));
+    }
+}
+
+#[test]
+fn unusable_input_is_named() {
+    let directory = tempfile::tempdir().expect("directory");
+    let write = |name: &str, content: &str| {
+        let path = directory.path().join(name);
+        std::fs::write(&path, content).expect("written");
+        text(&path).to_owned()
+    };
+    let start = write("start.json", "");
+    let cases: &[(Vec<String>, i32, &str)] = &[
+        (
+            vec!["monodromy".into(), "no-such-file.toml".into(), "--output".into(), start.clone()],
+            2,
+            "no-such-file.toml",
+        ),
+        (vec!["monodromy".into(), write("a.toml", "name = 1"), "--output".into(), start.clone()], 2, "invalid type"),
+        (
+            vec![
+                "monodromy".into(),
+                write("b.toml", "name = \"b\"\nunknowns = [\"x\", \"y\"]\nparameters = []\nequations = [\"x*y\"]"),
+                "--output".into(),
+                start.clone(),
+            ],
+            2,
+            "as many equations as unknowns",
+        ),
+        (
+            vec![
+                "track".into(),
+                family("p3p"),
+                "--start".into(),
+                write("c.json", "{\"parameters\": [[1, 0]], \"solutions\": [[[1, 0]]], \"stopped\": \"\"}"),
+                "--target".into(),
+                start.clone(),
+            ],
+            2,
+            "6 parameters and 3 unknowns",
+        ),
+    ];
+    for (arguments, status, part) in cases {
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        let output = run("hc", &arguments);
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(*status), "{message}");
+        assert!(message.contains(part) && !message.contains("panicked"), "{part:?} is not in: {message}");
+    }
+}
