@@ -44,7 +44,7 @@ pub enum PseudorangeError {
     },
     /// An infinite value, or one above [`MAX_MAGNITUDE`].
     #[error(
-        "receiver {receiver}, transmitter {transmitter}: {value} is not a usable pseudorange (metres, magnitude at \
+        "receiver {receiver}, transmitter {transmitter}: {value:e} is not a usable pseudorange (metres, magnitude at \
          most {MAX_MAGNITUDE:e}); leave the cell empty or write nan if it was not measured, and subtract a common \
          time from each transmitter's column if the clock starts long ago"
     )]

@@ -149,10 +149,14 @@ fn real_root<E: Evaluate>(
     if imaginary > 1e-4 * size && imaginary > near {
         return None;
     }
+    // Ends of difficult paths are known to a few digits only; the last ones decide between a real root and a complex pair.
+    let refined = refiner.refine(target, root);
+    let root = if refined.accuracy < 1e-10 { &refined.point[..] } else { root };
+    let imaginary = root[..COLUMNS].iter().map(|z| z.im.abs()).fold(0.0, f64::max);
     let start: Vec<Complex64> = root.iter().map(|z| z.re.into()).collect();
     let refined = refiner.refine(target, &start);
     let distance = hc::distinct::relative_distance(&refined.point, root);
-    let real = refined.accuracy < 1e-6 && distance < 1e-6;
+    let real = refined.accuracy < 1e-6 && distance < 1e-7;
     if real {
         Some((refined.point.iter().map(|z| z.re).collect(), true))
     } else {
