@@ -6,6 +6,8 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use tdoa::align::frame;
+use tdoa::html::html;
+use tdoa::node_table::node_table;
 use tdoa::picture::picture;
 use tdoa::read::{read, read_nodes};
 use tdoa::{CalibrateError, CalibrateOptions, Calibration, Control, Progress, Pseudoranges, calibrate_with};
@@ -50,6 +52,13 @@ pub(crate) struct Arguments {
     /// Writes a picture of the network.
     #[arg(long)]
     svg: Option<PathBuf>,
+    /// Writes a report for a browser and for paper: the picture, and tables of nodes and measurements that sort by a click.
+    /// One file, without references to others.
+    #[arg(long)]
+    html: Option<PathBuf>,
+    /// Writes the nodes as a CSV table: kind, name, position, standard deviations, offset, numbers of measurements.
+    #[arg(long, value_name = "FILE.csv")]
+    nodes: Option<PathBuf>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -86,6 +95,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     if let Some(path) = &arguments.svg {
         output::write(path, picture(&calibration).as_bytes())?;
+    }
+    if let Some(path) = &arguments.html {
+        output::write(path, html(&calibration).as_bytes())?;
+    }
+    if let Some(path) = &arguments.nodes {
+        output::write(path, node_table(&calibration).as_bytes())?;
     }
     if let Some(path) = &arguments.json {
         output::json(path, &calibration)?;

@@ -10,7 +10,7 @@ use std::path::Path;
 
 use thiserror::Error;
 
-pub use nodes::{Nodes, read_nodes};
+pub use nodes::{Nodes, read_nodes, read_nodes_from};
 
 use crate::pseudoranges::{MAX_CELLS, PseudorangeError, Pseudoranges};
 

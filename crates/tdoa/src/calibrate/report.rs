@@ -106,6 +106,21 @@ pub struct Truth {
 }
 
 impl Calibration {
+    /// Measurements of a receiver, and how many of them are outliers.
+    pub fn counts_of_receiver(&self, i: usize) -> [usize; 2] {
+        self.counts((0..self.transmitter_names.len()).map(|j| (i, j)))
+    }
+
+    /// Measurements of a transmitter, and how many of them are outliers.
+    pub fn counts_of_transmitter(&self, j: usize) -> [usize; 2] {
+        self.counts((0..self.receiver_names.len()).map(|i| (i, j)))
+    }
+
+    fn counts(&self, cells: impl Iterator<Item = (usize, usize)>) -> [usize; 2] {
+        let measured = cells.filter(|&(i, j)| self.residuals[i][j].is_some());
+        measured.fold([0, 0], |[all, outliers], (i, j)| [all + 1, outliers + usize::from(!self.inliers[i][j])])
+    }
+
     /// Moves the whole result into another frame.
     pub fn transform(&mut self, map: &Transform) {
         let point = |p: &mut Option<[f64; 2]>| *p = p.map(|p| map.apply(p));
