@@ -104,6 +104,22 @@ fn facts(calibration: &Calibration) -> String {
         ),
         ("Search", format!("{} of {} starts agree", calibration.agreeing, calibration.starts)),
     ];
+    if let Some(speed) = &calibration.speed {
+        let value = speed
+            .metres_per_second
+            .map_or_else(|| format!("{:.6} times the assumed one", speed.factor), |value| format!("{value:.6e} m/s"));
+        list.push(("Propagation speed", format!("{value}, estimated from {} distances", speed.distances)));
+    }
+    let anchored: Vec<&str> = calibration
+        .receiver_names
+        .iter()
+        .zip(&calibration.anchored)
+        .filter(|(_, held)| **held)
+        .map(|(name, _)| name.as_str())
+        .collect();
+    if !anchored.is_empty() {
+        list.push(("Known positions", anchored.join(", ")));
+    }
     if let Some(truth) = &calibration.truth {
         list.push((
             "Against the truth",

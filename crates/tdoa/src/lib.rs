@@ -24,8 +24,8 @@ mod restart;
 pub mod simulate;
 
 pub use calibrate::{
-    Alternative, CalibrateError, CalibrateOptions, Calibration, Control, Hypotheses, Progress, Truth, calibrate,
-    calibrate_with,
+    Alternative, CalibrateError, CalibrateOptions, Calibration, Control, Hypotheses, KnownDistance, Progress,
+    SpeedEstimate, Truth, calibrate, calibrate_with,
 };
 pub use network::{Candidate, MinimalSolution, Network, PathCounts, RootCounts};
 pub use pseudoranges::{PseudorangeError, Pseudoranges};
