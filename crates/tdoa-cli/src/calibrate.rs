@@ -6,11 +6,13 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use tdoa::align::frame;
+use tdoa::html::html;
+use tdoa::node_table::node_table;
 use tdoa::picture::picture;
-use tdoa::read::{read, read_nodes};
+use tdoa::read::{Units, read, read_distances, read_nodes};
 use tdoa::{CalibrateError, CalibrateOptions, Calibration, Control, Progress, Pseudoranges, calibrate_with};
 
-use crate::{Failure, output, summary};
+use crate::{Failure, interrupt, output, summary};
 
 /// Finds positions and offsets of a whole network from its pseudoranges.
 ///
@@ -29,6 +31,17 @@ pub(crate) struct Arguments {
     /// wrong by that factor).
     #[arg(long, requires = "truth")]
     scale: bool,
+    /// Known positions of some receivers (name,x,y, metres): they fix the frame, and two or more are held there, which
+    /// sharpens the rest.
+    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["frame", "scale"])]
+    anchors: Option<PathBuf>,
+    /// Known distances between some receivers (receiver,receiver,distance, metres), for --estimate-speed.
+    #[arg(long, value_name = "FILE.csv", requires = "estimate_speed")]
+    distances: Option<PathBuf>,
+    /// Estimates the propagation speed from the known distances and those between anchors: with --units s in metres a second,
+    /// otherwise as a factor on the one that made the measurements metres.
+    #[arg(long)]
+    estimate_speed: bool,
     /// Puts the node ORIGIN at (0, 0), XAXIS on the positive x axis and UP above it.
     #[arg(long, value_name = "ORIGIN,XAXIS,UP")]
     frame: Option<String>,
@@ -44,37 +57,61 @@ pub(crate) struct Arguments {
     /// Most starts of the search.
     #[arg(long, default_value_t = CalibrateOptions::default().max_starts)]
     max_starts: usize,
+    /// Starts that must have found the best network before the search ends: more for more certainty.
+    #[arg(long, default_value_t = CalibrateOptions::default().agreeing)]
+    agreeing: usize,
     /// Writes the result as JSON; - for standard output instead of the summary.
     #[arg(long)]
     json: Option<PathBuf>,
     /// Writes a picture of the network.
     #[arg(long)]
     svg: Option<PathBuf>,
+    /// Writes a report for a browser and for paper: the picture, and tables of nodes and measurements that sort by a click.
+    /// One file, without references to others.
+    #[arg(long)]
+    html: Option<PathBuf>,
+    /// Writes the nodes as a CSV table: kind, name, position, standard deviations, offset, numbers of measurements.
+    #[arg(long, value_name = "FILE.csv")]
+    nodes: Option<PathBuf>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let measured = read(&arguments.file, arguments.units.units()?).map_err(Failure::unusable)?;
+    let units = arguments.units.units(arguments.estimate_speed)?;
+    let measured = read(&arguments.file, units).map_err(Failure::unusable)?;
     let truth = arguments.truth.as_deref().map(|path| true_positions(path, &measured)).transpose()?;
     let frame = arguments.frame.as_deref().map(|text| frame_nodes(text, &measured)).transpose()?;
     let mut options = CalibrateOptions::default();
+    if let Some(path) = &arguments.anchors {
+        options.anchors = anchors(path, &measured)?;
+    }
+    if let Some(path) = &arguments.distances {
+        options.distances = read_distances(path, measured.receiver_names()).map_err(Failure::unusable)?;
+    }
+    options.estimate_speed = arguments.estimate_speed;
     options.sigma = arguments.sigma;
     options.seed = arguments.seed;
     options.max_starts = arguments.max_starts;
+    options.agreeing = arguments.agreeing;
     options.min_starts = options.min_starts.min(arguments.max_starts);
 
+    let cancelled = interrupt::watch()?;
     let started = Instant::now();
     let solved = crate::on_threads(arguments.threads, || {
         let bar = Bar::new();
         let show = |progress: Progress| bar.show(progress);
-        let control = Control { progress: Some(&show), cancelled: None };
+        let control = Control { progress: Some(&show), cancelled: Some(cancelled) };
         calibrate_with(&measured, &options, &[], &control)
     })?;
     let mut calibration = solved.map_err(|error| match error {
         CalibrateError::Degenerate(_) | CalibrateError::NotFound(_) => {
             Failure::Undetermined(format!("{}: {error}", arguments.file.display()))
         }
+        CalibrateError::Cancelled => Failure::Interrupted,
         other => Failure::unusable(other),
     })?;
+    if let (Units::Seconds { speed }, Some(found)) = (units, &mut calibration.speed) {
+        found.metres_per_second = Some(speed * found.factor);
+    }
     if let Some(truth) = &truth {
         calibration.compare(truth);
         if let Some(found) = calibration.truth.as_ref().filter(|_| arguments.scale) {
@@ -84,8 +121,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(nodes) = frame {
         put_in_frame(&mut calibration, nodes)?;
     }
+    interrupt::check()?;
     if let Some(path) = &arguments.svg {
         output::write(path, picture(&calibration).as_bytes())?;
+    }
+    if let Some(path) = &arguments.html {
+        output::write(path, html(&calibration).as_bytes())?;
+    }
+    if let Some(path) = &arguments.nodes {
+        output::write(path, node_table(&calibration).as_bytes())?;
     }
     if let Some(path) = &arguments.json {
         output::json(path, &calibration)?;
@@ -118,6 +162,30 @@ fn true_positions(path: &std::path::Path, measured: &Pseudoranges) -> Result<Vec
         return Err(Failure::Unusable(format!("{}: fewer than two receivers are known by name", path.display())));
     }
     Ok(found)
+}
+
+/// Known positions in the order of the receivers. A name that no receiver has is more likely a mistake than meant.
+fn anchors(path: &std::path::Path, measured: &Pseudoranges) -> Result<Vec<Option<[f64; 2]>>, Failure> {
+    let nodes = read_nodes(path).map_err(Failure::unusable)?;
+    let receivers = measured.receiver_names();
+    let unusable = |problem: String| Failure::Unusable(format!("{}: {problem}", path.display()));
+    let Some(names) = &nodes.names else {
+        return Err(unusable("names no receivers; expected lines name,x,y".to_string()));
+    };
+    let mut positions = vec![None; receivers.len()];
+    for (name, position) in names.iter().zip(&nodes.positions) {
+        let place = receivers.iter().position(|receiver| receiver == name);
+        let place = place.ok_or_else(|| {
+            unusable(format!(
+                "no receiver is named {name:?}; they are {}, ...",
+                receivers[..receivers.len().min(3)].join(", ")
+            ))
+        })?;
+        if positions[place].replace(*position).is_some() {
+            return Err(unusable(format!("receiver {name} is there twice; keep one position")));
+        }
+    }
+    Ok(positions)
 }
 
 /// A node by its place among the receivers or the transmitters.

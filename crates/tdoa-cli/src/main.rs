@@ -2,6 +2,7 @@
 
 mod calibrate;
 mod experiment;
+mod interrupt;
 mod output;
 mod simulate;
 mod solve;
@@ -14,7 +15,8 @@ use clap::{Parser, Subcommand};
 
 /// Calibrates sensor networks in the plane from arrival times alone.
 ///
-/// Exit status: 0 success, 1 no solution or data that cannot determine the network, 2 unusable input or arguments.
+/// Exit status: 0 success, 1 no solution or data that cannot determine the network, 2 unusable input or arguments, 130
+/// interrupted.
 #[derive(Parser)]
 #[command(version, arg_required_else_help = true)]
 struct Arguments {
@@ -30,12 +32,17 @@ enum Command {
     Solve(solve::Arguments),
 }
 
+/// Exit status after an interrupt, as shells have it: 128 and the number of SIGINT.
+pub(crate) const INTERRUPTED: u8 = 130;
+
 /// Why the program ends without success.
 pub(crate) enum Failure {
     /// Exit status 1: no solution, or data that cannot determine the network.
     Undetermined(String),
     /// Exit status 2: unusable input or arguments.
     Unusable(String),
+    /// Exit status 130: stopped from outside.
+    Interrupted,
 }
 
 impl Failure {
@@ -56,6 +63,7 @@ fn main() -> ExitCode {
         Ok(()) => return ExitCode::SUCCESS,
         Err(Failure::Undetermined(message)) => (message, 1),
         Err(Failure::Unusable(message)) => (message, 2),
+        Err(Failure::Interrupted) => ("interrupted; nothing was written".to_string(), INTERRUPTED),
     };
     eprintln!("tdoa: {message}");
     ExitCode::from(status)

@@ -45,7 +45,7 @@ struct Report<'a> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let measured = read(&arguments.file, arguments.units.units()?).map_err(Failure::unusable)?;
+    let measured = read(&arguments.file, arguments.units.units(false)?).map_err(Failure::unusable)?;
     if arguments.tolerance.is_nan() || arguments.tolerance < 0.0 {
         return Err(Failure::Unusable("--tolerance must not be negative".to_string()));
     }

@@ -28,6 +28,13 @@ pub(crate) fn text(calibration: &Calibration, time: Duration) -> String {
     if !calibration.planar {
         text += "NOT TO BE TRUSTED: the measurements do not fit a network in the plane, see the warnings\n";
     }
+    if let Some(speed) = &calibration.speed {
+        text += &format!("{}\n", speed_line(speed));
+    }
+    let anchored = calibration.anchored.iter().filter(|&&held| held).count();
+    if anchored > 0 {
+        text += &format!("{anchored} receivers held at their known positions\n");
+    }
     if let Some(truth) = &calibration.truth {
         text += &format!(
             "against the truth: {} receivers, {} m root mean square, {} m with scale {:.4}\n",
@@ -62,6 +69,22 @@ pub(crate) fn text(calibration: &Calibration, time: Duration) -> String {
         text += &format!("\nwarning: {warning}\n");
     }
     text
+}
+
+fn speed_line(speed: &tdoa::SpeedEstimate) -> String {
+    let relative = speed.factor_std.map(|std| std / speed.factor);
+    let percent =
+        relative.map_or_else(String::new, |relative| format!(" (standard deviation {:.2} %)", 100.0 * relative));
+    let basis = format!(
+        "from {} distance{}, which fit to {} m",
+        speed.distances,
+        if speed.distances == 1 { "" } else { "s" },
+        length(speed.residual)
+    );
+    match speed.metres_per_second {
+        Some(value) => format!("propagation speed {value:.6e} m/s{percent}, {basis}"),
+        None => format!("propagation speed {:.6} times the assumed one{percent}, {basis}", speed.factor),
+    }
 }
 
 fn outliers(calibration: &Calibration) -> Vec<String> {

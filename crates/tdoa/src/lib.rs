@@ -9,10 +9,12 @@ pub mod calibrate;
 pub mod degeneracy;
 pub mod experiment;
 mod generated;
+pub mod html;
 pub mod loss;
 pub mod minimal;
 pub mod multilateration;
 pub mod network;
+pub mod node_table;
 mod observations;
 pub mod picture;
 pub mod pseudoranges;
@@ -22,8 +24,8 @@ mod restart;
 pub mod simulate;
 
 pub use calibrate::{
-    Alternative, CalibrateError, CalibrateOptions, Calibration, Control, Hypotheses, Progress, Truth, calibrate,
-    calibrate_with,
+    Alternative, CalibrateError, CalibrateOptions, Calibration, Control, Hypotheses, KnownDistance, Progress,
+    SpeedEstimate, Truth, calibrate, calibrate_with,
 };
 pub use network::{Candidate, MinimalSolution, Network, PathCounts, RootCounts};
 pub use pseudoranges::{PseudorangeError, Pseudoranges};

@@ -33,6 +33,7 @@ pub(crate) struct Observations {
     columns: Vec<usize>,
     rows: Vec<usize>,
     row_entries: Vec<usize>,
+    held: Vec<bool>,
 }
 
 impl Observations {
@@ -53,7 +54,17 @@ impl Observations {
         let mut row_entries: Vec<usize> = (0..entries.len()).collect();
         row_entries.sort_by_key(|&k| entries[k].receiver);
         let rows = (0..=m).map(|i| row_entries.partition_point(|&k| entries[k].receiver < i)).collect();
-        Observations { receivers: m, transmitters: n, entries, columns, rows, row_entries }
+        Observations { receivers: m, transmitters: n, entries, columns, rows, row_entries, held: vec![false; m] }
+    }
+
+    /// The same measurements with receivers that stay where they are.
+    pub(crate) fn holding(self, held: &[bool]) -> Self {
+        Observations { held: held.to_vec(), ..self }
+    }
+
+    /// Which receivers stay where they are.
+    pub(crate) fn held(&self) -> &[bool] {
+        &self.held
     }
 
     /// All of them, transmitter by transmitter.
@@ -76,9 +87,11 @@ impl Observations {
         self.entries.len()
     }
 
-    /// Number of unknowns of the network: positions and offsets up to a rigid motion of the plane.
+    /// Number of unknowns of the network: positions and offsets, up to a rigid motion of the plane or without the
+    /// receivers that are held. One held receiver leaves the rotation about it.
     pub(crate) fn unknowns(&self) -> usize {
-        (2 * self.receivers + 3 * self.transmitters).saturating_sub(3)
+        let held = self.held.iter().filter(|&&held| held).count();
+        (2 * self.receivers + 3 * self.transmitters).saturating_sub((2 * held).max(3))
     }
 }
 

@@ -6,6 +6,7 @@ mod histogram;
 
 use crate::calibrate::Calibration;
 use crate::network::distance;
+pub(crate) use canvas::escape;
 use canvas::{Canvas, Map, nice};
 
 const WIDTH: f64 = 900.0;
@@ -148,13 +149,10 @@ fn legend(canvas: &mut Canvas, calibration: &Calibration, outside: usize, at: [f
     canvas.triangle([at[0], h], 6.0, "#0072B2");
     let h = row(canvas, "transmitter, with 95 % ellipse");
     canvas.circle([at[0], h], 3.0, "#D55E00");
-    let outlying = calibration
-        .residuals
-        .iter()
-        .flatten()
-        .zip(calibration.inliers.iter().flatten())
-        .filter(|(r, i)| r.is_some() && !**i);
-    let h = row(canvas, &format!("outliers: {} measurements", outlying.count()));
+    let cells = || calibration.residuals.iter().flatten().zip(calibration.inliers.iter().flatten());
+    let measured = cells().filter(|(residual, _)| residual.is_some()).count();
+    let outlying = cells().filter(|(residual, inlier)| residual.is_some() && !**inlier).count();
+    let h = row(canvas, &format!("outliers: {outlying} of {measured} measurements"));
     canvas.line([at[0] - 10.0, h], [at[0] + 12.0, h], "#CC79A7", 1.0, "5 3");
     if calibration.truth.is_some() {
         let h = row(canvas, "true receiver, and the error");

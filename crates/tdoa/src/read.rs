@@ -1,5 +1,6 @@
 //! Pseudoranges from files: a CSV matrix, a CSV list with one measurement a line, or NumPy's .npy.
 
+mod distances;
 mod nodes;
 mod npy;
 mod table;
@@ -10,7 +11,8 @@ use std::path::Path;
 
 use thiserror::Error;
 
-pub use nodes::{Nodes, read_nodes};
+pub use distances::{read_distances, read_distances_from};
+pub use nodes::{Nodes, read_nodes, read_nodes_from};
 
 use crate::pseudoranges::{MAX_CELLS, PseudorangeError, Pseudoranges};
 

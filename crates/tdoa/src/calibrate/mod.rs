@@ -1,13 +1,19 @@
 //! From any matrix of pseudoranges to a network: leave out what cannot be determined, search from many starts, refine the
 //! best, say how sure the result is.
 
+mod hold;
 mod hypotheses;
+mod known;
 mod minimal;
 mod options;
 mod report;
 mod search;
+mod warnings;
+
+use std::sync::atomic::Ordering;
 
 pub use hypotheses::{Hypotheses, KnownReceivers, generator};
+pub use known::{KnownDistance, SpeedEstimate};
 pub use minimal::MinimalHypotheses;
 pub use options::{CalibrateError, CalibrateOptions, Control, Progress};
 pub use report::{Alternative, Calibration, Truth};
@@ -18,6 +24,7 @@ use crate::network::Network;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::{PartialNetwork, RefineOptions, Refined, Refiner, SEARCH, extend};
+use hold::{Free, Held};
 use hypotheses::RandomRestarts;
 use report::Solved;
 use search::{Search, distinct};
@@ -64,6 +71,7 @@ pub fn calibrate_with(
     control: &Control<'_>,
 ) -> Result<Calibration, CalibrateError> {
     options.validate()?;
+    known::validate(measured, options)?;
     let usable = usable(measured)?;
     let (centred, shifts) = centre(&measured.select(&usable.receivers, &usable.transmitters));
     let observations = Observations::new(&centred, |_, _| true);
@@ -108,11 +116,17 @@ pub fn calibrate_with(
         } else {
             complete(&observations, &part, close.take(4), &refine)
         };
+    if control.cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+        return Err(CalibrateError::Cancelled);
+    }
     let Some(scale) = whole.iter().min_by(|a, b| a.objective.total_cmp(&b.objective)).map(|r| r.scale) else {
         return Err(CalibrateError::NotFound(found.starts));
     };
     let first = known.unwrap_or(scale * to_deviation).max(refine.floor);
     let (ranked, deviation) = finish(&observations, whole, first, known.is_some(), refine.floor, options);
+    let free = Free { observations, centred: &centred, known, floor: refine.floor };
+    let held = free.hold(ranked, deviation, &usable, options)?;
+    let Held { observations, ranked, deviation, anchors, speed, warnings } = held;
     let solved = Solved {
         measured,
         usable: &usable,
@@ -124,6 +138,9 @@ pub fn calibrate_with(
         known,
         starts: found.starts,
         agreeing: found.agreeing,
+        anchors,
+        speed,
+        warnings,
     };
     Ok(solved.report(options))
 }

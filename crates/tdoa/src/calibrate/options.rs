@@ -4,6 +4,7 @@ use std::sync::atomic::AtomicBool;
 
 use thiserror::Error;
 
+use super::known::KnownDistance;
 use crate::degeneracy::Degeneracy;
 
 /// How to calibrate. All fields have defaults; start from `CalibrateOptions::default()`.
@@ -36,6 +37,14 @@ pub struct CalibrateOptions {
     /// Above this ratio of the residuals' deviation to the network's size (root mean square distance of the receivers
     /// from their centroid) the data are called not planar. Default 0.04.
     pub planar_limit: f64,
+    /// Known positions of receivers in metres, in the order of the receivers, `None` where unknown. They fix the frame; if
+    /// they are in two places at least, they are held there in the last refinement. Default empty: none are known.
+    pub anchors: Vec<Option<[f64; 2]>>,
+    /// Known distances between receivers, for `estimate_speed`. Default empty.
+    pub distances: Vec<KnownDistance>,
+    /// Whether the propagation speed with which the measurements became metres is a guess, to be replaced by the one that
+    /// the known distances and the distances between anchors have. Default false.
+    pub estimate_speed: bool,
 }
 
 impl Default for CalibrateOptions {
@@ -52,6 +61,9 @@ impl Default for CalibrateOptions {
             inlier_threshold: 3.5,
             alternative_margin: 8.0,
             planar_limit: 0.04,
+            anchors: Vec::new(),
+            distances: Vec::new(),
+            estimate_speed: false,
         }
     }
 }
@@ -132,6 +144,9 @@ pub enum CalibrateError {
         /// What was given.
         value: f64,
     },
+    /// Known positions or distances that cannot be used.
+    #[error("known positions and distances: {0}")]
+    Known(String),
     /// Stopped through [`Control::cancelled`].
     #[error("calibration was cancelled")]
     Cancelled,

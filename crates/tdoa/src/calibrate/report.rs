@@ -3,10 +3,12 @@
 use serde::Serialize;
 
 use super::inlier_deviation;
+use super::known::{Anchors, SpeedEstimate};
 use super::options::CalibrateOptions;
+use super::warnings::warn_of_nodes;
 use crate::align::{Transform, align, frame};
-use crate::degeneracy::{Usable, list};
-use crate::network::{Network, distance};
+use crate::degeneracy::Usable;
+use crate::network::Network;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::{Covariance, Refined, covariance};
@@ -52,6 +54,11 @@ pub struct Calibration {
     pub transmitter_covariance: Vec<Option<[[f64; 2]; 2]>>,
     /// Standard deviations of the offsets.
     pub offset_std: Vec<Option<f64>>,
+    /// Which receivers were held at known positions.
+    pub anchored: Vec<bool>,
+    /// The propagation speed, if it was to be estimated; all lengths are those of the estimate.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed: Option<SpeedEstimate>,
     /// What the covariances are relative to.
     pub gauge: &'static str,
     /// Whether no other network that was found explains the measurements about as well.
@@ -106,6 +113,21 @@ pub struct Truth {
 }
 
 impl Calibration {
+    /// Measurements of a receiver, and how many of them are outliers.
+    pub fn counts_of_receiver(&self, i: usize) -> [usize; 2] {
+        self.counts((0..self.transmitter_names.len()).map(|j| (i, j)))
+    }
+
+    /// Measurements of a transmitter, and how many of them are outliers.
+    pub fn counts_of_transmitter(&self, j: usize) -> [usize; 2] {
+        self.counts((0..self.receiver_names.len()).map(|i| (i, j)))
+    }
+
+    fn counts(&self, cells: impl Iterator<Item = (usize, usize)>) -> [usize; 2] {
+        let measured = cells.filter(|&(i, j)| self.residuals[i][j].is_some());
+        measured.fold([0, 0], |[all, outliers], (i, j)| [all + 1, outliers + usize::from(!self.inliers[i][j])])
+    }
+
     /// Moves the whole result into another frame.
     pub fn transform(&mut self, map: &Transform) {
         let point = |p: &mut Option<[f64; 2]>| *p = p.map(|p| map.apply(p));
@@ -150,6 +172,15 @@ impl Calibration {
         }
     }
 
+    /// Moves the result to where the anchors are: held ones are about their centroid so far, a single one is anywhere.
+    fn put_on(&mut self, anchors: &Anchors, rows: &[usize], held: bool) {
+        let first = anchors.positions.iter().position(Option::is_some).and_then(|a| self.receivers[rows[a]]);
+        let [x, y] = if held { [0.0; 2] } else { first.unwrap_or([0.0; 2]) };
+        let mut map = Transform { rotation: [[1.0, 0.0], [0.0, 1.0]], scale: 1.0, translation: [0.0; 2] };
+        map.translation = [anchors.centre[0] - x, anchors.centre[1] - y];
+        self.transform(&map);
+    }
+
     /// Compares with true positions of receivers, in the order of the receivers, as far as they are known. Does nothing
     /// with fewer than two.
     pub fn compare(&mut self, truth: &[Option<[f64; 2]>]) {
@@ -184,6 +215,10 @@ pub(super) struct Solved<'a> {
     pub(super) known: Option<f64>,
     pub(super) starts: usize,
     pub(super) agreeing: usize,
+    pub(super) anchors: Option<Anchors>,
+    pub(super) speed: Option<SpeedEstimate>,
+    /// Warnings of the steps before.
+    pub(super) warnings: Vec<String>,
 }
 
 impl Solved<'_> {
@@ -196,8 +231,10 @@ impl Solved<'_> {
             let deviation = sigma * self.centred.sigma(i, j).unwrap_or(1.0);
             residual.is_some_and(|e| e.abs() <= options.inlier_threshold * deviation)
         };
-        let kept = Observations::new(self.centred, |i, j| inlier(best, i, j));
-        let mut warnings = self.usable.warnings.clone();
+        let held = self.observations.held();
+        let is_held = held.contains(&true);
+        let kept = Observations::new(self.centred, |i, j| inlier(best, i, j)).holding(held);
+        let mut warnings = [self.usable.warnings.as_slice(), &self.warnings].concat();
         let redundancy = kept.len().saturating_sub(kept.unknowns());
         let ellipse_radius = radius_95(redundancy, self.known.is_some());
         let uncertainty = match ellipse_radius {
@@ -244,8 +281,11 @@ impl Solved<'_> {
             .map(|other| (other, other.objective - self.ranked[0].objective))
             .filter(|(_, loss)| *loss <= options.alternative_margin)
             .filter_map(|(other, loss)| {
-                let map = align(&other.network.receivers, &best.receivers, false)?.transform;
-                let network = map.apply_network(&other.network);
+                let network = if is_held {
+                    other.network.clone()
+                } else {
+                    align(&other.network.receivers, &best.receivers, false)?.transform.apply_network(&other.network)
+                };
                 Some(Alternative {
                     receivers: spread_rows(&network.receivers),
                     transmitters: spread_columns(&network.transmitters),
@@ -286,7 +326,15 @@ impl Solved<'_> {
             transmitter_std: Vec::new(),
             transmitter_covariance: scatter(n, columns, &transmitters).into_iter().map(Option::flatten).collect(),
             offset_std: scatter(n, columns, &offset_std).into_iter().map(Option::flatten).collect(),
-            gauge: "inner constraint over the receivers: relative to their best rigid alignment",
+            anchored: scatter(m, rows, held).into_iter().map(|held| held == Some(true)).collect(),
+            speed: self.speed,
+            gauge: match (is_held, self.speed.is_some()) {
+                (false, _) => "inner constraint over the receivers: relative to their best rigid alignment",
+                (true, false) => "relative to the receivers of known position, which have no error",
+                (true, true) => {
+                    "relative to the receivers of known position, which have no error, at the estimated propagation speed"
+                }
+            },
             unique: alternatives.is_empty(),
             alternatives,
             planar,
@@ -300,15 +348,23 @@ impl Solved<'_> {
         for i in &uncertainty.loose {
             calibration.receiver_covariance[rows[*i]] = None;
         }
-        let map = default_frame(&best.receivers);
-        calibration.transform(&map);
+        if !is_held {
+            calibration.transform(&default_frame(&best.receivers));
+        }
+        if let Some(speed) = &self.speed {
+            calibration.rescale(speed.factor);
+        }
+        if let Some(anchors) = &self.anchors {
+            calibration.put_on(anchors, rows, is_held);
+        }
         calibration
     }
 
     fn planar(&self, best: &Network, estimated: f64, options: &CalibrateOptions, warnings: &mut Vec<String>) -> bool {
         // In metres also where measurements carry their own deviations.
-        let misfit = estimated * super::typical_deviation(self.centred);
-        let size = best.size();
+        let metre = self.speed.map_or(1.0, |speed| speed.factor);
+        let misfit = metre * estimated * super::typical_deviation(self.centred);
+        let size = metre * best.size();
         if let Some(sigma) = self.known
             && estimated > 3.0 * sigma
         {
@@ -366,92 +422,6 @@ fn default_frame(receivers: &[[f64; 2]]) -> Transform {
     candidates.filter_map(|(x, up)| frame(origin, x, up)).next().unwrap_or(identity)
 }
 
-/// Warnings about the geometry: in line, in one place, poorly tied down.
-fn warn_of_nodes(
-    measured: &Pseudoranges,
-    network: &Network,
-    kept: &Observations,
-    uncertainty: &Covariance,
-    noise_known: bool,
-    warnings: &mut Vec<String>,
-) {
-    let size = network.size();
-    for (kind, points) in [("receivers", &network.receivers), ("transmitters", &network.transmitters)] {
-        let flat = flatness(points);
-        if flat < 0.02 {
-            warnings.push(format!(
-                "the {kind} lie nearly in one line (width {:.1} % of length): on which side of it the other nodes lie is \
-                 poorly determined; move some {kind} off the line",
-                100.0 * flat
-            ));
-        }
-    }
-    let names = measured.receiver_names();
-    for (a, p) in network.receivers.iter().enumerate() {
-        for (b, q) in network.receivers.iter().enumerate().skip(a + 1) {
-            if distance(*p, *q) < 1e-3 * size {
-                warnings.push(format!("receivers {} and {} stand in the same place; remove one", names[a], names[b]));
-            }
-        }
-    }
-    if !uncertainty.loose.is_empty() {
-        let loose: Vec<String> = uncertainty.loose.iter().map(|&i| names[i].clone()).collect();
-        warnings.push(format!("the measurements do not determine where {} are; measure more of them", list(&loose)));
-    }
-    let weak = |names: &[String], std: &dyn Fn(usize) -> f64| -> Vec<String> {
-        (0..names.len()).filter(|&k| std(k) > 0.1 * size).map(|k| names[k].clone()).collect()
-    };
-    let receivers =
-        weak(names, &|i| uncertainty.receivers.get(i).map_or(f64::INFINITY, |c| (c[0][0] + c[1][1]).max(0.0).sqrt()));
-    let transmitters = weak(measured.transmitter_names(), &|j| {
-        uncertainty.transmitters.get(j).and_then(|c| *c).map_or(f64::INFINITY, |c| (c[0][0] + c[1][1]).max(0.0).sqrt())
-    });
-    for (kind, nodes) in [("receivers", receivers), ("transmitters", transmitters)] {
-        if noise_known && !nodes.is_empty() {
-            warnings.push(format!(
-                "poorly determined {kind} (standard deviation above a tenth of the network's size): {}; measure more, or \
-                 from more directions",
-                list(&nodes)
-            ));
-        }
-    }
-    let doubtful: Vec<String> = (0..measured.transmitters())
-        .filter(|&j| {
-            let all = (0..measured.receivers()).filter(|&i| measured.get(i, j).is_some()).count();
-            let good = kept.of_transmitter(j).len();
-            good < 4 || 2 * good < all
-        })
-        .map(|j| measured.transmitter_names()[j].clone())
-        .collect();
-    if !doubtful.is_empty() {
-        warnings.push(format!("transmitters most of whose measurements are outliers: {}; check them", list(&doubtful)));
-    }
-    let doubtful: Vec<String> = (0..measured.receivers())
-        .filter(|&i| {
-            let all = (0..measured.transmitters()).filter(|&j| measured.get(i, j).is_some()).count();
-            2 * kept.of_receiver(i).len() < all
-        })
-        .map(|i| names[i].clone())
-        .collect();
-    if !doubtful.is_empty() {
-        warnings.push(format!("receivers most of whose measurements are outliers: {}; check them", list(&doubtful)));
-    }
-}
-
-/// Ratio of the standard deviations across and along a set of points; 1 for fewer than three.
-fn flatness(points: &[[f64; 2]]) -> f64 {
-    if points.len() < 3 {
-        return 1.0;
-    }
-    let count = points.len() as f64;
-    let centre = [0, 1].map(|k| points.iter().map(|p| p[k]).sum::<f64>() / count);
-    let moment = |a: usize, b: usize| points.iter().map(|p| (p[a] - centre[a]) * (p[b] - centre[b])).sum::<f64>();
-    let (xx, xy, yy) = (moment(0, 0), moment(0, 1), moment(1, 1));
-    let root = (0.25 * (xx - yy).powi(2) + xy * xy).sqrt();
-    let (large, small) = (0.5 * (xx + yy) + root, (xx * yy - xy * xy) / (0.5 * (xx + yy) + root));
-    if large > 0.0 { (small.max(0.0) / large).sqrt() } else { 0.0 }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -464,11 +434,5 @@ mod tests {
         assert!((radius_95(10, false).unwrap().powi(2) - 2.0 * 4.103).abs() < 1e-3);
         assert!((radius_95(1_000_000, false).unwrap().powi(2) - 5.991).abs() < 1e-3);
         assert_eq!(radius_95(0, false), None);
-    }
-
-    #[test]
-    fn flat_sets_of_points() {
-        assert_eq!(flatness(&[[0.0, 0.0], [1.0, 1.0], [3.0, 3.0]]), 0.0);
-        assert!((flatness(&[[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]]) - 1.0).abs() < 1e-12);
     }
 }

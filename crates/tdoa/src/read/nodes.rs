@@ -1,5 +1,7 @@
-//! Known positions: `id,x,y` with a header (further columns are ignored), or `x,y` without one.
+//! Known positions: `id,x,y` with a header (further columns are ignored), or `x,y` without one. Where the header has a
+//! column `kind`, as in [`crate::node_table`], only the lines of receivers that have a position count.
 
+use std::io::Read;
 use std::path::Path;
 
 use super::ReadError;
@@ -37,17 +39,29 @@ impl Nodes {
 /// A file that cannot be read, lines without two numbers.
 pub fn read_nodes(path: &Path) -> Result<Nodes, ReadError> {
     let file = path.display().to_string();
-    let text = super::text(super::open(path, &file)?, &file)?;
+    read_nodes_from(super::open(path, &file)?, &file)
+}
+
+/// Reads positions as [`read_nodes`] does; `file` names the source in errors.
+///
+/// # Errors
+/// As [`read_nodes`].
+pub fn read_nodes_from(source: impl Read, file: &str) -> Result<Nodes, ReadError> {
+    let file = file.to_string();
+    let text = super::text(source, &file)?;
     let mut names = Vec::new();
     let mut positions = Vec::new();
     let mut columns = None;
+    let mut kind = None;
     for record in records(&text, &file) {
         let record = record?;
         let bad = |problem: String| ReadError::Line { file: file.clone(), line: record.line, problem };
         if columns.is_none() {
             let at = |name: &str| record.cells.iter().position(|c| c.eq_ignore_ascii_case(name));
             if let (Some(x), Some(y)) = (at("x"), at("y")) {
-                let name = (0..record.cells.len()).find(|k| *k < x.min(y));
+                let headed = at("name").or_else(|| at("id")).or_else(|| at("receiver"));
+                let name = headed.or_else(|| (0..record.cells.len()).find(|k| *k < x.min(y)));
+                kind = at("kind");
                 columns = Some((name, x, y));
                 continue;
             }
@@ -55,6 +69,10 @@ pub fn read_nodes(path: &Path) -> Result<Nodes, ReadError> {
             columns = Some(if named { (Some(0), 1, 2) } else { (None, 0, 1) });
         }
         let Some((name, x, y)) = columns else { continue };
+        let cell = |k: usize| record.cells.get(k).map(String::as_str);
+        if kind.is_some_and(|k| cell(k) != Some("receiver") || (cell(x) == Some("") && cell(y) == Some(""))) {
+            continue;
+        }
         let read = |k: usize| -> Result<f64, ReadError> {
             let cell = record.cells.get(k).ok_or_else(|| bad(format!("has no column {}; expected id,x,y", k + 1)))?;
             number(cell)

@@ -3,7 +3,8 @@
 //! Arrival times leave a rigid motion of the plane open, so a covariance needs a gauge. Here it is the inner constraint
 //! over the receivers: of all covariances that explain the same data the one of smallest trace over the receivers, which
 //! is sigma^2 times the pseudo-inverse of the normal equations reduced to the receivers. It says how well the nodes lie
-//! relative to the receivers as a whole after the best rigid alignment of the receivers.
+//! relative to the receivers as a whole after the best rigid alignment of the receivers. Held receivers are the gauge
+//! themselves: they have no error, and the normal equations of the others are inverted.
 
 use faer::Mat;
 use faer::Side;
@@ -21,6 +22,8 @@ const RANK_TOLERANCE: f64 = 1e-11;
 pub(crate) struct Covariance {
     /// Per receiver.
     pub(crate) receivers: Vec<[[f64; 2]; 2]>,
+    /// Of all coordinates of the receivers, 2m x 2m by rows.
+    pub(crate) joint: Vec<f64>,
     /// Per transmitter: x, y, offset; `None` where its own measurements do not determine it.
     pub(crate) transmitters: Vec<Option<[[f64; 3]; 3]>>,
     /// Receivers that could move without a change of the measurements (to first order) beyond a rigid motion.
@@ -35,20 +38,25 @@ pub(crate) fn covariance(observations: &Observations, network: &Network, sigma: 
     let normal = refiner.normal_at(network, &Loss { nu: f64::INFINITY, scale: 1.0 });
     let size = 2 * m;
     let lower = normal.schur();
-    let schur = Mat::from_fn(size, size, |a, b| lower[a.min(b) * size + a.max(b)]);
+    let free: Vec<usize> = (0..size).filter(|&k| !observations.held()[k / 2]).collect();
+    let schur = Mat::from_fn(free.len(), free.len(), |a, b| {
+        let (a, b) = (free[a], free[b]);
+        lower[a.min(b) * size + a.max(b)]
+    });
     let eigen = schur.self_adjoint_eigen(Side::Lower).ok()?;
-    let largest = eigen.S()[size - 1];
+    let largest = free.len().checked_sub(1).map_or(1.0, |last| eigen.S()[last]);
     if !(largest.is_finite() && largest > 0.0) {
         return None;
     }
     // Eigenvalues ascend; the three smallest belong to the rigid motions.
-    let zero = (0..size).filter(|&k| eigen.S()[k] < RANK_TOLERANCE * largest).count().max(3).min(size);
+    let rigid = if free.len() == size { 3 } else { 0 };
+    let zero = (0..free.len()).filter(|&k| eigen.S()[k] < RANK_TOLERANCE * largest).count().max(rigid);
     let mut inverse = Mat::<f64>::zeros(size, size);
-    for k in zero..size {
+    for k in zero..free.len() {
         let factor = sigma * sigma / eigen.S()[k];
-        for a in 0..size {
-            for b in 0..size {
-                inverse[(a, b)] += factor * eigen.U()[(a, k)] * eigen.U()[(b, k)];
+        for a in 0..free.len() {
+            for b in 0..free.len() {
+                inverse[(free[a], free[b])] += factor * eigen.U()[(a, k)] * eigen.U()[(b, k)];
             }
         }
     }
@@ -88,7 +96,9 @@ pub(crate) fn covariance(observations: &Observations, network: &Network, sigma: 
             sum
         }));
     }
-    Some(Covariance { receivers, transmitters, loose: loose(&eigen.U(), zero, network) })
+    let joint = (0..size * size).map(|k| inverse[(k / size, k % size)]).collect();
+    let loose = if rigid > 0 { loose(&eigen.U(), zero, network) } else { loose_beside_held(&eigen.U(), zero, &free) };
+    Some(Covariance { receivers, joint, transmitters, loose })
 }
 
 /// Receivers that take part in the zero modes beyond the rigid motions.
@@ -114,6 +124,12 @@ fn loose(modes: &faer::MatRef<'_, f64>, zero: usize, network: &Network) -> Vec<u
             .sum()
     };
     (0..m).filter(|&i| freedom(i) > 0.01).collect()
+}
+
+/// The same where receivers are held, which leaves no rigid motion.
+fn loose_beside_held(modes: &faer::MatRef<'_, f64>, zero: usize, free: &[usize]) -> Vec<usize> {
+    let freedom = |at: usize| (0..zero).map(|k| modes[(at, k)].powi(2) + modes[(at + 1, k)].powi(2)).sum::<f64>();
+    (0..free.len()).step_by(2).filter(|&at| freedom(at) > 0.01).map(|at| free[at] / 2).collect()
 }
 
 #[cfg(test)]

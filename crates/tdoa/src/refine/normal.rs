@@ -141,6 +141,18 @@ impl Normal {
                 }
             }
         }
+        self.hold(observations.held());
+    }
+
+    /// Makes the equations of held receivers say that they do not move.
+    fn hold(&mut self, held: &[bool]) {
+        let size = 2 * self.receivers;
+        for at in (0..size).filter(|&k| held[k / 2]) {
+            (0..at).for_each(|column| self.schur[column * size + at] = 0.0);
+            self.schur[at * size + at + 1..(at + 1) * size].fill(0.0);
+            self.schur[at * size + at] = 1.0;
+            self.receiver_steps[at] = 0.0;
+        }
     }
 
     fn substitute_back(&mut self, observations: &Observations) {

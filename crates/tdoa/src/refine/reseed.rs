@@ -27,7 +27,7 @@ pub(crate) fn place_transmitters(observations: &Observations, network: &mut Netw
     kept
 }
 
-/// Locates every transmitter, then every receiver, from all other nodes and moves those whose measurements then fit
+/// Locates every transmitter, then every receiver that is not held, from all other nodes and moves those whose measurements then fit
 /// better. Returns how many moved.
 pub(crate) fn reseed(observations: &Observations, network: &mut Network, loss: &Loss) -> usize {
     let mut sights = Vec::new();
@@ -41,7 +41,7 @@ pub(crate) fn reseed(observations: &Observations, network: &mut Network, loss: &
             moved += 1;
         }
     }
-    for i in 0..observations.receivers {
+    for i in (0..observations.receivers).filter(|&i| !observations.held()[i]) {
         sights_of_receiver(observations, network, i, &mut sights);
         let now = multilateration::cost(&sights, network.receivers[i], 0.0, loss);
         if let Some(found) = better(multilateration::receiver(&sights, loss), now) {

@@ -1,0 +1,217 @@
+//! The last refinement with what is known beforehand: the propagation speed from known distances, then the receivers of
+//! known position held in their places.
+
+use super::known::{Anchors, SpeedEstimate};
+use super::options::{CalibrateError, CalibrateOptions};
+use super::{finish, inlier_deviation};
+use crate::degeneracy::Usable;
+use crate::network::Network;
+use crate::observations::Observations;
+use crate::pseudoranges::Pseudoranges;
+use crate::refine::{Refined, covariance};
+
+/// What is known when the network has been refined from the measurements alone.
+pub(super) struct Free<'a> {
+    pub(super) observations: Observations,
+    pub(super) centred: &'a Pseudoranges,
+    pub(super) known: Option<f64>,
+    pub(super) floor: f64,
+}
+
+/// The same after receivers of known position were put in their places.
+pub(super) struct Held {
+    pub(super) observations: Observations,
+    pub(super) ranked: Vec<Refined>,
+    pub(super) deviation: f64,
+    pub(super) anchors: Option<Anchors>,
+    pub(super) speed: Option<SpeedEstimate>,
+    pub(super) warnings: Vec<String>,
+}
+
+impl Free<'_> {
+    /// Estimates the propagation speed, then refines with the anchors held.
+    pub(super) fn hold(
+        self,
+        mut ranked: Vec<Refined>,
+        deviation: f64,
+        usable: &Usable,
+        options: &CalibrateOptions,
+    ) -> Result<Held, CalibrateError> {
+        let Free { observations, centred, known, floor } = self;
+        let mut anchors = Anchors::new(usable, options)?;
+        let mut warnings = Vec::new();
+        if anchors.is_none() && !options.estimate_speed {
+            return Ok(Held { observations, ranked, deviation, anchors, speed: None, warnings });
+        }
+        let best = &ranked[0].network;
+        let sigma = known.unwrap_or_else(|| inlier_deviation(&observations, best, deviation, options.inlier_threshold));
+        let kept = Observations::new(centred, |i, j| {
+            let residual = centred.get(i, j).map_or(0.0, |f| f - best.pseudorange(i, j));
+            residual.abs() <= options.inlier_threshold * sigma * centred.sigma(i, j).unwrap_or(1.0)
+        });
+        let sure = known.is_some() || kept.len() > kept.unknowns();
+        let uncertainty = covariance(&kept, best, sigma).filter(|_| sure);
+        let joint = uncertainty.as_ref().map(|all| all.joint.as_slice());
+        let speed = options.estimate_speed.then(|| super::known::speed(best, usable, joint, options)).transpose()?;
+        let held = anchors.as_mut().map_or(Vec::new(), |anchors| {
+            anchors.divide(speed.map_or(1.0, |speed| speed.factor));
+            anchors.held()
+        });
+        let Some(places) = anchors.as_ref().filter(|_| held.contains(&true)) else {
+            return Ok(Held { observations, ranked, deviation, anchors, speed, warnings });
+        };
+        let misfit: Vec<f64> = ranked.iter_mut().map(|refined| places.place(refined)).collect();
+        let expected = uncertainty.as_ref().map(|all| places.expected(&all.receivers));
+        if let Some(expected) = expected.filter(|expected| misfit.iter().all(|misfit| *misfit > 4.0 * expected)) {
+            let metre = speed.map_or(1.0, |speed| speed.factor);
+            warnings.push(format!(
+                "the known positions are {:.3} m (root mean square) from where the measurements put these receivers, which \
+                 would be expected to {:.3} m; check the positions and names, and the propagation speed (--estimate-speed)",
+                metre * misfit[0],
+                metre * expected
+            ));
+        }
+        if places.leave_mirror() {
+            warnings.push(
+                "the known positions lie in one line, so that the mirror image of the network fits as well; give one \
+                 off the line"
+                    .to_string(),
+            );
+        }
+        let observations = observations.holding(&held);
+        // Where few measurements were left over, the free network took up most of the noise.
+        let first = known.unwrap_or_else(|| deviation.max(median_size(&observations, &ranked[0].network) / 0.6745));
+        let (ranked, deviation) = finish(&observations, ranked, first, known.is_some(), floor, options);
+        Ok(Held { observations, ranked, deviation, anchors, speed, warnings })
+    }
+}
+
+/// Median magnitude of the residuals.
+fn median_size(observations: &Observations, network: &Network) -> f64 {
+    let mut all: Vec<f64> = observations.all().iter().map(|o| o.residual(network).abs()).collect();
+    all.sort_by(f64::total_cmp);
+    all.get(all.len() / 2).copied().unwrap_or(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{CalibrateOptions, Calibration, KnownDistance, SimulateOptions, Simulation, calibrate, simulate};
+
+    const SIGMA: f64 = 0.01;
+
+    fn simulation(seed: u64) -> Simulation {
+        simulate(&SimulateOptions { noise: SIGMA, seed, receivers: 9, transmitters: 12, ..Default::default() }).unwrap()
+    }
+
+    fn options(simulation: &Simulation, anchors: &[usize]) -> CalibrateOptions {
+        let known = |(i, p): (usize, &[f64; 2])| anchors.contains(&i).then_some(*p);
+        let anchors = simulation.network.receivers.iter().enumerate().map(known).collect();
+        CalibrateOptions { sigma: Some(SIGMA), anchors, ..Default::default() }
+    }
+
+    /// Squared error of a point in terms of its covariance; 2 in the mean.
+    fn squared_error(at: [f64; 2], truth: [f64; 2], c: [[f64; 2]; 2]) -> f64 {
+        let [x, y] = [at[0] - truth[0], at[1] - truth[1]];
+        let det = c[0][0] * c[1][1] - c[0][1] * c[1][0];
+        (c[1][1] * x * x - 2.0 * c[0][1] * x * y + c[0][0] * y * y) / det
+    }
+
+    #[test]
+    fn errors_beside_anchors_have_the_stated_covariance() {
+        let (mut sum, mut count) = (0.0, 0.0);
+        for seed in 0..60 {
+            let simulation = simulation(seed);
+            let found = calibrate(&simulation.pseudoranges, &options(&simulation, &[0, 3, 5, 7])).unwrap();
+            for (i, truth) in simulation.network.receivers.iter().enumerate() {
+                let at = found.receivers[i].unwrap();
+                if found.anchored[i] {
+                    assert!((at[0] - truth[0]).abs() + (at[1] - truth[1]).abs() < 1e-12, "anchor {i} moved");
+                    assert_eq!(found.receiver_std[i], Some([0.0; 2]));
+                } else {
+                    sum += squared_error(at, *truth, found.receiver_covariance[i].unwrap()) / 2.0;
+                    count += 1.0;
+                }
+            }
+        }
+        // Sixty networks with one mean each, of deviation at most 1: three deviations of their mean are 0.39.
+        assert_eq!(count, 300.0);
+        assert!((sum / count - 1.0).abs() < 0.39, "{}", sum / count);
+    }
+
+    #[test]
+    fn anchors_sharpen_what_they_fix() {
+        let deviation = |found: &Calibration| -> f64 {
+            let free = found.receiver_std.iter().zip(&found.anchored).filter(|(_, held)| !**held);
+            free.map(|(std, _)| std.map_or(0.0, |[x, y]| x * x + y * y)).sum()
+        };
+        for seed in 0..10 {
+            let simulation = simulation(seed);
+            let [three, six] = [&[0, 3, 5][..], &[0, 3, 5, 1, 2, 4][..]]
+                .map(|anchors| calibrate(&simulation.pseudoranges, &options(&simulation, anchors)).unwrap());
+            // The three that are free in both know more with six anchors than with three.
+            let of = |found: &Calibration| {
+                let mut found = found.clone();
+                found.anchored.clone_from(&six.anchored);
+                deviation(&found)
+            };
+            assert!(of(&six) < of(&three), "seed {seed}");
+        }
+    }
+
+    #[test]
+    fn the_speed_is_found_within_its_deviation() {
+        let mut squares = Vec::new();
+        for seed in 0..60 {
+            let simulation = simulation(seed);
+            let all = &simulation.network.receivers;
+            // As if the speed had been taken 4 % too low.
+            let measured = simulation.pseudoranges.values().iter().map(|f| f / 1.04).collect();
+            let measured = crate::Pseudoranges::new(9, 12, measured).unwrap();
+            let known = |a: usize, b: usize| {
+                let distance = (all[a][0] - all[b][0]).hypot(all[a][1] - all[b][1]);
+                KnownDistance { receivers: [a, b], distance }
+            };
+            let distances = vec![known(0, 4), known(2, 7), known(8, 1)];
+            let options =
+                CalibrateOptions { distances, estimate_speed: true, sigma: Some(SIGMA / 1.04), ..Default::default() };
+            let found = calibrate(&measured, &options).unwrap();
+            let speed = found.speed.unwrap();
+            squares.push(((speed.factor - 1.04) / speed.factor_std.unwrap()).powi(2));
+            assert!((found.sigma / SIGMA - speed.factor / 1.04).abs() < 1e-9);
+            // With anchors beside it the whole network has the right size.
+            if seed >= 10 {
+                continue;
+            }
+            let mut options = self::options(&simulation, &[0, 3, 5, 7]);
+            options.estimate_speed = true;
+            let found = calibrate(&measured, &options).unwrap();
+            let at = found.receivers[1].unwrap();
+            assert!((at[0] - all[1][0]).hypot(at[1] - all[1][1]) < 0.2, "seed {seed}: {at:?}, {:?}", all[1]);
+        }
+        let mean = squares.iter().sum::<f64>() / 60.0;
+        // The square of a normal variable has the deviation sqrt(2): three deviations of the mean are 0.55.
+        assert!((mean - 1.0).abs() < 0.55, "{mean}");
+    }
+
+    #[test]
+    fn one_anchor_moves_two_leave_a_mirror_image() {
+        let simulation = simulation(3);
+        let one = calibrate(&simulation.pseudoranges, &options(&simulation, &[4])).unwrap();
+        let (at, truth) = (one.receivers[4].unwrap(), simulation.network.receivers[4]);
+        assert!((at[0] - truth[0]).abs() + (at[1] - truth[1]).abs() < 1e-12);
+        assert!(!one.anchored.contains(&true));
+        let two = calibrate(&simulation.pseudoranges, &options(&simulation, &[4, 5])).unwrap();
+        assert!(two.warnings.iter().any(|warning| warning.contains("mirror image")), "{:?}", two.warnings);
+    }
+
+    #[test]
+    fn a_wrong_anchor_is_noticed() {
+        let simulation = simulation(4);
+        let mut options = options(&simulation, &[0, 3, 5, 7]);
+        let good = calibrate(&simulation.pseudoranges, &options).unwrap();
+        assert!(!good.warnings.iter().any(|warning| warning.contains("known positions")), "{:?}", good.warnings);
+        options.anchors[3].as_mut().unwrap()[0] += 1.0;
+        let bad = calibrate(&simulation.pseudoranges, &options).unwrap();
+        assert!(bad.warnings.iter().any(|warning| warning.contains("known positions are")), "{:?}", bad.warnings);
+    }
+}

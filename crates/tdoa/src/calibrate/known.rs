@@ -1,0 +1,216 @@
+//! Known positions and distances of receivers: they fix the frame, sharpen the rest and give the propagation speed.
+
+use serde::Serialize;
+
+use super::options::{CalibrateError, CalibrateOptions};
+use crate::align::align;
+use crate::degeneracy::Usable;
+use crate::network::{Network, distance};
+use crate::pseudoranges::{MAX_MAGNITUDE, Pseudoranges};
+use crate::refine::Refined;
+
+/// A distance between two receivers that is known beforehand.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KnownDistance {
+    /// Places of the two among the receivers.
+    pub receivers: [usize; 2],
+    /// Metres.
+    pub distance: f64,
+}
+
+/// The propagation speed as the known distances have it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct SpeedEstimate {
+    /// True speed over the one with which the measurements became metres.
+    pub factor: f64,
+    /// Its standard deviation, from the noise of the measurements; `None` if that is not known.
+    pub factor_std: Option<f64>,
+    /// The speed in metres a second, where the program knows the one that was assumed.
+    pub metres_per_second: Option<f64>,
+    /// Root mean square of known minus found distances, metres.
+    pub residual: f64,
+    /// Distances that were used.
+    pub distances: usize,
+}
+
+/// Known positions among the usable receivers, about their centroid.
+pub(super) struct Anchors {
+    pub(super) positions: Vec<Option<[f64; 2]>>,
+    pub(super) centre: [f64; 2],
+}
+
+/// Checks what is known against the size of the matrix.
+pub(super) fn validate(measured: &Pseudoranges, options: &CalibrateOptions) -> Result<(), CalibrateError> {
+    let m = measured.receivers();
+    let bad = |problem: String| Err(CalibrateError::Known(problem));
+    if !options.anchors.is_empty() && options.anchors.len() != m {
+        return bad(format!("{} anchors are given for {m} receivers; one for each is needed", options.anchors.len()));
+    }
+    let name = |i: usize| &measured.receiver_names()[i];
+    for (i, position) in options.anchors.iter().enumerate() {
+        if position.is_some_and(|p| p.iter().any(|x| x.is_nan() || x.abs() > MAX_MAGNITUDE)) {
+            return bad(format!("the position of {} is not finite or too large; give metres", name(i)));
+        }
+    }
+    for known in &options.distances {
+        let [a, b] = known.receivers;
+        if a >= m || b >= m || a == b {
+            return bad(format!("a distance between receivers {} and {} of {m} makes no sense", a + 1, b + 1));
+        }
+        if !(known.distance > 0.0 && known.distance <= MAX_MAGNITUDE) {
+            return bad(format!(
+                "the distance of {} and {} must be positive, not {}",
+                name(a),
+                name(b),
+                known.distance
+            ));
+        }
+    }
+    if options.estimate_speed && distances(options).is_empty() {
+        return bad(
+            "no distance between receivers is known, which the speed needs; give two anchors or a distance".to_string()
+        );
+    }
+    Ok(())
+}
+
+/// All known distances: the given ones and those between anchors.
+fn distances(options: &CalibrateOptions) -> Vec<KnownDistance> {
+    let mut all = options.distances.clone();
+    for (a, p) in options.anchors.iter().enumerate() {
+        for (b, q) in options.anchors.iter().enumerate().skip(a + 1) {
+            if let (Some(p), Some(q)) = (p, q)
+                && p != q
+            {
+                all.push(KnownDistance { receivers: [a, b], distance: distance(*p, *q) });
+            }
+        }
+    }
+    all
+}
+
+/// The factor that brings found distances closest to known ones, sum d D / sum d^2 for found d and known D; its
+/// deviation from the joint covariance (row-major) of the receivers by its derivative, -factor d / sum d^2 for each d.
+pub(super) fn speed(
+    network: &Network,
+    usable: &Usable,
+    joint: Option<&[f64]>,
+    options: &CalibrateOptions,
+) -> Result<SpeedEstimate, CalibrateError> {
+    let place = |i: usize| usable.receivers.iter().position(|&other| other == i);
+    let pairs: Vec<(usize, usize, f64)> = distances(options)
+        .iter()
+        .filter_map(|known| Some((place(known.receivers[0])?, place(known.receivers[1])?, known.distance)))
+        .collect();
+    let found = |a: usize, b: usize| distance(network.receivers[a], network.receivers[b]);
+    let squares: f64 = pairs.iter().map(|&(a, b, _)| found(a, b).powi(2)).sum();
+    let factor = pairs.iter().map(|&(a, b, known)| known * found(a, b)).sum::<f64>() / squares;
+    if !(factor > 0.0 && factor.is_finite()) {
+        return Err(CalibrateError::Known(
+            "the receivers whose distance is known cannot be located; give the distance of others".to_string(),
+        ));
+    }
+    let mut gradient = vec![0.0; 2 * network.receivers.len()];
+    for &(a, b, _) in &pairs {
+        for k in 0..2 {
+            // d times the derivative of d by a coordinate is the difference of the coordinates.
+            let step = -factor / squares * (network.receivers[a][k] - network.receivers[b][k]);
+            gradient[2 * a + k] += step;
+            gradient[2 * b + k] -= step;
+        }
+    }
+    let size = gradient.len();
+    let variance = |joint: &[f64]| -> f64 {
+        let cells = (0..size).flat_map(|p| (0..size).map(move |q| (p, q)));
+        cells.map(|(p, q)| gradient[p] * joint[p * size + q] * gradient[q]).sum()
+    };
+    let misfit: f64 = pairs.iter().map(|&(a, b, known)| (known - factor * found(a, b)).powi(2)).sum();
+    Ok(SpeedEstimate {
+        factor,
+        factor_std: joint.filter(|joint| joint.len() == size * size).map(|joint| variance(joint).max(0.0).sqrt()),
+        metres_per_second: None,
+        residual: (misfit / pairs.len() as f64).sqrt(),
+        distances: pairs.len(),
+    })
+}
+
+impl Anchors {
+    /// The anchors among the usable receivers; `None` if none are asked for.
+    pub(super) fn new(usable: &Usable, options: &CalibrateOptions) -> Result<Option<Anchors>, CalibrateError> {
+        if options.anchors.iter().all(Option::is_none) {
+            return Ok(None);
+        }
+        let mut positions: Vec<Option<[f64; 2]>> = usable.receivers.iter().map(|&i| options.anchors[i]).collect();
+        let count = positions.iter().flatten().count();
+        if count == 0 {
+            return Err(CalibrateError::Known(
+                "too few measurements tie down the receivers of known position; measure more of them".to_string(),
+            ));
+        }
+        let centre = [0, 1].map(|k| positions.iter().flatten().map(|p| p[k]).sum::<f64>() / count as f64);
+        positions.iter_mut().flatten().for_each(|p| *p = [p[0] - centre[0], p[1] - centre[1]]);
+        Ok(Some(Anchors { positions, centre }))
+    }
+
+    /// The same in units of which `factor` metres are one.
+    pub(super) fn divide(&mut self, factor: f64) {
+        self.positions.iter_mut().flatten().for_each(|p| *p = [p[0] / factor, p[1] / factor]);
+    }
+
+    /// Which receivers are held: all anchors, if they are in two places at least.
+    pub(super) fn held(&self) -> Vec<bool> {
+        let fix = self.positions.iter().flatten().any(|p| distance(*p, [0.0; 2]) > 0.0);
+        self.positions.iter().map(|p| fix && p.is_some()).collect()
+    }
+
+    /// Whether the network's mirror image fits the anchors as well: they lie in one line (by a thousandth of its length).
+    pub(super) fn leave_mirror(&self) -> bool {
+        let all: Vec<[f64; 2]> = self.positions.iter().flatten().copied().collect();
+        super::warnings::flatness(&all) < 1e-3 || all.len() < 3
+    }
+
+    /// Moves a network onto the anchors and puts them in their places; root mean square of the distances that remain
+    /// before.
+    pub(super) fn place(&self, refined: &mut Refined) -> f64 {
+        let pairs = refined.network.receivers.iter().zip(&self.positions);
+        let (from, to): (Vec<_>, Vec<_>) = pairs.filter_map(|(r, p)| Some((*r, (*p)?))).unzip();
+        let Some(alignment) = align(&from, &to, false) else { return 0.0 };
+        refined.network = alignment.transform.apply_network(&refined.network);
+        for (receiver, position) in refined.network.receivers.iter_mut().zip(&self.positions) {
+            *receiver = position.unwrap_or(*receiver);
+        }
+        alignment.rms
+    }
+
+    /// Root mean square distance by which the anchors would be missed by chance, from the covariances of the receivers.
+    pub(super) fn expected(&self, covariance: &[[[f64; 2]; 2]]) -> f64 {
+        let traces =
+            covariance.iter().zip(&self.positions).filter(|(_, p)| p.is_some()).map(|(c, _)| c[0][0] + c[1][1]);
+        let (sum, count) = traces.fold((0.0, 0.0), |(sum, count), trace| (sum + trace, count + 1.0));
+        (sum / f64::max(count, 1.0)).sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_single_distance_gives_factor_and_deviation() {
+        let network = Network { receivers: vec![[0.0, 0.0], [3.0, 4.0], [1.0, 0.0]], ..Default::default() };
+        let usable = Usable { receivers: vec![0, 2, 3], transmitters: vec![], warnings: vec![] };
+        let options = CalibrateOptions {
+            distances: vec![KnownDistance { receivers: [2, 0], distance: 10.0 }],
+            ..Default::default()
+        };
+        // The distance 5 m with independent errors of 0.1 m in all coordinates has a deviation of 0.1 sqrt(2); the factor
+        // 10 / 5 has 10 / 25 of it.
+        let joint: Vec<f64> = (0..36).map(|k| if k % 7 == 0 { 0.01 } else { 0.0 }).collect();
+        let found = speed(&network, &usable, Some(&joint), &options).unwrap();
+        assert_eq!((found.factor, found.distances, found.residual), (2.0, 1, 0.0));
+        assert!((found.factor_std.unwrap() - 0.4 * 0.1 * 2f64.sqrt()).abs() < 1e-12);
+        assert_eq!(speed(&network, &usable, None, &options).unwrap().factor_std, None);
+        let unlocated = Usable { receivers: vec![0, 1, 3], transmitters: vec![], warnings: vec![] };
+        assert!(speed(&network, &unlocated, None, &options).is_err());
+    }
+}

@@ -1,0 +1,265 @@
+//! A calibration as one self-contained HTML report: the picture, the warnings, and sortable tables of nodes and
+//! measurements. It refers to nothing outside itself.
+
+use std::fmt::Write;
+
+use crate::calibrate::Calibration;
+use crate::picture::{escape, picture};
+
+/// Most measurements that the report lists; of more, the outliers and those of largest residual.
+const LISTED: usize = 20_000;
+
+const STYLE: &str = include_str!("html/style.css");
+const SORT: &str = include_str!("html/sort.js");
+
+/// A column of a table: its heading, and whether it holds text instead of numbers.
+type Column = (&'static str, bool);
+
+const RECEIVERS: [Column; 7] = [
+    ("receiver", true),
+    ("x", false),
+    ("y", false),
+    ("std x", false),
+    ("std y", false),
+    ("measured", false),
+    ("outliers", false),
+];
+
+const TRANSMITTERS: [Column; 9] = [
+    ("transmitter", true),
+    ("x", false),
+    ("y", false),
+    ("std x", false),
+    ("std y", false),
+    ("offset", false),
+    ("std offset", false),
+    ("measured", false),
+    ("outliers", false),
+];
+
+const MEASUREMENTS: [Column; 5] = [
+    ("receiver", true),
+    ("transmitter", true),
+    ("residual", false),
+    ("residual / rms of inliers", false),
+    ("outlier", true),
+];
+
+/// The report as HTML text.
+pub fn html(calibration: &Calibration) -> String {
+    let title = format!("Calibration of {}", escape(&calibration.configuration));
+    let mut page = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{title}</title>\n\
+         <style>\n{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n"
+    );
+    if !calibration.planar {
+        page += "<p class=\"wrong\">Not to be trusted: the measurements do not fit a network in the plane.</p>\n";
+    }
+    for warning in &calibration.warnings {
+        page += &format!("<p class=\"warning\">{}</p>\n", escape(warning));
+    }
+    page += &facts(calibration);
+    page += &format!("<figure>\n{}</figure>\n", picture(calibration));
+    page += &format!("<p class=\"note\">Lengths in metres. Standard deviations: {}.</p>\n", escape(calibration.gauge));
+    page += "<h2>Receivers</h2>\n";
+    page += &table("receivers", &RECEIVERS, receivers(calibration));
+    page += "<h2>Transmitters</h2>\n";
+    page += &table("transmitters", &TRANSMITTERS, transmitters(calibration));
+    page += "<h2>Measurements</h2>\n";
+    let (rows, left_out) = measurements(calibration);
+    if left_out > 0 {
+        page += &format!(
+            "<p class=\"note\">The outliers and the largest residuals; {left_out} smaller ones are in the JSON only.</p>\n"
+        );
+    }
+    page += &table("measurements", &MEASUREMENTS, rows);
+    page += &format!("<script>\n{SORT}</script>\n</body>\n</html>\n");
+    page
+}
+
+/// What the summary says, as a list of terms and values.
+fn facts(calibration: &Calibration) -> String {
+    let measured = calibration.residuals.iter().flatten().flatten().count();
+    let inliers = calibration.inliers.iter().flatten().filter(|&&inlier| inlier).count();
+    let mut list = vec![
+        ("Measurements", format!("{measured}, outliers among them: {}", measured - inliers)),
+        (
+            "Standard deviation",
+            format!(
+                "{} {}",
+                number(calibration.sigma),
+                if calibration.sigma_estimated { "m, estimated" } else { "as given" }
+            ),
+        ),
+        ("Residuals of inliers", format!("{} m root mean square", number(calibration.residual_rms))),
+        ("Redundancy", format!("{} measurements more than unknowns", calibration.redundancy)),
+        (
+            "Other networks",
+            match calibration.alternatives.len() {
+                0 => "none found that explains the measurements as well".to_string(),
+                1 => "1 that explains the measurements about as well".to_string(),
+                count => format!("{count} that explain the measurements about as well"),
+            },
+        ),
+        ("Search", format!("{} of {} starts agree", calibration.agreeing, calibration.starts)),
+    ];
+    if let Some(speed) = &calibration.speed {
+        let value = speed
+            .metres_per_second
+            .map_or_else(|| format!("{:.6} times the assumed one", speed.factor), |value| format!("{value:.6e} m/s"));
+        list.push(("Propagation speed", format!("{value}, estimated from {} distances", speed.distances)));
+    }
+    let anchored: Vec<&str> = calibration
+        .receiver_names
+        .iter()
+        .zip(&calibration.anchored)
+        .filter(|(_, held)| **held)
+        .map(|(name, _)| name.as_str())
+        .collect();
+    if !anchored.is_empty() {
+        list.push(("Known positions", anchored.join(", ")));
+    }
+    if let Some(truth) = &calibration.truth {
+        list.push((
+            "Against the truth",
+            format!(
+                "{} receivers, {} m root mean square, {} m with scale {:.4}",
+                truth.receivers,
+                number(truth.receiver_rms),
+                number(truth.receiver_rms_scaled),
+                truth.scale
+            ),
+        ));
+    }
+    let entries = list.iter().map(|(term, value)| format!("<dt>{term}</dt><dd>{}</dd>\n", escape(value)));
+    format!("<dl>\n{}</dl>\n", entries.collect::<String>())
+}
+
+/// A table with a heading that sorts; cells are escaped here.
+fn table(id: &str, columns: &[Column], rows: impl IntoIterator<Item = Vec<String>>) -> String {
+    let class = |text: bool| if text { " class=\"text\"" } else { "" };
+    let mut html = format!("<div class=\"scroll\"><table id=\"{id}\">\n<thead><tr>");
+    // Writing to a string does not fail.
+    for (name, text) in columns {
+        let _ = write!(html, "<th scope=\"col\"{}><button type=\"button\">{name}</button></th>", class(*text));
+    }
+    html += "</tr></thead>\n<tbody>\n";
+    for row in rows {
+        let outlier = row.last().is_some_and(|cell| cell == "outlier");
+        html += if outlier { "<tr class=\"outlier\">" } else { "<tr>" };
+        for (cell, (_, text)) in row.iter().zip(columns) {
+            let _ = write!(html, "<td{}>{}</td>", class(*text), escape(cell));
+        }
+        html += "</tr>\n";
+    }
+    html + "</tbody>\n</table></div>\n"
+}
+
+fn receivers(calibration: &Calibration) -> Vec<Vec<String>> {
+    let rows = calibration.receiver_names.iter().enumerate();
+    rows.map(|(i, name)| {
+        let mut row = vec![name.clone()];
+        row.extend(pair(calibration.receivers[i], position));
+        row.extend(pair(calibration.receiver_std[i], number));
+        row.extend(calibration.counts_of_receiver(i).map(|count| count.to_string()));
+        row
+    })
+    .collect()
+}
+
+fn transmitters(calibration: &Calibration) -> Vec<Vec<String>> {
+    let rows = calibration.transmitter_names.iter().enumerate();
+    rows.map(|(j, name)| {
+        let mut row = vec![name.clone()];
+        row.extend(pair(calibration.transmitters[j], position));
+        row.extend(pair(calibration.transmitter_std[j], number));
+        row.push(calibration.offsets[j].map(position).unwrap_or_default());
+        row.push(calibration.offset_std[j].map(number).unwrap_or_default());
+        row.extend(calibration.counts_of_transmitter(j).map(|count| count.to_string()));
+        row
+    })
+    .collect()
+}
+
+/// One row a measurement in the order of the matrix, and how many were left out.
+fn measurements(calibration: &Calibration) -> (Vec<Vec<String>>, usize) {
+    let mut all: Vec<(usize, usize, f64, bool)> = Vec::new();
+    for (i, (residuals, inliers)) in calibration.residuals.iter().zip(&calibration.inliers).enumerate() {
+        for (j, (residual, inlier)) in residuals.iter().zip(inliers).enumerate() {
+            all.extend(residual.map(|e| (i, j, e, !inlier)));
+        }
+    }
+    let left_out = all.len().saturating_sub(LISTED);
+    if left_out > 0 {
+        all.sort_by(|a, b| b.3.cmp(&a.3).then(b.2.abs().total_cmp(&a.2.abs())));
+        all.truncate(LISTED);
+        all.sort_by_key(|entry| (entry.0, entry.1));
+    }
+    let rows = all.into_iter().map(|(i, j, e, outlier)| {
+        let ratio = e / calibration.residual_rms;
+        vec![
+            calibration.receiver_names[i].clone(),
+            calibration.transmitter_names[j].clone(),
+            number(e),
+            if ratio.is_finite() { format!("{ratio:.2}") } else { String::new() },
+            if outlier { "outlier".to_string() } else { String::new() },
+        ]
+    });
+    (rows.collect(), left_out)
+}
+
+fn pair(values: Option<[f64; 2]>, show: fn(f64) -> String) -> [String; 2] {
+    values.map_or_else(|| [String::new(), String::new()], |values| values.map(show))
+}
+
+fn position(value: f64) -> String {
+    // No sign before a zero.
+    let text = format!("{value:.4}");
+    if text.parse() == Ok(0.0) { "0.0000".to_string() } else { text }
+}
+
+/// A small number with about three digits.
+fn number(value: f64) -> String {
+    if value == 0.0 || value.abs() >= 1e-3 { format!("{value:.4}") } else { format!("{value:.2e}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{CalibrateOptions, SimulateOptions, calibrate, simulate};
+
+    fn calibration() -> Calibration {
+        let mut options = SimulateOptions { noise: 0.01, outliers: 0.03, ..Default::default() };
+        options.missing = 0.02;
+        let simulation = simulate(&options).unwrap();
+        let names = |kind: &str, count: usize| (0..count).map(|k| format!("{kind}<b>{k}&\"")).collect();
+        let measured = simulation.pseudoranges.with_names(names("r", 8), names("s", 12)).unwrap();
+        let mut calibration = calibrate(&measured, &CalibrateOptions::default()).unwrap();
+        calibration.warnings.push("</p><script>alert(1)</script>".to_string());
+        calibration
+    }
+
+    #[test]
+    fn lists_everything_and_escapes_it() {
+        let calibration = calibration();
+        let page = html(&calibration);
+        let measured = calibration.residuals.iter().flatten().flatten().count();
+        let inliers = calibration.inliers.iter().flatten().filter(|&&inlier| inlier).count();
+        // A heading and its rows for each of the three tables.
+        assert_eq!(page.matches("<tr").count(), 3 + 8 + 12 + measured);
+        assert_eq!(page.matches("<tr class=\"outlier\"").count(), measured - inliers);
+        assert!(page.contains("<td class=\"text\">r&lt;b&gt;7&amp;&quot;</td>"));
+        assert!(!page.contains("<b>") && page.matches("<script").count() == 1);
+        // Nothing is fetched: the only address is the name of SVG.
+        let addresses = page.matches("://").count();
+        assert_eq!(addresses, page.matches("xmlns=\"http://www.w3.org/2000/svg\"").count());
+        assert!(!page.contains(" src=") && !page.contains("url(") && !page.contains("NaN"));
+    }
+
+    #[test]
+    fn small_and_zero_numbers() {
+        assert_eq!([position(-0.00001), position(-1.25)], ["0.0000", "-1.2500"]);
+        assert_eq!([number(0.0), number(0.01234), number(-0.000012)], ["0.0000", "0.0123", "-1.20e-5"]);
+    }
+}

@@ -1,0 +1,53 @@
+//! Known distances between receivers: `receiver,receiver,distance`, with or without a header.
+
+use std::io::Read;
+use std::path::Path;
+
+use super::ReadError;
+use super::table::{number, records, shorten};
+use crate::calibrate::KnownDistance;
+
+/// Reads known distances in metres between receivers of these names.
+///
+/// # Errors
+/// A file that cannot be read, lines without two of the names and a number.
+pub fn read_distances(path: &Path, names: &[String]) -> Result<Vec<KnownDistance>, ReadError> {
+    let file = path.display().to_string();
+    read_distances_from(super::open(path, &file)?, &file, names)
+}
+
+/// Reads distances as [`read_distances`] does; `file` names the source in errors.
+///
+/// # Errors
+/// As [`read_distances`].
+pub fn read_distances_from(source: impl Read, file: &str, names: &[String]) -> Result<Vec<KnownDistance>, ReadError> {
+    let text = super::text(source, file)?;
+    let mut all = Vec::new();
+    for (index, record) in records(&text, file).enumerate() {
+        let record = record?;
+        let bad = |problem: String| ReadError::Line { file: file.to_string(), line: record.line, problem };
+        let [a, b, length, ..] = record.cells.as_slice() else {
+            return Err(bad("needs two names of receivers and their distance in metres".to_string()));
+        };
+        if index == 0 && number(length).is_none() {
+            continue;
+        }
+        let find = |name: &String| {
+            let place = names.iter().position(|other| other == name);
+            place.ok_or_else(|| {
+                bad(format!("no receiver is named {:?}; the first is {:?}", shorten(name), names.first()))
+            })
+        };
+        let distance = number(length).filter(|d| *d > 0.0 && d.is_finite());
+        let distance = distance.ok_or_else(|| bad(format!("{:?} is not a distance in metres", shorten(length))))?;
+        all.push(KnownDistance { receivers: [find(a)?, find(b)?], distance });
+    }
+    if all.is_empty() {
+        return Err(ReadError::Line {
+            file: file.to_string(),
+            line: 1,
+            problem: "has no distances; expected lines receiver,receiver,distance".to_string(),
+        });
+    }
+    Ok(all)
+}

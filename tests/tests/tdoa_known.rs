@@ -1,0 +1,117 @@
+//! `tdoa calibrate` with known positions, known distances and an unknown propagation speed.
+
+use std::path::{Path, PathBuf};
+
+use end_to_end::run;
+use serde_json::Value;
+
+fn text(path: &Path) -> &str {
+    path.to_str().expect("UTF-8 path")
+}
+
+/// A simulated recording in a new directory, and the true positions of its receivers.
+fn recording() -> (tempfile::TempDir, PathBuf, Vec<[f64; 2]>) {
+    let directory = tempfile::tempdir().expect("directory");
+    let size = ["--receivers", "9", "--transmitters", "14", "--noise", "0.01", "--seed", "2"];
+    let output = run("tdoa", &[&["simulate"], &size[..], &["--output", text(directory.path())]].concat());
+    assert!(output.status.success());
+    let nodes = tdoa::read::read_nodes(&directory.path().join("receivers.csv")).expect("positions");
+    let file = directory.path().join("pseudoranges.csv");
+    (directory, file, nodes.positions)
+}
+
+fn calibrate(arguments: &[&str]) -> (Option<Value>, String, Option<i32>) {
+    let output = run("tdoa", &[&["calibrate"], arguments, &["--json", "-"]].concat());
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(!message.contains("panicked"), "{message}");
+    (serde_json::from_slice(&output.stdout).ok(), message, output.status.code())
+}
+
+fn anchors(folder: &Path, truth: &[[f64; 2]], which: &[usize]) -> PathBuf {
+    let path = folder.join("anchors.csv");
+    let lines = which.iter().map(|&i| format!("r{},{},{}\n", i + 1, truth[i][0], truth[i][1]));
+    std::fs::write(&path, format!("name,x,y\n{}", lines.collect::<String>())).expect("written");
+    path
+}
+
+/// Largest distance of a receiver from the truth, without any alignment.
+fn worst(found: &Value, truth: &[[f64; 2]]) -> f64 {
+    let at = |i: usize, k: usize| found["receivers"][i][k].as_f64().expect("coordinate");
+    let errors = truth.iter().enumerate().map(|(i, p)| (at(i, 0) - p[0]).hypot(at(i, 1) - p[1]));
+    errors.fold(0.0, f64::max)
+}
+
+#[test]
+fn anchors_fix_the_frame() {
+    let (directory, file, truth) = recording();
+    let known = anchors(directory.path(), &truth, &[1, 4, 6, 8]);
+    let (found, message, status) = calibrate(&[text(&file), "--anchors", text(&known)]);
+    assert_eq!(status, Some(0), "{message}");
+    let found = found.expect("JSON");
+    assert!(worst(&found, &truth) < 0.1, "{}", worst(&found, &truth));
+    assert_eq!(found["anchored"].to_string(), "[false,true,false,false,true,false,true,false,true]");
+    assert!(found["gauge"].as_str().expect("text").contains("known position"));
+}
+
+#[test]
+fn the_speed_of_sound_and_of_light() {
+    let (directory, file, truth) = recording();
+    let known = anchors(directory.path(), &truth, &[1, 4, 6, 8]);
+    let table = std::fs::read_to_string(&file).expect("table");
+    for speed in [343.0, 299_792_458.0] {
+        let seconds = |cell: &str| cell.parse::<f64>().map_or(cell.to_string(), |f| (f / speed).to_string());
+        let line = |line: &str| line.split(',').map(seconds).collect::<Vec<_>>().join(",");
+        let in_seconds = directory.path().join("seconds.csv");
+        std::fs::write(&in_seconds, table.lines().map(|l| line(l) + "\n").collect::<String>()).expect("written");
+        let units = [text(&in_seconds), "--units", "s", "--estimate-speed"];
+        let (found, message, status) = calibrate(&[&units[..], &["--anchors", text(&known)]].concat());
+        assert_eq!(status, Some(0), "{message}");
+        let found = found.expect("JSON");
+        let estimate = found["speed"]["metres_per_second"].as_f64().expect("speed");
+        assert!((estimate / speed - 1.0).abs() < 0.01, "{estimate} of {speed}");
+        assert!(worst(&found, &truth) < 0.1, "{}", worst(&found, &truth));
+
+        let distances = directory.path().join("distances.csv");
+        let d = |a: usize, b: usize| (truth[a][0] - truth[b][0]).hypot(truth[a][1] - truth[b][1]);
+        let list = format!("receiver,receiver,distance\nr1,r5,{}\nr7,r3,{}\n", d(0, 4), d(6, 2));
+        std::fs::write(&distances, list).expect("written");
+        let (found, message, status) = calibrate(&[&units[..], &["--distances", text(&distances)]].concat());
+        assert_eq!(status, Some(0), "{message}");
+        let estimate = found.expect("JSON")["speed"]["metres_per_second"].as_f64().expect("speed");
+        assert!((estimate / speed - 1.0).abs() < 0.01, "{estimate} of {speed}");
+    }
+}
+
+#[test]
+fn unusable_knowledge_is_refused() {
+    let (directory, file, truth) = recording();
+    let says = |arguments: &[&str], parts: &[&str]| {
+        let (_, message, status) = calibrate(&[&[text(&file)], arguments].concat());
+        assert_eq!(status, Some(2), "{message}");
+        for part in parts {
+            assert!(message.contains(part), "{part:?} is not in: {message}");
+        }
+    };
+    let write = |name: &str, content: &str| {
+        let path = directory.path().join(name);
+        std::fs::write(&path, content).expect("written");
+        path
+    };
+    let known = anchors(directory.path(), &truth, &[1]);
+    says(&["--estimate-speed"], &["no distance between receivers is known", "two anchors or a distance"]);
+    says(&["--estimate-speed", "--anchors", text(&known)], &["two anchors or a distance"]);
+    says(&["--anchors", "none.csv"], &["none.csv"]);
+    says(&["--anchors", text(&write("a.csv", "name,x,y\nr77,1,2\n"))], &["a.csv", "\"r77\"", "r1, r2, r3"]);
+    says(&["--anchors", text(&write("b.csv", "name,x,y\nr1,1,2\nr1,1,2\n"))], &["r1 is there twice"]);
+    says(&["--anchors", text(&write("c.csv", "1,2\n3,4\n"))], &["name,x,y"]);
+    says(&["--anchors", text(&write("d.csv", "name,x,y\nr1,1e300,2\nr2,1,1\n"))], &["r1", "too large"]);
+    says(&["--distances", text(&known)], &["--estimate-speed"]);
+    let distances = |content: &str, parts: &[&str]| {
+        says(&["--estimate-speed", "--distances", text(&write("e.csv", content))], parts);
+    };
+    distances("r1,r2,x\nr1,r3,-4\n", &["line 2", "is not a distance"]);
+    distances("r1,r77,4\n", &["line 1", "\"r77\""]);
+    distances("r1,4\n", &["line 1", "two names"]);
+    distances("r1,r1,4\n", &["makes no sense"]);
+    distances("a,b,distance\n", &["no distances"]);
+}

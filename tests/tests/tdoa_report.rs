@@ -1,0 +1,88 @@
+//! The files that `tdoa calibrate` writes for people: the HTML report in a real browser, the table of nodes.
+
+use std::path::Path;
+use std::process::Command;
+
+use end_to_end::{root, run};
+
+fn text(path: &Path) -> &str {
+    path.to_str().expect("UTF-8 path")
+}
+
+/// Runs in the page after its own script: sorts by clicks and leaves what it saw in the title.
+const CHECK: &str = r##"<script>
+const column = (id, k) => Array.from(document.querySelectorAll(`#${id} tbody tr`), (row) => row.cells[k].textContent);
+const click = (id, k) => document.querySelectorAll(`#${id} th button`)[k].click();
+const seen = [];
+const names = column("transmitters", 0).join();
+click("transmitters", 1);
+const up = column("transmitters", 1).map(Number);
+seen.push(up.every((x, k) => k === 0 || up[k - 1] <= x) ? "ascending" : "unsorted " + up);
+click("transmitters", 1);
+const down = column("transmitters", 1).map(Number);
+seen.push(down.every((x, k) => k === 0 || down[k - 1] >= x) ? "descending" : "unsorted " + down);
+click("transmitters", 0);
+seen.push(column("transmitters", 0).join() === names ? "names in order" : column("transmitters", 0).join());
+click("measurements", 4);
+seen.push(document.querySelector("#measurements tbody tr").className + " first");
+seen.push(document.querySelectorAll("svg path.receiver").length + " triangles");
+seen.push(document.querySelectorAll("#evil, img").length + " injected");
+seen.push(performance.getEntriesByType("resource").length + " fetched");
+document.title = seen.join("; ");
+</script>"##;
+
+#[test]
+fn the_report_works_in_a_browser() {
+    let directory = tempfile::tempdir().expect("directory");
+    let folder = directory.path();
+    // The example with a name that would be markup if it were not escaped.
+    let table = std::fs::read_to_string(root().join("examples/network/pseudoranges.csv")).expect("example");
+    let evil = "s12<img id=evil src=x onerror=alert(1)>";
+    assert!(table.contains("s12"));
+    let file = folder.join("pseudoranges.csv");
+    std::fs::write(&file, table.replace("s12", evil)).expect("written");
+    let report = folder.join("report.html");
+    let output = run("tdoa", &["calibrate", text(&file), "--sigma", "0.02", "--html", text(&report)]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let page = std::fs::read_to_string(&report).expect("report");
+    assert!(page.contains("&lt;img id=evil") && !page.contains("<img"));
+
+    let checked = folder.join("checked.html");
+    std::fs::write(&checked, page.replace("</body>", &format!("{CHECK}</body>"))).expect("written");
+    let profile = folder.join("profile");
+    let browser = Command::new("chromium")
+        .args(["--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--no-first-run"])
+        .arg(format!("--user-data-dir={}", profile.display()))
+        .args(["--dump-dom", text(&checked)])
+        .output();
+    let browser = match browser {
+        Ok(output) => output,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+            eprintln!("skipped: no chromium to open the report in");
+            return;
+        }
+        Err(error) => panic!("chromium does not start: {error}"),
+    };
+    let page = String::from_utf8_lossy(&browser.stdout);
+    let title = page.split_once("<title>").and_then(|(_, rest)| rest.split_once("</title>"));
+    let title = title.unwrap_or_else(|| panic!("no page: {}", String::from_utf8_lossy(&browser.stderr))).0;
+    // Eight receivers and one in the legend; the example has an outlier.
+    assert_eq!(title, "ascending; descending; names in order; outlier first; 9 triangles; 0 injected; 0 fetched");
+}
+
+#[test]
+fn the_table_of_nodes_can_be_compared_with() {
+    let directory = tempfile::tempdir().expect("directory");
+    let nodes = directory.path().join("nodes.csv");
+    let file = root().join("examples/network/pseudoranges.csv");
+    let output = run("tdoa", &["calibrate", text(&file), "--nodes", text(&nodes)]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let table = std::fs::read_to_string(&nodes).expect("table");
+    assert!(table.starts_with("kind,name,x,y,std_x,std_y,cov_xy,offset,std_offset,measurements,outliers\n"));
+    assert_eq!(table.lines().filter(|line| line.starts_with("receiver,")).count(), 8);
+    assert_eq!(table.lines().filter(|line| line.starts_with("transmitter,")).count(), 12);
+    // Compared with itself the network is where it is.
+    let output = run("tdoa", &["calibrate", text(&file), "--truth", text(&nodes), "--json", "-"]);
+    let found: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert!(found["truth"]["receiver_rms"].as_f64().expect("number") < 1e-9);
+}
