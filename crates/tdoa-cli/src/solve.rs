@@ -74,6 +74,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.json.as_ref().is_none_or(|path| path.as_os_str() != "-") {
         output::print(&summary(&solution, seconds))?;
     }
+    for warning in &solution.warnings {
+        eprintln!("warning: {warning}");
+    }
+    if solution.paths.failed > 0 {
+        return Err(Failure::Undetermined(format!(
+            "{}: the result is not whole, see the warnings",
+            arguments.file.display()
+        )));
+    }
     if solution.candidates.iter().any(|candidate| candidate.physical) {
         return Ok(());
     }

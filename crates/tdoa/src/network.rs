@@ -130,6 +130,8 @@ pub struct MinimalSolution {
     pub paths: PathCounts,
     /// How many roots there are.
     pub counts: RootCounts,
+    /// What makes the result doubtful: lost paths, networks that the data cannot tell apart.
+    pub warnings: Vec<String>,
     /// The candidates, best first.
     #[serde(rename = "solutions")]
     pub candidates: Vec<Candidate>,

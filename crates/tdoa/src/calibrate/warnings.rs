@@ -79,7 +79,7 @@ pub(super) fn warn_of_nodes(
 }
 
 /// Ratio of the standard deviations across and along a set of points; 1 for fewer than three.
-pub(super) fn flatness(points: &[[f64; 2]]) -> f64 {
+pub(crate) fn flatness(points: &[[f64; 2]]) -> f64 {
     if points.len() < 3 {
         return 1.0;
     }

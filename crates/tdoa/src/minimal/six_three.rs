@@ -2,6 +2,7 @@
 
 use super::chart::{CHARTS, COLUMNS, PARAMETERS, ROWS, UNKNOWNS, enter, leave, permute_parameters};
 use super::{SolveError, SolveOptions, check, dual, polish::polish};
+use crate::calibrate::flatness;
 use crate::generated::six_three as generated;
 use crate::network::{Candidate, MinimalSolution, PathCounts, RootCounts};
 use crate::pseudoranges::Pseudoranges;
@@ -79,7 +80,9 @@ impl SixThree {
             data.restore(&mut candidate.network);
             candidate.residual = candidate.network.rms(measured);
         }
-        Ok(MinimalSolution { configuration: measured.configuration(), solver: "6r/3s", paths, counts, candidates })
+        let warnings = warnings(&paths, &candidates);
+        let configuration = measured.configuration();
+        Ok(MinimalSolution { configuration, solver: "6r/3s", paths, counts, warnings, candidates })
     }
 
     /// The records of the paths of the last call.
@@ -162,6 +165,31 @@ fn real_root<E: Evaluate>(
     } else {
         (imaginary <= near).then(|| (root.iter().map(|z| z.re).collect(), false))
     }
+}
+
+/// Physical candidates flatter than this are said to be collinear; exact data tell no more of them.
+const FLAT: f64 = 1e-4;
+
+fn warnings(paths: &PathCounts, candidates: &[Candidate]) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if paths.failed > 0 {
+        warnings.push(format!(
+            "{} of {} paths were lost: the list of networks may not be whole; the nodes may be collinear or nearly coincide",
+            paths.failed, paths.tracked
+        ));
+    }
+    for (kind, points) in [
+        ("receivers", (|n| &n.receivers) as fn(&crate::network::Network) -> &Vec<[f64; 2]>),
+        ("transmitters", |n| &n.transmitters),
+    ] {
+        if candidates.iter().any(|c| c.physical && flatness(points(&c.network)) < FLAT) {
+            warnings.push(format!(
+                "in a network that fits, the {kind} lie in one line: the data cannot tell on which side of it the other nodes lie; \
+                 move some {kind} off the line"
+            ));
+        }
+    }
+    warnings
 }
 
 /// Measurements relative to the first receiver, in units of their own size.
