@@ -1,0 +1,78 @@
+//! `tdoa solve` as a user would run it: the JSON contract, and data that cannot determine the network.
+
+use end_to_end::run;
+use serde_json::Value;
+use std::path::Path;
+
+fn text(path: &Path) -> &str {
+    path.to_str().expect("UTF-8 path")
+}
+
+/// Exact pseudoranges of given positions, offsets 0, 1, 2.
+fn matrix(receivers: &[[f64; 2]; 6], transmitters: &[[f64; 2]; 3]) -> String {
+    let row = |r: &[f64; 2]| {
+        let cell = |(j, s): (usize, &[f64; 2])| format!("{:?}", (r[0] - s[0]).hypot(r[1] - s[1]) + j as f64);
+        transmitters.iter().enumerate().map(cell).collect::<Vec<_>>().join(",") + "\n"
+    };
+    receivers.iter().map(row).collect()
+}
+
+fn solve(content: &str) -> (Value, String, Option<i32>) {
+    let directory = tempfile::tempdir().expect("directory");
+    let file = directory.path().join("pseudoranges.csv");
+    std::fs::write(&file, content).expect("written");
+    let output = run("tdoa", &["solve", text(&file), "--json", "-"]);
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(!message.contains("panicked"), "{message}");
+    (serde_json::from_slice(&output.stdout).unwrap_or(Value::Null), message, output.status.code())
+}
+
+const TRANSMITTERS: [[f64; 2]; 3] = [[0.3, 2.1], [4.0, 0.7], [2.2, -1.9]];
+
+#[test]
+fn the_json_form_holds_every_network_that_fits() {
+    let receivers = [[0.0, 0.0], [3.1, 0.4], [1.2, 2.7], [4.4, 3.3], [-0.8, 1.9], [2.5, -2.6]];
+    let (json, message, status) = solve(&matrix(&receivers, &TRANSMITTERS));
+    assert_eq!(status, Some(0), "{message}");
+    assert_eq!((&json["configuration"], &json["solver"]), (&Value::from("6r/3s"), &Value::from("6r/3s")));
+    // 180 is the degree of the saturated ideal, computed exactly over a prime field.
+    for (field, count) in [("tracked", 180), ("finite", 180), ("failed", 0), ("at_infinity", 0)] {
+        assert_eq!(json["paths"][field], count, "{field}");
+    }
+    assert_eq!(json["counts"]["complex"], 180);
+    let solutions = json["solutions"].as_array().unwrap();
+    let distance = |a: &Value, b: &Value| {
+        (a[0].as_f64().unwrap() - b[0].as_f64().unwrap()).hypot(a[1].as_f64().unwrap() - b[1].as_f64().unwrap())
+    };
+    // Distances between receivers do not depend on the frame.
+    let truth = solutions.iter().find(|s| {
+        s["physical"] == true
+            && (0..6).all(|i| {
+                let expected = receivers[i][0].hypot(receivers[i][1]);
+                (distance(&s["receivers"][i], &s["receivers"][0]) - expected).abs() < 1e-9
+            })
+    });
+    let truth = truth.expect("the true network is among the solutions");
+    for j in 0..3 {
+        assert!((truth["offsets"][j].as_f64().unwrap() - j as f64).abs() < 1e-9);
+    }
+    assert!(truth["residual"].as_f64().unwrap() < 1e-12 && truth["condition"].as_f64().unwrap() > 1.0);
+}
+
+#[test]
+fn collinear_nodes_are_not_presented_as_a_result() {
+    let line = [0, 1, 2, 3, 4, 5].map(|i| [f64::from(i), 0.3 * f64::from(i)]);
+    let (_, message, status) = solve(&matrix(&line, &TRANSMITTERS));
+    assert_eq!(status, Some(1), "{message}");
+    assert!(message.contains("receivers lie in one line") && message.contains("move some receivers"), "{message}");
+}
+
+#[test]
+fn sizes_without_a_solution_name_those_with_one() {
+    let (_, message, status) = solve("1,2,3,4\n2,3,4,4\n3,3,3,1\n4,1,2,2\n");
+    assert_eq!(status, Some(1), "{message}");
+    assert!(
+        message.contains("4r/4s is underdetermined") && message.contains("6 receivers with 3 transmitters"),
+        "{message}"
+    );
+}
