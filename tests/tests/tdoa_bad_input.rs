@@ -154,3 +154,50 @@ fn garbage_is_refused() {
         &["more than"],
     );
 }
+
+#[test]
+fn a_hundred_thousand_columns() {
+    // Three receivers cannot locate anything, however many transmitters they hear; said at once, with names.
+    let row = |i: usize| (0..100_000).map(|j| ((i * j) % 97).to_string()).collect::<Vec<_>>().join(",");
+    let table = [row(1), row(2), row(3)].join("\n");
+    assert_says(
+        calibrate("wide.csv", table.as_bytes(), &[]),
+        1,
+        &["3 receivers and 100000 transmitters", "add 1 receiver"],
+    );
+    // More cells than any recording.
+    let table = vec![row(1); 41].join("\n");
+    assert_says(calibrate("wide.csv", table.as_bytes(), &[]), 2, &["line 41", "more than 4000000 cells", "split"]);
+}
+
+#[test]
+fn unusable_places_for_results() {
+    let good = matrix(&RECEIVERS, &TRANSMITTERS);
+    let directory = tempfile::tempdir().expect("directory");
+    for option in ["--json", "--svg", "--html", "--nodes"] {
+        let missing = directory.path().join("no/such/folder/out");
+        assert_says(
+            calibrate("f.csv", good.as_bytes(), &[option, text(&missing)]),
+            2,
+            &["out", "cannot be written", "check that the directory exists"],
+        );
+        assert_says(
+            calibrate("f.csv", good.as_bytes(), &[option, text(directory.path())]),
+            2,
+            &["is a directory; give a file name in it"],
+        );
+        // A file in the place of a directory.
+        let file = directory.path().join("file");
+        std::fs::write(&file, "kept").expect("written");
+        assert_says(calibrate("f.csv", good.as_bytes(), &[option, text(&file.join("out"))]), 2, &["cannot be written"]);
+        assert_eq!(std::fs::read_to_string(&file).expect("file"), "kept");
+    }
+}
+
+/// Where the system has a device that is always full, the message says so.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk() {
+    let good = matrix(&RECEIVERS, &TRANSMITTERS);
+    assert_says(calibrate("f.csv", good.as_bytes(), &["--html", "/dev/full"]), 2, &["/dev/full", "No space left"]);
+}

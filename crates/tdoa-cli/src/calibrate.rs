@@ -9,7 +9,7 @@ use tdoa::align::frame;
 use tdoa::html::html;
 use tdoa::node_table::node_table;
 use tdoa::picture::picture;
-use tdoa::read::{Units, read, read_distances, read_nodes};
+use tdoa::read::{Units, read, read_distances, read_mat_nodes, read_nodes};
 use tdoa::{CalibrateError, CalibrateOptions, Calibration, Control, Progress, Pseudoranges, calibrate_with};
 
 use crate::{Failure, interrupt, output, summary};
@@ -17,7 +17,8 @@ use crate::{Failure, interrupt, output, summary};
 /// Finds positions and offsets of a whole network from its pseudoranges.
 ///
 /// FILE is a CSV matrix (receivers in rows, transmitters in columns, empty or nan where nothing was measured, optionally a
-/// first line with the transmitters' names), a CSV list with the header receiver,transmitter,value[,sigma], or a .npy array.
+/// first line with the transmitters' names), a CSV list with the header receiver,transmitter,value[,sigma], a .npy array, or a .mat
+/// file with the matrix z and, as truth, the positions rgt.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The measurements.
@@ -29,7 +30,7 @@ pub(crate) struct Arguments {
     sigma: Option<f64>,
     /// Fits a common scale when comparing with --truth and presents the network with it (the propagation speed is then
     /// wrong by that factor).
-    #[arg(long, requires = "truth")]
+    #[arg(long)]
     scale: bool,
     /// Known positions of some receivers (name,x,y, metres): they fix the frame, and two or more are held there, which
     /// sharpens the rest.
@@ -45,7 +46,7 @@ pub(crate) struct Arguments {
     /// Puts the node ORIGIN at (0, 0), XAXIS on the positive x axis and UP above it.
     #[arg(long, value_name = "ORIGIN,XAXIS,UP")]
     frame: Option<String>,
-    /// True positions of receivers (id,x,y) to compare with.
+    /// True positions of receivers (id,x,y, or rgt in a .mat file) to compare with.
     #[arg(long, value_name = "RECEIVERS.csv")]
     truth: Option<PathBuf>,
     /// Seed of the search.
@@ -79,6 +80,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let units = arguments.units.units(arguments.estimate_speed)?;
     let measured = read(&arguments.file, units).map_err(Failure::unusable)?;
     let truth = arguments.truth.as_deref().map(|path| true_positions(path, &measured)).transpose()?;
+    let truth = match truth {
+        None if is_mat(&arguments.file) => truth_inside(&arguments.file, &measured)?,
+        given => given,
+    };
+    if arguments.scale && truth.is_none() {
+        return Err(Failure::Unusable("--scale needs --truth with the true positions".to_string()));
+    }
     let frame = arguments.frame.as_deref().map(|text| frame_nodes(text, &measured)).transpose()?;
     let mut options = CalibrateOptions::default();
     if let Some(path) = &arguments.anchors {
@@ -145,6 +153,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             arguments.file.display()
         )))
     }
+}
+
+fn is_mat(path: &std::path::Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mat"))
+}
+
+/// The truth that a .mat file holds beside the measurements, if it does.
+fn truth_inside(path: &std::path::Path, measured: &Pseudoranges) -> Result<Option<Vec<Option<[f64; 2]>>>, Failure> {
+    let nodes = read_mat_nodes(path).map_err(Failure::unusable)?;
+    Ok(nodes.and_then(|nodes| nodes.in_order(measured.receiver_names())))
 }
 
 fn true_positions(path: &std::path::Path, measured: &Pseudoranges) -> Result<Vec<Option<[f64; 2]>>, Failure> {

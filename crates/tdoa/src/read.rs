@@ -1,6 +1,7 @@
-//! Pseudoranges from files: a CSV matrix, a CSV list with one measurement a line, or NumPy's .npy.
+//! Pseudoranges from files: a CSV matrix, a CSV list with one measurement a line, NumPy's .npy, or MATLAB's .mat.
 
 mod distances;
+mod mat;
 mod nodes;
 mod npy;
 mod table;
@@ -12,7 +13,7 @@ use std::path::Path;
 use thiserror::Error;
 
 pub use distances::{read_distances, read_distances_from};
-pub use nodes::{Nodes, read_nodes, read_nodes_from};
+pub use nodes::{Nodes, read_mat_nodes, read_nodes, read_nodes_from};
 
 use crate::pseudoranges::{MAX_CELLS, PseudorangeError, Pseudoranges};
 
@@ -140,6 +141,14 @@ pub enum ReadError {
         /// What is wrong.
         problem: String,
     },
+    /// A .mat file that is none, or without what is looked for.
+    #[error("{file}: {problem}; save the matrix z with save('-v7') or scipy.io.savemat")]
+    Mat {
+        /// The file.
+        file: String,
+        /// What is wrong.
+        problem: String,
+    },
     /// Numbers that form no matrix of pseudoranges.
     #[error("{file}: {source}")]
     Matrix {
@@ -153,7 +162,7 @@ pub enum ReadError {
     Speed(f64),
 }
 
-/// Reads pseudoranges from a file: `.npy` by its extension, else CSV.
+/// Reads pseudoranges from a file: `.npy` and `.mat` (the variable z) by their extension, else CSV.
 ///
 /// The CSV is a matrix, receivers in rows and transmitters in columns, empty or `nan` where nothing was measured, with an
 /// optional first line that names the transmitters (then a first column headed `receiver`, `id`, `name` or nothing names
@@ -167,6 +176,8 @@ pub fn read(path: &Path, units: Units) -> Result<Pseudoranges, ReadError> {
     let source = open(path, &file)?;
     if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("npy")) {
         read_npy(source, &file, units)
+    } else if is_mat(path) {
+        read_mat(source, &file, units)
     } else {
         read_csv(source, &file, units)
     }
@@ -189,6 +200,19 @@ pub fn read_csv(source: impl Read, file: &str, units: Units) -> Result<Pseudoran
 pub fn read_npy(source: impl Read, file: &str, units: Units) -> Result<Pseudoranges, ReadError> {
     let factor = factor(units)?;
     npy::parse(source.take(MAX_BYTES), file, factor)
+}
+
+/// Reads the variable z (receivers in rows) of a .mat file as [`read`] does; `file` names the source in errors.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_mat(source: impl Read, file: &str, units: Units) -> Result<Pseudoranges, ReadError> {
+    let factor = factor(units)?;
+    mat::parse(source, file, factor)
+}
+
+fn is_mat(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("mat"))
 }
 
 fn factor(units: Units) -> Result<f64, ReadError> {

@@ -33,13 +33,43 @@ impl Nodes {
     }
 }
 
-/// Reads positions of nodes in metres.
+/// Reads positions of receivers in metres: the variable rgt of a `.mat` file, else CSV.
 ///
 /// # Errors
 /// A file that cannot be read, lines without two numbers.
 pub fn read_nodes(path: &Path) -> Result<Nodes, ReadError> {
     let file = path.display().to_string();
+    if super::is_mat(path) {
+        return read_mat_nodes(path)?.ok_or_else(|| ReadError::Mat {
+            file,
+            problem: "has no variable rgt, the positions of the receivers".to_string(),
+        });
+    }
     read_nodes_from(super::open(path, &file)?, &file)
+}
+
+/// Reads the variable rgt of a .mat file, one receiver a column with x and y in its first two rows; `None` if it has none.
+///
+/// # Errors
+/// As [`read_nodes`].
+pub fn read_mat_nodes(path: &Path) -> Result<Option<Nodes>, ReadError> {
+    let file = path.display().to_string();
+    let Some(rgt) = super::mat::find(super::open(path, &file)?, &file, "rgt")? else { return Ok(None) };
+    let positions: Vec<[f64; 2]> = if rgt.rows == 2 || rgt.rows == 3 {
+        (0..rgt.columns).map(|k| [rgt.get(0, k), rgt.get(1, k)]).collect()
+    } else {
+        Vec::new()
+    };
+    if positions.is_empty() || positions.iter().flatten().any(|x| !x.is_finite()) {
+        return Err(ReadError::Mat {
+            file,
+            problem: format!(
+                "has a variable rgt of {} x {} that is no list of positions (2 or 3 rows of finite numbers)",
+                rgt.rows, rgt.columns
+            ),
+        });
+    }
+    Ok(Some(Nodes { names: None, positions }))
 }
 
 /// Reads positions as [`read_nodes`] does; `file` names the source in errors.
