@@ -1,0 +1,11 @@
+//! Start systems.
+//!
+//! Polyhedral: the mixed cells of the supports ([`mixed_volume`], [`mixed_cells`]), found by tropical homotopy continuation
+//! (Jensen 2016, arXiv:1601.02818) with one support brought in after the other.
+
+mod integer;
+mod mixed;
+mod table;
+mod walk;
+
+pub use mixed::{MixedCell, MixedError, MixedVolume, mixed_cells, mixed_volume};
