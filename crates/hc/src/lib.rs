@@ -51,6 +51,8 @@ pub mod monodromy;
 pub mod pair;
 pub mod random;
 pub mod refine;
+pub mod solve;
+pub mod start;
 pub mod start_file;
 pub mod trace;
 pub mod tracker;
