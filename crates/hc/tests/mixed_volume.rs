@@ -256,3 +256,11 @@ proptest! {
         check_normals(&system, &lifting, &cells);
     }
 }
+
+/// Exponents 100 times as large make the volume 100^5 times as large, beyond the small integers.
+#[test]
+fn large_exponents_need_large_integers() {
+    let scaled: Vec<Support> =
+        cyclic(5).iter().map(|a| a.iter().map(|p| p.iter().map(|e| 100 * e).collect()).collect()).collect();
+    assert_eq!(volume(&scaled), 70 * 100u64.pow(5));
+}
