@@ -81,5 +81,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<bool, String> {
     if let Some(out) = &arguments.json {
         input::write_json(out, &output)?;
     }
-    Ok(!found.solutions.is_empty())
+    // A list that may not be whole is not presented as a success.
+    Ok(!found.solutions.is_empty() && found.paths.failed == 0)
 }
