@@ -17,7 +17,7 @@ use crate::{Failure, interrupt, output, summary};
 /// Finds positions and offsets of a whole network from its pseudoranges.
 ///
 /// FILE is a CSV matrix (receivers in rows, transmitters in columns, empty or nan where nothing was measured, optionally a
-/// first line with the transmitters' names), a CSV list with the header receiver,transmitter,value[,sigma], a .npy array, or a .mat
+/// first line with the transmitters' names), a CSV list with the header `receiver,transmitter,value[,sigma]`, a .npy array, or a .mat
 /// file with the matrix z and, as truth, the positions rgt.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
