@@ -31,7 +31,7 @@ pub struct TraceTest {
 impl TraceTest {
     /// Whether the test shows that a fibre of `len` points is whole.
     pub fn passed(&self, len: usize) -> bool {
-        self.complete && self.fibre == len && self.deviation < 1e-6
+        self.complete && self.fibre == len && self.deviation < 1e-8
     }
 }
 
