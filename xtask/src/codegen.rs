@@ -14,8 +14,50 @@ use hc::start_file::StartFile;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-/// The families of this workspace and the modules generated from them.
-const FAMILIES: &[(&str, &str)] = &[("6r3s", "six_three")];
+/// A family of this workspace, and where its files are, from the root of the repository.
+struct Known {
+    name: &'static str,
+    family: &'static str,
+    start: &'static str,
+    output: &'static str,
+}
+
+const FAMILIES: &[Known] = &[
+    known(
+        "6r3s",
+        "crates/tdoa/families/6r3s.toml",
+        "crates/tdoa/families/6r3s.start.json",
+        "crates/tdoa/src/generated/six_three.rs",
+    ),
+    known(
+        "5r4s",
+        "crates/tdoa/families/5r4s.toml",
+        "crates/tdoa/families/5r4s.start.json",
+        "crates/tdoa/src/generated/five_four.rs",
+    ),
+    known(
+        "4r5s",
+        "crates/tdoa/families/4r5s.toml",
+        "crates/tdoa/families/4r5s.start.json",
+        "crates/tdoa/src/generated/four_five.rs",
+    ),
+    known(
+        "5r6s",
+        "crates/tdoa/families/5r6s.toml",
+        "crates/tdoa/families/5r6s.start.json",
+        "crates/tdoa/src/generated/five_six.rs",
+    ),
+    known(
+        "five_point",
+        "examples/families/five_point.toml",
+        "examples/families/five_point.start.json",
+        "crates/hc/examples/five_point/generated.rs",
+    ),
+];
+
+const fn known(name: &'static str, family: &'static str, start: &'static str, output: &'static str) -> Known {
+    Known { name, family, start, output }
+}
 
 #[derive(Args)]
 pub(crate) struct CodegenArguments {
@@ -50,37 +92,26 @@ pub(crate) fn run(arguments: &CodegenArguments) -> Result<()> {
         let name = family.file_name().unwrap_or_default().to_string_lossy().into_owned();
         return write_or_check(arguments, &name, family, start, output).map(|_| ());
     }
-    let crate_root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/tdoa");
-    let chosen: Vec<_> =
-        FAMILIES.iter().filter(|(name, _)| arguments.only.as_deref().is_none_or(|only| only == *name)).collect();
-    ensure!(!chosen.is_empty(), "no family of that name; there are: {}", FAMILIES.map_names());
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let chosen: Vec<&Known> =
+        FAMILIES.iter().filter(|known| arguments.only.as_deref().is_none_or(|only| only == known.name)).collect();
+    let names: Vec<&str> = FAMILIES.iter().map(|known| known.name).collect();
+    ensure!(!chosen.is_empty(), "no family of that name; there are: {}", names.join(", "));
     let mut stale = Vec::new();
-    for (name, module) in chosen {
-        let family = crate_root.join(format!("families/{name}.toml"));
-        let start = crate_root.join(format!("families/{name}.start.json"));
-        let output = crate_root.join(format!("src/generated/{module}.rs"));
+    for known in chosen {
+        let [family, start, output] = [known.family, known.start, known.output].map(|path| root.join(path));
         if arguments.refill {
             let file = refill::refill(&read_family(&family)?, arguments.seed, !arguments.no_trace)?;
             std::fs::write(&start, file.to_json()).with_context(|| format!("cannot write {}", start.display()))?;
         }
-        if write_or_check(arguments, &format!("families/{name}.toml"), &family, &start, &output)? {
-            stale.push(format!("crates/tdoa/src/generated/{module}.rs"));
+        if write_or_check(arguments, known.family, &family, &start, &output)? {
+            stale.push(known.output);
         }
     }
     if !stale.is_empty() {
         bail!("stale: {}; run `cargo xtask codegen` and commit what it writes", stale.join(", "));
     }
     Ok(())
-}
-
-trait Names {
-    fn map_names(&self) -> String;
-}
-
-impl Names for [(&str, &str)] {
-    fn map_names(&self) -> String {
-        self.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ")
-    }
 }
 
 fn read_family(path: &Path) -> Result<Family> {

@@ -1,5 +1,6 @@
 //! The program `hc`: solutions of polynomial systems by homotopy continuation.
 
+mod certify;
 mod family;
 mod input;
 mod mixed_volume;
@@ -23,6 +24,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    Certify(certify::Arguments),
     MixedVolume(mixed_volume::Arguments),
     Monodromy(monodromy::Arguments),
     Solve(solve::Arguments),
@@ -32,6 +34,11 @@ enum Command {
 fn main() -> ExitCode {
     // clap ends the program itself, with status 2, if the arguments are wrong.
     let (message, status) = match Arguments::parse().command {
+        Command::Certify(arguments) => match certify::run(&arguments) {
+            Ok(true) => return ExitCode::SUCCESS,
+            Ok(false) => return ExitCode::from(1),
+            Err(failure) => described(failure),
+        },
         Command::MixedVolume(arguments) => match mixed_volume::run(&arguments) {
             Ok(()) => return ExitCode::SUCCESS,
             Err(message) => (message, 2),

@@ -12,7 +12,15 @@ pub trait ParameterPath: Send + Sync {
     fn parameters(&self) -> usize;
 
     /// Taylor coefficients of orders 0 to 3 at `t` (one `t` a lane): `p[k * m + i]` is coefficient `k` of parameter `i`.
-    fn coefficients<S: Lane>(&self, t: &S::Real, p: &mut [S]);
+    ///
+    /// `paths` holds the index of the path in each lane, for homotopies that differ from path to path; in lanes without a path it is
+    /// that of some other lane.
+    fn coefficients<S: Lane>(&self, paths: &[usize], t: &S::Real, p: &mut [S]);
+
+    /// Whether coefficients of orders 2 and 3 are zero everywhere, which makes Taylor coefficients cheaper.
+    fn is_straight(&self) -> bool {
+        false
+    }
 }
 
 /// The straight segment from `start` (at `t = 1`) to `target` (at `t = 0`).
@@ -32,6 +40,16 @@ impl Segment {
         let direction = start.iter().zip(target).map(|(s, t)| s - t).collect();
         Segment { target: target.to_vec(), direction }
     }
+
+    /// The parameters at `t = 0`.
+    pub fn target(&self) -> &[Complex64] {
+        &self.target
+    }
+
+    /// The derivative of the parameters by `t`.
+    pub fn direction(&self) -> &[Complex64] {
+        &self.direction
+    }
 }
 
 impl ParameterPath for Segment {
@@ -39,7 +57,7 @@ impl ParameterPath for Segment {
         self.target.len()
     }
 
-    fn coefficients<S: Lane>(&self, t: &S::Real, p: &mut [S]) {
+    fn coefficients<S: Lane>(&self, _: &[usize], t: &S::Real, p: &mut [S]) {
         let m = self.target.len();
         for i in 0..m {
             let direction = S::from_c64(self.direction[i]);
@@ -47,5 +65,9 @@ impl ParameterPath for Segment {
             p[m + i] = direction;
         }
         p[2 * m..4 * m].fill(S::zero());
+    }
+
+    fn is_straight(&self) -> bool {
+        true
     }
 }

@@ -1,12 +1,17 @@
-//! Homotopy continuation: all solutions of parameter families of polynomial systems, tracked from one generic instance to any other.
+//! Homotopy continuation: all isolated solutions of polynomial systems, and of parameter families, tracked from one generic instance
+//! to any other.
 //!
 //! Where to look first:
 //!
+//! * [`solve`]: the front door for a system: start system, paths, multiplicities, what lies at infinity and on components.
+//! * [`start`]: mixed cells and mixed volumes.
+//! * [`endgame`]: the ends of paths that are singular or at infinity.
 //! * [`tracker`]: the path tracker, its options and presets; [`tracker::track`] follows paths on all threads.
 //! * [`homotopy`]: homotopies are a system and a path in its parameters.
 //! * [`fibre`]: all solutions of a family from one parameter point to another, with jumped paths found and tracked again.
 //! * [`pair`], [`monodromy`], [`trace`]: a first solution, all others from it, and the test that none is missing.
 //! * [`start_file`]: the stored form of a fibre.
+//! * [`certify`](mod@certify): proofs that solutions exist, are distinct, are real.
 //!
 //! Systems come from the crate [`poly`], which is re-exported: everything that implements [`poly::Evaluate`] can be tracked.
 //!
@@ -43,7 +48,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod certify;
 pub mod distinct;
+pub mod endgame;
 pub mod fibre;
 pub mod homotopy;
 pub mod linalg;

@@ -1,10 +1,10 @@
 //! Newton's method with residuals in double-double: a solution to the last bit that double precision can hold.
 
-use crate::distinct::relative_distance;
 use crate::linalg::Lu;
+use crate::random::Random;
 use num_complex::Complex64;
 use poly::simd::Isa;
-use poly::{ComplexDd, Evaluate};
+use poly::{ComplexDd, Evaluate, Scalar};
 
 /// What refinement tells of a solution.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,7 +13,7 @@ pub struct Refined {
     pub point: Vec<Complex64>,
     /// Relative size of the last correction, about the relative error of the point.
     pub accuracy: f64,
-    /// Largest residual, each relative to the sum of its row of the Jacobian times the point.
+    /// Largest residual, each relative to its row of the Jacobian times the sizes of the coordinates.
     pub residual: f64,
     /// Condition number of the Jacobian, rows scaled to equal size, unknowns measured by their own size; infinite if singular.
     pub condition: f64,
@@ -24,6 +24,9 @@ pub struct Refiner<'a, E: Evaluate> {
     system: &'a E,
     memory: E::Memory<Complex64>,
     precise: E::Memory<ComplexDd>,
+    precise_x: Vec<ComplexDd>,
+    rounded_p: Vec<Complex64>,
+    precise_values: Vec<ComplexDd>,
     values: Vec<Complex64>,
     jacobian: Vec<Complex64>,
     lu: Lu<Complex64>,
@@ -31,6 +34,15 @@ pub struct Refiner<'a, E: Evaluate> {
 
 /// Iterations at most; quadratic convergence from a tracked end point needs two.
 const MAX_ITERATIONS: usize = 6;
+/// Relative distances from one of which a regular solution must attract Newton's method.
+const PERTURBATIONS: [f64; 2] = [1e-8, 1e-6];
+/// How many random changes of all parameters show how a solution depends on them.
+const BLUR_DRAWS: usize = 3;
+/// Their relative size: it stands out from rounding errors.
+const BLUR_STEP: f64 = 1e-6;
+
+/// Corrections of an extended point; each gains about as many digits as the Jacobian is known to.
+const EXTENSIONS: usize = 4;
 
 impl<'a, E: Evaluate> Refiner<'a, E> {
     /// For a square system.
@@ -41,6 +53,9 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
             system,
             memory: system.memory(Isa::Portable),
             precise: system.memory(Isa::detect()),
+            precise_x: Vec::new(),
+            rounded_p: Vec::new(),
+            precise_values: vec![zero.into(); n],
             values: vec![zero; n],
             jacobian: vec![zero; n * n],
             lu: Lu::new(n, Isa::Portable),
@@ -49,45 +64,124 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
 
     /// Newton's method from `point` for the parameters `p` until corrections no longer shrink.
     pub fn refine(&mut self, p: &[Complex64], point: &[Complex64]) -> Refined {
-        let n = self.system.variables();
-        let precise_p: Vec<ComplexDd> = p.iter().map(|&z| z.into()).collect();
-        let mut precise_values = vec![ComplexDd::from(Complex64::new(0.0, 0.0)); n];
+        let exact: Vec<ComplexDd> = p.iter().map(|&z| z.into()).collect();
         let mut x = point.to_vec();
+        let accuracy = self.polish(&exact, &mut x);
+        let (residual, condition) = self.judge(p, &x);
+        Refined { point: x, accuracy, residual, condition }
+    }
+
+    /// The same in place, for parameters given to twice the digits; returns the relative size of the last correction.
+    pub fn polish(&mut self, p: &[ComplexDd], x: &mut Vec<Complex64>) -> f64 {
         let mut accuracy = f64::INFINITY;
         for _ in 0..MAX_ITERATIONS {
-            self.system.jacobian(&mut self.memory, &x, p, &mut self.values, &mut self.jacobian);
-            let precise_x: Vec<ComplexDd> = x.iter().map(|&z| z.into()).collect();
-            self.system.values(&mut self.precise, &precise_x, &precise_p, &mut precise_values);
-            self.values.iter_mut().zip(&precise_values).for_each(|(d, s)| *d = Complex64::from(*s));
-            self.lu.factor(&self.jacobian, &weights(&x));
-            self.lu.solve(&mut self.values);
+            self.correction(p, x, &weights(x));
             let next: Vec<Complex64> = x.iter().zip(&self.values).map(|(x, d)| x - d).collect();
-            let size = relative_distance(&x, &next);
+            let relative = self.values.iter().zip(sizes(&next)).map(|(d, s)| d.norm() / s[0].sqrt());
+            // Once NaN, always NaN.
+            let size = relative.fold(0.0, |m: f64, d| if d <= m || m.is_nan() { m } else { d });
             if size.is_nan() || size >= accuracy {
                 break;
             }
             accuracy = size;
-            x = next;
+            *x = next;
             if accuracy <= f64::EPSILON {
                 break;
             }
         }
-        let (residual, condition) = self.judge(p, &x);
-        Refined { point: x, accuracy, residual, condition }
+        accuracy
+    }
+
+    /// Whether Newton's method comes back to the solution `x` from a point 1e-8 or 1e-6 away (relative): it does not where the
+    /// Jacobian is singular. Either is enough, since the first may drown in rounding errors and the second meet other solutions.
+    pub fn contracts(&mut self, p: &[Complex64], x: &[Complex64]) -> bool {
+        let exact: Vec<ComplexDd> = p.iter().map(|&z| z.into()).collect();
+        PERTURBATIONS.iter().any(|&perturbation| self.comes_back(&exact, x, perturbation))
+    }
+
+    fn comes_back(&mut self, p: &[ComplexDd], x: &[Complex64], perturbation: f64) -> bool {
+        let weights = sizes(x);
+        let mut random = Random::new(0, 3);
+        let mut y: Vec<Complex64> =
+            x.iter().zip(&weights).map(|(x, w)| x + random.unit() * (perturbation * w[0].sqrt())).collect();
+        for _ in 0..2 {
+            self.correction(p, &y, &weights);
+            y.iter_mut().zip(&self.values).for_each(|(y, d)| *y -= d);
+        }
+        let mut distances = y.iter().zip(x).zip(&weights).map(|((y, x), w)| (y - x).norm() / w[0].sqrt());
+        distances.all(|d| d <= 1e-3 * perturbation)
+    }
+
+    /// How far rounding the parameters to double precision moves the solution `x`: absolute, to first order, for random
+    /// roundings. Infinite where the Jacobian is singular.
+    pub fn blur(&mut self, p: &[ComplexDd], x: &[Complex64]) -> Vec<f64> {
+        let mut random = Random::new(0, 4);
+        self.rounded_p.clear();
+        self.rounded_p.extend(p.iter().map(ComplexDd::high));
+        self.system.jacobian(&mut self.memory, x, &self.rounded_p, &mut self.values, &mut self.jacobian);
+        self.lu.factor(&self.jacobian, &weights(x));
+        let mut blur = vec![0.0; x.len()];
+        for _ in 0..BLUR_DRAWS {
+            self.rounded_p.iter_mut().zip(p).for_each(|(r, p)| *r = p.high() * (1.0 + BLUR_STEP * random.unit()));
+            self.system.values(&mut self.memory, x, &self.rounded_p, &mut self.values);
+            self.lu.solve(&mut self.values);
+            for (blur, d) in blur.iter_mut().zip(&self.values) {
+                let moved = d.norm() * (f64::EPSILON / BLUR_STEP);
+                *blur = if moved.is_nan() { f64::INFINITY } else { moved.max(*blur) };
+            }
+        }
+        blur
+    }
+
+    /// Residual and condition of a point as it is.
+    pub fn judged(&mut self, p: &[Complex64], x: &[Complex64]) -> Refined {
+        let (residual, condition) = self.judge(p, x);
+        Refined { point: x.to_vec(), accuracy: f64::INFINITY, residual, condition }
+    }
+
+    /// Leaves in `values` the correction of Newton's method at `x`.
+    fn correction(&mut self, p: &[ComplexDd], x: &[Complex64], weights: &[[f64; 1]]) {
+        self.rounded_p.clear();
+        self.rounded_p.extend(p.iter().map(ComplexDd::high));
+        self.system.jacobian(&mut self.memory, x, &self.rounded_p, &mut self.values, &mut self.jacobian);
+        self.precise_x.clear();
+        self.precise_x.extend(x.iter().map(|&z| ComplexDd::from(z)));
+        self.system.values(&mut self.precise, &self.precise_x, p, &mut self.precise_values);
+        self.values.iter_mut().zip(&self.precise_values).for_each(|(d, s)| *d = Complex64::from(*s));
+        self.lu.factor(&self.jacobian, weights);
+        self.lu.solve(&mut self.values);
+    }
+
+    /// A refined point to about 30 digits, for sums in which large coordinates cancel: corrections of the point in double-double with the
+    /// Jacobian at its double part.
+    pub fn extend(&mut self, p: &[Complex64], point: &[Complex64]) -> Vec<ComplexDd> {
+        let n = self.system.variables();
+        let precise_p: Vec<ComplexDd> = p.iter().map(|&z| z.into()).collect();
+        let mut values = vec![ComplexDd::from(Complex64::new(0.0, 0.0)); n];
+        let mut x: Vec<ComplexDd> = point.iter().map(|&z| z.into()).collect();
+        self.system.jacobian(&mut self.memory, point, p, &mut self.values, &mut self.jacobian);
+        self.lu.factor(&self.jacobian, &weights(point));
+        for _ in 0..EXTENSIONS {
+            self.system.values(&mut self.precise, &x, &precise_p, &mut values);
+            self.values.iter_mut().zip(&values).for_each(|(d, s)| *d = Complex64::from(*s));
+            self.lu.solve(&mut self.values);
+            x.iter_mut().zip(&self.values).for_each(|(x, d)| *x = Scalar::sub(x, &(*d).into()));
+        }
+        x
     }
 
     fn judge(&mut self, p: &[Complex64], x: &[Complex64]) -> (f64, f64) {
         let n = x.len();
         self.system.jacobian(&mut self.memory, x, p, &mut self.values, &mut self.jacobian);
+        let squares = sizes(x);
+        let weights: Vec<f64> = squares.iter().map(|w| w[0].sqrt()).collect();
         let residual = (0..n)
             .map(|i| {
-                let scale: f64 = (0..n).map(|j| (self.jacobian[j * n + i] * x[j]).norm()).sum();
+                let scale: f64 = (0..n).map(|j| self.jacobian[j * n + i].norm() * weights[j]).sum();
                 self.values[i].norm() / scale.max(f64::MIN_POSITIVE)
             })
             .fold(0.0, f64::max);
-        let squares = weights(x);
         self.lu.factor(&self.jacobian, &squares);
-        let weights: Vec<f64> = squares.iter().map(|w| w[0].sqrt()).collect();
         (residual, self.lu.condition(&self.jacobian, &weights))
     }
 }
@@ -97,4 +191,12 @@ fn weights(x: &[Complex64]) -> Vec<[f64; 1]> {
     let largest = x.iter().map(|z| z.norm_sqr()).fold(0.0, f64::max);
     let floor = if largest > 0.0 { 1e-8 * largest } else { 1.0 };
     x.iter().map(|z| [z.norm_sqr().max(floor)]).collect()
+}
+
+/// Squared sizes of the coordinates; those below 1e-12 of the largest, or of one if that is less, count as zero, which is measured on
+/// the scale of 1e-4 of that.
+fn sizes(x: &[Complex64]) -> Vec<[f64; 1]> {
+    let largest = x.iter().map(|z| z.norm_sqr()).fold(0.0, f64::max);
+    let unit = if largest > 0.0 { largest.min(1.0) } else { 1.0 };
+    x.iter().map(|z| [if z.norm_sqr() > 1e-24 * unit { z.norm_sqr() } else { 1e-8 * unit }]).collect()
 }

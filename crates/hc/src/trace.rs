@@ -12,7 +12,7 @@ use crate::random::Random;
 use crate::refine::Refiner;
 use crate::tracker::PathEnd;
 use num_complex::Complex64;
-use poly::{CompileError, System};
+use poly::{CompileError, ComplexDd, Scalar, System};
 
 /// What the trace test found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,12 +77,14 @@ pub fn trace_test(system: &System, fibre: &Fibre, options: &MonodromyOptions) ->
     else {
         return Ok(failed);
     };
-    let sums = [&filled, &second, &third].map(sum);
+    let sums = [&filled, &second, &third].map(|fibre| sum(&enlarged, fibre));
     // Each coordinate on its own scale: a few far points would drown the others.
     let deviation = (0..=n)
         .map(|j| {
-            let [a, b, c] = [0, 1, 2].map(|k: usize| sums[k][j]);
-            (a - 2.0 * b + c).norm() / (c - a).norm().max(a.norm()).max(f64::MIN_POSITIVE)
+            let [a, b, c] = [0, 1, 2].map(|k: usize| &sums[k][j]);
+            let second = Complex64::from(Scalar::sub(&Scalar::add(a, c), &Scalar::add(b, b)));
+            let [a, c] = [a, c].map(|z| Complex64::from(*z));
+            second.norm() / (c - a).norm().max(a.norm()).max(f64::MIN_POSITIVE)
         })
         .fold(0.0, f64::max);
 
@@ -128,10 +130,13 @@ fn moved<E: poly::Evaluate>(system: &E, fibre: &Fibre, target: &[Complex64], opt
     })
 }
 
-fn sum(fibre: &Fibre) -> Vec<Complex64> {
-    let mut sum = vec![Complex64::new(0.0, 0.0); fibre.dimension];
+/// The sum of all points, in double-double: far points would drown the others.
+fn sum<E: poly::Evaluate>(system: &E, fibre: &Fibre) -> Vec<ComplexDd> {
+    let mut refiner = Refiner::new(system);
+    let mut sum = vec![ComplexDd::from(Complex64::new(0.0, 0.0)); fibre.dimension];
     for k in 0..fibre.len() {
-        sum.iter_mut().zip(fibre.solution(k)).for_each(|(s, x)| *s += x);
+        let point = refiner.extend(&fibre.parameters, fibre.solution(k));
+        sum.iter_mut().zip(&point).for_each(|(s, x)| *s = Scalar::add(s, x));
     }
     sum
 }

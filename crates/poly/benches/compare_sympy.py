@@ -12,7 +12,7 @@ import time
 import numpy
 import sympy
 
-JOBS = ["values", "jacobian", "taylor"]
+JOBS = ["values", "jacobian", "taylor", "curved"]
 MODES = ["interpreted_one", "interpreted_eight", "generated_one", "generated_eight"]
 UNITS = {"ns": 1.0, "µs": 1e3, "ms": 1e6}
 BENCH = ["cargo", "bench", "--quiet", "-p", "poly", "--bench", "evaluate"]
@@ -85,8 +85,8 @@ def main():
     print()
     print("| system | " + " | ".join(
         ["eight lanes / one, interpreted (values, Jacobian)", "generated / interpreted, eight lanes (values, Jacobian)",
-         "Jacobian / values (one, eight)", "Taylor-3 / values (one, eight)"]) + " |")
-    print("|---|---|---|---|---|")
+         "Jacobian / values (one, eight)", "Taylor-3 / values (one, eight)", "on a curve (one, eight)"]) + " |")
+    print("|---|---|---|---|---|---|")
     for name, *_ in rows:
         t = {(mode, job): times[name, mode, job] / (8 if mode.endswith("eight") else 1) for mode in MODES for job in JOBS}
         one, eight, code = "interpreted_one", "interpreted_eight", "generated_eight"
@@ -94,8 +94,18 @@ def main():
         generated = [t[eight, j] / t[code, j] for j in JOBS[:2]]
         slope = [t[m, "jacobian"] / t[m, "values"] for m in (one, eight)]
         taylor = [t[m, "taylor"] / t[m, "values"] for m in (one, eight)]
-        cells = [" / ".join(f"{v:.1f}" for v in pair) for pair in (lanes, generated, slope, taylor)]
+        curved = [t[m, "curved"] / t[m, "values"] for m in (one, eight)]
+        cells = [" / ".join(f"{v:.1f}" for v in pair) for pair in (lanes, generated, slope, taylor, curved)]
         print(f"| {name} | " + " | ".join(cells) + " |")
+    print()
+    print("| system | | tape, one | sparse kernel, one | tape, eight | sparse kernel, eight |")
+    print("|---|---|---|---|---|---|")
+    for name, *_ in rows:
+        for job in JOBS:
+            if (name, "sparse_one", job) in times:
+                modes = ["interpreted_one", "sparse_one", "interpreted_eight", "sparse_eight"]
+                cells = [times[name, mode, job] / (8 if mode.endswith("eight") else 1) for mode in modes]
+                print(f"| {name if job == 'values' else ''} | {job} | " + " | ".join(f"{c:.1f}" for c in cells) + " |")
     print()
     print("| system | SymPy, one point | SymPy on NumPy arrays | ours, interpreted, one | ours, interpreted, eight | ratio (one / one) | ratio (arrays / eight) |")
     print("|---|---|---|---|---|---|---|")

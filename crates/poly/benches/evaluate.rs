@@ -1,4 +1,5 @@
-//! Evaluation of six systems: interpreted and generated, one path and eight at once.
+//! Evaluation of six systems: interpreted and generated, one path and eight at once; three of them also by the kernel
+//! for supports and coefficients.
 //!
 //! `benches/compare_sympy.py` runs this and SymPy and prints the table of BENCHES.md. With the environment
 //! variable `POLY_PRINT_SYSTEMS` set, the systems are printed instead.
@@ -7,7 +8,7 @@ mod common;
 mod generated;
 
 use divan::{Bencher, black_box};
-use poly::{Complex64, Evaluate, Interpreter, Isa, Lane, Lanes8};
+use poly::{Complex64, Evaluate, Interpreter, Isa, Lane, Lanes8, SparseSystem};
 
 fn main() {
     if std::env::var_os("POLY_PRINT_SYSTEMS").is_some() {
@@ -32,8 +33,10 @@ fn print_systems() {
 enum Job {
     Values,
     Jacobian,
-    /// Orders 1, 2 and 3.
+    /// Orders 1, 2 and 3, the parameters on a straight line.
     Taylor,
+    /// The same, the parameters on a curve.
+    Curved,
 }
 
 fn numbers<S: Lane>(count: usize) -> Vec<S> {
@@ -55,7 +58,8 @@ fn measure<S: Lane, E: Evaluate>(bencher: Bencher<'_, '_>, f: &E, job: Job) {
         match job {
             Job::Values => f.values(&mut memory, x, p, values),
             Job::Jacobian => f.jacobian(&mut memory, x, p, values, black_box(&mut jacobian)),
-            Job::Taylor => (1..=3).for_each(|order| f.taylor(&mut memory, order, x, p, values)),
+            Job::Taylor => (1..=3).for_each(|order| f.taylor(&mut memory, order, x, &p[..2 * k], values)),
+            Job::Curved => (1..=3).for_each(|order| f.taylor(&mut memory, order, x, p, values)),
         }
     });
 }
@@ -65,23 +69,34 @@ fn interpreter(name: &str) -> Interpreter {
     case.system.compile().expect("a system that compiles")
 }
 
+/// The kernel for supports; the coefficients are its parameters.
+fn sparse(name: &str) -> SparseSystem {
+    let case = common::cases().into_iter().find(|case| case.name == name).expect("a known system");
+    let polynomials = case.system.expand(&Default::default()).expect("a small system");
+    SparseSystem::from_polynomials(&polynomials).expect("supports of polynomials").0
+}
+
 macro_rules! cases {
-    ($($module:ident $name:literal $generated:path;)*) => {$(
+    ($($module:ident $name:literal $generated:path $(, $sparse_one:ident $sparse_eight:ident)?;)*) => {$(
         #[divan::bench_group(name = $name)]
         mod $module {
             #[allow(unused_imports)]
-            use crate::{Bencher, Complex64, Job, Lanes8, interpreter, measure};
+            use crate::{Bencher, Complex64, Job, Lanes8, interpreter, measure, sparse};
 
             cases!(@jobs interpreted_one, Complex64, interpreter($name));
             cases!(@jobs interpreted_eight, Lanes8, interpreter($name));
             cases!(@jobs generated_one, Complex64, $generated);
             cases!(@jobs generated_eight, Lanes8, $generated);
+            $(
+                cases!(@jobs $sparse_one, Complex64, sparse($name));
+                cases!(@jobs $sparse_eight, Lanes8, sparse($name));
+            )?
         }
     )*};
     (@jobs $mode:ident, $scalar:ty, $system:expr) => {
         mod $mode {
             #[allow(unused_imports)]
-            use super::{Bencher, Complex64, Job, Lanes8, interpreter, measure};
+            use super::{Bencher, Complex64, Job, Lanes8, interpreter, measure, sparse};
 
             #[divan::bench]
             fn values(bencher: Bencher<'_, '_>) {
@@ -95,14 +110,18 @@ macro_rules! cases {
             fn taylor(bencher: Bencher<'_, '_>) {
                 measure::<$scalar, _>(bencher, &$system, Job::Taylor);
             }
+            #[divan::bench]
+            fn curved(bencher: Bencher<'_, '_>) {
+                measure::<$scalar, _>(bencher, &$system, Job::Curved);
+            }
         }
     };
 }
 
 cases! {
-    cyclic "cyclic-7" crate::generated::cyclic_7::Cyclic7;
-    katsura "katsura-8" crate::generated::katsura_8::Katsura8;
-    noon "noon-5" crate::generated::noon_5::Noon5;
+    cyclic "cyclic-7" crate::generated::cyclic_7::Cyclic7, sparse_one sparse_eight;
+    katsura "katsura-8" crate::generated::katsura_8::Katsura8, sparse_one sparse_eight;
+    noon "noon-5" crate::generated::noon_5::Noon5, sparse_one sparse_eight;
     six_receivers "6r/3s" crate::generated::s6r_3s::S6r3s;
     five_transmitters "4r/5s" crate::generated::s4r_5s::S4r5s;
     pencils "pencils" crate::generated::pencils::Pencils;

@@ -33,7 +33,8 @@ pub trait Evaluate: Send + Sync {
     ///
     /// `x` holds coefficients `0 .. order` of the path, one after the other (`x[k * variables() + j]`); its coefficient
     /// `order` is taken as zero, so that `-J^{-1}` of the result is that coefficient. `p` holds the coefficients
-    /// `0 ..= order` of the parameters in the same layout.
+    /// `0 ..= order` of the parameters in the same layout, or only those of orders 0 and 1, whatever the order asked
+    /// for: then the parameters move on a straight line, which costs less.
     ///
     /// Orders must be asked for in turn, 1 then 2 then 3, at one point: each call may reuse what the one before
     /// left in `memory`, and relies on coefficients already given being unchanged.

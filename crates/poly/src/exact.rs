@@ -3,7 +3,7 @@
 use num_bigint::BigInt;
 use num_complex::Complex;
 use num_rational::BigRational;
-use num_traits::{ToPrimitive, Zero};
+use num_traits::{Signed, ToPrimitive, Zero};
 
 /// A complex number with rational parts: how constants of expressions and coefficients of parsed
 /// polynomials are kept until they become floating point.
@@ -13,14 +13,15 @@ pub type Exact = Complex<BigRational>;
 /// text such as `9^9^9` cannot ask for unbounded memory.
 pub(crate) const FOLD_BITS: u64 = 1 << 12;
 
-/// The rational as an unevaluated sum `high + low` of two doubles, about 32 digits.
+/// The rational as an unevaluated sum `high + low` of two doubles, about 32 digits; the low part is zero only where
+/// the high part is exact (intervals rely on it).
 pub(crate) fn to_parts(q: &BigRational) -> [f64; 2] {
     let high = q.to_f64().unwrap_or(f64::NAN);
-    let low = match BigRational::from_float(high) {
-        Some(h) => (q - h).to_f64().unwrap_or(0.0),
-        None => 0.0,
-    };
-    [high, low]
+    let Some(h) = BigRational::from_float(high) else { return [high, 0.0] };
+    let rest = q - h;
+    let low = rest.to_f64().unwrap_or(0.0);
+    let underflow = low == 0.0 && !rest.is_zero();
+    [high, if underflow { f64::from_bits(1).copysign(if rest.is_negative() { -1.0 } else { 1.0 }) } else { low }]
 }
 
 /// The exact value of a double, `None` where it is not finite.

@@ -265,12 +265,15 @@ impl Graph {
         if k == 1 {
             return a;
         }
-        if let Some(c) = self.as_constant(a)
-            && exact::bits(c).saturating_mul(u64::from(k.unsigned_abs())) <= FOLD_BITS
-            && !(k < 0 && c.is_zero())
-        {
-            let power = exact::pow(c, k);
-            return self.constant(power);
+        if let Some(c) = self.as_constant(a) {
+            // Zero and one stay what they are however high the power; a zero left in a power would not be seen as one.
+            if c.is_one() || (k > 0 && c.is_zero()) {
+                return a;
+            }
+            if exact::bits(c).saturating_mul(u64::from(k.unsigned_abs())) <= FOLD_BITS && !c.is_zero() {
+                let power = exact::pow(c, k);
+                return self.constant(power);
+            }
         }
         match self.node(a) {
             Node::Pow(x, j) if j.checked_mul(k).is_some() => self.pow(x, j * k),

@@ -238,8 +238,10 @@ impl Scalar for ComplexInterval {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Exact;
     use crate::dd::Dd;
     use crate::{ComplexDd, Evaluate, Isa, parse};
+    use num_rational::BigRational;
 
     /// A fixed stream of numbers of widely different sizes.
     struct Stream(u64);
@@ -321,6 +323,26 @@ mod tests {
             f.values(&mut f.memory(Isa::detect()), &[ComplexDd::new(z)], &[], &mut d);
             assert!(holds(i[0].re, d[0].re) && holds(i[0].im, d[0].im));
             assert!(i[0].radius() < 1e-13);
+        }
+    }
+
+    #[test]
+    fn constants_that_are_no_doubles_are_enclosed() {
+        let power = |k: u32| BigRational::new(1.into(), num_bigint::BigInt::from(10).pow(k));
+        let one = BigRational::from_integer(1.into());
+        // The second and third differ from doubles by less than the least one.
+        for q in [
+            power(1),
+            power(400),
+            &one + power(400),
+            &one - power(400),
+            power(310),
+            &one / BigRational::from_integer(3.into()),
+        ] {
+            let c = ComplexInterval::from_exact(&Exact::new(q.clone(), -q.clone())).re;
+            let [low, high] = [c.low, c.high].map(|x| BigRational::from_float(x).unwrap());
+            assert!(low < q && q < high, "{c:?}");
+            assert!(c.high - c.low <= 4.0 * (c.high.next_up() - c.high));
         }
     }
 

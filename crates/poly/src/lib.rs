@@ -33,7 +33,8 @@
 //!
 //! [`Evaluate`] is the one interface of all three kinds of system. It runs over any [`Scalar`]: [`Complex64`],
 //! [`Lanes8`] (eight paths side by side, each lane bit for bit what one path computes, on every
-//! [`Isa`]), [`ComplexDd`] (32 digits), [`ComplexInterval`] (bounds that surely hold) and [`Rational`] (exact).
+//! [`Isa`]), [`ComplexDd`] (32 digits), [`ComplexInterval`] and [`ComplexBall`] (bounds that surely
+//! hold, of 16 and 32 digits) and [`Rational`] (exact).
 //!
 //! BENCHES.md has measured times.
 
@@ -42,6 +43,7 @@ mod exact;
 mod graph;
 mod instantiate;
 
+pub mod ball;
 pub mod dd;
 pub mod evaluate;
 pub mod expand;
@@ -58,6 +60,7 @@ pub mod simd;
 pub mod sparse;
 pub mod system;
 
+pub use ball::ComplexBall;
 pub use dd::ComplexDd;
 pub use evaluate::Evaluate;
 pub use exact::Exact;

@@ -1,5 +1,6 @@
 //! Systems of equations: ordered unknowns, ordered parameters, formulas that are to vanish.
 
+use crate::exact;
 use crate::expression::{Arena, Expr, Expressions};
 use crate::graph::Id;
 use crate::polynomial::{Coefficient, Polynomial};
@@ -130,6 +131,13 @@ impl System {
     /// Whether there are no equations.
     pub fn is_empty(&self) -> bool {
         self.equations.is_empty()
+    }
+
+    /// Whether all constants are real, so that real points have real values.
+    pub fn is_real(&self) -> bool {
+        let graph = &self.arena.graph;
+        let used = graph.reachable(self.equations.iter().copied());
+        (0..graph.len()).filter(|&id| used[id]).all(|id| graph.as_constant(id as Id).is_none_or(exact::is_real))
     }
 
     /// The straight-line programs of the system, ready to run.

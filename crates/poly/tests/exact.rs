@@ -93,3 +93,56 @@ fn taylor_coefficients_are_those_of_the_substituted_polynomials() {
         }
     }
 }
+
+/// A sum of multiples of a few formulas, which repeat, with parentheses and signs, and its value term by term.
+fn repeating_sum(seed: i64, point: &[Exact]) -> (String, Exact) {
+    let mut state = seed;
+    let mut next = |below: i64| {
+        state = (state * 48_271 + 11) % 2_147_483_647;
+        state % below
+    };
+    let value_of = |name: &str| match name {
+        "x" => point[0].clone(),
+        "x*y" => point[0].clone() * &point[1],
+        "(y + 2*z)" => point[1].clone() + rational(2, 1) * &point[2],
+        "a*z" => point[3].clone() * &point[2],
+        _ => rational(1, 1),
+    };
+    let (mut text, mut value) = ("0".to_owned(), Exact::zero());
+    for _ in 0..12 {
+        let name = ["x", "x*y", "(y + 2*z)", "a*z", "1"][next(5) as usize];
+        let (p, q) = (next(7) - 3, next(4) + 1);
+        let term = rational(p, q) * value_of(name);
+        match next(3) {
+            0 => {
+                text = format!("{text} + ({p}/{q})*{name}");
+                value += term;
+            }
+            1 => {
+                text = format!("({text}) - {name}*({p}/{q})");
+                value -= term;
+            }
+            _ => {
+                text = format!("({p}/{q})*{name} - ({text})");
+                value = term - value;
+            }
+        }
+    }
+    (text, value)
+}
+
+#[test]
+fn collected_sums_keep_their_values_and_have_no_term_twice() {
+    for (seed, point) in (1..).zip(points()) {
+        let (text, value) = repeating_sum(seed, &point);
+        let family =
+            format!("name = 'sum'\nunknowns = ['x', 'y', 'z']\nparameters = ['a', 'b']\nequations = ['{text}']");
+        let system = parse::family(&family).unwrap().system.compile().unwrap();
+        let wrapped: Vec<Rational> = point.iter().cloned().map(Rational::new).collect();
+        let mut values = [Rational::integer(0)];
+        system.values(&mut system.memory::<Rational>(Isa::Portable), &wrapped[..3], &wrapped[3..], &mut values);
+        assert_eq!(exact(&values), [value], "{text}");
+        // Two products and a sum inside terms; then at most one operation a term and one more for the first.
+        assert!(system.program().value_operations() <= 3 + 5, "{text}: {}", system.program().value_operations());
+    }
+}

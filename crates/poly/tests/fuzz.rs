@@ -110,6 +110,17 @@ proptest! {
     }
 }
 
+/// However large the exponent, a power of zero is zero, so that no negative power of it passes for a number.
+#[test]
+fn powers_of_zero_are_zero() {
+    for text in ["(x - x)^1000000", "0^2147483647", "(0^1000000)^3"] {
+        assert!(parse::phcpack(&format!("1\n({text})^(-4);")).is_err(), "{text}");
+        assert!(parse::phcpack(&format!("1\n1/({text});")).is_err(), "{text}");
+        let system = parse::phcpack(&format!("1\nx + {text};")).expect("a formula");
+        assert_eq!(system.to_string(), parse::phcpack("1\nx;").expect("a formula").to_string());
+    }
+}
+
 #[test]
 fn hostile_texts() {
     let nested = "(".repeat(1_000_000);

@@ -28,14 +28,16 @@ fn all<E: Evaluate, S: Scalar>(f: &E, isa: Isa, x: &[S], p: &[S]) -> Vec<S> {
     let (m, n, k) = (f.equations(), f.variables(), f.parameters());
     let mut memory = f.memory::<S>(isa);
     let junk = S::from_c64(Complex64::new(f64::NAN, 7.0));
-    let mut out = vec![junk; 2 * m + m * n + 3 * m];
+    let mut out = vec![junk; 2 * m + m * n + 6 * m];
     let (values, rest) = out.split_at_mut(m);
     f.values(&mut memory, &x[..n], &p[..k], values);
     let (values, rest) = rest.split_at_mut(m);
     let (jacobian, rest) = rest.split_at_mut(m * n);
     f.jacobian(&mut memory, &x[..n], &p[..k], values, jacobian);
-    for (order, coefficients) in (1..=3).zip(rest.chunks_mut(m)) {
-        f.taylor(&mut memory, order, &x[..order * n], &p[..(order + 1) * k], coefficients);
+    // The parameters on a curve, then on a straight line.
+    let turns = [(1, 2), (2, 3), (3, 4), (1, 2), (2, 2), (3, 2)];
+    for ((order, given), coefficients) in turns.into_iter().zip(rest.chunks_mut(m)) {
+        f.taylor(&mut memory, order, &x[..order * n], &p[..given * k], coefficients);
     }
     out
 }

@@ -1,6 +1,7 @@
 //! `tdoa experiment`.
 
 mod clean;
+mod hard;
 
 use std::path::PathBuf;
 
@@ -21,6 +22,7 @@ pub(crate) struct Arguments {
 enum Kind {
     Calibrate(CalibrateArguments),
     Clean(clean::Arguments),
+    Hard(hard::Arguments),
 }
 
 /// Calibrates random networks in a room of 10 m by 10 m and compares the errors with the Cramer-Rao bound.
@@ -58,6 +60,7 @@ struct CalibrateArguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let arguments = match &arguments.kind {
         Kind::Clean(arguments) => return clean::run(arguments),
+        Kind::Hard(arguments) => return hard::run(arguments),
         Kind::Calibrate(arguments) => arguments,
     };
     let sizes = arguments.configuration.split_once("r/");
@@ -127,7 +130,6 @@ fn summary(arguments: &CalibrateArguments, trials: &[Trial]) -> String {
     let ratio = squares(&|t| t.receiver_rms.unwrap_or(0.0) / t.bound) / successes.len().max(1) as f64;
     let covered: usize = successes.iter().map(|t| t.covered).sum();
     let ellipses: usize = successes.iter().map(|t| t.ellipses).sum();
-    let known = |t: &Trial| t.best_of_alternatives.is_some_and(|rms| rms <= 3.0 * t.bound);
     let mut times: Vec<f64> = trials.iter().map(|t| t.seconds).collect();
     times.sort_by(f64::total_cmp);
     format!(
@@ -139,9 +141,9 @@ fn summary(arguments: &CalibrateArguments, trials: &[Trial]) -> String {
         arguments.outliers,
         arguments.missing,
         share(&|t| t.success()),
-        share(&known),
+        share(&Trial::among_alternatives),
         share(&|t| t.unique),
-        share(&|t| t.unique && !known(t)),
+        share(&|t| t.unique && !t.among_alternatives()),
         ratio.sqrt(),
         covered as f64 / ellipses.max(1) as f64,
         times.get(times.len() / 2).copied().unwrap_or(0.0),

@@ -5,13 +5,12 @@ use std::time::Instant;
 
 use serde::Serialize;
 use tdoa::MinimalSolution;
-use tdoa::minimal::{SolveError, SolveOptions, solve};
+use tdoa::minimal::{SolveOptions, Start, solve};
 use tdoa::read::read;
 
 use crate::{Failure, output};
 
-/// Finds every network that explains the pseudoranges of a small configuration (6r/3s and other minimal or near-minimal
-/// ones), best first.
+/// Finds every network that explains pseudoranges without errors, best first: 6r/3s, 4r/5s, 5r/4s and all larger sizes.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The measurements, in the forms that `calibrate` takes; none may be missing.
@@ -22,6 +21,9 @@ pub(crate) struct Arguments {
     /// noisy data the noise.
     #[arg(long, default_value_t = SolveOptions::default().tolerance)]
     tolerance: f64,
+    /// Where paths start: at the stored solutions of a generic instance, or at a polyhedral start system computed for these data.
+    #[arg(long, value_enum, default_value = "stored")]
+    start: StartArgument,
     /// Accepted everywhere; the solvers draw no random numbers.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -31,6 +33,12 @@ pub(crate) struct Arguments {
     /// Writes the result as JSON; - for standard output instead of the summary.
     #[arg(long)]
     json: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum StartArgument {
+    Stored,
+    Polyhedral,
 }
 
 /// The JSON form.
@@ -51,15 +59,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let mut options = SolveOptions::default();
     options.tolerance = arguments.tolerance;
+    options.start = match arguments.start {
+        StartArgument::Stored => Start::Stored,
+        StartArgument::Polyhedral => Start::Polyhedral,
+    };
     let started = Instant::now();
     let solved = crate::on_threads(arguments.threads, || solve(&measured, &options))?;
-    let solution = solved.map_err(|error| {
-        let message = format!("{}: {error}", arguments.file.display());
-        match error {
-            SolveError::Unsupported { .. } => Failure::Unusable(message),
-            _ => Failure::Undetermined(message),
-        }
-    })?;
+    let solution = solved.map_err(|error| Failure::Undetermined(format!("{}: {error}", arguments.file.display())))?;
     let seconds = started.elapsed().as_secs_f64();
     if let Some(path) = &arguments.json {
         let report = Report {
@@ -77,9 +83,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     for warning in &solution.warnings {
         eprintln!("warning: {warning}");
     }
-    if solution.paths.failed > 0 {
+    if !solution.warnings.is_empty() {
         return Err(Failure::Undetermined(format!(
-            "{}: the result is not whole, see the warnings",
+            "{}: the data do not determine the network, or the result is not whole; see the warnings",
             arguments.file.display()
         )));
     }

@@ -1,6 +1,7 @@
 //! Trials of the calibration on simulated networks: how far from the truth, compared with what the noise allows.
 
 pub mod clean;
+pub mod hard;
 
 use std::time::Instant;
 
@@ -11,7 +12,7 @@ use serde::Serialize;
 
 use crate::align::align;
 use crate::calibrate::{
-    CalibrateError, CalibrateOptions, Calibration, Control, KnownReceivers, calibrate, calibrate_with,
+    CalibrateError, CalibrateOptions, Calibration, Control, KnownReceivers, SAME_NETWORK, calibrate, calibrate_with,
 };
 use crate::network::Network;
 use crate::observations::Observations;
@@ -29,6 +30,8 @@ pub struct Trial {
     pub receiver_rms: Option<f64>,
     /// The Cramer-Rao bound on it, from the measurements that are no outliers, metres.
     pub bound: f64,
+    /// Size of the true network, metres.
+    pub size: f64,
     /// Receivers whose truth lies in the 95 % ellipse.
     pub covered: usize,
     /// Receivers with an ellipse.
@@ -48,6 +51,12 @@ pub struct Trial {
 }
 
 impl Trial {
+    /// Whether the true network is among the alternatives: its receivers are within three times the Cramer-Rao bound, or within the share of
+    /// the network's size below which networks count as the same. (Near a fold the bound, which is linear, is too small.)
+    pub fn among_alternatives(&self) -> bool {
+        self.best_of_alternatives.is_some_and(|rms| rms <= (3.0 * self.bound).max(SAME_NETWORK * self.size))
+    }
+
     /// Whether the receivers are within three times the Cramer-Rao bound.
     pub fn success(&self) -> bool {
         self.receiver_rms.is_some_and(|rms| rms <= 3.0 * self.bound)
@@ -75,6 +84,7 @@ fn judge(
         seed,
         receiver_rms: None,
         bound,
+        size: truth.size(),
         covered: 0,
         ellipses: 0,
         unique: false,

@@ -6,7 +6,7 @@
 
 use super::kernels::{Correct, Distance, Negate, Predict, Radius, Take, Weigh};
 use super::options::TrackerOptions;
-use super::progress::{Bounds, MAX_ITERATIONS, Progress, Stage};
+use super::progress::{Bounds, Progress, Stage};
 use super::result::{PathEnd, PathSet};
 use crate::homotopy::ParameterPath;
 use crate::linalg::Lu;
@@ -21,6 +21,8 @@ pub struct Tracker<'a, E: Evaluate, S: Lane> {
     isa: Isa,
     n: usize,
     lanes: Vec<Progress>,
+    /// Index of the path in each lane.
+    labels: Vec<usize>,
     memory: E::Memory<S>,
     /// Taylor coefficients of the paths at their current points, orders 0 to 3.
     taylor: Vec<S>,
@@ -31,6 +33,8 @@ pub struct Tracker<'a, E: Evaluate, S: Lane> {
     /// Where the Jacobian is evaluated.
     point: Vec<S>,
     corrected: Vec<S>,
+    /// What the closing correction starts from.
+    closing: Vec<S>,
     values: Vec<S>,
     jacobian: Vec<S>,
     lu: Lu<S>,
@@ -86,6 +90,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             isa,
             n,
             lanes: vec![Progress::idle(); S::LANES],
+            labels: vec![0; S::LANES],
             memory: system.memory(isa),
             taylor: zeros(4 * n),
             taylor_next: zeros(4 * n),
@@ -93,6 +98,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             predicted: zeros(n),
             point: zeros(n),
             corrected: zeros(n),
+            closing: zeros(n),
             values: zeros(n),
             jacobian: zeros(n * n),
             lu: Lu::new(n, isa),
@@ -148,9 +154,26 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         self.predict();
         let mut t = S::real(1.0);
         t.as_mut().iter_mut().zip(&self.lanes).for_each(|(t, lane)| *t = lane.t_next);
-        path.coefficients::<S>(&t, &mut self.parameters);
-        self.correct();
-        self.close();
+        let some = self.lanes.iter().find(|lane| lane.is_live()).map_or(0, |lane| lane.path);
+        self.labels
+            .iter_mut()
+            .zip(&self.lanes)
+            .for_each(|(label, lane)| *label = if lane.is_live() { lane.path } else { some });
+        path.coefficients::<S>(&self.labels, &t, &mut self.parameters);
+        self.point.copy_from_slice(&self.predicted);
+        self.lanes.iter_mut().for_each(|lane| lane.begin_correction(&self.bounds));
+        loop {
+            self.correct();
+            self.close();
+            let mut unfinished = 0u8;
+            for (l, lane) in self.lanes.iter().enumerate() {
+                unfinished |= u8::from(lane.stage == Stage::Iterating) << l;
+            }
+            if unfinished == 0 {
+                break;
+            }
+            self.isa.run(Take { from: &self.corrected, mask: unfinished, to: &mut self.point });
+        }
 
         let mut accepted = 0u8;
         for l in 0..S::LANES {
@@ -160,7 +183,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             }
         }
         if accepted != 0 {
-            self.move_on(accepted);
+            self.move_on(accepted, path.is_straight());
             for l in (0..S::LANES).filter(|l| accepted >> l & 1 == 1) {
                 self.watch_valuations(l);
                 if let Some(end) = self.lanes[l].finished(&self.bounds) {
@@ -201,11 +224,9 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         });
     }
 
-    /// Newton's method from the predicted points until every lane has converged or is rejected.
+    /// Newton's method until every lane has converged or is rejected.
     fn correct(&mut self) {
-        self.point.copy_from_slice(&self.predicted);
-        self.lanes.iter_mut().for_each(|lane| lane.begin_correction(&self.bounds));
-        for i in 0..MAX_ITERATIONS {
+        loop {
             let m = self.system.parameters();
             let p = &self.parameters[..m];
             self.system.jacobian(&mut self.memory, &self.point, p, &mut self.values, &mut self.jacobian);
@@ -230,7 +251,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             });
             let mut again = 0u8;
             for (l, lane) in self.lanes.iter_mut().enumerate() {
-                lane.judge(i, norm.as_ref()[l].sqrt(), &self.bounds);
+                lane.judge(norm.as_ref()[l].sqrt(), &self.bounds);
                 again |= u8::from(lane.stage == Stage::Iterating) << l;
             }
             if again == 0 {
@@ -267,12 +288,17 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
                 inverse_weights_sqr: &self.inverse_weights_sqr,
             });
         }
-        self.point.copy_from_slice(&self.corrected);
+        // `point` stays where the Jacobian was taken: lanes that are done are evaluated there again if others go on.
+        self.closing.copy_from_slice(&self.corrected);
+        let mut running = 0u8;
+        for (l, lane) in self.lanes.iter().enumerate() {
+            running |= u8::from(converged(lane)) << l;
+        }
         let norm = self.isa.run(Correct {
-            x: &self.point,
+            x: &self.closing,
             dx: &self.values,
             inverse_weights_sqr: &self.inverse_weights_sqr,
-            running: u8::MAX,
+            running,
             out: &mut self.corrected,
         });
         for (l, lane) in self.lanes.iter_mut().enumerate() {
@@ -282,7 +308,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
     }
 
     /// Derivatives at the accepted points, and with them the radius of trust for the next step.
-    fn move_on(&mut self, accepted: u8) {
+    fn move_on(&mut self, accepted: u8, straight: bool) {
         let (n, m) = (self.n, self.system.parameters());
         let distance = self.isa.run(Distance {
             a: &self.predicted,
@@ -292,7 +318,8 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         self.taylor_next[..n].copy_from_slice(&self.corrected);
         for order in 1..=3 {
             let (known, next) = self.taylor_next.split_at_mut(order * n);
-            let p = &self.parameters[..(order + 1) * m];
+            let orders = if straight { 2 } else { order + 1 };
+            let p = &self.parameters[..orders * m];
             self.system.taylor(&mut self.memory, order, known, p, &mut next[..n]);
             self.lu.solve(&mut next[..n]);
             self.isa.run(Negate { x: &mut next[..n] });

@@ -14,6 +14,9 @@ const INITIAL_OMEGA: f64 = 10.0;
 const MIN_OMEGA: f64 = 0.1;
 /// Corrections up to this multiple of the noise are taken for noise.
 const NOISE_MARGIN: f64 = 16.0;
+/// A closing correction above this share of the one before it, and above the noise, says that Newton's method has not converged yet:
+/// after quadratic convergence it is far smaller.
+const UNFINISHED: f64 = 0.05;
 
 /// `h(a) = 2a (sqrt(4a^2 + 1) - 2a)` (Timme 2020, lemma 4.2).
 fn h(a: f64) -> f64 {
@@ -103,6 +106,8 @@ pub(crate) struct Progress {
     last: f64,
     omega_now: f64,
     theta_bound: f64,
+    /// Newton iterations of this step.
+    iterations: usize,
 }
 
 impl Progress {
@@ -131,6 +136,7 @@ impl Progress {
             last: 0.0,
             omega_now: INITIAL_OMEGA,
             theta_bound: 0.0,
+            iterations: 0,
         }
     }
 
@@ -185,14 +191,17 @@ impl Progress {
             self.stage = Stage::Iterating;
             self.theta_bound = bounds.options.contraction;
             self.omega_now = self.omega;
+            self.iterations = 0;
         }
     }
 
-    /// Judges the correction of size `norm` in iteration `i`.
-    pub(crate) fn judge(&mut self, i: usize, norm: f64, bounds: &Bounds) {
+    /// Judges the correction of size `norm`.
+    pub(crate) fn judge(&mut self, norm: f64, bounds: &Bounds) {
         if self.stage != Stage::Iterating {
             return;
         }
+        let i = self.iterations;
+        self.iterations += 1;
         self.jacobians += 1;
         if !norm.is_finite() {
             self.stage = Stage::Rejected { theta: f64::INFINITY };
@@ -226,7 +235,7 @@ impl Progress {
         self.last = norm;
         if self.omega_now.max(MIN_OMEGA) * norm <= bounds.options.corrector_tolerance {
             self.stage = Stage::Converged;
-        } else if i + 1 == MAX_ITERATIONS {
+        } else if i + 1 >= MAX_ITERATIONS {
             self.stage = Stage::Rejected { theta: f64::INFINITY };
         }
     }
@@ -239,6 +248,13 @@ impl Progress {
         }
         if !norm.is_finite() {
             self.stage = Stage::Rejected { theta: f64::INFINITY };
+            return;
+        }
+        let matters = self.omega_now.max(1.0) * norm > 0.01 * bounds.leave_double && norm > NOISE_MARGIN * self.noise;
+        if matters && norm > UNFINISHED * self.last && self.iterations + 1 < MAX_ITERATIONS {
+            self.last = norm;
+            self.theta_bound = bounds.options.contraction;
+            self.stage = Stage::Iterating;
             return;
         }
         if self.omega_now == self.omega && self.first == self.last {
@@ -297,6 +313,12 @@ impl Progress {
             _ => return None,
         };
         if self.fresh {
+            if !self.extended && bounds.options.extended_precision {
+                // A solution near a singularity may fail the test for rounding errors alone.
+                self.extended = true;
+                self.used_extended = true;
+                return None;
+            }
             return Some(PathEnd::InvalidStart);
         }
         self.rejected += 1;

@@ -428,9 +428,9 @@ fn taylor_table(tape: &TaylorTape) -> TokenStream {
     let codes = |group: &[TaylorCode]| {
         let codes = group.iter().map(|code| {
             let op = format_ident!("{}", format!("{:?}", code.op));
-            let (unknowns, target) = (Literal::u8_unsuffixed(code.unknowns), index(code.target));
+            let (kind, target) = (Literal::u8_unsuffixed(code.kind), index(code.target));
             let operands = code.operands.map(index);
-            quote!(code(Op::#op, #unknowns, #target, [#(#operands),*]))
+            quote!(code(Op::#op, #kind, #target, [#(#operands),*]))
         });
         quote!(Cow::Borrowed(&[#(#codes),*]))
     };

@@ -4,7 +4,7 @@ use crate::scalar::Scalar;
 use crate::simd::Isa;
 
 pub use super::instruction::Op;
-pub use super::taylor::{TaylorCode, TaylorTape};
+pub use super::taylor::{TaylorCode, TaylorMemory, TaylorTape};
 
 /// Scratch space of generated code.
 #[derive(Clone, Debug)]
@@ -14,7 +14,7 @@ pub struct Memory<S> {
     /// Values that one function hands to the next.
     pub live: Vec<S>,
     /// Taylor coefficients that stay between orders.
-    taylor: Vec<S>,
+    taylor: TaylorMemory<S>,
 }
 
 impl<S: Scalar> Memory<S> {
@@ -34,6 +34,6 @@ impl<S: Scalar> Memory<S> {
 }
 
 /// One instruction of a generated [`TaylorTape`].
-pub const fn code(op: Op, unknowns: u8, target: u32, operands: [u32; 4]) -> TaylorCode {
-    TaylorCode { op, unknowns, target, operands }
+pub const fn code(op: Op, kind: u8, target: u32, operands: [u32; 4]) -> TaylorCode {
+    TaylorCode { op, kind, target, operands }
 }

@@ -3,7 +3,7 @@
 use super::Program;
 use super::instruction::Op;
 use super::registers::{Code, Layout, RegisterTape, allocate};
-use super::taylor::TaylorTape;
+use super::taylor::{TaylorMemory, TaylorTape};
 use crate::evaluate::Evaluate;
 use crate::scalar::Scalar;
 use crate::simd::{Isa, Kernel};
@@ -31,7 +31,7 @@ pub struct InterpreterMemory<S> {
     values: Vec<S>,
     jacobian: Vec<S>,
     /// Taylor coefficients of every operand and every result.
-    taylor: Vec<S>,
+    taylor: TaylorMemory<S>,
 }
 
 impl Interpreter {

@@ -1,9 +1,10 @@
 //! Straight-line programs: what a system becomes in order to be evaluated.
 //!
-//! Formulas are lowered to instructions of up to four operands (`a*b + c*d` is one), equal
+//! Like terms of sums are collected and formulas lowered to instructions of up to four operands (`a*b + c*d` is one), equal
 //! subformulas once, dead ones not at all; the Jacobian is made by reverse or forward mode, whichever needs fewer
 //! instructions. [`Interpreter`] runs a program over any [`Scalar`](crate::Scalar).
 
+mod collect;
 mod derivative;
 #[cfg(feature = "emit")]
 mod emit;
@@ -73,8 +74,7 @@ impl Program {
     /// # Errors
     /// If a formula divides by the constant zero or the program would be unreasonably long.
     pub fn new(system: &System) -> Result<Program, CompileError> {
-        let graph = &system.arena.graph;
-        let roots = &system.equations;
+        let (graph, roots) = &collect::collect(&system.arena.graph, &system.equations);
         check_divisions(graph, roots)?;
         let (equations, variables) = (roots.len(), system.variables().len());
 
@@ -134,7 +134,8 @@ fn lower_jacobian(
     wanted.extend(entries.iter().map(|&(i, j, id)| (i, (rows + j as usize * rows + i) as u32, id)));
     wanted.sort_by_key(|&(i, slot, _)| (i, slot));
     let ids: Vec<Id> = wanted.iter().map(|&(_, _, id)| id).collect();
-    let operands = builder.lower(graph, &ids);
+    let (graph, ids) = collect::collect(graph, &ids);
+    let operands = builder.lower(&graph, &ids);
     let outputs: Vec<(u32, Operand)> = wanted.iter().zip(operands).map(|(&(_, slot, _), o)| (slot, o)).collect();
     let tape = schedule::finish(&mut builder, outputs);
     *constants = builder.constants;

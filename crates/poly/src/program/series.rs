@@ -1,38 +1,43 @@
 //! Taylor arithmetic on coefficients that stay in memory.
 //!
-//! Four columns hold the coefficients of orders 0 to 3 of every operand and every result. Each function computes
+//! Every operand and every result keeps its coefficients of orders 0 to 3. Each step computes
 //! coefficients `FROM ..= TO` of result `t` from those of its operands and relies on the result's
-//! coefficients below `FROM`. `TO` is the order asked for, at which the unknowns' coefficients are zero: products
-//! with an unknown leave out what vanishes. Formulas: Griewank and Walther, *Evaluating Derivatives*, chapter 13.
+//! coefficients below `FROM`. `TO` is the order asked for, at which the unknowns' coefficients are zero, and what is
+//! linear in parameters on a straight line has none beyond order 1: products with either leave out what vanishes.
+//! Coefficient 2 of a product is computed twice, without and with that of the unknowns; in between, the place of
+//! coefficient 3 keeps the part `a_1 b_1` that does not change.
+//! Formulas: Griewank and Walther, *Evaluating Derivatives*, chapter 13.
 
+use super::instruction::Op;
 use crate::scalar::Scalar;
 
 /// Coefficients kept for each value: orders 0 to 3.
 pub(crate) const WIDTH: usize = 4;
 
-/// Coefficients of equal order side by side.
-pub(crate) type Columns<'a, S> = [&'a mut [S]; WIDTH];
+/// Coefficients of one value.
+pub(crate) type Series<S> = [S; WIDTH];
 
-/// Neither factor is known to be an unknown.
+/// Nothing is known of the factors.
 pub(crate) const GENERAL: u8 = 0;
 /// The second factor is an unknown.
 pub(crate) const BY_UNKNOWN: u8 = 1;
 /// Both factors are unknowns.
 pub(crate) const UNKNOWNS: u8 = 2;
+/// The second factor is free of unknowns and linear in `t`.
+pub(crate) const BY_LINEAR: u8 = 3;
+/// The first factor is free of unknowns and linear in `t`, the second is an unknown.
+pub(crate) const LINEAR_BY_UNKNOWN: u8 = 4;
+/// Both factors are free of unknowns and linear in `t`.
+pub(crate) const LINEARS: u8 = 5;
 
 // Helpers are functions that are always inlined, not closures: a closure that the compiler leaves out of line would
-// be compiled without the instruction set of its caller.
-
-/// Term `i` of coefficient `i + j` of a product: `a_i b_j`.
-#[inline(always)]
-fn one<S: Scalar>(m: &Columns<'_, S>, a: usize, b: usize, i: usize, j: usize) -> S {
-    S::mul(&m[i][a], &m[j][b])
-}
+// be compiled without the instruction set of its caller. Every kind adds up what does not vanish in the order of
+// the general formula, so that all agree bit for bit.
 
 /// `a_i b_j + a_j b_i`
 #[inline(always)]
-fn two<S: Scalar>(m: &Columns<'_, S>, a: usize, b: usize, i: usize, j: usize) -> S {
-    S::mul_mul_add(&m[i][a], &m[j][b], &m[j][a], &m[i][b])
+fn two<S: Scalar>(a: &Series<S>, b: &Series<S>, i: usize, j: usize) -> S {
+    S::mul_mul_add(&a[i], &b[j], &a[j], &b[i])
 }
 
 #[inline(always)]
@@ -40,92 +45,168 @@ fn double<S: Scalar>(z: &S) -> S {
     S::add(z, z)
 }
 
-/// Coefficient `k` of the product of values `a` and `b`; `top` says that their unknowns' coefficient is zero.
+/// `x + y` or, if `MINUS`, `x - y`.
 #[inline(always)]
-fn product<S: Scalar, const KIND: u8>(m: &Columns<'_, S>, a: usize, b: usize, k: usize, top: bool) -> S {
-    match (k, if top { KIND } else { GENERAL }) {
-        (0, _) => one(m, a, b, 0, 0),
-        (1, GENERAL) => two(m, a, b, 0, 1),
-        (1, BY_UNKNOWN) => one(m, a, b, 1, 0),
-        (1, _) => S::zero(),
-        (2, GENERAL) => S::add(&two(m, a, b, 0, 2), &one(m, a, b, 1, 1)),
-        (2, BY_UNKNOWN) => S::mul_add(&m[2][a], &m[0][b], &one(m, a, b, 1, 1)),
-        (2, _) => one(m, a, b, 1, 1),
-        (_, GENERAL) => S::add(&two(m, a, b, 0, 3), &two(m, a, b, 1, 2)),
-        (_, BY_UNKNOWN) => S::mul_add(&m[3][a], &m[0][b], &two(m, a, b, 1, 2)),
-        _ => two(m, a, b, 1, 2),
+fn combine<S: Scalar, const MINUS: bool>(x: &S, y: &S) -> S {
+    if MINUS { S::sub(x, y) } else { S::add(x, y) }
+}
+
+/// `a_i b_j + c_k d_l` or, if `MINUS`, their difference.
+#[inline(always)]
+fn combine_products<S: Scalar, const MINUS: bool>(a: &S, b: &S, c: &S, d: &S) -> S {
+    if MINUS { S::mul_mul_sub(a, b, c, d) } else { S::mul_mul_add(a, b, c, d) }
+}
+
+/// What is left of a kind of product below the order asked for, where unknowns have coefficients like anything else.
+#[inline(always)]
+const fn kind_at(kind: u8, top: bool) -> u8 {
+    match kind {
+        BY_UNKNOWN | UNKNOWNS if !top => GENERAL,
+        other => other,
     }
 }
 
-/// Coefficient `k` of a square.
+/// Coefficient `k` of `a b`; `top` says that the unknowns' coefficient is zero, `inner` is `a_1 b_1` where `k` is 2.
 #[inline(always)]
-fn square<S: Scalar, const KIND: u8>(m: &Columns<'_, S>, a: usize, k: usize, top: bool) -> S {
-    match (k, if top { KIND } else { GENERAL }) {
-        (0, _) => S::sqr(&m[0][a]),
-        (1, GENERAL) => double(&one(m, a, a, 0, 1)),
-        (1, _) => S::zero(),
-        (2, GENERAL) => S::add(&double(&one(m, a, a, 0, 2)), &S::sqr(&m[1][a])),
-        (2, _) => S::sqr(&m[1][a]),
-        (_, GENERAL) => double(&S::mul_mul_add(&m[0][a], &m[3][a], &m[1][a], &m[2][a])),
-        _ => double(&one(m, a, a, 1, 2)),
+fn product<S: Scalar, const KIND: u8>(a: &Series<S>, b: &Series<S>, inner: &S, k: usize, top: bool) -> S {
+    match (k, kind_at(KIND, top)) {
+        (0, _) => S::mul(&a[0], &b[0]),
+        (1, GENERAL | BY_LINEAR | LINEARS) => two(a, b, 0, 1),
+        (1, BY_UNKNOWN) => S::mul(&a[1], &b[0]),
+        (1, UNKNOWNS) => S::zero(),
+        (1, _) if top => S::mul(&a[1], &b[0]),
+        (1, _) => two(a, b, 0, 1),
+        (2, GENERAL) => S::add(&two(a, b, 0, 2), inner),
+        (2, BY_UNKNOWN | BY_LINEAR) => S::mul_add(&a[2], &b[0], inner),
+        (2, LINEAR_BY_UNKNOWN) if !top => S::mul_add(&a[0], &b[2], inner),
+        (2, _) => inner.clone(),
+        (_, GENERAL) => S::add(&two(a, b, 0, 3), &two(a, b, 1, 2)),
+        (_, BY_UNKNOWN) => S::mul_add(&a[3], &b[0], &two(a, b, 1, 2)),
+        (_, UNKNOWNS) => two(a, b, 1, 2),
+        (_, BY_LINEAR) => S::mul_mul_add(&a[3], &b[0], &a[2], &b[1]),
+        (_, LINEAR_BY_UNKNOWN) => S::mul(&a[1], &b[2]),
+        _ => S::zero(),
     }
 }
 
-/// Coefficient `k` of the reciprocal of `a` from those below at `r`:
+/// Coefficient `k` of `a b + c d` or, if `MINUS`, of `a b - c d`, both of one kind; `inner` is `a_1 b_1 + c_1 d_1` or
+/// their difference.
+#[inline(always)]
+fn products<S: Scalar, const KIND: u8, const MINUS: bool>(
+    [a, b, c, d]: [&Series<S>; 4],
+    inner: &S,
+    k: usize,
+    top: bool,
+) -> S {
+    match (k, kind_at(KIND, top)) {
+        (0, _) => combine_products::<S, MINUS>(&a[0], &b[0], &c[0], &d[0]),
+        (2, GENERAL) => S::add(&combine::<S, MINUS>(&two(a, b, 0, 2), &two(c, d, 0, 2)), inner),
+        (2, BY_UNKNOWN | BY_LINEAR) => S::add(&combine_products::<S, MINUS>(&a[2], &b[0], &c[2], &d[0]), inner),
+        (2, LINEAR_BY_UNKNOWN) if !top => S::add(&combine_products::<S, MINUS>(&a[0], &b[2], &c[0], &d[2]), inner),
+        (2, _) => inner.clone(),
+        _ => combine::<S, MINUS>(&product::<S, KIND>(a, b, inner, k, top), &product::<S, KIND>(c, d, inner, k, top)),
+    }
+}
+
+/// Coefficient `k` of `a^2`; `inner` is `a_1^2`.
+#[inline(always)]
+fn square<S: Scalar, const KIND: u8>(a: &Series<S>, inner: &S, k: usize, top: bool) -> S {
+    match (k, kind_at(KIND, top)) {
+        (0, _) => S::sqr(&a[0]),
+        (1, GENERAL | LINEARS) => double(&S::mul(&a[0], &a[1])),
+        (1, _) => S::zero(),
+        (2, GENERAL) => S::add(&double(&S::mul(&a[0], &a[2])), inner),
+        (2, _) => inner.clone(),
+        (_, GENERAL) => double(&S::mul_mul_add(&a[0], &a[3], &a[1], &a[2])),
+        (_, LINEARS) => S::zero(),
+        _ => double(&S::mul(&a[1], &a[2])),
+    }
+}
+
+/// Coefficient `k` of the reciprocal `r` of `a` from those below:
 /// `r_0 = 1/a_0`, `r_k = -r_0 * sum_{j<k} r_j a_{k-j}`.
 #[inline(always)]
-fn reciprocal<S: Scalar>(m: &Columns<'_, S>, r: usize, a: usize, k: usize) -> S {
+fn reciprocal<S: Scalar>(r: &Series<S>, a: &Series<S>, k: usize) -> S {
     let sum = match k {
-        0 => return S::inv(&m[0][a]),
-        1 => S::mul(&m[0][r], &m[1][a]),
-        2 => S::mul_mul_add(&m[0][r], &m[2][a], &m[1][r], &m[1][a]),
-        _ => S::mul_add(&m[2][r], &m[1][a], &S::mul_mul_add(&m[0][r], &m[3][a], &m[1][r], &m[2][a])),
+        0 => return S::inv(&a[0]),
+        1 => S::mul(&r[0], &a[1]),
+        2 => S::mul_mul_add(&r[0], &a[2], &r[1], &a[1]),
+        _ => S::mul_add(&r[2], &a[1], &S::mul_mul_add(&r[0], &a[3], &r[1], &a[2])),
     };
-    S::neg(&S::mul(&m[0][r], &sum))
+    S::neg(&S::mul(&r[0], &sum))
 }
 
-/// An operation of [`Op`](super::Op) on series; `TO` is `FROM` or the next order.
+/// An operation of [`Op`] on series; `TO` is `FROM` or the next order.
 #[inline(always)]
 pub(crate) fn step<S: Scalar, const FROM: usize, const TO: usize, const KIND: u8>(
-    m: &mut Columns<'_, S>,
-    op: super::Op,
+    m: &mut [Series<S>],
+    op: Op,
     t: usize,
-    [a, b, c, d]: [usize; 4],
+    operands: [usize; 4],
 ) {
-    use super::Op;
-    // The operation is chosen once, outside the loop over coefficients.
-    // No range: the order must be known when the code is made, so that the match on it disappears.
+    let [a, b, c, d] = operands.map(|k| &m[k]);
+    // The operation is chosen once, outside the loop over coefficients, and results are stored after all of them are
+    // known: operands need not be loaded twice. No range: the order must be known when the code is made, so that
+    // the match on it disappears.
     macro_rules! each {
         ($k:ident => $value:expr) => {{
             if FROM < TO {
                 let $k = FROM;
-                let value = $value;
-                m[$k][t] = value;
+                let low = $value;
+                let $k = TO;
+                let high = $value;
+                m[t][FROM] = low;
+                m[t][TO] = high;
+            } else {
+                let $k = TO;
+                m[t][TO] = $value;
             }
-            let $k = TO;
-            let value = $value;
-            m[$k][t] = value;
+        }};
+    }
+    // `$inner` belongs to order 2; at order 3 it comes back from where order 2 has left it.
+    macro_rules! keeping {
+        ($inner:ident = $first:expr; $k:ident => $value:expr) => {{
+            let $inner = if TO == 2 { $first } else { m[t][3].clone() };
+            each!($k => $value);
+            if TO == 2 {
+                m[t][3] = $inner;
+            }
         }};
     }
     match op {
-        Op::Add => each!(k => S::add(&m[k][a], &m[k][b])),
-        Op::Sub => each!(k => S::sub(&m[k][a], &m[k][b])),
-        Op::Neg => each!(k => S::neg(&m[k][a])),
-        Op::Mul => each!(k => product::<S, KIND>(m, a, b, k, k == TO)),
-        Op::MulReal => each!(k => S::mul_real(&m[k][a], &m[0][b])),
-        Op::Sqr => each!(k => square::<S, KIND>(m, a, k, k == TO)),
-        Op::Inv => each!(k => reciprocal(m, t, a, k)),
-        Op::MulAdd => each!(k => S::add(&product::<S, KIND>(m, a, b, k, k == TO), &m[k][c])),
-        Op::MulSub => each!(k => S::sub(&product::<S, KIND>(m, a, b, k, k == TO), &m[k][c])),
-        Op::SubMul => each!(k => S::sub(&m[k][c], &product::<S, KIND>(m, a, b, k, k == TO))),
-        Op::MulRealAdd => each!(k => S::mul_real_add(&m[k][a], &m[0][b], &m[k][c])),
-        Op::MulMulAdd => each!(k => S::add(
-            &product::<S, KIND>(m, a, b, k, k == TO),
-            &product::<S, KIND>(m, c, d, k, k == TO),
-        )),
-        Op::MulMulSub => each!(k => S::sub(
-            &product::<S, KIND>(m, a, b, k, k == TO),
-            &product::<S, KIND>(m, c, d, k, k == TO),
-        )),
+        Op::Add => each!(k => S::add(&a[k], &b[k])),
+        Op::Sub => each!(k => S::sub(&a[k], &b[k])),
+        Op::Neg => each!(k => S::neg(&a[k])),
+        Op::MulReal => each!(k => S::mul_real(&a[k], &b[0])),
+        Op::MulRealAdd => each!(k => S::mul_real_add(&a[k], &b[0], &c[k])),
+        Op::Inv => {
+            let a = a.clone();
+            if FROM < TO {
+                m[t][FROM] = reciprocal(&m[t], &a, FROM);
+            }
+            m[t][TO] = reciprocal(&m[t], &a, TO);
+        }
+        Op::Mul => keeping!(inner = S::mul(&a[1], &b[1]); k => product::<S, KIND>(a, b, &inner, k, k == TO)),
+        Op::Sqr => keeping!(inner = S::sqr(&a[1]); k => square::<S, KIND>(a, &inner, k, k == TO)),
+        Op::MulAdd => keeping!(
+            inner = S::mul(&a[1], &b[1]);
+            k => S::add(&product::<S, KIND>(a, b, &inner, k, k == TO), &c[k])
+        ),
+        Op::MulSub => keeping!(
+            inner = S::mul(&a[1], &b[1]);
+            k => S::sub(&product::<S, KIND>(a, b, &inner, k, k == TO), &c[k])
+        ),
+        Op::SubMul => keeping!(
+            inner = S::mul(&a[1], &b[1]);
+            k => S::sub(&c[k], &product::<S, KIND>(a, b, &inner, k, k == TO))
+        ),
+        Op::MulMulAdd => keeping!(
+            inner = S::mul_mul_add(&a[1], &b[1], &c[1], &d[1]);
+            k => products::<S, KIND, false>([a, b, c, d], &inner, k, k == TO)
+        ),
+        Op::MulMulSub => keeping!(
+            inner = S::mul_mul_sub(&a[1], &b[1], &c[1], &d[1]);
+            k => products::<S, KIND, true>([a, b, c, d], &inner, k, k == TO)
+        ),
     }
 }

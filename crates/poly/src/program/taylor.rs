@@ -2,11 +2,12 @@
 //!
 //! Every operand and every result keeps four coefficients. A call for order `k` first corrects coefficient
 //! `k - 1` of each value (its unknowns' coefficient `k - 1` has been found since the last call), then computes
-//! coefficient `k`, in one pass.
+//! coefficient `k`, in one pass. Where the parameters move on a straight line, products with what is linear in
+//! them leave out its coefficients beyond order 1.
 
 use super::instruction::{Op, Operand, Tape};
 use super::registers::{Layout, place};
-use super::series::{BY_UNKNOWN, Columns, GENERAL, UNKNOWNS, WIDTH, step};
+use super::series::{BY_LINEAR, BY_UNKNOWN, GENERAL, LINEAR_BY_UNKNOWN, LINEARS, Series, UNKNOWNS, WIDTH, step};
 use crate::scalar::Scalar;
 use crate::simd::{Isa, Kernel};
 use std::borrow::Cow;
@@ -16,8 +17,9 @@ use std::borrow::Cow;
 pub struct TaylorCode {
     /// The operation.
     pub op: Op,
-    /// Which factors of its products are unknowns: 0 none, 1 the second ones, 2 both.
-    pub unknowns: u8,
+    /// What the factors of its products are: 0 anything, 1 anything and an unknown, 2 both unknowns, 3 anything and
+    /// something linear in parameters, 4 something linear in parameters and an unknown, 5 both linear in parameters.
+    pub kind: u8,
     /// Place of the result.
     pub target: u32,
     /// Places of the operands; unused ones repeat the first.
@@ -41,15 +43,21 @@ pub struct TaylorTape {
     pub size: usize,
 }
 
-impl TaylorTape {
-    /// Coefficients kept for each value.
-    pub(crate) const WIDTH: usize = WIDTH;
+/// Coefficients that stay between orders.
+#[derive(Clone, Debug)]
+pub struct TaylorMemory<S> {
+    series: Vec<Series<S>>,
+    /// Orders at which the parameters' coefficients are not known to be zero.
+    bent: [bool; WIDTH],
+}
 
+impl TaylorTape {
     pub(super) fn new(tape: &Tape, layout: Layout) -> TaylorTape {
         let base = layout.inputs() as u32;
         let at = |operand| place(operand, layout, |k| base + k);
         let mut groups: [Vec<TaylorCode>; 3] = Default::default();
         let mut depends: Vec<(bool, bool)> = Vec::with_capacity(tape.instructions.len());
+        let mut linear: Vec<bool> = Vec::with_capacity(tape.instructions.len());
         for (k, instruction) in tape.instructions.iter().enumerate() {
             let mut on = (false, false);
             for operand in instruction.operands() {
@@ -67,9 +75,12 @@ impl TaylorTape {
                 (true, false) => 1,
                 (true, true) => 2,
             };
-            let (operands, unknowns) = unknown_factors(instruction.op, instruction.args);
+            let factor = |operand| Factor::of(operand, &linear);
+            let (operands, kind) = sort_factors(instruction.op, instruction.args, factor);
+            let sum = matches!(instruction.op, Op::Add | Op::Sub | Op::Neg | Op::MulReal | Op::MulRealAdd);
+            linear.push(sum && instruction.operands().iter().all(|&operand| factor(operand) == Factor::Linear));
             let (target, operands) = (base + k as u32, operands.map(at));
-            groups[group].push(TaylorCode { op: instruction.op, unknowns, target, operands });
+            groups[group].push(TaylorCode { op: instruction.op, kind, target, operands });
         }
         let [parameters_only, variables_only, mixed] = groups.map(Cow::Owned);
         let mut outputs = vec![0; tape.outputs.len()];
@@ -87,115 +98,185 @@ impl TaylorTape {
     }
 
     /// Resident coefficients, with those of the constants in place.
-    pub(super) fn memory<S: Scalar>(&self, constants: &[S]) -> Vec<S> {
-        let mut columns = vec![S::zero(); WIDTH * self.size];
-        columns[..constants.len()].clone_from_slice(constants);
-        columns
+    pub(crate) fn memory<S: Scalar>(&self, constants: &[S]) -> TaylorMemory<S> {
+        let zero = || [S::zero(), S::zero(), S::zero(), S::zero()];
+        let mut series: Vec<Series<S>> = (0..self.size).map(|_| zero()).collect();
+        for (series, constant) in series.iter_mut().zip(constants) {
+            series[0] = constant.clone();
+        }
+        TaylorMemory { series, bent: [false; WIDTH] }
     }
 
     /// One call of [`Evaluate::taylor`](crate::Evaluate::taylor).
-    pub(crate) fn run<S: Scalar>(&self, isa: Isa, memory: &mut [S], order: usize, x: &[S], p: &[S], out: &mut [S]) {
+    pub(crate) fn run<S: Scalar>(
+        &self,
+        isa: Isa,
+        memory: &mut TaylorMemory<S>,
+        order: usize,
+        x: &[S],
+        p: &[S],
+        out: &mut [S],
+    ) {
         assert!((1..WIDTH).contains(&order), "Taylor coefficients are of order 1, 2 or 3, not {order}");
         let [constants, parameters, variables] = self.inputs;
-        let (before, rest) = memory.split_at_mut(2 * self.size);
-        let (first, second) = before.split_at_mut(self.size);
-        let (third, fourth) = rest.split_at_mut(self.size);
-        let mut columns = [first, second, third, fourth];
+        let TaylorMemory { series, bent } = memory;
+        let straight = order > 1 && p.len() < (order + 1) * parameters;
         // Lower coefficients of the parameters are in place since the calls before.
-        for k in if order == 1 { 0..2 } else { order..order + 1 } {
-            columns[k][constants..][..parameters].clone_from_slice(&p[k * parameters..][..parameters]);
+        let given = &mut series[constants..][..parameters];
+        if !straight {
+            for k in if order == 1 { 0..2 } else { order..order + 1 } {
+                for (series, p) in given.iter_mut().zip(&p[k * parameters..][..parameters]) {
+                    series[k] = p.clone();
+                }
+            }
+            bent[order] = true;
+        } else if std::mem::take(&mut bent[order]) {
+            given.iter_mut().for_each(|series| series[order] = S::zero());
         }
-        let from = constants + parameters;
-        columns[order - 1][from..][..variables].clone_from_slice(&x[(order - 1) * variables..][..variables]);
-        columns[order][from..][..variables].fill(S::zero());
-        match order {
-            1 => isa.run(Order1 { tape: self, columns: &mut columns }),
-            2 => isa.run(Later::<2, S> { tape: self, columns: &mut columns }),
-            _ => isa.run(Later::<3, S> { tape: self, columns: &mut columns }),
+        let unknowns = &mut series[constants + parameters..][..variables];
+        for (series, x) in unknowns.iter_mut().zip(&x[(order - 1) * variables..][..variables]) {
+            series[order - 1] = x.clone();
+            series[order] = S::zero();
+        }
+        match (order, straight) {
+            (1, _) => isa.run(Order1 { tape: self, series }),
+            (2, false) => isa.run(Later::<2, false, S> { tape: self, series }),
+            (2, true) => isa.run(Later::<2, true, S> { tape: self, series }),
+            (_, false) => isa.run(Later::<3, false, S> { tape: self, series }),
+            (_, true) => isa.run(Later::<3, true, S> { tape: self, series }),
         }
         for (value, &place) in out[..self.outputs.len()].iter_mut().zip(&*self.outputs) {
-            *value = columns[order][place as usize].clone();
+            *value = series[place as usize][order].clone();
         }
     }
 }
 
-/// Puts unknowns second in products and tells which factors are unknowns.
-fn unknown_factors(op: Op, args: [Operand; 4]) -> ([Operand; 4], u8) {
-    let is_unknown = |operand: Operand| matches!(operand, Operand::Variable(_));
+/// What is known of a factor when the program is made.
+#[derive(Clone, Copy, PartialEq)]
+enum Factor {
+    Anything,
+    /// Free of unknowns and, where the parameters move on a straight line, linear in `t`.
+    Linear,
+    Unknown,
+}
+
+impl Factor {
+    fn of(operand: Operand, linear: &[bool]) -> Factor {
+        match operand {
+            Operand::Constant(_) | Operand::Parameter(_) => Factor::Linear,
+            Operand::Variable(_) => Factor::Unknown,
+            Operand::Temporary(k) if linear[k as usize] => Factor::Linear,
+            Operand::Temporary(_) => Factor::Anything,
+        }
+    }
+
+    /// What is true of both.
+    fn join(self, other: Factor) -> Factor {
+        if self == other { self } else { Factor::Anything }
+    }
+}
+
+/// The kind of a product, where there is one for the factors in this order.
+fn kind(a: Factor, b: Factor) -> Option<u8> {
+    match (a, b) {
+        (Factor::Anything, Factor::Anything) => Some(GENERAL),
+        (Factor::Anything, Factor::Unknown) => Some(BY_UNKNOWN),
+        (Factor::Unknown, Factor::Unknown) => Some(UNKNOWNS),
+        (Factor::Anything, Factor::Linear) => Some(BY_LINEAR),
+        (Factor::Linear, Factor::Unknown) => Some(LINEAR_BY_UNKNOWN),
+        (Factor::Linear, Factor::Linear) => Some(LINEARS),
+        (Factor::Unknown, _) | (Factor::Linear, Factor::Anything) => None,
+    }
+}
+
+/// Kinds, the ones that leave out most first.
+const BEST_FIRST: [u8; 6] = [LINEARS, LINEAR_BY_UNKNOWN, UNKNOWNS, BY_LINEAR, BY_UNKNOWN, GENERAL];
+
+/// The order of factors that leaves out most, and its kind, which holds for both products of an instruction.
+fn sort_factors(op: Op, args: [Operand; 4], factor: impl Fn(Operand) -> Factor) -> ([Operand; 4], u8) {
     let [a, b, c, d] = args;
-    let sorted = |a: Operand, b: Operand| if is_unknown(a) { (b, a) } else { (a, b) };
-    let kind = |a: Operand, b: Operand| match (is_unknown(a), is_unknown(b)) {
-        (true, true) => UNKNOWNS,
-        (false, true) => BY_UNKNOWN,
-        _ => GENERAL,
+    let orders = match op {
+        Op::Mul | Op::MulAdd | Op::MulSub | Op::SubMul => vec![args, [b, a, c, d]],
+        Op::MulMulAdd | Op::MulMulSub => vec![args, [b, a, c, d], [a, b, d, c], [b, a, d, c]],
+        Op::Sqr => vec![[a; 4]],
+        Op::Add | Op::Sub | Op::Neg | Op::MulReal | Op::Inv | Op::MulRealAdd => return (args, GENERAL),
     };
-    match op {
-        Op::Mul | Op::MulAdd | Op::MulSub | Op::SubMul => {
-            let (a, b) = sorted(a, b);
-            ([a, b, c, d], kind(a, b))
-        }
-        Op::MulMulAdd | Op::MulMulSub => {
-            let ((a, b), (c, d)) = (sorted(a, b), sorted(c, d));
-            ([a, b, c, d], kind(a, b).min(kind(c, d)))
-        }
-        Op::Sqr => (args, if is_unknown(a) { UNKNOWNS } else { GENERAL }),
-        Op::Add | Op::Sub | Op::Neg | Op::MulReal | Op::Inv | Op::MulRealAdd => (args, GENERAL),
-    }
+    let two_products = matches!(op, Op::MulMulAdd | Op::MulMulSub);
+    let rank = |args: &[Operand; 4]| {
+        let [a, b, c, d] = args.map(&factor);
+        let found = if two_products { kind(a.join(c), b.join(d)) } else { kind(a, b) };
+        BEST_FIRST.iter().position(|&kind| Some(kind) == found)
+    };
+    let best = orders.into_iter().filter_map(|args| Some((rank(&args)?, args))).min_by_key(|&(rank, _)| rank);
+    best.map_or((args, GENERAL), |(rank, args)| (args, BEST_FIRST[rank]))
 }
 
-struct Order1<'a, 'm, S> {
+struct Order1<'a, S> {
     tape: &'a TaylorTape,
-    columns: &'a mut Columns<'m, S>,
+    series: &'a mut [Series<S>],
 }
 
-impl<S: Scalar> Kernel for Order1<'_, '_, S> {
+impl<S: Scalar> Kernel for Order1<'_, S> {
     type Output = ();
 
     #[inline(always)]
     fn run(self) {
-        let Order1 { tape, columns } = self;
-        sweep::<S, 0, 1>(columns, &tape.parameters_only);
+        let Order1 { tape, series } = self;
+        sweep::<S, 0, 1, false, true>(series, &tape.parameters_only);
         for code in &*tape.variables_only {
             let operands = code.operands.map(|k| k as usize);
-            step::<S, 0, 0, GENERAL>(columns, code.op, code.target as usize, operands);
-            columns[1][code.target as usize] = S::zero();
+            step::<S, 0, 0, GENERAL>(series, code.op, code.target as usize, operands);
+            series[code.target as usize][1] = S::zero();
         }
-        sweep::<S, 0, 1>(columns, &tape.mixed);
+        sweep::<S, 0, 1, false, false>(series, &tape.mixed);
     }
 }
 
-/// Order `K`, 2 or 3.
-struct Later<'a, 'm, const K: usize, S> {
+/// Order `K`, 2 or 3; `STRAIGHT` says that the parameters' coefficients of that order are zero.
+struct Later<'a, const K: usize, const STRAIGHT: bool, S> {
     tape: &'a TaylorTape,
-    columns: &'a mut Columns<'m, S>,
+    series: &'a mut [Series<S>],
 }
 
-impl<const K: usize, S: Scalar> Kernel for Later<'_, '_, K, S> {
+impl<const K: usize, const STRAIGHT: bool, S: Scalar> Kernel for Later<'_, K, STRAIGHT, S> {
     type Output = ();
 
     #[inline(always)]
     fn run(self) {
-        let Later { tape, columns } = self;
+        let Later { tape, series } = self;
+        // One sweep over both groups with unknowns, so that its code is made once.
+        let groups = [&tape.variables_only, &tape.mixed];
         if K == 2 {
-            sweep::<S, 2, 2>(columns, &tape.parameters_only);
-            sweep::<S, 1, 2>(columns, &tape.variables_only);
-            sweep::<S, 1, 2>(columns, &tape.mixed);
+            sweep::<S, 2, 2, STRAIGHT, true>(series, &tape.parameters_only);
+            for codes in groups {
+                sweep::<S, 1, 2, STRAIGHT, false>(series, codes);
+            }
         } else {
-            sweep::<S, 3, 3>(columns, &tape.parameters_only);
-            sweep::<S, 2, 3>(columns, &tape.variables_only);
-            sweep::<S, 2, 3>(columns, &tape.mixed);
+            sweep::<S, 3, 3, STRAIGHT, true>(series, &tape.parameters_only);
+            for codes in groups {
+                sweep::<S, 2, 3, STRAIGHT, false>(series, codes);
+            }
         }
     }
 }
 
+/// Runs instructions; `FREE` says that they are free of unknowns, so that fewer kinds occur.
 #[inline(always)]
-fn sweep<S: Scalar, const FROM: usize, const TO: usize>(columns: &mut Columns<'_, S>, codes: &[TaylorCode]) {
+fn sweep<S: Scalar, const FROM: usize, const TO: usize, const STRAIGHT: bool, const FREE: bool>(
+    series: &mut [Series<S>],
+    codes: &[TaylorCode],
+) {
     for code in codes {
         let (t, operands) = (code.target as usize, code.operands.map(|k| k as usize));
-        match code.unknowns {
-            GENERAL => step::<S, FROM, TO, GENERAL>(columns, code.op, t, operands),
-            BY_UNKNOWN => step::<S, FROM, TO, BY_UNKNOWN>(columns, code.op, t, operands),
-            _ => step::<S, FROM, TO, UNKNOWNS>(columns, code.op, t, operands),
+        match code.kind {
+            BY_LINEAR if STRAIGHT => step::<S, FROM, TO, BY_LINEAR>(series, code.op, t, operands),
+            LINEAR_BY_UNKNOWN if STRAIGHT && !FREE => {
+                step::<S, FROM, TO, LINEAR_BY_UNKNOWN>(series, code.op, t, operands);
+            }
+            LINEARS if STRAIGHT => step::<S, FROM, TO, LINEARS>(series, code.op, t, operands),
+            BY_UNKNOWN | LINEAR_BY_UNKNOWN if !FREE => step::<S, FROM, TO, BY_UNKNOWN>(series, code.op, t, operands),
+            UNKNOWNS if !FREE => step::<S, FROM, TO, UNKNOWNS>(series, code.op, t, operands),
+            _ => step::<S, FROM, TO, GENERAL>(series, code.op, t, operands),
         }
     }
 }

@@ -74,6 +74,9 @@ fn values_of_a_formula_written_by_hand() {
     assert!(close(&values(&f, &[x, y], &[a, b]), &expected));
 }
 
+/// Orders asked for in turn and how many orders of the parameters are given: a curve, then a straight line.
+const TURNS: [(usize, usize); 6] = [(1, 2), (2, 3), (3, 4), (1, 2), (2, 2), (3, 2)];
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
@@ -121,6 +124,33 @@ proptest! {
     }
 
     #[test]
+    fn parameters_on_a_straight_line_need_no_zeros(x in numbers(16), p in numbers(8), q in numbers(8)) {
+        for system in families() {
+            let f = system.compile().unwrap();
+            let (m, n, k) = (f.equations(), f.variables(), f.parameters());
+            let mut padded = p[..2 * k].to_vec();
+            padded.resize(4 * k, C::ZERO);
+            let mut memory = f.memory::<C>(Isa::Portable);
+            let mut run = |p: &[C], given: [usize; 3]| -> Vec<C> {
+                let mut all = Vec::new();
+                for (order, given) in (1..=3).zip(given) {
+                    let mut out = vec![C::new(f64::NAN, 0.0); m];
+                    f.taylor(&mut memory, order, &x[..order * n], &p[..given * k], &mut out);
+                    all.extend(out);
+                }
+                all
+            };
+            // Curved paths in between leave coefficients behind that must not be used.
+            let expected = run(&padded, [2, 3, 4]);
+            run(&q[..4 * k], [2, 3, 4]);
+            prop_assert_eq!(&run(&padded, [2, 2, 2]), &expected);
+            run(&q[..4 * k], [2, 3, 4]);
+            prop_assert_eq!(&run(&padded, [2, 2, 4]), &expected);
+            prop_assert_eq!(&run(&padded, [2, 3, 2]), &expected);
+        }
+    }
+
+    #[test]
     fn lanes_agree_with_one_path_bit_for_bit_on_every_instruction_set(x in numbers(8 * 16), p in numbers(8 * 8)) {
         for system in families() {
             let f = system.compile().unwrap();
@@ -139,9 +169,9 @@ proptest! {
                 let mut jacobian = vec![Lanes8::zero(); m * n];
                 f.jacobian(&mut memory, &x8[..n], &p8[..k], &mut v, &mut jacobian);
                 let mut coefficients = Vec::new();
-                for order in 1..=3 {
+                for (order, given) in TURNS {
                     let mut out = vec![Lanes8::zero(); m];
-                    f.taylor(&mut memory, order, &x8[..order * n], &p8[..(order + 1) * k], &mut out);
+                    f.taylor(&mut memory, order, &x8[..order * n], &p8[..given * k], &mut out);
                     coefficients.extend(out);
                 }
                 for l in 0..8 {
@@ -150,11 +180,11 @@ proptest! {
                     let mut v1 = vec![C::ZERO; m];
                     let mut jacobian1 = vec![C::ZERO; m * n];
                     f.jacobian(&mut memory, &x[..n], &p[..k], &mut v1, &mut jacobian1);
-                    for order in 1..=3 {
+                    for (turn, (order, given)) in TURNS.into_iter().enumerate() {
                         let mut out = vec![C::ZERO; m];
-                        f.taylor(&mut memory, order, &x[..order * n], &p[..(order + 1) * k], &mut out);
+                        f.taylor(&mut memory, order, &x[..order * n], &p[..given * k], &mut out);
                         for (i, z) in out.iter().enumerate() {
-                            prop_assert_eq!(coefficients[(order - 1) * m + i].get(l), *z);
+                            prop_assert_eq!(coefficients[turn * m + i].get(l), *z);
                         }
                     }
                     for (a, b) in v.iter().zip(&v1).chain(jacobian.iter().zip(&jacobian1)) {
@@ -236,4 +266,35 @@ fn many_equations_in_one_unknown_are_derived_forward() {
     let (values, both) = (f.program().value_operations(), f.program().jacobian_operations());
     // Each squaring gives at most three operations more, each equation at most three.
     assert!(both <= values + 3 * 20 + 3 * 30, "{values} {both}");
+}
+
+#[test]
+fn like_terms_are_collected() {
+    let operations = |formula: &str| {
+        let system = parse::phcpack(&format!("1\nx - x + y - y + z - z + {formula};")).unwrap();
+        system.compile().unwrap().program().value_operations()
+    };
+    for (formula, collected) in [
+        // A product and a fused product with sum.
+        ("x + 2*x + 3*y - y", 2),
+        // One fused product with sum.
+        ("x + y + x - z + z", 1),
+        ("x + 1 + y + 2 - 0.5", 2),
+        ("x*y + z - y*x", 0),
+        ("(x + y)^2 + z - 3*(y + x)^2 - z", 3),
+        ("x - (y - (z - (x - (y - z))))", 0),
+        // Unlike terms stay as they are.
+        ("x + 2*y - 3*z", 2),
+    ] {
+        assert_eq!(operations(formula), collected, "{formula}");
+    }
+    // A sum that is used elsewhere stays one term.
+    let system = parse::phcpack("2\n(x + y + z) + x;\n(x + y + z)*x;").unwrap();
+    assert_eq!(system.compile().unwrap().program().value_operations(), 4);
+}
+
+#[test]
+fn a_divisor_that_cancels_is_zero() {
+    let system = parse::phcpack("1\n1/(x + y - x - y);").unwrap();
+    assert_eq!(system.compile().unwrap_err(), crate::CompileError::DivisionByZero { equation: 1 });
 }

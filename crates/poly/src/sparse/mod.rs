@@ -10,7 +10,7 @@ mod tests;
 
 use crate::evaluate::Evaluate;
 use crate::polynomial::{Polynomial, Ring};
-use crate::program::generated::TaylorTape;
+use crate::program::generated::TaylorMemory;
 use crate::scalar::Scalar;
 use crate::simd::{Isa, Kernel};
 use plan::{NONE, Plan, Power, Row, Step};
@@ -82,7 +82,7 @@ pub struct SparseMemory<S> {
     sums: Vec<S>,
     /// Derivative of a row by each power.
     slopes: Vec<S>,
-    taylor: Vec<S>,
+    taylor: TaylorMemory<S>,
 }
 
 impl SparseSystem {
@@ -137,7 +137,7 @@ impl Evaluate for SparseSystem {
             prefixes: zeros(plan.nodes.len()),
             sums: zeros(plan.nodes.len()),
             slopes: zeros(plan.powers.len()),
-            taylor: zeros(TaylorTape::WIDTH * plan.taylor.size),
+            taylor: plan.taylor.memory(&[]),
         }
     }
 

@@ -5,12 +5,15 @@ use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 use std::fmt::Write;
 use std::path::PathBuf;
 use tdoa::experiment::clean::{CleanSummary, CleanTrial, clean_trial, summarise};
-use tdoa::minimal::{SixThree, SolveOptions};
+use tdoa::minimal::{SolveOptions, Solver};
 use tdoa::{Layout, SimulateOptions, simulate};
 
-/// Solves clean random 6r/3s networks (positions and offsets standard normal) and counts roots, lost paths and errors.
+/// Solves clean random networks of one configuration (positions and offsets standard normal) and counts roots, lost paths and errors.
 #[derive(clap::Args)]
 pub(super) struct Arguments {
+    /// The configuration, such as 6r/3s, 4r/5s or 9r/4s.
+    #[arg(long, default_value = "6r/3s", value_parser = configuration)]
+    configuration: (usize, usize),
     /// Number of networks.
     #[arg(long, default_value_t = 1000)]
     instances: u64,
@@ -25,10 +28,18 @@ pub(super) struct Arguments {
     output: PathBuf,
 }
 
+/// Reads `6r/3s`.
+pub(super) fn configuration(text: &str) -> Result<(usize, usize), String> {
+    let wrong = || format!("`{text}` is not a configuration such as 6r/3s");
+    let (receivers, transmitters) = text.split_once('/').ok_or_else(wrong)?;
+    let number = |part: &str, unit: char| part.strip_suffix(unit).and_then(|n| n.parse().ok()).ok_or_else(wrong);
+    Ok((number(receivers, 'r')?, number(transmitters, 's')?))
+}
+
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let one = |solver: &mut SixThree, seed: u64| -> Result<CleanTrial, Failure> {
+    let one = |solver: &mut Solver, seed: u64| -> Result<CleanTrial, Failure> {
         let mut options = SimulateOptions::default();
-        (options.receivers, options.transmitters) = (6, 3);
+        (options.receivers, options.transmitters) = arguments.configuration;
         options.layout = Layout::Normal;
         options.noise = 0.0;
         options.outliers = 0.0;
@@ -42,7 +53,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let trials: Vec<CleanTrial> = crate::on_threads(arguments.threads, || {
         seeds
             .into_par_iter()
-            .map_init(SixThree::new, |solver, seed| {
+            .map_init(Solver::new, |solver, seed| {
                 let trial = one(solver, seed);
                 bar.inc(1);
                 trial
@@ -90,11 +101,12 @@ fn table(trials: &[CleanTrial]) -> String {
 }
 
 fn page(arguments: &Arguments, s: &CleanSummary, trials: &[CleanTrial]) -> String {
+    let name = format!("{}r/{}s", arguments.configuration.0, arguments.configuration.1);
     let [steps, rejected, jacobians] = s.per_path;
     let row = |[least, largest, mean, deviation]: [f64; 4]| format!("{least} | {largest} | {mean:.2} | {deviation:.2}");
     let mut text = format!(
-        "# 6r/3s on clean data\n\n\
-         `tdoa experiment clean --instances {} --seed {} --output DIR`: positions and offsets standard normal, no noise.\n\n\
+        "# {name} on clean data\n\n\
+         `tdoa experiment clean --configuration {name} --instances {} --seed {} --output DIR`: positions and offsets standard normal, no noise.\n\n\
          | | |\n|---|---|\n\
          | instances | {} |\n\
          | with all paths ended well | {} |\n\
@@ -102,7 +114,7 @@ fn page(arguments: &Arguments, s: &CleanSummary, trials: &[CleanTrial]) -> Strin
          | paths at infinity | {} |\n\
          | paths tracked again | {} in {} instances |\n\
          | true network among the candidates | {} |\n\
-         | odd number of roots with H > 0 | {} |\n\
+         | odd number of real networks | {} |\n\
          | relative position error, median and 99 % | {:.1e}, {:.1e} |\n\
          | relative offset error, median and 99 % | {:.1e}, {:.1e} |\n\
          | accepted steps, rejected steps, Jacobians a path | {steps:.1}, {rejected:.1}, {jacobians:.1} |\n\
@@ -125,12 +137,19 @@ fn page(arguments: &Arguments, s: &CleanSummary, trials: &[CleanTrial]) -> Strin
         1e3 * s.seconds[0],
         1e3 * s.seconds[1],
     );
+    let [real, feasible] = if name == "6r/3s" {
+        [
+            "| the paper's Table 2: real | 2 | 55 | 8.7 | 7.6 |\n",
+            "| the paper's Table 2: feasible | 1 | 32 | 3 | 3.9 |\n",
+        ]
+    } else {
+        ["", ""]
+    };
     let _ = write!(
         text,
-        "Number of roots, beside the paper's Table 2:\n\n\
+        "Number of networks:\n\n\
          | | least | largest | mean | standard deviation |\n|---|---|---|---|---|\n\
-         | real, H > 0 | {} |\n| paper: real | 2 | 55 | 8.7 | 7.6 |\n\
-         | physical: all f_ij - o_j >= 0 | {} |\n| paper: feasible | 1 | 32 | 3 | 3.9 |\n",
+         | real positions | {} |\n{real}| physical: all f_ij - o_j >= 0 | {} |\n{feasible}",
         row(s.positive_definite),
         row(s.physical),
     );

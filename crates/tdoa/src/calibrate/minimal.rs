@@ -1,4 +1,4 @@
-//! Starting networks from the 6r/3s solver on subsets of the measurements.
+//! Starting networks from the minimal solvers on subsets of the measurements.
 
 use std::sync::Mutex;
 
@@ -6,17 +6,21 @@ use rand::seq::SliceRandom;
 use rand_pcg::Pcg64Mcg;
 
 use super::hypotheses::{Hypotheses, generator};
-use crate::minimal::{SixThree, SolveOptions};
+use crate::minimal::subset::spread;
+use crate::minimal::{SolveOptions, Solver};
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::PartialNetwork;
 
 /// Subsets that are drawn for one call; the one whose nodes lie farthest apart is solved.
 const DRAWS: usize = 12;
 
-/// Proposes every candidate of the 6r/3s solver on one random, spread-out, completely measured subset a call.
+/// Sizes of the subsets, receivers and transmitters, which take turns as far as the measurements have them.
+const SHAPES: [(usize, usize); 3] = [(6, 3), (5, 4), (4, 5)];
+
+/// Proposes every candidate of a minimal solver (6r/3s, 5r/4s or 4r/5s) on one random, spread-out, completely measured subset a call.
 pub struct MinimalHypotheses {
     options: SolveOptions,
-    solvers: Mutex<Vec<SixThree>>,
+    solvers: Mutex<Vec<Solver>>,
     /// Calls that are answered; later ones propose nothing.
     most: usize,
 }
@@ -40,19 +44,24 @@ impl MinimalHypotheses {
         MinimalHypotheses { most: calls, ..MinimalHypotheses::new() }
     }
 
-    /// The subset of one call: receivers and transmitters, `None` if no draw is complete.
-    fn subset(measured: &Pseudoranges, rng: &mut Pcg64Mcg) -> Option<(Vec<usize>, Vec<usize>)> {
+    /// Whether some solver's subsets fit into a matrix of this size.
+    pub fn fit(receivers: usize, transmitters: usize) -> bool {
+        SHAPES.iter().any(|&(m, n)| receivers >= m && transmitters >= n)
+    }
+
+    /// The subset of one call: `m` receivers and `n` transmitters, `None` if no draw is complete.
+    fn subset(measured: &Pseudoranges, (m, n): (usize, usize), rng: &mut Pcg64Mcg) -> Option<(Vec<usize>, Vec<usize>)> {
         let mut best: Option<(f64, Vec<usize>, Vec<usize>)> = None;
         let mut transmitters: Vec<usize> = (0..measured.transmitters()).collect();
         for _ in 0..DRAWS {
-            let chosen = transmitters.partial_shuffle(rng, 3).0.to_vec();
+            let chosen = transmitters.partial_shuffle(rng, n).0.to_vec();
             let heard = |i: &usize| chosen.iter().all(|&j| measured.get(*i, j).is_some());
             let mut receivers: Vec<usize> = (0..measured.receivers()).filter(heard).collect();
-            if chosen.len() < 3 || receivers.len() < 6 {
+            if chosen.len() < n || receivers.len() < m {
                 continue;
             }
             receivers.shuffle(rng);
-            receivers.truncate(6);
+            receivers.truncate(m);
             let apart = spread(measured, &receivers, &chosen);
             if best.as_ref().is_none_or(|(other, ..)| apart > *other) {
                 best = Some((apart, receivers, chosen));
@@ -64,13 +73,18 @@ impl MinimalHypotheses {
 
 impl Hypotheses for MinimalHypotheses {
     fn propose(&self, measured: &Pseudoranges, index: usize, seed: u64) -> Vec<PartialNetwork> {
-        // A matrix of six receivers and three transmitters has but one subset.
-        let only = measured.receivers() == 6 && measured.transmitters() == 3;
-        if index >= if only { 1.min(self.most) } else { self.most } {
+        let (receivers, transmitters) = (measured.receivers(), measured.transmitters());
+        let shapes: Vec<(usize, usize)> =
+            SHAPES.into_iter().filter(|&(m, n)| receivers >= m && transmitters >= n).collect();
+        // A matrix of a solver's own size has but one subset.
+        let only = shapes.contains(&(receivers, transmitters));
+        if shapes.is_empty() || index >= if only { 1.min(self.most) } else { self.most } {
             return Vec::new();
         }
         let mut rng = generator(seed ^ 0x6c62_272e_07bb_0142, index);
-        let Some((receivers, transmitters)) = Self::subset(measured, &mut rng) else { return Vec::new() };
+        let Some((receivers, transmitters)) = Self::subset(measured, shapes[index % shapes.len()], &mut rng) else {
+            return Vec::new();
+        };
         let spare = self.solvers.lock().unwrap_or_else(std::sync::PoisonError::into_inner).pop();
         let mut solver = spare.unwrap_or_default();
         let solution = solver.solve(&measured.select(&receivers, &transmitters), &self.options);
@@ -85,27 +99,4 @@ impl Hypotheses for MinimalHypotheses {
             })
             .collect()
     }
-}
-
-/// The smallest difference between two rows (their common offset apart) or two columns: a bound from below on how near
-/// two of the nodes are.
-fn spread(measured: &Pseudoranges, receivers: &[usize], transmitters: &[usize]) -> f64 {
-    let part = measured.select(receivers, transmitters);
-    let f = |i: usize, j: usize| part.values()[i * part.transmitters() + j];
-    let (m, n) = (part.receivers(), part.transmitters());
-    let mut least = f64::INFINITY;
-    for a in 0..m {
-        for b in a + 1..m {
-            least = least.min((0..n).map(|j| (f(a, j) - f(b, j)).abs()).fold(0.0, f64::max));
-        }
-    }
-    for a in 0..n {
-        for b in a + 1..n {
-            let differences = (0..m).map(|i| f(i, a) - f(i, b));
-            let (low, high) = differences.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), d| (l.min(d), h.max(d)));
-            // Moving a transmitter by d changes its differences by at most 2 d.
-            least = least.min(0.5 * (high - low));
-        }
-    }
-    least
 }

@@ -28,6 +28,7 @@ use crate::refine::{PartialNetwork, RefineOptions, Refined, Refiner, SEARCH, ext
 use hold::{Free, Held};
 use hypotheses::RandomRestarts;
 use report::Solved;
+pub(crate) use search::SAME_NETWORK;
 use search::{Search, distinct};
 
 /// Scale of the Cauchy loss, in standard deviations, that is 95 % efficient on normal noise (Holland and Welsch 1977).
@@ -36,12 +37,12 @@ const CAUCHY: f64 = 2.385;
 /// No measurement is trusted beyond this share of the network's diameter.
 const RESOLUTION: f64 = 1e-9;
 
-/// Subsets of six receivers and three transmitters that are solved exactly beside the restarts: with few transmitters, restarts
+/// Subsets of the minimal solvers' sizes that are solved exactly beside the restarts: with few nodes, restarts
 /// alone miss networks that fit as well; with many, each of these starts ends in the best basin more often than a restart does.
 const MINIMAL_CALLS: usize = 6;
 
-/// Calibrates a network from its pseudoranges: by restarts of the robust refinement, and for few transmitters from the
-/// 6r/3s solver's networks on subsets too.
+/// Calibrates a network from its pseudoranges: by restarts of the robust refinement, and from the networks that the
+/// minimal solvers find for subsets.
 ///
 /// ```
 /// let mut options = tdoa::SimulateOptions::default();
@@ -96,7 +97,7 @@ pub fn calibrate_with(
     let minimal = MinimalHypotheses::at_most(MINIMAL_CALLS);
     if options.restarts || all.is_empty() {
         all.insert(0, &restarts);
-        if small.transmitters() >= 3 && small.receivers() >= 6 {
+        if MinimalHypotheses::fit(small.receivers(), small.transmitters()) {
             all.push(&minimal);
         }
     }

@@ -1,4 +1,4 @@
-//! Charts of the 6r/3s equations: the same network with its transmitters in another order.
+//! Charts of the dual formulation on three transmitters: the same network with these in another order.
 //!
 //! A path that comes near a far transmitter, or near a triangle of transmitters whose first side is isotropic, is hard in one chart and
 //! easy in another. The equations keep their form when the columns of the measurements are permuted, so a path continues in another
@@ -6,21 +6,21 @@
 
 use num_complex::Complex64;
 
-/// Number of receivers besides the reference.
-pub(crate) const ROWS: usize = 5;
-/// Number of transmitters.
+/// Transmitters of the formulation.
 pub(crate) const COLUMNS: usize = 3;
 /// Unknowns `p1 p2 p3 k l m u v`.
-pub(crate) const UNKNOWNS: usize = 8;
-/// Parameters `f_ij - f_1j`, rows `i = 2..6`.
-pub(crate) const PARAMETERS: usize = ROWS * COLUMNS;
+const UNKNOWNS: usize = 8;
 
 /// Orders of the transmitters, that of the data first.
 pub(crate) const CHARTS: [[usize; COLUMNS]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [1, 0, 2], [0, 2, 1], [2, 1, 0]];
 
-/// Parameters with columns in the order of a chart.
-pub(crate) fn permute_parameters(f: &[Complex64], chart: &[usize; COLUMNS]) -> Vec<Complex64> {
-    (0..ROWS).flat_map(|i| chart.map(|j| f[i * COLUMNS + j])).collect()
+/// Parameters (rows of `width`) with the first columns in the order of a chart.
+pub(crate) fn permute_columns(f: &[Complex64], width: usize, chart: &[usize; COLUMNS]) -> Vec<Complex64> {
+    let mut out = f.to_vec();
+    for (row, from) in out.chunks_exact_mut(width).zip(f.chunks_exact(width)) {
+        chart.iter().enumerate().for_each(|(to, &j)| row[to] = from[j]);
+    }
+    out
 }
 
 /// Carries a solution over into a chart.
@@ -56,37 +56,40 @@ pub(crate) fn leave(chart: &[usize; COLUMNS], x: &[Complex64]) -> [Complex64; UN
 
 #[cfg(test)]
 mod tests {
-    use super::{CHARTS, PARAMETERS, UNKNOWNS, enter, leave, permute_parameters};
-    use crate::generated::six_three;
-    use hc::poly::Evaluate;
-    use hc::poly::Isa;
+    use super::{CHARTS, UNKNOWNS, enter, leave};
+    use crate::minimal::formulation::Formulation;
+    use crate::minimal::four_five::FourFive;
+    use crate::minimal::three::{FiveFour, SixThree};
+    use hc::poly::{Evaluate, Isa};
     use hc::random::Random;
     use num_complex::Complex64;
 
-    #[test]
-    fn solutions_stay_solutions_in_every_chart() {
-        let pair = |&[re, im]: &[f64; 2]| Complex64::new(re, im);
-        let f: Vec<Complex64> = six_three::PARAMETERS.iter().map(pair).collect();
-        let all: Vec<Complex64> = six_three::SOLUTIONS.iter().map(pair).collect();
-        let mut memory = six_three::System.memory(Isa::Portable);
-        for x in all.chunks_exact(UNKNOWNS) {
-            for chart in &CHARTS {
-                let y = enter(chart, x);
-                let mut values = [Complex64::new(0.0, 0.0); UNKNOWNS];
-                let mut jacobian = [Complex64::new(0.0, 0.0); UNKNOWNS * UNKNOWNS];
-                six_three::System.jacobian(&mut memory, &y, &permute_parameters(&f, chart), &mut values, &mut jacobian);
-                for i in 0..UNKNOWNS {
-                    let scale: f64 = (0..UNKNOWNS).map(|j| (jacobian[j * UNKNOWNS + i] * y[j]).norm()).sum();
-                    assert!(
-                        values[i].norm() < 1e-9 * scale,
-                        "chart {chart:?}, equation {i}: {}",
-                        values[i].norm() / scale
-                    );
+    /// Solutions of the stored fibre solve the equations of every chart, and come back from there as they were.
+    fn solutions_stay_solutions<F: Formulation>() {
+        let fibre = F::fibre();
+        let n = fibre.dimension;
+        let mut memory = F::system().memory(Isa::Portable);
+        let (mut values, mut jacobian) = (vec![Complex64::new(0.0, 0.0); n], vec![Complex64::new(0.0, 0.0); n * n]);
+        for chart in 0..F::CHARTS {
+            let p = F::parameters(chart, &fibre.parameters);
+            for x in fibre.solutions.chunks_exact(n) {
+                let y = F::enter(chart, x);
+                F::system().jacobian(&mut memory, &y, &p, &mut values, &mut jacobian);
+                for i in 0..n {
+                    let scale: f64 = (0..n).map(|j| (jacobian[j * n + i] * y[j]).norm()).sum();
+                    let error = values[i].norm() / scale;
+                    assert!(error < 1e-9, "{}, chart {chart}, equation {i}: {error:.1e}", F::NAME);
                 }
-                let back = leave(chart, &y);
-                assert!(hc::distinct::relative_distance(&back, x) < 1e-9);
+                assert!(hc::distinct::relative_distance(&F::leave(chart, &y), x) < 1e-9);
             }
         }
+    }
+
+    #[test]
+    fn charts_of_the_stored_fibres() {
+        solutions_stay_solutions::<SixThree>();
+        solutions_stay_solutions::<FiveFour>();
+        solutions_stay_solutions::<FourFive>();
     }
 
     #[test]
@@ -94,7 +97,6 @@ mod tests {
         let mut random = Random::new(0, 0);
         for _ in 0..100 {
             let x = random.normals(UNKNOWNS);
-            assert_eq!(permute_parameters(&random.normals(PARAMETERS), &CHARTS[3]).len(), PARAMETERS);
             for chart in &CHARTS {
                 let back = leave(chart, &enter(chart, &x));
                 assert!(hc::distinct::relative_distance(&back, &x) < 1e-8, "{chart:?}");

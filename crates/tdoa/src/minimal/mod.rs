@@ -1,14 +1,34 @@
 //! Solvers for small networks: every network that explains a few arrival times exactly.
 //!
-//! [`solve`] picks the solver by the size of the matrix. All work by homotopy continuation from stored solutions of a generic
+//! [`Solver`] picks the method by the size of the matrix. Most work by homotopy continuation from stored solutions of a generic
 //! instance; all paths are accounted for in [`MinimalSolution::paths`].
+//!
+//! | size | method | paths |
+//! |---|---|---|
+//! | 6r/3s, and more receivers | the dual equations of the paper on three transmitters | 180 |
+//! | 4r/5s, and more transmitters | Gram matrix of the receivers | 344 |
+//! | 5r/4s, 5r/5s, 6r/4s, 6r/5s | the dual equations and a determinant for the fourth transmitter | 152 |
+//! | 5r/6s, and more of both | offsets by rank | 5 |
+//! | 7r/4s, and more of both | offsets by rank, linear | 0 |
 
 mod chart;
 mod dual;
+mod engine;
+mod formulation;
+mod four_five;
+mod larger;
+mod linear;
+mod nearest;
+mod normalised;
 mod polish;
-mod six_three;
+mod rank;
+mod real;
+mod scratch;
+mod solver;
+pub(crate) mod subset;
+mod three;
 
-pub use six_three::SixThree;
+pub use solver::Solver;
 
 use crate::network::MinimalSolution;
 use crate::pseudoranges::Pseudoranges;
@@ -29,17 +49,31 @@ pub struct SolveOptions {
     pub polish: bool,
     /// Settings for the paths.
     pub paths: FibreOptions,
+    /// Where paths start. Default [`Start::Stored`].
+    pub start: Start,
+}
+
+/// Where the paths of the minimal solvers start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Start {
+    /// From the stored solutions of a generic instance: as many paths as roots.
+    #[default]
+    Stored,
+    /// From a polyhedral start system that is computed for the data, as in the paper: slower, and independent of what is stored.
+    Polyhedral,
 }
 
 impl Default for SolveOptions {
     fn default() -> Self {
         let mut paths = FibreOptions::default();
-        paths.tracker.beta_omega = 1.5;
+        paths.tracker.contraction = 0.2;
+        paths.tracker.corrector_tolerance = 3e-4;
+        paths.tracker.beta_omega = 1.2;
         paths.tracker.beta_tau = 0.75;
         paths.tracker.beta_tau_last = 0.5;
-        // Most paths take 60 steps. One that takes many more is quicker in another chart.
+        // Most paths take about 45 steps. One that takes many more is quicker in another chart.
         paths.tracker.max_steps = 400;
-        SolveOptions { tolerance: 1e-6, near_real: 0.0, polish: true, paths }
+        SolveOptions { tolerance: 1e-6, near_real: 0.0, polish: true, paths, start: Start::Stored }
     }
 }
 
@@ -60,14 +94,9 @@ pub enum SolveError {
         /// Unknowns.
         unknowns: usize,
     },
-    /// A size without a solver.
-    #[error("there is no exact solver for {configuration}; use `calibrate`, which takes any size, or select {instead}")]
-    Unsupported {
-        /// Size, such as `5r/4s`.
-        configuration: String,
-        /// What would do.
-        instead: &'static str,
-    },
+    /// The polyhedral route failed before any path was tracked.
+    #[error("the polyhedral start system: {0}")]
+    Polyhedral(String),
     /// A missing measurement.
     #[error(
         "receiver {receiver} did not hear transmitter {transmitter}: the exact solvers need every measurement; use `calibrate`"
@@ -99,24 +128,12 @@ pub enum SolveError {
     },
 }
 
-/// Every network that explains the measurements, best first.
+/// Every network that explains the measurements, best first: [`Solver::solve`] with a new solver.
 ///
 /// # Errors
-/// If the matrix is too small or of a size without a solver, a measurement is missing, or two nodes coincide.
+/// If the matrix is too small, a measurement is missing, or two nodes coincide.
 pub fn solve(measured: &Pseudoranges, options: &SolveOptions) -> Result<MinimalSolution, SolveError> {
-    let (m, n) = (measured.receivers(), measured.transmitters());
-    let (constraints, unknowns) = (m * n, (2 * m + 3 * n).saturating_sub(3));
-    // Three transmitters in the plane need six receivers, and so on: more measurements of one kind alone do not help.
-    if m < 4 || n < 3 || constraints < unknowns {
-        return Err(SolveError::Underdetermined { configuration: measured.configuration(), constraints, unknowns });
-    }
-    match (m, n) {
-        (6, 3) => SixThree::new().solve(measured, options),
-        _ => Err(SolveError::Unsupported {
-            configuration: measured.configuration(),
-            instead: "six receivers and three transmitters",
-        }),
-    }
+    Solver::new().solve(measured, options)
 }
 
 /// Refuses missing measurements and nodes that coincide.

@@ -1,0 +1,220 @@
+//! `hc certify`, and `--certify` of `hc solve`.
+
+use crate::family::{Failure, read_text};
+use crate::input;
+use hc::certify::{Certificate, Certificates, CertifyOptions, Obstacle, Reality, certify};
+use hc::poly::{ComplexInterval, System, parse::phcpack};
+use hc::solve::Solution;
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// Proves that solutions exist, are distinct and are real: Krawczyk's test in interval arithmetic.
+///
+/// What is proved is about the system as written: decimals in the file are exact numbers. Exit status 1 if some point
+/// could not be certified.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The system, in PHCpack's format.
+    system: PathBuf,
+    /// The solutions: what `hc solve --json` writes, or a list of points, [[number or [re, im], ...], ...].
+    solutions: PathBuf,
+    /// Write the result as JSON to this file, `-` for standard output.
+    #[arg(long, value_name = "OUT")]
+    json: Option<PathBuf>,
+    /// Threads; all processors by default. The result does not depend on it.
+    #[arg(long)]
+    threads: Option<usize>,
+    /// Accepted everywhere; certification draws no random numbers.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Number {
+    Real(f64),
+    Complex([f64; 2]),
+}
+
+#[derive(Deserialize)]
+struct Solved {
+    variables: Option<Vec<String>>,
+    solutions: Vec<Entry>,
+}
+
+#[derive(Deserialize)]
+struct Entry {
+    value: Vec<Number>,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Points {
+    Solved(Solved),
+    List(Vec<Vec<Number>>),
+}
+
+#[derive(Serialize)]
+struct Output<'a> {
+    variables: &'a [String],
+    seed: u64,
+    seconds: f64,
+    points: usize,
+    certified: usize,
+    distinct: usize,
+    real: usize,
+    /// Pairs of points proved neither the same solution nor different ones.
+    unseparated: &'a [[usize; 2]],
+    solutions: Vec<Point>,
+}
+
+/// What is proved of a point.
+#[derive(Serialize)]
+struct Point {
+    /// The middle of the box, or the point as given where there is none.
+    value: Vec<[f64; 2]>,
+    certified: bool,
+    /// Null where nothing is proved.
+    real: Option<bool>,
+    /// Bounds of the real and of the imaginary part of each coordinate; exactly one solution lies within.
+    #[serde(rename = "box")]
+    enclosure: Option<Vec<[[f64; 2]; 2]>>,
+    /// Index, from 0, of an earlier point that stands for the same solution.
+    duplicate_of: Option<usize>,
+    /// Why there is no certificate.
+    reason: Option<String>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<bool, Failure> {
+    let start = Instant::now();
+    let file = &arguments.system;
+    let system = phcpack(&read_text(file)?).map_err(|e| Failure::unusable(file, e))?;
+    let points = read_points(&arguments.solutions, &system)?;
+    let found = input::on_threads(arguments.threads, || certify(&system, &[], &points, &CertifyOptions::default()))
+        .map_err(Failure::Unusable)?
+        .map_err(|e| Failure::unusable(file, e))?;
+    let solutions = found.points.iter().zip(&found.duplicate_of).zip(&points);
+    let output = Output {
+        variables: system.variables(),
+        seed: arguments.seed,
+        seconds: start.elapsed().as_secs_f64(),
+        points: points.len(),
+        certified: found.certified(),
+        distinct: found.distinct(),
+        real: found.real(),
+        unseparated: &found.unseparated,
+        solutions: solutions.map(|((result, &duplicate), point)| entry(result, duplicate, point)).collect(),
+    };
+    if arguments.json.as_deref().is_none_or(|out| out.as_os_str() != "-") {
+        print!("{}", summary(&found));
+    }
+    if let Some(out) = &arguments.json {
+        input::write_json(out, &output).map_err(Failure::Unusable)?;
+    }
+    Ok(found.complete())
+}
+
+/// The points, their coordinates in the order of the system's unknowns.
+fn read_points(file: &std::path::Path, system: &System) -> Result<Vec<Vec<Complex64>>, Failure> {
+    let text = read_text(file)?;
+    let expected = "expected the JSON of `hc solve` or [[number or [re, im], ...], ...]";
+    let points: Points =
+        serde_json::from_str(&text).map_err(|e| Failure::unusable(file, format!("{e}; {expected}")))?;
+    let unknowns = system.variables();
+    let (names, points) = match points {
+        Points::List(points) => (None, points),
+        Points::Solved(solved) => (solved.variables, solved.solutions.into_iter().map(|s| s.value).collect()),
+    };
+    let names = names.unwrap_or_else(|| unknowns.to_vec());
+    // Where the coordinate of each unknown stands in the file.
+    let places: Option<Vec<usize>> = unknowns.iter().map(|u| names.iter().position(|n| n == u)).collect();
+    let Some(places) = places.filter(|_| names.len() == unknowns.len()) else {
+        let message = format!("its variables are {}, those of the system {}", names.join(" "), unknowns.join(" "));
+        return Err(Failure::unusable(file, message));
+    };
+    let mut ordered = Vec::with_capacity(points.len());
+    for (k, point) in points.iter().enumerate() {
+        if point.len() != unknowns.len() {
+            let message =
+                format!("point {} has {} coordinates, the system has {} unknowns", k + 1, point.len(), unknowns.len());
+            return Err(Failure::unusable(file, message));
+        }
+        let number = |&place: &usize| match point[place] {
+            Number::Real(re) => Complex64::new(re, 0.0),
+            Number::Complex([re, im]) => Complex64::new(re, im),
+        };
+        ordered.push(places.iter().map(number).collect());
+    }
+    Ok(ordered)
+}
+
+fn entry(result: &Result<Certificate, Obstacle>, duplicate_of: Option<usize>, point: &[Complex64]) -> Point {
+    let pairs = |x: &[Complex64]| x.iter().map(|z| [z.re, z.im]).collect();
+    let bounds = |z: &ComplexInterval| [[z.re.low, z.re.high], [z.im.low, z.im.high]];
+    match result {
+        Ok(certificate) => Point {
+            value: pairs(&certificate.value),
+            certified: true,
+            real: match certificate.reality {
+                Reality::Real => Some(true),
+                Reality::NotReal => Some(false),
+                Reality::Undecided => None,
+            },
+            enclosure: Some(certificate.enclosure.iter().map(bounds).collect()),
+            duplicate_of,
+            reason: None,
+        },
+        Err(obstacle) => Point {
+            value: pairs(point),
+            certified: false,
+            real: None,
+            enclosure: None,
+            duplicate_of: None,
+            reason: Some(obstacle.to_string()),
+        },
+    }
+}
+
+fn summary(found: &Certificates) -> String {
+    let points = found.points.len();
+    let mut text = format!(
+        "{} of {points} points certified: {} distinct solutions, {} of them proved real\n",
+        found.certified(),
+        found.distinct(),
+        found.real()
+    );
+    let failures = found.points.iter().enumerate().filter_map(|(k, p)| Some((k, p.as_ref().err()?)));
+    for (k, obstacle) in failures.clone().take(10) {
+        text += &format!("point {}: {obstacle}\n", k + 1);
+    }
+    let more = failures.count().saturating_sub(10);
+    if more > 0 {
+        text += &format!("{more} more points without certificate\n");
+    }
+    for [a, b] in &found.unseparated {
+        text += &format!("points {} and {}: neither proved equal nor different\n", a + 1, b + 1);
+    }
+    text
+}
+
+/// Says of each solution whether it is certified as one of its own, and whether it is real where that is proved.
+pub(crate) fn fill(system: &System, solutions: &mut [Solution]) -> Result<(), String> {
+    let point = |s: &Solution| s.value.iter().map(|&[re, im]| Complex64::new(re, im)).collect();
+    let points: Vec<Vec<Complex64>> = solutions.iter().map(point).collect();
+    let found = certify(system, &[], &points, &CertifyOptions::default()).map_err(|e| e.to_string())?;
+    for (k, solution) in solutions.iter_mut().enumerate() {
+        let unseparated = found.unseparated.iter().any(|pair| pair.contains(&k));
+        let proof = found.points[k].as_ref().ok().filter(|_| found.duplicate_of[k].is_none() && !unseparated);
+        solution.certified = Some(proof.is_some());
+        // What is certified is regular, however badly conditioned.
+        solution.singular &= proof.is_none();
+        match proof.map(|p| p.reality) {
+            Some(Reality::Real) => solution.real = true,
+            Some(Reality::NotReal) => solution.real = false,
+            Some(Reality::Undecided) | None => {}
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,88 @@
+//! A solver generated for one minimal problem: the relative pose of two calibrated cameras from five points.
+//!
+//! `generated.rs` comes from `cargo xtask codegen` (family: `examples/families/five_point.toml`). Here it solves 1,000 problems with a
+//! planted pose, says whether the pose is among the solutions each time, and how long a path takes:
+//!
+//!     cargo run --release -p hc --example five_point
+
+#[rustfmt::skip]
+mod generated;
+
+use hc::fibre::doubtful;
+use hc::homotopy::Segment;
+use hc::poly::{Complex64, Lanes8};
+use hc::random::Random;
+use hc::refine::Refiner;
+use hc::tracker::{PathEnd, PathSet, Tracker, TrackerOptions};
+use std::time::Instant;
+
+/// Unknowns: rotation `x y z` by Cayley's parameters, translation `(1, u, v)`.
+const UNKNOWNS: usize = 5;
+const PROBLEMS: usize = 1000;
+
+fn main() {
+    let pairs = |v: &[[f64; 2]]| v.iter().map(|&[re, im]| Complex64::new(re, im)).collect::<Vec<_>>();
+    let (start, solutions) = (pairs(&generated::PARAMETERS), pairs(&generated::SOLUTIONS));
+    let count = solutions.len() / UNKNOWNS;
+    let system = generated::System;
+    let options = TrackerOptions::default();
+    let mut tracker = Tracker::<_, Lanes8>::new(&system, &options);
+    let mut strict = Tracker::<_, Lanes8>::new(&system, &options.stricter(2));
+    let mut refiner = Refiner::new(&system);
+    let mut random = Random::new(0, 5);
+    let (mut paths, mut again) = (PathSet::new(UNKNOWNS), PathSet::new(UNKNOWNS));
+    let (mut found, mut lost, mut retracked, mut seconds) = (0, 0, 0, 0.0);
+    for _ in 0..PROBLEMS {
+        let (pose, points) = problem(&mut random);
+        let target: Vec<Complex64> = points.iter().map(|&p| p.into()).collect();
+        let started = Instant::now();
+        let path = Segment::new(&start, &target);
+        paths.clear(UNKNOWNS);
+        tracker.track(&path, &solutions, 0..count, &mut paths);
+        paths.sort();
+        // Paths that failed or jumped, once more with shorter steps.
+        let which = doubtful(&paths, 1e-8);
+        again.clear(UNKNOWNS);
+        strict.track(&path, &solutions, which.iter().copied(), &mut again);
+        for (result, point) in again.iter() {
+            paths.replace(result.path, *result, point);
+        }
+        seconds += started.elapsed().as_secs_f64();
+        retracked += which.len();
+        lost += doubtful(&paths, 1e-8).len();
+        let near = |x: &[Complex64]| {
+            let error = |x: &[Complex64]| x.iter().zip(&pose).map(|(x, p)| (x - p).norm()).fold(0.0, f64::max);
+            error(x) < 1e-3 && error(&refiner.refine(&target, x).point) < 1e-8
+        };
+        found += usize::from(paths.iter().filter(|(r, _)| r.end == PathEnd::Success).map(|(_, x)| x).any(near));
+    }
+    println!("planted poses found: {found} of {PROBLEMS}");
+    println!("paths: {}, tracked again: {retracked}, lost: {lost}", PROBLEMS * count);
+    println!("microseconds a path on one thread: {:.1}", 1e6 * seconds / (PROBLEMS * count) as f64);
+    if found < PROBLEMS || lost > 0 {
+        std::process::exit(1);
+    }
+}
+
+/// A random pose, and five points in both images as the family's parameters `a_k1 a_k2 b_k1 b_k2`.
+fn problem(random: &mut Random) -> ([f64; UNKNOWNS], Vec<f64>) {
+    let mut uniform = |low: f64, high: f64| low + (high - low) * (random.unit().arg() / std::f64::consts::TAU + 0.5);
+    let pose @ [x, y, z, u, v] = [(); UNKNOWNS].map(|()| uniform(-0.5, 0.5));
+    let norm = 1.0 + x * x + y * y + z * z;
+    let rotation = [
+        [1.0 + x * x - y * y - z * z, 2.0 * (x * y - z), 2.0 * (x * z + y)],
+        [2.0 * (x * y + z), 1.0 - x * x + y * y - z * z, 2.0 * (y * z - x)],
+        [2.0 * (x * z - y), 2.0 * (y * z + x), 1.0 - x * x - y * y + z * z],
+    ];
+    let mut points = Vec::new();
+    while points.len() < 20 {
+        let (b, depth) = ([uniform(-0.5, 0.5), uniform(-0.5, 0.5), 1.0], uniform(2.0, 6.0));
+        let [p, q, r]: [f64; 3] =
+            std::array::from_fn(|i| depth * (0..3).map(|j| rotation[i][j] * b[j]).sum::<f64>() / norm + [1.0, u, v][i]);
+        // In front of both cameras.
+        if r > 0.1 {
+            points.extend([p / r, q / r, b[0], b[1]]);
+        }
+    }
+    (pose, points)
+}

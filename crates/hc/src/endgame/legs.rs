@@ -1,0 +1,104 @@
+//! Straight legs in logarithmic time `s = -ln t`, along the radius or round the origin of the plane of `t`.
+
+use crate::homotopy::{ParameterPath, Segment};
+use num_complex::Complex64;
+use poly::{ComplexDd, Lane, Scalar};
+
+/// The way that a path goes in one piece, in the parameters `target + t direction` of a segment; the tracker's own time
+/// `u` goes from 1 to 0 on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Leg {
+    /// Straight in logarithmic time, from the first value of `s` to the second.
+    Logarithmic([Complex64; 2]),
+    /// Straight from this `t` to zero.
+    Home(f64),
+}
+
+impl Leg {
+    /// `t` at the end of the leg.
+    pub(super) fn target(self) -> Complex64 {
+        self.time(0.0)[0]
+    }
+
+    /// Taylor coefficients of `t` at `u`.
+    fn time(self, u: f64) -> [Complex64; 4] {
+        let zero = Complex64::new(0.0, 0.0);
+        match self {
+            Leg::Home(t) => [(t * u).into(), t.into(), zero, zero],
+            Leg::Logarithmic([from, to]) => {
+                // t = exp(-s(u)), s(u) = to - (to - from) u.
+                let rate = to - from;
+                let value = (rate * u - to).exp();
+                [value, value * rate, value * rate * rate / 2.0, value * rate * rate * rate / 6.0]
+            }
+        }
+    }
+}
+
+/// One leg a path.
+pub(super) struct Legs<'a> {
+    pub(super) segment: &'a Segment,
+    pub(super) legs: Vec<Leg>,
+}
+
+impl Legs<'_> {
+    /// The parameters at the end of a leg to twice the digits: where the Jacobian is nearly singular, rounding errors of the
+    /// parameters would show in the samples.
+    pub(super) fn precise(&self, leg: usize, p: &mut Vec<ComplexDd>) {
+        let t = ComplexDd::new(self.legs[leg].target());
+        p.clear();
+        p.extend(
+            self.segment
+                .target()
+                .iter()
+                .zip(self.segment.direction())
+                .map(|(target, direction)| Scalar::mul_add(&ComplexDd::new(*direction), &t, &ComplexDd::new(*target))),
+        );
+    }
+}
+
+impl ParameterPath for Legs<'_> {
+    fn parameters(&self) -> usize {
+        self.segment.parameters()
+    }
+
+    fn coefficients<S: Lane>(&self, paths: &[usize], u: &S::Real, p: &mut [S]) {
+        let m = self.parameters();
+        let mut t = [S::zero(); 4];
+        for (l, (&path, &u)) in paths.iter().zip(u.as_ref()).enumerate() {
+            t.iter_mut().zip(self.legs[path].time(u)).for_each(|(t, value)| t.set(l, value));
+        }
+        for (i, (target, direction)) in self.segment.target().iter().zip(self.segment.direction()).enumerate() {
+            let direction = S::from_c64(*direction);
+            p[i] = S::mul_add(&direction, &t[0], &S::from_c64(*target));
+            for order in 1..4 {
+                p[order * m + i] = S::mul(&direction, &t[order]);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Leg, Legs};
+    use crate::homotopy::{ParameterPath, Segment};
+    use num_complex::Complex64;
+
+    /// Against differences of the parameters themselves.
+    #[test]
+    fn taylor_coefficients_are_those_of_the_leg() {
+        let z = Complex64::new;
+        let segment = Segment::new(&[z(1.0, 2.0)], &[z(-0.5, 0.3)]);
+        let legs = Legs { segment: &segment, legs: vec![Leg::Logarithmic([z(3.0, 0.0), z(3.5, 0.7)])] };
+        let at = |u: f64| {
+            let mut p = [z(0.0, 0.0); 4];
+            legs.coefficients::<Complex64>(&[0], &[u], &mut p);
+            p
+        };
+        let end = segment.target()[0] + segment.direction()[0] * (-z(3.5, 0.7)).exp();
+        assert!((at(0.0)[0] - end).norm() < 1e-15);
+        let (p, h) = (at(0.4), 1e-3);
+        let sum = p[0] + p[1] * h + p[2] * (h * h) + p[3] * (h * h * h);
+        assert!((at(0.4 + h)[0] - sum).norm() < 1e-13);
+    }
+}

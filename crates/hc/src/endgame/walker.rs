@@ -1,0 +1,270 @@
+//! One path in its endgame: which leg comes next, and when it is over.
+
+use super::laurent::{CLEAR, Loop, Reading, VAGUE};
+use super::legs::Leg;
+use super::{EndgameOptions, Ending, Handed, Verdict};
+use crate::distinct::relative_distance;
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+/// Samples a turn where coordinates are of order between `t^(-5/4)` and `t^(5/4)`.
+const SAMPLES: usize = 4;
+/// Most samples a turn: valuations up to 16.
+const MAX_SAMPLES: usize = 64;
+/// The same where the radius cannot be made smaller.
+const MAX_SAMPLES_WIDE: usize = 16;
+/// Where rounded coefficients move a coordinate by more than this share of its size, a wider circle is better.
+const SHARP: f64 = 1e-6;
+/// Relative distance below which a loop counts as closed, unless the samples are less accurate than that.
+const CLOSED: f64 = 1e-10;
+
+/// After so many loops that were too wide the path is tracked straight to zero.
+const TRY_HOME: u32 = 2;
+
+/// The end of a leg.
+pub(super) struct Sample {
+    pub(super) point: Vec<Complex64>,
+    /// Relative error.
+    pub(super) accuracy: f64,
+    /// How far each coordinate moves if the coefficients are rounded.
+    pub(super) blur: Vec<f64>,
+}
+
+/// A path on its way round smaller and smaller circles.
+pub(super) struct Walker {
+    path: usize,
+    /// Where the path is: logarithmic time and point.
+    at: f64,
+    x: Vec<Complex64>,
+    radius: f64,
+    /// Logarithmic time and point where the path came in.
+    origin: (f64, Vec<Complex64>),
+    /// Circles must be wider than this.
+    deepest: f64,
+    /// Samples of the loop, `x` the last of them; empty on a leg along the radius.
+    samples: Vec<Complex64>,
+    per_turn: usize,
+    /// Turns after which the loop is given up, and the most ever.
+    turns: usize,
+    max_turns: usize,
+    shrunk: u32,
+    /// Whether the next leg leads to zero.
+    going_home: bool,
+    noise: f64,
+    blur: Vec<f64>,
+    /// What a loop says that was not quite clear, with the limit if it is finite.
+    vague: Option<(Verdict, Vec<Complex64>)>,
+    middle: Vec<Complex64>,
+    verdict: Option<Verdict>,
+}
+
+impl Walker {
+    pub(super) fn new((path, t, x): Handed<'_>, max_turns: usize, options: &EndgameOptions) -> Self {
+        Walker {
+            path,
+            at: -t.ln(),
+            x: x.to_vec(),
+            radius: options.radius,
+            origin: (-t.ln(), x.to_vec()),
+            deepest: options.min_radius,
+            samples: Vec::new(),
+            per_turn: SAMPLES,
+            turns: options.turns.min(max_turns).max(1),
+            max_turns,
+            shrunk: 0,
+            going_home: false,
+            noise: 0.0,
+            blur: Vec::new(),
+            vague: None,
+            middle: Vec::new(),
+            verdict: None,
+        }
+    }
+
+    pub(super) fn is_live(&self) -> bool {
+        self.verdict.is_none()
+    }
+
+    /// Where the next leg starts.
+    pub(super) fn point(&self) -> &[Complex64] {
+        &self.x
+    }
+
+    /// The next leg, in logarithmic time.
+    pub(super) fn leg(&self) -> Leg {
+        if self.going_home {
+            return Leg::Home((-self.at).exp());
+        }
+        let s = -self.radius.ln();
+        if self.samples.is_empty() {
+            return Leg::Logarithmic([Complex64::new(self.at, 0.0), Complex64::new(s, 0.0)]);
+        }
+        let angle = TAU / self.per_turn as f64;
+        let done = (self.samples.len() / self.x.len() - 1) % self.per_turn;
+        Leg::Logarithmic([done, done + 1].map(|k| Complex64::new(s, angle * k as f64)))
+    }
+
+    /// Takes in the end of the leg, `None` if the tracker failed on it.
+    pub(super) fn advance(&mut self, end: Option<Sample>, options: &EndgameOptions) {
+        if self.going_home {
+            self.going_home = false;
+            if let Some(end) = end {
+                self.x = end.point;
+                self.verdict = Some(Verdict::Reached);
+            }
+            return;
+        }
+        let on_loop = !self.samples.is_empty();
+        let finite = |sample: &Sample| sample.point.iter().all(|z| z.is_finite());
+        match end.filter(finite) {
+            Some(sample) if on_loop => {
+                self.noise = self.noise.max(sample.accuracy);
+                self.blur.iter_mut().zip(&sample.blur).for_each(|(a, b)| *a = a.max(*b));
+                self.turn(&sample.point, options);
+            }
+            Some(sample) => self.arrive(sample, options),
+            None if on_loop => self.shrink(options),
+            None if self.middle.is_empty() => self.widen(),
+            None => self.lose(),
+        }
+    }
+
+    /// At the end of a leg along the radius.
+    fn arrive(&mut self, Sample { point, accuracy, blur }: Sample, options: &EndgameOptions) {
+        if self.radius == options.radius && self.middle.is_empty() {
+            self.middle = point.clone();
+        }
+        let largest = point.iter().map(|z| z.norm()).fold(0.0, f64::max);
+        let blurred = point.iter().zip(&blur).any(|(z, b)| *b > SHARP * z.norm().max(1e-4 * largest));
+        if blurred && self.widen_to().is_some_and(|wider| wider <= options.start) {
+            self.widen();
+            return;
+        }
+        let s = -self.radius.ln();
+        if (s - self.at).abs() > 1.0 && self.shrunk == 0 {
+            self.per_turn = samples_for(steepest(&self.x, &point, s - self.at));
+        }
+        self.at = s;
+        self.noise = accuracy.max(4.0 * f64::EPSILON);
+        self.blur = blur;
+        self.x.clone_from(&point);
+        self.samples = point;
+    }
+
+    /// The next wider radius, if it is not beyond the point where the path came in.
+    fn widen_to(&self) -> Option<f64> {
+        let start = (-self.origin.0).exp();
+        (self.radius < start).then(|| (10.0 * self.radius).min(start))
+    }
+
+    /// From the point where the path came in to a wider circle than the one that was too deep.
+    fn widen(&mut self) {
+        match self.widen_to() {
+            Some(radius) => {
+                self.deepest = self.radius;
+                self.radius = radius;
+                self.at = self.origin.0;
+                self.x.clone_from(&self.origin.1);
+            }
+            None => self.lose(),
+        }
+    }
+
+    fn turn(&mut self, end: &[Complex64], options: &EndgameOptions) {
+        let n = self.x.len();
+        let count = self.samples.len() / n;
+        let first = &self.samples[..n];
+        if count.is_multiple_of(self.per_turn) {
+            let distance = relative_distance(first, end);
+            let spread = self.samples.chunks(n).map(|x| relative_distance(first, x)).fold(0.0, f64::max);
+            if distance <= CLOSED.max(100.0 * self.noise).max(1e-7 * spread) {
+                let winding = count / self.per_turn;
+                let all =
+                    Loop { n, per_turn: self.per_turn, samples: &self.samples, noise: self.noise, blur: &self.blur };
+                let reading = all.read(CLEAR);
+                if reading == Reading::TooWide && self.vague.is_none() {
+                    self.vague = judged(all.read(VAGUE), winding);
+                }
+                match reading {
+                    Reading::TooWide => self.shrink(options),
+                    Reading::TooDeep => self.lose(),
+                    reading => self.settle(judged(reading, winding)),
+                }
+                return;
+            }
+            if count / self.per_turn >= self.turns {
+                self.shrink(options);
+                return;
+            }
+        }
+        self.samples.extend_from_slice(end);
+        self.x.copy_from_slice(end);
+    }
+
+    /// Goes back to where the loop began and on to a smaller one.
+    fn shrink(&mut self, options: &EndgameOptions) {
+        let n = self.x.len();
+        self.x.copy_from_slice(&self.samples[..n]);
+        self.samples.clear();
+        self.shrunk += 1;
+        self.going_home = self.shrunk == TRY_HOME;
+        self.turns = self.turns.saturating_mul(2).min(self.max_turns).max(1);
+        if self.radius / options.shrink > self.deepest {
+            self.radius /= options.shrink;
+        } else if self.per_turn < MAX_SAMPLES_WIDE {
+            // No smaller circle will do: once more with more samples, which may also stand a singularity not far outside.
+            self.per_turn *= 2;
+        } else {
+            self.lose();
+        }
+    }
+
+    /// Ends without a clear verdict: with a vague one if there is one.
+    fn lose(&mut self) {
+        let vague = self.vague.take();
+        self.settle(vague);
+    }
+
+    fn settle(&mut self, judged: Option<(Verdict, Vec<Complex64>)>) {
+        self.going_home = false;
+        self.verdict = Some(match judged {
+            Some((verdict, limit)) => {
+                if !limit.is_empty() {
+                    self.x = limit;
+                }
+                verdict
+            }
+            None => Verdict::Lost,
+        });
+    }
+
+    pub(super) fn ending(self) -> Ending {
+        let verdict = self.verdict.unwrap_or(Verdict::Lost);
+        Ending { path: self.path, verdict, point: self.x, middle: self.middle, radius: self.radius }
+    }
+}
+
+fn judged(reading: Reading, winding: usize) -> Option<(Verdict, Vec<Complex64>)> {
+    match reading {
+        Reading::Finite { limit, error } => Some((Verdict::Finite { winding, error }, limit)),
+        Reading::Infinite { valuations } => Some((Verdict::Infinite { winding, valuations }, Vec::new())),
+        Reading::TooWide | Reading::TooDeep => None,
+    }
+}
+
+/// The largest valuation in size, from points `ds` apart in logarithmic time; coordinates that may be rounding error are left out.
+fn steepest(from: &[Complex64], to: &[Complex64], ds: f64) -> f64 {
+    let floor = |x: &[Complex64]| 1e-12 * x.iter().map(|z| z.norm()).fold(0.0, f64::max);
+    let (a, b) = (floor(from), floor(to));
+    let clear = from.iter().zip(to).filter(|(x, y)| x.norm() > a && y.norm() > b);
+    clear.map(|(x, y)| ((y.norm() / x.norm()).ln() / ds).abs()).fold(0.0, f64::max)
+}
+
+/// Samples a turn that tell powers up to `steepest` from their aliases, with room for the decay beyond them.
+fn samples_for(steepest: f64) -> usize {
+    let mut samples = SAMPLES;
+    while samples < MAX_SAMPLES && steepest > 0.25 * samples as f64 + 0.25 {
+        samples *= 2;
+    }
+    samples
+}

@@ -1,0 +1,171 @@
+//! From polynomials to supports and coefficients: checked, scaled, as many as unknowns, with the terms that start systems need.
+
+use super::SolveError;
+use crate::linalg::Lu;
+use crate::random::Random;
+use num_complex::Complex64;
+use num_traits::ToPrimitive;
+use poly::simd::Isa;
+use poly::{Exact, Polynomial};
+use std::collections::BTreeMap;
+
+/// Equations as supports and coefficients.
+#[derive(Clone, Debug)]
+pub(super) struct Equations {
+    pub(super) unknowns: usize,
+    /// Exponent vectors of the terms of each equation.
+    pub(super) supports: Vec<Vec<Vec<i32>>>,
+    /// Their coefficients.
+    pub(super) coefficients: Vec<Vec<Complex64>>,
+    /// Unknown `j` is `scale[j]`, a power of two, times that of the scaled equations.
+    scale: Vec<f64>,
+}
+
+impl Equations {
+    /// Reads polynomials, and scales equations and unknowns by powers of two.
+    pub(super) fn new(polynomials: &[Polynomial<Exact>]) -> Result<Equations, SolveError> {
+        let unknowns = polynomials.first().map_or(0, Polynomial::variables);
+        let mut supports: Vec<Vec<Vec<i32>>> = Vec::with_capacity(polynomials.len());
+        let mut coefficients = Vec::with_capacity(polynomials.len());
+        for (i, polynomial) in polynomials.iter().enumerate() {
+            if polynomial.variables() != unknowns {
+                return Err(SolveError::Mismatched(i + 1));
+            }
+            if polynomial.is_empty() {
+                return Err(SolveError::Zero(i + 1));
+            }
+            let support = polynomial.support();
+            if support.iter().flatten().all(|&e| e == 0) {
+                return Err(SolveError::Constant(i + 1));
+            }
+            supports.push(support);
+            let numbers = polynomial.terms().iter().map(|(_, c)| {
+                Some(Complex64::new(c.re.to_f64()?, c.im.to_f64()?)).filter(|z| z.is_finite() && z.norm() > 0.0)
+            });
+            coefficients.push(numbers.collect::<Option<Vec<Complex64>>>().ok_or(SolveError::Coefficient(i + 1))?);
+        }
+        if polynomials.len() < unknowns || unknowns == 0 {
+            return Err(SolveError::Underdetermined { equations: polynomials.len(), unknowns });
+        }
+        let exponents = unknown_scales(unknowns, &supports, &coefficients);
+        for (support, coefficients) in supports.iter().zip(&mut coefficients) {
+            *coefficients = scaled(support, coefficients, &exponents);
+        }
+        let scale = exponents.iter().map(|&e| 2f64.powi(e)).collect();
+        Ok(Equations { unknowns, supports, coefficients, scale })
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.supports.len()
+    }
+
+    /// As many equations as unknowns: those of highest degree, each with a random combination of the others added, so that Bezout's number
+    /// is the product of the highest degrees. They have all solutions of these equations, and excess ones.
+    pub(super) fn squared(&self, seed: u64) -> Equations {
+        let mut order: Vec<usize> = (0..self.len()).collect();
+        let degree =
+            |i: usize| self.supports[i].iter().map(|p| p.iter().map(|&e| i64::from(e)).sum::<i64>()).max().unwrap_or(0);
+        order.sort_by_key(|&i| std::cmp::Reverse(degree(i)));
+        let (kept, others) = order.split_at(self.unknowns);
+        let mut random = Random::new(seed, 11);
+        let mut squared = Equations { supports: Vec::new(), coefficients: Vec::new(), ..self.clone() };
+        for &i in kept {
+            let mut sum: BTreeMap<&[i32], Complex64> = BTreeMap::new();
+            let mut add = |k: usize, factor: Complex64| {
+                for (point, c) in self.supports[k].iter().zip(&self.coefficients[k]) {
+                    *sum.entry(point).or_default() += factor * c;
+                }
+            };
+            add(i, Complex64::new(1.0, 0.0));
+            others.iter().for_each(|&k| add(k, random.unit()));
+            squared.supports.push(sum.keys().map(|p| p.to_vec()).collect());
+            squared.coefficients.push(sum.into_values().collect());
+        }
+        squared
+    }
+
+    /// Whether some exponent is negative.
+    pub(super) fn is_laurent(&self) -> bool {
+        self.supports.iter().flatten().flatten().any(|&e| e < 0)
+    }
+
+    /// Adds a term with coefficient zero to an equation that does not have it.
+    pub(super) fn add_term(&mut self, equation: usize, point: Vec<i32>) {
+        if !self.supports[equation].contains(&point) {
+            self.supports[equation].push(point);
+            self.coefficients[equation].push(Complex64::new(0.0, 0.0));
+        }
+    }
+
+    /// Coordinates for the given polynomials from those of the scaled equations.
+    pub(super) fn unscale(&self, value: &mut [[f64; 2]]) {
+        value.iter_mut().zip(&self.scale).for_each(|(z, s)| *z = z.map(|part| part * s));
+    }
+}
+
+/// Coefficients of an equation for unknowns in units of `2^exponents`, the largest of size one.
+fn scaled(support: &[Vec<i32>], coefficients: &[Complex64], exponents: &[i32]) -> Vec<Complex64> {
+    let shifts: Vec<f64> =
+        support.iter().map(|p| p.iter().zip(exponents).map(|(&a, &e)| f64::from(a) * f64::from(e)).sum()).collect();
+    let sizes = coefficients.iter().zip(&shifts).map(|(c, s)| c.norm().log2() + s);
+    let largest = sizes.fold(f64::NEG_INFINITY, f64::max).round();
+    // Powers of two, so that nothing is rounded; in two steps, since the factor alone may overflow.
+    let power = |s: f64| 2f64.powi(s.clamp(-1000.0, 1000.0) as i32);
+    let scale = |s: f64| (power((0.5 * s).floor()), power(s - (0.5 * s).floor()));
+    coefficients.iter().zip(&shifts).map(|(c, &s)| c * scale(s - largest).0 * scale(s - largest).1).collect()
+}
+
+/// Spread of the logarithms (base 2) of coefficients in an equation below which unknowns are left as they are.
+const MILD: f64 = 14.0;
+/// Scales beyond this are not used.
+const MAX_EXPONENT: f64 = 200.0;
+
+/// Powers of two for the unknowns that bring coefficients of each equation near to each other: least squares in their logarithms
+/// (Meintjes & Morgan 1987, ACM TOMS 16:143), with a small penalty on the scales so that directions without effect stay at zero.
+fn unknown_scales(n: usize, supports: &[Vec<Vec<i32>>], coefficients: &[Vec<Complex64>]) -> Vec<i32> {
+    let spread = |logs: &[f64]| {
+        logs.iter().copied().fold(f64::NEG_INFINITY, f64::max) - logs.iter().copied().fold(f64::INFINITY, f64::min)
+    };
+    let logs: Vec<Vec<f64>> = coefficients.iter().map(|c| c.iter().map(|c| c.norm().log2()).collect()).collect();
+    if logs.iter().all(|l| spread(l) < MILD) {
+        return vec![0; n];
+    }
+    let mut matrix = vec![Complex64::new(0.0, 0.0); n * n];
+    let mut side = vec![Complex64::new(0.0, 0.0); n];
+    for (support, logs) in supports.iter().zip(&logs) {
+        let count = support.len() as f64;
+        let mean = |j: usize| support.iter().map(|p| f64::from(p[j])).sum::<f64>() / count;
+        let means: Vec<f64> = (0..n).map(mean).collect();
+        let mean_log = logs.iter().sum::<f64>() / count;
+        for (point, log) in support.iter().zip(logs) {
+            for j in 0..n {
+                let a = f64::from(point[j]) - means[j];
+                side[j] -= a * (log - mean_log);
+                (0..n).for_each(|k| matrix[k * n + j] += a * (f64::from(point[k]) - means[k]));
+            }
+        }
+    }
+    let trace: f64 = (0..n).map(|j| matrix[j * n + j].re).sum();
+    (0..n).for_each(|j| matrix[j * n + j] += 1e-4 * (trace / n as f64).max(1e-300));
+    let mut lu = Lu::new(n, Isa::Portable);
+    lu.factor(&matrix, &vec![[1.0]; n]);
+    lu.solve(&mut side);
+    let exponent = |y: f64| if y.is_finite() { y.clamp(-MAX_EXPONENT, MAX_EXPONENT).round() as i32 } else { 0 };
+    side.iter().map(|y| exponent(y.re)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Equations;
+    use poly::parse::phcpack;
+
+    /// Coefficients over 18 decades: what counts is that the spread falls to a few.
+    #[test]
+    fn scales_bring_coefficients_together() {
+        let system = phcpack("2\n1.0E-12*x^2 - 1.0E-3*x*y + 1.0E6;\n1.0E-6*x*y^2 - y + 1.0E2;").unwrap();
+        let equations = Equations::new(&system.expand(&Default::default()).unwrap()).unwrap();
+        let sizes: Vec<f64> = equations.coefficients.iter().flatten().map(|c| c.norm().log10()).collect();
+        let spread = sizes.iter().copied().fold(f64::MIN, f64::max) - sizes.iter().copied().fold(f64::MAX, f64::min);
+        assert!(spread < 6.0, "{sizes:?}");
+    }
+}

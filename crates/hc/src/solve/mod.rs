@@ -1,0 +1,249 @@
+//! The front door: all isolated solutions of a polynomial system.
+
+mod classify;
+mod equations;
+mod paths;
+mod start;
+
+use crate::distinct::relative_distance;
+use crate::endgame::EndgameOptions;
+use crate::fibre::{FibreOptions, PathCounts};
+use crate::start::MixedError;
+use classify::{Classified, Excess, classify};
+use equations::Equations;
+use num_complex::Complex64;
+use poly::{Exact, Polynomial, SupportError};
+use serde::Serialize;
+use start::Starts;
+
+/// Which start system is used.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Start {
+    /// Polyhedral, which never has more paths than total degree; total degree where there are no mixed cells in 61 bits.
+    #[default]
+    Auto,
+    /// Polyhedral: as many paths as the mixed volume.
+    Polyhedral,
+    /// Total degree: as many paths as the product of the degrees, and no stage before them. Its coefficients are so special that
+    /// paths may go to infinity in degenerate ways.
+    TotalDegree,
+}
+
+/// Settings of [`solve`].
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct SolveOptions {
+    /// Seed of everything random. Default 0.
+    pub seed: u64,
+    /// The start system. Default [`Start::Auto`].
+    pub start: Start,
+    /// Whether solutions with zero coordinates are left out, with the paths that lead to them. Default false.
+    pub torus_only: bool,
+    /// More paths than this are refused. Default 2^24.
+    pub max_paths: u64,
+    /// Settings of both stages.
+    pub paths: FibreOptions,
+    /// Settings for the ends of paths that are not regular.
+    pub endgame: EndgameOptions,
+    /// How often everything is done again from another start system while paths are lost. Default 2.
+    pub restarts: u32,
+}
+
+impl Default for SolveOptions {
+    fn default() -> Self {
+        SolveOptions {
+            seed: 0,
+            start: Start::Auto,
+            torus_only: false,
+            max_paths: 1 << 24,
+            paths: FibreOptions::default(),
+            endgame: EndgameOptions::default(),
+            restarts: 2,
+        }
+    }
+}
+
+/// An isolated solution.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Solution {
+    /// Real and imaginary part of each coordinate.
+    pub value: Vec<[f64; 2]>,
+    /// Multiplicity: the number of paths that end here.
+    pub multiplicity: usize,
+    /// The largest winding number of these paths.
+    pub winding_number: usize,
+    /// Whether the Jacobian is singular here, to working precision.
+    pub singular: bool,
+    /// Whether all imaginary parts are below 1e-10 of the largest coordinate (or of one); 1e-7 where singular.
+    pub real: bool,
+    /// Largest residual, relative to its row of the Jacobian times the sizes of the coordinates; where that is singular,
+    /// relative to the sizes of the terms of the equation.
+    pub residual: f64,
+    /// Condition number of the scaled Jacobian.
+    pub condition: f64,
+    /// Whether the solution is certified; `None` where that was not asked for.
+    pub certified: Option<bool>,
+}
+
+/// A direction in which paths go to infinity.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Direction {
+    /// Unknown `j` is of order `t^(valuations[j] / denominator)` as `t` falls to zero.
+    pub valuations: Vec<i64>,
+    /// The winding number.
+    pub denominator: usize,
+    /// Number of paths.
+    pub paths: usize,
+}
+
+/// What [`solve`] has found.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Solved {
+    /// The start system that was used, never [`Start::Auto`].
+    pub start: Start,
+    /// The mixed volume of the supports, the origin included unless only the torus was asked for; `None` where it was not needed.
+    pub mixed_volume: Option<u64>,
+    /// How the paths ended: `finite` at solutions, singular ones and such on components and in excess included.
+    pub paths: PathCounts,
+    /// Paths that ended on components of positive dimension.
+    pub on_components: usize,
+    /// Points on such components, one or more on each.
+    pub component_points: Vec<Vec<[f64; 2]>>,
+    /// Paths that ended at points that were not asked for: those that solve only random combinations of more equations than
+    /// unknowns, and those outside the torus where that was asked for.
+    pub excess: usize,
+    /// Where the paths at infinity went.
+    pub directions: Vec<Direction>,
+    /// Start systems that were used: more than one if paths were lost.
+    pub start_systems: u32,
+    /// The distinct isolated solutions, regular ones first.
+    pub solutions: Vec<Solution>,
+}
+
+/// Why a system is not solved.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SolveError {
+    /// No polyhedral start system.
+    #[error(transparent)]
+    Mixed(#[from] MixedError),
+    /// Exponents out of range.
+    #[error(transparent)]
+    Support(#[from] SupportError),
+    /// An equation in another number of unknowns than the first.
+    #[error("equation {0} has other unknowns than the first; write all in the same unknowns")]
+    Mismatched(usize),
+    /// Fewer equations than unknowns, or no unknowns.
+    #[error(
+        "{equations} equations in {unknowns} unknowns have no isolated solutions; add equations, or numbers for some of the unknowns"
+    )]
+    Underdetermined {
+        /// Number of equations.
+        equations: usize,
+        /// Number of unknowns.
+        unknowns: usize,
+    },
+    /// An equation that is identically zero.
+    #[error("equation {0} is zero; leave it out")]
+    Zero(usize),
+    /// An equation without unknowns.
+    #[error("equation {0} is a constant that is not zero, so that there is no solution; is a term missing?")]
+    Constant(usize),
+    /// A coefficient beyond the range of double precision.
+    #[error(
+        "equation {0} has a coefficient beyond the range of double precision; divide it by its largest coefficient"
+    )]
+    Coefficient(usize),
+    /// The total degree start system was asked for, but some exponents are negative.
+    #[error("the total degree start system needs exponents that are not negative; take the polyhedral one")]
+    NegativeExponents,
+    /// More paths than allowed.
+    #[error("there are {paths} paths, more than the {limit} allowed; lower the exponents or allow more paths")]
+    TooManyPaths {
+        /// Number of paths; `u64::MAX` if it does not fit.
+        paths: u64,
+        /// The limit of [`SolveOptions::max_paths`].
+        limit: u64,
+    },
+}
+
+/// Finds the isolated solutions of polynomials, at least as many as unknowns.
+///
+/// From the solutions of a start system (polyhedral: Huber & Sturmfels 1995, with the origin added to supports for zero coordinates, Li &
+/// Wang 1996; or total degree) paths lead along a straight line in the coefficients to all isolated solutions. Ends that are not regular
+/// go through the [endgame](crate::endgame). More equations than unknowns are combined at random, and the excess
+/// solutions are left out again. The same seed gives the same bits on any number of threads.
+///
+/// ```
+/// use hc::solve::{SolveOptions, solve};
+/// let system = hc::poly::parse::phcpack("2\nx*(x - y);\n(y - 1)^2*(y + x);")?;
+/// let found = solve(&system.expand(&Default::default())?, &SolveOptions::default())?;
+/// let mut multiplicities: Vec<usize> = found.solutions.iter().map(|s| s.multiplicity).collect();
+/// multiplicities.sort();
+/// // The origin and (0, 1), (1, 1), each double.
+/// assert_eq!((multiplicities, found.paths.failed), (vec![2, 2, 2], 0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// If there are too few equations or too many paths, an equation without unknowns, or a number out of range.
+pub fn solve(polynomials: &[Polynomial<Exact>], options: &SolveOptions) -> Result<Solved, SolveError> {
+    let given = Equations::new(polynomials)?;
+    let excess = Excess::new(&given, options.torus_only)?;
+    let mut starts = Starts::new(given, options)?;
+    let mut retracked = 0;
+    let mut best: Option<(usize, Classified)> = None;
+    let mut start_systems = 0;
+    for attempt in 0..=options.restarts {
+        start_systems += 1;
+        let start = starts.solve(u64::from(attempt), options)?;
+        let (ends, again) = paths::follow(&starts.system, &start.fibre, &starts.target, options);
+        retracked += start.retracked + again;
+        let missing = usize::try_from(start.paths).unwrap_or(usize::MAX) - start.fibre.len();
+        let mut found = classify(&starts.system, &starts.target, &ends, &excess, options.paths.coincidence);
+        found.lost += missing;
+        let tracked = ends.len() + missing;
+        best = Some(match best {
+            Some((count, old)) if old.lost <= found.lost => (count, joined(old, &found)),
+            Some((_, old)) => (tracked, joined(found, &old)),
+            None => (tracked, found),
+        });
+        if best.as_ref().is_some_and(|(_, b)| b.lost == 0) {
+            break;
+        }
+    }
+    let (tracked, found) = best.unwrap_or_default();
+    let finite = tracked - found.infinite - found.lost;
+    let paths = PathCounts { tracked, finite, at_infinity: found.infinite, failed: found.lost, retracked };
+    let mut solutions = found.solutions;
+    solutions.iter_mut().for_each(|s| starts.equations.unscale(&mut s.value));
+    let pairs = |x: &Vec<Complex64>| x.iter().map(|z| [z.re, z.im]).collect::<Vec<[f64; 2]>>();
+    let mut component_points: Vec<Vec<[f64; 2]>> = found.component_points.iter().map(pairs).collect();
+    component_points.iter_mut().for_each(|x| starts.equations.unscale(x));
+    Ok(Solved {
+        start: starts.kind,
+        mixed_volume: starts.mixed_volume,
+        paths,
+        on_components: found.on_components,
+        component_points,
+        excess: found.excess,
+        directions: found.directions,
+        start_systems,
+        solutions,
+    })
+}
+
+/// The result that lost fewer paths, with the solutions that only the other one has.
+fn joined(mut better: Classified, other: &Classified) -> Classified {
+    if better.lost == 0 {
+        return better;
+    }
+    let point = |s: &Solution| s.value.iter().map(|z| Complex64::new(z[0], z[1])).collect::<Vec<_>>();
+    let known: Vec<Vec<Complex64>> = better.solutions.iter().map(point).collect();
+    let new = other.solutions.iter().filter(|s| !s.singular);
+    let new = new.filter(|s| known.iter().all(|x| relative_distance(x, &point(s)) > paths::CLUSTER));
+    better.solutions.extend(new.cloned().collect::<Vec<_>>());
+    better
+}

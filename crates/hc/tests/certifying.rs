@@ -1,0 +1,124 @@
+//! Certified solutions of systems whose counts are known.
+
+use hc::certify::{Certificates, CertifyOptions, certify};
+use hc::solve::{SolveOptions, solve};
+use num_complex::Complex64;
+use poly::{System, parse::phcpack};
+use std::path::PathBuf;
+
+/// Solves and certifies. Badly scaled solutions that the solver takes for points on a component are certified as well: what
+/// is certified is isolated.
+fn run(system: &System) -> Certificates {
+    let polynomials = system.expand(&Default::default()).unwrap();
+    let found = solve(&polynomials, &SolveOptions::default()).unwrap();
+    let point = |value: &[[f64; 2]]| value.iter().map(|&[re, im]| Complex64::new(re, im)).collect();
+    let values = found.solutions.iter().map(|s| &s.value).chain(&found.component_points);
+    let points: Vec<Vec<Complex64>> = values.map(|value| point(value)).collect();
+    certify(system, &[], &points, &CertifyOptions::default()).unwrap()
+}
+
+fn cyclic(n: usize) -> System {
+    System::build(|s| {
+        let x: Vec<_> = (0..n).map(|j| s.variable(&format!("z{j}"))).collect();
+        let run = |length: usize, first: usize| s.product((0..length).map(|j| x[(first + j) % n]));
+        let mut equations: Vec<_> = (1..n).map(|k| s.sum((0..n).map(|first| run(k, first)))).collect();
+        equations.push(run(n, 0) - 1);
+        equations
+    })
+    .unwrap()
+}
+
+fn katsura(n: usize) -> System {
+    System::build(|s| {
+        let u: Vec<_> = (0..=n).map(|j| s.variable(&format!("u{j}"))).collect();
+        let mut equations: Vec<_> = (0..n)
+            .map(|m| {
+                let products = (0..=2 * n).filter_map(|shifted| {
+                    let (j, k) = (shifted.abs_diff(n), shifted.abs_diff(m + n));
+                    (k <= n).then(|| u[j] * u[k])
+                });
+                s.sum(products) - u[m]
+            })
+            .collect();
+        equations.push(u[0] + 2 * s.sum(u[1..].iter().copied()) - 1);
+        equations
+    })
+    .unwrap()
+}
+
+fn noon(n: usize) -> System {
+    System::build(|s| {
+        let x: Vec<_> = (0..n).map(|j| s.variable(&format!("x{j}"))).collect();
+        let others = |i: usize| s.sum((0..n).filter(|&j| j != i).map(|j| x[j].powi(2)));
+        (0..n).map(|i| x[i] * others(i) - s.constant(11) / 10 * x[i] + 1).collect()
+    })
+    .unwrap()
+}
+
+#[test]
+fn all_solutions_of_known_systems_are_certified() {
+    // Bjorck and Froberg 1991: cyclic-5 has 70; Katsura: 2^n; Noonburg: 3^n - 2n (noon-4: 73). Real ones: PHCpack's lists.
+    for (name, system, distinct, real) in
+        [("cyclic-5", cyclic(5), 70, Some(10)), ("katsura-6", katsura(6), 64, Some(32)), ("noon-4", noon(4), 73, None)]
+    {
+        let found = run(&system);
+        assert!(found.complete(), "{name}");
+        assert_eq!((found.certified(), found.distinct()), (distinct, distinct), "{name}");
+        if let Some(real) = real {
+            assert_eq!(found.real(), real, "{name}");
+        }
+    }
+}
+
+#[test]
+fn a_list_given_twice_has_half_as_many_solutions() {
+    // The curve and conic of Breiding, Rose, Timme (2020): 18 solutions, 4 of them real.
+    let text = "2\n(x^4 + y^4 - 1)*(x^2 + y^2 - 2) + x^5*y;\nx^2 + 2*x*y^2 - 2*y^2 - 1/2;";
+    let system = phcpack(text).unwrap();
+    let once = run(&system);
+    assert_eq!((once.certified(), once.distinct(), once.real()), (18, 18, 4));
+    let mut points: Vec<Vec<Complex64>> = once.solutions().map(|s| s.value.clone()).collect();
+    points.extend(points.clone());
+    let twice = certify(&system, &[], &points, &CertifyOptions::default()).unwrap();
+    assert_eq!((twice.certified(), twice.distinct(), twice.real()), (36, 18, 4));
+    assert!(twice.complete() && twice.duplicate_of[18..].iter().zip(0..).all(|(d, k)| *d == Some(k)));
+}
+
+/// The folder of systems, `None` (said on standard error) where it is absent.
+fn folder() -> Option<PathBuf> {
+    let shared = match std::env::var_os("SHARED_DIR") {
+        Some(folder) => PathBuf::from(folder),
+        None => PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared"),
+    };
+    let systems = shared.join("systems");
+    if systems.join("expected.csv").is_file() {
+        return Some(systems);
+    }
+    eprintln!("skipped: the folder of reference systems is absent (set SHARED_DIR)");
+    None
+}
+
+#[test]
+fn regular_systems_on_record_are_certified_in_full() {
+    let Some(folder) = folder() else { return };
+    let table = std::fs::read_to_string(folder.join("expected.csv")).unwrap();
+    let mut seen = 0;
+    for line in table.lines().skip(1) {
+        let fields: Vec<&str> = line.split(',').collect();
+        let (name, mixed_volume, distinct, real) = (fields[0], fields[3], fields[5], fields[8]);
+        let regular = fields[7] == "0" && fields[10] == "no";
+        // A thousand paths at most.
+        if !regular || mixed_volume.parse::<usize>().unwrap_or(usize::MAX) > 1000 {
+            continue;
+        }
+        let system = phcpack(&std::fs::read_to_string(folder.join(format!("{name}.phc"))).unwrap()).unwrap();
+        let found = run(&system);
+        assert!(found.complete(), "{name}");
+        assert_eq!(found.distinct().to_string(), distinct, "{name}");
+        if !real.is_empty() {
+            assert_eq!(found.real().to_string(), real, "{name}: real solutions");
+        }
+        seen += 1;
+    }
+    assert!(seen >= 10, "{seen} systems");
+}

@@ -1,0 +1,120 @@
+//! Families of systems by their generators, with the numbers of solutions known from theory and the literature.
+
+mod common;
+
+use common::{multiplicities, options, real, solved};
+
+fn system(equations: Vec<String>) -> String {
+    format!("{}\n{};\n", equations.len(), equations.join(";\n"))
+}
+
+fn cyclic(n: usize) -> String {
+    let product = |j: usize, m: usize| (j..=j + m).map(|k| format!("x{}", k % n)).collect::<Vec<_>>().join("*");
+    let sums = (0..n - 1).map(|m| (0..n).map(|j| product(j, m)).collect::<Vec<_>>().join("+"));
+    system(sums.chain([format!("{}-1", product(0, n - 1))]).collect())
+}
+
+fn katsura(n: usize) -> String {
+    let convolution = |m: i64| {
+        let terms = (-(n as i64)..=n as i64).filter_map(|l| {
+            let (a, b) = (l.unsigned_abs() as usize, (m - l).unsigned_abs() as usize);
+            (b <= n).then(|| format!("u{a}*u{b}"))
+        });
+        format!("{}-u{m}", terms.collect::<Vec<_>>().join("+"))
+    };
+    let sum = (1..=n).map(|l| format!("+2*u{l}")).collect::<String>();
+    system((0..n as i64).map(convolution).chain([format!("u0{sum}-1")]).collect())
+}
+
+fn noon(n: usize) -> String {
+    let squares = |i: usize| (0..n).filter(|&j| j != i).map(|j| format!("x{j}^2")).collect::<Vec<_>>().join("+");
+    system((0..n).map(|i| format!("x{i}*({})-1.1*x{i}+1", squares(i))).collect())
+}
+
+fn eco(n: usize) -> String {
+    let equation = |k: usize| {
+        let products: String = (1..n - k).map(|i| format!("+x{i}*x{}", i + k)).collect();
+        format!("(x{k}{products})*x{n}-{k}")
+    };
+    let sum = (1..n).map(|i| format!("x{i}")).collect::<Vec<_>>().join("+");
+    system((1..n).map(equation).chain([format!("{sum}+1")]).collect())
+}
+
+fn chandra(n: usize) -> String {
+    let equation = |i: usize| {
+        let sum: String = (1..n).map(|j| format!("+{i}/{}*h{j}", i + j)).collect();
+        format!("{}*h{i}-0.51234*h{i}*(1{sum})-{}", 2 * n, 2 * n)
+    };
+    system((1..=n).map(equation).collect())
+}
+
+fn reimer(n: usize) -> String {
+    let sign = |i: usize| if i.is_multiple_of(2) { '+' } else { '-' };
+    let equation = |k: usize| {
+        let sum: String = (0..n).map(|i| format!("{}x{i}^{}", sign(i), k + 1)).collect();
+        format!("-1/2{sum}")
+    };
+    system((1..=n).map(equation).collect())
+}
+
+/// Number of solutions, all simple, and how many are real where that is known.
+fn check(name: &str, text: &str, count: usize, real_count: Option<usize>, seeds: u64) {
+    for seed in 0..seeds {
+        let found = solved(text, &options(seed));
+        assert_eq!(multiplicities(&found), format!("{count}x1"), "{name} {seed}");
+        if let Some(expected) = real_count {
+            assert_eq!(real(&found), expected, "{name} {seed}");
+        }
+    }
+}
+
+/// Bjorck & Froberg 1991; cyclic-8 has a curve of solutions besides 1152 isolated ones.
+#[test]
+fn cyclic_roots() {
+    check("cyclic-5", &cyclic(5), 70, Some(10), 3);
+    check("cyclic-6", &cyclic(6), 156, Some(24), 3);
+    check("cyclic-7", &cyclic(7), 924, Some(56), 1);
+    let found = solved(&cyclic(8), &options(1));
+    assert_eq!((&multiplicities(&found)[..], found.on_components > 0), ("1152x1", true));
+}
+
+/// 2^n, the number of Bezout; real counts from PHCpack's lists of solutions, for katsura-5 from real Newton iterations in 40 digits,
+/// which keep 16 roots apart.
+#[test]
+fn katsura_systems() {
+    for (n, real) in [(5, 16), (6, 32), (7, 44), (8, 84), (9, 120), (10, 216)] {
+        check(&format!("katsura-{n}"), &katsura(n), 1 << n, Some(real), if n < 9 { 3 } else { 1 });
+    }
+}
+
+/// 3^n - 2n (Noonburg 1989); real counts from PHCpack's lists.
+#[test]
+fn noon_systems() {
+    for (n, real) in [(3, Some(7)), (4, Some(15)), (5, Some(11)), (6, None)] {
+        check(&format!("noon-{n}"), &noon(n), 3usize.pow(n as u32) - 2 * n, real, 2);
+    }
+}
+
+/// 2^(n-2), the mixed volume.
+#[test]
+fn eco_systems() {
+    for (n, real) in [(5, Some(4)), (6, Some(4)), (7, Some(8)), (8, Some(8)), (9, None), (10, None)] {
+        check(&format!("eco-{n}"), &eco(n), 1 << (n - 2), real, 3);
+    }
+}
+
+/// 2^(n-1), all real; coefficients and roots of very different sizes.
+#[test]
+fn chandra_systems() {
+    for n in 4..=8 {
+        check(&format!("chandra-{n}"), &chandra(n), 1 << (n - 1), Some(1 << (n - 1)), 3);
+    }
+}
+
+/// 36, 144, 576 of (n + 1)! paths (PHCpack's collection of demonstration systems).
+#[test]
+fn reimer_systems() {
+    check("reimer-4", &reimer(4), 36, None, 3);
+    check("reimer-5", &reimer(5), 144, Some(24), 1);
+    check("reimer-6", &reimer(6), 576, None, 1);
+}

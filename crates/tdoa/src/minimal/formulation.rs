@@ -1,0 +1,61 @@
+//! What distinguishes one generated solver from another; [`super::engine`] does the rest.
+
+use crate::network::Network;
+use hc::fibre::Fibre;
+use hc::poly::Evaluate;
+use num_complex::Complex64;
+
+/// A square family whose parameters are the differences `f_ij - f_1j`, rows `i = 2..m`, row-major, in any unit of length.
+pub(crate) trait Formulation {
+    /// The generated evaluator.
+    type System: Evaluate + 'static;
+    /// The configuration, such as `6r/3s`.
+    const NAME: &'static str;
+    /// The family (TOML) behind the generated module.
+    const FAMILY: &'static str;
+    /// Receivers `m`.
+    const RECEIVERS: usize;
+    /// Transmitters `n`.
+    const TRANSMITTERS: usize;
+    /// By which power of the unit of length each unknown grows.
+    const WEIGHTS: &'static [i32];
+    /// Number of charts: forms of the same problem with the nodes in another order. Chart 0 is that of the data.
+    const CHARTS: usize;
+    /// What can be permuted in the data without changing a solution.
+    const FREE: Free;
+
+    /// The generated evaluator.
+    fn system() -> &'static Self::System;
+
+    /// The stored solutions for one generic parameter point.
+    fn fibre() -> Fibre;
+
+    /// Parameters in a chart.
+    fn parameters(chart: usize, f: &[Complex64]) -> Vec<Complex64>;
+
+    /// Carries a solution over into a chart.
+    fn enter(chart: usize, x: &[Complex64]) -> Vec<Complex64>;
+
+    /// Carries a solution of a chart back.
+    fn leave(chart: usize, x: &[Complex64]) -> Vec<Complex64>;
+
+    /// `p_j = o_j - f_1j` of a solution, one a transmitter.
+    fn offsets(f: &[Complex64], x: &[Complex64]) -> Vec<Complex64>;
+
+    /// The network of a real solution, its first receiver in the origin, its offsets `p_j`; `None` unless the positions are real.
+    fn network(f: &[f64], x: &[f64]) -> Option<Network>;
+}
+
+/// Nodes that the unknowns do not tell apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Free {
+    /// All receivers but the first.
+    Receivers,
+    /// All transmitters.
+    Transmitters,
+}
+
+/// Pairs of real and imaginary parts as complex numbers.
+pub(crate) fn pairs(values: &[[f64; 2]]) -> Vec<Complex64> {
+    values.iter().map(|&[re, im]| Complex64::new(re, im)).collect()
+}

@@ -1,0 +1,65 @@
+//! Measurements in the form that the equations want.
+
+use super::SolveOptions;
+use super::polish::polish;
+use crate::network::{Candidate, Network};
+use crate::pseudoranges::Pseudoranges;
+
+/// Measurements relative to the first receiver, in units of their own size.
+pub(crate) struct Normalised {
+    /// `(f_ij - f_1j) / size`, row-major; zeros in the first row.
+    pub(crate) matrix: Vec<f64>,
+    first: Vec<f64>,
+    size: f64,
+}
+
+impl Normalised {
+    /// A matrix without missing entries.
+    pub(crate) fn new(measured: &Pseudoranges) -> Self {
+        let (f, n) = (measured.values(), measured.transmitters());
+        let first = f[..n].to_vec();
+        let differences: Vec<f64> = (0..f.len()).map(|k| f[k] - first[k % n]).collect();
+        let count = (f.len() - n) as f64;
+        let size = (differences.iter().map(|d| d * d).sum::<f64>() / count).sqrt();
+        let matrix = differences.iter().map(|d| d / size).collect();
+        Normalised { matrix, first, size }
+    }
+
+    /// Number of transmitters.
+    pub(crate) fn transmitters(&self) -> usize {
+        self.first.len()
+    }
+
+    /// `(f_ij - f_1j) / size` for `i = 2..m`, row-major: the parameters of the families.
+    pub(crate) fn parameters(&self) -> &[f64] {
+        &self.matrix[self.first.len()..]
+    }
+
+    /// A network in these units, polished over all measurements and judged.
+    pub(crate) fn candidate(&self, mut network: Network, options: &SolveOptions) -> Candidate {
+        let condition = if options.polish { polish(&self.matrix, &mut network) } else { f64::NAN };
+        let n = self.transmitters();
+        let physical = (self.matrix.iter().enumerate()).all(|(k, f)| f - network.offsets[k % n] >= -options.tolerance);
+        let residuals =
+            self.matrix.iter().enumerate().map(|(k, f)| f - network.offsets[k % n] - network.distance(k / n, k % n));
+        let residual = (residuals.map(|r| r * r).sum::<f64>() / self.matrix.len() as f64).sqrt();
+        Candidate { network, residual, physical, condition }
+    }
+
+    /// Back to metres and to the offsets of the data.
+    pub(crate) fn restore(&self, network: &mut Network) {
+        network.receivers.iter_mut().chain(&mut network.transmitters).flatten().for_each(|x| *x *= self.size);
+        network.offsets.iter_mut().zip(&self.first).for_each(|(o, first)| *o = *o * self.size + first);
+    }
+
+    /// From metres to these units; the inverse of [`Normalised::restore`].
+    pub(crate) fn enter(&self, network: &mut Network) {
+        network.receivers.iter_mut().chain(&mut network.transmitters).flatten().for_each(|x| *x /= self.size);
+        network.offsets.iter_mut().zip(&self.first).for_each(|(o, first)| *o = (*o - first) / self.size);
+    }
+}
+
+/// Physical candidates first, then by residual.
+pub(crate) fn rank(candidates: &mut [Candidate]) {
+    candidates.sort_by(|a, b| b.physical.cmp(&a.physical).then(a.residual.total_cmp(&b.residual)));
+}

@@ -1,0 +1,56 @@
+//! The paper's own route: a family solved from nothing for one matrix, by a polyhedral start system.
+
+use super::SolveError;
+use super::formulation::Formulation;
+use crate::network::PathCounts;
+use hc::distinct::relative_distance;
+use hc::poly::System;
+use hc::solve::{SolveOptions, Start, solve};
+use num_complex::Complex64;
+
+/// Start systems that are tried while roots are missing.
+const START_SYSTEMS: u64 = 3;
+
+/// Relative distance up to which roots from different start systems are the same.
+const SAME: f64 = 1e-8;
+
+/// All roots in the torus for the real parameters `f`, with the paths that led to them. In the families of this crate the spurious
+/// roots and components lie outside the torus.
+pub(crate) fn roots<F: Formulation>(f: &[f64]) -> Result<(Vec<Vec<Complex64>>, PathCounts), SolveError> {
+    let refused = |error: &dyn std::fmt::Display| SolveError::Polyhedral(error.to_string());
+    let family = hc::poly::parse::family(F::FAMILY).map_err(|e| refused(&e))?;
+    let system = System::build(|s| {
+        let unknowns: Vec<_> = family.system.variables().iter().map(|name| s.variable(name)).collect();
+        let parameters: Vec<_> = f.iter().map(|&f| s.constant(f)).collect();
+        family.system.instantiate(s, &unknowns, &parameters)
+    })
+    .map_err(|e| refused(&e))?;
+    let polynomials = system.expand(&Default::default()).map_err(|e| refused(&e))?;
+    let mut roots: Vec<Vec<Complex64>> = Vec::new();
+    let mut paths = PathCounts::default();
+    for seed in 0..START_SYSTEMS {
+        let mut options = SolveOptions::default();
+        options.seed = seed;
+        options.start = Start::Polyhedral;
+        options.torus_only = true;
+        // Paths that lead out of the torus may end badly; the known number of roots tells whether one in it is missing.
+        options.restarts = 0;
+        let found = solve(&polynomials, &options).map_err(|e| refused(&e))?;
+        let regular = found.solutions.iter().filter(|s| !s.singular);
+        for root in regular.map(|s| s.value.iter().map(|&[re, im]| Complex64::new(re, im)).collect::<Vec<_>>()) {
+            if roots.iter().all(|other| relative_distance(other, &root) > SAME) {
+                roots.push(root);
+            }
+        }
+        paths.retracked += found.paths.retracked + if seed > 0 { found.paths.tracked } else { 0 };
+        paths = PathCounts { retracked: paths.retracked, ..found.paths };
+        if family.roots.is_some_and(|known| roots.len() >= known) {
+            // No instance has more isolated roots than the generic one: the other paths, however they ended, lead out of the torus.
+            paths.finite = roots.len();
+            paths.at_infinity = paths.tracked - roots.len();
+            paths.failed = 0;
+            break;
+        }
+    }
+    Ok((roots, paths))
+}

@@ -1,0 +1,195 @@
+//! One entry point for all sizes.
+
+use super::engine::Engine;
+use super::formulation::Formulation;
+use super::four_five::FourFive;
+use super::larger::extend;
+use super::normalised::Normalised;
+use super::rank::{FiveSix, by_receivers, offsets_of_four};
+use super::subset::{self, Subset};
+use super::three::{FiveFour, SixThree};
+use super::{SolveError, SolveOptions, check};
+use crate::network::{MinimalSolution, PathCounts, RootCounts};
+use crate::pseudoranges::Pseudoranges;
+use hc::tracker::PathResult;
+
+/// Solver for small networks; picks the method by size, and keeps its memory from call to call.
+#[derive(Default)]
+pub struct Solver {
+    six_three: Option<Engine<SixThree>>,
+    five_four: Option<Engine<FiveFour>>,
+    four_five: Option<Engine<FourFive>>,
+    five_six: Option<Engine<FiveSix>>,
+    records: Vec<PathResult>,
+}
+
+/// The method for a size.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Method {
+    SixThree,
+    FiveFour,
+    FourFive,
+    FiveSix,
+    SevenFour,
+}
+
+impl Method {
+    /// Offsets by rank need most measurements and are nearly free; then as few paths as possible.
+    fn pick(m: usize, n: usize) -> Self {
+        match (m, n) {
+            (_, 3) => Method::SixThree,
+            (4, _) => Method::FourFive,
+            (7.., _) => Method::SevenFour,
+            (_, 6..) => Method::FiveSix,
+            _ => Method::FiveFour,
+        }
+    }
+
+    /// What to do where offsets by rank are not determined.
+    fn fallback(self) -> Option<Self> {
+        matches!(self, Method::SevenFour | Method::FiveSix).then_some(Method::FiveFour)
+    }
+}
+
+impl Solver {
+    /// A solver; start solutions are unpacked when they are first needed.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Every network that explains the measurements, best first.
+    ///
+    /// The minimal sizes 6r/3s and 4r/5s, 5r/4s, and 5r/6s are solved by homotopy continuation, 7r/4s linearly, larger ones through the best
+    /// spread part of one of these sizes: its candidates are extended to all nodes and refined over all measurements.
+    ///
+    /// # Errors
+    /// If the matrix is too small, a measurement is missing, or two nodes coincide.
+    pub fn solve(&mut self, measured: &Pseudoranges, options: &SolveOptions) -> Result<MinimalSolution, SolveError> {
+        let (m, n) = (measured.receivers(), measured.transmitters());
+        let (constraints, unknowns) = (m * n, (2 * m + 3 * n).saturating_sub(3));
+        // Three transmitters in the plane need six receivers, and so on: more measurements of one kind alone do not help.
+        if m < 4 || n < 3 || constraints < unknowns {
+            return Err(SolveError::Underdetermined { configuration: measured.configuration(), constraints, unknowns });
+        }
+        check(measured)?;
+        let method = Method::pick(m, n);
+        let solution = self.solve_by(method, measured, options)?;
+        match method.fallback() {
+            Some(other) if solution.candidates.is_empty() => self.solve_by(other, measured, options),
+            _ => Ok(solution),
+        }
+    }
+
+    /// The records of the paths of the last call.
+    pub fn records(&self) -> &[PathResult] {
+        &self.records
+    }
+
+    fn solve_by(
+        &mut self,
+        method: Method,
+        measured: &Pseudoranges,
+        options: &SolveOptions,
+    ) -> Result<MinimalSolution, SolveError> {
+        let records = &mut self.records;
+        match method {
+            Method::SixThree => through(&mut self.six_three, measured, options, records),
+            Method::FiveFour => through(&mut self.five_four, measured, options, records),
+            Method::FourFive => through(&mut self.four_five, measured, options, records),
+            Method::FiveSix => through(&mut self.five_six, measured, options, records),
+            Method::SevenFour => {
+                records.clear();
+                Ok(seven_four(measured, options))
+            }
+        }
+    }
+}
+
+/// Solves a part of the formulation's size, and the rest from there.
+fn through<F: Formulation>(
+    engine: &mut Option<Engine<F>>,
+    measured: &Pseudoranges,
+    options: &SolveOptions,
+    records: &mut Vec<PathResult>,
+) -> Result<MinimalSolution, SolveError> {
+    let engine = engine.get_or_insert_with(Engine::new);
+    let solution = if (measured.receivers(), measured.transmitters()) == (F::RECEIVERS, F::TRANSMITTERS) {
+        engine.solve(measured, options)?
+    } else {
+        let part = subset::best(measured, F::RECEIVERS, F::TRANSMITTERS);
+        let solution = engine.solve(&measured.select(&part.receivers, &part.transmitters), options)?;
+        extend(measured, &part, solution, options)
+    };
+    records.clear();
+    records.extend_from_slice(engine.records());
+    Ok(solution)
+}
+
+/// Seven or more receivers, four or more transmitters: the offsets of the four best spread transmitters by rank, then everything linearly.
+fn seven_four(measured: &Pseudoranges, options: &SolveOptions) -> MinimalSolution {
+    let m = measured.receivers();
+    let four = subset::best(measured, m, 4).transmitters;
+    let part = Subset { receivers: (0..m).collect(), transmitters: four };
+    let selected = measured.select(&part.receivers, &part.transmitters);
+    let data = Normalised::new(&selected);
+    let mut counts = RootCounts::default();
+    let mut candidates = Vec::new();
+    if let Some(p) = offsets_of_four(data.parameters()) {
+        (counts.complex, counts.real) = (1, 1);
+        if let Some(network) = by_receivers(data.parameters(), &p) {
+            counts.positive_definite = 1;
+            let mut candidate = data.candidate(network, options);
+            counts.physical = usize::from(candidate.physical);
+            data.restore(&mut candidate.network);
+            candidates.push(candidate);
+        }
+    }
+    let solution = MinimalSolution {
+        configuration: selected.configuration(),
+        solver: "7r/4s",
+        paths: PathCounts::default(),
+        counts,
+        warnings: Vec::new(),
+        candidates,
+    };
+    extend(measured, &part, solution, options)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Solver;
+    use crate::minimal::{SolveOptions, Start};
+    use crate::simulate::{Layout, SimulateOptions, simulate};
+
+    /// The same networks from the stored start and from a polyhedral one, no more and no fewer.
+    #[test]
+    fn the_polyhedral_route_finds_the_same_networks() {
+        let mut solver = Solver::new();
+        for (receivers, transmitters, seeds) in [(5, 6, 0..12), (6, 3, 0..1)] {
+            for seed in seeds {
+                let simulation = simulate(&SimulateOptions {
+                    receivers,
+                    transmitters,
+                    layout: Layout::Normal,
+                    noise: 0.0,
+                    seed,
+                    ..SimulateOptions::default()
+                })
+                .unwrap();
+                let mut options = SolveOptions::default();
+                let stored = solver.solve(&simulation.pseudoranges, &options).unwrap();
+                options.start = Start::Polyhedral;
+                let scratch = solver.solve(&simulation.pseudoranges, &options).unwrap();
+                assert_eq!((scratch.counts, scratch.paths.failed), (stored.counts, 0), "seed {seed}");
+                let offsets = |s: &crate::network::MinimalSolution| {
+                    let mut all: Vec<_> = s.candidates.iter().map(|c| c.network.offsets.clone()).collect();
+                    all.sort_by(|a, b| a[0].total_cmp(&b[0]));
+                    all
+                };
+                for (a, b) in offsets(&stored).iter().flatten().zip(offsets(&scratch).iter().flatten()) {
+                    assert!((a - b).abs() < 1e-6 * (1.0 + a.abs()), "seed {seed}: {a} {b}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! `hc certify` and `hc solve --certify`, as a user would run them.
+
+use end_to_end::run;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use std::process::Output;
+
+/// A cubic and a line: solutions (0.1, 0.2), (-1, -2) and (2, 4).
+const SYSTEM: &str = "2\n(x - 0.1)*(x + 1)*(x - 2);\n y - 2*x;\n";
+
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    fn new() -> Folder {
+        Folder(tempfile::tempdir().expect("directory"))
+    }
+
+    fn write(&self, name: &str, text: &str) -> PathBuf {
+        let path = self.0.path().join(name);
+        std::fs::write(&path, text).expect("written");
+        path
+    }
+}
+
+fn hc(arguments: &[&str], files: &[&Path]) -> Output {
+    let mut all = arguments.to_vec();
+    all.extend(files.iter().map(|p| p.to_str().expect("UTF-8 path")));
+    run("hc", &all)
+}
+
+fn report(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout)
+        .unwrap_or_else(|e| panic!("{e}: {}", String::from_utf8_lossy(&output.stderr)))
+}
+
+#[test]
+fn what_solve_finds_certify_proves() {
+    let folder = Folder::new();
+    let (system, solved) = (folder.write("system.phc", SYSTEM), folder.0.path().join("solved.json"));
+    let output = hc(&["solve", "--certify", "--json", solved.to_str().unwrap()], &[&system]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let found: Value = serde_json::from_slice(&std::fs::read(&solved).unwrap()).unwrap();
+    let solutions = found["solutions"].as_array().unwrap();
+    assert_eq!(solutions.len(), 3);
+    assert!(solutions.iter().all(|s| s["certified"] == true && s["real"] == true));
+
+    let output = hc(&["certify", "--json", "-"], &[&system, &solved]);
+    assert_eq!(output.status.code(), Some(0));
+    let proved = report(&output);
+    assert_eq!((&proved["certified"], &proved["distinct"], &proved["real"]), (&json!(3), &json!(3), &json!(3)));
+    for s in proved["solutions"].as_array().unwrap() {
+        for (value, bounds) in s["value"].as_array().unwrap().iter().zip(s["box"].as_array().unwrap()) {
+            for part in 0..2 {
+                let (low, high) = (bounds[part][0].as_f64().unwrap(), bounds[part][1].as_f64().unwrap());
+                let middle = value[part].as_f64().unwrap();
+                assert!(low <= middle && middle <= high && high - low < 1e-14);
+            }
+        }
+    }
+    // The same bytes on any number of threads, but for the time taken.
+    let strip = |mut report: Value| {
+        report["seconds"] = Value::Null;
+        report.to_string()
+    };
+    let again = hc(&["certify", "--threads", "2", "--json", "-"], &[&system, &solved]);
+    assert_eq!(strip(report(&again)), strip(proved));
+}
+
+#[test]
+fn without_the_option_certified_is_null() {
+    let folder = Folder::new();
+    let system = folder.write("system.phc", SYSTEM);
+    let found = report(&hc(&["solve", "--json", "-"], &[&system]));
+    assert!(found["solutions"].as_array().unwrap().iter().all(|s| s["certified"].is_null()));
+}
+
+#[test]
+fn lists_of_points_are_read_in_the_order_of_the_unknowns() {
+    let folder = Folder::new();
+    let system = folder.write("system.phc", SYSTEM);
+    let points = folder.write("points.json", "[[2, 4], [[2.000001, 0], [4, 1e-6]], [-1, -2.0], [5, 6]]");
+    let output = hc(&["certify", "--json", "-"], &[&system, &points]);
+    // One point is no solution.
+    assert_eq!(output.status.code(), Some(1));
+    let proved = report(&output);
+    assert_eq!((&proved["points"], &proved["certified"], &proved["distinct"]), (&json!(4), &json!(3), &json!(2)));
+    assert_eq!(proved["solutions"][1]["duplicate_of"], 0);
+    assert_eq!(proved["solutions"][3]["certified"], false);
+    assert!(proved["solutions"][3]["reason"].is_string());
+    assert!(proved["solutions"][3]["box"].is_null());
+
+    // Names decide where there are some.
+    let named = folder.write("named.json", r#"{"variables": ["y", "x"], "solutions": [{"value": [[4, 0], [2, 0]]}]}"#);
+    let proved = report(&hc(&["certify", "--json", "-"], &[&system, &named]));
+    assert_eq!((&proved["certified"], &proved["solutions"][0]["value"][1][0]), (&json!(1), &json!(4.0)));
+}
+
+#[test]
+fn unusable_input_is_told_apart_from_failure() {
+    let folder = Folder::new();
+    let system = folder.write("system.phc", SYSTEM);
+    let wide = folder.write("wide.phc", "1\nx + y;");
+    let points = folder.write("points.json", "[[2, 4]]");
+    for (system, solutions, word) in [
+        (&system, "[[1]]", "point 1 has 1 coordinates"),
+        (&system, "{\"solutions\": 3}", "expected the JSON"),
+        (&system, r#"{"variables": ["u", "v"], "solutions": []}"#, "variables are u v"),
+        (&wide, "[[2, 4]]", "1 equations in 2 unknowns"),
+    ] {
+        let solutions = folder.write("bad.json", solutions);
+        let output = hc(&["certify"], &[system, &solutions]);
+        assert_eq!(output.status.code(), Some(2));
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert!(message.contains(word), "{message}");
+    }
+    let missing = folder.0.path().join("missing.phc");
+    assert_eq!(hc(&["certify"], &[&missing, &points]).status.code(), Some(2));
+    // A double root is not certified, and that is no error of the input.
+    let double = folder.write("double.phc", "1\nx^2 - 2*x + 1;");
+    let one = folder.write("one.json", "[[1]]");
+    let output = hc(&["certify"], &[&double, &one]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("0 of 1 points certified"));
+}
