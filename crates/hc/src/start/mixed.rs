@@ -1,11 +1,9 @@
 //! Mixed cells and mixed volume.
-//!
-//! Stage `k` has the supports `A_1 .. A_{k-1}`, then `d_k Delta` together with `A_k`, then standard simplices `Delta`. Sending the lifting of
-//! `d_k Delta` to minus infinity leaves the mixed cells of `A_1 .. A_k, Delta, ..`, each of which is a start for the next stage.
 
-use super::table::{Layout, Overflow, Table};
-use super::walk::AnyTable;
-use rayon::prelude::{IntoParallelIterator, ParallelIterator};
+use super::cell::{Cell, Overflow};
+use super::integer::Integer;
+use super::search::{Sink, Space, search};
+use std::cmp::Reverse;
 
 /// A fine mixed cell: the sum of one edge of each support.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -59,8 +57,8 @@ pub enum MixedError {
         /// Its values.
         values: usize,
     },
-    /// Determinants beyond 61 bits.
-    #[error("the exponents are so large that volumes of cells exceed 61 bits; divide exponents by common factors")]
+    /// Volumes beyond 64 bits, or determinants beyond 126.
+    #[error("the exponents are so large that volumes of cells exceed 64 bits; divide exponents by common factors")]
     TooLarge,
 }
 
@@ -82,23 +80,40 @@ impl From<Overflow> for MixedError {
 /// ```
 ///
 /// # Errors
-/// If the supports are not as many as the unknowns, an exponent vector has another length, or volumes exceed 61 bits.
+/// If the supports are not as many as the unknowns, an exponent vector has another length, or volumes exceed 64 bits.
 pub fn mixed_volume(unknowns: usize, supports: &[Vec<Vec<i32>>]) -> Result<MixedVolume, MixedError> {
-    let volumes = run(unknowns, supports, |_, table, out| {
-        out.push(u64::try_from(table.volume).map_err(|_| Overflow)?);
-        Ok(())
-    })?;
-    let volume = volumes.iter().try_fold(0u64, |sum, &v| sum.checked_add(v)).ok_or(MixedError::TooLarge)?;
-    Ok(MixedVolume { volume, cells: volumes.len() })
+    let mut total = Total::default();
+    if let Some(ordered) = Ordered::new(unknowns, supports)? {
+        for part in search(&Space::new(ordered.supports, None), Total::default)? {
+            total.volume = total.volume.checked_add(part.volume).ok_or(MixedError::TooLarge)?;
+            total.cells += part.cells;
+        }
+    }
+    let volume = u64::try_from(total.volume).map_err(|_| MixedError::TooLarge)?;
+    Ok(MixedVolume { volume, cells: total.cells })
 }
 
-/// The mixed cells of the regular subdivision of a lifting (one value a point), in an order that depends on the input alone.
+#[derive(Default)]
+struct Total {
+    volume: u128,
+    cells: usize,
+}
+
+impl Sink for Total {
+    fn take<T: Integer>(&mut self, cell: &Cell<T>) -> Result<(), Overflow> {
+        self.volume = self.volume.checked_add(cell.volume.wide().unsigned_abs()).ok_or(Overflow)?;
+        self.cells += 1;
+        Ok(())
+    }
+}
+
+/// The mixed cells of the regular subdivision of a lifting (one value a point), in the order of their edges.
 ///
 /// The lifting is perturbed symbolically, so that all cells are fine and their volumes add up to the mixed volume; where
 /// it was not generic, the least value over a support is taken at further points besides those of the edge.
 ///
 /// # Errors
-/// If the numbers of supports, exponents, points and values do not fit, or integers exceed 61 bits.
+/// If the numbers of supports, exponents, points and values do not fit, or volumes exceed 64 bits.
 pub fn mixed_cells(
     unknowns: usize,
     supports: &[Vec<Vec<i32>>],
@@ -110,228 +125,71 @@ pub fn mixed_cells(
             return Err(MixedError::Lifting { support: i + 1, points: points.len(), values });
         }
     }
-    let layout = Layout::new(supports.iter().map(Vec::len));
-    let tau: Vec<i64> = lifting.iter().take(supports.len()).flatten().map(|&l| -i64::from(l)).collect();
-    run(unknowns, supports, |stages, table, out| {
-        let start = stages.settled(table)?;
-        start.walk(&layout, &tau, &mut |table| {
-            out.push(cell(&layout, &tau, table)?);
-            Ok(())
-        })
-    })
+    let Some(Ordered { supports, order }) = Ordered::new(unknowns, supports)? else { return Ok(Vec::new()) };
+    let tau: Vec<i64> = order.iter().flat_map(|&i| &lifting[i]).map(|&l| -i64::from(l)).collect();
+    let found = search(&Space::new(supports, Some(tau)), || Cells { lifting, order: &order, cells: Vec::new() })?;
+    let mut cells: Vec<MixedCell> = found.into_iter().flat_map(|part| part.cells).collect();
+    // Tasks end in any order; a cell is known by its edges.
+    cells.sort_unstable_by(|a, b| a.edges.cmp(&b.edges));
+    Ok(cells)
 }
 
-fn cell(layout: &Layout, tau: &[i64], table: &Table<i128>) -> Result<MixedCell, Overflow> {
-    let n = table.pairs.len();
-    let normal = (0..n).map(|l| {
-        let terms = table.pairs.iter().enumerate().map(|(j, [a, b])| {
-            // lift_b - lift_a, the lifting being -tau.
-            table.entry(layout.columns() + l, j).checked_mul(i128::from(tau[*a] - tau[*b]))
-        });
-        terms.into_iter().try_fold(0i128, |sum, term| sum.checked_add(term?)).ok_or(Overflow)
-    });
-    let edges = table.pairs.iter().enumerate().map(|(j, p)| [p[0] - layout.first[j], p[1] - layout.first[j]]);
-    Ok(MixedCell {
-        edges: edges.collect(),
-        volume: u64::try_from(table.volume).map_err(|_| Overflow)?,
-        normal: normal.collect::<Result<_, _>>()?,
-    })
+struct Cells<'a> {
+    lifting: &'a [Vec<i32>],
+    order: &'a [usize],
+    cells: Vec<MixedCell>,
 }
 
-/// Cells that are spread over threads: many more than threads, and few enough to be kept.
-const FRONTIER: usize = 512;
-
-/// What is done with each mixed cell of the supports.
-type Sink<'a, R> = &'a (dyn Fn(&Stages, &Table<i128>, &mut Vec<R>) -> Result<(), Overflow> + Sync);
-
-fn run<R: Send>(
-    unknowns: usize,
-    supports: &[Vec<Vec<i32>>],
-    sink: impl Fn(&Stages, &Table<i128>, &mut Vec<R>) -> Result<(), Overflow> + Sync,
-) -> Result<Vec<R>, MixedError> {
-    if supports.len() != unknowns || unknowns == 0 {
-        return Err(MixedError::NotSquare { supports: supports.len(), unknowns });
-    }
-    for (i, points) in supports.iter().enumerate() {
-        if let Some(point) = points.iter().find(|p| p.len() != unknowns) {
-            return Err(MixedError::Length { support: i + 1, found: point.len(), unknowns });
-        }
-    }
-    // A single point has no edge.
-    if supports.iter().any(|a| a.iter().all(|p| p == &a[0])) {
-        return Ok(Vec::new());
-    }
-    let stages = Stages::new(supports);
-    let mut frontier = vec![stages.start()?];
-    let mut k = 0;
-    while k + 1 < unknowns && frontier.len() < FRONTIER {
-        let next: Vec<Vec<AnyTable>> = frontier
-            .into_par_iter()
-            .map(|table| {
-                let mut out = Vec::new();
-                stages.walk(k, table, &mut |t| {
-                    out.push(stages.enter(k + 1, t)?);
-                    Ok(())
-                })?;
-                Ok(out)
-            })
-            .collect::<Result<_, Overflow>>()?;
-        frontier = next.into_iter().flatten().collect();
-        k += 1;
-    }
-    let found: Vec<Vec<R>> = frontier
-        .into_par_iter()
-        .map(|table| {
-            let mut out = Vec::new();
-            stages.descend(k, table, &sink, &mut out)?;
-            Ok(out)
-        })
-        .collect::<Result<_, Overflow>>()?;
-    Ok(found.into_iter().flatten().collect())
-}
-
-struct Stages {
-    n: usize,
-    /// The supports, moved so that the least exponent of each unknown is zero.
-    points: Vec<Vec<Vec<i64>>>,
-    /// Degree of each support.
-    degrees: Vec<i128>,
-    layouts: Vec<Layout>,
-    directions: Vec<Vec<i64>>,
-}
-
-impl Stages {
-    fn new(supports: &[Vec<Vec<i32>>]) -> Self {
-        let n = supports.len();
-        let points: Vec<Vec<Vec<i64>>> = supports
-            .iter()
-            .map(|support| {
-                let least = |l: usize| support.iter().map(|p| i64::from(p[l])).min().unwrap_or(0);
-                let corner: Vec<i64> = (0..n).map(least).collect();
-                support.iter().map(|p| p.iter().zip(&corner).map(|(&x, c)| i64::from(x) - c).collect()).collect()
-            })
-            .collect();
-        let degree = |s: &Vec<Vec<i64>>| s.iter().map(|p| p.iter().sum::<i64>()).max().unwrap_or(0);
-        let degrees = points.iter().map(|s| i128::from(degree(s))).collect();
-        let size = |k: usize, i: usize| match i.cmp(&k) {
-            std::cmp::Ordering::Less => points[i].len(),
-            std::cmp::Ordering::Equal => n + 1 + points[i].len(),
-            std::cmp::Ordering::Greater => n + 1,
-        };
-        let layouts: Vec<Layout> = (0..n).map(|k| Layout::new((0..n).map(|i| size(k, i)))).collect();
-        let directions = layouts.iter().enumerate().map(|(k, layout)| {
-            let simplex = layout.first[k]..layout.first[k] + n + 1;
-            (0..layout.columns()).map(|c| -i64::from(simplex.contains(&c))).collect()
-        });
-        Stages { n, directions: directions.collect(), points, degrees, layouts }
-    }
-
-    /// The mixed cell of `n` standard simplices: with the lifting of the first column the largest, the second
-    /// next, and so on, the edges are `(i, i + 1)`; brought to the first stage.
-    fn start(&self) -> Result<AnyTable, Overflow> {
-        let n = self.n;
-        let rows = (n + 1) * n + n;
-        let mut entries = vec![0i128; n * rows];
-        // P_p - P_b = sum of P_i - P_{i+1} over i from p to b - 1.
-        let mut chain = |row: usize, p: usize, b: usize| {
-            (p..b).for_each(|i| entries[i * rows + row] = 1);
-            (b..p).for_each(|i| entries[i * rows + row] = -1);
-        };
-        for c in 0..n {
-            (0..=n).for_each(|p| chain(c * (n + 1) + p, p, c + 1));
-        }
-        (1..=n).for_each(|l| chain((n + 1) * n + l - 1, l, 0));
-        let pairs = (0..n).map(|c| [c * (n + 1) + c, c * (n + 1) + c + 1]).collect();
-        let table = Table::new(pairs, 1, &entries)?;
-        self.enter(0, &table)
-    }
-
-    /// Brings a cell from the end of stage `k - 1` to the start of stage `k`: the simplex of configuration `k` grows by
-    /// `d = d_k` and the columns of `A_k` come in.
-    fn enter(&self, k: usize, from: &Table<i128>) -> Result<AnyTable, Overflow> {
-        let n = self.n;
-        let d = self.degrees[k];
-        let layout = &self.layouts[k];
-        let units = layout.columns();
-        let mut entries = vec![0i128; n * (units + n)];
-        let first = |c: usize| self.first_before(k, c);
-        let from_units = from.rows - n;
-        for j in 0..n {
-            let scale = if j == k { 1 } else { d };
-            let column = &mut entries[j * (units + n)..(j + 1) * (units + n)];
-            for (row, entry) in column.iter_mut().enumerate() {
-                let value = if row >= units {
-                    Some(from.entry(from_units + row - units, j))
-                } else {
-                    let c = layout.config[row];
-                    let p = row - layout.first[c];
-                    if c != k {
-                        Some(from.entry(first(c) + p, j))
-                    } else if p <= n {
-                        from.entry(first(c) + p, j).checked_mul(d)
-                    } else {
-                        // The point minus the second point of the pair, a corner of d Delta, in unit vectors.
-                        let corner = from.pairs[k][1] - first(k);
-                        let point = &self.points[k][p - n - 1];
-                        (0..n).filter(|&l| point[l] != 0 || l + 1 == corner).try_fold(0i128, |sum, l| {
-                            let w = i128::from(point[l]) - if l + 1 == corner { d } else { 0 };
-                            sum.checked_add(w.checked_mul(from.entry(from_units + l, j))?)
-                        })
-                    }
-                };
-                *entry = value.and_then(|v| v.checked_mul(scale)).ok_or(Overflow)?;
+impl Sink for Cells<'_> {
+    fn take<T: Integer>(&mut self, cell: &Cell<T>) -> Result<(), Overflow> {
+        let n = cell.pairs.len();
+        let mut edges = vec![[0; 2]; n];
+        let mut normal = vec![0i128; n];
+        for (j, (&support, pair)) in self.order.iter().zip(&cell.pairs).enumerate() {
+            let [a, b] = pair.map(|p| p as usize);
+            edges[support] = [a, b];
+            let slope = i128::from(self.lifting[support][b]) - i128::from(self.lifting[support][a]);
+            for (x, u) in normal.iter_mut().zip(cell.dual(j)) {
+                *x = u.wide().checked_mul(slope).and_then(|y| x.checked_add(y)).ok_or(Overflow)?;
             }
         }
-        let pairs = self.moved_pairs(k, layout, from);
-        AnyTable::new(pairs, from.volume.checked_mul(d).ok_or(Overflow)?, &entries)
+        self.cells.push(MixedCell { edges, volume: u64::try_from(cell.volume.wide()).map_err(|_| Overflow)?, normal });
+        Ok(())
     }
+}
 
-    /// A cell from the end of the last stage without the columns of the simplex.
-    fn settled(&self, from: &Table<i128>) -> Result<AnyTable, Overflow> {
-        let n = self.n;
-        let layout = Layout::new(self.points.iter().map(Vec::len));
-        let units = layout.columns();
-        let row = |r: usize| match layout.config.get(r) {
-            Some(&c) => self.first_before(n, c) + r - layout.first[c],
-            None => from.rows - n + r - units,
-        };
-        let entries: Vec<i128> =
-            (0..n).flat_map(|j| (0..units + n).map(move |r| (j, r))).map(|(j, r)| from.entry(row(r), j)).collect();
-        AnyTable::new(self.moved_pairs(n, &layout, from), from.volume, &entries)
-    }
+/// Supports as the search takes them: those of low degree first, which keeps the numbers of cells small, each moved so
+/// that the least exponent of each unknown is zero.
+struct Ordered {
+    supports: Vec<Vec<Vec<i64>>>,
+    /// The given number of each.
+    order: Vec<usize>,
+}
 
-    /// First column of configuration `c` at the end of stage `k - 1` (before stage 0: of the simplices), without the
-    /// columns that are dropped.
-    fn first_before(&self, k: usize, c: usize) -> usize {
-        match k.checked_sub(1) {
-            None => c * (self.n + 1),
-            Some(last) => self.layouts[last].first[c] + if c == last { self.n + 1 } else { 0 },
+impl Ordered {
+    /// `None` if a support is a single point, which has no edge.
+    fn new(unknowns: usize, supports: &[Vec<Vec<i32>>]) -> Result<Option<Ordered>, MixedError> {
+        if supports.len() != unknowns || unknowns == 0 {
+            return Err(MixedError::NotSquare { supports: supports.len(), unknowns });
         }
-    }
-
-    fn moved_pairs(&self, k: usize, layout: &Layout, from: &Table<i128>) -> Vec<[usize; 2]> {
-        let moved = |c: usize, column: usize| layout.first[c] + column - self.first_before(k, c);
-        from.pairs.iter().enumerate().map(|(c, p)| [moved(c, p[0]), moved(c, p[1])]).collect()
-    }
-
-    /// Stage `k` from one of its start cells; `emit` is called for the cells without columns of the simplex.
-    fn walk(
-        &self,
-        k: usize,
-        table: AnyTable,
-        emit: &mut dyn FnMut(&Table<i128>) -> Result<(), Overflow>,
-    ) -> Result<(), Overflow> {
-        let layout = &self.layouts[k];
-        let own = layout.first[k] + self.n + 1;
-        table.walk(layout, &self.directions[k], &mut |t| {
-            if t.pairs[k].iter().all(|&c| c >= own) { emit(t) } else { Ok(()) }
-        })
-    }
-
-    /// All stages from `k` on.
-    fn descend<R>(&self, k: usize, table: AnyTable, sink: Sink<'_, R>, out: &mut Vec<R>) -> Result<(), Overflow> {
-        self.walk(k, table, &mut |t| {
-            if k + 1 == self.n { sink(self, t, out) } else { self.descend(k + 1, self.enter(k + 1, t)?, sink, out) }
-        })
+        for (i, points) in supports.iter().enumerate() {
+            if let Some(point) = points.iter().find(|p| p.len() != unknowns) {
+                return Err(MixedError::Length { support: i + 1, found: point.len(), unknowns });
+            }
+        }
+        if supports.iter().any(|a| a.iter().all(|p| p == &a[0])) {
+            return Ok(None);
+        }
+        let moved = |support: &Vec<Vec<i32>>| -> Vec<Vec<i64>> {
+            let least = |l: usize| support.iter().map(|p| i64::from(p[l])).min().unwrap_or(0);
+            let corner: Vec<i64> = (0..unknowns).map(least).collect();
+            support.iter().map(|p| p.iter().zip(&corner).map(|(&x, c)| i64::from(x) - c).collect()).collect()
+        };
+        let mut all: Vec<(usize, Vec<Vec<i64>>)> = supports.iter().map(moved).enumerate().collect();
+        let degree =
+            |support: &[Vec<i64>]| support.iter().map(|p| p.iter().map(|&x| i128::from(x)).sum::<i128>()).max();
+        all.sort_by_cached_key(|(_, support)| (degree(support), Reverse(support.len())));
+        let (order, supports) = all.into_iter().unzip();
+        Ok(Some(Ordered { supports, order }))
     }
 }

@@ -5,10 +5,12 @@
 //! * Total degree: `x_i^(d_i) - 1`, `d_i` the degrees of the equations.
 
 mod binomial;
+mod cell;
 mod integer;
 mod mixed;
+mod points;
 mod polyhedral;
-mod table;
+mod search;
 mod toric;
 mod total_degree;
 mod walk;

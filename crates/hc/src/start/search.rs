@@ -1,0 +1,286 @@
+//! The search for mixed cells, one support brought in after the other, on all threads.
+//!
+//! Sending the lifting of `d_k Delta` to minus infinity at stage `k` leaves the mixed cells of `A_0 .. A_k, Delta, ..`, each of which is a
+//! start for the next stage. All stages make one tree, whose subtrees are tasks.
+
+use super::cell::{Cell, Flip, Overflow, Place};
+use super::integer::Integer;
+use super::points::Points;
+use super::walk::{Scratch, Step};
+use poly::simd::{Isa, Kernel};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
+
+/// The supports in the sizes of integers that hold them, and where to go.
+pub(super) struct Space {
+    supports: Vec<Vec<Vec<i64>>>,
+    small: Option<Points<i32>>,
+    /// Made when they are needed.
+    medium: OnceLock<Option<Points<i64>>>,
+    large: OnceLock<Option<Points<i128>>>,
+    /// The lifting of each point, negated; without one the cells of the last stage are what is looked for.
+    tau: Option<Vec<i64>>,
+}
+
+impl Space {
+    /// Supports whose least exponents are zero.
+    pub(super) fn new(supports: Vec<Vec<Vec<i64>>>, tau: Option<Vec<i64>>) -> Self {
+        let small = Points::new(&supports);
+        Space { supports, small, medium: OnceLock::new(), large: OnceLock::new(), tau }
+    }
+
+    pub(super) fn small(&self) -> Option<&Points<i32>> {
+        self.small.as_ref()
+    }
+
+    pub(super) fn medium(&self) -> Option<&Points<i64>> {
+        self.medium.get_or_init(|| Points::new(&self.supports)).as_ref()
+    }
+
+    pub(super) fn large(&self) -> Option<&Points<i128>> {
+        self.large.get_or_init(|| Points::new(&self.supports)).as_ref()
+    }
+
+    /// The cell in the smallest size that holds it.
+    fn smallest<T: Integer>(&self, cell: &Cell<T>) -> Option<AnyCell> {
+        let small = self.small().and_then(|p| cell.converted(p)).map(AnyCell::Small);
+        let medium = || self.medium().and_then(|p| cell.converted(p)).map(AnyCell::Medium);
+        let large = || self.large().and_then(|p| cell.converted(p)).map(AnyCell::Large);
+        small.or_else(medium).or_else(large)
+    }
+}
+
+/// A cell in any size of integers.
+pub(super) enum AnyCell {
+    Small(Cell<i32>),
+    Medium(Cell<i64>),
+    Large(Cell<i128>),
+}
+
+/// What takes the cells that are found.
+pub(super) trait Sink: Send {
+    fn take<T: Integer>(&mut self, cell: &Cell<T>) -> Result<(), Overflow>;
+}
+
+/// What is still to be done with a cell before it is searched.
+#[derive(Clone, Copy)]
+enum Pending {
+    Nothing,
+    /// To enter its stage.
+    Enter,
+    Flip(Flip),
+}
+
+/// A subtree.
+struct Task {
+    stage: usize,
+    pending: Pending,
+    cell: AnyCell,
+}
+
+/// Cells that a task visits before it hands over what is left: about a millisecond.
+const BUDGET: usize = 1 << 12;
+
+/// Finds all cells. Which sink takes which cell, and in what order, depends on the threads.
+pub(super) fn search<S: Sink>(space: &Space, sink: impl Fn() -> S + Sync) -> Result<Vec<S>, Overflow> {
+    let state =
+        State { space, sink, isa: Isa::detect(), sinks: Mutex::new(Vec::new()), overflow: AtomicBool::new(false) };
+    let start =
+        Cell::<i64>::of_simplices(space.supports.len()).and_then(|cell| space.smallest(&cell)).ok_or(Overflow)?;
+    let first = Task { stage: 0, pending: Pending::Enter, cell: start };
+    rayon::scope(|scope| state.run(scope, first));
+    if state.overflow.into_inner() {
+        return Err(Overflow);
+    }
+    Ok(state.sinks.into_inner().unwrap_or_else(PoisonError::into_inner))
+}
+
+struct State<'a, S, F> {
+    space: &'a Space,
+    sink: F,
+    isa: Isa,
+    /// Sinks that no task has at present, as many as there are threads at most.
+    sinks: Mutex<Vec<S>>,
+    overflow: AtomicBool,
+}
+
+impl<S: Sink, F: Fn() -> S + Sync> State<'_, S, F> {
+    fn idle(&self) -> MutexGuard<'_, Vec<S>> {
+        self.sinks.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn run<'s>(&'s self, scope: &rayon::Scope<'s>, task: Task) {
+        if self.overflow.load(Ordering::Relaxed) {
+            return;
+        }
+        let idle = self.idle().pop();
+        let mut sink = idle.unwrap_or_else(&self.sink);
+        let Task { stage, pending, cell } = task;
+        let handed = match cell {
+            AnyCell::Small(cell) => Subtree::run(self.isa, self.space, stage, pending, cell, &mut sink),
+            AnyCell::Medium(cell) => Subtree::run(self.isa, self.space, stage, pending, cell, &mut sink),
+            AnyCell::Large(cell) => Subtree::run(self.isa, self.space, stage, pending, cell, &mut sink),
+        };
+        self.idle().push(sink);
+        match handed {
+            Ok(tasks) => tasks.into_iter().for_each(|task| scope.spawn(move |scope| self.run(scope, task))),
+            Err(Overflow) => self.overflow.store(true, Ordering::Relaxed),
+        }
+    }
+}
+
+/// A task in one size of integers.
+struct Subtree<'a, T, S> {
+    space: &'a Space,
+    points: &'a Points<T>,
+    stage: usize,
+    cell: Cell<T>,
+    sink: &'a mut S,
+    scratch: Scratch<T>,
+    /// Cells still to be visited, and memory for more.
+    stack: Vec<(usize, Cell<T>)>,
+    spare: Vec<Cell<T>>,
+    handed: Vec<Task>,
+}
+
+impl<'a, T: Integer, S: Sink> Subtree<'a, T, S> {
+    fn run(
+        isa: Isa,
+        space: &'a Space,
+        stage: usize,
+        pending: Pending,
+        cell: Cell<T>,
+        sink: &'a mut S,
+    ) -> Result<Vec<Task>, Overflow> {
+        let points = T::points(space).ok_or(Overflow)?;
+        let scratch = Scratch::new(points);
+        let (stack, spare, handed) = (Vec::new(), Vec::new(), Vec::new());
+        isa.run(Search { tree: Subtree { space, points, stage, cell, sink, scratch, stack, spare, handed }, pending })
+    }
+
+    /// Hands the current cell over to a task in larger integers.
+    fn promote(&mut self, pending: Pending) -> Result<(), Overflow> {
+        if T::LAST {
+            return Err(Overflow);
+        }
+        let points = T::Next::points(self.space).ok_or(Overflow)?;
+        let cell = T::Next::any(self.cell.converted(points).ok_or(Overflow)?);
+        self.handed.push(Task { stage: self.stage, pending, cell });
+        Ok(())
+    }
+
+    /// Puts the second child on the stack.
+    #[inline(always)]
+    fn push(&mut self, flip: Flip) -> Result<(), Overflow> {
+        let mut other = match self.spare.pop() {
+            Some(mut cell) => {
+                cell.assign(&self.cell);
+                cell
+            }
+            None => self.cell.clone(),
+        };
+        if other.flip(self.points, flip, &self.scratch.circuit).is_err() {
+            self.spare.push(other);
+            return self.promote(Pending::Flip(flip));
+        }
+        self.stack.push((self.stage, other));
+        Ok(())
+    }
+
+    /// Enters the stage; whether the cell is still this task's.
+    fn enter(&mut self) -> Result<bool, Overflow> {
+        if self.cell.enter(self.points, self.stage).is_err() {
+            self.promote(Pending::Enter)?;
+            return Ok(false);
+        }
+        Ok(true)
+    }
+
+    /// One cell onwards; whether there is one.
+    #[inline(always)]
+    fn step(&mut self) -> Result<bool, Overflow> {
+        let n = self.points.n;
+        let found = match &self.space.tau {
+            Some(tau) if self.stage == n => self.scratch.lift(self.points, tau, &self.cell),
+            _ => self.scratch.regenerate(self.points, self.stage, &self.cell),
+        };
+        match found {
+            Err(Overflow) => self.promote(Pending::Nothing)?,
+            Ok(Step::Arrived) if self.stage == n => self.sink.take(&self.cell)?,
+            Ok(Step::Arrived) => {
+                self.cell.leave(self.points, self.stage);
+                self.stage += 1;
+                if self.stage < n {
+                    if self.enter()? {
+                        return Ok(true);
+                    }
+                } else if self.space.tau.is_some() {
+                    return Ok(true);
+                } else {
+                    self.sink.take(&self.cell)?;
+                }
+            }
+            Ok(Step::Ends { column, children: [first, second] }) => {
+                if second {
+                    let flip = Flip { place: Place::Second, column };
+                    if first {
+                        self.push(flip)?;
+                    } else if self.cell.flip(self.points, flip, &self.scratch.circuit).is_ok() {
+                        return Ok(true);
+                    } else {
+                        self.promote(Pending::Flip(flip))?;
+                    }
+                }
+                if first {
+                    let flip = Flip { place: Place::First, column };
+                    if self.cell.flip(self.points, flip, &self.scratch.circuit).is_ok() {
+                        return Ok(true);
+                    }
+                    self.promote(Pending::Flip(flip))?;
+                }
+            }
+        }
+        let Some((stage, cell)) = self.stack.pop() else { return Ok(false) };
+        self.stage = stage;
+        self.spare.push(std::mem::replace(&mut self.cell, cell));
+        Ok(true)
+    }
+}
+
+struct Search<'a, T, S> {
+    tree: Subtree<'a, T, S>,
+    pending: Pending,
+}
+
+impl<T: Integer, S: Sink> Kernel for Search<'_, T, S> {
+    type Output = Result<Vec<Task>, Overflow>;
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        let mut tree = self.tree;
+        let mut more = match self.pending {
+            Pending::Nothing => true,
+            Pending::Enter => tree.enter()?,
+            Pending::Flip(flip) => {
+                tree.cell.circuit(tree.points, tree.stage, flip.column, 0, &mut tree.scratch.circuit);
+                let done = tree.cell.flip(tree.points, flip, &tree.scratch.circuit).is_ok();
+                if !done {
+                    tree.promote(self.pending)?;
+                }
+                done
+            }
+        };
+        let mut budget = BUDGET;
+        while more && budget > 0 {
+            more = tree.step()?;
+            budget -= 1;
+        }
+        if more {
+            tree.stack.push((tree.stage, tree.cell));
+        }
+        let left =
+            tree.stack.into_iter().map(|(stage, cell)| Task { stage, pending: Pending::Nothing, cell: T::any(cell) });
+        tree.handed.extend(left);
+        Ok(tree.handed)
+    }
+}
