@@ -62,27 +62,126 @@ fn chandra(n: usize) -> Vec<Support> {
     (0..n).map(equation).collect()
 }
 
+/// `sum over i < n/2 of x_i y_i^k = c_k`, `k = 0 .. n - 1`.
+fn gaukwa(half: usize) -> Vec<Support> {
+    let n = 2 * half;
+    let term = |i: usize, k: usize| units(n, &[vec![i], vec![half + i; k]].concat());
+    (0..n).map(|k| support((0..half).map(|i| term(i, k)).chain([vec![0; n]]))).collect()
+}
+
+/// `sum over i of (-1)^(i+1) x_i^(k+1) = 1/2`, `k = 1 .. n`.
+fn reimer(n: usize) -> Vec<Support> {
+    (1..=n).map(|k| support((0..n).map(|i| units(n, &vec![i; k + 1])).chain([vec![0; n]]))).collect()
+}
+
+/// Cyclic roots with the last coordinate one.
+fn reduced_cyclic(n: usize) -> Vec<Support> {
+    cyclic(n)[..n - 1].iter().map(|s| support(s.iter().map(|p| p[..n - 1].to_vec()))).collect()
+}
+
+/// `n` players with two strategies each: equation `i` is linear in every unknown but its own, which it lacks.
+fn game(n: usize) -> Vec<Support> {
+    let subset = |bits: usize| (0..n).map(|j| (bits >> j & 1) as i32).collect::<Vec<_>>();
+    (0..n).map(|i| support((0..1 << n).filter(|bits| bits >> i & 1 == 0).map(subset))).collect()
+}
+
+/// Distances between neighbours and second neighbours in a ring of eight atoms, the first three in a frame, and two linear equations.
+fn ring_of_eight() -> Vec<Support> {
+    let n = 17;
+    let unknown = |atom: usize, axis: usize| match (atom, axis) {
+        (0 | 1, _) | (2, 2) => None,
+        (2, axis) => Some(axis),
+        (atom, axis) => Some(3 * atom - 7 + axis),
+    };
+    let distance = |a: usize, b: usize| {
+        let axis = |axis: usize| {
+            let own: Vec<usize> = [a, b].into_iter().filter_map(|atom| unknown(atom, axis)).collect();
+            let linear = own.iter().map(|&i| units(n, &[i])).collect::<Vec<_>>();
+            let products = own.iter().flat_map(|&i| own.iter().map(move |&j| units(n, &[i, j])));
+            linear.into_iter().chain(products.collect::<Vec<_>>())
+        };
+        support((0..3).flat_map(axis).chain([vec![0; n]]))
+    };
+    let mut system: Vec<Support> = (1..8).map(|i| distance(i, (i + 1) % 8)).collect();
+    system.extend((0..8).map(|i| distance(i, (i + 2) % 8)));
+    system.extend(vec![support((0..n).map(|i| units(n, &[i])).chain([vec![0; n]])); 2]);
+    system
+}
+
+fn with_origin(system: Vec<Support>) -> Vec<Support> {
+    let n = system.len();
+    system.into_iter().map(|s| support(s.into_iter().chain([vec![0; n]]))).collect()
+}
+
 fn volume(system: &[Support]) -> u64 {
     mixed_volume(system.len(), system).unwrap().volume
 }
 
-/// Roots of cyclic-n counted by mixed volume: 5, 6, 7, 8 as in the literature (Emiris & Canny 1995; Verschelde's PHCpack).
+/// Roots of cyclic-n counted by mixed volume, 5 to 11, as in the literature (Emiris & Canny 1995; Verschelde's PHCpack; Li & Li 2001).
 #[test]
 fn cyclic_roots() {
-    assert_eq!([5, 6, 7, 8].map(|n| volume(&cyclic(n))), [70, 156, 924, 2560]);
+    let expected = [70, 156, 924, 2560, 11016, 35940, 184756];
+    assert_eq!([5, 6, 7, 8, 9, 10, 11].map(|n| volume(&cyclic(n))), expected);
+    // The roots come in orbits of n.
+    assert_eq!([5, 6, 7, 8].map(|n| volume(&reduced_cyclic(n))), [14, 26, 132, 320]);
 }
 
 #[test]
 fn families_with_formulas() {
-    assert_eq!([3, 4, 5].map(|n| volume(&noon(n))), [21, 73, 233]); // 3^n - 2n
-    assert_eq!([5, 6, 7, 8].map(|n| volume(&eco(n))), [8, 16, 32, 64]); // 2^(n-2)
+    for n in 3..=10 {
+        assert_eq!(volume(&noon(n)), 3u64.pow(n as u32) - 2 * n as u64);
+    }
+    for n in 5..=14 {
+        assert_eq!(volume(&eco(n)), 1 << (n - 2));
+    }
+    for n in 4..=10 {
+        assert_eq!(volume(&chandra(n)), 1 << (n - 1));
+    }
+    for half in 2..=5 {
+        assert_eq!(volume(&gaukwa(half)), (2 * half as u64 + 1).pow(half as u32 - 1));
+    }
+    for n in 2..=5 {
+        assert_eq!(volume(&reimer(n)), (2..=n as u64 + 1).product::<u64>()); // Bezout's number
+    }
+    // Permutations without a fixed point.
+    assert_eq!([4, 5, 6, 7].map(|n| volume(&game(n))), [9, 44, 265, 1854]);
     // All 2^n roots, some of them with zero coordinates, which count where the origin belongs to every support (Li & Wang 1996).
-    let with_origin = |system: Vec<Support>| -> Vec<Support> {
-        system.into_iter().map(|s| support(s.into_iter().chain([vec![0; 6]]))).collect()
+    for n in 5..=10 {
+        assert_eq!(volume(&with_origin(katsura(n))), 1 << n);
+    }
+    assert_eq!([5, 8, 10, 14].map(|n| volume(&katsura(n))), [30, 240, 990, 16254]); // in the torus: gfan_mixedvolume 0.6.2
+}
+
+/// Seventeen unknowns and liftings of 20 bits: integers far beyond 32 bits.
+#[test]
+fn a_ring_of_eight_atoms_with_large_liftings() {
+    let system = ring_of_eight();
+    let mut state = 1u64;
+    let mut lift = || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        ((state >> 43) as i32) - (1 << 20)
     };
-    assert_eq!(volume(&with_origin(katsura(5))), 32);
-    assert_eq!([5, 8].map(|n| volume(&katsura(n))), [30, 240]); // in the torus: gfan_mixedvolume 0.6.2
-    assert_eq!([4, 5, 6].map(|n| volume(&chandra(n))), [8, 16, 32]); // 2^(n-1)
+    let lifting: Vec<Vec<i32>> = system.iter().map(|s| s.iter().map(|_| lift()).collect()).collect();
+    let cells = mixed_cells(17, &system, &lifting).unwrap();
+    assert_eq!(cells.iter().map(|c| c.volume).sum::<u64>(), 1 << 15);
+    check_normals(&system, &lifting, &cells);
+}
+
+#[test]
+fn threads_do_not_change_the_cells() {
+    let system = cyclic(8);
+    let lifting: Vec<Vec<i32>> = system
+        .iter()
+        .enumerate()
+        .map(|(i, s)| (0..s.len()).map(|p| (7919 * (i * 11 + p) % 1009) as i32).collect())
+        .collect();
+    let on = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| mixed_cells(8, &system, &lifting).unwrap())
+    };
+    let cells = on(1);
+    assert_eq!(cells.iter().map(|c| c.volume).sum::<u64>(), 2560);
+    assert!(on(4) == cells);
 }
 
 /// Cells of a small pair of supports for two liftings (tests of MixedSubdivisions.jl).
@@ -257,10 +356,28 @@ proptest! {
     }
 }
 
-/// Exponents 100 times as large make the volume 100^5 times as large, beyond the small integers.
+/// Exponents `s` times as large change no sign, so that there are the same cells, `s^n` times as large, in integers that need
+/// up to 128 bits.
 #[test]
 fn large_exponents_need_large_integers() {
-    let scaled: Vec<Support> =
-        cyclic(5).iter().map(|a| a.iter().map(|p| p.iter().map(|e| 100 * e).collect()).collect()).collect();
-    assert_eq!(volume(&scaled), 70 * 100u64.pow(5));
+    for (n, s) in [(5, 2), (5, 100), (5, 3000), (7, 7), (7, 150)] {
+        let scaled: Vec<Support> =
+            cyclic(n).iter().map(|a| a.iter().map(|p| p.iter().map(|e| s * e).collect()).collect()).collect();
+        let (found, plain) = (mixed_volume(n, &scaled).unwrap(), mixed_volume(n, &cyclic(n)).unwrap());
+        assert_eq!(found.volume, plain.volume * (s as u64).pow(n as u32));
+        assert_eq!(found.cells, plain.cells);
+    }
+}
+
+/// Two segments: the determinant of their directions, here `N^2 + 1`, with entries beyond what 64 bits allow.
+#[test]
+fn segments_as_long_as_can_be() {
+    let long = 2_000_000_000;
+    let segments = [vec![vec![long, 1], vec![0, 0]], vec![vec![0, long], vec![1, 0]]];
+    assert_eq!(volume(&segments), 4_000_000_000_000_000_001);
+    let found = mixed_cells(2, &segments, &[vec![i32::MAX, i32::MIN], vec![5, i32::MAX]]).unwrap();
+    assert_eq!(found.iter().map(|c| c.volume).collect::<Vec<_>>(), [4_000_000_000_000_000_001]);
+    // Three of them: the volume does not fit.
+    let axis = |i: usize| vec![vec![0, 0, 0], (0..3).map(|j| if i == j { long } else { 0 }).collect()];
+    assert_eq!(mixed_volume(3, &[axis(0), axis(1), axis(2)]), Err(hc::start::MixedError::TooLarge));
 }

@@ -201,7 +201,10 @@ fn unusable_systems_are_refused() {
     assert_eq!(error("1\nx + y - 1;"), SolveError::Underdetermined { equations: 1, unknowns: 2 });
     assert_eq!(error("1\n5;"), SolveError::Constant(1));
     assert_eq!(error("1\n1.0E999*x - 1;"), SolveError::Coefficient(1));
-    assert_eq!(error("2\nx^2000000000*y-1;\ny^2000000000-x;"), SolveError::Mixed(MixedError::TooLarge));
+    let long = "3\nx^2000000000*y-1;\ny^2000000000-x;\nz^2000000000-x;";
+    assert_eq!(error(long), SolveError::Mixed(MixedError::TooLarge));
+    let many = error("2\nx^2000000000*y-1;\ny^2000000000-x;");
+    assert!(matches!(many, SolveError::TooManyPaths { paths, .. } if paths > 1 << 61), "{many:?}");
     assert!(matches!(error("2\nx^40000-1;\ny^40000*x-1;"), SolveError::TooManyPaths { limit, .. } if limit == 1 << 24));
     let mut options = options(0);
     options.start = Start::TotalDegree;

@@ -59,9 +59,9 @@ impl<T: Integer> Cell<T> {
         &self.duals[j * self.width..(j + 1) * self.width]
     }
 
-    /// The volume or the largest entry of a dual.
-    pub(super) fn largest(&self) -> T {
-        self.bounds.iter().copied().fold(self.volume, T::max)
+    /// The largest entry of a dual.
+    pub(super) fn largest_dual(&self) -> T {
+        self.bounds.iter().copied().fold(T::default(), T::max)
     }
 
     /// Makes this cell a copy of another of the same size, without allocation.

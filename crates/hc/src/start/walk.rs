@@ -126,10 +126,13 @@ impl<T: Integer> Scratch<T> {
         let differences =
             (0..n).map(|j| i128::from(tau_of(j, cell.pairs[j][0])) - i128::from(tau_of(j, cell.pairs[j][1])));
         let highest = tau.iter().map(|t| t.unsigned_abs()).max().unwrap_or(0);
-        // Every inner product with the direction is a sum of inner products below HALF.
-        let reach = differences.clone().try_fold(0u128, |sum, d| sum.checked_add(d.unsigned_abs()));
-        let reach = reach.and_then(|r| r.checked_add(2 * u128::from(highest))).ok_or(Overflow)?;
-        if reach.checked_mul(cell.largest().wide().unsigned_abs()).is_none_or(|r| r >= T::HALF / points.reach) {
+        // Inner products with the direction are sums of multiples of inner products with duals; volumes come beside them.
+        let spread = differences.clone().try_fold(0u128, |sum, d| sum.checked_add(d.unsigned_abs()));
+        let slopes =
+            spread.and_then(|s| s.checked_mul(points.reach)?.checked_mul(cell.largest_dual().wide().unsigned_abs()));
+        let rises = (2 * u128::from(highest)).checked_mul(cell.volume.wide().unsigned_abs());
+        let largest = slopes.zip(rises).and_then(|(s, r)| s.checked_add(r));
+        if largest.is_none_or(|largest| largest >= T::HALF) {
             return Err(Overflow);
         }
         self.direction.fill(zero);
