@@ -96,6 +96,28 @@ fn lists_of_points_are_read_in_the_order_of_the_unknowns() {
 }
 
 #[test]
+fn lists_of_phcpack_are_read() {
+    let folder = Folder::new();
+    let system = folder.write("system.phc", SYSTEM);
+    // Two solutions in the form in which `phc -b` writes them, unknowns in another order.
+    let solution = |k: usize, x: &str, y: &str| {
+        format!(
+            "solution {k} :\nt :  1.00000000000000E+00   0.00000000000000E+00\nm : 1\nthe solution for t :\n y : {y}\n x : {x}\n\
+             == err :  1.234E-16 = rco :  1.111E-01 = res :  2.220E-16 =\n"
+        )
+    };
+    let list = format!(
+        "2\n the system once more;\n\nTHE SOLUTIONS :\n2 2\n{}\n{}{}",
+        "=".repeat(75),
+        solution(1, "2.00000000000000E+00  1.0E-30", "4.00000000000000E+00  0.00000000000000E+00"),
+        solution(2, "-1.00000000000000E+00  0.0E+00", "-2.00000000000000E+00  0.00000000000000E+00")
+    );
+    let proved = report(&hc(&["certify", "--json", "-"], &[&system, &folder.write("solutions", &list)]));
+    assert_eq!((&proved["certified"], &proved["distinct"], &proved["real"]), (&json!(2), &json!(2), &json!(2)));
+    assert_eq!(proved["solutions"][0]["value"], json!([[2.0, 0.0], [4.0, 0.0]]));
+}
+
+#[test]
 fn unusable_input_is_told_apart_from_failure() {
     let folder = Folder::new();
     let system = folder.write("system.phc", SYSTEM);

@@ -100,6 +100,45 @@ fn relative_poses_planted_behind_five_points_are_found_on_any_number_of_threads(
     }
 }
 
+/// The common point of a double root, and roots at infinity, as in `hc solve`; regular roots are certified.
+#[test]
+fn special_members_are_solved_like_any_system() {
+    let directory = tempfile::tempdir().expect("directory");
+    let write = |name: &str, content: &str| {
+        let path = directory.path().join(name);
+        std::fs::write(&path, content).expect("written");
+        text(&path).to_owned()
+    };
+    let family = write(
+        "conics.toml",
+        "name = \"conics\"\nunknowns = [\"x\", \"y\"]\nparameters = [\"a\", \"b\", \"c\"]\n\
+         equations = [\"a*x^2 + y^2 - b\", \"x*y - c\"]",
+    );
+    let start = directory.path().join("start.json");
+    let output = run("hc", &["monodromy", &family, "--output", text(&start)]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    // A hyperbola that touches the circle twice; one that meets two lines in two points; one that crosses the circle.
+    let targets = r#"[{"parameters": [1, 2, 1]}, {"parameters": [0, 4, 3]}, {"parameters": [1, 5, [2, 0]]}]"#;
+    let arguments =
+        ["track", &family, "--start", text(&start), "--target", &write("t.json", targets), "--certify", "--json", "-"];
+    let output = run("hc", &arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let reports: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    for (report, (count, multiplicity, infinite)) in
+        reports.as_array().unwrap().iter().zip([(2, 2, 0), (2, 1, 2), (4, 1, 0)])
+    {
+        assert_eq!(report["paths"]["at_infinity"], infinite, "{report}");
+        let solutions = report["solutions"].as_array().unwrap();
+        assert_eq!(solutions.len(), count, "{report}");
+        for s in solutions {
+            assert_eq!((&s["multiplicity"], &s["real"]), (&json!(multiplicity), &json!(true)), "{report}");
+            assert_eq!((&s["singular"], &s["certified"]), (&json!(multiplicity == 2), &json!(multiplicity == 1)));
+        }
+    }
+    assert!(has(&reports[0], &[1.0, 1.0], 1e-8) && has(&reports[0], &[-1.0, -1.0], 1e-8));
+    assert!(has(&reports[1], &[1.5, 2.0], 1e-12) && has(&reports[2], &[2.0, 1.0], 1e-12));
+}
+
 #[test]
 fn unusable_input_is_named() {
     let directory = tempfile::tempdir().expect("directory");

@@ -1,12 +1,12 @@
 //! `hc certify`, and `--certify` of `hc solve`.
 
-use crate::family::{Failure, read_text};
-use crate::input;
+use crate::{input, points};
+use cli::{Failure, output};
 use hc::certify::{Certificate, Certificates, CertifyOptions, Obstacle, Reality, certify};
-use hc::poly::{ComplexInterval, System, parse::phcpack};
+use hc::poly::{ComplexInterval, System};
 use hc::solve::Solution;
 use num_complex::Complex64;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -18,7 +18,8 @@ use std::time::Instant;
 pub(crate) struct Arguments {
     /// The system, in PHCpack's format.
     system: PathBuf,
-    /// The solutions: what `hc solve --json` writes, or a list of points, [[number or [re, im], ...], ...].
+    /// The solutions: what `hc solve --json` writes, a list of points [[number or [re, im], ...], ...], or a list of solutions in
+    /// PHCpack's format, such as `phc -b` appends to its output.
     solutions: PathBuf,
     /// Write the result as JSON to this file, `-` for standard output.
     #[arg(long, value_name = "OUT")]
@@ -29,31 +30,6 @@ pub(crate) struct Arguments {
     /// Accepted everywhere; certification draws no random numbers.
     #[arg(long, default_value_t = 0)]
     seed: u64,
-}
-
-#[derive(Deserialize)]
-#[serde(untagged)]
-enum Number {
-    Real(f64),
-    Complex([f64; 2]),
-}
-
-#[derive(Deserialize)]
-struct Solved {
-    variables: Option<Vec<String>>,
-    solutions: Vec<Entry>,
-}
-
-#[derive(Deserialize)]
-struct Entry {
-    value: Vec<Number>,
-}
-
-#[derive(Deserialize)]
-#[serde(untagged)]
-enum Points {
-    Solved(Solved),
-    List(Vec<Vec<Number>>),
 }
 
 #[derive(Serialize)]
@@ -87,16 +63,15 @@ struct Point {
     reason: Option<String>,
 }
 
-pub(crate) fn run(arguments: &Arguments) -> Result<bool, Failure> {
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let start = Instant::now();
     let file = &arguments.system;
-    let system = phcpack(&read_text(file)?).map_err(|e| Failure::unusable(file, e))?;
-    let points = read_points(&arguments.solutions, &system)?;
-    let found = input::on_threads(arguments.threads, || certify(&system, &[], &points, &CertifyOptions::default()))
-        .map_err(Failure::Unusable)?
-        .map_err(|e| Failure::unusable(file, e))?;
+    let system = input::system(file)?;
+    let points = points::read(&arguments.solutions, &system)?;
+    let found = cli::on_threads(arguments.threads, || certify(&system, &[], &points, &CertifyOptions::default()))?
+        .map_err(|e| Failure::in_file(file, e))?;
     let solutions = found.points.iter().zip(&found.duplicate_of).zip(&points);
-    let output = Output {
+    let report = Output {
         variables: system.variables(),
         seed: arguments.seed,
         seconds: start.elapsed().as_secs_f64(),
@@ -108,46 +83,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<bool, Failure> {
         solutions: solutions.map(|((result, &duplicate), point)| entry(result, duplicate, point)).collect(),
     };
     if arguments.json.as_deref().is_none_or(|out| out.as_os_str() != "-") {
-        print!("{}", summary(&found));
+        output::print(&summary(&found))?;
     }
     if let Some(out) = &arguments.json {
-        input::write_json(out, &output).map_err(Failure::Unusable)?;
+        output::json(out, &report)?;
     }
-    Ok(found.complete())
-}
-
-/// The points, their coordinates in the order of the system's unknowns.
-fn read_points(file: &std::path::Path, system: &System) -> Result<Vec<Vec<Complex64>>, Failure> {
-    let text = read_text(file)?;
-    let expected = "expected the JSON of `hc solve` or [[number or [re, im], ...], ...]";
-    let points: Points =
-        serde_json::from_str(&text).map_err(|e| Failure::unusable(file, format!("{e}; {expected}")))?;
-    let unknowns = system.variables();
-    let (names, points) = match points {
-        Points::List(points) => (None, points),
-        Points::Solved(solved) => (solved.variables, solved.solutions.into_iter().map(|s| s.value).collect()),
-    };
-    let names = names.unwrap_or_else(|| unknowns.to_vec());
-    // Where the coordinate of each unknown stands in the file.
-    let places: Option<Vec<usize>> = unknowns.iter().map(|u| names.iter().position(|n| n == u)).collect();
-    let Some(places) = places.filter(|_| names.len() == unknowns.len()) else {
-        let message = format!("its variables are {}, those of the system {}", names.join(" "), unknowns.join(" "));
-        return Err(Failure::unusable(file, message));
-    };
-    let mut ordered = Vec::with_capacity(points.len());
-    for (k, point) in points.iter().enumerate() {
-        if point.len() != unknowns.len() {
-            let message =
-                format!("point {} has {} coordinates, the system has {} unknowns", k + 1, point.len(), unknowns.len());
-            return Err(Failure::unusable(file, message));
-        }
-        let number = |&place: &usize| match point[place] {
-            Number::Real(re) => Complex64::new(re, 0.0),
-            Number::Complex([re, im]) => Complex64::new(re, im),
-        };
-        ordered.push(places.iter().map(number).collect());
+    if found.complete() {
+        return Ok(());
     }
-    Ok(ordered)
+    let without = points.len() - found.certified();
+    let message = format!("{without} points without certificate, {} pairs not told apart", found.unseparated.len());
+    Err(Failure::Undetermined(message))
 }
 
 fn entry(result: &Result<Certificate, Obstacle>, duplicate_of: Option<usize>, point: &[Complex64]) -> Point {
@@ -199,11 +145,11 @@ fn summary(found: &Certificates) -> String {
     text
 }
 
-/// Says of each solution whether it is certified as one of its own, and whether it is real where that is proved.
-pub(crate) fn fill(system: &System, solutions: &mut [Solution]) -> Result<(), String> {
+/// For given parameters, says of each solution whether it is certified as one of its own, and whether it is real where that is proved.
+pub(crate) fn fill(system: &System, parameters: &[ComplexInterval], solutions: &mut [Solution]) -> Result<(), String> {
     let point = |s: &Solution| s.value.iter().map(|&[re, im]| Complex64::new(re, im)).collect();
     let points: Vec<Vec<Complex64>> = solutions.iter().map(point).collect();
-    let found = certify(system, &[], &points, &CertifyOptions::default()).map_err(|e| e.to_string())?;
+    let found = certify(system, parameters, &points, &CertifyOptions::default()).map_err(|e| e.to_string())?;
     for (k, solution) in solutions.iter_mut().enumerate() {
         let unseparated = found.unseparated.iter().any(|pair| pair.contains(&k));
         let proof = found.points[k].as_ref().ok().filter(|_| found.duplicate_of[k].is_none() && !unseparated);

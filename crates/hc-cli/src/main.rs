@@ -5,16 +5,19 @@ mod family;
 mod input;
 mod mixed_volume;
 mod monodromy;
+mod points;
+mod report;
 mod solve;
 mod track;
+mod watch;
 
 use clap::{Parser, Subcommand};
-use family::Failure;
 use std::process::ExitCode;
 
 /// Homotopy continuation: all isolated solutions of polynomial systems and of parameter families.
 ///
-/// Exit status: 0 success, 1 no solution or an incomplete result, 2 unusable input or arguments.
+/// Exit status: 0 success, 1 no solution or an incomplete result, 2 unusable input or arguments, 130
+/// interrupted (the result is partial and says so).
 #[derive(Parser)]
 #[command(name = "hc", version, arg_required_else_help = true)]
 struct Arguments {
@@ -33,37 +36,22 @@ enum Command {
 
 fn main() -> ExitCode {
     // clap ends the program itself, with status 2, if the arguments are wrong.
-    let (message, status) = match Arguments::parse().command {
-        Command::Certify(arguments) => match certify::run(&arguments) {
-            Ok(true) => return ExitCode::SUCCESS,
-            Ok(false) => return ExitCode::from(1),
-            Err(failure) => described(failure),
-        },
-        Command::MixedVolume(arguments) => match mixed_volume::run(&arguments) {
-            Ok(()) => return ExitCode::SUCCESS,
-            Err(message) => (message, 2),
-        },
-        Command::Solve(arguments) => match solve::run(&arguments) {
-            Ok(true) => return ExitCode::SUCCESS,
-            Ok(false) => return ExitCode::from(1),
-            Err(message) => (message, 2),
-        },
-        Command::Monodromy(arguments) => match monodromy::run(&arguments) {
-            Ok(()) => return ExitCode::SUCCESS,
-            Err(failure) => described(failure),
-        },
-        Command::Track(arguments) => match track::run(&arguments) {
-            Ok(()) => return ExitCode::SUCCESS,
-            Err(failure) => described(failure),
-        },
+    let result = match Arguments::parse().command {
+        Command::Certify(arguments) => certify::run(&arguments),
+        Command::MixedVolume(arguments) => mixed_volume::run(&arguments),
+        Command::Monodromy(arguments) => monodromy::run(&arguments),
+        Command::Solve(arguments) => solve::run(&arguments),
+        Command::Track(arguments) => track::run(&arguments),
     };
-    eprintln!("hc: {message}");
-    ExitCode::from(status)
+    cli::finish("hc", result, "the result is partial")
 }
 
-fn described(failure: Failure) -> (String, u8) {
-    match failure {
-        Failure::Incomplete(message) => (message, 1),
-        Failure::Unusable(message) => (message, 2),
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_arguments_are_consistent() {
+        super::Arguments::command().debug_assert();
     }
 }

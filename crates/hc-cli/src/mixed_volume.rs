@@ -1,12 +1,17 @@
 //! `hc mixed-volume`.
 
-use crate::input;
+use crate::{input, watch};
+use cli::{Failure, output};
+use hc::monitor::Monitor;
 use hc::poly::Polynomial;
+use hc::start::{MixedError, watched_mixed_volume};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// The mixed volume of a system: how many solutions without zero coordinates it has for generic coefficients.
+///
+/// Interrupted, it gives the volume of the cells found so far, marked as partial, with exit status 130.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The system, in PHCpack's format.
@@ -17,26 +22,45 @@ pub(crate) struct Arguments {
     /// Threads; all processors by default. The result does not depend on it.
     #[arg(long)]
     threads: Option<usize>,
+    /// Accepted everywhere; mixed volumes draw no random numbers.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
 }
 
 #[derive(Serialize)]
 struct Output {
+    /// Where partial: a lower bound.
     mixed_volume: u64,
-    cells: usize,
+    cells: u64,
+    seed: u64,
     seconds: f64,
+    partial: bool,
 }
 
-pub(crate) fn run(arguments: &Arguments) -> Result<(), String> {
-    let (system, polynomials) = input::system(&arguments.file)?;
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let (system, polynomials) = input::polynomials(&arguments.file)?;
     let supports: Vec<Vec<Vec<i32>>> = polynomials.iter().map(Polynomial::support).collect();
     let unknowns = system.variables().len();
     let start = Instant::now();
-    let found = input::on_threads(arguments.threads, || hc::start::mixed_volume(unknowns, &supports))?
-        .map_err(|e| format!("{}: {e}", arguments.file.display()))?;
+    let monitor = Monitor::watched();
+    let found = watch::watched(arguments.threads, &monitor, watch::stages, || {
+        watched_mixed_volume(unknowns, &supports, &monitor)
+    })?;
+    let (mixed_volume, cells, partial) = match found {
+        Ok(found) => (found.volume, found.cells as u64, false),
+        Err(MixedError::Cancelled) => {
+            let so_far = monitor.progress();
+            (so_far.counted, so_far.done, true)
+        }
+        Err(error) => return Err(Failure::in_file(&arguments.file, error)),
+    };
     let seconds = start.elapsed().as_secs_f64();
-    let output = Output { mixed_volume: found.volume, cells: found.cells, seconds };
     if arguments.json.as_deref() != Some(Path::new("-")) {
-        println!("mixed volume {}, {} mixed cells, {seconds:.3} s", output.mixed_volume, output.cells);
+        let least = if partial { "partial result: at least " } else { "" };
+        output::print(&format!("{least}mixed volume {mixed_volume}, {cells} mixed cells, {seconds:.3} s\n"))?;
     }
-    arguments.json.as_deref().map_or(Ok(()), |out| input::write_json(out, &output))
+    if let Some(out) = &arguments.json {
+        output::json(out, &Output { mixed_volume, cells, seed: arguments.seed, seconds, partial })?;
+    }
+    if partial { Err(Failure::Interrupted) } else { Ok(()) }
 }

@@ -1,10 +1,9 @@
 //! `hc monodromy`.
 
-use crate::family::{Failure, Problem, read_text, write};
-use hc::fibre::Fibre;
+use crate::family::Problem;
+use cli::{Failure, output};
 use hc::monodromy::{MonodromyOptions, Stop, monodromy};
 use hc::pair::find_pair;
-use hc::poly::Evaluate;
 use hc::start_file::StartFile;
 use hc::trace::trace_test;
 use std::path::PathBuf;
@@ -32,16 +31,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let problem = Problem::read(&arguments.family)?;
     let accept = |p: &[num_complex::Complex64], x: &[num_complex::Complex64]| problem.accepts(p, x);
     let start = match &arguments.seed_pair {
-        Some(path) => {
-            let file = StartFile::from_json(&read_text(path)?).map_err(|e| Failure::unusable(path, e))?;
-            let fibre = file.fibre().map_err(|e| Failure::unusable(path, e))?;
-            fits(&problem, &fibre).map_err(|e| Failure::unusable(path, e))?;
-            fibre
-        }
+        Some(path) => problem.fibre(path)?,
         None => find_pair(&problem.family.system, accept, arguments.seed)
-            .map_err(|e| Failure::unusable(&arguments.family, e))?
+            .map_err(|e| Failure::in_file(&arguments.family, e))?
             .ok_or_else(|| {
-                Failure::Incomplete(
+                Failure::Undetermined(
                     "no regular solution was found for any parameters; give one with --seed-pair".to_string(),
                 )
             })?,
@@ -58,13 +52,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut deviation = None;
     if !arguments.no_trace && stopped != "roots reached" {
         let test = trace_test(&problem.family.system, &found.fibre, &options)
-            .map_err(|e| Failure::unusable(&arguments.family, e))?;
+            .map_err(|e| Failure::in_file(&arguments.family, e))?;
         deviation = Some(test.deviation);
         if test.passed(count) {
             stopped = "trace";
         }
     }
-    write(&arguments.output, &StartFile::new(&found.fibre, deviation, stopped).to_json())?;
+    let text = StartFile::new(&found.fibre, deviation, stopped).to_json();
+    match arguments.output.to_str() {
+        Some("-") => output::print(&text)?,
+        _ => output::write(&arguments.output, text.as_bytes())?,
+    }
     let trace = deviation.map_or(String::new(), |d| format!(", trace test {d:.1e}"));
     eprintln!(
         "{}: {count} solutions after {} loops and {} paths; stopped: {stopped}{trace}",
@@ -72,24 +70,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     );
     match problem.family.roots {
         Some(roots) if roots != count => {
-            Err(Failure::Incomplete(format!("{count} solutions were found, the family states {roots}")))
+            Err(Failure::Undetermined(format!("{count} solutions were found, the family states {roots}")))
         }
-        None if stopped == "no progress" => Err(Failure::Incomplete(
+        None if stopped == "no progress" => Err(Failure::Undetermined(
             "neither a known number of roots nor the trace test shows that these are all".to_string(),
         )),
         _ => Ok(()),
     }
-}
-
-/// Whether a fibre has the sizes of the family.
-pub(crate) fn fits(problem: &Problem, fibre: &Fibre) -> Result<(), String> {
-    let (parameters, unknowns) = (problem.system.parameters(), problem.system.variables());
-    if fibre.parameters.len() != parameters || fibre.dimension != unknowns {
-        return Err(format!(
-            "{} parameters and solutions of {} coordinates, but the family has {parameters} parameters and {unknowns} unknowns",
-            fibre.parameters.len(),
-            fibre.dimension
-        ));
-    }
-    Ok(())
 }

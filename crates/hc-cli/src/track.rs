@@ -1,20 +1,23 @@
 //! `hc track`.
 
-use crate::family::{Failure, Problem, read_text, write};
-use crate::monodromy::fits;
-use hc::fibre::{FibreOptions, PathCounts, track_fibre};
-use hc::refine::Refiner;
-use hc::start_file::StartFile;
-use hc::tracker::PathEnd;
+use crate::family::Problem;
+use crate::input::{self, Number};
+use crate::report::Report;
+use crate::{certify, watch};
+use cli::{Failure, output};
+use hc::fibre::Fibre;
+use hc::monitor::Monitor;
+use hc::poly::ComplexInterval;
+use hc::solve::{SolveOptions, Solved, solve_member};
 use num_complex::Complex64;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-/// Imaginary parts up to this share of the point count as zero.
-const REAL: f64 = 1e-8;
-
 /// Tracks a stored fibre of a family to one or several parameter points.
+///
+/// Interrupted, it gives the targets done so far, the last of them marked as partial, with exit status 130.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The family (TOML).
@@ -25,6 +28,10 @@ pub(crate) struct Arguments {
     /// JSON {"parameters": [number or [re, im], ...]}, or a list of such.
     #[arg(long)]
     target: PathBuf,
+    /// Prove that the solutions exist and are distinct, by interval arithmetic, for the parameters as they are in double precision.
+    /// Exit status 1 if some regular one is not certified.
+    #[arg(long)]
+    certify: bool,
     /// Threads; all cores if not given. The result does not depend on it.
     #[arg(long)]
     threads: Option<usize>,
@@ -48,135 +55,105 @@ struct Target {
     parameters: Vec<Number>,
 }
 
-#[derive(Deserialize, Clone, Copy)]
-#[serde(untagged)]
-enum Number {
-    Real(f64),
-    Complex([f64; 2]),
-}
-
-impl From<Number> for Complex64 {
-    fn from(number: Number) -> Complex64 {
-        match number {
-            Number::Real(re) => Complex64::new(re, 0.0),
-            Number::Complex([re, im]) => Complex64::new(re, im),
-        }
-    }
-}
-
-/// The JSON of one target.
-#[derive(Serialize)]
-struct Report<'a> {
-    variables: &'a [String],
-    seed: u64,
-    seconds: f64,
-    paths: PathCounts,
-    solutions: Vec<Solution>,
-}
-
-#[derive(Serialize)]
-struct Solution {
-    value: Vec<[f64; 2]>,
-    multiplicity: usize,
-    winding_number: usize,
-    singular: bool,
-    real: bool,
-    residual: f64,
-    condition: f64,
-    certified: Option<bool>,
-}
-
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let problem = Problem::read(&arguments.family)?;
-    let start = &arguments.start;
-    let file = StartFile::from_json(&read_text(start)?).map_err(|e| Failure::unusable(start, e))?;
-    let fibre = file.fibre().map_err(|e| Failure::unusable(start, e))?;
-    fits(&problem, &fibre).map_err(|e| Failure::unusable(start, e))?;
-    let targets: Targets = serde_json::from_str(&read_text(&arguments.target)?)
-        .map_err(|e| Failure::unusable(&arguments.target, format!("{e}; expected {{\"parameters\": [...]}}")))?;
-    let (targets, single) = match targets {
-        Targets::One(target) => (vec![target], true),
-        Targets::Many(targets) => (targets, false),
-    };
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(arguments.threads.unwrap_or(0))
-        .build()
-        .map_err(|e| Failure::Unusable(format!("threads cannot be started: {e}")))?;
-    let mut refiner = Refiner::new(&problem.system);
-    let mut reports = Vec::new();
-    for (k, target) in targets.iter().enumerate() {
-        let target: Vec<Complex64> = target.parameters.iter().map(|&n| n.into()).collect();
-        if target.len() != fibre.parameters.len() || target.iter().any(|z| !z.is_finite()) {
-            return Err(Failure::unusable(
-                &arguments.target,
-                format!("target {}: {} finite parameters are needed", k + 1, fibre.parameters.len()),
-            ));
+    let fibre = problem.fibre(&arguments.start)?;
+    let (targets, single) = targets(arguments, fibre.parameters.len())?;
+    let monitor = Monitor::watched();
+    let mut options = SolveOptions::default();
+    options.set_monitor(monitor.clone());
+    let current = AtomicU64::new(0);
+    let count = targets.len() as u64;
+    let describe = |p: hc::monitor::Progress| {
+        let (position, length, words) = watch::stages(p);
+        match count {
+            1 => (position, length, words),
+            _ => (current.load(Ordering::Relaxed), count, format!("targets; {position} of {length} {words}")),
         }
-        let started = Instant::now();
-        let (ends, paths) = pool.install(|| track_fibre(&problem.system, &fibre, &target, &FibreOptions::default()));
-        let regular = ends.iter().filter(|(r, _)| r.end == PathEnd::Success);
-        let solutions = regular.map(|(_, x)| solution(&mut refiner, &target, x)).collect();
-        let seconds = started.elapsed().as_secs_f64();
-        let variables = problem.family.system.variables();
-        reports.push(Report { variables, seed: arguments.seed, seconds, paths, solutions });
-    }
-    let to_text = |value: Result<String, serde_json::Error>| value.map_err(|e| Failure::Unusable(e.to_string()));
+    };
+    let solved = watch::watched(arguments.threads, &monitor, describe, || {
+        let mut solved = Vec::new();
+        for target in &targets {
+            solved.push(member(&problem, &fibre, target, &options, arguments.certify)?);
+            current.fetch_add(1, Ordering::Relaxed);
+            if monitor.is_cancelled() {
+                break;
+            }
+        }
+        Ok(solved)
+    })?;
+    let solved: Vec<(Solved, f64)> = solved.map_err(|e: String| Failure::in_file(&arguments.family, e))?;
+    let variables = problem.family.system.variables();
+    let reports: Vec<Report<'_>> =
+        solved.iter().map(|(found, seconds)| Report::new(variables, found, arguments.seed, *seconds)).collect();
     if let Some(path) = &arguments.json {
-        let text = match &reports[..] {
-            [report] if single => to_text(serde_json::to_string_pretty(report))?,
-            reports => to_text(serde_json::to_string_pretty(reports))?,
-        };
-        write(path, &(text + "\n"))?;
+        match &reports[..] {
+            [report] if single => output::json(path, report)?,
+            reports => output::json(path, &reports)?,
+        }
     }
     if arguments.json.as_ref().is_none_or(|path| path.as_os_str() != "-") {
-        let mut text = String::new();
-        for (k, report) in reports.iter().enumerate() {
-            text += &summary(k, report);
-        }
-        write(std::path::Path::new("-"), &text)?;
+        output::print(&summary(variables, &solved, &reports))?;
     }
-    let failed: usize = reports.iter().map(|r| r.paths.failed).sum();
+    if solved.len() < targets.len() || solved.iter().any(|(found, _)| found.interrupted) {
+        return Err(Failure::Interrupted);
+    }
+    let failed: usize = solved.iter().map(|(found, _)| found.paths.failed).sum();
     if failed > 0 {
-        return Err(Failure::Incomplete(format!(
-            "{failed} paths were lost or end at singular solutions: the lists are not whole"
-        )));
+        return Err(Failure::Undetermined(format!("{failed} paths were lost: the lists are not whole")));
+    }
+    let uncertified: usize = reports.iter().map(Report::uncertified).sum();
+    if uncertified > 0 {
+        return Err(Failure::Undetermined(format!("{uncertified} regular solutions are not certified")));
     }
     Ok(())
 }
 
-fn solution(refiner: &mut Refiner<'_, hc::poly::Interpreter>, target: &[Complex64], x: &[Complex64]) -> Solution {
-    let refined = refiner.refine(target, x);
-    let size = refined.point.iter().map(|z| z.norm()).fold(0.0, f64::max);
-    Solution {
-        real: refined.point.iter().all(|z| z.im.abs() <= REAL * size),
-        value: refined.point.iter().map(|z| [z.re, z.im]).collect(),
-        multiplicity: 1,
-        winding_number: 1,
-        singular: false,
-        residual: refined.residual,
-        condition: refined.condition,
-        certified: None,
+/// The targets, and whether the file is a single one rather than a list.
+fn targets(arguments: &Arguments, parameters: usize) -> Result<(Vec<Vec<Complex64>>, bool), Failure> {
+    let file = &arguments.target;
+    let targets: Targets = serde_json::from_str(&input::text(file)?)
+        .map_err(|e| Failure::in_file(file, format!("{e}; expected {{\"parameters\": [...]}}")))?;
+    let (targets, single) = match targets {
+        Targets::One(target) => (vec![target], true),
+        Targets::Many(targets) => (targets, false),
+    };
+    let targets: Vec<Vec<Complex64>> =
+        targets.into_iter().map(|t| t.parameters.into_iter().map(Complex64::from).collect()).collect();
+    let unusable = |target: &Vec<Complex64>| target.len() != parameters || target.iter().any(|z| !z.is_finite());
+    if let Some(k) = targets.iter().position(unusable) {
+        return Err(Failure::in_file(file, format!("target {}: {parameters} finite parameters are needed", k + 1)));
     }
+    Ok((targets, single))
 }
 
-fn summary(k: usize, report: &Report<'_>) -> String {
-    let real: Vec<&Solution> = report.solutions.iter().filter(|s| s.real).collect();
-    let p = &report.paths;
-    let mut text = format!(
-        "target {}: {} paths: {} finite, {} at infinity, {} failed, {} tracked again; {} real solutions, {:.3} s\n",
-        k + 1,
-        p.tracked,
-        p.finite,
-        p.at_infinity,
-        p.failed,
-        p.retracked,
-        real.len(),
-        report.seconds
-    );
-    for s in real.iter().take(20) {
-        let values: Vec<String> =
-            report.variables.iter().zip(&s.value).map(|(name, v)| format!("{name} = {:.12}", v[0])).collect();
-        text += &format!("  {}\n", values.join(", "));
+/// Solves one member, and says how many seconds that took.
+fn member(
+    problem: &Problem,
+    fibre: &Fibre,
+    target: &[Complex64],
+    options: &SolveOptions,
+    certified: bool,
+) -> Result<(Solved, f64), String> {
+    let started = Instant::now();
+    let family = &problem.family.system;
+    let mut found = solve_member(family, &problem.system, fibre, target, options);
+    if certified {
+        let parameters: Vec<ComplexInterval> = target.iter().map(|&p| ComplexInterval::point(p)).collect();
+        certify::fill(family, &parameters, &mut found.solutions)?;
+    }
+    Ok((found, started.elapsed().as_secs_f64()))
+}
+
+fn summary(variables: &[String], solved: &[(Solved, f64)], reports: &[Report<'_>]) -> String {
+    let mut text = String::new();
+    for (k, ((found, _), report)) in solved.iter().zip(reports).enumerate() {
+        text += &format!("target {}: {}", k + 1, report.summary());
+        for s in found.solutions.iter().filter(|s| s.real).take(20) {
+            let values: Vec<String> =
+                variables.iter().zip(&s.value).map(|(name, v)| format!("{name} = {:.12}", v[0])).collect();
+            text += &format!("  {}\n", values.join(", "));
+        }
     }
     text
 }

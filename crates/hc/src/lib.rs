@@ -11,6 +11,7 @@
 //! * [`fibre`]: all solutions of a family from one parameter point to another, with jumped paths found and tracked again.
 //! * [`pair`], [`monodromy`], [`trace`]: a first solution, all others from it, and the test that none is missing.
 //! * [`start_file`]: the stored form of a fibre.
+//! * [`monitor`]: progress, and stopping early.
 //! * [`certify`](mod@certify): proofs that solutions exist, are distinct, are real.
 //!
 //! Systems come from the crate [`poly`], which is re-exported: everything that implements [`poly::Evaluate`] can be tracked.
@@ -54,6 +55,7 @@ pub mod endgame;
 pub mod fibre;
 pub mod homotopy;
 pub mod linalg;
+pub mod monitor;
 pub mod monodromy;
 pub mod pair;
 pub mod random;

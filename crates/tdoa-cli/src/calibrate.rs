@@ -1,9 +1,7 @@
 //! `tdoa calibrate`.
 
-use std::cell::Cell;
-use std::io::IsTerminal;
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use tdoa::align::frame;
 use tdoa::html::html;
@@ -105,8 +103,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let cancelled = interrupt::watch()?;
     let started = Instant::now();
     let solved = crate::on_threads(arguments.threads, || {
-        let bar = Bar::new();
-        let show = |progress: Progress| bar.show(progress);
+        let bar = cli::bar::Bar::new("{bar:40} {pos} of at most {len} starts, {msg}");
+        let show = |progress: Progress| {
+            let agreeing = || format!("{} agree", progress.agreeing);
+            bar.show(progress.starts as u64, progress.max_starts as u64, agreeing);
+        };
         let control = Control { progress: Some(&show), cancelled: Some(cancelled) };
         calibrate_with(&measured, &options, &[], &control)
     })?;
@@ -248,39 +249,4 @@ fn put_in_frame(calibration: &mut Calibration, nodes: [Node; 3]) -> Result<(), F
     })?;
     calibration.transform(&map);
     Ok(())
-}
-
-/// A progress bar on a terminal, once the search takes over a second.
-struct Bar {
-    started: Instant,
-    bar: Cell<Option<indicatif::ProgressBar>>,
-}
-
-impl Bar {
-    fn new() -> Self {
-        Bar { started: Instant::now(), bar: Cell::new(None) }
-    }
-
-    fn show(&self, progress: Progress) {
-        if self.started.elapsed() < Duration::from_secs(1) || !std::io::stderr().is_terminal() {
-            return;
-        }
-        let bar = self.bar.take().unwrap_or_else(|| {
-            let bar = indicatif::ProgressBar::new(progress.max_starts as u64);
-            let style = indicatif::ProgressStyle::with_template("{bar:40} {pos} of at most {len} starts, {msg}");
-            bar.set_style(style.unwrap_or_else(|_| indicatif::ProgressStyle::default_bar()));
-            bar
-        });
-        bar.set_position(progress.starts as u64);
-        bar.set_message(format!("{} agree", progress.agreeing));
-        self.bar.set(Some(bar));
-    }
-}
-
-impl Drop for Bar {
-    fn drop(&mut self) {
-        if let Some(bar) = self.bar.take() {
-            bar.finish_and_clear();
-        }
-    }
 }

@@ -14,6 +14,7 @@ mod legs;
 mod walker;
 
 use crate::homotopy::Segment;
+use crate::monitor::{Monitor, Stage};
 use crate::refine::Refiner;
 use crate::tracker::{PathEnd, PathResult, PathSet, TrackerOptions, track};
 use legs::{Leg, Legs};
@@ -114,12 +115,18 @@ pub fn endgame<'a, E: Evaluate>(
         // Legs end at points like any others.
         endgame_start: 0.0,
         min_t: 0.0,
+        // Legs are no paths: they are not counted.
+        monitor: Monitor::default(),
         ..tracker.clone()
     };
+    tracker.monitor.enter(Stage::Endgame, walkers.len() as u64);
+    let mut undecided = walkers.len();
     let mut starts: Vec<Complex64> = Vec::new();
     loop {
         let live: Vec<usize> = (0..walkers.len()).filter(|&k| walkers[k].is_live()).collect();
-        if live.is_empty() {
+        tracker.monitor.add((undecided - live.len()) as u64, 0);
+        undecided = live.len();
+        if live.is_empty() || tracker.monitor.is_cancelled() {
             return walkers.into_iter().map(Walker::ending).collect();
         }
         let legs = Legs { segment, legs: live.iter().map(|&k| walkers[k].leg()).collect() };

@@ -42,10 +42,9 @@ pub(super) struct Classified {
     pub(super) lost: usize,
 }
 
-/// Sorts ends into solutions; `target` are the coefficients of `system`.
+/// Sorts ends into solutions; `member` is the system with its coefficients. Without it, singular ends are lost.
 pub(super) fn classify(
-    system: &SparseSystem,
-    target: &[Complex64],
+    member: Option<(&SparseSystem, &[Complex64])>,
     ends: &[End],
     excess: &Excess,
     coincidence: f64,
@@ -87,6 +86,10 @@ pub(super) fn classify(
             _ => None,
         })
         .collect();
+    let Some((system, target)) = member else {
+        out.lost += singular.len();
+        return out;
+    };
     let mut local = Local::new(system, target);
     let mut refiner = Refiner::new(system);
     for group in groups(singular.iter().enumerate().map(|(k, s)| (k, s.0)), CLUSTER) {
@@ -132,6 +135,11 @@ impl Excess {
             .then(|| Ok((SparseSystem::new(given.unknowns, &given.supports)?, given.coefficients.concat())))
             .transpose()?;
         Ok(Excess { all, torus_only })
+    }
+
+    /// Every point that is found was asked for.
+    pub(super) fn none() -> Excess {
+        Excess { all: None, torus_only: false }
     }
 
     /// Whether a point misses an equation by more than `tolerance` times the sizes of its terms, or has a zero coordinate

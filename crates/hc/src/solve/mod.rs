@@ -2,15 +2,18 @@
 
 mod classify;
 mod equations;
+mod family;
 mod paths;
 mod start;
 
 use crate::distinct::relative_distance;
 use crate::endgame::EndgameOptions;
 use crate::fibre::{FibreOptions, PathCounts};
+use crate::monitor::Monitor;
 use crate::start::MixedError;
 use classify::{Classified, Excess, classify};
 use equations::Equations;
+pub use family::solve_member;
 use num_complex::Complex64;
 use poly::{Exact, Polynomial, SupportError};
 use serde::Serialize;
@@ -65,6 +68,18 @@ impl Default for SolveOptions {
     }
 }
 
+impl SolveOptions {
+    /// Lets somebody watch, and stop, the work.
+    pub fn set_monitor(&mut self, monitor: Monitor) {
+        self.paths.tracker.monitor = monitor;
+    }
+
+    /// Who watches.
+    pub fn monitor(&self) -> &Monitor {
+        &self.paths.tracker.monitor
+    }
+}
+
 /// An isolated solution.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Solution {
@@ -101,8 +116,8 @@ pub struct Direction {
 /// What [`solve`] has found.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Solved {
-    /// The start system that was used, never [`Start::Auto`].
-    pub start: Start,
+    /// The start system that was used, never [`Start::Auto`]; `None` where paths came from a stored fibre or did not begin.
+    pub start: Option<Start>,
     /// The mixed volume of the supports, the origin included unless only the torus was asked for; `None` where it was not needed.
     pub mixed_volume: Option<u64>,
     /// How the paths ended: `finite` at solutions, singular ones and such on components and in excess included.
@@ -118,6 +133,8 @@ pub struct Solved {
     pub directions: Vec<Direction>,
     /// Start systems that were used: more than one if paths were lost.
     pub start_systems: u32,
+    /// Whether the work was cancelled: the list is then partial, and paths not tracked count as failed.
+    pub interrupted: bool,
     /// The distinct isolated solutions, regular ones first.
     pub solutions: Vec<Solution>,
 }
@@ -192,17 +209,24 @@ pub enum SolveError {
 pub fn solve(polynomials: &[Polynomial<Exact>], options: &SolveOptions) -> Result<Solved, SolveError> {
     let given = Equations::new(polynomials)?;
     let excess = Excess::new(&given, options.torus_only)?;
-    let mut starts = Starts::new(given, options)?;
+    let mut starts = match Starts::new(given, options) {
+        Err(SolveError::Mixed(MixedError::Cancelled)) => return Ok(Solved::nothing()),
+        other => other?,
+    };
     let mut retracked = 0;
     let mut best: Option<(usize, Classified)> = None;
     let mut start_systems = 0;
     for attempt in 0..=options.restarts {
         start_systems += 1;
-        let start = starts.solve(u64::from(attempt), options)?;
+        let start = match starts.solve(u64::from(attempt), options) {
+            Err(SolveError::Mixed(MixedError::Cancelled)) => break,
+            other => other?,
+        };
         let (ends, again) = paths::follow(&starts.system, &start.fibre, &starts.target, options);
         retracked += start.retracked + again;
         let missing = usize::try_from(start.paths).unwrap_or(usize::MAX) - start.fibre.len();
-        let mut found = classify(&starts.system, &starts.target, &ends, &excess, options.paths.coincidence);
+        let member = Some((&starts.system, &starts.target[..]));
+        let mut found = classify(member, &ends, &excess, options.paths.coincidence);
         found.lost += missing;
         let tracked = ends.len() + missing;
         best = Some(match best {
@@ -210,10 +234,11 @@ pub fn solve(polynomials: &[Polynomial<Exact>], options: &SolveOptions) -> Resul
             Some((_, old)) => (tracked, joined(found, &old)),
             None => (tracked, found),
         });
-        if best.as_ref().is_some_and(|(_, b)| b.lost == 0) {
+        if options.monitor().is_cancelled() || best.as_ref().is_some_and(|(_, b)| b.lost == 0) {
             break;
         }
     }
+    let whole = best.as_ref().is_some_and(|(_, b)| b.lost == 0);
     let (tracked, found) = best.unwrap_or_default();
     let finite = tracked - found.infinite - found.lost;
     let paths = PathCounts { tracked, finite, at_infinity: found.infinite, failed: found.lost, retracked };
@@ -223,7 +248,7 @@ pub fn solve(polynomials: &[Polynomial<Exact>], options: &SolveOptions) -> Resul
     let mut component_points: Vec<Vec<[f64; 2]>> = found.component_points.iter().map(pairs).collect();
     component_points.iter_mut().for_each(|x| starts.equations.unscale(x));
     Ok(Solved {
-        start: starts.kind,
+        start: Some(starts.kind),
         mixed_volume: starts.mixed_volume,
         paths,
         on_components: found.on_components,
@@ -231,8 +256,28 @@ pub fn solve(polynomials: &[Polynomial<Exact>], options: &SolveOptions) -> Resul
         excess: found.excess,
         directions: found.directions,
         start_systems,
+        // Nothing is missing if the last path had ended already.
+        interrupted: options.monitor().is_cancelled() && !whole,
         solutions,
     })
+}
+
+impl Solved {
+    /// Of work that was cancelled before there were paths.
+    fn nothing() -> Solved {
+        Solved {
+            start: None,
+            mixed_volume: None,
+            paths: PathCounts::default(),
+            on_components: 0,
+            component_points: Vec::new(),
+            excess: 0,
+            directions: Vec::new(),
+            start_systems: 0,
+            interrupted: true,
+            solutions: Vec::new(),
+        }
+    }
 }
 
 /// The result that lost fewer paths, with the solutions that only the other one has.

@@ -23,6 +23,12 @@ pub(super) enum End {
     Lost,
 }
 
+impl End {
+    pub(super) fn is_singular(&self) -> bool {
+        matches!(self, End::Singular { .. })
+    }
+}
+
 /// Relative distance below which two paths that have not yet ended are one: only paths that have crossed come that near.
 const CROSSED: f64 = 1e-11;
 /// Relative distance below which two singular ends are one point.
@@ -47,11 +53,12 @@ pub(super) fn follow<E: Evaluate>(
     let mut which: Vec<usize> = (0..fibre.len()).collect();
     let mut retracked = 0;
     for level in 0..=options.paths.retries {
+        options.monitor().enter(crate::monitor::Stage::Paths, which.len() as u64);
         let settings = if level == 0 { options.paths.tracker.clone() } else { options.paths.tracker.stricter(level) };
         retracked += if level == 0 { 0 } else { which.len() };
         stage.run(&which, &settings);
         which = stage.doubtful();
-        if which.is_empty() {
+        if which.is_empty() || options.monitor().is_cancelled() {
             break;
         }
     }

@@ -2,7 +2,7 @@
 
 use super::equations::Equations;
 use super::{SolveError, SolveOptions, Start};
-use crate::start::{Generic, Polyhedral, bezout_number, degrees, total_degree};
+use crate::start::{Generic, MixedError, Polyhedral, bezout_number, degrees, total_degree};
 use num_complex::Complex64;
 use poly::SparseSystem;
 
@@ -34,11 +34,12 @@ impl Starts {
         let (kind, first, mixed_volume) = match options.start {
             Start::TotalDegree if laurent => return Err(SolveError::NegativeExponents),
             Start::TotalDegree => (Start::TotalDegree, None, None),
-            choice => match Polyhedral::new(&equations.supports, options.seed, 0) {
+            choice => match Polyhedral::new(&equations.supports, options.seed, 0, options.monitor()) {
                 Ok(cells) => {
                     let volume = cells.mixed_volume;
                     (Start::Polyhedral, Some(cells), Some(volume))
                 }
+                Err(MixedError::Cancelled) => return Err(MixedError::Cancelled.into()),
                 // Determinants out of range, but no more paths than are allowed.
                 Err(_) if choice == Start::Auto && bezout.is_some_and(|paths| paths <= options.max_paths) => {
                     (Start::TotalDegree, None, None)
@@ -72,7 +73,7 @@ impl Starts {
         }
         let cells = match self.first.take() {
             Some(cells) => cells,
-            None => Polyhedral::new(&self.equations.supports, options.seed, attempt)?,
+            None => Polyhedral::new(&self.equations.supports, options.seed, attempt, options.monitor())?,
         };
         Ok(cells.solve(&self.system, &options.paths))
     }

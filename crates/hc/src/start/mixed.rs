@@ -3,6 +3,7 @@
 use super::cell::{Cell, Overflow};
 use super::integer::Integer;
 use super::search::{Sink, Space, search};
+use crate::monitor::{Monitor, Stage};
 use std::cmp::Reverse;
 
 /// A fine mixed cell: the sum of one edge of each support.
@@ -60,6 +61,9 @@ pub enum MixedError {
     /// Volumes beyond 64 bits, or determinants beyond 126.
     #[error("the exponents are so large that volumes of cells exceed 64 bits; divide exponents by common factors")]
     TooLarge,
+    /// The work was cancelled by its [`Monitor`].
+    #[error("cancelled before all mixed cells were found")]
+    Cancelled,
 }
 
 impl From<Overflow> for MixedError {
@@ -82,27 +86,43 @@ impl From<Overflow> for MixedError {
 /// # Errors
 /// If the supports are not as many as the unknowns, an exponent vector has another length, or volumes exceed 64 bits.
 pub fn mixed_volume(unknowns: usize, supports: &[Vec<Vec<i32>>]) -> Result<MixedVolume, MixedError> {
-    let mut total = Total::default();
+    watched_mixed_volume(unknowns, supports, &Monitor::default())
+}
+
+/// [`mixed_volume`], watched: [`Progress`](crate::monitor::Progress) has the cells found so far and their volume, a lower bound.
+///
+/// # Errors
+/// As [`mixed_volume`], and [`MixedError::Cancelled`] after [`Monitor::cancel`].
+pub fn watched_mixed_volume(
+    unknowns: usize,
+    supports: &[Vec<Vec<i32>>],
+    monitor: &Monitor,
+) -> Result<MixedVolume, MixedError> {
+    monitor.enter(Stage::MixedCells, 0);
+    let (mut volume, mut cells) = (0u128, 0);
     if let Some(ordered) = Ordered::new(unknowns, supports)? {
-        for part in search(&Space::new(ordered.supports, None), Total::default)? {
-            total.volume = total.volume.checked_add(part.volume).ok_or(MixedError::TooLarge)?;
-            total.cells += part.cells;
+        let space = Space::new(ordered.supports, None, monitor);
+        for part in search(&space, || Total { volume: 0, cells: 0, monitor })? {
+            volume = volume.checked_add(part.volume).ok_or(MixedError::TooLarge)?;
+            cells += part.cells;
         }
     }
-    let volume = u64::try_from(total.volume).map_err(|_| MixedError::TooLarge)?;
-    Ok(MixedVolume { volume, cells: total.cells })
+    let volume = u64::try_from(volume).map_err(|_| MixedError::TooLarge)?;
+    Ok(MixedVolume { volume, cells })
 }
 
-#[derive(Default)]
-struct Total {
+struct Total<'a> {
     volume: u128,
     cells: usize,
+    monitor: &'a Monitor,
 }
 
-impl Sink for Total {
+impl Sink for Total<'_> {
     fn take<T: Integer>(&mut self, cell: &Cell<T>) -> Result<(), Overflow> {
-        self.volume = self.volume.checked_add(cell.volume.wide().unsigned_abs()).ok_or(Overflow)?;
+        let volume = cell.volume.wide().unsigned_abs();
+        self.volume = self.volume.checked_add(volume).ok_or(Overflow)?;
         self.cells += 1;
+        self.monitor.add(1, u64::try_from(volume).unwrap_or(u64::MAX));
         Ok(())
     }
 }
@@ -119,6 +139,16 @@ pub fn mixed_cells(
     supports: &[Vec<Vec<i32>>],
     lifting: &[Vec<i32>],
 ) -> Result<Vec<MixedCell>, MixedError> {
+    watched_cells(unknowns, supports, lifting, &Monitor::default())
+}
+
+pub(super) fn watched_cells(
+    unknowns: usize,
+    supports: &[Vec<Vec<i32>>],
+    lifting: &[Vec<i32>],
+    monitor: &Monitor,
+) -> Result<Vec<MixedCell>, MixedError> {
+    monitor.enter(Stage::MixedCells, 0);
     for (i, points) in supports.iter().enumerate() {
         let values = lifting.get(i).map_or(0, Vec::len);
         if values != points.len() {
@@ -127,7 +157,8 @@ pub fn mixed_cells(
     }
     let Some(Ordered { supports, order }) = Ordered::new(unknowns, supports)? else { return Ok(Vec::new()) };
     let tau: Vec<i64> = order.iter().flat_map(|&i| &lifting[i]).map(|&l| -i64::from(l)).collect();
-    let found = search(&Space::new(supports, Some(tau)), || Cells { lifting, order: &order, cells: Vec::new() })?;
+    let space = Space::new(supports, Some(tau), monitor);
+    let found = search(&space, || Cells { lifting, order: &order, cells: Vec::new(), monitor })?;
     let mut cells: Vec<MixedCell> = found.into_iter().flat_map(|part| part.cells).collect();
     // Tasks end in any order; a cell is known by its edges.
     cells.sort_unstable_by(|a, b| a.edges.cmp(&b.edges));
@@ -138,6 +169,7 @@ struct Cells<'a> {
     lifting: &'a [Vec<i32>],
     order: &'a [usize],
     cells: Vec<MixedCell>,
+    monitor: &'a Monitor,
 }
 
 impl Sink for Cells<'_> {
@@ -153,7 +185,9 @@ impl Sink for Cells<'_> {
                 *x = u.wide().checked_mul(slope).and_then(|y| x.checked_add(y)).ok_or(Overflow)?;
             }
         }
-        self.cells.push(MixedCell { edges, volume: u64::try_from(cell.volume.wide()).map_err(|_| Overflow)?, normal });
+        let volume = u64::try_from(cell.volume.wide()).map_err(|_| Overflow)?;
+        self.cells.push(MixedCell { edges, volume, normal });
+        self.monitor.add(1, volume);
         Ok(())
     }
 }

@@ -15,7 +15,7 @@ mod toric;
 mod total_degree;
 mod walk;
 
-pub use mixed::{MixedCell, MixedError, MixedVolume, mixed_cells, mixed_volume};
+pub use mixed::{MixedCell, MixedError, MixedVolume, mixed_cells, mixed_volume, watched_mixed_volume};
 pub(crate) use polyhedral::Polyhedral;
 pub(crate) use total_degree::{bezout_number, degrees, total_degree};
 

@@ -1,11 +1,12 @@
 //! The polyhedral start system: generic coefficients, and all solutions for them, from the mixed cells of a lifting.
 
 use super::binomial::Binomials;
-use super::mixed::{MixedCell, MixedError, mixed_cells};
+use super::mixed::{MixedCell, MixedError, watched_cells};
 use super::toric::{Toric, rates};
 use super::{Generic, Supports};
 use crate::distinct::coincidences;
 use crate::fibre::{Fibre, FibreOptions};
+use crate::monitor::{Monitor, Stage};
 use crate::random::Random;
 use crate::tracker::{PathEnd, TrackerOptions, track};
 use num_complex::Complex64;
@@ -30,13 +31,18 @@ struct Cell {
 
 impl Polyhedral {
     /// Finds the cells; every attempt of one seed has its own lifting and coefficients.
-    pub(crate) fn new(supports: &Supports, seed: u64, attempt: u64) -> Result<Polyhedral, MixedError> {
+    pub(crate) fn new(
+        supports: &Supports,
+        seed: u64,
+        attempt: u64,
+        monitor: &Monitor,
+    ) -> Result<Polyhedral, MixedError> {
         let mut random = Random::new(seed, 1 + 16 * attempt);
         let terms = supports.iter().map(Vec::len).sum();
         let coefficients: Vec<Complex64> = (0..terms).map(|_| random.unit() * (1.0 + 0.1 * random.unit().re)).collect();
         let mut all_rates = Vec::new();
         let mut cells = Vec::new();
-        for (cell, weights) in fine_cells(supports, &mut random)? {
+        for (cell, weights) in fine_cells(supports, &mut random, monitor)? {
             let (mut exponents, mut sides, mut first) = (Vec::new(), Vec::new(), 0);
             for (points, [a, b]) in supports.iter().zip(&cell.edges) {
                 let edge = points[*a].iter().zip(&points[*b]);
@@ -60,7 +66,9 @@ impl Polyhedral {
             self.cells.iter().enumerate().flat_map(|(c, cell)| (0..cell.volume).map(move |k| (c, k))).collect();
         let mut found: Vec<((usize, u64), Vec<Complex64>)> = Vec::new();
         let mut retracked = 0;
+        let monitor = &options.tracker.monitor;
         for level in 0..=options.retries {
+            monitor.enter(Stage::Start, wanted.len() as u64);
             let settings = if level == 0 { options.tracker.clone() } else { options.tracker.stricter(level) };
             let mut missing = Vec::new();
             for roots in wanted.chunks(CHUNK) {
@@ -79,7 +87,7 @@ impl Polyhedral {
             }
             missing.sort_unstable();
             wanted = missing;
-            if wanted.is_empty() || level == options.retries {
+            if wanted.is_empty() || level == options.retries || monitor.is_cancelled() {
                 break;
             }
             retracked += wanted.len();
@@ -118,12 +126,16 @@ impl Polyhedral {
 const CHUNK: usize = 1 << 13;
 
 /// Mixed cells of a random lifting, with the weight of every term; a lifting that is not generic is replaced by a larger one.
-fn fine_cells(supports: &Supports, random: &mut Random) -> Result<Vec<(MixedCell, Vec<f64>)>, MixedError> {
+fn fine_cells(
+    supports: &Supports,
+    random: &mut Random,
+    monitor: &Monitor,
+) -> Result<Vec<(MixedCell, Vec<f64>)>, MixedError> {
     for bits in 10..28 {
         let lift = f64::from(1 << bits);
         let lifting: Vec<Vec<i32>> =
             supports.iter().map(|a| a.iter().map(|_| (random.unit().arg() * lift) as i32).collect()).collect();
-        let cells = mixed_cells(supports.len(), supports, &lifting)?;
+        let cells = watched_cells(supports.len(), supports, &lifting, monitor)?;
         let weighted: Option<Vec<_>> =
             cells.into_iter().map(|c| weights(supports, &lifting, &c).map(|w| (c, w))).collect();
         if let Some(weighted) = weighted {

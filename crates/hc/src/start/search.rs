@@ -5,8 +5,10 @@
 
 use super::cell::{Cell, Flip, Overflow, Place};
 use super::integer::Integer;
+use super::mixed::MixedError;
 use super::points::Points;
 use super::walk::{Scratch, Step};
+use crate::monitor::Monitor;
 use poly::simd::{Isa, Kernel};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
@@ -20,13 +22,15 @@ pub(super) struct Space {
     large: OnceLock<Option<Points<i128>>>,
     /// The lifting of each point, negated; without one the cells of the last stage are what is looked for.
     tau: Option<Vec<i64>>,
+    /// Who may stop the search.
+    monitor: Monitor,
 }
 
 impl Space {
     /// Supports whose least exponents are zero.
-    pub(super) fn new(supports: Vec<Vec<Vec<i64>>>, tau: Option<Vec<i64>>) -> Self {
+    pub(super) fn new(supports: Vec<Vec<Vec<i64>>>, tau: Option<Vec<i64>>, monitor: &Monitor) -> Self {
         let small = Points::new(&supports);
-        Space { supports, small, medium: OnceLock::new(), large: OnceLock::new(), tau }
+        Space { supports, small, medium: OnceLock::new(), large: OnceLock::new(), tau, monitor: monitor.clone() }
     }
 
     pub(super) fn small(&self) -> Option<&Points<i32>> {
@@ -82,15 +86,27 @@ struct Task {
 const BUDGET: usize = 1 << 12;
 
 /// Finds all cells. Which sink takes which cell, and in what order, depends on the threads.
-pub(super) fn search<S: Sink>(space: &Space, sink: impl Fn() -> S + Sync) -> Result<Vec<S>, Overflow> {
-    let state =
-        State { space, sink, isa: Isa::detect(), sinks: Mutex::new(Vec::new()), overflow: AtomicBool::new(false) };
+///
+/// # Errors
+/// If integers exceed all sizes, or the search has been cancelled before its end.
+pub(super) fn search<S: Sink>(space: &Space, sink: impl Fn() -> S + Sync) -> Result<Vec<S>, MixedError> {
+    let state = State {
+        space,
+        sink,
+        isa: Isa::detect(),
+        sinks: Mutex::new(Vec::new()),
+        overflow: AtomicBool::new(false),
+        cancelled: AtomicBool::new(false),
+    };
     let start =
         Cell::<i64>::of_simplices(space.supports.len()).and_then(|cell| space.smallest(&cell)).ok_or(Overflow)?;
     let first = Task { stage: 0, pending: Pending::Enter, cell: start };
     rayon::scope(|scope| state.run(scope, first));
     if state.overflow.into_inner() {
-        return Err(Overflow);
+        return Err(MixedError::TooLarge);
+    }
+    if state.cancelled.into_inner() {
+        return Err(MixedError::Cancelled);
     }
     Ok(state.sinks.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
@@ -102,6 +118,8 @@ struct State<'a, S, F> {
     /// Sinks that no task has at present, as many as there are threads at most.
     sinks: Mutex<Vec<S>>,
     overflow: AtomicBool,
+    /// Whether a task was dropped because the search has been cancelled.
+    cancelled: AtomicBool,
 }
 
 impl<S: Sink, F: Fn() -> S + Sync> State<'_, S, F> {
@@ -111,6 +129,10 @@ impl<S: Sink, F: Fn() -> S + Sync> State<'_, S, F> {
 
     fn run<'s>(&'s self, scope: &rayon::Scope<'s>, task: Task) {
         if self.overflow.load(Ordering::Relaxed) {
+            return;
+        }
+        if self.space.monitor.is_cancelled() {
+            self.cancelled.store(true, Ordering::Relaxed);
             return;
         }
         let idle = self.idle().pop();

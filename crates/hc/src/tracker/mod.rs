@@ -52,7 +52,13 @@ pub fn track<E: Evaluate, P: ParameterPath>(
             |tracker, part| {
                 let mut out = PathSet::new(n);
                 let end = which.len().min((part + 1) * size);
-                tracker.track(path, starts, which[part * size..end].iter().copied(), &mut out);
+                let which = which[part * size..end].iter().copied();
+                if options.monitor.is_cancelled() {
+                    which.for_each(|k| out.push(PathResult::cancelled(k), starts[k * n..(k + 1) * n].iter().copied()));
+                    return out;
+                }
+                tracker.track(path, starts, which, &mut out);
+                options.monitor.add(out.len() as u64, out.count(PathEnd::Success) as u64);
                 out
             },
         )

@@ -1,5 +1,6 @@
 //! Settings of the tracker, with presets.
 
+use crate::monitor::Monitor;
 use poly::simd::Isa;
 
 /// Settings of the path tracker. Steps are bounded twice: by the radius of trust of the predictor (`beta_tau`) and by the
@@ -28,6 +29,8 @@ pub struct TrackerOptions {
     pub extended_precision: bool,
     /// Instruction set of the lane kernels; `None` takes the widest of the machine. The result does not depend on it. Default `None`.
     pub isa: Option<Isa>,
+    /// Who watches, and may stop, the tracking. Default nobody.
+    pub monitor: Monitor,
 }
 
 impl Default for TrackerOptions {
@@ -43,6 +46,7 @@ impl Default for TrackerOptions {
             endgame_start: 0.1,
             extended_precision: true,
             isa: None,
+            monitor: Monitor::default(),
         }
     }
 }

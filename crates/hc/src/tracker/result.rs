@@ -20,6 +20,8 @@ pub enum PathEnd {
     StepTooSmall,
     /// The step limit was reached.
     MaxSteps,
+    /// Not tracked: the work was cancelled before.
+    Cancelled,
 }
 
 impl PathEnd {
@@ -51,6 +53,23 @@ pub struct PathResult {
     pub jacobians: usize,
     /// Whether residuals in double-double were used.
     pub extended: bool,
+}
+
+impl PathResult {
+    /// Of a path that was not tracked.
+    pub(super) fn cancelled(path: usize) -> PathResult {
+        PathResult {
+            path,
+            end: PathEnd::Cancelled,
+            t: 1.0,
+            accuracy: 0.0,
+            omega: 0.0,
+            accepted: 0,
+            rejected: 0,
+            jacobians: 0,
+            extended: false,
+        }
+    }
 }
 
 /// The records and last points of some paths, in one piece of memory that can be used again.

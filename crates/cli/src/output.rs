@@ -8,7 +8,10 @@ use serde::Serialize;
 use crate::Failure;
 
 /// Writes a file by way of a temporary one in the same directory, so that an interrupted run leaves no half of it.
-pub(crate) fn write(path: &Path, content: &[u8]) -> Result<(), Failure> {
+///
+/// # Errors
+/// If the file cannot be written: the message says what to check.
+pub fn write(path: &Path, content: &[u8]) -> Result<(), Failure> {
     let directory = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
@@ -27,7 +30,7 @@ pub(crate) fn write(path: &Path, content: &[u8]) -> Result<(), Failure> {
         return std::fs::write(path, content).map_err(failed);
     }
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".tdoa-");
+    builder.prefix(".part-");
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
@@ -41,14 +44,20 @@ pub(crate) fn write(path: &Path, content: &[u8]) -> Result<(), Failure> {
 }
 
 /// Writes JSON to a file, or to standard output for `-`.
-pub(crate) fn json(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
+///
+/// # Errors
+/// As [`write()`] and [`print()`].
+pub fn json(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
     let mut text = serde_json::to_string_pretty(value).map_err(Failure::unusable)?;
     text.push('\n');
     if path.as_os_str() == "-" { print(&text) } else { write(path, text.as_bytes()) }
 }
 
 /// Prints to standard output. A reader that has gone away, such as `head`, is no error.
-pub(crate) fn print(text: &str) -> Result<(), Failure> {
+///
+/// # Errors
+/// If standard output cannot be written for another reason.
+pub fn print(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
@@ -59,7 +68,7 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
 }
 
 /// A progress bar on standard error; indicatif draws nothing where that is no terminal.
-pub(crate) fn progress(length: u64) -> indicatif::ProgressBar {
+pub fn progress(length: u64) -> indicatif::ProgressBar {
     let bar = indicatif::ProgressBar::new(length);
     let style = indicatif::ProgressStyle::with_template("{bar:40} {pos}/{len}, {eta} left");
     if let Ok(style) = style {

@@ -1,0 +1,143 @@
+//! Watching work from another thread: how far it is, and a way to stop it.
+//!
+//! ```
+//! use hc::monitor::Monitor;
+//! use hc::solve::{SolveOptions, solve};
+//!
+//! let system = hc::poly::parse::phcpack("2\n x^2 + y^2 - 5;\n x*y - 2;")?;
+//! let mut options = SolveOptions::default();
+//! options.set_monitor(Monitor::watched());
+//! let watched = options.monitor().clone();
+//! // From any thread, at any time:
+//! watched.cancel();
+//! let found = solve(&system.expand(&Default::default())?, &options)?;
+//! assert!(found.interrupted);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering};
+
+/// What is being done.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Stage {
+    /// Nothing yet, or something short.
+    #[default]
+    Preparing,
+    /// Mixed cells are sought.
+    MixedCells,
+    /// Solutions of the start system are tracked to generic coefficients.
+    Start,
+    /// Paths are tracked to the target.
+    Paths,
+    /// Paths are taken through the endgame.
+    Endgame,
+}
+
+/// How far the work is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Progress {
+    /// What is being done.
+    pub stage: Stage,
+    /// Paths of this stage that have ended; mixed cells found.
+    pub done: u64,
+    /// Paths of this stage; zero where their number is not known.
+    pub total: u64,
+    /// Mixed cells: their volume so far. Later stages: paths that have ended at regular points.
+    pub counted: u64,
+}
+
+#[derive(Debug, Default)]
+struct Shared {
+    cancelled: AtomicBool,
+    stage: AtomicU8,
+    done: AtomicU64,
+    total: AtomicU64,
+    counted: AtomicU64,
+}
+
+/// A handle on running work; clones share it. The default one is watched by nobody and costs nothing.
+#[derive(Clone, Debug, Default)]
+pub struct Monitor(Option<Arc<Shared>>);
+
+/// Two handles are equal if they are on the same work.
+impl PartialEq for Monitor {
+    fn eq(&self, other: &Monitor) -> bool {
+        self.0.as_ref().map(Arc::as_ptr) == other.0.as_ref().map(Arc::as_ptr)
+    }
+}
+
+impl Monitor {
+    /// A handle that somebody watches.
+    pub fn watched() -> Monitor {
+        Monitor(Some(Arc::default()))
+    }
+
+    /// Asks the work to stop soon. What is finished by then is returned, marked as partial. Without effect on the default handle.
+    pub fn cancel(&self) {
+        if let Some(shared) = &self.0 {
+            shared.cancelled.store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// Whether the work has been asked to stop.
+    pub fn is_cancelled(&self) -> bool {
+        self.0.as_ref().is_some_and(|shared| shared.cancelled.load(Ordering::Relaxed))
+    }
+
+    /// How far the work is. The numbers may be of slightly different instants.
+    pub fn progress(&self) -> Progress {
+        let Some(shared) = &self.0 else { return Progress::default() };
+        let stage = match shared.stage.load(Ordering::Relaxed) {
+            1 => Stage::MixedCells,
+            2 => Stage::Start,
+            3 => Stage::Paths,
+            4 => Stage::Endgame,
+            _ => Stage::Preparing,
+        };
+        let [done, total, counted] =
+            [&shared.done, &shared.total, &shared.counted].map(|number| number.load(Ordering::Relaxed));
+        Progress { stage, done, total, counted }
+    }
+
+    /// Begins a stage of `total` paths.
+    pub(crate) fn enter(&self, stage: Stage, total: u64) {
+        if let Some(shared) = &self.0 {
+            shared.done.store(0, Ordering::Relaxed);
+            shared.counted.store(0, Ordering::Relaxed);
+            shared.total.store(total, Ordering::Relaxed);
+            shared.stage.store(stage as u8, Ordering::Relaxed);
+        }
+    }
+
+    /// Adds to what is done and counted.
+    pub(crate) fn add(&self, done: u64, counted: u64) {
+        if let Some(shared) = &self.0 {
+            shared.done.fetch_add(done, Ordering::Relaxed);
+            shared.counted.fetch_add(counted, Ordering::Relaxed);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Monitor, Stage};
+
+    #[test]
+    fn clones_share_what_they_count() {
+        let monitor = Monitor::watched();
+        let other = monitor.clone();
+        monitor.enter(Stage::Paths, 10);
+        other.add(3, 2);
+        let progress = monitor.progress();
+        assert_eq!((progress.stage, progress.done, progress.total, progress.counted), (Stage::Paths, 3, 10, 2));
+        other.cancel();
+        assert!(monitor.is_cancelled() && monitor == other && monitor != Monitor::watched());
+        // Nobody watches: nothing to cancel.
+        let none = Monitor::default();
+        none.cancel();
+        assert!(!none.is_cancelled());
+    }
+}

@@ -1,0 +1,81 @@
+//! What `hc` leaves when it is interrupted: a partial result that says so.
+#![cfg(unix)]
+
+use end_to_end::{program, root, run};
+use serde_json::{Value, json};
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// Runs `hc`, sends SIGINT after a second and a half, and returns the JSON that it leaves.
+fn interrupted(arguments: &[&str]) -> Value {
+    let child = Command::new(program("hc"))
+        .args(arguments)
+        .args(["--json", "-", "--threads", "1"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    std::thread::sleep(Duration::from_millis(1500));
+    let started = Instant::now();
+    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill runs");
+    assert!(killed.success());
+    let output = child.wait_with_output().expect("the program ends");
+    assert!(started.elapsed() < Duration::from_secs(60));
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(130), "{message}");
+    assert_eq!(message, "hc: interrupted; the result is partial\n");
+    serde_json::from_slice(&output.stdout).expect("JSON")
+}
+
+fn written(folder: &Path, name: &str, text: &str) -> String {
+    let path = folder.join(name);
+    std::fs::write(&path, text).expect("written");
+    path.to_str().expect("UTF-8 path").to_owned()
+}
+
+fn cyclic(n: usize) -> String {
+    let product = |j: usize, m: usize| (j..=j + m).map(|k| format!("x{}", k % n)).collect::<Vec<_>>().join("*");
+    let sum = |m: usize| (0..n).map(|j| product(j, m)).collect::<Vec<_>>().join("+");
+    let sums: String = (0..n - 1).map(|m| sum(m) + ";\n").collect();
+    format!("{n}\n{sums}{}-1;\n", product(0, n - 1))
+}
+
+#[test]
+fn solutions_found_so_far() {
+    let folder = tempfile::tempdir().expect("directory");
+    // 90,000 roots behind a few mixed cells.
+    let system = written(folder.path(), "dense.phc", "2\nx^300 - 3*x^7 + 1;\ny^300 - 5*x*y + 2;\n");
+    let found = interrupted(&["solve", &system]);
+    assert_eq!((&found["partial"], &found["paths"]["tracked"]), (&json!(true), &json!(90000)));
+    let count = |name: &str| found["paths"][name].as_u64().expect("a count");
+    assert!(count("failed") > 0);
+    assert_eq!(count("finite") + count("at_infinity") + count("failed"), 90000);
+    assert_eq!(count("finite"), found["solutions"].as_array().expect("a list").len() as u64);
+}
+
+#[test]
+fn a_lower_bound_of_the_mixed_volume() {
+    let folder = tempfile::tempdir().expect("directory");
+    let found = interrupted(&["mixed-volume", &written(folder.path(), "cyclic.phc", &cyclic(14))]);
+    assert_eq!(found["partial"], true);
+    // Of 8,795,976.
+    assert!(found["mixed_volume"].as_u64().expect("a number") < 8_795_976, "{found}");
+}
+
+#[test]
+fn the_targets_done_so_far() {
+    let folder = tempfile::tempdir().expect("directory");
+    let family = root().join("examples/families/p3p.toml");
+    let family = family.to_str().expect("UTF-8 path");
+    let start = folder.path().join("start.json");
+    let start = start.to_str().expect("UTF-8 path");
+    assert!(run("hc", &["monodromy", family, "--output", start]).status.success());
+    let target = json!({ "parameters": [0.5, 0.6, 0.7, 7.0, 10.4, 8.2] });
+    let targets = json!(vec![target; 100_000]).to_string();
+    let found =
+        interrupted(&["track", family, "--start", start, "--target", &written(folder.path(), "t.json", &targets)]);
+    let found = found.as_array().expect("a list");
+    assert!((1..100_000).contains(&found.len()), "{}", found.len());
+    assert!(found[..found.len() - 1].iter().all(|report| report["partial"] == false));
+}
