@@ -50,7 +50,7 @@ fn has(report: &Value, x: &[f64], tolerance: f64) -> bool {
 fn cameras_planted_before_three_points_are_found() {
     let mut random = Random::new(1, 0);
     let mut uniform = |low: f64, high: f64| low + (high - low) * (random.unit().arg() / std::f64::consts::TAU + 0.5);
-    let planted: Vec<([f64; 3], Vec<f64>)> = (0..100)
+    let planted: Vec<([f64; 3], Vec<f64>)> = (0..1000)
         .map(|_| {
             let d = [(); 3].map(|()| uniform(1.0, 5.0));
             let g = [(); 3].map(|()| uniform(-0.9, 0.9));

@@ -1,7 +1,8 @@
-//! Development tasks: `cargo xtask codegen | experiments | compare`.
+//! Development tasks: `cargo xtask codegen | experiments | compare | counts`.
 
 mod codegen;
 mod compare;
+mod counts;
 mod refill;
 
 use clap::{Parser, Subcommand};
@@ -19,11 +20,14 @@ enum Task {
     Codegen(codegen::CodegenArguments),
     /// Measure this project beside the peers that are installed.
     Compare(compare::CompareArguments),
+    /// Solve the systems with verified counts for many seeds.
+    Counts(counts::CountsArguments),
 }
 
 fn main() -> anyhow::Result<()> {
     match Arguments::parse().task {
         Task::Codegen(arguments) => codegen::run(&arguments),
         Task::Compare(arguments) => compare::run(&arguments),
+        Task::Counts(arguments) => counts::run(&arguments),
     }
 }

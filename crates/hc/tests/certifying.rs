@@ -4,7 +4,7 @@ use hc::certify::{Certificates, CertifyOptions, certify};
 use hc::solve::{SolveOptions, solve};
 use num_complex::Complex64;
 use poly::{System, parse::phcpack};
-use std::path::PathBuf;
+use std::path::Path;
 
 /// Solves and certifies. Badly scaled solutions that the solver takes for points on a component are certified as well: what
 /// is certified is isolated.
@@ -84,23 +84,28 @@ fn a_list_given_twice_has_half_as_many_solutions() {
     assert!(twice.complete() && twice.duplicate_of[18..].iter().zip(0..).all(|(d, k)| *d == Some(k)));
 }
 
-/// The folder of systems, `None` (said on standard error) where it is absent.
-fn folder() -> Option<PathBuf> {
-    let shared = match std::env::var_os("SHARED_DIR") {
-        Some(folder) => PathBuf::from(folder),
-        None => PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared"),
-    };
-    let systems = shared.join("systems");
-    if systems.join("expected.csv").is_file() {
-        return Some(systems);
+/// The sphere-like quadric and the rational surface meet in a curve of degree 4: a plane meets it in four points. The plane's
+/// points solve the rational equations themselves, not just those multiplied out.
+#[test]
+fn a_curve_of_degree_four_given_by_quotients() {
+    let plane = "(0.3 + 0.7*i)*x - (1.1 - 0.2*i)*y + (0.4 + 0.5*i)*z - 0.9 + 0.6*i";
+    let polynomials = phcpack(&format!("3\nx^2 + y^2 - z;\nx + (y + z - 1)*(y - 1);\n{plane};")).unwrap();
+    let quotients = phcpack(&format!("3\nx^2 + y^2 - z;\nx/(y - 1) + y + z - 1;\n{plane};")).unwrap();
+    for seed in 0..5 {
+        let mut options = SolveOptions::default();
+        options.seed = seed;
+        let found = solve(&polynomials.expand(&Default::default()).unwrap(), &options).unwrap();
+        assert_eq!((found.solutions.len(), found.paths.failed), (4, 0), "seed {seed}");
+        let point = |value: &Vec<[f64; 2]>| value.iter().map(|&[re, im]| Complex64::new(re, im)).collect();
+        let points: Vec<Vec<Complex64>> = found.solutions.iter().map(|s| point(&s.value)).collect();
+        let proofs = certify(&quotients, &[], &points, &CertifyOptions::default()).unwrap();
+        assert_eq!((proofs.distinct(), proofs.complete()), (4, true), "seed {seed}");
     }
-    eprintln!("skipped: the folder of reference systems is absent (set SHARED_DIR)");
-    None
 }
 
 #[test]
 fn regular_systems_on_record_are_certified_in_full() {
-    let Some(folder) = folder() else { return };
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/systems");
     let table = std::fs::read_to_string(folder.join("expected.csv")).unwrap();
     let mut seen = 0;
     for line in table.lines().skip(1) {

@@ -83,6 +83,15 @@ fn a_point_that_is_no_solution_is_refused() {
 }
 
 #[test]
+fn a_start_without_direction_is_refused() {
+    // Two bars in one line, a rigid framework whose Jacobian has rank one: a solution, but no path begins there.
+    let (_, system) = family("x y", "a b", "x^2 + y^2 - a; (x - 2)^2 + y^2 - b");
+    let path = Segment::new(&reals(&[1.0, 1.0]), &reals(&[2.0, 3.0]));
+    let ends = track(&system, &path, &reals(&[1.0, 0.0]), &[0], &TrackerOptions::default());
+    assert_eq!(ends.results()[0].end, PathEnd::InvalidStart);
+}
+
+#[test]
 fn paths_to_infinity_and_to_singular_ends_are_told_apart() {
     // a x^2 - 2 x + b, b = 1: as a -> 0 one root goes to 1/2, the other to infinity like 2/a.
     let (_, system) = family("x", "a b", "a*x^2 - 2*x + b");

@@ -20,13 +20,17 @@ pub(super) struct Run {
 }
 
 impl Run {
-    /// Processor seconds, which other work on the machine changes little; where they are not known, seconds.
+    /// Processor seconds, which other work on the machine changes little; where they are not known or too few for the clock
+    /// of GNU time, which counts hundredths, seconds by the wall.
     pub(super) fn work(&self) -> f64 {
-        self.processor.unwrap_or(self.seconds)
+        self.processor.filter(|&processor| processor >= 0.1).unwrap_or(self.seconds)
     }
 
-    pub(super) fn memory(&self) -> String {
-        self.megabytes.map_or_else(String::new, |m| format!("{m:.0}"))
+    /// Work and memory as two cells of a table.
+    pub(super) fn cells(&self) -> String {
+        let memory = self.megabytes.map_or_else(String::new, |m| format!("{m:.0}"));
+        let over = if self.stopped { "over " } else { "" };
+        format!("{over}{:.3} | {memory}", self.work())
     }
 }
 
@@ -122,8 +126,7 @@ impl Pairs {
         if self.theirs.is_empty() {
             return None;
         }
-        // GNU time counts hundredths of a second.
-        let ratios = self.ours.iter().zip(&self.theirs).map(|(a, b)| quantity(b) / quantity(a).max(0.005));
+        let ratios = self.ours.iter().zip(&self.theirs).map(|(a, b)| quantity(b) / quantity(a));
         Some(median(ratios.collect()))
     }
 }

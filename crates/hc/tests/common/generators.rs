@@ -49,3 +49,14 @@ pub(crate) fn reimer(n: usize) -> String {
     };
     system((1..=n).map(equation).collect())
 }
+
+/// Gaussian quadrature with `n` nodes and weights on [-1, 1]: moments 0 to `2 n - 1`.
+#[allow(dead_code, reason = "used by the comparison only")]
+pub(crate) fn gaukwa(n: usize) -> String {
+    let moment = |k: usize| if k.is_multiple_of(2) { format!("-2/{}", k + 1) } else { "-0.1".to_owned() };
+    let equation = |k: usize| {
+        let power = |i: usize| if k == 0 { format!("w{i}") } else { format!("w{i}*x{i}^{k}") };
+        format!("{}{}", (1..=n).map(power).collect::<Vec<_>>().join("+"), moment(k))
+    };
+    system((0..2 * n).map(equation).collect())
+}
