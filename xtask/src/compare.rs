@@ -88,32 +88,33 @@ pub(crate) fn run(arguments: &CompareArguments) -> Result<()> {
         macaulay2: program::is_installed("M2"),
         gfan: program::is_installed("gfan"),
     };
-    let wanted = |table: Table| arguments.table.is_empty() || arguments.table.contains(&table);
-    let mut text = introduction(&plan, &tools);
-    if wanted(Table::Phcpack) {
-        solving::beside_phcpack(&tools, &plan, &mut text)?;
-        solving::small(&tools, &plan, &mut text)?;
-    }
-    if wanted(Table::Macaulay2) {
-        solving::beside_macaulay2(&tools, &plan, &mut text)?;
-    }
-    if wanted(Table::Gfan) {
-        volumes::beside_gfan(&tools, &plan, &mut text)?;
-    }
-    if wanted(Table::Networks) {
-        networks::beside_phcpack(&tools, &plan, &mut text)?;
-    }
     let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/compare.md");
     let whole = !plan.quick && arguments.table.is_empty();
-    match arguments.output.as_deref().or_else(|| whole.then_some(default.as_path())) {
-        Some(path) if path.as_os_str() != "-" => {
-            std::fs::write(path, text).with_context(|| format!("cannot write {}", path.display()))
+    let output = arguments.output.as_deref().or_else(|| whole.then_some(default.as_path()));
+    let output = output.filter(|path| path.as_os_str() != "-");
+    let mut text = introduction(&plan, &tools);
+    for table in Table::value_variants() {
+        if !arguments.table.is_empty() && !arguments.table.contains(table) {
+            continue;
         }
-        _ => {
-            print!("{text}");
-            Ok(())
+        match table {
+            Table::Phcpack => {
+                solving::beside_phcpack(&tools, &plan, &mut text)?;
+                solving::small(&tools, &plan, &mut text)?;
+            }
+            Table::Macaulay2 => solving::beside_macaulay2(&tools, &plan, &mut text)?,
+            Table::Gfan => volumes::beside_gfan(&tools, &plan, &mut text)?,
+            Table::Networks => networks::beside_phcpack(&tools, &plan, &mut text)?,
+        }
+        // The tables so far, for a run that is ended early.
+        if let Some(path) = output {
+            std::fs::write(path, &text).with_context(|| format!("cannot write {}", path.display()))?;
         }
     }
+    if output.is_none() {
+        print!("{text}");
+    }
+    Ok(())
 }
 
 fn introduction(plan: &Plan, tools: &Tools) -> String {
