@@ -22,10 +22,11 @@ use poly::{Evaluate, Polynomial, SparseSystem, System};
 /// let text = "name = \"roots\"\nunknowns = [\"x\"]\nparameters = [\"a\", \"b\"]\nequations = [\"x^2 + a*x + b\"]";
 /// let family = hc::poly::parse::family(text)?.system;
 /// let compiled = family.compile()?;
-/// // x^2 - 1, and from there to (x - 3)^2.
-/// let reals = |values: [f64; 2]| values.map(Complex64::from).to_vec();
-/// let fibre = Fibre { parameters: reals([0.0, -1.0]), dimension: 1, solutions: reals([1.0, -1.0]) };
-/// let found = solve_member(&family, &compiled, &fibre, &reals([-6.0, 9.0]), &SolveOptions::default());
+/// // From the roots of x^2 + 3 - 4i to (x - 3)^2.
+/// let (zero, root) = (Complex64::new(0.0, 0.0), Complex64::new(1.0, 2.0));
+/// let fibre = Fibre { parameters: vec![zero, -root * root], dimension: 1, solutions: vec![root, -root] };
+/// let target = [-6.0, 9.0].map(Complex64::from);
+/// let found = solve_member(&family, &compiled, &fibre, &target, &SolveOptions::default());
 /// assert_eq!((found.solutions.len(), found.solutions[0].multiplicity), (1, 2));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
