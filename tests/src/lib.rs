@@ -19,7 +19,8 @@ pub fn program(name: &str) -> PathBuf {
     let mut built = BUILT.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     if !built.iter().any(|other| other == name) {
         let mut cargo = Command::new(env!("CARGO"));
-        cargo.args(["build", "--quiet", "--package", &format!("{name}-cli"), "--bin", name]);
+        let package = if name == "xtask" { name.to_string() } else { format!("{name}-cli") };
+        cargo.args(["build", "--quiet", "--package", &package, "--bin", name]);
         cargo.arg("--target-dir").arg(directory.parent().expect("target directory"));
         if directory.file_name().is_some_and(|profile| profile == "release") {
             cargo.arg("--release");

@@ -1,44 +1,176 @@
-//! The commands of docs/guide, as a reader would run them.
+//! The commands of the documentation, as a reader would run them: those of a page one after the other, in one folder.
 
-use end_to_end::{root, run};
+use std::path::Path;
+use std::process::{Command, Output};
 
-/// The commands of a page that run the program `hc`, as arguments.
-fn commands(page: &str) -> Vec<Vec<String>> {
-    let text = std::fs::read_to_string(root().join("docs/guide").join(page)).expect("page");
-    let prefix = "    cargo run --release -p hc-cli -- ";
-    text.lines().filter_map(|l| l.strip_prefix(prefix)).map(|l| l.split(' ').map(str::to_owned).collect()).collect()
+use end_to_end::{program, root};
+
+/// Commands that the tests do not run: steps that need the network, write into the repository, contain these tests, or take long.
+const NOT_RUN: &[&str] = &[
+    "cargo test --workspace",
+    "cargo fmt --all --check",
+    "cargo clippy --workspace --all-targets -- -D warnings",
+    "RUSTDOCFLAGS=\"-D warnings\" cargo doc --workspace --no-deps",
+    "cargo deny check",
+    // Written into the repository; `--check` is run instead.
+    "cargo xtask codegen",
+    "cargo xtask experiments --page",
+    // Each experiment runs in small in tdoa_experiments.rs.
+    "cargo xtask experiments --quick",
+    "cargo bench -p poly --bench evaluate",
+    "cargo xtask compare",
+    // In examples/network/README.md, of files that the reader has.
+    "tdoa calibrate pseudoranges.csv --anchors anchors.csv",
+    "tdoa calibrate seconds.csv --units s --estimate-speed --anchors anchors.csv",
+];
+
+/// The lines of a page that are commands.
+fn commands(page: &str) -> Vec<String> {
+    let text = std::fs::read_to_string(root().join(page)).expect("page");
+    let first = ["cargo ", "tdoa ", "hc ", "RUSTDOCFLAGS="];
+    let lines = text.lines().filter_map(|line| line.strip_prefix("    "));
+    lines.filter(|line| first.iter().any(|word| line.starts_with(word))).map(str::to_owned).collect()
+}
+
+/// Runs one in this folder; files under examples/ are those of the repository.
+fn run(command: &str, folder: &Path) -> Output {
+    let place = |word: &str| match word {
+        // Placeholders of the README.
+        "FAMILY.toml" => root().join("examples/families/five_point.toml").to_string_lossy().into_owned(),
+        "START.json" => root().join("examples/families/five_point.start.json").to_string_lossy().into_owned(),
+        "five_point.rs" | "solver.rs" => folder.join(word).to_string_lossy().into_owned(),
+        // Where a command makes an example, a copy is made.
+        "examples/network" => folder.join("network").to_string_lossy().into_owned(),
+        word if word.starts_with("examples/") => root().join(word).to_string_lossy().into_owned(),
+        // A file that an earlier command of the page made; xtask runs in the repository.
+        word if word.ends_with(".start.json") => folder.join(word).to_string_lossy().into_owned(),
+        other => other.to_owned(),
+    };
+    let programs = [
+        ("cargo run --release -p hc-cli -- ", "hc"),
+        ("cargo run --release -p tdoa-cli -- ", "tdoa"),
+        ("tdoa ", "tdoa"),
+        ("hc ", "hc"),
+        ("cargo xtask ", "xtask"),
+    ];
+    if let Some((rest, name)) = programs.iter().find_map(|(prefix, name)| Some((command.strip_prefix(prefix)?, name))) {
+        let words = rest.split(' ').map(place);
+        return Command::new(program(name)).args(words).current_dir(folder).output().expect("the program starts");
+    }
+    let rest = command.strip_prefix("cargo run --release -p hc --example ").expect("a known kind of command");
+    let mut cargo = Command::new(env!("CARGO"));
+    cargo.args(["run", "--quiet", "-p", "hc", "--example", rest]).current_dir(root());
+    cargo.output().expect("cargo starts")
+}
+
+/// Runs all commands of a page, and gives what each printed.
+fn run_page(page: &str, folder: &Path) -> Vec<(String, String)> {
+    let mut printed = Vec::new();
+    for command in commands(page).into_iter().filter(|command| !NOT_RUN.contains(&command.as_str())) {
+        let output = run(&command, folder);
+        assert!(output.status.success(), "{page}: {command}: {}", String::from_utf8_lossy(&output.stderr));
+        printed.push((command, String::from_utf8_lossy(&output.stdout).into_owned()));
+    }
+    assert!(!printed.is_empty(), "{page} has no commands");
+    printed
 }
 
 #[test]
-fn the_page_on_minimal_problems() {
-    let directory = tempfile::tempdir().expect("directory");
+fn no_page_is_left_out() {
+    let tested = ["calibrate-a-network.md", "polynomial-system.md", "minimal-problem.md", "tracker.md", "checks.md"];
+    let mut pages: Vec<String> = std::fs::read_dir(root().join("docs/guide"))
+        .expect("folder")
+        .map(|entry| entry.expect("entry").file_name().to_string_lossy().into_owned())
+        .collect();
+    pages.sort();
+    let mut tested = tested.map(str::to_owned).to_vec();
+    tested.sort();
+    assert_eq!(pages, tested);
+}
+
+#[test]
+fn calibrating_a_network() {
+    let folder = tempfile::tempdir().expect("folder");
+    let printed = run_page("docs/guide/calibrate-a-network.md", folder.path());
+    assert_eq!(printed.len(), 4);
+    for name in ["report.html", "network.json", "nodes.csv", "network.svg"] {
+        assert!(folder.path().join(name).exists(), "{name}");
+    }
+    // Noise of 0.01 m and a robust estimate; three times the Cramer-Rao bound is the experiments' measure of success.
+    let text = std::fs::read_to_string(folder.path().join("network.json")).expect("JSON");
+    let found: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    assert_eq!(found["unique"], true);
+    assert!((0.005..0.02).contains(&found["sigma"].as_f64().expect("sigma")), "{}", found["sigma"]);
+    assert!(printed[3].1.contains("against the truth"));
+}
+
+#[test]
+fn solving_a_polynomial_system() {
+    let folder = tempfile::tempdir().expect("folder");
+    let page = "docs/guide/polynomial-system.md";
+    let text = std::fs::read_to_string(root().join(page)).expect("page");
+    let system = text.split("```phc\n").nth(1).and_then(|rest| rest.split("```").next()).expect("the system");
+    std::fs::write(folder.path().join("system.phc"), system).expect("written");
+    run_page(page, folder.path());
+    let text = std::fs::read_to_string(folder.path().join("solutions.json")).expect("JSON");
+    let found: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    // x^2 = y^2 = 4/5.
+    let solutions = found["solutions"].as_array().expect("solutions");
+    assert_eq!(solutions.len(), 4);
+    for solution in solutions {
+        for z in solution["value"].as_array().expect("value") {
+            let (re, im) = (z[0].as_f64().expect("number"), z[1].as_f64().expect("number"));
+            assert!((re.abs() - 0.8f64.sqrt()).abs() < 1e-12 && im.abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn minimal_problems() {
+    let folder = tempfile::tempdir().expect("folder");
     // Five points in front of a camera that has moved by (1, 0, 0) without turning: x = y = z = u = v = 0.
     let points = [[0.1, 0.2, 3.0], [-0.3, 0.4, 4.0], [0.5, -0.2, 5.0], [-0.4, -0.5, 3.5], [0.2, 0.6, 6.0]];
     let parameters: Vec<f64> =
         points.iter().flat_map(|p| [(p[0] + 1.0) / p[2], p[1] / p[2], p[0] / p[2], p[1] / p[2]]).collect();
-    let target = directory.path().join("TARGET.json");
-    std::fs::write(&target, serde_json::json!({ "parameters": parameters }).to_string()).expect("written");
-    let commands = commands("minimal-problem.md");
-    assert_eq!(commands.len(), 2, "{commands:?}");
-    for command in &commands {
-        let place = |word: &String| match word.as_str() {
-            "five_point.start.json" | "TARGET.json" => directory.path().join(word).to_string_lossy().into_owned(),
-            family if family.starts_with("examples/") => root().join(family).to_string_lossy().into_owned(),
-            other => other.to_owned(),
-        };
-        let mut arguments: Vec<String> = command.iter().map(place).collect();
-        if command[0] == "track" {
-            arguments.extend(["--json".to_owned(), "-".to_owned()]);
-        }
-        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-        let output = run("hc", &arguments);
-        assert!(output.status.success(), "{command:?}: {}", String::from_utf8_lossy(&output.stderr));
-        if command[0] == "track" {
-            let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
-            let still = |s: &serde_json::Value| {
-                s["value"].as_array().unwrap().iter().all(|z| z[0].as_f64().unwrap().abs() < 1e-9)
-            };
-            assert!(report["solutions"].as_array().unwrap().iter().any(still), "{report}");
-        }
+    let target = serde_json::json!({ "parameters": parameters }).to_string();
+    std::fs::write(folder.path().join("TARGET.json"), target).expect("written");
+    let page = "docs/guide/minimal-problem.md";
+    let printed = run_page(page, folder.path());
+    assert_eq!(printed.len(), 4, "{printed:?}");
+    assert!(folder.path().join("five_point.rs").exists());
+    assert!(printed[3].1.contains("planted poses found: 1000 of 1000"), "{}", printed[3].1);
+    // The target again, for its solutions.
+    let output = run(&format!("{} --json -", printed[1].0), folder.path());
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let still =
+        |s: &serde_json::Value| s["value"].as_array().unwrap().iter().all(|z| z[0].as_f64().unwrap().abs() < 1e-9);
+    assert!(report["solutions"].as_array().unwrap().iter().any(still), "{report}");
+}
+
+#[test]
+fn the_tracker_and_the_checks() {
+    let folder = tempfile::tempdir().expect("folder");
+    let printed = run_page("docs/guide/tracker.md", folder.path());
+    // Twenty networks each, all found and no path lost: configuration, instances, paths, lost, at infinity, tracked again, found.
+    for (line, paths) in printed[0].1.lines().skip(1).zip([180, 344]) {
+        let cells: Vec<&str> = line.split(',').collect();
+        assert_eq!((cells[1], cells[2], cells[3], cells[6]), ("20", (20 * paths).to_string().as_str(), "0", "20"));
     }
+    run_page("docs/guide/checks.md", folder.path());
+}
+
+#[test]
+fn readme_and_contributing() {
+    let folder = tempfile::tempdir().expect("folder");
+    // A camera at distances 2, 3 and 4 from three points, as on the front page of the crate hc.
+    let g = [0.5, 0.6, 0.7];
+    let parameters = [g[0], g[1], g[2], 13.0 - 12.0 * g[0], 20.0 - 16.0 * g[1], 25.0 - 24.0 * g[2]];
+    let target = serde_json::json!({ "parameters": parameters }).to_string();
+    std::fs::write(folder.path().join("TARGET.json"), target).expect("written");
+    run_page("README.md", folder.path());
+    run_page("CONTRIBUTING.md", folder.path());
+    run_page("examples/network/README.md", folder.path());
+    // The example is what its page says it is.
+    let made = std::fs::read(folder.path().join("network/pseudoranges.csv")).expect("made");
+    assert!(made == std::fs::read(root().join("examples/network/pseudoranges.csv")).expect("example"));
 }

@@ -170,6 +170,43 @@ fn a_hundred_thousand_columns() {
     assert_says(calibrate("wide.csv", table.as_bytes(), &[]), 2, &["line 41", "more than 4000000 cells", "split"]);
 }
 
+/// A gigabyte that is no table: refused by its size before it is read, whatever it claims to be. The file takes no space on the disk.
+#[test]
+fn a_gigabyte_of_garbage() {
+    let directory = tempfile::tempdir().expect("directory");
+    for name in ["f.csv", "f.npy", "f.mat"] {
+        let path = directory.path().join(name);
+        let file = std::fs::File::create(&path).expect("made");
+        file.set_len(1 << 30).expect("sparse file");
+        let started = std::time::Instant::now();
+        assert_says(of(&["calibrate", text(&path)]), 2, &[name, "larger than 256 MB", "right file"]);
+        assert!(started.elapsed() < std::time::Duration::from_secs(20));
+    }
+    // Below the limit, garbage is refused at its first bytes.
+    let path = directory.path().join("zeros.csv");
+    std::fs::File::create(&path).expect("made").set_len(200 << 20).expect("sparse file");
+    assert_says(of(&["calibrate", text(&path)]), 2, &["line 1", "not UTF-8"]);
+}
+
+/// Enough receivers and very many events: calibrated, in bounded memory.
+#[test]
+fn wide_tables_are_calibrated() {
+    let transmitters: Vec<[f64; 2]> = (0..20_000)
+        .map(|k| {
+            let angle = f64::from(k) * 2.399_963;
+            let radius = 0.5 + 5.0 * (f64::from(k % 1009) / 1009.0);
+            [2.5 + radius * angle.cos(), 2.5 + radius * angle.sin()]
+        })
+        .collect();
+    let directory = tempfile::tempdir().expect("directory");
+    let file = directory.path().join("wide.csv");
+    std::fs::write(&file, matrix(&RECEIVERS, &transmitters)).expect("written");
+    let output = run("tdoa", &["calibrate", text(&file)]);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    assert!(said.contains("6r/20000s: 120000 measurements, 0 of them outliers"), "{said}");
+}
+
 #[test]
 fn unusable_places_for_results() {
     let good = matrix(&RECEIVERS, &TRANSMITTERS);

@@ -3,6 +3,7 @@
 mod codegen;
 mod compare;
 mod counts;
+mod experiments;
 mod refill;
 
 use clap::{Parser, Subcommand};
@@ -18,6 +19,8 @@ struct Arguments {
 enum Task {
     /// Write the generated solvers from the families and their stored fibres.
     Codegen(codegen::CodegenArguments),
+    /// Repeat the experiments behind docs/results.md.
+    Experiments(experiments::ExperimentsArguments),
     /// Measure this project beside the peers that are installed.
     Compare(compare::CompareArguments),
     /// Solve the systems with verified counts for many seeds.
@@ -27,6 +30,7 @@ enum Task {
 fn main() -> anyhow::Result<()> {
     match Arguments::parse().task {
         Task::Codegen(arguments) => codegen::run(&arguments),
+        Task::Experiments(arguments) => experiments::run(&arguments),
         Task::Compare(arguments) => compare::run(&arguments),
         Task::Counts(arguments) => counts::run(&arguments),
     }

@@ -7,7 +7,7 @@ use tdoa::align::frame;
 use tdoa::html::html;
 use tdoa::node_table::node_table;
 use tdoa::picture::picture;
-use tdoa::read::{Units, read, read_distances, read_mat_nodes, read_nodes};
+use tdoa::read::{Units, read, read_distances, read_mat_nodes, read_mat_transmitters, read_nodes};
 use tdoa::{CalibrateError, CalibrateOptions, Calibration, Control, Progress, Pseudoranges, calibrate_with};
 
 use crate::{Failure, interrupt, output, summary};
@@ -78,6 +78,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let units = arguments.units.units(arguments.estimate_speed)?;
     let measured = read(&arguments.file, units).map_err(Failure::unusable)?;
     let truth = arguments.truth.as_deref().map(|path| true_positions(path, &measured)).transpose()?;
+    let truth_file = arguments.truth.as_deref().unwrap_or(&arguments.file);
+    let transmitters = if is_mat(truth_file) { true_transmitters(truth_file, &measured)? } else { Vec::new() };
     let truth = match truth {
         None if is_mat(&arguments.file) => truth_inside(&arguments.file, &measured)?,
         given => given,
@@ -122,7 +124,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         found.metres_per_second = Some(speed * found.factor);
     }
     if let Some(truth) = &truth {
-        calibration.compare(truth);
+        calibration.compare_all(truth, &transmitters);
         if let Some(found) = calibration.truth.as_ref().filter(|_| arguments.scale) {
             calibration.rescale(found.scale);
         }
@@ -164,6 +166,12 @@ fn is_mat(path: &std::path::Path) -> bool {
 fn truth_inside(path: &std::path::Path, measured: &Pseudoranges) -> Result<Option<Vec<Option<[f64; 2]>>>, Failure> {
     let nodes = read_mat_nodes(path).map_err(Failure::unusable)?;
     Ok(nodes.and_then(|nodes| nodes.in_order(measured.receiver_names())))
+}
+
+/// The true transmitters of a .mat file, where it has as many as there are transmitters; else none.
+fn true_transmitters(path: &std::path::Path, measured: &Pseudoranges) -> Result<Vec<Option<[f64; 2]>>, Failure> {
+    let all = read_mat_transmitters(path).map_err(Failure::unusable)?.unwrap_or_default();
+    Ok(if all.len() == measured.transmitters() { all } else { Vec::new() })
 }
 
 fn true_positions(path: &std::path::Path, measured: &Pseudoranges) -> Result<Vec<Option<[f64; 2]>>, Failure> {

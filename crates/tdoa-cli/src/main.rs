@@ -33,13 +33,18 @@ enum Command {
 
 fn main() -> ExitCode {
     // clap ends the program itself, with status 2, if the arguments are wrong.
-    let result = match Arguments::parse().command {
+    let command = Arguments::parse().command;
+    let left = match &command {
+        Command::Experiment(_) => "the rows so far are kept, and the same command goes on from there",
+        _ => "nothing was written",
+    };
+    let result = match command {
         Command::Calibrate(arguments) => calibrate::run(&arguments),
         Command::Experiment(arguments) => experiment::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Solve(arguments) => solve::run(&arguments),
     };
-    cli::finish("tdoa", result, "nothing was written")
+    cli::finish("tdoa", result, left)
 }
 
 #[cfg(test)]

@@ -23,7 +23,11 @@ pub(crate) fn text(calibration: &Calibration, time: Duration) -> String {
         calibration.agreeing,
         calibration.starts,
         time.as_secs_f64(),
-        if calibration.unique { "no other network found" } else { "OTHER NETWORKS FIT AS WELL, see alternatives" },
+        match (calibration.unique, calibration.alternatives.is_empty()) {
+            (true, _) => "no other network found",
+            (false, true) => "A BETTER NETWORK MAY HAVE BEEN MISSED, see the warnings",
+            (false, false) => "OTHER NETWORKS FIT AS WELL, see alternatives",
+        },
     );
     if !calibration.planar {
         text += "NOT TO BE TRUSTED: the measurements do not fit a network in the plane, see the warnings\n";
@@ -43,6 +47,9 @@ pub(crate) fn text(calibration: &Calibration, time: Duration) -> String {
             length(truth.receiver_rms_scaled),
             truth.scale,
         );
+        if let Some(median) = truth.transmitter_median {
+            text += &format!("transmitters: median distance {} m\n", length(median));
+        }
     }
     text += "\nreceiver                 x            y      std x      std y\n";
     let rows = calibration.receiver_names.iter().zip(&calibration.receivers).zip(&calibration.receiver_std);

@@ -2,6 +2,7 @@
 
 pub mod clean;
 pub mod hard;
+pub mod noise;
 
 use std::time::Instant;
 
@@ -71,7 +72,9 @@ pub fn trial(simulation: &Simulation, noise: f64, seed: u64, options: &Calibrate
     judge(simulation, noise, seed, seconds, &result)
 }
 
-fn judge(
+/// Compares a calibration, or why there is none, with the truth of the simulated network; `noise` is the standard deviation of the
+/// measurements in metres, `seconds` what the calibration took.
+pub fn judge(
     simulation: &Simulation,
     noise: f64,
     seed: u64,

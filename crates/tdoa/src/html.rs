@@ -131,6 +131,9 @@ fn facts(calibration: &Calibration) -> String {
                 truth.scale
             ),
         ));
+        if let Some(median) = truth.transmitter_median {
+            list.push(("True transmitters", format!("median distance {} m", number(median))));
+        }
     }
     let entries = list.iter().map(|(term, value)| format!("<dt>{term}</dt><dd>{}</dd>\n", escape(value)));
     format!("<dl>\n{}</dl>\n", entries.collect::<String>())

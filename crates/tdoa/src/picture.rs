@@ -40,15 +40,20 @@ pub fn picture(calibration: &Calibration) -> String {
             canvas.circle(map.to(p), 3.0, orange);
         }
     }
-    let nodes = calibration.receivers.iter().zip(&calibration.receiver_covariance);
-    for (position, covariance) in nodes {
+    let nodes = calibration.receivers.iter().zip(&calibration.receiver_covariance).zip(&calibration.anchored);
+    for ((position, covariance), anchored) in nodes {
         if let Some(p) = position.filter(visible) {
             ellipse(&mut canvas, &map, p, *covariance, radius, blue);
             canvas.triangle(map.to(p), 6.0, blue);
+            if *anchored {
+                canvas.square(map.to(p), 9.0);
+            }
         }
     }
     if let Some(truth) = &calibration.truth {
-        for (found, known) in calibration.receivers.iter().zip(&truth.positions) {
+        let receivers = calibration.receivers.iter().zip(&truth.positions);
+        let transmitters = calibration.transmitters.iter().zip(&truth.transmitter_positions);
+        for (found, known) in receivers.chain(transmitters.filter(|(p, _)| p.as_ref().is_some_and(visible))) {
             if let (Some(found), Some(known)) = (found, known) {
                 canvas.line(map.to(*found), map.to(*known), "#000", 1.5, "");
                 canvas.cross(map.to(*known), 5.0);
@@ -155,14 +160,20 @@ fn legend(canvas: &mut Canvas, calibration: &Calibration, outside: usize, at: [f
     let h = row(canvas, &format!("outliers: {outlying} of {measured} measurements"));
     canvas.line([at[0] - 10.0, h], [at[0] + 12.0, h], "#CC79A7", 1.0, "5 3");
     if calibration.truth.is_some() {
-        let h = row(canvas, "true receiver, and the error");
+        let h = row(canvas, "true position, and the error");
         canvas.cross([at[0], h], 5.0);
+    }
+    if calibration.anchored.contains(&true) {
+        let h = row(canvas, "receiver held at its known position");
+        canvas.square([at[0], h], 9.0);
     }
     if outside > 0 {
         row(canvas, &format!("{outside} transmitters lie outside the picture"));
     }
-    if !calibration.unique {
-        row(canvas, &format!("not unique: {} alternatives", calibration.alternatives.len()));
+    match calibration.alternatives.len() {
+        0 if calibration.unique => {}
+        0 => _ = row(canvas, "a better network may have been missed"),
+        others => _ = row(canvas, &format!("not unique: {others} alternatives")),
     }
 }
 
@@ -183,7 +194,7 @@ mod tests {
         calibration.compare(&truth);
         let svg = picture(&calibration);
         assert!(svg.starts_with("<svg ") && svg.trim_end().ends_with("</svg>"));
-        for name in ["r&lt;0&amp;&quot;", "r&lt;7&amp;&quot;", "s&lt;11&amp;&quot;", "true receiver"] {
+        for name in ["r&lt;0&amp;&quot;", "r&lt;7&amp;&quot;", "s&lt;11&amp;&quot;", "true position"] {
             assert!(svg.contains(name), "{name}");
         }
         assert!(!svg.contains("NaN") && !svg.contains("inf"));
@@ -191,5 +202,23 @@ mod tests {
         assert_eq!(svg.matches("class=\"receiver\"").count(), 9);
         assert_eq!(svg.matches("class=\"transmitter\"").count(), 13);
         assert_eq!(svg.matches("class=\"truth\"").count(), 9);
+        assert!(!svg.contains("class=\"anchor\""));
+    }
+
+    #[test]
+    fn marks_anchors_and_true_transmitters() {
+        let simulation = simulate(&SimulateOptions { noise: 0.01, ..Default::default() }).unwrap();
+        let known: Vec<_> = simulation.network.receivers.iter().copied().map(Some).collect();
+        let mut options = CalibrateOptions { anchors: known.clone(), ..Default::default() };
+        options.anchors[3..].fill(None);
+        let mut calibration = calibrate(&simulation.pseudoranges, &options).unwrap();
+        let mut transmitters: Vec<_> = simulation.network.transmitters.iter().copied().map(Some).collect();
+        transmitters[5] = None;
+        calibration.compare_all(&known, &transmitters);
+        assert!(calibration.truth.as_ref().unwrap().transmitter_median.unwrap() < 0.1);
+        let svg = picture(&calibration);
+        // Three anchors and one in the legend; eight receivers, eleven transmitters and the legend.
+        assert_eq!(svg.matches("class=\"anchor\"").count(), 4);
+        assert_eq!(svg.matches("class=\"truth\"").count(), 20);
     }
 }

@@ -13,7 +13,7 @@ use std::path::Path;
 use thiserror::Error;
 
 pub use distances::{read_distances, read_distances_from};
-pub use nodes::{Nodes, read_mat_nodes, read_nodes, read_nodes_from};
+pub use nodes::{Nodes, read_mat_nodes, read_mat_transmitters, read_nodes, read_nodes_from};
 
 use crate::pseudoranges::{MAX_CELLS, PseudorangeError, Pseudoranges};
 

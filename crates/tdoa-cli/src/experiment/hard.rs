@@ -1,6 +1,6 @@
 //! `tdoa experiment hard`.
 
-use super::clean::configuration;
+use super::common::Size;
 use crate::{Failure, output};
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 use std::fmt::Write;
@@ -13,8 +13,8 @@ use tdoa::{Layout, SimulateOptions, simulate};
 #[derive(clap::Args)]
 pub(super) struct Arguments {
     /// The configurations.
-    #[arg(long, default_value = "6r/3s,5r/4s,4r/5s", value_parser = configuration, value_delimiter = ',')]
-    configuration: Vec<(usize, usize)>,
+    #[arg(long, default_value = "6r/3s,5r/4s,4r/5s", value_delimiter = ',')]
+    configuration: Vec<Size>,
     /// Number of networks a case.
     #[arg(long, default_value_t = 20)]
     instances: u64,
@@ -36,7 +36,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
          names the nodes. \"warned\": not found, but a warning says that the list may not be whole or that nodes lie in one line.\n",
         arguments.instances, arguments.seed
     );
-    for &(receivers, transmitters) in &arguments.configuration {
+    for &Size { receivers, transmitters } in &arguments.configuration {
         let networks = (arguments.seed..arguments.seed.saturating_add(arguments.instances))
             .map(|seed| {
                 let mut options = SimulateOptions::default();

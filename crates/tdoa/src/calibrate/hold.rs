@@ -2,7 +2,7 @@
 //! known position held in their places.
 
 use super::known::{Anchors, SpeedEstimate};
-use super::options::{CalibrateError, CalibrateOptions};
+use super::options::{CalibrateError, CalibrateOptions, Control};
 use super::{finish, inlier_deviation};
 use crate::degeneracy::Usable;
 use crate::network::Network;
@@ -36,6 +36,7 @@ impl Free<'_> {
         deviation: f64,
         usable: &Usable,
         options: &CalibrateOptions,
+        control: &Control<'_>,
     ) -> Result<Held, CalibrateError> {
         let Free { observations, centred, known, floor } = self;
         let mut anchors = Anchors::new(usable, options)?;
@@ -81,7 +82,7 @@ impl Free<'_> {
         let observations = observations.holding(&held);
         // Where few measurements were left over, the free network took up most of the noise.
         let first = known.unwrap_or_else(|| deviation.max(median_size(&observations, &ranked[0].network) / 0.6745));
-        let (ranked, deviation) = finish(&observations, ranked, first, known.is_some(), floor, options);
+        let (ranked, deviation) = finish(&observations, ranked, first, known.is_some(), floor, options, control)?;
         Ok(Held { observations, ranked, deviation, anchors, speed, warnings })
     }
 }

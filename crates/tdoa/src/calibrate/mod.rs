@@ -37,10 +37,6 @@ const CAUCHY: f64 = 2.385;
 /// No measurement is trusted beyond this share of the network's diameter.
 const RESOLUTION: f64 = 1e-9;
 
-/// Subsets of the minimal solvers' sizes that are solved exactly beside the restarts: with few nodes, restarts
-/// alone miss networks that fit as well; with many, each of these starts ends in the best basin more often than a restart does.
-const MINIMAL_CALLS: usize = 6;
-
 /// Calibrates a network from its pseudoranges: by restarts of the robust refinement, and from the networks that the
 /// minimal solvers find for subsets.
 ///
@@ -94,10 +90,10 @@ pub fn calibrate_with(
         ..SEARCH
     };
     let mut all: Vec<&dyn Hypotheses> = sources.to_vec();
-    let minimal = MinimalHypotheses::at_most(MINIMAL_CALLS);
+    let minimal = MinimalHypotheses::at_most(options.minimal_subsets);
     if options.restarts || all.is_empty() {
         all.insert(0, &restarts);
-        if MinimalHypotheses::fit(small.receivers(), small.transmitters()) {
+        if options.minimal_subsets > 0 && MinimalHypotheses::fit(small.receivers(), small.transmitters()) {
             all.push(&minimal);
         }
     }
@@ -116,18 +112,16 @@ pub fn calibrate_with(
         if part.receivers.len() == centred.receivers() && part.transmitters.len() == centred.transmitters() {
             close.collect()
         } else {
-            complete(&observations, &part, close.take(4), &refine)
+            complete(&observations, &part, close.take(4), &refine, control)
         };
-    if control.cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
-        return Err(CalibrateError::Cancelled);
-    }
+    check(control)?;
     let Some(scale) = whole.iter().min_by(|a, b| a.objective.total_cmp(&b.objective)).map(|r| r.scale) else {
         return Err(CalibrateError::NotFound(found.starts));
     };
     let first = known.unwrap_or(scale * to_deviation).max(refine.floor);
-    let (ranked, deviation) = finish(&observations, whole, first, known.is_some(), refine.floor, options);
+    let (ranked, deviation) = finish(&observations, whole, first, known.is_some(), refine.floor, options, control)?;
     let free = Free { observations, centred: &centred, known, floor: refine.floor };
-    let held = free.hold(ranked, deviation, &usable, options)?;
+    let held = free.hold(ranked, deviation, &usable, options, control)?;
     let Held { observations, ranked, deviation, anchors, speed, warnings } = held;
     let solved = Solved {
         measured,
@@ -145,6 +139,15 @@ pub fn calibrate_with(
         warnings,
     };
     Ok(solved.report(options))
+}
+
+/// Ends the calibration if it has been cancelled.
+fn check(control: &Control<'_>) -> Result<(), CalibrateError> {
+    if control.cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+        Err(CalibrateError::Cancelled)
+    } else {
+        Ok(())
+    }
 }
 
 /// Subtracts each column's median, which the offsets take back at the end: large common times cost digits.
@@ -202,8 +205,9 @@ fn complete(
     part: &Usable,
     networks: impl Iterator<Item = Refined>,
     refine: &RefineOptions,
+    control: &Control<'_>,
 ) -> Vec<Refined> {
-    let mut refiner = Refiner::new(observations, SEARCH_NU);
+    let mut refiner = Refiner::new(observations, SEARCH_NU).heeding(control.cancelled);
     let refine = RefineOptions { anneal_from: None, ..*refine };
     networks
         .filter_map(|refined| {
@@ -227,8 +231,9 @@ fn finish(
     known: bool,
     floor: f64,
     options: &CalibrateOptions,
-) -> (Vec<Refined>, f64) {
-    let mut refiner = Refiner::new(observations, 1.0);
+    control: &Control<'_>,
+) -> Result<(Vec<Refined>, f64), CalibrateError> {
+    let mut refiner = Refiner::new(observations, 1.0).heeding(control.cancelled);
     let mut deviation = first;
     let turns = if known { 1 } else { 4 };
     for turn in 0..turns {
@@ -246,13 +251,14 @@ fn finish(
             *network = refiner.refine(std::mem::take(&mut network.network), &refine);
             network.objective = (network.objective - constant) * CAUCHY * CAUCHY / 2.0;
         }
+        check(control)?;
         networks.sort_by(|a, b| a.objective.total_cmp(&b.objective));
         if !known && turn + 1 < turns {
             deviation = inlier_deviation(observations, &networks[0].network, deviation, options.inlier_threshold);
             deviation = deviation.max(floor);
         }
     }
-    (distinct(networks, 12), deviation)
+    Ok((distinct(networks, 12), deviation))
 }
 
 /// Deviation of the residuals that are within `threshold` of it, corrected for the unknowns, repeated until it stays the

@@ -25,6 +25,10 @@ pub struct CalibrateOptions {
     pub agreeing: usize,
     /// Whether the search starts from random networks, besides any other sources. Default true.
     pub restarts: bool,
+    /// Starts, besides those from random networks, that come from solving a small part of the data exactly. Default 6: with few nodes,
+    /// random networks alone miss networks that fit as well; with many, each of these starts ends in the best basin more often
+    /// than a random one does. 0 for none.
+    pub minimal_subsets: usize,
     /// Most transmitters that the search works on; the others are located when it has ended. Default 48.
     pub search_transmitters: usize,
     /// Most receivers that the search works on; the others are located when it has ended. Default 32.
@@ -56,6 +60,7 @@ impl Default for CalibrateOptions {
             max_starts: 480,
             agreeing: 10,
             restarts: true,
+            minimal_subsets: 6,
             search_transmitters: 48,
             search_receivers: 32,
             inlier_threshold: 3.5,

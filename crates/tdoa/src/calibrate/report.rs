@@ -8,7 +8,7 @@ use super::options::CalibrateOptions;
 use super::warnings::warn_of_nodes;
 use crate::align::{Transform, align, frame};
 use crate::degeneracy::Usable;
-use crate::network::Network;
+use crate::network::{Network, distance};
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::{Covariance, Refined, covariance};
@@ -61,7 +61,8 @@ pub struct Calibration {
     pub speed: Option<SpeedEstimate>,
     /// What the covariances are relative to.
     pub gauge: &'static str,
-    /// Whether no other network that was found explains the measurements about as well.
+    /// Whether no other network that was found explains the measurements about as well, and more than one or two starts of the search
+    /// found this one.
     pub unique: bool,
     /// Other networks that do, best first.
     pub alternatives: Vec<Alternative>,
@@ -110,6 +111,18 @@ pub struct Truth {
     pub receivers: usize,
     /// The true positions in the frame of the calibration (rigid alignment), in the order of the receivers.
     pub positions: Vec<Option<[f64; 2]>>,
+    /// Median distance of the transmitters from the truth after the alignment of the receivers, if true transmitters were given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub transmitter_median: Option<f64>,
+    /// Their true positions in the frame of the calibration, in the order of the transmitters; empty if none were given.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub transmitter_positions: Vec<Option<[f64; 2]>>,
+}
+
+impl Truth {
+    fn points(&mut self) -> impl Iterator<Item = &mut Option<[f64; 2]>> {
+        self.positions.iter_mut().chain(&mut self.transmitter_positions)
+    }
 }
 
 impl Calibration {
@@ -136,7 +149,7 @@ impl Calibration {
             other.receivers.iter_mut().chain(&mut other.transmitters).for_each(point);
         }
         if let Some(truth) = &mut self.truth {
-            truth.positions.iter_mut().for_each(point);
+            truth.points().for_each(point);
         }
         let turn = |c: &mut Option<[[f64; 2]; 2]>| *c = c.map(|c| map.apply_covariance(c));
         self.receiver_covariance.iter_mut().chain(&mut self.transmitter_covariance).for_each(turn);
@@ -150,7 +163,7 @@ impl Calibration {
     /// Multiplies all lengths of the result by a factor, as if the propagation speed were that much larger. A comparison
     /// with the truth keeps its figures.
     pub fn rescale(&mut self, factor: f64) {
-        let positions = self.truth.as_ref().map(|truth| truth.positions.clone());
+        let positions = self.truth.as_ref().map(|truth| [truth.positions.clone(), truth.transmitter_positions.clone()]);
         let map = Transform { rotation: [[1.0, 0.0], [0.0, 1.0]], scale: factor, translation: [0.0; 2] };
         self.transform(&map);
         let lengths = self.offsets.iter_mut().chain(&mut self.offset_std);
@@ -160,14 +173,16 @@ impl Calibration {
         self.sigma *= factor;
         self.residual_rms *= factor;
         // The truth stays as large as it is, about the middle of the scaled network.
-        if let (Some(positions), Some(truth)) = (positions, &mut self.truth) {
+        if let (Some([positions, transmitters]), Some(truth)) = (positions, &mut self.truth) {
             let known: Vec<[f64; 2]> = positions.iter().flatten().copied().collect();
             let pairs = positions.iter().zip(&self.receivers).filter_map(|(p, r)| Some(((*p)?, (*r)?)));
             let (from, to): (Vec<_>, Vec<_>) = pairs.unzip();
             if !known.is_empty()
                 && let Some(back) = align(&from, &to, false)
             {
-                truth.positions = positions.iter().map(|p| p.map(|p| back.transform.apply(p))).collect();
+                truth.positions = positions;
+                truth.transmitter_positions = transmitters;
+                truth.points().for_each(|p| *p = p.map(|p| back.transform.apply(p)));
             }
         }
     }
@@ -184,6 +199,11 @@ impl Calibration {
     /// Compares with true positions of receivers, in the order of the receivers, as far as they are known. Does nothing
     /// with fewer than two.
     pub fn compare(&mut self, truth: &[Option<[f64; 2]>]) {
+        self.compare_all(truth, &[]);
+    }
+
+    /// [`Calibration::compare`] with true transmitters too, in the order of the transmitters, as far as they are known.
+    pub fn compare_all(&mut self, truth: &[Option<[f64; 2]>], transmitters: &[Option<[f64; 2]>]) {
         let pairs: Vec<([f64; 2], [f64; 2])> =
             self.receivers.iter().zip(truth).filter_map(|(a, b)| Some(((*a)?, (*b)?))).collect();
         let (found, known): (Vec<_>, Vec<_>) = pairs.into_iter().unzip();
@@ -192,15 +212,26 @@ impl Calibration {
         }
         let (Some(rigid), Some(scaled)) = (align(&found, &known, false), align(&found, &known, true)) else { return };
         let Some(back) = align(&known, &found, false) else { return };
+        let moved =
+            |all: &[Option<[f64; 2]>]| all.iter().map(|p| p.map(|p| back.transform.apply(p))).collect::<Vec<_>>();
+        let transmitter_positions = moved(transmitters);
+        let pairs = self.transmitters.iter().zip(&transmitter_positions).filter_map(|(a, b)| Some(((*a)?, (*b)?)));
+        let mut errors: Vec<f64> = pairs.map(|(a, b)| distance(a, b)).collect();
+        errors.sort_by(f64::total_cmp);
         self.truth = Some(Truth {
             receiver_rms: rigid.rms,
             receiver_rms_scaled: scaled.rms,
             scale: scaled.transform.scale,
             receivers: found.len(),
-            positions: truth.iter().map(|p| p.map(|p| back.transform.apply(p))).collect(),
+            positions: moved(truth),
+            transmitter_median: errors.get(errors.len() / 2).copied(),
+            transmitter_positions,
         });
     }
 }
+
+/// Starts that must end in the best network before it is called unique: one or two may have found it while a better one was missed.
+const SETTLED: usize = 3;
 
 /// What the search and the refinement leave to report.
 pub(super) struct Solved<'a> {
@@ -304,6 +335,14 @@ impl Solved<'_> {
                 if alternatives.len() == 1 { "s" } else { "" },
             ));
         }
+        let settled = self.agreeing >= options.agreeing.min(options.max_starts).min(SETTLED);
+        if !settled {
+            warnings.push(format!(
+                "only {} of {} starts of the search ended in this network, so that a better one may have been missed; give --sigma, \
+                 remove measurements that are known to be wrong, or raise --max-starts",
+                self.agreeing, self.starts
+            ));
+        }
         let located = |c: &Option<[[f64; 3]; 3]>| c.map(|c| [[c[0][0], c[0][1]], [c[1][0], c[1][1]]]);
         let transmitters: Vec<_> = uncertainty.transmitters.iter().map(located).collect();
         let offset_std: Vec<_> = uncertainty.transmitters.iter().map(|c| c.map(|c| c[2][2].max(0.0).sqrt())).collect();
@@ -335,7 +374,7 @@ impl Solved<'_> {
                     "relative to the receivers of known position, which have no error, at the estimated propagation speed"
                 }
             },
-            unique: alternatives.is_empty(),
+            unique: alternatives.is_empty() && settled,
             alternatives,
             planar,
             warnings,

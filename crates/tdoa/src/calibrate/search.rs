@@ -65,7 +65,7 @@ impl Search<'_> {
             let ended: Vec<Vec<Refined>> = (starts..starts + batch)
                 .into_par_iter()
                 .map_init(
-                    || Refiner::new(self.observations, SEARCH_NU),
+                    || Refiner::new(self.observations, SEARCH_NU).heeding(cancelled),
                     |refiner, index| {
                         if stopped() { Vec::new() } else { self.start(refiner, index, options.seed) }
                     },

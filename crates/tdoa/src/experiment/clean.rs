@@ -75,8 +75,8 @@ pub fn clean_trial(
     })
 }
 
-/// Relative error of the positions of all nodes.
-pub(super) fn position_error_of(found: &Network, truth: &Network) -> f64 {
+/// `|X^ - X| / |X - mean X|` over the positions X of all nodes, after the best rigid alignment (reflection allowed).
+pub fn position_error_of(found: &Network, truth: &Network) -> f64 {
     let nodes = |n: &Network| n.receivers.iter().chain(&n.transmitters).copied().collect::<Vec<_>>();
     let (found, truth) = (nodes(found), nodes(truth));
     let count = truth.len() as f64;
@@ -86,8 +86,8 @@ pub(super) fn position_error_of(found: &Network, truth: &Network) -> f64 {
     align(&found, &truth, false).map_or(f64::INFINITY, |alignment| alignment.rms / size)
 }
 
-/// Relative error of the offsets.
-fn offset_error_of(found: &Network, truth: &Network) -> f64 {
+/// `|o^ - o| / |o|` over the offsets o.
+pub fn offset_error_of(found: &Network, truth: &Network) -> f64 {
     let difference: f64 = found.offsets.iter().zip(&truth.offsets).map(|(a, b)| (a - b).powi(2)).sum();
     (difference / truth.offsets.iter().map(|o| o * o).sum::<f64>()).sqrt()
 }

@@ -92,6 +92,16 @@ impl Canvas {
         ));
     }
 
+    /// The outline of a square about a point.
+    pub(super) fn square(&mut self, at: [f64; 2], half: f64) {
+        let side = 2.0 * half;
+        self.add(format_args!(
+            r##"<rect class="anchor" x="{:.2}" y="{:.2}" width="{side}" height="{side}" fill="none" stroke="#000"/>"##,
+            at[0] - half,
+            at[1] - half
+        ));
+    }
+
     pub(super) fn cross(&mut self, at: [f64; 2], radius: f64) {
         let d = 2.0 * radius;
         self.add(format_args!(

@@ -53,23 +53,39 @@ pub fn read_nodes(path: &Path) -> Result<Nodes, ReadError> {
 /// # Errors
 /// As [`read_nodes`].
 pub fn read_mat_nodes(path: &Path) -> Result<Option<Nodes>, ReadError> {
+    let Some(all) = mat_positions(path, "rgt")? else { return Ok(None) };
+    let positions: Option<Vec<[f64; 2]>> = all.into_iter().collect();
+    let positions = positions.ok_or_else(|| ReadError::Mat {
+        file: path.display().to_string(),
+        problem: "has a variable rgt with numbers that are not finite".to_string(),
+    })?;
+    Ok(Some(Nodes { names: None, positions }))
+}
+
+/// Reads the variable sgt of a .mat file, the true transmitters, one a column with x and y in its first two rows (`None` where these
+/// are not finite); `None` if it has none.
+///
+/// # Errors
+/// As [`read_nodes`].
+pub fn read_mat_transmitters(path: &Path) -> Result<Option<Vec<Option<[f64; 2]>>>, ReadError> {
+    mat_positions(path, "sgt")
+}
+
+fn mat_positions(path: &Path, variable: &str) -> Result<Option<Vec<Option<[f64; 2]>>>, ReadError> {
     let file = path.display().to_string();
-    let Some(rgt) = super::mat::find(super::open(path, &file)?, &file, "rgt")? else { return Ok(None) };
-    let positions: Vec<[f64; 2]> = if rgt.rows == 2 || rgt.rows == 3 {
-        (0..rgt.columns).map(|k| [rgt.get(0, k), rgt.get(1, k)]).collect()
-    } else {
-        Vec::new()
-    };
-    if positions.is_empty() || positions.iter().flatten().any(|x| !x.is_finite()) {
+    let Some(all) = super::mat::find(super::open(path, &file)?, &file, variable)? else { return Ok(None) };
+    if !matches!(all.rows, 2 | 3) || all.columns == 0 {
         return Err(ReadError::Mat {
             file,
             problem: format!(
-                "has a variable rgt of {} x {} that is no list of positions (2 or 3 rows of finite numbers)",
-                rgt.rows, rgt.columns
+                "has a variable {variable} of {} x {} that is no list of positions (2 or 3 rows)",
+                all.rows, all.columns
             ),
         });
     }
-    Ok(Some(Nodes { names: None, positions }))
+    let point = |k: usize| [all.get(0, k), all.get(1, k)];
+    let finite = |p: &[f64; 2]| p.iter().all(|x| x.is_finite());
+    Ok(Some((0..all.columns).map(|k| Some(point(k)).filter(finite)).collect()))
 }
 
 /// Reads positions as [`read_nodes`] does; `file` names the source in errors.

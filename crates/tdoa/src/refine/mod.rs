@@ -18,6 +18,8 @@ pub(crate) use extend::extend;
 pub(crate) use normal::{Normal, backward, forward};
 pub(crate) use reseed::{place_transmitters, reseed};
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use crate::loss::Loss;
 use crate::network::Network;
 use crate::observations::Observations;
@@ -74,6 +76,7 @@ pub(crate) struct Refiner<'a> {
     residuals: Vec<f64>,
     trial_residuals: Vec<f64>,
     trial: Network,
+    cancelled: Option<&'a AtomicBool>,
 }
 
 impl<'a> Refiner<'a> {
@@ -87,7 +90,17 @@ impl<'a> Refiner<'a> {
             residuals: vec![0.0; observations.len()],
             trial_residuals: vec![0.0; observations.len()],
             trial: Network::default(),
+            cancelled: None,
         }
+    }
+
+    /// The same, which stops before its next step once the flag is true; what it then returns is not converged.
+    pub(crate) fn heeding(self, cancelled: Option<&'a AtomicBool>) -> Self {
+        Refiner { cancelled, ..self }
+    }
+
+    fn stopped(&self) -> bool {
+        self.cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed))
     }
 
     /// The best network near `start`, which must be complete and finite.
@@ -95,6 +108,9 @@ impl<'a> Refiner<'a> {
         let mut best = self.minimise(start, options);
         let again = RefineOptions { anneal_from: None, ..*options };
         for _ in 0..options.rounds {
+            if self.stopped() {
+                break;
+            }
             let mut network = best.network.clone();
             let loss = Loss { nu: self.nu, scale: best.scale };
             if reseed(self.observations, &mut network, &loss) == 0 {
@@ -129,6 +145,9 @@ impl<'a> Refiner<'a> {
         let mut damping = 1e-3;
         let mut calm = 0;
         for _ in 0..options.steps {
+            if self.stopped() {
+                break;
+            }
             self.normal.linearise(observations, &network, &self.residuals, &loss);
             let mut improved = false;
             while damping < 1e8 {
@@ -224,4 +243,22 @@ fn fit_scale(residuals: &[f64], loss: &Loss, share: f64, steps: usize) -> f64 {
 
 fn mean_size(residuals: &[f64]) -> f64 {
     residuals.iter().map(|e| e.abs()).sum::<f64>() / residuals.len().max(1) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::loss::SEARCH_NU;
+    use crate::simulate::{SimulateOptions, simulate};
+
+    #[test]
+    fn a_cancelled_refinement_goes_no_further() {
+        let simulation = simulate(&SimulateOptions { noise: 0.1, ..Default::default() }).unwrap();
+        let observations = Observations::new(&simulation.pseudoranges, |_, _| true);
+        let flag = AtomicBool::new(true);
+        let refined =
+            |flag| Refiner::new(&observations, SEARCH_NU).heeding(flag).refine(simulation.network.clone(), &SEARCH);
+        assert_eq!(refined(Some(&flag)).network, simulation.network);
+        assert_ne!(refined(None).network, simulation.network);
+    }
 }

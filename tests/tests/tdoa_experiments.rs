@@ -1,0 +1,117 @@
+//! `tdoa experiment` in small: every kind runs, goes on where it was stopped, and gives the same tables on any number of threads.
+
+use std::path::Path;
+
+use end_to_end::{run, shared};
+
+/// Runs an experiment and gives its summary table, line by line.
+fn experiment(words: &str, output: &Path, threads: &str) -> Vec<String> {
+    let output = output.to_str().expect("UTF-8 path");
+    let words: Vec<&str> = ["experiment"].into_iter().chain(words.split(' ')).collect();
+    let result = run("tdoa", &[words.as_slice(), &["--threads", threads, "--output", output]].concat());
+    assert!(result.status.success(), "{words:?}: {}", String::from_utf8_lossy(&result.stderr));
+    String::from_utf8_lossy(&result.stdout).lines().map(str::to_owned).collect()
+}
+
+fn cell(header: &str, line: &str, column: &str) -> String {
+    let at = header.split(',').position(|name| name == column).unwrap_or_else(|| panic!("no column {column}"));
+    line.split(',').nth(at).expect("cell").to_owned()
+}
+
+fn number(header: &str, line: &str, column: &str) -> f64 {
+    cell(header, line, column).parse().expect("number")
+}
+
+#[test]
+fn table2_goes_on_where_it_was_stopped() {
+    let directory = tempfile::tempdir().expect("directory");
+    let (one, two) = (directory.path().join("one"), directory.path().join("two"));
+    let whole = experiment("table2 --instances 24", &one, "2");
+    experiment("table2 --instances 9", &two, "1");
+    // Stopped in the middle of a line.
+    let trials = two.join("trials.csv");
+    let text = std::fs::read_to_string(&trials).expect("trials");
+    std::fs::write(&trials, &text[..text.len() - 4]).expect("written");
+    assert_eq!(experiment("table2 --instances 24", &two, "2"), whole);
+    for name in ["trials.csv", "summary.csv", "histogram.csv", "counts.svg"] {
+        assert!(std::fs::read(one.join(name)).expect(name) == std::fs::read(two.join(name)).expect(name), "{name}");
+    }
+    // 180 roots in all (Groebner basis); at least one physical network, the true one; real ones in pairs.
+    let trials = std::fs::read_to_string(&trials).expect("trials");
+    assert_eq!(trials.lines().count(), 25);
+    assert!(trials.lines().skip(1).all(|line| line.split(',').nth(1) == Some("180")));
+    let physical = whole.iter().find(|line| line.starts_with("physical,")).expect("row");
+    assert!(number(&whole[0], physical, "min") >= 1.0);
+    let real = whole.iter().find(|line| line.starts_with("positive_definite,")).expect("row");
+    assert_eq!((cell(&whole[0], real, "odd"), cell(&whole[0], real, "with_lost_paths")), ("0".into(), "0".into()));
+}
+
+#[test]
+fn clean_finds_every_network() {
+    let directory = tempfile::tempdir().expect("directory");
+    let lines = experiment("clean --configuration 6r/4s,4r/5s --instances 6", directory.path(), "2");
+    assert_eq!(lines.len(), 3);
+    for line in &lines[1..] {
+        assert_eq!((cell(&lines[0], line, "found"), cell(&lines[0], line, "paths_lost")), ("6".into(), "0".into()));
+        assert!(number(&lines[0], line, "position_median") < 1e-12);
+    }
+    for name in ["6r4s.svg", "4r5s.svg", "histogram.csv"] {
+        assert!(directory.path().join(name).exists(), "{name}");
+    }
+}
+
+#[test]
+fn noise_errors_grow_with_the_noise() {
+    let directory = tempfile::tempdir().expect("directory");
+    let lines = experiment("noise --configuration 7r/3s --noise 1e-6,1e-3 --instances 9", directory.path(), "2");
+    let [fine, coarse] = [1, 2].map(|k| number(&lines[0], &lines[k], "position_refined_median"));
+    // Proportional to the noise to first order.
+    assert!((100.0..10_000.0).contains(&(coarse / fine)), "{coarse} {fine}");
+}
+
+#[test]
+fn calibrate_compares_sources_of_starts() {
+    let directory = tempfile::tempdir().expect("directory");
+    let words = "calibrate --configuration 10r/20s --outliers 0.1 --instances 3 --method portfolio,restarts,minimal --starts 16";
+    let lines = experiment(words, directory.path(), "2");
+    assert_eq!(lines.len(), 4);
+    for line in &lines[1..] {
+        assert_eq!(cell(&lines[0], line, "success"), "1", "{line}");
+    }
+    let lines = experiment("coverage --configuration 8r/12s --instances 5", &directory.path().join("coverage"), "2");
+    // The Cramer-Rao bound is a mean over noise; of five networks with 13 degrees of freedom each, the root mean square ratio lies
+    // well within a factor of two.
+    assert!((0.5..2.0).contains(&number(&lines[0], &lines[1], "rms_over_bound")));
+    let wrong = run("tdoa", &["experiment", "calibrate", "--starts", "1,2", "--output", "unused"]);
+    assert_eq!(wrong.status.code(), Some(2));
+}
+
+#[test]
+fn growth_takes_time_and_memory() {
+    let directory = tempfile::tempdir().expect("directory");
+    let lines = experiment("growth --configuration 10r/20s,20r/30s --missing 0.1", directory.path(), "2");
+    assert_eq!(lines.len(), 3);
+    assert!(lines[1..].iter().all(|line| cell(&lines[0], line, "success") == "true"), "{lines:?}");
+}
+
+#[test]
+fn damaged_recordings_beside_the_oracle() {
+    let Some(folder) = shared("data/lund_floor_planar/h40") else { return };
+    let directory = tempfile::tempdir().expect("directory");
+    let words = format!("damaged --recordings {} --instances 1 --triples 9", folder.display());
+    let lines = experiment(&words, directory.path(), "2");
+    for line in &lines[1..3] {
+        assert_eq!(cell(&lines[0], line, "within_1.1_of_oracle"), "1", "{line}");
+    }
+}
+
+#[test]
+fn another_table_in_the_folder_is_left_alone() {
+    let directory = tempfile::tempdir().expect("directory");
+    std::fs::write(directory.path().join("trials.csv"), "a,b\n1,2\n").expect("written");
+    let output = directory.path().to_str().expect("UTF-8 path");
+    let result = run("tdoa", &["experiment", "table2", "--instances", "1", "--output", output]);
+    assert_eq!(result.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&result.stderr).contains("other columns"));
+    assert_eq!(std::fs::read_to_string(directory.path().join("trials.csv")).expect("table"), "a,b\n1,2\n");
+}

@@ -1,0 +1,73 @@
+//! The experiments: their commands, and how many networks the full and the quick run have.
+
+/// One call of `tdoa experiment`.
+pub(super) struct Experiment {
+    /// Name of its folder in results/.
+    pub(super) name: &'static str,
+    /// The subcommand and its options without the number of networks.
+    command: &'static str,
+    /// Networks of each kind in the full run; none for experiments without that option.
+    full: Option<u64>,
+    /// The same of the quick run, and what else is then said.
+    quick: (u64, &'static str),
+    /// Whether it needs the recordings.
+    pub(super) recordings: bool,
+}
+
+impl Experiment {
+    /// The words after `tdoa experiment` for a share of the full run, or for the quick one.
+    pub(super) fn words(&self, share: Option<f64>) -> Vec<String> {
+        let mut words: Vec<String> = self.command.split(' ').map(str::to_owned).collect();
+        if share.is_none() {
+            words.extend(self.quick.1.split(' ').filter(|word| !word.is_empty()).map(str::to_owned));
+        }
+        if let Some(full) = self.full {
+            let instances = share.map_or(self.quick.0, |share| ((full as f64 * share).round() as u64).max(1));
+            words.extend(["--instances".to_owned(), instances.to_string()]);
+        }
+        words
+    }
+}
+
+const fn plain(name: &'static str, command: &'static str, full: u64, quick: u64) -> Experiment {
+    Experiment { name, command, full: Some(full), quick: (quick, ""), recordings: false }
+}
+
+/// All of them, in the order of the page.
+///
+/// The comparisons at equal time have numbers of starts that take about as long as the portfolio does on the same networks; the page shows
+/// the processor seconds of each.
+pub(super) const PLAN: &[Experiment] = &[
+    plain("table2", "table2", 10_000, 200),
+    plain("clean", "clean", 1000, 20),
+    plain("noise", "noise", 1000, 5),
+    plain("calibrate", "calibrate", 500, 2),
+    plain(
+        "calibrate-restarts",
+        "calibrate --method restarts --configuration 6r/10s,8r/12s,10r/20s,25r/20s --starts STARTS",
+        500,
+        1,
+    ),
+    plain(
+        "calibrate-minimal",
+        "calibrate --method minimal --configuration 6r/10s,8r/12s,10r/20s,25r/20s --starts STARTS",
+        500,
+        1,
+    ),
+    plain(
+        "small",
+        "calibrate --configuration 6r/3s,6r/4s,6r/5s,6r/6s,6r/7s,6r/8s,5r/4s,5r/5s,5r/6s,5r/7s,5r/8s,4r/5s,4r/6s,4r/7s,4r/8s \
+         --noise 1e-4,1e-2 --outliers 0 --missing 0 --known-sigma",
+        500,
+        1,
+    ),
+    plain("coverage", "coverage", 2000, 10),
+    Experiment {
+        name: "growth",
+        command: "growth",
+        full: None,
+        quick: (0, "--configuration 10r/20s,20r/50s,30r/100s"),
+        recordings: false,
+    },
+    Experiment { name: "damaged", command: "damaged", full: Some(20), quick: (1, "--triples 20"), recordings: true },
+];
