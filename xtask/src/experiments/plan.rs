@@ -44,16 +44,11 @@ pub(super) const PLAN: &[Experiment] = &[
     plain("calibrate", "calibrate", 500, 2),
     plain(
         "calibrate-restarts",
-        "calibrate --method restarts --configuration 6r/10s,8r/12s,10r/20s,25r/20s --starts STARTS",
+        "calibrate --method restarts --starts 173,187,176,116,110,151,78,73,151,65,59,52",
         500,
         1,
     ),
-    plain(
-        "calibrate-minimal",
-        "calibrate --method minimal --configuration 6r/10s,8r/12s,10r/20s,25r/20s --starts STARTS",
-        500,
-        1,
-    ),
+    plain("calibrate-minimal", "calibrate --method minimal --starts 8,23,30,10,11,55,12,14,105,16,22,24", 500, 1),
     plain(
         "small",
         "calibrate --configuration 6r/3s,6r/4s,6r/5s,6r/6s,6r/7s,6r/8s,5r/4s,5r/5s,5r/6s,5r/7s,5r/8s,4r/5s,4r/6s,4r/7s,4r/8s \

@@ -146,28 +146,32 @@ fn trials(common: &Common, cases: &[Case], instances: u64) -> Result<Rows, Failu
     let all: Vec<(Case, u64)> =
         cases.iter().flat_map(|&case| common.seeds(instances).map(move |seed| (case, seed))).collect();
     let keys: Vec<String> = all.iter().map(|(case, seed)| format!("{},{seed}", case.key())).collect();
-    // Each network stays on one thread, whose processor time is then that network's.
-    let alone = || rayon::ThreadPoolBuilder::new().num_threads(1).build().ok();
-    resume(&common.file("trials.csv")?, HEADER, &keys, common.threads, alone, |pool, k| {
-        let (case, seed) = all[k];
-        let pool = pool.as_ref().ok_or_else(|| Failure::Unusable("threads cannot be started".into()))?;
-        let t = pool.install(|| case.trial(seed))?;
-        let number = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.4e}"));
-        Ok(format!(
-            "{},{},{},{},{},{:.4e},{},{},{},{},{:.4}",
-            t.bound.is_finite(),
-            t.success(),
-            t.among_alternatives(),
-            t.unique,
-            number(t.receiver_rms),
-            t.bound,
-            number(t.sigma),
-            t.covered,
-            t.ellipses,
-            t.starts,
-            t.seconds
-        ))
-    })
+    resume(
+        &common.file("trials.csv")?,
+        HEADER,
+        &keys,
+        common.threads,
+        || (),
+        |(), k| {
+            let (case, seed) = all[k];
+            let t = case.trial(seed)?;
+            let number = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.4e}"));
+            Ok(format!(
+                "{},{},{},{},{},{:.4e},{},{},{},{},{:.4}",
+                t.bound.is_finite(),
+                t.success(),
+                t.among_alternatives(),
+                t.unique,
+                number(t.receiver_rms),
+                t.bound,
+                number(t.sigma),
+                t.covered,
+                t.ellipses,
+                t.starts,
+                t.seconds
+            ))
+        },
+    )
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {

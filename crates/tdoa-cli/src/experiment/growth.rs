@@ -31,36 +31,35 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let common = &arguments.common;
     let key = |size: &Size| format!("{size},{},{},{}", arguments.missing, arguments.outliers, common.seed);
     let keys: Vec<String> = arguments.configuration.iter().map(key).collect();
-    // The table's own thread does nothing else: one network at a time has all threads of the search.
     let path = common.file("trials.csv")?;
-    resume(
-        &path,
-        HEADER,
-        &keys,
-        Some(1),
-        || (),
-        |(), k| {
-            let size = arguments.configuration[k];
-            let mut options = SimulateOptions::default();
-            (options.receivers, options.transmitters) = (size.receivers, size.transmitters);
-            options.noise = 0.01;
-            (options.missing, options.outliers, options.seed) = (arguments.missing, arguments.outliers, common.seed);
-            let simulation = simulate(&options).map_err(Failure::unusable)?;
-            let mut calibrate = CalibrateOptions::default();
-            calibrate.seed = common.seed;
-            let started = Instant::now();
-            let (threads, t): (usize, Trial) = crate::on_threads(common.threads, || {
-                (rayon::current_num_threads(), trial(&simulation, 0.01, common.seed, &calibrate))
-            })?;
-            let seconds = started.elapsed().as_secs_f64();
-            let memory = peak_megabytes().map_or_else(String::new, |megabytes| format!("{megabytes:.0}"));
-            let ratio = t.receiver_rms.map_or_else(String::new, |rms| format!("{:.3}", rms / t.bound));
-            Ok(format!("{threads},{seconds:.2},{memory},{},{ratio}", t.success()))
-        },
-    )?;
+    // One after the other: each network has all threads, and memory is that of the largest so far.
+    for last in 0..keys.len() {
+        resume(&path, HEADER, &keys[..=last], Some(1), || (), |(), k| one(arguments, k))?;
+    }
     let table = std::fs::read_to_string(&path).map_err(Failure::unusable)?;
     common.write("summary.csv", &table)?;
     output::print(&table)
+}
+
+/// The row of one network.
+fn one(arguments: &Arguments, k: usize) -> Result<String, Failure> {
+    let common = &arguments.common;
+    let size = arguments.configuration[k];
+    let mut options = SimulateOptions::default();
+    (options.receivers, options.transmitters) = (size.receivers, size.transmitters);
+    options.noise = 0.01;
+    (options.missing, options.outliers, options.seed) = (arguments.missing, arguments.outliers, common.seed);
+    let simulation = simulate(&options).map_err(Failure::unusable)?;
+    let mut calibrate = CalibrateOptions::default();
+    calibrate.seed = common.seed;
+    let started = Instant::now();
+    let (threads, t): (usize, Trial) = crate::on_threads(common.threads, || {
+        (rayon::current_num_threads(), trial(&simulation, 0.01, common.seed, &calibrate))
+    })?;
+    let seconds = started.elapsed().as_secs_f64();
+    let memory = peak_megabytes().map_or_else(String::new, |megabytes| format!("{megabytes:.0}"));
+    let ratio = t.receiver_rms.map_or_else(String::new, |rms| format!("{:.3}", rms / t.bound));
+    Ok(format!("{threads},{seconds:.2},{memory},{},{ratio}", t.success()))
 }
 
 /// The most memory that this process has had so far, where the system tells (Linux).

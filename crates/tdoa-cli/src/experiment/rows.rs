@@ -9,8 +9,7 @@ use std::fs::{File, OpenOptions};
 use std::io::Write;
 use std::path::Path;
 use std::sync::Mutex;
-
-use rayon::prelude::{IntoParallelIterator, ParallelIterator};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::{Failure, interrupt, output};
 
@@ -41,13 +40,13 @@ impl Rows {
 ///
 /// # Errors
 /// If a row fails, the file is another table, or the run is interrupted; what was computed so far is kept.
-pub(super) fn resume<S>(
+pub(super) fn resume<S: Send>(
     path: &Path,
     header: &str,
     keys: &[String],
     threads: Option<usize>,
-    state: impl Fn() -> S + Sync + Send,
-    row: impl Fn(&mut S, usize) -> Result<String, Failure> + Sync + Send,
+    state: impl Fn() -> S + Sync,
+    row: impl Fn(&mut S, usize) -> Result<String, Failure> + Sync,
 ) -> Result<Rows, Failure> {
     let failed = |error: std::io::Error| Failure::Unusable(format!("{}: {error}", path.display()));
     let cancelled = interrupt::watch()?;
@@ -66,25 +65,41 @@ pub(super) fn resume<S>(
     let missing: Vec<usize> = (0..keys.len()).filter(|&k| !done.contains_key(keys[k].as_str())).collect();
     let file = Mutex::new(OpenOptions::new().append(true).open(path).map_err(failed)?);
     let bar = output::progress(missing.len() as u64);
-    let fresh: Vec<(usize, String)> = crate::on_threads(threads, || {
-        missing
-            .into_par_iter()
-            .map_init(state, |state, k| {
-                if cancelled.load(std::sync::atomic::Ordering::Relaxed) {
-                    return Err(Failure::Stopped(format!(
-                        "interrupted; the rows so far are in {}, the same command goes on from there",
-                        path.display()
-                    )));
+    let next = AtomicUsize::new(0);
+    let outcome: Mutex<Result<HashMap<usize, String>, Failure>> = Mutex::new(Ok(HashMap::new()));
+    let one = |state: &mut S, k: usize| -> Result<String, Failure> {
+        if cancelled.load(Ordering::Relaxed) {
+            return Err(Failure::Stopped(format!(
+                "interrupted; the rows so far are in {}, the same command goes on from there",
+                path.display()
+            )));
+        }
+        let line = format!("{},{}", keys[k], row(state, k)?);
+        append(&file, &line).map_err(failed)?;
+        Ok(line)
+    };
+    // A row stays on one thread, so that its processor time can be told from that of the others; what it does in parallel runs in a
+    // pool of its own.
+    let worker = |pool: &rayon::ThreadPool| {
+        let mut state = state();
+        while let Some(&k) = missing.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let line = pool.install(|| one(&mut state, k));
+            let mut outcome = outcome.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+            match (&mut *outcome, line) {
+                (Err(_), _) => break,
+                (Ok(rows), Ok(line)) => _ = rows.insert(k, line),
+                (all, Err(error)) => {
+                    *all = Err(error);
+                    break;
                 }
-                let line = format!("{},{}", keys[k], row(state, k)?);
-                append(&file, &line).map_err(failed)?;
-                bar.inc(1);
-                Ok((k, line))
-            })
-            .collect::<Result<_, _>>()
-    })??;
+            }
+            bar.inc(1);
+        }
+    };
+    let pools = pools(threads)?;
+    std::thread::scope(|scope| pools.iter().for_each(|pool| _ = scope.spawn(|| worker(pool))));
     bar.finish_and_clear();
-    let fresh: HashMap<usize, String> = fresh.into_iter().collect();
+    let fresh = outcome.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner)?;
     let wanted: Vec<&str> =
         (0..keys.len()).map(|k| fresh.get(&k).map_or_else(|| done[keys[k].as_str()], String::as_str)).collect();
     // Rows of other keys, of a run with more networks, stay for another day.
@@ -93,6 +108,17 @@ pub(super) fn resume<S>(
     output::write(path, join(header, wanted.iter().copied().chain(others)).as_bytes())?;
     let cells = |line: &str| line.split(',').map(str::to_owned).collect();
     Ok(Rows { columns: cells(header), rows: wanted.into_iter().map(cells).collect() })
+}
+
+/// As many pools of one thread as threads are asked for; as cores for `None`.
+fn pools(threads: Option<usize>) -> Result<Vec<rayon::ThreadPool>, Failure> {
+    let count = threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
+    if count == 0 || count > 1024 {
+        return Err(Failure::Unusable(format!("--threads must be between 1 and 1024, not {count}")));
+    }
+    let pool = || rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    let pools = (0..count).map(|_| pool()).collect::<Result<_, _>>();
+    pools.map_err(|error| Failure::Unusable(format!("threads cannot be started: {error}")))
 }
 
 /// The whole lines of a table below its header.
@@ -136,7 +162,6 @@ fn append(file: &Mutex<File>, line: &str) -> std::io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::sync::atomic::{AtomicUsize, Ordering};
 
     #[test]
     fn a_stopped_run_goes_on_and_ends_with_the_same_file() {
