@@ -1,6 +1,6 @@
 //! `tdoa experiment damaged`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use tdoa::align::align;
 use tdoa::calibrate::{Hypotheses, MinimalHypotheses};
@@ -49,7 +49,7 @@ const NEAR: f64 = 0.25;
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let common = &arguments.common;
-    let recordings = arguments.recordings.iter().map(open).collect::<Result<Vec<_>, _>>()?;
+    let recordings = arguments.recordings.iter().map(|folder| open(folder)).collect::<Result<Vec<_>, _>>()?;
     let kinds = [(0.0, 0.0), (arguments.missing, arguments.outliers)];
     let mut trials = Vec::new();
     for recording in &recordings {
@@ -112,7 +112,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     output::print(&(summary + "\n" + &shares))
 }
 
-fn open(folder: &PathBuf) -> Result<Recording, Failure> {
+fn open(folder: &Path) -> Result<Recording, Failure> {
     let measured = read(&folder.join("pseudoranges_m.csv"), Units::Metres).map_err(Failure::unusable)?;
     let nodes = read_nodes(&folder.join("receivers_gt.csv")).map_err(Failure::unusable)?;
     let truth = nodes.in_order(measured.receiver_names()).ok_or_else(|| {
