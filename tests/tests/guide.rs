@@ -128,10 +128,22 @@ fn solving_a_polynomial_system() {
 #[test]
 fn minimal_problems() {
     let folder = tempfile::tempdir().expect("folder");
-    // Five points in front of a camera that has moved by (1, 0, 0) without turning: x = y = z = u = v = 0.
+    // Five points b in front of a camera that has turned by R (Cayley's x, y, z) and moved by t = (1, u, v): a = R b + t.
+    let planted = [0.1, -0.2, 0.15, 0.3, -0.2];
+    let [x, y, z, u, v] = planted;
+    let d = 1.0 + x * x + y * y + z * z;
+    let rotation = [
+        [1.0 + x * x - y * y - z * z, 2.0 * (x * y - z), 2.0 * (x * z + y)],
+        [2.0 * (x * y + z), 1.0 - x * x + y * y - z * z, 2.0 * (y * z - x)],
+        [2.0 * (x * z - y), 2.0 * (y * z + x), 1.0 - x * x - y * y + z * z],
+    ];
     let points = [[0.1, 0.2, 3.0], [-0.3, 0.4, 4.0], [0.5, -0.2, 5.0], [-0.4, -0.5, 3.5], [0.2, 0.6, 6.0]];
-    let parameters: Vec<f64> =
-        points.iter().flat_map(|p| [(p[0] + 1.0) / p[2], p[1] / p[2], p[0] / p[2], p[1] / p[2]]).collect();
+    let seen = |p: &[f64; 3]| {
+        let turned = rotation.map(|row| (row[0] * p[0] + row[1] * p[1] + row[2] * p[2]) / d);
+        let a = [turned[0] + 1.0, turned[1] + u, turned[2] + v];
+        [a[0] / a[2], a[1] / a[2], p[0] / p[2], p[1] / p[2]]
+    };
+    let parameters: Vec<f64> = points.iter().flat_map(seen).collect();
     let target = serde_json::json!({ "parameters": parameters }).to_string();
     std::fs::write(folder.path().join("TARGET.json"), target).expect("written");
     let page = "docs/guide/minimal-problem.md";
@@ -142,9 +154,13 @@ fn minimal_problems() {
     // The target again, for its solutions.
     let output = run(&format!("{} --json -", printed[1].0), folder.path());
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
-    let still =
-        |s: &serde_json::Value| s["value"].as_array().unwrap().iter().all(|z| z[0].as_f64().unwrap().abs() < 1e-9);
-    assert!(report["solutions"].as_array().unwrap().iter().any(still), "{report}");
+    let found = |s: &serde_json::Value| {
+        let near = |(z, known): (&serde_json::Value, &f64)| {
+            (z[0].as_f64().unwrap() - known).hypot(z[1].as_f64().unwrap()) < 1e-8
+        };
+        s["value"].as_array().unwrap().iter().zip(&planted).all(near)
+    };
+    assert!(report["solutions"].as_array().unwrap().iter().any(found), "{report}");
 }
 
 #[test]

@@ -72,7 +72,8 @@ fn noise_errors_grow_with_the_noise() {
 #[test]
 fn calibrate_compares_sources_of_starts() {
     let directory = tempfile::tempdir().expect("directory");
-    let words = "calibrate --configuration 10r/20s --outliers 0.1 --instances 3 --method portfolio,restarts,minimal --starts 16";
+    let words =
+        "calibrate --configuration 10r/20s --outliers 0 --instances 2 --method portfolio,restarts,minimal --starts 12";
     let lines = experiment(words, directory.path(), "2");
     assert_eq!(lines.len(), 4);
     for line in &lines[1..] {
