@@ -13,17 +13,31 @@ pub(super) fn write(results: &Path) -> Result<String> {
          `--quick` a small version of each (minutes). How each was made stands at the end. \"The paper\" is Ferranti, Åström, Oskarsson, Boutellier, \
          Kannala, *Homotopy Continuation for Sensor Networks Self-Calibration*.\n",
     );
-    text += &table2(results)?;
-    text += &clean(results)?;
-    text += &noise(results)?;
-    text += &calibration(results)?;
-    text += &small(results)?;
-    text += &coverage(results)?;
-    text += &growth(results)?;
-    text += &recordings(results)?;
+    for (name, title, section) in SECTIONS {
+        text += &format!("\n## {title}\n\n");
+        if results.join(name).join("summary.csv").exists() {
+            text += &section(results)?;
+        } else {
+            text += &format!("Not run yet: `cargo xtask experiments --only {name}`.\n");
+        }
+    }
     text += &runs(results)?;
     Ok(text)
 }
+
+/// Title and text of the part of the page on an experiment.
+type Section = (&'static str, &'static str, fn(&Path) -> Result<String>);
+
+const SECTIONS: &[Section] = &[
+    ("table2", "Solutions of 6r/3s (the paper's Table 2)", table2),
+    ("clean", "Clean data (the paper's figure 1, upper row)", clean),
+    ("noise", "Noise (the paper's figure 1, lower row)", noise),
+    ("calibrate", "Calibration of simulated networks", calibration),
+    ("small", "Small networks and ambiguity", small),
+    ("coverage", "Cramer-Rao bound and ellipses", coverage),
+    ("growth", "Large networks", growth),
+    ("damaged", "Recordings, as they are and damaged", recordings),
+];
 
 fn summary(results: &Path, name: &str) -> Result<Table> {
     Table::read(&results.join(name).join("summary.csv"))
@@ -54,7 +68,7 @@ fn table2(results: &Path) -> Result<String> {
         Ok(line(&cells))
     };
     let mut text = format!(
-        "\n## Solutions of 6r/3s (the paper's Table 2)\n\n{} random networks, positions and offsets standard normal, no noise. The mean is given with its \
+        "{} random networks, positions and offsets standard normal, no noise. The mean is given with its \
          standard error.\n\n",
         real.get("instances")?
     );
@@ -85,8 +99,7 @@ fn table2(results: &Path) -> Result<String> {
 fn clean(results: &Path) -> Result<String> {
     let table = summary(results, "clean")?;
     let mut text = String::from(
-        "\n## Clean data (the paper's figure 1, upper row)\n\n\
-         Relative errors |X^ - X| / |X - mean X| over all nodes after the best rigid alignment, and |o^ - o| / |o|, of the physical candidate nearest to the truth. \
+        "Relative errors |X^ - X| / |X - mean X| over all nodes after the best rigid alignment, and |o^ - o| / |o|, of the physical candidate nearest to the truth. \
          \"Found\": within 1e-4. The paper says: errors \"in the order of magnitude 1e-12\", about 10 s a solve; it has no figures for 6r/3s, and leaves 4r/5s and \
          4r/6s unsolved.\n\n",
     );
@@ -139,8 +152,7 @@ fn figures<'a>(rows: impl Iterator<Item = Row<'a>>, folder: &str) -> Result<Stri
 fn noise(results: &Path) -> Result<String> {
     let table = summary(results, "noise")?;
     let mut text = String::from(
-        "\n## Noise (the paper's figure 1, lower row)\n\n\
-         Normal noise on every measurement, in units of the standard deviation of the positions. Where more is measured than there are unknowns the candidate of \
+        "Normal noise on every measurement, in units of the standard deviation of the positions. Where more is measured than there are unknowns the candidate of \
          smallest residual is judged, as in the paper; for the minimal 6r/3s and 4r/5s every candidate fits exactly and the one nearest to the truth is judged. \
          \"Refined\": least squares over all measurements from the candidate. Relative position errors; offsets are in \
          [results/noise/summary.csv](../results/noise/summary.csv). The paper's own figures are not in its source, so that there is nothing to set beside these.\n\n",
@@ -168,13 +180,12 @@ fn noise(results: &Path) -> Result<String> {
 }
 
 fn calibration(results: &Path) -> Result<String> {
-    let all = ["calibrate", "calibrate-restarts", "calibrate-minimal"]
-        .map(|name| summary(results, name))
-        .into_iter()
-        .collect::<Result<Vec<_>>>()?;
+    let table = summary(results, "calibrate")?;
+    // Those that were not run leave dashes.
+    let others: Vec<Option<Table>> =
+        ["calibrate-restarts", "calibrate-minimal"].map(|name| summary(results, name).ok()).into_iter().collect();
     let mut text = String::from(
-        "\n## Calibration of simulated networks\n\n\
-         A room of 10 m by 10 m, noise 0.01 m, not told to the calibration; 10 % of the measurements missing, outliers as stated (shares of all cells, errors uniform \
+        "A room of 10 m by 10 m, noise 0.01 m, not told to the calibration; 10 % of the measurements missing, outliers as stated (shares of all cells, errors uniform \
          within 10 m). Success: receivers within three times the Cramer-Rao bound (root mean square), over the networks that the good measurements determine at all. \
          Beside the portfolio of `tdoa calibrate`, random restarts alone and exactly solved subsets alone, with numbers of starts that take about as long. Seconds are \
          processor seconds of one thread, median.\n\n",
@@ -192,14 +203,15 @@ fn calibration(results: &Path) -> Result<String> {
         "subsets alone (networks)",
         "s",
     ]);
-    for row in all[0].rows() {
+    for row in table.rows() {
         let (size, outliers) = (row.get("configuration")?, row.get("outliers")?);
         let mut cells: Vec<String> = vec![size.into(), format!("{:.0} %", 100.0 * row.number("outliers")?)];
         cells.extend([row.get("networks")?.to_owned(), row.get("undetermined")?.to_owned()]);
         cells.extend([row.percent("success")?, row.get("processor_seconds_median")?.to_owned()]);
         cells.push(row.percent("unique_and_wrong")?);
-        for other in &all[1..] {
-            match other.rows().find(|row| row.is(&[("configuration", size), ("outliers", outliers)])) {
+        for other in &others {
+            let same = |row: &Row<'_>| row.is(&[("configuration", size), ("outliers", outliers)]);
+            match other.as_ref().and_then(|table| table.rows().find(same)) {
                 Some(row) => {
                     cells.push(format!("{} ({})", row.percent("success")?, row.get("networks")?));
                     cells.push(row.get("processor_seconds_median")?.to_owned());
@@ -220,8 +232,7 @@ fn calibration(results: &Path) -> Result<String> {
 fn small(results: &Path) -> Result<String> {
     let table = summary(results, "small")?;
     let mut text = String::from(
-        "\n## Small networks and ambiguity\n\n\
-         Nothing missing, no outliers, the noise told to the calibration (the smallest sizes leave nothing over to estimate it from). \"Among\": the true network is the \
+        "Nothing missing, no outliers, the noise told to the calibration (the smallest sizes leave nothing over to estimate it from). \"Among\": the true network is the \
          result or among its alternatives (receivers within three times the Cramer-Rao bound or 2 % of the network's size). \"Unique\": no alternative was \
          found.\n\n",
     );
@@ -254,8 +265,7 @@ fn small(results: &Path) -> Result<String> {
 fn coverage(results: &Path) -> Result<String> {
     let table = summary(results, "coverage")?;
     let mut text = String::from(
-        "\n## Cramer-Rao bound and ellipses\n\n\
-         As above, without outliers. The root mean square of receiver error over bound, each network in terms of its own, and the share of true receivers in their \
+        "As above, without outliers. The root mean square of receiver error over bound, each network in terms of its own, and the share of true receivers in their \
          95 % ellipses, over the successful networks. The robust loss loses 5 % of efficiency on normal noise, so 1/sqrt(0.95) = 1.026 is expected for \
          the ratio.\n\n",
     );
@@ -276,8 +286,7 @@ fn coverage(results: &Path) -> Result<String> {
 fn growth(results: &Path) -> Result<String> {
     let table = summary(results, "growth")?;
     let mut text = String::from(
-        "\n## Large networks\n\n\
-         30 % missing, 10 % outliers, one network each; seconds on the clock, memory of the whole process so far.\n\n",
+        "30 % missing, 10 % outliers, one network each; seconds on the clock, memory of the whole process so far.\n\n",
     );
     text += &head(&["", "threads", "s", "MB", "success", "error over bound"]);
     for row in table.rows() {
@@ -294,8 +303,7 @@ fn recordings(results: &Path) -> Result<String> {
     let table = summary(results, "damaged")?;
     let shares = Table::read(&results.join("damaged/candidates_summary.csv"))?;
     let mut text = String::from(
-        "\n## Recordings, as they are and damaged\n\n\
-         Six microphones and 46, 75 and 132 chirps, nearly planar (martinkjlarsson/tdoa-self-calibration, MIT licence), as they are and with 20 % of the entries removed \
+        "Six microphones and 46, 75 and 132 chirps, nearly planar (martinkjlarsson/tdoa-self-calibration, MIT licence), as they are and with 20 % of the entries removed \
          and 10 % of the rest replaced by gross errors at random. The oracle is the same refinement on the same data started at the true receivers. Published for the \
          oracle on the full data: 0.045, 0.048 and 0.051 m (scaled 0.020, 0.027, 0.019 m).\n\n",
     );
@@ -345,7 +353,11 @@ fn runs(results: &Path) -> Result<String> {
     let mut text = String::from("\n## How these were made\n\n");
     text += &head(&["", "command (with --output DIR)", "seed", "commit", "processor", "cores"]);
     for experiment in PLAN {
-        let items = record(&results.join(experiment.name).join("run.csv"))?;
+        let path = results.join(experiment.name).join("run.csv");
+        if !path.exists() {
+            continue;
+        }
+        let items = record(&path)?;
         let item = |name: &str| items.iter().find(|(item, _)| item == name).map_or("", |(_, value)| value.as_str());
         text += &line(&[
             experiment.name.to_owned(),
