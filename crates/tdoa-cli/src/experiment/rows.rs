@@ -69,10 +69,7 @@ pub(super) fn resume<S: Send>(
     let outcome: Mutex<Result<HashMap<usize, String>, Failure>> = Mutex::new(Ok(HashMap::new()));
     let one = |state: &mut S, k: usize| -> Result<String, Failure> {
         if cancelled.load(Ordering::Relaxed) {
-            return Err(Failure::Stopped(format!(
-                "interrupted; the rows so far are in {}, the same command goes on from there",
-                path.display()
-            )));
+            return Err(Failure::Interrupted);
         }
         let line = format!("{},{}", keys[k], row(state, k)?);
         append(&file, &line).map_err(failed)?;
