@@ -12,6 +12,8 @@ pub(crate) struct Report<'a> {
     /// Null where the paths came from a stored fibre.
     start: Option<Start>,
     mixed_volume: Option<u64>,
+    bezout_number: Option<u64>,
+    multihomogeneous_number: Option<u64>,
     seed: u64,
     seconds: f64,
     /// Whether the work was interrupted.
@@ -31,6 +33,8 @@ impl<'a> Report<'a> {
             variables,
             start: found.start,
             mixed_volume: found.mixed_volume,
+            bezout_number: found.bezout_number,
+            multihomogeneous_number: found.multihomogeneous_number,
             seed,
             seconds,
             partial: found.interrupted,
@@ -65,7 +69,7 @@ impl<'a> Report<'a> {
         }
         let start = match self.start {
             None => String::new(),
-            Some(start) => format!(" ({})", name(start)),
+            Some(start) => format!(" ({}{})", name(start), self.others(start)),
         };
         text += &format!(
             "{} paths{start}: {} finite, {} at infinity, {} failed, {} tracked again\n",
@@ -93,6 +97,19 @@ impl<'a> Report<'a> {
         text
     }
 
+    /// The numbers of paths of the start systems that were not chosen, as far as they are known.
+    fn others(&self, chosen: Start) -> String {
+        let all = [
+            (Start::Polyhedral, self.mixed_volume),
+            (Start::Multihomogeneous, self.multihomogeneous_number),
+            (Start::TotalDegree, self.bezout_number),
+        ];
+        let others = all.into_iter().filter(|(start, _)| *start != chosen);
+        let known: Vec<String> =
+            others.filter_map(|(start, paths)| Some(format!("{}: {}", name(start), paths?))).collect();
+        if known.is_empty() { String::new() } else { format!("; {}", known.join(", ")) }
+    }
+
     /// Regular solutions for which certification was asked and failed.
     pub(crate) fn uncertified(&self) -> usize {
         self.solutions.iter().filter(|s| s.certified == Some(false) && !s.singular).count()
@@ -102,6 +119,7 @@ impl<'a> Report<'a> {
 fn name(start: Start) -> &'static str {
     match start {
         Start::TotalDegree => "total degree",
+        Start::Multihomogeneous => "multihomogeneous",
         _ => "polyhedral",
     }
 }

@@ -21,9 +21,12 @@ pub(crate) struct Arguments {
     /// Seed of the generic coefficients.
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Start system: auto takes the one with fewer paths, polyhedral unless its mixed cells cannot be computed.
+    /// Start system: auto takes the one with the fewest paths, polyhedral unless its mixed cells cannot be computed.
     #[arg(long, value_enum, default_value_t = StartChoice::Auto)]
     start: StartChoice,
+    /// Groups of unknowns for the multihomogeneous start system, such as `x,y;z`: names with commas, groups with semicolons.
+    #[arg(long, value_name = "GROUPS")]
+    groups: Option<String>,
     /// More paths than this are refused.
     #[arg(long, default_value_t = 1 << 24)]
     max_paths: u64,
@@ -43,6 +46,7 @@ pub(crate) struct Arguments {
 enum StartChoice {
     Auto,
     Polyhedral,
+    Multihomogeneous,
     TotalDegree,
 }
 
@@ -51,6 +55,7 @@ impl From<StartChoice> for Start {
         match choice {
             StartChoice::Auto => Start::Auto,
             StartChoice::Polyhedral => Start::Polyhedral,
+            StartChoice::Multihomogeneous => Start::Multihomogeneous,
             StartChoice::TotalDegree => Start::TotalDegree,
         }
     }
@@ -68,6 +73,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut options = SolveOptions::default();
     options.seed = arguments.seed;
     options.start = arguments.start.into();
+    options.groups = groups(arguments, system.variables()).map_err(|message| Failure::in_file(file, message))?;
     options.max_paths = arguments.max_paths;
     options.torus_only = arguments.torus_only;
     options.set_monitor(monitor.clone());
@@ -112,4 +118,21 @@ fn refusal(error: &SolveError, variables: &[String]) -> String {
         ),
         other => other.to_string(),
     }
+}
+
+/// The indices of the unknowns in each of the groups that were given.
+fn groups(arguments: &Arguments, variables: &[String]) -> Result<Vec<Vec<usize>>, String> {
+    let Some(text) = &arguments.groups else {
+        return match arguments.start {
+            StartChoice::Multihomogeneous => {
+                Err(format!("say which unknowns form groups, for instance --groups \"{}\"", variables.join(";")))
+            }
+            _ => Ok(Vec::new()),
+        };
+    };
+    let index = |name: &str| {
+        let found = variables.iter().position(|v| v == name.trim());
+        found.ok_or_else(|| format!("no unknown `{}` for --groups; there are {}", name.trim(), variables.join(", ")))
+    };
+    text.split(';').map(|group| group.split(',').map(index).collect()).collect()
 }

@@ -222,3 +222,40 @@ fn threads_do_not_change_the_result() {
     };
     assert_eq!(on(1), on(3));
 }
+
+/// The eigenvalues of a matrix: as many paths as there are, where Bezout's number is 2^n.
+#[test]
+fn groups_of_unknowns() {
+    // Rows of the matrix (2 1 0; 1 3 1; 0 1 4) times (x, y, z) minus l (x, y, z), and a random normalisation.
+    let text = "4\n2*x + y - l*x;\nx + 3*y + z - l*y;\ny + 4*z - l*z;\n3*x - 2*y + 5*z - 1;";
+    let mut options = options(0);
+    options.start = Start::Multihomogeneous;
+    assert_eq!(solve_text(text, &options).unwrap_err(), SolveError::Groups(4));
+    let polynomials = hc::poly::parse::phcpack(text).unwrap();
+    let index = |name: &str| polynomials.variables().iter().position(|v| v == name).unwrap();
+    options.groups = vec![["x", "y", "z"].map(index).to_vec(), vec![index("l")]];
+    for seed in 0..5 {
+        options.seed = seed;
+        let found = solve_text(text, &options).unwrap();
+        assert_eq!(
+            (found.start, found.multihomogeneous_number, found.bezout_number),
+            (Some(Start::Multihomogeneous), Some(3), Some(8))
+        );
+        assert_eq!((found.paths.tracked, found.paths.finite, found.paths.failed), (3, 3, 0));
+        // The characteristic polynomial is l^3 - 9 l^2 + 24 l - 18 = (l - 3)(l^2 - 6 l + 6).
+        let mut values: Vec<f64> = found.solutions.iter().map(|s| s.value[index("l")][0]).collect();
+        values.sort_by(f64::total_cmp);
+        let expected = [3.0 - 3f64.sqrt(), 3.0, 3.0 + 3f64.sqrt()];
+        assert!(values.iter().zip(expected).all(|(v, e)| (v - e).abs() < 1e-12), "{values:?}");
+    }
+    options.groups.push(vec![0]);
+    assert_eq!(solve_text(text, &options).unwrap_err(), SolveError::Groups(4));
+    // auto takes the polyhedral one, which has no more paths.
+    options.groups.pop();
+    options.start = Start::Auto;
+    let found = solve_text(text, &options).unwrap();
+    assert_eq!(
+        (found.start, found.paths.tracked, found.multihomogeneous_number),
+        (Some(Start::Polyhedral), 3, Some(3))
+    );
+}

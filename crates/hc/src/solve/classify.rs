@@ -1,7 +1,7 @@
 //! From the ends of paths to solutions: multiplicities, and which singular ends are isolated.
 
 use super::equations::Equations;
-use super::paths::{CLUSTER, End, groups};
+use super::paths::{CLUSTER, End, Ends, groups};
 use super::{Direction, Solution};
 use crate::distinct::{coincidences, relative_distance};
 use crate::linalg::Lu;
@@ -45,14 +45,15 @@ pub(super) struct Classified {
 /// Sorts ends into solutions; `member` is the system with its coefficients. Without it, singular ends are lost.
 pub(super) fn classify(
     member: Option<(&SparseSystem, &[Complex64])>,
-    ends: &[End],
+    all: &Ends,
     excess: &Excess,
     coincidence: f64,
 ) -> Classified {
     let mut out = Classified::default();
-    let mut directions: BTreeMap<(Vec<i64>, usize), usize> = BTreeMap::new();
+    let ends = &all.ends;
+    let mut directions: BTreeMap<&(Vec<i64>, usize), usize> = BTreeMap::new();
     let regular: Vec<&Refined> =
-        ends.iter().filter_map(|end| if let End::Regular(refined) = end { Some(refined) } else { None }).collect();
+        ends.iter().filter_map(|end| if let End::Regular(refined) = end { Some(&**refined) } else { None }).collect();
     let mut repeated = vec![false; regular.len()];
     for group in coincidences(regular.iter().enumerate().map(|(k, r)| (k, &r.point[..])), coincidence) {
         group[1..].iter().for_each(|&k| repeated[k] = true);
@@ -66,9 +67,9 @@ pub(super) fn classify(
     }
     for end in ends {
         match end {
-            End::Infinite { valuations, winding } => {
+            End::Infinite(direction) => {
                 out.infinite += 1;
-                *directions.entry((valuations.clone(), *winding)).or_default() += 1;
+                *directions.entry(&all.directions[*direction]).or_default() += 1;
             }
             End::Lost => out.lost += 1,
             _ => {}
@@ -76,13 +77,17 @@ pub(super) fn classify(
     }
     out.directions = directions
         .into_iter()
-        .map(|((valuations, denominator), paths)| Direction { valuations, denominator, paths })
+        .map(|((valuations, denominator), paths)| Direction {
+            valuations: valuations.clone(),
+            denominator: *denominator,
+            paths,
+        })
         .collect();
 
     let singular: Vec<(&[Complex64], usize, f64)> = ends
         .iter()
         .filter_map(|end| match end {
-            End::Singular { point, winding, error } => Some((&point[..], *winding, *error)),
+            End::Singular(end) => Some((&end.point[..], end.winding, end.error)),
             _ => None,
         })
         .collect();

@@ -7,7 +7,7 @@ use num_complex::Complex64;
 use num_traits::ToPrimitive;
 use poly::simd::Isa;
 use poly::{Exact, Polynomial};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Equations as supports and coefficients.
 #[derive(Clone, Debug)]
@@ -92,6 +92,15 @@ impl Equations {
     /// Adds a term with coefficient zero to an equation that does not have it.
     pub(super) fn add_term(&mut self, equation: usize, point: Vec<i32>) {
         if !self.supports[equation].contains(&point) {
+            self.supports[equation].push(point);
+            self.coefficients[equation].push(Complex64::new(0.0, 0.0));
+        }
+    }
+
+    /// The same for many terms.
+    pub(super) fn add_terms(&mut self, equation: usize, points: Vec<Vec<i32>>) {
+        let known: BTreeSet<Vec<i32>> = self.supports[equation].iter().cloned().collect();
+        for point in points.into_iter().filter(|p| !known.contains(p)) {
             self.supports[equation].push(point);
             self.coefficients[equation].push(Complex64::new(0.0, 0.0));
         }

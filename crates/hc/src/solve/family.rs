@@ -40,15 +40,18 @@ pub fn solve_member<E: Evaluate>(
     target: &[Complex64],
     options: &SolveOptions,
 ) -> Solved {
-    let (ends, retracked) = paths::follow(compiled, fibre, target, options);
-    let member = if ends.iter().any(paths::End::is_singular) { expanded(family, target) } else { None };
+    let ends = paths::follow(compiled, fibre, fibre.len(), target, options);
+    let member = if ends.ends.iter().any(paths::End::is_singular) { expanded(family, target) } else { None };
     let member = member.as_ref().map(|(system, coefficients)| (system, &coefficients[..]));
     let found = classify(member, &ends, &Excess::none(), options.paths.coincidence);
-    let finite = ends.len() - found.infinite - found.lost;
+    let (tracked, retracked) = (fibre.len(), ends.retracked);
+    let finite = tracked - found.infinite - found.lost;
     Solved {
         start: None,
         mixed_volume: None,
-        paths: PathCounts { tracked: ends.len(), finite, at_infinity: found.infinite, failed: found.lost, retracked },
+        bezout_number: None,
+        multihomogeneous_number: None,
+        paths: PathCounts { tracked, finite, at_infinity: found.infinite, failed: found.lost, retracked },
         on_components: found.on_components,
         component_points: found.component_points.iter().map(|x| x.iter().map(|z| [z.re, z.im]).collect()).collect(),
         excess: found.excess,

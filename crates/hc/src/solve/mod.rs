@@ -4,6 +4,7 @@ mod classify;
 mod equations;
 mod family;
 mod paths;
+mod prints;
 mod start;
 
 use crate::distinct::relative_distance;
@@ -24,11 +25,15 @@ use start::Starts;
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Start {
-    /// Polyhedral, which never has more paths than total degree; total degree where there are no mixed cells in 61 bits.
+    /// The one with the fewest paths. The polyhedral one never has more than the others, which are left for systems
+    /// whose mixed cells do not fit into 126 bits.
     #[default]
     Auto,
     /// Polyhedral: as many paths as the mixed volume.
     Polyhedral,
+    /// Products of linear forms in the unknowns of given groups ([`SolveOptions::groups`]): as many paths as the multihomogeneous
+    /// Bezout number, and no stage before them.
+    Multihomogeneous,
     /// Total degree: as many paths as the product of the degrees, and no stage before them. Its coefficients are so special that
     /// paths may go to infinity in degenerate ways.
     TotalDegree,
@@ -42,6 +47,8 @@ pub struct SolveOptions {
     pub seed: u64,
     /// The start system. Default [`Start::Auto`].
     pub start: Start,
+    /// Groups of unknowns, by their indices, for [`Start::Multihomogeneous`]; every unknown belongs to just one. Default none.
+    pub groups: Vec<Vec<usize>>,
     /// Whether solutions with zero coordinates are left out, with the paths that lead to them. Default false.
     pub torus_only: bool,
     /// More paths than this are refused. Default 2^24.
@@ -59,6 +66,7 @@ impl Default for SolveOptions {
         SolveOptions {
             seed: 0,
             start: Start::Auto,
+            groups: Vec::new(),
             torus_only: false,
             max_paths: 1 << 24,
             paths: FibreOptions::default(),
@@ -120,6 +128,10 @@ pub struct Solved {
     pub start: Option<Start>,
     /// The mixed volume of the supports, the origin included unless only the torus was asked for; `None` where it was not needed.
     pub mixed_volume: Option<u64>,
+    /// The product of the degrees: the paths of total degree. `None` if exponents are negative or the number does not fit.
+    pub bezout_number: Option<u64>,
+    /// The multihomogeneous Bezout number of the groups that were given; `None` as above, or without groups.
+    pub multihomogeneous_number: Option<u64>,
     /// How the paths ended: `finite` at solutions, singular ones and such on components and in excess included.
     pub paths: PathCounts,
     /// Paths that ended on components of positive dimension.
@@ -173,9 +185,15 @@ pub enum SolveError {
         "equation {0} has a coefficient beyond the range of double precision; divide it by its largest coefficient"
     )]
     Coefficient(usize),
-    /// The total degree start system was asked for, but some exponents are negative.
-    #[error("the total degree start system needs exponents that are not negative; take the polyhedral one")]
+    /// Another start system than the polyhedral one was asked for, but some exponents are negative.
+    #[error("this start system needs exponents that are not negative; take the polyhedral one")]
     NegativeExponents,
+    /// Groups that are not a partition of the unknowns.
+    #[error("every one of the {0} unknowns must stand in just one group")]
+    Groups(usize),
+    /// A multihomogeneous start system of too many terms or groups.
+    #[error("the multihomogeneous start system of these groups is too large; take fewer groups, or the polyhedral one")]
+    StartTooLarge,
     /// More paths than allowed.
     #[error("there are {paths} paths, more than the {limit} allowed; lower the exponents or allow more paths")]
     TooManyPaths {
@@ -189,7 +207,7 @@ pub enum SolveError {
 /// Finds the isolated solutions of polynomials, at least as many as unknowns.
 ///
 /// From the solutions of a start system (polyhedral: Huber & Sturmfels 1995, with the origin added to supports for zero coordinates, Li &
-/// Wang 1996; or total degree) paths lead along a straight line in the coefficients to all isolated solutions. Ends that are not regular
+/// Wang 1996; or one of fewer stages, [`Start`]) paths lead along a straight line in the coefficients to all isolated solutions. Ends that are not regular
 /// go through the [endgame](crate::endgame). More equations than unknowns are combined at random, and the excess
 /// solutions are left out again. The same seed gives the same bits on any number of threads.
 ///
@@ -218,17 +236,15 @@ pub fn solve(polynomials: &[Polynomial<Exact>], options: &SolveOptions) -> Resul
     let mut start_systems = 0;
     for attempt in 0..=options.restarts {
         start_systems += 1;
-        let start = match starts.solve(u64::from(attempt), options) {
+        let start = match starts.system(u64::from(attempt), options) {
             Err(SolveError::Mixed(MixedError::Cancelled)) => break,
             other => other?,
         };
-        let (ends, again) = paths::follow(&starts.system, &start.fibre, &starts.target, options);
-        retracked += start.retracked + again;
-        let missing = usize::try_from(start.paths).unwrap_or(usize::MAX) - start.fibre.len();
+        let ends = paths::follow(&starts.system, &start, starts.paths, &starts.target, options);
+        retracked += ends.retracked;
         let member = Some((&starts.system, &starts.target[..]));
-        let mut found = classify(member, &ends, &excess, options.paths.coincidence);
-        found.lost += missing;
-        let tracked = ends.len() + missing;
+        let found = classify(member, &ends, &excess, options.paths.coincidence);
+        let tracked = starts.paths;
         best = Some(match best {
             Some((count, old)) if old.lost <= found.lost => (count, joined(old, &found)),
             Some((_, old)) => (tracked, joined(found, &old)),
@@ -250,6 +266,8 @@ pub fn solve(polynomials: &[Polynomial<Exact>], options: &SolveOptions) -> Resul
     Ok(Solved {
         start: Some(starts.kind),
         mixed_volume: starts.mixed_volume,
+        bezout_number: starts.bezout,
+        multihomogeneous_number: starts.multihomogeneous,
         paths,
         on_components: found.on_components,
         component_points,
@@ -268,6 +286,8 @@ impl Solved {
         Solved {
             start: None,
             mixed_volume: None,
+            bezout_number: None,
+            multihomogeneous_number: None,
             paths: PathCounts::default(),
             on_components: 0,
             component_points: Vec::new(),

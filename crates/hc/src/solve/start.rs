@@ -2,7 +2,9 @@
 
 use super::equations::Equations;
 use super::{SolveError, SolveOptions, Start};
-use crate::start::{Generic, MixedError, Polyhedral, bezout_number, degrees, total_degree};
+use crate::start::{
+    Grouped, MixedError, Multihomogeneous, Polyhedral, StartSystem, TotalDegree, bezout_number, degrees,
+};
 use num_complex::Complex64;
 use poly::SparseSystem;
 
@@ -16,7 +18,12 @@ pub(super) struct Starts {
     pub(super) target: Vec<Complex64>,
     pub(super) kind: Start,
     pub(super) mixed_volume: Option<u64>,
+    pub(super) bezout: Option<u64>,
+    pub(super) multihomogeneous: Option<u64>,
+    /// Number of paths.
+    pub(super) paths: usize,
     degrees: Vec<u64>,
+    grouped: Option<Grouped>,
     /// The first mixed cells, found while choosing.
     first: Option<Polyhedral>,
 }
@@ -31,50 +38,94 @@ impl Starts {
         }
         let degrees = degrees(&equations.supports).unwrap_or_default();
         let bezout = if laurent { None } else { bezout_number(&degrees) };
-        let (kind, first, mixed_volume) = match options.start {
-            Start::TotalDegree if laurent => return Err(SolveError::NegativeExponents),
-            Start::TotalDegree => (Start::TotalDegree, None, None),
-            choice => match Polyhedral::new(&equations.supports, options.seed, 0, options.monitor()) {
-                Ok(cells) => {
+        let grouped = groups(&equations, options)?;
+        let multihomogeneous = grouped.as_ref().map(Grouped::number);
+        let direct = matches!(options.start, Start::TotalDegree | Start::Multihomogeneous);
+        if direct && laurent {
+            return Err(SolveError::NegativeExponents);
+        }
+        // The one of the others that has fewer paths, if polyhedral fails.
+        let other = match (multihomogeneous, bezout) {
+            (Some(m), b) if b.is_none_or(|b| m < b) => Some((Start::Multihomogeneous, m)),
+            (_, b) => b.map(|b| (Start::TotalDegree, b)),
+        };
+        let mut first = None;
+        let (kind, paths) = match options.start {
+            Start::TotalDegree => (Start::TotalDegree, bezout.unwrap_or(u64::MAX)),
+            Start::Multihomogeneous => (Start::Multihomogeneous, multihomogeneous.ok_or(SolveError::StartTooLarge)?),
+            choice => match (Polyhedral::new(&equations.supports, options.seed, 0, options.monitor()), other) {
+                (Ok(cells), _) => {
                     let volume = cells.mixed_volume;
-                    (Start::Polyhedral, Some(cells), Some(volume))
+                    first = Some(cells);
+                    (Start::Polyhedral, volume)
                 }
-                Err(MixedError::Cancelled) => return Err(MixedError::Cancelled.into()),
+                (Err(MixedError::Cancelled), _) => return Err(MixedError::Cancelled.into()),
                 // Determinants out of range, but no more paths than are allowed.
-                Err(_) if choice == Start::Auto && bezout.is_some_and(|paths| paths <= options.max_paths) => {
-                    (Start::TotalDegree, None, None)
-                }
-                Err(error) => return Err(error.into()),
+                (Err(_), Some(other)) if choice == Start::Auto && other.1 <= options.max_paths => other,
+                (Err(error), _) => return Err(error.into()),
             },
         };
-        let paths = match kind {
-            Start::TotalDegree => bezout.unwrap_or(u64::MAX),
-            _ => mixed_volume.unwrap_or(0),
-        };
-        if paths > options.max_paths {
-            return Err(SolveError::TooManyPaths { paths, limit: options.max_paths });
-        }
-        if kind == Start::TotalDegree {
-            for (i, &degree) in degrees.iter().enumerate() {
-                let degree = i32::try_from(degree).map_err(|_| SolveError::NegativeExponents)?;
-                equations.add_term(i, vec![0; n]);
-                equations.add_term(i, (0..n).map(|j| if j == i { degree } else { 0 }).collect());
+        let too_many = SolveError::TooManyPaths { paths, limit: options.max_paths };
+        let paths = usize::try_from(paths).ok().filter(|_| paths <= options.max_paths).ok_or(too_many)?;
+        for i in 0..n {
+            match (kind, &grouped) {
+                (Start::TotalDegree, _) => {
+                    let degree = i32::try_from(degrees[i]).map_err(|_| SolveError::NegativeExponents)?;
+                    equations.add_term(i, vec![0; n]);
+                    equations.add_term(i, (0..n).map(|j| if j == i { degree } else { 0 }).collect());
+                }
+                (Start::Multihomogeneous, Some(grouped)) => {
+                    equations.add_terms(i, grouped.terms(i).ok_or(SolveError::StartTooLarge)?);
+                }
+                _ => {}
             }
         }
+        let mixed_volume = first.as_ref().map(|cells| cells.mixed_volume);
         let system = SparseSystem::new(n, &equations.supports)?;
         let target = equations.coefficients.concat();
-        Ok(Starts { system, equations, target, kind, mixed_volume, degrees, first })
+        Ok(Starts {
+            system,
+            equations,
+            target,
+            kind,
+            mixed_volume,
+            bezout,
+            multihomogeneous,
+            paths,
+            degrees,
+            grouped,
+            first,
+        })
     }
 
-    /// A start system and its solutions, another one for every attempt.
-    pub(super) fn solve(&mut self, attempt: u64, options: &SolveOptions) -> Result<Generic, SolveError> {
-        if self.kind == Start::TotalDegree {
-            return Ok(total_degree(&self.equations.supports, &self.degrees, options.seed, attempt));
-        }
-        let cells = match self.first.take() {
-            Some(cells) => cells,
-            None => Polyhedral::new(&self.equations.supports, options.seed, attempt, options.monitor())?,
-        };
-        Ok(cells.solve(&self.system, &options.paths))
+    /// A start system, another one for every attempt.
+    pub(super) fn system(&mut self, attempt: u64, options: &SolveOptions) -> Result<StartSystem, SolveError> {
+        let supports = &self.equations.supports;
+        Ok(match (self.kind, &self.grouped) {
+            (Start::TotalDegree, _) => {
+                StartSystem::TotalDegree(TotalDegree::new(supports, &self.degrees, options.seed, attempt))
+            }
+            (Start::Multihomogeneous, Some(grouped)) => {
+                StartSystem::Multihomogeneous(Multihomogeneous::new(supports, grouped.clone(), options.seed, attempt))
+            }
+            _ => StartSystem::Polyhedral(match self.first.take() {
+                Some(cells) => cells,
+                None => Polyhedral::new(supports, options.seed, attempt, options.monitor())?,
+            }),
+        })
     }
+}
+
+/// The given groups with the degrees in them; `None` without groups, or if they are too many or exponents negative.
+fn groups(equations: &Equations, options: &SolveOptions) -> Result<Option<Grouped>, SolveError> {
+    let n = equations.unknowns;
+    if options.groups.is_empty() && options.start != Start::Multihomogeneous {
+        return Ok(None);
+    }
+    let mut unknowns: Vec<usize> = options.groups.concat();
+    unknowns.sort_unstable();
+    if !unknowns.into_iter().eq(0..n) || options.groups.iter().any(Vec::is_empty) {
+        return Err(SolveError::Groups(n));
+    }
+    Ok(Grouped::new(&equations.supports, &options.groups))
 }

@@ -2,12 +2,14 @@
 //!
 //! * Polyhedral: the mixed cells of the supports ([`mixed_volume`], [`mixed_cells`]), found by tropical homotopy continuation
 //!   (Jensen 2016, arXiv:1601.02818) with one support brought in after the other.
+//! * Multihomogeneous: products of linear forms in groups of unknowns.
 //! * Total degree: `x_i^(d_i) - 1`, `d_i` the degrees of the equations.
 
 mod binomial;
 mod cell;
 mod integer;
 mod mixed;
+mod multihomogeneous;
 mod points;
 mod polyhedral;
 mod search;
@@ -16,20 +18,82 @@ mod total_degree;
 mod walk;
 
 pub use mixed::{MixedCell, MixedError, MixedVolume, mixed_cells, mixed_volume, watched_mixed_volume};
+pub(crate) use multihomogeneous::{Grouped, Multihomogeneous};
 pub(crate) use polyhedral::Polyhedral;
-pub(crate) use total_degree::{bezout_number, degrees, total_degree};
+pub(crate) use total_degree::{TotalDegree, bezout_number, degrees};
 
 use crate::fibre::Fibre;
+use crate::tracker::TrackerOptions;
+use num_complex::Complex64;
+use poly::SparseSystem;
 
 /// Exponent vectors of each equation.
 pub(crate) type Supports = [Vec<Vec<i32>>];
 
-/// A start system and its solutions.
-pub(crate) struct Generic {
-    /// The coefficients and the solutions found.
-    pub(crate) fibre: Fibre,
-    /// Number of solutions there are.
-    pub(crate) paths: u64,
-    /// Tracks run again to find them.
-    pub(crate) retracked: usize,
+/// A start system whose solutions are made by their numbers, when they are needed.
+pub(crate) enum StartSystem {
+    Polyhedral(Polyhedral),
+    Multihomogeneous(Multihomogeneous),
+    TotalDegree(TotalDegree),
+}
+
+/// Solutions of a start system.
+#[derive(Default)]
+pub(crate) struct Reached {
+    /// Their numbers.
+    pub(crate) numbers: Vec<usize>,
+    /// Their coordinates, one solution after the other.
+    pub(crate) points: Vec<Complex64>,
+}
+
+/// Where the paths of a system `E` begin.
+pub(crate) trait Source<E> {
+    /// The parameters there.
+    fn parameters(&self) -> &[Complex64];
+    /// Whether start solutions are ends of paths themselves, which may be lost or jump.
+    fn is_tracked(&self) -> bool;
+    /// The start solutions with these numbers, which ascend; where they are tracked, some may be missing.
+    fn solutions(&self, system: &E, numbers: &[usize], settings: &TrackerOptions) -> Reached;
+}
+
+impl Source<SparseSystem> for StartSystem {
+    fn parameters(&self) -> &[Complex64] {
+        match self {
+            StartSystem::Polyhedral(start) => start.parameters(),
+            StartSystem::Multihomogeneous(start) => start.parameters(),
+            StartSystem::TotalDegree(start) => start.parameters(),
+        }
+    }
+
+    fn is_tracked(&self) -> bool {
+        matches!(self, StartSystem::Polyhedral(_))
+    }
+
+    fn solutions(&self, system: &SparseSystem, numbers: &[usize], settings: &TrackerOptions) -> Reached {
+        let made = |solution: &dyn Fn(u64) -> Vec<Complex64>| Reached {
+            numbers: numbers.to_vec(),
+            points: numbers.iter().flat_map(|&k| solution(k as u64)).collect(),
+        };
+        match self {
+            StartSystem::Polyhedral(start) => start.solutions(system, numbers, settings),
+            StartSystem::Multihomogeneous(start) => made(&|k| start.solution(k)),
+            StartSystem::TotalDegree(start) => made(&|k| start.solution(k)),
+        }
+    }
+}
+
+/// The solutions that are stored.
+impl<E> Source<E> for Fibre {
+    fn parameters(&self) -> &[Complex64] {
+        &self.parameters
+    }
+
+    fn is_tracked(&self) -> bool {
+        false
+    }
+
+    fn solutions(&self, _: &E, numbers: &[usize], _: &TrackerOptions) -> Reached {
+        let points = numbers.iter().flat_map(|&k| self.solution(k).iter().copied()).collect();
+        Reached { numbers: numbers.to_vec(), points }
+    }
 }

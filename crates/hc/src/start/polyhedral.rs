@@ -3,30 +3,32 @@
 use super::binomial::Binomials;
 use super::mixed::{MixedCell, MixedError, watched_cells};
 use super::toric::{Toric, rates};
-use super::{Generic, Supports};
-use crate::distinct::coincidences;
-use crate::fibre::{Fibre, FibreOptions};
-use crate::monitor::{Monitor, Stage};
+use super::{Reached, Supports};
+use crate::monitor::Monitor;
 use crate::random::Random;
 use crate::tracker::{PathEnd, TrackerOptions, track};
 use num_complex::Complex64;
 use poly::SparseSystem;
 
-/// The mixed cells of one lifting, ready to be solved for generic coefficients of size about one.
+/// The mixed cells of one lifting. What belongs to a cell besides, its binomials and its weights, is made when its paths start.
 pub(crate) struct Polyhedral {
+    supports: Vec<Vec<Vec<i32>>>,
+    lifting: Vec<Vec<i32>>,
     coefficients: Vec<Complex64>,
-    cells: Vec<Cell>,
-    /// Rates of every term, cell after cell.
-    rates: Vec<f64>,
+    cells: Vec<MixedCell>,
+    /// Number of the first path of each cell.
+    first: Vec<u64>,
     /// Number of solutions: the mixed volume.
     pub(crate) mixed_volume: u64,
 }
 
-/// The binomials of a mixed cell.
-struct Cell {
-    binomials: Binomials,
-    sides: Vec<Complex64>,
-    volume: u64,
+/// Roots of the binomials of some cells, and the weights of the cells.
+struct Starts {
+    rates: Vec<f64>,
+    /// The cell of each root, by its place in `rates`.
+    cells: Vec<usize>,
+    points: Vec<Complex64>,
+    numbers: Vec<usize>,
 }
 
 impl Polyhedral {
@@ -40,106 +42,79 @@ impl Polyhedral {
         let mut random = Random::new(seed, 1 + 16 * attempt);
         let terms = supports.iter().map(Vec::len).sum();
         let coefficients: Vec<Complex64> = (0..terms).map(|_| random.unit() * (1.0 + 0.1 * random.unit().re)).collect();
-        let mut all_rates = Vec::new();
-        let mut cells = Vec::new();
-        for (cell, weights) in fine_cells(supports, &mut random, monitor)? {
+        let (lifting, cells) = fine_cells(supports, &mut random, monitor)?;
+        let mut first = Vec::with_capacity(cells.len());
+        let mut mixed_volume = 0u64;
+        for cell in &cells {
+            first.push(mixed_volume);
+            mixed_volume = mixed_volume.checked_add(cell.volume).ok_or(MixedError::TooLarge)?;
+        }
+        Ok(Polyhedral { supports: supports.to_vec(), lifting, coefficients, cells, first, mixed_volume })
+    }
+
+    pub(crate) fn parameters(&self) -> &[Complex64] {
+        &self.coefficients
+    }
+
+    /// Tracks roots of the binomials, by ascending numbers, to solutions for the generic coefficients.
+    pub(crate) fn solutions(&self, system: &SparseSystem, numbers: &[usize], settings: &TrackerOptions) -> Reached {
+        let starts = self.starts(numbers);
+        let which: Vec<usize> = (0..starts.numbers.len()).collect();
+        let path = Toric { coefficients: &self.coefficients, rates: &starts.rates, cells: &starts.cells };
+        let mut reached = Reached::default();
+        for (result, point) in track(system, &path, &starts.points, &which, settings).iter() {
+            if result.end == PathEnd::Success {
+                reached.numbers.push(starts.numbers[result.path]);
+                reached.points.extend_from_slice(point);
+            }
+        }
+        reached
+    }
+
+    /// The roots with these numbers; those of a cell whose integers outgrow 127 bits are left out.
+    fn starts(&self, numbers: &[usize]) -> Starts {
+        let mut starts = Starts { rates: Vec::new(), cells: Vec::new(), points: Vec::new(), numbers: Vec::new() };
+        let mut rest = numbers;
+        let mut place = 0;
+        while let Some(&number) = rest.first() {
+            let k = self.first.partition_point(|&first| first <= number as u64) - 1;
+            let cell = &self.cells[k];
+            let end = self.first[k] + cell.volume;
+            let (own, others) = rest.split_at(rest.partition_point(|&number| (number as u64) < end));
+            rest = others;
+            let Some(weights) = weights(&self.supports, &self.lifting, cell) else { continue };
             let (mut exponents, mut sides, mut first) = (Vec::new(), Vec::new(), 0);
-            for (points, [a, b]) in supports.iter().zip(&cell.edges) {
+            for (points, [a, b]) in self.supports.iter().zip(&cell.edges) {
                 let edge = points[*a].iter().zip(&points[*b]);
                 exponents.push(edge.map(|(&a, &b)| i128::from(a) - i128::from(b)).collect());
-                sides.push(-coefficients[first + b] / coefficients[first + a]);
+                sides.push(-self.coefficients[first + b] / self.coefficients[first + a]);
                 first += points.len();
             }
-            let binomials = Binomials::new(&exponents).ok_or(MixedError::TooLarge)?;
-            all_rates.extend(rates(&weights));
-            cells.push(Cell { binomials, sides, volume: cell.volume });
+            let Some(binomials) = Binomials::new(&exponents) else { continue };
+            starts.rates.extend(rates(&weights));
+            for &number in own {
+                starts.numbers.push(number);
+                starts.cells.push(place);
+                starts.points.extend(binomials.solution(&sides, number as u64 - self.first[k]));
+            }
+            place += 1;
         }
-        let mixed_volume =
-            cells.iter().try_fold(0u64, |sum, c| sum.checked_add(c.volume)).ok_or(MixedError::TooLarge)?;
-        Ok(Polyhedral { coefficients, cells, rates: all_rates, mixed_volume })
-    }
-
-    /// Tracks the roots of the binomials to solutions for the generic coefficients.
-    pub(crate) fn solve(self, system: &SparseSystem, options: &FibreOptions) -> Generic {
-        // Roots still to be found, as cell and number, and those found.
-        let mut wanted: Vec<(usize, u64)> =
-            self.cells.iter().enumerate().flat_map(|(c, cell)| (0..cell.volume).map(move |k| (c, k))).collect();
-        let mut found: Vec<((usize, u64), Vec<Complex64>)> = Vec::new();
-        let mut retracked = 0;
-        let monitor = &options.tracker.monitor;
-        for level in 0..=options.retries {
-            monitor.enter(Stage::Start, wanted.len() as u64);
-            let settings = if level == 0 { options.tracker.clone() } else { options.tracker.stricter(level) };
-            let mut missing = Vec::new();
-            for roots in wanted.chunks(CHUNK) {
-                self.track(system, roots, &settings, &mut found, &mut missing);
-            }
-            found.sort_by_key(|f| f.0);
-            // Two paths with one end: one of them has jumped, and it is not known which.
-            let points = found.iter().enumerate().map(|(k, f)| (k, &f.1[..]));
-            let jumped: Vec<usize> = coincidences(points, options.coincidence).concat();
-            if level < options.retries {
-                let mut keep = vec![true; found.len()];
-                jumped.iter().for_each(|&k| keep[k] = false);
-                missing.extend(jumped.iter().map(|&k| found[k].0));
-                let mut kept = keep.iter();
-                found.retain(|_| kept.next() == Some(&true));
-            }
-            missing.sort_unstable();
-            wanted = missing;
-            if wanted.is_empty() || level == options.retries || monitor.is_cancelled() {
-                break;
-            }
-            retracked += wanted.len();
-        }
-        let solutions = found.into_iter().flat_map(|f| f.1).collect();
-        let dimension = self.cells.first().map_or(0, |cell| cell.sides.len());
-        let fibre = Fibre { parameters: self.coefficients, dimension, solutions };
-        Generic { fibre, paths: self.mixed_volume, retracked }
-    }
-
-    fn track(
-        &self,
-        system: &SparseSystem,
-        roots: &[(usize, u64)],
-        settings: &TrackerOptions,
-        found: &mut Vec<((usize, u64), Vec<Complex64>)>,
-        missing: &mut Vec<(usize, u64)>,
-    ) {
-        let starts: Vec<Complex64> = roots
-            .iter()
-            .flat_map(|&(cell, k)| self.cells[cell].binomials.solution(&self.cells[cell].sides, k))
-            .collect();
-        let cells: Vec<usize> = roots.iter().map(|root| root.0).collect();
-        let which: Vec<usize> = (0..roots.len()).collect();
-        let path = Toric { coefficients: &self.coefficients, rates: &self.rates, cells: &cells };
-        for (result, point) in track(system, &path, &starts, &which, settings).iter() {
-            match result.end {
-                PathEnd::Success => found.push((roots[result.path], point.to_vec())),
-                _ => missing.push(roots[result.path]),
-            }
-        }
+        starts
     }
 }
 
-/// Roots of binomials that are made at a time.
-const CHUNK: usize = 1 << 13;
+/// A lifting and its mixed cells.
+type Lifted = (Vec<Vec<i32>>, Vec<MixedCell>);
 
-/// Mixed cells of a random lifting, with the weight of every term; a lifting that is not generic is replaced by a larger one.
-fn fine_cells(
-    supports: &Supports,
-    random: &mut Random,
-    monitor: &Monitor,
-) -> Result<Vec<(MixedCell, Vec<f64>)>, MixedError> {
+/// Mixed cells of a random lifting; one that is not generic is replaced by a larger one.
+fn fine_cells(supports: &Supports, random: &mut Random, monitor: &Monitor) -> Result<Lifted, MixedError> {
     for bits in 10..28 {
         let lift = f64::from(1 << bits);
         let lifting: Vec<Vec<i32>> =
             supports.iter().map(|a| a.iter().map(|_| (random.unit().arg() * lift) as i32).collect()).collect();
         let cells = watched_cells(supports.len(), supports, &lifting, monitor)?;
-        let weighted: Option<Vec<_>> =
-            cells.into_iter().map(|c| weights(supports, &lifting, &c).map(|w| (c, w))).collect();
-        if let Some(weighted) = weighted {
-            return Ok(weighted);
+        if cells.iter().all(|cell| weights(supports, &lifting, cell).is_some()) {
+            return Ok((lifting, cells));
         }
     }
     Err(MixedError::TooLarge)

@@ -1,7 +1,6 @@
 //! The total degree start system `g_i (x_i^(d_i) - 1)`, `d_i` the degrees and `g_i` random: as many paths as Bezout's number.
 
-use super::{Generic, Supports};
-use crate::fibre::Fibre;
+use super::Supports;
 use crate::random::Random;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -20,37 +19,49 @@ pub(crate) fn bezout_number(degrees: &[u64]) -> Option<u64> {
     degrees.iter().try_fold(1u64, |product, &d| product.checked_mul(d))
 }
 
-/// The start system in coefficients of the supports, which must contain `x_i^(d_i)` and the origin; the degrees are not zero
-/// and their product is small enough to hold that many solutions.
-pub(crate) fn total_degree(supports: &Supports, degrees: &[u64], seed: u64, attempt: u64) -> Generic {
-    let mut random = Random::new(seed, 2 + 16 * attempt);
-    let mut parameters = Vec::new();
-    for (i, (points, &degree)) in supports.iter().zip(degrees).enumerate() {
-        let factor = random.unit();
-        parameters.extend(points.iter().map(|p| {
-            let others_vanish = p.iter().enumerate().all(|(j, &e)| j == i || e == 0);
-            match p[i] {
-                0 if others_vanish => -factor,
-                e if others_vanish && u64::try_from(e) == Ok(degree) => factor,
-                _ => Complex64::new(0.0, 0.0),
-            }
-        }));
-    }
-    let paths = degrees.iter().product();
-    let mut solutions = Vec::new();
-    for number in 0..paths {
-        let mut rest = number;
-        for &degree in degrees {
-            solutions.push(Complex64::from_polar(1.0, TAU * (rest % degree) as f64 / degree as f64));
-            rest /= degree;
+/// The start system.
+pub(crate) struct TotalDegree {
+    degrees: Vec<u64>,
+    parameters: Vec<Complex64>,
+}
+
+impl TotalDegree {
+    /// In coefficients of the supports, which must contain `x_i^(d_i)` and the origin; the degrees are not zero.
+    pub(crate) fn new(supports: &Supports, degrees: &[u64], seed: u64, attempt: u64) -> TotalDegree {
+        let mut random = Random::new(seed, 2 + 16 * attempt);
+        let mut parameters = Vec::new();
+        for (i, (points, &degree)) in supports.iter().zip(degrees).enumerate() {
+            let factor = random.unit();
+            parameters.extend(points.iter().map(|p| {
+                let others_vanish = p.iter().enumerate().all(|(j, &e)| j == i || e == 0);
+                match p[i] {
+                    0 if others_vanish => -factor,
+                    e if others_vanish && u64::try_from(e) == Ok(degree) => factor,
+                    _ => Complex64::new(0.0, 0.0),
+                }
+            }));
         }
+        TotalDegree { degrees: degrees.to_vec(), parameters }
     }
-    Generic { fibre: Fibre { parameters, dimension: supports.len(), solutions }, paths, retracked: 0 }
+
+    pub(crate) fn parameters(&self) -> &[Complex64] {
+        &self.parameters
+    }
+
+    /// The solution with a number below that of the paths: roots of unity.
+    pub(crate) fn solution(&self, mut number: u64) -> Vec<Complex64> {
+        let root = |&degree: &u64| {
+            let k = number % degree;
+            number /= degree;
+            Complex64::from_polar(1.0, TAU * k as f64 / degree as f64)
+        };
+        self.degrees.iter().map(root).collect()
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{bezout_number, degrees, total_degree};
+    use super::{TotalDegree, bezout_number, degrees};
     use poly::{Evaluate, Isa, SparseSystem};
 
     #[test]
@@ -59,15 +70,15 @@ mod tests {
             vec![vec![vec![3, 0], vec![1, 1], vec![0, 0]], vec![vec![0, 2], vec![1, 1], vec![2, 0], vec![0, 0]]];
         let degrees = degrees(&supports).unwrap();
         assert_eq!((&degrees[..], bezout_number(&degrees)), (&[3, 2][..], Some(6)));
-        let start = total_degree(&supports, &degrees, 0, 0);
+        let start = TotalDegree::new(&supports, &degrees, 0, 0);
         let system = SparseSystem::new(2, &supports).unwrap();
         let mut memory = system.memory(Isa::Portable);
         for k in 0..6 {
             let mut values = vec![num_complex::Complex64::default(); 2];
-            system.values(&mut memory, start.fibre.solution(k), &start.fibre.parameters, &mut values);
+            system.values(&mut memory, &start.solution(k), start.parameters(), &mut values);
             assert!(values.iter().all(|v| v.norm() < 1e-14));
             for j in 0..k {
-                assert_ne!(start.fibre.solution(j), start.fibre.solution(k));
+                assert_ne!(start.solution(j), start.solution(k));
             }
         }
     }
