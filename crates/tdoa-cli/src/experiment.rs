@@ -1,5 +1,6 @@
 //! `tdoa experiment`.
 
+mod checks;
 mod clean;
 mod hard;
 
@@ -22,6 +23,12 @@ pub(crate) struct Arguments {
 enum Kind {
     Calibrate(CalibrateArguments),
     Clean(clean::Arguments),
+    /// Proves by interval arithmetic that all roots that the minimal solvers report exist and are distinct.
+    Proofs(checks::Arguments),
+    /// Compares the stored start of the minimal solvers with a polyhedral one.
+    Routes(checks::Arguments),
+    /// Measures what the options for callers in a hurry save and lose.
+    Hurry(checks::Arguments),
     Hard(hard::Arguments),
 }
 
@@ -61,6 +68,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let arguments = match &arguments.kind {
         Kind::Clean(arguments) => return clean::run(arguments),
         Kind::Hard(arguments) => return hard::run(arguments),
+        Kind::Proofs(arguments) => return checks::proofs(arguments),
+        Kind::Routes(arguments) => return checks::routes(arguments),
+        Kind::Hurry(arguments) => return checks::hurry(arguments),
         Kind::Calibrate(arguments) => arguments,
     };
     let sizes = arguments.configuration.split_once("r/");

@@ -188,6 +188,8 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
                 self.watch_valuations(l);
                 if let Some(end) = self.lanes[l].finished(&self.bounds) {
                     self.finish(l, end, out);
+                } else if self.bounds.options.drop_complex.is_some_and(|margin| self.stays_complex(l, margin)) {
+                    self.finish(l, PathEnd::Dropped, out);
                 }
             }
         }
@@ -348,6 +350,17 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             settled |= v + drift < -0.05 && drift < 0.01;
         }
         self.lanes[l].watch(settled);
+    }
+
+    /// Whether some coordinate is farther from real than `margin` times the way that it would still go at its present speed.
+    fn stays_complex(&self, l: usize, margin: f64) -> bool {
+        let t = self.lanes[l].t;
+        // The first steps are far from the target, which alone is real.
+        t < 0.5
+            && (0..self.n).any(|j| {
+                let (x, speed) = (self.taylor[j].get(l), self.taylor[self.n + j].get(l));
+                x.im.abs() > margin * t * speed.norm() && x.im.abs() > 1e-6 * x.norm()
+            })
     }
 
     fn finish(&mut self, l: usize, end: PathEnd, out: &mut PathSet) {
