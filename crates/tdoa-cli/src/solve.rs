@@ -27,8 +27,8 @@ pub(crate) struct Arguments {
     /// Stops at the first physical network with a residual (root mean square, metres) below this; 6r/3s, 5r/4s, 4r/5s and 5r/6s only.
     #[arg(long, value_name = "METRES")]
     first_under: Option<f64>,
-    /// Gives up paths that would hardly become real: those farther from real than this many times the way still to go. Saves time
-    /// and may lose networks.
+    /// Gives up paths that would hardly become real: those whose extrapolation to the data is farther from real than this many times
+    /// its own error. Saves time and may lose networks.
     #[arg(long, value_name = "MARGIN")]
     drop_complex: Option<f64>,
     /// Accepted everywhere; the solvers draw no random numbers.

@@ -352,15 +352,15 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         self.lanes[l].watch(settled);
     }
 
-    /// Whether some coordinate is farther from real than `margin` times the way that it would still go at its present speed.
+    /// Whether straight extrapolation to the target ends farther from real, in some coordinate, than `margin` times its own error as
+    /// the next two terms of the series tell it.
     fn stays_complex(&self, l: usize, margin: f64) -> bool {
         let t = self.lanes[l].t;
-        // The first steps are far from the target, which alone is real.
-        t < 0.5
-            && (0..self.n).any(|j| {
-                let (x, speed) = (self.taylor[j].get(l), self.taylor[self.n + j].get(l));
-                x.im.abs() > margin * t * speed.norm() && x.im.abs() > 1e-6 * x.norm()
-            })
+        (0..self.n).any(|j| {
+            let [x, x1, x2, x3] = [0, 1, 2, 3].map(|k| self.taylor[k * self.n + j].get(l));
+            let far = (x - t * x1).im.abs();
+            far > margin * (t * t) * (x2.norm() + t * x3.norm()) && far > 1e-6 * x.norm()
+        })
     }
 
     fn finish(&mut self, l: usize, end: PathEnd, out: &mut PathSet) {

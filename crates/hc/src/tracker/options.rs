@@ -27,8 +27,9 @@ pub struct TrackerOptions {
     pub endgame_start: f64,
     /// Whether residuals may be computed in double-double where double precision ends. Default true.
     pub extended_precision: bool,
-    /// For callers who want the real solutions of a real target only: a path is given up where a coordinate is farther from real than this many
-    /// times the way still to go at its present speed, `|Im x_j| > margin * t |x_j'|`. Saves steps and may lose real solutions. Default `None`: no path.
+    /// For callers who want the real solutions of a real target only: a path is given up where straight
+    /// extrapolation to the target ends farther from real than this many times its own error: `|Im (x_j - t x_j')| > margin * (t^2 |x_j''| / 2 + t^3
+    /// |x_j'''| / 6)` in some coordinate. Saves steps and may lose real solutions. Default `None`: no path.
     pub drop_complex: Option<f64>,
     /// Instruction set of the lane kernels; `None` takes the widest of the machine. The result does not depend on it. Default `None`.
     pub isa: Option<Isa>,

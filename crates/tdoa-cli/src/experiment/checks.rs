@@ -76,6 +76,7 @@ pub(super) fn proofs(arguments: &Arguments) -> Result<(), Failure> {
          |---|---|---|---|---|---|---|---|\n",
         arguments.command("proofs")
     );
+    let mut notes = Vec::new();
     for &size in &arguments.configuration {
         let trials = arguments.each(size, proof_trial)?;
         let sum = |f: fn(&tdoa::experiment::checks::ProofTrial) -> usize| trials.iter().map(f).sum::<usize>();
@@ -92,6 +93,15 @@ pub(super) fn proofs(arguments: &Arguments) -> Result<(), Failure> {
             sum(|t| t.real),
             sum(|t| t.counted_real),
         );
+        for (seed, trial) in (arguments.seed..).zip(&trials) {
+            if let Some(obstacle) = trial.obstacle {
+                let missing = trial.roots - trial.certified;
+                notes.push(format!("{}r/{}s, seed {seed}: {missing} not proved ({obstacle})", size.0, size.1));
+            }
+        }
+    }
+    for note in notes {
+        let _ = write!(text, "\n* {note}");
     }
     arguments.write(&text)
 }
@@ -132,7 +142,7 @@ pub(super) fn hurry(arguments: &Arguments) -> Result<(), Failure> {
         arguments.command("hurry")
     );
     let mut choices = vec![];
-    for margin in [0.5, 1.0, 2.0, 4.0, 8.0] {
+    for margin in [1.0, 2.0, 4.0, 16.0] {
         let mut options = SolveOptions::default();
         options.paths.tracker.drop_complex = Some(margin);
         choices.push((format!("`drop_complex` {margin}"), options));

@@ -5,7 +5,7 @@ use super::clean::position_error_of;
 use crate::minimal::{SolveError, SolveOptions, Solver, Start};
 use crate::network::{MinimalSolution, PathCounts, RootCounts};
 use crate::simulate::Simulation;
-use hc::certify::Reality;
+use hc::certify::{Obstacle, Reality};
 use serde::Serialize;
 use std::time::Instant;
 
@@ -27,6 +27,9 @@ pub struct ProofTrial {
     pub real: usize,
     /// Roots that the solver counts as real.
     pub counted_real: usize,
+    /// Why a root is not proved, for the first such.
+    #[serde(skip)]
+    pub obstacle: Option<Obstacle>,
 }
 
 /// Solves one clean instance and proves its roots.
@@ -40,6 +43,7 @@ pub fn proof_trial(solver: &mut Solver, simulation: &Simulation) -> Result<Proof
     if let Some(proofs) = solver.certify() {
         trial.certified = proofs.certified();
         trial.distinct = proofs.distinct();
+        trial.obstacle = proofs.points.iter().find_map(|p| p.as_ref().err().copied());
         trial.unseparated = proofs.unseparated.len();
         trial.real = proofs.solutions().filter(|s| s.reality == Reality::Real).count();
     }
@@ -197,7 +201,7 @@ mod tests {
     #[test]
     fn dropped_paths_are_counted() {
         let mut options = SolveOptions::default();
-        options.paths.tracker.drop_complex = Some(1.0);
+        options.paths.tracker.drop_complex = Some(4.0);
         let trial = hurry_trial(&mut Solver::new(), &clean(6, 3, 0), &options).unwrap();
         assert_eq!(trial.tracked, 180);
         assert!(trial.dropped > 0 && trial.dropped + trial.networks <= 180, "{trial:?}");

@@ -189,11 +189,18 @@ impl<F: Formulation> Engine<F> {
                         lost.iter().flat_map(|&k| F::enter(chart, start.solution(k))).collect();
                     again.clear(n);
                     self.tracker.track(&path, &carried, 0..lost.len(), &mut again);
-                    for (result, point) in again.iter().filter(|(r, _)| r.end == PathEnd::Success) {
-                        let back = refiner.refine(target, &F::leave(chart, point));
-                        if back.accuracy < 1e-8 {
-                            let k = lost[result.path];
-                            self.paths.replace(k, PathResult { path: k, ..*result }, &back.point);
+                    for (result, point) in again.iter() {
+                        let k = lost[result.path];
+                        let record = PathResult { path: k, ..*result };
+                        match result.end {
+                            PathEnd::Success => {
+                                let back = refiner.refine(target, &F::leave(chart, point));
+                                if back.accuracy < 1e-8 {
+                                    self.paths.replace(k, record, &back.point);
+                                }
+                            }
+                            PathEnd::Dropped => self.paths.replace(k, record, &F::leave(chart, point)),
+                            _ => {}
                         }
                     }
                 }
