@@ -358,8 +358,11 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         let t = self.lanes[l].t;
         (0..self.n).any(|j| {
             let [x, x1, x2, x3] = [0, 1, 2, 3].map(|k| self.taylor[k * self.n + j].get(l));
-            let far = (x - t * x1).im.abs();
-            far > margin * (t * t) * (x2.norm() + t * x3.norm()) && far > 1e-6 * x.norm()
+            let far = x.im - t * x1.im;
+            let error = margin * t * t;
+            // No roots: 2 (a^2 + b^2) is at least (a + b)^2.
+            far * far > (error * error) * 2.0 * (x2.norm_sqr() + t * t * x3.norm_sqr())
+                && far * far > 1e-12 * x.norm_sqr()
         })
     }
 

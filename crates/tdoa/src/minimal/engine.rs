@@ -5,15 +5,15 @@ use super::collinear::{Line, in_one_line};
 use super::formulation::Formulation;
 use super::nearest::nearest;
 use super::normalised::{Normalised, rank};
+use super::proofs::{RootProofs, prove};
 use super::real::real_root;
 use super::{SolveError, SolveOptions, Start, check, scratch};
 use crate::calibrate::flatness;
 use crate::network::{Candidate, MinimalSolution, Network, PathCounts, RootCounts};
 use crate::pseudoranges::Pseudoranges;
-use hc::certify::{Certificates, CertifyOptions, certify};
 use hc::fibre::{Fibre, doubtful};
 use hc::homotopy::Segment;
-use hc::poly::{ComplexInterval, Lanes8};
+use hc::poly::Lanes8;
 use hc::refine::Refiner;
 use hc::tracker::{PathEnd, PathResult, PathSet, Tracker};
 use num_complex::Complex64;
@@ -84,13 +84,10 @@ impl<F: Formulation> Engine<F> {
         self.paths.results()
     }
 
-    /// Proofs that the complex roots of the last call exist and are distinct; `None` if there was no call.
-    pub(crate) fn certify(&self) -> Option<Certificates> {
-        let family = hc::poly::parse::family(F::FAMILY).ok()?;
-        let parameters: Vec<ComplexInterval> = self.target.iter().map(|&p| ComplexInterval::point(p)).collect();
+    /// Proofs that the complex roots of the last call exist and are distinct.
+    pub(crate) fn prove(&self) -> Option<RootProofs> {
         let ends = self.paths.iter().filter(|(r, _)| r.end == PathEnd::Success);
-        let points: Vec<Vec<Complex64>> = ends.map(|(_, x)| x.to_vec()).collect();
-        certify(&family.system, &parameters, &points, &CertifyOptions::default()).ok()
+        prove::<F>(&self.target, &ends.map(|(_, x)| x.to_vec()).collect::<Vec<_>>())
     }
 
     /// Tracks all paths, again from a turned fibre where some stay lost, keeps the most complete set and adds its roots to `found`.

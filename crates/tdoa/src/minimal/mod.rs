@@ -22,6 +22,7 @@ mod linear;
 mod nearest;
 mod normalised;
 mod polish;
+mod proofs;
 mod rank;
 mod real;
 mod scratch;
@@ -29,6 +30,7 @@ mod solver;
 pub(crate) mod subset;
 mod three;
 
+pub use proofs::RootProofs;
 pub use solver::Solver;
 
 use crate::network::MinimalSolution;

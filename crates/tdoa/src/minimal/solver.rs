@@ -5,13 +5,13 @@ use super::formulation::Formulation;
 use super::four_five::FourFive;
 use super::larger::extend;
 use super::normalised::Normalised;
+use super::proofs::RootProofs;
 use super::rank::{FiveSix, by_receivers, offsets_of_four};
 use super::subset::{self, Subset};
 use super::three::{FiveFour, SixThree};
 use super::{SolveError, SolveOptions, check};
 use crate::network::{MinimalSolution, PathCounts, RootCounts};
 use crate::pseudoranges::Pseudoranges;
-use hc::certify::Certificates;
 use hc::tracker::PathResult;
 
 /// Solver for small networks; picks the method by size, and keeps its memory from call to call.
@@ -85,12 +85,12 @@ impl Solver {
 
     /// Proofs, in interval arithmetic, that the complex roots that the last call tracked exist and are distinct ([`hc::certify`]). `None` if
     /// it tracked none; of a larger network the roots are those of the part that was solved.
-    pub fn certify(&self) -> Option<Certificates> {
+    pub fn prove(&self) -> Option<RootProofs> {
         match self.last? {
-            Method::SixThree => self.six_three.as_ref()?.certify(),
-            Method::FiveFour => self.five_four.as_ref()?.certify(),
-            Method::FourFive => self.four_five.as_ref()?.certify(),
-            Method::FiveSix => self.five_six.as_ref()?.certify(),
+            Method::SixThree => self.six_three.as_ref()?.prove(),
+            Method::FiveFour => self.five_four.as_ref()?.prove(),
+            Method::FourFive => self.four_five.as_ref()?.prove(),
+            Method::FiveSix => self.five_six.as_ref()?.prove(),
             Method::SevenFour => None,
         }
     }
