@@ -68,7 +68,7 @@ fn collinear_nodes_are_not_presented_as_a_result() {
     let receivers = [[0.0, 0.0], [3.1, 0.4], [1.2, 2.7], [4.4, 3.3], [-0.8, 1.9], [2.5, -2.6]];
     let (_, message, status) = solve(&matrix(&receivers, &[[0.0, 1.0], [1.0, 1.5], [3.0, 2.5]]));
     assert_eq!(status, Some(1), "{message}");
-    assert!(message.contains("transmitters in one line") && message.contains("move a transmitter"), "{message}");
+    assert!(message.contains("transmitters in one line") && message.contains("move some transmitters"), "{message}");
 }
 
 #[test]

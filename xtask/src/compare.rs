@@ -28,7 +28,7 @@ pub(crate) struct CompareArguments {
     /// Instances of each network.
     #[arg(long, default_value_t = 2)]
     instances: u64,
-    /// Seconds after which a run of a peer is stopped.
+    /// Processor seconds after which a run of a peer is stopped.
     #[arg(long, default_value_t = 600)]
     limit: u32,
     /// The folder of systems.
@@ -138,7 +138,7 @@ fn introduction(plan: &Plan, tools: &Tools) -> String {
     format!(
         "# Beside other programs\n\n\
          Written by `cargo xtask compare`{}: every case runs first here, then in the peer, the pair {times} (once where the peer takes over a \
-         minute); peers are stopped after {} s. Seconds are processor seconds of the whole process, so that other work on the machine \
+         minute); peers are stopped after {} processor seconds. Seconds are processor seconds of the whole process, so that other work on the machine \
          matters little, but by the wall where they are less than a tenth of a second; shown is the run of median time; \
          a ratio is the median of the pairs' ratios, above one where this project is faster.\n\n\
          Peers: {peers}.{absent} Machine: {}. Commit {}.\n\n",

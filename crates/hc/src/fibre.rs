@@ -53,7 +53,7 @@ impl Default for FibreOptions {
     }
 }
 
-/// How the paths of a fibre ended; `tracked` is the sum of the next three.
+/// How the paths of a fibre ended; `tracked` is the sum of the next four.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct PathCounts {
     /// Paths tracked, one a start solution.
@@ -64,6 +64,8 @@ pub struct PathCounts {
     pub at_infinity: usize,
     /// Paths that ended otherwise, those included that still share their end with another.
     pub failed: usize,
+    /// Paths given up on request because they would hardly become real ([`crate::tracker::TrackerOptions::drop_complex`]).
+    pub dropped: usize,
     /// How many tracks were run a second time or more often.
     pub retracked: usize,
 }
@@ -100,11 +102,13 @@ pub fn track_fibre<E: Evaluate>(
     }
     let lost = doubtful(&paths, options.coincidence).len();
     let at_infinity = paths.count(PathEnd::AtInfinity);
+    let dropped = paths.count(PathEnd::Dropped);
     let counts = PathCounts {
         tracked: fibre.len(),
-        finite: fibre.len() - at_infinity - lost,
+        finite: fibre.len() - at_infinity - lost - dropped,
         at_infinity,
         failed: lost,
+        dropped,
         retracked,
     };
     (paths, counts)

@@ -2,6 +2,7 @@
 
 mod calibrate;
 mod chart;
+mod checks;
 mod clean;
 mod common;
 mod damaged;
@@ -28,6 +29,12 @@ enum Kind {
     Table2(table2::Arguments),
     Clean(clean::Arguments),
     Noise(noise::Arguments),
+    /// Proves by interval arithmetic that all roots that the minimal solvers report exist and are distinct.
+    Proofs(checks::Arguments),
+    /// Compares the stored start of the minimal solvers with a polyhedral one.
+    Routes(checks::Arguments),
+    /// Measures what the options for callers in a hurry save and lose.
+    Hurry(checks::Arguments),
     Hard(hard::Arguments),
     Calibrate(calibrate::Arguments),
     Coverage(calibrate::CoverageArguments),
@@ -41,6 +48,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Kind::Clean(arguments) => clean::run(arguments),
         Kind::Noise(arguments) => noise::run(arguments),
         Kind::Hard(arguments) => hard::run(arguments),
+        Kind::Proofs(arguments) => checks::proofs(arguments),
+        Kind::Routes(arguments) => checks::routes(arguments),
+        Kind::Hurry(arguments) => checks::hurry(arguments),
         Kind::Calibrate(arguments) => calibrate::run(arguments),
         Kind::Coverage(arguments) => calibrate::run_coverage(arguments),
         Kind::Growth(arguments) => growth::run(arguments),

@@ -1,5 +1,6 @@
 //! Trials of the calibration on simulated networks: how far from the truth, compared with what the noise allows.
 
+pub mod checks;
 pub mod clean;
 pub mod hard;
 pub mod noise;

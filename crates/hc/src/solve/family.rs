@@ -51,7 +51,7 @@ pub fn solve_member<E: Evaluate>(
         mixed_volume: None,
         bezout_number: None,
         multihomogeneous_number: None,
-        paths: PathCounts { tracked, finite, at_infinity: found.infinite, failed: found.lost, retracked },
+        paths: PathCounts { tracked, finite, at_infinity: found.infinite, failed: found.lost, dropped: 0, retracked },
         on_components: found.on_components,
         component_points: found.component_points.iter().map(|x| x.iter().map(|z| [z.re, z.im]).collect()).collect(),
         excess: found.excess,

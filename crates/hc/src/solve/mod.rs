@@ -257,7 +257,7 @@ pub fn solve(polynomials: &[Polynomial<Exact>], options: &SolveOptions) -> Resul
     let whole = best.as_ref().is_some_and(|(_, b)| b.lost == 0);
     let (tracked, found) = best.unwrap_or_default();
     let finite = tracked - found.infinite - found.lost;
-    let paths = PathCounts { tracked, finite, at_infinity: found.infinite, failed: found.lost, retracked };
+    let paths = PathCounts { tracked, finite, at_infinity: found.infinite, failed: found.lost, dropped: 0, retracked };
     let mut solutions = found.solutions;
     solutions.iter_mut().for_each(|s| starts.equations.unscale(&mut s.value));
     let pairs = |x: &Vec<Complex64>| x.iter().map(|z| [z.re, z.im]).collect::<Vec<[f64; 2]>>();

@@ -73,6 +73,11 @@ impl Size {
     }
 }
 
+/// Reads `6r/3s` as two numbers, for an option.
+pub(super) fn configuration(text: &str) -> Result<(usize, usize), String> {
+    text.parse().map(|size: Size| (size.receivers, size.transmitters))
+}
+
 /// A network as in the paper: positions and offsets standard normal.
 pub(super) fn normal(size: Size, noise: f64, seed: u64) -> Result<Simulation, Failure> {
     let mut options = SimulateOptions::default();

@@ -1,10 +1,11 @@
 //! From measurements to all networks that explain them, for any [`Formulation`]: tracks the stored fibre to the data, accounts for
 //! every path, and turns real solutions into networks.
 
+use super::collinear::{Line, in_one_line};
 use super::formulation::Formulation;
 use super::nearest::nearest;
 use super::normalised::{Normalised, rank};
-use super::rank::transmitters_on_a_line;
+use super::proofs::{RootProofs, prove};
 use super::real::real_root;
 use super::{SolveError, SolveOptions, Start, check, scratch};
 use crate::calibrate::flatness;
@@ -20,6 +21,9 @@ use num_complex::Complex64;
 /// Turns of the stored fibre, one after the other where paths stay lost: each gives other paths to the same ends.
 const TURNS: [f64; 3] = [0.0, 0.7, -1.1];
 
+/// Paths tracked at a time where the search stops at the first network that fits: four batches of eight.
+const PART: usize = 32;
+
 /// So many lost paths are bad luck; more of them tell of a degenerate network, whose roots no other path reaches either.
 const BAD_LUCK: usize = 4;
 
@@ -28,6 +32,8 @@ pub(crate) struct Engine<F: Formulation> {
     tracker: Tracker<'static, F::System, Lanes8>,
     stored: Fibre,
     paths: PathSet,
+    /// The parameters of the last call.
+    target: Vec<Complex64>,
 }
 
 impl<F: Formulation> Engine<F> {
@@ -35,7 +41,12 @@ impl<F: Formulation> Engine<F> {
     pub(crate) fn new() -> Self {
         let stored = F::fibre();
         let paths = PathSet::new(stored.dimension);
-        Engine { tracker: Tracker::new(F::system(), &SolveOptions::default().paths.tracker), stored, paths }
+        Engine {
+            tracker: Tracker::new(F::system(), &SolveOptions::default().paths.tracker),
+            stored,
+            paths,
+            target: Vec::new(),
+        }
     }
 
     /// Every network that explains a matrix of the formulation's size.
@@ -48,48 +59,24 @@ impl<F: Formulation> Engine<F> {
         assert_eq!(size, (F::RECEIVERS, F::TRANSMITTERS), "size of the matrix");
         check(measured)?;
         let data = Normalised::new(measured);
-        let target: Vec<Complex64> = data.parameters().iter().map(|&f| f.into()).collect();
-        let (roots, paths) = match options.start {
-            Start::Stored => {
-                let paths = self.track(&target, options);
-                let good = self.paths.iter().filter(|(r, _)| r.end == PathEnd::Success);
-                (good.map(|(_, x)| x.to_vec()).collect(), paths)
-            }
+        self.target.clear();
+        self.target.extend(data.parameters().iter().map(|&f| Complex64::from(f)));
+        let mut found = Found::<F>::new(measured, &data, options);
+        let (paths, stopped_early) = match options.start {
+            Start::Stored => self.track(&mut found, options),
             Start::Polyhedral => {
                 self.paths.clear(self.stored.dimension);
-                scratch::roots::<F>(data.parameters())?
+                let (roots, paths) = scratch::roots::<F>(data.parameters())?;
+                roots.iter().for_each(|root| found.add(root));
+                found.counts.complex = roots.len();
+                (paths, false)
             }
         };
-        let mut refiner = Refiner::new(F::system());
-        let complex = match options.start {
-            Start::Stored => paths.finite,
-            Start::Polyhedral => roots.len(),
-        };
-        let mut counts = RootCounts { complex, ..RootCounts::default() };
-        let mut candidates = Vec::new();
-        for root in &roots {
-            let Some((x, real)) = real_root::<F>(&mut refiner, &target, root, options.near_real) else { continue };
-            counts.real += usize::from(real);
-            let Some(network) = F::network(data.parameters(), &x) else { continue };
-            counts.positive_definite += usize::from(real);
-            let candidate = data.candidate(network, options);
-            counts.physical += usize::from(real && candidate.physical);
-            candidates.push(candidate);
-        }
+        let Found { counts, mut candidates, .. } = found;
         rank(&mut candidates);
-        for candidate in &mut candidates {
-            data.restore(&mut candidate.network);
-            candidate.residual = candidate.network.rms(measured);
-        }
-        let mut warnings = warnings(&paths, &candidates);
-        if transmitters_on_a_line(data.parameters(), F::TRANSMITTERS) {
-            warnings.push(
-                "the data fit transmitters in one line, and then every receiver may be its mirror image: such networks are not among these;                  move a transmitter off the line"
-                    .to_owned(),
-            );
-        }
+        let warnings = warnings(&paths, &candidates, in_one_line(data.parameters(), F::TRANSMITTERS));
         let configuration = measured.configuration();
-        Ok(MinimalSolution { configuration, solver: F::NAME, paths, counts, warnings, candidates })
+        Ok(MinimalSolution { configuration, solver: F::NAME, paths, counts, stopped_early, warnings, candidates })
     }
 
     /// The records of the paths of the last call.
@@ -97,14 +84,24 @@ impl<F: Formulation> Engine<F> {
         self.paths.results()
     }
 
-    /// Tracks all paths, again from a turned fibre where some stay lost, and keeps the most complete set.
-    fn track(&mut self, target: &[Complex64], options: &SolveOptions) -> PathCounts {
+    /// Proofs that the complex roots of the last call exist and are distinct.
+    pub(crate) fn prove(&self) -> Option<RootProofs> {
+        let ends = self.paths.iter().filter(|(r, _)| r.end == PathEnd::Success);
+        prove::<F>(&self.target, &ends.map(|(_, x)| x.to_vec()).collect::<Vec<_>>())
+    }
+
+    /// Tracks all paths, again from a turned fibre where some stay lost, keeps the most complete set and adds its roots to `found`.
+    /// Returns the counts and whether the search stopped at a network that fits.
+    fn track(&mut self, found: &mut Found<'_, F>, options: &SolveOptions) -> (PathCounts, bool) {
         let mut retracked = 0;
         let mut best: Option<(usize, PathSet)> = None;
         for (attempt, turn) in TURNS.into_iter().enumerate() {
             retracked += if attempt > 0 { self.stored.len() } else { 0 };
-            let start = nearest::<F>(&self.stored, target, turn);
-            let (lost, again) = self.track_from(&start, target, options);
+            let start = nearest::<F>(&self.stored, &self.target, turn);
+            if attempt == 0 && options.first_under.is_some() && self.stops_early(&start, found, options) {
+                return (self.counts(0, 0), true);
+            }
+            let (lost, again) = self.track_from(&start, attempt == 0 && options.first_under.is_some(), options);
             retracked += again;
             if attempt == 0 && lost == 0 {
                 best = None;
@@ -121,15 +118,52 @@ impl<F: Formulation> Engine<F> {
         if let Some((_, paths)) = best {
             self.paths = paths;
         }
-        let at_infinity = self.paths.count(PathEnd::AtInfinity);
-        let tracked = self.paths.len();
-        PathCounts { tracked, finite: tracked - at_infinity - failed, at_infinity, failed, retracked }
+        let counts = self.counts(failed, retracked);
+        found.clear();
+        self.paths.iter().filter(|(r, _)| r.end == PathEnd::Success).for_each(|(_, x)| found.add(x));
+        found.counts.complex = counts.finite;
+        (counts, false)
+    }
+
+    /// How the paths that are stored have ended.
+    fn counts(&self, failed: usize, retracked: usize) -> PathCounts {
+        let (tracked, at_infinity) = (self.paths.len(), self.paths.count(PathEnd::AtInfinity));
+        let dropped = self.paths.count(PathEnd::Dropped);
+        let finite = tracked - at_infinity - dropped - failed;
+        PathCounts { tracked, finite, at_infinity, failed, dropped, retracked }
+    }
+
+    /// Tracks the paths a part at a time until one gives a physical network that fits; whether one did.
+    fn stops_early(&mut self, start: &Fibre, found: &mut Found<'_, F>, options: &SolveOptions) -> bool {
+        let path = Segment::new(&F::parameters(0, &start.parameters), &F::parameters(0, &self.target));
+        self.tracker.set_options(&options.paths.tracker);
+        self.paths.clear(start.dimension);
+        let mut from = 0;
+        while from < start.len() {
+            let to = (from + PART).min(start.len());
+            let before = self.paths.len();
+            self.tracker.track(&path, &start.solutions, from..to, &mut self.paths);
+            for (_, x) in self.paths.iter().skip(before).filter(|(r, _)| r.end == PathEnd::Success) {
+                found.counts.complex += 1;
+                found.add(x);
+            }
+            if found.fits() {
+                // Paths that ended otherwise would be tracked again if the search went on.
+                return true;
+            }
+            from = to;
+        }
+        self.paths.sort();
+        false
     }
 
     /// Tracks all paths from one fibre. Those that fail, jump or take too many steps are continued in the other charts, then with more
     /// and shorter steps in all of them. Returns how many are lost, and how many were tracked again.
-    fn track_from(&mut self, start: &Fibre, target: &[Complex64], options: &SolveOptions) -> (usize, usize) {
+    ///
+    /// `first_pass_done` says that `paths` already holds the first pass.
+    fn track_from(&mut self, start: &Fibre, first_pass_done: bool, options: &SolveOptions) -> (usize, usize) {
         let settings = &options.paths;
+        let target = &self.target;
         let n = start.dimension;
         let mut refiner = Refiner::new(F::system());
         let mut retracked = 0;
@@ -141,20 +175,29 @@ impl<F: Formulation> Engine<F> {
             for chart in 0..F::CHARTS {
                 let path = Segment::new(&F::parameters(chart, &start.parameters), &F::parameters(chart, target));
                 if level == 0 && chart == 0 {
-                    self.paths.clear(n);
-                    self.tracker.track(&path, &start.solutions, lost.iter().copied(), &mut self.paths);
-                    self.paths.sort();
+                    if !first_pass_done {
+                        self.paths.clear(n);
+                        self.tracker.track(&path, &start.solutions, lost.iter().copied(), &mut self.paths);
+                        self.paths.sort();
+                    }
                 } else {
                     retracked += lost.len();
                     let carried: Vec<Complex64> =
                         lost.iter().flat_map(|&k| F::enter(chart, start.solution(k))).collect();
                     again.clear(n);
                     self.tracker.track(&path, &carried, 0..lost.len(), &mut again);
-                    for (result, point) in again.iter().filter(|(r, _)| r.end == PathEnd::Success) {
-                        let back = refiner.refine(target, &F::leave(chart, point));
-                        if back.accuracy < 1e-8 {
-                            let k = lost[result.path];
-                            self.paths.replace(k, PathResult { path: k, ..*result }, &back.point);
+                    for (result, point) in again.iter() {
+                        let k = lost[result.path];
+                        let record = PathResult { path: k, ..*result };
+                        match result.end {
+                            PathEnd::Success => {
+                                let back = refiner.refine(target, &F::leave(chart, point));
+                                if back.accuracy < 1e-8 {
+                                    self.paths.replace(k, record, &back.point);
+                                }
+                            }
+                            PathEnd::Dropped => self.paths.replace(k, record, &F::leave(chart, point)),
+                            _ => {}
                         }
                     }
                 }
@@ -168,10 +211,55 @@ impl<F: Formulation> Engine<F> {
     }
 }
 
+/// The networks of the real roots found so far.
+struct Found<'a, F: Formulation> {
+    measured: &'a Pseudoranges,
+    data: &'a Normalised,
+    options: &'a SolveOptions,
+    target: Vec<Complex64>,
+    refiner: Refiner<'static, F::System>,
+    counts: RootCounts,
+    candidates: Vec<Candidate>,
+}
+
+impl<'a, F: Formulation> Found<'a, F> {
+    fn new(measured: &'a Pseudoranges, data: &'a Normalised, options: &'a SolveOptions) -> Self {
+        let target = data.parameters().iter().map(|&f| f.into()).collect();
+        let (refiner, counts) = (Refiner::new(F::system()), RootCounts::default());
+        Found { measured, data, options, target, refiner, counts, candidates: Vec::new() }
+    }
+
+    fn clear(&mut self) {
+        self.counts = RootCounts::default();
+        self.candidates.clear();
+    }
+
+    /// Counts a root and, if it is real with real positions, adds its network.
+    fn add(&mut self, root: &[Complex64]) {
+        let Some((x, real)) = real_root::<F>(&mut self.refiner, &self.target, root, self.options.near_real) else {
+            return;
+        };
+        self.counts.real += usize::from(real);
+        let Some(network) = F::network(self.data.parameters(), &x) else { return };
+        self.counts.positive_definite += usize::from(real);
+        let mut candidate = self.data.candidate(network, self.options);
+        self.counts.physical += usize::from(real && candidate.physical);
+        self.data.restore(&mut candidate.network);
+        candidate.residual = candidate.network.rms(self.measured);
+        self.candidates.push(candidate);
+    }
+
+    /// Whether a network is good enough to stop at.
+    fn fits(&self) -> bool {
+        let limit = self.options.first_under.unwrap_or(0.0);
+        self.candidates.iter().any(|c| c.physical && c.residual < limit)
+    }
+}
+
 /// Physical candidates flatter than this are said to be collinear; exact data tell no more of them.
 const FLAT: f64 = 1e-4;
 
-fn warnings(paths: &PathCounts, candidates: &[Candidate]) -> Vec<String> {
+fn warnings(paths: &PathCounts, candidates: &[Candidate], line: Option<Line>) -> Vec<String> {
     let mut warnings = Vec::new();
     if paths.failed > 0 {
         warnings.push(format!(
@@ -179,10 +267,16 @@ fn warnings(paths: &PathCounts, candidates: &[Candidate]) -> Vec<String> {
             paths.failed, paths.tracked
         ));
     }
-    for (kind, points) in
-        [("receivers", (|n| &n.receivers) as fn(&Network) -> &Vec<[f64; 2]>), ("transmitters", |n| &n.transmitters)]
-    {
-        if candidates.iter().any(|c| c.physical && flatness(points(&c.network)) < FLAT) {
+    for (kind, others, all, points) in [
+        ("receivers", "transmitter", Line::Receivers, (|n| &n.receivers) as fn(&Network) -> &Vec<[f64; 2]>),
+        ("transmitters", "receiver", Line::Transmitters, |n| &n.transmitters),
+    ] {
+        if line == Some(all) {
+            warnings.push(format!(
+                "the data fit a network with all {kind} in one line, and then every {others} may be its mirror image: such networks may \
+                 not be among these; move some {kind} off the line"
+            ));
+        } else if candidates.iter().any(|c| c.physical && flatness(points(&c.network)) < FLAT) {
             warnings.push(format!(
                 "in a network that fits, the {kind} lie in one line: the data cannot tell on which side of it the other nodes lie; \
                  move some {kind} off the line"

@@ -12,6 +12,7 @@
 //! | 7r/4s, and more of both | offsets by rank, linear | 0 |
 
 mod chart;
+mod collinear;
 mod dual;
 mod engine;
 mod formulation;
@@ -21,6 +22,7 @@ mod linear;
 mod nearest;
 mod normalised;
 mod polish;
+mod proofs;
 mod rank;
 mod real;
 mod scratch;
@@ -28,6 +30,7 @@ mod solver;
 pub(crate) mod subset;
 mod three;
 
+pub use proofs::RootProofs;
 pub use solver::Solver;
 
 use crate::network::MinimalSolution;
@@ -47,7 +50,11 @@ pub struct SolveOptions {
     pub near_real: f64,
     /// Whether candidates are polished in the primal coordinates. Default true.
     pub polish: bool,
-    /// Settings for the paths.
+    /// For callers in a hurry: stop at the first physical candidate whose residual (root mean square, metres) is below this. Only sizes solved
+    /// by paths without a smaller part (6r/3s, 5r/4s, 4r/5s, 5r/6s) stop early; in 6r/3s and 4r/5s every candidate fits exactly, so that the first
+    /// physical one is given, which need not be the true one. Default `None`: all networks.
+    pub first_under: Option<f64>,
+    /// Settings for the paths; `paths.tracker.drop_complex` gives up paths that would hardly become real.
     pub paths: FibreOptions,
     /// Where paths start. Default [`Start::Stored`].
     pub start: Start,
@@ -73,7 +80,7 @@ impl Default for SolveOptions {
         paths.tracker.beta_tau_last = 0.5;
         // Most paths take about 45 steps. One that takes many more is quicker in another chart.
         paths.tracker.max_steps = 400;
-        SolveOptions { tolerance: 1e-6, near_real: 0.0, polish: true, paths, start: Start::Stored }
+        SolveOptions { tolerance: 1e-6, near_real: 0.0, polish: true, first_under: None, paths, start: Start::Stored }
     }
 }
 

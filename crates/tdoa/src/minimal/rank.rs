@@ -89,33 +89,8 @@ pub(crate) fn offsets_of_four(f: &[f64]) -> Option<[f64; 4]> {
     p.iter().all(|p| p.is_finite()).then_some(p)
 }
 
-/// Data that fit three transmitters in one line to this precision (of their size) are taken for such.
-const ON_A_LINE: f64 = 1e-10;
-
-/// Whether three columns fit transmitters in one line: `s_3 = w s_1 + (1 - w) s_2` makes `f_ij (f_ij - 2 p_j)` dependent in the same way, which is
-/// linear in `w`, `w p_1`, `(1 - w) p_2` and `p_3`. Needs five rows or more to say anything; rows of `width`.
-pub(crate) fn transmitters_on_a_line(f: &[f64], width: usize) -> bool {
-    let rows: Vec<[f64; 5]> = f
-        .chunks_exact(width)
-        .map(|r| {
-            let [a, b, c] = [r[0], r[1], r[2]];
-            [a * a - b * b, -2.0 * a, -2.0 * b, 2.0 * c, c * c - b * b]
-        })
-        .collect();
-    if rows.len() < 5 {
-        return false;
-    }
-    let Some(x) = least_squares(rows.len(), 4, |i, c| rows[i][c], |i| rows[i][4]) else { return false };
-    let misfit = |row: &[f64; 5]| {
-        let terms = [row[0] * x[0], row[1] * x[1], row[2] * x[2], row[3] * x[3], -row[4]];
-        let size: f64 = terms.iter().map(|t| t.abs()).sum();
-        terms.iter().sum::<f64>().abs() <= ON_A_LINE * size
-    };
-    rows.iter().all(misfit)
-}
-
 /// `q_ij - q_i1` for the columns `j = 2..n` (rows of `n - 1`), and `q_i1`.
-fn differences(f: &[f64], p: &[f64]) -> (Vec<f64>, Vec<f64>) {
+pub(crate) fn differences(f: &[f64], p: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let q = |row: &[f64], j: usize| row[j] * (row[j] - 2.0 * p[j]);
     let rows = f.chunks_exact(p.len());
     let d = rows.clone().flat_map(|row| (1..p.len()).map(move |j| q(row, j) - q(row, 0))).collect();
@@ -198,7 +173,7 @@ fn assemble(f: &[f64], p: &[f64], d: &[f64], [g11, g12, g22]: [f64; 3], w: [f64;
 
 #[cfg(test)]
 mod tests {
-    use super::{by_receivers, by_transmitters, offsets_of_four, transmitters_on_a_line};
+    use super::{by_receivers, by_transmitters, offsets_of_four};
     use crate::minimal::normalised::Normalised;
     use crate::simulate::{Layout, SimulateOptions, simulate};
 
@@ -235,27 +210,6 @@ mod tests {
         }
         // Some of fifty networks are near to a degenerate one.
         assert!(good >= 45, "{good}");
-    }
-
-    #[test]
-    fn transmitters_on_a_line_are_noticed_and_others_are_not() {
-        for seed in 0..50 {
-            let options = SimulateOptions {
-                receivers: 6,
-                transmitters: 3,
-                layout: Layout::Normal,
-                noise: 0.0,
-                seed,
-                ..SimulateOptions::default()
-            };
-            let mut network = simulate(&options).unwrap().network;
-            for (d, expected) in [(1.0, false), (1e-3, false), (0.0, true)] {
-                network.transmitters.iter_mut().for_each(|s| s[1] *= d);
-                let f: Vec<f64> =
-                    (3..18).map(|k| network.pseudorange(k / 3, k % 3) - network.pseudorange(0, k % 3)).collect();
-                assert_eq!(transmitters_on_a_line(&f, 3), expected, "seed {seed}, {d}");
-            }
-        }
     }
 
     #[test]

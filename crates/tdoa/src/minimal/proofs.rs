@@ -1,0 +1,63 @@
+//! Proofs that the roots of a solver exist and are distinct.
+
+use super::formulation::Formulation;
+use hc::certify::{CertifyOptions, Reality, certify};
+use hc::poly::{ComplexInterval, parse};
+use num_complex::Complex64;
+use serde::Serialize;
+
+/// What interval arithmetic proves of the complex roots that a solver has found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct RootProofs {
+    /// Roots put to the test.
+    pub roots: usize,
+    /// Roots proved to exist, each the only one in a box of its own.
+    pub proved: usize,
+    /// Of these, roots proved real.
+    pub real: usize,
+    /// Pairs of roots that are not proved different.
+    pub unseparated: usize,
+}
+
+/// Puts the roots `points` for the parameters `target` to the test of Krawczyk, in every chart until all are proved: a root that is ill-conditioned
+/// in one, as next to a far node, is none in another. What is proved is about the differences `f_ij - f_1j` as they are in `target`.
+pub(crate) fn prove<F: Formulation>(target: &[Complex64], points: &[Vec<Complex64>]) -> Option<RootProofs> {
+    let family = parse::family(F::FAMILY).ok()?;
+    let count = points.len();
+    let mut proved = vec![false; count];
+    let mut real = vec![false; count];
+    let mut separated = vec![false; count * count];
+    for chart in 0..F::CHARTS {
+        // In another chart the parameters are differences of these, real and known up to their rounding.
+        let enclose = |&p: &Complex64| {
+            let exact = ComplexInterval::point(p);
+            if chart == 0 {
+                exact
+            } else {
+                ComplexInterval { im: exact.im, ..ComplexInterval::around(p, p.norm() * f64::EPSILON) }
+            }
+        };
+        let parameters: Vec<ComplexInterval> = F::parameters(chart, target).iter().map(enclose).collect();
+        let carried: Vec<Vec<Complex64>> = points.iter().map(|x| F::enter(chart, x)).collect();
+        let found = certify(&family.system, &parameters, &carried, &CertifyOptions::default()).ok()?;
+        let mut different = vec![false; count * count];
+        let alone: Vec<usize> =
+            (0..count).filter(|&k| found.points[k].is_ok() && found.duplicate_of[k].is_none()).collect();
+        for &i in &alone {
+            proved[i] = true;
+            real[i] |= found.points[i].as_ref().is_ok_and(|c| c.reality == Reality::Real);
+            alone.iter().for_each(|&j| different[i * count + j] = true);
+        }
+        found.unseparated.iter().for_each(|&[i, j]| {
+            (different[i * count + j], different[j * count + i]) = (false, false);
+        });
+        separated.iter_mut().zip(different).for_each(|(s, d)| *s |= d);
+        if separated.iter().all(|&s| s) {
+            break;
+        }
+    }
+    let pairs = (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j)));
+    let unseparated = pairs.filter(|&(i, j)| !separated[i * count + j]).count();
+    let total = |flags: &[bool]| flags.iter().filter(|&&f| f).count();
+    Some(RootProofs { roots: count, proved: total(&proved), real: total(&real), unseparated })
+}
