@@ -4,32 +4,44 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::Mutex;
 
-/// Programs that this process has built.
-static BUILT: Mutex<Vec<String>> = Mutex::new(Vec::new());
+/// Whether this process has seen to it that the programs are built.
+static BUILT: Mutex<bool> = Mutex::new(false);
 
-/// The path of one of the workspace's programs, built with the profile of the running test. `cargo test --workspace`
-/// builds no programs for other packages' tests, so this does.
+/// The path of one of the workspace's programs, built with the profile of the running test.
 ///
 /// # Panics
-/// If the program cannot be built.
+/// If the programs cannot be built.
 pub fn program(name: &str) -> PathBuf {
+    directory().join(format!("{name}{}", std::env::consts::EXE_SUFFIX))
+}
+
+/// The path of an example of the workspace, built in the same way.
+///
+/// # Panics
+/// If the examples cannot be built.
+pub fn example(name: &str) -> PathBuf {
+    directory().join("examples").join(format!("{name}{}", std::env::consts::EXE_SUFFIX))
+}
+
+/// The directory of the programs. `cargo test --workspace` builds no programs for other packages' tests, so this does; together
+/// with everything that it does build, because the same features are then chosen and nothing is compiled twice.
+fn directory() -> PathBuf {
     let test = std::env::current_exe().expect("path of the test");
     // target/<profile>/deps/<test>
     let directory = test.parent().and_then(Path::parent).expect("target directory");
     let mut built = BUILT.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    if !built.iter().any(|other| other == name) {
+    if !*built {
         let mut cargo = Command::new(env!("CARGO"));
-        let package = if name == "xtask" { name.to_string() } else { format!("{name}-cli") };
-        cargo.args(["build", "--quiet", "--package", &package, "--bin", name]);
+        cargo.args(["build", "--quiet", "--workspace", "--bins", "--examples", "--tests"]);
         cargo.arg("--target-dir").arg(directory.parent().expect("target directory"));
         if directory.file_name().is_some_and(|profile| profile == "release") {
             cargo.arg("--release");
         }
         cargo.current_dir(root());
-        assert!(cargo.status().expect("cargo runs").success(), "{name} does not build");
-        built.push(name.to_string());
+        assert!(cargo.status().expect("cargo runs").success(), "the programs do not build");
+        *built = true;
     }
-    directory.join(format!("{name}{}", std::env::consts::EXE_SUFFIX))
+    directory.to_path_buf()
 }
 
 /// Runs a program of the workspace to its end.

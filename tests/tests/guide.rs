@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
-use end_to_end::{program, root};
+use end_to_end::{example, program, root};
 
 /// Commands that the tests do not run: steps that need the network, write into the repository, contain these tests, or take long.
 const NOT_RUN: &[&str] = &[
@@ -58,9 +58,7 @@ fn run(command: &str, folder: &Path) -> Output {
         return Command::new(program(name)).args(words).current_dir(folder).output().expect("the program starts");
     }
     let rest = command.strip_prefix("cargo run --release -p hc --example ").expect("a known kind of command");
-    let mut cargo = Command::new(env!("CARGO"));
-    cargo.args(["run", "--quiet", "-p", "hc", "--example", rest]).current_dir(root());
-    cargo.output().expect("cargo starts")
+    Command::new(example(rest)).current_dir(root()).output().expect("the example starts")
 }
 
 /// Runs all commands of a page, and gives what each printed.
