@@ -52,7 +52,8 @@ fn phcpack(text: &str) -> Result<Named, String> {
     let start = text.rfind("THE SOLUTIONS").ok_or(
         "expected JSON, or PHCpack's list of solutions below a line THE SOLUTIONS; is it the output of `phc -b`?",
     )?;
-    let first = text[..start].lines().count();
+    // The line, from 1, on which the list begins.
+    let first = text[..start].matches('\n').count() + 1;
     let mut names: Option<Vec<String>> = None;
     let mut points = Vec::new();
     // Of the solution that is being read.

@@ -113,7 +113,7 @@ proptest! {
 /// However large the exponent, a power of zero is zero, so that no negative power of it passes for a number.
 #[test]
 fn powers_of_zero_are_zero() {
-    for text in ["(x - x)^1000000", "0^2147483647", "(0^1000000)^3"] {
+    for text in ["(x - x)^1000000", "0^1000000000", "(0^1000000)^3"] {
         assert!(parse::phcpack(&format!("1\n({text})^(-4);")).is_err(), "{text}");
         assert!(parse::phcpack(&format!("1\n1/({text});")).is_err(), "{text}");
         let system = parse::phcpack(&format!("1\nx + {text};")).expect("a formula");
