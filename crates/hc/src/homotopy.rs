@@ -14,7 +14,7 @@ pub trait ParameterPath: Send + Sync {
     /// Taylor coefficients of orders 0 to 3 at `t` (one `t` a lane): `p[k * m + i]` is coefficient `k` of parameter `i`.
     ///
     /// `paths` holds the index of the path in each lane, for homotopies that differ from path to path; in lanes without a path it is
-    /// that of some other lane.
+    /// that of some other lane. Called inside a kernel: implementations are `#[inline(always)]`.
     fn coefficients<S: Lane>(&self, paths: &[usize], t: &S::Real, p: &mut [S]);
 
     /// Whether coefficients of orders 2 and 3 are zero everywhere, which makes Taylor coefficients cheaper.
@@ -57,6 +57,7 @@ impl ParameterPath for Segment {
         self.target.len()
     }
 
+    #[inline(always)]
     fn coefficients<S: Lane>(&self, _: &[usize], t: &S::Real, p: &mut [S]) {
         let m = self.target.len();
         for i in 0..m {

@@ -7,7 +7,7 @@
 
 use num_complex::Complex64;
 use poly::Lane;
-use poly::simd::{Isa, Kernel};
+use poly::simd::{Isa, Kernel, across_lanes};
 
 /// Share of the largest candidate from which on the diagonal is kept as the pivot.
 pub const THRESHOLD: f64 = 0.1;
@@ -147,9 +147,9 @@ impl<S: Lane> Kernel for Factor<'_, S> {
 
         let scale = &mut row_scale[..n];
         for i in 0..n {
-            // One row at a time: the running maximum keeps the compiler from vectorising across rows, with gathers, instead of lanes.
             let mut largest = S::real(0.0);
             for j in 0..n {
+                across_lanes();
                 largest = S::real_max(&S::real_mul(&f[j * n + i].norm_sqr(), &self.weights_sqr[j]), &largest);
             }
             scale[i] = reciprocal::<S>(&largest);
@@ -160,6 +160,7 @@ impl<S: Lane> Kernel for Factor<'_, S> {
             let inverse = S::inv(&f[k * n + k]);
             f[k * n + k] = inverse;
             for i in k + 1..n {
+                across_lanes();
                 f[k * n + i] = S::mul(&f[k * n + i], &inverse);
             }
             for j in k + 1..n {
@@ -168,6 +169,7 @@ impl<S: Lane> Kernel for Factor<'_, S> {
                 let column = &mut right[..n];
                 let top = column[k];
                 for i in k + 1..n {
+                    across_lanes();
                     column[i] = S::sub_mul(&pivot_column[i], &top, &column[i]);
                 }
             }
@@ -251,6 +253,7 @@ impl<S: Lane> Kernel for Solve<'_, S> {
         for k in 0..n {
             let top = b[k];
             for i in k + 1..n {
+                across_lanes();
                 b[i] = S::sub_mul(&f[k * n + i], &top, &b[i]);
             }
         }
@@ -258,6 +261,7 @@ impl<S: Lane> Kernel for Solve<'_, S> {
             b[k] = S::mul(&b[k], &f[k * n + k]);
             let bottom = b[k];
             for i in 0..k {
+                across_lanes();
                 b[i] = S::sub_mul(&f[k * n + i], &bottom, &b[i]);
             }
         }

@@ -62,6 +62,7 @@ impl ParameterPath for Legs<'_> {
         self.segment.parameters()
     }
 
+    #[inline(always)]
     fn coefficients<S: Lane>(&self, paths: &[usize], u: &S::Real, p: &mut [S]) {
         let m = self.parameters();
         let mut t = [S::zero(); 4];

@@ -31,6 +31,7 @@ impl ParameterPath for Toric<'_> {
         self.coefficients.len()
     }
 
+    #[inline(always)]
     fn coefficients<S: Lane>(&self, paths: &[usize], t: &S::Real, p: &mut [S]) {
         let m = self.coefficients.len();
         for (l, (&t, &path)) in t.as_ref().iter().zip(paths).enumerate() {

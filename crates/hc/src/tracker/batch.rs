@@ -4,7 +4,7 @@
 //! lane in [`Progress`]. A lane that has finished its part of a step is evaluated again at the same point until the others
 //! have finished theirs, so its numbers do not depend on its neighbours. Nothing is allocated in the loop.
 
-use super::kernels::{Correct, Distance, Negate, Predict, Radius, Take, Weigh};
+use super::kernels::{Coefficients, Correct, Distance, Negate, Predict, Radius, Take, Weigh};
 use super::options::TrackerOptions;
 use super::progress::{Bounds, Progress, Stage};
 use super::result::{PathEnd, PathSet};
@@ -159,7 +159,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             .iter_mut()
             .zip(&self.lanes)
             .for_each(|(label, lane)| *label = if lane.is_live() { lane.path } else { some });
-        path.coefficients::<S>(&self.labels, &t, &mut self.parameters);
+        self.isa.run(Coefficients { path, labels: &self.labels, t: &t, out: &mut self.parameters });
         self.point.copy_from_slice(&self.predicted);
         self.lanes.iter_mut().for_each(|lane| lane.begin_correction(&self.bounds));
         loop {

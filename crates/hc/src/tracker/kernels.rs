@@ -2,6 +2,7 @@
 //!
 //! All lengths are relative to weights, `|x| = max_j |x_j| / w_j`; squares are kept, so no root is taken per coordinate.
 
+use crate::homotopy::ParameterPath;
 use poly::Lane;
 use poly::simd::Kernel;
 
@@ -68,7 +69,9 @@ impl<S: Lane> Kernel for Radius<'_, S> {
         let mut radius = S::real(f64::INFINITY);
         let mut norms = [S::real(0.0); 4];
         for j in 0..n {
-            let sizes: [S::Real; 4] = std::array::from_fn(|k| self.taylor[k * n + j].norm_sqr());
+            // Written out: a closure that is not inlined would be compiled without the instruction set of the kernel.
+            let t = self.taylor;
+            let sizes = [t[j].norm_sqr(), t[n + j].norm_sqr(), t[2 * n + j].norm_sqr(), t[3 * n + j].norm_sqr()];
             let weight = self.inverse_weights_sqr[j];
             for l in 0..S::LANES {
                 let [_, s1, s2, s3] = [0, 1, 2, 3].map(|k| sizes[k].as_ref()[l]);
@@ -184,6 +187,23 @@ impl<S: Lane> Kernel for Distance<'_, S> {
             grow(&mut norm, &S::sub(&self.a[j], &self.b[j]), &self.inverse_weights_sqr[j]);
         }
         norm
+    }
+}
+
+/// Taylor coefficients of the parameters, for the paths and the `t` of the lanes.
+pub(crate) struct Coefficients<'a, S: Lane, P: ParameterPath> {
+    pub(crate) path: &'a P,
+    pub(crate) labels: &'a [usize],
+    pub(crate) t: &'a S::Real,
+    pub(crate) out: &'a mut [S],
+}
+
+impl<S: Lane, P: ParameterPath> Kernel for Coefficients<'_, S, P> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        self.path.coefficients::<S>(self.labels, self.t, self.out);
     }
 }
 
