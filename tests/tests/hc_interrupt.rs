@@ -7,11 +7,15 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Runs `hc`, sends SIGINT after a second and a half, and returns the JSON that it leaves.
+/// Runs `hc` with JSON to standard output, sends SIGINT after a second and a half, and returns what it leaves.
 fn interrupted(arguments: &[&str]) -> Value {
+    interrupted_with_output("--json", arguments)
+}
+
+fn interrupted_with_output(option: &str, arguments: &[&str]) -> Value {
     let child = Command::new(program("hc"))
         .args(arguments)
-        .args(["--json", "-", "--threads", "1"])
+        .args([option, "-", "--threads", "1"])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
@@ -78,4 +82,15 @@ fn the_targets_done_so_far() {
     let found = found.as_array().expect("a list");
     assert!((1..100_000).contains(&found.len()), "{}", found.len());
     assert!(found[..found.len() - 1].iter().all(|report| report["partial"] == false));
+}
+
+#[test]
+fn the_solutions_of_a_family_found_so_far() {
+    let folder = tempfile::tempdir().expect("directory");
+    let family = "name = 'dense'\nunknowns = ['x', 'y']\nparameters = ['a', 'b', 'c', 'd', 'e', 'f']\n\
+                  equations = ['x^40 + a*x*y^20 + b*y + c', 'y^40 + d*x^20*y + e*x + f']\n";
+    let found = interrupted_with_output("--output", &["monodromy", &written(folder.path(), "dense.toml", family)]);
+    assert_eq!((&found["stopped"], &found["trace_test"]), (&json!("interrupted"), &Value::Null));
+    // Of 1600.
+    assert!((1..1600).contains(&found["solutions"].as_array().expect("a list").len()));
 }

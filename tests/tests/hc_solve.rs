@@ -53,6 +53,25 @@ fn the_same_bytes_on_any_number_of_threads() {
 }
 
 #[test]
+fn multihomogeneous_start_with_given_groups() {
+    // Bilinear in (x, y) and (z): the multihomogeneous number is the coefficient of a^2 b in (a + b)^3, three; the degree is eight.
+    let text = "3\nx*z+2*y+z-1;\n3*x*z-y*z+x+5;\nx+y*z-7*z+2;";
+    let (status, out, error) = solve(text, &["--json", "-", "--start", "multihomogeneous", "--groups", "x,y;z"]);
+    assert_eq!(status, Some(0), "{error}");
+    let json: Value = serde_json::from_str(&out).expect("JSON");
+    assert_eq!((&json["paths"]["tracked"], &json["paths"]["failed"]), (&3.into(), &0.into()), "{out}");
+    let count = |json: &Value| json["solutions"].as_array().expect("solutions").len();
+    let (_, other, _) = solve(text, &["--json", "-", "--start", "total-degree"]);
+    let other: Value = serde_json::from_str(&other).expect("JSON");
+    assert_eq!((count(&json), &other["paths"]["tracked"]), (count(&other), &8.into()));
+    for groups in ["x;z", "x,y;z,w", "x,y;y,z", ""] {
+        let (status, out, error) = solve(text, &["--start", "multihomogeneous", "--groups", groups]);
+        assert_eq!((status, out.as_str()), (Some(2), ""), "{groups}: {error}");
+        assert!(error.starts_with("hc: ") && error.contains("group"), "{groups}: {error}");
+    }
+}
+
+#[test]
 fn no_solution_and_components_are_said() {
     let (status, out, _) = solve("2\nx+y-1;\nx+y-2;", &[]);
     assert_eq!((status, out.contains("0 isolated solutions")), (Some(1), true), "{out}");

@@ -1,7 +1,9 @@
 //! `hc monodromy`.
 
 use crate::family::Problem;
+use crate::watch;
 use cli::{Failure, output};
+use hc::monitor::Monitor;
 use hc::monodromy::{MonodromyOptions, Stop, monodromy};
 use hc::pair::find_pair;
 use hc::start_file::StartFile;
@@ -9,6 +11,8 @@ use hc::trace::trace_test;
 use std::path::PathBuf;
 
 /// Finds all solutions of a family for one generic parameter point, from a single one.
+///
+/// Interrupted, it writes the solutions found so far, with "stopped": "interrupted" and exit status 130.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The family (TOML).
@@ -22,6 +26,9 @@ pub(crate) struct Arguments {
     /// Seed of the loops.
     #[arg(long, default_value_t = 0)]
     seed: u64,
+    /// Threads; all processors by default. The result does not depend on it.
+    #[arg(long)]
+    threads: Option<usize>,
     /// File for the fibre (JSON); - for standard output.
     #[arg(long)]
     output: PathBuf,
@@ -43,21 +50,27 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut options = MonodromyOptions::default();
     options.seed = arguments.seed;
     options.roots = problem.family.roots;
-    let found = monodromy(&problem.system, &start, accept, &options);
+    let monitor = Monitor::watched();
+    options.set_monitor(monitor.clone());
+    let (found, test) = watch::watched(arguments.threads, &monitor, watch::stages, || {
+        let found = monodromy(&problem.system, &start, accept, &options);
+        let wanted = !arguments.no_trace && !matches!(found.stop, Stop::RootsReached | Stop::Cancelled);
+        let test = wanted.then(|| trace_test(&problem.family.system, &found.fibre, &options));
+        (found, test)
+    })?;
     let count = found.fibre.len();
-    let mut stopped = match found.stop {
+    let test = match test {
+        // What an interrupted test says is no deviation.
+        Some(test) if !monitor.is_cancelled() => Some(test.map_err(|e| Failure::in_file(&arguments.family, e))?),
+        _ => None,
+    };
+    let deviation = test.as_ref().map(|test| test.deviation);
+    let stopped = match found.stop {
         Stop::RootsReached => "roots reached",
+        _ if monitor.is_cancelled() => "interrupted",
+        _ if test.is_some_and(|test| test.passed(count)) => "trace",
         _ => "no progress",
     };
-    let mut deviation = None;
-    if !arguments.no_trace && stopped != "roots reached" {
-        let test = trace_test(&problem.family.system, &found.fibre, &options)
-            .map_err(|e| Failure::in_file(&arguments.family, e))?;
-        deviation = Some(test.deviation);
-        if test.passed(count) {
-            stopped = "trace";
-        }
-    }
     let text = StartFile::new(&found.fibre, deviation, stopped).to_json();
     match arguments.output.to_str() {
         Some("-") => output::print(&text)?,
@@ -68,6 +81,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         "{}: {count} solutions after {} loops and {} paths; stopped: {stopped}{trace}",
         problem.family.name, found.loops, found.paths
     );
+    if stopped == "interrupted" {
+        return Err(Failure::Interrupted);
+    }
     match problem.family.roots {
         Some(roots) if roots != count => {
             Err(Failure::Undetermined(format!("{count} solutions were found, the family states {roots}")))

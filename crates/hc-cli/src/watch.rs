@@ -45,6 +45,7 @@ pub(crate) fn stages(progress: Progress) -> (u64, u64, String) {
         Stage::Start => "paths to generic coefficients".to_owned(),
         Stage::Paths => format!("paths, {counted} of them at regular solutions"),
         Stage::Endgame => "paths through the endgame".to_owned(),
+        Stage::Loop => format!("paths round a loop, {} solutions so far", progress.total / 3),
         _ => "preparing".to_owned(),
     };
     (progress.done, progress.total, words)

@@ -33,6 +33,8 @@ pub enum Stage {
     Paths,
     /// Paths are taken through the endgame.
     Endgame,
+    /// A fibre is taken round a loop, three sides a path.
+    Loop,
 }
 
 /// How far the work is.
@@ -95,6 +97,7 @@ impl Monitor {
             2 => Stage::Start,
             3 => Stage::Paths,
             4 => Stage::Endgame,
+            5 => Stage::Loop,
             _ => Stage::Preparing,
         };
         let [done, total, counted] =

@@ -6,6 +6,7 @@
 
 use crate::distinct::coincidences;
 use crate::fibre::{Fibre, FibreOptions, track_fibre};
+use crate::monitor::{Monitor, Stage};
 use crate::random::Random;
 use crate::refine::Refiner;
 use crate::tracker::PathEnd;
@@ -30,6 +31,13 @@ pub struct MonodromyOptions {
     pub fibre: FibreOptions,
 }
 
+impl MonodromyOptions {
+    /// Who watches, and may stop, the search. Default nobody.
+    pub fn set_monitor(&mut self, monitor: Monitor) {
+        self.fibre.tracker.monitor = monitor;
+    }
+}
+
 impl Default for MonodromyOptions {
     fn default() -> Self {
         let mut fibre = FibreOptions::default();
@@ -49,6 +57,8 @@ pub enum Stop {
     NoProgress,
     /// More solutions than allowed.
     TooMany,
+    /// The monitor was cancelled: these are the solutions found so far.
+    Cancelled,
 }
 
 /// What monodromy found.
@@ -78,7 +88,11 @@ pub fn monodromy<E: Evaluate>(
 ) -> MonodromyResult {
     let mut fibre = start.clone();
     let (mut loops, mut idle, mut paths) = (0, 0, 0);
+    let monitor = &options.fibre.tracker.monitor;
     let stop = loop {
+        if monitor.is_cancelled() {
+            break Stop::Cancelled;
+        }
         if options.roots.is_some_and(|roots| fibre.len() >= roots) {
             break Stop::RootsReached;
         }
@@ -92,6 +106,7 @@ pub fn monodromy<E: Evaluate>(
         let corners = [0, 1].map(|_| random.normals(system.parameters()));
         let before = fibre.len();
         paths += 3 * before;
+        monitor.enter(Stage::Loop, 3 * before as u64);
         go_round(system, &mut fibre, &corners, &accept, options);
         loops += 1;
         idle = if fibre.len() > before { 0 } else { idle + 1 };

@@ -13,7 +13,7 @@ pub struct StartFile {
     pub solutions: Vec<Vec<[f64; 2]>>,
     /// Deviation found by the [trace test](crate::trace), if it was run: rounding error shows that the fibre is whole.
     pub trace_test: Option<f64>,
-    /// Why the search ended: `roots reached`, `trace` or `no progress`.
+    /// Why the search ended: `roots reached`, `trace`, `no progress` or `interrupted`.
     pub stopped: String,
 }
 

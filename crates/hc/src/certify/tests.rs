@@ -40,6 +40,16 @@ fn reality_is_decided_by_proof() {
 }
 
 #[test]
+fn signs_of_real_solutions_are_proved_by_their_boxes() {
+    // Row A17 of the list of test systems: two real solutions, one of them positive.
+    let root = 0.5f64.sqrt();
+    let found = run("2\nx^2 + y^2 - 1;\nx - y;", &[vec![z(root, 0.0); 2], vec![z(-root, 0.0); 2]]);
+    assert_eq!((found.certified(), found.distinct(), found.real()), (2, 2, 2));
+    let positive = |k: usize| found.points[k].as_ref().is_ok_and(|p| p.enclosure.iter().all(|x| x.re.low > 0.0));
+    assert_eq!((positive(0), positive(1)), (true, false));
+}
+
+#[test]
 fn the_solutions_of_the_written_decimals_are_enclosed() {
     let tenth = BigRational::new(1.into(), 10.into());
     for text in ["1\nx - 0.1;", "1\n10*x - 1;", "1\nx^3 - 0.001;", "1\n1/x - 10;", "1\n(x - 1/10)*(x + 7.3);"] {
