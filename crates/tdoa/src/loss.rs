@@ -19,6 +19,23 @@ impl Loss {
         if self.nu.is_infinite() { 0.5 * u2 } else { 0.5 * (self.nu + 1.0) * (u2 / self.nu).ln_1p() }
     }
 
+    /// Sum of the costs of residuals. The logarithm is taken of products: it costs more than all else. Infinite for absurd residuals.
+    pub fn total(&self, residuals: impl Iterator<Item = f64>) -> f64 {
+        if self.nu.is_infinite() {
+            return residuals.map(|e| self.cost(e)).sum();
+        }
+        let factor = 1.0 / (self.nu * self.scale * self.scale);
+        let (mut sum, mut product) = (0.0, 1.0);
+        for e in residuals {
+            product *= 1.0 + e * e * factor;
+            if product > 1e150 {
+                sum += f64::ln(product);
+                product = 1.0;
+            }
+        }
+        0.5 * (self.nu + 1.0) * (sum + product.ln())
+    }
+
     /// Weight of a residual in iteratively reweighted least squares, without the factor 1/scale^2: cost'(u)/u.
     pub fn weight(&self, residual: f64) -> f64 {
         let u2 = (residual / self.scale).powi(2);
@@ -57,6 +74,18 @@ pub const SEARCH_NU: f64 = 1.0;
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_total_is_the_sum_of_costs() {
+        let residuals: Vec<f64> = (0..200).map(|k| (f64::from(k) * 0.7).sin() * 10f64.powi(k % 9 - 3)).collect();
+        for nu in [1.0, 3.5, f64::INFINITY] {
+            let loss = Loss { nu, scale: 0.3 };
+            let sum: f64 = residuals.iter().map(|&e| loss.cost(e)).sum();
+            assert!((loss.total(residuals.iter().copied()) - sum).abs() < 1e-12 * sum, "{nu}");
+            assert_eq!(loss.total([1e200].into_iter()), f64::INFINITY);
+            assert!(loss.total([f64::NAN].into_iter()).is_nan());
+        }
+    }
 
     #[test]
     fn weight_is_the_derivative_over_the_residual() {

@@ -66,7 +66,7 @@ pub fn receiver(sights: &[Sight], loss: &Loss) -> Option<Located> {
 
 /// Sum of the loss over the sights.
 pub(crate) fn cost(sights: &[Sight], position: [f64; 2], offset: f64, loss: &Loss) -> f64 {
-    sights.iter().map(|s| loss.cost((s.length - offset - distance(s.position, position)) * s.precision)).sum()
+    loss.total(sights.iter().map(|s| (s.length - offset - distance(s.position, position)) * s.precision))
 }
 
 /// The two best solutions so far: an outlier's or a mirror image's basin may look better before the polish.

@@ -124,7 +124,7 @@ impl Search<'_> {
     fn rank(&self, network: &Network) -> f64 {
         let mut all = vec![0.0; self.observations.len()];
         residuals(self.observations, network, &mut all);
-        all.iter().map(|&e| self.wide.cost(e)).sum()
+        self.wide.total(all.into_iter())
     }
 }
 

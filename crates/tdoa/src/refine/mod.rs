@@ -141,7 +141,7 @@ impl<'a> Refiner<'a> {
                 fit_scale(&self.residuals, &loss, self.share, 20).max(annealed).max(options.floor)
             }
         };
-        let mut cost = total(&self.residuals, &loss);
+        let mut cost = loss.total(self.residuals.iter().copied());
         let mut damping = 1e-3;
         let mut calm = 0;
         for _ in 0..options.steps {
@@ -154,7 +154,7 @@ impl<'a> Refiner<'a> {
                 if self.normal.solve(observations, damping) {
                     self.normal.step(&network, &mut self.trial);
                     residuals(observations, &self.trial, &mut self.trial_residuals);
-                    let next = total(&self.trial_residuals, &loss);
+                    let next = loss.total(self.trial_residuals.iter().copied());
                     if next < cost {
                         improved = cost - next > options.tolerance * cost.abs();
                         damping = (damping * 0.2).max(1e-9);
@@ -175,7 +175,7 @@ impl<'a> Refiner<'a> {
                 Some(scale) => scale.max(annealed),
                 None => fit_scale(&self.residuals, &loss, self.share, 2).max(annealed).max(options.floor),
             };
-            cost = total(&self.residuals, &loss);
+            cost = loss.total(self.residuals.iter().copied());
             let settled = (loss.scale - before).abs() <= 1e-4 * loss.scale;
             calm = if improved || !settled { 0 } else { calm + 1 };
             if calm == 2 {
@@ -205,21 +205,6 @@ pub(crate) fn residuals(observations: &Observations, network: &Network, out: &mu
     for (o, e) in observations.all().iter().zip(out) {
         *e = o.residual(network);
     }
-}
-
-/// Sum of the loss. The logarithm is taken of products of eight factors, each at least 1: it costs more than all else.
-fn total(residuals: &[f64], loss: &Loss) -> f64 {
-    if loss.nu.is_infinite() {
-        return residuals.iter().map(|&e| loss.cost(e)).sum();
-    }
-    let factor = 1.0 / (loss.nu * loss.scale * loss.scale);
-    let mut sum = 0.0;
-    for chunk in residuals.chunks(8) {
-        // Factors below 1e37 cannot overflow together; larger ones only come from absurd trial steps.
-        let product: f64 = chunk.iter().map(|e| 1.0 + e * e * factor).product();
-        sum += product.ln();
-    }
-    0.5 * (loss.nu + 1.0) * sum
 }
 
 /// Maximum likelihood of the scale at fixed residuals, by a few fixed-point steps s^2 = sum w e^2 / sum w.

@@ -2,13 +2,15 @@
 //!
 //! Residual e = f - o - |r - s|. With u the unit vector from receiver to transmitter and g = (u, 1), its derivatives are
 //! u by the receiver and -g by transmitter and offset. Each transmitter j has a 3x3 block C_j = sum w g g^T and couples
-//! to its receivers by -w u g^T, so that eliminating it subtracts w_i w_k (g_i^T C_j^-1 g_k) u_i u_k^T from block (i, k).
+//! to its receivers by -w u g^T, so that eliminating it subtracts w_i w_k (g_i^T C_j^-1 g_k) u_i u_k^T from block (i, k): with
+//! C_j = L L^T the product B^T B of the columns w_i (L^-1 g_i) u_i^T.
 
 use faer::MatMut;
 use faer::Par;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt;
 use faer::prelude::default;
+use hc::poly::simd::{Isa, Kernel};
 
 use crate::loss::Loss;
 use crate::network::Network;
@@ -28,7 +30,9 @@ pub(crate) struct Normal {
     schur: Vec<f64>,
     receiver_steps: Vec<f64>,
     transmitter_steps: Vec<[f64; 3]>,
-    reduced: Vec<[f64; 3]>,
+    /// Three rows: what a transmitter couples to the receivers, in the frame in which its block is the identity.
+    coupling: Vec<f64>,
+    isa: Isa,
     scratch: MemBuffer,
 }
 
@@ -46,7 +50,8 @@ impl Normal {
             schur: vec![0.0; 4 * m * m],
             receiver_steps: vec![0.0; 2 * m],
             transmitter_steps: vec![[0.0; 3]; n],
-            reduced: vec![[0.0; 3]; m],
+            coupling: vec![0.0; 6 * m],
+            isa: Isa::detect(),
             scratch: MemBuffer::new(factor.or(solve)),
         }
     }
@@ -121,25 +126,20 @@ impl Normal {
                 continue;
             };
             let z = forward(&inverse, *g);
-            for (reduced, (u, w)) in self.reduced.iter_mut().zip(rays) {
-                *reduced = forward(&inverse, [w * u[0], w * u[1], *w]);
-            }
-            for (k, (b, (u, _))) in column.iter().zip(rays).enumerate() {
-                let y = self.reduced[k];
-                let along = y[0] * z[0] + y[1] * z[1] + y[2] * z[2];
-                self.receiver_steps[2 * b.receiver] += along * u[0];
-                self.receiver_steps[2 * b.receiver + 1] += along * u[1];
-                // Receivers ascend within a column, so that this fills the lower triangle.
-                for (l, (c, (v, _))) in column.iter().zip(rays).enumerate().skip(k) {
-                    let t = self.reduced[l];
-                    let q = y[0] * t[0] + y[1] * t[1] + y[2] * t[2];
-                    let at = 2 * b.receiver * size + 2 * c.receiver;
-                    self.schur[at] -= q * u[0] * v[0];
-                    self.schur[at + 1] -= q * u[0] * v[1];
-                    self.schur[at + size] -= q * u[1] * v[0];
-                    self.schur[at + size + 1] -= q * u[1] * v[1];
+            let rows = &mut self.coupling;
+            rows.fill(0.0);
+            for (o, (u, w)) in column.iter().zip(rays) {
+                let y = forward(&inverse, [w * u[0], w * u[1], *w]);
+                let at = 2 * o.receiver;
+                for (row, y) in rows.chunks_exact_mut(size).zip(y) {
+                    row[at] = y * u[0];
+                    row[at + 1] = y * u[1];
                 }
             }
+            for (row, z) in rows.chunks_exact(size).zip(z) {
+                self.receiver_steps.iter_mut().zip(row).for_each(|(g, b)| *g += b * z);
+            }
+            self.isa.run(Eliminate { schur: &mut self.schur, rows });
         }
         self.hold(observations.held());
     }
@@ -198,6 +198,33 @@ impl Normal {
     /// Unit vectors and weights of the last `linearise`, in the order of the observations.
     pub(crate) fn rays(&self) -> &[([f64; 2], f64)] {
         &self.rays
+    }
+}
+
+/// Subtracts `B^T B` from the lower triangle of a column-major matrix; `B` has three rows, one after the other.
+struct Eliminate<'a> {
+    schur: &'a mut [f64],
+    rows: &'a [f64],
+}
+
+impl Kernel for Eliminate<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let size = self.rows.len() / 3;
+        let (first, rest) = self.rows.split_at(size);
+        let (second, third) = rest.split_at(size);
+        for (k, column) in self.schur.chunks_exact_mut(size).enumerate() {
+            let (a, b, c) = (first[k], second[k], third[k]);
+            // Receivers that have no measurement.
+            if a == 0.0 && b == 0.0 && c == 0.0 {
+                continue;
+            }
+            for (((entry, x), y), z) in column[k..].iter_mut().zip(&first[k..]).zip(&second[k..]).zip(&third[k..]) {
+                *entry -= a * x + b * y + c * z;
+            }
+        }
     }
 }
 
