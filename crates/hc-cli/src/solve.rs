@@ -8,7 +8,7 @@ use hc::solve::{SolveError, SolveOptions, Start, solve};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// All isolated solutions of a system, by polyhedral homotopy.
+/// All isolated solutions of a system, by homotopy continuation.
 ///
 /// Interrupted, it gives the solutions found so far, marked as a partial result, with exit status 130.
 #[derive(clap::Args)]
@@ -21,7 +21,8 @@ pub(crate) struct Arguments {
     /// Seed of the generic coefficients.
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Start system: auto takes the one with the fewest paths, polyhedral unless its mixed cells cannot be computed.
+    /// Start system: auto takes the one with the fewest paths, polyhedral unless another has hardly more or mixed cells cannot be
+    /// computed.
     #[arg(long, value_enum, default_value_t = StartChoice::Auto)]
     start: StartChoice,
     /// Groups of unknowns for the multihomogeneous start system, such as `x,y;z`: names with commas, groups with semicolons.

@@ -25,8 +25,8 @@ use start::Starts;
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Start {
-    /// The one with the fewest paths. The polyhedral one never has more than the others, which are left for systems
-    /// whose mixed cells do not fit into 126 bits.
+    /// The one with the least work: polyhedral, which never has more paths than the others, unless another has hardly more (an eighth),
+    /// since its paths have one stage instead of two. Systems whose mixed cells do not fit into 126 bits are left to the others too.
     #[default]
     Auto,
     /// Polyhedral: as many paths as the mixed volume.

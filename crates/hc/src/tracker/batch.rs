@@ -327,7 +327,10 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             self.isa.run(Negate { x: &mut next[..n] });
         }
         self.isa.run(Take { from: &self.taylor_next, mask: accepted, to: &mut self.taylor });
-        let radius = self.isa.run(Radius { n, taylor: &self.taylor, inverse_weights_sqr: &self.inverse_weights_sqr });
+        let mut omega_sqr = S::real(1.0);
+        omega_sqr.as_mut().iter_mut().zip(&self.lanes).for_each(|(o, lane)| *o = lane.omega() * lane.omega());
+        let (taylor, inverse_weights_sqr) = (&self.taylor, &self.inverse_weights_sqr);
+        let radius = self.isa.run(Radius { n, taylor, inverse_weights_sqr, omega_sqr: &omega_sqr });
         for (l, lane) in self.lanes.iter_mut().enumerate() {
             if accepted >> l & 1 == 1 {
                 lane.advance(distance.as_ref()[l].sqrt(), radius.as_ref()[l].sqrt());

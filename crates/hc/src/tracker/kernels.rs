@@ -10,6 +10,10 @@ use poly::simd::Kernel;
 const RELATIVE_FLOOR_SQR: f64 = 1e-8;
 /// Nor below this (squared: 1e-6).
 const ABSOLUTE_FLOOR_SQR: f64 = 1e-12;
+/// Parts of a path below this share of the region in which Newton's method converges do not bound the step by their radius alone.
+const FAINT: f64 = 0.01;
+/// The radius of faint parts counts at most so many times.
+const MOST: f64 = 10.0;
 
 /// Pade predictor of type [2/1], coordinate by coordinate (Timme 2020, section 4):
 /// `x + d (x1 + d x2 / (1 - d x3 / x2))`, and the Taylor polynomial of order 2 where `x2` or `x3` is negligible.
@@ -52,12 +56,19 @@ impl<S: Lane> Kernel for Predict<'_, S> {
     }
 }
 
-/// Square of the radius of trust: the smallest `|x2_j / x3_j|`, the distance to the pole of the approximant and
+/// Square of the radius of trust: the smallest `r_j = |x2_j / x3_j|`, the distance to the pole of the approximant and
 /// an estimate of the distance to the nearest singularity of the path (Fabry's ratio).
+///
+/// A part of the path that varies quickly but hardly at all, such as a term of a toric homotopy that is still fading in, must not
+/// hold up the rest: where `a_j = omega |x2_j| r_j^2` is less than [`FAINT`], `r_j` counts `1 + ln(FAINT / a_j) / 3` times, at most
+/// [`MOST`]. For `exp(c t)`, whose ratio is `3 / c`, that is where the part has grown to `FAINT / omega`, still far inside the region in
+/// which Newton's method converges to this path.
 pub(crate) struct Radius<'a, S: Lane> {
     pub(crate) n: usize,
     pub(crate) taylor: &'a [S],
     pub(crate) inverse_weights_sqr: &'a [S::Real],
+    /// Lipschitz constants of Newton's method, squared.
+    pub(crate) omega_sqr: &'a S::Real,
 }
 
 impl<S: Lane> Kernel for Radius<'_, S> {
@@ -79,7 +90,9 @@ impl<S: Lane> Kernel for Radius<'_, S> {
                 let scale = 1.0 / s1.max(1e-12);
                 let (c1, c2, c3) = (s1 * scale, s2 * (scale * scale), s3 * (scale * scale * scale));
                 let negligible = 1e-28 * c1.max(c2).max(c3);
-                let candidate = s2 / s3;
+                let ratio = s2 / s3;
+                let size = s2 * (ratio * ratio) * (weight.as_ref()[l] * self.omega_sqr.as_ref()[l]);
+                let candidate = ratio * reach_sqr(size);
                 let counts = c2 > negligible && candidate < radius.as_ref()[l];
                 let r = radius.as_mut();
                 r[l] = if counts { candidate } else { r[l] };
@@ -107,6 +120,18 @@ impl<S: Lane> Kernel for Radius<'_, S> {
         }
         radius
     }
+}
+
+/// Square of the factor on the radius of trust of a part of the size `a`, from `a^2`; the logarithm is that of the power of two below.
+#[inline(always)]
+fn reach_sqr(size_sqr: f64) -> f64 {
+    let faintness = (FAINT * FAINT) / size_sqr;
+    let exponent = (faintness.to_bits() >> 52) as i64 - 1023;
+    let factor = 1.0 + std::f64::consts::LN_2 / 6.0 * exponent as f64;
+    // Not a number, where nothing is known, gives one.
+    let factor = if faintness > 1.0 { factor } else { 1.0 };
+    let factor = if factor < MOST { factor } else { MOST };
+    factor * factor
 }
 
 /// Weights of the coordinates, squared, with their reciprocals: half the old square, half the size of the predicted point,

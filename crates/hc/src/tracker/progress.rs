@@ -148,6 +148,11 @@ impl Progress {
         self.stage != Stage::Idle
     }
 
+    /// Lipschitz constant of Newton's method, as last estimated.
+    pub(crate) fn omega(&self) -> f64 {
+        self.omega
+    }
+
     /// Signed step in `t` that the predictor has to make.
     pub(crate) fn signed_step(&self) -> f64 {
         self.t_next - self.t
