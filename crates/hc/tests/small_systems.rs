@@ -255,10 +255,7 @@ fn groups_of_unknowns() {
     options.groups.pop();
     options.start = Start::Auto;
     let found = solve_text(text, &options).unwrap();
-    assert_eq!(
-        (found.start, found.paths.tracked, found.mixed_volume),
-        (Some(Start::Multihomogeneous), 3, Some(3))
-    );
+    assert_eq!((found.start, found.paths.tracked, found.mixed_volume), (Some(Start::Multihomogeneous), 3, Some(3)));
     options.groups.clear();
     let found = solve_text(text, &options).unwrap();
     assert_eq!((found.start, found.paths.tracked, found.bezout_number), (Some(Start::Polyhedral), 3, Some(8)));

@@ -100,19 +100,27 @@ impl<'a> Prover<'a> {
             return Err(Obstacle::NoContraction);
         }
 
+        // Once more with all unknowns of one size: beside zeros, tiny coordinates say nothing of the scale of their unknowns.
+        let largest = weights.iter().copied().fold(0.0, f64::max);
+        let level = vec![largest; self.n];
+        let proof = self.contract(&centre, &newton, &weights).or_else(|| self.contract(&centre, &newton, &level));
+        proof.ok_or(Obstacle::NoContraction)
+    }
+
+    /// Tries boxes in the proportions of the weights, from large to small.
+    fn contract(&mut self, centre: &[ComplexDd], newton: &[ComplexInterval], weights: &[f64]) -> Option<Proof> {
         // Room for the correction, and for the doubles that bound the published box.
         let least: Vec<f64> =
-            newton.iter().zip(&rounded).map(|(d, c)| (ROOM * d.magnitude()).max(ROOM * spacing(*c))).collect();
+            newton.iter().zip(centre).map(|(d, c)| (ROOM * d.magnitude()).max(ROOM * spacing(c.high()))).collect();
         let mut share = self.options.largest_box;
         for _ in 0..BOXES {
             let large: Vec<f64> = weights.iter().zip(&least).map(|(w, l)| (w * share).max(*l)).collect();
             let square = |&r: &f64| ComplexInterval { re: symmetric(r), im: symmetric(r) };
             let boxes: Vec<ComplexInterval> = large.iter().map(square).collect();
-            let (image, norm) = self.krawczyk(&centre, &newton, &boxes);
+            let (image, norm) = self.krawczyk(centre, newton, &boxes);
             if norm < 1.0 && boxes.iter().zip(&image).all(|(b, k)| b.contains_in_interior(k)) {
-                let small = self.tighten(&centre, &newton, image);
-                let proof = Proof { centre, large, small };
-                return if proof.is_publishable() { Ok(proof) } else { Err(Obstacle::NoContraction) };
+                let small = self.tighten(centre, newton, image);
+                return Some(Proof { centre: centre.to_vec(), large, small }).filter(Proof::is_publishable);
             }
             if large.iter().zip(&least).all(|(r, l)| r == l) {
                 break;
@@ -120,7 +128,7 @@ impl<'a> Prover<'a> {
             // Beyond rounding, the norm is proportional to the size of the box.
             share *= if norm.is_finite() { (0.25 / norm).min(SHRINK) } else { SHRINK * SHRINK };
         }
-        Err(Obstacle::NoContraction)
+        None
     }
 
     /// Newton's method in double-double until corrections no longer shrink.
