@@ -28,7 +28,7 @@ fn interrupted_with_output(option: &str, arguments: &[&str]) -> Value {
     assert!(started.elapsed() < Duration::from_secs(60));
     let message = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(130), "{message}");
-    assert_eq!(message, "hc: interrupted; the result is partial\n");
+    assert!(message.ends_with("hc: interrupted; the result is partial\n"), "{message}");
     serde_json::from_slice(&output.stdout).expect("JSON")
 }
 
@@ -88,9 +88,9 @@ fn the_targets_done_so_far() {
 fn the_solutions_of_a_family_found_so_far() {
     let folder = tempfile::tempdir().expect("directory");
     let family = "name = 'dense'\nunknowns = ['x', 'y']\nparameters = ['a', 'b', 'c', 'd', 'e', 'f']\n\
-                  equations = ['x^40 + a*x*y^20 + b*y + c', 'y^40 + d*x^20*y + e*x + f']\n";
+                  equations = ['x^90 + a*x*y^40 + b*y + c', 'y^90 + d*x^40*y + e*x + f']\n";
     let found = interrupted_with_output("--output", &["monodromy", &written(folder.path(), "dense.toml", family)]);
     assert_eq!((&found["stopped"], &found["trace_test"]), (&json!("interrupted"), &Value::Null));
-    // Of 1600.
-    assert!((1..1600).contains(&found["solutions"].as_array().expect("a list").len()));
+    // Of 8100.
+    assert!((1..8100).contains(&found["solutions"].as_array().expect("a list").len()));
 }
