@@ -84,8 +84,17 @@ impl<'a> Prover<'a> {
         if !point.iter().all(|z| z.is_finite()) {
             return Err(Obstacle::NotFinite);
         }
+        match self.attempt(point, |weights| weights) {
+            // Once more with all unknowns of one size: beside zeros, tiny coordinates say nothing of the scale of their unknowns.
+            Err(Obstacle::NoContraction) => self.attempt(point, level),
+            other => other,
+        }
+    }
+
+    /// A proof with weights of the unknowns that `scale` makes of those that the system gives.
+    fn attempt(&mut self, point: &[Complex64], scale: impl Fn(Vec<f64>) -> Vec<f64>) -> Result<Proof, Obstacle> {
         self.invert(point)?;
-        let first_weights = self.weights(point);
+        let first_weights = scale(self.weights(point));
         let centre = self.refine(point, &first_weights)?;
         let rounded: Vec<Complex64> = centre.iter().map(ComplexDd::high).collect();
         if !within(point, &rounded, self.options.reach) {
@@ -94,17 +103,13 @@ impl<'a> Prover<'a> {
         self.invert(&rounded)?;
         // At a solution with coordinates zero, the refined point says nothing of their scale, the point given does.
         let weights: Vec<f64> = self.weights(&rounded).iter().zip(&first_weights).map(|(a, b)| a.max(*b)).collect();
-        let weights = self.levelled(weights);
+        let weights = scale(self.levelled(weights));
         let newton = self.newton_step(&centre);
         if newton.iter().any(|z| !z.magnitude().is_finite()) {
             return Err(Obstacle::NoContraction);
         }
 
-        // Once more with all unknowns of one size: beside zeros, tiny coordinates say nothing of the scale of their unknowns.
-        let largest = weights.iter().copied().fold(0.0, f64::max);
-        let level = vec![largest; self.n];
-        let proof = self.contract(&centre, &newton, &weights).or_else(|| self.contract(&centre, &newton, &level));
-        proof.ok_or(Obstacle::NoContraction)
+        self.contract(&centre, &newton, &weights).ok_or(Obstacle::NoContraction)
     }
 
     /// Tries boxes in the proportions of the weights, from large to small.
@@ -354,6 +359,12 @@ impl Proof {
 fn within(point: &[Complex64], solution: &[Complex64], share: f64) -> bool {
     let floor = 1e-4 * solution.iter().map(|z| z.norm()).fold(1.0, f64::max);
     point.iter().zip(solution).all(|(a, b)| (a - b).norm() <= share * b.norm().max(floor))
+}
+
+/// The largest of all for each.
+fn level(weights: Vec<f64>) -> Vec<f64> {
+    let largest = weights.iter().copied().fold(0.0, f64::max);
+    vec![largest; weights.len()]
 }
 
 /// Twice the distance of neighbouring doubles of the size of the larger part.
