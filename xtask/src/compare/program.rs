@@ -102,10 +102,15 @@ pub(super) struct Pairs {
     pub(super) ours: Vec<Run>,
     /// Empty where the peer is not installed.
     pub(super) theirs: Vec<Run>,
+    /// Runs of the peer that ended with an error and were made again.
+    pub(super) crashes: usize,
 }
 
+/// A peer may crash so often in one case; its seeds differ from run to run.
+const CRASHES: usize = 5;
+
 impl Pairs {
-    /// Repeats both; a peer that takes longer than a minute is not repeated.
+    /// Repeats both; a peer that takes longer than a minute is not repeated, one that crashes is run again.
     pub(super) fn measure(
         repeats: u32,
         mut ours: impl FnMut() -> Result<Run>,
@@ -115,7 +120,16 @@ impl Pairs {
         for _ in 0..repeats {
             pairs.ours.push(ours()?);
             if pairs.theirs.last().is_none_or(|run| run.work() < 60.0) {
-                pairs.theirs.extend(theirs()?);
+                let run = loop {
+                    match theirs() {
+                        Err(error) if pairs.crashes < CRASHES => {
+                            eprintln!("run again: {error:#}");
+                            pairs.crashes += 1;
+                        }
+                        other => break other?,
+                    }
+                };
+                pairs.theirs.extend(run);
             }
         }
         Ok(pairs)

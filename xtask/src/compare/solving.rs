@@ -76,13 +76,16 @@ pub(super) fn beside_phcpack(tools: &Tools, plan: &Plan, text: &mut String) -> R
     *text += "## All isolated solutions: `hc solve` beside `phc -b`\n\n\
         One thread each. \"found\": distinct isolated solutions, for PHCpack those that its last summary calls regular.\n\n\
         | system | solutions | hc found | lost | s | MB | phc found | s | MB | ratio |\n|---|---|---|---|---|---|---|---|---|---|\n";
-    let mut ratios = Vec::new();
+    let (mut ratios, mut crashes) = (Vec::new(), Vec::new());
     for problem in problems(plan)? {
         eprintln!("{} beside phc", problem.name);
         let folder = tempfile::tempdir()?;
         let system = folder.path().join("system");
         std::fs::write(&system, &problem.text)?;
         let pairs = Pairs::measure(plan.repeats, || solve(tools, &system), || phc(tools, &system, plan))?;
+        if pairs.crashes > 0 {
+            crashes.push(format!("{} of {} on {}", pairs.crashes, pairs.crashes + pairs.theirs.len(), problem.name));
+        }
         let ours = typical(&pairs.ours).context("a run")?;
         let (solutions, lost) = found(ours)?;
         write!(text, "| {} | {} | {solutions} | {lost} | {} |", problem.name, problem.count, ours.cells())?;
@@ -101,6 +104,9 @@ pub(super) fn beside_phcpack(tools: &Tools, plan: &Plan, text: &mut String) -> R
         let mean = (ratios.iter().map(|r| r.ln()).sum::<f64>() / ratios.len() as f64).exp();
         let least = ratios.iter().copied().fold(f64::INFINITY, f64::min);
         writeln!(text, "\nGeometric mean of the ratios {mean:.1}, least {least:.1}.")?;
+    }
+    if !crashes.is_empty() {
+        writeln!(text, "\nRuns of phc that ended with an error and were made again: {}.", crashes.join(", "))?;
     }
     Ok(())
 }
