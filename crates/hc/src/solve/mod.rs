@@ -25,8 +25,9 @@ use start::Starts;
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Start {
-    /// The one with the least work: polyhedral, which never has more paths than the others, unless another has hardly more (an eighth),
-    /// since its paths have one stage instead of two. Systems whose mixed cells do not fit into 126 bits are left to the others too.
+    /// The one with the fewest paths. The polyhedral one never has more than the others, which are left for systems
+    /// whose mixed cells do not fit into 126 bits. Where all solutions of a system are finite, total degree with as many paths is
+    /// several times faster, having one stage instead of two; otherwise its paths may go to infinity in degenerate ways.
     #[default]
     Auto,
     /// Polyhedral: as many paths as the mixed volume.

@@ -8,9 +8,6 @@ use crate::start::{
 use num_complex::Complex64;
 use poly::SparseSystem;
 
-/// Polyhedral paths take two stages, the others one: up to this part of the paths more are worth that.
-const HARDLY_MORE: u64 = 8;
-
 /// A source of start systems for given equations.
 pub(super) struct Starts {
     /// The system of the coefficient stage.
@@ -52,23 +49,15 @@ impl Starts {
             (Some(m), b) if b.is_none_or(|b| m < b) => Some((Start::Multihomogeneous, m)),
             (_, b) => b.map(|b| (Start::TotalDegree, b)),
         };
-        let (mut first, mut mixed_volume) = (None, None);
+        let mut first = None;
         let (kind, paths) = match options.start {
             Start::TotalDegree => (Start::TotalDegree, bezout.unwrap_or(u64::MAX)),
             Start::Multihomogeneous => (Start::Multihomogeneous, multihomogeneous.ok_or(SolveError::StartTooLarge)?),
             choice => match (Polyhedral::new(&equations.supports, options.seed, 0, options.monitor()), other) {
-                (Ok(cells), other) => {
+                (Ok(cells), _) => {
                     let volume = cells.mixed_volume;
-                    mixed_volume = Some(volume);
-                    // Without torus_only the others reach all that polyhedral paths reach.
-                    let as_good = |paths: u64| paths <= volume + volume / HARDLY_MORE && !options.torus_only;
-                    match other.filter(|other| choice == Start::Auto && as_good(other.1)) {
-                        Some(other) => other,
-                        None => {
-                            first = Some(cells);
-                            (Start::Polyhedral, volume)
-                        }
-                    }
+                    first = Some(cells);
+                    (Start::Polyhedral, volume)
                 }
                 (Err(MixedError::Cancelled), _) => return Err(MixedError::Cancelled.into()),
                 // Determinants out of range, but no more paths than are allowed.
@@ -91,6 +80,7 @@ impl Starts {
                 _ => {}
             }
         }
+        let mixed_volume = first.as_ref().map(|cells| cells.mixed_volume);
         let system = SparseSystem::new(n, &equations.supports)?;
         let target = equations.coefficients.concat();
         Ok(Starts {
