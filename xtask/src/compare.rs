@@ -42,7 +42,7 @@ pub(crate) struct CompareArguments {
     output: Option<PathBuf>,
 }
 
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Table {
     Phcpack,
     Macaulay2,
@@ -93,10 +93,9 @@ pub(crate) fn run(arguments: &CompareArguments) -> Result<()> {
     let output = arguments.output.as_deref().or_else(|| whole.then_some(default.as_path()));
     let output = output.filter(|path| path.as_os_str() != "-");
     let mut text = introduction(&plan, &tools);
-    for table in Table::value_variants() {
-        if !arguments.table.is_empty() && !arguments.table.contains(table) {
-            continue;
-        }
+    let wanted = |table: &&Table| arguments.table.is_empty() || arguments.table.contains(table);
+    let tables: Vec<&Table> = Table::value_variants().iter().filter(wanted).collect();
+    for (k, table) in tables.iter().enumerate() {
         match table {
             Table::Phcpack => {
                 solving::beside_phcpack(&tools, &plan, &mut text)?;
@@ -106,9 +105,15 @@ pub(crate) fn run(arguments: &CompareArguments) -> Result<()> {
             Table::Gfan => volumes::beside_gfan(&tools, &plan, &mut text)?,
             Table::Networks => networks::beside_phcpack(&tools, &plan, &mut text)?,
         }
-        // The tables so far, for a run that is ended early.
+        // The tables so far, for a run that is ended early, and what is then missing.
         if let Some(path) = output {
-            std::fs::write(path, &text).with_context(|| format!("cannot write {}", path.display()))?;
+            let missing: Vec<String> =
+                tables[k + 1..].iter().map(|table| format!("{table:?}").to_lowercase()).collect();
+            let rest = match missing.join(", ") {
+                none if none.is_empty() => String::new(),
+                some => format!("\nThe run was ended before these tables: {some} (`--table`).\n"),
+            };
+            std::fs::write(path, text.clone() + &rest).with_context(|| format!("cannot write {}", path.display()))?;
         }
     }
     if output.is_none() {

@@ -283,3 +283,22 @@ fn grow<S: Lane>(norm: &mut S::Real, z: &S, inverse_weight_sqr: &S::Real) {
         norm[l] = if v <= norm[l] || norm[l].is_nan() { norm[l] } else { v };
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{FAINT, MOST, reach_sqr};
+
+    #[test]
+    fn faint_parts_reach_farther_and_others_do_not() {
+        for size in [FAINT, 1.0, f64::INFINITY, f64::NAN] {
+            assert_eq!(reach_sqr(size * size), 1.0, "{size}");
+        }
+        // The logarithm is that of the power of two below, at most ln 2 / 6 too small for a square.
+        for size in [1e-3f64, 1e-7, 1e-12] {
+            let exact = 1.0 + (FAINT / size).ln() / 3.0;
+            let found = reach_sqr(size * size).sqrt();
+            assert!(found <= exact && found > exact - 0.12, "{size}: {found}, {exact}");
+        }
+        assert_eq!(reach_sqr(0.0), MOST * MOST);
+    }
+}
