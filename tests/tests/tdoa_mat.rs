@@ -1,5 +1,5 @@
 //! `tdoa calibrate` on a .mat file. `tests/data/network.mat` is `examples/network` as scipy.io.savemat (1.17.1) writes it
-//! with do_compression: z and rgt.
+//! with do_compression: z and rgt; `network_sgt.mat` has sgt, the transmitters, too.
 
 use std::path::Path;
 
@@ -23,6 +23,28 @@ fn a_mat_file_gives_what_the_table_gives() {
     assert!(truth_in_mat.stdout == from_table.stdout);
     let scaled = run("tdoa", &["calibrate", text(&mat), "--scale", "--json", "-"]);
     assert!(scaled.status.success(), "{}", String::from_utf8_lossy(&scaled.stderr));
+}
+
+/// The calibration is the same, and the true transmitters come into the comparison and the picture.
+#[test]
+fn true_transmitters_come_from_sgt() {
+    let data = root().join("tests/data");
+    let directory = tempfile::tempdir().expect("directory");
+    let calibrated = |file: &str| {
+        let svg = directory.path().join("network.svg");
+        let output = run("tdoa", &["calibrate", text(&data.join(file)), "--json", "-", "--svg", text(&svg)]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        (json, std::fs::read_to_string(svg).expect("picture"))
+    };
+    let (with, without) = (calibrated("network_sgt.mat"), calibrated("network.mat"));
+    assert_eq!(with.0["transmitters"], without.0["transmitters"]);
+    let error = |json: &serde_json::Value| json["truth"]["transmitter_median"].as_f64();
+    assert_eq!(error(&without.0), None);
+    // The noise of the example is 2 cm (examples/network/README.md).
+    assert!(error(&with.0).is_some_and(|median| median > 0.0 && median < 0.2), "{}", with.0["truth"]);
+    let marks = |svg: &str| svg.matches("class=\"truth\"").count();
+    assert_eq!(marks(&with.1), marks(&without.1) + 12);
 }
 
 #[test]

@@ -144,7 +144,7 @@ fn introduction(plan: &Plan, tools: &Tools) -> String {
         "# Beside other programs\n\n\
          Written by `cargo xtask compare`{}: every case runs first here, then in the peer, the pair {times} (once where the peer takes over a \
          minute); peers are stopped after {} processor seconds. Seconds are processor seconds of the whole process, so that other work on the machine \
-         matters little, but by the wall where they are less than a tenth of a second; shown is the run of median time; \
+         matters little; shown is the run of median time; \
          a ratio is the median of the pairs' ratios, above one where this project is faster.\n\n\
          Peers: {peers}.{absent} Machine: {}. Commit {}. What each can do is in [features.md](features.md).\n\n",
         if plan.quick { " --quick" } else { "" },

@@ -21,8 +21,8 @@ pub(crate) struct Arguments {
     /// Seed of the generic coefficients.
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Start system: auto takes the one with the fewest paths, polyhedral unless its mixed cells cannot be computed. Total degree with
-    /// as many paths is faster where no path goes to infinity.
+    /// Start system: auto takes the one with the fewest paths, polyhedral unless its mixed cells cannot be computed, but tries another
+    /// first that has hardly more paths and one stage less.
     #[arg(long, value_enum, default_value_t = StartChoice::Auto)]
     start: StartChoice,
     /// Groups of unknowns for the multihomogeneous start system, such as `x,y;z`: names with commas, groups with semicolons.

@@ -2,7 +2,8 @@
 
 use crate::distinct::coincidences;
 use crate::homotopy::Segment;
-use crate::tracker::{PathEnd, PathSet, TrackerOptions, track};
+use crate::refine::Refiner;
+use crate::tracker::{PathEnd, PathResult, PathSet, TrackerOptions, track};
 use num_complex::Complex64;
 use poly::Evaluate;
 use serde::Serialize;
@@ -84,7 +85,11 @@ pub fn track_fibre<E: Evaluate>(
     options: &FibreOptions,
 ) -> (PathSet, PathCounts) {
     let path = Segment::new(&fibre.parameters, target);
-    let run = |which: &[usize], tracker: &TrackerOptions| track(system, &path, &fibre.solutions, which, tracker);
+    let run = |which: &[usize], tracker: &TrackerOptions| {
+        let mut paths = track(system, &path, &fibre.solutions, which, tracker);
+        settle(&mut Refiner::new(system), target, &mut paths);
+        paths
+    };
     let mut which: Vec<usize> = (0..fibre.len()).collect();
     let mut paths = run(&which, &options.tracker);
     let mut retracked = 0;
@@ -112,6 +117,30 @@ pub fn track_fibre<E: Evaluate>(
         retracked,
     };
     (paths, counts)
+}
+
+/// Ends that are known to fewer digits than this are refined before they are compared: the error that is left is the square of the last
+/// correction, times the Lipschitz constant of Newton's method.
+const VAGUE: f64 = 1e-7;
+/// After that the last correction must be below this.
+const SETTLED: f64 = 1e-10;
+
+/// Refines the regular ends that the tracker leaves vague, so that those which coincide are seen to; where Newton's method does not settle
+/// the path becomes [`PathEnd::Singular`].
+pub fn settle<E: Evaluate>(refiner: &mut Refiner<'_, E>, target: &[Complex64], paths: &mut PathSet) {
+    for k in 0..paths.len() {
+        let result = paths.results()[k];
+        if result.end != PathEnd::Success || result.accuracy <= VAGUE {
+            continue;
+        }
+        let refined = refiner.refine(target, paths.point(k));
+        if refined.accuracy <= SETTLED {
+            paths.replace(k, PathResult { accuracy: refined.accuracy, ..result }, &refined.point);
+        } else {
+            let point = paths.point(k).to_vec();
+            paths.replace(k, PathResult { end: PathEnd::Singular, ..result }, &point);
+        }
+    }
 }
 
 /// Paths that failed or share a regular end with another, by index of their start solutions: what has to be tracked again.

@@ -92,10 +92,15 @@ impl Lu<Complex64> {
         if n == 0 {
             return 1.0;
         }
-        let rows: Vec<f64> =
-            (0..n).map(|i| (0..n).map(|j| a[j * n + i].norm() * weights[j]).fold(0.0, f64::max)).collect();
-        let norm =
-            (0..n).map(|i| (0..n).map(|j| a[j * n + i].norm() * weights[j]).sum::<f64>() / rows[i]).fold(0.0, f64::max);
+        // Largest entry and sum of every row.
+        let (mut rows, mut sums) = (vec![0.0f64; n], vec![0.0; n]);
+        for (column, w) in a.chunks_exact(n).zip(weights) {
+            for ((row, sum), z) in rows.iter_mut().zip(&mut sums).zip(column) {
+                let size = z.norm_sqr().sqrt() * w;
+                (*row, *sum) = (row.max(size), *sum + size);
+            }
+        }
+        let norm = sums.iter().zip(&rows).map(|(sum, row)| sum / row).fold(0.0, f64::max);
         // || B ||_inf = || B^H ||_1 for B = W^{-1} A^{-1} D^{-1}, estimated from products with B^H and B.
         let adjoint = |v: &mut [Complex64]| {
             v.iter_mut().zip(weights).for_each(|(v, w)| *v /= *w);

@@ -36,6 +36,10 @@ pub struct Refiner<'a, E: Evaluate> {
 const MAX_ITERATIONS: usize = 6;
 /// Relative distances from one of which a regular solution must attract Newton's method.
 const PERTURBATIONS: [f64; 2] = [1e-8, 1e-6];
+/// Last correction and condition of solutions that are plainly regular. At a distance of `d` from a singular solution the condition is
+/// about `1 / d` or more, and corrections are about `d` or more.
+const TINY: f64 = 1e-12;
+const GOOD: f64 = 1e6;
 /// How many random changes of all parameters show how a solution depends on them.
 const BLUR_DRAWS: usize = 3;
 /// Their relative size: it stands out from rounding errors.
@@ -90,6 +94,12 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
             }
         }
         accuracy
+    }
+
+    /// Whether a refined point is a regular solution: plainly, where the last correction was tiny and the condition is good, which cannot
+    /// both be next to a singular one; otherwise by the test of [`contracts`](Self::contracts).
+    pub fn is_regular(&mut self, p: &[Complex64], refined: &Refined) -> bool {
+        refined.accuracy <= TINY && refined.condition <= GOOD || self.contracts(p, &refined.point)
     }
 
     /// Whether Newton's method comes back to the solution `x` from a point 1e-8 or 1e-6 away (relative): it does not where the
@@ -175,12 +185,14 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         self.system.jacobian(&mut self.memory, x, p, &mut self.values, &mut self.jacobian);
         let squares = sizes(x);
         let weights: Vec<f64> = squares.iter().map(|w| w[0].sqrt()).collect();
-        let residual = (0..n)
-            .map(|i| {
-                let scale: f64 = (0..n).map(|j| self.jacobian[j * n + i].norm() * weights[j]).sum();
-                self.values[i].norm() / scale.max(f64::MIN_POSITIVE)
-            })
-            .fold(0.0, f64::max);
+        // Sizes of the rows.
+        let mut scales = vec![0.0; n];
+        for (column, w) in self.jacobian.chunks_exact(n.max(1)).zip(&weights) {
+            scales.iter_mut().zip(column).for_each(|(scale, z)| *scale += z.norm_sqr().sqrt() * w);
+        }
+        let relative =
+            self.values.iter().zip(&scales).map(|(value, scale)| value.norm() / scale.max(f64::MIN_POSITIVE));
+        let residual = relative.fold(0.0, f64::max);
         self.lu.factor(&self.jacobian, &squares);
         (residual, self.lu.condition(&self.jacobian, &weights))
     }

@@ -35,6 +35,8 @@ enum Kind {
     Routes(checks::Arguments),
     /// Measures what the options for callers in a hurry save and lose.
     Hurry(checks::Arguments),
+    /// Measures what becomes of paths that fail, with each fallback.
+    Charts(checks::Arguments),
     Hard(hard::Arguments),
     Calibrate(calibrate::Arguments),
     Coverage(calibrate::CoverageArguments),
@@ -51,6 +53,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Kind::Proofs(arguments) => checks::proofs(arguments),
         Kind::Routes(arguments) => checks::routes(arguments),
         Kind::Hurry(arguments) => checks::hurry(arguments),
+        Kind::Charts(arguments) => checks::charts(arguments),
         Kind::Calibrate(arguments) => calibrate::run(arguments),
         Kind::Coverage(arguments) => calibrate::run_coverage(arguments),
         Kind::Growth(arguments) => growth::run(arguments),

@@ -1,18 +1,20 @@
 //! Programs built, started and measured.
 
 use anyhow::{Context, Result, ensure};
+use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Command, ExitStatus, Stdio};
 use std::time::Instant;
+use wait4::{ResUse, Wait4};
 
 /// What one run of a program took.
 pub(super) struct Run {
     /// From the start of the process to its end.
     pub(super) seconds: f64,
-    /// Processor seconds, user and system, where GNU time is installed.
+    /// Processor seconds, user and system, where the system tells them.
     pub(super) processor: Option<f64>,
-    /// Peak memory in megabytes, where GNU time is installed.
+    /// Peak memory in megabytes, where the system tells it.
     pub(super) megabytes: Option<f64>,
     pub(super) output: String,
     /// Whether the program was stopped at the limit.
@@ -20,10 +22,9 @@ pub(super) struct Run {
 }
 
 impl Run {
-    /// Processor seconds, which other work on the machine changes little; where they are not known or too few for the clock
-    /// of GNU time, which counts hundredths, seconds by the wall.
+    /// Processor seconds, which other work on the machine changes little; where they are not known, seconds by the wall.
     pub(super) fn work(&self) -> f64 {
-        self.processor.filter(|&processor| processor >= 0.1).unwrap_or(self.seconds)
+        self.processor.unwrap_or(self.seconds)
     }
 
     /// Work and memory as two cells of a table.
@@ -53,47 +54,41 @@ pub(super) fn build(packages: &[&str]) -> Result<PathBuf> {
     Ok(target.join("release"))
 }
 
-/// Runs a program with the given standard input, for at most `limit` processor seconds, under GNU time where that is installed.
+/// Runs a program with the given standard input, for at most `limit` processor seconds.
 pub(super) fn run(program: &Path, arguments: &[&str], files: &[&Path], input: &str, limit: u32) -> Result<Run> {
     let folder = tempfile::tempdir()?;
-    let measured = folder.path().join("measured");
-    let gnu_time = Path::new("/usr/bin/time");
-    let mut words: Vec<std::ffi::OsString> = Vec::new();
-    if gnu_time.exists() {
-        words.extend([gnu_time.into(), "-f".into(), "%U %S %M".into(), "-o".into(), measured.clone().into()]);
-    }
+    let [output, errors] = ["output", "errors"].map(|name| folder.path().join(name));
     // The system ends a process that has used up its processor time.
-    words.extend(["/bin/sh", "-c", "ulimit -t \"$0\"; exec \"$@\"", &limit.to_string()].map(Into::into));
-    words.push(program.into());
-    words.extend(arguments.iter().map(Into::into));
-    words.extend(files.iter().map(Into::into));
+    let mut command = Command::new("/bin/sh");
+    command.args(["-c", "ulimit -t \"$0\"; exec \"$@\"", &limit.to_string()]).arg(program).args(arguments).args(files);
+    command.stdin(Stdio::piped()).stdout(File::create(&output)?).stderr(File::create(&errors)?);
     let started = Instant::now();
-    let mut child = Command::new(&words[0])
-        .args(&words[1..])
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .with_context(|| format!("{} cannot be started", program.display()))?;
+    let mut child = command.spawn().with_context(|| format!("{} cannot be started", program.display()))?;
     if let Some(mut stdin) = child.stdin.take() {
         // A program that does not read its input is no error.
         let _ = stdin.write_all(input.as_bytes());
     }
-    let result = child.wait_with_output()?;
+    let ResUse { status, rusage } = child.wait4()?;
     let seconds = started.elapsed().as_secs_f64();
-    // GNU time and shells give 128 and the number of the signal: SIGXCPU, SIGKILL.
-    let stopped =
-        matches!(result.status.code(), Some(137 | 152)) || (!gnu_time.exists() && result.status.code().is_none());
-    let errors = String::from_utf8_lossy(&result.stderr);
-    ensure!(stopped || result.status.success(), "{}: {errors}", program.display());
-    let text = std::fs::read_to_string(&measured).unwrap_or_default();
-    let numbers: Vec<f64> = text.lines().next_back().unwrap_or("").split(' ').filter_map(|n| n.parse().ok()).collect();
-    let (processor, megabytes) = match numbers[..] {
-        [user, system, kilobytes] => (Some(user + system), Some(kilobytes / 1024.0)),
-        _ => (None, None),
-    };
-    let output = String::from_utf8_lossy(&result.stdout).into_owned();
+    let stopped = was_stopped(status);
+    let errors = std::fs::read(&errors)?;
+    ensure!(stopped || status.success(), "{}: {}", program.display(), String::from_utf8_lossy(&errors));
+    let processor = Some((rusage.utime + rusage.stime).as_secs_f64()).filter(|&seconds| seconds > 0.0);
+    let megabytes = Some(rusage.maxrss as f64 / (1 << 20) as f64).filter(|&megabytes| megabytes > 0.0);
+    let output = String::from_utf8_lossy(&std::fs::read(&output)?).into_owned();
     Ok(Run { seconds, processor, megabytes, output, stopped })
+}
+
+/// Whether the limit of processor time has ended the process: SIGXCPU, then SIGKILL.
+#[cfg(unix)]
+fn was_stopped(status: ExitStatus) -> bool {
+    use std::os::unix::process::ExitStatusExt;
+    matches!(status.signal(), Some(9 | 24)) || matches!(status.code(), Some(137 | 152))
+}
+
+#[cfg(not(unix))]
+fn was_stopped(_: ExitStatus) -> bool {
+    false
 }
 
 /// Runs of two programs, one after the other, pair by pair.

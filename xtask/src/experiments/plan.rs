@@ -44,7 +44,7 @@ pub(super) const PLAN: &[Experiment] = &[
     plain("calibrate", "calibrate", 500, 2),
     plain(
         "calibrate-restarts",
-        "calibrate --method restarts --starts 173,187,176,116,110,151,78,73,151,65,59,52",
+        "calibrate --method restarts --starts 220,340,500,170,190,370,96,95,300,74,73,64",
         500,
         1,
     ),

@@ -27,7 +27,7 @@ use walker::{Sample, Walker};
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct EndgameOptions {
-    /// A path whose `t` has fallen below this without reaching the target goes to the endgame. Default 1e-3.
+    /// A path whose `t` has fallen below this without reaching the target goes to the endgame. Default 1e-5.
     pub start: f64,
     /// Radius of the first loop. Default 1e-6.
     pub radius: f64,
@@ -41,7 +41,7 @@ pub struct EndgameOptions {
 
 impl Default for EndgameOptions {
     fn default() -> Self {
-        EndgameOptions { start: 1e-3, radius: 1e-6, shrink: 30.0, min_radius: 1e-13, turns: 16 }
+        EndgameOptions { start: 1e-5, radius: 1e-6, shrink: 30.0, min_radius: 1e-13, turns: 16 }
     }
 }
 

@@ -40,7 +40,7 @@ pub fn solve_member<E: Evaluate>(
     target: &[Complex64],
     options: &SolveOptions,
 ) -> Solved {
-    let ends = paths::follow(compiled, fibre, fibre.len(), target, options);
+    let ends = paths::follow(compiled, fibre, fibre.len(), target, false, options);
     let member = if ends.ends.iter().any(paths::End::is_singular) { expanded(family, target) } else { None };
     let member = member.as_ref().map(|(system, coefficients)| (system, &coefficients[..]));
     let found = classify(member, &ends, &Excess::none(), options.paths.coincidence);

@@ -12,6 +12,7 @@ use crate::endgame::EndgameOptions;
 use crate::fibre::{FibreOptions, PathCounts};
 use crate::monitor::Monitor;
 use crate::start::MixedError;
+use crate::tracker::TrackerOptions;
 use classify::{Classified, Excess, classify};
 use equations::Equations;
 pub use family::solve_member;
@@ -25,9 +26,9 @@ use start::Starts;
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Start {
-    /// The one with the fewest paths. The polyhedral one never has more than the others, which are left for systems
-    /// whose mixed cells do not fit into 126 bits. Where all solutions of a system are finite, total degree with as many paths is
-    /// several times faster, having one stage instead of two; otherwise its paths may go to infinity in degenerate ways.
+    /// The one with the least work. Polyhedral never has more paths than the others, but two stages instead of one: where another has
+    /// hardly more (an eighth) that is tried first, and abandoned for polyhedral if more than an eighth of its paths do not end
+    /// at regular solutions, or if one is lost. Systems whose mixed cells do not fit into 126 bits are left to the others too.
     #[default]
     Auto,
     /// Polyhedral: as many paths as the mixed volume.
@@ -54,7 +55,7 @@ pub struct SolveOptions {
     pub torus_only: bool,
     /// More paths than this are refused. Default 2^24.
     pub max_paths: u64,
-    /// Settings of both stages.
+    /// Settings of both stages. Default [`TrackerOptions::fast`]: paths that jump are found by their ends and tracked again.
     pub paths: FibreOptions,
     /// Settings for the ends of paths that are not regular.
     pub endgame: EndgameOptions,
@@ -70,7 +71,7 @@ impl Default for SolveOptions {
             groups: Vec::new(),
             torus_only: false,
             max_paths: 1 << 24,
-            paths: FibreOptions::default(),
+            paths: FibreOptions { tracker: TrackerOptions::fast(), ..FibreOptions::default() },
             endgame: EndgameOptions::default(),
             restarts: 2,
         }
@@ -233,30 +234,33 @@ pub fn solve(polynomials: &[Polynomial<Exact>], options: &SolveOptions) -> Resul
         other => other?,
     };
     let mut retracked = 0;
-    let mut best: Option<(usize, Classified)> = None;
+    let mut best = Best::default();
     let mut start_systems = 0;
-    for attempt in 0..=options.restarts {
-        start_systems += 1;
-        let start = match starts.system(u64::from(attempt), options) {
+    // First, on trial, those of one stage.
+    let mut direct = starts.direct(options);
+    loop {
+        let trial = direct.is_some();
+        let from = direct.as_mut().unwrap_or(&mut starts);
+        let start = match from.system(u64::from(start_systems), options) {
             Err(SolveError::Mixed(MixedError::Cancelled)) => break,
             other => other?,
         };
-        let ends = paths::follow(&starts.system, &start, starts.paths, &starts.target, options);
-        retracked += ends.retracked;
-        let member = Some((&starts.system, &starts.target[..]));
-        let found = classify(member, &ends, &excess, options.paths.coincidence);
-        let tracked = starts.paths;
-        best = Some(match best {
-            Some((count, old)) if old.lost <= found.lost => (count, joined(old, &found)),
-            Some((_, old)) => (tracked, joined(found, &old)),
-            None => (tracked, found),
-        });
-        if options.monitor().is_cancelled() || best.as_ref().is_some_and(|(_, b)| b.lost == 0) {
-            break;
+        let ends = paths::follow(&from.system, &start, from.paths, &from.target, trial, options);
+        if !ends.abandoned {
+            start_systems += 1;
+            retracked += ends.retracked;
+            let member = Some((&from.system, &from.target[..]));
+            let found = classify(member, &ends, &excess, options.paths.coincidence);
+            let this = Best { start: Some(from.kind), tracked: from.paths, found };
+            best = if start_systems == 1 { this } else { best.joined(this) };
+            if best.found.lost == 0 || start_systems > options.restarts || options.monitor().is_cancelled() {
+                break;
+            }
         }
+        direct = None;
     }
-    let whole = best.as_ref().is_some_and(|(_, b)| b.lost == 0);
-    let (tracked, found) = best.unwrap_or_default();
+    let whole = start_systems > 0 && best.found.lost == 0;
+    let Best { start, tracked, found } = best;
     let finite = tracked - found.infinite - found.lost;
     let paths = PathCounts { tracked, finite, at_infinity: found.infinite, failed: found.lost, dropped: 0, retracked };
     let mut solutions = found.solutions;
@@ -265,10 +269,10 @@ pub fn solve(polynomials: &[Polynomial<Exact>], options: &SolveOptions) -> Resul
     let mut component_points: Vec<Vec<[f64; 2]>> = found.component_points.iter().map(pairs).collect();
     component_points.iter_mut().for_each(|x| starts.equations.unscale(x));
     Ok(Solved {
-        start: Some(starts.kind),
-        mixed_volume: starts.mixed_volume,
-        bezout_number: starts.bezout,
-        multihomogeneous_number: starts.multihomogeneous,
+        start: start.or(Some(starts.kind)),
+        mixed_volume: starts.numbers.mixed_volume,
+        bezout_number: starts.numbers.bezout,
+        multihomogeneous_number: starts.numbers.multihomogeneous,
         paths,
         on_components: found.on_components,
         component_points,
@@ -301,15 +305,27 @@ impl Solved {
     }
 }
 
-/// The result that lost fewer paths, with the solutions that only the other one has.
-fn joined(mut better: Classified, other: &Classified) -> Classified {
-    if better.lost == 0 {
-        return better;
+/// What the start systems so far have given.
+#[derive(Default)]
+struct Best {
+    /// The one that lost fewest paths, the first of such.
+    start: Option<Start>,
+    tracked: usize,
+    /// What it has found, with the solutions that only others have.
+    found: Classified,
+}
+
+impl Best {
+    fn joined(self, new: Best) -> Best {
+        let (mut better, other) = if self.found.lost <= new.found.lost { (self, new) } else { (new, self) };
+        if better.found.lost == 0 {
+            return better;
+        }
+        let point = |s: &Solution| s.value.iter().map(|z| Complex64::new(z[0], z[1])).collect::<Vec<_>>();
+        let known: Vec<Vec<Complex64>> = better.found.solutions.iter().map(point).collect();
+        let new = other.found.solutions.into_iter().filter(|s| !s.singular);
+        let new = new.filter(|s| known.iter().all(|x| relative_distance(x, &point(s)) > paths::CLUSTER));
+        better.found.solutions.extend(new);
+        better
     }
-    let point = |s: &Solution| s.value.iter().map(|z| Complex64::new(z[0], z[1])).collect::<Vec<_>>();
-    let known: Vec<Vec<Complex64>> = better.solutions.iter().map(point).collect();
-    let new = other.solutions.iter().filter(|s| !s.singular);
-    let new = new.filter(|s| known.iter().all(|x| relative_distance(x, &point(s)) > paths::CLUSTER));
-    better.solutions.extend(new.cloned().collect::<Vec<_>>());
-    better
 }

@@ -47,6 +47,8 @@ pub(super) struct Ends {
     pub(super) directions: Vec<(Vec<i64>, usize)>,
     /// Tracks that were run again.
     pub(super) retracked: usize,
+    /// Whether they were given up on trial: the ends are then no result.
+    pub(super) abandoned: bool,
 }
 
 /// Relative distance below which two paths that have not yet ended are one: only paths that have crossed come that near.
@@ -56,13 +58,21 @@ pub(super) const CLUSTER: f64 = 1e-6;
 /// Paths that are under way at a time: memory for their points is bounded by this, not by the number of paths.
 const CHUNK: usize = 1 << 11;
 
+/// On trial, as many paths are followed first.
+const TRIAL: usize = 32;
+/// On trial, one path in as many may end irregularly.
+const IRREGULAR: u64 = 8;
+
 /// Follows the paths with the numbers below `count` of a source to the parameters `target`; paths that share a start or a
 /// regular end, have crossed or are lost are tracked again with stricter steps.
+///
+/// On `trial` they are abandoned as soon as too many do not end at regular solutions: with another source that may be less work.
 pub(super) fn follow<E: Evaluate, S: Source<E>>(
     system: &E,
     start: &S,
     count: usize,
     target: &[Complex64],
+    trial: bool,
     options: &SolveOptions,
 ) -> Ends {
     let mut stage = Stage {
@@ -82,13 +92,18 @@ pub(super) fn follow<E: Evaluate, S: Source<E>>(
         let settings = if level == 0 { options.paths.tracker.clone() } else { options.paths.tracker.stricter(level) };
         retracked += if level == 0 { 0 } else { which.len() };
         let (mut done, mut regular) = (0, 0);
-        for numbers in which.chunks(CHUNK) {
+        let (first, rest) = which.split_at(if trial && level == 0 { TRIAL.min(count) } else { 0 });
+        for numbers in std::iter::once(first).chain(rest.chunks(CHUNK)).filter(|numbers| !numbers.is_empty()) {
             stage.run(numbers, &settings, level > 0, &|| {
                 options.monitor().enter(monitor::Stage::Paths, which.len() as u64);
                 options.monitor().add(done, regular);
             });
             done += numbers.len() as u64;
             regular += numbers.iter().filter(|&&k| matches!(stage.ends[k], End::Regular(_))).count() as u64;
+            let irregular = (done - regular) * IRREGULAR > done;
+            if trial && level == 0 && irregular && !options.monitor().is_cancelled() {
+                return Ends { ends: stage.ends, directions: Vec::new(), retracked, abandoned: true };
+            }
         }
         which = stage.doubtful();
         if which.is_empty() || options.monitor().is_cancelled() {
@@ -108,7 +123,8 @@ pub(super) fn follow<E: Evaluate, S: Source<E>>(
     }
     let mut directions: Vec<((Vec<i64>, usize), usize)> = stage.directions.into_iter().collect();
     directions.sort_by_key(|d| d.1);
-    Ends { ends: stage.ends, directions: directions.into_iter().map(|d| d.0).collect(), retracked }
+    let directions = directions.into_iter().map(|d| d.0).collect();
+    Ends { ends: stage.ends, directions, retracked, abandoned: false }
 }
 
 struct Stage<'a, E, S> {
@@ -158,7 +174,7 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, E, S> {
             match result.end {
                 PathEnd::Success => {
                     let refined = refiner.refine(self.target, point);
-                    if refiner.contracts(self.target, &refined.point) {
+                    if refiner.is_regular(self.target, &refined) {
                         self.ends[reached.numbers[result.path]] = End::Regular(Box::new(refined));
                     } else {
                         undecided.push(result.path);
@@ -189,7 +205,7 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, E, S> {
         let mut regular = || {
             let refined = refiner.refine(self.target, &ending.point);
             let near = relative_distance(&refined.point, &ending.point) < CLUSTER;
-            (near && refiner.contracts(self.target, &refined.point)).then(|| End::Regular(Box::new(refined)))
+            (near && refiner.is_regular(self.target, &refined)).then(|| End::Regular(Box::new(refined)))
         };
         let regular = match ending.verdict {
             Verdict::Reached | Verdict::Finite { winding: 1, .. } => regular(),

@@ -8,6 +8,9 @@ use crate::start::{
 use num_complex::Complex64;
 use poly::SparseSystem;
 
+/// Polyhedral paths take two stages, the others one: up to this part of the paths more are worth a trial.
+const HARDLY_MORE: u64 = 8;
+
 /// A source of start systems for given equations.
 pub(super) struct Starts {
     /// The system of the coefficient stage.
@@ -17,15 +20,31 @@ pub(super) struct Starts {
     /// Their coefficients in one row.
     pub(super) target: Vec<Complex64>,
     pub(super) kind: Start,
-    pub(super) mixed_volume: Option<u64>,
-    pub(super) bezout: Option<u64>,
-    pub(super) multihomogeneous: Option<u64>,
+    pub(super) numbers: Numbers,
     /// Number of paths.
     pub(super) paths: usize,
     degrees: Vec<u64>,
     grouped: Option<Grouped>,
     /// The first mixed cells, found while choosing.
     first: Option<Polyhedral>,
+}
+
+/// How many paths start systems have; `None` where that is not known.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Numbers {
+    pub(super) mixed_volume: Option<u64>,
+    pub(super) bezout: Option<u64>,
+    pub(super) multihomogeneous: Option<u64>,
+}
+
+impl Numbers {
+    /// The start system without a stage before its paths that has fewest.
+    fn of_one_stage(&self) -> Option<(Start, u64)> {
+        match (self.multihomogeneous, self.bezout) {
+            (Some(m), b) if b.is_none_or(|b| m < b) => Some((Start::Multihomogeneous, m)),
+            (_, b) => b.map(|b| (Start::TotalDegree, b)),
+        }
+    }
 }
 
 impl Starts {
@@ -44,27 +63,42 @@ impl Starts {
         if direct && laurent {
             return Err(SolveError::NegativeExponents);
         }
-        // The one of the others that has fewer paths, if polyhedral fails.
-        let other = match (multihomogeneous, bezout) {
-            (Some(m), b) if b.is_none_or(|b| m < b) => Some((Start::Multihomogeneous, m)),
-            (_, b) => b.map(|b| (Start::TotalDegree, b)),
-        };
+        let mut numbers = Numbers { mixed_volume: None, bezout, multihomogeneous };
         let mut first = None;
         let (kind, paths) = match options.start {
             Start::TotalDegree => (Start::TotalDegree, bezout.unwrap_or(u64::MAX)),
             Start::Multihomogeneous => (Start::Multihomogeneous, multihomogeneous.ok_or(SolveError::StartTooLarge)?),
-            choice => match (Polyhedral::new(&equations.supports, options.seed, 0, options.monitor()), other) {
-                (Ok(cells), _) => {
-                    let volume = cells.mixed_volume;
-                    first = Some(cells);
-                    (Start::Polyhedral, volume)
+            choice => {
+                match (Polyhedral::new(&equations.supports, options.seed, 0, options.monitor()), numbers.of_one_stage())
+                {
+                    (Ok(cells), _) => {
+                        let volume = cells.mixed_volume;
+                        numbers.mixed_volume = Some(volume);
+                        first = Some(cells);
+                        (Start::Polyhedral, volume)
+                    }
+                    (Err(MixedError::Cancelled), _) => return Err(MixedError::Cancelled.into()),
+                    // Determinants out of range, but no more paths than are allowed.
+                    (Err(_), Some(other)) if choice == Start::Auto && other.1 <= options.max_paths => other,
+                    (Err(error), _) => return Err(error.into()),
                 }
-                (Err(MixedError::Cancelled), _) => return Err(MixedError::Cancelled.into()),
-                // Determinants out of range, but no more paths than are allowed.
-                (Err(_), Some(other)) if choice == Start::Auto && other.1 <= options.max_paths => other,
-                (Err(error), _) => return Err(error.into()),
-            },
+            }
         };
+        Starts::with(kind, paths, equations, numbers, degrees, grouped, options)
+            .map(|starts| Starts { first, ..starts })
+    }
+
+    /// Those of a kind.
+    fn with(
+        kind: Start,
+        paths: u64,
+        mut equations: Equations,
+        numbers: Numbers,
+        degrees: Vec<u64>,
+        grouped: Option<Grouped>,
+        options: &SolveOptions,
+    ) -> Result<Starts, SolveError> {
+        let n = equations.unknowns;
         let too_many = SolveError::TooManyPaths { paths, limit: options.max_paths };
         let paths = usize::try_from(paths).ok().filter(|_| paths <= options.max_paths).ok_or(too_many)?;
         for i in 0..n {
@@ -80,22 +114,18 @@ impl Starts {
                 _ => {}
             }
         }
-        let mixed_volume = first.as_ref().map(|cells| cells.mixed_volume);
         let system = SparseSystem::new(n, &equations.supports)?;
         let target = equations.coefficients.concat();
-        Ok(Starts {
-            system,
-            equations,
-            target,
-            kind,
-            mixed_volume,
-            bezout,
-            multihomogeneous,
-            paths,
-            degrees,
-            grouped,
-            first,
-        })
+        Ok(Starts { system, equations, target, kind, numbers, paths, degrees, grouped, first: None })
+    }
+
+    /// Instead of these polyhedral ones, and only for [`Start::Auto`]: those of one stage that have hardly more paths. Whether they are
+    /// less work shows after some paths, see [`super::paths::follow`].
+    pub(super) fn direct(&self, options: &SolveOptions) -> Option<Starts> {
+        let volume = self.numbers.mixed_volume.filter(|_| options.start == Start::Auto && !options.torus_only)?;
+        let (kind, paths) = self.numbers.of_one_stage().filter(|(_, paths)| *paths <= volume + volume / HARDLY_MORE)?;
+        let (degrees, grouped) = (self.degrees.clone(), self.grouped.clone());
+        Starts::with(kind, paths, self.equations.clone(), self.numbers, degrees, grouped, options).ok()
     }
 
     /// A start system, another one for every attempt.

@@ -25,8 +25,10 @@ use num_complex::Complex64;
 use poly::{Evaluate, Lanes8};
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 
-/// Paths that one thread takes at a time: enough to keep eight lanes full most of the time.
-const CHUNK: usize = 64;
+/// Paths that one thread takes at a time, at most: lanes run empty at the end of each part.
+const CHUNK: usize = 256;
+/// Parts that each thread gets, if there are paths enough, so that none waits long for another.
+const PARTS: usize = 4;
 
 /// Tracks the paths with the given indices into `starts` (`n` coordinates a start solution) from `t = 1` to `t = 0`, in lanes of eight
 /// and on the threads of the current rayon pool.
@@ -44,7 +46,8 @@ pub fn track<E: Evaluate, P: ParameterPath>(
 ) -> PathSet {
     let n = system.variables();
     let threads = rayon::current_num_threads();
-    let size = which.len().div_ceil(threads.max(1)).clamp(8, CHUNK);
+    let parts = if threads > 1 { PARTS * threads } else { 1 };
+    let size = which.len().div_ceil(parts).clamp(8, CHUNK);
     let parts: Vec<PathSet> = (0..which.len().div_ceil(size))
         .into_par_iter()
         .map_init(

@@ -14,6 +14,10 @@ const INITIAL_OMEGA: f64 = 10.0;
 const MIN_OMEGA: f64 = 0.1;
 /// Corrections up to this multiple of the noise are taken for noise.
 const NOISE_MARGIN: f64 = 16.0;
+/// Larger corrections are not taken for rounding error, in double precision and with residuals in double-double: they say that
+/// `omega` is larger than was thought.
+const MOST_NOISE: f64 = 1e-10;
+const MOST_NOISE_EXTENDED: f64 = 1e-14;
 /// A closing correction above this share of the one before it, and above the noise, says that Newton's method has not converged yet:
 /// after quadratic convergence it is far smaller.
 const UNFINISHED: f64 = 0.05;
@@ -270,9 +274,15 @@ impl Progress {
                 0.5 * self.omega
             };
         }
-        let omega = self.omega_now.max(0.5 * self.omega).max(MIN_OMEGA);
-        // More than quadratic convergence leaves is rounding error.
-        self.noise = if norm > omega * self.last * self.last { norm } else { self.noise.min(norm) }.max(f64::EPSILON);
+        let mut omega = self.omega_now.max(0.5 * self.omega).max(MIN_OMEGA);
+        if norm <= omega * self.last * self.last {
+            self.noise = self.noise.min(norm).max(f64::EPSILON);
+        } else if norm <= if self.extended { MOST_NOISE_EXTENDED } else { MOST_NOISE } {
+            // More than quadratic convergence leaves is rounding error, if it is small enough for that.
+            self.noise = norm.max(f64::EPSILON);
+        } else {
+            omega = norm / (self.last * self.last);
+        }
         let noise = omega * norm;
         if noise > bounds.leave_double && !self.extended && bounds.options.extended_precision {
             self.extended = true;

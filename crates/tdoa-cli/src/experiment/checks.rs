@@ -1,15 +1,15 @@
-//! `tdoa experiment proofs | routes | hurry`.
+//! `tdoa experiment proofs | routes | hurry | charts`.
 
 use super::common::configuration;
 use crate::{Failure, output};
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 use std::fmt::Write;
 use std::path::PathBuf;
-use tdoa::experiment::checks::{HurryTrial, hurry_trial, proof_trial, route_trial};
-use tdoa::minimal::{RootProofs, SolveError, SolveOptions, Solver};
+use tdoa::experiment::checks::{ChartTrial, HurryTrial, chart_trial, hurry_trial, proof_trial, route_trial};
+use tdoa::minimal::{Fallback, RootProofs, SolveError, SolveOptions, Solver};
 use tdoa::{Layout, SimulateOptions, Simulation, simulate};
 
-/// What all three take.
+/// What all of them take.
 #[derive(clap::Args)]
 pub(super) struct Arguments {
     /// The configurations.
@@ -165,6 +165,49 @@ pub(super) fn hurry(arguments: &Arguments) -> Result<(), Failure> {
                 trials.iter().filter(|t| t.truth).count(),
                 trials.iter().filter(|t| t.truth_full).count(),
             );
+        }
+    }
+    arguments.write(&text)
+}
+
+/// Measures what becomes of paths that fail, with each fallback.
+pub(super) fn charts(arguments: &Arguments) -> Result<(), Failure> {
+    let mut text = format!(
+        "# Paths that fail\n\n{}: each instance with each fallback, in one round at full steps and with four more rounds of shorter steps \
+         (the default). Where up to four paths are left over, all are tracked again from turned starts, which counts as tracked again too. Real networks come in pairs: an odd number of them would tell of paths that have jumped unseen.\n\n\
+         | configuration | fallback | rounds | instances | paths | lost | in instances | tracked again | odd | Jacobians a path | milliseconds \
+         a solve |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
+        arguments.command("charts")
+    );
+    let fallbacks = [
+        (Fallback::OtherCharts, "other charts, from where they broke off"),
+        (Fallback::OtherChartsFromStart, "other charts, from the start"),
+        (Fallback::OneChart, "the same chart"),
+    ];
+    for &size in &arguments.configuration {
+        for (fallback, name) in fallbacks {
+            for retries in [0, 4] {
+                let one =
+                    |solver: &mut Solver, simulation: &Simulation| chart_trial(solver, simulation, fallback, retries);
+                let trials = arguments.each(size, one)?;
+                let sum = |f: fn(&ChartTrial) -> usize| trials.iter().map(f).sum::<usize>();
+                let paths = sum(|t| t.paths.tracked);
+                let seconds: f64 = trials.iter().map(|t| t.seconds).sum();
+                let _ = writeln!(
+                    text,
+                    "| {}r/{}s | {name} | {} | {} | {paths} | {} | {} | {} | {} | {:.1} | {:.1} |",
+                    size.0,
+                    size.1,
+                    retries + 1,
+                    trials.len(),
+                    sum(|t| t.paths.failed),
+                    sum(|t| usize::from(t.paths.failed > 0)),
+                    sum(|t| t.paths.retracked),
+                    sum(|t| usize::from(t.odd)),
+                    sum(|t| t.jacobians) as f64 / paths.max(1) as f64,
+                    1e3 * seconds / trials.len().max(1) as f64,
+                );
+            }
         }
     }
     arguments.write(&text)

@@ -1,8 +1,8 @@
 //! Checks of the minimal solvers on clean data by other means: interval proofs of the roots, the polyhedral route beside the stored
-//! start, and what the options for callers in a hurry save and lose.
+//! start, what the options for callers in a hurry save and lose, and what becomes of paths that fail.
 
 use super::clean::position_error_of;
-use crate::minimal::{RootProofs, SolveError, SolveOptions, Solver, Start};
+use crate::minimal::{Fallback, RootProofs, SolveError, SolveOptions, Solver, Start};
 use crate::network::{MinimalSolution, PathCounts, RootCounts};
 use crate::simulate::Simulation;
 use serde::Serialize;
@@ -48,6 +48,42 @@ pub fn route_trial(solver: &mut Solver, simulation: &Simulation) -> Result<Route
     let seconds = started.elapsed().as_secs_f64();
     let agree = same_networks(&stored, &polyhedral);
     Ok(RouteTrial { stored: stored.counts, polyhedral: polyhedral.counts, paths: polyhedral.paths, agree, seconds })
+}
+
+/// One instance with one way to treat paths that fail.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct ChartTrial {
+    /// How the paths ended.
+    pub paths: PathCounts,
+    /// Evaluations of the Jacobian in the first starts of all paths and what follows these.
+    pub jacobians: usize,
+    /// Whether real networks, which come in pairs, are odd in number: then paths have jumped unseen.
+    pub odd: bool,
+    /// Seconds.
+    pub seconds: f64,
+}
+
+/// Solves one clean instance with a fallback and so many rounds of it.
+///
+/// # Errors
+/// If the solver refuses the instance.
+pub fn chart_trial(
+    solver: &mut Solver,
+    simulation: &Simulation,
+    fallback: Fallback,
+    retries: u32,
+) -> Result<ChartTrial, SolveError> {
+    let mut options = SolveOptions::default();
+    options.fallback = fallback;
+    options.paths.retries = retries;
+    let started = Instant::now();
+    let solution = solver.solve(&simulation.pseudoranges, &options)?;
+    Ok(ChartTrial {
+        paths: solution.paths,
+        jacobians: solver.records().iter().map(|r| r.jacobians).sum(),
+        odd: solution.counts.real % 2 == 1,
+        seconds: started.elapsed().as_secs_f64(),
+    })
 }
 
 /// Whether the offsets of all candidates agree, one to one.
@@ -118,8 +154,8 @@ pub fn hurry_trial(
 
 #[cfg(test)]
 mod tests {
-    use super::{hurry_trial, proof_trial};
-    use crate::minimal::{SolveOptions, Solver};
+    use super::{chart_trial, hurry_trial, proof_trial};
+    use crate::minimal::{Fallback, SolveOptions, Solver};
     use crate::simulate::{Layout, SimulateOptions, Simulation, simulate};
 
     fn clean(receivers: usize, transmitters: usize, seed: u64) -> Simulation {
@@ -166,6 +202,24 @@ mod tests {
         let simulation = clean(5, 4, 0);
         let all = solver.solve(&simulation.pseudoranges, &SolveOptions::default()).unwrap();
         assert_eq!(solver.solve(&simulation.pseudoranges, &options).unwrap(), all);
+    }
+
+    /// The instance in which paths pass nearest to a singularity of the first 5,000: all charts are needed, in more than one round.
+    #[test]
+    fn hard_paths_are_recovered() {
+        let trial = chart_trial(&mut Solver::new(), &clean(5, 4, 1943), Fallback::OtherCharts, 4).unwrap();
+        assert_eq!((trial.paths.failed, trial.paths.finite, trial.odd), (0, 152, false));
+    }
+
+    /// In these two paths have ended at one root, too roughly to be seen before ends were refined.
+    #[test]
+    fn jumped_paths_are_seen() {
+        let mut solver = Solver::new();
+        for (receivers, transmitters, seed) in [(6, 3, 393), (6, 3, 4335), (4, 5, 209), (4, 5, 413)] {
+            let simulation = clean(receivers, transmitters, seed);
+            let trial = chart_trial(&mut solver, &simulation, Fallback::OtherCharts, 4).unwrap();
+            assert!(trial.paths.failed == 0 && !trial.odd, "{receivers}r/{transmitters}s, seed {seed}: {trial:?}");
+        }
     }
 
     #[test]

@@ -7,11 +7,12 @@ use super::nearest::nearest;
 use super::normalised::{Normalised, rank};
 use super::proofs::{RootProofs, prove};
 use super::real::real_root;
+use super::recover::Recovery;
 use super::{SolveError, SolveOptions, Start, check, scratch};
 use crate::calibrate::flatness;
 use crate::network::{Candidate, MinimalSolution, Network, PathCounts, RootCounts};
 use crate::pseudoranges::Pseudoranges;
-use hc::fibre::{Fibre, doubtful};
+use hc::fibre::Fibre;
 use hc::homotopy::Segment;
 use hc::poly::Lanes8;
 use hc::refine::Refiner;
@@ -101,7 +102,15 @@ impl<F: Formulation> Engine<F> {
             if attempt == 0 && options.first_under.is_some() && self.stops_early(&start, found, options) {
                 return (self.counts(0, 0), true);
             }
-            let (lost, again) = self.track_from(&start, attempt == 0 && options.first_under.is_some(), options);
+            let recovery = Recovery::<F> {
+                start: &start,
+                target: &self.target,
+                settings: &options.paths,
+                fallback: options.fallback,
+                tracker: &mut self.tracker,
+                paths: &mut self.paths,
+            };
+            let (lost, again) = recovery.run(attempt == 0 && options.first_under.is_some());
             retracked += again;
             if attempt == 0 && lost == 0 {
                 best = None;
@@ -155,59 +164,6 @@ impl<F: Formulation> Engine<F> {
         }
         self.paths.sort();
         false
-    }
-
-    /// Tracks all paths from one fibre. Those that fail, jump or take too many steps are continued in the other charts, then with more
-    /// and shorter steps in all of them. Returns how many are lost, and how many were tracked again.
-    ///
-    /// `first_pass_done` says that `paths` already holds the first pass.
-    fn track_from(&mut self, start: &Fibre, first_pass_done: bool, options: &SolveOptions) -> (usize, usize) {
-        let settings = &options.paths;
-        let target = &self.target;
-        let n = start.dimension;
-        let mut refiner = Refiner::new(F::system());
-        let mut retracked = 0;
-        let mut lost: Vec<usize> = (0..start.len()).collect();
-        let mut again = PathSet::new(n);
-        for level in 0..=settings.retries {
-            let tracker = if level == 0 { settings.tracker.clone() } else { settings.tracker.stricter(level) };
-            self.tracker.set_options(&tracker);
-            for chart in 0..F::CHARTS {
-                let path = Segment::new(&F::parameters(chart, &start.parameters), &F::parameters(chart, target));
-                if level == 0 && chart == 0 {
-                    if !first_pass_done {
-                        self.paths.clear(n);
-                        self.tracker.track(&path, &start.solutions, lost.iter().copied(), &mut self.paths);
-                        self.paths.sort();
-                    }
-                } else {
-                    retracked += lost.len();
-                    let carried: Vec<Complex64> =
-                        lost.iter().flat_map(|&k| F::enter(chart, start.solution(k))).collect();
-                    again.clear(n);
-                    self.tracker.track(&path, &carried, 0..lost.len(), &mut again);
-                    for (result, point) in again.iter() {
-                        let k = lost[result.path];
-                        let record = PathResult { path: k, ..*result };
-                        match result.end {
-                            PathEnd::Success => {
-                                let back = refiner.refine(target, &F::leave(chart, point));
-                                if back.accuracy < 1e-8 {
-                                    self.paths.replace(k, record, &back.point);
-                                }
-                            }
-                            PathEnd::Dropped => self.paths.replace(k, record, &F::leave(chart, point)),
-                            _ => {}
-                        }
-                    }
-                }
-                lost = doubtful(&self.paths, settings.coincidence);
-                if lost.is_empty() {
-                    return (0, retracked);
-                }
-            }
-        }
-        (lost.len(), retracked)
     }
 }
 

@@ -1,0 +1,185 @@
+//! What becomes of paths that fail, jump or take too many steps.
+//!
+//! They are tracked again in the other charts, where a path near a far transmitter or a degenerate triangle is an easy one, then with
+//! shorter and more steps in all of them. By default a path that has broken off goes on in the next chart from where it is; every
+//! second round all start again from the beginning, since what a path has come to may be wrong.
+
+use super::Fallback;
+use super::formulation::Formulation;
+use hc::fibre::{Fibre, FibreOptions, doubtful, settle};
+use hc::homotopy::{ParameterPath, Segment};
+use hc::poly::{Lane, Lanes8};
+use hc::refine::Refiner;
+use hc::tracker::{PathEnd, PathResult, PathSet, Tracker, TrackerOptions};
+use num_complex::Complex64;
+
+/// Accuracy to which the end of a path carried back from another chart must be known.
+const CARRIED: f64 = 1e-8;
+
+/// The rest of a segment, for each path from where it goes on: the tracker's time `1` is `t = from` there.
+struct Rests<'a> {
+    segment: &'a Segment,
+    from: &'a [f64],
+}
+
+impl ParameterPath for Rests<'_> {
+    fn parameters(&self) -> usize {
+        self.segment.parameters()
+    }
+
+    #[inline(always)]
+    fn coefficients<S: Lane>(&self, paths: &[usize], t: &S::Real, p: &mut [S]) {
+        let mut from = S::real(1.0);
+        from.as_mut().iter_mut().zip(paths).for_each(|(from, &path)| *from = self.from[path]);
+        let t = S::real_mul(t, &from);
+        let (target, direction) = (self.segment.target(), self.segment.direction());
+        let m = target.len();
+        for i in 0..m {
+            let direction = S::from_c64(direction[i]);
+            p[i] = S::add(&S::from_c64(target[i]), &direction.scale_by(&t));
+            p[m + i] = direction.scale_by(&from);
+        }
+        p[2 * m..4 * m].fill(S::zero());
+    }
+
+    fn is_straight(&self) -> bool {
+        true
+    }
+}
+
+/// The steps of a round: shorter ones, and so many more that a path gets farther with them.
+fn stricter(settings: &TrackerOptions, level: u32) -> TrackerOptions {
+    if level == 0 {
+        return settings.clone();
+    }
+    let mut stricter = settings.stricter(level);
+    stricter.max_steps = settings.max_steps.saturating_mul(1 << (2 * level).min(20));
+    stricter
+}
+
+/// Tracks all paths from one fibre to the parameters `target`, each until it is accounted for or everything has been tried.
+pub(super) struct Recovery<'a, F: Formulation> {
+    pub(super) start: &'a Fibre,
+    pub(super) target: &'a [Complex64],
+    pub(super) settings: &'a FibreOptions,
+    pub(super) fallback: Fallback,
+    pub(super) tracker: &'a mut Tracker<'static, F::System, Lanes8>,
+    pub(super) paths: &'a mut PathSet,
+}
+
+impl<F: Formulation> Recovery<'_, F> {
+    /// Returns how many paths are lost, and how many were tracked again. `first_pass_done` says that `paths` already holds the first
+    /// pass, unsettled.
+    pub(super) fn run(mut self, first_pass_done: bool) -> (usize, usize) {
+        let mut refiner = Refiner::new(F::system());
+        if !first_pass_done {
+            let path = self.segment(0);
+            self.tracker.set_options(&self.settings.tracker);
+            self.paths.clear(self.start.dimension);
+            self.tracker.track(&path, &self.start.solutions, 0..self.start.len(), self.paths);
+            self.paths.sort();
+        }
+        settle(&mut refiner, self.target, self.paths);
+        let mut lost = doubtful(self.paths, self.settings.coincidence);
+        let mut retracked = 0;
+        let charts = if self.fallback == Fallback::OneChart { 1 } else { F::CHARTS };
+        for level in 0..=self.settings.retries {
+            self.tracker.set_options(&stricter(&self.settings.tracker, level));
+            for chart in usize::from(level == 0)..charts {
+                if lost.is_empty() {
+                    return (0, retracked);
+                }
+                retracked += lost.len();
+                let goes_on = self.fallback == Fallback::OtherCharts && chart > 0 && level % 2 == 0;
+                self.again(&lost, chart, goes_on, &mut refiner);
+                lost = doubtful(self.paths, self.settings.coincidence);
+            }
+        }
+        (lost.len(), retracked)
+    }
+
+    /// The way from the start to the target in a chart.
+    fn segment(&self, chart: usize) -> Segment {
+        Segment::new(&F::parameters(chart, &self.start.parameters), &F::parameters(chart, self.target))
+    }
+
+    /// Tracks paths again in a chart, from the start or, if they go on, from where they broke off.
+    fn again(&mut self, lost: &[usize], chart: usize, goes_on: bool, refiner: &mut Refiner<'_, F::System>) {
+        let segment = self.segment(chart);
+        let broken_off = |r: &PathResult| {
+            matches!(r.end, PathEnd::MaxSteps | PathEnd::StepTooSmall | PathEnd::AccuracyLimit) && r.t > 0.0
+        };
+        let from: Vec<f64> = lost
+            .iter()
+            .map(|&k| {
+                let result = &self.paths.results()[k];
+                if goes_on && broken_off(result) { result.t } else { 1.0 }
+            })
+            .collect();
+        let enter = |(&k, &from): (&usize, &f64)| {
+            F::enter(chart, if from < 1.0 { self.paths.point(k) } else { self.start.solution(k) })
+        };
+        let carried: Vec<Complex64> = lost.iter().zip(&from).flat_map(enter).collect();
+        let mut again = PathSet::new(self.start.dimension);
+        self.tracker.track(&Rests { segment: &segment, from: &from }, &carried, 0..lost.len(), &mut again);
+        for (result, point) in again.iter() {
+            let k = lost[result.path];
+            let old = self.paths.results()[k];
+            let record = PathResult {
+                path: k,
+                t: result.t * from[result.path],
+                accepted: old.accepted + result.accepted,
+                rejected: old.rejected + result.rejected,
+                jacobians: old.jacobians + result.jacobians,
+                ..*result
+            };
+            let back = F::leave(chart, point);
+            let old_point = self.paths.point(k).to_vec();
+            match result.end {
+                PathEnd::Success => {
+                    let refined = refiner.refine(self.target, &back);
+                    if refined.accuracy < CARRIED {
+                        self.paths.replace(k, record, &refined.point);
+                        continue;
+                    }
+                }
+                PathEnd::Dropped => {
+                    self.paths.replace(k, record, &back);
+                    continue;
+                }
+                _ if broken_off(&record) && back.iter().all(|z| z.is_finite()) => {
+                    self.paths.replace(k, record, &back);
+                    continue;
+                }
+                _ => {}
+            }
+            // As it was, but for the work.
+            let PathResult { accepted, rejected, jacobians, .. } = record;
+            self.paths.replace(k, PathResult { accepted, rejected, jacobians, ..old }, &old_point);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Rests;
+    use hc::homotopy::{ParameterPath, Segment};
+    use num_complex::Complex64;
+
+    #[test]
+    fn the_rest_of_a_segment_is_on_the_segment() {
+        let z = Complex64::new;
+        let segment = Segment::new(&[z(1.0, 2.0), z(0.0, 1.0)], &[z(-0.5, 0.3), z(4.0, 0.0)]);
+        let rests = Rests { segment: &segment, from: &[1.0, 0.25] };
+        let (mut whole, mut rest) = ([z(0.0, 0.0); 8], [z(0.0, 0.0); 8]);
+        segment.coefficients::<Complex64>(&[0], &[0.2], &mut whole);
+        rests.coefficients::<Complex64>(&[0], &[0.2], &mut rest);
+        assert_eq!(whole, rest);
+        // Path 1 is at t = 0.2 when four fifths of its way are left.
+        rests.coefficients::<Complex64>(&[1], &[0.8], &mut rest);
+        for i in 0..2 {
+            assert!((whole[i] - rest[i]).norm() < 1e-15);
+            assert!((whole[2 + i] * 0.25 - rest[2 + i]).norm() < 1e-15);
+        }
+    }
+}
