@@ -97,7 +97,7 @@ fn table2(results: &Path) -> Result<String> {
 }
 
 fn clean(results: &Path) -> Result<String> {
-    let table = summary(results, "clean")?;
+    let tables = ["clean-6r3s", "clean", "clean-larger"].map(|name| (name, summary(results, name).ok()));
     let mut text = String::from(
         "Relative errors |X^ - X| / |X - mean X| over all nodes after the best rigid alignment, and |o^ - o| / |o|, of the physical candidate nearest to the truth. \
          \"Found\": within 1e-4. The paper says: errors \"in the order of magnitude 1e-12\", about 10 s a solve; it has no figures for 6r/3s, and leaves 4r/5s and \
@@ -115,9 +115,10 @@ fn clean(results: &Path) -> Result<String> {
         "99 %",
         "paths lost",
         "tracked again",
+        "odd numbers of real networks",
         "ms a solve (one thread)",
     ]);
-    for row in table.rows() {
+    for row in tables.iter().filter_map(|(_, table)| table.as_ref()).flat_map(Table::rows) {
         let mut cells = Vec::new();
         for column in ["configuration", "instances", "found"] {
             cells.push(row.get(column)?.to_owned());
@@ -127,12 +128,16 @@ fn clean(results: &Path) -> Result<String> {
         }
         cells.push(format!("{} of {}", row.get("paths_lost")?, row.get("paths")?));
         cells.push(row.get("retracked")?.to_owned());
+        cells.push(row.get("odd")?.to_owned());
         cells.push(row.get("milliseconds_median")?.to_owned());
         text += &line(&cells);
     }
     text += "\nThe errors are smaller than the paper's because every candidate is polished in the positions themselves after its path has ended, in which the problem \
-             is far better conditioned than in H. What remains is the condition of the instance.\n\n";
-    text += &figures(table.rows(), "clean")?;
+             is far better conditioned than in H. What remains is the condition of the instance. Milliseconds are processor time, of a machine with \
+             other work on the same cores.\n\n";
+    for (folder, table) in &tables {
+        text += &figures(table.iter().flat_map(Table::rows), folder)?;
+    }
     Ok(text)
 }
 

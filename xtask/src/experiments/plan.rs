@@ -39,7 +39,9 @@ const fn plain(name: &'static str, command: &'static str, full: u64, quick: u64)
 /// the processor seconds of each.
 pub(super) const PLAN: &[Experiment] = &[
     plain("table2", "table2", 10_000, 200),
-    plain("clean", "clean", 1000, 20),
+    plain("clean-6r3s", "clean --configuration 6r/3s", 100_000, 20),
+    plain("clean", "clean --configuration 6r/4s,5r/4s,4r/5s", 20_000, 10),
+    plain("clean-larger", "clean --configuration 7r/3s,5r/5s,4r/6s", 20_000, 10),
     plain("noise", "noise", 1000, 5),
     plain("calibrate", "calibrate", 500, 2),
     plain(

@@ -63,7 +63,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut summary = String::from(
         "configuration,instances,paths,paths_lost,at_infinity,retracked,found,position_median,position_90,position_99,offset_median,\
          offset_90,offset_99,steps_a_path,real_min,real_max,real_mean,real_sd,physical_min,physical_max,physical_mean,physical_sd,\
-         milliseconds_median,milliseconds_99\n",
+         milliseconds_median,milliseconds_99,odd\n",
     );
     let mut bins = String::from("configuration,log10_from,positions,offsets\n");
     let each = arguments.instances as usize;
@@ -109,6 +109,9 @@ impl Group<'_> {
         }
         let times = self.numbers("milliseconds");
         cells.extend([0.5, 0.99].map(|share| short(quantile(&times, share))));
+        // Real networks come in pairs: an odd number tells of a path that was lost or jumped unseen.
+        let odd = self.numbers("positive_definite").iter().filter(|&&count| count % 2.0 == 1.0).count();
+        cells.push(odd.to_string());
         cells.join(",") + "\n"
     }
 
