@@ -7,6 +7,7 @@ mod generators;
 
 use common::{multiplicities, options, real, solved};
 use generators::{cyclic, eco, katsura, noon, reimer, system};
+use hc::solve::Start;
 
 fn chandra(n: usize) -> String {
     let equation = |i: usize| {
@@ -67,6 +68,24 @@ fn eco_systems() {
 fn chandra_systems() {
     for n in 4..=8 {
         check(&format!("chandra-{n}"), &chandra(n), 1 << (n - 1), Some(1 << (n - 1)), 3);
+    }
+}
+
+/// Total degree has as many paths as polyhedral for katsura-5, all to regular solutions, and for reimer-4, most of them to infinity.
+#[test]
+fn auto_takes_one_stage_only_where_paths_end_well() {
+    let cases = [("katsura-5", katsura(5), Start::TotalDegree, 32), ("reimer-4", reimer(4), Start::Polyhedral, 120)];
+    for (name, text, start, paths) in cases {
+        for seed in 0..3 {
+            let found = solved(&text, &options(seed));
+            assert_eq!((found.start, found.start_systems), (Some(start), 1), "{name} {seed}");
+            let (mixed_volume, bezout) = (found.mixed_volume, found.bezout_number);
+            assert_eq!(
+                (mixed_volume, bezout, found.paths.tracked),
+                (Some(paths), Some(paths), paths as usize),
+                "{name}"
+            );
+        }
     }
 }
 

@@ -250,12 +250,12 @@ fn groups_of_unknowns() {
     }
     options.groups.push(vec![0]);
     assert_eq!(solve_text(text, &options).unwrap_err(), SolveError::Groups(4));
-    // auto takes the polyhedral one, which has no more paths.
+    // auto takes the groups: the polyhedral one has no fewer paths, and two stages.
     options.groups.pop();
     options.start = Start::Auto;
     let found = solve_text(text, &options).unwrap();
     assert_eq!(
-        (found.start, found.paths.tracked, found.multihomogeneous_number),
-        (Some(Start::Polyhedral), 3, Some(3))
+        (found.start, found.paths.tracked, found.mixed_volume, found.multihomogeneous_number),
+        (Some(Start::Multihomogeneous), 3, Some(3), Some(3))
     );
 }
