@@ -73,8 +73,7 @@ pub fn chart_trial(
     fallback: Fallback,
     retries: u32,
 ) -> Result<ChartTrial, SolveError> {
-    let mut options = SolveOptions::default();
-    options.fallback = fallback;
+    let mut options = SolveOptions { fallback, ..SolveOptions::default() };
     options.paths.retries = retries;
     let started = Instant::now();
     let solution = solver.solve(&simulation.pseudoranges, &options)?;
