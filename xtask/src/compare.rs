@@ -145,7 +145,8 @@ fn introduction(plan: &Plan, tools: &Tools) -> String {
          Written by `cargo xtask compare`{}: every case runs first here, then in the peer, the pair {times} (once where the peer takes over a \
          minute); peers are stopped after {} processor seconds. Seconds are processor seconds of the whole process, so that other work on the machine \
          matters little; shown is the run of median time; \
-         a ratio is the median of the pairs' ratios, above one where this project is faster.\n\n\
+         a ratio is the median of the pairs' ratios, above one where this project is faster. Memory is the peak of the process from its fork on: \
+         less than about 13 MB cannot be seen.\n\n\
          Peers: {peers}.{absent} Machine: {}. Commit {}. What each can do is in [features.md](features.md).\n\n",
         if plan.quick { " --quick" } else { "" },
         plan.limit,
