@@ -250,7 +250,8 @@ fn groups_of_unknowns() {
     }
     options.groups.push(vec![0]);
     assert_eq!(solve_text(text, &options).unwrap_err(), SolveError::Groups(4));
-    // auto takes the groups: the polyhedral one has no fewer paths, and two stages.
+    // auto takes the groups: the polyhedral one has no fewer paths, and two stages. Without groups the polyhedral one has far fewer
+    // than the total degree.
     options.groups.pop();
     options.start = Start::Auto;
     let found = solve_text(text, &options).unwrap();
@@ -258,4 +259,7 @@ fn groups_of_unknowns() {
         (found.start, found.paths.tracked, found.mixed_volume, found.multihomogeneous_number),
         (Some(Start::Multihomogeneous), 3, Some(3), Some(3))
     );
+    options.groups.clear();
+    let found = solve_text(text, &options).unwrap();
+    assert_eq!((found.start, found.paths.tracked, found.bezout_number), (Some(Start::Polyhedral), 3, Some(8)));
 }

@@ -57,9 +57,8 @@ impl Default for TrackerOptions {
 }
 
 impl TrackerOptions {
-    /// Longer steps, for whole solution sets, where paths that jump show by their ends and are tracked again. With these factors hardly
-    /// a path of a million does (docs/guide/tracker.md); they are less careful than HomotopyContinuation.jl's fast preset
-    /// (2, 0.75, 0.4).
+    /// Longer steps, for whole solution sets, where paths that jump show by their ends and are tracked again: results/counts.md says
+    /// how many, system by system. The factors are less careful than those of HomotopyContinuation.jl's fast preset (2, 0.75, 0.4).
     pub fn fast() -> Self {
         TrackerOptions {
             beta_omega: 1.5,

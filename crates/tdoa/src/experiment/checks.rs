@@ -203,14 +203,15 @@ mod tests {
         assert_eq!(solver.solve(&simulation.pseudoranges, &options).unwrap(), all);
     }
 
-    /// The instance in which paths pass nearest to a singularity of the first 5,000: all charts are needed, in more than one round.
+    /// Some paths of this one pass so near to a singularity that one was lost, of 5,000 networks, before they went on in other charts.
     #[test]
     fn hard_paths_are_recovered() {
         let trial = chart_trial(&mut Solver::new(), &clean(5, 4, 1943), Fallback::OtherCharts, 4).unwrap();
         assert_eq!((trial.paths.failed, trial.paths.finite, trial.odd), (0, 152, false));
     }
 
-    /// In these two paths have ended at one root, too roughly to be seen before ends were refined.
+    /// Real roots come with the parity of all. In these they were odd in number, and no path was reported lost, before ends were
+    /// refined: a path had ended at the root of another, or at none, too roughly to be seen.
     #[test]
     fn jumped_paths_are_seen() {
         let mut solver = Solver::new();
