@@ -48,13 +48,19 @@ fn cyclic(n: usize) -> String {
 #[test]
 fn solutions_found_so_far() {
     let folder = tempfile::tempdir().expect("directory");
-    // 90,000 roots behind a few mixed cells.
-    let system = written(folder.path(), "dense.phc", "2\nx^300 - 3*x^7 + 1;\ny^300 - 5*x*y + 2;\n");
-    let found = interrupted(&["solve", &system]);
-    assert_eq!((&found["partial"], &found["paths"]["tracked"]), (&json!(true), &json!(90000)));
+    // 2^18 roots, a minute's work and more.
+    let n = 18;
+    let equation = |i: usize| {
+        let next = |k: usize| (i + k) % n;
+        format!("x{i}^2 - {}*x{}*x{} + 3*x{} + {};\n", i + 2, next(1), next(2), next(3), i + 1)
+    };
+    let system = format!("{n}\n{}", (0..n).map(equation).collect::<String>());
+    let system = written(folder.path(), "quadrics.phc", &system);
+    let found = interrupted(&["solve", &system, "--start", "total-degree"]);
+    assert_eq!((&found["partial"], &found["paths"]["tracked"]), (&json!(true), &json!(1 << 18)));
     let count = |name: &str| found["paths"][name].as_u64().expect("a count");
     assert!(count("failed") > 0);
-    assert_eq!(count("finite") + count("at_infinity") + count("failed"), 90000);
+    assert_eq!(count("finite") + count("at_infinity") + count("failed"), 1 << 18);
     assert_eq!(count("finite"), found["solutions"].as_array().expect("a list").len() as u64);
 }
 
@@ -76,11 +82,11 @@ fn the_targets_done_so_far() {
     let start = start.to_str().expect("UTF-8 path");
     assert!(run("hc", &["monodromy", family, "--output", start]).status.success());
     let target = json!({ "parameters": [0.5, 0.6, 0.7, 7.0, 10.4, 8.2] });
-    let targets = json!(vec![target; 100_000]).to_string();
+    let targets = json!(vec![target; 300_000]).to_string();
     let found =
         interrupted(&["track", family, "--start", start, "--target", &written(folder.path(), "t.json", &targets)]);
     let found = found.as_array().expect("a list");
-    assert!((1..100_000).contains(&found.len()), "{}", found.len());
+    assert!((1..300_000).contains(&found.len()), "{}", found.len());
     assert!(found[..found.len() - 1].iter().all(|report| report["partial"] == false));
 }
 

@@ -125,20 +125,39 @@ const VAGUE: f64 = 1e-7;
 /// After that the last correction must be below this.
 const SETTLED: f64 = 1e-10;
 
-/// Refines the regular ends that the tracker leaves vague, so that those which coincide are seen to; where Newton's method does not settle
-/// the path becomes [`PathEnd::Singular`].
+/// Coordinates below this share of the largest, squared, are zero or suspicious.
+const VANISHED_SQR: f64 = 1e-32;
+
+/// Whether a path has come to a regular solution for the parameters `target`.
+///
+/// A system may have components of singular solutions besides its fibre, and Newton's method converges to them too, slowly, which does not show where
+/// coordinates vanish. Ends with such coordinates or a singular Jacobian have to attract it from some distance.
+pub fn is_regular<E: Evaluate>(
+    refiner: &mut Refiner<'_, E>,
+    target: &[Complex64],
+    result: &PathResult,
+    x: &[Complex64],
+) -> bool {
+    let largest = x.iter().map(|z| z.norm_sqr()).fold(0.0, f64::max);
+    let plain = || result.pivot > f64::EPSILON && x.iter().all(|z| z.norm_sqr() > VANISHED_SQR * largest);
+    result.end == PathEnd::Success && (plain() || refiner.contracts(target, x))
+}
+
+/// Refines the regular ends that the tracker leaves vague, so that those which coincide are seen to; where Newton's method does not settle,
+/// or the end is no regular solution, the path becomes [`PathEnd::Singular`].
 pub fn settle<E: Evaluate>(refiner: &mut Refiner<'_, E>, target: &[Complex64], paths: &mut PathSet) {
     for k in 0..paths.len() {
         let result = paths.results()[k];
-        if result.end != PathEnd::Success || result.accuracy <= VAGUE {
+        if result.end != PathEnd::Success {
             continue;
         }
-        let refined = refiner.refine(target, paths.point(k));
-        if refined.accuracy <= SETTLED {
-            paths.replace(k, PathResult { accuracy: refined.accuracy, ..result }, &refined.point);
-        } else {
+        if !is_regular(refiner, target, &result, paths.point(k)) {
             let point = paths.point(k).to_vec();
             paths.replace(k, PathResult { end: PathEnd::Singular, ..result }, &point);
+        } else if result.accuracy > VAGUE {
+            let refined = refiner.refine(target, paths.point(k));
+            let end = if refined.accuracy <= SETTLED { PathEnd::Success } else { PathEnd::Singular };
+            paths.replace(k, PathResult { end, accuracy: refined.accuracy, ..result }, &refined.point);
         }
     }
 }

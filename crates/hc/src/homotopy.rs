@@ -4,7 +4,7 @@
 //! homotopies differ only in their [`ParameterPath`].
 
 use num_complex::Complex64;
-use poly::Lane;
+use poly::{ComplexDd, Lane, Scalar};
 
 /// A path `p(t)`, `t` from 1 to 0, in the parameters of a system.
 pub trait ParameterPath: Send + Sync {
@@ -16,6 +16,12 @@ pub trait ParameterPath: Send + Sync {
     /// `paths` holds the index of the path in each lane, for homotopies that differ from path to path; in lanes without a path it is
     /// that of some other lane. Called inside a kernel: implementations are `#[inline(always)]`.
     fn coefficients<S: Lane>(&self, paths: &[usize], t: &S::Real, p: &mut [S]);
+
+    /// Replaces the parameters at `t` of one path, rounded to double precision, by their values to twice the digits.
+    ///
+    /// A point with a Jacobian of condition `c` moves by `c` times the rounding error of the parameters, which spoils the predictor's
+    /// idea of the path long before Newton's method fails. By default they stay rounded.
+    fn extend(&self, _path: usize, _t: f64, _p: &mut [ComplexDd]) {}
 
     /// Whether coefficients of orders 2 and 3 are zero everywhere, which makes Taylor coefficients cheaper.
     fn is_straight(&self) -> bool {
@@ -50,6 +56,13 @@ impl Segment {
     pub fn direction(&self) -> &[Complex64] {
         &self.direction
     }
+
+    /// The parameters at `t`, real or complex, to twice the digits.
+    pub fn extended(&self, t: &ComplexDd, p: &mut [ComplexDd]) {
+        for ((p, target), direction) in p.iter_mut().zip(&self.target).zip(&self.direction) {
+            *p = Scalar::mul_add(&ComplexDd::new(*direction), t, &ComplexDd::new(*target));
+        }
+    }
 }
 
 impl ParameterPath for Segment {
@@ -66,6 +79,10 @@ impl ParameterPath for Segment {
             p[m + i] = direction;
         }
         p[2 * m..4 * m].fill(S::zero());
+    }
+
+    fn extend(&self, _: usize, t: f64, p: &mut [ComplexDd]) {
+        self.extended(&ComplexDd::new(t.into()), p);
     }
 
     fn is_straight(&self) -> bool {

@@ -52,6 +52,17 @@ impl<S: Lane> Lu<S> {
         isa.run(Factor { lu: self, a, weights_sqr });
     }
 
+    /// The smallest pivot of lane `l`, each relative to the largest entry of its row of the matrix as it was, unknowns measured by the
+    /// weights it was factored with: below the rounding error the matrix is singular as far as doubles can tell.
+    pub fn smallest_pivot(&self, l: usize, weights_sqr: &[S::Real]) -> f64 {
+        let relative = |k: usize| {
+            let inverse = self.factors[k * self.n + k].get(l);
+            let size = weights_sqr[k].as_ref()[l] * self.row_scale[k].as_ref()[l] / inverse.norm_sqr();
+            if size.is_nan() { 0.0 } else { size }
+        };
+        (0..self.n).map(relative).fold(1.0, f64::min).sqrt()
+    }
+
     /// Replaces the right-hand side `b` (`n` entries) by the solution.
     pub fn solve(&self, b: &mut [S]) {
         self.isa.run(Solve { lu: self, b });
@@ -112,11 +123,12 @@ impl Lu<Complex64> {
             self.solve(v);
             v.iter_mut().zip(weights).for_each(|(v, w)| *v /= *w);
         };
+        let length = |z: &Complex64| z.norm_sqr().sqrt();
         let mut x = vec![Complex64::new(1.0 / n as f64, 0.0); n];
         let mut estimate = 0.0;
         for _ in 0..5 {
             adjoint(&mut x);
-            let size: f64 = x.iter().map(|z| z.norm()).sum();
+            let size: f64 = x.iter().map(length).sum();
             if !size.is_finite() {
                 return f64::INFINITY;
             }
@@ -124,9 +136,9 @@ impl Lu<Complex64> {
                 break;
             }
             estimate = size;
-            x.iter_mut().for_each(|z| *z = if z.norm() > 0.0 { *z / z.norm() } else { Complex64::new(1.0, 0.0) });
+            x.iter_mut().for_each(|z| *z = if length(z) > 0.0 { *z / length(z) } else { Complex64::new(1.0, 0.0) });
             direct(&mut x);
-            let best = (0..n).max_by(|&i, &j| x[i].norm().total_cmp(&x[j].norm())).unwrap_or(0);
+            let best = (0..n).max_by(|&i, &j| length(&x[i]).total_cmp(&length(&x[j]))).unwrap_or(0);
             x.fill(Complex64::new(0.0, 0.0));
             x[best] = Complex64::new(1.0, 0.0);
         }
@@ -206,11 +218,12 @@ fn exchange_rows<S: Lane>(n: usize, k: usize, f: &mut [S], scale: &mut [S::Real]
             f[j * n + k] = S::select_equal(&upper, &lower, &row, i as f64);
             f[j * n + i] = S::select_equal(&lower, &upper, &row, i as f64);
         }
-        // The scale of the row that moved down goes with it; row k is not looked at again.
-        let upper = scale[k];
+        // Their scales go with them.
+        let (upper, lower) = (scale[k], scale[i]);
         for l in 0..S::LANES {
             if row.as_ref()[l] == i as f64 {
                 scale[i].as_mut()[l] = upper.as_ref()[l];
+                scale[k].as_mut()[l] = lower.as_ref()[l];
             }
         }
     }
@@ -339,6 +352,23 @@ mod tests {
         let mut x = [1e20 + 1e10, 2.0].map(|v| Complex64::new(v, 0.0));
         lu.solve(&mut x);
         assert!(x.iter().all(|z| (z - 1.0).norm() < 1e-9), "{x:?}");
+    }
+
+    #[test]
+    fn smallest_pivots_of_known_matrices() {
+        let mut lu = Lu::<Complex64>::new(3, Isa::Portable);
+        let mut pivot = |a: [f64; 9], weights_sqr: &[[f64; 1]]| {
+            lu.factor(&a.map(|v| Complex64::new(v, 0.0)), weights_sqr);
+            lu.smallest_pivot(0, weights_sqr)
+        };
+        let ones = [[1.0]; 3];
+        // A permutation, rows of different sizes: both are scaled away.
+        assert_eq!(pivot([0.0, 0.0, 3.0, 1e9, 0.0, 0.0, 0.0, 1e-9, 0.0], &ones), 1.0);
+        // Columns (1, 0, 0), (0, 1, 0), (0, 1, e): rank two but for e, measured against the 1 of the row's scale.
+        assert!((pivot([1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1e-30], &ones) / 1e-30 - 1.0).abs() < 1e-12);
+        assert_eq!(pivot([1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0], &ones), 0.0);
+        // An unknown on a scale of 1e-30 is as good as any other.
+        assert!((pivot([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1e30], &[[1.0], [1.0], [1e-60]]) - 1.0).abs() < 1e-12);
     }
 
     #[test]

@@ -34,6 +34,10 @@ pub struct Refiner<'a, E: Evaluate> {
 
 /// Iterations at most; quadratic convergence from a tracked end point needs two.
 const MAX_ITERATIONS: usize = 6;
+/// A Jacobian serves for the next correction too while corrections shrink by this factor: its error is about that large then.
+const STEADY: f64 = 1e-3;
+/// Corrections up to this size may shrink as fast.
+const NEAR: f64 = 1e-6;
 /// Relative distances from one of which a regular solution must attract Newton's method.
 const PERTURBATIONS: [f64; 2] = [1e-8, 1e-6];
 /// Last correction and condition of solutions that are plainly regular. At a distance of `d` from a singular solution the condition is
@@ -71,27 +75,47 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         let exact: Vec<ComplexDd> = p.iter().map(|&z| z.into()).collect();
         let mut x = point.to_vec();
         let accuracy = self.polish(&exact, &mut x);
-        let (residual, condition) = self.judge(p, &x);
+        let (residual, condition) = self.judge(p, &x, accuracy <= NEAR);
         Refined { point: x, accuracy, residual, condition }
     }
 
-    /// The same in place, for parameters given to twice the digits; returns the relative size of the last correction.
-    pub fn polish(&mut self, p: &[ComplexDd], x: &mut Vec<Complex64>) -> f64 {
+    /// The same in place, for parameters given to twice the digits; returns the relative size of the last correction, and how far rounding
+    /// the parameters to double precision would move the point: absolute, to first order, for random roundings, and infinite where the
+    /// Jacobian is singular.
+    pub fn polish_and_blur(&mut self, p: &[ComplexDd], x: &mut Vec<Complex64>) -> (f64, Vec<f64>) {
+        let accuracy = self.polish(p, x);
+        (accuracy, self.blur(p, x, accuracy <= NEAR))
+    }
+
+    /// Leaves the Jacobian and its factors at `x`, or so near to it that Newton's method hardly noticed the difference, if the last
+    /// correction, which is returned, is at most [`NEAR`].
+    fn polish(&mut self, p: &[ComplexDd], x: &mut Vec<Complex64>) -> f64 {
         let mut accuracy = f64::INFINITY;
+        // Whether the last Jacobian serves for this correction.
+        let mut serves = false;
         for _ in 0..MAX_ITERATIONS {
-            self.correction(p, x, &weights(x));
+            if !serves {
+                self.factor(p, x, &weights(x));
+            }
+            self.correction(p, x);
             let next: Vec<Complex64> = x.iter().zip(&self.values).map(|(x, d)| x - d).collect();
-            let relative = self.values.iter().zip(sizes(&next)).map(|(d, s)| d.norm() / s[0].sqrt());
+            let relative = self.values.iter().zip(sizes(&next)).map(|(d, s)| (d.norm_sqr() / s[0]).sqrt());
             // Once NaN, always NaN.
             let size = relative.fold(0.0, |m: f64, d| if d <= m || m.is_nan() { m } else { d });
-            if size.is_nan() || size >= accuracy {
-                break;
+            let shrinks = size <= f64::EPSILON || size < if serves { STEADY * accuracy } else { accuracy };
+            if !shrinks {
+                if !serves {
+                    break;
+                }
+                serves = false;
+                continue;
             }
             accuracy = size;
             *x = next;
             if accuracy <= f64::EPSILON {
                 break;
             }
+            serves = accuracy <= NEAR;
         }
         accuracy
     }
@@ -115,28 +139,26 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         let mut y: Vec<Complex64> =
             x.iter().zip(&weights).map(|(x, w)| x + random.unit() * (perturbation * w[0].sqrt())).collect();
         for _ in 0..2 {
-            self.correction(p, &y, &weights);
+            self.factor(p, &y, &weights);
+            self.correction(p, &y);
             y.iter_mut().zip(&self.values).for_each(|(y, d)| *y -= d);
         }
         let mut distances = y.iter().zip(x).zip(&weights).map(|((y, x), w)| (y - x).norm() / w[0].sqrt());
         distances.all(|d| d <= 1e-3 * perturbation)
     }
 
-    /// How far rounding the parameters to double precision moves the solution `x`: absolute, to first order, for random
-    /// roundings. Infinite where the Jacobian is singular.
-    pub fn blur(&mut self, p: &[ComplexDd], x: &[Complex64]) -> Vec<f64> {
+    fn blur(&mut self, p: &[ComplexDd], x: &[Complex64], factored: bool) -> Vec<f64> {
         let mut random = Random::new(0, 4);
-        self.rounded_p.clear();
-        self.rounded_p.extend(p.iter().map(ComplexDd::high));
-        self.system.jacobian(&mut self.memory, x, &self.rounded_p, &mut self.values, &mut self.jacobian);
-        self.lu.factor(&self.jacobian, &weights(x));
+        if !factored {
+            self.factor(p, x, &weights(x));
+        }
         let mut blur = vec![0.0; x.len()];
         for _ in 0..BLUR_DRAWS {
             self.rounded_p.iter_mut().zip(p).for_each(|(r, p)| *r = p.high() * (1.0 + BLUR_STEP * random.unit()));
             self.system.values(&mut self.memory, x, &self.rounded_p, &mut self.values);
             self.lu.solve(&mut self.values);
             for (blur, d) in blur.iter_mut().zip(&self.values) {
-                let moved = d.norm() * (f64::EPSILON / BLUR_STEP);
+                let moved = d.norm_sqr().sqrt() * (f64::EPSILON / BLUR_STEP);
                 *blur = if moved.is_nan() { f64::INFINITY } else { moved.max(*blur) };
             }
         }
@@ -145,20 +167,24 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
 
     /// Residual and condition of a point as it is.
     pub fn judged(&mut self, p: &[Complex64], x: &[Complex64]) -> Refined {
-        let (residual, condition) = self.judge(p, x);
+        let (residual, condition) = self.judge(p, x, false);
         Refined { point: x.to_vec(), accuracy: f64::INFINITY, residual, condition }
     }
 
-    /// Leaves in `values` the correction of Newton's method at `x`.
-    fn correction(&mut self, p: &[ComplexDd], x: &[Complex64], weights: &[[f64; 1]]) {
+    /// Leaves the factors of the Jacobian at `x`.
+    fn factor(&mut self, p: &[ComplexDd], x: &[Complex64], weights: &[[f64; 1]]) {
         self.rounded_p.clear();
         self.rounded_p.extend(p.iter().map(ComplexDd::high));
         self.system.jacobian(&mut self.memory, x, &self.rounded_p, &mut self.values, &mut self.jacobian);
+        self.lu.factor(&self.jacobian, weights);
+    }
+
+    /// Leaves in `values` the correction of Newton's method at `x`, with the Jacobian that is factored.
+    fn correction(&mut self, p: &[ComplexDd], x: &[Complex64]) {
         self.precise_x.clear();
         self.precise_x.extend(x.iter().map(|&z| ComplexDd::from(z)));
         self.system.values(&mut self.precise, &self.precise_x, p, &mut self.precise_values);
         self.values.iter_mut().zip(&self.precise_values).for_each(|(d, s)| *d = Complex64::from(*s));
-        self.lu.factor(&self.jacobian, weights);
         self.lu.solve(&mut self.values);
     }
 
@@ -180,20 +206,28 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         x
     }
 
-    fn judge(&mut self, p: &[Complex64], x: &[Complex64]) -> (f64, f64) {
+    /// Residual and condition at `x`; `factored` says that the Jacobian and its factors are those of `x` already.
+    fn judge(&mut self, p: &[Complex64], x: &[Complex64], factored: bool) -> (f64, f64) {
         let n = x.len();
-        self.system.jacobian(&mut self.memory, x, p, &mut self.values, &mut self.jacobian);
         let squares = sizes(x);
+        if factored {
+            self.system.values(&mut self.memory, x, p, &mut self.values);
+        } else {
+            self.system.jacobian(&mut self.memory, x, p, &mut self.values, &mut self.jacobian);
+            self.lu.factor(&self.jacobian, &squares);
+        }
         let weights: Vec<f64> = squares.iter().map(|w| w[0].sqrt()).collect();
         // Sizes of the rows.
         let mut scales = vec![0.0; n];
         for (column, w) in self.jacobian.chunks_exact(n.max(1)).zip(&weights) {
             scales.iter_mut().zip(column).for_each(|(scale, z)| *scale += z.norm_sqr().sqrt() * w);
         }
-        let relative =
-            self.values.iter().zip(&scales).map(|(value, scale)| value.norm() / scale.max(f64::MIN_POSITIVE));
+        let relative = self
+            .values
+            .iter()
+            .zip(&scales)
+            .map(|(value, scale)| value.norm_sqr().sqrt() / scale.max(f64::MIN_POSITIVE));
         let residual = relative.fold(0.0, f64::max);
-        self.lu.factor(&self.jacobian, &squares);
         (residual, self.lu.condition(&self.jacobian, &weights))
     }
 }

@@ -92,6 +92,34 @@ fn a_start_without_direction_is_refused() {
 }
 
 #[test]
+fn a_singular_component_is_no_end_of_a_fibre() {
+    // x = 0 solves both equations whatever y is, twice; the root of the fibre is (p, q). Next to that line every correction is tiny.
+    let (_, system) = family("x y", "p q", "x^2*(x - p); x*(y - q)");
+    let fibre = Fibre {
+        parameters: reals(&[1.0, 2.0]),
+        dimension: 2,
+        solutions: reals(&[1.0, 2.0]).into_iter().chain(reals(&[1e-20, 2.0])).collect(),
+    };
+    let (paths, counts) = track_fibre(&system, &fibre, &reals(&[3.0, 2.0]), &FibreOptions::default());
+    assert_eq!((counts.finite, counts.failed), (1, 1));
+    assert!((paths.point(0)[0] - 3.0).norm() < 1e-14 && paths.results()[0].pivot > 0.1, "{paths:?}");
+    assert_ne!(paths.results()[1].end, PathEnd::Success);
+}
+
+#[test]
+fn parameters_to_twice_the_digits_keep_ill_conditioned_paths_smooth() {
+    // With d = 3 a all the way the path is x = sqrt(a), y = b; the rounding errors of a and d move y by c times as much, about 1e-3.
+    let (_, system) = family("x y", "a b c d", "x^2 - a; c*(3*x^2 - d) + (y - b)");
+    let at = |a: f64, b: f64| reals(&[a, b, 1e13, 3.0 * a]);
+    let path = Segment::new(&at(1.0, 0.1), &at(2.25, 0.7));
+    let ends = track(&system, &path, &reals(&[1.0, 0.1]), &[0], &TrackerOptions::default());
+    let (result, point) = (&ends.results()[0], ends.point(0));
+    assert_eq!(result.end, PathEnd::Success, "{result:?}");
+    assert!((point[0] - 1.5).norm() < 1e-14 && (point[1] - 0.7).norm() < 1e-14, "{point:?}");
+    assert!(result.extended && result.accepted < 30, "{result:?}");
+}
+
+#[test]
 fn paths_to_infinity_and_to_singular_ends_are_told_apart() {
     // a x^2 - 2 x + b, b = 1: as a -> 0 one root goes to 1/2, the other to infinity like 2/a.
     let (_, system) = family("x", "a b", "a*x^2 - 2*x + b");

@@ -2,7 +2,7 @@
 
 use crate::homotopy::{ParameterPath, Segment};
 use num_complex::Complex64;
-use poly::{ComplexDd, Lane, Scalar};
+use poly::{ComplexDd, Lane};
 
 /// The way that a path goes in one piece, in the parameters `target + t direction` of a segment; the tracker's own time
 /// `u` goes from 1 to 0 on it.
@@ -45,15 +45,8 @@ impl Legs<'_> {
     /// The parameters at the end of a leg to twice the digits: where the Jacobian is nearly singular, rounding errors of the
     /// parameters would show in the samples.
     pub(super) fn precise(&self, leg: usize, p: &mut Vec<ComplexDd>) {
-        let t = ComplexDd::new(self.legs[leg].target());
-        p.clear();
-        p.extend(
-            self.segment
-                .target()
-                .iter()
-                .zip(self.segment.direction())
-                .map(|(target, direction)| Scalar::mul_add(&ComplexDd::new(*direction), &t, &ComplexDd::new(*target))),
-        );
+        p.resize(self.segment.parameters(), ComplexDd::default());
+        self.segment.extended(&ComplexDd::new(self.legs[leg].target()), p);
     }
 }
 

@@ -16,7 +16,7 @@ mod walker;
 use crate::homotopy::Segment;
 use crate::monitor::{Monitor, Stage};
 use crate::refine::Refiner;
-use crate::tracker::{PathEnd, PathResult, PathSet, TrackerOptions, track};
+use crate::tracker::{PathEnd, PathResult, PathSet, TrackerOptions, Trackers};
 use legs::{Leg, Legs};
 use num_complex::Complex64;
 use poly::Evaluate;
@@ -121,6 +121,7 @@ pub fn endgame<'a, E: Evaluate>(
     };
     tracker.monitor.enter(Stage::Endgame, walkers.len() as u64);
     let mut undecided = walkers.len();
+    let trackers = Trackers::new(system);
     let mut starts: Vec<Complex64> = Vec::new();
     loop {
         let live: Vec<usize> = (0..walkers.len()).filter(|&k| walkers[k].is_live()).collect();
@@ -135,8 +136,8 @@ pub fn endgame<'a, E: Evaluate>(
         let (home, round): (Vec<usize>, Vec<usize>) =
             (0..live.len()).partition(|&i| matches!(legs.legs[i], Leg::Home(_)));
         let ends = [
-            track(system, &legs, &starts, &round, &settings),
-            track(system, &legs, &starts, &home, &TrackerOptions { min_t: HOME_MIN, ..settings.clone() }),
+            trackers.track(&legs, &starts, &round, &settings),
+            trackers.track(&legs, &starts, &home, &TrackerOptions { min_t: HOME_MIN, ..settings.clone() }),
         ];
         let ends: Vec<(&PathResult, &[Complex64])> = ends.iter().flat_map(PathSet::iter).collect();
         let polished: Vec<Option<Sample>> = ends
@@ -149,8 +150,7 @@ pub fn endgame<'a, E: Evaluate>(
                     }
                     legs.precise(result.path, p);
                     let mut point = point.to_vec();
-                    let accuracy = refiner.polish(p, &mut point);
-                    let blur = refiner.blur(p, &point);
+                    let (accuracy, blur) = refiner.polish_and_blur(p, &mut point);
                     Some(Sample { point, accuracy, blur })
                 },
             )

@@ -50,26 +50,35 @@ pub struct Tracker<'a, E: Evaluate, S: Lane> {
 struct Precise<E: Evaluate> {
     memory: E::Memory<ComplexDd>,
     x: Vec<ComplexDd>,
+    /// Parameters of all lanes, one lane after the other.
     p: Vec<ComplexDd>,
     values: Vec<ComplexDd>,
 }
 
 impl<E: Evaluate> Precise<E> {
-    fn new(system: &E, isa: Isa) -> Self {
+    fn new(system: &E, isa: Isa, lanes: usize) -> Self {
         let zero = ComplexDd::from(Complex64::new(0.0, 0.0));
         Precise {
             memory: system.memory(isa),
             x: vec![zero; system.variables()],
-            p: vec![zero; system.parameters()],
+            p: vec![zero; lanes * system.parameters()],
             values: vec![zero; system.equations()],
         }
     }
 
-    /// Overwrites lane `l` of `values` with residuals at the point `x` for the parameters `p`, both exact doubles.
-    fn overwrite<S: Lane>(&mut self, system: &E, l: usize, x: &[S], p: &[S], values: &mut [S]) {
+    /// Sets the parameters of lane `l`, which are at `t` of `path`.
+    fn set_parameters<S: Lane, P: ParameterPath>(&mut self, l: usize, path: &P, lane: &Progress, rounded: &[S]) {
+        let m = path.parameters();
+        let p = &mut self.p[l * m..(l + 1) * m];
+        p.iter_mut().zip(rounded).for_each(|(d, s)| *d = s.get(l).into());
+        path.extend(lane.path, lane.t_next, p);
+    }
+
+    /// Overwrites lane `l` of `values` with residuals at the point `x`.
+    fn overwrite<S: Lane>(&mut self, system: &E, l: usize, x: &[S], values: &mut [S]) {
+        let m = system.parameters();
         self.x.iter_mut().zip(x).for_each(|(d, s)| *d = s.get(l).into());
-        self.p.iter_mut().zip(p).for_each(|(d, s)| *d = s.get(l).into());
-        system.values(&mut self.memory, &self.x, &self.p, &mut self.values);
+        system.values(&mut self.memory, &self.x, &self.p[l * m..(l + 1) * m], &mut self.values);
         values.iter_mut().zip(&self.values).for_each(|(d, s)| d.set(l, Complex64::from(*s)));
     }
 }
@@ -105,7 +114,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             rough: zeros(n),
             weights_sqr: vec![S::real(1.0); n],
             inverse_weights_sqr: vec![S::real(1.0); n],
-            precise: Precise::new(system, isa),
+            precise: Precise::new(system, isa, S::LANES),
             valuations: vec![0.0; n],
         }
     }
@@ -160,6 +169,11 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             .zip(&self.lanes)
             .for_each(|(label, lane)| *label = if lane.is_live() { lane.path } else { some });
         self.isa.run(Coefficients { path, labels: &self.labels, t: &t, out: &mut self.parameters });
+        for (l, lane) in self.lanes.iter().enumerate() {
+            if lane.is_live() && lane.extended {
+                self.precise.set_parameters(l, path, lane, &self.parameters[..self.system.parameters()]);
+            }
+        }
         self.point.copy_from_slice(&self.predicted);
         self.lanes.iter_mut().for_each(|lane| lane.begin_correction(&self.bounds));
         loop {
@@ -234,7 +248,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             self.system.jacobian(&mut self.memory, &self.point, p, &mut self.values, &mut self.jacobian);
             for l in 0..S::LANES {
                 if self.lanes[l].extended && self.lanes[l].stage == Stage::Iterating {
-                    self.precise.overwrite(self.system, l, &self.point, p, &mut self.values);
+                    self.precise.overwrite(self.system, l, &self.point, &mut self.values);
                 }
             }
             self.lu.factor(&self.jacobian, &self.weights_sqr);
@@ -278,7 +292,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             self.lu.solve(&mut self.rough);
             for l in 0..S::LANES {
                 if self.lanes[l].extended && converged(&self.lanes[l]) {
-                    self.precise.overwrite(self.system, l, &self.corrected, p, &mut self.values);
+                    self.precise.overwrite(self.system, l, &self.corrected, &mut self.values);
                 }
             }
         }
@@ -370,7 +384,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
     }
 
     fn finish(&mut self, l: usize, end: PathEnd, out: &mut PathSet) {
-        let result = self.lanes[l].result(end);
+        let result = self.lanes[l].result(end, self.lu.smallest_pivot(l, &self.weights_sqr));
         out.push(result, self.taylor[..self.n].iter().map(|x| x.get(l)));
         self.lanes[l] = Progress::idle();
     }

@@ -13,22 +13,18 @@
 mod batch;
 mod kernels;
 mod options;
+mod pool;
 mod progress;
 mod result;
 
 pub use batch::Tracker;
 pub use options::TrackerOptions;
+pub(crate) use pool::Trackers;
 pub use result::{PathEnd, PathResult, PathSet};
 
 use crate::homotopy::ParameterPath;
 use num_complex::Complex64;
-use poly::{Evaluate, Lanes8};
-use rayon::prelude::{IntoParallelIterator, ParallelIterator};
-
-/// Paths that one thread takes at a time, at most: lanes run empty at the end of each part.
-const CHUNK: usize = 256;
-/// Parts that each thread gets, if there are paths enough, so that none waits long for another.
-const PARTS: usize = 4;
+use poly::Evaluate;
 
 /// Tracks the paths with the given indices into `starts` (`n` coordinates a start solution) from `t = 1` to `t = 0`, in lanes of eight
 /// and on the threads of the current rayon pool.
@@ -44,32 +40,5 @@ pub fn track<E: Evaluate, P: ParameterPath>(
     which: &[usize],
     options: &TrackerOptions,
 ) -> PathSet {
-    let n = system.variables();
-    let threads = rayon::current_num_threads();
-    let parts = if threads > 1 { PARTS * threads } else { 1 };
-    let size = which.len().div_ceil(parts).clamp(8, CHUNK);
-    let parts: Vec<PathSet> = (0..which.len().div_ceil(size))
-        .into_par_iter()
-        .map_init(
-            || Tracker::<E, Lanes8>::new(system, options),
-            |tracker, part| {
-                let mut out = PathSet::new(n);
-                let end = which.len().min((part + 1) * size);
-                let which = which[part * size..end].iter().copied();
-                if options.monitor.is_cancelled() {
-                    which.for_each(|k| out.push(PathResult::cancelled(k), starts[k * n..(k + 1) * n].iter().copied()));
-                    return out;
-                }
-                tracker.track(path, starts, which, &mut out);
-                options.monitor.add(out.len() as u64, out.count(PathEnd::Success) as u64);
-                out
-            },
-        )
-        .collect();
-    let mut all = PathSet::new(n);
-    for part in &parts {
-        part.iter().for_each(|(result, point)| all.push(*result, point.iter().copied()));
-    }
-    all.sort();
-    all
+    Trackers::new(system).track(path, starts, which, options)
 }

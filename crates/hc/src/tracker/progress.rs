@@ -9,15 +9,15 @@ use super::result::{PathEnd, PathResult};
 pub(crate) const MAX_ITERATIONS: usize = 6;
 /// Share of a step that is left after a rejection without a usable contraction.
 const HARD_CUT: f64 = 0.25;
+/// After so many rejections in a row the steps may be held up by rounding errors of the parameters, which the corrector does not see.
+const RESISTANT: usize = 4;
 /// Assumed `omega` at the start of a path; the first steps replace it.
 const INITIAL_OMEGA: f64 = 10.0;
 const MIN_OMEGA: f64 = 0.1;
 /// Corrections up to this multiple of the noise are taken for noise.
 const NOISE_MARGIN: f64 = 16.0;
-/// Larger corrections are not taken for rounding error, in double precision and with residuals in double-double: they say that
-/// `omega` is larger than was thought.
+/// Larger corrections are not taken for rounding error: they say that `omega` is larger than was thought.
 const MOST_NOISE: f64 = 1e-10;
-const MOST_NOISE_EXTENDED: f64 = 1e-14;
 /// A closing correction above this share of the one before it, and above the noise, says that Newton's method has not converged yet:
 /// after quadratic convergence it is far smaller.
 const UNFINISHED: f64 = 0.05;
@@ -92,7 +92,8 @@ pub(crate) struct Progress {
     pub(crate) radius: f64,
     pub(crate) extended: bool,
     step: f64,
-    failed_before: bool,
+    /// Rejections since the last accepted step.
+    failed_before: usize,
     /// `|predicted - corrected| / step^4` of the last accepted step.
     local_error: f64,
     omega: f64,
@@ -125,7 +126,7 @@ impl Progress {
             radius: 0.0,
             extended: false,
             step: 0.0,
-            failed_before: false,
+            failed_before: 0,
             local_error: f64::NAN,
             omega: INITIAL_OMEGA,
             omega_before: INITIAL_OMEGA,
@@ -182,7 +183,7 @@ impl Progress {
         let mut step = newton.min(trust); // ignores NaN
         if self.step > 0.0 {
             step = step.min(10.0 * self.step);
-            if self.failed_before {
+            if self.failed_before > 0 {
                 step = step.min(self.step);
             }
         }
@@ -277,7 +278,7 @@ impl Progress {
         let mut omega = self.omega_now.max(0.5 * self.omega).max(MIN_OMEGA);
         if norm <= omega * self.last * self.last {
             self.noise = self.noise.min(norm).max(f64::EPSILON);
-        } else if norm <= if self.extended { MOST_NOISE_EXTENDED } else { MOST_NOISE } {
+        } else if norm <= MOST_NOISE {
             // More than quadratic convergence leaves is rounding error, if it is small enough for that.
             self.noise = norm.max(f64::EPSILON);
         } else {
@@ -316,7 +317,7 @@ impl Progress {
             self.local_error = distance.max(f64::EPSILON) / (step * step * step * step);
             self.t = self.t_next;
         }
-        self.failed_before = false;
+        self.failed_before = 0;
         self.radius = radius;
     }
 
@@ -337,7 +338,7 @@ impl Progress {
             return Some(PathEnd::InvalidStart);
         }
         self.rejected += 1;
-        self.failed_before = true;
+        self.failed_before += 1;
         let h_theta = if theta.is_finite() { h(theta) } else { 0.0 };
         let factor = if h_theta < bounds.h_half {
             HARD_CUT
@@ -345,6 +346,10 @@ impl Progress {
             (bounds.reach_half / ((1.0 + 2.0 * h_theta).sqrt() - 1.0)).sqrt().sqrt().max(HARD_CUT)
         };
         self.step *= factor;
+        if self.failed_before >= RESISTANT && !self.extended && bounds.options.extended_precision {
+            self.extended = true;
+            self.used_extended = true;
+        }
         if self.t - self.step == self.t || self.step < 4.0 * f64::EPSILON * self.t {
             if !self.extended && bounds.options.extended_precision {
                 // The corrector may have failed for rounding errors alone: once more from a workable step.
@@ -381,7 +386,7 @@ impl Progress {
     }
 
     /// The record of the path; a path that breaks off while it has long been diverging ends at infinity.
-    pub(crate) fn result(&self, end: PathEnd) -> PathResult {
+    pub(crate) fn result(&self, end: PathEnd, pivot: f64) -> PathResult {
         let long = self.diverges_since.is_some_and(|since| self.t < 1e-3 * since);
         let end = match end {
             PathEnd::AccuracyLimit | PathEnd::StepTooSmall | PathEnd::MaxSteps | PathEnd::Singular if long => {
@@ -395,6 +400,7 @@ impl Progress {
             t: self.t,
             accuracy: self.mu,
             omega: self.omega,
+            pivot,
             accepted: self.accepted,
             rejected: self.rejected,
             jacobians: self.jacobians,

@@ -47,6 +47,9 @@ pub struct PathResult {
     /// Estimate of the Lipschitz constant `omega` of Newton's method at the end (a reciprocal relative length): no
     /// other solution lies much nearer than `1 / omega`.
     pub omega: f64,
+    /// Smallest pivot of the last Jacobian, rows and unknowns scaled: below 2e-16 it is singular as far as doubles can tell, as on a
+    /// component of solutions of positive dimension.
+    pub pivot: f64,
     /// Accepted steps.
     pub accepted: usize,
     /// Rejected steps.
@@ -66,6 +69,7 @@ impl PathResult {
             t: 1.0,
             accuracy: 0.0,
             omega: 0.0,
+            pivot: 0.0,
             accepted: 0,
             rejected: 0,
             jacobians: 0,

@@ -210,12 +210,15 @@ mod tests {
         assert_eq!((trial.paths.failed, trial.paths.finite, trial.odd), (0, 152, false));
     }
 
-    /// Real roots come with the parity of all. In these they were odd in number, and no path was reported lost, before ends were
-    /// refined: a path had ended at the root of another, or at none, too roughly to be seen.
+    /// Real roots come with the parity of all. In these they were odd in number, and no path was reported lost: a path had ended at the
+    /// root of another, or at none, too roughly to be seen before ends were refined, or had shrunk to the singular solutions with all
+    /// receivers in one point (the last three).
     #[test]
     fn jumped_paths_are_seen() {
         let mut solver = Solver::new();
-        for (receivers, transmitters, seed) in [(6, 3, 393), (6, 3, 4335), (4, 5, 209), (4, 5, 413)] {
+        for (receivers, transmitters, seed) in
+            [(6, 3, 393), (6, 3, 4335), (4, 5, 209), (4, 5, 413), (4, 5, 3261), (4, 5, 3887), (4, 5, 6832)]
+        {
             let simulation = clean(receivers, transmitters, seed);
             let trial = chart_trial(&mut solver, &simulation, Fallback::OtherCharts, 4).unwrap();
             assert!(trial.paths.failed == 0 && !trial.odd, "{receivers}r/{transmitters}s, seed {seed}: {trial:?}");

@@ -6,9 +6,9 @@
 
 use super::Fallback;
 use super::formulation::Formulation;
-use hc::fibre::{Fibre, FibreOptions, doubtful, settle};
+use hc::fibre::{Fibre, FibreOptions, doubtful, is_regular, settle};
 use hc::homotopy::{ParameterPath, Segment};
-use hc::poly::{Lane, Lanes8};
+use hc::poly::{ComplexDd, Lane, Lanes8, Scalar};
 use hc::refine::Refiner;
 use hc::tracker::{PathEnd, PathResult, PathSet, Tracker, TrackerOptions};
 use num_complex::Complex64;
@@ -40,6 +40,11 @@ impl ParameterPath for Rests<'_> {
             p[m + i] = direction.scale_by(&from);
         }
         p[2 * m..4 * m].fill(S::zero());
+    }
+
+    fn extend(&self, path: usize, t: f64, p: &mut [ComplexDd]) {
+        let [t, from] = [t, self.from[path]].map(|t| ComplexDd::new(t.into()));
+        self.segment.extended(&Scalar::mul(&t, &from), p);
     }
 
     fn is_straight(&self) -> bool {
@@ -136,7 +141,7 @@ impl<F: Formulation> Recovery<'_, F> {
             let back = F::leave(chart, point);
             let old_point = self.paths.point(k).to_vec();
             match result.end {
-                PathEnd::Success => {
+                PathEnd::Success if is_regular(refiner, segment.target(), result, point) => {
                     let refined = refiner.refine(self.target, &back);
                     if refined.accuracy < CARRIED {
                         self.paths.replace(k, record, &refined.point);

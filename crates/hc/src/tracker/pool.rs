@@ -1,0 +1,87 @@
+//! Trackers that are kept from call to call.
+
+use super::{PathEnd, PathResult, PathSet, Tracker, TrackerOptions};
+use crate::homotopy::ParameterPath;
+use num_complex::Complex64;
+use poly::{Evaluate, Lanes8};
+use rayon::prelude::{IntoParallelIterator, ParallelIterator};
+use std::sync::{Mutex, PoisonError};
+
+/// Paths that one thread takes at a time, at most: lanes run empty at the end of each part.
+const CHUNK: usize = 256;
+/// Parts that each thread gets, if there are paths enough, so that none waits long for another.
+const PARTS: usize = 4;
+
+/// Trackers of one system, as many as threads have asked for. The legs of an endgame are so short that making a tracker for each
+/// would show.
+pub(crate) struct Trackers<'a, E: Evaluate> {
+    system: &'a E,
+    idle: Mutex<Vec<Tracker<'a, E, Lanes8>>>,
+}
+
+/// A tracker that goes back to the others when it is no longer needed.
+struct Borrowed<'a, 'b, E: Evaluate> {
+    trackers: &'b Trackers<'a, E>,
+    tracker: Option<Tracker<'a, E, Lanes8>>,
+}
+
+impl<E: Evaluate> Drop for Borrowed<'_, '_, E> {
+    fn drop(&mut self) {
+        self.trackers.idle.lock().unwrap_or_else(PoisonError::into_inner).extend(self.tracker.take());
+    }
+}
+
+impl<'a, E: Evaluate> Trackers<'a, E> {
+    /// None yet, for a square system.
+    pub(crate) fn new(system: &'a E) -> Self {
+        Trackers { system, idle: Mutex::new(Vec::new()) }
+    }
+
+    /// As [`super::track`]. All calls must have the same instruction set in their options.
+    pub(crate) fn track<P: ParameterPath>(
+        &self,
+        path: &P,
+        starts: &[Complex64],
+        which: &[usize],
+        options: &TrackerOptions,
+    ) -> PathSet {
+        let n = self.system.variables();
+        let threads = rayon::current_num_threads();
+        let parts = if threads > 1 { PARTS * threads } else { 1 };
+        let size = which.len().div_ceil(parts).clamp(8, CHUNK);
+        let parts: Vec<PathSet> = (0..which.len().div_ceil(size))
+            .into_par_iter()
+            .map_init(
+                || self.borrow(options),
+                |borrowed, part| {
+                    let mut out = PathSet::new(n);
+                    let end = which.len().min((part + 1) * size);
+                    let which = which[part * size..end].iter().copied();
+                    match &mut borrowed.tracker {
+                        Some(tracker) if !options.monitor.is_cancelled() => {
+                            tracker.track(path, starts, which, &mut out);
+                            options.monitor.add(out.len() as u64, out.count(PathEnd::Success) as u64);
+                        }
+                        _ => which.for_each(|k| {
+                            out.push(PathResult::cancelled(k), starts[k * n..(k + 1) * n].iter().copied());
+                        }),
+                    }
+                    out
+                },
+            )
+            .collect();
+        let mut all = PathSet::new(n);
+        for part in &parts {
+            part.iter().for_each(|(result, point)| all.push(*result, point.iter().copied()));
+        }
+        all.sort();
+        all
+    }
+
+    fn borrow(&self, options: &TrackerOptions) -> Borrowed<'a, '_, E> {
+        let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        let mut tracker = idle.unwrap_or_else(|| Tracker::new(self.system, options));
+        tracker.set_options(options);
+        Borrowed { trackers: self, tracker: Some(tracker) }
+    }
+}
