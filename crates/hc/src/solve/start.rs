@@ -4,6 +4,7 @@ use super::equations::Equations;
 use super::{SolveError, SolveOptions, Start};
 use crate::start::{
     Grouped, MixedError, Multihomogeneous, Polyhedral, StartSystem, TotalDegree, bezout_number, degrees,
+    mixed_volume_is_bezout,
 };
 use num_complex::Complex64;
 use poly::SparseSystem;
@@ -25,7 +26,7 @@ pub(super) struct Starts {
     pub(super) paths: usize,
     degrees: Vec<u64>,
     grouped: Option<Grouped>,
-    /// The first mixed cells, found while choosing.
+    /// The first mixed cells, if they were found while choosing.
     first: Option<Polyhedral>,
 }
 
@@ -68,6 +69,11 @@ impl Starts {
         let (kind, paths) = match options.start {
             Start::TotalDegree => (Start::TotalDegree, bezout.unwrap_or(u64::MAX)),
             Start::Multihomogeneous => (Start::Multihomogeneous, multihomogeneous.ok_or(SolveError::StartTooLarge)?),
+            Start::Auto if !options.torus_only && !laurent && mixed_volume_is_bezout(&equations.supports, &degrees) => {
+                // Mixed cells are looked for if the trial of one stage fails.
+                numbers.mixed_volume = bezout;
+                (Start::Polyhedral, bezout.unwrap_or(u64::MAX))
+            }
             choice => {
                 match (Polyhedral::new(&equations.supports, options.seed, 0, options.monitor()), numbers.of_one_stage())
                 {

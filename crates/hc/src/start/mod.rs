@@ -5,6 +5,7 @@
 //! * Multihomogeneous: products of linear forms in groups of unknowns.
 //! * Total degree: `x_i^(d_i) - 1`, `d_i` the degrees of the equations.
 
+mod bezout;
 mod binomial;
 mod cell;
 mod integer;
@@ -17,6 +18,7 @@ mod toric;
 mod total_degree;
 mod walk;
 
+pub(crate) use bezout::mixed_volume_is_bezout;
 pub use mixed::{MixedCell, MixedError, MixedVolume, mixed_cells, mixed_volume, watched_mixed_volume};
 pub(crate) use multihomogeneous::{Grouped, Multihomogeneous};
 pub(crate) use polyhedral::Polyhedral;
