@@ -13,6 +13,9 @@ pub struct Refined {
     pub point: Vec<Complex64>,
     /// Relative size of the last correction, about the relative error of the point.
     pub accuracy: f64,
+    /// Whether the last correction was a thousand times smaller than the one before and that no rounding error, which is so near regular
+    /// solutions, if one does not start too near, and not near singular ones.
+    pub steady: bool,
     /// Largest residual, each relative to its row of the Jacobian times the sizes of the coordinates.
     pub residual: f64,
     /// Condition number of the Jacobian, rows scaled to equal size, unknowns measured by their own size; infinite if singular.
@@ -74,23 +77,23 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
     pub fn refine(&mut self, p: &[Complex64], point: &[Complex64]) -> Refined {
         let exact: Vec<ComplexDd> = p.iter().map(|&z| z.into()).collect();
         let mut x = point.to_vec();
-        let accuracy = self.polish(&exact, &mut x);
-        let (residual, condition) = self.judge(p, &x, accuracy <= NEAR);
-        Refined { point: x, accuracy, residual, condition }
+        let (accuracy, steady) = self.polish(&exact, &mut x);
+        let (residual, condition) = self.judge(p, &x, steady && accuracy <= NEAR);
+        Refined { point: x, accuracy, steady, residual, condition }
     }
 
     /// The same in place, for parameters given to twice the digits; returns the relative size of the last correction, and how far rounding
     /// the parameters to double precision would move the point: absolute, to first order, for random roundings, and infinite where the
     /// Jacobian is singular.
     pub fn polish_and_blur(&mut self, p: &[ComplexDd], x: &mut Vec<Complex64>) -> (f64, Vec<f64>) {
-        let accuracy = self.polish(p, x);
-        (accuracy, self.blur(p, x, accuracy <= NEAR))
+        let (accuracy, steady) = self.polish(p, x);
+        (accuracy, self.blur(p, x, steady && accuracy <= NEAR))
     }
 
-    /// Leaves the Jacobian and its factors at `x`, or so near to it that Newton's method hardly noticed the difference, if the last
-    /// correction, which is returned, is at most [`NEAR`].
-    fn polish(&mut self, p: &[ComplexDd], x: &mut Vec<Complex64>) -> f64 {
-        let mut accuracy = f64::INFINITY;
+    /// Returns the size of the last correction and whether they shrank steadily. If so, and if it is at most [`NEAR`], the Jacobian and
+    /// its factors are those at `x`, or so near to it that Newton's method hardly noticed the difference.
+    fn polish(&mut self, p: &[ComplexDd], x: &mut Vec<Complex64>) -> (f64, bool) {
+        let (mut accuracy, mut steady) = (f64::INFINITY, false);
         // Whether the last Jacobian serves for this correction.
         let mut serves = false;
         for _ in 0..MAX_ITERATIONS {
@@ -110,6 +113,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
                 serves = false;
                 continue;
             }
+            steady = accuracy.is_finite() && accuracy > TINY && size <= STEADY * accuracy;
             accuracy = size;
             *x = next;
             if accuracy <= f64::EPSILON {
@@ -117,13 +121,14 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
             }
             serves = accuracy <= NEAR;
         }
-        accuracy
+        (accuracy, steady)
     }
 
-    /// Whether a refined point is a regular solution: plainly, where the last correction was tiny and the condition is good, which cannot
-    /// both be next to a singular one; otherwise by the test of [`contracts`](Self::contracts).
+    /// Whether a refined point is a regular solution: plainly, where corrections shrank steadily, the last was tiny and the condition is good;
+    /// otherwise by the test of [`contracts`](Self::contracts). The condition alone does not tell: where a whole row of the Jacobian
+    /// vanishes, as on a double component, it is scaled up again.
     pub fn is_regular(&mut self, p: &[Complex64], refined: &Refined) -> bool {
-        refined.accuracy <= TINY && refined.condition <= GOOD || self.contracts(p, &refined.point)
+        refined.steady && refined.accuracy <= TINY && refined.condition <= GOOD || self.contracts(p, &refined.point)
     }
 
     /// Whether Newton's method comes back to the solution `x` from a point 1e-8 or 1e-6 away (relative): it does not where the
@@ -168,7 +173,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
     /// Residual and condition of a point as it is.
     pub fn judged(&mut self, p: &[Complex64], x: &[Complex64]) -> Refined {
         let (residual, condition) = self.judge(p, x, false);
-        Refined { point: x.to_vec(), accuracy: f64::INFINITY, residual, condition }
+        Refined { point: x.to_vec(), accuracy: f64::INFINITY, steady: false, residual, condition }
     }
 
     /// Leaves the factors of the Jacobian at `x`.

@@ -164,6 +164,12 @@ fn components_of_positive_dimension() {
             let found = solved(text, &options(seed));
             assert_eq!((found.solutions.len(), found.on_components > 0), (0, true), "{text}");
         }
+    }
+    // Rows of the Jacobian vanish on the double line; their rounding errors must not pass for rows. What still may, once in hundreds of seeds,
+    // is a point next to (1, -1), where the second equation is twice zero.
+    let wrong = |&seed: &u64| !solved("2\n(x-1)^2*(y-2);\n(x-1)*(y-2)*(x+y);", &options(seed)).solutions.is_empty();
+    assert!((0..100).filter(wrong).count() <= 1);
+    for seed in 0..3 {
         // A surface, a curve and eight points.
         let (p, q) = ("(x*y-x^2+1-z)", "(x^4+x^2-y-1)");
         let text = format!("3\n{p}*{q}*(x-3)*(x-5);\n{p}*{q}*(y-3)*(y-5);\n{p}*(z-3)*(z-5);");

@@ -15,6 +15,7 @@ fn problems(plan: &Plan) -> Vec<(&'static str, String)> {
     vec![
         ("cyclic-10", cyclic(10)),
         ("cyclic-11", cyclic(11)),
+        ("cyclic-12", cyclic(12)),
         ("katsura-14", katsura(14)),
         ("eco-18", eco(18)),
         ("noon-10", noon(10)),
@@ -70,6 +71,30 @@ pub(super) fn beside_gfan(tools: &Tools, plan: &Plan, text: &mut String) -> Resu
                 )?,
             }
         }
+    }
+    if !plan.quick {
+        larger(tools, text)?;
+    }
+    Ok(())
+}
+
+/// What would take gfan long, once and on both threads.
+fn larger(tools: &Tools, text: &mut String) -> Result<()> {
+    for (name, system) in [("cyclic-13", cyclic(13)), ("cyclic-14", cyclic(14))] {
+        eprintln!("{name}");
+        let folder = tempfile::tempdir()?;
+        let file = folder.path().join("system");
+        std::fs::write(&file, &system)?;
+        let ours = run(&tools.hc, &["mixed-volume", "--threads", "2", "--json", "-"], &[&file], "", 3600)?;
+        let json: serde_json::Value = serde_json::from_str(&ours.output).context("JSON of hc mixed-volume")?;
+        writeln!(
+            text,
+            "\n{name}, hc alone on two threads: mixed volume {}, {} mixed cells, {:.0} s, {:.0} processor seconds.",
+            json["mixed_volume"],
+            json["cells"],
+            ours.seconds,
+            ours.work()
+        )?;
     }
     Ok(())
 }
