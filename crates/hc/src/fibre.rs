@@ -128,11 +128,12 @@ const SETTLED: f64 = 1e-10;
 /// Coordinates below this share of the largest, squared, are zero or suspicious.
 const VANISHED_SQR: f64 = 1e-32;
 
-/// Whether a path has come to a regular solution for the parameters `target`.
+/// Whether a path with this record has come to a regular solution `x` (one entry an unknown) for the parameters `target` (one entry a
+/// parameter).
 ///
 /// A system may have components of singular solutions besides its fibre, and Newton's method converges to them too, slowly, which does not show where
 /// coordinates vanish. Ends with such coordinates or a singular Jacobian have to attract it from some distance.
-pub fn is_regular<E: Evaluate>(
+pub fn ends_regularly<E: Evaluate>(
     refiner: &mut Refiner<'_, E>,
     target: &[Complex64],
     result: &PathResult,
@@ -151,7 +152,7 @@ pub fn settle<E: Evaluate>(refiner: &mut Refiner<'_, E>, target: &[Complex64], p
         if result.end != PathEnd::Success {
             continue;
         }
-        if !is_regular(refiner, target, &result, paths.point(k)) {
+        if !ends_regularly(refiner, target, &result, paths.point(k)) {
             let point = paths.point(k).to_vec();
             paths.replace(k, PathResult { end: PathEnd::Singular, ..result }, &point);
         } else if result.accuracy > VAGUE {

@@ -57,7 +57,7 @@ impl Segment {
         &self.direction
     }
 
-    /// The parameters at `t`, real or complex, to twice the digits.
+    /// Writes the parameters at `t`, real or complex, to twice the digits into `p`, one entry a parameter.
     pub fn extended(&self, t: &ComplexDd, p: &mut [ComplexDd]) {
         for ((p, target), direction) in p.iter_mut().zip(&self.target).zip(&self.direction) {
             *p = Scalar::mul_add(&ComplexDd::new(*direction), t, &ComplexDd::new(*target));

@@ -13,9 +13,9 @@ pub struct Refined {
     pub point: Vec<Complex64>,
     /// Relative size of the last correction, about the relative error of the point.
     pub accuracy: f64,
-    /// Whether the last correction was a thousand times smaller than the one before and that no rounding error, which is so near regular
-    /// solutions, if one does not start too near, and not near singular ones.
-    pub steady: bool,
+    /// Whether the point is plainly a regular solution: corrections shrank by a factor of a thousand at once, the last was tiny, the
+    /// condition is good, and no row of the Jacobian is so small that it may be rounding error. Regular solutions may be less plain.
+    pub plain: bool,
     /// Largest residual, each relative to its row of the Jacobian times the sizes of the coordinates.
     pub residual: f64,
     /// Condition number of the Jacobian, rows scaled to equal size, unknowns measured by their own size; infinite if singular.
@@ -47,6 +47,9 @@ const PERTURBATIONS: [f64; 2] = [1e-8, 1e-6];
 /// about `1 / d` or more, and corrections are about `d` or more.
 const TINY: f64 = 1e-12;
 const GOOD: f64 = 1e6;
+/// A row of the Jacobian below this share of the largest, or of one, may be what rounding left of a row that vanishes, as on a double
+/// component; the condition does not tell, since rows are scaled to equal size.
+const FAINT: f64 = 1e-10;
 /// How many random changes of all parameters show how a solution depends on them.
 const BLUR_DRAWS: usize = 3;
 /// Their relative size: it stands out from rounding errors.
@@ -78,8 +81,9 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         let exact: Vec<ComplexDd> = p.iter().map(|&z| z.into()).collect();
         let mut x = point.to_vec();
         let (accuracy, steady) = self.polish(&exact, &mut x);
-        let (residual, condition) = self.judge(p, &x, steady && accuracy <= NEAR);
-        Refined { point: x, accuracy, steady, residual, condition }
+        let (residual, condition, smallest_row) = self.judge(p, &x, steady && accuracy <= NEAR);
+        let plain = steady && accuracy <= TINY && condition <= GOOD && smallest_row > FAINT;
+        Refined { point: x, accuracy, plain, residual, condition }
     }
 
     /// The same in place, for parameters given to twice the digits; returns the relative size of the last correction, and how far rounding
@@ -90,8 +94,9 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         (accuracy, self.blur(p, x, steady && accuracy <= NEAR))
     }
 
-    /// Returns the size of the last correction and whether they shrank steadily. If so, and if it is at most [`NEAR`], the Jacobian and
-    /// its factors are those at `x`, or so near to it that Newton's method hardly noticed the difference.
+    /// Returns the size of the last correction and whether one that was no rounding error led to one a thousand times smaller. If so,
+    /// and if it is at most [`NEAR`], the Jacobian and its factors are those at `x`, or so near to it that Newton's method hardly noticed
+    /// the difference.
     fn polish(&mut self, p: &[ComplexDd], x: &mut Vec<Complex64>) -> (f64, bool) {
         let (mut accuracy, mut steady) = (f64::INFINITY, false);
         // Whether the last Jacobian serves for this correction.
@@ -113,7 +118,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
                 serves = false;
                 continue;
             }
-            steady = accuracy.is_finite() && accuracy > TINY && size <= STEADY * accuracy;
+            steady |= accuracy.is_finite() && accuracy > TINY && size <= STEADY * accuracy;
             accuracy = size;
             *x = next;
             if accuracy <= f64::EPSILON {
@@ -124,11 +129,9 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         (accuracy, steady)
     }
 
-    /// Whether a refined point is a regular solution: plainly, where corrections shrank steadily, the last was tiny and the condition is good;
-    /// otherwise by the test of [`contracts`](Self::contracts). The condition alone does not tell: where a whole row of the Jacobian
-    /// vanishes, as on a double component, it is scaled up again.
+    /// Whether a refined point is a regular solution: [`plainly`](Refined::plain), or by the test of [`contracts`](Self::contracts).
     pub fn is_regular(&mut self, p: &[Complex64], refined: &Refined) -> bool {
-        refined.steady && refined.accuracy <= TINY && refined.condition <= GOOD || self.contracts(p, &refined.point)
+        refined.plain || self.contracts(p, &refined.point)
     }
 
     /// Whether Newton's method comes back to the solution `x` from a point 1e-8 or 1e-6 away (relative): it does not where the
@@ -172,8 +175,8 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
 
     /// Residual and condition of a point as it is.
     pub fn judged(&mut self, p: &[Complex64], x: &[Complex64]) -> Refined {
-        let (residual, condition) = self.judge(p, x, false);
-        Refined { point: x.to_vec(), accuracy: f64::INFINITY, steady: false, residual, condition }
+        let (residual, condition, _) = self.judge(p, x, false);
+        Refined { point: x.to_vec(), accuracy: f64::INFINITY, plain: false, residual, condition }
     }
 
     /// Leaves the factors of the Jacobian at `x`.
@@ -211,8 +214,9 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         x
     }
 
-    /// Residual and condition at `x`; `factored` says that the Jacobian and its factors are those of `x` already.
-    fn judge(&mut self, p: &[Complex64], x: &[Complex64], factored: bool) -> (f64, f64) {
+    /// Residual, condition and smallest row of the Jacobian, relative to the largest or to one, at `x`; `factored` says that the Jacobian
+    /// and its factors are those of `x` already.
+    fn judge(&mut self, p: &[Complex64], x: &[Complex64], factored: bool) -> (f64, f64, f64) {
         let n = x.len();
         let squares = sizes(x);
         if factored {
@@ -233,7 +237,8 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
             .zip(&scales)
             .map(|(value, scale)| value.norm_sqr().sqrt() / scale.max(f64::MIN_POSITIVE));
         let residual = relative.fold(0.0, f64::max);
-        (residual, self.lu.condition(&self.jacobian, &weights))
+        let (least, largest) = scales.iter().fold((f64::INFINITY, 1.0f64), |(l, g), s| (l.min(*s), g.max(*s)));
+        (residual, self.lu.condition(&self.jacobian, &weights), least / largest)
     }
 }
 

@@ -6,7 +6,7 @@
 
 use super::Fallback;
 use super::formulation::Formulation;
-use hc::fibre::{Fibre, FibreOptions, doubtful, is_regular, settle};
+use hc::fibre::{Fibre, FibreOptions, doubtful, ends_regularly, settle};
 use hc::homotopy::{ParameterPath, Segment};
 use hc::poly::{ComplexDd, Lane, Lanes8, Scalar};
 use hc::refine::Refiner;
@@ -141,7 +141,7 @@ impl<F: Formulation> Recovery<'_, F> {
             let back = F::leave(chart, point);
             let old_point = self.paths.point(k).to_vec();
             match result.end {
-                PathEnd::Success if is_regular(refiner, segment.target(), result, point) => {
+                PathEnd::Success if ends_regularly(refiner, segment.target(), result, point) => {
                     let refined = refiner.refine(self.target, &back);
                     if refined.accuracy < CARRIED {
                         self.paths.replace(k, record, &refined.point);
@@ -186,5 +186,11 @@ mod tests {
             assert!((whole[i] - rest[i]).norm() < 1e-15);
             assert!((whole[2 + i] * 0.25 - rest[2 + i]).norm() < 1e-15);
         }
+        // To twice the digits: the same to a rounding error, and both ways to the same digits, since 0.25 t is exact.
+        let mut extended = [[hc::poly::ComplexDd::default(); 2]; 2];
+        rests.extend(1, 0.8, &mut extended[0]);
+        segment.extend(0, 0.25 * 0.8, &mut extended[1]);
+        assert_eq!(extended[0], extended[1]);
+        assert!(extended[0].iter().zip(&rest).all(|(e, r)| (e.high() - r).norm() < 1e-15 && e.low().norm() < 1e-15));
     }
 }
