@@ -3,6 +3,39 @@
 //! Synchronised receivers hear transmitters whose send times are unknown. With all times multiplied by the propagation
 //! speed, receiver i measures of transmitter j the pseudorange f_ij = |r_i - s_j| + o_j. This crate finds the positions
 //! r_i and s_j and the offsets o_j, up to a rotation, reflection and translation of the plane.
+//!
+//! Where to look first:
+//!
+//! * [`calibrate()`]: any network from measurements as they come, with outliers, gaps and noise: positions, uncertainty, other networks that
+//!   explain the data as well, and what is wrong with them.
+//! * [`minimal`]: every network that explains a small complete matrix exactly, by homotopy continuation.
+//! * [`Pseudoranges`]: the measurements, and [`read`] for files of them.
+//! * [`picture`] and [`html`]: a result to look at.
+//! * [`simulate()`] and [`experiment`]: networks with a known truth, and how near to it the calibration comes.
+//!
+//! ```
+//! use tdoa::{CalibrateOptions, Pseudoranges, SimulateOptions, calibrate, simulate};
+//!
+//! // Eight microphones and twelve claps, times 343 m/s, with 1 cm of noise and one clap that a microphone mistook.
+//! let mut options = SimulateOptions::default();
+//! options.noise = 0.01;
+//! let simulation = simulate(&options)?;
+//! let mut table = simulation.pseudoranges.values().to_vec();
+//! table[17] += 3.0;
+//! let measured = Pseudoranges::new(8, 12, table)?;
+//!
+//! let network = calibrate(&measured, &CalibrateOptions::default())?;
+//! assert!(network.unique && !network.inliers[1][5]);
+//! for (name, position) in network.receiver_names.iter().zip(&network.receivers) {
+//!     println!("{name}: {position:?}");
+//! }
+//!
+//! // Six receivers and three transmitters can be told from the first measurements alone, up to other exact solutions.
+//! let small = measured.select(&[2, 3, 4, 5, 6, 7], &[0, 1, 2]);
+//! let exact = tdoa::minimal::solve(&small, &tdoa::minimal::SolveOptions::default())?;
+//! assert!(exact.paths.failed == 0 && exact.candidates.iter().all(|candidate| candidate.residual < 1e-9));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod align;
 pub mod calibrate;

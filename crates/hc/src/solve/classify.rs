@@ -50,10 +50,8 @@ pub(super) fn classify(
     coincidence: f64,
 ) -> Classified {
     let mut out = Classified::default();
-    let ends = &all.ends;
     let mut directions: BTreeMap<&(Vec<i64>, usize), usize> = BTreeMap::new();
-    let regular: Vec<&Refined> =
-        ends.iter().filter_map(|end| if let End::Regular(refined) = end { Some(&**refined) } else { None }).collect();
+    let regular: Vec<&Refined> = all.regular.values().collect();
     let mut repeated = vec![false; regular.len()];
     for group in coincidences(regular.iter().enumerate().map(|(k, r)| (k, &r.point[..])), coincidence) {
         group[1..].iter().for_each(|&k| repeated[k] = true);
@@ -65,15 +63,10 @@ pub(super) fn classify(
             out.solutions.push(regular_solution(refined));
         }
     }
-    for end in ends {
-        match end {
-            End::Infinite(direction) => {
-                out.infinite += 1;
-                *directions.entry(&all.directions[*direction]).or_default() += 1;
-            }
-            End::Lost => out.lost += 1,
-            _ => {}
-        }
+    out.lost = all.ends.iter().filter(|end| **end == End::LOST).count();
+    for direction in all.ends.iter().filter_map(|end| end.direction()) {
+        out.infinite += 1;
+        *directions.entry(&all.directions[direction]).or_default() += 1;
     }
     out.directions = directions
         .into_iter()
@@ -84,13 +77,8 @@ pub(super) fn classify(
         })
         .collect();
 
-    let singular: Vec<(&[Complex64], usize, f64)> = ends
-        .iter()
-        .filter_map(|end| match end {
-            End::Singular(end) => Some((&end.point[..], end.winding, end.error)),
-            _ => None,
-        })
-        .collect();
+    let singular: Vec<(&[Complex64], usize, f64)> =
+        all.singular.values().map(|end| (&end.point[..], end.winding, end.error)).collect();
     let Some((system, target)) = member else {
         out.lost += singular.len();
         return out;

@@ -41,7 +41,7 @@ pub fn solve_member<E: Evaluate>(
     options: &SolveOptions,
 ) -> Solved {
     let ends = paths::follow(compiled, fibre, fibre.len(), target, false, options);
-    let member = if ends.ends.iter().any(paths::End::is_singular) { expanded(family, target) } else { None };
+    let member = if !ends.singular.is_empty() { expanded(family, target) } else { None };
     let member = member.as_ref().map(|(system, coefficients)| (system, &coefficients[..]));
     let found = classify(member, &ends, &Excess::none(), options.paths.coincidence);
     let (tracked, retracked) = (fibre.len(), ends.retracked);

@@ -13,22 +13,26 @@ use num_complex::Complex64;
 use poly::Evaluate;
 use std::collections::BTreeMap;
 
-/// Where a path ends. Small, since there is one for each path; points are kept of finite ends only.
-#[derive(Clone, Debug)]
-pub(super) enum End {
-    /// At a regular solution.
-    Regular(Box<Refined>),
-    /// At a solution at which the Jacobian is singular.
-    Singular(Box<SingularEnd>),
-    /// At infinity, in the direction of this number.
-    Infinite(usize),
-    /// Not known.
-    Lost,
-}
+/// How a path ends: four bytes, since there is one for each path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct End(u32);
 
 impl End {
-    pub(super) fn is_singular(&self) -> bool {
-        matches!(self, End::Singular(_))
+    /// Not known.
+    pub(super) const LOST: End = End(0);
+    /// At a regular solution.
+    pub(super) const REGULAR: End = End(1);
+    /// At a solution at which the Jacobian is singular.
+    pub(super) const SINGULAR: End = End(2);
+
+    /// At infinity, in the direction of this number.
+    fn infinite(direction: u32) -> End {
+        End(direction.saturating_add(3))
+    }
+
+    /// The number of the direction, if the path ends at infinity.
+    pub(super) fn direction(self) -> Option<usize> {
+        self.0.checked_sub(3).map(|direction| direction as usize)
     }
 }
 
@@ -39,10 +43,14 @@ pub(super) struct SingularEnd {
     pub(super) error: f64,
 }
 
-/// How all paths end.
+/// How all paths end. Of paths to infinity no points are kept.
 pub(super) struct Ends {
     /// In the order of the start solutions.
     pub(super) ends: Vec<End>,
+    /// The regular ends by the numbers of their paths.
+    pub(super) regular: BTreeMap<usize, Refined>,
+    /// The singular ends likewise.
+    pub(super) singular: BTreeMap<usize, SingularEnd>,
     /// Directions of paths to infinity: valuations in units of the reciprocal winding number, and that number.
     pub(super) directions: Vec<(Vec<i64>, usize)>,
     /// Tracks that were run again.
@@ -57,11 +65,10 @@ const CROSSED: f64 = 1e-11;
 pub(super) const CLUSTER: f64 = 1e-6;
 /// Paths that are under way at a time: memory for their points is bounded by this, not by the number of paths.
 const CHUNK: usize = 1 << 11;
-
 /// On trial, as many paths are followed first.
 const TRIAL: usize = 32;
 /// On trial, one path in as many may end irregularly.
-const IRREGULAR: u64 = 8;
+const IRREGULAR: usize = 8;
 
 /// Follows the paths with the numbers below `count` of a source to the parameters `target`; paths that share a start or a
 /// regular end, have crossed or are lost are tracked again with stricter steps.
@@ -81,50 +88,56 @@ pub(super) fn follow<E: Evaluate, S: Source<E>>(
         segment: Segment::new(start.parameters(), target),
         target,
         options,
-        ends: vec![End::Lost; count],
+        ends: vec![End::LOST; count],
+        regular: BTreeMap::new(),
+        singular: BTreeMap::new(),
         directions: BTreeMap::new(),
-        starts: Prints::new(if start.is_tracked() { count } else { 0 }),
+        starts: Prints::new(count),
         middles: Prints::new(count),
     };
-    let mut which: Vec<usize> = (0..count).collect();
+    // In the first round all paths, afterwards those that are doubtful.
+    let mut again: Option<Vec<usize>> = None;
     let mut retracked = 0;
     for level in 0..=options.paths.retries {
         let settings = if level == 0 { options.paths.tracker.clone() } else { options.paths.tracker.stricter(level) };
-        retracked += if level == 0 { 0 } else { which.len() };
+        let all = again.as_ref().map_or(count, Vec::len);
+        retracked += if level == 0 { 0 } else { all };
         let (mut done, mut regular) = (0, 0);
-        let (first, rest) = which.split_at(if trial && level == 0 { TRIAL.min(count) } else { 0 });
-        for numbers in std::iter::once(first).chain(rest.chunks(CHUNK)).filter(|numbers| !numbers.is_empty()) {
-            stage.run(numbers, &settings, level > 0, &|| {
-                options.monitor().enter(monitor::Stage::Paths, which.len() as u64);
-                options.monitor().add(done, regular);
+        let mut next = if trial && level == 0 { TRIAL } else { CHUNK };
+        while done < all {
+            let to = (done + next).min(all);
+            next = CHUNK;
+            let numbers: Vec<usize> =
+                again.as_ref().map_or_else(|| (done..to).collect(), |which| which[done..to].to_vec());
+            stage.run(&numbers, &settings, level > 0, &|| {
+                options.monitor().enter(monitor::Stage::Paths, all as u64);
+                options.monitor().add(done as u64, regular as u64);
             });
-            done += numbers.len() as u64;
-            regular += numbers.iter().filter(|&&k| matches!(stage.ends[k], End::Regular(_))).count() as u64;
+            done = to;
+            regular += numbers.iter().filter(|&&k| stage.ends[k] == End::REGULAR).count();
             let irregular = (done - regular) * IRREGULAR > done;
             if trial && level == 0 && irregular && !options.monitor().is_cancelled() {
-                return Ends { ends: stage.ends, directions: Vec::new(), retracked, abandoned: true };
+                return stage.finish(retracked, true);
             }
         }
-        which = stage.doubtful();
-        if which.is_empty() || options.monitor().is_cancelled() {
+        let doubtful = again.insert(stage.doubtful());
+        if doubtful.is_empty() || options.monitor().is_cancelled() {
             break;
         }
     }
     // Paths that still share an end: it counts once.
+    let which = again.unwrap_or_default();
     for &k in &which {
-        let first = match &stage.ends[k] {
-            End::Regular(_) => !which.iter().take_while(|&&j| j < k).any(|&j| stage.same_regular(j, k)),
-            End::Singular(_) => true,
+        let first = match stage.ends[k] {
+            End::REGULAR => !which.iter().take_while(|&&j| j < k).any(|&j| stage.same_regular(j, k)),
+            End::SINGULAR => true,
             _ => false,
         };
         if !first {
-            stage.ends[k] = End::Lost;
+            stage.lose(k);
         }
     }
-    let mut directions: Vec<((Vec<i64>, usize), usize)> = stage.directions.into_iter().collect();
-    directions.sort_by_key(|d| d.1);
-    let directions = directions.into_iter().map(|d| d.0).collect();
-    Ends { ends: stage.ends, directions, retracked, abandoned: false }
+    stage.finish(retracked, false)
 }
 
 struct Stage<'a, E, S> {
@@ -134,8 +147,10 @@ struct Stage<'a, E, S> {
     target: &'a [Complex64],
     options: &'a SolveOptions,
     ends: Vec<End>,
+    regular: BTreeMap<usize, Refined>,
+    singular: BTreeMap<usize, SingularEnd>,
     /// Numbers of directions to infinity.
-    directions: BTreeMap<(Vec<i64>, usize), usize>,
+    directions: BTreeMap<(Vec<i64>, usize), u32>,
     /// Where the paths began, if they were tracked there.
     starts: Prints,
     /// Where the paths that needed the endgame were at a common radius.
@@ -146,11 +161,9 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, E, S> {
     /// Tracks the paths with these numbers to their ends; `begun` is called when they are at their start.
     fn run(&mut self, numbers: &[usize], settings: &TrackerOptions, again: bool, begun: &dyn Fn()) {
         for &k in numbers {
-            self.ends[k] = End::Lost;
+            self.lose(k);
             self.middles.forget(k);
-            if self.start.is_tracked() {
-                self.starts.forget(k);
-            }
+            self.starts.forget(k);
         }
         if self.start.is_tracked() {
             self.options.monitor().enter(monitor::Stage::Start, numbers.len() as u64);
@@ -175,7 +188,7 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, E, S> {
                 PathEnd::Success => {
                     let refined = refiner.refine(self.target, point);
                     if refiner.is_regular(self.target, &refined) {
-                        self.ends[reached.numbers[result.path]] = End::Regular(Box::new(refined));
+                        self.end_regularly(reached.numbers[result.path], refined);
                     } else {
                         undecided.push(result.path);
                     }
@@ -198,67 +211,74 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, E, S> {
         }
     }
 
+    fn lose(&mut self, path: usize) {
+        self.ends[path] = End::LOST;
+        self.regular.remove(&path);
+        self.singular.remove(&path);
+    }
+
+    fn end_regularly(&mut self, path: usize, refined: Refined) {
+        self.ends[path] = End::REGULAR;
+        self.regular.insert(path, refined);
+    }
+
     fn take(&mut self, path: usize, ending: Ending, refiner: &mut Refiner<'_, E>, again: bool) {
         if !ending.middle.is_empty() {
             self.middles.note(path, &ending.middle, again);
         }
-        let mut regular = || {
+        if matches!(ending.verdict, Verdict::Reached | Verdict::Finite { winding: 1, .. }) {
             let refined = refiner.refine(self.target, &ending.point);
             let near = relative_distance(&refined.point, &ending.point) < CLUSTER;
-            (near && refiner.is_regular(self.target, &refined)).then(|| End::Regular(Box::new(refined)))
-        };
-        let regular = match ending.verdict {
-            Verdict::Reached | Verdict::Finite { winding: 1, .. } => regular(),
-            _ => None,
-        };
-        let singular = |point, winding, error| End::Singular(Box::new(SingularEnd { point, winding, error }));
-        self.ends[path] = match (regular, ending.verdict) {
-            (Some(regular), _) => regular,
-            (None, Verdict::Finite { winding, error }) => singular(ending.point, winding, error),
-            (None, Verdict::Infinite { winding, valuations }) => {
-                let next = self.directions.len();
-                End::Infinite(*self.directions.entry((valuations, winding)).or_insert(next))
+            if near && refiner.is_regular(self.target, &refined) {
+                self.end_regularly(path, refined);
+                return;
             }
-            (None, Verdict::Reached | Verdict::Lost) => End::Lost,
-        };
+        }
+        match ending.verdict {
+            Verdict::Finite { winding, error } => {
+                self.ends[path] = End::SINGULAR;
+                self.singular.insert(path, SingularEnd { point: ending.point, winding, error });
+            }
+            Verdict::Infinite { winding, valuations } => {
+                let next = self.directions.len() as u32;
+                self.ends[path] = End::infinite(*self.directions.entry((valuations, winding)).or_insert(next));
+            }
+            Verdict::Reached | Verdict::Lost => {}
+        }
     }
 
     fn same_regular(&self, j: usize, k: usize) -> bool {
-        match (&self.ends[j], &self.ends[k]) {
-            (End::Regular(a), End::Regular(b)) => {
-                relative_distance(&a.point, &b.point) <= self.options.paths.coincidence
-            }
-            _ => false,
-        }
+        let [a, b] = [j, k].map(|path| self.regular.get(&path));
+        let near =
+            |(a, b): (&Refined, &Refined)| relative_distance(&a.point, &b.point) <= self.options.paths.coincidence;
+        a.zip(b).is_some_and(near)
+    }
+
+    fn finish(self, retracked: usize, abandoned: bool) -> Ends {
+        let mut directions: Vec<((Vec<i64>, usize), u32)> = self.directions.into_iter().collect();
+        directions.sort_by_key(|d| d.1);
+        let directions = directions.into_iter().map(|d| d.0).collect();
+        Ends { ends: self.ends, regular: self.regular, singular: self.singular, directions, retracked, abandoned }
     }
 
     /// Paths that are lost, share a start or a regular end, have crossed on the way, or end in a cycle that is not whole.
     fn doubtful(&self) -> Vec<usize> {
-        let regular = self.ends.iter().enumerate().filter_map(|(k, end)| match end {
-            End::Regular(refined) => Some((k, &refined.point[..])),
-            _ => None,
-        });
+        let regular = self.regular.iter().map(|(&k, refined)| (k, &refined.point[..]));
         let mut which = coincidences(regular, self.options.paths.coincidence).concat();
         which.extend(self.starts.met(self.options.paths.coincidence));
         which.extend(self.middles.met(CROSSED));
-        let singular = self.ends.iter().enumerate().filter_map(|(k, end)| match end {
-            End::Singular(end) => Some((k, &end.point[..])),
-            _ => None,
-        });
+        let singular = self.singular.iter().map(|(&k, end)| (k, &end.point[..]));
         for group in groups(singular, CLUSTER) {
             // Paths of winding number m come in cycles of m.
-            let winding = |k: usize| match &self.ends[k] {
-                End::Singular(end) => end.winding,
-                _ => 1,
-            };
-            for &k in &group {
-                let alike = group.iter().filter(|&&j| winding(j) == winding(k)).count();
+            let winding = |k: &usize| self.singular.get(k).map_or(1, |end| end.winding);
+            for k in &group {
+                let alike = group.iter().filter(|&j| winding(j) == winding(k)).count();
                 if !alike.is_multiple_of(winding(k)) {
-                    which.push(k);
+                    which.push(*k);
                 }
             }
         }
-        which.extend(self.ends.iter().enumerate().filter(|(_, end)| matches!(end, End::Lost)).map(|(k, _)| k));
+        which.extend(self.ends.iter().enumerate().filter(|(_, end)| **end == End::LOST).map(|(k, _)| k));
         which.sort_unstable();
         which.dedup();
         which
