@@ -26,11 +26,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
         let Ok(found) = result else { continue };
 
-        // Where the search ends if it starts at the truth: at the same network, if the data prefer that one.
+        // Where the search ends if it starts at the truth: elsewhere, if the data prefer that.
         let truth: Vec<_> = simulation.network.receivers.iter().map(|&r| Some(r)).collect();
         let best = oracle(&simulation.pseudoranges, &truth, &options)?;
         let rms = best.truth.as_ref().map_or(f64::NAN, |truth| truth.receiver_rms);
-        let same = rms > 3.0 * trial.bound;
+        let astray = rms > 3.0 * trial.bound;
         let error = trial.receiver_rms.unwrap_or(f64::NAN);
         let factor = found.sigma / NOISE;
         println!(
@@ -39,11 +39,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         );
         wrong += 1;
         noisy += usize::from(factor > 1.5);
-        preferred += usize::from(same);
+        preferred += usize::from(astray);
     }
     println!("{NETWORKS} networks, {unique} called unique, {wrong} of them wrong");
     println!(
-        "noise estimated at more than 1.5 times what it is: {noisy}; the search from the truth ends as far off: {preferred}"
+        "noise estimated at more than 1.5 times what it is: {noisy}; searches from the truth that fail too: {preferred}"
     );
     Ok(())
 }

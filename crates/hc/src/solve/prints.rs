@@ -1,44 +1,30 @@
-//! Where paths were, in two rough numbers each: enough to tell which ones may have met, without keeping their points.
+//! Where paths were, in two numbers each: enough to tell which ones may have met, without keeping their points.
 
 use crate::distinct::{projection, relative_distance};
 use num_complex::Complex64;
 use std::collections::BTreeMap;
 
-/// The upper half of a double.
-#[derive(Clone, Copy)]
-struct Rough(u32);
-
-impl Rough {
-    /// Bound on what the lower half adds, relative, with a margin for the errors of comparing.
-    const ERROR: f64 = 1.0 / (1 << 19) as f64;
-    const NONE: Rough = Rough(u32::MAX);
-
-    fn new(value: f64) -> Rough {
-        Rough((value.to_bits() >> 32) as u32)
-    }
-
-    /// Not a number if there is none.
-    fn value(self) -> f64 {
-        f64::from_bits(u64::from(self.0) << 32)
-    }
-}
-
-/// A projection and the size of a point for every path, eight bytes; the points themselves only of few.
+/// A projection and roughly the size of a point for every path, twelve bytes; the points themselves only of few.
 pub(super) struct Prints {
     paths: usize,
-    /// Empty until there is a point.
-    keys: Vec<[Rough; 2]>,
+    /// Not a number where the path has no point; empty until one has.
+    keys: Vec<f64>,
+    /// The upper halves of the doubles.
+    sizes: Vec<u32>,
     points: BTreeMap<usize, Vec<Complex64>>,
 }
 
+/// Bound on what the lower half of a double adds, relative, with a margin.
+const ROUGH: f64 = 1.0 / (1 << 19) as f64;
+
 impl Prints {
     pub(super) fn new(paths: usize) -> Self {
-        Prints { paths, keys: Vec::new(), points: BTreeMap::new() }
+        Prints { paths, keys: Vec::new(), sizes: Vec::new(), points: BTreeMap::new() }
     }
 
     pub(super) fn forget(&mut self, path: usize) {
-        if let Some(keys) = self.keys.get_mut(path) {
-            *keys = [Rough::NONE; 2];
+        if let Some(key) = self.keys.get_mut(path) {
+            *key = f64::NAN;
             self.points.remove(&path);
         }
     }
@@ -46,35 +32,35 @@ impl Prints {
     /// Notes where a path was; with `keep` the point too, so that it is compared in full with others that are kept.
     pub(super) fn note(&mut self, path: usize, point: &[Complex64], keep: bool) {
         if self.keys.is_empty() {
-            self.keys = vec![[Rough::NONE; 2]; self.paths];
+            self.keys = vec![f64::NAN; self.paths];
+            self.sizes = vec![0; self.paths];
         }
         self.forget(path);
-        self.keys[path] = [projection(point), point.iter().map(|z| z.re.abs() + z.im.abs()).sum()].map(Rough::new);
+        let size: f64 = point.iter().map(|z| z.re.abs() + z.im.abs()).sum();
+        self.keys[path] = projection(point);
+        self.sizes[path] = (size.to_bits() >> 32) as u32;
         if keep {
             self.points.insert(path, point.to_vec());
         }
     }
 
-    /// Paths that may have met others: all that are within the relative distance `tolerance` of another, and some that merely look so,
-    /// because one of the two points is not kept. (Of a million points in general position about one pair.)
+    /// Paths that may have met others: all that are within the relative distance `tolerance` of another, and perhaps some
+    /// that merely look so because one of the two points is not kept.
     pub(super) fn met(&self, tolerance: f64) -> Vec<usize> {
-        let keys = |path: usize| self.keys[path].map(Rough::value);
-        let mut order: Vec<usize> = (0..self.keys.len()).filter(|&k| !keys(k)[0].is_nan()).collect();
-        order.sort_unstable_by(|&a, &b| keys(a)[0].total_cmp(&keys(b)[0]).then(a.cmp(&b)));
+        let size = |path: usize| f64::from_bits(u64::from(self.sizes[path]) << 32);
+        let mut order: Vec<usize> = (0..self.keys.len()).filter(|&k| !self.keys[k].is_nan()).collect();
+        order.sort_unstable_by(|&a, &b| self.keys[a].total_cmp(&self.keys[b]).then(a.cmp(&b)));
         let mut met = Vec::new();
         for (i, &a) in order.iter().enumerate() {
-            let [key, size] = keys(a);
             for &b in &order[i + 1..] {
-                let [other, other_size] = keys(b);
                 // Projections have coefficients of size at most one; sizes of coinciding points are nearly equal.
-                let reach = 2.0 * tolerance * size.max(other_size);
-                let near = |a: f64, b: f64| (a - b).abs() <= reach + Rough::ERROR * (a.abs() + b.abs());
-                if !near(key, other) {
+                let largest = size(a).max(size(b)) * (1.0 + ROUGH);
+                if self.keys[b] - self.keys[a] > 2.0 * tolerance * largest {
                     break;
                 }
                 let same = match (self.points.get(&a), self.points.get(&b)) {
                     (Some(x), Some(y)) => relative_distance(x, y) <= tolerance,
-                    _ => near(size, other_size),
+                    _ => (size(a) - size(b)).abs() <= (2.0 * tolerance + ROUGH) * largest,
                 };
                 if same {
                     met.extend([a, b]);
@@ -111,23 +97,17 @@ mod tests {
     }
 
     #[test]
-    fn few_of_many_points_look_as_if_they_met() {
+    fn points_of_any_size_are_told_apart() {
         let mut random = crate::random::Random::new(0, 0);
-        let mut prints = Prints::new(30_001);
-        let last = (0..30_000)
-            .map(|k| {
-                let x = random.normals(4);
-                prints.note(k, &x, false);
-                x
-            })
-            .last();
-        assert!(prints.met(1e-11).len() <= 2);
-        prints.note(30_000, &last.unwrap(), false);
-        assert!([29_999, 30_000].iter().all(|k| prints.met(1e-11).contains(k)));
-        // Whatever their size.
-        for (k, size) in [1e-300, 1e-30, 1e30, 1e300].into_iter().enumerate() {
-            [2 * k, 2 * k + 1].iter().for_each(|&k| prints.note(k, &[Complex64::new(size, -2.0 * size)], false));
-            assert!([2 * k, 2 * k + 1].iter().all(|k| prints.met(1e-11).contains(k)));
+        let mut prints = Prints::new(8_000);
+        let mut last = Vec::new();
+        for path in 0..7_999 {
+            let size = 10f64.powi(path as i32 % 601 - 300);
+            last = random.normals(4).iter().map(|z| z * size).collect();
+            prints.note(path, &last, false);
         }
+        assert_eq!(prints.met(1e-11), [0usize; 0]);
+        prints.note(7_999, &last, false);
+        assert_eq!(prints.met(1e-11), [7_998, 7_999]);
     }
 }
