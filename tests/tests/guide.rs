@@ -57,8 +57,9 @@ fn run(command: &str, folder: &Path) -> Output {
         let words = rest.split(' ').map(place);
         return Command::new(program(name)).args(words).current_dir(folder).output().expect("the program starts");
     }
-    let rest = command.strip_prefix("cargo run --release -p hc --example ").expect("a known kind of command");
-    Command::new(example(rest)).current_dir(root()).output().expect("the example starts")
+    let examples = ["cargo run --release -p hc --example ", "cargo run --release -p tdoa --example "];
+    let name = examples.iter().find_map(|prefix| command.strip_prefix(prefix)).expect("a known kind of command");
+    Command::new(example(name)).current_dir(root()).output().expect("the example starts")
 }
 
 /// Runs all commands of a page, and gives what each printed.
@@ -90,7 +91,7 @@ fn no_page_is_left_out() {
 fn calibrating_a_network() {
     let folder = tempfile::tempdir().expect("folder");
     let printed = run_page("docs/guide/calibrate-a-network.md", folder.path());
-    assert_eq!(printed.len(), 4);
+    assert_eq!(printed.len(), 6);
     for name in ["report.html", "network.json", "nodes.csv", "network.svg"] {
         assert!(folder.path().join(name).exists(), "{name}");
     }

@@ -8,16 +8,16 @@ use poly::simd::Isa;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct TrackerOptions {
-    /// Largest contraction `|dx_1| / |dx_0|` of Newton's method that is accepted (dimensionless). Default 1/8 (Timme 2020).
+    /// Largest contraction `|dx_1| / |dx_0|` of Newton's method that is accepted (dimensionless). Default 1/8 (Timme 2020); fast 1/5.
     pub contraction: f64,
-    /// Safety factor of the Newton bound: the step is divided by it. Default 3; fast 1.5; conservative 4.
+    /// Safety factor of the Newton bound: the step is divided by it. Default 3; fast 1; conservative 4.
     pub beta_omega: f64,
-    /// Share of the radius of trust that a step may cover. Default 0.4; fast 0.75; conservative 0.25.
+    /// Share of the radius of trust that a step may cover. Default 0.4; fast 0.85; conservative 0.25.
     pub beta_tau: f64,
-    /// The same for the step that reaches the target. Default 0.3; fast 0.5; conservative 0.1875.
+    /// The same for the step that reaches the target. Default 0.3; fast 0.6; conservative 0.1875.
     pub beta_tau_last: f64,
     /// Newton's method stops when `omega |dx|` falls below this (dimensionless); one correction with the last Jacobian follows, which
-    /// leaves a relative error of about its third power. Default 1e-4; fast 3e-4.
+    /// leaves a relative error of about its third power. Default 1e-4; fast 1e-3.
     pub corrector_tolerance: f64,
     /// Steps, accepted and rejected, before a path is given up. Default 10,000.
     pub max_steps: usize,
@@ -61,10 +61,11 @@ impl TrackerOptions {
     /// how many, system by system. The factors are less careful than those of HomotopyContinuation.jl's fast preset (2, 0.75, 0.4).
     pub fn fast() -> Self {
         TrackerOptions {
-            beta_omega: 1.5,
-            beta_tau: 0.75,
-            beta_tau_last: 0.5,
-            corrector_tolerance: 3e-4,
+            contraction: 0.2,
+            beta_omega: 1.0,
+            beta_tau: 0.85,
+            beta_tau_last: 0.6,
+            corrector_tolerance: 1e-3,
             ..Self::default()
         }
     }
