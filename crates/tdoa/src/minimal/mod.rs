@@ -10,6 +10,9 @@
 //! | 5r/4s, 5r/5s, 6r/4s, 6r/5s | the dual equations and a determinant for the fourth transmitter | 152 |
 //! | 5r/6s, and more of both | offsets by rank | 5 |
 //! | 7r/4s, and more of both | offsets by rank, linear | 0 |
+//!
+//! A solver that is used again keeps 0.12 to 0.24 MB, start solutions and workspace; a solve takes up to 0.18 MB more while it lasts
+//! (`cargo run --release -p tdoa --example memory`).
 
 mod chart;
 mod collinear;
