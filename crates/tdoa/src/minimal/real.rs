@@ -17,7 +17,7 @@ pub(crate) fn real_root<F: Formulation>(
     let size = offsets.iter().map(|z| z.norm()).fold(1.0, f64::max);
     let imaginary = largest_imaginary(&offsets);
     // Beyond this a root is far from real however ill-conditioned; nearer, Newton's method decides.
-    if imaginary > 1e-4 * size && imaginary > near {
+    if imaginary > 1e-2 * size && imaginary > near {
         return None;
     }
     // Ends of difficult paths are known to a few digits only; the last ones decide between a real root and a complex pair.
