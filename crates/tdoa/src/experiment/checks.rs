@@ -181,6 +181,14 @@ mod tests {
         }
     }
 
+    /// The path to one of the real roots ends at a point whose imaginary part is more than 1e-4 of its size.
+    #[test]
+    fn real_roots_known_roughly_are_real() {
+        let (proofs, real) = proof_trial(&mut Solver::new(), &clean(4, 6, 7315)).unwrap();
+        assert_eq!((proofs.roots, proofs.proved, proofs.unseparated), (344, 344, 0));
+        assert_eq!(proofs.real, real);
+    }
+
     #[test]
     fn the_first_network_that_fits_ends_the_search() {
         // One equation more than unknowns: only the true network fits.
