@@ -1,6 +1,6 @@
-//! A network calibrated from a table of arrival times, with the picture of the result:
+//! A network calibrated from a table of arrival times, and a picture of the result where a file for it is named:
 //!
-//!     cargo run --release -p tdoa --example calibrate
+//!     cargo run --release -p tdoa --example calibrate -- network.svg
 
 use tdoa::{CalibrateOptions, SimulateOptions, calibrate, simulate};
 
@@ -27,8 +27,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let called = found.filter(|(inlier, residual)| residual.is_some() && !**inlier).count();
     println!("{called} measurements called outliers, {} are", simulation.outliers.iter().filter(|&&o| o).count());
 
-    let file = std::env::temp_dir().join("network.svg");
-    std::fs::write(&file, tdoa::picture::picture(&network))?;
-    println!("picture: {}", file.display());
+    if let Some(file) = std::env::args_os().nth(1) {
+        std::fs::write(file, tdoa::picture::picture(&network))?;
+    }
     Ok(())
 }
