@@ -20,37 +20,81 @@ pub fn relative_distance(a: &[Complex64], b: &[Complex64]) -> f64 {
 /// Groups of two or more coinciding points among `points` (pairs of a label and `n` coordinates): points whose
 /// [`relative_distance`] is at most `tolerance`, and chains of such. Labels ascend within a group, groups by their first label.
 pub fn coincidences<'a>(points: impl IntoIterator<Item = (usize, &'a [Complex64])>, tolerance: f64) -> Vec<Vec<usize>> {
-    let mut keyed: Vec<(f64, f64, usize, &[Complex64])> = points
-        .into_iter()
-        .map(|(label, x)| {
-            let size: f64 = x.iter().map(|z| z.re.abs() + z.im.abs()).sum();
-            (projection(x), size, label, x)
-        })
-        .collect();
-    keyed.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.2.cmp(&b.2)));
-
-    let mut parent: Vec<usize> = (0..keyed.len()).collect();
-    for i in 0..keyed.len() {
-        let (key, size, _, x) = keyed[i];
-        for (k, other) in keyed.iter().enumerate().skip(i + 1) {
-            // The projection has coefficients of size at most one; sizes of coinciding points are nearly equal.
-            if other.0 - key > 2.0 * tolerance * size.max(other.1) {
-                break;
-            }
-            if relative_distance(x, other.3) <= tolerance {
-                let (a, b) = (root(&mut parent, i), root(&mut parent, k));
-                parent[a.max(b)] = a.min(b);
-            }
-        }
-    }
-    let mut groups: Vec<Vec<usize>> = vec![Vec::new(); keyed.len()];
-    for i in 0..keyed.len() {
-        groups[root(&mut parent, i)].push(keyed[i].2);
+    let points: Vec<(usize, &[Complex64])> = points.into_iter().collect();
+    let mut found = Coincidences::default();
+    found.find(0..points.len(), |k| points[k].1, tolerance);
+    let mut groups: Vec<Vec<usize>> = vec![Vec::new(); points.len()];
+    for i in 0..points.len() {
+        groups[root(&mut found.parent, i)].push(points[found.keyed[i].index].0);
     }
     groups.retain(|g| g.len() > 1);
     groups.iter_mut().for_each(|g| g.sort_unstable());
     groups.sort();
     groups
+}
+
+/// The memory of a search for coinciding points.
+#[derive(Clone, Debug, Default)]
+pub struct Coincidences {
+    /// In the order of the keys.
+    keyed: Vec<Keyed>,
+    /// Another member of the group, none for one of each group; by places in `keyed`.
+    parent: Vec<usize>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Keyed {
+    key: f64,
+    size: f64,
+    index: usize,
+}
+
+impl Coincidences {
+    /// Joins the coinciding ones of the points with these indices, as [`coincidences`] does.
+    fn find<'a>(
+        &mut self,
+        indices: impl IntoIterator<Item = usize>,
+        point: impl Fn(usize) -> &'a [Complex64],
+        tolerance: f64,
+    ) {
+        self.keyed.clear();
+        self.keyed.extend(indices.into_iter().map(|index| {
+            let x = point(index);
+            Keyed { key: projection(x), size: x.iter().map(|z| z.re.abs() + z.im.abs()).sum(), index }
+        }));
+        self.keyed.sort_unstable_by(|a, b| a.key.total_cmp(&b.key).then(a.index.cmp(&b.index)));
+        self.parent.clear();
+        self.parent.extend(0..self.keyed.len());
+        for (i, a) in self.keyed.iter().enumerate() {
+            for (k, b) in self.keyed.iter().enumerate().skip(i + 1) {
+                // The projection has coefficients of size at most one; sizes of coinciding points are nearly equal.
+                if b.key - a.key > 2.0 * tolerance * a.size.max(b.size) {
+                    break;
+                }
+                if relative_distance(point(a.index), point(b.index)) <= tolerance {
+                    let (a, b) = (root(&mut self.parent, i), root(&mut self.parent, k));
+                    self.parent[a.max(b)] = a.min(b);
+                }
+            }
+        }
+    }
+
+    /// Adds to `which` the indices, in no order, of the points that coincide with others.
+    pub(crate) fn members<'a>(
+        &mut self,
+        indices: impl IntoIterator<Item = usize>,
+        point: impl Fn(usize) -> &'a [Complex64],
+        tolerance: f64,
+        which: &mut Vec<usize>,
+    ) {
+        self.find(indices, point, tolerance);
+        for i in 0..self.keyed.len() {
+            let top = root(&mut self.parent, i);
+            if top != i {
+                which.extend([self.keyed[i].index, self.keyed[top].index]);
+            }
+        }
+    }
 }
 
 fn root(parent: &mut [usize], mut i: usize) -> usize {

@@ -1,6 +1,6 @@
 //! Parameter families: from all solutions for one generic parameter point to all solutions for any other.
 
-use crate::distinct::coincidences;
+use crate::distinct::Coincidences;
 use crate::homotopy::Segment;
 use crate::refine::Refiner;
 use crate::tracker::{PathEnd, PathResult, PathSet, TrackerOptions, track};
@@ -147,29 +147,40 @@ pub fn ends_regularly<E: Evaluate>(
 /// Refines the regular ends that the tracker leaves vague, so that those which coincide are seen to; where Newton's method does not settle,
 /// or the end is no regular solution, the path becomes [`PathEnd::Singular`].
 pub fn settle<E: Evaluate>(refiner: &mut Refiner<'_, E>, target: &[Complex64], paths: &mut PathSet) {
+    let mut refined = std::mem::take(&mut refiner.spare);
     for k in 0..paths.len() {
         let result = paths.results()[k];
         if result.end != PathEnd::Success {
             continue;
         }
         if !ends_regularly(refiner, target, &result, paths.point(k)) {
-            let point = paths.point(k).to_vec();
-            paths.replace(k, PathResult { end: PathEnd::Singular, ..result }, &point);
+            paths.replace_record(k, PathResult { end: PathEnd::Singular, ..result });
         } else if result.accuracy > VAGUE {
-            let refined = refiner.refine(target, paths.point(k));
+            refiner.refine_into(target, paths.point(k), &mut refined);
             let end = if refined.accuracy <= SETTLED { PathEnd::Success } else { PathEnd::Singular };
             paths.replace(k, PathResult { end, accuracy: refined.accuracy, ..result }, &refined.point);
         }
     }
+    refiner.spare = refined;
 }
 
 /// Paths that failed or share a regular end with another, by index of their start solutions: what has to be tracked again.
 ///
 /// `paths` must hold the paths `0 .. len` in order.
 pub fn doubtful(paths: &PathSet, tolerance: f64) -> Vec<usize> {
-    let regular = paths.iter().filter(|(r, _)| r.end == PathEnd::Success).map(|(r, x)| (r.path, x));
-    let mut which: Vec<usize> = coincidences(regular, tolerance).concat();
-    which.extend(paths.results().iter().filter(|r| !r.end.is_good()).map(|r| r.path));
-    which.sort_unstable();
+    let mut which = Vec::new();
+    doubtful_into(paths, tolerance, &mut Coincidences::default(), &mut which);
     which
+}
+
+/// [`doubtful`] with the memory of an earlier call.
+pub fn doubtful_into(paths: &PathSet, tolerance: f64, memory: &mut Coincidences, which: &mut Vec<usize>) {
+    which.clear();
+    let results = paths.results();
+    let regular = (0..paths.len()).filter(|&k| results[k].end == PathEnd::Success);
+    memory.members(regular, |k| paths.point(k), tolerance, which);
+    which.iter_mut().for_each(|k| *k = results[*k].path);
+    which.extend(results.iter().filter(|r| !r.end.is_good()).map(|r| r.path));
+    which.sort_unstable();
+    which.dedup();
 }

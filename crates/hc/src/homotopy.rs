@@ -30,7 +30,7 @@ pub trait ParameterPath: Send + Sync {
 }
 
 /// The straight segment from `start` (at `t = 1`) to `target` (at `t = 0`).
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Segment {
     target: Vec<Complex64>,
     direction: Vec<Complex64>,
@@ -42,9 +42,21 @@ impl Segment {
     /// # Panics
     /// If the lengths differ.
     pub fn new(start: &[Complex64], target: &[Complex64]) -> Self {
+        let mut segment = Segment { target: Vec::new(), direction: Vec::new() };
+        segment.join(start, target);
+        segment
+    }
+
+    /// [`new`](Self::new) with the memory of an earlier segment.
+    ///
+    /// # Panics
+    /// If the lengths differ.
+    pub fn join(&mut self, start: &[Complex64], target: &[Complex64]) {
         assert_eq!(start.len(), target.len(), "both ends of a segment have the same number of parameters");
-        let direction = start.iter().zip(target).map(|(s, t)| s - t).collect();
-        Segment { target: target.to_vec(), direction }
+        self.target.clear();
+        self.target.extend_from_slice(target);
+        self.direction.clear();
+        self.direction.extend(start.iter().zip(target).map(|(s, t)| s - t));
     }
 
     /// The parameters at `t = 0`.

@@ -69,6 +69,13 @@ impl<S: Lane> Lu<S> {
     }
 }
 
+/// Scratch space of estimates of the condition.
+#[derive(Debug, Default)]
+pub struct Estimate {
+    rows: Vec<[f64; 2]>,
+    probe: Vec<Complex64>,
+}
+
 impl Lu<Complex64> {
     /// Replaces `b` by the solution of the system with the conjugate transpose of the factored matrix.
     pub fn solve_adjoint(&self, b: &mut [Complex64]) {
@@ -97,37 +104,40 @@ impl Lu<Complex64> {
     /// weights and `D` the scaling that gives rows of equal size.
     ///
     /// Hager's estimator (Higham, Accuracy and Stability of Numerical Algorithms, algorithm 15.1); a lower bound, rarely
-    /// off by more than a factor 3. Infinite for a singular matrix. `a` is the matrix that was factored.
-    pub fn condition(&self, a: &[Complex64], weights: &[f64]) -> f64 {
+    /// off by more than a factor 3. Infinite for a singular matrix. `a` is the matrix that was factored, `weights_sqr` are the squared weights.
+    pub fn condition(&self, a: &[Complex64], weights_sqr: &[[f64; 1]], scratch: &mut Estimate) -> f64 {
         let n = self.n;
+        let Estimate { rows, probe: x } = scratch;
         if n == 0 {
             return 1.0;
         }
         // Largest entry and sum of every row.
-        let (mut rows, mut sums) = (vec![0.0f64; n], vec![0.0; n]);
-        for (column, w) in a.chunks_exact(n).zip(weights) {
-            for ((row, sum), z) in rows.iter_mut().zip(&mut sums).zip(column) {
-                let size = z.norm_sqr().sqrt() * w;
+        rows.clear();
+        rows.resize(n, [0.0; 2]);
+        for (column, w) in a.chunks_exact(n).zip(weights_sqr) {
+            for ([row, sum], z) in rows.iter_mut().zip(column) {
+                let size = z.norm_sqr().sqrt() * w[0].sqrt();
                 (*row, *sum) = (row.max(size), *sum + size);
             }
         }
-        let norm = sums.iter().zip(&rows).map(|(sum, row)| sum / row).fold(0.0, f64::max);
+        let norm = rows.iter().map(|[row, sum]| sum / row).fold(0.0, f64::max);
         // || B ||_inf = || B^H ||_1 for B = W^{-1} A^{-1} D^{-1}, estimated from products with B^H and B.
         let adjoint = |v: &mut [Complex64]| {
-            v.iter_mut().zip(weights).for_each(|(v, w)| *v /= *w);
+            v.iter_mut().zip(weights_sqr).for_each(|(v, w)| *v /= w[0].sqrt());
             self.solve_adjoint(v);
-            v.iter_mut().zip(&rows).for_each(|(v, r)| *v *= *r);
+            v.iter_mut().zip(&*rows).for_each(|(v, r)| *v *= r[0]);
         };
         let direct = |v: &mut [Complex64]| {
-            v.iter_mut().zip(&rows).for_each(|(v, r)| *v *= *r);
+            v.iter_mut().zip(&*rows).for_each(|(v, r)| *v *= r[0]);
             self.solve(v);
-            v.iter_mut().zip(weights).for_each(|(v, w)| *v /= *w);
+            v.iter_mut().zip(weights_sqr).for_each(|(v, w)| *v /= w[0].sqrt());
         };
         let length = |z: &Complex64| z.norm_sqr().sqrt();
-        let mut x = vec![Complex64::new(1.0 / n as f64, 0.0); n];
+        x.clear();
+        x.resize(n, Complex64::new(1.0 / n as f64, 0.0));
         let mut estimate = 0.0;
         for _ in 0..5 {
-            adjoint(&mut x);
+            adjoint(x);
             let size: f64 = x.iter().map(length).sum();
             if !size.is_finite() {
                 return f64::INFINITY;
@@ -137,7 +147,7 @@ impl Lu<Complex64> {
             }
             estimate = size;
             x.iter_mut().for_each(|z| *z = if length(z) > 0.0 { *z / length(z) } else { Complex64::new(1.0, 0.0) });
-            direct(&mut x);
+            direct(x);
             let best = (0..n).max_by(|&i, &j| length(&x[i]).total_cmp(&length(&x[j]))).unwrap_or(0);
             x.fill(Complex64::new(0.0, 0.0));
             x[best] = Complex64::new(1.0, 0.0);
@@ -374,17 +384,17 @@ mod tests {
     #[test]
     fn condition_of_known_matrices() {
         let identity = [1.0, 0.0, 0.0, 1.0].map(|v| Complex64::new(v, 0.0));
-        let mut lu = Lu::new(2, Isa::Portable);
+        let (mut lu, mut scratch) = (Lu::new(2, Isa::Portable), super::Estimate::default());
         lu.factor(&identity, &[[1.0], [1.0]]);
-        assert_eq!(lu.condition(&identity, &[1.0, 1.0]), 1.0);
+        assert_eq!(lu.condition(&identity, &[[1.0]; 2], &mut scratch), 1.0);
         // [[1, 1], [1, 1 + e]] has condition (2 + e)^2 / e in the maximum norm (nearly unchanged by row scaling).
         let e = 1e-6;
         let near = [1.0, 1.0, 1.0, 1.0 + e].map(|v| Complex64::new(v, 0.0));
         lu.factor(&near, &[[1.0], [1.0]]);
-        let condition = lu.condition(&near, &[1.0, 1.0]);
+        let condition = lu.condition(&near, &[[1.0]; 2], &mut scratch);
         assert!((condition * e / 4.0 - 1.0).abs() < 1e-4, "{condition}");
         let singular = [1.0, 1.0, 1.0, 1.0].map(|v| Complex64::new(v, 0.0));
         lu.factor(&singular, &[[1.0], [1.0]]);
-        assert_eq!(lu.condition(&singular, &[1.0, 1.0]), f64::INFINITY);
+        assert_eq!(lu.condition(&singular, &[[1.0]; 2], &mut scratch), f64::INFINITY);
     }
 }

@@ -1,13 +1,13 @@
 //! Newton's method with residuals in double-double: a solution to the last bit that double precision can hold.
 
-use crate::linalg::Lu;
+use crate::linalg::{Estimate, Lu};
 use crate::random::Random;
 use num_complex::Complex64;
 use poly::simd::Isa;
 use poly::{ComplexDd, Evaluate, Scalar};
 
 /// What refinement tells of a solution.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Refined {
     /// The refined point.
     pub point: Vec<Complex64>,
@@ -33,6 +33,15 @@ pub struct Refiner<'a, E: Evaluate> {
     values: Vec<Complex64>,
     jacobian: Vec<Complex64>,
     lu: Lu<Complex64>,
+    /// The parameters to twice the digits.
+    exact_p: Vec<ComplexDd>,
+    next: Vec<Complex64>,
+    /// Squared sizes of unknowns.
+    squares: Vec<[f64; 1]>,
+    scales: Vec<f64>,
+    estimate: Estimate,
+    /// A result for whoever needs one for a while.
+    pub(crate) spare: Refined,
 }
 
 /// Iterations at most; quadratic convergence from a tracked end point needs two.
@@ -73,23 +82,47 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
             values: vec![zero; n],
             jacobian: vec![zero; n * n],
             lu: Lu::new(n, Isa::Portable),
+            exact_p: Vec::new(),
+            next: Vec::new(),
+            squares: Vec::new(),
+            scales: Vec::new(),
+            estimate: Estimate::default(),
+            spare: Refined::default(),
         }
     }
 
     /// Newton's method from `point` for the parameters `p` until corrections no longer shrink.
     pub fn refine(&mut self, p: &[Complex64], point: &[Complex64]) -> Refined {
-        let exact: Vec<ComplexDd> = p.iter().map(|&z| z.into()).collect();
-        let mut x = point.to_vec();
-        let (accuracy, steady) = self.polish(&exact, &mut x);
-        let (residual, condition, smallest_row) = self.judge(p, &x, steady && accuracy <= NEAR);
-        let plain = steady && accuracy <= TINY && condition <= GOOD && smallest_row > FAINT;
-        Refined { point: x, accuracy, plain, residual, condition }
+        let mut refined = Refined::default();
+        self.refine_into(p, point, &mut refined);
+        refined
+    }
+
+    /// [`refine`](Self::refine) with the memory of an earlier result.
+    pub fn refine_into(&mut self, p: &[Complex64], point: &[Complex64], refined: &mut Refined) {
+        let exact = self.exact(p);
+        refined.point.clear();
+        refined.point.extend_from_slice(point);
+        let x = &mut refined.point;
+        let (accuracy, steady) = self.polish(&exact, x);
+        self.exact_p = exact;
+        let (residual, condition, smallest_row) = self.judge(p, x, steady && accuracy <= NEAR);
+        refined.plain = steady && accuracy <= TINY && condition <= GOOD && smallest_row > FAINT;
+        (refined.accuracy, refined.residual, refined.condition) = (accuracy, residual, condition);
+    }
+
+    /// Parameters to twice the digits, in memory to be given back.
+    fn exact(&mut self, p: &[Complex64]) -> Vec<ComplexDd> {
+        let mut exact = std::mem::take(&mut self.exact_p);
+        exact.clear();
+        exact.extend(p.iter().map(|&z| ComplexDd::from(z)));
+        exact
     }
 
     /// The same in place, for parameters given to twice the digits; returns the relative size of the last correction, and how far rounding
     /// the parameters to double precision would move the point: absolute, to first order, for random roundings, and infinite where the
     /// Jacobian is singular.
-    pub fn polish_and_blur(&mut self, p: &[ComplexDd], x: &mut Vec<Complex64>) -> (f64, Vec<f64>) {
+    pub fn polish_and_blur(&mut self, p: &[ComplexDd], x: &mut [Complex64]) -> (f64, Vec<f64>) {
         let (accuracy, steady) = self.polish(p, x);
         (accuracy, self.blur(p, x, steady && accuracy <= NEAR))
     }
@@ -97,17 +130,20 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
     /// Returns the size of the last correction and whether one that was no rounding error led to one a thousand times smaller. If so,
     /// and if it is at most [`NEAR`], the Jacobian and its factors are those at `x`, or so near to it that Newton's method hardly noticed
     /// the difference.
-    fn polish(&mut self, p: &[ComplexDd], x: &mut Vec<Complex64>) -> (f64, bool) {
+    fn polish(&mut self, p: &[ComplexDd], x: &mut [Complex64]) -> (f64, bool) {
         let (mut accuracy, mut steady) = (f64::INFINITY, false);
         // Whether the last Jacobian serves for this correction.
         let mut serves = false;
         for _ in 0..MAX_ITERATIONS {
             if !serves {
-                self.factor(p, x, &weights(x));
+                weights(x, &mut self.squares);
+                self.factor(p, x);
             }
             self.correction(p, x);
-            let next: Vec<Complex64> = x.iter().zip(&self.values).map(|(x, d)| x - d).collect();
-            let relative = self.values.iter().zip(sizes(&next)).map(|(d, s)| (d.norm_sqr() / s[0]).sqrt());
+            self.next.clear();
+            self.next.extend(x.iter().zip(&self.values).map(|(x, d)| x - d));
+            sizes(&self.next, &mut self.squares);
+            let relative = self.values.iter().zip(&self.squares).map(|(d, s)| (d.norm_sqr() / s[0]).sqrt());
             // Once NaN, always NaN.
             let size = relative.fold(0.0, |m: f64, d| if d <= m || m.is_nan() { m } else { d });
             let shrinks = size <= f64::EPSILON || size < if serves { STEADY * accuracy } else { accuracy };
@@ -120,7 +156,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
             }
             steady |= accuracy.is_finite() && accuracy > TINY && size <= STEADY * accuracy;
             accuracy = size;
-            *x = next;
+            x.copy_from_slice(&self.next);
             if accuracy <= f64::EPSILON {
                 break;
             }
@@ -137,28 +173,34 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
     /// Whether Newton's method comes back to the solution `x` from a point 1e-8 or 1e-6 away (relative): it does not where the
     /// Jacobian is singular. Either is enough, since the first may drown in rounding errors and the second meet other solutions.
     pub fn contracts(&mut self, p: &[Complex64], x: &[Complex64]) -> bool {
-        let exact: Vec<ComplexDd> = p.iter().map(|&z| z.into()).collect();
-        PERTURBATIONS.iter().any(|&perturbation| self.comes_back(&exact, x, perturbation))
+        let exact = self.exact(p);
+        let contracts = PERTURBATIONS.iter().any(|&perturbation| self.comes_back(&exact, x, perturbation));
+        self.exact_p = exact;
+        contracts
     }
 
     fn comes_back(&mut self, p: &[ComplexDd], x: &[Complex64], perturbation: f64) -> bool {
-        let weights = sizes(x);
         let mut random = Random::new(0, 3);
-        let mut y: Vec<Complex64> =
-            x.iter().zip(&weights).map(|(x, w)| x + random.unit() * (perturbation * w[0].sqrt())).collect();
+        let mut y = std::mem::take(&mut self.next);
+        y.clear();
+        sizes(x, &mut self.squares);
+        y.extend(x.iter().zip(&self.squares).map(|(x, w)| x + random.unit() * (perturbation * w[0].sqrt())));
         for _ in 0..2 {
-            self.factor(p, &y, &weights);
+            self.factor(p, &y);
             self.correction(p, &y);
             y.iter_mut().zip(&self.values).for_each(|(y, d)| *y -= d);
         }
-        let mut distances = y.iter().zip(x).zip(&weights).map(|((y, x), w)| (y - x).norm() / w[0].sqrt());
-        distances.all(|d| d <= 1e-3 * perturbation)
+        let mut distances = y.iter().zip(x).zip(&self.squares).map(|((y, x), w)| (y - x).norm() / w[0].sqrt());
+        let comes_back = distances.all(|d| d <= 1e-3 * perturbation);
+        self.next = y;
+        comes_back
     }
 
     fn blur(&mut self, p: &[ComplexDd], x: &[Complex64], factored: bool) -> Vec<f64> {
         let mut random = Random::new(0, 4);
         if !factored {
-            self.factor(p, x, &weights(x));
+            weights(x, &mut self.squares);
+            self.factor(p, x);
         }
         let mut blur = vec![0.0; x.len()];
         for _ in 0..BLUR_DRAWS {
@@ -179,12 +221,12 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         Refined { point: x.to_vec(), accuracy: f64::INFINITY, plain: false, residual, condition }
     }
 
-    /// Leaves the factors of the Jacobian at `x`.
-    fn factor(&mut self, p: &[ComplexDd], x: &[Complex64], weights: &[[f64; 1]]) {
+    /// Leaves the factors of the Jacobian at `x`, unknowns weighted by `squares`.
+    fn factor(&mut self, p: &[ComplexDd], x: &[Complex64]) {
         self.rounded_p.clear();
         self.rounded_p.extend(p.iter().map(ComplexDd::high));
         self.system.jacobian(&mut self.memory, x, &self.rounded_p, &mut self.values, &mut self.jacobian);
-        self.lu.factor(&self.jacobian, weights);
+        self.lu.factor(&self.jacobian, &self.squares);
     }
 
     /// Leaves in `values` the correction of Newton's method at `x`, with the Jacobian that is factored.
@@ -204,7 +246,8 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         let mut values = vec![ComplexDd::from(Complex64::new(0.0, 0.0)); n];
         let mut x: Vec<ComplexDd> = point.iter().map(|&z| z.into()).collect();
         self.system.jacobian(&mut self.memory, point, p, &mut self.values, &mut self.jacobian);
-        self.lu.factor(&self.jacobian, &weights(point));
+        weights(point, &mut self.squares);
+        self.lu.factor(&self.jacobian, &self.squares);
         for _ in 0..EXTENSIONS {
             self.system.values(&mut self.precise, &x, &precise_p, &mut values);
             self.values.iter_mut().zip(&values).for_each(|(d, s)| *d = Complex64::from(*s));
@@ -218,41 +261,44 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
     /// and its factors are those of `x` already.
     fn judge(&mut self, p: &[Complex64], x: &[Complex64], factored: bool) -> (f64, f64, f64) {
         let n = x.len();
-        let squares = sizes(x);
+        sizes(x, &mut self.squares);
         if factored {
             self.system.values(&mut self.memory, x, p, &mut self.values);
         } else {
             self.system.jacobian(&mut self.memory, x, p, &mut self.values, &mut self.jacobian);
-            self.lu.factor(&self.jacobian, &squares);
+            self.lu.factor(&self.jacobian, &self.squares);
         }
-        let weights: Vec<f64> = squares.iter().map(|w| w[0].sqrt()).collect();
         // Sizes of the rows.
-        let mut scales = vec![0.0; n];
-        for (column, w) in self.jacobian.chunks_exact(n.max(1)).zip(&weights) {
-            scales.iter_mut().zip(column).for_each(|(scale, z)| *scale += z.norm_sqr().sqrt() * w);
+        let scales = &mut self.scales;
+        scales.clear();
+        scales.resize(n, 0.0);
+        for (column, w) in self.jacobian.chunks_exact(n.max(1)).zip(&self.squares) {
+            scales.iter_mut().zip(column).for_each(|(scale, z)| *scale += z.norm_sqr().sqrt() * w[0].sqrt());
         }
         let relative = self
             .values
             .iter()
-            .zip(&scales)
+            .zip(&*scales)
             .map(|(value, scale)| value.norm_sqr().sqrt() / scale.max(f64::MIN_POSITIVE));
         let residual = relative.fold(0.0, f64::max);
         let (least, largest) = scales.iter().fold((f64::INFINITY, 1.0f64), |(l, g), s| (l.min(*s), g.max(*s)));
-        (residual, self.lu.condition(&self.jacobian, &weights), least / largest)
+        (residual, self.lu.condition(&self.jacobian, &self.squares, &mut self.estimate), least / largest)
     }
 }
 
 /// Squared sizes of the coordinates, none below 1e-4 of the largest.
-fn weights(x: &[Complex64]) -> Vec<[f64; 1]> {
+fn weights(x: &[Complex64], squares: &mut Vec<[f64; 1]>) {
     let largest = x.iter().map(|z| z.norm_sqr()).fold(0.0, f64::max);
     let floor = if largest > 0.0 { 1e-8 * largest } else { 1.0 };
-    x.iter().map(|z| [z.norm_sqr().max(floor)]).collect()
+    squares.clear();
+    squares.extend(x.iter().map(|z| [z.norm_sqr().max(floor)]));
 }
 
 /// Squared sizes of the coordinates; those below 1e-12 of the largest, or of one if that is less, count as zero, which is measured on
 /// the scale of 1e-4 of that.
-fn sizes(x: &[Complex64]) -> Vec<[f64; 1]> {
+fn sizes(x: &[Complex64], squares: &mut Vec<[f64; 1]>) {
     let largest = x.iter().map(|z| z.norm_sqr()).fold(0.0, f64::max);
     let unit = if largest > 0.0 { largest.min(1.0) } else { 1.0 };
-    x.iter().map(|z| [if z.norm_sqr() > 1e-24 * unit { z.norm_sqr() } else { 1e-8 * unit }]).collect()
+    squares.clear();
+    squares.extend(x.iter().map(|z| [if z.norm_sqr() > 1e-24 * unit { z.norm_sqr() } else { 1e-8 * unit }]));
 }

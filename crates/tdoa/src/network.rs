@@ -33,8 +33,12 @@ impl Network {
     /// If the network and the measurements differ in size.
     pub fn residuals(&self, measured: &Pseudoranges) -> Vec<f64> {
         self.check_size(measured);
+        self.each_residual(measured).collect()
+    }
+
+    fn each_residual(&self, measured: &Pseudoranges) -> impl Iterator<Item = f64> {
         let n = self.transmitters.len();
-        (0..self.receivers.len() * n).map(|k| measured.values()[k] - self.pseudorange(k / n, k % n)).collect()
+        measured.values().iter().enumerate().map(move |(k, f)| f - self.pseudorange(k / n, k % n))
     }
 
     /// Root mean square of the unsquared residuals over the measured cells, in metres; 0 if nothing was measured.
@@ -42,8 +46,9 @@ impl Network {
     /// # Panics
     /// If the network and the measurements differ in size.
     pub fn rms(&self, measured: &Pseudoranges) -> f64 {
+        self.check_size(measured);
         let (mut sum, mut count) = (0.0, 0usize);
-        for residual in self.residuals(measured) {
+        for residual in self.each_residual(measured) {
             if !residual.is_nan() {
                 sum += residual * residual;
                 count += 1;

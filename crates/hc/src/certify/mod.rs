@@ -42,13 +42,15 @@
 //! Weights of unknowns and rows come from the system, `|C| |J| |x|`, so badly scaled systems need no scaling beforehand.
 
 mod krawczyk;
+mod proof;
+mod prover;
 mod same;
 #[cfg(test)]
 mod tests;
 
-use krawczyk::{Prover, Target};
 use num_complex::Complex64;
 use poly::{CompileError, ComplexInterval, Evaluate, System};
+use prover::{Prover, Target};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
 /// Settings of [`certify`].

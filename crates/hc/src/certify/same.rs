@@ -4,7 +4,7 @@
 //! are compared.
 
 use super::Obstacle;
-use super::krawczyk::Proof;
+use super::proof::Proof;
 use poly::interval::Interval;
 
 pub(super) struct Compared {

@@ -43,6 +43,23 @@ impl Binomials {
         Some(Binomials { hermite: h, transform: u })
     }
 
+    /// The integers `x` with `<m_i, x> = sides[i]` for the exponents `m_i`; `None` if there are none, or integers outgrow 127 bits.
+    pub(crate) fn integers(&self, sides: &[i128]) -> Option<Vec<i128>> {
+        let sum = |row: &[i128], y: &[i128]| {
+            row.iter().zip(y).try_fold(0i128, |sum, (a, y)| sum.checked_add(a.checked_mul(*y)?))
+        };
+        // With x = transform y it is triangular.
+        let mut y: Vec<i128> = Vec::with_capacity(sides.len());
+        for (i, (row, side)) in self.hermite.iter().zip(sides).enumerate() {
+            let rest = side.checked_sub(sum(&row[..i], &y)?)?;
+            if rest % row[i] != 0 {
+                return None;
+            }
+            y.push(rest / row[i]);
+        }
+        self.transform.iter().map(|row| sum(row, &y)).collect()
+    }
+
     /// The solution number `k` below the determinant, for the right-hand sides `b`, none of them zero.
     pub(crate) fn solution(&self, b: &[Complex64], mut k: u64) -> Vec<Complex64> {
         let n = b.len();
@@ -76,6 +93,19 @@ mod tests {
     use proptest::prelude::{prop, prop_assert, prop_assert_eq, proptest};
 
     proptest! {
+        #[test]
+        fn integers_with_given_products(m in prop::collection::vec(-9i128..=9, 16), x in prop::collection::vec(-99i128..=99, 4)) {
+            let m: Vec<Vec<i128>> = m.chunks(4).map(<[i128]>::to_vec).collect();
+            let Some(binomials) = Binomials::new(&m) else { return Ok(()) };
+            let sides: Vec<i128> = m.iter().map(|row| row.iter().zip(&x).map(|(a, x)| a * x).sum()).collect();
+            prop_assert_eq!(binomials.integers(&sides), Some(x));
+            // Products with even numbers are even.
+            let doubled: Vec<Vec<i128>> = m.iter().map(|row| row.iter().map(|a| 2 * a).collect()).collect();
+            let Some(doubled) = Binomials::new(&doubled) else { return Ok(()) };
+            prop_assert_eq!(doubled.integers(&[1, 0, 0, 0]), None);
+            prop_assert_eq!(doubled.integers(&[i128::MIN; 4].map(|side| side + 1)), None);
+        }
+
         #[test]
         fn as_many_distinct_solutions_as_the_determinant(m in prop::collection::vec(-4i128..=4, 9), seed in 0u64..1000) {
             let m: Vec<Vec<i128>> = m.chunks(3).map(<[i128]>::to_vec).collect();

@@ -139,15 +139,33 @@ pub fn mixed_cells(
     supports: &[Vec<Vec<i32>>],
     lifting: &[Vec<i32>],
 ) -> Result<Vec<MixedCell>, MixedError> {
-    watched_cells(unknowns, supports, lifting, &Monitor::default())
+    let found: Vec<Vec<MixedCell>> = watched_cells(unknowns, supports, lifting, &Monitor::default(), Vec::new)?;
+    let mut cells = found.concat();
+    cells.sort_unstable_by(|a, b| a.edges.cmp(&b.edges));
+    Ok(cells)
 }
 
-pub(super) fn watched_cells(
+/// Keeps what is wanted of the mixed cells that a thread finds.
+pub(super) trait Keep: Send {
+    /// A cell as in [`MixedCell`].
+    fn keep(&mut self, edges: &[[u32; 2]], volume: u64, normal: &[i128]);
+}
+
+impl Keep for Vec<MixedCell> {
+    fn keep(&mut self, edges: &[[u32; 2]], volume: u64, normal: &[i128]) {
+        let edges = edges.iter().map(|edge| edge.map(|p| p as usize)).collect();
+        self.push(MixedCell { edges, volume, normal: normal.to_vec() });
+    }
+}
+
+/// What `make` makes, each with some of the cells, in any order: tasks end in any order, a cell is known by its edges.
+pub(super) fn watched_cells<K: Keep>(
     unknowns: usize,
     supports: &[Vec<Vec<i32>>],
     lifting: &[Vec<i32>],
     monitor: &Monitor,
-) -> Result<Vec<MixedCell>, MixedError> {
+    make: impl Fn() -> K + Sync,
+) -> Result<Vec<K>, MixedError> {
     monitor.enter(Stage::MixedCells, 0);
     for (i, points) in supports.iter().enumerate() {
         let values = lifting.get(i).map_or(0, Vec::len);
@@ -158,35 +176,33 @@ pub(super) fn watched_cells(
     let Some(Ordered { supports, order }) = Ordered::new(unknowns, supports)? else { return Ok(Vec::new()) };
     let tau: Vec<i64> = order.iter().flat_map(|&i| &lifting[i]).map(|&l| -i64::from(l)).collect();
     let space = Space::new(supports, Some(tau), monitor);
-    let found = search(&space, || Cells { lifting, order: &order, cells: Vec::new(), monitor })?;
-    let mut cells: Vec<MixedCell> = found.into_iter().flat_map(|part| part.cells).collect();
-    // Tasks end in any order; a cell is known by its edges.
-    cells.sort_unstable_by(|a, b| a.edges.cmp(&b.edges));
-    Ok(cells)
+    let (edges, normal) = (vec![[0; 2]; unknowns], vec![0; unknowns]);
+    let cells =
+        || Cells { lifting, order: &order, edges: edges.clone(), normal: normal.clone(), kept: make(), monitor };
+    Ok(search(&space, cells)?.into_iter().map(|part| part.kept).collect())
 }
 
-struct Cells<'a> {
+struct Cells<'a, K> {
     lifting: &'a [Vec<i32>],
     order: &'a [usize],
-    cells: Vec<MixedCell>,
+    edges: Vec<[u32; 2]>,
+    normal: Vec<i128>,
+    kept: K,
     monitor: &'a Monitor,
 }
 
-impl Sink for Cells<'_> {
+impl<K: Keep> Sink for Cells<'_, K> {
     fn take<T: Integer>(&mut self, cell: &Cell<T>) -> Result<(), Overflow> {
-        let n = cell.pairs.len();
-        let mut edges = vec![[0; 2]; n];
-        let mut normal = vec![0i128; n];
-        for (j, (&support, pair)) in self.order.iter().zip(&cell.pairs).enumerate() {
-            let [a, b] = pair.map(|p| p as usize);
-            edges[support] = [a, b];
-            let slope = i128::from(self.lifting[support][b]) - i128::from(self.lifting[support][a]);
-            for (x, u) in normal.iter_mut().zip(cell.dual(j)) {
-                *x = u.wide().checked_mul(slope).and_then(|y| x.checked_add(y)).ok_or(Overflow)?;
+        self.normal.fill(0);
+        for (j, (&support, &edge)) in self.order.iter().zip(&cell.pairs).enumerate() {
+            self.edges[support] = edge;
+            let [a, b] = edge.map(|p| i128::from(self.lifting[support][p as usize]));
+            for (x, u) in self.normal.iter_mut().zip(cell.dual(j)) {
+                *x = u.wide().checked_mul(b - a).and_then(|y| x.checked_add(y)).ok_or(Overflow)?;
             }
         }
         let volume = u64::try_from(cell.volume.wide()).map_err(|_| Overflow)?;
-        self.cells.push(MixedCell { edges, volume, normal });
+        self.kept.keep(&self.edges, volume, &self.normal);
         self.monitor.add(1, volume);
         Ok(())
     }

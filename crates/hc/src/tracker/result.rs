@@ -147,16 +147,65 @@ impl PathSet {
         self.points[k * self.dimension..(k + 1) * self.dimension].copy_from_slice(point);
     }
 
+    /// Replaces the `k`-th record, not its point.
+    pub fn replace_record(&mut self, k: usize, result: PathResult) {
+        self.results[k] = result;
+    }
+
     /// Sorts by the index of the start solution.
     pub fn sort(&mut self) {
+        // Mostly these are all numbers up to the largest: each record goes to its place, without more memory.
+        for k in 0..self.len() {
+            loop {
+                let place = self.results[k].path;
+                if place == k {
+                    break;
+                }
+                if place >= self.len() || self.results[place].path == place {
+                    return self.sort_by_copying();
+                }
+                self.results.swap(k, place);
+                for j in 0..self.dimension {
+                    self.points.swap(k * self.dimension + j, place * self.dimension + j);
+                }
+            }
+        }
+    }
+
+    fn sort_by_copying(&mut self) {
         let mut order: Vec<usize> = (0..self.len()).collect();
         order.sort_by_key(|&k| self.results[k].path);
-        if order.iter().enumerate().all(|(i, &k)| i == k) {
-            return;
-        }
         let results = order.iter().map(|&k| self.results[k]).collect();
         let points = order.iter().flat_map(|&k| self.point(k).iter().copied()).collect();
         self.results = results;
         self.points = points;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{PathResult, PathSet};
+    use proptest::prelude::{Just, Strategy, prop, prop_assert, proptest};
+
+    proptest! {
+        #[test]
+        fn sorted_paths_keep_their_points(paths in numbers()) {
+            let mut set = PathSet::new(2);
+            for &path in &paths {
+                set.push(PathResult::cancelled(path), [1.0, 2.0].map(|z| (z * path as f64).into()));
+            }
+            set.sort();
+            prop_assert!(set.results().is_sorted_by_key(|r| r.path));
+            prop_assert!(set.iter().all(|(r, x)| x[0].re == r.path as f64 && x[1].re == 2.0 * r.path as f64));
+            let mut sorted = paths;
+            sorted.sort_unstable();
+            prop_assert!(set.results().iter().map(|r| r.path).eq(sorted));
+        }
+    }
+
+    /// All numbers up to some, in any order, or any numbers.
+    fn numbers() -> impl Strategy<Value = Vec<usize>> {
+        let all = (0usize..40).prop_flat_map(|n| Just((0..n).collect::<Vec<usize>>()).prop_shuffle());
+        proptest::prop_oneof![all, prop::collection::vec(0usize..30, 0..30)]
     }
 }

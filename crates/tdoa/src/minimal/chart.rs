@@ -4,6 +4,7 @@
 //! easy in another. The equations keep their form when the columns of the measurements are permuted, so a path continues in another
 //! chart with the same family: its start solution is carried over, and its end carried back.
 
+use super::formulation::Parameters;
 use num_complex::Complex64;
 
 /// Transmitters of the formulation.
@@ -15,8 +16,8 @@ const UNKNOWNS: usize = 8;
 pub(crate) const CHARTS: [[usize; COLUMNS]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [1, 0, 2], [0, 2, 1], [2, 1, 0]];
 
 /// Parameters (rows of `width`) with the first columns in the order of a chart.
-pub(crate) fn permute_columns(f: &[Complex64], width: usize, chart: &[usize; COLUMNS]) -> Vec<Complex64> {
-    let mut out = f.to_vec();
+pub(crate) fn permute_columns(f: &[Complex64], width: usize, chart: &[usize; COLUMNS]) -> Parameters {
+    let mut out = Parameters::from_slice(f);
     for (row, from) in out.chunks_exact_mut(width).zip(f.chunks_exact(width)) {
         chart.iter().enumerate().for_each(|(to, &j)| row[to] = from[j]);
     }

@@ -4,8 +4,9 @@
 //! = -2 r_i . (s_j - s_1)`, `q_ij = f_ij (f_ij - 2 p_j)`, then has rank one instead of two, for receivers in a line as for transmitters,
 //! and the offsets for which it has follow from linear equations.
 
-use super::linear::least_squares;
+use super::linear::LeastSquares;
 use super::rank::differences;
+use smallvec::SmallVec;
 
 /// Rank one to this precision (minors relative to the square of the largest entry) counts as exact.
 const RANK_ONE: f64 = 1e-9;
@@ -23,11 +24,11 @@ pub(crate) enum Line {
 ///
 /// `None` too for matrices so small that some offsets always give rank one: six receivers with three transmitters, five with four and
 /// four with five are the smallest that tell.
-pub(crate) fn in_one_line(f: &[f64], width: usize) -> Option<Line> {
+pub(crate) fn in_one_line(f: &[f64], width: usize, squares: &mut LeastSquares) -> Option<Line> {
     let rows = f.len() / width;
     let p = match (rows, width) {
-        (5.., 3..) | (4, 4..) => by_columns(f, width)?,
-        (3, 5..) => by_rows(f, width)?,
+        (5.., 3..) | (4, 4..) => by_columns(f, width, squares)?,
+        (3, 5..) => by_rows(f, width, squares)?,
         _ => return None,
     };
     let (d, q) = differences(f, &p);
@@ -42,8 +43,8 @@ pub(crate) fn in_one_line(f: &[f64], width: usize) -> Option<Line> {
         return None;
     }
     // Receivers in a line: r_i = x_i e, x_i in the ratio of the rows of D, and q_i1 = x_i^2 - 2 x_i (e . s_1), a quadratic without constant.
-    let x: Vec<f64> = (0..rows).map(|i| d[i * w + column] / d[at]).collect();
-    let fit = least_squares(rows, 2, |i, c| if c == 0 { x[i] * x[i] } else { x[i] }, |i| q[i])?;
+    let x: SmallVec<[f64; 8]> = (0..rows).map(|i| d[i * w + column] / d[at]).collect();
+    let fit = squares.fit(rows, 2, |i, c| if c == 0 { x[i] * x[i] } else { x[i] }, |i| q[i])?;
     let size = q.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
     let quadratic = (0..rows).all(|i| ((fit[0] * x[i] + fit[1]) * x[i] - q[i]).abs() <= 1e-6 * size);
     Some(if quadratic && fit[0] > 0.0 { Line::Receivers } else { Line::Transmitters })
@@ -51,17 +52,16 @@ pub(crate) fn in_one_line(f: &[f64], width: usize) -> Option<Line> {
 
 /// Offsets `p_j` that make `D` rank one: three columns of `q` then obey `q_i3 = w q_i1 + (1 - w) q_i2`, which is linear in `w`, `w p_1`, `(1 - w) p_2`
 /// and `p_3`; four rows or more.
-fn by_columns(f: &[f64], width: usize) -> Option<Vec<f64>> {
-    let rows: Vec<&[f64]> = f.chunks_exact(width).collect();
-    let mut p = Vec::with_capacity(width);
+fn by_columns(f: &[f64], width: usize, squares: &mut LeastSquares) -> Option<SmallVec<[f64; 8]>> {
+    let mut p = SmallVec::new();
     for j in 2..width {
         let entry = |i: usize, c: usize| {
-            let [a, b, c3] = [rows[i][0], rows[i][1], rows[i][j]];
+            let [a, b, c3] = [f[i * width], f[i * width + 1], f[i * width + j]];
             [a * a - b * b, -2.0 * a, 2.0 * b, 2.0 * c3][c]
         };
-        let right = |i: usize| rows[i][j] * rows[i][j] - rows[i][1] * rows[i][1];
+        let right = |i: usize| f[i * width + j].powi(2) - f[i * width + 1].powi(2);
         // The third unknown is -(1 - w) p_2.
-        let x = least_squares(rows.len(), 4, entry, right)?;
+        let x = squares.fit(f.len() / width, 4, entry, right)?;
         if j == 2 {
             p.extend([x[1] / x[0], -x[2] / (1.0 - x[0])]);
         }
@@ -72,7 +72,7 @@ fn by_columns(f: &[f64], width: usize) -> Option<Vec<f64>> {
 
 /// The same from three rows and five columns or more: `q_ij - g_i q_2j = c_i` for `i = 3, 4`. Without the `p_j` these are linear in
 /// `g_3`, `g_4`, `c_3`, `c_4` and `g_3 c_4 - g_4 c_3`.
-fn by_rows(f: &[f64], width: usize) -> Option<Vec<f64>> {
+fn by_rows(f: &[f64], width: usize, squares: &mut LeastSquares) -> Option<SmallVec<[f64; 8]>> {
     let at = |i: usize, j: usize| f[i * width + j];
     let entry = |j: usize, c: usize| {
         let [a, b, d] = [at(0, j), at(1, j), at(2, j)];
@@ -82,7 +82,7 @@ fn by_rows(f: &[f64], width: usize) -> Option<Vec<f64>> {
         let [b, d] = [at(1, j), at(2, j)];
         b * d * (b - d)
     };
-    let x = least_squares(width, 5, entry, right)?;
+    let x = squares.fit(width, 5, entry, right)?;
     let offset = |j: usize| {
         let [a, b, d] = [at(0, j), at(1, j), at(2, j)];
         let (third, fourth) = (x[0] * a - b, x[1] * a - d);
@@ -98,6 +98,7 @@ fn by_rows(f: &[f64], width: usize) -> Option<Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use super::{Line, in_one_line};
+    use crate::minimal::linear::LeastSquares;
     use crate::simulate::{Layout, SimulateOptions, simulate};
 
     #[test]
@@ -127,7 +128,7 @@ mod tests {
                             .collect();
                         let expected = (distance == 0.0).then_some(line);
                         assert_eq!(
-                            in_one_line(&f, transmitters),
+                            in_one_line(&f, transmitters, &mut LeastSquares::default()),
                             expected,
                             "{receivers}r/{transmitters}s, seed {seed}, {line:?}"
                         );

@@ -1,7 +1,7 @@
 //! From a real root of the dual formulation to positions.
 
 use super::chart::COLUMNS;
-use super::linear::least_squares;
+use super::linear::LeastSquares;
 use crate::network::Network;
 
 /// `D_i1`, `D_i2` of receiver `i = 2..m` (row `i - 2` of `f`), and `q_i1`.
@@ -21,15 +21,22 @@ pub(crate) fn network(f: &[f64], width: usize, x: &[f64]) -> Option<Network> {
         return None;
     }
     let (root_k, root_m) = (k.sqrt(), m.sqrt());
-    let mut receivers = vec![[0.0, 0.0]];
+    let mut receivers = Vec::with_capacity(f.len() / width + 1);
+    receivers.push([0.0, 0.0]);
     receivers.extend(f.chunks_exact(width).map(|row| {
         let [d1, d2, _] = differences(row, x);
         [d1 * root_k, (d2 - l * d1) * root_m]
     }));
     let first = [u / root_k, v / root_m];
-    let transmitters =
-        vec![first, [first[0] - 0.5 / root_k, first[1]], [first[0] - 0.5 * l / root_k, first[1] - 0.5 / root_m]];
-    let network = Network { receivers, transmitters, offsets: vec![p1, p2, p3] };
+    // Room for a fourth.
+    let (mut transmitters, mut offsets) = (Vec::with_capacity(COLUMNS + 1), Vec::with_capacity(COLUMNS + 1));
+    transmitters.extend([
+        first,
+        [first[0] - 0.5 / root_k, first[1]],
+        [first[0] - 0.5 * l / root_k, first[1] - 0.5 / root_m],
+    ]);
+    offsets.extend([p1, p2, p3]);
+    let network = Network { receivers, transmitters, offsets };
     network.is_finite().then_some(network)
 }
 
@@ -41,15 +48,14 @@ pub(crate) fn further_transmitter(
     j: usize,
     x: &[f64],
     network: &Network,
+    squares: &mut LeastSquares,
 ) -> Option<([f64; 2], f64)> {
-    let rows: Vec<[f64; 4]> = f
-        .chunks_exact(width)
-        .map(|row| {
-            let [d1, d2, q] = differences(row, x);
-            [d1, d2, 2.0 * row[j], row[j] * row[j] - q]
-        })
-        .collect();
-    let solution = least_squares(rows.len(), 3, |i, c| rows[i][c], |i| rows[i][3])?;
+    let equation = |i: usize| {
+        let row = &f[i * width..(i + 1) * width];
+        let [d1, d2, q] = differences(row, x);
+        [d1, d2, 2.0 * row[j], row[j] * row[j] - q]
+    };
+    let solution = squares.fit(f.len() / width, 3, |i, c| equation(i)[c], |i| equation(i)[3])?;
     let [s1, s2, s3] = [0, 1, 2].map(|k| network.transmitters[k]);
     let (y, z) = (solution[0], solution[1]);
     Some(([0, 1].map(|k| s1[k] + y * (s2[k] - s1[k]) + z * (s3[k] - s1[k])), solution[2]))

@@ -3,11 +3,13 @@
 
 use super::collinear::{Line, in_one_line};
 use super::formulation::Formulation;
-use super::nearest::nearest;
+use super::linear::LeastSquares;
+use super::nearest::Nearest;
 use super::normalised::{Normalised, rank};
+use super::polish::Polisher;
 use super::proofs::{RootProofs, prove};
 use super::real::real_root;
-use super::recover::Recovery;
+use super::recover::{Again, Recovery};
 use super::{SolveError, SolveOptions, Start, check, scratch};
 use crate::calibrate::flatness;
 use crate::network::{Candidate, MinimalSolution, Network, PathCounts, RootCounts};
@@ -15,7 +17,7 @@ use crate::pseudoranges::Pseudoranges;
 use hc::fibre::Fibre;
 use hc::homotopy::Segment;
 use hc::poly::Lanes8;
-use hc::refine::Refiner;
+use hc::refine::{Refined, Refiner};
 use hc::tracker::{PathEnd, PathResult, PathSet, Tracker};
 use num_complex::Complex64;
 
@@ -28,29 +30,45 @@ const PART: usize = 32;
 /// So many lost paths are bad luck; more of them tell of a degenerate network, whose roots no other path reaches either.
 const BAD_LUCK: usize = 4;
 
+/// Room for so many candidates is made at once; there are hardly ever more.
+const CANDIDATES: usize = 64;
+
 /// A solver of one configuration; keeps its memory from call to call.
 pub(crate) struct Engine<F: Formulation> {
-    tracker: Tracker<'static, F::System, Lanes8>,
-    stored: Fibre,
-    paths: PathSet,
+    tracking: Tracking<F>,
+    roots: Roots<F>,
+    data: Normalised,
     /// The parameters of the last call.
     target: Vec<Complex64>,
+    squares: LeastSquares,
 }
 
 impl<F: Formulation> Engine<F> {
     /// A solver with its start solutions.
     pub(crate) fn new() -> Self {
         let stored = F::fibre();
-        let paths = PathSet::new(stored.dimension);
-        Engine {
+        let start = stored.clone();
+        let tracking = Tracking {
             tracker: Tracker::new(F::system(), &SolveOptions::default().paths.tracker),
+            paths: PathSet::new(stored.dimension),
             stored,
-            paths,
-            target: Vec::new(),
-        }
+            nearest: Nearest::default(),
+            start,
+            segment: Segment::default(),
+            again: Again::new(),
+        };
+        let roots = Roots {
+            refiner: Refiner::new(F::system()),
+            refined: Refined::default(),
+            squares: LeastSquares::default(),
+            polisher: Polisher::default(),
+        };
+        let (data, squares) = (Normalised::default(), LeastSquares::default());
+        Engine { tracking, roots, data, target: Vec::new(), squares }
     }
 
-    /// Every network that explains a matrix of the formulation's size.
+    /// Every network that explains a matrix of the formulation's size. After the first call memory is allocated for the result alone, unless
+    /// all paths have to be tracked again.
     pub(crate) fn solve(
         &mut self,
         measured: &Pseudoranges,
@@ -59,15 +77,19 @@ impl<F: Formulation> Engine<F> {
         let size = (measured.receivers(), measured.transmitters());
         assert_eq!(size, (F::RECEIVERS, F::TRANSMITTERS), "size of the matrix");
         check(measured)?;
-        let data = Normalised::new(measured);
+        self.data.take(measured);
+        let parameters = self.data.parameters();
         self.target.clear();
-        self.target.extend(data.parameters().iter().map(|&f| Complex64::from(f)));
-        let mut found = Found::<F>::new(measured, &data, options);
+        self.target.extend(parameters.iter().map(|&f| Complex64::from(f)));
+        let (data, target, roots) = (&self.data, &self.target[..], &mut self.roots);
+        let candidates = Vec::with_capacity(CANDIDATES);
+        let mut found =
+            Found::<F> { measured, data, options, target, roots, counts: RootCounts::default(), candidates };
         let (paths, stopped_early) = match options.start {
-            Start::Stored => self.track(&mut found, options),
+            Start::Stored => self.tracking.run(&mut found),
             Start::Polyhedral => {
-                self.paths.clear(self.stored.dimension);
-                let (roots, paths) = scratch::roots::<F>(data.parameters())?;
+                self.tracking.paths.clear(self.tracking.stored.dimension);
+                let (roots, paths) = scratch::roots::<F>(parameters)?;
                 roots.iter().for_each(|root| found.add(root));
                 found.counts.complex = roots.len();
                 (paths, false)
@@ -75,42 +97,63 @@ impl<F: Formulation> Engine<F> {
         };
         let Found { counts, mut candidates, .. } = found;
         rank(&mut candidates);
-        let warnings = warnings(&paths, &candidates, in_one_line(data.parameters(), F::TRANSMITTERS));
+        let line = in_one_line(parameters, F::TRANSMITTERS, &mut self.squares);
+        let warnings = warnings(&paths, &candidates, line);
         let configuration = measured.configuration();
         Ok(MinimalSolution { configuration, solver: F::NAME, paths, counts, stopped_early, warnings, candidates })
     }
 
     /// The records of the paths of the last call.
     pub(crate) fn records(&self) -> &[PathResult] {
-        self.paths.results()
+        self.tracking.paths.results()
     }
 
     /// Proofs that the complex roots of the last call exist and are distinct.
     pub(crate) fn prove(&self) -> Option<RootProofs> {
-        let ends = self.paths.iter().filter(|(r, _)| r.end == PathEnd::Success);
+        let ends = self.tracking.paths.iter().filter(|(r, _)| r.end == PathEnd::Success);
         prove::<F>(&self.target, &ends.map(|(_, x)| x.to_vec()).collect::<Vec<_>>())
     }
+}
 
+/// The paths, and what follows them.
+struct Tracking<F: Formulation> {
+    tracker: Tracker<'static, F::System, Lanes8>,
+    stored: Fibre,
+    nearest: Nearest,
+    /// The stored fibre in the position nearest to the data.
+    start: Fibre,
+    segment: Segment,
+    paths: PathSet,
+    again: Again<F>,
+}
+
+impl<F: Formulation> Tracking<F> {
     /// Tracks all paths, again from a turned fibre where some stay lost, keeps the most complete set and adds its roots to `found`.
     /// Returns the counts and whether the search stopped at a network that fits.
-    fn track(&mut self, found: &mut Found<'_, F>, options: &SolveOptions) -> (PathCounts, bool) {
+    fn run(&mut self, found: &mut Found<'_, F>) -> (PathCounts, bool) {
+        let (target, options) = (found.target, found.options);
         let mut retracked = 0;
         let mut best: Option<(usize, PathSet)> = None;
         for (attempt, turn) in TURNS.into_iter().enumerate() {
             retracked += if attempt > 0 { self.stored.len() } else { 0 };
-            let start = nearest::<F>(&self.stored, &self.target, turn);
-            if attempt == 0 && options.first_under.is_some() && self.stops_early(&start, found, options) {
+            self.nearest.find::<F>(&self.stored, target, turn, &mut self.start);
+            let parameters = |p: &[Complex64]| F::parameters(0, p);
+            self.segment.join(&parameters(&self.start.parameters), &parameters(target));
+            let in_parts = attempt == 0 && options.first_under.is_some();
+            if in_parts && self.stops_early(found) {
                 return (self.counts(0, 0), true);
             }
             let recovery = Recovery::<F> {
-                start: &start,
-                target: &self.target,
+                start: &self.start,
+                segment: &self.segment,
+                target,
                 settings: &options.paths,
                 fallback: options.fallback,
                 tracker: &mut self.tracker,
                 paths: &mut self.paths,
+                again: &mut self.again,
             };
-            let (lost, again) = recovery.run(attempt == 0 && options.first_under.is_some());
+            let (lost, again) = recovery.run(in_parts);
             retracked += again;
             if attempt == 0 && lost == 0 {
                 best = None;
@@ -143,15 +186,14 @@ impl<F: Formulation> Engine<F> {
     }
 
     /// Tracks the paths a part at a time until one gives a physical network that fits; whether one did.
-    fn stops_early(&mut self, start: &Fibre, found: &mut Found<'_, F>, options: &SolveOptions) -> bool {
-        let path = Segment::new(&F::parameters(0, &start.parameters), &F::parameters(0, &self.target));
-        self.tracker.set_options(&options.paths.tracker);
-        self.paths.clear(start.dimension);
+    fn stops_early(&mut self, found: &mut Found<'_, F>) -> bool {
+        self.tracker.set_options(&found.options.paths.tracker);
+        self.paths.clear(self.start.dimension);
         let mut from = 0;
-        while from < start.len() {
-            let to = (from + PART).min(start.len());
+        while from < self.start.len() {
+            let to = (from + PART).min(self.start.len());
             let before = self.paths.len();
-            self.tracker.track(&path, &start.solutions, from..to, &mut self.paths);
+            self.tracker.track(&self.segment, &self.start.solutions, from..to, &mut self.paths);
             for (_, x) in self.paths.iter().skip(before).filter(|(r, _)| r.end == PathEnd::Success) {
                 found.counts.complex += 1;
                 found.add(x);
@@ -167,24 +209,26 @@ impl<F: Formulation> Engine<F> {
     }
 }
 
+/// What makes networks of roots; keeps its memory.
+struct Roots<F: Formulation> {
+    refiner: Refiner<'static, F::System>,
+    refined: Refined,
+    squares: LeastSquares,
+    polisher: Polisher,
+}
+
 /// The networks of the real roots found so far.
 struct Found<'a, F: Formulation> {
     measured: &'a Pseudoranges,
     data: &'a Normalised,
     options: &'a SolveOptions,
-    target: Vec<Complex64>,
-    refiner: Refiner<'static, F::System>,
+    target: &'a [Complex64],
+    roots: &'a mut Roots<F>,
     counts: RootCounts,
     candidates: Vec<Candidate>,
 }
 
-impl<'a, F: Formulation> Found<'a, F> {
-    fn new(measured: &'a Pseudoranges, data: &'a Normalised, options: &'a SolveOptions) -> Self {
-        let target = data.parameters().iter().map(|&f| f.into()).collect();
-        let (refiner, counts) = (Refiner::new(F::system()), RootCounts::default());
-        Found { measured, data, options, target, refiner, counts, candidates: Vec::new() }
-    }
-
+impl<F: Formulation> Found<'_, F> {
     fn clear(&mut self) {
         self.counts = RootCounts::default();
         self.candidates.clear();
@@ -192,13 +236,14 @@ impl<'a, F: Formulation> Found<'a, F> {
 
     /// Counts a root and, if it is real with real positions, adds its network.
     fn add(&mut self, root: &[Complex64]) {
-        let Some((x, real)) = real_root::<F>(&mut self.refiner, &self.target, root, self.options.near_real) else {
+        let Roots { refiner, refined, squares, polisher } = &mut *self.roots;
+        let Some((x, real)) = real_root::<F>(refiner, self.target, root, self.options.near_real, refined) else {
             return;
         };
         self.counts.real += usize::from(real);
-        let Some(network) = F::network(self.data.parameters(), &x) else { return };
+        let Some(network) = F::network(self.data.parameters(), &x, squares) else { return };
         self.counts.positive_definite += usize::from(real);
-        let mut candidate = self.data.candidate(network, self.options);
+        let mut candidate = self.data.candidate(network, self.options, polisher);
         self.counts.physical += usize::from(real && candidate.physical);
         self.data.restore(&mut candidate.network);
         candidate.residual = candidate.network.rms(self.measured);

@@ -1,9 +1,16 @@
 //! What distinguishes one generated solver from another; [`super::engine`] does the rest.
 
+use super::linear::LeastSquares;
 use crate::network::Network;
 use hc::fibre::Fibre;
 use hc::poly::Evaluate;
 use num_complex::Complex64;
+use smallvec::SmallVec;
+
+/// Unknowns or offsets: few enough to need no allocation.
+pub(crate) type Point = SmallVec<[Complex64; 8]>;
+/// Parameters likewise.
+pub(crate) type Parameters = SmallVec<[Complex64; 24]>;
 
 /// A square family whose parameters are the differences `f_ij - f_1j`, rows `i = 2..m`, row-major, in any unit of length.
 pub(crate) trait Formulation {
@@ -31,19 +38,19 @@ pub(crate) trait Formulation {
     fn fibre() -> Fibre;
 
     /// Parameters in a chart.
-    fn parameters(chart: usize, f: &[Complex64]) -> Vec<Complex64>;
+    fn parameters(chart: usize, f: &[Complex64]) -> Parameters;
 
     /// Carries a solution over into a chart.
-    fn enter(chart: usize, x: &[Complex64]) -> Vec<Complex64>;
+    fn enter(chart: usize, x: &[Complex64]) -> Point;
 
     /// Carries a solution of a chart back.
-    fn leave(chart: usize, x: &[Complex64]) -> Vec<Complex64>;
+    fn leave(chart: usize, x: &[Complex64]) -> Point;
 
     /// `p_j = o_j - f_1j` of a solution, one a transmitter.
-    fn offsets(f: &[Complex64], x: &[Complex64]) -> Vec<Complex64>;
+    fn offsets(f: &[Complex64], x: &[Complex64]) -> Point;
 
     /// The network of a real solution, its first receiver in the origin, its offsets `p_j`; `None` unless the positions are real.
-    fn network(f: &[f64], x: &[f64]) -> Option<Network>;
+    fn network(f: &[f64], x: &[f64], squares: &mut LeastSquares) -> Option<Network>;
 }
 
 /// Nodes that the unknowns do not tell apart.

@@ -1,11 +1,13 @@
 //! Four receivers, five transmitters: 344 paths, in the Gram matrix of the receivers.
 
-use super::formulation::{Formulation, Free, pairs};
+use super::formulation::{Formulation, Free, Parameters, Point, pairs};
+use super::linear::LeastSquares;
 use crate::generated::four_five as generated;
 use crate::network::Network;
 use hc::fibre::Fibre;
 use num_complex::Complex64;
 use num_traits::Num;
+use smallvec::smallvec;
 
 /// Receivers.
 const ROWS: usize = 4;
@@ -41,27 +43,27 @@ impl Formulation for FourFive {
         Fibre { parameters, dimension: WEIGHTS.len(), solutions }
     }
 
-    fn parameters(chart: usize, f: &[Complex64]) -> Vec<Complex64> {
+    fn parameters(chart: usize, f: &[Complex64]) -> Parameters {
         let row = |i: usize, j: usize| if i == 0 { Complex64::new(0.0, 0.0) } else { f[(i - 1) * COLUMNS + j] };
         let order = CHARTS[chart];
         order[1..].iter().flat_map(|&i| (0..COLUMNS).map(move |j| row(i, j) - row(order[0], j))).collect()
     }
 
-    fn enter(chart: usize, x: &[Complex64]) -> Vec<Complex64> {
+    fn enter(chart: usize, x: &[Complex64]) -> Point {
         reorder(&CHARTS[chart], x)
     }
 
-    fn leave(chart: usize, x: &[Complex64]) -> Vec<Complex64> {
+    fn leave(chart: usize, x: &[Complex64]) -> Point {
         let mut inverse = [0; ROWS];
         CHARTS[chart].iter().enumerate().for_each(|(k, &i)| inverse[i] = k);
         reorder(&inverse, x)
     }
 
-    fn offsets(f: &[Complex64], x: &[Complex64]) -> Vec<Complex64> {
+    fn offsets(f: &[Complex64], x: &[Complex64]) -> Point {
         (0..COLUMNS).map(|j| Sight::new(f, x, j).p()).collect()
     }
 
-    fn network(f: &[f64], x: &[f64]) -> Option<Network> {
+    fn network(f: &[f64], x: &[f64], _: &mut LeastSquares) -> Option<Network> {
         let &[alpha, beta, e, l, h, _] = x else { return None };
         if !(e > 0.0 && h > 0.0) {
             return None;
@@ -69,7 +71,8 @@ impl Formulation for FourFive {
         let (root_e, root_h) = (e.sqrt(), h.sqrt());
         let (r2, r3) = ([root_e, 0.0], [l * root_e, root_h]);
         let r4 = [alpha * r2[0] + beta * r3[0], beta * r3[1]];
-        let mut network = Network { receivers: vec![[0.0, 0.0], r2, r3, r4], transmitters: vec![], offsets: vec![] };
+        let (transmitters, offsets) = (Vec::with_capacity(COLUMNS), Vec::with_capacity(COLUMNS));
+        let mut network = Network { receivers: vec![[0.0, 0.0], r2, r3, r4], transmitters, offsets };
         for j in 0..COLUMNS {
             let sight = Sight::new(f, x, j);
             let p = sight.p();
@@ -104,8 +107,8 @@ impl<T: Num + Copy> Sight<T> {
 }
 
 /// The unknowns with the receivers in another order: the Gram matrix of the new basis, and the fourth receiver in it.
-fn reorder(order: &[usize; ROWS], x: &[Complex64]) -> Vec<Complex64> {
-    let &[alpha, beta, e, l, h, _] = x else { return vec![Complex64::new(f64::NAN, 0.0); WEIGHTS.len()] };
+fn reorder(order: &[usize; ROWS], x: &[Complex64]) -> Point {
+    let &[alpha, beta, e, l, h, _] = x else { return smallvec![Complex64::new(f64::NAN, 0.0); WEIGHTS.len()] };
     let (zero, one) = (Complex64::new(0.0, 0.0), Complex64::new(1.0, 0.0));
     let receivers = [[zero, zero], [one, zero], [zero, one], [alpha, beta]];
     let origin = receivers[order[0]];
@@ -117,5 +120,5 @@ fn reorder(order: &[usize; ROWS], x: &[Complex64]) -> Vec<Complex64> {
     let beta_new = (u[0] * w[1] - u[1] * w[0]) / det;
     let e_new = dot(u, u);
     let gap = dot(w, w) - alpha_new * e_new - beta_new * dot(v, v);
-    vec![alpha_new, beta_new, e_new, dot(u, v) / e_new, e * h * det * det / e_new, gap]
+    smallvec![alpha_new, beta_new, e_new, dot(u, v) / e_new, e * h * det * det / e_new, gap]
 }

@@ -1,8 +1,9 @@
 //! Larger networks through smaller ones: a well-spread part is solved, the other nodes follow linearly from squared distances, and all
 //! measurements enter the last refinement.
 
-use super::linear::least_squares;
+use super::linear::LeastSquares;
 use super::normalised::{Normalised, rank};
+use super::polish::Polisher;
 use super::{SolveOptions, subset};
 use crate::network::{MinimalSolution, Network};
 use crate::pseudoranges::Pseudoranges;
@@ -15,10 +16,11 @@ pub(crate) fn extend(
     options: &SolveOptions,
 ) -> MinimalSolution {
     let data = Normalised::new(measured);
-    let whole = |network: &Network| {
-        let mut network = spread_out(measured, part, network)?;
+    let (mut squares, mut polisher) = (LeastSquares::default(), Polisher::default());
+    let mut whole = |network: &Network| {
+        let mut network = spread_out(measured, part, network, &mut squares)?;
         data.enter(&mut network);
-        Some(data.candidate(network, options))
+        Some(data.candidate(network, options, &mut polisher))
     };
     solution.candidates = solution.candidates.iter().filter_map(|c| whole(&c.network)).collect();
     solution.counts.physical = solution.candidates.iter().filter(|c| c.physical).count();
@@ -32,7 +34,12 @@ pub(crate) fn extend(
 }
 
 /// The network of all nodes from that of a part; `None` where a node cannot be determined.
-fn spread_out(measured: &Pseudoranges, part: &subset::Subset, known: &Network) -> Option<Network> {
+fn spread_out(
+    measured: &Pseudoranges,
+    part: &subset::Subset,
+    known: &Network,
+    squares: &mut LeastSquares,
+) -> Option<Network> {
     let (m, n) = (measured.receivers(), measured.transmitters());
     let f = |i: usize, j: usize| measured.values()[i * n + j];
     let mut network =
@@ -46,26 +53,26 @@ fn spread_out(measured: &Pseudoranges, part: &subset::Subset, known: &Network) -
     }
     for j in (0..n).filter(|j| !part.transmitters.contains(j)) {
         let sights: Vec<([f64; 2], f64)> = part.receivers.iter().map(|&i| (network.receivers[i], f(i, j))).collect();
-        let (position, offset) = transmitter(&sights)?;
+        let (position, offset) = transmitter(&sights, squares)?;
         network.transmitters[j] = position;
         network.offsets[j] = offset;
     }
     for i in (0..m).filter(|i| !part.receivers.contains(i)) {
         let sights: Vec<([f64; 2], f64)> =
             (0..n).map(|j| (network.transmitters[j], f(i, j) - network.offsets[j])).collect();
-        network.receivers[i] = receiver(&sights)?;
+        network.receivers[i] = receiver(&sights, squares)?;
     }
     network.is_finite().then_some(network)
 }
 
 /// A transmitter from four or more receivers: `|r_i - s|^2 = (f_i - o)^2`, the first subtracted, is linear in `s` and `o`.
-fn transmitter(sights: &[([f64; 2], f64)]) -> Option<([f64; 2], f64)> {
+fn transmitter(sights: &[([f64; 2], f64)], squares: &mut LeastSquares) -> Option<([f64; 2], f64)> {
     let (origin, first) = sights[0];
     let at = |i: usize| {
         let (r, f) = sights[i + 1];
         ([r[0] - origin[0], r[1] - origin[1]], f - first)
     };
-    let x = least_squares(
+    let x = squares.fit(
         sights.len() - 1,
         3,
         |i, c| {
@@ -81,13 +88,13 @@ fn transmitter(sights: &[([f64; 2], f64)]) -> Option<([f64; 2], f64)> {
 }
 
 /// A receiver from its distances to three or more transmitters.
-fn receiver(sights: &[([f64; 2], f64)]) -> Option<[f64; 2]> {
+fn receiver(sights: &[([f64; 2], f64)], squares: &mut LeastSquares) -> Option<[f64; 2]> {
     let (origin, first) = sights[0];
     let at = |i: usize| {
         let (s, d) = sights[i + 1];
         ([s[0] - origin[0], s[1] - origin[1]], d)
     };
-    let x = least_squares(
+    let x = squares.fit(
         sights.len() - 1,
         2,
         |i, c| 2.0 * at(i).0[c],
@@ -101,23 +108,26 @@ fn receiver(sights: &[([f64; 2], f64)]) -> Option<[f64; 2]> {
 
 #[cfg(test)]
 mod tests {
-    use super::{receiver, transmitter};
+    use super::{LeastSquares, receiver, transmitter};
 
     #[test]
     fn nodes_by_hand() {
         // A transmitter at (3, 4) with offset 10: distances 5, 5, 4, 3 from the corners of a 6 by 8 cross.
         let sights =
             [([0.0, 0.0], 15.0), ([6.0, 0.0], 15.0), ([3.0, 0.0], 14.0), ([0.0, 4.0], 13.0), ([3.0, 8.0], 14.0)];
-        let (position, offset) = transmitter(&sights).unwrap();
+        let mut squares = LeastSquares::default();
+        let (position, offset) = transmitter(&sights, &mut squares).unwrap();
         assert!(
             (position[0] - 3.0).abs() < 1e-12 && (position[1] - 4.0).abs() < 1e-12 && (offset - 10.0).abs() < 1e-12
         );
-        let found = receiver(&[([0.0, 0.0], 5.0), ([6.0, 0.0], 5.0), ([3.0, 0.0], 4.0), ([0.0, 4.0], 3.0)]).unwrap();
+        let sights = [([0.0, 0.0], 5.0), ([6.0, 0.0], 5.0), ([3.0, 0.0], 4.0), ([0.0, 4.0], 3.0)];
+        let found = receiver(&sights, &mut squares).unwrap();
         assert!((found[0] - 3.0).abs() < 1e-12 && (found[1] - 4.0).abs() < 1e-12);
     }
 
     #[test]
     fn nodes_in_one_line_do_not_determine_another() {
-        assert_eq!(receiver(&[([0.0, 0.0], 5.0), ([1.0, 0.0], 4.0), ([2.0, 0.0], 4.5)]), None);
+        let sights = [([0.0, 0.0], 5.0), ([1.0, 0.0], 4.0), ([2.0, 0.0], 4.5)];
+        assert_eq!(receiver(&sights, &mut LeastSquares::default()), None);
     }
 }

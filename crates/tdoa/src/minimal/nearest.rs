@@ -3,39 +3,53 @@
 //! Reordering nodes that the unknowns do not tell apart, and multiplying all lengths by a complex number of size one, turn
 //! the stored fibre into others with known solutions. Of all these the one nearest to the data is taken: paths are shorter.
 
-use super::formulation::{Formulation, Free};
+use super::formulation::{Formulation, Free, Point};
 use hc::fibre::Fibre;
 use num_complex::Complex64;
 
-/// Turns `stored` towards the data `target` and then by `turn` (radians) away again; a turn gives other paths to the same ends.
-pub(crate) fn nearest<F: Formulation>(stored: &Fibre, target: &[Complex64], turn: f64) -> Fibre {
-    let (rows, columns) = (F::RECEIVERS - 1, F::TRANSMITTERS);
-    let cell = |node: usize, other: usize| match F::FREE {
-        Free::Receivers => node * columns + other,
-        Free::Transmitters => other * columns + node,
-    };
-    let (count, others) = match F::FREE {
-        Free::Receivers => (rows, columns),
-        Free::Transmitters => (columns, rows),
-    };
-    let products: Vec<Complex64> = (0..count * count)
-        .map(|ab| {
-            let (a, b) = (ab / count, ab % count);
-            (0..others).map(|k| stored.parameters[cell(a, k)].conj() * target[cell(b, k)]).sum()
-        })
-        .collect();
-    let mut best = Best { products: &products, count, size: -1.0, order: Vec::new(), sum: Complex64::new(1.0, 0.0) };
-    best.search(&mut (0..count).collect(), 0, Complex64::new(0.0, 0.0));
-    let towards = if best.sum.norm() > 0.0 { best.sum / best.sum.norm() } else { Complex64::new(1.0, 0.0) };
-    let factor = towards * Complex64::from_polar(1.0, turn);
+/// Scratch space; keeps its memory from call to call.
+#[derive(Default)]
+pub(crate) struct Nearest {
+    products: Vec<Complex64>,
+    order: Vec<usize>,
+    best: Vec<usize>,
+}
 
-    let mut parameters = stored.parameters.clone();
-    for (b, &a) in best.order.iter().enumerate() {
-        (0..others).for_each(|k| parameters[cell(b, k)] = factor * stored.parameters[cell(a, k)]);
+impl Nearest {
+    /// Turns `stored` towards the data `target` and then by `turn` (radians) away again; a turn gives other paths to the same ends. The
+    /// fibre goes into `moved`.
+    pub(crate) fn find<F: Formulation>(&mut self, stored: &Fibre, target: &[Complex64], turn: f64, moved: &mut Fibre) {
+        let (rows, columns) = (F::RECEIVERS - 1, F::TRANSMITTERS);
+        let cell = |node: usize, other: usize| match F::FREE {
+            Free::Receivers => node * columns + other,
+            Free::Transmitters => other * columns + node,
+        };
+        let (count, others) = match F::FREE {
+            Free::Receivers => (rows, columns),
+            Free::Transmitters => (columns, rows),
+        };
+        self.products.clear();
+        self.products.extend((0..count * count).map(|ab| {
+            let (a, b) = (ab / count, ab % count);
+            (0..others).map(|k| stored.parameters[cell(a, k)].conj() * target[cell(b, k)]).sum::<Complex64>()
+        }));
+        self.order.clear();
+        self.order.extend(0..count);
+        let (products, order) = (&self.products, &mut self.best);
+        let mut best = Best { products, count, size: -1.0, order, sum: Complex64::new(1.0, 0.0) };
+        best.search(&mut self.order, 0, Complex64::new(0.0, 0.0));
+        let towards = if best.sum.norm() > 0.0 { best.sum / best.sum.norm() } else { Complex64::new(1.0, 0.0) };
+        let factor = towards * Complex64::from_polar(1.0, turn);
+
+        moved.dimension = stored.dimension;
+        moved.parameters.clone_from(&stored.parameters);
+        for (b, &a) in best.order.iter().enumerate() {
+            (0..others).for_each(|k| moved.parameters[cell(b, k)] = factor * stored.parameters[cell(a, k)]);
+        }
+        let powers: Point = F::WEIGHTS.iter().map(|&w| factor.powi(w)).collect();
+        moved.solutions.clear();
+        moved.solutions.extend(stored.solutions.iter().enumerate().map(|(k, x)| x * powers[k % powers.len()]));
     }
-    let powers: Vec<Complex64> = F::WEIGHTS.iter().map(|&w| factor.powi(w)).collect();
-    let solutions = stored.solutions.iter().enumerate().map(|(k, x)| x * powers[k % powers.len()]).collect();
-    Fibre { parameters, dimension: stored.dimension, solutions }
 }
 
 /// The order with the largest sum of products, found by going through all of them.
@@ -43,17 +57,18 @@ struct Best<'a> {
     products: &'a [Complex64],
     count: usize,
     size: f64,
-    order: Vec<usize>,
+    order: &'a mut Vec<usize>,
     sum: Complex64,
 }
 
 impl Best<'_> {
     /// `order[..at]` is settled and gives the partial sum `sum`.
-    fn search(&mut self, order: &mut Vec<usize>, at: usize, sum: Complex64) {
+    fn search(&mut self, order: &mut [usize], at: usize, sum: Complex64) {
         if at == self.count {
             if sum.norm_sqr() > self.size {
                 self.size = sum.norm_sqr();
-                self.order.clone_from(order);
+                self.order.clear();
+                self.order.extend_from_slice(order);
                 self.sum = sum;
             }
             return;
@@ -68,7 +83,7 @@ impl Best<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::nearest;
+    use super::Nearest;
     use crate::minimal::formulation::Formulation;
     use crate::minimal::four_five::FourFive;
     use crate::minimal::three::{FiveFour, SixThree};
@@ -79,13 +94,14 @@ mod tests {
     /// Solutions stay solutions, and the distance to the data does not grow.
     fn check<F: Formulation>() {
         let stored = F::fibre();
+        let (mut nearest, mut moved) = (Nearest::default(), stored.clone());
         let n = stored.dimension;
         let mut memory = F::system().memory(Isa::Portable);
         let (mut values, mut jacobian) = (vec![Complex64::new(0.0, 0.0); n], vec![Complex64::new(0.0, 0.0); n * n]);
         for seed in 0..5 {
             let target = Random::new(seed, 0).normals(stored.parameters.len());
             for turn in [0.0, 1.0] {
-                let moved = nearest::<F>(&stored, &target, turn);
+                nearest.find::<F>(&stored, &target, turn, &mut moved);
                 for x in moved.solutions.chunks_exact(n) {
                     F::system().jacobian(&mut memory, x, &moved.parameters, &mut values, &mut jacobian);
                     for i in 0..n {

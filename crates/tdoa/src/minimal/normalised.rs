@@ -1,11 +1,12 @@
 //! Measurements in the form that the equations want.
 
 use super::SolveOptions;
-use super::polish::polish;
+use super::polish::Polisher;
 use crate::network::{Candidate, Network};
 use crate::pseudoranges::Pseudoranges;
 
 /// Measurements relative to the first receiver, in units of their own size.
+#[derive(Default)]
 pub(crate) struct Normalised {
     /// `(f_ij - f_1j) / size`, row-major; zeros in the first row.
     pub(crate) matrix: Vec<f64>,
@@ -16,13 +17,22 @@ pub(crate) struct Normalised {
 impl Normalised {
     /// A matrix without missing entries.
     pub(crate) fn new(measured: &Pseudoranges) -> Self {
+        let mut data = Normalised::default();
+        data.take(measured);
+        data
+    }
+
+    /// [`new`](Self::new) with the memory of an earlier matrix.
+    pub(crate) fn take(&mut self, measured: &Pseudoranges) {
         let (f, n) = (measured.values(), measured.transmitters());
-        let first = f[..n].to_vec();
-        let differences: Vec<f64> = (0..f.len()).map(|k| f[k] - first[k % n]).collect();
+        self.first.clear();
+        self.first.extend_from_slice(&f[..n]);
+        self.matrix.clear();
+        self.matrix.extend((0..f.len()).map(|k| f[k] - f[k % n]));
         let count = (f.len() - n) as f64;
-        let size = (differences.iter().map(|d| d * d).sum::<f64>() / count).sqrt();
-        let matrix = differences.iter().map(|d| d / size).collect();
-        Normalised { matrix, first, size }
+        let size = (self.matrix.iter().map(|d| d * d).sum::<f64>() / count).sqrt();
+        self.matrix.iter_mut().for_each(|d| *d /= size);
+        self.size = size;
     }
 
     /// Number of transmitters.
@@ -36,8 +46,8 @@ impl Normalised {
     }
 
     /// A network in these units, polished over all measurements and judged.
-    pub(crate) fn candidate(&self, mut network: Network, options: &SolveOptions) -> Candidate {
-        let condition = if options.polish { polish(&self.matrix, &mut network) } else { f64::NAN };
+    pub(crate) fn candidate(&self, mut network: Network, options: &SolveOptions, polisher: &mut Polisher) -> Candidate {
+        let condition = if options.polish { polisher.polish(&self.matrix, &mut network) } else { f64::NAN };
         let n = self.transmitters();
         let physical = (self.matrix.iter().enumerate()).all(|(k, f)| f - network.offsets[k % n] >= -options.tolerance);
         let residuals =
@@ -61,5 +71,5 @@ impl Normalised {
 
 /// Physical candidates first, then by residual.
 pub(crate) fn rank(candidates: &mut [Candidate]) {
-    candidates.sort_by(|a, b| b.physical.cmp(&a.physical).then(a.residual.total_cmp(&b.residual)));
+    candidates.sort_unstable_by(|a, b| b.physical.cmp(&a.physical).then(a.residual.total_cmp(&b.residual)));
 }

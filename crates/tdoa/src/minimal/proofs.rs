@@ -38,7 +38,7 @@ pub(crate) fn prove<F: Formulation>(target: &[Complex64], points: &[Vec<Complex6
             }
         };
         let parameters: Vec<ComplexInterval> = F::parameters(chart, target).iter().map(enclose).collect();
-        let carried: Vec<Vec<Complex64>> = points.iter().map(|x| F::enter(chart, x)).collect();
+        let carried: Vec<Vec<Complex64>> = points.iter().map(|x| F::enter(chart, x).to_vec()).collect();
         let found = certify(&family.system, &parameters, &carried, &CertifyOptions::default()).ok()?;
         let mut different = vec![false; count * count];
         let alone: Vec<usize> =

@@ -1,18 +1,20 @@
 //! Which complex roots are real.
 
-use super::formulation::Formulation;
-use hc::refine::Refiner;
+use super::formulation::{Formulation, Point};
+use hc::refine::{Refined, Refiner};
 use num_complex::Complex64;
+use smallvec::SmallVec;
 
 /// The real root near a complex one, and whether it is that very root: Newton's method from the real parts stays real.
 ///
-/// With `near > 0` a root whose offsets have imaginary parts up to `near` is given back as real too, with `false`.
+/// With `near > 0` a root whose offsets have imaginary parts up to `near` is given back as real too, with `false`. `refined` is scratch.
 pub(crate) fn real_root<F: Formulation>(
     refiner: &mut Refiner<'_, F::System>,
     target: &[Complex64],
     root: &[Complex64],
     near: f64,
-) -> Option<(Vec<f64>, bool)> {
+    refined: &mut Refined,
+) -> Option<(SmallVec<[f64; 8]>, bool)> {
     let offsets = F::offsets(target, root);
     let size = offsets.iter().map(|z| z.norm()).fold(1.0, f64::max);
     let imaginary = largest_imaginary(&offsets);
@@ -22,12 +24,12 @@ pub(crate) fn real_root<F: Formulation>(
         return None;
     }
     // Ends of difficult paths are known to a few digits only; the last ones decide between a real root and a complex pair.
-    let refined = refiner.refine(target, root);
-    let root = if refined.accuracy < 1e-10 { &refined.point[..] } else { root };
-    let imaginary = largest_imaginary(&F::offsets(target, root));
-    let start: Vec<Complex64> = root.iter().map(|z| z.re.into()).collect();
-    let refined = refiner.refine(target, &start);
-    let distance = hc::distinct::relative_distance(&refined.point, root);
+    refiner.refine_into(target, root, refined);
+    let root = Point::from_slice(if refined.accuracy < 1e-10 { &refined.point } else { root });
+    let imaginary = largest_imaginary(&F::offsets(target, &root));
+    let start: Point = root.iter().map(|z| z.re.into()).collect();
+    refiner.refine_into(target, &start, refined);
+    let distance = hc::distinct::relative_distance(&refined.point, &root);
     if refined.accuracy < 1e-6 && distance < 1e-7 {
         Some((refined.point.iter().map(|z| z.re).collect(), true))
     } else {

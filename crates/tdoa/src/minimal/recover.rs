@@ -6,15 +6,43 @@
 
 use super::Fallback;
 use super::formulation::Formulation;
-use hc::fibre::{Fibre, FibreOptions, doubtful, ends_regularly, settle};
+use hc::distinct::Coincidences;
+use hc::fibre::{Fibre, FibreOptions, doubtful_into, ends_regularly, settle};
 use hc::homotopy::{ParameterPath, Segment};
 use hc::poly::{ComplexDd, Lane, Lanes8, Scalar};
-use hc::refine::Refiner;
+use hc::refine::{Refined, Refiner};
 use hc::tracker::{PathEnd, PathResult, PathSet, Tracker, TrackerOptions};
 use num_complex::Complex64;
 
 /// Accuracy to which the end of a path carried back from another chart must be known.
 const CARRIED: f64 = 1e-8;
+
+/// Scratch space; keeps its memory from call to call.
+pub(super) struct Again<F: Formulation> {
+    refiner: Refiner<'static, F::System>,
+    refined: Refined,
+    coincidences: Coincidences,
+    lost: Vec<usize>,
+    from: Vec<f64>,
+    carried: Vec<Complex64>,
+    paths: PathSet,
+    segment: Segment,
+}
+
+impl<F: Formulation> Again<F> {
+    pub(super) fn new() -> Self {
+        Again {
+            refiner: Refiner::new(F::system()),
+            refined: Refined::default(),
+            coincidences: Coincidences::default(),
+            lost: Vec::new(),
+            from: Vec::new(),
+            carried: Vec::new(),
+            paths: PathSet::default(),
+            segment: Segment::default(),
+        }
+    }
+}
 
 /// The rest of a segment, for each path from where it goes on: the tracker's time `1` is `t = from` there.
 struct Rests<'a> {
@@ -65,68 +93,69 @@ fn stricter(settings: &TrackerOptions, level: u32) -> TrackerOptions {
 /// Tracks all paths from one fibre to the parameters `target`, each until it is accounted for or everything has been tried.
 pub(super) struct Recovery<'a, F: Formulation> {
     pub(super) start: &'a Fibre,
+    /// The way from there in the chart of the data.
+    pub(super) segment: &'a Segment,
     pub(super) target: &'a [Complex64],
     pub(super) settings: &'a FibreOptions,
     pub(super) fallback: Fallback,
     pub(super) tracker: &'a mut Tracker<'static, F::System, Lanes8>,
     pub(super) paths: &'a mut PathSet,
+    pub(super) again: &'a mut Again<F>,
 }
 
 impl<F: Formulation> Recovery<'_, F> {
     /// Returns how many paths are lost, and how many were tracked again. `first_pass_done` says that `paths` already holds the first
     /// pass, unsettled.
     pub(super) fn run(mut self, first_pass_done: bool) -> (usize, usize) {
-        let mut refiner = Refiner::new(F::system());
         if !first_pass_done {
-            let path = self.segment(0);
             self.tracker.set_options(&self.settings.tracker);
             self.paths.clear(self.start.dimension);
-            self.tracker.track(&path, &self.start.solutions, 0..self.start.len(), self.paths);
+            self.tracker.track(self.segment, &self.start.solutions, 0..self.start.len(), self.paths);
             self.paths.sort();
         }
-        settle(&mut refiner, self.target, self.paths);
-        let mut lost = doubtful(self.paths, self.settings.coincidence);
+        settle(&mut self.again.refiner, self.target, self.paths);
+        self.find_lost();
         let mut retracked = 0;
         let charts = if self.fallback == Fallback::OneChart { 1 } else { F::CHARTS };
         for level in 0..=self.settings.retries {
             self.tracker.set_options(&stricter(&self.settings.tracker, level));
             for chart in usize::from(level == 0)..charts {
-                if lost.is_empty() {
+                if self.again.lost.is_empty() {
                     return (0, retracked);
                 }
-                retracked += lost.len();
+                retracked += self.again.lost.len();
                 let goes_on = self.fallback == Fallback::OtherCharts && chart > 0 && level % 2 == 0;
-                self.again(&lost, chart, goes_on, &mut refiner);
-                lost = doubtful(self.paths, self.settings.coincidence);
+                self.track_again(chart, goes_on);
+                self.find_lost();
             }
         }
-        (lost.len(), retracked)
+        (self.again.lost.len(), retracked)
     }
 
-    /// The way from the start to the target in a chart.
-    fn segment(&self, chart: usize) -> Segment {
-        Segment::new(&F::parameters(chart, &self.start.parameters), &F::parameters(chart, self.target))
+    fn find_lost(&mut self) {
+        let Again { coincidences, lost, .. } = &mut *self.again;
+        doubtful_into(self.paths, self.settings.coincidence, coincidences, lost);
     }
 
-    /// Tracks paths again in a chart, from the start or, if they go on, from where they broke off.
-    fn again(&mut self, lost: &[usize], chart: usize, goes_on: bool, refiner: &mut Refiner<'_, F::System>) {
-        let segment = self.segment(chart);
+    /// Tracks the lost paths again in a chart, from the start or, if they go on, from where they broke off.
+    fn track_again(&mut self, chart: usize, goes_on: bool) {
+        let Again { refiner, refined, lost, from, carried, paths: again, segment, .. } = &mut *self.again;
+        segment.join(&F::parameters(chart, &self.start.parameters), &F::parameters(chart, self.target));
         let broken_off = |r: &PathResult| {
             matches!(r.end, PathEnd::MaxSteps | PathEnd::StepTooSmall | PathEnd::AccuracyLimit) && r.t > 0.0
         };
-        let from: Vec<f64> = lost
-            .iter()
-            .map(|&k| {
-                let result = &self.paths.results()[k];
-                if goes_on && broken_off(result) { result.t } else { 1.0 }
-            })
-            .collect();
-        let enter = |(&k, &from): (&usize, &f64)| {
-            F::enter(chart, if from < 1.0 { self.paths.point(k) } else { self.start.solution(k) })
-        };
-        let carried: Vec<Complex64> = lost.iter().zip(&from).flat_map(enter).collect();
-        let mut again = PathSet::new(self.start.dimension);
-        self.tracker.track(&Rests { segment: &segment, from: &from }, &carried, 0..lost.len(), &mut again);
+        from.clear();
+        from.extend(lost.iter().map(|&k| {
+            let result = &self.paths.results()[k];
+            if goes_on && broken_off(result) { result.t } else { 1.0 }
+        }));
+        carried.clear();
+        for (&k, &from) in lost.iter().zip(&*from) {
+            let point = if from < 1.0 { self.paths.point(k) } else { self.start.solution(k) };
+            carried.extend(F::enter(chart, point));
+        }
+        again.clear(self.start.dimension);
+        self.tracker.track(&Rests { segment, from }, carried, 0..lost.len(), again);
         for (result, point) in again.iter() {
             let k = lost[result.path];
             let old = self.paths.results()[k];
@@ -139,10 +168,9 @@ impl<F: Formulation> Recovery<'_, F> {
                 ..*result
             };
             let back = F::leave(chart, point);
-            let old_point = self.paths.point(k).to_vec();
             match result.end {
                 PathEnd::Success if ends_regularly(refiner, segment.target(), result, point) => {
-                    let refined = refiner.refine(self.target, &back);
+                    refiner.refine_into(self.target, &back, refined);
                     if refined.accuracy < CARRIED {
                         self.paths.replace(k, record, &refined.point);
                         continue;
@@ -160,7 +188,7 @@ impl<F: Formulation> Recovery<'_, F> {
             }
             // As it was, but for the work.
             let PathResult { accepted, rejected, jacobians, .. } = record;
-            self.paths.replace(k, PathResult { accepted, rejected, jacobians, ..old }, &old_point);
+            self.paths.replace_record(k, PathResult { accepted, rejected, jacobians, ..old });
         }
     }
 }

@@ -4,7 +4,9 @@ use super::engine::Engine;
 use super::formulation::Formulation;
 use super::four_five::FourFive;
 use super::larger::extend;
+use super::linear::LeastSquares;
 use super::normalised::Normalised;
+use super::polish::Polisher;
 use super::proofs::RootProofs;
 use super::rank::{FiveSix, by_receivers, offsets_of_four};
 use super::subset::{self, Subset};
@@ -152,11 +154,12 @@ fn seven_four(measured: &Pseudoranges, options: &SolveOptions) -> MinimalSolutio
     let data = Normalised::new(&selected);
     let mut counts = RootCounts::default();
     let mut candidates = Vec::new();
-    if let Some(p) = offsets_of_four(data.parameters()) {
+    let mut squares = LeastSquares::default();
+    if let Some(p) = offsets_of_four(data.parameters(), &mut squares) {
         (counts.complex, counts.real) = (1, 1);
-        if let Some(network) = by_receivers(data.parameters(), &p) {
+        if let Some(network) = by_receivers(data.parameters(), &p, &mut squares) {
             counts.positive_definite = 1;
-            let mut candidate = data.candidate(network, options);
+            let mut candidate = data.candidate(network, options, &mut Polisher::default());
             counts.physical = usize::from(candidate.physical);
             data.restore(&mut candidate.network);
             candidates.push(candidate);

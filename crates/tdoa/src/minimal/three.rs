@@ -2,7 +2,8 @@
 
 use super::chart::{CHARTS, COLUMNS, enter, leave, permute_columns};
 use super::dual;
-use super::formulation::{Formulation, Free, pairs};
+use super::formulation::{Formulation, Free, Parameters, Point, pairs};
+use super::linear::LeastSquares;
 use crate::generated::{five_four, six_three};
 use crate::network::Network;
 use hc::fibre::Fibre;
@@ -33,23 +34,23 @@ impl Formulation for SixThree {
         Fibre { parameters, dimension: WEIGHTS.len(), solutions }
     }
 
-    fn parameters(chart: usize, f: &[Complex64]) -> Vec<Complex64> {
+    fn parameters(chart: usize, f: &[Complex64]) -> Parameters {
         permute_columns(f, COLUMNS, &CHARTS[chart])
     }
 
-    fn enter(chart: usize, x: &[Complex64]) -> Vec<Complex64> {
-        enter(&CHARTS[chart], x).to_vec()
+    fn enter(chart: usize, x: &[Complex64]) -> Point {
+        Point::from_slice(&enter(&CHARTS[chart], x))
     }
 
-    fn leave(chart: usize, x: &[Complex64]) -> Vec<Complex64> {
-        leave(&CHARTS[chart], x).to_vec()
+    fn leave(chart: usize, x: &[Complex64]) -> Point {
+        Point::from_slice(&leave(&CHARTS[chart], x))
     }
 
-    fn offsets(_: &[Complex64], x: &[Complex64]) -> Vec<Complex64> {
-        x[..COLUMNS].to_vec()
+    fn offsets(_: &[Complex64], x: &[Complex64]) -> Point {
+        Point::from_slice(&x[..COLUMNS])
     }
 
-    fn network(f: &[f64], x: &[f64]) -> Option<Network> {
+    fn network(f: &[f64], x: &[f64], _: &mut LeastSquares) -> Option<Network> {
         dual::network(f, COLUMNS, x)
     }
 }
@@ -79,26 +80,26 @@ impl Formulation for FiveFour {
         Fibre { parameters, dimension: WEIGHTS.len(), solutions }
     }
 
-    fn parameters(chart: usize, f: &[Complex64]) -> Vec<Complex64> {
+    fn parameters(chart: usize, f: &[Complex64]) -> Parameters {
         permute_columns(f, FOUR, &CHARTS[chart])
     }
 
-    fn enter(chart: usize, x: &[Complex64]) -> Vec<Complex64> {
-        enter(&CHARTS[chart], x).to_vec()
+    fn enter(chart: usize, x: &[Complex64]) -> Point {
+        Point::from_slice(&enter(&CHARTS[chart], x))
     }
 
-    fn leave(chart: usize, x: &[Complex64]) -> Vec<Complex64> {
-        leave(&CHARTS[chart], x).to_vec()
+    fn leave(chart: usize, x: &[Complex64]) -> Point {
+        Point::from_slice(&leave(&CHARTS[chart], x))
     }
 
-    fn offsets(_: &[Complex64], x: &[Complex64]) -> Vec<Complex64> {
+    fn offsets(_: &[Complex64], x: &[Complex64]) -> Point {
         // The fourth is a rational function of the others.
-        x[..COLUMNS].to_vec()
+        Point::from_slice(&x[..COLUMNS])
     }
 
-    fn network(f: &[f64], x: &[f64]) -> Option<Network> {
+    fn network(f: &[f64], x: &[f64], squares: &mut LeastSquares) -> Option<Network> {
         let mut network = dual::network(f, FOUR, x)?;
-        let (transmitter, offset) = dual::further_transmitter(f, FOUR, COLUMNS, x, &network)?;
+        let (transmitter, offset) = dual::further_transmitter(f, FOUR, COLUMNS, x, &network, squares)?;
         network.transmitters.push(transmitter);
         network.offsets.push(offset);
         network.is_finite().then_some(network)
