@@ -50,6 +50,11 @@ struct Keyed {
 }
 
 impl Coincidences {
+    /// With room for so many points.
+    pub fn with_capacity(points: usize) -> Self {
+        Coincidences { keyed: Vec::with_capacity(points), parent: Vec::with_capacity(points) }
+    }
+
     /// Joins the coinciding ones of the points with these indices, as [`coincidences`] does.
     fn find<'a>(
         &mut self,

@@ -8,6 +8,10 @@ use poly::{ComplexBall, ComplexDd, ComplexInterval, Evaluate, Interpreter, Isa, 
 /// Boxes that are tried, each smaller by [`SHRINK`] at least.
 const BOXES: usize = 16;
 const SHRINK: f64 = 1.0 / 64.0;
+/// How often a proved box is made smaller, while that halves it at least.
+const TIGHTER: usize = 6;
+/// Proved boxes that many times wider than the least are tried to be made smaller.
+const WIDE: f64 = 16.0;
 /// A box is at least this many times the correction, so that the correction fits well inside.
 const ROOM: f64 = 4.0;
 
@@ -125,27 +129,25 @@ impl<'a, S: Enclosure> Krawczyk<'a, S> {
         self.newton = (0..n).map(product).collect();
         let correction = |z: &S| z.interval().magnitude();
         // Room for the correction, and for the doubles that bound the published box.
-        let least: Vec<f64> = (self.newton.iter().zip(at.centre))
-            .map(|(d, c)| (ROOM * correction(d)).max(ROOM * spacing(c.high())))
-            .collect();
+        let least: Vec<f64> =
+            (self.newton.iter().zip(at.centre)).map(|(d, c)| (ROOM * correction(d)).max(spacing(c.high()))).collect();
         if !least.iter().all(|size| size.is_finite()) {
             return None;
         }
         let mut share = largest;
         for _ in 0..BOXES {
             let large: Vec<f64> = at.weights.iter().zip(&least).map(|(w, l)| (w * share).max(*l)).collect();
-            let square = |&r: &f64| ComplexInterval { re: symmetric(r), im: symmetric(r) };
-            let boxes: Vec<ComplexInterval> = large.iter().map(square).collect();
+            let boxes = squares(&large);
             let (image, norm) = self.image(at.centre, &boxes);
-            if norm < 1.0 && boxes.iter().zip(&image).all(|(b, k)| b.contains_in_interior(k)) {
-                let small = self.tighten(at.centre, image);
+            if norm < 1.0 && within(&image, &boxes) {
+                let small = self.tighten(at.centre, image, &least);
                 return Some(Proof { centre: at.centre.to_vec(), large, small }).filter(Proof::is_publishable);
             }
             if large.iter().zip(&least).all(|(r, l)| r == l) {
                 break;
             }
-            // Beyond rounding, the norm is proportional to the size of the box.
-            share *= if norm.is_finite() { (0.25 / norm).min(SHRINK) } else { SHRINK * SHRINK };
+            // Beyond rounding, the norm is proportional to the size of small boxes; that of large ones grows as a higher power.
+            share *= if norm.is_finite() { (0.25 / norm).clamp(SHRINK * SHRINK, SHRINK) } else { SHRINK * SHRINK };
         }
         None
     }
@@ -183,9 +185,14 @@ impl<'a, S: Enclosure> Krawczyk<'a, S> {
 
     /// The image of a box that contains the solution contains it too: as small as that makes it. Boxes are extended to the
     /// centre, from where differences are taken.
-    fn tighten(&mut self, centre: &[ComplexDd], mut small: Vec<ComplexInterval>) -> Vec<ComplexInterval> {
+    fn tighten(
+        &mut self,
+        centre: &[ComplexDd],
+        mut small: Vec<ComplexInterval>,
+        least: &[f64],
+    ) -> Vec<ComplexInterval> {
         let total = |boxes: &[ComplexInterval]| boxes.iter().map(ComplexInterval::radius).fold(0.0, f64::max);
-        for _ in 0..6 {
+        for _ in 0..TIGHTER {
             let extended: Vec<ComplexInterval> = small.iter().map(with_zero).collect();
             let (image, _) = self.image(centre, &extended);
             let next: Vec<ComplexInterval> = small.iter().zip(&image).map(|(a, b)| intersection(a, b)).collect();
@@ -195,8 +202,25 @@ impl<'a, S: Enclosure> Krawczyk<'a, S> {
                 break;
             }
         }
+        // Where rounding hinders that: the least box, if it holds a solution, which is this one.
+        let boxes = squares(least);
+        if total(&small) > WIDE * total(&boxes) {
+            let (image, _) = self.image(centre, &boxes);
+            if within(&image, &boxes) {
+                small = small.iter().zip(&image).map(|(a, b)| intersection(a, b)).collect();
+            }
+        }
         small
     }
+}
+
+/// Squares about zero with these half-widths.
+fn squares(half: &[f64]) -> Vec<ComplexInterval> {
+    half.iter().map(|&r| ComplexInterval { re: symmetric(r), im: symmetric(r) }).collect()
+}
+
+fn within(image: &[ComplexInterval], boxes: &[ComplexInterval]) -> bool {
+    boxes.iter().zip(image).all(|(b, k)| b.contains_in_interior(k))
 }
 
 /// Twice the distance of neighbouring doubles of the size of the larger part.

@@ -96,18 +96,18 @@ impl<'a> Prover<'a> {
         if !point.iter().all(|z| z.is_finite()) {
             return Err(Obstacle::NotFinite);
         }
-        let mut outcome = Err(Obstacle::NoContraction);
+        let mut first = None;
         for precision in [Precision::Double, Precision::DoubleDouble] {
             self.precision = precision;
             // Once more with all unknowns of one size: beside zeros, tiny coordinates say nothing of the scale of their unknowns.
             for scale in [|weights| weights, level] {
-                outcome = self.attempt(point, scale);
-                if !matches!(outcome, Err(Obstacle::NoContraction | Obstacle::Singular)) {
-                    return outcome;
+                match self.attempt(point, scale) {
+                    Ok(proof) => return Ok(proof),
+                    Err(obstacle) => first = first.or(Some(obstacle)),
                 }
             }
         }
-        outcome
+        Err(first.unwrap_or(Obstacle::NoContraction))
     }
 
     /// A proof with weights of the unknowns that `scale` makes of those that the system gives.

@@ -236,6 +236,53 @@ fn what_does_not_fit_is_an_error() {
     assert!(certify(&system, &[], &[], &options).unwrap().complete());
 }
 
+#[test]
+fn boxes_as_small_as_doubles_allow_are_tried() {
+    // With the smallest box that doubles can bound, and one a few times larger no longer: coefficients of size one, coordinates from 1e-4
+    // to 1e9, condition 1e10. The equations are those of four receivers and five transmitters (alpha, beta, e, l, h, C).
+    let mut text = String::from(
+        "name = 'f'\nunknowns = ['a', 'b', 'e', 'l', 'h', 'c']\n\
+         parameters = ['x1', 'x2', 'x3', 'x4', 'x5', 'y1', 'y2', 'y3', 'y4', 'y5', 'z1', 'z2', 'z3', 'z4', 'z5']\nequations = [",
+    );
+    for j in 1..=5 {
+        let (n, d) = (format!("(a*x{j}^2 + b*y{j}^2 - z{j}^2 + c)"), format!("(a*x{j} + b*y{j} - z{j})"));
+        let u = format!("((e - x{j}^2)*{d} + x{j}*{n})");
+        let v = format!("((e*l^2 + h - y{j}^2)*{d} + y{j}*{n})");
+        text += &format!("'h*{u}^2 + e*({v} - l*{u})^2 - e*h*{n}^2', ");
+    }
+    let family = poly::parse::family(&(text + "'(a + b*l)^2*e + b^2*h - a*e - b*(e*l^2 + h) - c']")).unwrap();
+    let parameters = [
+        -1.4070781888489556,
+        1.2771549186307813,
+        -1.360980935177995,
+        0.25584968417041404,
+        0.2792360425296751,
+        0.9998129833652363,
+        2.2090571750661625,
+        1.3235477463365681,
+        -0.3579809981076243,
+        -1.2409437533845447,
+        -0.155479401856555,
+        0.09910248582518262,
+        -0.13596244338073837,
+        -0.15184110132185924,
+        -0.13542031438485988,
+    ];
+    let parameters = parameters.map(|p| ComplexInterval::point(z(p, 0.0)));
+    let point: Vec<Complex64> = [
+        8.866509395108842e-05,
+        -0.002578094059702307,
+        4.80024163865396,
+        -11932.349460717674,
+        -683463030.6554757,
+        0.024783058422783947,
+    ]
+    .map(|x| z(x, 0.0))
+    .to_vec();
+    let found = certify(&family.system, &parameters, &[point], &CertifyOptions::default()).unwrap();
+    assert_eq!((found.certified(), found.real()), (1, 1), "{found:?}");
+}
+
 /// A number with few digits, and its text.
 fn small() -> impl Strategy<Value = (i64, i64)> {
     (-40..40i64, 1..9i64)

@@ -92,6 +92,12 @@ impl PathSet {
         PathSet { dimension, ..Self::default() }
     }
 
+    /// An empty set with room for `paths` paths.
+    pub fn with_capacity(dimension: usize, paths: usize) -> Self {
+        let (results, points) = (Vec::with_capacity(paths), Vec::with_capacity(paths.saturating_mul(dimension)));
+        PathSet { dimension, results, points }
+    }
+
     /// Number of unknowns.
     pub fn dimension(&self) -> usize {
         self.dimension

@@ -50,12 +50,12 @@ impl<F: Formulation> Engine<F> {
         let start = stored.clone();
         let tracking = Tracking {
             tracker: Tracker::new(F::system(), &SolveOptions::default().paths.tracker),
-            paths: PathSet::new(stored.dimension),
+            paths: PathSet::with_capacity(stored.dimension, stored.len()),
+            again: Again::new(&stored),
             stored,
             nearest: Nearest::default(),
             start,
             segment: Segment::default(),
-            again: Again::new(),
         };
         let roots = Roots {
             refiner: Refiner::new(F::system()),

@@ -54,11 +54,10 @@ impl LeastSquares {
         let factoring = factor::qr_in_place_scratch::<usize, f64>(rows, columns, block, Par::Seq, parameters);
         let solving = solve::solve_lstsq_in_place_scratch::<usize, f64>(rows, columns, block, 1, Par::Seq);
         let needed = factoring.or(solving);
-        let scratch = match self.scratch.take() {
-            Some(scratch) if scratch.len() >= needed.unaligned_bytes_required() => scratch,
-            _ => MemBuffer::new(needed),
-        };
-        let scratch = self.scratch.insert(scratch);
+        let scratch = self.scratch.get_or_insert_with(|| MemBuffer::new(needed));
+        if !MemStack::new(scratch).can_hold(needed) {
+            *scratch = MemBuffer::new(needed);
+        }
 
         let mut matrix = MatMut::from_column_major_slice_mut(&mut self.matrix, rows, columns);
         let mut coefficients = MatMut::from_column_major_slice_mut(&mut self.coefficients, block, columns);

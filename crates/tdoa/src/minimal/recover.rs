@@ -30,15 +30,18 @@ pub(super) struct Again<F: Formulation> {
 }
 
 impl<F: Formulation> Again<F> {
-    pub(super) fn new() -> Self {
+    /// With room for all paths of a fibre.
+    pub(super) fn new(fibre: &Fibre) -> Self {
+        let (paths, dimension) = (fibre.len(), fibre.dimension);
         Again {
             refiner: Refiner::new(F::system()),
             refined: Refined::default(),
-            coincidences: Coincidences::default(),
-            lost: Vec::new(),
-            from: Vec::new(),
-            carried: Vec::new(),
-            paths: PathSet::default(),
+            coincidences: Coincidences::with_capacity(paths),
+            // A path may be lost and share its end.
+            lost: Vec::with_capacity(2 * paths),
+            from: Vec::with_capacity(paths),
+            carried: Vec::with_capacity(paths * dimension),
+            paths: PathSet::with_capacity(dimension, paths),
             segment: Segment::default(),
         }
     }
