@@ -107,6 +107,24 @@ fn a_singular_component_is_no_end_of_a_fibre() {
 }
 
 #[test]
+fn points_to_twice_the_digits_tell_paths_apart() {
+    // x = 1 + s sqrt(a) and x = 1 - s sqrt(a), y = sqrt(a): the paths are 2 s apart and more, at last fewer than a hundred doubles.
+    let (_, system) = family("x y", "a s", "(x - 1)^2 - s*s*a; y - (x - 1)/s");
+    // The steps of the second are held up if the points they start from are rounded to doubles: y moves by their rounding error over s.
+    for s in [1e-10, 1e-12, 1e-13, 1e-14] {
+        let at = |a: f64| reals(&[a, s]);
+        let path = Segment::new(&at(1.0), &at(4.0));
+        let starts = [reals(&[1.0 + s, 1.0]), reals(&[1.0 - s, -1.0])].concat();
+        let ends = track(&system, &path, &starts, &[0, 1], &TrackerOptions::default());
+        for ((result, point), y) in ends.iter().zip([2.0, -2.0]) {
+            assert_eq!(result.end, PathEnd::Success, "{s}: {result:?}");
+            assert!((point[0] - (1.0 + s * y)).norm() <= f64::EPSILON, "{s}: {point:?}");
+            assert!((point[1] - y).norm() < 1e-5, "{s}: {point:?}");
+        }
+    }
+}
+
+#[test]
 fn parameters_to_twice_the_digits_keep_ill_conditioned_paths_smooth() {
     // With d = 3 a all the way the path is x = sqrt(a), y = b; the rounding errors of a and d move y by c times as much, about 1e-3.
     let (_, system) = family("x y", "a b c d", "x^2 - a; c*(3*x^2 - d) + (y - b)");

@@ -11,8 +11,9 @@ use super::result::{PathEnd, PathSet};
 use crate::homotopy::ParameterPath;
 use crate::linalg::Lu;
 use num_complex::Complex64;
+use poly::dd::Dd;
 use poly::simd::Isa;
-use poly::{ComplexDd, Evaluate, Lane};
+use poly::{ComplexDd, Evaluate, Lane, Scalar};
 
 /// Tracks paths of one system, `S::LANES` at a time; keeps its memory from call to call.
 pub struct Tracker<'a, E: Evaluate, S: Lane> {
@@ -33,8 +34,13 @@ pub struct Tracker<'a, E: Evaluate, S: Lane> {
     /// Where the Jacobian is evaluated.
     point: Vec<S>,
     corrected: Vec<S>,
+    /// What doubles leave of these two, and of the point of the last accepted step, for paths whose points have twice the digits; else anything.
+    point_low: Vec<S>,
+    corrected_low: Vec<S>,
+    taylor_low: Vec<S>,
     /// What the closing correction starts from.
     closing: Vec<S>,
+    closing_low: Vec<S>,
     values: Vec<S>,
     jacobian: Vec<S>,
     lu: Lu<S>,
@@ -46,7 +52,7 @@ pub struct Tracker<'a, E: Evaluate, S: Lane> {
     valuations: Vec<f64>,
 }
 
-/// Residuals in double-double for single paths.
+/// Residuals in double-double for single paths, at points in double or double-double.
 struct Precise<E: Evaluate> {
     memory: E::Memory<ComplexDd>,
     x: Vec<ComplexDd>,
@@ -74,10 +80,12 @@ impl<E: Evaluate> Precise<E> {
         path.extend(lane.path, lane.t_next, p);
     }
 
-    /// Overwrites lane `l` of `values` with residuals at the point `x`.
-    fn overwrite<S: Lane>(&mut self, system: &E, l: usize, x: &[S], values: &mut [S]) {
+    /// Overwrites lane `l` of `values` with residuals at the point `x`, or `x + low` where the lane is wide.
+    fn overwrite<S: Lane>(&mut self, system: &E, l: usize, wide: bool, x: [&[S]; 2], values: &mut [S]) {
         let m = system.parameters();
-        self.x.iter_mut().zip(x).for_each(|(d, s)| *d = s.get(l).into());
+        for (d, (high, low)) in self.x.iter_mut().zip(x[0].iter().zip(x[1])) {
+            *d = if wide { joined(high.get(l), low.get(l)) } else { high.get(l).into() };
+        }
         system.values(&mut self.memory, &self.x, &self.p[l * m..(l + 1) * m], &mut self.values);
         values.iter_mut().zip(&self.values).for_each(|(d, s)| d.set(l, Complex64::from(*s)));
     }
@@ -107,7 +115,11 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             predicted: zeros(n),
             point: zeros(n),
             corrected: zeros(n),
+            point_low: zeros(n),
+            corrected_low: zeros(n),
+            taylor_low: zeros(n),
             closing: zeros(n),
+            closing_low: zeros(n),
             values: zeros(n),
             jacobian: zeros(n * n),
             lu: Lu::new(n, isa),
@@ -186,7 +198,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             if unfinished == 0 {
                 break;
             }
-            self.isa.run(Take { from: &self.corrected, mask: unfinished, to: &mut self.point });
+            self.take_corrected(unfinished);
         }
 
         let mut accepted = 0u8;
@@ -232,12 +244,31 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         if fresh != 0 {
             self.isa.run(Take { from: &self.taylor[..self.n], mask: fresh, to: &mut self.predicted });
         }
+        if self.lanes.iter().any(|lane| lane.wide) {
+            self.predict_precisely(step, radius_sqr);
+        }
         self.isa.run(Weigh {
             x: &self.predicted,
             fresh,
             weights_sqr: &mut self.weights_sqr,
             inverse: &mut self.inverse_weights_sqr,
         });
+    }
+
+    /// Predictions from points to twice the digits, in the lanes that have them.
+    fn predict_precisely(&mut self, step: S::Real, radius_sqr: S::Real) {
+        let n = self.n;
+        self.point_low.fill(S::zero());
+        // What is added to the point: the prediction from zero with the same derivatives.
+        let (derivatives, from_point) = (&mut self.taylor_next, &mut self.closing);
+        derivatives.copy_from_slice(&self.taylor);
+        derivatives[..n].fill(S::zero());
+        self.isa.run(Predict { taylor: derivatives, step, radius_sqr, out: from_point });
+        for l in (0..S::LANES).filter(|&l| self.lanes[l].wide && self.lanes[l].kept) {
+            from_point.iter_mut().for_each(|z| z.set(l, -z.get(l)));
+            let to = [&mut self.predicted[..], &mut self.point_low];
+            subtract(l, [&self.taylor[..n], &self.taylor_low], from_point, to);
+        }
     }
 
     /// Newton's method until every lane has converged or is rejected.
@@ -248,7 +279,8 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             self.system.jacobian(&mut self.memory, &self.point, p, &mut self.values, &mut self.jacobian);
             for l in 0..S::LANES {
                 if self.lanes[l].extended && self.lanes[l].stage == Stage::Iterating {
-                    self.precise.overwrite(self.system, l, &self.point, &mut self.values);
+                    let x = [&self.point[..], &self.point_low];
+                    self.precise.overwrite(self.system, l, self.lanes[l].wide, x, &mut self.values);
                 }
             }
             self.lu.factor(&self.jacobian, &self.weights_sqr);
@@ -265,6 +297,10 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
                 running,
                 out: &mut self.corrected,
             });
+            for l in (0..S::LANES).filter(|l| running >> l & 1 == 1 && self.lanes[*l].wide) {
+                let to = [&mut self.corrected[..], &mut self.corrected_low];
+                subtract(l, [&self.point, &self.point_low], &self.values, to);
+            }
             let mut again = 0u8;
             for (l, lane) in self.lanes.iter_mut().enumerate() {
                 lane.judge(norm.as_ref()[l].sqrt(), &self.bounds);
@@ -273,7 +309,15 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             if again == 0 {
                 return;
             }
-            self.isa.run(Take { from: &self.corrected, mask: again, to: &mut self.point });
+            self.take_corrected(again);
+        }
+    }
+
+    /// Makes the corrected points of some lanes those where the Jacobian is evaluated.
+    fn take_corrected(&mut self, mask: u8) {
+        self.isa.run(Take { from: &self.corrected, mask, to: &mut self.point });
+        if self.lanes.iter().any(|lane| lane.wide) {
+            self.isa.run(Take { from: &self.corrected_low, mask, to: &mut self.point_low });
         }
     }
 
@@ -292,7 +336,8 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             self.lu.solve(&mut self.rough);
             for l in 0..S::LANES {
                 if self.lanes[l].extended && converged(&self.lanes[l]) {
-                    self.precise.overwrite(self.system, l, &self.corrected, &mut self.values);
+                    let x = [&self.corrected[..], &self.corrected_low];
+                    self.precise.overwrite(self.system, l, self.lanes[l].wide, x, &mut self.values);
                 }
             }
         }
@@ -306,6 +351,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         }
         // `point` stays where the Jacobian was taken: lanes that are done are evaluated there again if others go on.
         self.closing.copy_from_slice(&self.corrected);
+        self.closing_low.copy_from_slice(&self.corrected_low);
         let mut running = 0u8;
         for (l, lane) in self.lanes.iter().enumerate() {
             running |= u8::from(converged(lane)) << l;
@@ -317,6 +363,10 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             running,
             out: &mut self.corrected,
         });
+        for l in (0..S::LANES).filter(|l| running >> l & 1 == 1 && self.lanes[*l].wide) {
+            let to = [&mut self.corrected[..], &mut self.corrected_low];
+            subtract(l, [&self.closing, &self.closing_low], &self.values, to);
+        }
         for (l, lane) in self.lanes.iter_mut().enumerate() {
             let double = lane.extended.then(|| rough.as_ref()[l].sqrt());
             lane.judge_closing(norm.as_ref()[l].sqrt(), double, &self.bounds);
@@ -341,6 +391,10 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             self.isa.run(Negate { x: &mut next[..n] });
         }
         self.isa.run(Take { from: &self.taylor_next, mask: accepted, to: &mut self.taylor });
+        for (l, lane) in self.lanes.iter_mut().enumerate().filter(|(l, lane)| accepted >> l & 1 == 1 && lane.wide) {
+            self.taylor_low.iter_mut().zip(&self.corrected_low).for_each(|(to, from)| to.set(l, from.get(l)));
+            lane.kept = true;
+        }
         let mut omega_sqr = S::real(1.0);
         omega_sqr.as_mut().iter_mut().zip(&self.lanes).for_each(|(o, lane)| *o = lane.omega() * lane.omega());
         let (taylor, inverse_weights_sqr) = (&self.taylor, &self.inverse_weights_sqr);
@@ -387,6 +441,21 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         let result = self.lanes[l].result(end, self.lu.smallest_pivot(l, &self.weights_sqr));
         out.push(result, self.taylor[..self.n].iter().map(|x| x.get(l)));
         self.lanes[l] = Progress::idle();
+    }
+}
+
+/// A number to twice the digits from its double and what that leaves.
+fn joined(high: Complex64, low: Complex64) -> ComplexDd {
+    ComplexDd { re: Dd { high: high.re, low: low.re }, im: Dd { high: high.im, low: low.im } }
+}
+
+/// In lane `l`, the points `x` (doubles and what these leave) less the corrections `dx`.
+fn subtract<S: Lane>(l: usize, x: [&[S]; 2], dx: &[S], to: [&mut [S]; 2]) {
+    let [high, low] = to;
+    for (j, dx) in dx.iter().enumerate() {
+        let next = ComplexDd::sub(&joined(x[0][j].get(l), x[1][j].get(l)), &dx.get(l).into());
+        high[j].set(l, next.high());
+        low[j].set(l, next.low());
     }
 }
 

@@ -5,7 +5,8 @@
 //! would not converge quadratically (estimates of the Lipschitz constant `omega` of Newton's method and of the limiting accuracy `mu`; Timme 2020,
 //! arXiv:1902.02968; Deuflhard 2004). The next step is bounded by the distance to the nearest pole of the approximants and
 //! by the length for which Newton's method is predicted to converge at once. When `omega mu` says that double precision
-//! ends, residuals are computed in double-double.
+//! ends, residuals are computed in double-double, and where even that is not enough, because other paths are nearly as near as the
+//! next double, so are the points.
 //!
 //! Paths travel in lanes, eight at once or alone ([`Tracker`] is generic over [`poly::Lane`]); a path takes the same steps to the
 //! same bits in either. [`track`] is the front door: it spreads paths over threads and returns them in order.

@@ -91,6 +91,10 @@ pub(crate) struct Progress {
     pub(crate) t_next: f64,
     pub(crate) radius: f64,
     pub(crate) extended: bool,
+    /// Whether the point has twice the digits too: another path is so near that doubles hardly tell them apart.
+    pub(crate) wide: bool,
+    /// Whether that of the last accepted step was kept with all of them.
+    pub(crate) kept: bool,
     step: f64,
     /// Rejections since the last accepted step.
     failed_before: usize,
@@ -125,6 +129,8 @@ impl Progress {
             t_next: 1.0,
             radius: 0.0,
             extended: false,
+            wide: false,
+            kept: false,
             step: 0.0,
             failed_before: 0,
             local_error: f64::NAN,
@@ -151,6 +157,16 @@ impl Progress {
 
     pub(crate) fn is_live(&self) -> bool {
         self.stage != Stage::Idle
+    }
+
+    fn widen(&mut self) {
+        self.wide = true;
+        self.noise = self.rounding();
+    }
+
+    /// Relative size of what is less than the rounding error of a point.
+    fn rounding(&self) -> f64 {
+        if self.wide { f64::EPSILON * f64::EPSILON } else { f64::EPSILON }
     }
 
     /// Lipschitz constant of Newton's method, as last estimated.
@@ -277,10 +293,10 @@ impl Progress {
         }
         let mut omega = self.omega_now.max(0.5 * self.omega).max(MIN_OMEGA);
         if norm <= omega * self.last * self.last {
-            self.noise = self.noise.min(norm).max(f64::EPSILON);
+            self.noise = self.noise.min(norm).max(self.rounding());
         } else if norm <= MOST_NOISE {
             // More than quadratic convergence leaves is rounding error, if it is small enough for that.
-            self.noise = norm.max(f64::EPSILON);
+            self.noise = norm.max(self.rounding());
         } else {
             omega = norm / (self.last * self.last);
         }
@@ -292,17 +308,22 @@ impl Progress {
             return;
         }
         if noise > bounds.limit {
-            self.stage = Stage::Failed(PathEnd::AccuracyLimit);
+            self.stage = if self.wide || !self.extended {
+                Stage::Failed(PathEnd::AccuracyLimit)
+            } else {
+                self.widen();
+                Stage::Retry
+            };
             return;
         }
         if let Some(double) = double
             && omega * double < bounds.enter_double
         {
-            self.extended = false;
+            (self.extended, self.wide, self.kept) = (false, false, false);
         }
         self.omega_before = self.omega;
         self.omega = omega;
-        self.mu = norm.max(f64::EPSILON);
+        self.mu = norm.max(self.rounding());
         self.stage = Stage::Accepted;
     }
 
@@ -358,6 +379,12 @@ impl Progress {
                 self.step = 1e-3 * self.radius.min(self.t);
                 return None;
             }
+            if !self.wide && bounds.options.extended_precision {
+                // And once more, since the predictor may have failed for those of the point it starts from.
+                self.widen();
+                self.step = 1e-3 * self.radius.min(self.t);
+                return None;
+            }
             return Some(PathEnd::StepTooSmall);
         }
         None
@@ -398,7 +425,8 @@ impl Progress {
             path: self.path,
             end,
             t: self.t,
-            accuracy: self.mu,
+            // The point is given in double precision.
+            accuracy: self.mu.max(f64::EPSILON),
             omega: self.omega,
             pivot,
             accepted: self.accepted,
