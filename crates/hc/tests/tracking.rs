@@ -108,18 +108,17 @@ fn a_singular_component_is_no_end_of_a_fibre() {
 
 #[test]
 fn points_to_twice_the_digits_tell_paths_apart() {
-    // x = 1 + s sqrt(a) and x = 1 - s sqrt(a), y = sqrt(a): the paths are 2 s apart and more, at last fewer than a hundred doubles.
+    // x = 1 + s sqrt(a) and x = 1 - s sqrt(a), y = sqrt(a): the paths are 2 s sqrt(a) apart. Rounding a point to doubles moves y by the
+    // rounding error over s, which holds up the steps from there.
     let (_, system) = family("x y", "a s", "(x - 1)^2 - s*s*a; y - (x - 1)/s");
-    // The steps of the second are held up if the points they start from are rounded to doubles: y moves by their rounding error over s.
-    for s in [1e-10, 1e-12, 1e-13, 1e-14] {
-        let at = |a: f64| reals(&[a, s]);
-        let path = Segment::new(&at(1.0), &at(4.0));
-        let starts = [reals(&[1.0 + s, 1.0]), reals(&[1.0 - s, -1.0])].concat();
+    for (from, to) in [(1e-10, 1e-10), (1e-12, 1e-12), (1e-6, 1e-11), (1e-6, 1e-12), (1e-6, 1e-13), (1e-6, 1e-14)] {
+        let path = Segment::new(&reals(&[1.0, from]), &reals(&[4.0, to]));
+        let starts = [reals(&[1.0 + from, 1.0]), reals(&[1.0 - from, -1.0])].concat();
         let ends = track(&system, &path, &starts, &[0, 1], &TrackerOptions::default());
         for ((result, point), y) in ends.iter().zip([2.0, -2.0]) {
-            assert_eq!(result.end, PathEnd::Success, "{s}: {result:?}");
-            assert!((point[0] - (1.0 + s * y)).norm() <= f64::EPSILON, "{s}: {point:?}");
-            assert!((point[1] - y).norm() < 1e-5, "{s}: {point:?}");
+            assert_eq!(result.end, PathEnd::Success, "{from:e} to {to:e}: {result:?}");
+            assert!((point[0] - (1.0 + to * y)).norm() <= f64::EPSILON, "{from:e} to {to:e}: {point:?}");
+            assert!((point[1] - y).norm() < 1e-5, "{from:e} to {to:e}: {point:?}");
         }
     }
 }
