@@ -148,6 +148,8 @@ fn garbage_is_refused() {
     assert_says(calibrate("f.npy", b"not an array at all", &[]), 2, &["is not a .npy file"]);
     assert_says(of(&["simulate", "--missing", "2", "--output", "x"]), 2, &["between 0 and 1"]);
     assert_says(of(&["simulate", "--receivers", "0", "--output", "x"]), 2, &["empty"]);
+    let many = ["simulate", "--receivers", "0", "--transmitters", "999999999999", "--output", "x"];
+    assert_says(of(&many), 2, &["empty"]);
     assert_says(
         of(&["simulate", "--receivers", "99999999999", "--transmitters", "99999999999", "--output", "x"]),
         2,
@@ -165,6 +167,13 @@ fn a_hundred_thousand_columns() {
         1,
         &["3 receivers and 100000 transmitters", "add 1 receiver"],
     );
+    // The other way round; and the exact solvers, whose last refinement is over all measurements at once.
+    let table = vec!["1,2,3,5"; 100_000].join("\n");
+    assert_says(calibrate("high.csv", table.as_bytes(), &[]), 1, &["100000 receivers", "2000", "in groups"]);
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("high.csv");
+    std::fs::write(&path, table).unwrap();
+    assert_says(of(&["solve", path.to_str().unwrap()]), 2, &["100000r/4s", "5000 measurements", "calibrate"]);
     // More cells than any recording.
     let table = vec![row(1); 41].join("\n");
     assert_says(calibrate("wide.csv", table.as_bytes(), &[]), 2, &["line 41", "more than 4000000 cells", "split"]);

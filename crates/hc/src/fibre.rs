@@ -95,7 +95,7 @@ pub fn track_fibre<E: Evaluate>(
     let mut retracked = 0;
     for level in 1..=options.retries {
         which = doubtful(&paths, options.coincidence);
-        if which.is_empty() {
+        if which.is_empty() || options.tracker.monitor.is_cancelled() {
             break;
         }
         retracked += which.len();

@@ -37,6 +37,10 @@ pub enum Stage {
     Loop,
 }
 
+/// In the order of their numbers.
+const STAGES: [Stage; 6] =
+    [Stage::Preparing, Stage::MixedCells, Stage::Start, Stage::Paths, Stage::Endgame, Stage::Loop];
+
 /// How far the work is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
@@ -92,14 +96,8 @@ impl Monitor {
     /// How far the work is. The numbers may be of slightly different instants.
     pub fn progress(&self) -> Progress {
         let Some(shared) = &self.0 else { return Progress::default() };
-        let stage = match shared.stage.load(Ordering::Relaxed) {
-            1 => Stage::MixedCells,
-            2 => Stage::Start,
-            3 => Stage::Paths,
-            4 => Stage::Endgame,
-            5 => Stage::Loop,
-            _ => Stage::Preparing,
-        };
+        let number = usize::from(shared.stage.load(Ordering::Relaxed));
+        let stage = STAGES.get(number).copied().unwrap_or(Stage::Preparing);
         let [done, total, counted] =
             [&shared.done, &shared.total, &shared.counted].map(|number| number.load(Ordering::Relaxed));
         Progress { stage, done, total, counted }

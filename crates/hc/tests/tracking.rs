@@ -2,6 +2,7 @@
 
 use hc::fibre::{Fibre, FibreOptions, track_fibre};
 use hc::homotopy::Segment;
+use hc::monitor::Monitor;
 use hc::monodromy::{MonodromyOptions, Stop, monodromy};
 use hc::pair::find_pair;
 use hc::poly::{Family, Interpreter, Isa, Lane, Lanes8, parse};
@@ -257,4 +258,19 @@ fn monodromy_without_a_known_count_says_that_it_only_stopped() {
     let found = monodromy(&system, &start, |_, _| true, &MonodromyOptions::default());
     assert_eq!((found.stop, found.fibre.len()), (Stop::NoProgress, 2));
     assert!(trace_test(&family.system, &found.fibre, &MonodromyOptions::default()).unwrap().passed(2));
+}
+
+#[test]
+fn a_tracker_heeds_its_monitor() {
+    let (_, system) = family("x", "a", "x^2 - a");
+    let path = Segment::new(&reals(&[1.0]), &reals(&[2.0]));
+    let mut options = TrackerOptions::default();
+    options.monitor = Monitor::watched();
+    let mut tracker = Tracker::<_, Lanes8>::new(&system, &options);
+    let mut paths = PathSet::new(1);
+    tracker.track(&path, &reals(&[1.0, -1.0]), 0..2, &mut paths);
+    assert_eq!(paths.count(PathEnd::Success), 2);
+    options.monitor.cancel();
+    tracker.track(&path, &reals(&[1.0, -1.0]), 0..2, &mut paths);
+    assert_eq!((paths.len(), paths.count(PathEnd::Cancelled)), (4, 2));
 }

@@ -13,6 +13,9 @@ pub const SMALLEST: &str = "6 receivers and 3 transmitters, 5 and 4, or 4 and 5"
 const LEAST_PER_TRANSMITTER: usize = 4;
 const LEAST_PER_RECEIVER: usize = 3;
 
+/// Receivers at most: the normal equations are dense in their coordinates.
+const MAX_RECEIVERS: usize = 2_000;
+
 /// Number of equations minus number of unknowns of m receivers and n transmitters, all measured: mn - 2m - 3n + 3.
 pub fn excess(receivers: usize, transmitters: usize) -> i64 {
     let (m, n) = (receivers as i64, transmitters as i64);
@@ -32,6 +35,14 @@ pub enum Degeneracy {
     /// All cells are empty.
     #[error("nothing was measured: all {0} cells are missing")]
     NothingMeasured(usize),
+    /// So many receivers that the matrix of their coordinates would fill the memory.
+    #[error(
+        "{receivers} receivers are more than the {MAX_RECEIVERS} that can be calibrated at once; calibrate them in groups that share some"
+    )]
+    TooManyReceivers {
+        /// Receivers.
+        receivers: usize,
+    },
     /// Too few nodes.
     #[error(
         "{receivers} receivers and {transmitters} transmitters cannot be calibrated{left}: the smallest solvable sizes are \
@@ -101,6 +112,9 @@ pub fn usable(measured: &Pseudoranges) -> Result<Usable, Degeneracy> {
         return Err(Degeneracy::NothingMeasured(measured.values().len()));
     }
     let (m, n) = (measured.receivers(), measured.transmitters());
+    if m > MAX_RECEIVERS {
+        return Err(Degeneracy::TooManyReceivers { receivers: m });
+    }
     if !is_solvable(m, n) {
         return Err(Degeneracy::TooSmall { receivers: m, transmitters: n, left: String::new(), remedy: remedy(m, n) });
     }

@@ -109,6 +109,10 @@ pub fn simulate(options: &SimulateOptions) -> Result<Simulation, SimulateError> 
     // The size is checked before anything of that size is made.
     let cells = m.checked_mul(n).filter(|&cells| cells <= crate::pseudoranges::MAX_CELLS);
     let cells = cells.ok_or(PseudorangeError::TooLarge { receivers: m, transmitters: n })?;
+    // No cells at all do not bound the number of nodes.
+    if cells == 0 {
+        return Err(PseudorangeError::Empty { receivers: m, transmitters: n }.into());
+    }
     let mut rng = Pcg64Mcg::seed_from_u64(options.seed);
     let network = random_network(m, n, options.layout, &mut rng);
     let mut values: Vec<f64> = (0..cells).map(|k| network.pseudorange(k / n.max(1), k % n.max(1))).collect();

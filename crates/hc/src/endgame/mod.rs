@@ -31,7 +31,7 @@ pub struct EndgameOptions {
     pub start: f64,
     /// Radius of the first loop. Default 1e-6.
     pub radius: f64,
-    /// By what a radius is divided when the loop was too wide. Default 30.
+    /// By what a radius is divided when the loop was too wide, at least 1.5. Default 30.
     pub shrink: f64,
     /// Paths that are undecided below this radius are lost. Default 1e-13.
     pub min_radius: f64,

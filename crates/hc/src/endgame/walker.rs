@@ -20,6 +20,8 @@ const CLOSED: f64 = 1e-10;
 
 /// After so many loops that were too wide the path is tracked straight to zero.
 const TRY_HOME: u32 = 2;
+/// Each circle is at least that many times smaller than the one before.
+const LEAST_SHRINK: f64 = 1.5;
 
 /// The end of a leg.
 pub(super) struct Sample {
@@ -209,8 +211,10 @@ impl Walker {
         self.shrunk += 1;
         self.going_home = self.shrunk == TRY_HOME;
         self.turns = self.turns.saturating_mul(2).min(self.max_turns).max(1);
-        if self.radius / options.shrink > self.deepest {
-            self.radius /= options.shrink;
+        // Circles that never shrink would never end.
+        let shrink = options.shrink.max(LEAST_SHRINK);
+        if self.radius / shrink > self.deepest {
+            self.radius /= shrink;
         } else if self.per_turn < MAX_SAMPLES_WIDE {
             // No smaller circle will do: once more with more samples, which may also stand a singularity not far outside.
             self.per_turn *= 2;

@@ -7,7 +7,7 @@
 use super::kernels::{Coefficients, Correct, Distance, Negate, Predict, Radius, Take, Weigh};
 use super::options::TrackerOptions;
 use super::progress::{Bounds, Progress, Stage};
-use super::result::{PathEnd, PathSet};
+use super::result::{PathEnd, PathResult, PathSet};
 use crate::homotopy::ParameterPath;
 use crate::linalg::Lu;
 use num_complex::Complex64;
@@ -131,13 +131,14 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         }
     }
 
-    /// Replaces the settings for the paths to come.
+    /// Replaces the settings for the paths to come, but for the instruction set.
     pub fn set_options(&mut self, options: &TrackerOptions) {
         self.bounds = Bounds::new(options);
     }
 
     /// Tracks the paths with the given indices into `starts` (`n` coordinates a path) along `path` from `t = 1` to 0 and
-    /// appends their ends to `out`, in the order in which they end.
+    /// appends their ends to `out`, in the order in which they end. Once the work is cancelled by the monitor of the options, paths that
+    /// have not begun are appended as [`PathEnd::Cancelled`].
     ///
     /// # Panics
     /// If an index lies outside `starts` or `path` has another number of parameters than the system.
@@ -155,7 +156,10 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         self.taylor.fill(S::zero());
         loop {
             for l in 0..S::LANES {
-                if !self.lanes[l].is_live()
+                if !self.lanes[l].is_live() && self.bounds.options.monitor.is_cancelled() {
+                    let point = |k: usize| starts[k * self.n..(k + 1) * self.n].iter().copied();
+                    which.by_ref().for_each(|k| out.push(PathResult::cancelled(k), point(k)));
+                } else if !self.lanes[l].is_live()
                     && let Some(index) = which.next()
                 {
                     self.lanes[l] = Progress::start(index);

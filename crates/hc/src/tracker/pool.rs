@@ -1,6 +1,6 @@
 //! Trackers that are kept from call to call.
 
-use super::{PathEnd, PathResult, PathSet, Tracker, TrackerOptions};
+use super::{PathEnd, PathSet, Tracker, TrackerOptions};
 use crate::homotopy::ParameterPath;
 use num_complex::Complex64;
 use poly::{Evaluate, Lanes8};
@@ -57,14 +57,10 @@ impl<'a, E: Evaluate> Trackers<'a, E> {
                     let mut out = PathSet::new(n);
                     let end = which.len().min((part + 1) * size);
                     let which = which[part * size..end].iter().copied();
-                    match &mut borrowed.tracker {
-                        Some(tracker) if !options.monitor.is_cancelled() => {
-                            tracker.track(path, starts, which, &mut out);
-                            options.monitor.add(out.len() as u64, out.count(PathEnd::Success) as u64);
-                        }
-                        _ => which.for_each(|k| {
-                            out.push(PathResult::cancelled(k), starts[k * n..(k + 1) * n].iter().copied());
-                        }),
+                    if let Some(tracker) = &mut borrowed.tracker {
+                        tracker.track(path, starts, which, &mut out);
+                        let done = out.len() - out.count(PathEnd::Cancelled);
+                        options.monitor.add(done as u64, out.count(PathEnd::Success) as u64);
                     }
                     out
                 },

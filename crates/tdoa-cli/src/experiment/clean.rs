@@ -38,7 +38,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let (size, seed) = trials[k];
         let simulation = normal(size, 0.0, seed)?;
         let started = thread_seconds();
-        let t = clean_trial(solver, &simulation, seed, &SolveOptions::default()).map_err(Failure::unusable)?;
+        let t = clean_trial(solver, &simulation, &SolveOptions::default()).map_err(Failure::unusable)?;
         let milliseconds = 1e3 * (thread_seconds() - started);
         let (p, c) = (&t.paths, &t.counts);
         Ok(format!(

@@ -10,7 +10,7 @@ use super::polish::Polisher;
 use super::proofs::{RootProofs, prove};
 use super::real::real_root;
 use super::recover::{Again, Recovery};
-use super::{SolveError, SolveOptions, Start, check, scratch};
+use super::{SolveError, SolveOptions, Start, scratch};
 use crate::calibrate::flatness;
 use crate::network::{Candidate, MinimalSolution, Network, PathCounts, RootCounts};
 use crate::pseudoranges::Pseudoranges;
@@ -67,7 +67,7 @@ impl<F: Formulation> Engine<F> {
         Engine { tracking, roots, data, target: Vec::new(), squares }
     }
 
-    /// Every network that explains a matrix of the formulation's size. After the first call memory is allocated for the result alone, unless
+    /// Every network that explains a matrix of the formulation's size that has passed the checks. After the first call memory is allocated for the result alone, unless
     /// all paths have to be tracked again.
     pub(crate) fn solve(
         &mut self,
@@ -76,7 +76,6 @@ impl<F: Formulation> Engine<F> {
     ) -> Result<MinimalSolution, SolveError> {
         let size = (measured.receivers(), measured.transmitters());
         assert_eq!(size, (F::RECEIVERS, F::TRANSMITTERS), "size of the matrix");
-        check(measured)?;
         self.data.take(measured);
         let parameters = self.data.parameters();
         self.target.clear();

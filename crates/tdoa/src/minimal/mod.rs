@@ -69,6 +69,7 @@ pub struct SolveOptions {
 /// How paths are tracked again that fail, jump or take too many steps. A chart is the same problem with the nodes in another order. What
 /// each costs and loses is measured by `tdoa experiment charts`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Fallback {
     /// In the other charts, from where they have broken off.
     #[default]
@@ -81,6 +82,7 @@ pub enum Fallback {
 
 /// Where the paths of the minimal solvers start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Start {
     /// From the stored solutions of a generic instance: as many paths as roots.
     #[default]
@@ -111,6 +113,9 @@ impl Default for SolveOptions {
     }
 }
 
+/// Measurements at most: the last refinement takes memory for a matrix of as many rows, and columns for all unknowns.
+const MAX_MEASUREMENTS: usize = 5_000;
+
 /// Why a matrix cannot be solved.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -127,6 +132,16 @@ pub enum SolveError {
         constraints: usize,
         /// Unknowns.
         unknowns: usize,
+    },
+    /// More measurements than all of them can be refined with by dense algebra.
+    #[error(
+        "{configuration} has more than the {limit} measurements that exact solvers take; use `calibrate`, or select nodes"
+    )]
+    TooLarge {
+        /// Size, such as `400r/300s`.
+        configuration: String,
+        /// Measurements at most.
+        limit: usize,
     },
     /// The polyhedral route failed before any path was tracked.
     #[error("the polyhedral start system: {0}")]

@@ -11,7 +11,8 @@ use super::proofs::RootProofs;
 use super::rank::{FiveSix, by_receivers, offsets_of_four};
 use super::subset::{self, Subset};
 use super::three::{FiveFour, SixThree};
-use super::{SolveError, SolveOptions, check};
+use super::{MAX_MEASUREMENTS, SolveError, SolveOptions, check};
+use crate::degeneracy::is_solvable;
 use crate::network::{MinimalSolution, PathCounts, RootCounts};
 use crate::pseudoranges::Pseudoranges;
 use hc::tracker::PathResult;
@@ -68,13 +69,15 @@ impl Solver {
     /// spread part of one of these sizes: its candidates are extended to all nodes and refined over all measurements.
     ///
     /// # Errors
-    /// If the matrix is too small, a measurement is missing, or two nodes coincide.
+    /// If the matrix is too small or too large, a measurement is missing, or two nodes coincide.
     pub fn solve(&mut self, measured: &Pseudoranges, options: &SolveOptions) -> Result<MinimalSolution, SolveError> {
         let (m, n) = (measured.receivers(), measured.transmitters());
         let (constraints, unknowns) = (m * n, (2 * m + 3 * n).saturating_sub(3));
-        // Three transmitters in the plane need six receivers, and so on: more measurements of one kind alone do not help.
-        if m < 4 || n < 3 || constraints < unknowns {
+        if !is_solvable(m, n) {
             return Err(SolveError::Underdetermined { configuration: measured.configuration(), constraints, unknowns });
+        }
+        if constraints > MAX_MEASUREMENTS {
+            return Err(SolveError::TooLarge { configuration: measured.configuration(), limit: MAX_MEASUREMENTS });
         }
         check(measured)?;
         let method = Method::pick(m, n);
