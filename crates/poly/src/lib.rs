@@ -63,7 +63,7 @@ pub mod system;
 pub use ball::ComplexBall;
 pub use dd::ComplexDd;
 pub use evaluate::Evaluate;
-pub use exact::Exact;
+pub use exact::{Exact, ToExact};
 pub use expand::{ExpandError, ExpandLimits};
 pub use expression::{Expr, Expressions};
 pub use interval::ComplexInterval;
