@@ -4,6 +4,7 @@
 //! committed inputs alone (`NAME.toml` and `NAME.start.json`), so that the bytes are the same on any machine.
 
 use crate::refill::{self, nondegenerate};
+use crate::workspace;
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use hc::distinct::coincidences;
@@ -92,7 +93,7 @@ pub(crate) fn run(arguments: &CodegenArguments) -> Result<()> {
         let name = family.file_name().unwrap_or_default().to_string_lossy().into_owned();
         return write_or_check(arguments, &name, family, start, output).map(|_| ());
     }
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let root = workspace::root();
     let chosen: Vec<&Known> =
         FAMILIES.iter().filter(|known| arguments.only.as_deref().is_none_or(|only| only == known.name)).collect();
     let names: Vec<&str> = FAMILIES.iter().map(|known| known.name).collect();
@@ -102,7 +103,7 @@ pub(crate) fn run(arguments: &CodegenArguments) -> Result<()> {
         let [family, start, output] = [known.family, known.start, known.output].map(|path| root.join(path));
         if arguments.refill {
             let file = refill::refill(&read_family(&family)?, arguments.seed, !arguments.no_trace)?;
-            std::fs::write(&start, file.to_json()).with_context(|| format!("cannot write {}", start.display()))?;
+            workspace::write(&start, &file.to_json())?;
         }
         if write_or_check(arguments, known.family, &family, &start, &output)? {
             stale.push(known.output);
@@ -115,8 +116,7 @@ pub(crate) fn run(arguments: &CodegenArguments) -> Result<()> {
 }
 
 fn read_family(path: &Path) -> Result<Family> {
-    let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
-    poly::parse::family(&text).with_context(|| format!("{} is not a family", path.display()))
+    poly::parse::family(&workspace::read(path)?).with_context(|| format!("{} is not a family", path.display()))
 }
 
 /// Writes one module, or with `--check` says whether the one on disk is stale.
@@ -128,8 +128,7 @@ fn write_or_check(
     output: &Path,
 ) -> Result<bool> {
     let family = read_family(family)?;
-    let text = std::fs::read_to_string(start).with_context(|| format!("cannot read {}", start.display()))?;
-    let start_file = StartFile::from_json(&text).with_context(|| start.display().to_string())?;
+    let start_file = StartFile::from_json(&workspace::read(start)?).with_context(|| start.display().to_string())?;
     verify(&family, &start_file).with_context(|| start.display().to_string())?;
     let module = generate(&family, &start_file, source)?;
     if arguments.check {
@@ -138,7 +137,7 @@ fn write_or_check(
     if let Some(folder) = output.parent() {
         std::fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
     }
-    std::fs::write(output, module).with_context(|| format!("cannot write {}", output.display()))?;
+    workspace::write(output, &module)?;
     eprintln!("wrote {}", output.display());
     Ok(false)
 }

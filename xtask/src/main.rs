@@ -5,6 +5,7 @@ mod compare;
 mod counts;
 mod experiments;
 mod refill;
+mod workspace;
 
 use clap::{Parser, Subcommand};
 

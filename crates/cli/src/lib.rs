@@ -11,13 +11,16 @@ use std::process::ExitCode;
 pub const INTERRUPTED: u8 = 130;
 
 /// Why a program ends without success.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub enum Failure {
     /// Exit status 1: no solution, an incomplete result, or data that cannot determine the answer.
+    #[error("{0}")]
     Undetermined(String),
     /// Exit status 2: unusable input or arguments.
+    #[error("{0}")]
     Unusable(String),
     /// Exit status 130: stopped from outside.
+    #[error("interrupted")]
     Interrupted,
 }
 
