@@ -1,8 +1,10 @@
 //! `cargo xtask codegen`: families and stored fibres in, Rust source out.
 //!
 //! A generated module holds the evaluator of a family and the solutions for one generic parameter point. Both come from
-//! committed inputs alone (`NAME.toml` and `NAME.start.json`), so that the bytes are the same on any machine.
+//! committed inputs alone (`NAME.toml` and `NAME.start.json`), so that the bytes are the same on any machine. Those of poly's benches
+//! are evaluators alone, of systems that the benches define.
 
+use crate::benches;
 use crate::refill::{self, nondegenerate};
 use crate::workspace;
 use anyhow::{Context, Result, bail, ensure};
@@ -56,6 +58,9 @@ const FAMILIES: &[Known] = &[
     ),
 ];
 
+/// The name of the benches' modules for `--only`.
+const BENCHES: &str = "benches";
+
 const fn known(name: &'static str, family: &'static str, start: &'static str, output: &'static str) -> Known {
     Known { name, family, start, output }
 }
@@ -71,7 +76,7 @@ pub(crate) struct CodegenArguments {
     /// With --refill: leave out the trace test, which takes minutes.
     #[arg(long, requires = "refill")]
     no_trace: bool,
-    /// Only this family of the workspace, such as 6r3s.
+    /// Only this family of the workspace, such as 6r3s, or the systems of poly's benches (benches).
     #[arg(long)]
     only: Option<String>,
     /// Seed of --refill.
@@ -96,8 +101,9 @@ pub(crate) fn run(arguments: &CodegenArguments) -> Result<()> {
     let root = workspace::root();
     let chosen: Vec<&Known> =
         FAMILIES.iter().filter(|known| arguments.only.as_deref().is_none_or(|only| only == known.name)).collect();
-    let names: Vec<&str> = FAMILIES.iter().map(|known| known.name).collect();
-    ensure!(!chosen.is_empty(), "no family of that name; there are: {}", names.join(", "));
+    let benches = arguments.only.as_deref().is_none_or(|only| only == BENCHES);
+    let names: Vec<&str> = FAMILIES.iter().map(|known| known.name).chain([BENCHES]).collect();
+    ensure!(benches || !chosen.is_empty(), "no family of that name; there are: {}", names.join(", "));
     let mut stale = Vec::new();
     for known in chosen {
         let [family, start, output] = [known.family, known.start, known.output].map(|path| root.join(path));
@@ -106,7 +112,12 @@ pub(crate) fn run(arguments: &CodegenArguments) -> Result<()> {
             workspace::write(&start, &file.to_json())?;
         }
         if write_or_check(arguments, known.family, &family, &start, &output)? {
-            stale.push(known.output);
+            stale.push(known.output.to_owned());
+        }
+    }
+    for module in if benches { benches::modules()? } else { Vec::new() } {
+        if place(arguments, &module.text, &root.join(&module.output))? {
+            stale.push(module.output);
         }
     }
     if !stale.is_empty() {
@@ -119,7 +130,7 @@ fn read_family(path: &Path) -> Result<Family> {
     poly::parse::family(&workspace::read(path)?).with_context(|| format!("{} is not a family", path.display()))
 }
 
-/// Writes one module, or with `--check` says whether the one on disk is stale.
+/// Writes the module of a family, or with `--check` says whether the one on disk is stale.
 fn write_or_check(
     arguments: &CodegenArguments,
     source: &str,
@@ -130,14 +141,18 @@ fn write_or_check(
     let family = read_family(family)?;
     let start_file = StartFile::from_json(&workspace::read(start)?).with_context(|| start.display().to_string())?;
     verify(&family, &start_file).with_context(|| start.display().to_string())?;
-    let module = generate(&family, &start_file, source)?;
+    place(arguments, &generate(&family, &start_file, source)?, output)
+}
+
+/// Writes one file, or with `--check` says whether what is there differs.
+fn place(arguments: &CodegenArguments, module: &str, output: &Path) -> Result<bool> {
     if arguments.check {
-        return Ok(std::fs::read_to_string(output).ok().as_deref() != Some(&module));
+        return Ok(std::fs::read_to_string(output).ok().as_deref() != Some(module));
     }
     if let Some(folder) = output.parent() {
         std::fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
     }
-    workspace::write(output, &module)?;
+    workspace::write(output, module)?;
     eprintln!("wrote {}", output.display());
     Ok(false)
 }

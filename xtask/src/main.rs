@@ -1,5 +1,6 @@
 //! Development tasks: `cargo xtask codegen | experiments | compare | counts`.
 
+mod benches;
 mod codegen;
 mod compare;
 mod counts;
