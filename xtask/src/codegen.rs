@@ -1,9 +1,12 @@
 //! `cargo xtask codegen`: families and stored fibres in, Rust source out.
 //!
 //! A generated module holds the evaluator of a family and the solutions for one generic parameter point. Both come from
-//! committed inputs alone (`NAME.toml` and `NAME.start.json`), so that the bytes are the same on any machine.
+//! committed inputs alone (`NAME.toml` and `NAME.start.json`), so that the bytes are the same on any machine. Those of poly's benches
+//! are evaluators alone, of systems that the benches define.
 
+use crate::benches;
 use crate::refill::{self, nondegenerate};
+use crate::workspace;
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use hc::distinct::coincidences;
@@ -55,6 +58,9 @@ const FAMILIES: &[Known] = &[
     ),
 ];
 
+/// The name of the benches' modules for `--only`.
+const BENCHES: &str = "benches";
+
 const fn known(name: &'static str, family: &'static str, start: &'static str, output: &'static str) -> Known {
     Known { name, family, start, output }
 }
@@ -70,7 +76,7 @@ pub(crate) struct CodegenArguments {
     /// With --refill: leave out the trace test, which takes minutes.
     #[arg(long, requires = "refill")]
     no_trace: bool,
-    /// Only this family of the workspace, such as 6r3s.
+    /// Only this family of the workspace, such as 6r3s, or the systems of poly's benches (benches).
     #[arg(long)]
     only: Option<String>,
     /// Seed of --refill.
@@ -92,20 +98,26 @@ pub(crate) fn run(arguments: &CodegenArguments) -> Result<()> {
         let name = family.file_name().unwrap_or_default().to_string_lossy().into_owned();
         return write_or_check(arguments, &name, family, start, output).map(|_| ());
     }
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let root = workspace::root();
     let chosen: Vec<&Known> =
         FAMILIES.iter().filter(|known| arguments.only.as_deref().is_none_or(|only| only == known.name)).collect();
-    let names: Vec<&str> = FAMILIES.iter().map(|known| known.name).collect();
-    ensure!(!chosen.is_empty(), "no family of that name; there are: {}", names.join(", "));
+    let benches = arguments.only.as_deref().is_none_or(|only| only == BENCHES);
+    let names: Vec<&str> = FAMILIES.iter().map(|known| known.name).chain([BENCHES]).collect();
+    ensure!(benches || !chosen.is_empty(), "no family of that name; there are: {}", names.join(", "));
     let mut stale = Vec::new();
     for known in chosen {
         let [family, start, output] = [known.family, known.start, known.output].map(|path| root.join(path));
         if arguments.refill {
             let file = refill::refill(&read_family(&family)?, arguments.seed, !arguments.no_trace)?;
-            std::fs::write(&start, file.to_json()).with_context(|| format!("cannot write {}", start.display()))?;
+            workspace::write(&start, &file.to_json())?;
         }
         if write_or_check(arguments, known.family, &family, &start, &output)? {
-            stale.push(known.output);
+            stale.push(known.output.to_owned());
+        }
+    }
+    for module in if benches { benches::modules()? } else { Vec::new() } {
+        if place(arguments, &module.text, &root.join(&module.output))? {
+            stale.push(module.output);
         }
     }
     if !stale.is_empty() {
@@ -115,11 +127,10 @@ pub(crate) fn run(arguments: &CodegenArguments) -> Result<()> {
 }
 
 fn read_family(path: &Path) -> Result<Family> {
-    let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
-    poly::parse::family(&text).with_context(|| format!("{} is not a family", path.display()))
+    poly::parse::family(&workspace::read(path)?).with_context(|| format!("{} is not a family", path.display()))
 }
 
-/// Writes one module, or with `--check` says whether the one on disk is stale.
+/// Writes the module of a family, or with `--check` says whether the one on disk is stale.
 fn write_or_check(
     arguments: &CodegenArguments,
     source: &str,
@@ -128,17 +139,20 @@ fn write_or_check(
     output: &Path,
 ) -> Result<bool> {
     let family = read_family(family)?;
-    let text = std::fs::read_to_string(start).with_context(|| format!("cannot read {}", start.display()))?;
-    let start_file = StartFile::from_json(&text).with_context(|| start.display().to_string())?;
+    let start_file = StartFile::from_json(&workspace::read(start)?).with_context(|| start.display().to_string())?;
     verify(&family, &start_file).with_context(|| start.display().to_string())?;
-    let module = generate(&family, &start_file, source)?;
+    place(arguments, &generate(&family, &start_file, source)?, output)
+}
+
+/// Writes one file, or with `--check` says whether what is there differs.
+fn place(arguments: &CodegenArguments, module: &str, output: &Path) -> Result<bool> {
     if arguments.check {
-        return Ok(std::fs::read_to_string(output).ok().as_deref() != Some(&module));
+        return Ok(std::fs::read_to_string(output).ok().as_deref() != Some(module));
     }
     if let Some(folder) = output.parent() {
         std::fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
     }
-    std::fs::write(output, module).with_context(|| format!("cannot write {}", output.display()))?;
+    workspace::write(output, module)?;
     eprintln!("wrote {}", output.display());
     Ok(false)
 }

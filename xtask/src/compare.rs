@@ -8,9 +8,10 @@ mod program;
 mod solving;
 mod volumes;
 
-use anyhow::{Context, Result};
+use crate::workspace;
+use anyhow::Result;
 use clap::{Args, ValueEnum};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Command;
 
 /// Measures `hc` and `tdoa` beside PHCpack, Macaulay2 and gfan, and writes docs/compare.md.
@@ -32,7 +33,7 @@ pub(crate) struct CompareArguments {
     #[arg(long, default_value_t = 600)]
     limit: u32,
     /// The folder of systems.
-    #[arg(long, default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/systems"), hide_default_value = true)]
+    #[arg(long, default_value_os_t = workspace::root().join("examples/systems"), hide_default_value = true)]
     systems: PathBuf,
     /// A folder with the programs hc and tdoa; they are built in the release profile if not given.
     #[arg(long)]
@@ -78,17 +79,16 @@ pub(crate) fn run(arguments: &CompareArguments) -> Result<()> {
     };
     let folder = match &arguments.programs {
         Some(folder) => folder.clone(),
-        None => program::build(&["hc-cli", "tdoa-cli"])?,
+        None => workspace::build(&["hc-cli", "tdoa-cli"])?,
     };
-    let at = |name: &str| folder.join(format!("{name}{}", std::env::consts::EXE_SUFFIX));
     let tools = Tools {
-        hc: at("hc"),
-        tdoa: at("tdoa"),
+        hc: workspace::program(&folder, "hc"),
+        tdoa: workspace::program(&folder, "tdoa"),
         phc: program::is_installed("phc"),
         macaulay2: program::is_installed("M2"),
         gfan: program::is_installed("gfan"),
     };
-    let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/compare.md");
+    let default = workspace::root().join("docs/compare.md");
     let whole = !plan.quick && arguments.table.is_empty();
     let output = arguments.output.as_deref().or_else(|| whole.then_some(default.as_path()));
     let output = output.filter(|path| path.as_os_str() != "-");
@@ -113,7 +113,7 @@ pub(crate) fn run(arguments: &CompareArguments) -> Result<()> {
                 none if none.is_empty() => String::new(),
                 some => format!("\nThe run was ended before these tables: {some} (`--table`).\n"),
             };
-            std::fs::write(path, text.clone() + &rest).with_context(|| format!("cannot write {}", path.display()))?;
+            workspace::write(path, &(text.clone() + &rest))?;
         }
     }
     if output.is_none() {
@@ -151,7 +151,7 @@ fn introduction(plan: &Plan, tools: &Tools) -> String {
         if plan.quick { " --quick" } else { "" },
         plan.limit,
         machine(),
-        commit()
+        workspace::commit(7)
     )
 }
 
@@ -167,15 +167,5 @@ fn version(command: &str, arguments: &[&str]) -> String {
 /// Model and number of processors.
 fn machine() -> String {
     let threads = std::thread::available_parallelism().map_or(1, |n| n.get());
-    let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let model = text.lines().find(|line| line.starts_with("model name"));
-    let model = model.and_then(|line| line.split(':').nth(1)).unwrap_or(std::env::consts::ARCH).trim();
-    format!("{model}, {threads} processors")
-}
-
-fn commit() -> String {
-    let mut git = Command::new("git");
-    git.args(["rev-parse", "--short", "HEAD"]).current_dir(env!("CARGO_MANIFEST_DIR"));
-    let text = git.output().map(|o| String::from_utf8_lossy(&o.stdout).trim().to_owned()).unwrap_or_default();
-    if text.is_empty() { "unknown".to_owned() } else { text }
+    format!("{}, {threads} processors", workspace::processor())
 }

@@ -1,5 +1,6 @@
 //! `cargo xtask counts`: systems with verified counts, solved and certified for many seeds.
 
+use crate::workspace;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use hc::certify::{CertifyOptions, certify};
@@ -23,10 +24,10 @@ pub(crate) struct CountsArguments {
     #[arg(long)]
     only: Vec<String>,
     /// The folder of systems, with expected.csv.
-    #[arg(long, default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/systems"), hide_default_value = true)]
+    #[arg(long, default_value_os_t = workspace::root().join("examples/systems"), hide_default_value = true)]
     systems: PathBuf,
     /// Directory for counts.csv, whose rows are kept and continued, and counts.md; results if not given.
-    #[arg(long, default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/../results"), hide_default_value = true)]
+    #[arg(long, default_value_os_t = workspace::root().join("results"), hide_default_value = true)]
     output: PathBuf,
 }
 
@@ -138,8 +139,7 @@ pub(crate) fn run(arguments: &CountsArguments) -> Result<()> {
         }
         let many = LONG.contains(&expected.name.as_str());
         let seeds = if many { arguments.more.max(arguments.seeds) } else { arguments.seeds };
-        let text = std::fs::read_to_string(arguments.systems.join(format!("{}.phc", expected.name)))?;
-        let system = phcpack(&text)?;
+        let system = phcpack(&workspace::read(&arguments.systems.join(format!("{}.phc", expected.name)))?)?;
         let polynomials = system.expand(&Default::default())?;
         for seed in 0..seeds {
             if rows.iter().any(|row| row.name == expected.name && row.seed == seed) {
@@ -154,7 +154,7 @@ pub(crate) fn run(arguments: &CountsArguments) -> Result<()> {
         }
         eprintln!("{}: {seeds} seeds", expected.name);
     }
-    std::fs::write(arguments.output.join("counts.md"), page(&systems, &rows)?).context("cannot write counts.md")
+    workspace::write(&arguments.output.join("counts.md"), &page(&systems, &rows)?)
 }
 
 /// The rows of an earlier run.
@@ -162,18 +162,14 @@ fn stored(file: &Path) -> Result<Vec<Row>> {
     if !file.exists() {
         return Ok(Vec::new());
     }
-    let text = std::fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
     let row = |line: &str| Row::parse(line).with_context(|| format!("{}: cannot read {line:?}", file.display()));
-    text.lines().skip(1).map(row).collect()
+    workspace::read(file)?.lines().skip(1).map(row).collect()
 }
 
-/// Writes the rows whole, by way of a file beside.
+/// Writes the rows so far.
 fn store(file: &Path, rows: &[Row]) -> Result<()> {
     let lines: String = rows.iter().map(|row| row.line() + "\n").collect();
-    let part = file.with_extension("part");
-    std::fs::write(&part, format!("{HEADER}\n{lines}"))
-        .and_then(|()| std::fs::rename(&part, file))
-        .with_context(|| format!("cannot write {}", file.display()))
+    workspace::write(file, &format!("{HEADER}\n{lines}"))
 }
 
 /// The table in words.
@@ -218,7 +214,7 @@ fn page(systems: &[Expected], rows: &[Row]) -> Result<String> {
 }
 
 fn read(path: &Path) -> Result<Vec<Expected>> {
-    let table = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
+    let table = workspace::read(path)?;
     let row = |line: &str| {
         let fields: Vec<&str> = line.split(',').collect();
         ensure!(fields.len() > 8, "{}: too few columns in {line:?}", path.display());

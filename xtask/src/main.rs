@@ -1,10 +1,12 @@
 //! Development tasks: `cargo xtask codegen | experiments | compare | counts`.
 
+mod benches;
 mod codegen;
 mod compare;
 mod counts;
 mod experiments;
 mod refill;
+mod workspace;
 
 use clap::{Parser, Subcommand};
 

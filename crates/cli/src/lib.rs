@@ -11,13 +11,16 @@ use std::process::ExitCode;
 pub const INTERRUPTED: u8 = 130;
 
 /// Why a program ends without success.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub enum Failure {
     /// Exit status 1: no solution, an incomplete result, or data that cannot determine the answer.
+    #[error("{0}")]
     Undetermined(String),
     /// Exit status 2: unusable input or arguments.
+    #[error("{0}")]
     Unusable(String),
     /// Exit status 130: stopped from outside.
+    #[error("interrupted")]
     Interrupted,
 }
 
@@ -45,18 +48,34 @@ pub fn finish(program: &str, result: Result<(), Failure>, interrupted: &str) -> 
     ExitCode::from(status)
 }
 
-/// Runs work on this many threads; all cores for `None`.
+/// A number of threads that was asked for, if any.
+///
+/// # Errors
+/// If it is not between 1 and 1024.
+pub fn thread_count(threads: Option<usize>) -> Result<Option<usize>, Failure> {
+    match threads {
+        Some(count) if count == 0 || count > 1024 => {
+            Err(Failure::Unusable(format!("--threads must be between 1 and 1024, not {count}")))
+        }
+        count => Ok(count),
+    }
+}
+
+/// This many threads; as many as cores for `None`.
 ///
 /// # Errors
 /// If the number is not between 1 and 1024, or threads cannot be started.
+pub fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
+    // Zero is rayon's word for all cores.
+    let count = thread_count(threads)?.unwrap_or(0);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build();
+    pool.map_err(|error| Failure::Unusable(format!("threads cannot be started: {error}")))
+}
+
+/// Runs work on this many threads; all cores for `None`.
+///
+/// # Errors
+/// As [`pool`].
 pub fn on_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
-    let mut builder = rayon::ThreadPoolBuilder::new();
-    if let Some(threads) = threads {
-        if threads == 0 || threads > 1024 {
-            return Err(Failure::Unusable(format!("--threads must be between 1 and 1024, not {threads}")));
-        }
-        builder = builder.num_threads(threads);
-    }
-    let pool = builder.build().map_err(|error| Failure::Unusable(format!("threads cannot be started: {error}")))?;
-    Ok(pool.install(work))
+    Ok(pool(threads)?.install(work))
 }

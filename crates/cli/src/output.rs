@@ -6,6 +6,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::Failure;
+use crate::bar::Bar;
 
 /// Writes a file by way of a temporary one in the same directory, so that an interrupted run leaves no half of it.
 ///
@@ -43,14 +44,35 @@ pub fn write(path: &Path, content: &[u8]) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Whether a path stands for standard output: `-`.
+fn is_standard_output(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// Writes text to a file, or to standard output for `-`.
+///
+/// # Errors
+/// As [`write()`] and [`print()`].
+pub fn text(path: &Path, text: &str) -> Result<(), Failure> {
+    if is_standard_output(path) { print(text) } else { write(path, text.as_bytes()) }
+}
+
 /// Writes JSON to a file, or to standard output for `-`.
 ///
 /// # Errors
 /// As [`write()`] and [`print()`].
 pub fn json(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
-    let mut text = serde_json::to_string_pretty(value).map_err(Failure::unusable)?;
-    text.push('\n');
-    if path.as_os_str() == "-" { print(&text) } else { write(path, text.as_bytes()) }
+    let mut json = serde_json::to_string_pretty(value).map_err(Failure::unusable)?;
+    json.push('\n');
+    text(path, &json)
+}
+
+/// Prints a summary, unless the JSON is asked for on standard output instead.
+///
+/// # Errors
+/// As [`print()`].
+pub fn summary(json: Option<&Path>, text: impl FnOnce() -> String) -> Result<(), Failure> {
+    if json.is_some_and(is_standard_output) { Ok(()) } else { print(&text()) }
 }
 
 /// Prints to standard output. A reader that has gone away, such as `head`, is no error.
@@ -67,12 +89,7 @@ pub fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// A progress bar on standard error; indicatif draws nothing where that is no terminal.
-pub fn progress(length: u64) -> indicatif::ProgressBar {
-    let bar = indicatif::ProgressBar::new(length);
-    let style = indicatif::ProgressStyle::with_template("{bar:40} {pos}/{len}, {eta} left");
-    if let Ok(style) = style {
-        bar.set_style(style);
-    }
-    bar
+/// A progress bar of so many items.
+pub fn progress(length: u64) -> Bar {
+    Bar::counted(length)
 }

@@ -82,9 +82,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         unseparated: &found.unseparated,
         solutions: solutions.map(|((result, &duplicate), point)| entry(result, duplicate, point)).collect(),
     };
-    if arguments.json.as_deref().is_none_or(|out| out.as_os_str() != "-") {
-        output::print(&summary(&found))?;
-    }
+    output::summary(arguments.json.as_deref(), || summary(&found))?;
     if let Some(out) = &arguments.json {
         output::json(out, &report)?;
     }

@@ -6,7 +6,7 @@ use hc::monitor::Monitor;
 use hc::poly::Polynomial;
 use hc::start::{MixedError, watched_mixed_volume};
 use serde::Serialize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 /// The mixed volume of a system: how many solutions without zero coordinates it has for generic coefficients.
@@ -55,10 +55,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Err(error) => return Err(Failure::in_file(&arguments.file, error)),
     };
     let seconds = start.elapsed().as_secs_f64();
-    if arguments.json.as_deref() != Some(Path::new("-")) {
+    output::summary(arguments.json.as_deref(), || {
         let least = if partial { "partial result: at least " } else { "" };
-        output::print(&format!("{least}mixed volume {mixed_volume}, {cells} mixed cells, {seconds:.3} s\n"))?;
-    }
+        format!("{least}mixed volume {mixed_volume}, {cells} mixed cells, {seconds:.3} s\n")
+    })?;
     if let Some(out) = &arguments.json {
         output::json(out, &Output { mixed_volume, cells, seed: arguments.seed, seconds, partial })?;
     }

@@ -72,10 +72,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         _ => "no progress",
     };
     let text = StartFile::new(&found.fibre, deviation, stopped).to_json();
-    match arguments.output.to_str() {
-        Some("-") => output::print(&text)?,
-        _ => output::write(&arguments.output, text.as_bytes())?,
-    }
+    output::text(&arguments.output, &text)?;
     let trace = deviation.map_or(String::new(), |d| format!(", trace test {d:.1e}"));
     eprintln!(
         "{}: {count} solutions after {} loops and {} paths; stopped: {stopped}{trace}",

@@ -5,7 +5,7 @@ use crate::{certify, input, watch};
 use cli::{Failure, output};
 use hc::monitor::Monitor;
 use hc::solve::{SolveError, SolveOptions, Start, solve};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 /// All isolated solutions of a system, by homotopy continuation.
@@ -87,9 +87,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     })?;
     let found = found.map_err(|message: String| Failure::in_file(file, message))?;
     let report = Report::new(system.variables(), &found, arguments.seed, begun.elapsed().as_secs_f64());
-    if arguments.json.as_deref() != Some(Path::new("-")) {
-        output::print(&report.summary())?;
-    }
+    output::summary(arguments.json.as_deref(), || report.summary())?;
     if let Some(out) = &arguments.json {
         output::json(out, &report)?;
     }

@@ -92,9 +92,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             reports => output::json(path, &reports)?,
         }
     }
-    if arguments.json.as_ref().is_none_or(|path| path.as_os_str() != "-") {
-        output::print(&summary(variables, &solved, &reports))?;
-    }
+    output::summary(arguments.json.as_deref(), || summary(variables, &solved, &reports))?;
     if solved.len() < targets.len() || solved.iter().any(|(found, _)| found.interrupted) {
         return Err(Failure::Interrupted);
     }

@@ -1,13 +1,55 @@
 //! Exact complex constants and their conversion to floating point.
 
 use num_bigint::BigInt;
-use num_complex::Complex;
+use num_complex::{Complex, Complex64};
 use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
 
 /// A complex number with rational parts: how constants of expressions and coefficients of parsed
 /// polynomials are kept until they become floating point.
 pub type Exact = Complex<BigRational>;
+
+/// Numbers with an exact value: what stands as a constant in a formula or is written as a coefficient.
+pub trait ToExact {
+    /// The exact value, `None` where it is not finite.
+    fn to_exact(&self) -> Option<Exact>;
+}
+
+impl ToExact for f64 {
+    fn to_exact(&self) -> Option<Exact> {
+        BigRational::from_float(*self).map(real)
+    }
+}
+impl ToExact for Complex64 {
+    fn to_exact(&self) -> Option<Exact> {
+        Some(Complex::new(BigRational::from_float(self.re)?, BigRational::from_float(self.im)?))
+    }
+}
+impl ToExact for i32 {
+    fn to_exact(&self) -> Option<Exact> {
+        Some(from_i64(i64::from(*self)))
+    }
+}
+impl ToExact for i64 {
+    fn to_exact(&self) -> Option<Exact> {
+        Some(from_i64(*self))
+    }
+}
+impl ToExact for BigInt {
+    fn to_exact(&self) -> Option<Exact> {
+        Some(real(BigRational::from_integer(self.clone())))
+    }
+}
+impl ToExact for BigRational {
+    fn to_exact(&self) -> Option<Exact> {
+        Some(real(self.clone()))
+    }
+}
+impl ToExact for Exact {
+    fn to_exact(&self) -> Option<Exact> {
+        Some(self.clone())
+    }
+}
 
 /// Constants are folded only while numerators and denominators stay below this many bits, so that a short
 /// text such as `9^9^9` cannot ask for unbounded memory.
@@ -24,14 +66,13 @@ pub(crate) fn to_parts(q: &BigRational) -> [f64; 2] {
     [high, if underflow { f64::from_bits(1).copysign(if rest.is_negative() { -1.0 } else { 1.0 }) } else { low }]
 }
 
-/// The exact value of a double, `None` where it is not finite.
-pub(crate) fn from_f64(x: f64) -> Option<Exact> {
-    Some(Complex::new(BigRational::from_float(x)?, BigRational::zero()))
+fn real(value: BigRational) -> Exact {
+    Complex::new(value, BigRational::zero())
 }
 
 /// An integer constant.
 pub(crate) fn from_i64(k: i64) -> Exact {
-    Complex::new(BigRational::from_integer(BigInt::from(k)), BigRational::zero())
+    real(BigRational::from_integer(BigInt::from(k)))
 }
 
 /// Whether the constant is real.
@@ -45,7 +86,7 @@ pub(crate) fn pow(z: &Exact, k: i32) -> Exact {
         return z.powi(k);
     }
     // Powers of coprime numbers are coprime, so nothing needs to be cancelled.
-    Complex::new(num_traits::Pow::pow(&z.re, k), BigRational::zero())
+    real(num_traits::Pow::pow(&z.re, k))
 }
 
 fn rational_bits(q: &BigRational) -> u64 {

@@ -70,7 +70,7 @@ impl System {
     /// # Errors
     /// If an equation is not polynomial or would grow beyond the limits.
     pub fn expand(&self, limits: &ExpandLimits) -> Result<Vec<Polynomial<Exact>>, ExpandError> {
-        let uses = self.count_uses();
+        let uses = self.arena.graph.uses(&self.equations);
         let mut expansion = Expansion {
             system: self,
             limits,
@@ -81,18 +81,6 @@ impl System {
             work: 0,
         };
         (0..self.len()).map(|k| expansion.equation(k)).collect()
-    }
-
-    /// How often each node is an operand or an equation.
-    fn count_uses(&self) -> Vec<u32> {
-        let graph = &self.arena.graph;
-        let used = graph.reachable(self.equations.iter().copied());
-        let mut uses = vec![0; graph.len()];
-        for id in (0..graph.len()).filter(|&id| used[id]) {
-            graph.node(id as Id).operands().for_each(|operand| uses[operand as usize] += 1);
-        }
-        self.equations.iter().for_each(|&id| uses[id as usize] += 1);
-        uses
     }
 }
 
@@ -151,21 +139,10 @@ impl Expansion<'_> {
     /// polynomial of many terms is added up once.
     fn operands(&self, id: Id) -> Vec<(Id, bool)> {
         let graph = &self.system.arena.graph;
-        if !matches!(graph.node(id), Node::Add(..) | Node::Sub(..) | Node::Neg(_)) {
-            return graph.node(id).operands().map(|operand| (operand, false)).collect();
+        if graph.node(id).is_sum() {
+            return graph.terms_of_sum(id, |inner| !self.shared[inner as usize]);
         }
-        let mut terms = Vec::new();
-        let mut stack = vec![(id, false)];
-        while let Some((inner, negative)) = stack.pop() {
-            let own = inner == id || !self.shared[inner as usize];
-            match graph.node(inner) {
-                Node::Add(a, b) if own => stack.extend([(b, negative), (a, negative)]),
-                Node::Sub(a, b) if own => stack.extend([(b, !negative), (a, negative)]),
-                Node::Neg(a) if own => stack.push((a, !negative)),
-                _ => terms.push((inner, negative)),
-            }
-        }
-        terms
+        graph.node(id).operands().map(|operand| (operand, false)).collect()
     }
 
     /// The value of an operand, moved out at its last use.

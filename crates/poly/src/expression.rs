@@ -1,8 +1,8 @@
 //! Formulas as a hash-consed graph: equal subformulas are stored and later computed once.
 
-use crate::exact::{self, Exact};
+use crate::exact::{Exact, ToExact};
 use crate::graph::{Graph, Id, Node};
-use num_complex::{Complex, Complex64};
+use num_complex::Complex64;
 use num_rational::BigRational;
 use num_traits::Zero;
 use std::cell::RefCell;
@@ -84,9 +84,9 @@ impl Expressions {
     }
 
     /// A constant: an integer, a finite `f64` (taken exactly), a rational or a complex number.
-    pub fn constant(&self, value: impl Constant) -> Expr<'_> {
+    pub fn constant(&self, value: impl ToExact) -> Expr<'_> {
         let mut inner = self.inner.borrow_mut();
-        let value = value.exact().unwrap_or_else(|| {
+        let value = value.to_exact().unwrap_or_else(|| {
             inner.non_finite = true;
             Exact::zero()
         });
@@ -156,43 +156,6 @@ impl std::fmt::Debug for Expr<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let arena = self.arena.inner.borrow();
         crate::display::write_node(f, &arena, self.id)
-    }
-}
-
-/// What can stand as a constant in a formula.
-pub trait Constant {
-    /// The exact value, `None` where it is not finite.
-    fn exact(self) -> Option<Exact>;
-}
-
-impl Constant for f64 {
-    fn exact(self) -> Option<Exact> {
-        exact::from_f64(self)
-    }
-}
-impl Constant for i32 {
-    fn exact(self) -> Option<Exact> {
-        Some(exact::from_i64(i64::from(self)))
-    }
-}
-impl Constant for i64 {
-    fn exact(self) -> Option<Exact> {
-        Some(exact::from_i64(self))
-    }
-}
-impl Constant for Complex64 {
-    fn exact(self) -> Option<Exact> {
-        Some(Complex::new(BigRational::from_float(self.re)?, BigRational::from_float(self.im)?))
-    }
-}
-impl Constant for BigRational {
-    fn exact(self) -> Option<Exact> {
-        Some(Complex::new(self, BigRational::zero()))
-    }
-}
-impl Constant for Exact {
-    fn exact(self) -> Option<Exact> {
-        Some(self)
     }
 }
 

@@ -32,6 +32,11 @@ impl Node {
         a.into_iter().chain(b)
     }
 
+    /// Whether the node is a sum, a difference or a change of sign.
+    pub(crate) fn is_sum(self) -> bool {
+        matches!(self, Node::Add(..) | Node::Sub(..) | Node::Neg(_))
+    }
+
     /// Commutative operations are looked up with sorted operands.
     fn key(self) -> Node {
         match self {
@@ -299,5 +304,34 @@ impl Graph {
             }
         }
         seen
+    }
+
+    /// How often each node is a root or an operand of a node that the roots depend on; zero for all others.
+    pub(crate) fn uses(&self, roots: &[Id]) -> Vec<u32> {
+        let used = self.reachable(roots.iter().copied());
+        let mut uses = vec![0u32; self.len()];
+        let operands = (0..self.len()).filter(|&id| used[id]).flat_map(|id| self.nodes[id].operands());
+        for id in operands.chain(roots.iter().copied()) {
+            uses[id as usize] = uses[id as usize].saturating_add(1);
+        }
+        uses
+    }
+
+    /// The terms of a sum from first to last, each with whether it is subtracted. Inner sums are terms themselves but where they are
+    /// `part` of the outer one.
+    pub(crate) fn terms_of_sum(&self, sum: Id, part: impl Fn(Id) -> bool) -> Vec<(Id, bool)> {
+        let mut terms = Vec::new();
+        let mut stack = vec![(sum, false)];
+        while let Some((id, negative)) = stack.pop() {
+            let open = id == sum || part(id);
+            // The first operand is met first, so it is pushed last.
+            match self.node(id) {
+                Node::Add(a, b) if open => stack.extend([(b, negative), (a, negative)]),
+                Node::Sub(a, b) if open => stack.extend([(b, !negative), (a, negative)]),
+                Node::Neg(a) if open => stack.push((a, !negative)),
+                _ => terms.push((id, negative)),
+            }
+        }
+        terms
     }
 }

@@ -29,7 +29,7 @@
 //! | [`System::expand`] | sparse [`Polynomial`]s where supports are needed, within [`ExpandLimits`] |
 //! | [`System::compile`] | an [`Interpreter`]: values, Jacobian by reverse or forward mode, Taylor coefficients |
 //! | [`SparseSystem`] | fixed supports, the coefficients as parameters |
-//! | [`program::emit`](program::emit()) | the program as Rust source |
+//! | `program::emit`, with the feature `emit` | the program as Rust source |
 //!
 //! [`Evaluate`] is the one interface of all three kinds of system. It runs over any [`Scalar`]: [`Complex64`],
 //! [`Lanes8`] (eight paths side by side, each lane bit for bit what one path computes, on every
@@ -63,7 +63,7 @@ pub mod system;
 pub use ball::ComplexBall;
 pub use dd::ComplexDd;
 pub use evaluate::Evaluate;
-pub use exact::Exact;
+pub use exact::{Exact, ToExact};
 pub use expand::{ExpandError, ExpandLimits};
 pub use expression::{Expr, Expressions};
 pub use interval::ComplexInterval;

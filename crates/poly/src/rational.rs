@@ -1,9 +1,8 @@
 //! Exact rational arithmetic as a scalar: slow, and right.
 
-use crate::exact::{self, Exact};
+use crate::exact::{self, Exact, ToExact};
 use crate::scalar::Scalar;
-use num_complex::{Complex, Complex64};
-use num_rational::BigRational;
+use num_complex::Complex64;
 use num_traits::{One, Zero};
 
 /// A complex number with rational parts, or nothing where a division by zero has happened.
@@ -36,8 +35,7 @@ impl Scalar for Rational {
         Rational(Some(Exact::one()))
     }
     fn from_c64(z: Complex64) -> Self {
-        let parts = BigRational::from_float(z.re).zip(BigRational::from_float(z.im));
-        Rational(parts.map(|(re, im)| Complex::new(re, im)))
+        Rational(z.to_exact())
     }
     fn from_exact(z: &Exact) -> Self {
         Rational(Some(z.clone()))

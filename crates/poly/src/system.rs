@@ -1,9 +1,9 @@
 //! Systems of equations: ordered unknowns, ordered parameters, formulas that are to vanish.
 
-use crate::exact;
+use crate::exact::{self, ToExact};
 use crate::expression::{Arena, Expr, Expressions};
 use crate::graph::Id;
-use crate::polynomial::{Coefficient, Polynomial};
+use crate::polynomial::{Polynomial, Ring};
 use crate::program::{CompileError, Interpreter, Program};
 use std::collections::HashSet;
 
@@ -70,7 +70,7 @@ impl System {
     ///
     /// # Panics
     /// If a polynomial is not in as many unknowns as there are names.
-    pub fn from_polynomials<R: Coefficient>(
+    pub fn from_polynomials<R: Ring + ToExact>(
         names: &[&str],
         polynomials: &[Polynomial<R>],
     ) -> Result<System, SystemError> {

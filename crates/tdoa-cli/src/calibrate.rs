@@ -7,7 +7,7 @@ use tdoa::align::frame;
 use tdoa::html::html;
 use tdoa::node_table::node_table;
 use tdoa::picture::picture;
-use tdoa::read::{Units, read, read_distances, read_mat_nodes, read_mat_transmitters, read_nodes};
+use tdoa::read::{Units, is_mat, read, read_distances, read_mat_nodes, read_mat_transmitters, read_nodes};
 use tdoa::{CalibrateError, CalibrateOptions, Calibration, Control, Progress, Pseudoranges, calibrate_with};
 
 use crate::{Failure, interrupt, output, summary};
@@ -145,9 +145,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(path) = &arguments.json {
         output::json(path, &calibration)?;
     }
-    if arguments.json.as_ref().is_none_or(|path| path.as_os_str() != "-") {
-        output::print(&summary::text(&calibration, started.elapsed()))?;
-    }
+    output::summary(arguments.json.as_deref(), || summary::text(&calibration, started.elapsed()))?;
     if calibration.planar {
         Ok(())
     } else {
@@ -156,10 +154,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             arguments.file.display()
         )))
     }
-}
-
-fn is_mat(path: &std::path::Path) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mat"))
 }
 
 /// The truth that a .mat file holds beside the measurements, if it does.

@@ -91,9 +91,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         };
         output::json(path, &report)?;
     }
-    if arguments.json.as_ref().is_none_or(|path| path.as_os_str() != "-") {
-        output::print(&summary(&solution, seconds))?;
-    }
+    output::summary(arguments.json.as_deref(), || summary(&solution, seconds))?;
     for warning in &solution.warnings {
         eprintln!("warning: {warning}");
     }

@@ -211,7 +211,8 @@ pub fn read_mat(source: impl Read, file: &str, units: Units) -> Result<Pseudoran
     mat::parse(source, file, factor)
 }
 
-fn is_mat(path: &Path) -> bool {
+/// Whether a file is read as a .mat file, by its name.
+pub fn is_mat(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("mat"))
 }
 

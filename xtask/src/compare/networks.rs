@@ -3,6 +3,7 @@
 use super::program::{Pairs, Run, run, typical};
 use super::solving::{phc, regular_solutions};
 use super::{Plan, Tools};
+use crate::workspace;
 use anyhow::{Context, Result, ensure};
 use hc::poly::{self, Exact, ExpandLimits, System};
 use num_traits::ToPrimitive;
@@ -67,8 +68,8 @@ fn instance(
 
 /// The family's polynomials with the measurements put in for the parameters, in PHCpack's format.
 fn member(receivers: usize, transmitters: usize, matrix: &Path) -> Result<String> {
-    let file = format!("../crates/tdoa/families/{receivers}r{transmitters}s.toml");
-    let family = poly::parse::family(&std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(file))?)?;
+    let file = format!("crates/tdoa/families/{receivers}r{transmitters}s.toml");
+    let family = poly::parse::family(&workspace::read(&workspace::root().join(file))?)?;
     let rows: Vec<Vec<f64>> = std::fs::read_to_string(matrix)?
         .lines()
         .skip(1)

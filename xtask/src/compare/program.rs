@@ -3,7 +3,7 @@
 use anyhow::{Context, Result, ensure};
 use std::fs::File;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, ExitStatus, Stdio};
 use std::time::Instant;
 use wait4::{ResUse, Wait4};
@@ -38,20 +38,6 @@ impl Run {
 /// Whether a program can be started.
 pub(super) fn is_installed(program: &str) -> bool {
     Command::new(program).arg("--version").stdin(Stdio::null()).output().is_ok()
-}
-
-/// Builds programs of this workspace in the release profile and says where they are.
-pub(super) fn build(packages: &[&str]) -> Result<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let mut command = Command::new(cargo);
-    command.args(["build", "--quiet", "--release"]).current_dir(&root);
-    packages.iter().for_each(|package| {
-        command.args(["--package", package]);
-    });
-    ensure!(command.status()?.success(), "{} do not build", packages.join(" and "));
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
-    Ok(target.join("release"))
 }
 
 /// Runs a program with the given standard input, for at most `limit` processor seconds.

@@ -7,6 +7,7 @@ mod page;
 mod plan;
 mod table;
 
+use crate::workspace;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use plan::{Experiment, PLAN};
@@ -40,12 +41,11 @@ pub(crate) struct ExperimentsArguments {
 }
 
 pub(crate) fn run(arguments: &ExperimentsArguments) -> Result<()> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let root = workspace::root();
     let page = root.join("docs/results.md");
     if arguments.check {
-        let stands = std::fs::read_to_string(&page).with_context(|| format!("cannot read {}", page.display()))?;
         ensure!(
-            stands == page::write(&root.join("results"))?,
+            workspace::read(&page)? == page::write(&root.join("results"))?,
             "docs/results.md is stale: cargo xtask experiments --page"
         );
         return Ok(());
@@ -56,8 +56,7 @@ pub(crate) fn run(arguments: &ExperimentsArguments) -> Result<()> {
     if arguments.quick {
         return Ok(());
     }
-    std::fs::write(&page, page::write(&root.join("results"))?)
-        .with_context(|| format!("cannot write {}", page.display()))
+    workspace::write(&page, &page::write(&root.join("results"))?)
 }
 
 fn run_all(arguments: &ExperimentsArguments, root: &Path) -> Result<()> {
@@ -70,8 +69,8 @@ fn run_all(arguments: &ExperimentsArguments, root: &Path) -> Result<()> {
         let shared = std::env::var_os("SHARED_DIR").map_or_else(|| root.join("../shared"), PathBuf::from);
         Some(shared.join("data/lund_floor_planar")).filter(|folder| folder.exists())
     });
-    let tdoa = build(root)?;
-    let work = target(root).join(if arguments.quick { "experiments-quick" } else { "experiments" });
+    let tdoa = workspace::program(&workspace::build(&["tdoa-cli"])?, "tdoa");
+    let work = workspace::target().join(if arguments.quick { "experiments-quick" } else { "experiments" });
     if arguments.quick && work.exists() {
         // Quick runs show that everything runs, so they start anew.
         std::fs::remove_dir_all(&work)?;
@@ -117,38 +116,14 @@ fn keep(experiment: &Experiment, share: Option<f64>, output: &Path, root: &Path)
             std::fs::copy(output.join(&name), folder.join(&name))?;
         }
     }
-    let commit = Command::new("git").args(["rev-parse", "--short=12", "HEAD"]).current_dir(root).output();
-    let commit = commit.ok().filter(|output| output.status.success());
-    let commit =
-        commit.map_or_else(|| "unknown".into(), |output| String::from_utf8_lossy(&output.stdout).trim().to_owned());
     let cores = std::thread::available_parallelism().map_or(0, usize::from);
     let record = format!(
-        "item,value\ncommand,tdoa experiment {}\nseed,0\ncommit,{commit}\nprocessor,{}\ncores,{cores}\n",
+        "item,value\ncommand,tdoa experiment {}\nseed,0\ncommit,{}\nprocessor,{}\ncores,{cores}\n",
         experiment.words(share).join(" "),
-        processor()
+        workspace::commit(12),
+        workspace::processor()
     );
-    std::fs::write(folder.join("run.csv"), record).with_context(|| format!("cannot write to {}", folder.display()))
-}
-
-/// The processor's name, where the system tells it (Linux).
-fn processor() -> String {
-    let told = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let name =
-        told.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':').map(|(_, name)| name.trim()));
-    name.map_or_else(|| std::env::consts::ARCH.to_owned(), str::to_owned)
-}
-
-fn target(root: &Path) -> PathBuf {
-    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from)
-}
-
-/// Builds the program and says where it is.
-fn build(root: &Path) -> Result<PathBuf> {
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let words = ["build", "--quiet", "--release", "--package", "tdoa-cli"];
-    let status = Command::new(cargo).args(words).current_dir(root).status()?;
-    ensure!(status.success(), "tdoa does not build");
-    Ok(target(root).join("release").join(format!("tdoa{}", std::env::consts::EXE_SUFFIX)))
+    workspace::write(&folder.join("run.csv"), &record)
 }
 
 #[cfg(test)]
@@ -157,7 +132,7 @@ mod tests {
 
     #[test]
     fn the_page_is_what_the_results_give() {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        let root = workspace::root();
         let page = std::fs::read_to_string(root.join("docs/results.md")).unwrap();
         assert!(page == page::write(&root.join("results")).unwrap(), "stale: cargo xtask experiments --page");
     }

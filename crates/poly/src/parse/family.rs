@@ -7,6 +7,7 @@ use crate::expression::Arena;
 use crate::system::{System, is_name};
 use serde::Deserialize;
 use std::collections::HashMap;
+use toml::Spanned;
 
 /// A parameter family: a system whose parameters are to be given values later.
 #[derive(Clone, Debug)]
@@ -26,9 +27,9 @@ pub struct Family {
 #[serde(deny_unknown_fields)]
 struct FamilyText {
     name: String,
-    unknowns: Vec<String>,
+    unknowns: Vec<Spanned<String>>,
     #[serde(default)]
-    parameters: Vec<String>,
+    parameters: Vec<Spanned<String>>,
     equations: Vec<String>,
     roots: Option<usize>,
     #[serde(default)]
@@ -66,15 +67,16 @@ fn system(text: &str, fields: &FamilyText, part: &str, formulas: &[String]) -> R
     let mut arena = Arena::default();
     let mut declared = HashMap::new();
     let names = fields.unknowns.iter().map(|n| (n, true)).chain(fields.parameters.iter().map(|n| (n, false)));
-    for (name, unknown) in names {
+    for (declaration, unknown) in names {
+        let name = declaration.get_ref();
         if !is_name(name) {
             let message = format!("`{name}` cannot be a name (letters, digits, `_`; `i` is the imaginary unit)");
-            return Err(ParseError::at(text, text.find(name.as_str()).unwrap_or(0), message));
+            return Err(ParseError::at(text, offset(text, declaration), message));
         }
         let id = if unknown { arena.variable(name) } else { arena.parameter(name) };
         if declared.insert(name.clone(), id).is_some() {
             let message = format!("`{name}` is declared twice");
-            return Err(ParseError::at(text, text.find(name.as_str()).unwrap_or(0), message));
+            return Err(ParseError::at(text, offset(text, declaration), message));
         }
     }
     let mut names = Names::Declared(declared);
@@ -84,6 +86,13 @@ fn system(text: &str, fields: &FamilyText, part: &str, formulas: &[String]) -> R
         equations.push(equation.map_err(|e| e.within(format!("{part} {}", k + 1)))?);
     }
     Ok(System { arena, equations })
+}
+
+/// Where a declared name begins: its span has the quotes in it.
+fn offset(text: &str, declaration: &Spanned<String>) -> usize {
+    let span = declaration.span();
+    let quotes = text.get(span.clone()).and_then(|quoted| quoted.find(declaration.get_ref().as_str()));
+    span.start + quotes.unwrap_or(0)
 }
 
 /// A formula that takes up the whole text.
@@ -130,6 +139,26 @@ mod tests {
         let shown = error.to_string();
         let (line, caret) = (shown.lines().nth(1).unwrap(), shown.lines().nth(2).unwrap());
         assert_eq!(line.chars().nth(caret.find('^').unwrap()), Some('z'), "{shown}");
+    }
+
+    #[test]
+    fn points_at_a_wrong_declaration() {
+        let text = |unknowns: &str, parameters: &str| {
+            format!(
+                "name = \"box\"\nunknowns = [\"xy\", {unknowns}]\nparameters = [{parameters}]\nequations = [\"xy\"]\n"
+            )
+        };
+        for (text, line, column, word) in [
+            (text("\"x\", 'x'", ""), 2, 25, "twice"),
+            (text("\"x\"", "\"a\", \"x\""), 3, 21, "twice"),
+            (text("\"o x\"", ""), 2, 20, "cannot be a name"),
+            (text("\"y\",\n  \"i\"", ""), 3, 4, "imaginary"),
+            (text("\"\"", ""), 2, 19, "cannot be a name"),
+        ] {
+            let error = family(&text).unwrap_err();
+            assert!(error.message.contains(word), "{error}");
+            assert_eq!((error.within.as_deref(), error.line, error.column), (None, line, column), "{error}");
+        }
     }
 
     #[test]

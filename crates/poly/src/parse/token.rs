@@ -83,14 +83,15 @@ impl<'t> Tokens<'t> {
         ParseError::at(self.text, offset, message)
     }
 
-    /// Steps to the next token and returns the one left behind.
-    pub(super) fn advance(&mut self) -> Result<Token<'t>, ParseError> {
+    /// Steps to the next token.
+    pub(super) fn advance(&mut self) -> Result<(), ParseError> {
         let rest = &self.text[self.position..];
         let trimmed = rest.trim_start();
         self.start = self.position + (rest.len() - trimmed.len());
         let Some(first) = trimmed.chars().next() else {
             self.position = self.start;
-            return Ok(std::mem::replace(&mut self.current, Token::End));
+            self.current = Token::End;
+            return Ok(());
         };
         let (token, length) = match first {
             '+' => (Token::Plus, 1),
@@ -113,7 +114,8 @@ impl<'t> Tokens<'t> {
             c => return Err(self.error(format!("unexpected character {c:?}"))),
         };
         self.position = self.start + length;
-        Ok(std::mem::replace(&mut self.current, token))
+        self.current = token;
+        Ok(())
     }
 
     /// An unsigned decimal number, kept exactly, and its length in bytes.

@@ -2,53 +2,9 @@
 
 use super::{Polynomial, Ring};
 use crate::display::{PRODUCT, write_constant};
-use crate::exact::{self, Exact};
-use num_bigint::BigInt;
-use num_complex::{Complex, Complex64};
-use num_rational::BigRational;
-use num_traits::{One, Signed, Zero};
+use crate::exact::{self, ToExact};
+use num_traits::{One, Signed};
 use std::fmt::{Display, Formatter, Result};
-
-/// Coefficients that can be written so that the parsers read them back.
-pub trait Coefficient: Ring {
-    /// The exact value, `None` where it is not finite.
-    fn to_exact(&self) -> Option<Exact>;
-}
-
-fn real(value: BigRational) -> Exact {
-    Complex::new(value, BigRational::zero())
-}
-
-impl Coefficient for i64 {
-    fn to_exact(&self) -> Option<Exact> {
-        Some(exact::from_i64(*self))
-    }
-}
-impl Coefficient for BigInt {
-    fn to_exact(&self) -> Option<Exact> {
-        Some(real(BigRational::from_integer(self.clone())))
-    }
-}
-impl Coefficient for BigRational {
-    fn to_exact(&self) -> Option<Exact> {
-        Some(real(self.clone()))
-    }
-}
-impl Coefficient for Exact {
-    fn to_exact(&self) -> Option<Exact> {
-        Some(self.clone())
-    }
-}
-impl Coefficient for f64 {
-    fn to_exact(&self) -> Option<Exact> {
-        exact::from_f64(*self)
-    }
-}
-impl Coefficient for Complex64 {
-    fn to_exact(&self) -> Option<Exact> {
-        Some(Complex::new(BigRational::from_float(self.re)?, BigRational::from_float(self.im)?))
-    }
-}
 
 /// A polynomial with names for its unknowns.
 struct Named<'a, R> {
@@ -56,7 +12,7 @@ struct Named<'a, R> {
     names: &'a [&'a str],
 }
 
-impl<R: Coefficient> Polynomial<R> {
+impl<R: Ring + ToExact> Polynomial<R> {
     /// The polynomial as text, in descending order of terms; the parsers read it back exactly.
     ///
     /// # Panics
@@ -67,7 +23,7 @@ impl<R: Coefficient> Polynomial<R> {
     }
 }
 
-impl<R: Coefficient> Display for Named<'_, R> {
+impl<R: Ring + ToExact> Display for Named<'_, R> {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         if self.polynomial.is_empty() {
             return f.write_str("0");

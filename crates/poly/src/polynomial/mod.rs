@@ -6,7 +6,6 @@ mod ring;
 mod tests;
 mod transform;
 
-pub use display::Coefficient;
 pub use ring::Ring;
 
 use crate::monomial::Monomial;

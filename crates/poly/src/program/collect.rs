@@ -16,7 +16,7 @@ pub(super) fn collect(graph: &Graph, roots: &[Id]) -> (Graph, Vec<Id>) {
         let at = |id: Id| new[id as usize];
         let node = graph.node(id as Id);
         let sum =
-            if is_sum(node) && !is_part { collect_sum(graph, id as Id, &part, &new, &mut collected) } else { None };
+            if node.is_sum() && !is_part { collect_sum(graph, id as Id, &part, &new, &mut collected) } else { None };
         new.push(match (sum, node) {
             (Some(sum), _) => sum,
             (None, Node::Constant(_)) => collected.constant(graph.as_constant(id as Id).cloned().unwrap_or_default()),
@@ -33,26 +33,16 @@ pub(super) fn collect(graph: &Graph, roots: &[Id]) -> (Graph, Vec<Id>) {
     (collected, roots)
 }
 
-fn is_sum(node: Node) -> bool {
-    matches!(node, Node::Add(..) | Node::Sub(..) | Node::Neg(_))
-}
-
 /// Marks sums whose only use is in another sum.
 fn parts_of_sums(graph: &Graph, roots: &[Id]) -> Vec<bool> {
-    let used = graph.reachable(roots.iter().copied());
-    let mut uses = vec![0u32; graph.len()];
-    let mut in_sum = vec![false; graph.len()];
-    for &root in roots {
-        uses[root as usize] += 1;
-    }
-    for id in (0..graph.len()).filter(|&id| used[id]) {
-        let node = graph.node(id as Id);
-        for operand in node.operands() {
-            uses[operand as usize] = uses[operand as usize].saturating_add(1);
-            in_sum[operand as usize] = is_sum(node);
+    let uses = graph.uses(roots);
+    let mut part = vec![false; graph.len()];
+    for id in (0..graph.len()).filter(|&id| uses[id] > 0 && graph.node(id as Id).is_sum()) {
+        for operand in graph.node(id as Id).operands() {
+            part[operand as usize] = uses[operand as usize] == 1 && graph.node(operand).is_sum();
         }
     }
-    (0..graph.len()).map(|id| is_sum(graph.node(id as Id)) && uses[id] == 1 && in_sum[id]).collect()
+    part
 }
 
 /// The sum with like terms collected, `None` where no term occurs twice.
@@ -61,18 +51,7 @@ fn collect_sum(graph: &Graph, sum: Id, part: &[bool], new: &[Id], collected: &mu
     let mut terms: Vec<(Id, Exact)> = Vec::new();
     let mut place: HashMap<Id, usize> = HashMap::new();
     let mut merged = false;
-    let mut stack = vec![(sum, false)];
-    while let Some((id, negative)) = stack.pop() {
-        if id == sum || part[id as usize] {
-            // The first operand is met first, so it is pushed last.
-            match graph.node(id) {
-                Node::Add(a, b) => stack.extend([(b, negative), (a, negative)]),
-                Node::Sub(a, b) => stack.extend([(b, !negative), (a, negative)]),
-                Node::Neg(a) => stack.push((a, !negative)),
-                _ => {}
-            }
-            continue;
-        }
+    for (id, negative) in graph.terms_of_sum(sum, |id| part[id as usize]) {
         let (formula, coefficient) = coefficient_of(collected, new[id as usize], one);
         let coefficient = if negative { -coefficient } else { coefficient };
         let next = terms.len();

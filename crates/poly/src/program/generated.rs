@@ -1,4 +1,4 @@
-//! What code written by [`emit`](super::emit()) builds on.
+//! What code written by `poly::program::emit` (feature `emit`) builds on.
 
 use crate::scalar::Scalar;
 use crate::simd::Isa;

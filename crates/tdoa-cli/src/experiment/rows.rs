@@ -109,13 +109,9 @@ pub(super) fn resume<S: Send>(
 
 /// As many pools of one thread as threads are asked for; as cores for `None`.
 fn pools(threads: Option<usize>) -> Result<Vec<rayon::ThreadPool>, Failure> {
-    let count = threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
-    if count == 0 || count > 1024 {
-        return Err(Failure::Unusable(format!("--threads must be between 1 and 1024, not {count}")));
-    }
-    let pool = || rayon::ThreadPoolBuilder::new().num_threads(1).build();
-    let pools = (0..count).map(|_| pool()).collect::<Result<_, _>>();
-    pools.map_err(|error| Failure::Unusable(format!("threads cannot be started: {error}")))
+    let count = cli::thread_count(threads)?;
+    let count = count.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
+    (0..count).map(|_| cli::pool(Some(1))).collect()
 }
 
 /// The whole lines of a table below its header.
