@@ -5,11 +5,12 @@
 //! are evaluators alone, of systems that the benches define.
 
 use crate::benches;
-use crate::refill::{self, nondegenerate};
+use crate::refill;
 use crate::workspace;
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use hc::distinct::coincidences;
+use hc::family::Compiled;
 use hc::poly::program::{EmitOptions, emit};
 use hc::poly::{Evaluate, Family};
 use hc::refine::Refiner;
@@ -160,27 +161,19 @@ fn place(arguments: &CodegenArguments, module: &str, output: &Path) -> Result<bo
 /// The stored fibre solves the family's equations, its solutions are distinct and regular, and their number is the stated one.
 fn verify(family: &Family, start: &StartFile) -> Result<()> {
     let fibre = start.fibre()?;
-    let system = family.system.compile()?;
-    let nonzero = family.nonzero.compile()?;
-    ensure!(
-        fibre.parameters.len() == system.parameters() && fibre.dimension == system.variables(),
-        "{} parameters and {} unknowns, but the family has {} and {}",
-        fibre.parameters.len(),
-        fibre.dimension,
-        system.parameters(),
-        system.variables()
-    );
+    let compiled = Compiled::new(family)?;
+    compiled.check(&fibre)?;
     if let Some(roots) = family.roots {
         ensure!(fibre.len() == roots, "{} solutions, but the family states {roots}", fibre.len());
     }
-    let mut refiner = Refiner::new(&system);
+    let mut refiner = Refiner::new(&compiled.system);
     for k in 0..fibre.len() {
         let x = fibre.solution(k);
         let refined = refiner.refine(&fibre.parameters, x);
         let moved = hc::distinct::relative_distance(x, &refined.point);
         ensure!(moved < 1e-12, "solution {} is off by {moved:.1e}", k + 1);
         ensure!(refined.condition < 1e12, "solution {} is singular (condition {:.1e})", k + 1, refined.condition);
-        ensure!(nondegenerate(&nonzero, &fibre.parameters, x), "solution {} is degenerate", k + 1);
+        ensure!(compiled.accepts(&fibre.parameters, x), "solution {} is degenerate", k + 1);
     }
     let same = coincidences((0..fibre.len()).map(|k| (k, fibre.solution(k))), 1e-8);
     ensure!(same.is_empty(), "solutions {:?} (counted from 0) coincide", same[0]);

@@ -1,10 +1,11 @@
 //! Computes the generic fibre of a family anew: first pair, monodromy, trace test, and a well-placed parameter point.
 
 use anyhow::{Context, Result, ensure};
-use hc::fibre::{Fibre, FibreOptions, track_fibre};
+use hc::family::Compiled;
+use hc::fibre::{Fibre, FibreOptions, move_fibre, track_fibre};
 use hc::monodromy::{MonodromyOptions, Stop, monodromy};
 use hc::pair::find_pair;
-use hc::poly::{Evaluate, Family, Interpreter, Isa};
+use hc::poly::{Family, Interpreter};
 use hc::random::Random;
 use hc::start_file::StartFile;
 use hc::trace::trace_test;
@@ -17,25 +18,17 @@ const TARGETS: u64 = 12;
 /// Trace tests on different lines until one confirms the fibre.
 const TRACES: u64 = 4;
 
-/// Whether no factor of `nonzero` vanishes at a solution.
-pub(crate) fn nondegenerate(nonzero: &Interpreter, p: &[Complex64], x: &[Complex64]) -> bool {
-    let mut memory = nonzero.memory(Isa::Portable);
-    let mut values = vec![Complex64::new(0.0, 0.0); nonzero.equations()];
-    nonzero.values(&mut memory, x, p, &mut values);
-    values.iter().all(|z| z.norm() > 1e-9)
-}
-
 /// The fibre of a family, found from nothing.
 pub(crate) fn refill(family: &Family, seed: u64, with_trace: bool) -> Result<StartFile> {
-    let system = family.system.compile()?;
-    let nonzero = family.nonzero.compile()?;
-    let accept = |p: &[Complex64], x: &[Complex64]| nondegenerate(&nonzero, p, x);
+    let compiled = Compiled::new(family)?;
+    let system = &compiled.system;
+    let accept = |p: &[Complex64], x: &[Complex64]| compiled.accepts(p, x);
     let pair = find_pair(&family.system, accept, seed)?
         .with_context(|| format!("{}: no first solution was found; state one with a seed pair", family.name))?;
     let mut options = MonodromyOptions::default();
     options.seed = seed;
     options.roots = family.roots;
-    let found = monodromy(&system, &pair, accept, &options);
+    let found = monodromy(system, &pair, accept, &options);
     eprintln!("{}: {} roots after {} loops and {} paths", family.name, found.fibre.len(), found.loops, found.paths);
     let mut stopped = match found.stop {
         Stop::RootsReached => "roots reached",
@@ -44,7 +37,7 @@ pub(crate) fn refill(family: &Family, seed: u64, with_trace: bool) -> Result<Sta
     if let Some(roots) = family.roots {
         ensure!(found.fibre.len() == roots, "{}: {} roots instead of {roots}", family.name, found.fibre.len());
     }
-    let fibre = place(&system, &found.fibre, seed)?;
+    let fibre = place(system, &found.fibre, seed)?;
     let mut deviation = None;
     if with_trace {
         // One further point far out that no path reaches spoils the test; on another line it lies elsewhere.
@@ -78,7 +71,7 @@ fn place(system: &Interpreter, fibre: &Fibre, seed: u64) -> Result<Fibre> {
     let mut best: Option<(usize, Fibre)> = None;
     for k in 0..PLACES {
         let point = Random::new(seed, 2000 + k).normals(m);
-        let Some(moved) = whole(system, fibre, &point) else { continue };
+        let Some(moved) = move_fibre(system, fibre, &point, &FibreOptions::default()) else { continue };
         let mut steps = 0;
         for target in &targets {
             let (ends, counts) = track_fibre(system, &moved, target, &FibreOptions::default());
@@ -91,14 +84,4 @@ fn place(system: &Interpreter, fibre: &Fibre, seed: u64) -> Result<Fibre> {
         }
     }
     best.map(|(_, fibre)| fibre).context("the fibre could not be moved whole to any other parameter point")
-}
-
-fn whole(system: &Interpreter, fibre: &Fibre, target: &[Complex64]) -> Option<Fibre> {
-    let (ends, counts) = track_fibre(system, fibre, target, &FibreOptions::default());
-    if counts.finite != fibre.len() {
-        return None;
-    }
-    let mut refiner = hc::refine::Refiner::new(system);
-    let solutions = ends.iter().flat_map(|(_, x)| refiner.refine(target, x).point).collect();
-    Some(Fibre { parameters: target.to_vec(), dimension: fibre.dimension, solutions })
 }

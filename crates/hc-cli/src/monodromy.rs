@@ -36,7 +36,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let problem = Problem::read(&arguments.family)?;
-    let accept = |p: &[num_complex::Complex64], x: &[num_complex::Complex64]| problem.accepts(p, x);
+    let accept = |p: &[num_complex::Complex64], x: &[num_complex::Complex64]| problem.compiled.accepts(p, x);
     let start = match &arguments.seed_pair {
         Some(path) => problem.fibre(path)?,
         None => find_pair(&problem.family.system, accept, arguments.seed)
@@ -53,7 +53,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let monitor = Monitor::watched();
     options.set_monitor(monitor.clone());
     let (found, test) = watch::watched(arguments.threads, &monitor, watch::stages, || {
-        let found = monodromy(&problem.system, &start, accept, &options);
+        let found = monodromy(&problem.compiled.system, &start, accept, &options);
         let wanted = !arguments.no_trace && !matches!(found.stop, Stop::RootsReached | Stop::Cancelled);
         let test = wanted.then(|| trace_test(&problem.family.system, &found.fibre, &options));
         (found, test)

@@ -135,7 +135,7 @@ fn member(
 ) -> Result<(Solved, f64), String> {
     let started = Instant::now();
     let family = &problem.family.system;
-    let mut found = solve_member(family, &problem.system, fibre, target, options);
+    let mut found = solve_member(family, &problem.compiled.system, fibre, target, options);
     if certified {
         let parameters: Vec<ComplexInterval> = target.iter().map(|&p| ComplexInterval::point(p)).collect();
         certify::fill(family, &parameters, &mut found.solutions)?;

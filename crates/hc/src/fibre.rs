@@ -119,6 +119,25 @@ pub fn track_fibre<E: Evaluate>(
     (paths, counts)
 }
 
+/// The whole fibre at other parameters, every solution refined to the last digit; `None` if a path was lost.
+///
+/// # Panics
+/// As [`track_fibre`].
+pub fn move_fibre<E: Evaluate>(
+    system: &E,
+    fibre: &Fibre,
+    target: &[Complex64],
+    options: &FibreOptions,
+) -> Option<Fibre> {
+    let (ends, counts) = track_fibre(system, fibre, target, options);
+    let mut refiner = Refiner::new(system);
+    (counts.finite == fibre.len()).then(|| Fibre {
+        parameters: target.to_vec(),
+        dimension: fibre.dimension,
+        solutions: ends.iter().flat_map(|(_, x)| refiner.refine(target, x).point).collect(),
+    })
+}
+
 /// Ends that are known to fewer digits than this are refined before they are compared: the error that is left is the square of the last
 /// correction, times the Lipschitz constant of Newton's method.
 const VAGUE: f64 = 1e-7;

@@ -8,6 +8,7 @@
 //! * [`endgame`]: the ends of paths that are singular or at infinity.
 //! * [`tracker`]: the path tracker, its options and presets; [`tracker::track`] follows paths on all threads.
 //! * [`homotopy`]: homotopies are a system and a path in its parameters.
+//! * [`family`](mod@family): a family ready to be tracked, and what it accepts as solutions.
 //! * [`fibre`]: all solutions of a family from one parameter point to another, with jumped paths found and tracked again.
 //! * [`pair`], [`monodromy`], [`trace`]: a first solution, all others from it, and the test that none is missing.
 //! * [`start_file`]: the stored form of a fibre.
@@ -52,6 +53,7 @@
 pub mod certify;
 pub mod distinct;
 pub mod endgame;
+pub mod family;
 pub mod fibre;
 pub mod homotopy;
 pub mod linalg;

@@ -6,7 +6,7 @@
 //! choice only if, no point is missing (Leykin, Rodriguez, Sottile 2018, arXiv:1608.00540, for the bilinear case).
 //! The further points are found by monodromy in the enlarged family, starting from the fibre.
 
-use crate::fibre::{Fibre, FibreOptions, track_fibre};
+use crate::fibre::{Fibre, FibreOptions, move_fibre, track_fibre};
 use crate::monodromy::{MonodromyOptions, monodromy};
 use crate::random::Random;
 use crate::refine::Refiner;
@@ -66,14 +66,14 @@ pub fn trace_test(system: &System, fibre: &Fibre, options: &MonodromyOptions) ->
         solutions.push(Complex64::new(0.0, 0.0));
     }
     let on_fibre = Fibre { parameters: at(0.0), dimension: n + 1, solutions };
-    let Some(start) = moved(&enlarged, &on_fibre, &at(1.0), &FibreOptions::default()) else { return Ok(failed) };
+    let Some(start) = move_fibre(&enlarged, &on_fibre, &at(1.0), &FibreOptions::default()) else { return Ok(failed) };
     let mut search = options.clone();
     search.roots = None;
     let filled = monodromy(&enlarged, &start, |_, _| true, &search).fibre;
     let careful = FibreOptions::default();
 
     let (Some(second), Some(third)) =
-        (moved(&enlarged, &filled, &at(2.0), &careful), moved(&enlarged, &filled, &at(3.0), &careful))
+        (move_fibre(&enlarged, &filled, &at(2.0), &careful), move_fibre(&enlarged, &filled, &at(3.0), &careful))
     else {
         return Ok(failed);
     };
@@ -116,18 +116,6 @@ fn enlarge(system: &System) -> Option<System> {
         equations
     })
     .ok()
-}
-
-/// The whole fibre at other parameters, or `None` if a path was lost.
-fn moved<E: poly::Evaluate>(system: &E, fibre: &Fibre, target: &[Complex64], options: &FibreOptions) -> Option<Fibre> {
-    let (ends, counts) = track_fibre(system, fibre, target, options);
-    let mut refiner = Refiner::new(system);
-    (counts.finite == fibre.len()).then(|| Fibre {
-        parameters: target.to_vec(),
-        dimension: fibre.dimension,
-        // To the last digit: the test adds up thousands of points.
-        solutions: ends.iter().flat_map(|(_, x)| refiner.refine(target, x).point).collect(),
-    })
 }
 
 /// The sum of all points, in double-double: far points would drown the others.

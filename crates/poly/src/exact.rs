@@ -15,6 +15,11 @@ pub trait ToExact {
     fn to_exact(&self) -> Option<Exact>;
 }
 
+impl<T: ToExact + ?Sized> ToExact for &T {
+    fn to_exact(&self) -> Option<Exact> {
+        (**self).to_exact()
+    }
+}
 impl ToExact for f64 {
     fn to_exact(&self) -> Option<Exact> {
         BigRational::from_float(*self).map(real)

@@ -1,12 +1,33 @@
 //! A system's formulas with other formulas put in for its unknowns and parameters.
 
-use crate::exact::Exact;
+use crate::exact::{Exact, ToExact};
 use crate::expression::{Expr, Expressions};
 use crate::graph::{Id, Node};
-use crate::system::System;
+use crate::system::{System, SystemError};
 use num_traits::Zero;
 
 impl System {
+    /// The member of a family at parameters, taken exactly: the same equations in the same unknowns, without parameters.
+    ///
+    /// ```
+    /// let family = poly::System::build(|s| vec![s.variable("x") * s.variable("x") - s.parameter("a")])?;
+    /// assert_eq!(family.at(&[2.0])?.expand(&Default::default())?[0].to_string(), "x^2 - 2");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If a parameter is not finite.
+    ///
+    /// # Panics
+    /// If there are not as many values as parameters.
+    pub fn at<T: ToExact>(&self, parameters: &[T]) -> Result<System, SystemError> {
+        System::build(|s| {
+            let unknowns: Vec<_> = self.variables().iter().map(|name| s.variable(name)).collect();
+            let parameters: Vec<_> = parameters.iter().map(|p| s.constant(p)).collect();
+            self.instantiate(s, &unknowns, &parameters)
+        })
+    }
+
     /// The equations, built anew in `arena` with `unknowns[j]` in place of unknown `j` and `parameters[i]` in place of
     /// parameter `i`: so that a system becomes a part of another one.
     ///

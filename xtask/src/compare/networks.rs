@@ -5,7 +5,7 @@ use super::solving::{phc, regular_solutions};
 use super::{Plan, Tools};
 use crate::workspace;
 use anyhow::{Context, Result, ensure};
-use hc::poly::{self, Exact, ExpandLimits, System};
+use hc::poly::{self, Exact, ExpandLimits};
 use num_traits::ToPrimitive;
 use std::fmt::Write;
 use std::path::Path;
@@ -76,15 +76,12 @@ fn member(receivers: usize, transmitters: usize, matrix: &Path) -> Result<String
         .filter_map(|line| line.split(',').skip(1).map(|v| v.trim().parse().ok()).collect())
         .collect();
     ensure!(rows.len() == receivers && rows.iter().all(|r| r.len() == transmitters), "a whole matrix was expected");
-    let system = System::build(|s| {
-        let unknowns: Vec<_> = family.system.variables().iter().map(|name| s.variable(name)).collect();
-        // All three families have the measurements less those of the first receiver for parameters, row by row.
-        let parameters: Vec<_> = (1..receivers)
-            .flat_map(|i| (0..transmitters).map(move |j| (i, j)))
-            .map(|(i, j)| s.constant(rows[i][j] - rows[0][j]))
-            .collect();
-        family.system.instantiate(s, &unknowns, &parameters)
-    })?;
+    // All three families have the measurements less those of the first receiver for parameters, row by row.
+    let parameters: Vec<f64> = (1..receivers)
+        .flat_map(|i| (0..transmitters).map(move |j| (i, j)))
+        .map(|(i, j)| rows[i][j] - rows[0][j])
+        .collect();
+    let system = family.system.at(&parameters)?;
     let mut text = format!("{}\n", system.len());
     for polynomial in system.expand(&ExpandLimits::default())? {
         for (k, (monomial, coefficient)) in polynomial.terms().iter().enumerate() {

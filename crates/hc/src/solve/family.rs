@@ -64,12 +64,7 @@ pub fn solve_member<E: Evaluate>(
 
 /// The polynomials of a member as supports and coefficients.
 fn expanded(family: &System, target: &[Complex64]) -> Option<(SparseSystem, Vec<Complex64>)> {
-    let member = System::build(|s| {
-        let unknowns: Vec<_> = family.variables().iter().map(|name| s.variable(name)).collect();
-        let parameters: Vec<_> = target.iter().map(|&p| s.constant(p)).collect();
-        family.instantiate(s, &unknowns, &parameters)
-    });
-    let polynomials = member.ok()?.expand(&Default::default()).ok()?;
+    let polynomials = family.at(target).ok()?.expand(&Default::default()).ok()?;
     let supports: Vec<Vec<Vec<i32>>> = polynomials.iter().map(Polynomial::support).collect();
     let terms = polynomials.iter().flat_map(|p| p.terms());
     let numbers = terms.map(|(_, c)| Some(Complex64::new(c.re.to_f64()?, c.im.to_f64()?)).filter(|z| z.is_finite()));

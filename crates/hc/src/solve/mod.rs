@@ -147,7 +147,8 @@ pub struct Solved {
     pub directions: Vec<Direction>,
     /// Start systems that were used: more than one if paths were lost.
     pub start_systems: u32,
-    /// Whether the work was cancelled: the list is then partial, and paths not tracked count as failed.
+    /// Whether the work was cancelled: the list is then partial, and paths not tracked count as failed. In JSON `partial`.
+    #[serde(rename = "partial")]
     pub interrupted: bool,
     /// The distinct isolated solutions, regular ones first.
     pub solutions: Vec<Solution>,

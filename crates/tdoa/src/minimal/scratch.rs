@@ -4,7 +4,6 @@ use super::SolveError;
 use super::formulation::Formulation;
 use crate::network::PathCounts;
 use hc::distinct::relative_distance;
-use hc::poly::System;
 use hc::solve::{SolveOptions, Start, solve};
 use num_complex::Complex64;
 
@@ -19,12 +18,7 @@ const SAME: f64 = 1e-8;
 pub(crate) fn roots<F: Formulation>(f: &[f64]) -> Result<(Vec<Vec<Complex64>>, PathCounts), SolveError> {
     let refused = |error: &dyn std::fmt::Display| SolveError::Polyhedral(error.to_string());
     let family = hc::poly::parse::family(F::FAMILY).map_err(|e| refused(&e))?;
-    let system = System::build(|s| {
-        let unknowns: Vec<_> = family.system.variables().iter().map(|name| s.variable(name)).collect();
-        let parameters: Vec<_> = f.iter().map(|&f| s.constant(f)).collect();
-        family.system.instantiate(s, &unknowns, &parameters)
-    })
-    .map_err(|e| refused(&e))?;
+    let system = family.system.at(f).map_err(|e| refused(&e))?;
     let polynomials = system.expand(&Default::default()).map_err(|e| refused(&e))?;
     let mut roots: Vec<Vec<Complex64>> = Vec::new();
     let mut paths = PathCounts::default();
