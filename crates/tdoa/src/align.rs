@@ -3,7 +3,8 @@
 
 use serde::Serialize;
 
-use crate::network::{Network, distance};
+use crate::network::Network;
+use crate::plane::{centroid, distance};
 
 /// The map p -> scale * rotation * p + translation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -67,11 +68,7 @@ pub fn align(from: &[[f64; 2]], to: &[[f64; 2]], scale: bool) -> Option<Alignmen
     if from.is_empty() || from.len() != to.len() {
         return None;
     }
-    let centre = |points: &[[f64; 2]]| {
-        let count = points.len() as f64;
-        [0, 1].map(|k| points.iter().map(|p| p[k]).sum::<f64>() / count)
-    };
-    let (c, d) = (centre(from), centre(to));
+    let (c, d) = (centroid(from.iter()), centroid(to.iter()));
     let (mut rotation, mut reflection, mut spread) = ([0.0; 2], [0.0; 2], 0.0);
     for (a, b) in from.iter().zip(to) {
         let (ax, ay, bx, by) = (a[0] - c[0], a[1] - c[1], b[0] - d[0], b[1] - d[1]);

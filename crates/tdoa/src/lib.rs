@@ -50,6 +50,7 @@ pub mod network;
 pub mod node_table;
 mod observations;
 pub mod picture;
+mod plane;
 pub mod pseudoranges;
 pub mod read;
 mod refine;

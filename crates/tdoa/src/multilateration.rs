@@ -6,7 +6,7 @@
 //! subset without them is drawn.
 
 use crate::loss::Loss;
-use crate::network::distance;
+use crate::plane::distance;
 
 /// Most subsets that are tried for one node; fewer when there are no more.
 const SUBSETS: usize = 32;

@@ -3,6 +3,7 @@
 pub use hc::fibre::PathCounts;
 use serde::Serialize;
 
+use crate::plane::{distance, spread};
 use crate::pseudoranges::Pseudoranges;
 
 /// A complete network in the plane: every receiver, every transmitter and its offset, all in metres.
@@ -79,9 +80,7 @@ impl Network {
 
     /// The network's size: root mean square distance of the receivers from their centroid, in metres.
     pub fn size(&self) -> f64 {
-        let m = self.receivers.len().max(1) as f64;
-        let centre = [0, 1].map(|k| self.receivers.iter().map(|r| r[k]).sum::<f64>() / m);
-        (self.receivers.iter().map(|&r| distance(r, centre).powi(2)).sum::<f64>() / m).sqrt()
+        spread(self.receivers.iter())
     }
 
     fn check_size(&self, measured: &Pseudoranges) {
@@ -89,12 +88,6 @@ impl Network {
         assert_eq!(self.transmitters.len(), measured.transmitters(), "transmitters of network and measurements");
         assert_eq!(self.transmitters.len(), self.offsets.len(), "transmitters and offsets");
     }
-}
-
-/// Euclidean distance in the plane.
-pub(crate) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
-    let (dx, dy) = (a[0] - b[0], a[1] - b[1]);
-    (dx * dx + dy * dy).sqrt()
 }
 
 /// One network that a minimal solver proposes.

@@ -5,7 +5,7 @@ mod canvas;
 mod histogram;
 
 use crate::calibrate::Calibration;
-use crate::network::distance;
+use crate::plane::{centroid, distance, spread};
 pub(crate) use canvas::escape;
 use canvas::{Canvas, Map, nice};
 
@@ -91,9 +91,7 @@ fn title(calibration: &Calibration) -> String {
 /// The map from metres to the picture, and how many transmitters lie outside it.
 fn map_of(calibration: &Calibration) -> (Map, usize) {
     let receivers: Vec<[f64; 2]> = calibration.receivers.iter().flatten().copied().collect();
-    let count = receivers.len().max(1) as f64;
-    let centre = [0, 1].map(|k| receivers.iter().map(|p| p[k]).sum::<f64>() / count);
-    let size = (receivers.iter().map(|p| distance(*p, centre).powi(2)).sum::<f64>() / count).sqrt();
+    let (centre, size) = (centroid(receivers.iter()), spread(receivers.iter()));
     let near = |p: &&[f64; 2]| distance(**p, centre) <= REACH * size;
     let transmitters: Vec<[f64; 2]> = calibration.transmitters.iter().flatten().copied().collect();
     let shown: Vec<[f64; 2]> = receivers

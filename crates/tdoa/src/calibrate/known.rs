@@ -5,7 +5,8 @@ use serde::Serialize;
 use super::options::{CalibrateError, CalibrateOptions};
 use crate::align::align;
 use crate::degeneracy::Usable;
-use crate::network::{Network, distance};
+use crate::network::Network;
+use crate::plane::{centroid, distance, flatness};
 use crate::pseudoranges::{MAX_MAGNITUDE, Pseudoranges};
 use crate::refine::Refined;
 
@@ -141,13 +142,12 @@ impl Anchors {
             return Ok(None);
         }
         let mut positions: Vec<Option<[f64; 2]>> = usable.receivers.iter().map(|&i| options.anchors[i]).collect();
-        let count = positions.iter().flatten().count();
-        if count == 0 {
+        if positions.iter().flatten().next().is_none() {
             return Err(CalibrateError::Known(
                 "too few measurements tie down the receivers of known position; measure more of them".to_string(),
             ));
         }
-        let centre = [0, 1].map(|k| positions.iter().flatten().map(|p| p[k]).sum::<f64>() / count as f64);
+        let centre = centroid(positions.iter().flatten());
         positions.iter_mut().flatten().for_each(|p| *p = [p[0] - centre[0], p[1] - centre[1]]);
         Ok(Some(Anchors { positions, centre }))
     }
@@ -166,7 +166,7 @@ impl Anchors {
     /// Whether the network's mirror image fits the anchors as well: they lie in one line (by a thousandth of its length).
     pub(super) fn leave_mirror(&self) -> bool {
         let all: Vec<[f64; 2]> = self.positions.iter().flatten().copied().collect();
-        super::warnings::flatness(&all) < 1e-3 || all.len() < 3
+        flatness(&all) < 1e-3 || all.len() < 3
     }
 
     /// Moves a network onto the anchors and puts them in their places; root mean square of the distances that remain

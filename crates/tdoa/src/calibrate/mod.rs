@@ -17,7 +17,6 @@ pub use known::{KnownDistance, SpeedEstimate};
 pub use minimal::MinimalHypotheses;
 pub use options::{CalibrateError, CalibrateOptions, Control, Progress};
 pub use report::{Alternative, Calibration, Truth};
-pub(crate) use warnings::flatness;
 
 use crate::degeneracy::{Usable, usable};
 use crate::loss::{Loss, SEARCH_NU, normal_deviation};

@@ -8,8 +8,9 @@ use super::options::CalibrateOptions;
 use super::warnings::warn_of_nodes;
 use crate::align::{Transform, align, frame};
 use crate::degeneracy::Usable;
-use crate::network::{Network, distance};
+use crate::network::Network;
 use crate::observations::Observations;
+use crate::plane::distance;
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::{Covariance, Refined, covariance};
 

@@ -150,14 +150,14 @@ pub(crate) fn same(a: &Network, b: &Network) -> bool {
     if alignment.rms > SAME_NETWORK * size {
         return false;
     }
-    let centre = [0, 1].map(|k| a.receivers.iter().map(|r| r[k]).sum::<f64>() / a.receivers.len() as f64);
+    let centre = crate::plane::centroid(a.receivers.iter());
     let differing = a
         .transmitters
         .iter()
         .zip(&b.transmitters)
         .filter(|(s, t)| {
-            let reach = size.max(crate::network::distance(**s, centre));
-            crate::network::distance(**s, alignment.transform.apply(**t)) > 5.0 * SAME_NETWORK * reach
+            let reach = size.max(crate::plane::distance(**s, centre));
+            crate::plane::distance(**s, alignment.transform.apply(**t)) > 5.0 * SAME_NETWORK * reach
         })
         .count();
     // One stray transmitter is an ambiguity of that transmitter, not another network.

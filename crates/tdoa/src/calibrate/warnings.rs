@@ -1,8 +1,9 @@
 //! Warnings about the geometry of a result, with the names of the nodes and a remedy.
 
 use crate::degeneracy::list;
-use crate::network::{Network, distance};
+use crate::network::Network;
 use crate::observations::Observations;
+use crate::plane::{distance, flatness};
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::Covariance;
 
@@ -75,30 +76,5 @@ pub(super) fn warn_of_nodes(
         .collect();
     if !doubtful.is_empty() {
         warnings.push(format!("receivers most of whose measurements are outliers: {}; check them", list(&doubtful)));
-    }
-}
-
-/// Ratio of the standard deviations across and along a set of points; 1 for fewer than three.
-pub(crate) fn flatness(points: &[[f64; 2]]) -> f64 {
-    if points.len() < 3 {
-        return 1.0;
-    }
-    let count = points.len() as f64;
-    let centre = [0, 1].map(|k| points.iter().map(|p| p[k]).sum::<f64>() / count);
-    let moment = |a: usize, b: usize| points.iter().map(|p| (p[a] - centre[a]) * (p[b] - centre[b])).sum::<f64>();
-    let (xx, xy, yy) = (moment(0, 0), moment(0, 1), moment(1, 1));
-    let root = (0.25 * (xx - yy).powi(2) + xy * xy).sqrt();
-    let (large, small) = (0.5 * (xx + yy) + root, (xx * yy - xy * xy) / (0.5 * (xx + yy) + root));
-    if large > 0.0 { (small.max(0.0) / large).sqrt() } else { 0.0 }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn flat_sets_of_points() {
-        assert_eq!(flatness(&[[0.0, 0.0], [1.0, 1.0], [3.0, 3.0]]), 0.0);
-        assert!((flatness(&[[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]]) - 1.0).abs() < 1e-12);
     }
 }

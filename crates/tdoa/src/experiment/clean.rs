@@ -4,6 +4,7 @@
 use crate::align::align;
 use crate::minimal::{SolveError, SolveOptions, Solver};
 use crate::network::{Network, PathCounts, RootCounts};
+use crate::plane::spread;
 use crate::simulate::Simulation;
 use serde::Serialize;
 
@@ -66,11 +67,7 @@ pub fn clean_trial(
 pub fn position_error_of(found: &Network, truth: &Network) -> f64 {
     let nodes = |n: &Network| n.receivers.iter().chain(&n.transmitters).copied().collect::<Vec<_>>();
     let (found, truth) = (nodes(found), nodes(truth));
-    let count = truth.len() as f64;
-    let centre = [0, 1].map(|k| truth.iter().map(|p| p[k]).sum::<f64>() / count);
-    let size =
-        (truth.iter().map(|p| (p[0] - centre[0]).powi(2) + (p[1] - centre[1]).powi(2)).sum::<f64>() / count).sqrt();
-    align(&found, &truth, false).map_or(f64::INFINITY, |alignment| alignment.rms / size)
+    align(&found, &truth, false).map_or(f64::INFINITY, |alignment| alignment.rms / spread(truth.iter()))
 }
 
 /// `|o^ - o| / |o|` over the offsets o.

@@ -113,7 +113,7 @@ impl Case {
 
 /// The point at distance `d` from `a` towards `b`.
 fn next_to(a: [f64; 2], b: [f64; 2], d: f64) -> [f64; 2] {
-    let length = crate::network::distance(a, b);
+    let length = crate::plane::distance(a, b);
     [0, 1].map(|k| a[k] + (b[k] - a[k]) * d / length)
 }
 

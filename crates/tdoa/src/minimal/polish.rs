@@ -2,6 +2,7 @@
 
 use super::linear::LeastSquares;
 use crate::network::Network;
+use crate::plane::centroid;
 
 /// Iterations at most; candidates come with about ten digits and gain the rest in two.
 const MAX_ITERATIONS: usize = 8;
@@ -69,7 +70,7 @@ impl Polisher {
         }
         // Translations and the rotation about the centroid of all nodes: steps are orthogonal to them.
         let nodes = || network.receivers.iter().chain(&network.transmitters);
-        let centre = [0, 1].map(|k| nodes().map(|p| p[k]).sum::<f64>() / (m + n) as f64);
+        let centre = centroid(nodes());
         for (a, p) in nodes().enumerate() {
             jacobian[at(m * n, 2 * a)] = 1.0;
             jacobian[at(m * n + 1, 2 * a + 1)] = 1.0;

@@ -1,8 +1,8 @@
 //! Proofs that the roots of a solver exist and are distinct.
 
-use super::formulation::Formulation;
+use super::formulation::{Formulation, Parameters};
 use hc::certify::{CertifyOptions, Reality, certify};
-use hc::poly::{ComplexInterval, parse};
+use hc::poly::{ComplexInterval, System, parse};
 use num_complex::Complex64;
 use serde::Serialize;
 
@@ -27,19 +27,11 @@ pub(crate) fn prove<F: Formulation>(target: &[Complex64], points: &[Vec<Complex6
     let mut proved = vec![false; count];
     let mut real = vec![false; count];
     let mut separated = vec![false; count * count];
+    let parameters: Vec<ComplexInterval> = target.iter().map(|&p| ComplexInterval::point(p)).collect();
     for chart in 0..F::CHARTS {
-        // In another chart the parameters are differences of these, real and known up to their rounding.
-        let enclose = |&p: &Complex64| {
-            let exact = ComplexInterval::point(p);
-            if chart == 0 {
-                exact
-            } else {
-                ComplexInterval { im: exact.im, ..ComplexInterval::around(p, p.norm() * f64::EPSILON) }
-            }
-        };
-        let parameters: Vec<ComplexInterval> = F::parameters(chart, target).iter().map(enclose).collect();
+        let system = in_chart::<F>(&family.system, chart)?;
         let carried: Vec<Vec<Complex64>> = points.iter().map(|x| F::enter(chart, x).to_vec()).collect();
-        let found = certify(&family.system, &parameters, &carried, &CertifyOptions::default()).ok()?;
+        let found = certify(&system, &parameters, &carried, &CertifyOptions::default()).ok()?;
         let mut different = vec![false; count * count];
         let alone: Vec<usize> =
             (0..count).filter(|&k| found.points[k].is_ok() && found.duplicate_of[k].is_none()).collect();
@@ -60,4 +52,25 @@ pub(crate) fn prove<F: Formulation>(target: &[Complex64], points: &[Vec<Complex6
     let unseparated = pairs.filter(|&(i, j)| !separated[i * count + j]).count();
     let total = |flags: &[bool]| flags.iter().filter(|&&f| f).count();
     Some(RootProofs { roots: count, proved: total(&proved), real: total(&real), unseparated })
+}
+
+/// The equations of a chart in the parameters of chart 0, of which those of the chart are sums and differences: as formulas, so that nothing is
+/// rounded before the proof.
+fn in_chart<F: Formulation>(family: &System, chart: usize) -> Option<System> {
+    let count = family.parameters().len();
+    let unit = |k: usize| (0..count).map(|i| if i == k { 1.0.into() } else { 0.0.into() }).collect::<Vec<Complex64>>();
+    let columns: Vec<Parameters> = (0..count).map(|k| F::parameters(chart, &unit(k))).collect();
+    System::build(|s| {
+        let unknowns: Vec<_> = family.variables().iter().map(|name| s.variable(name)).collect();
+        let given: Vec<_> = family.parameters().iter().map(|name| s.parameter(name)).collect();
+        let parameters: Vec<_> = (0..count)
+            .map(|i| {
+                let terms = given.iter().zip(&columns).filter(|(_, column)| column[i] != Complex64::ZERO);
+                let signed = terms.map(|(&p, column)| if column[i].re > 0.0 { p } else { -p });
+                signed.reduce(|sum, term| sum + term).unwrap_or_else(|| s.constant(0))
+            })
+            .collect();
+        family.instantiate(s, &unknowns, &parameters)
+    })
+    .ok()
 }

@@ -107,7 +107,7 @@ fn loose(modes: &faer::MatRef<'_, f64>, zero: usize, network: &Network) -> Vec<u
         return Vec::new();
     }
     let m = network.receivers.len();
-    let centre = [0, 1].map(|k| network.receivers.iter().map(|r| r[k]).sum::<f64>() / m as f64);
+    let centre = crate::plane::centroid(network.receivers.iter());
     let spread = network.size().max(f64::MIN_POSITIVE) * (m as f64).sqrt();
     // Orthonormal rigid motions: two translations and the rotation about the centroid.
     let rigid = |i: usize, axis: usize| -> [f64; 3] {

@@ -135,11 +135,8 @@ mod tests {
             let found = extend(&observations, &part, &Loss { nu: 2.0, scale: 1e-3 }).unwrap();
             let nodes = |n: &Network| [n.receivers.clone(), n.transmitters.clone()].concat();
             // A node seen by as few as determine it may be its mirror image: most, not all, must be right.
-            let wrong = nodes(&found)
-                .iter()
-                .zip(nodes(truth))
-                .filter(|(a, b)| crate::network::distance(**a, *b) > 1e-4)
-                .count();
+            let wrong =
+                nodes(&found).iter().zip(nodes(truth)).filter(|(a, b)| crate::plane::distance(**a, *b) > 1e-4).count();
             assert!(wrong <= 1, "seed {seed}: {wrong} nodes");
             assert!(wrong > 0 || align(&found.receivers, &truth.receivers, false).unwrap().rms < 1e-4);
         }
