@@ -3,17 +3,27 @@
 //!
 //! Where to look first:
 //!
-//! * [`solve`]: the front door for a system: start system, paths, multiplicities, what lies at infinity and on components.
-//! * [`start`]: mixed cells and mixed volumes.
-//! * [`endgame`]: the ends of paths that are singular or at infinity.
+//! The front doors:
+//!
+//! * [`solve`](mod@solve): all solutions of a system: start system, paths, multiplicities, what lies at infinity and on components.
+//! * [`certify`](mod@certify): proofs that solutions exist, are distinct, are real.
+//!
+//! What paths are made of:
+//!
 //! * [`tracker`]: the path tracker, its options and presets; [`tracker::track`] follows paths on all threads.
 //! * [`homotopy`]: homotopies are a system and a path in its parameters.
+//! * [`start`]: mixed cells and mixed volumes.
+//! * [`endgame`]: the ends of paths that are singular or at infinity.
+//!
+//! Families:
+//!
 //! * [`family`](mod@family): a family ready to be tracked, and what it accepts as solutions.
 //! * [`fibre`]: all solutions of a family from one parameter point to another, with jumped paths found and tracked again.
 //! * [`pair`], [`monodromy`], [`trace`]: a first solution, all others from it, and the test that none is missing.
 //! * [`start_file`]: the stored form of a fibre.
-//! * [`monitor`]: progress, and stopping early.
-//! * [`certify`](mod@certify): proofs that solutions exist, are distinct, are real.
+//!
+//! For all of them: [`monitor`] for progress, and stopping early; [`refine`], [`distinct`] and [`random`], which are used everywhere. The guide
+//! (docs/guide in the repository) tells how it works.
 //!
 //! Systems come from the crate [`poly`], which is re-exported: everything that implements [`poly::Evaluate`] can be tracked.
 //!
@@ -56,7 +66,7 @@ pub mod endgame;
 pub mod family;
 pub mod fibre;
 pub mod homotopy;
-pub mod linalg;
+mod linalg;
 pub mod monitor;
 pub mod monodromy;
 pub mod pair;

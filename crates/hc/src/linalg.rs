@@ -10,11 +10,11 @@ use poly::Lane;
 use poly::simd::{Isa, Kernel, across_lanes};
 
 /// Share of the largest candidate from which on the diagonal is kept as the pivot.
-pub const THRESHOLD: f64 = 0.1;
+pub(crate) const THRESHOLD: f64 = 0.1;
 
 /// Workspace and result of a factorisation of one `n x n` matrix a lane.
 #[derive(Debug)]
-pub struct Lu<S: Lane> {
+pub(crate) struct Lu<S: Lane> {
     n: usize,
     isa: Isa,
     /// Column-major factors: unit lower triangle below the diagonal, upper triangle above, inverse pivots on it.
@@ -28,7 +28,7 @@ pub struct Lu<S: Lane> {
 
 impl<S: Lane> Lu<S> {
     /// Workspace for matrices of order `n`.
-    pub fn new(n: usize, isa: Isa) -> Self {
+    pub(crate) fn new(n: usize, isa: Isa) -> Self {
         Lu {
             n,
             isa,
@@ -39,22 +39,17 @@ impl<S: Lane> Lu<S> {
         }
     }
 
-    /// The order `n` of the matrices.
-    pub fn order(&self) -> usize {
-        self.n
-    }
-
     /// Factors the column-major matrix `a` (`n * n` entries); `weights_sqr[j]` is the square of the weight of unknown `j`.
     ///
     /// A singular matrix is not an error: its solutions are not finite.
-    pub fn factor(&mut self, a: &[S], weights_sqr: &[S::Real]) {
+    pub(crate) fn factor(&mut self, a: &[S], weights_sqr: &[S::Real]) {
         let isa = self.isa;
         isa.run(Factor { lu: self, a, weights_sqr });
     }
 
     /// The smallest pivot of lane `l`, each relative to the largest entry of its row of the matrix as it was, unknowns measured by the
     /// weights it was factored with: below the rounding error the matrix is singular as far as doubles can tell.
-    pub fn smallest_pivot(&self, l: usize, weights_sqr: &[S::Real]) -> f64 {
+    pub(crate) fn smallest_pivot(&self, l: usize, weights_sqr: &[S::Real]) -> f64 {
         let relative = |k: usize| {
             let inverse = self.factors[k * self.n + k].get(l);
             let size = weights_sqr[k].as_ref()[l] * self.row_scale[k].as_ref()[l] / inverse.norm_sqr();
@@ -64,21 +59,21 @@ impl<S: Lane> Lu<S> {
     }
 
     /// Replaces the right-hand side `b` (`n` entries) by the solution.
-    pub fn solve(&self, b: &mut [S]) {
+    pub(crate) fn solve(&self, b: &mut [S]) {
         self.isa.run(Solve { lu: self, b });
     }
 }
 
 /// Scratch space of estimates of the condition.
 #[derive(Debug, Default)]
-pub struct Estimate {
+pub(crate) struct Estimate {
     rows: Vec<[f64; 2]>,
     probe: Vec<Complex64>,
 }
 
 impl Lu<Complex64> {
     /// Replaces `b` by the solution of the system with the conjugate transpose of the factored matrix.
-    pub fn solve_adjoint(&self, b: &mut [Complex64]) {
+    pub(crate) fn solve_adjoint(&self, b: &mut [Complex64]) {
         let n = self.n;
         // A = P L U  =>  A^H = U^H L^H P^T
         for k in 0..n {
@@ -105,7 +100,7 @@ impl Lu<Complex64> {
     ///
     /// Hager's estimator (Higham, Accuracy and Stability of Numerical Algorithms, algorithm 15.1); a lower bound, rarely
     /// off by more than a factor 3. Infinite for a singular matrix. `a` is the matrix that was factored, `weights_sqr` are the squared weights.
-    pub fn condition(&self, a: &[Complex64], weights_sqr: &[[f64; 1]], scratch: &mut Estimate) -> f64 {
+    pub(crate) fn condition(&self, a: &[Complex64], weights_sqr: &[[f64; 1]], scratch: &mut Estimate) -> f64 {
         let n = self.n;
         let Estimate { rows, probe: x } = scratch;
         if n == 0 {

@@ -63,6 +63,7 @@ pub enum Stop {
 
 /// What monodromy found.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct MonodromyResult {
     /// The fibre, refined.
     pub fibre: Fibre,

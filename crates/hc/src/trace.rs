@@ -16,6 +16,7 @@ use poly::{CompileError, ComplexDd, Scalar, System};
 
 /// What the trace test found.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct TraceTest {
     /// Deviation of the sum of the points from linear motion, relative to the size of that motion; rounding error if the
     /// fibre is whole, of the order of one if a point is missing.

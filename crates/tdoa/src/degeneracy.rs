@@ -6,7 +6,7 @@ use crate::pseudoranges::Pseudoranges;
 
 /// The smallest configurations that determine a network: the minimal ones 6r/3s and 4r/5s, and 5r/4s, which has one
 /// constraint to spare. A matrix is solvable if it holds one of them.
-pub const SMALLEST: &str = "6 receivers and 3 transmitters, 5 and 4, or 4 and 5";
+pub(crate) const SMALLEST: &str = "6 receivers and 3 transmitters, 5 and 4, or 4 and 5";
 
 /// A node needs this many measurements to be kept: a transmitter three for its position and offset and one to fix which
 /// of two solutions is meant, a receiver two and one.
@@ -17,14 +17,14 @@ const LEAST_PER_RECEIVER: usize = 3;
 const MAX_RECEIVERS: usize = 2_000;
 
 /// Number of equations minus number of unknowns of m receivers and n transmitters, all measured: mn - 2m - 3n + 3.
-pub fn excess(receivers: usize, transmitters: usize) -> i64 {
+pub(crate) fn excess(receivers: usize, transmitters: usize) -> i64 {
     let (m, n) = (receivers as i64, transmitters as i64);
     m * n - 2 * m - 3 * n + 3
 }
 
 /// Whether a complete matrix of this size has finitely many solutions: at least four receivers, three transmitters, and
 /// no more unknowns than equations.
-pub fn is_solvable(receivers: usize, transmitters: usize) -> bool {
+pub(crate) fn is_solvable(receivers: usize, transmitters: usize) -> bool {
     receivers >= 4 && transmitters >= 3 && excess(receivers, transmitters) >= 0
 }
 
@@ -94,20 +94,20 @@ pub enum Degeneracy {
 
 /// The part of the measurements that can be calibrated.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Usable {
+pub(crate) struct Usable {
     /// Receivers kept.
-    pub receivers: Vec<usize>,
+    pub(crate) receivers: Vec<usize>,
     /// Transmitters kept.
-    pub transmitters: Vec<usize>,
+    pub(crate) transmitters: Vec<usize>,
     /// What was left out and why, with names and a remedy.
-    pub warnings: Vec<String>,
+    pub(crate) warnings: Vec<String>,
 }
 
 /// Leaves out what too few measurements tie down and checks that the rest can be determined.
 ///
 /// # Errors
 /// When nothing solvable is left, or receivers coincide.
-pub fn usable(measured: &Pseudoranges) -> Result<Usable, Degeneracy> {
+pub(crate) fn usable(measured: &Pseudoranges) -> Result<Usable, Degeneracy> {
     if measured.observed() == 0 {
         return Err(Degeneracy::NothingMeasured(measured.values().len()));
     }

@@ -213,11 +213,6 @@ impl Pseudoranges {
         self.values.iter().filter(|v| !v.is_nan()).count()
     }
 
-    /// Whether no cell is missing.
-    pub fn is_complete(&self) -> bool {
-        self.values.iter().all(|v| !v.is_nan())
-    }
-
     /// Names of the receivers.
     pub fn receiver_names(&self) -> &[String] {
         &self.receiver_names

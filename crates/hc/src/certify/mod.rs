@@ -84,6 +84,7 @@ pub enum Reality {
 
 /// A solution that exists.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Certificate {
     /// The middle of the box, the solution to double precision.
     pub value: Vec<Complex64>,
@@ -148,6 +149,7 @@ pub enum CertifyError {
 
 /// What [`certify`] has proved.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Certificates {
     /// A certificate or the reason why there is none, in the order of the points.
     pub points: Vec<Result<Certificate, Obstacle>>,

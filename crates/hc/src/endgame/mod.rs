@@ -54,7 +54,7 @@ const LEGS: usize = 20;
 /// How a path ends, after its endgame.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum Verdict {
+pub(crate) enum Verdict {
     /// At a point; after `winding` turns round zero the path comes back to itself.
     Finite {
         /// Winding number.
@@ -77,21 +77,21 @@ pub enum Verdict {
 
 /// A path and its end.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Ending {
+pub(crate) struct Ending {
     /// Index of the path, as given.
-    pub path: usize,
+    pub(crate) path: usize,
     /// How it ends.
-    pub verdict: Verdict,
+    pub(crate) verdict: Verdict,
     /// The end if it is finite, otherwise the last point.
-    pub point: Vec<Complex64>,
+    pub(crate) point: Vec<Complex64>,
     /// The point at the first radius, common to all paths: two that coincide here have crossed. Empty if not reached.
-    pub middle: Vec<Complex64>,
+    pub(crate) middle: Vec<Complex64>,
     /// Radius of the last loop.
-    pub radius: f64,
+    pub(crate) radius: f64,
 }
 
 /// A path that goes to the endgame: its index, its `t > 0` and its point there.
-pub type Handed<'a> = (usize, f64, &'a [Complex64]);
+pub(crate) type Handed<'a> = (usize, f64, &'a [Complex64]);
 
 /// Finds the ends of paths of `system` along `segment`, in the order given.
 ///
@@ -99,7 +99,7 @@ pub type Handed<'a> = (usize, f64, &'a [Complex64]);
 ///
 /// # Panics
 /// If the system is not square or points and segment do not fit it.
-pub fn endgame<'a, E: Evaluate>(
+pub(crate) fn endgame<'a, E: Evaluate>(
     system: &E,
     segment: &Segment,
     paths: impl IntoIterator<Item = Handed<'a>>,

@@ -92,6 +92,7 @@ impl SolveOptions {
 
 /// An isolated solution.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Solution {
     /// Real and imaginary part of each coordinate.
     pub value: Vec<[f64; 2]>,
@@ -114,6 +115,7 @@ pub struct Solution {
 
 /// A direction in which paths go to infinity.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct Direction {
     /// Unknown `j` is of order `t^(valuations[j] / denominator)` as `t` falls to zero.
     pub valuations: Vec<i64>,
@@ -125,6 +127,7 @@ pub struct Direction {
 
 /// What [`solve`] has found.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Solved {
     /// The start system that was used, never [`Start::Auto`]; `None` where paths came from a stored fibre or did not begin.
     pub start: Option<Start>,

@@ -6,9 +6,9 @@ use crate::homotopy::ParameterPath;
 use poly::Lane;
 use poly::simd::Kernel;
 
-/// Weights never fall below this share of the largest coordinate (squared: 1e-4).
+/// Weights never fall below 1e-4 of the largest coordinate: the square of that.
 const RELATIVE_FLOOR_SQR: f64 = 1e-8;
-/// Nor below this (squared: 1e-6).
+/// Nor below 1e-6: the square of that.
 const ABSOLUTE_FLOOR_SQR: f64 = 1e-12;
 /// Parts of a path below this share of the region in which Newton's method converges do not bound the step by their radius alone.
 const FAINT: f64 = 0.01;

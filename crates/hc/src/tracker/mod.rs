@@ -30,6 +30,24 @@ use poly::Evaluate;
 /// Tracks the paths with the given indices into `starts` (`n` coordinates a start solution) from `t = 1` to `t = 0`, in lanes of eight
 /// and on the threads of the current rayon pool.
 ///
+/// ```
+/// use hc::homotopy::Segment;
+/// use hc::poly::{Complex64, parse};
+/// use hc::tracker::{PathEnd, TrackerOptions, track};
+///
+/// // Both solutions of x^2 = a, from a = 1 to a = 4.
+/// let family = parse::family("name = 'root'\nunknowns = ['x']\nparameters = ['a']\nequations = ['x^2 - a']")?;
+/// let real = |x: f64| Complex64::new(x, 0.0);
+/// let path = Segment::new(&[real(1.0)], &[real(4.0)]);
+/// let starts = [real(1.0), real(-1.0)];
+/// let ends = track(&family.system.compile()?, &path, &starts, &[0, 1], &TrackerOptions::default());
+/// for ((result, point), root) in ends.iter().zip([2.0, -2.0]) {
+///     assert_eq!(result.end, PathEnd::Success);
+///     assert!((point[0] - root).norm() < 1e-14);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// The results stand in the order of `which` if that is ascending; they are the same, bit for bit, for any number of threads.
 ///
 /// # Panics
