@@ -87,7 +87,7 @@ fn table2(results: &Path) -> Result<String> {
              errors. One more slip: with L upper triangular the frame of the paper's parametrisation has (s_2 - s_1)_y = 0, not r_2y = 0 as its text says; counts \
              and distances do not depend on it.\n\n";
     text += &format!(
-        "Real networks come in pairs along any path of real data, so their number is even; an odd one betrays a lost or doubled path. Odd counts: {} of {}; instances \
+        "Real networks come in pairs along any path of real data, so their number is even; an odd one betrays a lost or doubled path, or a real root called complex. Odd counts: {} of {}; instances \
          with a lost path: {}.\n",
         real.get("odd")?,
         real.get("instances")?,

@@ -57,7 +57,8 @@ pub struct ChartTrial {
     pub paths: PathCounts,
     /// Evaluations of the Jacobian in the first starts of all paths and what follows these.
     pub jacobians: usize,
-    /// Whether real networks, which come in pairs, are odd in number: then paths have jumped unseen.
+    /// Whether the real roots, of which there are as many as all roots up to pairs, are odd in number: then a path has jumped unseen, or a real root was
+    /// called complex.
     pub odd: bool,
     /// Seconds.
     pub seconds: f64,

@@ -11,7 +11,7 @@
 //! | 5r/6s, and more of both | offsets by rank | 5 |
 //! | 7r/4s, and more of both | offsets by rank, linear | 0 |
 //!
-//! A solver that is used again keeps 0.12 to 0.24 MB, start solutions and workspace; a solve takes up to 0.18 MB more while it lasts
+//! A solver that is used again keeps 0.2 to 0.5 MB, start solutions and workspace, and a solve allocates its result alone, a few kilobytes
 //! (`cargo run --release -p tdoa --example memory`).
 
 mod chart;
