@@ -150,6 +150,13 @@ fn minimal_problems() {
     assert_eq!(printed.len(), 4, "{printed:?}");
     assert!(folder.path().join("five_point.rs").exists());
     assert!(printed[3].1.contains("planted poses found: 1000 of 1000"), "{}", printed[3].1);
+    // A module is up to date, or stale and named.
+    let check = format!("{} --check", printed[2].0);
+    assert!(run(&check, folder.path()).status.success());
+    std::fs::write(folder.path().join("five_point.rs"), "// older").expect("written");
+    let output = run(&check, folder.path());
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(!output.status.success() && message.contains("stale") && message.contains("five_point.rs"), "{message}");
     // The target again, for its solutions.
     let output = run(&format!("{} --json -", printed[1].0), folder.path());
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
@@ -180,8 +187,11 @@ fn readme_and_contributing() {
     // A camera at distances 2, 3 and 4 from three points, as on the front page of the crate hc.
     let g = [0.5, 0.6, 0.7];
     let parameters = [g[0], g[1], g[2], 13.0 - 12.0 * g[0], 20.0 - 16.0 * g[1], 25.0 - 24.0 * g[2]];
-    let target = serde_json::json!({ "parameters": parameters }).to_string();
-    std::fs::write(folder.path().join("TARGET.json"), target).expect("written");
+    let text = std::fs::read_to_string(root().join("examples/families/p3p.target.json")).expect("target");
+    let target: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    for (k, parameter) in parameters.iter().enumerate() {
+        assert!((target["parameters"][k].as_f64().expect("number") - parameter).abs() < 1e-12, "{text}");
+    }
     run_page("README.md", folder.path());
     run_page("CONTRIBUTING.md", folder.path());
     run_page("examples/network/README.md", folder.path());

@@ -97,7 +97,9 @@ pub(crate) struct CodegenArguments {
 pub(crate) fn run(arguments: &CodegenArguments) -> Result<()> {
     if let (Some(family), Some(start), Some(output)) = (&arguments.family, &arguments.start, &arguments.output) {
         let name = family.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        return write_or_check(arguments, &name, family, start, output).map(|_| ());
+        let stale = write_or_check(arguments, &name, family, start, output)?;
+        ensure!(!stale, "stale: {}; run the same command without --check", output.display());
+        return Ok(());
     }
     let root = workspace::root();
     let chosen: Vec<&Known> =
@@ -148,7 +150,11 @@ fn write_or_check(
 /// Writes one file, or with `--check` says whether what is there differs.
 fn place(arguments: &CodegenArguments, module: &str, output: &Path) -> Result<bool> {
     if arguments.check {
-        return Ok(std::fs::read_to_string(output).ok().as_deref() != Some(module));
+        let stale = std::fs::read_to_string(output).ok().as_deref() != Some(module);
+        if !stale {
+            eprintln!("{} is up to date", output.display());
+        }
+        return Ok(stale);
     }
     if let Some(folder) = output.parent() {
         std::fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;

@@ -4,6 +4,9 @@ use hc::solve::{Solved, Start};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
+/// Solutions that a summary shows.
+const LISTED: usize = 20;
+
 /// The JSON of one system.
 #[derive(Serialize)]
 pub(crate) struct Report<'a> {
@@ -65,6 +68,20 @@ impl<'a> Report<'a> {
         }
         if paths.failed > 0 {
             text += &format!("the list may be incomplete: it is not known where {} paths end\n", paths.failed);
+        }
+        text
+    }
+
+    /// The first real solutions, a line each.
+    pub(crate) fn listing(&self) -> String {
+        let real: Vec<_> = self.found.solutions.iter().filter(|s| s.real).collect();
+        let mut text = String::new();
+        for solution in real.iter().take(LISTED) {
+            let values = self.variables.iter().zip(&solution.value).map(|(name, v)| format!("{name} = {:.12}", v[0]));
+            text += &format!("  {}\n", values.collect::<Vec<_>>().join(", "));
+        }
+        if real.len() > LISTED {
+            text += &format!("  and {} real ones more\n", real.len() - LISTED);
         }
         text
     }

@@ -87,7 +87,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     })?;
     let found = found.map_err(|message: String| Failure::in_file(file, message))?;
     let report = Report::new(system.variables(), &found, arguments.seed, begun.elapsed().as_secs_f64());
-    output::summary(arguments.json.as_deref(), || report.summary())?;
+    output::summary(arguments.json.as_deref(), || report.summary() + &report.listing())?;
     if let Some(out) = &arguments.json {
         output::json(out, &report)?;
     }

@@ -92,7 +92,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             reports => output::json(path, &reports)?,
         }
     }
-    output::summary(arguments.json.as_deref(), || summary(variables, &solved, &reports))?;
+    output::summary(arguments.json.as_deref(), || summary(&reports))?;
     if solved.len() < targets.len() || solved.iter().any(|(found, _)| found.interrupted) {
         return Err(Failure::Interrupted);
     }
@@ -110,8 +110,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// The targets, and whether the file is a single one rather than a list.
 fn targets(arguments: &Arguments, parameters: usize) -> Result<(Vec<Vec<Complex64>>, bool), Failure> {
     let file = &arguments.target;
-    let targets: Targets = serde_json::from_str(&input::text(file)?)
-        .map_err(|e| Failure::in_file(file, format!("{e}; expected {{\"parameters\": [...]}}")))?;
+    let targets: Targets = serde_json::from_str(&input::text(file)?).map_err(|e| {
+        Failure::in_file(file, format!("{e}; expected {{\"parameters\": [number or [re, im], ...]}} or a list of such"))
+    })?;
     let (targets, single) = match targets {
         Targets::One(target) => (vec![target], true),
         Targets::Many(targets) => (targets, false),
@@ -143,15 +144,7 @@ fn member(
     Ok((found, started.elapsed().as_secs_f64()))
 }
 
-fn summary(variables: &[String], solved: &[(Solved, f64)], reports: &[Report<'_>]) -> String {
-    let mut text = String::new();
-    for (k, ((found, _), report)) in solved.iter().zip(reports).enumerate() {
-        text += &format!("target {}: {}", k + 1, report.summary());
-        for s in found.solutions.iter().filter(|s| s.real).take(20) {
-            let values: Vec<String> =
-                variables.iter().zip(&s.value).map(|(name, v)| format!("{name} = {:.12}", v[0])).collect();
-            text += &format!("  {}\n", values.join(", "));
-        }
-    }
-    text
+fn summary(reports: &[Report<'_>]) -> String {
+    let each = reports.iter().enumerate();
+    each.map(|(k, report)| format!("target {}: {}{}", k + 1, report.summary(), report.listing())).collect()
 }

@@ -26,7 +26,7 @@ pub(crate) fn text(calibration: &Calibration, time: Duration) -> String {
         match (calibration.unique, calibration.alternatives.is_empty()) {
             (true, _) => "no other network found",
             (false, true) => "A BETTER NETWORK MAY HAVE BEEN MISSED, see the warnings",
-            (false, false) => "OTHER NETWORKS FIT AS WELL, see alternatives",
+            (false, false) => "OTHER NETWORKS FIT AS WELL, see `alternatives` in the JSON (--json)",
         },
     );
     if !calibration.planar {

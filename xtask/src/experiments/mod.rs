@@ -48,6 +48,7 @@ pub(crate) fn run(arguments: &ExperimentsArguments) -> Result<()> {
             workspace::read(&page)? == page::write(&root.join("results"))?,
             "docs/results.md is stale: cargo xtask experiments --page"
         );
+        eprintln!("docs/results.md is up to date");
         return Ok(());
     }
     if !arguments.page {
