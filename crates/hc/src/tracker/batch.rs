@@ -6,14 +6,15 @@
 
 use super::kernels::{Coefficients, Correct, Distance, Negate, Predict, Radius, Take, Weigh};
 use super::options::TrackerOptions;
+use super::precise::{Precise, subtract};
 use super::progress::{Bounds, Progress, Stage};
 use super::result::{PathEnd, PathResult, PathSet};
+use super::valuation::valuation;
 use crate::homotopy::ParameterPath;
 use crate::linalg::Lu;
 use num_complex::Complex64;
-use poly::dd::Dd;
 use poly::simd::Isa;
-use poly::{ComplexDd, Evaluate, Lane, Scalar};
+use poly::{Evaluate, Lane};
 
 /// Tracks paths of one system, `S::LANES` at a time; keeps its memory from call to call.
 pub struct Tracker<'a, E: Evaluate, S: Lane> {
@@ -50,45 +51,6 @@ pub struct Tracker<'a, E: Evaluate, S: Lane> {
     inverse_weights_sqr: Vec<S::Real>,
     precise: Precise<E>,
     valuations: Vec<f64>,
-}
-
-/// Residuals in double-double for single paths, at points in double or double-double.
-struct Precise<E: Evaluate> {
-    memory: E::Memory<ComplexDd>,
-    x: Vec<ComplexDd>,
-    /// Parameters of all lanes, one lane after the other.
-    p: Vec<ComplexDd>,
-    values: Vec<ComplexDd>,
-}
-
-impl<E: Evaluate> Precise<E> {
-    fn new(system: &E, isa: Isa, lanes: usize) -> Self {
-        let zero = ComplexDd::from(Complex64::new(0.0, 0.0));
-        Precise {
-            memory: system.memory(isa),
-            x: vec![zero; system.variables()],
-            p: vec![zero; lanes * system.parameters()],
-            values: vec![zero; system.equations()],
-        }
-    }
-
-    /// Sets the parameters of lane `l`, which are at `t` of `path`.
-    fn set_parameters<S: Lane, P: ParameterPath>(&mut self, l: usize, path: &P, lane: &Progress, rounded: &[S]) {
-        let m = path.parameters();
-        let p = &mut self.p[l * m..(l + 1) * m];
-        p.iter_mut().zip(rounded).for_each(|(d, s)| *d = s.get(l).into());
-        path.extend(lane.path, lane.t_next, p);
-    }
-
-    /// Overwrites lane `l` of `values` with residuals at the point `x`, or `x + low` where the lane is wide.
-    fn overwrite<S: Lane>(&mut self, system: &E, l: usize, wide: bool, x: [&[S]; 2], values: &mut [S]) {
-        let m = system.parameters();
-        for (d, (high, low)) in self.x.iter_mut().zip(x[0].iter().zip(x[1])) {
-            *d = if wide { joined(high.get(l), low.get(l)) } else { high.get(l).into() };
-        }
-        system.values(&mut self.memory, &self.x, &self.p[l * m..(l + 1) * m], &mut self.values);
-        values.iter_mut().zip(&self.values).for_each(|(d, s)| d.set(l, Complex64::from(*s)));
-    }
 }
 
 impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
@@ -445,67 +407,5 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         let result = self.lanes[l].result(end, self.lu.smallest_pivot(l, &self.weights_sqr));
         out.push(result, self.taylor[..self.n].iter().map(|x| x.get(l)));
         self.lanes[l] = Progress::idle();
-    }
-}
-
-/// A number to twice the digits from its double and what that leaves.
-fn joined(high: Complex64, low: Complex64) -> ComplexDd {
-    ComplexDd { re: Dd { high: high.re, low: low.re }, im: Dd { high: high.im, low: low.im } }
-}
-
-/// In lane `l`, the points `x` (doubles and what these leave) less the corrections `dx`.
-fn subtract<S: Lane>(l: usize, x: [&[S]; 2], dx: &[S], to: [&mut [S]; 2]) {
-    let [high, low] = to;
-    for (j, dx) in dx.iter().enumerate() {
-        let next = ComplexDd::sub(&joined(x[0][j].get(l), x[1][j].get(l)), &dx.get(l).into());
-        high[j].set(l, next.high());
-        low[j].set(l, next.low());
-    }
-}
-
-/// Valuation of a coordinate `x ~ c t^v` from its Taylor coefficients at `t`, and how far the estimate is from being constant.
-///
-/// `v = t Re(x' / x)`; its drift is the larger of its own logarithmic derivative and of its distance to the valuation of `t x'`.
-fn valuation(t: f64, [x, x1, x2, x3]: [Complex64; 4]) -> (f64, f64) {
-    let log_derivative = |x: Complex64, d: Complex64, dd: Complex64| {
-        let size = x.norm_sqr();
-        let l = (x.conj() * d).re / size;
-        let slope = ((x.conj() * dd).re + d.norm_sqr()) / size - 2.0 * l * l;
-        (t * l, t * (t * slope + l))
-    };
-    let (v, dv) = log_derivative(x, x1, 2.0 * x2);
-    let (w, dw) = log_derivative(x1, 2.0 * x2, 6.0 * x3);
-    let w = w + 1.0;
-    let drift = (1.0 - w / v).abs().max((dv / v).abs()).max((dw / w).abs());
-    (v, if drift.is_nan() { f64::INFINITY } else { drift })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::valuation;
-    use num_complex::Complex64;
-
-    #[test]
-    fn valuations_of_powers_are_exact() {
-        for v in [-2.0, -0.5, 1.0 / 3.0, 1.5] {
-            let t = 0.01f64;
-            let c = Complex64::new(0.3, -2.0);
-            let series = [
-                c * t.powf(v),
-                c * v * t.powf(v - 1.0),
-                c * v * (v - 1.0) / 2.0 * t.powf(v - 2.0),
-                c * v * (v - 1.0) * (v - 2.0) / 6.0 * t.powf(v - 3.0),
-            ];
-            let (found, drift) = valuation(t, series);
-            assert!((found - v).abs() < 1e-12 && drift < 1e-10, "{v}: {found} {drift}");
-        }
-    }
-
-    #[test]
-    fn a_regular_coordinate_has_not_settled_to_a_negative_valuation() {
-        // x = 1 - t
-        let one = Complex64::new(1.0, 0.0);
-        let (v, drift) = valuation(0.01, [one * 0.99, -one, 0.0 * one, 0.0 * one]);
-        assert!(!(v + drift < -0.05 && drift < 0.01));
     }
 }

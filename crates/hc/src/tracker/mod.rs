@@ -15,8 +15,10 @@ mod batch;
 mod kernels;
 mod options;
 mod pool;
+mod precise;
 mod progress;
 mod result;
+mod valuation;
 
 pub use batch::Tracker;
 pub use options::TrackerOptions;
