@@ -164,6 +164,12 @@ impl Progress {
         self.noise = self.rounding();
     }
 
+    /// Back to double precision, rounding errors included.
+    fn narrow(&mut self) {
+        (self.extended, self.wide, self.kept) = (false, false, false);
+        self.noise = self.noise.max(self.rounding());
+    }
+
     /// Relative size of what is less than the rounding error of a point.
     fn rounding(&self) -> f64 {
         if self.wide { f64::EPSILON * f64::EPSILON } else { f64::EPSILON }
@@ -319,7 +325,7 @@ impl Progress {
         if let Some(double) = double
             && omega * double < bounds.enter_double
         {
-            (self.extended, self.wide, self.kept) = (false, false, false);
+            self.narrow();
         }
         self.omega_before = self.omega;
         self.omega = omega;
