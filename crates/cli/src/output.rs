@@ -6,7 +6,6 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::Failure;
-use crate::bar::Bar;
 
 /// Writes a file by way of a temporary one in the same directory, so that an interrupted run leaves no half of it.
 ///
@@ -87,9 +86,4 @@ pub fn print(text: &str) -> Result<(), Failure> {
         }
         _ => Ok(()),
     }
-}
-
-/// A progress bar of so many items.
-pub fn progress(length: u64) -> Bar {
-    Bar::counted(length)
 }

@@ -2,6 +2,7 @@
 
 use super::common::configuration;
 use crate::{Failure, output};
+use cli::bar::Bar;
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -36,7 +37,7 @@ impl Arguments {
         (receivers, transmitters): (usize, usize),
         one: impl Fn(&mut Solver, &Simulation) -> Result<T, SolveError> + Sync,
     ) -> Result<Vec<T>, Failure> {
-        let bar = output::progress(self.instances);
+        let bar = Bar::counted(self.instances);
         let seeds = self.seed..self.seed.saturating_add(self.instances);
         let trials = crate::on_threads(self.threads, || {
             seeds

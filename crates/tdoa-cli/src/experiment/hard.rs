@@ -2,6 +2,7 @@
 
 use super::common::Size;
 use crate::{Failure, output};
+use cli::bar::Bar;
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -47,7 +48,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
                 simulate(&options).map(|s| s.network).map_err(Failure::unusable)
             })
             .collect::<Result<Vec<_>, _>>()?;
-        let bar = output::progress(Case::ALL.len() as u64);
+        let bar = Bar::counted(Case::ALL.len() as u64);
         let summaries: Vec<HardSummary> = crate::on_threads(arguments.threads, || {
             Case::ALL
                 .into_par_iter()

@@ -4,6 +4,7 @@
 //! an interrupt left of a last line is dropped. When all is done, the file holds the rows in the order of the keys, the same as after one
 //! run without a stop (but for columns that measure time).
 
+use cli::bar::Bar;
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
 use std::io::Write;
@@ -64,7 +65,7 @@ pub(super) fn resume<S: Send>(
     }
     let missing: Vec<usize> = (0..keys.len()).filter(|&k| !done.contains_key(keys[k].as_str())).collect();
     let file = Mutex::new(OpenOptions::new().append(true).open(path).map_err(failed)?);
-    let bar = output::progress(missing.len() as u64);
+    let bar = Bar::counted(missing.len() as u64);
     let next = AtomicUsize::new(0);
     let outcome: Mutex<Result<HashMap<usize, String>, Failure>> = Mutex::new(Ok(HashMap::new()));
     let one = |state: &mut S, k: usize| -> Result<String, Failure> {
