@@ -195,16 +195,20 @@ fn generate(family: &Family, start: &StartFile, source: &str) -> Result<String> 
     let mut text = emit(system.program(), &options)?;
     let trace = start.trace_test.map_or("not run".to_owned(), |t| format!("deviation {t:.1e}"));
     writeln!(text, "/// A generic parameter point, `[re, im]` each.")?;
-    writeln!(text, "pub const PARAMETERS: [[f64; 2]; {}] = [", start.parameters.len())?;
+    writeln!(text, "static PARAMETERS: [[f64; 2]; {}] = [", start.parameters.len())?;
     rows(&mut text, &start.parameters)?;
     writeln!(text, "];")?;
     writeln!(text, "/// All solutions there, {} coordinates each, one after the other.", system.variables())?;
     writeln!(text, "///\n/// Search ended: {}; trace test: {trace}.", start.stopped)?;
-    writeln!(text, "pub static SOLUTIONS: [[f64; 2]; {}] = [", start.solutions.len() * system.variables())?;
+    writeln!(text, "static SOLUTIONS: [[f64; 2]; {}] = [", start.solutions.len() * system.variables())?;
     for solution in &start.solutions {
         rows(&mut text, solution)?;
     }
     writeln!(text, "];")?;
+    writeln!(text, "/// All solutions for a generic parameter point.")?;
+    writeln!(text, "pub fn fibre() -> hc::fibre::Fibre {{")?;
+    writeln!(text, "    hc::fibre::Fibre::from_pairs(&PARAMETERS, {}, &SOLUTIONS)", system.variables())?;
+    writeln!(text, "}}")?;
     Ok(text)
 }
 

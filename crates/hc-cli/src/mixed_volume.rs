@@ -2,7 +2,6 @@
 
 use crate::{input, watch};
 use cli::{Failure, output};
-use hc::monitor::Monitor;
 use hc::poly::Polynomial;
 use hc::start::{MixedError, watched_mixed_volume};
 use serde::Serialize;
@@ -42,7 +41,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let supports: Vec<Vec<Vec<i32>>> = polynomials.iter().map(Polynomial::support).collect();
     let unknowns = system.variables().len();
     let start = Instant::now();
-    let monitor = Monitor::watched();
+    let monitor = watch::interruptible()?;
     let found = watch::watched(arguments.threads, &monitor, watch::stages, || {
         watched_mixed_volume(unknowns, &supports, &monitor)
     })?;

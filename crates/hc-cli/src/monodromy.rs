@@ -3,7 +3,6 @@
 use crate::family::Problem;
 use crate::watch;
 use cli::{Failure, output};
-use hc::monitor::Monitor;
 use hc::monodromy::{MonodromyOptions, Stop, monodromy};
 use hc::pair::find_pair;
 use hc::start_file::StartFile;
@@ -50,7 +49,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut options = MonodromyOptions::default();
     options.seed = arguments.seed;
     options.roots = problem.family.roots;
-    let monitor = Monitor::watched();
+    let monitor = watch::interruptible()?;
     options.set_monitor(monitor.clone());
     let (found, test) = watch::watched(arguments.threads, &monitor, watch::stages, || {
         let found = monodromy(&problem.compiled.system, &start, accept, &options);

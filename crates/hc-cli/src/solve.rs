@@ -3,7 +3,6 @@
 use crate::report::Report;
 use crate::{certify, input, watch};
 use cli::{Failure, output};
-use hc::monitor::Monitor;
 use hc::solve::{SolveError, SolveOptions, Start, solve};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -70,7 +69,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let message = "only systems of as many equations as unknowns can be certified; leave out --certify";
         return Err(Failure::in_file(file, message));
     }
-    let monitor = Monitor::watched();
+    let monitor = watch::interruptible()?;
     let mut options = SolveOptions::default();
     options.seed = arguments.seed;
     options.start = arguments.start.into();

@@ -6,7 +6,6 @@ use crate::report::Report;
 use crate::{certify, watch};
 use cli::{Failure, output};
 use hc::fibre::Fibre;
-use hc::monitor::Monitor;
 use hc::poly::ComplexInterval;
 use hc::solve::{SolveOptions, Solved, solve_member};
 use num_complex::Complex64;
@@ -59,7 +58,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let problem = Problem::read(&arguments.family)?;
     let fibre = problem.fibre(&arguments.start)?;
     let (targets, single) = targets(arguments, fibre.parameters.len())?;
-    let monitor = Monitor::watched();
+    let monitor = watch::interruptible()?;
     let mut options = SolveOptions::default();
     options.set_monitor(monitor.clone());
     let current = AtomicU64::new(0);

@@ -20,6 +20,12 @@ pub struct Fibre {
 }
 
 impl Fibre {
+    /// A fibre from pairs `[re, im]`, as generated modules store them: the parameters, and the solutions one after the other.
+    pub fn from_pairs(parameters: &[[f64; 2]], dimension: usize, solutions: &[[f64; 2]]) -> Fibre {
+        let numbers = |pairs: &[[f64; 2]]| pairs.iter().map(|&[re, im]| Complex64::new(re, im)).collect();
+        Fibre { parameters: numbers(parameters), dimension, solutions: numbers(solutions) }
+    }
+
     /// Number of solutions.
     pub fn len(&self) -> usize {
         self.solutions.len().checked_div(self.dimension).unwrap_or(0)

@@ -58,6 +58,8 @@ pub struct Progress {
 #[derive(Debug, Default)]
 struct Shared {
     cancelled: AtomicBool,
+    /// A flag of somebody else that cancels too.
+    flag: Option<&'static AtomicBool>,
     stage: AtomicU8,
     done: AtomicU64,
     total: AtomicU64,
@@ -81,6 +83,11 @@ impl Monitor {
         Monitor(Some(Arc::default()))
     }
 
+    /// A handle that somebody watches, on work that is to stop too once this flag is true: one that a handler of signals sets.
+    pub fn heeding(flag: &'static AtomicBool) -> Monitor {
+        Monitor(Some(Arc::new(Shared { flag: Some(flag), ..Shared::default() })))
+    }
+
     /// Asks the work to stop soon. What is finished by then is returned, marked as partial. Without effect on the default handle.
     pub fn cancel(&self) {
         if let Some(shared) = &self.0 {
@@ -90,7 +97,8 @@ impl Monitor {
 
     /// Whether the work has been asked to stop.
     pub fn is_cancelled(&self) -> bool {
-        self.0.as_ref().is_some_and(|shared| shared.cancelled.load(Ordering::Relaxed))
+        let set = |flag: &AtomicBool| flag.load(Ordering::Relaxed);
+        self.0.as_ref().is_some_and(|shared| set(&shared.cancelled) || shared.flag.is_some_and(set))
     }
 
     /// How far the work is. The numbers may be of slightly different instants.
@@ -124,7 +132,7 @@ impl Monitor {
 
 #[cfg(test)]
 mod tests {
-    use super::{Monitor, Stage};
+    use super::*;
 
     #[test]
     fn clones_share_what_they_count() {
@@ -136,6 +144,12 @@ mod tests {
         assert_eq!((progress.stage, progress.done, progress.total, progress.counted), (Stage::Paths, 3, 10, 2));
         other.cancel();
         assert!(monitor.is_cancelled() && monitor == other && monitor != Monitor::watched());
+        // A flag cancels what heeds it.
+        static FLAG: AtomicBool = AtomicBool::new(false);
+        let heeding = Monitor::heeding(&FLAG);
+        assert!(!heeding.is_cancelled());
+        FLAG.store(true, Ordering::Relaxed);
+        assert!(heeding.is_cancelled());
         // Nobody watches: nothing to cancel.
         let none = Monitor::default();
         none.cancel();

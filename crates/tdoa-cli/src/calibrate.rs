@@ -8,7 +8,7 @@ use tdoa::html::html;
 use tdoa::node_table::node_table;
 use tdoa::picture::picture;
 use tdoa::read::{Units, is_mat, read, read_distances, read_mat_nodes, read_mat_transmitters, read_nodes};
-use tdoa::{CalibrateError, CalibrateOptions, Calibration, Control, Progress, Pseudoranges, calibrate_with};
+use tdoa::{CalibrateError, CalibrateOptions, Calibration, Control, Monitor, Progress, Pseudoranges, calibrate_with};
 
 use crate::{Failure, interrupt, output, summary};
 
@@ -77,7 +77,8 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let units = arguments.units.units(arguments.estimate_speed)?;
     let measured = read(&arguments.file, units).map_err(Failure::unusable)?;
-    let truth = arguments.truth.as_deref().map(|path| true_positions(path, &measured)).transpose()?;
+    let mut remark = None;
+    let truth = arguments.truth.as_deref().map(|path| true_positions(path, &measured, &mut remark)).transpose()?;
     let truth_file = arguments.truth.as_deref().unwrap_or(&arguments.file);
     let transmitters = if is_mat(truth_file) { true_transmitters(truth_file, &measured)? } else { Vec::new() };
     let truth = match truth {
@@ -102,7 +103,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     options.agreeing = arguments.agreeing;
     options.min_starts = options.min_starts.min(arguments.max_starts);
 
-    let cancelled = interrupt::watch()?;
+    let monitor = Monitor::heeding(interrupt::watch()?);
     let started = Instant::now();
     let solved = crate::on_threads(arguments.threads, || {
         let bar = cli::bar::Bar::new("{bar:40} {pos} of at most {len} starts, {msg}");
@@ -110,7 +111,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             let agreeing = || format!("{} agree", progress.agreeing);
             bar.show(progress.starts as u64, progress.max_starts as u64, agreeing);
         };
-        let control = Control { progress: Some(&show), cancelled: Some(cancelled) };
+        let control = Control { progress: Some(&show), monitor };
         calibrate_with(&measured, &options, &[], &control)
     })?;
     let mut calibration = solved.map_err(|error| match error {
@@ -123,6 +124,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let (Units::Seconds { speed }, Some(found)) = (units, &mut calibration.speed) {
         found.metres_per_second = Some(speed * found.factor);
     }
+    calibration.warnings.extend(remark);
     if let Some(truth) = &truth {
         calibration.compare_all(truth, &transmitters);
         if let Some(found) = calibration.truth.as_ref().filter(|_| arguments.scale) {
@@ -146,13 +148,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         output::json(path, &calibration)?;
     }
     output::summary(arguments.json.as_deref(), || summary::text(&calibration, started.elapsed()))?;
-    if calibration.planar {
-        Ok(())
-    } else {
-        Err(Failure::Undetermined(format!(
-            "{}: the measurements do not fit a network in the plane (see the warnings); the network is not to be trusted",
+    match calibration.distrust() {
+        None => Ok(()),
+        Some(why) => Err(Failure::Undetermined(format!(
+            "{}: {why} (see the warnings); the network is not to be trusted",
             arguments.file.display()
-        )))
+        ))),
     }
 }
 
@@ -168,8 +169,19 @@ fn true_transmitters(path: &std::path::Path, measured: &Pseudoranges) -> Result<
     Ok(if all.len() == measured.transmitters() { all } else { Vec::new() })
 }
 
-fn true_positions(path: &std::path::Path, measured: &Pseudoranges) -> Result<Vec<Option<[f64; 2]>>, Failure> {
+/// The true receivers in the order of the receivers, with a remark if no name told which is which.
+fn true_positions(
+    path: &std::path::Path,
+    measured: &Pseudoranges,
+    remark: &mut Option<String>,
+) -> Result<Vec<Option<[f64; 2]>>, Failure> {
     let nodes = read_nodes(path).map_err(Failure::unusable)?;
+    if nodes.names.is_some() && !nodes.names_any(measured.receiver_names()) {
+        *remark = Some(format!(
+            "{}: no name in common with the receivers, so that its positions were taken in the order of the receivers",
+            path.display()
+        ));
+    }
     let found = nodes.in_order(measured.receiver_names()).ok_or_else(|| {
         Failure::Unusable(format!(
             "{}: has {} positions for {} receivers, and no name in common; give one line id,x,y for each receiver, in order \

@@ -11,12 +11,16 @@ const LISTED: usize = 40;
 pub(crate) fn text(calibration: &Calibration, time: Duration) -> String {
     let measured = calibration.residuals.iter().flatten().flatten().count();
     let inliers = calibration.inliers.iter().flatten().filter(|&&inlier| inlier).count();
+    let deviation = || format!("standard deviation {} m", length(calibration.sigma));
     let mut text = format!(
-        "{}: {measured} measurements, {} of them outliers, standard deviation {} m{}\n",
+        "{}: {measured} measurements, {} of them outliers, {}\n",
         calibration.configuration,
         measured - inliers,
-        length(calibration.sigma),
-        if calibration.sigma_estimated { " (estimated)" } else { " (given)" },
+        match (calibration.sigma_estimated, calibration.redundancy) {
+            (true, 0) => "as many as unknowns: their standard deviation is not known".to_owned(),
+            (true, _) => deviation() + " (estimated)",
+            (false, _) => deviation() + " (given)",
+        },
     );
     text += &format!(
         "{} of {} starts agree, {:.1} s; {}\n",
@@ -29,8 +33,8 @@ pub(crate) fn text(calibration: &Calibration, time: Duration) -> String {
             (false, false) => "OTHER NETWORKS FIT AS WELL, see `alternatives` in the JSON (--json)",
         },
     );
-    if !calibration.planar {
-        text += "NOT TO BE TRUSTED: the measurements do not fit a network in the plane, see the warnings\n";
+    if let Some(why) = calibration.distrust() {
+        text += &format!("NOT TO BE TRUSTED: {why}, see the warnings\n");
     }
     if let Some(speed) = &calibration.speed {
         text += &format!("{}\n", speed_line(speed));

@@ -10,8 +10,7 @@ pub(crate) struct UnitArguments {
     /// Unit of the measurements.
     #[arg(long, value_parser = ["m", "s"], default_value = "m")]
     units: String,
-    /// Propagation speed in metres a second, for --units s; sound in air: 343, radio: 299792458. With --estimate-speed only
-    /// --sigma depends on it.
+    /// Propagation speed in metres a second, for --units s; sound in air: 343, radio: 299792458.
     #[arg(long, allow_negative_numbers = true)]
     speed: Option<f64>,
 }

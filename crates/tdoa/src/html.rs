@@ -53,8 +53,8 @@ pub fn html(calibration: &Calibration) -> String {
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{title}</title>\n\
          <style>\n{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n"
     );
-    if !calibration.planar {
-        page += "<p class=\"wrong\">Not to be trusted: the measurements do not fit a network in the plane.</p>\n";
+    if let Some(why) = calibration.distrust() {
+        page += &format!("<p class=\"wrong\">Not to be trusted: {why}.</p>\n");
     }
     for warning in &calibration.warnings {
         page += &format!("<p class=\"warning\">{}</p>\n", escape(warning));
@@ -86,11 +86,11 @@ fn facts(calibration: &Calibration) -> String {
         ("Measurements", format!("{measured}, outliers among them: {}", measured - inliers)),
         (
             "Standard deviation",
-            format!(
-                "{} {}",
-                number(calibration.sigma),
-                if calibration.sigma_estimated { "m, estimated" } else { "as given" }
-            ),
+            match (calibration.sigma_estimated, calibration.redundancy) {
+                (true, 0) => "not known: there are as many measurements as unknowns".to_owned(),
+                (true, _) => format!("{} m, estimated", number(calibration.sigma)),
+                (false, _) => format!("{} as given", number(calibration.sigma)),
+            },
         ),
         ("Residuals of inliers", format!("{} m root mean square", number(calibration.residual_rms))),
         ("Redundancy", format!("{} measurements more than unknowns", calibration.redundancy)),

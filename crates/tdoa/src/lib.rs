@@ -61,6 +61,7 @@ pub use calibrate::{
     Alternative, CalibrateError, CalibrateOptions, Calibration, Control, Hypotheses, KnownDistance, Progress,
     SpeedEstimate, Truth, calibrate, calibrate_with,
 };
+pub use hc::monitor::Monitor;
 pub use network::{Candidate, MinimalSolution, Network, PathCounts, RootCounts};
 pub use pseudoranges::{PseudorangeError, Pseudoranges};
 pub use refine::PartialNetwork;

@@ -82,8 +82,8 @@ fn title(calibration: &Calibration) -> String {
     if let Some(truth) = &calibration.truth {
         title += &format!(", receivers {:.3} m from the truth (rms)", truth.receiver_rms);
     }
-    if !calibration.planar {
-        title += ", NOT PLANAR";
+    if calibration.distrust().is_some() {
+        title += ", NOT TO BE TRUSTED";
     }
     title
 }

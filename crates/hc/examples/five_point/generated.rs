@@ -824,7 +824,7 @@ impl<S: Scalar> Kernel for Jacobian3<'_, S> {
     }
 }
 /// A generic parameter point, `[re, im]` each.
-pub const PARAMETERS: [[f64; 2]; 20] = [
+static PARAMETERS: [[f64; 2]; 20] = [
     [-1.1691049206784565, 1.0812525237527841],
     [0.18633511356406968, -0.6933270351112935],
     [0.4291221664611807, 0.7568636005802784],
@@ -849,7 +849,7 @@ pub const PARAMETERS: [[f64; 2]; 20] = [
 /// All solutions there, 5 coordinates each, one after the other.
 ///
 /// Search ended: roots reached; trace test: deviation 1.3e-30.
-pub static SOLUTIONS: [[f64; 2]; 100] = [
+static SOLUTIONS: [[f64; 2]; 100] = [
     [-0.5549723503727626, -1.8995206197234091],
     [-0.537338809264336, 0.7635291675032211],
     [0.7619028202089538, -1.1642377567065891],
@@ -951,3 +951,7 @@ pub static SOLUTIONS: [[f64; 2]; 100] = [
     [-0.7020984721497985, 0.5220306315829977],
     [0.508327041468335, -0.8978045553613382],
 ];
+/// All solutions for a generic parameter point.
+pub fn fibre() -> hc::fibre::Fibre {
+    hc::fibre::Fibre::from_pairs(&PARAMETERS, 5, &SOLUTIONS)
+}

@@ -21,9 +21,8 @@ const UNKNOWNS: usize = 5;
 const PROBLEMS: usize = 1000;
 
 fn main() {
-    let pairs = |v: &[[f64; 2]]| v.iter().map(|&[re, im]| Complex64::new(re, im)).collect::<Vec<_>>();
-    let (start, solutions) = (pairs(&generated::PARAMETERS), pairs(&generated::SOLUTIONS));
-    let count = solutions.len() / UNKNOWNS;
+    let fibre = generated::fibre();
+    let (solutions, count) = (&fibre.solutions, fibre.len());
     let system = generated::System;
     let options = TrackerOptions::default();
     let mut tracker = Tracker::<_, Lanes8>::new(&system, &options);
@@ -36,14 +35,14 @@ fn main() {
         let (pose, points) = problem(&mut random);
         let target: Vec<Complex64> = points.iter().map(|&p| p.into()).collect();
         let started = Instant::now();
-        let path = Segment::new(&start, &target);
+        let path = Segment::new(&fibre.parameters, &target);
         paths.clear(UNKNOWNS);
-        tracker.track(&path, &solutions, 0..count, &mut paths);
+        tracker.track(&path, solutions, 0..count, &mut paths);
         paths.sort();
         // Paths that failed or jumped, once more with shorter steps.
         let which = doubtful(&paths, 1e-8);
         again.clear(UNKNOWNS);
-        strict.track(&path, &solutions, which.iter().copied(), &mut again);
+        strict.track(&path, solutions, which.iter().copied(), &mut again);
         for (result, point) in again.iter() {
             paths.replace(result.path, *result, point);
         }

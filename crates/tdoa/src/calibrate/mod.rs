@@ -1,6 +1,7 @@
 //! From any matrix of pseudoranges to a network: leave out what cannot be determined, search from many starts, refine the
 //! best, say how sure the result is.
 
+mod calibration;
 mod hold;
 mod hypotheses;
 mod known;
@@ -8,15 +9,15 @@ mod minimal;
 mod options;
 mod report;
 mod search;
+mod truth;
 mod warnings;
 
-use std::sync::atomic::Ordering;
-
+pub use calibration::{Alternative, Calibration};
 pub use hypotheses::{Hypotheses, KnownReceivers, generator};
 pub use known::{KnownDistance, SpeedEstimate};
 pub use minimal::MinimalHypotheses;
 pub use options::{CalibrateError, CalibrateOptions, Control, Progress};
-pub use report::{Alternative, Calibration, Truth};
+pub use truth::Truth;
 
 use crate::degeneracy::{Usable, usable};
 use crate::loss::{Loss, SEARCH_NU, normal_deviation};
@@ -142,11 +143,7 @@ pub fn calibrate_with(
 
 /// Ends the calibration if it has been cancelled.
 fn check(control: &Control<'_>) -> Result<(), CalibrateError> {
-    if control.cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
-        Err(CalibrateError::Cancelled)
-    } else {
-        Ok(())
-    }
+    if control.monitor.is_cancelled() { Err(CalibrateError::Cancelled) } else { Ok(()) }
 }
 
 /// Subtracts each column's median, which the offsets take back at the end: large common times cost digits.
@@ -206,7 +203,7 @@ fn complete(
     refine: &RefineOptions,
     control: &Control<'_>,
 ) -> Vec<Refined> {
-    let mut refiner = Refiner::new(observations, SEARCH_NU).heeding(control.cancelled);
+    let mut refiner = Refiner::new(observations, SEARCH_NU).heeding(&control.monitor);
     let refine = RefineOptions { anneal_from: None, ..*refine };
     networks
         .filter_map(|refined| {
@@ -232,7 +229,7 @@ fn finish(
     options: &CalibrateOptions,
     control: &Control<'_>,
 ) -> Result<(Vec<Refined>, f64), CalibrateError> {
-    let mut refiner = Refiner::new(observations, 1.0).heeding(control.cancelled);
+    let mut refiner = Refiner::new(observations, 1.0).heeding(&control.monitor);
     let mut deviation = first;
     let turns = if known { 1 } else { 4 };
     for turn in 0..turns {

@@ -1,11 +1,9 @@
 //! What calibration is asked for, and how it ends early.
 
-use std::sync::atomic::AtomicBool;
-
-use thiserror::Error;
-
 use super::known::KnownDistance;
 use crate::degeneracy::Degeneracy;
+use hc::monitor::Monitor;
+use thiserror::Error;
 
 /// How to calibrate. All fields have defaults; start from `CalibrateOptions::default()`.
 #[derive(Debug, Clone, PartialEq)]
@@ -119,12 +117,12 @@ pub struct Progress {
 }
 
 /// Ways to watch and to stop a calibration from outside. The default does neither.
-#[derive(Default, Clone, Copy)]
+#[derive(Default, Clone)]
 pub struct Control<'a> {
     /// Called from the calling thread after every batch of starts.
     pub progress: Option<&'a dyn Fn(Progress)>,
-    /// Calibration ends with [`CalibrateError::Cancelled`] soon after this becomes true.
-    pub cancelled: Option<&'a AtomicBool>,
+    /// Calibration ends with [`CalibrateError::Cancelled`] soon after this is cancelled.
+    pub monitor: Monitor,
 }
 
 /// Why there is no calibration.
@@ -152,7 +150,7 @@ pub enum CalibrateError {
     /// Known positions or distances that cannot be used.
     #[error("known positions and distances: {0}")]
     Known(String),
-    /// Stopped through [`Control::cancelled`].
+    /// Stopped through [`Control::monitor`].
     #[error("calibration was cancelled")]
     Cancelled,
 }

@@ -1,7 +1,5 @@
 //! The search: many starts, each refined on its own, until enough of them agree.
 
-use std::sync::atomic::Ordering;
-
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 
 use super::hypotheses::Hypotheses;
@@ -58,20 +56,19 @@ impl Search<'_> {
     pub(crate) fn run(&self, options: &CalibrateOptions, control: &Control<'_>) -> Result<Found, CalibrateError> {
         let mut refined: Vec<Refined> = Vec::new();
         let mut starts = 0;
-        let cancelled = control.cancelled;
-        let stopped = || cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed));
+        let monitor = &control.monitor;
         loop {
             let batch = BATCH.min(options.max_starts - starts);
             let ended: Vec<Vec<Refined>> = (starts..starts + batch)
                 .into_par_iter()
                 .map_init(
-                    || Refiner::new(self.observations, SEARCH_NU).heeding(cancelled),
+                    || Refiner::new(self.observations, SEARCH_NU).heeding(monitor),
                     |refiner, index| {
-                        if stopped() { Vec::new() } else { self.start(refiner, index, options.seed) }
+                        if monitor.is_cancelled() { Vec::new() } else { self.start(refiner, index, options.seed) }
                     },
                 )
                 .collect();
-            if stopped() {
+            if monitor.is_cancelled() {
                 return Err(CalibrateError::Cancelled);
             }
             starts += batch;

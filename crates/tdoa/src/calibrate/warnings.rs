@@ -7,7 +7,8 @@ use crate::plane::{distance, flatness};
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::Covariance;
 
-/// Warnings about the geometry: in line, in one place, poorly tied down.
+/// Warnings about the geometry: in line, in one place, poorly tied down. Returns whether most receivers are determined, as far as
+/// the noise is known.
 pub(super) fn warn_of_nodes(
     measured: &Pseudoranges,
     network: &Network,
@@ -15,7 +16,7 @@ pub(super) fn warn_of_nodes(
     uncertainty: &Covariance,
     noise_known: bool,
     warnings: &mut Vec<String>,
-) {
+) -> bool {
     let size = network.size();
     for (kind, points) in [("receivers", &network.receivers), ("transmitters", &network.transmitters)] {
         let flat = flatness(points);
@@ -47,6 +48,13 @@ pub(super) fn warn_of_nodes(
     let transmitters = weak(measured.transmitter_names(), &|j| {
         uncertainty.transmitters.get(j).and_then(|c| *c).map_or(f64::INFINITY, |c| (c[0][0] + c[1][1]).max(0.0).sqrt())
     });
+    let determined = !noise_known || 2 * receivers.len() <= names.len();
+    if !determined {
+        warnings.push(
+            "most receivers are poorly determined: are receivers the rows of the table, and transmitters its columns? else measure more"
+                .to_string(),
+        );
+    }
     for (kind, nodes) in [("receivers", receivers), ("transmitters", transmitters)] {
         if noise_known && !nodes.is_empty() {
             warnings.push(format!(
@@ -77,4 +85,5 @@ pub(super) fn warn_of_nodes(
     if !doubtful.is_empty() {
         warnings.push(format!("receivers most of whose measurements are outliers: {}; check them", list(&doubtful)));
     }
+    determined
 }

@@ -776,7 +776,7 @@ impl<S: Scalar> Kernel for Jacobian3<'_, S> {
     }
 }
 /// A generic parameter point, `[re, im]` each.
-pub const PARAMETERS: [[f64; 2]; 16] = [
+static PARAMETERS: [[f64; 2]; 16] = [
     [0.5933645102778533, -0.3490802757921661],
     [0.9554264867826159, -1.7493288708137793],
     [0.4184995558217998, -0.8612932993131434],
@@ -797,7 +797,7 @@ pub const PARAMETERS: [[f64; 2]; 16] = [
 /// All solutions there, 8 coordinates each, one after the other.
 ///
 /// Search ended: roots reached; trace test: deviation 3.3e-17.
-pub static SOLUTIONS: [[f64; 2]; 1216] = [
+static SOLUTIONS: [[f64; 2]; 1216] = [
     [-0.15392172718044533, -0.31936816843533244],
     [0.4450797351702012, -0.6481060443218642],
     [-0.02367354147420372, 0.03570324370151457],
@@ -2015,3 +2015,7 @@ pub static SOLUTIONS: [[f64; 2]; 1216] = [
     [0.47160953203587397, -0.05699405753081539],
     [0.47498162943839844, -0.04393613570047106],
 ];
+/// All solutions for a generic parameter point.
+pub fn fibre() -> hc::fibre::Fibre {
+    hc::fibre::Fibre::from_pairs(&PARAMETERS, 8, &SOLUTIONS)
+}

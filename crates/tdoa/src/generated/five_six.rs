@@ -457,7 +457,7 @@ impl<S: Scalar> Kernel for Jacobian1<'_, S> {
     }
 }
 /// A generic parameter point, `[re, im]` each.
-pub const PARAMETERS: [[f64; 2]; 24] = [
+static PARAMETERS: [[f64; 2]; 24] = [
     [0.3522191425275554, 1.4059695276310211],
     [0.11496349647220207, -0.8244172601145812],
     [-0.2733676371347986, -0.4454414383733581],
@@ -486,7 +486,7 @@ pub const PARAMETERS: [[f64; 2]; 24] = [
 /// All solutions there, 6 coordinates each, one after the other.
 ///
 /// Search ended: roots reached; trace test: deviation 1.0e-15.
-pub static SOLUTIONS: [[f64; 2]; 30] = [
+static SOLUTIONS: [[f64; 2]; 30] = [
     [0.19622425354057058, 0.8283719987935013],
     [0.36864340241574145, 0.35199467567519543],
     [-0.023000995995501525, 1.026620354184102],
@@ -518,3 +518,7 @@ pub static SOLUTIONS: [[f64; 2]; 30] = [
     [-0.5982128640580008, 0.3640199388477057],
     [-0.695261774556274, 0.17684306741521433],
 ];
+/// All solutions for a generic parameter point.
+pub fn fibre() -> hc::fibre::Fibre {
+    hc::fibre::Fibre::from_pairs(&PARAMETERS, 6, &SOLUTIONS)
+}

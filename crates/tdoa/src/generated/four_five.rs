@@ -670,7 +670,7 @@ impl<S: Scalar> Kernel for Jacobian2<'_, S> {
     }
 }
 /// A generic parameter point, `[re, im]` each.
-pub const PARAMETERS: [[f64; 2]; 15] = [
+static PARAMETERS: [[f64; 2]; 15] = [
     [-1.1691049206784565, 1.0812525237527841],
     [0.18633511356406968, -0.6933270351112935],
     [0.4291221664611807, 0.7568636005802784],
@@ -690,7 +690,7 @@ pub const PARAMETERS: [[f64; 2]; 15] = [
 /// All solutions there, 6 coordinates each, one after the other.
 ///
 /// Search ended: roots reached; trace test: deviation 3.7e-27.
-pub static SOLUTIONS: [[f64; 2]; 2064] = [
+static SOLUTIONS: [[f64; 2]; 2064] = [
     [0.2769723695878995, -0.30912157617740765],
     [0.8742274201949829, -0.023716460511764827],
     [0.1932763911616298, -2.4563584762643593],
@@ -2756,3 +2756,7 @@ pub static SOLUTIONS: [[f64; 2]; 2064] = [
     [0.02218304453023792, -0.004355328827511264],
     [0.47611601088272987, 1.8543708523872933],
 ];
+/// All solutions for a generic parameter point.
+pub fn fibre() -> hc::fibre::Fibre {
+    hc::fibre::Fibre::from_pairs(&PARAMETERS, 6, &SOLUTIONS)
+}

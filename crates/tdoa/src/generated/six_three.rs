@@ -592,7 +592,7 @@ impl<S: Scalar> Kernel for Jacobian2<'_, S> {
     }
 }
 /// A generic parameter point, `[re, im]` each.
-pub const PARAMETERS: [[f64; 2]; 15] = [
+static PARAMETERS: [[f64; 2]; 15] = [
     [-1.0864639657766253, -1.4634053707531718],
     [0.5465431045571743, 0.715490185194283],
     [0.5491472211882404, -0.9084879619503564],
@@ -612,7 +612,7 @@ pub const PARAMETERS: [[f64; 2]; 15] = [
 /// All solutions there, 8 coordinates each, one after the other.
 ///
 /// Search ended: roots reached; trace test: deviation 7.1e-15.
-pub static SOLUTIONS: [[f64; 2]; 1440] = [
+static SOLUTIONS: [[f64; 2]; 1440] = [
     [-0.9860738551448601, 0.30189467981135837],
     [1.275192436518894, -0.19397806011098934],
     [1.2376089037955444, -0.33940444251402946],
@@ -2054,3 +2054,7 @@ pub static SOLUTIONS: [[f64; 2]; 1440] = [
     [0.26043696063224475, 0.14216315363696122],
     [0.5323112873770809, 4.614337494417724],
 ];
+/// All solutions for a generic parameter point.
+pub fn fibre() -> hc::fibre::Fibre {
+    hc::fibre::Fibre::from_pairs(&PARAMETERS, 8, &SOLUTIONS)
+}

@@ -61,8 +61,3 @@ pub(crate) enum Free {
     /// All transmitters.
     Transmitters,
 }
-
-/// Pairs of real and imaginary parts as complex numbers.
-pub(crate) fn pairs(values: &[[f64; 2]]) -> Vec<Complex64> {
-    values.iter().map(|&[re, im]| Complex64::new(re, im)).collect()
-}

@@ -1,6 +1,6 @@
 //! Four receivers, five transmitters: 344 paths, in the Gram matrix of the receivers.
 
-use super::formulation::{Formulation, Free, Parameters, Point, pairs};
+use super::formulation::{Formulation, Free, Parameters, Point};
 use super::linear::LeastSquares;
 use crate::generated::four_five as generated;
 use crate::network::Network;
@@ -39,8 +39,7 @@ impl Formulation for FourFive {
     }
 
     fn fibre() -> Fibre {
-        let (parameters, solutions) = (pairs(&generated::PARAMETERS), pairs(&generated::SOLUTIONS));
-        Fibre { parameters, dimension: WEIGHTS.len(), solutions }
+        generated::fibre()
     }
 
     fn parameters(chart: usize, f: &[Complex64]) -> Parameters {

@@ -3,7 +3,7 @@
 //! With the first receiver's measurements subtracted, `q_ij = f_ij (f_ij - 2 p_j)` is the difference of the squared distances, and
 //! `q_ij - q_i1` has rank two in the plane. Where that fixes the offsets, the rest is linear.
 
-use super::formulation::{Formulation, Free, Parameters, Point, pairs};
+use super::formulation::{Formulation, Free, Parameters, Point};
 use super::linear::LeastSquares;
 use crate::generated::five_six;
 use crate::network::Network;
@@ -29,8 +29,7 @@ impl Formulation for FiveSix {
     }
 
     fn fibre() -> Fibre {
-        let (parameters, solutions) = (pairs(&five_six::PARAMETERS), pairs(&five_six::SOLUTIONS));
-        Fibre { parameters, dimension: Self::WEIGHTS.len(), solutions }
+        five_six::fibre()
     }
 
     fn parameters(chart: usize, f: &[Complex64]) -> Parameters {

@@ -2,7 +2,7 @@
 
 use super::chart::{CHARTS, COLUMNS, enter, leave, permute_columns};
 use super::dual;
-use super::formulation::{Formulation, Free, Parameters, Point, pairs};
+use super::formulation::{Formulation, Free, Parameters, Point};
 use super::linear::LeastSquares;
 use crate::generated::{five_four, six_three};
 use crate::network::Network;
@@ -30,8 +30,7 @@ impl Formulation for SixThree {
     }
 
     fn fibre() -> Fibre {
-        let (parameters, solutions) = (pairs(&six_three::PARAMETERS), pairs(&six_three::SOLUTIONS));
-        Fibre { parameters, dimension: WEIGHTS.len(), solutions }
+        six_three::fibre()
     }
 
     fn parameters(chart: usize, f: &[Complex64]) -> Parameters {
@@ -76,8 +75,7 @@ impl Formulation for FiveFour {
     }
 
     fn fibre() -> Fibre {
-        let (parameters, solutions) = (pairs(&five_four::PARAMETERS), pairs(&five_four::SOLUTIONS));
-        Fibre { parameters, dimension: WEIGHTS.len(), solutions }
+        five_four::fibre()
     }
 
     fn parameters(chart: usize, f: &[Complex64]) -> Parameters {

@@ -17,11 +17,16 @@ pub struct Nodes {
 }
 
 impl Nodes {
+    /// Whether the file names any of these.
+    pub fn names_any(&self, names: &[String]) -> bool {
+        self.names.iter().flatten().any(|name| names.contains(name))
+    }
+
     /// The positions in the order of these names. By name if the file names any of them, else in the file's order, which
     /// needs as many positions as names. `None` if neither works.
     pub fn in_order(&self, names: &[String]) -> Option<Vec<Option<[f64; 2]>>> {
         if let Some(own) = &self.names
-            && own.iter().any(|name| names.contains(name))
+            && self.names_any(names)
         {
             let find = |name: &String| own.iter().position(|other| other == name).map(|k| self.positions[k]);
             return Some(names.iter().map(find).collect());

@@ -18,11 +18,10 @@ pub(crate) use extend::extend;
 pub(crate) use normal::{Normal, backward, forward};
 pub(crate) use reseed::{place_transmitters, reseed};
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use crate::loss::Loss;
 use crate::network::Network;
 use crate::observations::Observations;
+use hc::monitor::Monitor;
 
 /// Steps, rounds and tolerance of a search start. Chosen on nearly planar field recordings (6 x 46, 6 x 75, 6 x 132), with
 /// milder losses (2 and 4 degrees of freedom): many short rounds found the best network more often per time than few
@@ -76,7 +75,7 @@ pub(crate) struct Refiner<'a> {
     residuals: Vec<f64>,
     trial_residuals: Vec<f64>,
     trial: Network,
-    cancelled: Option<&'a AtomicBool>,
+    monitor: Monitor,
 }
 
 impl<'a> Refiner<'a> {
@@ -90,17 +89,13 @@ impl<'a> Refiner<'a> {
             residuals: vec![0.0; observations.len()],
             trial_residuals: vec![0.0; observations.len()],
             trial: Network::default(),
-            cancelled: None,
+            monitor: Monitor::default(),
         }
     }
 
-    /// The same, which stops before its next step once the flag is true; what it then returns is not converged.
-    pub(crate) fn heeding(self, cancelled: Option<&'a AtomicBool>) -> Self {
-        Refiner { cancelled, ..self }
-    }
-
-    fn stopped(&self) -> bool {
-        self.cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed))
+    /// The same, which stops before its next step once it is cancelled; what it then returns is not converged.
+    pub(crate) fn heeding(self, monitor: &Monitor) -> Self {
+        Refiner { monitor: monitor.clone(), ..self }
     }
 
     /// The best network near `start`, which must be complete and finite.
@@ -108,7 +103,7 @@ impl<'a> Refiner<'a> {
         let mut best = self.minimise(start, options);
         let again = RefineOptions { anneal_from: None, ..*options };
         for _ in 0..options.rounds {
-            if self.stopped() {
+            if self.monitor.is_cancelled() {
                 break;
             }
             let mut network = best.network.clone();
@@ -145,7 +140,7 @@ impl<'a> Refiner<'a> {
         let mut damping = 1e-3;
         let mut calm = 0;
         for _ in 0..options.steps {
-            if self.stopped() {
+            if self.monitor.is_cancelled() {
                 break;
             }
             self.normal.linearise(observations, &network, &self.residuals, &loss);
@@ -240,10 +235,11 @@ mod tests {
     fn a_cancelled_refinement_goes_no_further() {
         let simulation = simulate(&SimulateOptions { noise: 0.1, ..Default::default() }).unwrap();
         let observations = Observations::new(&simulation.pseudoranges, |_, _| true);
-        let flag = AtomicBool::new(true);
+        let monitor = Monitor::watched();
         let refined =
-            |flag| Refiner::new(&observations, SEARCH_NU).heeding(flag).refine(simulation.network.clone(), &SEARCH);
-        assert_eq!(refined(Some(&flag)).network, simulation.network);
-        assert_ne!(refined(None).network, simulation.network);
+            || Refiner::new(&observations, SEARCH_NU).heeding(&monitor).refine(simulation.network.clone(), &SEARCH);
+        assert_ne!(refined().network, simulation.network);
+        monitor.cancel();
+        assert_eq!(refined().network, simulation.network);
     }
 }

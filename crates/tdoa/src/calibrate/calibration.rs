@@ -1,0 +1,177 @@
+//! The result of a calibration: the network in a frame, its uncertainty, what may be wrong with it.
+
+use super::known::{Anchors, SpeedEstimate};
+use super::truth::Truth;
+use crate::align::{Transform, align};
+use serde::Serialize;
+
+/// A calibrated network. Lengths are in metres; `None` stands for what could not be determined.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Calibration {
+    /// Size of the matrix, such as `6r/46s`.
+    pub configuration: String,
+    /// Names of the receivers.
+    pub receiver_names: Vec<String>,
+    /// Names of the transmitters.
+    pub transmitter_names: Vec<String>,
+    /// Positions of the receivers. Unless another frame is asked for, the first receiver is the origin, the second lies
+    /// on the positive x axis and the third above it.
+    pub receivers: Vec<Option<[f64; 2]>>,
+    /// Positions of the transmitters.
+    pub transmitters: Vec<Option<[f64; 2]>>,
+    /// Offsets of the transmitters.
+    pub offsets: Vec<Option<f64>>,
+    /// Which measurements agree with the network; false where there is none.
+    pub inliers: Vec<Vec<bool>>,
+    /// Residuals f_ij - o_j - |r_i - s_j|, where measured.
+    pub residuals: Vec<Vec<Option<f64>>>,
+    /// Standard deviation of the measurements: as given, or estimated from the inliers. A factor on the deviations that
+    /// measurements carry, if they do.
+    pub sigma: f64,
+    /// Whether `sigma` was estimated.
+    pub sigma_estimated: bool,
+    /// Root mean square of the inliers' residuals.
+    pub residual_rms: f64,
+    /// Inliers minus unknowns: what the estimate of `sigma` rests on.
+    pub redundancy: usize,
+    /// Radius of 95 % ellipses in standard deviations; `None` if nothing is left over to estimate `sigma` from.
+    pub ellipse_radius: Option<f64>,
+    /// Standard deviations of the receivers' coordinates in the gauge.
+    pub receiver_std: Vec<Option<[f64; 2]>>,
+    /// Covariances of the receivers in the gauge.
+    pub receiver_covariance: Vec<Option<[[f64; 2]; 2]>>,
+    /// Standard deviations of the transmitters' coordinates in the gauge.
+    pub transmitter_std: Vec<Option<[f64; 2]>>,
+    /// Covariances of the transmitters in the gauge.
+    pub transmitter_covariance: Vec<Option<[[f64; 2]; 2]>>,
+    /// Standard deviations of the offsets.
+    pub offset_std: Vec<Option<f64>>,
+    /// Which receivers were held at known positions.
+    pub anchored: Vec<bool>,
+    /// The propagation speed, if it was to be estimated; all lengths are those of the estimate.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed: Option<SpeedEstimate>,
+    /// What the covariances are relative to.
+    pub gauge: &'static str,
+    /// Whether no other network that was found explains the measurements about as well, and more than one or two starts of the search
+    /// found this one.
+    pub unique: bool,
+    /// Other networks that do, best first.
+    pub alternatives: Vec<Alternative>,
+    /// Whether the measurements fit a network in the plane.
+    pub planar: bool,
+    /// Whether the measurements determine at least half of the receivers to a tenth of the network's size; true where the noise is
+    /// not known. A table with receivers as columns is one that does not.
+    pub determined: bool,
+    /// What may be wrong, with names and a remedy.
+    pub warnings: Vec<String>,
+    /// Seed of the search.
+    pub seed: u64,
+    /// Starts of the search.
+    pub starts: usize,
+    /// Starts that ended in the best basin.
+    pub agreeing: usize,
+    /// Probability that a basin which catches one start in twenty would have been seen.
+    pub confidence: f64,
+    /// Comparison with the truth, if that was given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub truth: Option<Truth>,
+}
+
+/// Another network that explains the measurements.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Alternative {
+    /// Positions of the receivers.
+    pub receivers: Vec<Option<[f64; 2]>>,
+    /// Positions of the transmitters.
+    pub transmitters: Vec<Option<[f64; 2]>>,
+    /// Offsets of the transmitters.
+    pub offsets: Vec<Option<f64>>,
+    /// Root mean square of the residuals of its own inliers.
+    pub residual: f64,
+    /// By how much the measurements are less likely than under the best network, natural logarithm.
+    pub log_likelihood_loss: f64,
+}
+
+impl Calibration {
+    /// Why the result is not to be trusted, if it is not.
+    pub fn distrust(&self) -> Option<&'static str> {
+        if !self.planar {
+            Some("the measurements do not fit a network in the plane")
+        } else if !self.determined {
+            Some("the measurements do not determine where most receivers are")
+        } else {
+            None
+        }
+    }
+
+    /// Measurements of a receiver, and how many of them are outliers.
+    pub fn counts_of_receiver(&self, i: usize) -> [usize; 2] {
+        self.counts((0..self.transmitter_names.len()).map(|j| (i, j)))
+    }
+
+    /// Measurements of a transmitter, and how many of them are outliers.
+    pub fn counts_of_transmitter(&self, j: usize) -> [usize; 2] {
+        self.counts((0..self.receiver_names.len()).map(|i| (i, j)))
+    }
+
+    fn counts(&self, cells: impl Iterator<Item = (usize, usize)>) -> [usize; 2] {
+        let measured = cells.filter(|&(i, j)| self.residuals[i][j].is_some());
+        measured.fold([0, 0], |[all, outliers], (i, j)| [all + 1, outliers + usize::from(!self.inliers[i][j])])
+    }
+
+    /// Moves the whole result into another frame.
+    pub fn transform(&mut self, map: &Transform) {
+        let point = |p: &mut Option<[f64; 2]>| *p = p.map(|p| map.apply(p));
+        self.receivers.iter_mut().chain(&mut self.transmitters).for_each(point);
+        for other in &mut self.alternatives {
+            other.receivers.iter_mut().chain(&mut other.transmitters).for_each(point);
+        }
+        if let Some(truth) = &mut self.truth {
+            truth.points().for_each(point);
+        }
+        let turn = |c: &mut Option<[[f64; 2]; 2]>| *c = c.map(|c| map.apply_covariance(c));
+        self.receiver_covariance.iter_mut().chain(&mut self.transmitter_covariance).for_each(turn);
+        let std = |all: &[Option<[[f64; 2]; 2]>]| -> Vec<Option<[f64; 2]>> {
+            all.iter().map(|c| c.map(|c| [c[0][0].max(0.0).sqrt(), c[1][1].max(0.0).sqrt()])).collect()
+        };
+        self.receiver_std = std(&self.receiver_covariance);
+        self.transmitter_std = std(&self.transmitter_covariance);
+    }
+
+    /// Multiplies all lengths of the result by a factor, as if the propagation speed were that much larger. A comparison
+    /// with the truth keeps its figures.
+    pub fn rescale(&mut self, factor: f64) {
+        let positions = self.truth.as_ref().map(|truth| [truth.positions.clone(), truth.transmitter_positions.clone()]);
+        let map = Transform { rotation: [[1.0, 0.0], [0.0, 1.0]], scale: factor, translation: [0.0; 2] };
+        self.transform(&map);
+        let lengths = self.offsets.iter_mut().chain(&mut self.offset_std);
+        let lengths = lengths.chain(self.residuals.iter_mut().flatten());
+        lengths.chain(self.alternatives.iter_mut().flat_map(|a| &mut a.offsets)).flatten().for_each(|x| *x *= factor);
+        self.alternatives.iter_mut().for_each(|a| a.residual *= factor);
+        self.sigma *= factor;
+        self.residual_rms *= factor;
+        // The truth stays as large as it is, about the middle of the scaled network.
+        if let (Some([positions, transmitters]), Some(truth)) = (positions, &mut self.truth) {
+            let known: Vec<[f64; 2]> = positions.iter().flatten().copied().collect();
+            let pairs = positions.iter().zip(&self.receivers).filter_map(|(p, r)| Some(((*p)?, (*r)?)));
+            let (from, to): (Vec<_>, Vec<_>) = pairs.unzip();
+            if !known.is_empty()
+                && let Some(back) = align(&from, &to, false)
+            {
+                truth.positions = positions;
+                truth.transmitter_positions = transmitters;
+                truth.points().for_each(|p| *p = p.map(|p| back.transform.apply(p)));
+            }
+        }
+    }
+
+    /// Moves the result to where the anchors are: held ones are about their centroid so far, a single one is anywhere.
+    pub(super) fn put_on(&mut self, anchors: &Anchors, rows: &[usize], held: bool) {
+        let first = anchors.positions.iter().position(Option::is_some).and_then(|a| self.receivers[rows[a]]);
+        let [x, y] = if held { [0.0; 2] } else { first.unwrap_or([0.0; 2]) };
+        let mut map = Transform { rotation: [[1.0, 0.0], [0.0, 1.0]], scale: 1.0, translation: [0.0; 2] };
+        map.translation = [anchors.centre[0] - x, anchors.centre[1] - y];
+        self.transform(&map);
+    }
+}
