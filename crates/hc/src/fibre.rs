@@ -71,7 +71,8 @@ pub struct PathCounts {
     pub at_infinity: usize,
     /// Paths that ended otherwise, those included that still share their end with another.
     pub failed: usize,
-    /// Paths given up on request because they would hardly become real ([`crate::tracker::TrackerOptions::drop_complex`]).
+    /// Paths given up on request: because they would hardly become real ([`crate::tracker::TrackerOptions::drop_complex`]), or since
+    /// all solutions are known ([`crate::solve::SolveOptions::known`]).
     pub dropped: usize,
     /// How many tracks were run a second time or more often.
     pub retracked: usize,

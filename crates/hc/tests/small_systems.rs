@@ -50,6 +50,28 @@ fn regular_solutions() {
     check(&text, "36x1", 8);
 }
 
+/// Where the number of regular solutions is known, paths to infinity are not taken to their ends.
+#[test]
+fn known_numbers_spare_the_endgame() {
+    // x + y = 3 meets a conic of the pencil in two points; the conics share two points at infinity.
+    let text = "2\nx^2+y^2+x-1;\nx^2+y^2-y+2;";
+    for start in STARTS {
+        for seed in 0..3 {
+            let mut options = options(seed);
+            options.start = start;
+            let whole = solved(text, &options);
+            assert_eq!((whole.solutions.len(), whole.paths.at_infinity, whole.paths.dropped), (2, 2, 0));
+            options.known = Some(2);
+            let known = solved(text, &options);
+            assert_eq!(known.solutions, whole.solutions);
+            assert_eq!((known.paths.finite, known.paths.dropped, known.paths.failed), (2, 2, 0));
+            // More than there are: every path is taken to its end.
+            options.known = Some(3);
+            assert_eq!(solved(text, &options).paths, whole.paths);
+        }
+    }
+}
+
 /// Roots at zero, which paths approach like any others once the origin belongs to the supports.
 #[test]
 fn zero_coordinates() {

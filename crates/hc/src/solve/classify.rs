@@ -40,6 +40,7 @@ pub(super) struct Classified {
     pub(super) infinite: usize,
     pub(super) directions: Vec<Direction>,
     pub(super) lost: usize,
+    pub(super) dropped: usize,
 }
 
 /// Sorts ends into solutions; `member` is the system with its coefficients. Without it, singular ends are lost.
@@ -57,13 +58,14 @@ pub(super) fn classify(
         group[1..].iter().for_each(|&k| repeated[k] = true);
     }
     for (refined, _) in regular.iter().zip(&repeated).filter(|(_, again)| !**again) {
-        if excess.contains(&refined.point, EXCESS) {
+        if excess.contains_regular(&refined.point) {
             out.excess += 1;
         } else {
             out.solutions.push(regular_solution(refined));
         }
     }
     out.lost = all.ends.iter().filter(|end| **end == End::LOST).count();
+    out.dropped = all.ends.iter().filter(|end| **end == End::DROPPED).count();
     for direction in all.ends.iter().filter_map(|end| end.direction()) {
         out.infinite += 1;
         *directions.entry(&all.directions[direction]).or_default() += 1;
@@ -133,6 +135,11 @@ impl Excess {
     /// Every point that is found was asked for.
     pub(super) fn none() -> Excess {
         Excess { all: None, torus_only: false }
+    }
+
+    /// Whether a regular end was not asked for.
+    pub(super) fn contains_regular(&self, point: &[Complex64]) -> bool {
+        self.contains(point, EXCESS)
     }
 
     /// Whether a point misses an equation by more than `tolerance` times the sizes of its terms, or has a zero coordinate

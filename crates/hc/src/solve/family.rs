@@ -40,18 +40,26 @@ pub fn solve_member<E: Evaluate>(
     target: &[Complex64],
     options: &SolveOptions,
 ) -> Solved {
-    let ends = paths::follow(compiled, fibre, fibre.len(), target, false, options);
+    let excess = Excess::none();
+    let ends = paths::follow(compiled, fibre, fibre.len(), target, false, &excess, options);
     let member = if !ends.singular.is_empty() { expanded(family, target) } else { None };
     let member = member.as_ref().map(|(system, coefficients)| (system, &coefficients[..]));
-    let found = classify(member, &ends, &Excess::none(), options.paths.coincidence);
+    let found = classify(member, &ends, &excess, options.paths.coincidence);
     let (tracked, retracked) = (fibre.len(), ends.retracked);
-    let finite = tracked - found.infinite - found.lost;
+    let paths = PathCounts {
+        tracked,
+        finite: tracked - found.infinite - found.lost - found.dropped,
+        at_infinity: found.infinite,
+        failed: found.lost,
+        dropped: found.dropped,
+        retracked,
+    };
     Solved {
         start: None,
         mixed_volume: None,
         bezout_number: None,
         multihomogeneous_number: None,
-        paths: PathCounts { tracked, finite, at_infinity: found.infinite, failed: found.lost, dropped: 0, retracked },
+        paths,
         on_components: found.on_components,
         component_points: found.component_points.iter().map(|x| x.iter().map(|z| [z.re, z.im]).collect()).collect(),
         excess: found.excess,

@@ -59,6 +59,9 @@ pub struct SolveOptions {
     pub paths: FibreOptions,
     /// Settings for the ends of paths that are not regular.
     pub endgame: EndgameOptions,
+    /// How many regular solutions there are, if that is known, for instance of a family. Once so many are found, paths without an
+    /// end are left where they are and count as dropped. Default `None`: every path is taken to its end.
+    pub known: Option<usize>,
     /// How often everything is done again from another start system while paths are lost. Default 2.
     pub restarts: u32,
 }
@@ -73,6 +76,7 @@ impl Default for SolveOptions {
             max_paths: 1 << 24,
             paths: FibreOptions { tracker: TrackerOptions::fast(), ..FibreOptions::default() },
             endgame: EndgameOptions::default(),
+            known: None,
             restarts: 2,
         }
     }
@@ -249,7 +253,7 @@ pub fn solve(polynomials: &[Polynomial<Exact>], options: &SolveOptions) -> Resul
             Err(SolveError::Mixed(MixedError::Cancelled)) => break,
             other => other?,
         };
-        let ends = paths::follow(&from.system, &start, from.paths, &from.target, trial, options);
+        let ends = paths::follow(&from.system, &start, from.paths, &from.target, trial, &excess, options);
         if !ends.abandoned {
             start_systems += 1;
             retracked += ends.retracked;
@@ -265,8 +269,14 @@ pub fn solve(polynomials: &[Polynomial<Exact>], options: &SolveOptions) -> Resul
     }
     let whole = start_systems > 0 && best.found.lost == 0;
     let Best { start, tracked, found } = best;
-    let finite = tracked - found.infinite - found.lost;
-    let paths = PathCounts { tracked, finite, at_infinity: found.infinite, failed: found.lost, dropped: 0, retracked };
+    let paths = PathCounts {
+        tracked,
+        finite: tracked - found.infinite - found.lost - found.dropped,
+        at_infinity: found.infinite,
+        failed: found.lost,
+        dropped: found.dropped,
+        retracked,
+    };
     let mut solutions = found.solutions;
     solutions.iter_mut().for_each(|s| starts.equations.unscale(&mut s.value));
     let pairs = |x: &Vec<Complex64>| x.iter().map(|z| [z.re, z.im]).collect::<Vec<[f64; 2]>>();

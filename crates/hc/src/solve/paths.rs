@@ -1,5 +1,6 @@
 //! The coefficient stage: every path from the generic to the given coefficients, to its end.
 
+use super::classify::Excess;
 use super::prints::Prints;
 use crate::distinct::{coincidences, relative_distance};
 use crate::endgame::{Ending, Verdict, endgame};
@@ -24,15 +25,17 @@ impl End {
     pub(super) const REGULAR: End = End(1);
     /// At a solution at which the Jacobian is singular.
     pub(super) const SINGULAR: End = End(2);
+    /// Not sought any more, since all solutions are known ([`SolveOptions::known`]).
+    pub(super) const DROPPED: End = End(3);
 
     /// At infinity, in the direction of this number.
     fn infinite(direction: u32) -> End {
-        End(direction.saturating_add(3))
+        End(direction.saturating_add(4))
     }
 
     /// The number of the direction, if the path ends at infinity.
     pub(super) fn direction(self) -> Option<usize> {
-        self.0.checked_sub(3).map(|direction| direction as usize)
+        self.0.checked_sub(4).map(|direction| direction as usize)
     }
 }
 
@@ -71,7 +74,8 @@ const TRIAL: usize = 32;
 const IRREGULAR: usize = 8;
 
 /// Follows the paths with the numbers below `count` of a source to the parameters `target`; paths that share a start or a
-/// regular end, have crossed or are lost are tracked again with stricter steps.
+/// regular end, have crossed or are lost are tracked again with stricter steps. Regular ends in `excess` are none of the
+/// [known](SolveOptions::known) ones.
 ///
 /// On `trial` they are abandoned as soon as too many do not end at regular solutions: with another source that may be less work.
 pub(super) fn follow<E: Evaluate, S: Source<E>>(
@@ -80,6 +84,7 @@ pub(super) fn follow<E: Evaluate, S: Source<E>>(
     count: usize,
     target: &[Complex64],
     trial: bool,
+    excess: &Excess,
     options: &SolveOptions,
 ) -> Ends {
     let mut stage = Stage {
@@ -87,6 +92,7 @@ pub(super) fn follow<E: Evaluate, S: Source<E>>(
         start,
         segment: Segment::new(start.parameters(), target),
         target,
+        excess,
         options,
         ends: vec![End::LOST; count],
         regular: BTreeMap::new(),
@@ -114,6 +120,10 @@ pub(super) fn follow<E: Evaluate, S: Source<E>>(
                 options.monitor().add(done as u64, regular as u64);
             });
             done = to;
+            if stage.is_whole() {
+                stage.drop_others();
+                return stage.finish(retracked, false);
+            }
             regular += numbers.iter().filter(|&&k| stage.ends[k] == End::REGULAR).count();
             let irregular = (done - regular) * IRREGULAR > done;
             if trial && level == 0 && irregular && !options.monitor().is_cancelled() {
@@ -145,6 +155,7 @@ struct Stage<'a, E, S> {
     start: &'a S,
     segment: Segment,
     target: &'a [Complex64],
+    excess: &'a Excess,
     options: &'a SolveOptions,
     ends: Vec<End>,
     regular: BTreeMap<usize, Refined>,
@@ -197,6 +208,9 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, E, S> {
                 _ => {}
             }
         }
+        if self.is_whole() {
+            return;
+        }
         // Paths that seemed to reach the target, but not at a regular solution: once more up to where the endgame begins.
         let near: Vec<Complex64> =
             self.segment.target().iter().zip(self.segment.direction()).map(|(p, d)| p + d * start).collect();
@@ -245,6 +259,19 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, E, S> {
             }
             Verdict::Reached | Verdict::Lost => {}
         }
+    }
+
+    /// Whether as many regular solutions are found as are known to exist.
+    fn is_whole(&self) -> bool {
+        let Some(known) = self.options.known.filter(|&known| self.regular.len() >= known) else { return false };
+        let asked = self.regular.iter().filter(|(_, end)| !self.excess.contains_regular(&end.point));
+        let points: Vec<(usize, &[Complex64])> = asked.map(|(&k, end)| (k, &end.point[..])).collect();
+        let groups = coincidences(points.iter().copied(), self.options.paths.coincidence);
+        points.len() - groups.iter().map(|group| group.len() - 1).sum::<usize>() >= known
+    }
+
+    fn drop_others(&mut self) {
+        self.ends.iter_mut().filter(|end| **end == End::LOST).for_each(|end| *end = End::DROPPED);
     }
 
     fn same_regular(&self, j: usize, k: usize) -> bool {

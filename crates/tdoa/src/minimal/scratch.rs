@@ -27,6 +27,8 @@ pub(crate) fn roots<F: Formulation>(f: &[f64]) -> Result<(Vec<Vec<Complex64>>, P
         let mut options = SolveOptions::default();
         options.seed = seed;
         options.paths.retries = retries;
+        // No member has more isolated roots than the generic one: once as many are found the other paths lead out of the torus.
+        options.known = family.roots;
         options.start = Start::Polyhedral;
         options.torus_only = true;
         // Paths that lead out of the torus may end badly; the known number of roots tells whether one in it is missing.
@@ -41,10 +43,9 @@ pub(crate) fn roots<F: Formulation>(f: &[f64]) -> Result<(Vec<Vec<Complex64>>, P
         paths.retracked += found.paths.retracked + if seed > 0 { found.paths.tracked } else { 0 };
         paths = PathCounts { retracked: paths.retracked, ..found.paths };
         if family.roots.is_some_and(|known| roots.len() >= known) {
-            // No instance has more isolated roots than the generic one: the other paths, however they ended, lead out of the torus.
             paths.finite = roots.len();
             paths.at_infinity = paths.tracked - roots.len();
-            paths.failed = 0;
+            (paths.failed, paths.dropped) = (0, 0);
             break;
         }
     }
