@@ -131,6 +131,13 @@ pub(super) fn follow<E: Evaluate, S: Source<E>>(
             }
         }
         let doubtful = again.insert(stage.doubtful());
+        if options.known.is_some() {
+            // Where two paths share an end a solution is missing; other paths need not have one.
+            let jumped = stage.jumped();
+            if !jumped.is_empty() {
+                *doubtful = jumped;
+            }
+        }
         if doubtful.is_empty() || options.monitor().is_cancelled() {
             break;
         }
@@ -288,10 +295,17 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, E, S> {
         Ends { ends: self.ends, regular: self.regular, singular: self.singular, directions, retracked, abandoned }
     }
 
-    /// Paths that are lost, share a start or a regular end, have crossed on the way, or end in a cycle that is not whole.
-    fn doubtful(&self) -> Vec<usize> {
+    /// Paths that share a regular end, in their order.
+    fn jumped(&self) -> Vec<usize> {
         let regular = self.regular.iter().map(|(&k, refined)| (k, &refined.point[..]));
         let mut which = coincidences(regular, self.options.paths.coincidence).concat();
+        which.sort_unstable();
+        which
+    }
+
+    /// Paths that are lost, share a start or a regular end, have crossed on the way, or end in a cycle that is not whole.
+    fn doubtful(&self) -> Vec<usize> {
+        let mut which = self.jumped();
         which.extend(self.starts.met(self.options.paths.coincidence));
         which.extend(self.middles.met(CROSSED));
         let singular = self.singular.iter().map(|(&k, end)| (k, &end.point[..]));

@@ -7,9 +7,10 @@ use hc::distinct::relative_distance;
 use hc::solve::{SolveOptions, Start, solve};
 use num_complex::Complex64;
 
-/// How often paths that fail are tracked again, for each of the start systems that are tried while roots are missing. Most paths that
-/// fail lead out of the torus, at ever greater cost: another start system finds a missing root sooner.
-const RETRIES: [u32; 4] = [0, 0, 0, 4];
+/// How often paths that fail are tracked again, for each of the start systems that are tried while roots are missing: of all but the
+/// last those that have jumped. Paths whose ends are hard to find lead out of the torus: another start system finds a missing
+/// root sooner.
+const RETRIES: [u32; 4] = [2, 2, 2, 4];
 
 /// Relative distance up to which roots from different start systems are the same.
 const SAME: f64 = 1e-8;
@@ -26,6 +27,9 @@ pub(crate) fn roots<F: Formulation>(f: &[f64]) -> Result<(Vec<Vec<Complex64>>, P
     for (seed, retries) in (0..).zip(RETRIES) {
         let mut options = SolveOptions::default();
         options.seed = seed;
+        if seed as usize + 1 < RETRIES.len() {
+            options.endgame.min_radius = options.endgame.radius;
+        }
         options.paths.retries = retries;
         // No member has more isolated roots than the generic one: once as many are found the other paths lead out of the torus.
         options.known = family.roots;
