@@ -116,3 +116,32 @@ fn names_frame_and_seconds_are_kept() {
     ]);
     assert!(number(&truth, "/truth/receiver_rms") < 0.1);
 }
+
+#[test]
+fn a_transposed_table_is_refused() {
+    let table = std::fs::read_to_string(root().join("examples/network/pseudoranges.csv")).expect("table");
+    let rows: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
+    let columns = (0..rows[0].len()).map(|j| rows.iter().map(|row| row[j]).collect::<Vec<_>>().join(","));
+    let directory = tempfile::tempdir().expect("directory");
+    let file = directory.path().join("transposed.csv");
+    std::fs::write(&file, columns.collect::<Vec<_>>().join("\n")).expect("file");
+    let output = run("tdoa", &["calibrate", text(&file)]);
+    assert_eq!(output.status.code(), Some(1));
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(error.contains("do not determine where most receivers are"), "{error}");
+    let summary = String::from_utf8_lossy(&output.stdout);
+    assert!(summary.contains("NOT TO BE TRUSTED") && summary.contains("are receivers the rows"), "{summary}");
+}
+
+#[test]
+fn a_truth_without_a_known_name_is_taken_in_order_and_says_so() {
+    let folder = root().join("examples/network");
+    let truth = std::fs::read_to_string(folder.join("receivers.csv")).expect("truth");
+    let directory = tempfile::tempdir().expect("directory");
+    let file = directory.path().join("renamed.csv");
+    std::fs::write(&file, truth.replace("\nr", "\nanchor ")).expect("file");
+    let table = folder.join("pseudoranges.csv");
+    let found = calibrate(&[text(&table), "--truth", text(&file)]);
+    assert_eq!(found["truth"]["receivers"], 8);
+    assert!(found["warnings"].to_string().contains("in the order of the receivers"), "{}", found["warnings"]);
+}

@@ -13,8 +13,8 @@ pub struct Refined {
     pub point: Vec<Complex64>,
     /// Relative size of the last correction, about the relative error of the point.
     pub accuracy: f64,
-    /// Whether the point is plainly a regular solution: corrections shrank by a factor of a thousand at once, the last was tiny, the
-    /// condition is good, and no row of the Jacobian is so small that it may be rounding error. Regular solutions may be less plain.
+    /// Whether the point is plainly a regular solution: corrections shrank by a factor of a thousand at once or were tiny from the
+    /// first, the last was tiny, the condition is good, and no row of the Jacobian is so small that it may be rounding error. Regular solutions may be less plain.
     pub plain: bool,
     /// Largest residual, each relative to its row of the Jacobian times the sizes of the coordinates.
     pub residual: f64,
@@ -127,7 +127,9 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         (accuracy, self.blur(p, x, steady && accuracy <= NEAR))
     }
 
-    /// Returns the size of the last correction and whether one that was no rounding error led to one a thousand times smaller. If so,
+    /// Returns the size of the last correction and whether one that was no rounding error led to one a thousand times smaller, or the
+    /// first one was [`TINY`]: near a solution of multiplicity `k` at a distance `d` it would be `d / k`, and a row of the Jacobian
+    /// about `d` or less, which is [`FAINT`]. If so,
     /// and if it is at most [`NEAR`], the Jacobian and its factors are those at `x`, or so near to it that Newton's method hardly noticed
     /// the difference.
     fn polish(&mut self, p: &[ComplexDd], x: &mut [Complex64]) -> (f64, bool) {
@@ -154,7 +156,8 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
                 serves = false;
                 continue;
             }
-            steady |= accuracy.is_finite() && accuracy > TINY && size <= STEADY * accuracy;
+            let shrunk = accuracy.is_finite() && accuracy > TINY && size <= STEADY * accuracy;
+            steady |= shrunk || (accuracy.is_infinite() && size <= TINY);
             accuracy = size;
             x.copy_from_slice(&self.next);
             if accuracy <= f64::EPSILON {

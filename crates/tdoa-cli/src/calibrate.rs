@@ -37,8 +37,8 @@ pub(crate) struct Arguments {
     /// Known distances between some receivers (receiver,receiver,distance, metres), for --estimate-speed.
     #[arg(long, value_name = "FILE.csv", requires = "estimate_speed")]
     distances: Option<PathBuf>,
-    /// Estimates the propagation speed from the known distances and those between anchors: with --units s in metres a second,
-    /// otherwise as a factor on the one that made the measurements metres.
+    /// Estimates the propagation speed from the known distances and those between anchors: with --units s in metres a second
+    /// (only --sigma depends on --speed then), otherwise as a factor on the one that made the measurements metres.
     #[arg(long)]
     estimate_speed: bool,
     /// Puts the node ORIGIN at (0, 0), XAXIS on the positive x axis and UP above it.
