@@ -3,7 +3,7 @@
 use crate::distinct::Coincidences;
 use crate::homotopy::Segment;
 use crate::refine::Refiner;
-use crate::tracker::{PathEnd, PathResult, PathSet, TrackerOptions, track};
+use crate::tracker::{OptionError, PathEnd, PathResult, PathSet, TrackerOptions, track};
 use num_complex::Complex64;
 use poly::Evaluate;
 use serde::Serialize;
@@ -57,6 +57,17 @@ pub struct FibreOptions {
 impl Default for FibreOptions {
     fn default() -> Self {
         FibreOptions { tracker: TrackerOptions::default(), retries: 4, coincidence: 1e-8 }
+    }
+}
+
+impl FibreOptions {
+    /// Checks the numbers.
+    ///
+    /// # Errors
+    /// The first that is outside its range.
+    pub fn validate(&self) -> Result<(), OptionError> {
+        self.tracker.validate()?;
+        OptionError::positive(&[("coincidence", self.coincidence)])
     }
 }
 

@@ -3,7 +3,8 @@
 mod common;
 
 use common::{multiplicities, options, real, solve_text, solved};
-use hc::solve::{SolveError, Solved, Start};
+use hc::poly::parse;
+use hc::solve::{SolveError, SolveOptions, Solved, Start, solve};
 use hc::start::MixedError;
 
 const STARTS: [Start; 3] = [Start::Auto, Start::Polyhedral, Start::TotalDegree];
@@ -291,4 +292,27 @@ fn groups_of_unknowns() {
     options.groups.clear();
     let found = solve_text(text, &options).unwrap();
     assert_eq!((found.start, found.paths.tracked, found.bezout_number), (Some(Start::Polyhedral), 3, Some(8)));
+}
+
+/// Settings out of range are named, whichever they are.
+#[test]
+fn settings_out_of_range() {
+    type Set = fn(&mut SolveOptions);
+    let wrong: [(&str, Set); 7] = [
+        ("contraction", |o| o.paths.tracker.contraction = f64::NAN),
+        ("beta_tau", |o| o.paths.tracker.beta_tau = -0.1),
+        ("max_steps", |o| o.paths.tracker.max_steps = 0),
+        ("min_t", |o| o.paths.tracker.min_t = f64::NAN),
+        ("coincidence", |o| o.paths.coincidence = 0.0),
+        ("endgame.shrink", |o| o.endgame.shrink = 1.0),
+        ("endgame.turns", |o| o.endgame.turns = 0),
+    ];
+    let system = parse::phcpack("2\nx*y-2;\nx^2-4;").unwrap().expand(&Default::default()).unwrap();
+    for (name, set) in wrong {
+        let mut options = SolveOptions::default();
+        set(&mut options);
+        let error = solve(&system, &options).unwrap_err();
+        assert!(matches!(&error, SolveError::Option(e) if e.name == name), "{name}: {error}");
+        assert!(error.to_string().starts_with(&format!("option {name} must be")), "{error}");
+    }
 }

@@ -16,7 +16,7 @@ mod walker;
 use crate::homotopy::Segment;
 use crate::monitor::{Monitor, Stage};
 use crate::refine::Refiner;
-use crate::tracker::{PathEnd, PathResult, PathSet, TrackerOptions, Trackers};
+use crate::tracker::{OptionError, PathEnd, PathResult, PathSet, TrackerOptions, Trackers};
 use legs::{Leg, Legs};
 use num_complex::Complex64;
 use poly::Evaluate;
@@ -42,6 +42,23 @@ pub struct EndgameOptions {
 impl Default for EndgameOptions {
     fn default() -> Self {
         EndgameOptions { start: 1e-5, radius: 1e-6, shrink: 30.0, min_radius: 1e-13, turns: 16 }
+    }
+}
+
+impl EndgameOptions {
+    /// Checks the numbers.
+    ///
+    /// # Errors
+    /// The first that is outside its range.
+    pub fn validate(&self) -> Result<(), OptionError> {
+        OptionError::positive(&[
+            ("endgame.start", self.start),
+            ("endgame.radius", self.radius),
+            ("endgame.min_radius", self.min_radius),
+            ("endgame.shrink", self.shrink),
+        ])?;
+        OptionError::at_least("endgame.shrink", self.shrink, 1.5, "at least 1.5")?;
+        OptionError::at_least("endgame.turns", self.turns as f64, 1.0, "at least 1")
     }
 }
 

@@ -12,7 +12,7 @@ use crate::endgame::EndgameOptions;
 use crate::fibre::{FibreOptions, PathCounts};
 use crate::monitor::Monitor;
 use crate::start::MixedError;
-use crate::tracker::TrackerOptions;
+use crate::tracker::{OptionError, TrackerOptions};
 use classify::{Classified, Excess, classify};
 use equations::Equations;
 pub use family::solve_member;
@@ -162,9 +162,12 @@ pub struct Solved {
 }
 
 /// Why a system is not solved.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SolveError {
+    /// A setting outside its range.
+    #[error(transparent)]
+    Option(#[from] OptionError),
     /// No polyhedral start system.
     #[error(transparent)]
     Mixed(#[from] MixedError),
@@ -233,8 +236,10 @@ pub enum SolveError {
 /// ```
 ///
 /// # Errors
-/// If there are too few equations or too many paths, an equation without unknowns, or a number out of range.
+/// If there are too few equations or too many paths, an equation without unknowns, or a number or an option out of range.
 pub fn solve(polynomials: &[Polynomial<Exact>], options: &SolveOptions) -> Result<Solved, SolveError> {
+    options.paths.validate()?;
+    options.endgame.validate()?;
     let given = Equations::new(polynomials)?;
     let excess = Excess::new(&given, options.torus_only)?;
     let mut starts = match Starts::new(given, options) {

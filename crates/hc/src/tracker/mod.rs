@@ -21,7 +21,7 @@ mod result;
 mod valuation;
 
 pub use batch::Tracker;
-pub use options::TrackerOptions;
+pub use options::{OptionError, TrackerOptions};
 pub(crate) use pool::Trackers;
 pub use result::{PathEnd, PathResult, PathSet};
 

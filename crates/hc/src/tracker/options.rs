@@ -3,6 +3,32 @@
 use crate::monitor::Monitor;
 use poly::simd::Isa;
 
+/// A setting outside its range.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("option {name} must be {range}, not {value}")]
+#[non_exhaustive]
+pub struct OptionError {
+    /// Its name.
+    pub name: &'static str,
+    /// What is allowed.
+    pub range: &'static str,
+    /// What was given.
+    pub value: f64,
+}
+
+impl OptionError {
+    /// The first of the named values that is not positive and finite.
+    pub(crate) fn positive(values: &[(&'static str, f64)]) -> Result<(), OptionError> {
+        let wrong = values.iter().find(|(_, value)| !(*value > 0.0 && value.is_finite()));
+        wrong.map_or(Ok(()), |&(name, value)| Err(OptionError { name, range: "positive and finite", value }))
+    }
+
+    /// An error unless the value is at least this.
+    pub(crate) fn at_least(name: &'static str, value: f64, least: f64, range: &'static str) -> Result<(), OptionError> {
+        if value >= least { Ok(()) } else { Err(OptionError { name, range, value }) }
+    }
+}
+
 /// Settings of the path tracker. Steps are bounded twice: by the radius of trust of the predictor (`beta_tau`) and by the
 /// bound under which Newton's method converges at once (`beta_omega`), see [`crate::tracker`].
 #[derive(Clone, Debug, PartialEq)]
@@ -73,6 +99,24 @@ impl TrackerOptions {
     /// Shorter steps (the factors of HomotopyContinuation.jl's conservative preset).
     pub fn conservative() -> Self {
         TrackerOptions { beta_omega: 4.0, beta_tau: 0.25, beta_tau_last: 0.1875, ..Self::default() }
+    }
+
+    /// Checks the numbers.
+    ///
+    /// # Errors
+    /// The first that is outside its range.
+    pub fn validate(&self) -> Result<(), OptionError> {
+        OptionError::positive(&[
+            ("contraction", self.contraction),
+            ("beta_omega", self.beta_omega),
+            ("beta_tau", self.beta_tau),
+            ("beta_tau_last", self.beta_tau_last),
+            ("corrector_tolerance", self.corrector_tolerance),
+            ("drop_complex", self.drop_complex.unwrap_or(1.0)),
+        ])?;
+        OptionError::at_least("max_steps", self.max_steps as f64, 1.0, "at least 1")?;
+        OptionError::at_least("min_t", self.min_t, 0.0, "zero or more")?;
+        OptionError::at_least("endgame_start", self.endgame_start, 0.0, "zero or more")
     }
 
     /// Shorter steps than these, for paths that are tracked again: `level` 1 is about half as long, each further level half of that.

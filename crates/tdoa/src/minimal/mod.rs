@@ -40,6 +40,7 @@ pub use solver::Solver;
 use crate::network::MinimalSolution;
 use crate::pseudoranges::Pseudoranges;
 use hc::fibre::FibreOptions;
+use hc::tracker::OptionError;
 use thiserror::Error;
 
 /// Settings of the minimal solvers.
@@ -120,6 +121,9 @@ const MAX_MEASUREMENTS: usize = 5_000;
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SolveError {
+    /// A setting of the tracker outside its range.
+    #[error(transparent)]
+    Option(#[from] OptionError),
     /// Fewer constraints than unknowns.
     #[error(
         "{configuration} is underdetermined: {constraints} measurements for {unknowns} unknowns (positions up to a rigid motion, \

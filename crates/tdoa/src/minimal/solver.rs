@@ -69,8 +69,9 @@ impl Solver {
     /// spread part of one of these sizes: its candidates are extended to all nodes and refined over all measurements.
     ///
     /// # Errors
-    /// If the matrix is too small or too large, a measurement is missing, or two nodes coincide.
+    /// If the matrix is too small or too large, a measurement is missing, two nodes coincide, or a setting of the tracker is out of range.
     pub fn solve(&mut self, measured: &Pseudoranges, options: &SolveOptions) -> Result<MinimalSolution, SolveError> {
+        options.paths.validate()?;
         let (m, n) = (measured.receivers(), measured.transmitters());
         let (constraints, unknowns) = (m * n, (2 * m + 3 * n).saturating_sub(3));
         if !is_solvable(m, n) {
