@@ -1,8 +1,12 @@
 //! End-to-end tests live in `tests/tests`; this is what they share.
 
 use std::path::{Path, PathBuf};
+#[cfg(unix)]
+use std::process::Stdio;
 use std::process::{Command, Output};
 use std::sync::Mutex;
+#[cfg(unix)]
+use std::time::{Duration, Instant};
 
 /// Whether this process has seen to it that the programs are built.
 static BUILT: Mutex<bool> = Mutex::new(false);
@@ -50,6 +54,34 @@ fn directory() -> PathBuf {
 /// If it cannot be started.
 pub fn run(name: &str, arguments: &[&str]) -> Output {
     Command::new(program(name)).args(arguments).output().expect("the program starts")
+}
+
+/// Starts a program, interrupts it once it has caught interrupts for this long, and returns what it leaves.
+///
+/// # Panics
+/// If it does not start, or does not end within a minute of the interrupt.
+#[cfg(unix)]
+pub fn interrupted(command: &mut Command, after: Duration) -> Output {
+    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts");
+    let started = Instant::now();
+    while catches_interrupts(child.id()) == Some(false) && started.elapsed() < Duration::from_secs(300) {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    std::thread::sleep(after);
+    let started = Instant::now();
+    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill runs");
+    assert!(killed.success());
+    let output = child.wait_with_output().expect("the program ends");
+    assert!(started.elapsed() < Duration::from_secs(60));
+    output
+}
+
+/// Whether a process has a handler for SIGINT, signal 2; `None` where the system does not tell.
+#[cfg(unix)]
+fn catches_interrupts(process: u32) -> Option<bool> {
+    let status = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
+    let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:"))?;
+    Some(u64::from_str_radix(caught.trim(), 16).ok()? & 2 != 0)
 }
 
 /// The workspace's root.

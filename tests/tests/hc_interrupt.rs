@@ -4,8 +4,8 @@
 use end_to_end::{program, root, run};
 use serde_json::{Value, json};
 use std::path::Path;
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::process::Command;
+use std::time::Duration;
 
 /// Runs `hc` with JSON to standard output, sends SIGINT after a second and a half, and returns what it leaves.
 fn interrupted(arguments: &[&str]) -> Value {
@@ -13,19 +13,11 @@ fn interrupted(arguments: &[&str]) -> Value {
 }
 
 fn interrupted_with_output(option: &str, arguments: &[&str]) -> Value {
-    let child = Command::new(program("hc"))
-        .args(arguments)
-        .args([option, "-", "--threads", "1"])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program starts");
-    std::thread::sleep(Duration::from_millis(1500));
-    let started = Instant::now();
-    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill runs");
-    assert!(killed.success());
-    let output = child.wait_with_output().expect("the program ends");
-    assert!(started.elapsed() < Duration::from_secs(60));
+    let mut command = Command::new(program("hc"));
+    let output = end_to_end::interrupted(
+        command.args(arguments).args([option, "-", "--threads", "1"]),
+        Duration::from_millis(1500),
+    );
     let message = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(130), "{message}");
     assert!(message.ends_with("hc: interrupted; the result is partial\n"), "{message}");

@@ -116,3 +116,14 @@ fn another_table_in_the_folder_is_left_alone() {
     assert!(String::from_utf8_lossy(&result.stderr).contains("other columns"));
     assert_eq!(std::fs::read_to_string(directory.path().join("trials.csv")).expect("table"), "a,b\n1,2\n");
 }
+
+#[test]
+fn both_routes_lead_to_the_same_networks() {
+    let directory = tempfile::tempdir().expect("directory");
+    let lines = experiment("routes --configuration 5r/6s --instances 5", directory.path(), "2");
+    assert_eq!(lines.len(), 2);
+    // Five roots each.
+    for (column, expected) in [("agree", "5"), ("roots_stored", "25"), ("roots_polyhedral", "25")] {
+        assert_eq!(cell(&lines[0], &lines[1], column), expected, "{}", lines[1]);
+    }
+}

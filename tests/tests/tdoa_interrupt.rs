@@ -1,10 +1,10 @@
 //! Interrupts leave no half-written file.
 #![cfg(unix)]
 
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::process::Command;
+use std::time::Duration;
 
-use end_to_end::program;
+use end_to_end::{interrupted, program};
 
 #[test]
 fn an_interrupt_stops_the_search_and_leaves_no_file() {
@@ -16,19 +16,11 @@ fn an_interrupt_stops_the_search_and_leaves_no_file() {
     let row = |i: u64| (0..40).map(|j| cell(1 + 40 * i + j).to_string()).collect::<Vec<_>>().join(",") + "\n";
     std::fs::write(path("pseudoranges.csv"), (0..20).map(row).collect::<String>()).expect("written");
     let before = names(folder);
-    let child = Command::new(program("tdoa"))
+    let mut command = Command::new(program("tdoa"));
+    command
         .args(["calibrate", &path("pseudoranges.csv"), "--max-starts", "1000000000", "--agreeing", "1000000000"])
-        .args(["--json", &path("out.json"), "--svg", &path("out.svg"), "--html", &path("out.html")])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program starts");
-    std::thread::sleep(Duration::from_secs(2));
-    let started = Instant::now();
-    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill runs");
-    assert!(killed.success());
-    let output = child.wait_with_output().expect("the program ends");
-    assert!(started.elapsed() < Duration::from_secs(60));
+        .args(["--json", &path("out.json"), "--svg", &path("out.svg"), "--html", &path("out.html")]);
+    let output = interrupted(&mut command, Duration::from_secs(2));
     let message = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(130), "{message}");
     assert!(message.contains("interrupted; nothing was written"), "{message}");

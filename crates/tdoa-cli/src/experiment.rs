@@ -9,6 +9,7 @@ mod damaged;
 mod growth;
 mod hard;
 mod noise;
+mod routes;
 mod rows;
 mod statistics;
 mod table2;
@@ -31,8 +32,7 @@ enum Kind {
     Noise(noise::Arguments),
     /// Proves by interval arithmetic that all roots that the minimal solvers report exist and are distinct.
     Proofs(checks::Arguments),
-    /// Compares the stored start of the minimal solvers with a polyhedral one.
-    Routes(checks::Arguments),
+    Routes(routes::Arguments),
     /// Measures what the options for callers in a hurry save and lose.
     Hurry(checks::Arguments),
     /// Measures what becomes of paths that fail, with each fallback.
@@ -51,7 +51,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Kind::Noise(arguments) => noise::run(arguments),
         Kind::Hard(arguments) => hard::run(arguments),
         Kind::Proofs(arguments) => checks::proofs(arguments),
-        Kind::Routes(arguments) => checks::routes(arguments),
+        Kind::Routes(arguments) => routes::run(arguments),
         Kind::Hurry(arguments) => checks::hurry(arguments),
         Kind::Charts(arguments) => checks::charts(arguments),
         Kind::Calibrate(arguments) => calibrate::run(arguments),

@@ -1,4 +1,4 @@
-//! `tdoa experiment proofs | routes | hurry | charts`.
+//! `tdoa experiment proofs | hurry | charts`.
 
 use super::common::configuration;
 use crate::{Failure, output};
@@ -6,7 +6,7 @@ use cli::bar::Bar;
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 use std::fmt::Write;
 use std::path::PathBuf;
-use tdoa::experiment::checks::{ChartTrial, HurryTrial, chart_trial, hurry_trial, proof_trial, route_trial};
+use tdoa::experiment::checks::{ChartTrial, HurryTrial, chart_trial, hurry_trial, proof_trial};
 use tdoa::minimal::{Fallback, RootProofs, SolveError, SolveOptions, Solver};
 use tdoa::{Layout, SimulateOptions, Simulation, simulate};
 
@@ -102,33 +102,6 @@ pub(super) fn proofs(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     arguments.write(&format!("{text}\n{notes}"))
-}
-
-/// Solves each network from the stored start and from a polyhedral start system and compares all real networks.
-pub(super) fn routes(arguments: &Arguments) -> Result<(), Failure> {
-    let mut text = format!(
-        "# Two routes to the same networks\n\n{}: each instance from the stored start and from a polyhedral start system computed for it.\n\n\
-         | configuration | instances | same networks, no more and no fewer | roots stored | roots polyhedral | paths a polyhedral solve | seconds a polyhedral solve, mean |\n\
-         |---|---|---|---|---|---|---|\n",
-        arguments.command("routes")
-    );
-    for &size in &arguments.configuration {
-        let trials = arguments.each(size, route_trial)?;
-        let mean = |sum: f64| sum / trials.len().max(1) as f64;
-        let _ = writeln!(
-            text,
-            "| {}r/{}s | {} | {} | {} | {} | {:.0} | {:.1} |",
-            size.0,
-            size.1,
-            trials.len(),
-            trials.iter().filter(|t| t.agree).count(),
-            trials.iter().map(|t| t.stored.complex).sum::<usize>(),
-            trials.iter().map(|t| t.polyhedral.complex).sum::<usize>(),
-            mean(trials.iter().map(|t| t.paths.tracked as f64).sum()),
-            mean(trials.iter().map(|t| t.seconds).sum()),
-        );
-    }
-    arguments.write(&text)
 }
 
 /// Measures what stopping early and dropping paths that stay complex save, and what they lose.

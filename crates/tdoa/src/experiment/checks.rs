@@ -31,8 +31,6 @@ pub struct RouteTrial {
     pub paths: PathCounts,
     /// Whether both give the same real networks, no more and no fewer.
     pub agree: bool,
-    /// Seconds of the polyhedral route.
-    pub seconds: f64,
 }
 
 /// Solves one clean instance from the stored start and from a polyhedral one.
@@ -43,11 +41,9 @@ pub fn route_trial(solver: &mut Solver, simulation: &Simulation) -> Result<Route
     let mut options = SolveOptions::default();
     let stored = solver.solve(&simulation.pseudoranges, &options)?;
     options.start = Start::Polyhedral;
-    let started = Instant::now();
     let polyhedral = solver.solve(&simulation.pseudoranges, &options)?;
-    let seconds = started.elapsed().as_secs_f64();
     let agree = same_networks(&stored, &polyhedral);
-    Ok(RouteTrial { stored: stored.counts, polyhedral: polyhedral.counts, paths: polyhedral.paths, agree, seconds })
+    Ok(RouteTrial { stored: stored.counts, polyhedral: polyhedral.counts, paths: polyhedral.paths, agree })
 }
 
 /// One instance with one way to treat paths that fail.

@@ -1,0 +1,78 @@
+//! `tdoa experiment routes`.
+
+use std::fmt::Write;
+
+use tdoa::experiment::checks::route_trial;
+use tdoa::minimal::Solver;
+
+use super::common::{Common, Size, normal, thread_seconds};
+use super::rows::resume;
+use super::statistics::short;
+use crate::{Failure, output};
+
+/// Compares all real networks from the stored start of the minimal solvers with those from a polyhedral start system, which is computed for
+/// each network as in the paper.
+#[derive(clap::Args)]
+pub(super) struct Arguments {
+    /// The configurations.
+    #[arg(long, default_value = "6r/3s,5r/4s,4r/5s", value_delimiter = ',')]
+    configuration: Vec<Size>,
+    /// Number of networks of each configuration (positions and offsets standard normal, no noise).
+    #[arg(long, default_value_t = 100)]
+    instances: u64,
+    #[command(flatten)]
+    common: Common,
+}
+
+const HEADER: &str =
+    "configuration,seed,roots_stored,roots_polyhedral,real_stored,real_polyhedral,paths,retracked,agree,seconds";
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let common = &arguments.common;
+    let trials: Vec<(Size, u64)> = (arguments.configuration.iter())
+        .flat_map(|&size| common.seeds(arguments.instances).map(move |seed| (size, seed)))
+        .collect();
+    let keys: Vec<String> = trials.iter().map(|(size, seed)| format!("{size},{seed}")).collect();
+    let rows = resume(&common.file("trials.csv")?, HEADER, &keys, common.threads, Solver::new, |solver, k| {
+        let (size, seed) = trials[k];
+        let simulation = normal(size, 0.0, seed)?;
+        let started = thread_seconds();
+        let t = route_trial(solver, &simulation).map_err(Failure::unusable)?;
+        Ok(format!(
+            "{},{},{},{},{},{},{},{:.2}",
+            t.stored.complex,
+            t.polyhedral.complex,
+            t.stored.real,
+            t.polyhedral.real,
+            t.paths.tracked,
+            t.paths.retracked,
+            t.agree,
+            thread_seconds() - started
+        ))
+    })?;
+    let mut summary = String::from(
+        "configuration,instances,agree,roots_stored,roots_polyhedral,paths_mean,retracked_mean,seconds_mean,seeds_that_differ\n",
+    );
+    let each = arguments.instances as usize;
+    for (g, &size) in arguments.configuration.iter().enumerate() {
+        let numbers = |column: &str| rows.numbers(column, g * each..(g + 1) * each);
+        let sum = |column: &str| numbers(column).iter().sum::<f64>();
+        let mean = |column: &str| short(sum(column) / each.max(1) as f64);
+        let agree = numbers("agree");
+        let differ = common.seeds(arguments.instances).zip(&agree).filter(|(_, agree)| **agree == 0.0);
+        // Writing to a string does not fail.
+        let _ = writeln!(
+            summary,
+            "{size},{each},{},{},{},{},{},{},{}",
+            sum("agree"),
+            sum("roots_stored"),
+            sum("roots_polyhedral"),
+            mean("paths"),
+            mean("retracked"),
+            mean("seconds"),
+            differ.map(|(seed, _)| seed.to_string()).collect::<Vec<_>>().join(" ")
+        );
+    }
+    common.write("summary.csv", &summary)?;
+    output::print(&summary)
+}
