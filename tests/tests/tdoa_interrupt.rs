@@ -27,6 +27,21 @@ fn an_interrupt_stops_the_search_and_leaves_no_file() {
     assert_eq!(names(folder), before);
 }
 
+#[test]
+fn an_interrupt_stops_the_polyhedral_route() {
+    let directory = tempfile::tempdir().expect("directory");
+    let file = directory.path().join("pseudoranges.csv");
+    // Differences of no network in particular: half a minute of work and more.
+    let cell = |k: u64| (k * k * k % 1009) as f64 / 60.0;
+    let row = |i: u64| (0..5).map(|j| cell(1 + 5 * i + j).to_string()).collect::<Vec<_>>().join(",") + "\n";
+    std::fs::write(&file, (0..4).map(row).collect::<String>()).expect("written");
+    let mut command = Command::new(program("tdoa"));
+    command.args(["solve", file.to_str().expect("UTF-8 path"), "--start", "polyhedral"]);
+    let output = interrupted(&mut command, Duration::from_secs(1));
+    assert_eq!(output.status.code(), Some(130), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(output.stdout.is_empty());
+}
+
 fn names(folder: &std::path::Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).expect("folder");
     let mut names: Vec<String> =

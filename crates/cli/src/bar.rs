@@ -1,13 +1,18 @@
 //! Progress bars on standard error, for work that takes over a second.
 
+use crate::{Failure, on_threads};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Work that is done sooner shows no bar.
 const PATIENCE: Duration = Duration::from_secs(1);
+
+/// How often a bar is drawn anew.
+const TICK: Duration = Duration::from_millis(50);
 
 /// A bar that appears after a second, and only on a terminal.
 pub struct Bar {
@@ -73,4 +78,28 @@ impl Drop for Bar {
     fn drop(&mut self) {
         self.finish_and_clear();
     }
+}
+
+/// Runs work on the given number of threads, while another thread shows how far it is: position, length and words from `describe`.
+///
+/// # Errors
+/// If the threads cannot be had.
+pub fn while_shown<R: Send>(
+    threads: Option<usize>,
+    describe: impl Fn() -> (u64, u64, String) + Send,
+    work: impl FnOnce() -> R + Send,
+) -> Result<R, Failure> {
+    let (done, end) = channel::<()>();
+    std::thread::scope(|scope| {
+        scope.spawn(move || {
+            let bar = Bar::new("{bar:40} {pos}/{len} {msg}");
+            while let Err(RecvTimeoutError::Timeout) = end.recv_timeout(TICK) {
+                let (position, length, words) = describe();
+                bar.show(position, length, || words);
+            }
+        });
+        let result = on_threads(threads, work);
+        drop(done);
+        result
+    })
 }

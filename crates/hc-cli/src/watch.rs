@@ -1,13 +1,8 @@
 //! Work that is watched: a progress bar after a second, and an end soon after an interrupt.
 
-use cli::bar::Bar;
-use cli::{Failure, interrupt, on_threads};
-use hc::monitor::{Monitor, Progress, Stage};
-use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::time::Duration;
-
-/// How often the bar is drawn anew.
-const TICK: Duration = Duration::from_millis(50);
+use cli::bar::while_shown;
+use cli::{Failure, interrupt};
+use hc::monitor::{Monitor, Progress};
 
 /// A monitor for work that an interrupt of the program cancels.
 ///
@@ -25,31 +20,10 @@ pub(crate) fn watched<R: Send>(
     describe: impl Fn(Progress) -> (u64, u64, String) + Send,
     work: impl FnOnce() -> R + Send,
 ) -> Result<R, Failure> {
-    let (done, end) = channel::<()>();
-    std::thread::scope(|scope| {
-        scope.spawn(move || {
-            let bar = Bar::new("{bar:40} {pos}/{len} {msg}");
-            while let Err(RecvTimeoutError::Timeout) = end.recv_timeout(TICK) {
-                let (position, length, words) = describe(monitor.progress());
-                bar.show(position, length, || words);
-            }
-        });
-        let result = on_threads(threads, work);
-        drop(done);
-        result
-    })
+    while_shown(threads, move || describe(monitor.progress()), work)
 }
 
 /// The progress of one solve.
 pub(crate) fn stages(progress: Progress) -> (u64, u64, String) {
-    let counted = progress.counted;
-    let words = match progress.stage {
-        Stage::MixedCells => format!("{} mixed cells, of volume {counted}", progress.done),
-        Stage::Start => "paths to generic coefficients".to_owned(),
-        Stage::Paths => format!("paths, {counted} of them at regular solutions"),
-        Stage::Endgame => "paths through the endgame".to_owned(),
-        Stage::Loop => format!("paths round a loop, {} solutions so far", progress.total / 3),
-        _ => "preparing".to_owned(),
-    };
-    (progress.done, progress.total, words)
+    (progress.done, progress.total, progress.to_string())
 }

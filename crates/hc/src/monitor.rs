@@ -15,6 +15,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering};
 
@@ -53,6 +54,20 @@ pub struct Progress {
     pub total: u64,
     /// Mixed cells: their volume so far. Later stages: paths that have ended at regular points.
     pub counted: u64,
+}
+
+/// What is being done, in words that follow `done` and `total`.
+impl fmt::Display for Progress {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.stage {
+            Stage::Preparing => f.write_str("preparing"),
+            Stage::MixedCells => write!(f, "{} mixed cells, of volume {}", self.done, self.counted),
+            Stage::Start => f.write_str("paths to generic coefficients"),
+            Stage::Paths => write!(f, "paths, {} of them at regular solutions", self.counted),
+            Stage::Endgame => f.write_str("paths through the endgame"),
+            Stage::Loop => write!(f, "paths round a loop, {} solutions so far", self.total / 3),
+        }
+    }
 }
 
 #[derive(Debug, Default)]
@@ -142,6 +157,7 @@ mod tests {
         other.add(3, 2);
         let progress = monitor.progress();
         assert_eq!((progress.stage, progress.done, progress.total, progress.counted), (Stage::Paths, 3, 10, 2));
+        assert_eq!(progress.to_string(), "paths, 2 of them at regular solutions");
         other.cancel();
         assert!(monitor.is_cancelled() && monitor == other && monitor != Monitor::watched());
         // A flag cancels what heeds it.

@@ -4,11 +4,11 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use serde::Serialize;
-use tdoa::MinimalSolution;
 use tdoa::minimal::{SolveOptions, Start, solve};
 use tdoa::read::read;
+use tdoa::{MinimalSolution, Monitor};
 
-use crate::{Failure, output};
+use crate::{Failure, interrupt, output};
 
 /// Finds every network that explains pseudoranges without errors, best first: 6r/3s, 4r/5s, 5r/4s and all larger sizes.
 #[derive(clap::Args)]
@@ -77,8 +77,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         StartArgument::Stored => Start::Stored,
         StartArgument::Polyhedral => Start::Polyhedral,
     };
+    let monitor = Monitor::heeding(interrupt::watch()?);
+    options.paths.tracker.monitor = monitor.clone();
+    let progress = || {
+        let progress = monitor.progress();
+        (progress.done, progress.total, progress.to_string())
+    };
     let started = Instant::now();
-    let solved = crate::on_threads(arguments.threads, || solve(&measured, &options))?;
+    let solved = cli::bar::while_shown(arguments.threads, progress, || solve(&measured, &options))?;
+    interrupt::check()?;
     let solution = solved.map_err(|error| Failure::Undetermined(format!("{}: {error}", arguments.file.display())))?;
     let seconds = started.elapsed().as_secs_f64();
     if let Some(path) = &arguments.json {

@@ -88,7 +88,7 @@ impl<F: Formulation> Engine<F> {
             Start::Stored => self.tracking.run(&mut found),
             Start::Polyhedral => {
                 self.tracking.paths.clear(self.tracking.stored.dimension);
-                let (roots, paths) = scratch::roots::<F>(parameters)?;
+                let (roots, paths) = scratch::roots::<F>(parameters, &options.paths.tracker.monitor)?;
                 roots.iter().for_each(|root| found.add(root));
                 found.counts.complex = roots.len();
                 (paths, false)

@@ -150,6 +150,9 @@ pub enum SolveError {
     /// The polyhedral route failed before any path was tracked.
     #[error("the polyhedral start system: {0}")]
     Polyhedral(String),
+    /// The polyhedral route was stopped through its monitor, `paths.tracker.monitor`.
+    #[error("the solve was cancelled")]
+    Cancelled,
     /// A missing measurement.
     #[error(
         "receiver {receiver} did not hear transmitter {transmitter}: the exact solvers need every measurement; use `calibrate`"

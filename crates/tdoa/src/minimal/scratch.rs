@@ -4,6 +4,7 @@ use super::SolveError;
 use super::formulation::Formulation;
 use crate::network::PathCounts;
 use hc::distinct::relative_distance;
+use hc::monitor::Monitor;
 use hc::solve::{SolveOptions, Start, solve};
 use num_complex::Complex64;
 
@@ -15,9 +16,12 @@ const RETRIES: [u32; 4] = [2, 2, 2, 4];
 /// Relative distance up to which roots from different start systems are the same.
 const SAME: f64 = 1e-8;
 
-/// All roots in the torus for the real parameters `f`, with the paths that led to them. In the families of this crate the spurious
-/// roots and components lie outside the torus.
-pub(crate) fn roots<F: Formulation>(f: &[f64]) -> Result<(Vec<Vec<Complex64>>, PathCounts), SolveError> {
+/// All roots in the torus for the real parameters `f`, with the paths that led to them, which heed the monitor. In the families of this
+/// crate the spurious roots and components lie outside the torus.
+pub(crate) fn roots<F: Formulation>(
+    f: &[f64],
+    monitor: &Monitor,
+) -> Result<(Vec<Vec<Complex64>>, PathCounts), SolveError> {
     let refused = |error: &dyn std::fmt::Display| SolveError::Polyhedral(error.to_string());
     let family = hc::poly::parse::family(F::FAMILY).map_err(|e| refused(&e))?;
     let system = family.system.at(f).map_err(|e| refused(&e))?;
@@ -27,6 +31,7 @@ pub(crate) fn roots<F: Formulation>(f: &[f64]) -> Result<(Vec<Vec<Complex64>>, P
     for (seed, retries) in (0..).zip(RETRIES) {
         let mut options = SolveOptions::default();
         options.seed = seed;
+        options.set_monitor(monitor.clone());
         if seed as usize + 1 < RETRIES.len() {
             options.endgame.min_radius = options.endgame.radius;
         }
@@ -38,6 +43,9 @@ pub(crate) fn roots<F: Formulation>(f: &[f64]) -> Result<(Vec<Vec<Complex64>>, P
         // Paths that lead out of the torus may end badly; the known number of roots tells whether one in it is missing.
         options.restarts = 0;
         let found = solve(&polynomials, &options).map_err(|e| refused(&e))?;
+        if found.interrupted {
+            return Err(SolveError::Cancelled);
+        }
         let regular = found.solutions.iter().filter(|s| !s.singular);
         for root in regular.map(|s| s.value.iter().map(|&[re, im]| Complex64::new(re, im)).collect::<Vec<_>>()) {
             if roots.iter().all(|other| relative_distance(other, &root) > SAME) {
