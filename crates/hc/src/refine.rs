@@ -14,7 +14,8 @@ pub struct Refined {
     /// Relative size of the last correction, about the relative error of the point.
     pub accuracy: f64,
     /// Whether the point is plainly a regular solution: corrections shrank by a factor of a thousand at once or were tiny from the
-    /// first, the last was tiny, the condition is good, and no row of the Jacobian is so small that it may be rounding error. Regular solutions may be less plain.
+    /// first, the last was tiny, the condition is good, and no row of the Jacobian is so small that it may be rounding error. Regular
+    /// solutions may be less plain.
     pub plain: bool,
     /// Largest residual, each relative to its row of the Jacobian times the sizes of the coordinates.
     pub residual: f64,

@@ -112,9 +112,9 @@ impl TrackerOptions {
             ("beta_tau", self.beta_tau),
             ("beta_tau_last", self.beta_tau_last),
             ("corrector_tolerance", self.corrector_tolerance),
-            ("drop_complex", self.drop_complex.unwrap_or(1.0)),
         ])?;
         OptionError::at_least("max_steps", self.max_steps as f64, 1.0, "at least 1")?;
+        OptionError::at_least("drop_complex", self.drop_complex.unwrap_or(0.0), 0.0, "zero or more")?;
         OptionError::at_least("min_t", self.min_t, 0.0, "zero or more")?;
         OptionError::at_least("endgame_start", self.endgame_start, 0.0, "zero or more")
     }
