@@ -63,7 +63,7 @@ fn known_numbers_spare_the_endgame() {
             let whole = solved(text, &options);
             assert_eq!((whole.solutions.len(), whole.paths.at_infinity, whole.paths.dropped), (2, 2, 0));
             options.known = Some(2);
-            let known = solved(text, &options);
+            let known = solve_text(text, &options).unwrap();
             assert_eq!(known.solutions, whole.solutions);
             assert_eq!((known.paths.finite, known.paths.dropped, known.paths.failed), (2, 2, 0));
             // More than there are: every path is taken to its end.
