@@ -21,7 +21,7 @@ use legs::{Leg, Legs};
 use num_complex::Complex64;
 use poly::Evaluate;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
-use walker::{Sample, Walker};
+use walker::{LEAST_SHRINK, Sample, Walker};
 
 /// Settings of the endgame.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,7 +57,7 @@ impl EndgameOptions {
             ("endgame.min_radius", self.min_radius),
             ("endgame.shrink", self.shrink),
         ])?;
-        OptionError::at_least("endgame.shrink", self.shrink, 1.5, "at least 1.5")?;
+        OptionError::at_least("endgame.shrink", self.shrink, LEAST_SHRINK, "at least 1.5")?;
         OptionError::at_least("endgame.turns", self.turns as f64, 1.0, "at least 1")
     }
 }

@@ -21,7 +21,7 @@ const CLOSED: f64 = 1e-10;
 /// After so many loops that were too wide the path is tracked straight to zero.
 const TRY_HOME: u32 = 2;
 /// Each circle is at least that many times smaller than the one before.
-const LEAST_SHRINK: f64 = 1.5;
+pub(super) const LEAST_SHRINK: f64 = 1.5;
 
 /// The end of a leg.
 pub(super) struct Sample {

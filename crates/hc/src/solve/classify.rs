@@ -4,6 +4,7 @@ use super::equations::Equations;
 use super::paths::{CLUSTER, End, Ends, groups};
 use super::{Direction, Solution};
 use crate::distinct::{coincidences, relative_distance};
+use crate::fibre::PathCounts;
 use crate::linalg::Lu;
 use crate::random::Random;
 use crate::refine::{Refined, Refiner};
@@ -41,6 +42,20 @@ pub(super) struct Classified {
     pub(super) directions: Vec<Direction>,
     pub(super) lost: usize,
     pub(super) dropped: usize,
+}
+
+impl Classified {
+    /// How `tracked` paths ended; `retracked` tracks were run again.
+    pub(super) fn counts(&self, tracked: usize, retracked: usize) -> PathCounts {
+        PathCounts {
+            tracked,
+            finite: tracked - self.infinite - self.lost - self.dropped,
+            at_infinity: self.infinite,
+            failed: self.lost,
+            dropped: self.dropped,
+            retracked,
+        }
+    }
 }
 
 /// Sorts ends into solutions; `member` is the system with its coefficients. Without it, singular ends are lost.

@@ -3,7 +3,7 @@
 use super::classify::{Excess, classify};
 use super::paths;
 use super::{SolveOptions, Solved};
-use crate::fibre::{Fibre, PathCounts};
+use crate::fibre::Fibre;
 use num_complex::Complex64;
 use num_traits::ToPrimitive;
 use poly::{Evaluate, Polynomial, SparseSystem, System};
@@ -45,21 +45,12 @@ pub fn solve_member<E: Evaluate>(
     let member = if !ends.singular.is_empty() { expanded(family, target) } else { None };
     let member = member.as_ref().map(|(system, coefficients)| (system, &coefficients[..]));
     let found = classify(member, &ends, &excess, options.paths.coincidence);
-    let (tracked, retracked) = (fibre.len(), ends.retracked);
-    let paths = PathCounts {
-        tracked,
-        finite: tracked - found.infinite - found.lost - found.dropped,
-        at_infinity: found.infinite,
-        failed: found.lost,
-        dropped: found.dropped,
-        retracked,
-    };
     Solved {
         start: None,
         mixed_volume: None,
         bezout_number: None,
         multihomogeneous_number: None,
-        paths,
+        paths: found.counts(fibre.len(), ends.retracked),
         on_components: found.on_components,
         component_points: found.component_points.iter().map(|x| x.iter().map(|z| [z.re, z.im]).collect()).collect(),
         excess: found.excess,

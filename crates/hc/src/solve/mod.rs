@@ -60,7 +60,8 @@ pub struct SolveOptions {
     /// Settings for the ends of paths that are not regular.
     pub endgame: EndgameOptions,
     /// How many regular solutions there are, if that is known, for instance of a family. Once so many are found, paths without an
-    /// end are left where they are and count as dropped. Default `None`: every path is taken to its end.
+    /// end are left where they are and count as dropped; as long as paths share an end, these alone are tracked again. Default `None`:
+    /// every path is taken to its end.
     pub known: Option<usize>,
     /// How often everything is done again from another start system while paths are lost. Default 2.
     pub restarts: u32,
@@ -274,14 +275,7 @@ pub fn solve(polynomials: &[Polynomial<Exact>], options: &SolveOptions) -> Resul
     }
     let whole = start_systems > 0 && best.found.lost == 0;
     let Best { start, tracked, found } = best;
-    let paths = PathCounts {
-        tracked,
-        finite: tracked - found.infinite - found.lost - found.dropped,
-        at_infinity: found.infinite,
-        failed: found.lost,
-        dropped: found.dropped,
-        retracked,
-    };
+    let paths = found.counts(tracked, retracked);
     let mut solutions = found.solutions;
     solutions.iter_mut().for_each(|s| starts.equations.unscale(&mut s.value));
     let pairs = |x: &Vec<Complex64>| x.iter().map(|z| [z.re, z.im]).collect::<Vec<[f64; 2]>>();

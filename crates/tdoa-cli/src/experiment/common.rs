@@ -27,6 +27,14 @@ impl Common {
         self.seed..self.seed.saturating_add(instances)
     }
 
+    /// So many networks of each size, and the keys of their rows.
+    pub(super) fn trials(&self, sizes: &[Size], instances: u64) -> (Vec<(Size, u64)>, Vec<String>) {
+        let trials: Vec<(Size, u64)> =
+            sizes.iter().flat_map(|&size| self.seeds(instances).map(move |seed| (size, seed))).collect();
+        let keys = trials.iter().map(|(size, seed)| format!("{size},{seed}")).collect();
+        (trials, keys)
+    }
+
     /// Makes the directory and says where a file in it lies.
     pub(super) fn file(&self, name: &str) -> Result<PathBuf, Failure> {
         std::fs::create_dir_all(&self.output).map_err(|error| {

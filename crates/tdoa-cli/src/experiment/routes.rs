@@ -29,10 +29,7 @@ const HEADER: &str =
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let common = &arguments.common;
-    let trials: Vec<(Size, u64)> = (arguments.configuration.iter())
-        .flat_map(|&size| common.seeds(arguments.instances).map(move |seed| (size, seed)))
-        .collect();
-    let keys: Vec<String> = trials.iter().map(|(size, seed)| format!("{size},{seed}")).collect();
+    let (trials, keys) = common.trials(&arguments.configuration, arguments.instances);
     let rows = resume(&common.file("trials.csv")?, HEADER, &keys, common.threads, Solver::new, |solver, k| {
         let (size, seed) = trials[k];
         let simulation = normal(size, 0.0, seed)?;

@@ -8,9 +8,7 @@ use hc::monitor::Monitor;
 use hc::solve::{SolveOptions, Start, solve};
 use num_complex::Complex64;
 
-/// How often paths that fail are tracked again, for each of the start systems that are tried while roots are missing: of all but the
-/// last those that have jumped. Paths whose ends are hard to find lead out of the torus: another start system finds a missing
-/// root sooner.
+/// How often paths that fail are tracked again, for each of the start systems that are tried while roots are missing.
 const RETRIES: [u32; 4] = [2, 2, 2, 4];
 
 /// Relative distance up to which roots from different start systems are the same.
@@ -32,6 +30,7 @@ pub(crate) fn roots<F: Formulation>(
         let mut options = SolveOptions::default();
         options.seed = seed;
         options.set_monitor(monitor.clone());
+        // Most paths that need more than the first loop of the endgame lead out of the torus: only the last start system spends that.
         if seed as usize + 1 < RETRIES.len() {
             options.endgame.min_radius = options.endgame.radius;
         }
