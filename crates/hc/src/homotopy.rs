@@ -4,6 +4,7 @@
 //! homotopies differ only in their [`ParameterPath`].
 
 use num_complex::Complex64;
+use poly::simd::{Isa, Kernel};
 use poly::{ComplexDd, Lane, Scalar};
 
 /// A path `p(t)`, `t` from 1 to 0, in the parameters of a system.
@@ -71,8 +72,24 @@ impl Segment {
 
     /// Writes the parameters at `t`, real or complex, to twice the digits into `p`, one entry a parameter.
     pub fn extended(&self, t: &ComplexDd, p: &mut [ComplexDd]) {
-        for ((p, target), direction) in p.iter_mut().zip(&self.target).zip(&self.direction) {
-            *p = Scalar::mul_add(&ComplexDd::new(*direction), t, &ComplexDd::new(*target));
+        Isa::detect().run(Extended { segment: self, t, p });
+    }
+}
+
+/// The parameters of a segment to twice the digits.
+struct Extended<'a> {
+    segment: &'a Segment,
+    t: &'a ComplexDd,
+    p: &'a mut [ComplexDd],
+}
+
+impl Kernel for Extended<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for ((p, target), direction) in self.p.iter_mut().zip(&self.segment.target).zip(&self.segment.direction) {
+            *p = Scalar::mul_add(&ComplexDd::new(*direction), self.t, &ComplexDd::new(*target));
         }
     }
 }

@@ -41,6 +41,8 @@ pub struct Refiner<'a, E: Evaluate> {
     squares: Vec<[f64; 1]>,
     scales: Vec<f64>,
     estimate: Estimate,
+    /// The random changes of the parameters, one draw after the other.
+    changes: Vec<Complex64>,
     /// A result for whoever needs one for a while.
     pub(crate) spare: Refined,
 }
@@ -88,6 +90,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
             squares: Vec::new(),
             scales: Vec::new(),
             estimate: Estimate::default(),
+            changes: Vec::new(),
             spare: Refined::default(),
         }
     }
@@ -201,14 +204,17 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
     }
 
     fn blur(&mut self, p: &[ComplexDd], x: &[Complex64], factored: bool) -> Vec<f64> {
-        let mut random = Random::new(0, 4);
         if !factored {
             weights(x, &mut self.squares);
             self.factor(p, x);
         }
+        if self.changes.is_empty() {
+            let mut random = Random::new(0, 4);
+            self.changes.extend((0..BLUR_DRAWS * p.len()).map(|_| 1.0 + BLUR_STEP * random.unit()));
+        }
         let mut blur = vec![0.0; x.len()];
-        for _ in 0..BLUR_DRAWS {
-            self.rounded_p.iter_mut().zip(p).for_each(|(r, p)| *r = p.high() * (1.0 + BLUR_STEP * random.unit()));
+        for changes in self.changes.chunks_exact(p.len().max(1)) {
+            self.rounded_p.iter_mut().zip(p).zip(changes).for_each(|((r, p), change)| *r = p.high() * change);
             self.system.values(&mut self.memory, x, &self.rounded_p, &mut self.values);
             self.lu.solve(&mut self.values);
             for (blur, d) in blur.iter_mut().zip(&self.values) {

@@ -86,13 +86,7 @@ impl<F: Formulation> Engine<F> {
             Found::<F> { measured, data, options, target, roots, counts: RootCounts::default(), candidates };
         let (paths, stopped_early) = match options.start {
             Start::Stored => self.tracking.run(&mut found),
-            Start::Polyhedral => {
-                self.tracking.paths.clear(self.tracking.stored.dimension);
-                let (roots, paths) = scratch::roots::<F>(parameters, &options.paths.tracker.monitor)?;
-                roots.iter().for_each(|root| found.add(root));
-                found.counts.complex = roots.len();
-                (paths, false)
-            }
+            Start::Polyhedral => self.tracking.from_scratch(&mut found)?,
         };
         let Found { counts, mut candidates, .. } = found;
         rank(&mut candidates);
@@ -174,6 +168,31 @@ impl<F: Formulation> Tracking<F> {
         self.paths.iter().filter(|(r, _)| r.end == PathEnd::Success).for_each(|(_, x)| found.add(x));
         found.counts.complex = counts.finite;
         (counts, false)
+    }
+
+    /// The same from a polyhedral start system: for the data, and where that leaves roots missing through a random member.
+    fn from_scratch(&mut self, found: &mut Found<'_, F>) -> Result<(PathCounts, bool), SolveError> {
+        let monitor = &found.options.paths.tracker.monitor;
+        let direct = scratch::at_data::<F>(found.target, monitor)?;
+        let mut spent = direct.paths.retracked;
+        if !direct.whole {
+            let (member, tracked) = scratch::at_random::<F>(found.target, monitor)?;
+            spent += tracked;
+            if let Some(mut member) = member {
+                spent += direct.paths.tracked;
+                std::mem::swap(&mut self.stored, &mut member);
+                let (paths, stopped_early) = self.run(found);
+                self.stored = member;
+                if monitor.is_cancelled() {
+                    return Err(SolveError::Cancelled);
+                }
+                return Ok((PathCounts { retracked: spent + paths.retracked, ..paths }, stopped_early));
+            }
+        }
+        self.paths.clear(self.stored.dimension);
+        direct.fibre.solutions.chunks_exact(self.stored.dimension).for_each(|root| found.add(root));
+        found.counts.complex = direct.fibre.len();
+        Ok((PathCounts { retracked: spent, ..direct.paths }, false))
     }
 
     /// How the paths that are stored have ended.

@@ -1,64 +1,94 @@
-//! The paper's own route: a family solved from nothing for one matrix, by a polyhedral start system.
+//! The paper's own route: a family solved from nothing, by a polyhedral start system.
+//!
+//! First the member at the data is solved as it stands, as in the paper. Far more paths leave the torus than end in it, and roots
+//! with large coordinates look like such paths for long. Where that leaves roots missing, a member at random complex parameters, whose
+//! roots are of ordinary size, is solved by a polyhedral start system too, and its roots are tracked to the data.
 
 use super::SolveError;
 use super::formulation::Formulation;
 use crate::network::PathCounts;
-use hc::distinct::relative_distance;
+use hc::fibre::Fibre;
 use hc::monitor::Monitor;
+use hc::random::Random;
 use hc::solve::{SolveOptions, Start, solve};
 use num_complex::Complex64;
 
-/// How often paths that fail are tracked again, for each of the start systems that are tried while roots are missing.
-const RETRIES: [u32; 4] = [2, 2, 2, 4];
+/// So many random members are tried until all roots of one are found.
+const MEMBERS: u64 = 4;
 
-/// Relative distance up to which roots from different start systems are the same.
-const SAME: f64 = 1e-8;
+/// The roots of one member, and the paths that led to them.
+pub(crate) struct Roots {
+    /// The parameters, and the roots in the torus. In the families of this crate the spurious roots and components lie outside it.
+    pub(crate) fibre: Fibre,
+    pub(crate) paths: PathCounts,
+    /// Whether there are as many as a generic member has.
+    pub(crate) whole: bool,
+}
 
-/// All roots in the torus for the real parameters `f`, with the paths that led to them, which heed the monitor. In the families of this
-/// crate the spurious roots and components lie outside the torus.
-pub(crate) fn roots<F: Formulation>(
-    f: &[f64],
+/// The roots at the data, from a polyhedral start system, which heeds the monitor.
+pub(crate) fn at_data<F: Formulation>(target: &[Complex64], monitor: &Monitor) -> Result<Roots, SolveError> {
+    roots::<F>(target, seed(target), 0, monitor)
+}
+
+/// All roots of a random member, another one for other data, with the number of paths it took; none if some stay missing in every
+/// member that is tried.
+pub(crate) fn at_random<F: Formulation>(
+    target: &[Complex64],
     monitor: &Monitor,
-) -> Result<(Vec<Vec<Complex64>>, PathCounts), SolveError> {
-    let refused = |error: &dyn std::fmt::Display| SolveError::Polyhedral(error.to_string());
-    let family = hc::poly::parse::family(F::FAMILY).map_err(|e| refused(&e))?;
-    let system = family.system.at(f).map_err(|e| refused(&e))?;
-    let polynomials = system.expand(&Default::default()).map_err(|e| refused(&e))?;
-    let mut roots: Vec<Vec<Complex64>> = Vec::new();
-    let mut paths = PathCounts::default();
-    for (seed, retries) in (0..).zip(RETRIES) {
-        let mut options = SolveOptions::default();
-        options.seed = seed;
-        options.set_monitor(monitor.clone());
-        // Most paths that need more than the first loop of the endgame lead out of the torus: only the last start system spends that.
-        if seed as usize + 1 < RETRIES.len() {
-            options.endgame.min_radius = options.endgame.radius;
-        }
-        options.paths.retries = retries;
-        // No member has more isolated roots than the generic one: once as many are found the other paths lead out of the torus.
-        options.known = family.roots;
-        options.start = Start::Polyhedral;
-        options.torus_only = true;
-        // Paths that lead out of the torus may end badly; the known number of roots tells whether one in it is missing.
-        options.restarts = 0;
-        let found = solve(&polynomials, &options).map_err(|e| refused(&e))?;
-        if found.interrupted {
-            return Err(SolveError::Cancelled);
-        }
-        let regular = found.solutions.iter().filter(|s| !s.singular);
-        for root in regular.map(|s| s.value.iter().map(|&[re, im]| Complex64::new(re, im)).collect::<Vec<_>>()) {
-            if roots.iter().all(|other| relative_distance(other, &root) > SAME) {
-                roots.push(root);
-            }
-        }
-        paths.retracked += found.paths.retracked + if seed > 0 { found.paths.tracked } else { 0 };
-        paths = PathCounts { retracked: paths.retracked, ..found.paths };
-        if family.roots.is_some_and(|known| roots.len() >= known) {
-            paths.finite = roots.len();
-            paths.at_infinity = paths.tracked - roots.len();
-            (paths.failed, paths.dropped) = (0, 0);
-            break;
+) -> Result<(Option<Fibre>, usize), SolveError> {
+    let mut tracked = 0;
+    for member in 0..MEMBERS {
+        let seed = seed(target).wrapping_add(member);
+        let parameters = Random::new(seed, 0).normals(target.len());
+        let found = roots::<F>(&parameters, seed, 2, monitor)?;
+        tracked += found.paths.tracked + found.paths.retracked;
+        if found.whole {
+            return Ok((Some(found.fibre), tracked));
         }
     }
-    Ok((roots, paths))
+    Ok((None, tracked))
+}
+
+/// A seed that is another one for other data.
+fn seed(target: &[Complex64]) -> u64 {
+    target.iter().fold(0, |seed: u64, f| seed.rotate_left(7) ^ f.re.to_bits())
+}
+
+fn roots<F: Formulation>(
+    parameters: &[Complex64],
+    seed: u64,
+    retries: u32,
+    monitor: &Monitor,
+) -> Result<Roots, SolveError> {
+    let refused = |error: &dyn std::fmt::Display| SolveError::Polyhedral(error.to_string());
+    let family = hc::poly::parse::family(F::FAMILY).map_err(|e| refused(&e))?;
+    let system = family.system.at(parameters).map_err(|e| refused(&e))?;
+    let polynomials = system.expand(&Default::default()).map_err(|e| refused(&e))?;
+    let mut options = SolveOptions::default();
+    options.seed = seed;
+    options.set_monitor(monitor.clone());
+    options.start = Start::Polyhedral;
+    options.torus_only = true;
+    // No member has more isolated roots than the generic one: once as many are found the other paths lead out of the torus.
+    options.known = family.roots;
+    // Paths that need many steps or more than one small loop of the endgame nearly all lead out of the torus.
+    options.endgame.min_radius = options.endgame.radius;
+    options.endgame.turns = 2;
+    options.paths.tracker.max_steps = 1_000;
+    options.paths.retries = retries;
+    options.restarts = 0;
+    let found = solve(&polynomials, &options).map_err(|e| refused(&e))?;
+    if found.interrupted {
+        return Err(SolveError::Cancelled);
+    }
+    let regular = found.solutions.iter().filter(|s| !s.singular);
+    let solutions: Vec<Complex64> =
+        regular.flat_map(|s| s.value.iter().map(|&[re, im]| Complex64::new(re, im))).collect();
+    let fibre = Fibre { parameters: parameters.to_vec(), dimension: F::WEIGHTS.len(), solutions };
+    let missing = family.roots.map_or(0, |known| known.saturating_sub(fibre.len()));
+    let mut paths = PathCounts { finite: fibre.len(), dropped: 0, ..found.paths };
+    paths.failed = if missing > 0 { found.paths.failed.max(missing) } else { 0 };
+    paths.at_infinity = paths.tracked - paths.finite - paths.failed;
+    let whole = missing == 0;
+    Ok(Roots { fibre, paths, whole })
 }
