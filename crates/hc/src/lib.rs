@@ -75,6 +75,7 @@ pub mod refine;
 pub mod solve;
 pub mod start;
 pub mod start_file;
+mod store;
 pub mod trace;
 pub mod tracker;
 

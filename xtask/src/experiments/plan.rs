@@ -42,6 +42,14 @@ pub(super) const PLAN: &[Experiment] = &[
     plain("clean-6r3s", "clean --configuration 6r/3s", 100_000, 20),
     plain("clean", "clean --configuration 6r/4s,5r/4s,4r/5s", 20_000, 10),
     plain("clean-larger", "clean --configuration 7r/3s,5r/5s,4r/6s", 20_000, 10),
+    plain("clean-others", "clean --configuration 9r/3s,7r/4s,5r/6s", 20_000, 10),
+    Experiment {
+        name: "routes",
+        command: "routes",
+        full: Some(100),
+        quick: (2, "--configuration 6r/3s,5r/6s"),
+        recordings: false,
+    },
     plain("noise", "noise", 1000, 5),
     plain("calibrate", "calibrate", 500, 2),
     plain(

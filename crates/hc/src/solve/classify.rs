@@ -1,7 +1,7 @@
 //! From the ends of paths to solutions: multiplicities, and which singular ends are isolated.
 
 use super::equations::Equations;
-use super::paths::{CLUSTER, End, Ends, groups};
+use super::paths::{CLUSTER, Ends, groups};
 use super::{Direction, Solution};
 use crate::distinct::{coincidences, relative_distance};
 use crate::fibre::PathCounts;
@@ -11,7 +11,6 @@ use crate::refine::{Refined, Refiner};
 use num_complex::Complex64;
 use poly::simd::Isa;
 use poly::{Evaluate, SparseSystem, SupportError};
-use std::collections::BTreeMap;
 
 /// Imaginary parts of regular solutions up to this share of the point count as zero.
 const REAL: f64 = 1e-10;
@@ -66,7 +65,6 @@ pub(super) fn classify(
     coincidence: f64,
 ) -> Classified {
     let mut out = Classified::default();
-    let mut directions: BTreeMap<&(Vec<i64>, usize), usize> = BTreeMap::new();
     let regular: Vec<&Refined> = all.regular.values().collect();
     let mut repeated = vec![false; regular.len()];
     for group in coincidences(regular.iter().enumerate().map(|(k, r)| (k, &r.point[..])), coincidence) {
@@ -79,20 +77,11 @@ pub(super) fn classify(
             out.solutions.push(regular_solution(refined));
         }
     }
-    out.lost = all.ends.iter().filter(|end| **end == End::LOST).count();
-    out.dropped = all.ends.iter().filter(|end| **end == End::DROPPED).count();
-    for direction in all.ends.iter().filter_map(|end| end.direction()) {
-        out.infinite += 1;
-        *directions.entry(&all.directions[direction]).or_default() += 1;
-    }
-    out.directions = directions
-        .into_iter()
-        .map(|((valuations, denominator), paths)| Direction {
-            valuations: valuations.clone(),
-            denominator: *denominator,
-            paths,
-        })
-        .collect();
+    (out.lost, out.dropped) = (all.lost, all.dropped);
+    out.infinite = all.directions.iter().map(|(_, _, paths)| paths).sum();
+    let directions = all.directions.iter().cloned();
+    out.directions =
+        directions.map(|(valuations, denominator, paths)| Direction { valuations, denominator, paths }).collect();
 
     let singular: Vec<(&[Complex64], usize, f64)> =
         all.singular.values().map(|end| (&end.point[..], end.winding, end.error)).collect();

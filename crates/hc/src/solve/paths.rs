@@ -9,6 +9,7 @@ use crate::monitor;
 use crate::refine::{Refined, Refiner};
 use crate::solve::SolveOptions;
 use crate::start::Source;
+use crate::store::Records;
 use crate::tracker::{PathEnd, TrackerOptions, track};
 use num_complex::Complex64;
 use poly::Evaluate;
@@ -46,16 +47,40 @@ pub(super) struct SingularEnd {
     pub(super) error: f64,
 }
 
+/// The ends of all paths by their numbers.
+struct EndList {
+    count: usize,
+    records: Records,
+}
+
+impl EndList {
+    /// None known.
+    fn new(count: usize) -> Self {
+        EndList { count, records: Records::new(4) }
+    }
+
+    fn get(&mut self, path: usize) -> End {
+        End(self.records.get(path).iter().fold(0, |end, &byte| end << 8 | u32::from(byte)))
+    }
+
+    fn set(&mut self, path: usize, end: End) {
+        self.records.set(path, &end.0.to_be_bytes());
+    }
+}
+
 /// How all paths end. Of paths to infinity no points are kept.
 pub(super) struct Ends {
-    /// In the order of the start solutions.
-    pub(super) ends: Vec<End>,
+    /// Paths whose end is not known.
+    pub(super) lost: usize,
+    /// Paths whose end is not sought any more.
+    pub(super) dropped: usize,
     /// The regular ends by the numbers of their paths.
     pub(super) regular: BTreeMap<usize, Refined>,
     /// The singular ends likewise.
     pub(super) singular: BTreeMap<usize, SingularEnd>,
-    /// Directions of paths to infinity: valuations in units of the reciprocal winding number, and that number.
-    pub(super) directions: Vec<(Vec<i64>, usize)>,
+    /// Directions of paths to infinity, in order: valuations in units of the reciprocal winding number, that number, and the number
+    /// of paths.
+    pub(super) directions: Vec<(Vec<i64>, usize, usize)>,
     /// Tracks that were run again.
     pub(super) retracked: usize,
     /// Whether they were given up on trial: the ends are then no result.
@@ -94,7 +119,7 @@ pub(super) fn follow<E: Evaluate, S: Source<E>>(
         target,
         excess,
         options,
-        ends: vec![End::LOST; count],
+        ends: EndList::new(count),
         regular: BTreeMap::new(),
         singular: BTreeMap::new(),
         directions: BTreeMap::new(),
@@ -124,7 +149,7 @@ pub(super) fn follow<E: Evaluate, S: Source<E>>(
                 stage.drop_others();
                 return stage.finish(retracked, false);
             }
-            regular += numbers.iter().filter(|&&k| stage.ends[k] == End::REGULAR).count();
+            regular += numbers.iter().filter(|&k| stage.regular.contains_key(k)).count();
             let irregular = (done - regular) * IRREGULAR > done;
             if trial && level == 0 && irregular && !options.monitor().is_cancelled() {
                 return stage.finish(retracked, true);
@@ -145,7 +170,7 @@ pub(super) fn follow<E: Evaluate, S: Source<E>>(
     // Paths that still share an end: it counts once.
     let which = again.unwrap_or_default();
     for &k in &which {
-        let first = match stage.ends[k] {
+        let first = match stage.ends.get(k) {
             End::REGULAR => !which.iter().take_while(|&&j| j < k).any(|&j| stage.same_regular(j, k)),
             End::SINGULAR => true,
             _ => false,
@@ -164,7 +189,7 @@ struct Stage<'a, E, S> {
     target: &'a [Complex64],
     excess: &'a Excess,
     options: &'a SolveOptions,
-    ends: Vec<End>,
+    ends: EndList,
     regular: BTreeMap<usize, Refined>,
     singular: BTreeMap<usize, SingularEnd>,
     /// Numbers of directions to infinity.
@@ -225,7 +250,7 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, E, S> {
         let to_near = Segment::new(self.start.parameters(), &near);
         let held = track(self.system, &to_near, &reached.points, &undecided, &settings);
         let held = held.iter().filter(|(r, _)| r.end == PathEnd::Success).map(|(r, x)| (r.path, start, x));
-        let turns = self.ends.len();
+        let turns = self.ends.count;
         let handed = handed.into_iter().chain(held);
         for ending in endgame(self.system, &self.segment, handed, turns, &settings, &self.options.endgame) {
             self.take(reached.numbers[ending.path], ending, &mut refiner, again);
@@ -233,13 +258,13 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, E, S> {
     }
 
     fn lose(&mut self, path: usize) {
-        self.ends[path] = End::LOST;
+        self.ends.set(path, End::LOST);
         self.regular.remove(&path);
         self.singular.remove(&path);
     }
 
     fn end_regularly(&mut self, path: usize, refined: Refined) {
-        self.ends[path] = End::REGULAR;
+        self.ends.set(path, End::REGULAR);
         self.regular.insert(path, refined);
     }
 
@@ -257,12 +282,13 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, E, S> {
         }
         match ending.verdict {
             Verdict::Finite { winding, error } => {
-                self.ends[path] = End::SINGULAR;
+                self.ends.set(path, End::SINGULAR);
                 self.singular.insert(path, SingularEnd { point: ending.point, winding, error });
             }
             Verdict::Infinite { winding, valuations } => {
                 let next = self.directions.len() as u32;
-                self.ends[path] = End::infinite(*self.directions.entry((valuations, winding)).or_insert(next));
+                let direction = *self.directions.entry((valuations, winding)).or_insert(next);
+                self.ends.set(path, End::infinite(direction));
             }
             Verdict::Reached | Verdict::Lost => {}
         }
@@ -278,7 +304,11 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, E, S> {
     }
 
     fn drop_others(&mut self) {
-        self.ends.iter_mut().filter(|end| **end == End::LOST).for_each(|end| *end = End::DROPPED);
+        for path in 0..self.ends.count {
+            if self.ends.get(path) == End::LOST {
+                self.ends.set(path, End::DROPPED);
+            }
+        }
     }
 
     fn same_regular(&self, j: usize, k: usize) -> bool {
@@ -288,11 +318,18 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, E, S> {
         a.zip(b).is_some_and(near)
     }
 
-    fn finish(self, retracked: usize, abandoned: bool) -> Ends {
-        let mut directions: Vec<((Vec<i64>, usize), u32)> = self.directions.into_iter().collect();
-        directions.sort_by_key(|d| d.1);
-        let directions = directions.into_iter().map(|d| d.0).collect();
-        Ends { ends: self.ends, regular: self.regular, singular: self.singular, directions, retracked, abandoned }
+    fn finish(mut self, retracked: usize, abandoned: bool) -> Ends {
+        let mut infinite = vec![0; self.directions.len()];
+        let (mut lost, mut dropped) = (0, 0);
+        for path in 0..self.ends.count {
+            let end = self.ends.get(path);
+            lost += usize::from(end == End::LOST);
+            dropped += usize::from(end == End::DROPPED);
+            end.direction().and_then(|direction| infinite.get_mut(direction)).into_iter().for_each(|paths| *paths += 1);
+        }
+        let directions = self.directions.into_iter().map(|((v, winding), k)| (v, winding, infinite[k as usize]));
+        let directions = directions.filter(|(_, _, paths)| *paths > 0).collect();
+        Ends { lost, dropped, regular: self.regular, singular: self.singular, directions, retracked, abandoned }
     }
 
     /// Paths that share a regular end, in their order.
@@ -303,11 +340,15 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, E, S> {
         which
     }
 
-    /// Paths that are lost, share a start or a regular end, have crossed on the way, or end in a cycle that is not whole.
-    fn doubtful(&self) -> Vec<usize> {
+    /// Paths that are lost, share a start or a regular end, have crossed on the way, or end in a cycle that is not whole; all if what is
+    /// known of them cannot be read.
+    fn doubtful(&mut self) -> Vec<usize> {
         let mut which = self.jumped();
-        which.extend(self.starts.met(self.options.paths.coincidence));
-        which.extend(self.middles.met(CROSSED));
+        let crossed = [self.starts.met(self.options.paths.coincidence), self.middles.met(CROSSED)];
+        if crossed.iter().any(Result::is_err) {
+            (0..self.ends.count).for_each(|path| self.lose(path));
+        }
+        which.extend(crossed.into_iter().flatten().flatten());
         let singular = self.singular.iter().map(|(&k, end)| (k, &end.point[..]));
         for group in groups(singular, CLUSTER) {
             // Paths of winding number m come in cycles of m.
@@ -319,7 +360,7 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, E, S> {
                 }
             }
         }
-        which.extend(self.ends.iter().enumerate().filter(|(_, end)| **end == End::LOST).map(|(k, _)| k));
+        which.extend((0..self.ends.count).filter(|&path| self.ends.get(path) == End::LOST));
         which.sort_unstable();
         which.dedup();
         which

@@ -1,44 +1,64 @@
 //! Where paths were, in two numbers each: enough to tell which ones may have met, without keeping their points.
 
 use crate::distinct::{projection, relative_distance};
+use crate::store::{Records, Sorter};
 use num_complex::Complex64;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
+use std::io;
 
 /// A projection and roughly the size of a point for every path, twelve bytes; the points themselves only of few.
 pub(super) struct Prints {
     paths: usize,
-    /// Not a number where the path has no point; empty until one has.
-    keys: Vec<f64>,
-    /// The upper halves of the doubles.
-    sizes: Vec<u32>,
+    /// None until a path has a point.
+    records: Option<Records>,
     points: BTreeMap<usize, Vec<Complex64>>,
 }
 
 /// Bound on what the lower half of a double adds, relative, with a margin.
 const ROUGH: f64 = 1.0 / (1 << 19) as f64;
 
+/// Bytes of a print.
+const WIDTH: usize = 12;
+
+/// A print in bytes, of which the first eight are not all zero and in the order of the keys.
+fn written(key: f64, size: f64) -> [u8; WIDTH] {
+    let bits = key.to_bits();
+    let ordered = if key.is_sign_negative() { !bits } else { bits | 1 << 63 };
+    let mut record = [0; WIDTH];
+    record[..8].copy_from_slice(&ordered.to_be_bytes());
+    // The upper half of the double.
+    record[8..].copy_from_slice(&((size.to_bits() >> 32) as u32).to_be_bytes());
+    record
+}
+
+/// Key and rough size of a print.
+fn read(record: &[u8]) -> (f64, f64) {
+    let number = |bytes: &[u8]| bytes.iter().fold(0u64, |number, &byte| number << 8 | u64::from(byte));
+    let ordered = number(&record[..8]);
+    let key = f64::from_bits(if ordered >> 63 == 1 { ordered ^ 1 << 63 } else { !ordered });
+    (key, f64::from_bits(number(&record[8..WIDTH]) << 32))
+}
+
 impl Prints {
     pub(super) fn new(paths: usize) -> Self {
-        Prints { paths, keys: Vec::new(), sizes: Vec::new(), points: BTreeMap::new() }
+        Prints { paths, records: None, points: BTreeMap::new() }
     }
 
     pub(super) fn forget(&mut self, path: usize) {
-        if let Some(key) = self.keys.get_mut(path) {
-            *key = f64::NAN;
+        if let Some(records) = &mut self.records {
+            records.set(path, &[0; WIDTH]);
             self.points.remove(&path);
         }
     }
 
     /// Notes where a path was; with `keep` the point too, so that it is compared in full with others that are kept.
     pub(super) fn note(&mut self, path: usize, point: &[Complex64], keep: bool) {
-        if self.keys.is_empty() {
-            self.keys = vec![f64::NAN; self.paths];
-            self.sizes = vec![0; self.paths];
-        }
         self.forget(path);
         let size: f64 = point.iter().map(|z| z.re.abs() + z.im.abs()).sum();
-        self.keys[path] = projection(point);
-        self.sizes[path] = (size.to_bits() >> 32) as u32;
+        let key = projection(point);
+        if !key.is_nan() {
+            self.records.get_or_insert_with(|| Records::new(WIDTH)).set(path, &written(key, size));
+        }
         if keep {
             self.points.insert(path, point.to_vec());
         }
@@ -46,30 +66,43 @@ impl Prints {
 
     /// Paths that may have met others: all that are within the relative distance `tolerance` of another, and perhaps some
     /// that merely look so because one of the two points is not kept.
-    pub(super) fn met(&self, tolerance: f64) -> Vec<usize> {
-        let size = |path: usize| f64::from_bits(u64::from(self.sizes[path]) << 32);
-        let mut order: Vec<usize> = (0..self.keys.len()).filter(|&k| !self.keys[k].is_nan()).collect();
-        order.sort_unstable_by(|&a, &b| self.keys[a].total_cmp(&self.keys[b]).then(a.cmp(&b)));
+    ///
+    /// # Errors
+    /// If prints cannot be read back.
+    pub(super) fn met(&mut self, tolerance: f64) -> io::Result<Vec<usize>> {
+        let Some(records) = &mut self.records else { return Ok(Vec::new()) };
+        let mut sorter = Sorter::new(8 + 8 + 4);
+        for path in 0..self.paths {
+            let record = records.get(path);
+            if record[..8] != [0; 8] {
+                let [key, size] = [&record[..8], &record[8..]];
+                sorter.push(&[key, &(path as u64).to_be_bytes(), size].concat());
+            }
+        }
         let mut met = Vec::new();
-        for (i, &a) in order.iter().enumerate() {
-            for &b in &order[i + 1..] {
-                // Projections have coefficients of size at most one; sizes of coinciding points are nearly equal.
-                let largest = size(a).max(size(b)) * (1.0 + ROUGH);
-                if self.keys[b] - self.keys[a] > 2.0 * tolerance * largest {
-                    break;
-                }
+        let mut sorted = Sorter::merged(vec![sorter])?;
+        // Those before that may still be near.
+        let mut before: VecDeque<(f64, usize, f64)> = VecDeque::new();
+        while let Some(record) = sorted.next()? {
+            let (key, size) = read(&[&record[..8], &record[16..]].concat());
+            let b = record[8..16].iter().fold(0, |path, &byte| path << 8 | usize::from(byte));
+            // Projections have coefficients of size at most one; sizes of coinciding points are nearly equal.
+            before.retain(|&(other, _, size)| key - other <= 4.0 * tolerance * size);
+            for &(other, a, other_size) in &before {
+                let largest = size.max(other_size) * (1.0 + ROUGH);
                 let same = match (self.points.get(&a), self.points.get(&b)) {
                     (Some(x), Some(y)) => relative_distance(x, y) <= tolerance,
-                    _ => (size(a) - size(b)).abs() <= (2.0 * tolerance + ROUGH) * largest,
+                    _ => (other_size - size).abs() <= (2.0 * tolerance + ROUGH) * largest,
                 };
-                if same {
+                if same && key - other <= 2.0 * tolerance * largest {
                     met.extend([a, b]);
                 }
             }
+            before.push_back((key, b, size));
         }
         met.sort_unstable();
         met.dedup();
-        met
+        Ok(met)
     }
 }
 
@@ -84,15 +117,15 @@ mod tests {
         let points = [[z(1.0, 0.5), z(-2.0, 0.0)], [z(1.0, 0.5), z(-2.0, 1e-13)], [z(1.0, 0.5), z(-2.0, 1e-3)]];
         let mut prints = Prints::new(5);
         points.iter().enumerate().for_each(|(k, x)| prints.note(k + 1, x, false));
-        assert_eq!(prints.met(1e-11), [1, 2]);
+        assert_eq!(prints.met(1e-11).unwrap(), [1, 2]);
         prints.forget(1);
-        assert_eq!(prints.met(1e-11), [0usize; 0]);
+        assert_eq!(prints.met(1e-11).unwrap(), [0usize; 0]);
         // A small coordinate beside a large one shows only in points that are kept.
         for keep in [false, true] {
             prints.note(0, &[z(1e9, 0.0), z(0.0, 0.0)], keep);
             prints.note(1, &[z(1e9, 0.0), z(1e-5, 0.0)], keep);
-            assert_eq!(prints.met(1e-9), [0, 1]);
-            assert_eq!(prints.met(1e-11), if keep { vec![] } else { vec![0, 1] });
+            assert_eq!(prints.met(1e-9).unwrap(), [0, 1]);
+            assert_eq!(prints.met(1e-11).unwrap(), if keep { vec![] } else { vec![0, 1] });
         }
     }
 
@@ -106,8 +139,8 @@ mod tests {
             last = random.normals(4).iter().map(|z| z * size).collect();
             prints.note(path, &last, false);
         }
-        assert_eq!(prints.met(1e-11), [0usize; 0]);
+        assert_eq!(prints.met(1e-11).unwrap(), [0usize; 0]);
         prints.note(7_999, &last, false);
-        assert_eq!(prints.met(1e-11), [7_998, 7_999]);
+        assert_eq!(prints.met(1e-11).unwrap(), [7_998, 7_999]);
     }
 }

@@ -61,6 +61,9 @@ pub enum MixedError {
     /// Volumes beyond 64 bits, or determinants beyond 126.
     #[error("the exponents are so large that volumes of cells exceed 64 bits; divide exponents by common factors")]
     TooLarge,
+    /// Mixed cells that had been written to a temporary file could not be read back.
+    #[error("mixed cells cannot be read back from a temporary file; look at the folder for such files (TMPDIR)")]
+    Storage,
     /// The work was cancelled by its [`Monitor`].
     #[error("cancelled before all mixed cells were found")]
     Cancelled,

@@ -6,22 +6,38 @@ use super::toric::{Toric, rates};
 use super::{Reached, Supports};
 use crate::monitor::Monitor;
 use crate::random::Random;
+use crate::store::{Records, Sorter};
 use crate::tracker::{PathEnd, TrackerOptions, track};
 use num_complex::Complex64;
 use poly::SparseSystem;
+use std::sync::{Mutex, PoisonError};
 
-/// The mixed cells of one lifting, in eight bytes an edge and eight more. What belongs to a cell besides, its binomials, normal and
-/// weights, is made when its paths start.
+/// The mixed cells of one lifting, each with its edges and the number of its first path. What belongs to a cell besides, its binomials,
+/// normal and weights, is made when its paths start.
 pub(crate) struct Polyhedral {
     supports: Vec<Vec<Vec<i32>>>,
     lifting: Vec<Vec<i32>>,
     coefficients: Vec<Complex64>,
-    /// The edges of the cells, one a support, cell after cell in ascending order.
-    edges: Vec<[u32; 2]>,
-    /// Number of the first path of each cell.
-    first: Vec<u64>,
+    cells: Mutex<Cells>,
     /// Number of solutions: the mixed volume.
     pub(crate) mixed_volume: u64,
+}
+
+/// Cells in ascending order of their edges: the edges, one a support, then the number of the first path.
+struct Cells {
+    records: Records,
+    count: usize,
+    /// The number of the first path of each block of records.
+    heads: Vec<u64>,
+}
+
+/// A cell as it is stored.
+struct Stored {
+    /// Its place among the cells.
+    place: usize,
+    edges: Vec<[u32; 2]>,
+    /// Number of its first path.
+    first: u64,
 }
 
 /// Roots of the binomials of some cells, and the weights of the cells.
@@ -45,26 +61,23 @@ impl Polyhedral {
         let terms = supports.iter().map(Vec::len).sum();
         let coefficients: Vec<Complex64> = (0..terms).map(|_| random.unit() * (1.0 + 0.1 * random.unit().re)).collect();
         let (lifting, parts) = fine_cells(supports, &mut random, monitor)?;
-        let n = supports.len();
-        // In the order of their edges: which part holds a cell depends on the threads.
-        let mut order: Vec<(u32, u32)> = Vec::new();
-        for (p, part) in parts.iter().enumerate() {
-            let number = |k: usize| u32::try_from(k).map_err(|_| MixedError::TooLarge);
-            for k in 0..part.volumes.len() {
-                order.push((number(p)?, number(k)?));
-            }
-        }
-        let edges = |&(p, k): &(u32, u32)| &parts[p as usize].edges[k as usize * n..][..n];
-        order.sort_unstable_by(|a, b| edges(a).cmp(edges(b)));
-        let mut first = Vec::with_capacity(order.len());
+        // In the order of their edges: which sorter has a cell depends on the threads.
+        let mut sorted = Sorter::merged(parts).map_err(|_| MixedError::Storage)?;
+        let width = 8 * supports.len() + 8;
+        let mut cells = Cells { records: Records::new(width), count: 0, heads: Vec::new() };
         let mut mixed_volume = 0u64;
-        for &(p, k) in &order {
-            first.push(mixed_volume);
-            let volume = parts[p as usize].volumes[k as usize];
+        while let Some(mut record) = sorted.next().map_err(|_| MixedError::Storage)? {
+            if cells.count.is_multiple_of(cells.records.per_block()) {
+                cells.heads.push(mixed_volume);
+            }
+            let volume = record[width - 8..].iter().fold(0, |volume, &byte| volume << 8 | u64::from(byte));
+            record[width - 8..].copy_from_slice(&mixed_volume.to_be_bytes());
+            cells.records.set(cells.count, &record);
+            cells.count += 1;
             mixed_volume = mixed_volume.checked_add(volume).ok_or(MixedError::TooLarge)?;
         }
-        let edges = order.iter().flat_map(edges).copied().collect();
-        Ok(Polyhedral { supports: supports.to_vec(), lifting, coefficients, edges, first, mixed_volume })
+        let cells = Mutex::new(cells);
+        Ok(Polyhedral { supports: supports.to_vec(), lifting, coefficients, cells, mixed_volume })
     }
 
     pub(crate) fn parameters(&self) -> &[Complex64] {
@@ -86,22 +99,24 @@ impl Polyhedral {
         reached
     }
 
-    /// The roots with these numbers; those of a cell whose integers outgrow 127 bits are left out.
+    /// The roots with these numbers; those of a cell whose integers outgrow 127 bits, or that cannot be read, are left out.
     fn starts(&self, numbers: &[usize]) -> Starts {
         let mut starts = Starts { rates: Vec::new(), cells: Vec::new(), points: Vec::new(), numbers: Vec::new() };
+        let mut cells = self.cells.lock().unwrap_or_else(PoisonError::into_inner);
         let mut rest = numbers;
         let mut place = 0;
         while let Some(&number) = rest.first() {
-            let k = self.first.partition_point(|&first| first <= number as u64) - 1;
-            let end = self.first.get(k + 1).copied().unwrap_or(self.mixed_volume);
-            let (own, others) = rest.split_at(rest.partition_point(|&number| (number as u64) < end));
+            let Some(cell) = cells.with(number as u64) else { break };
+            let end = cells.first(cell.place + 1).unwrap_or(self.mixed_volume);
+            let (own, others) = rest.split_at(rest.partition_point(|&number| (number as u64) < end).max(1));
             rest = others;
-            let Some((binomials, sides, weights)) = self.cell(k, end - self.first[k]) else { continue };
+            let volume = end.checked_sub(cell.first).filter(|&volume| volume > 0);
+            let Some((binomials, sides, weights)) = volume.and_then(|v| self.cell(&cell.edges, v)) else { continue };
             starts.rates.extend(rates(&weights));
             for &number in own {
                 starts.numbers.push(number);
                 starts.cells.push(place);
-                starts.points.extend(binomials.solution(&sides, number as u64 - self.first[k]));
+                starts.points.extend(binomials.solution(&sides, number as u64 - cell.first));
             }
             place += 1;
         }
@@ -109,9 +124,7 @@ impl Polyhedral {
     }
 
     /// The binomials of a cell of this volume with their right-hand sides, and its weights.
-    fn cell(&self, k: usize, volume: u64) -> Option<(Binomials, Vec<Complex64>, Vec<f64>)> {
-        let n = self.supports.len();
-        let edges = &self.edges[k * n..(k + 1) * n];
+    fn cell(&self, edges: &[[u32; 2]], volume: u64) -> Option<(Binomials, Vec<Complex64>, Vec<f64>)> {
         let (mut exponents, mut sides, mut slopes, mut first) = (Vec::new(), Vec::new(), Vec::new(), 0);
         for ((points, lifts), edge) in self.supports.iter().zip(&self.lifting).zip(edges) {
             let [a, b] = edge.map(|p| p as usize);
@@ -128,27 +141,50 @@ impl Polyhedral {
     }
 }
 
+impl Cells {
+    /// The edges and the number of the first path of a cell, in bytes.
+    fn get(&mut self, place: usize) -> Option<(&[u8], u64)> {
+        let record = (place < self.count).then(|| self.records.get(place))?;
+        let (edges, first) = record.split_last_chunk::<8>()?;
+        Some((edges, u64::from_be_bytes(*first)))
+    }
+
+    fn first(&mut self, place: usize) -> Option<u64> {
+        Some(self.get(place)?.1)
+    }
+
+    /// The cell of a path.
+    fn with(&mut self, path: u64) -> Option<Stored> {
+        let block = self.heads.partition_point(|&head| head <= path).checked_sub(1)?;
+        let (mut low, mut high) = (block * self.records.per_block(), (block + 1) * self.records.per_block());
+        high = high.min(self.count);
+        // The last cell that begins at the path or before.
+        while high - low > 1 {
+            let middle = low.midpoint(high);
+            if self.first(middle)? <= path { low = middle } else { high = middle }
+        }
+        let (edges, first) = self.get(low)?;
+        let edges =
+            edges.as_chunks::<4>().0.as_chunks::<2>().0.iter().map(|edge| edge.map(u32::from_be_bytes)).collect();
+        Some(Stored { place: low, edges, first })
+    }
+}
+
 /// Some of the cells of a lifting.
 struct Part<'a> {
     supports: &'a Supports,
     lifting: &'a [Vec<i32>],
-    found: Found,
+    /// Edges and volumes.
+    found: Sorter,
     /// Whether no cell has further points of height zero.
     is_fine: bool,
-}
-
-/// Cells as they were found.
-#[derive(Default)]
-struct Found {
-    edges: Vec<[u32; 2]>,
-    volumes: Vec<u64>,
 }
 
 impl Keep for Part<'_> {
     fn keep(&mut self, edges: &[[u32; 2]], volume: u64, normal: &[i128]) {
         self.is_fine = self.is_fine && weights(self.supports, self.lifting, edges, volume, normal).is_some();
-        self.found.edges.extend_from_slice(edges);
-        self.found.volumes.push(volume);
+        let edges = edges.as_flattened().iter().flat_map(|p| p.to_be_bytes());
+        self.found.push(&edges.chain(volume.to_be_bytes()).collect::<Vec<u8>>());
     }
 }
 
@@ -157,12 +193,13 @@ fn fine_cells(
     supports: &Supports,
     random: &mut Random,
     monitor: &Monitor,
-) -> Result<(Vec<Vec<i32>>, Vec<Found>), MixedError> {
+) -> Result<(Vec<Vec<i32>>, Vec<Sorter>), MixedError> {
     for bits in 10..28 {
         let lift = f64::from(1 << bits);
         let lifting: Vec<Vec<i32>> =
             supports.iter().map(|a| a.iter().map(|_| (random.unit().arg() * lift) as i32).collect()).collect();
-        let part = || Part { supports, lifting: &lifting, found: Found::default(), is_fine: true };
+        let found = || Sorter::new(8 * supports.len() + 8);
+        let part = || Part { supports, lifting: &lifting, found: found(), is_fine: true };
         let parts = watched_cells(supports.len(), supports, &lifting, monitor, part)?;
         if parts.iter().all(|part| part.is_fine) {
             let found = parts.into_iter().map(|part| part.found).collect();

@@ -86,7 +86,7 @@ impl<F: Formulation> Engine<F> {
             Found::<F> { measured, data, options, target, roots, counts: RootCounts::default(), candidates };
         let (paths, stopped_early) = match options.start {
             Start::Stored => self.tracking.run(&mut found),
-            Start::Polyhedral => self.tracking.from_scratch(&mut found)?,
+            Start::Polyhedral => self.tracking.run_polyhedral(&mut found)?,
         };
         let Found { counts, mut candidates, .. } = found;
         rank(&mut candidates);
@@ -171,7 +171,7 @@ impl<F: Formulation> Tracking<F> {
     }
 
     /// The same from a polyhedral start system: for the data, and where that leaves roots missing through a random member.
-    fn from_scratch(&mut self, found: &mut Found<'_, F>) -> Result<(PathCounts, bool), SolveError> {
+    fn run_polyhedral(&mut self, found: &mut Found<'_, F>) -> Result<(PathCounts, bool), SolveError> {
         let monitor = &found.options.paths.tracker.monitor;
         let direct = scratch::at_data::<F>(found.target, monitor)?;
         let mut spent = direct.paths.retracked;

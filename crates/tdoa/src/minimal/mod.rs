@@ -88,7 +88,9 @@ pub enum Start {
     /// From the stored solutions of a generic instance: as many paths as roots.
     #[default]
     Stored,
-    /// From a polyhedral start system that is computed for the data, as in the paper: slower, and independent of what is stored.
+    /// From a polyhedral start system that is computed for the data, as in the paper: slower, and independent of what is stored. Where that
+    /// leaves roots missing, all roots of a random member of the family are found in this way and tracked to the data; the paths that this takes count
+    /// as tracked again.
     Polyhedral,
 }
 
