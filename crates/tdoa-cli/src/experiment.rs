@@ -11,6 +11,7 @@ mod hard;
 mod noise;
 mod routes;
 mod rows;
+mod speed;
 mod statistics;
 mod table2;
 
@@ -38,6 +39,7 @@ enum Kind {
     /// Measures what becomes of paths that fail, with each fallback.
     Charts(checks::Arguments),
     Hard(hard::Arguments),
+    Speed(speed::Arguments),
     Calibrate(calibrate::Arguments),
     Coverage(calibrate::CoverageArguments),
     Growth(growth::Arguments),
@@ -50,6 +52,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Kind::Clean(arguments) => clean::run(arguments),
         Kind::Noise(arguments) => noise::run(arguments),
         Kind::Hard(arguments) => hard::run(arguments),
+        Kind::Speed(arguments) => speed::run(arguments),
         Kind::Proofs(arguments) => checks::proofs(arguments),
         Kind::Routes(arguments) => routes::run(arguments),
         Kind::Hurry(arguments) => checks::hurry(arguments),

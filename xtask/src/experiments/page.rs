@@ -31,6 +31,7 @@ type Section = (&'static str, &'static str, fn(&Path) -> Result<String>);
 const SECTIONS: &[Section] = &[
     ("table2", "Solutions of 6r/3s (the paper's Table 2)", table2),
     ("clean", "Clean data (the paper's figure 1, upper row)", clean),
+    ("speed", "Speed of the exact solvers", speed),
     ("routes", "The same networks from a polyhedral start system", routes),
     ("noise", "Noise (the paper's figure 1, lower row)", noise),
     ("calibrate", "Calibration of simulated networks", calibration),
@@ -154,6 +155,43 @@ fn figures<'a>(rows: impl Iterator<Item = Row<'a>>, folder: &str) -> Result<Stri
             seen.push(size);
             text += &format!("![{size}](../results/{folder}/{}.svg)\n", size.replace('/', ""));
         }
+    }
+    Ok(text)
+}
+
+fn speed(results: &Path) -> Result<String> {
+    let table = summary(results, "speed")?;
+    let mut text = String::from(
+        "Clean random networks, all paths tracked, by the wall on an otherwise idle machine. A Jacobian comes with its factorisation. Where the time goes, and what stands in the \
+         way of more: [how the tracker works](guide/tracker.md). Beside PHCpack on the same networks: [compare.md](compare.md).\n\n",
+    );
+    text += &head(&[
+        "",
+        "networks",
+        "ms a solve: median",
+        "99 %",
+        "µs a path",
+        "steps a path",
+        "rejected",
+        "Jacobians a path",
+        "solves a second, one thread",
+        "on all (threads)",
+    ]);
+    for row in table.rows() {
+        let columns = [
+            "configuration",
+            "instances",
+            "milliseconds_median",
+            "milliseconds_99",
+            "microseconds_a_path",
+            "steps_a_path",
+            "rejected_a_path",
+            "jacobians_a_path",
+            "solves_a_second",
+        ];
+        let mut cells = columns.iter().map(|column| Ok(row.get(column)?.to_owned())).collect::<Result<Vec<_>>>()?;
+        cells.push(format!("{} ({})", row.get("solves_a_second_on_all")?, row.get("threads")?));
+        text += &line(&cells);
     }
     Ok(text)
 }

@@ -43,6 +43,7 @@ pub(super) const PLAN: &[Experiment] = &[
     plain("clean", "clean --configuration 6r/4s,5r/4s,4r/5s", 20_000, 10),
     plain("clean-larger", "clean --configuration 7r/3s,5r/5s,4r/6s", 20_000, 10),
     plain("clean-others", "clean --configuration 9r/3s,7r/4s,5r/6s", 20_000, 10),
+    plain("speed", "speed", 300, 10),
     Experiment {
         name: "routes",
         command: "routes",
