@@ -3,7 +3,7 @@
 use crate::distinct::{projection, relative_distance};
 use crate::store::{Records, Sorter};
 use num_complex::Complex64;
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::BTreeMap;
 use std::io;
 
 /// A projection and roughly the size of a point for every path, twelve bytes; the points themselves only of few.
@@ -79,10 +79,13 @@ impl Prints {
                 sorter.push(&[key, &(path as u64).to_be_bytes(), size].concat());
             }
         }
+        if records.is_broken() {
+            return Err(io::ErrorKind::InvalidData.into());
+        }
         let mut met = Vec::new();
         let mut sorted = Sorter::merged(vec![sorter])?;
         // Those before that may still be near.
-        let mut before: VecDeque<(f64, usize, f64)> = VecDeque::new();
+        let mut before: Vec<(f64, usize, f64)> = Vec::new();
         while let Some(record) = sorted.next()? {
             let (key, size) = read(&[&record[..8], &record[16..]].concat());
             let b = record[8..16].iter().fold(0, |path, &byte| path << 8 | usize::from(byte));
@@ -98,7 +101,7 @@ impl Prints {
                     met.extend([a, b]);
                 }
             }
-            before.push_back((key, b, size));
+            before.push((key, b, size));
         }
         met.sort_unstable();
         met.dedup();

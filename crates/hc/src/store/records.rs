@@ -18,6 +18,7 @@ pub(crate) struct Records {
     file: Option<File>,
     /// Blocks that could not be written.
     unwritten: BTreeMap<usize, Vec<u8>>,
+    broken: bool,
 }
 
 /// A block in memory; none as long as there are no bytes.
@@ -31,12 +32,17 @@ struct Slot {
 impl Records {
     pub(crate) fn new(width: usize) -> Self {
         let per_block = (BLOCK / width.max(1)).max(1);
-        Records { width, per_block, slots: Default::default(), file: None, unwritten: BTreeMap::new() }
+        Records { width, per_block, slots: Default::default(), file: None, unwritten: BTreeMap::new(), broken: false }
     }
 
     /// Records that lie beside each other.
     pub(crate) fn per_block(&self) -> usize {
         self.per_block
+    }
+
+    /// Whether some records could not be read from the file again.
+    pub(crate) fn is_broken(&self) -> bool {
+        self.broken
     }
 
     pub(crate) fn get(&mut self, number: usize) -> &[u8] {
@@ -91,6 +97,7 @@ impl Records {
         let at = block as u64 * bytes.len() as u64;
         let read = self.file.as_mut().map_or(Ok(0), |file| read_at(file, at, &mut bytes));
         if read.is_err() {
+            self.broken = true;
             bytes.fill(0);
         }
         bytes
