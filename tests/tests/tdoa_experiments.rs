@@ -127,3 +127,17 @@ fn both_routes_lead_to_the_same_networks() {
         assert_eq!(cell(&lines[0], &lines[1], column), expected, "{}", lines[1]);
     }
 }
+
+#[test]
+fn speed_is_measured_on_one_thread_and_on_all() {
+    let directory = tempfile::tempdir().expect("directory");
+    let lines = experiment("speed --configuration 5r/6s,6r/3s --instances 2", directory.path(), "2");
+    assert_eq!(lines.len(), 3);
+    for (line, paths) in lines[1..].iter().zip([10.0, 360.0]) {
+        let number = |column| number(&lines[0], line, column);
+        assert_eq!((number("paths"), number("threads")), (paths, 2.0), "{line}");
+        // Every step needs a Jacobian where it arrives.
+        assert!(number("jacobians_a_path") > number("steps_a_path") && number("steps_a_path") > 1.0, "{line}");
+        assert!(number("solves_a_second") > 0.0 && number("solves_a_second_on_all") > 0.0, "{line}");
+    }
+}

@@ -13,7 +13,7 @@ use crate::{Failure, output};
 
 /// Takes the time of the exact solvers on clean random networks, on one thread and on all, and counts what their paths need.
 ///
-/// Times are by the wall: nothing else should run.
+/// Times are by the wall: nothing else should run. A run that was stopped starts anew.
 #[derive(clap::Args)]
 pub(super) struct Arguments {
     /// The configurations.

@@ -87,8 +87,10 @@ fn roots<F: Formulation>(
     let fibre = Fibre { parameters: parameters.to_vec(), dimension: F::WEIGHTS.len(), solutions };
     let missing = family.roots.map_or(0, |known| known.saturating_sub(fibre.len()));
     let mut paths = PathCounts { finite: fibre.len(), dropped: 0, ..found.paths };
-    paths.failed = if missing > 0 { found.paths.failed.max(missing) } else { 0 };
-    paths.at_infinity = paths.tracked - paths.finite - paths.failed;
+    // Special data may have fewer paths than a generic member has roots.
+    let others = paths.tracked.saturating_sub(paths.finite);
+    paths.failed = if missing > 0 { found.paths.failed.max(missing).min(others) } else { 0 };
+    paths.at_infinity = others - paths.failed;
     let whole = missing == 0;
     Ok(Roots { fibre, paths, whole })
 }
