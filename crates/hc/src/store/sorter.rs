@@ -158,4 +158,19 @@ mod tests {
             assert_eq!(found, expected);
         }
     }
+
+    /// A file that cannot be written.
+    #[test]
+    fn without_a_file_all_records_stay_in_memory() {
+        let mut sorter = Sorter::new(8);
+        let path = tempfile::NamedTempFile::new().unwrap();
+        sorter.file = Some(std::fs::File::open(path.path()).unwrap());
+        let count = 3 * BUFFER as u64 / 8;
+        (0..count).rev().for_each(|k| sorter.push(&k.to_be_bytes()));
+        assert!(sorter.full && sorter.ends.is_empty());
+        let mut sorted = Sorter::merged(vec![sorter]).unwrap();
+        assert!(
+            (0..count).all(|k| sorted.next().unwrap().unwrap() == k.to_be_bytes()) && sorted.next().unwrap().is_none()
+        );
+    }
 }
