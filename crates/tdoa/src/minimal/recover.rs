@@ -17,10 +17,6 @@ use num_complex::Complex64;
 /// Accuracy to which the end of a path carried back from another chart must be known.
 const CARRIED: f64 = 1e-8;
 
-/// A round is left out if its paths together might take more steps: so many paths are lost in degenerate networks, where longer ones end no
-/// better and would take minutes.
-const ROUND_STEPS: usize = 1_000_000;
-
 /// Scratch space; keeps its memory from call to call.
 pub(super) struct Again<F: Formulation> {
     refiner: Refiner<'static, F::System>,
@@ -125,14 +121,10 @@ impl<F: Formulation> Recovery<'_, F> {
         let mut retracked = 0;
         let charts = if self.fallback == Fallback::OneChart { 1 } else { F::CHARTS };
         for level in 0..=self.settings.retries {
-            let settings = stricter(&self.settings.tracker, level);
-            self.tracker.set_options(&settings);
+            self.tracker.set_options(&stricter(&self.settings.tracker, level));
             for chart in usize::from(level == 0)..charts {
                 if self.again.lost.is_empty() {
                     return (0, retracked);
-                }
-                if self.again.lost.len().saturating_mul(settings.max_steps) > ROUND_STEPS {
-                    return (self.again.lost.len(), retracked);
                 }
                 retracked += self.again.lost.len();
                 let goes_on = self.fallback == Fallback::OtherCharts && chart > 0 && level % 2 == 0;
