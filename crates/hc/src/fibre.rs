@@ -169,7 +169,8 @@ const VANISHED_SQR: f64 = 1e-32;
 /// parameter).
 ///
 /// A system may have components of singular solutions besides its fibre, and Newton's method converges to them too, slowly, which does not show where
-/// coordinates vanish. Ends with such coordinates or a singular Jacobian have to attract it from some distance.
+/// coordinates vanish. Ends with such coordinates or a singular Jacobian have to attract it from some distance, if need be in
+/// double-double.
 pub fn ends_regularly<E: Evaluate>(
     refiner: &mut Refiner<'_, E>,
     target: &[Complex64],
@@ -178,7 +179,8 @@ pub fn ends_regularly<E: Evaluate>(
 ) -> bool {
     let largest = x.iter().map(|z| z.norm_sqr()).fold(0.0, f64::max);
     let plain = || result.pivot > f64::EPSILON && x.iter().all(|z| z.norm_sqr() > VANISHED_SQR * largest);
-    result.end == PathEnd::Success && (plain() || refiner.contracts(target, x))
+    let mut attracts = || refiner.contracts(target, x) || refiner.contracts_precisely(target, x);
+    result.end == PathEnd::Success && (plain() || attracts())
 }
 
 /// Refines the regular ends that the tracker leaves vague, so that those which coincide are seen to; where Newton's method does not settle,

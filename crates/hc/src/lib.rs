@@ -66,6 +66,7 @@ pub mod endgame;
 pub mod family;
 pub mod fibre;
 pub mod homotopy;
+mod inverse;
 mod linalg;
 pub mod monitor;
 pub mod monodromy;

@@ -1,5 +1,6 @@
 //! Newton's method with residuals in double-double: a solution to the last bit that double precision can hold.
 
+use crate::inverse;
 use crate::linalg::{Estimate, Lu};
 use crate::random::Random;
 use num_complex::Complex64;
@@ -55,6 +56,8 @@ const STEADY: f64 = 1e-3;
 const NEAR: f64 = 1e-6;
 /// Relative distances from one of which a regular solution must attract Newton's method.
 const PERTURBATIONS: [f64; 2] = [1e-8, 1e-6];
+/// The same where Jacobians are taken to twice the digits.
+const PRECISE_PERTURBATIONS: [f64; 2] = [1e-14, 1e-12];
 /// Last correction and condition of solutions that are plainly regular. At a distance of `d` from a singular solution the condition is
 /// about `1 / d` or more, and corrections are about `d` or more.
 const TINY: f64 = 1e-12;
@@ -187,10 +190,10 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
     }
 
     fn comes_back(&mut self, p: &[ComplexDd], x: &[Complex64], perturbation: f64) -> bool {
-        let mut random = Random::new(0, 3);
         let mut y = std::mem::take(&mut self.next);
         y.clear();
         sizes(x, &mut self.squares);
+        let mut random = Random::new(0, 3);
         y.extend(x.iter().zip(&self.squares).map(|(x, w)| x + random.unit() * (perturbation * w[0].sqrt())));
         for _ in 0..2 {
             self.factor(p, &y);
@@ -201,6 +204,43 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         let comes_back = distances.all(|d| d <= 1e-3 * perturbation);
         self.next = y;
         comes_back
+    }
+
+    /// The test of [`contracts`](Self::contracts) with points and Jacobians to twice the digits, from a point 1e-14 or 1e-12 away: it tells
+    /// regular solutions whose Jacobians are singular as far as doubles can tell, as where nodes of a network nearly coincide. The
+    /// parameters are taken as exact: two solutions into which rounding them has split a singular one are regular. Slow, and allocates.
+    pub fn contracts_precisely(&mut self, p: &[Complex64], x: &[Complex64]) -> bool {
+        let exact = self.exact(p);
+        let mut centre: Vec<ComplexDd> = x.iter().map(|&z| z.into()).collect();
+        let mut scratch = vec![ComplexDd::zero(); 2 * x.len() * x.len()];
+        self.newton_precisely(&exact, &mut centre, &mut scratch);
+        sizes(x, &mut self.squares);
+        let sizes: Vec<f64> = self.squares.iter().map(|w| w[0].sqrt()).collect();
+        let within = |a: &ComplexDd, b: &ComplexDd, limit: f64| ComplexDd::sub(a, b).high().norm() <= limit;
+        // Written so that NaN is not near.
+        let stays = x.iter().zip(&centre).zip(&sizes).all(|((x, z), w)| within(&(*x).into(), z, NEAR * w));
+        let contracts = stays
+            && PRECISE_PERTURBATIONS.iter().any(|&distance| {
+                let mut random = Random::new(0, 3);
+                let away = |(z, w): (&ComplexDd, &f64)| ComplexDd::add(z, &(random.unit() * (distance * w)).into());
+                let mut y: Vec<ComplexDd> = centre.iter().zip(&sizes).map(away).collect();
+                self.newton_precisely(&exact, &mut y, &mut scratch);
+                y.iter().zip(&centre).zip(&sizes).all(|((y, z), w)| within(y, z, 1e-3 * distance * w))
+            });
+        self.exact_p = exact;
+        contracts
+    }
+
+    /// Two corrections of a point, with Jacobians to twice the digits; not finite where they are singular. `scratch` holds two of them.
+    fn newton_precisely(&mut self, p: &[ComplexDd], x: &mut [ComplexDd], scratch: &mut [ComplexDd]) {
+        let n = x.len();
+        let (jacobian, inverse) = scratch.split_at_mut(n * n);
+        for _ in 0..2 {
+            self.system.jacobian(&mut self.precise, x, p, &mut self.precise_values, jacobian);
+            inverse::invert(n, jacobian, inverse);
+            let step = inverse::product(n, inverse, &self.precise_values);
+            x.iter_mut().zip(&step).for_each(|(x, d)| *x = ComplexDd::sub(x, d));
+        }
     }
 
     fn blur(&mut self, p: &[ComplexDd], x: &[Complex64], factored: bool) -> Vec<f64> {

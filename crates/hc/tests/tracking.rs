@@ -7,6 +7,7 @@ use hc::monodromy::{MonodromyOptions, Stop, monodromy};
 use hc::pair::find_pair;
 use hc::poly::{Family, Interpreter, Isa, Lane, Lanes8, parse};
 use hc::random::Random;
+use hc::refine::Refiner;
 use hc::trace::trace_test;
 use hc::tracker::{PathEnd, PathSet, Tracker, TrackerOptions, track};
 use num_complex::Complex64;
@@ -105,6 +106,28 @@ fn a_singular_component_is_no_end_of_a_fibre() {
     assert_eq!((counts.finite, counts.failed), (1, 1));
     assert!((paths.point(0)[0] - 3.0).norm() < 1e-14 && paths.results()[0].pivot > 0.1, "{paths:?}");
     assert_ne!(paths.results()[1].end, PathEnd::Success);
+}
+
+#[test]
+fn a_regular_solution_beyond_doubles_is_told_from_a_singular_one() {
+    // Linear, with the solution (p - q, q) and a determinant of e: with e = 1e-16 the Jacobian is singular in doubles, the solution is not.
+    let (_, system) = family("x y", "p q e", "x + y - p; x + y + e*y - p - e*q");
+    let mut refiner = Refiner::new(&system);
+    let solution = reals(&[0.5, 1.5]);
+    for (e, doubles, twice) in [(1.0, true, true), (1e-16, false, true), (0.0, false, false)] {
+        let p = reals(&[2.0, 1.5, e]);
+        assert_eq!(
+            (refiner.contracts(&p, &solution), refiner.contracts_precisely(&p, &solution)),
+            (doubles, twice),
+            "{e}"
+        );
+    }
+    // A double solution, and one that is no solution at all.
+    let (_, system) = family("x y", "p", "(x - p)^2; x*y - p");
+    let mut refiner = Refiner::new(&system);
+    for x in [[2.0, 1.0], [2.0 + 1e-9, 1.0], [3.0, 1.0]] {
+        assert!(!refiner.contracts_precisely(&reals(&[2.0]), &reals(&x)), "{x:?}");
+    }
 }
 
 #[test]

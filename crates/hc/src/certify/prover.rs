@@ -3,6 +3,7 @@
 use super::krawczyk::{Krawczyk, Place};
 use super::proof::Proof;
 use super::{CertifyOptions, Obstacle};
+use crate::inverse;
 use crate::linalg::Lu;
 use num_complex::Complex64;
 use poly::{ComplexBall, ComplexDd, ComplexInterval, Evaluate, Interpreter, Isa, Scalar};
@@ -143,12 +144,7 @@ impl<'a> Prover<'a> {
             self.evaluate_residuals(&centre);
             let residuals: Vec<ComplexDd> =
                 self.residuals.iter().map(|r| ComplexDd { re: r.re.mid, im: r.im.mid }).collect();
-            let step: Vec<ComplexDd> = (0..n)
-                .map(|i| {
-                    let terms = residuals.iter().enumerate();
-                    terms.fold(ComplexDd::zero(), |sum, (k, r)| ComplexDd::mul_add(&self.inverse[k * n + i], r, &sum))
-                })
-                .collect();
+            let step = inverse::product(n, &self.inverse, &residuals);
             let size = step.iter().zip(weights).map(|(d, w)| d.high().norm() / w).fold(0.0, f64::max);
             if count == 1 && size > CONTRACTION * last && last > ROUNDING {
                 return Err(Obstacle::NoContraction);
@@ -171,23 +167,9 @@ impl<'a> Prover<'a> {
                 let rounded: Vec<Complex64> = x.iter().map(ComplexDd::high).collect();
                 target.system.jacobian(plain, &rounded, parameters, values, plain_jacobian);
                 jacobian.iter_mut().zip(plain_jacobian.iter()).for_each(|(a, &b)| *a = b.into());
-            }
-            Precision::DoubleDouble => {
-                let (memory, values) = (&mut self.precise, &mut self.precise_values);
-                target.system.jacobian(memory, x, &self.precise_parameters, values, jacobian);
-            }
-        }
-        let norm = |entry: usize| jacobian[entry].high().norm();
-        let largest = |entries: &mut dyn Iterator<Item = f64>| {
-            let largest = entries.fold(0.0, f64::max);
-            if largest > 0.0 { largest } else { 1.0 }
-        };
-        let rows: Vec<f64> = (0..n).map(|k| largest(&mut (0..n).map(|j| norm(j * n + k)))).collect();
-        let columns: Vec<f64> = (0..n).map(|j| largest(&mut (0..n).map(|k| norm(j * n + k) / rows[k]))).collect();
-        match self.precision {
-            Precision::Double => {
+                let (rows, columns) = inverse::sizes(n, jacobian);
                 let scaled: Vec<Complex64> =
-                    (0..n * n).map(|entry| jacobian[entry].high() / rows[entry % n] / columns[entry / n]).collect();
+                    (0..n * n).map(|entry| plain_jacobian[entry] / rows[entry % n] / columns[entry / n]).collect();
                 lu.factor(&scaled, &vec![[1.0]; n]);
                 let mut column = vec![Complex64::new(0.0, 0.0); n];
                 for (k, inverse) in inverse.chunks_mut(n).enumerate() {
@@ -199,18 +181,9 @@ impl<'a> Prover<'a> {
                 }
             }
             Precision::DoubleDouble => {
-                // Powers of two scale without rounding.
-                let power = |size: &f64| size.log2().round().exp2().recip();
-                let rows: Vec<f64> = rows.iter().map(power).collect();
-                let columns: Vec<f64> = columns.iter().map(power).collect();
-                let mut scaled: Vec<ComplexDd> = jacobian.clone();
-                for (entry, z) in scaled.iter_mut().enumerate() {
-                    *z = ComplexDd::scale(&ComplexDd::scale(z, rows[entry % n]), columns[entry / n]);
-                }
-                invert_precisely(n, &mut scaled, inverse);
-                for (entry, z) in inverse.iter_mut().enumerate() {
-                    *z = ComplexDd::scale(&ComplexDd::scale(z, columns[entry % n]), rows[entry / n]);
-                }
+                let (memory, values) = (&mut self.precise, &mut self.precise_values);
+                target.system.jacobian(memory, x, &self.precise_parameters, values, jacobian);
+                inverse::invert(n, jacobian, inverse);
             }
         }
         if inverse.iter().all(|z| z.high().is_finite()) { Ok(()) } else { Err(Obstacle::Singular) }
@@ -257,30 +230,6 @@ impl<'a> Prover<'a> {
     fn evaluate_residuals(&mut self, centre: &[ComplexDd]) {
         let balls: Vec<ComplexBall> = centre.iter().map(ComplexBall::point).collect();
         self.target.system.values(&mut self.balls, &balls, &self.ball_parameters, &mut self.residuals);
-    }
-}
-
-/// The inverse of a column-major matrix by elimination with row pivoting; not finite where there is none.
-fn invert_precisely(n: usize, matrix: &mut [ComplexDd], inverse: &mut [ComplexDd]) {
-    for (entry, z) in inverse.iter_mut().enumerate() {
-        *z = if entry / n == entry % n { ComplexDd::one() } else { ComplexDd::zero() };
-    }
-    for k in 0..n {
-        let size = |i: &usize| matrix[k * n + i].high().norm_sqr();
-        let pivot = (k..n).max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(k);
-        let reciprocal = ComplexDd::inv(&matrix[k * n + pivot]);
-        let factors: Vec<ComplexDd> = {
-            let column = &mut matrix[k * n..][..n];
-            column.swap(k, pivot);
-            column.to_vec()
-        };
-        for column in matrix[(k + 1) * n..].chunks_mut(n).chain(inverse.chunks_mut(n)) {
-            column.swap(k, pivot);
-            let row = ComplexDd::mul(&column[k], &reciprocal);
-            for (i, z) in column.iter_mut().enumerate() {
-                *z = if i == k { row } else { ComplexDd::sub_mul(&factors[i], &row, z) };
-            }
-        }
     }
 }
 

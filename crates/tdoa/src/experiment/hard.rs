@@ -202,6 +202,15 @@ mod tests {
     }
 
     #[test]
+    fn nodes_that_nearly_coincide_lose_no_path() {
+        // Their roots are regular, though no Jacobian in doubles tells.
+        for case in [Case::NearTransmitters(1e-6), Case::NearReceivers(1e-6)] {
+            let summary = hard_trials(&mut Solver::new(), case, networks(4));
+            assert_eq!((summary.found, summary.paths_lost), (4, 0), "{case:?}: {summary:?}");
+        }
+    }
+
+    #[test]
     fn coincident_nodes_are_refused_by_name() {
         let summary = hard_trials(&mut Solver::new(), Case::NearReceivers(0.0), networks(3));
         assert_eq!(summary.refused, 3, "{summary:?}");

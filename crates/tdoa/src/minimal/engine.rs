@@ -9,7 +9,7 @@ use super::normalised::{Normalised, rank};
 use super::polish::Polisher;
 use super::proofs::{RootProofs, prove};
 use super::real::real_root;
-use super::recover::{Again, Recovery};
+use super::recover::{Again, BAD_LUCK, Recovery};
 use super::{SolveError, SolveOptions, Start, scratch};
 use crate::network::{Candidate, MinimalSolution, Network, PathCounts, RootCounts};
 use crate::plane::flatness;
@@ -26,9 +26,6 @@ const TURNS: [f64; 3] = [0.0, 0.7, -1.1];
 
 /// Paths tracked at a time where the search stops at the first network that fits: four batches of eight.
 const PART: usize = 32;
-
-/// So many lost paths are bad luck; more of them tell of a degenerate network, whose roots no other path reaches either.
-const BAD_LUCK: usize = 4;
 
 /// Room for so many candidates is made at once; there are hardly ever more.
 const CANDIDATES: usize = 64;
@@ -155,6 +152,7 @@ impl<F: Formulation> Tracking<F> {
             if best.as_ref().is_none_or(|(fewest, _)| lost < *fewest) {
                 best = Some((lost, self.paths.clone()));
             }
+            // The roots of a degenerate network no other path reaches either.
             if lost == 0 || lost > BAD_LUCK {
                 break;
             }

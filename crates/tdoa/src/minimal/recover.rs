@@ -2,7 +2,8 @@
 //!
 //! They are tracked again in the other charts, where a path near a far transmitter or a degenerate triangle is an easy one, then with
 //! shorter and more steps in all of them. By default a path that has broken off goes on in the next chart from where it is; every
-//! second round all start again from the beginning, since what a path has come to may be wrong.
+//! second round all start again from the beginning, since what a path has come to may be wrong. Degenerate networks have roots that are
+//! singular, which no path reaches however short its steps: rounds end once they bring back hardly any of many lost paths.
 
 use super::Fallback;
 use super::formulation::Formulation;
@@ -16,6 +17,12 @@ use num_complex::Complex64;
 
 /// Accuracy to which the end of a path carried back from another chart must be known.
 const CARRIED: f64 = 1e-8;
+
+/// More lost paths than this tell of a degenerate network rather than of bad luck.
+pub(super) const BAD_LUCK: usize = 4;
+
+/// Of so many lost paths a round brings back one at least, or there is no other round.
+const WORTHWHILE: usize = 8;
 
 /// Scratch space; keeps its memory from call to call.
 pub(super) struct Again<F: Formulation> {
@@ -121,6 +128,7 @@ impl<F: Formulation> Recovery<'_, F> {
         let mut retracked = 0;
         let charts = if self.fallback == Fallback::OneChart { 1 } else { F::CHARTS };
         for level in 0..=self.settings.retries {
+            let before = self.again.lost.len();
             self.tracker.set_options(&stricter(&self.settings.tracker, level));
             for chart in usize::from(level == 0)..charts {
                 if self.again.lost.is_empty() {
@@ -130,6 +138,10 @@ impl<F: Formulation> Recovery<'_, F> {
                 let goes_on = self.fallback == Fallback::OtherCharts && chart > 0 && level % 2 == 0;
                 self.track_again(chart, goes_on);
                 self.find_lost();
+            }
+            let lost = self.again.lost.len();
+            if level > 0 && lost > BAD_LUCK && lost > before - before / WORTHWHILE {
+                break;
             }
         }
         (self.again.lost.len(), retracked)
