@@ -3,6 +3,7 @@
 pub use hc::fibre::PathCounts;
 use serde::Serialize;
 
+use crate::minimal::SolveWarning;
 use crate::plane::{distance, spread};
 use crate::pseudoranges::Pseudoranges;
 
@@ -26,6 +27,12 @@ impl Network {
     /// What receiver `i` measures of transmitter `j` without noise: |r_i - s_j| + o_j.
     pub fn pseudorange(&self, i: usize, j: usize) -> f64 {
         self.distance(i, j) + self.offsets[j]
+    }
+
+    /// |r_i - s_j| + o_j of all receivers and transmitters in metres, row-major.
+    pub fn pseudoranges(&self) -> Vec<f64> {
+        let row = |i| (0..self.transmitters.len()).map(move |j| self.pseudorange(i, j));
+        (0..self.receivers.len()).flat_map(row).collect()
     }
 
     /// The unsquared residuals f_ij - o_j - |r_i - s_j| in metres, row-major, NaN where the measurement is missing.
@@ -132,7 +139,7 @@ pub struct MinimalSolution {
     /// `paths` and `counts` are those up to there.
     pub stopped_early: bool,
     /// What makes the result doubtful: lost paths, networks that the data cannot tell apart.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<SolveWarning>,
     /// The candidates, best first.
     #[serde(rename = "solutions")]
     pub candidates: Vec<Candidate>,

@@ -115,7 +115,7 @@ pub fn simulate(options: &SimulateOptions) -> Result<Simulation, SimulateError> 
     }
     let mut rng = Pcg64Mcg::seed_from_u64(options.seed);
     let network = random_network(m, n, options.layout, &mut rng);
-    let mut values: Vec<f64> = (0..cells).map(|k| network.pseudorange(k / n.max(1), k % n.max(1))).collect();
+    let mut values = network.pseudoranges();
     for value in &mut values {
         *value += options.noise * rng.sample::<f64, _>(StandardNormal);
     }

@@ -145,8 +145,7 @@ pub fn hard_trials(solver: &mut Solver, case: Case, networks: impl Iterator<Item
         case.apply(&mut truth);
         summary.instances += 1;
         let (m, n) = (truth.receivers.len(), truth.transmitters.len());
-        let values = (0..m * n).map(|k| truth.pseudorange(k / n, k % n)).collect();
-        let solved = Pseudoranges::new(m, n, values)
+        let solved = Pseudoranges::new(m, n, truth.pseudoranges())
             .map_err(|e| e.to_string())
             .and_then(|f| solver.solve(&f, &SolveOptions::default()).map_err(|e| e.to_string()));
         let solution = match solved {
@@ -175,7 +174,10 @@ pub fn hard_trials(solver: &mut Solver, case: Case, networks: impl Iterator<Item
 #[cfg(test)]
 mod tests {
     use super::{Case, hard_trials};
-    use crate::minimal::Solver;
+    use crate::minimal::{Nodes, SolveOptions, SolveWarning, Solver};
+    use crate::network::Candidate;
+    use crate::plane::flatness;
+    use crate::pseudoranges::Pseudoranges;
     use crate::simulate::{Layout, SimulateOptions, simulate};
 
     fn networks(count: u64) -> impl Iterator<Item = crate::network::Network> {
@@ -207,6 +209,33 @@ mod tests {
         for case in [Case::NearTransmitters(1e-6), Case::NearReceivers(1e-6)] {
             let summary = hard_trials(&mut Solver::new(), case, networks(4));
             assert_eq!((summary.found, summary.paths_lost), (4, 0), "{case:?}: {summary:?}");
+        }
+    }
+
+    #[test]
+    fn nodes_in_one_line_are_found_and_named() {
+        for (case, kind, nodes, others) in [
+            (Case::ReceiversNearLine(0.0), Nodes::Receivers, 6, 3),
+            (Case::TransmittersNearLine(0.0), Nodes::Transmitters, 3, 6),
+        ] {
+            let mut solver = Solver::new();
+            let summary = hard_trials(&mut solver, case, networks(4));
+            assert_eq!(summary.found, 4, "{case:?}: {summary:?}");
+            let mut network = networks(1).next().unwrap();
+            case.apply(&mut network);
+            let measured = Pseudoranges::new(6, 3, network.pseudoranges()).unwrap();
+            let solution = solver.solve(&measured, &SolveOptions::default()).unwrap();
+            let in_line = solution.warnings.iter().find_map(|warning| match warning {
+                SolveWarning::InOneLine { kind, names, listed: true } => Some((*kind, names.len())),
+                _ => None,
+            });
+            assert_eq!(in_line, Some((kind, nodes)), "{:?}", solution.warnings);
+            // Every mirror image fits as well, and no network stands there twice.
+            let flat = |c: &&Candidate| {
+                let points = if kind == Nodes::Receivers { &c.network.receivers } else { &c.network.transmitters };
+                c.physical && c.residual < 1e-12 && flatness(points) < 1e-9
+            };
+            assert_eq!(solution.candidates.iter().filter(flat).count(), 1 << (others - 1), "{case:?}");
         }
     }
 

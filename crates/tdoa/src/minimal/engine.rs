@@ -1,7 +1,6 @@
 //! From measurements to all networks that explain them, for any [`Formulation`]: tracks the stored fibre to the data, accounts for
 //! every path, and turns real solutions into networks.
 
-use super::collinear::{Line, in_one_line};
 use super::formulation::Formulation;
 use super::linear::LeastSquares;
 use super::nearest::Nearest;
@@ -11,8 +10,7 @@ use super::proofs::{RootProofs, prove};
 use super::real::real_root;
 use super::recover::{Again, BAD_LUCK, Recovery};
 use super::{SolveError, SolveOptions, Start, scratch};
-use crate::network::{Candidate, MinimalSolution, Network, PathCounts, RootCounts};
-use crate::plane::flatness;
+use crate::network::{Candidate, MinimalSolution, PathCounts, RootCounts};
 use crate::pseudoranges::Pseudoranges;
 use hc::fibre::Fibre;
 use hc::homotopy::Segment;
@@ -37,7 +35,6 @@ pub(crate) struct Engine<F: Formulation> {
     data: Normalised,
     /// The parameters of the last call.
     target: Vec<Complex64>,
-    squares: LeastSquares,
 }
 
 impl<F: Formulation> Engine<F> {
@@ -60,11 +57,10 @@ impl<F: Formulation> Engine<F> {
             squares: LeastSquares::default(),
             polisher: Polisher::default(),
         };
-        let (data, squares) = (Normalised::default(), LeastSquares::default());
-        Engine { tracking, roots, data, target: Vec::new(), squares }
+        Engine { tracking, roots, data: Normalised::default(), target: Vec::new() }
     }
 
-    /// Every network that explains a matrix of the formulation's size that has passed the checks. After the first call memory is allocated for the result alone, unless
+    /// Every network that explains a matrix of the formulation's size that has passed the checks, warnings left to the caller. After the first call memory is allocated for the result alone, unless
     /// all paths have to be tracked again.
     pub(crate) fn solve(
         &mut self,
@@ -74,9 +70,8 @@ impl<F: Formulation> Engine<F> {
         let size = (measured.receivers(), measured.transmitters());
         assert_eq!(size, (F::RECEIVERS, F::TRANSMITTERS), "size of the matrix");
         self.data.take(measured);
-        let parameters = self.data.parameters();
         self.target.clear();
-        self.target.extend(parameters.iter().map(|&f| Complex64::from(f)));
+        self.target.extend(self.data.parameters().iter().map(|&f| Complex64::from(f)));
         let (data, target, roots) = (&self.data, &self.target[..], &mut self.roots);
         let candidates = Vec::with_capacity(CANDIDATES);
         let mut found =
@@ -87,9 +82,7 @@ impl<F: Formulation> Engine<F> {
         };
         let Found { counts, mut candidates, .. } = found;
         rank(&mut candidates);
-        let line = in_one_line(parameters, F::TRANSMITTERS, &mut self.squares);
-        let warnings = warnings(&paths, &candidates, line);
-        let configuration = measured.configuration();
+        let (configuration, warnings) = (measured.configuration(), Vec::new());
         Ok(MinimalSolution { configuration, solver: F::NAME, paths, counts, stopped_early, warnings, candidates })
     }
 
@@ -271,34 +264,4 @@ impl<F: Formulation> Found<'_, F> {
         let limit = self.options.first_under.unwrap_or(0.0);
         self.candidates.iter().any(|c| c.physical && c.residual < limit)
     }
-}
-
-/// Physical candidates flatter than this are said to be collinear; exact data tell no more of them.
-const FLAT: f64 = 1e-4;
-
-fn warnings(paths: &PathCounts, candidates: &[Candidate], line: Option<Line>) -> Vec<String> {
-    let mut warnings = Vec::new();
-    if paths.failed > 0 {
-        warnings.push(format!(
-            "{} of {} paths were lost: the list of networks may not be whole; the nodes may be collinear or nearly coincide",
-            paths.failed, paths.tracked
-        ));
-    }
-    for (kind, others, all, points) in [
-        ("receivers", "transmitter", Line::Receivers, (|n| &n.receivers) as fn(&Network) -> &Vec<[f64; 2]>),
-        ("transmitters", "receiver", Line::Transmitters, |n| &n.transmitters),
-    ] {
-        if line == Some(all) {
-            warnings.push(format!(
-                "the data fit a network with all {kind} in one line, and then every {others} may be its mirror image: such networks may \
-                 not be among these; move some {kind} off the line"
-            ));
-        } else if candidates.iter().any(|c| c.physical && flatness(points(&c.network)) < FLAT) {
-            warnings.push(format!(
-                "in a network that fits, the {kind} lie in one line: the data cannot tell on which side of it the other nodes lie; \
-                 move some {kind} off the line"
-            ));
-        }
-    }
-    warnings
 }

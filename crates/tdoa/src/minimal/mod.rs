@@ -33,9 +33,11 @@ mod scratch;
 mod solver;
 pub(crate) mod subset;
 mod three;
+mod warning;
 
 pub use proofs::RootProofs;
 pub use solver::Solver;
+pub use warning::{Nodes, SolveWarning};
 
 use crate::network::MinimalSolution;
 use crate::pseudoranges::Pseudoranges;

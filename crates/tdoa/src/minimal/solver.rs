@@ -1,19 +1,21 @@
 //! One entry point for all sizes.
 
+use super::collinear::Collinear;
 use super::engine::Engine;
 use super::formulation::Formulation;
 use super::four_five::FourFive;
 use super::larger::extend;
 use super::linear::LeastSquares;
-use super::normalised::Normalised;
+use super::normalised::{Normalised, rank};
 use super::polish::Polisher;
 use super::proofs::RootProofs;
 use super::rank::{FiveSix, by_receivers, offsets_of_four};
 use super::subset::{self, Subset};
 use super::three::{FiveFour, SixThree};
+use super::warning::warnings;
 use super::{MAX_MEASUREMENTS, SolveError, SolveOptions, check};
 use crate::degeneracy::is_solvable;
-use crate::network::{MinimalSolution, PathCounts, RootCounts};
+use crate::network::{Candidate, MinimalSolution, PathCounts, RootCounts};
 use crate::pseudoranges::Pseudoranges;
 use hc::tracker::PathResult;
 
@@ -25,6 +27,9 @@ pub struct Solver {
     four_five: Option<Engine<FourFive>>,
     five_six: Option<Engine<FiveSix>>,
     records: Vec<PathResult>,
+    data: Normalised,
+    squares: LeastSquares,
+    polisher: Polisher,
     /// The method of the last call.
     last: Option<Method>,
 }
@@ -65,6 +70,9 @@ impl Solver {
 
     /// Every network that explains the measurements, best first.
     ///
+    /// Networks whose receivers or transmitters lie exactly in one line are found without paths, all mirror images of the other nodes, and
+    /// a warning names the nodes; [`MinimalSolution::counts`] is of roots at the ends of paths.
+    ///
     /// The minimal sizes 6r/3s and 4r/5s, 5r/4s, and 5r/6s are solved by homotopy continuation, 7r/4s linearly, larger ones through the best
     /// spread part of one of these sizes: its candidates are extended to all nodes and refined over all measurements.
     ///
@@ -82,11 +90,42 @@ impl Solver {
         }
         check(measured)?;
         let method = Method::pick(m, n);
-        let solution = self.solve_by(method, measured, options)?;
-        match method.fallback() {
-            Some(other) if solution.candidates.is_empty() => self.solve_by(other, measured, options),
-            _ => Ok(solution),
+        let mut solution = self.solve_by(method, measured, options)?;
+        if let Some(other) = method.fallback()
+            && solution.candidates.is_empty()
+        {
+            solution = self.solve_by(other, measured, options)?;
         }
+        self.data.take(measured);
+        let line = Collinear::find(self.data.parameters(), n, &mut self.squares);
+        if let Some(line) = &line {
+            self.add_mirrored(line, &mut solution.candidates, measured, options);
+        }
+        solution.warnings = warnings(measured, &solution.paths, &solution.candidates, line.as_ref());
+        Ok(solution)
+    }
+
+    /// Puts the networks with nodes in one line in the place of those among the candidates.
+    fn add_mirrored(
+        &mut self,
+        line: &Collinear,
+        candidates: &mut Vec<Candidate>,
+        measured: &Pseudoranges,
+        options: &SolveOptions,
+    ) {
+        let data = &self.data;
+        candidates.retain(|candidate| {
+            let mut network = candidate.network.clone();
+            data.enter(&mut network);
+            !line.covers(&network)
+        });
+        for network in line.networks() {
+            let mut candidate = data.candidate(network, options, &mut self.polisher);
+            data.restore(&mut candidate.network);
+            candidate.residual = candidate.network.rms(measured);
+            candidates.push(candidate);
+        }
+        rank(candidates);
     }
 
     /// Proofs, in interval arithmetic, that the complex roots that the last call tracked exist and are distinct ([`hc::certify`]). `None` if
