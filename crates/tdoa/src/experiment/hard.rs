@@ -175,7 +175,7 @@ pub fn hard_trials(solver: &mut Solver, case: Case, networks: impl Iterator<Item
 mod tests {
     use super::{Case, hard_trials};
     use crate::minimal::{Nodes, SolveOptions, SolveWarning, Solver};
-    use crate::network::Candidate;
+    use crate::network::{Candidate, Network};
     use crate::plane::flatness;
     use crate::pseudoranges::Pseudoranges;
     use crate::simulate::{Layout, SimulateOptions, simulate};
@@ -237,6 +237,31 @@ mod tests {
             };
             assert_eq!(solution.candidates.iter().filter(flat).count(), 1 << (others - 1), "{case:?}");
         }
+    }
+
+    #[test]
+    fn a_symmetric_network_ends_in_time_and_says_what_is_lost() {
+        // The mirror images of a regular hexagon's measurements meet in singular roots, to which no path comes.
+        let corner = |k: u32| {
+            let (sin, cos) = (f64::from(k) * std::f64::consts::FRAC_PI_3).sin_cos();
+            [cos, sin]
+        };
+        let network = Network {
+            receivers: (0..6).map(corner).collect(),
+            transmitters: vec![[2.0, 0.0], [0.0, 2.0], [-1.5, 0.0]],
+            offsets: vec![0.0; 3],
+        };
+        let measured = Pseudoranges::new(6, 3, network.pseudoranges()).unwrap();
+        let mut solver = Solver::new();
+        let solution = solver.solve(&measured, &SolveOptions::default()).unwrap();
+        let lost = solution.paths.failed;
+        assert!(
+            lost > 0 && solution.warnings.contains(&SolveWarning::PathsLost { lost, tracked: 180 }),
+            "{solution:?}"
+        );
+        // About 64 paths with six charts of 1,600 steps in the last round, not four rounds of up to 102,400.
+        let steps: usize = solver.records().iter().map(|r| r.accepted + r.rejected).sum();
+        assert!(steps < 2_000_000, "{steps}");
     }
 
     #[test]

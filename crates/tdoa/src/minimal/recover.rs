@@ -3,7 +3,7 @@
 //! They are tracked again in the other charts, where a path near a far transmitter or a degenerate triangle is an easy one, then with
 //! shorter and more steps in all of them. By default a path that has broken off goes on in the next chart from where it is; every
 //! second round all start again from the beginning, since what a path has come to may be wrong. Degenerate networks have roots that are
-//! singular, which no path reaches however short its steps: rounds end once they bring back hardly any of many lost paths.
+//! singular, which no path reaches however short its steps: rounds end once a long one brings back hardly any of many lost paths.
 
 use super::Fallback;
 use super::formulation::Formulation;
@@ -21,8 +21,9 @@ const CARRIED: f64 = 1e-8;
 /// More lost paths than this tell of a degenerate network rather than of bad luck.
 pub(super) const BAD_LUCK: usize = 4;
 
-/// Of so many lost paths a round brings back one at least, or there is no other round.
+/// Of so many lost paths a round of more than [`LONG`] steps in all brings back one at least, or there is no other round.
 const WORTHWHILE: usize = 8;
+const LONG: usize = 100_000;
 
 /// Scratch space; keeps its memory from call to call.
 pub(super) struct Again<F: Formulation> {
@@ -128,7 +129,7 @@ impl<F: Formulation> Recovery<'_, F> {
         let mut retracked = 0;
         let charts = if self.fallback == Fallback::OneChart { 1 } else { F::CHARTS };
         for level in 0..=self.settings.retries {
-            let before = self.again.lost.len();
+            let (before, steps_before) = (self.again.lost.len(), self.steps());
             self.tracker.set_options(&stricter(&self.settings.tracker, level));
             for chart in usize::from(level == 0)..charts {
                 if self.again.lost.is_empty() {
@@ -140,11 +141,17 @@ impl<F: Formulation> Recovery<'_, F> {
                 self.find_lost();
             }
             let lost = self.again.lost.len();
-            if level > 0 && lost > BAD_LUCK && lost > before - before / WORTHWHILE {
+            let hopeless = lost > BAD_LUCK && lost > before - before / WORTHWHILE;
+            if level > 0 && hopeless && self.steps() - steps_before > LONG {
                 break;
             }
         }
         (self.again.lost.len(), retracked)
+    }
+
+    /// Steps of all paths so far.
+    fn steps(&self) -> usize {
+        self.paths.results().iter().map(|r| r.accepted + r.rejected).sum()
     }
 
     fn find_lost(&mut self) {
