@@ -70,7 +70,7 @@ mod tests {
 
     #[test]
     fn a_matrix_times_its_inverse_is_one_whatever_its_scales_and_condition() {
-        // Columns (1, s) and (1, s + e), s e - free: the condition is about 1 / e, beyond doubles; rows differ in size by 1e12.
+        // Columns (1e12, 1) and (1e12, 1 + e): a condition of about 1 / e, beyond doubles, and rows of unequal size.
         let number = |x: f64| ComplexDd::from(Complex64::new(x, 0.0));
         let e = 2f64.powi(-60);
         let sum = Scalar::add(&number(1.0), &number(e));

@@ -190,10 +190,10 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
     }
 
     fn comes_back(&mut self, p: &[ComplexDd], x: &[Complex64], perturbation: f64) -> bool {
+        let mut random = Random::new(0, 3);
         let mut y = std::mem::take(&mut self.next);
         y.clear();
         sizes(x, &mut self.squares);
-        let mut random = Random::new(0, 3);
         y.extend(x.iter().zip(&self.squares).map(|(x, w)| x + random.unit() * (perturbation * w[0].sqrt())));
         for _ in 0..2 {
             self.factor(p, &y);

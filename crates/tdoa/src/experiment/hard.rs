@@ -231,10 +231,7 @@ mod tests {
             });
             assert_eq!(in_line, Some((kind, nodes)), "{:?}", solution.warnings);
             // Every mirror image fits as well, and no network stands there twice.
-            let flat = |c: &&Candidate| {
-                let points = if kind == Nodes::Receivers { &c.network.receivers } else { &c.network.transmitters };
-                c.physical && c.residual < 1e-12 && flatness(points) < 1e-9
-            };
+            let flat = |c: &&Candidate| c.physical && c.residual < 1e-12 && flatness(kind.positions(&c.network)) < 1e-9;
             assert_eq!(solution.candidates.iter().filter(flat).count(), 1 << (others - 1), "{case:?}");
         }
     }

@@ -87,18 +87,17 @@ impl Collinear {
 
     /// Whether a network, in the same units, is one of these, found in another way.
     pub(crate) fn covers(&self, network: &Network) -> bool {
-        let points = match self.kind {
-            Nodes::Receivers => &network.receivers,
-            Nodes::Transmitters => &network.transmitters,
-        };
         let offsets = self.network.offsets.iter().zip(&network.offsets);
-        self.all_listed() && flatness(points) < 1e-3 && offsets.into_iter().all(|(a, b)| (a - b).abs() < 1e-5)
+        self.all_listed()
+            && flatness(self.kind.positions(network)) < 1e-3
+            && offsets.into_iter().all(|(a, b)| (a - b).abs() < 1e-5)
     }
 
+    /// The nodes off the line.
     fn others(&self) -> &[[f64; 2]] {
         match self.kind {
-            Nodes::Receivers => &self.network.transmitters,
-            Nodes::Transmitters => &self.network.receivers,
+            Nodes::Receivers => Nodes::Transmitters.positions(&self.network),
+            Nodes::Transmitters => Nodes::Receivers.positions(&self.network),
         }
     }
 }
@@ -174,7 +173,15 @@ fn by_columns(f: &[f64], width: usize, squares: &mut LeastSquares) -> Option<Sma
         };
         let right = |i: usize| f[i * width + j].powi(2) - f[i * width + 1].powi(2);
         // The third unknown is -(1 - w) p_2.
-        let x = squares.fit(f.len() / width, 4, entry, right)?;
+        let rows = f.len() / width;
+        let x = squares.fit(rows, 4, entry, right)?;
+        // The first three columns tell most networks already.
+        let term = |i: usize, c: usize| entry(i, c) * x[c];
+        let size = (0..4 * rows).fold(0.0, |size: f64, k| size.max(term(k / 4, k % 4).abs()));
+        let error = |i: usize| ((0..4).map(|c| term(i, c)).sum::<f64>() - right(i)).abs();
+        if !(0..rows).all(|i| error(i) <= FITS * size) {
+            return None;
+        }
         if j == 2 {
             p.extend([x[1] / x[0], -x[2] / (1.0 - x[0])]);
         }

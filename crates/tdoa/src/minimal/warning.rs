@@ -20,6 +20,21 @@ pub enum Nodes {
 }
 
 impl Nodes {
+    /// Where they are.
+    pub(crate) fn positions(self, network: &Network) -> &[[f64; 2]] {
+        match self {
+            Nodes::Receivers => &network.receivers,
+            Nodes::Transmitters => &network.transmitters,
+        }
+    }
+
+    fn names(self, measured: &Pseudoranges) -> Vec<String> {
+        match self {
+            Nodes::Receivers => measured.receiver_names().to_vec(),
+            Nodes::Transmitters => measured.transmitter_names().to_vec(),
+        }
+    }
+
     fn others(self) -> &'static str {
         match self {
             Nodes::Receivers => "transmitter",
@@ -91,15 +106,12 @@ pub(super) fn warnings(
     if paths.failed > 0 {
         warnings.push(SolveWarning::PathsLost { lost: paths.failed, tracked: paths.tracked });
     }
-    let kinds: [(Nodes, &[String], fn(&Network) -> &[[f64; 2]]); 2] = [
-        (Nodes::Receivers, measured.receiver_names(), |n| &n.receivers),
-        (Nodes::Transmitters, measured.transmitter_names(), |n| &n.transmitters),
-    ];
-    for (kind, names, points) in kinds {
+    for kind in [Nodes::Receivers, Nodes::Transmitters] {
+        let flat = |c: &Candidate| c.physical && flatness(kind.positions(&c.network)) < FLAT;
         if let Some(line) = line.filter(|line| line.kind == kind) {
-            warnings.push(SolveWarning::InOneLine { kind, names: names.to_vec(), listed: line.all_listed() });
-        } else if candidates.iter().any(|c| c.physical && flatness(points(&c.network)) < FLAT) {
-            warnings.push(SolveWarning::NearlyInOneLine { kind, names: names.to_vec() });
+            warnings.push(SolveWarning::InOneLine { kind, names: kind.names(measured), listed: line.all_listed() });
+        } else if candidates.iter().any(flat) {
+            warnings.push(SolveWarning::NearlyInOneLine { kind, names: kind.names(measured) });
         }
     }
     warnings

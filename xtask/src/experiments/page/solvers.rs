@@ -92,9 +92,7 @@ pub(super) fn clean(results: &Path) -> Result<String> {
     text += "\nThe errors are smaller than the paper's because every candidate is polished in the positions themselves after its path has ended, in which the problem \
              is far better conditioned than in H. What remains is the condition of the instance. Milliseconds are processor time, of a machine with \
              other work on the same cores. The one root of 7r/4s and the five of 5r/6s, from ranks, \
-             need not be real in pairs. No path had jumped in the one network with an \
-             odd number (4r/6s, seed 7315): its 344 roots are proved distinct and 96 of them real, of which 95 were called so; since then 96 are \
-             (`tdoa experiment proofs --configuration 4r/6s --seed 7315 --instances 1 --output proofs.md`).\n\n";
+             need not be real in pairs. Where paths were lost, the result says so.\n\n";
     for (folder, table) in &tables {
         text += &figures(table.iter().flat_map(Table::rows), folder)?;
     }
