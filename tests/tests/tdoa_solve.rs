@@ -60,15 +60,33 @@ fn the_json_form_holds_every_network_that_fits() {
 }
 
 #[test]
-fn collinear_nodes_are_not_presented_as_a_result() {
+fn nodes_in_one_line_are_named_and_all_mirror_images_listed() {
     let line = [0, 1, 2, 3, 4, 5].map(|i| [f64::from(i), 0.3 * f64::from(i)]);
-    let (_, message, status) = solve(&matrix(&line, &TRANSMITTERS));
-    assert_eq!(status, Some(1), "{message}");
-    assert!(message.contains("receivers in one line") && message.contains("move some receivers"), "{message}");
     let receivers = [[0.0, 0.0], [3.1, 0.4], [1.2, 2.7], [4.4, 3.3], [-0.8, 1.9], [2.5, -2.6]];
-    let (_, message, status) = solve(&matrix(&receivers, &[[0.0, 1.0], [1.0, 1.5], [3.0, 2.5]]));
-    assert_eq!(status, Some(1), "{message}");
-    assert!(message.contains("transmitters in one line") && message.contains("move some transmitters"), "{message}");
+    let cases = [
+        (
+            matrix(&line, &TRANSMITTERS),
+            "receivers r1, r2, r3, r4, r5, r6 lie exactly in one line",
+            "move some receivers",
+            3,
+        ),
+        (
+            matrix(&receivers, &[[0.0, 1.0], [1.0, 1.5], [3.0, 2.5]]),
+            "transmitters s1, s2, s3 lie exactly in one line",
+            "move some transmitters",
+            6,
+        ),
+    ];
+    for (measured, named, remedy, others) in cases {
+        let (json, message, status) = solve(&measured);
+        assert_eq!(status, Some(1), "{message}");
+        assert!(message.contains(named) && message.contains(remedy), "{message}");
+        let warnings = json["warnings"].as_array().unwrap();
+        assert!(warnings.iter().any(|warning| warning.as_str().unwrap().contains(named)), "{warnings:?}");
+        // Each node off the line on either side, but for the mirror image of the whole.
+        let fits = |s: &&Value| s["physical"] == true && s["residual"].as_f64().unwrap() < 1e-12;
+        assert!(json["solutions"].as_array().unwrap().iter().filter(fits).count() >= 1 << (others - 1), "{json}");
+    }
 }
 
 #[test]

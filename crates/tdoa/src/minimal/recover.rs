@@ -142,7 +142,7 @@ impl<F: Formulation> Recovery<'_, F> {
             }
             let lost = self.again.lost.len();
             let hopeless = lost > BAD_LUCK && lost > before - before / WORTHWHILE;
-            if level > 0 && hopeless && self.steps() - steps_before > LONG {
+            if level > 0 && hopeless && self.steps().saturating_sub(steps_before) > LONG {
                 break;
             }
         }

@@ -6,17 +6,25 @@ use crate::network::{Candidate, Network, PathCounts};
 use crate::plane::flatness;
 use crate::pseudoranges::Pseudoranges;
 use serde::{Serialize, Serializer};
+use std::fmt::{self, Display, Formatter};
 use thiserror::Error;
 
 /// The one kind of nodes or the other.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Error)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Nodes {
     /// Receivers.
-    #[error("receivers")]
     Receivers,
     /// Transmitters.
-    #[error("transmitters")]
     Transmitters,
+}
+
+impl Display for Nodes {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Nodes::Receivers => "receivers",
+            Nodes::Transmitters => "transmitters",
+        })
+    }
 }
 
 impl Nodes {
