@@ -43,14 +43,14 @@ impl<F: Formulation> Again<F> {
         let (paths, dimension) = (fibre.len(), fibre.dimension);
         Again {
             refiner: Refiner::new(F::system()),
-            refined: Refined::default(),
+            refined: Refined { point: Vec::with_capacity(dimension), ..Refined::default() },
             coincidences: Coincidences::with_capacity(paths),
             // A path may be lost and share its end.
             lost: Vec::with_capacity(2 * paths),
             from: Vec::with_capacity(paths),
             carried: Vec::with_capacity(paths * dimension),
             paths: PathSet::with_capacity(dimension, paths),
-            segment: Segment::default(),
+            segment: Segment::new(&fibre.parameters, &fibre.parameters),
         }
     }
 }
