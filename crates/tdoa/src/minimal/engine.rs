@@ -61,7 +61,7 @@ impl<F: Formulation> Engine<F> {
     }
 
     /// Every network that explains a matrix of the formulation's size that has passed the checks, warnings left to the caller. After the first call memory is allocated for the result alone, unless
-    /// all paths have to be tracked again.
+    /// all paths have to be tracked again or a root is so ill-conditioned that only double-double tells it from a singular one.
     pub(crate) fn solve(
         &mut self,
         measured: &Pseudoranges,

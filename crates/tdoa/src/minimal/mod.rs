@@ -12,7 +12,7 @@
 //! | 7r/4s, and more of both | offsets by rank, linear | 0 |
 //!
 //! A solver that is used again keeps 0.2 to 0.5 MB, start solutions and workspace, and a solve allocates its result alone, a few kilobytes
-//! (`cargo run --release -p tdoa --example memory`).
+//! (`cargo run --release -p tdoa --example memory`), but for the few networks with roots whose Jacobians are singular as far as doubles can tell.
 
 mod chart;
 mod collinear;
