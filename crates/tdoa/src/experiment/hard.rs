@@ -238,7 +238,7 @@ mod tests {
 
     #[test]
     fn a_symmetric_network_ends_in_time_and_says_what_is_lost() {
-        // The mirror images of a regular hexagon's measurements meet in singular roots, to which no path comes.
+        // Such data have roots next to which pivots vanish: their paths come as near as doubles allow and no farther.
         let corner = |k: u32| {
             let (sin, cos) = (f64::from(k) * std::f64::consts::FRAC_PI_3).sin_cos();
             [cos, sin]

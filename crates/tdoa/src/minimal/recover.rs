@@ -21,7 +21,8 @@ const CARRIED: f64 = 1e-8;
 /// More lost paths than this tell of a degenerate network rather than of bad luck.
 pub(super) const BAD_LUCK: usize = 4;
 
-/// Of so many lost paths a round of more than [`LONG`] steps in all brings back one at least, or there is no other round.
+/// Of so many lost paths a round of more than [`LONG`] steps in all brings back one at least, or there is no other round; of fewer it may
+/// bring back none.
 const WORTHWHILE: usize = 8;
 const LONG: usize = 100_000;
 
