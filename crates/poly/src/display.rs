@@ -1,7 +1,7 @@
 //! Formulas as text that the parsers read back.
 
+use crate::arena::Arena;
 use crate::exact::{self, Exact};
-use crate::expression::Arena;
 use crate::graph::{Id, Node};
 use num_rational::BigRational;
 use num_traits::{One, Signed, Zero};

@@ -1,12 +1,13 @@
 //! Formulas as a hash-consed graph: equal subformulas are stored and later computed once.
 
+use crate::arena::Arena;
+use crate::display;
 use crate::exact::{Exact, ToExact};
-use crate::graph::{Graph, Id, Node};
+use crate::graph::{Graph, Id};
 use num_complex::Complex64;
 use num_rational::BigRational;
 use num_traits::Zero;
 use std::cell::RefCell;
-use std::collections::HashMap;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// An arena in which formulas over named unknowns and parameters are built.
@@ -21,41 +22,6 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 #[derive(Debug, Default)]
 pub struct Expressions {
     inner: RefCell<Arena>,
-}
-
-/// The arena without the cell: what a finished [`System`](crate::System) keeps.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Arena {
-    pub(crate) graph: Graph,
-    pub(crate) variables: Vec<String>,
-    pub(crate) parameters: Vec<String>,
-    /// Places of the names in the two lists.
-    variable_index: HashMap<String, u32>,
-    parameter_index: HashMap<String, u32>,
-    /// A constant was not finite; reported when the system is made.
-    pub(crate) non_finite: bool,
-}
-
-impl Arena {
-    pub(crate) fn variable(&mut self, name: &str) -> Id {
-        let k = position_or_push(&mut self.variables, &mut self.variable_index, name);
-        self.graph.push(Node::Variable(k))
-    }
-
-    pub(crate) fn parameter(&mut self, name: &str) -> Id {
-        let k = position_or_push(&mut self.parameters, &mut self.parameter_index, name);
-        self.graph.push(Node::Parameter(k))
-    }
-}
-
-fn position_or_push(names: &mut Vec<String>, index: &mut HashMap<String, u32>, name: &str) -> u32 {
-    if let Some(&k) = index.get(name) {
-        return k;
-    }
-    let k = u32::try_from(names.len()).expect("fewer than 2^32 names");
-    names.push(name.to_owned());
-    index.insert(name.to_owned(), k);
-    k
 }
 
 /// A formula: a handle into its [`Expressions`], as cheap to copy as a pointer.
@@ -155,7 +121,7 @@ impl PartialEq for Expr<'_> {
 impl std::fmt::Debug for Expr<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let arena = self.arena.inner.borrow();
-        crate::display::write_node(f, &arena, self.id)
+        display::write_node(f, &arena, self.id)
     }
 }
 

@@ -38,6 +38,7 @@
 //!
 //! BENCHES.md has measured times.
 
+mod arena;
 mod display;
 mod exact;
 mod graph;

@@ -1,10 +1,11 @@
 //! Systems of equations: ordered unknowns, ordered parameters, formulas that are to vanish.
 
+use crate::arena::Arena;
+use crate::display;
 use crate::exact::{self, ToExact};
-use crate::expression::{Arena, Expr, Expressions};
+use crate::expression::{Expr, Expressions};
 use crate::graph::Id;
 use crate::polynomial::{Polynomial, Ring};
-use crate::program::{CompileError, Interpreter, Program};
 use std::collections::HashSet;
 
 /// Equations `F(x; p) = 0` in named unknowns and parameters, as formulas that are not expanded.
@@ -139,14 +140,6 @@ impl System {
         let used = graph.reachable(self.equations.iter().copied());
         (0..graph.len()).filter(|&id| used[id]).all(|id| graph.as_constant(id as Id).is_none_or(exact::is_real))
     }
-
-    /// The straight-line programs of the system, ready to run.
-    ///
-    /// # Errors
-    /// If a formula divides by the constant zero or the programs would be unreasonably long.
-    pub fn compile(&self) -> Result<Interpreter, CompileError> {
-        Ok(Interpreter::new(Program::new(self)?))
-    }
 }
 
 /// Whether the parsers would read this as one name.
@@ -162,7 +155,7 @@ impl std::fmt::Display for System {
     /// One equation a line, each ended by `;`.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         for &equation in &self.equations {
-            crate::display::write_node(f, &self.arena, equation)?;
+            display::write_node(f, &self.arena, equation)?;
             f.write_str(";\n")?;
         }
         Ok(())

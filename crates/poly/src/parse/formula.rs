@@ -2,8 +2,8 @@
 
 use super::ParseError;
 use super::token::{Token, Tokens};
+use crate::arena::Arena;
 use crate::exact::Exact;
-use crate::expression::Arena;
 use crate::graph::Id;
 use num_complex::Complex;
 use num_rational::BigRational;

@@ -3,7 +3,7 @@
 use super::ParseError;
 use super::formula::{FormulaParser, Names};
 use super::token::{Token, Tokens};
-use crate::expression::Arena;
+use crate::arena::Arena;
 use crate::system::System;
 use std::collections::HashMap;
 

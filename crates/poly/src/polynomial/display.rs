@@ -1,6 +1,7 @@
 //! Polynomials as text that the parsers read back.
 
-use super::{Polynomial, Ring};
+use super::ring::Ring;
+use super::terms::Polynomial;
 use crate::display::{PRODUCT, write_constant};
 use crate::exact::{self, ToExact};
 use num_traits::{One, Signed};

@@ -77,7 +77,7 @@ proptest! {
         prop_assert_eq!(h.variables(), N + 2);
         prop_assert_eq!(h.len(), a.len());
         for groups in [[0, 2, 3].as_slice(), &[1, 4]] {
-            let degrees: Vec<i64> = h.terms().iter().map(|(m, _)| super::group_degree(m, groups)).collect();
+            let degrees: Vec<i64> = h.terms().iter().map(|(m, _)| super::terms::group_degree(m, groups)).collect();
             prop_assert!(degrees.windows(2).all(|d| d[0] == d[1]));
         }
         prop_assert_eq!(h.multidegree(&groups).is_none(), a.is_empty());

@@ -1,6 +1,7 @@
 //! Substitution and homogenising.
 
-use super::{Polynomial, Ring, group_degree};
+use super::ring::Ring;
+use super::terms::{Polynomial, group_degree};
 use crate::monomial::Monomial;
 
 impl<R: Ring> Polynomial<R> {

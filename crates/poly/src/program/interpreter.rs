@@ -1,8 +1,8 @@
 //! Runs a program over any scalar.
 
-use super::Program;
 use super::instruction::Op;
 use super::registers::{Code, Layout, RegisterTape, allocate};
+use super::straight_line::Program;
 use super::taylor::{TaylorMemory, TaylorTape};
 use crate::evaluate::Evaluate;
 use crate::scalar::Scalar;

@@ -4,9 +4,12 @@
 //! the leaves to the root gives the value by Horner's rule and, kept apart by edge, the derivatives by those
 //! powers: the trick of Speelpenning for the gradient of a product, extended from chains to trees.
 
+mod error;
 mod plan;
 #[cfg(test)]
 mod tests;
+
+pub use error::SupportError;
 
 use crate::evaluate::Evaluate;
 use crate::polynomial::{Polynomial, Ring};
@@ -34,40 +37,6 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct SparseSystem {
     plan: Arc<Plan>,
-}
-
-/// Why supports do not make a system.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum SupportError {
-    /// An exponent vector has the wrong length.
-    #[error("term {term} of equation {equation} has {found} exponents, the system has {expected} unknowns")]
-    Length {
-        /// The equation, from 1.
-        equation: usize,
-        /// The term, from 1.
-        term: usize,
-        /// Length of the exponent vector.
-        found: usize,
-        /// Number of unknowns.
-        expected: usize,
-    },
-    /// An exponent vector occurs twice in one equation.
-    #[error("term {term} of equation {equation} repeats an earlier exponent vector; add their coefficients")]
-    Repeated {
-        /// The equation, from 1.
-        equation: usize,
-        /// The term, from 1.
-        term: usize,
-    },
-    /// An exponent is the least 32-bit integer, which has no opposite.
-    #[error("term {term} of equation {equation} has an exponent of -2^31")]
-    Exponent {
-        /// The equation, from 1.
-        equation: usize,
-        /// The term, from 1.
-        term: usize,
-    },
 }
 
 /// Scratch space of a [`SparseSystem`].

@@ -1,6 +1,6 @@
 //! What the kernel does, worked out once: the table of powers, the tree of prefixes, and each row's sweep.
 
-use super::SupportError;
+use super::error::SupportError;
 use crate::program::generated::TaylorTape;
 use crate::program::{Op, Operand, TapeWriter};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};

@@ -1,12 +1,14 @@
 //! Programs as Rust source: straight-line code generic over [`Scalar`](crate::Scalar).
 
+mod literal;
 mod straight;
 mod taylor;
 
-use super::Program;
+use super::straight_line::Program;
 use super::taylor::TaylorTape;
 use crate::exact;
-use proc_macro2::{Literal, TokenStream};
+use literal::number;
+use proc_macro2::Literal;
 use quote::quote;
 use straight::{Straight, zero_fill};
 use taylor::taylor_table;
@@ -173,20 +175,4 @@ fn hash(program: &Program) -> u64 {
         text.push_str(&format!(" {:?} {:?}", tape.instructions, tape.outputs));
     }
     text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
-}
-
-/// A double as a literal that reads back to the same bits.
-fn number(x: f64) -> TokenStream {
-    if x.is_nan() {
-        return quote!(f64::NAN);
-    }
-    if x.is_infinite() {
-        return if x > 0.0 { quote!(f64::INFINITY) } else { quote!(f64::NEG_INFINITY) };
-    }
-    let literal: Literal = format!("{:?}", x.abs()).parse().expect("a float prints as a literal");
-    if x.is_sign_negative() { quote!(-#literal) } else { quote!(#literal) }
-}
-
-fn index(k: u32) -> Literal {
-    Literal::u32_unsuffixed(k)
 }

@@ -1,9 +1,9 @@
 //! Values and Jacobian as straight-line code, in functions of limited length.
 
-use super::{index, number};
+use super::literal::{index, number};
 use crate::exact;
-use crate::program::Program;
 use crate::program::instruction::{Instruction, Op, Operand, Tape};
+use crate::program::straight_line::Program;
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 use std::collections::{BTreeMap, BTreeSet};

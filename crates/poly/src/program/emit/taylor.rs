@@ -1,6 +1,6 @@
 //! The Taylor program as a table.
 
-use super::index;
+use super::literal::index;
 use crate::program::taylor::{TaylorCode, TaylorTape};
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
