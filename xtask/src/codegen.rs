@@ -6,9 +6,9 @@
 
 use crate::benches;
 use crate::refill;
-use crate::workspace;
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
+use experiments::workspace;
 use hc::distinct::coincidences;
 use hc::family::Compiled;
 use hc::poly::program::{EmitOptions, emit};

@@ -2,13 +2,10 @@
 
 mod benches;
 mod codegen;
-mod compare;
-mod counts;
-mod experiments;
 mod refill;
-mod workspace;
 
 use clap::{Parser, Subcommand};
+use experiments::{compare, counts, results};
 
 #[derive(Parser)]
 #[command(name = "cargo xtask", about = "Development tasks of this workspace")]
@@ -22,7 +19,7 @@ enum Task {
     /// Write the generated solvers from the families and their stored fibres.
     Codegen(codegen::CodegenArguments),
     /// Repeat the experiments behind docs/results.md.
-    Experiments(experiments::ExperimentsArguments),
+    Experiments(results::ExperimentsArguments),
     /// Measure this project beside the peers that are installed.
     Compare(compare::CompareArguments),
     /// Solve the systems with verified counts for many seeds.
@@ -32,7 +29,7 @@ enum Task {
 fn main() -> anyhow::Result<()> {
     match Arguments::parse().task {
         Task::Codegen(arguments) => codegen::run(&arguments),
-        Task::Experiments(arguments) => experiments::run(&arguments),
+        Task::Experiments(arguments) => results::run(&arguments),
         Task::Compare(arguments) => compare::run(&arguments),
         Task::Counts(arguments) => counts::run(&arguments),
     }

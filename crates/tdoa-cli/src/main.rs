@@ -1,7 +1,6 @@
 //! The program `tdoa`: calibration of sensor networks from arrival times alone.
 
 mod calibrate;
-mod experiment;
 mod simulate;
 mod solve;
 mod summary;
@@ -26,7 +25,8 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Calibrate(calibrate::Arguments),
-    Experiment(experiment::Arguments),
+    #[cfg(feature = "experiments")]
+    Experiment(experiments::command::Arguments),
     Simulate(simulate::Arguments),
     Solve(solve::Arguments),
 }
@@ -35,12 +35,14 @@ fn main() -> ExitCode {
     // clap ends the program itself, with status 2, if the arguments are wrong.
     let command = Arguments::parse().command;
     let left = match &command {
+        #[cfg(feature = "experiments")]
         Command::Experiment(_) => "the rows so far are kept, and the same command goes on from there",
         _ => "nothing was written",
     };
     let result = match command {
         Command::Calibrate(arguments) => calibrate::run(&arguments),
-        Command::Experiment(arguments) => experiment::run(&arguments),
+        #[cfg(feature = "experiments")]
+        Command::Experiment(arguments) => experiments::command::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Solve(arguments) => solve::run(&arguments),
     };

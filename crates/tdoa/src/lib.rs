@@ -11,7 +11,7 @@
 //! * [`minimal`]: every network that explains a small complete matrix exactly, by homotopy continuation.
 //! * [`Pseudoranges`]: the measurements, and [`read`] for files of them.
 //! * [`picture`] and [`html`]: a result to look at.
-//! * [`simulate()`] and [`experiment`]: networks with a known truth, and how near to it the calibration comes.
+//! * [`simulate()`] and [`accuracy`]: networks with a known truth, and how near to it an estimate comes and can come.
 //!
 //! ```
 //! use tdoa::{CalibrateOptions, Pseudoranges, SimulateOptions, calibrate, simulate};
@@ -37,10 +37,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod accuracy;
 pub mod align;
 pub mod calibrate;
 pub mod degeneracy;
-pub mod experiment;
 mod generated;
 pub mod html;
 pub mod loss;

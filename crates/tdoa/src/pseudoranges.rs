@@ -231,11 +231,7 @@ impl Pseudoranges {
     /// The same matrix with a number subtracted from each column, as if the transmitters' clocks were set differently.
     pub(crate) fn shifted(&self, shifts: &[f64]) -> Pseudoranges {
         let n = self.transmitters;
-        self.with_values(self.values.iter().enumerate().map(|(k, value)| value - shifts[k % n]).collect())
-    }
-
-    /// The same matrix with other values, as many as before and none larger.
-    pub(crate) fn with_values(&self, values: Vec<f64>) -> Pseudoranges {
+        let values = self.values.iter().enumerate().map(|(k, value)| value - shifts[k % n]).collect();
         Pseudoranges { values, ..self.clone() }
     }
 

@@ -17,6 +17,7 @@ pub use hypotheses::{Hypotheses, KnownReceivers, generator};
 pub use known::{KnownDistance, SpeedEstimate};
 pub use minimal::MinimalHypotheses;
 pub use options::{CalibrateError, CalibrateOptions, Control, Progress};
+pub use search::SAME_NETWORK;
 pub use truth::Truth;
 
 use crate::degeneracy::{Usable, usable};
@@ -28,7 +29,6 @@ use crate::refine::{PartialNetwork, RefineOptions, Refined, Refiner, SEARCH, ext
 use hold::{Free, Held};
 use hypotheses::RandomRestarts;
 use report::Solved;
-pub(crate) use search::SAME_NETWORK;
 use search::{Search, distinct};
 
 /// Scale of the Cauchy loss, in standard deviations, that is 95 % efficient on normal noise (Holland and Welsch 1977).

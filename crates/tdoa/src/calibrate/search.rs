@@ -26,7 +26,7 @@ const AS_GOOD: f64 = 4.0;
 const SAME_BASIN: f64 = 20.0;
 
 /// Networks are the same if their nodes differ by less than this share of the network's size, root mean square.
-pub(crate) const SAME_NETWORK: f64 = 0.02;
+pub const SAME_NETWORK: f64 = 0.02;
 
 /// What the search found.
 pub(crate) struct Found {

@@ -218,7 +218,7 @@ fn by_rows(f: &[f64], width: usize, squares: &mut LeastSquares) -> Option<SmallV
 #[cfg(test)]
 mod tests {
     use super::Collinear;
-    use crate::experiment::clean::position_error_of;
+    use crate::accuracy::position_error;
     use crate::minimal::linear::LeastSquares;
     use crate::minimal::normalised::Normalised;
     use crate::minimal::warning::Nodes;
@@ -254,7 +254,7 @@ mod tests {
                         let errors = networks.into_iter().map(|mut n| {
                             assert!(found.covers(&n), "{name}");
                             data.restore(&mut n);
-                            position_error_of(&n, &network)
+                            position_error(&n, &network)
                         });
                         assert_eq!(errors.filter(|&e| e < 1e-6).count(), 1, "{name}");
                     }

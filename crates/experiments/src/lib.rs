@@ -1,0 +1,17 @@
+//! Experiments with the calibration and what is recorded of them. Not published; two programs give entry:
+//!
+//! * `tdoa experiment` runs [`command`], whose trials are in [`trials`] (feature `trials`).
+//! * `cargo xtask experiments | compare | counts` runs [`results`], [`compare`] and [`counts`] (feature `records`).
+
+#[cfg(feature = "trials")]
+pub mod command;
+#[cfg(feature = "records")]
+pub mod compare;
+#[cfg(feature = "records")]
+pub mod counts;
+#[cfg(feature = "records")]
+pub mod results;
+#[cfg(feature = "trials")]
+pub mod trials;
+#[cfg(feature = "records")]
+pub mod workspace;

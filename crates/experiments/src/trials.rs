@@ -1,0 +1,7 @@
+//! Trials on simulated networks: how far from the truth the exact solvers and the calibration end, and what becomes of their paths.
+
+pub mod calibration;
+pub mod checks;
+pub mod clean;
+pub mod hard;
+pub mod noise;

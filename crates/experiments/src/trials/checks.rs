@@ -1,0 +1,170 @@
+//! Checks of the minimal solvers on clean data by other means: interval proofs of the roots, the polyhedral route beside the stored
+//! start, what the options for callers in a hurry save and lose, and what becomes of paths that fail.
+
+use serde::Serialize;
+use std::time::Instant;
+use tdoa::Simulation;
+use tdoa::accuracy::position_error;
+use tdoa::minimal::{Fallback, RootProofs, SolveError, SolveOptions, Solver, Start};
+use tdoa::{MinimalSolution, PathCounts, RootCounts};
+
+/// A candidate this near the truth (relative to the network's size) is the truth.
+const FOUND: f64 = 1e-4;
+
+/// Solves one clean instance and proves its roots; with the number of roots that the solver counts as real.
+///
+/// # Errors
+/// If the solver refuses the instance.
+pub fn proof_trial(solver: &mut Solver, simulation: &Simulation) -> Result<(RootProofs, usize), SolveError> {
+    let solution = solver.solve(&simulation.pseudoranges, &SolveOptions::default())?;
+    Ok((solver.prove().unwrap_or_default(), solution.counts.real))
+}
+
+/// One instance by both routes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RouteTrial {
+    /// Numbers of roots from the stored start.
+    pub stored: RootCounts,
+    /// Numbers of roots from a polyhedral start system.
+    pub polyhedral: RootCounts,
+    /// Paths of the polyhedral route.
+    pub paths: PathCounts,
+    /// Whether both give the same real networks, no more and no fewer.
+    pub agree: bool,
+}
+
+/// Solves one clean instance from the stored start and from a polyhedral one.
+///
+/// # Errors
+/// If the solver refuses the instance.
+pub fn route_trial(solver: &mut Solver, simulation: &Simulation) -> Result<RouteTrial, SolveError> {
+    let mut options = SolveOptions::default();
+    let stored = solver.solve(&simulation.pseudoranges, &options)?;
+    options.start = Start::Polyhedral;
+    let polyhedral = solver.solve(&simulation.pseudoranges, &options)?;
+    let agree = same_networks(&stored, &polyhedral);
+    Ok(RouteTrial { stored: stored.counts, polyhedral: polyhedral.counts, paths: polyhedral.paths, agree })
+}
+
+/// One instance with one way to treat paths that fail.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct ChartTrial {
+    /// How the paths ended.
+    pub paths: PathCounts,
+    /// Evaluations of the Jacobian in the first starts of all paths and what follows these.
+    pub jacobians: usize,
+    /// Whether the real roots, of which there are as many as all roots up to pairs, are odd in number: then a path has jumped unseen, or a real root was
+    /// called complex.
+    pub odd: bool,
+    /// Seconds.
+    pub seconds: f64,
+}
+
+/// Solves one clean instance with a fallback and so many rounds of it.
+///
+/// # Errors
+/// If the solver refuses the instance.
+pub fn chart_trial(
+    solver: &mut Solver,
+    simulation: &Simulation,
+    fallback: Fallback,
+    retries: u32,
+) -> Result<ChartTrial, SolveError> {
+    let mut options = SolveOptions::default();
+    options.fallback = fallback;
+    options.paths.retries = retries;
+    let started = Instant::now();
+    let solution = solver.solve(&simulation.pseudoranges, &options)?;
+    Ok(ChartTrial {
+        paths: solution.paths,
+        jacobians: solver.records().iter().map(|r| r.jacobians).sum(),
+        odd: solution.counts.real % 2 == 1,
+        seconds: started.elapsed().as_secs_f64(),
+    })
+}
+
+/// Whether the offsets of all candidates agree, one to one.
+fn same_networks(a: &MinimalSolution, b: &MinimalSolution) -> bool {
+    let near = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6 * (1.0 + a.abs()));
+    let mut left: Vec<&[f64]> = b.candidates.iter().map(|c| &c.network.offsets[..]).collect();
+    let paired = a.candidates.iter().all(|c| {
+        let at = left.iter().position(|other| near(&c.network.offsets, other));
+        at.map(|k| left.swap_remove(k)).is_some()
+    });
+    paired && left.is_empty()
+}
+
+/// One instance solved in a hurry and in full.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct HurryTrial {
+    /// Seconds in full.
+    pub seconds_full: f64,
+    /// Seconds in a hurry.
+    pub seconds: f64,
+    /// Paths tracked in a hurry.
+    pub tracked: usize,
+    /// Of these, paths dropped because they would hardly become real.
+    pub dropped: usize,
+    /// Real networks found in full.
+    pub networks_full: usize,
+    /// Real networks found in a hurry.
+    pub networks: usize,
+    /// Whether the true network is among those of the full search.
+    pub truth_full: bool,
+    /// Whether it is among those of the hurried one.
+    pub truth: bool,
+}
+
+/// Solves one clean instance in full and with `hurried` options.
+///
+/// # Errors
+/// If the solver refuses the instance.
+pub fn hurry_trial(
+    solver: &mut Solver,
+    simulation: &Simulation,
+    hurried: &SolveOptions,
+) -> Result<HurryTrial, SolveError> {
+    let mut timed = |options: &SolveOptions| {
+        let started = Instant::now();
+        let solution = solver.solve(&simulation.pseudoranges, options)?;
+        let seconds = started.elapsed().as_secs_f64();
+        let near = |s: &MinimalSolution| {
+            let mut physical = s.candidates.iter().filter(|c| c.physical);
+            physical.any(|c| position_error(&c.network, &simulation.network) < FOUND)
+        };
+        let truth = near(&solution);
+        Ok::<_, SolveError>((solution, seconds, truth))
+    };
+    let (full, seconds_full, truth_full) = timed(&SolveOptions::default())?;
+    let (fast, seconds, truth) = timed(hurried)?;
+    Ok(HurryTrial {
+        seconds_full,
+        seconds,
+        tracked: fast.paths.tracked,
+        dropped: fast.paths.dropped,
+        networks_full: full.counts.positive_definite,
+        networks: fast.counts.positive_definite,
+        truth_full,
+        truth,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::hurry_trial;
+    use tdoa::minimal::{SolveOptions, Solver};
+    use tdoa::{Layout, SimulateOptions, simulate};
+
+    #[test]
+    fn dropped_paths_are_counted() {
+        let mut simulated = SimulateOptions::default();
+        (simulated.receivers, simulated.transmitters) = (6, 3);
+        simulated.layout = Layout::Normal;
+        let mut options = SolveOptions::default();
+        options.paths.tracker.drop_complex = Some(4.0);
+        let trial = hurry_trial(&mut Solver::new(), &simulate(&simulated).unwrap(), &options).unwrap();
+        assert_eq!(trial.tracked, 180);
+        assert!(trial.dropped > 0 && trial.dropped + trial.networks <= 180, "{trial:?}");
+        assert!(trial.networks <= trial.networks_full, "{trial:?}");
+    }
+}

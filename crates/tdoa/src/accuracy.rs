@@ -1,0 +1,84 @@
+//! How near to the truth a network comes, and how near the noise lets any estimate come.
+
+use crate::align::align;
+use crate::network::Network;
+use crate::observations::Observations;
+use crate::plane::spread;
+use crate::pseudoranges::Pseudoranges;
+use crate::refine::covariance;
+
+/// The Cramer-Rao bound of a network's receivers: the root mean square over them of the smallest standard deviation that any unbiased
+/// estimate can have, metres, after the best rigid alignment.
+///
+/// `truth` is the true network and `noise` the standard deviation of the measurements in metres. Measurements that `outliers` names
+/// (row-major, one a cell) do not count. Infinite if the others do not determine every receiver.
+///
+/// # Panics
+/// If network, measurements and outliers differ in size.
+pub fn cramer_rao(measured: &Pseudoranges, outliers: &[bool], truth: &Network, noise: f64) -> f64 {
+    let n = measured.transmitters();
+    let observations = Observations::new(measured, |i, j| !outliers[i * n + j]);
+    let Some(found) = covariance(&observations, truth, noise).filter(|found| found.loose.is_empty()) else {
+        return f64::INFINITY;
+    };
+    let trace: f64 = found.receivers.iter().map(|c| c[0][0] + c[1][1]).sum();
+    (trace / found.receivers.len() as f64).sqrt()
+}
+
+/// The relative error `|X^ - X| / |X - mean X|` of the positions X of all nodes, after the best rigid alignment (reflection allowed).
+/// Infinite for networks of different sizes.
+pub fn position_error(found: &Network, truth: &Network) -> f64 {
+    if found.receivers.len() != truth.receivers.len() {
+        return f64::INFINITY;
+    }
+    let nodes = |n: &Network| n.receivers.iter().chain(&n.transmitters).copied().collect::<Vec<_>>();
+    let (found, truth) = (nodes(found), nodes(truth));
+    align(&found, &truth, false).map_or(f64::INFINITY, |alignment| alignment.rms / spread(truth.iter()))
+}
+
+/// The relative error `|o^ - o| / |o|` of the offsets o. Infinite for networks of different sizes.
+pub fn offset_error(found: &Network, truth: &Network) -> f64 {
+    if found.offsets.len() != truth.offsets.len() {
+        return f64::INFINITY;
+    }
+    let difference: f64 = found.offsets.iter().zip(&truth.offsets).map(|(a, b)| (a - b).powi(2)).sum();
+    (difference / truth.offsets.iter().map(|o| o * o).sum::<f64>()).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{cramer_rao, offset_error, position_error};
+    use crate::simulate::{SimulateOptions, simulate};
+
+    #[test]
+    fn the_bound_grows_with_the_noise_and_with_what_is_left_out() {
+        let options = SimulateOptions { receivers: 8, transmitters: 12, seed: 3, ..SimulateOptions::default() };
+        let simulation = simulate(&options).unwrap();
+        let bound =
+            |outliers: &[bool], noise: f64| cramer_rao(&simulation.pseudoranges, outliers, &simulation.network, noise);
+        let all = vec![false; 96];
+        // The covariance is proportional to the variance of the noise.
+        assert!((bound(&all, 0.02) / bound(&all, 0.01) - 2.0).abs() < 1e-9);
+        let mut fewer = all.clone();
+        fewer[..6].fill(true);
+        assert!(bound(&fewer, 0.01) > bound(&all, 0.01) && bound(&fewer, 0.01).is_finite());
+        // A receiver that hears nothing may be anywhere.
+        fewer[..12].fill(true);
+        assert_eq!(bound(&fewer, 0.01), f64::INFINITY);
+    }
+
+    #[test]
+    fn errors_do_not_see_the_frame() {
+        let truth = simulate(&SimulateOptions::default()).unwrap().network;
+        let mut found = truth.clone();
+        for p in found.receivers.iter_mut().chain(&mut found.transmitters) {
+            *p = [3.0 - p[1], p[0] - 7.0];
+        }
+        found.offsets.iter_mut().zip(&truth.offsets).for_each(|(found, o)| *found = 1.5 * o);
+        assert!(position_error(&found, &truth) < 1e-14);
+        assert!((offset_error(&found, &truth) - 0.5).abs() < 1e-14);
+        found.receivers.pop();
+        found.offsets.pop();
+        assert_eq!((position_error(&found, &truth), offset_error(&found, &truth)), (f64::INFINITY, f64::INFINITY));
+    }
+}
