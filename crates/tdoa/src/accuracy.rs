@@ -74,7 +74,9 @@ mod tests {
         for p in found.receivers.iter_mut().chain(&mut found.transmitters) {
             *p = [3.0 - p[1], p[0] - 7.0];
         }
-        found.offsets.iter_mut().zip(&truth.offsets).for_each(|(found, o)| *found = 1.5 * o);
+        for offset in &mut found.offsets {
+            *offset *= 1.5;
+        }
         assert!(position_error(&found, &truth) < 1e-14);
         assert!((offset_error(&found, &truth) - 0.5).abs() < 1e-14);
         found.receivers.pop();
