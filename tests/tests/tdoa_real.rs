@@ -1,7 +1,7 @@
 //! The robust refinement on nearly planar field recordings, through the library.
 
 use end_to_end::shared;
-use tdoa::experiment::{damage, oracle};
+use experiments::trials::calibration::{damage, oracle};
 use tdoa::read::{Units, read, read_nodes};
 use tdoa::{CalibrateOptions, Calibration, Pseudoranges, calibrate};
 
@@ -37,7 +37,7 @@ fn damaged_recordings_match_the_oracle_on_the_same_data() {
         let Some((measured, truth)) = recording(name) else { return };
         let mut good = 0;
         for seed in 0..10 {
-            let damaged = damage(&measured, 0.2, 0.1, seed);
+            let damaged = damage(&measured, 0.2, 0.1, seed).expect("as many cells");
             let mut options = CalibrateOptions::default();
             options.seed = seed;
             let best = errors(&oracle(&damaged, &truth, &options).expect("oracle"));
