@@ -62,7 +62,8 @@ pub use calibrate::{
     SpeedEstimate, Truth, calibrate, calibrate_with,
 };
 pub use hc::monitor::Monitor;
-pub use network::{Candidate, MinimalSolution, Network, PathCounts, RootCounts};
+pub use minimal::{Candidate, MinimalSolution, PathCounts, RootCounts};
+pub use network::Network;
 pub use pseudoranges::{PseudorangeError, Pseudoranges};
 pub use refine::PartialNetwork;
 pub use simulate::{Layout, SimulateError, SimulateOptions, Simulation, simulate};

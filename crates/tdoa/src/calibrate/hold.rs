@@ -1,9 +1,9 @@
 //! The last refinement with what is known beforehand: the propagation speed from known distances, then the receivers of
 //! known position held in their places.
 
+use super::finish::{finish, inlier_deviation};
 use super::known::{Anchors, SpeedEstimate};
 use super::options::{CalibrateError, CalibrateOptions, Control};
-use super::{finish, inlier_deviation};
 use crate::degeneracy::Usable;
 use crate::network::Network;
 use crate::observations::Observations;

@@ -2,22 +2,13 @@
 
 use serde::Serialize;
 
-use super::options::{CalibrateError, CalibrateOptions};
+use super::options::{CalibrateError, CalibrateOptions, KnownDistance};
 use crate::align::align;
 use crate::degeneracy::Usable;
 use crate::network::Network;
 use crate::plane::{centroid, distance, flatness};
 use crate::pseudoranges::{MAX_MAGNITUDE, Pseudoranges};
 use crate::refine::Refined;
-
-/// A distance between two receivers that is known beforehand.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct KnownDistance {
-    /// Places of the two among the receivers.
-    pub receivers: [usize; 2],
-    /// Metres.
-    pub distance: f64,
-}
 
 /// The propagation speed as the known distances have it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

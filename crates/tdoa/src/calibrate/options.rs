@@ -1,6 +1,5 @@
 //! What calibration is asked for, and how it ends early.
 
-use super::known::KnownDistance;
 use crate::degeneracy::Degeneracy;
 use hc::monitor::Monitor;
 use thiserror::Error;
@@ -71,6 +70,15 @@ impl Default for CalibrateOptions {
     }
 }
 
+/// A distance between two receivers that is known beforehand.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KnownDistance {
+    /// Places of the two among the receivers.
+    pub receivers: [usize; 2],
+    /// Metres.
+    pub distance: f64,
+}
+
 impl CalibrateOptions {
     /// Checks the numbers.
     ///
@@ -123,6 +131,13 @@ pub struct Control<'a> {
     pub progress: Option<&'a dyn Fn(Progress)>,
     /// Calibration ends with [`CalibrateError::Cancelled`] soon after this is cancelled.
     pub monitor: Monitor,
+}
+
+impl Control<'_> {
+    /// Ends the calibration if it has been cancelled.
+    pub(super) fn check(&self) -> Result<(), CalibrateError> {
+        if self.monitor.is_cancelled() { Err(CalibrateError::Cancelled) } else { Ok(()) }
+    }
 }
 
 /// Why there is no calibration.

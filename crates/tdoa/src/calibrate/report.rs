@@ -1,7 +1,7 @@
 //! From the networks that the search found to the result: residuals, uncertainty, alternatives and warnings.
 
 use super::calibration::{Alternative, Calibration};
-use super::inlier_deviation;
+use super::finish::{inlier_deviation, typical_deviation};
 use super::known::{Anchors, SpeedEstimate};
 use super::options::CalibrateOptions;
 use super::warnings::warn_of_nodes;
@@ -186,7 +186,7 @@ impl Solved<'_> {
     fn planar(&self, best: &Network, estimated: f64, options: &CalibrateOptions, warnings: &mut Vec<String>) -> bool {
         // In metres also where measurements carry their own deviations.
         let metre = self.speed.map_or(1.0, |speed| speed.factor);
-        let misfit = metre * estimated * super::typical_deviation(self.centred);
+        let misfit = metre * estimated * typical_deviation(self.centred);
         let size = metre * best.size();
         if let Some(sigma) = self.known
             && estimated > 3.0 * sigma

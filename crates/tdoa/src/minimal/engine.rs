@@ -1,16 +1,18 @@
 //! From measurements to all networks that explain them, for any [`Formulation`]: tracks the stored fibre to the data, accounts for
 //! every path, and turns real solutions into networks.
 
+use super::error::SolveError;
 use super::formulation::Formulation;
 use super::linear::LeastSquares;
 use super::nearest::Nearest;
 use super::normalised::{Normalised, rank};
+use super::options::{SolveOptions, Start};
 use super::polish::Polisher;
 use super::proofs::{RootProofs, prove};
 use super::real::real_root;
 use super::recover::{Again, BAD_LUCK, Recovery};
-use super::{SolveError, SolveOptions, Start, scratch};
-use crate::network::{Candidate, MinimalSolution, PathCounts, RootCounts};
+use super::scratch;
+use super::solution::{Candidate, MinimalSolution, PathCounts, RootCounts};
 use crate::pseudoranges::Pseudoranges;
 use hc::fibre::Fibre;
 use hc::homotopy::Segment;

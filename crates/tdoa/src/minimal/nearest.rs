@@ -85,8 +85,8 @@ impl Best<'_> {
 mod tests {
     use super::Nearest;
     use crate::minimal::formulation::Formulation;
-    use crate::minimal::four_five::FourFive;
-    use crate::minimal::three::{FiveFour, SixThree};
+    use crate::minimal::planar::four_five::FourFive;
+    use crate::minimal::planar::three::{FiveFour, SixThree};
     use hc::poly::{Evaluate, Isa};
     use hc::random::Random;
     use num_complex::Complex64;

@@ -1,8 +1,9 @@
 //! Measurements in the form that the equations want.
 
-use super::SolveOptions;
+use super::options::SolveOptions;
 use super::polish::Polisher;
-use crate::network::{Candidate, Network};
+use super::solution::Candidate;
+use crate::network::Network;
 use crate::pseudoranges::Pseudoranges;
 
 /// Measurements relative to the first receiver, in units of their own size.

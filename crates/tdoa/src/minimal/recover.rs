@@ -5,8 +5,8 @@
 //! second round all start again from the beginning, since what a path has come to may be wrong. Degenerate networks have roots that are
 //! singular, which no path reaches however short its steps: rounds end once a long one brings back hardly any of many lost paths.
 
-use super::Fallback;
 use super::formulation::Formulation;
+use super::options::Fallback;
 use hc::distinct::Coincidences;
 use hc::fibre::{Fibre, FibreOptions, doubtful_into, ends_regularly, settle};
 use hc::homotopy::{ParameterPath, Segment};

@@ -4,9 +4,9 @@
 //! with large coordinates look like such paths for long. Where that leaves roots missing, a member at random complex parameters, whose
 //! roots are of ordinary size, is solved by a polyhedral start system too, and its roots are tracked to the data.
 
-use super::SolveError;
+use super::error::SolveError;
 use super::formulation::Formulation;
-use crate::network::PathCounts;
+use super::solution::PathCounts;
 use hc::fibre::Fibre;
 use hc::monitor::Monitor;
 use hc::random::Random;

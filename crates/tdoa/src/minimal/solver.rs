@@ -1,23 +1,32 @@
 //! One entry point for all sizes.
 
-use super::collinear::Collinear;
+use super::check::check;
+use super::doubts::warnings;
 use super::engine::Engine;
+use super::error::SolveError;
 use super::formulation::Formulation;
-use super::four_five::FourFive;
-use super::larger::extend;
 use super::linear::LeastSquares;
 use super::normalised::{Normalised, rank};
+use super::options::SolveOptions;
+use super::planar::collinear::Collinear;
+use super::planar::four_five::FourFive;
+use super::planar::larger::extend;
+use super::planar::rank::{FiveSix, by_receivers, offsets_of_four};
+use super::planar::three::{FiveFour, SixThree};
 use super::polish::Polisher;
 use super::proofs::RootProofs;
-use super::rank::{FiveSix, by_receivers, offsets_of_four};
+use super::solution::{Candidate, MinimalSolution, PathCounts, RootCounts};
 use super::subset::{self, Subset};
-use super::three::{FiveFour, SixThree};
-use super::warning::warnings;
-use super::{MAX_MEASUREMENTS, SolveError, SolveOptions, check};
-use crate::degeneracy::is_solvable;
-use crate::network::{Candidate, MinimalSolution, PathCounts, RootCounts};
 use crate::pseudoranges::Pseudoranges;
 use hc::tracker::PathResult;
+
+/// Every network that explains the measurements, best first: [`Solver::solve`] with a new solver.
+///
+/// # Errors
+/// If the matrix is too small, a measurement is missing, or two nodes coincide.
+pub fn solve(measured: &Pseudoranges, options: &SolveOptions) -> Result<MinimalSolution, SolveError> {
+    Solver::new().solve(measured, options)
+}
 
 /// Solver for small networks; picks the method by size, and keeps its memory from call to call.
 #[derive(Default)]
@@ -81,13 +90,6 @@ impl Solver {
     pub fn solve(&mut self, measured: &Pseudoranges, options: &SolveOptions) -> Result<MinimalSolution, SolveError> {
         options.paths.validate()?;
         let (m, n) = (measured.receivers(), measured.transmitters());
-        let (constraints, unknowns) = (m * n, (2 * m + 3 * n).saturating_sub(3));
-        if !is_solvable(m, n) {
-            return Err(SolveError::Underdetermined { configuration: measured.configuration(), constraints, unknowns });
-        }
-        if constraints > MAX_MEASUREMENTS {
-            return Err(SolveError::TooLarge { configuration: measured.configuration(), limit: MAX_MEASUREMENTS });
-        }
         check(measured)?;
         let method = Method::pick(m, n);
         let mut solution = self.solve_by(method, measured, options)?;
@@ -223,8 +225,8 @@ fn seven_four(measured: &Pseudoranges, options: &SolveOptions) -> MinimalSolutio
 #[cfg(test)]
 mod tests {
     use super::Solver;
+    use crate::minimal::MinimalSolution;
     use crate::minimal::{SolveOptions, Start};
-    use crate::network::MinimalSolution;
     use crate::simulate::{Layout, SimulateOptions, simulate};
 
     /// The same networks from the stored start and from a polyhedral one, no more and no fewer; of 6r/3s one for the data and one for a

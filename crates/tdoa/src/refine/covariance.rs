@@ -9,7 +9,8 @@
 use faer::Mat;
 use faer::Side;
 
-use super::{Refiner, backward, forward};
+use super::normal::{backward, forward};
+use super::refiner::Refiner;
 use crate::loss::Loss;
 use crate::network::Network;
 use crate::observations::Observations;

@@ -3,9 +3,9 @@
 //! With the first receiver's measurements subtracted, `q_ij = f_ij (f_ij - 2 p_j)` is the difference of the squared distances, and
 //! `q_ij - q_i1` has rank two in the plane. Where that fixes the offsets, the rest is linear.
 
-use super::formulation::{Formulation, Free, Parameters, Point};
-use super::linear::LeastSquares;
 use crate::generated::five_six;
+use crate::minimal::formulation::{Formulation, Free, Parameters, Point};
+use crate::minimal::linear::LeastSquares;
 use crate::network::Network;
 use hc::fibre::Fibre;
 use num_complex::Complex64;
@@ -17,7 +17,7 @@ pub(crate) struct FiveSix;
 impl Formulation for FiveSix {
     type System = five_six::System;
     const NAME: &'static str = "5r/6s";
-    const FAMILY: &'static str = include_str!("../../families/5r6s.toml");
+    const FAMILY: &'static str = include_str!("../../../families/5r6s.toml");
     const RECEIVERS: usize = 5;
     const TRANSMITTERS: usize = 6;
     const WEIGHTS: &'static [i32] = &[0, 0, 2, 0, 0, 2];

@@ -1,17 +1,19 @@
 //! Larger networks through smaller ones: a well-spread part is solved, the other nodes follow linearly from squared distances, and all
 //! measurements enter the last refinement.
 
-use super::linear::LeastSquares;
-use super::normalised::{Normalised, rank};
-use super::polish::Polisher;
-use super::{SolveOptions, subset};
-use crate::network::{MinimalSolution, Network};
+use crate::minimal::linear::LeastSquares;
+use crate::minimal::normalised::{Normalised, rank};
+use crate::minimal::options::SolveOptions;
+use crate::minimal::polish::Polisher;
+use crate::minimal::solution::MinimalSolution;
+use crate::minimal::subset::Subset;
+use crate::network::Network;
 use crate::pseudoranges::Pseudoranges;
 
 /// Extends the candidates of a part, the receivers and transmitters `part` of `measured`, to the whole.
 pub(crate) fn extend(
     measured: &Pseudoranges,
-    part: &subset::Subset,
+    part: &Subset,
     mut solution: MinimalSolution,
     options: &SolveOptions,
 ) -> MinimalSolution {
@@ -34,12 +36,7 @@ pub(crate) fn extend(
 }
 
 /// The network of all nodes from that of a part; `None` where a node cannot be determined.
-fn spread_out(
-    measured: &Pseudoranges,
-    part: &subset::Subset,
-    known: &Network,
-    squares: &mut LeastSquares,
-) -> Option<Network> {
+fn spread_out(measured: &Pseudoranges, part: &Subset, known: &Network, squares: &mut LeastSquares) -> Option<Network> {
     let (m, n) = (measured.receivers(), measured.transmitters());
     let f = |i: usize, j: usize| measured.values()[i * n + j];
     let mut network =

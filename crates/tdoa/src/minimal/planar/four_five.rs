@@ -1,8 +1,8 @@
 //! Four receivers, five transmitters: 344 paths, in the Gram matrix of the receivers.
 
-use super::formulation::{Formulation, Free, Parameters, Point};
-use super::linear::LeastSquares;
 use crate::generated::four_five as generated;
+use crate::minimal::formulation::{Formulation, Free, Parameters, Point};
+use crate::minimal::linear::LeastSquares;
 use crate::network::Network;
 use hc::fibre::Fibre;
 use num_complex::Complex64;
@@ -27,7 +27,7 @@ pub(crate) struct FourFive;
 impl Formulation for FourFive {
     type System = generated::System;
     const NAME: &'static str = "4r/5s";
-    const FAMILY: &'static str = include_str!("../../families/4r5s.toml");
+    const FAMILY: &'static str = include_str!("../../../families/4r5s.toml");
     const RECEIVERS: usize = ROWS;
     const TRANSMITTERS: usize = COLUMNS;
     const WEIGHTS: &'static [i32] = WEIGHTS;

@@ -4,7 +4,7 @@
 //! easy in another. The equations keep their form when the columns of the measurements are permuted, so a path continues in another
 //! chart with the same family: its start solution is carried over, and its end carried back.
 
-use super::formulation::Parameters;
+use crate::minimal::formulation::Parameters;
 use num_complex::Complex64;
 
 /// Transmitters of the formulation.
@@ -59,8 +59,8 @@ pub(crate) fn leave(chart: &[usize; COLUMNS], x: &[Complex64]) -> [Complex64; UN
 mod tests {
     use super::{CHARTS, UNKNOWNS, enter, leave};
     use crate::minimal::formulation::Formulation;
-    use crate::minimal::four_five::FourFive;
-    use crate::minimal::three::{FiveFour, SixThree};
+    use crate::minimal::planar::four_five::FourFive;
+    use crate::minimal::planar::three::{FiveFour, SixThree};
     use hc::poly::{Evaluate, Isa};
     use hc::random::Random;
     use num_complex::Complex64;

@@ -2,9 +2,9 @@
 
 use super::chart::{CHARTS, COLUMNS, enter, leave, permute_columns};
 use super::dual;
-use super::formulation::{Formulation, Free, Parameters, Point};
-use super::linear::LeastSquares;
 use crate::generated::{five_four, six_three};
+use crate::minimal::formulation::{Formulation, Free, Parameters, Point};
+use crate::minimal::linear::LeastSquares;
 use crate::network::Network;
 use hc::fibre::Fibre;
 use num_complex::Complex64;
@@ -18,7 +18,7 @@ pub(crate) struct SixThree;
 impl Formulation for SixThree {
     type System = six_three::System;
     const NAME: &'static str = "6r/3s";
-    const FAMILY: &'static str = include_str!("../../families/6r3s.toml");
+    const FAMILY: &'static str = include_str!("../../../families/6r3s.toml");
     const RECEIVERS: usize = 6;
     const TRANSMITTERS: usize = 3;
     const WEIGHTS: &'static [i32] = WEIGHTS;
@@ -63,7 +63,7 @@ const FOUR: usize = 4;
 impl Formulation for FiveFour {
     type System = five_four::System;
     const NAME: &'static str = "5r/4s";
-    const FAMILY: &'static str = include_str!("../../families/5r4s.toml");
+    const FAMILY: &'static str = include_str!("../../../families/5r4s.toml");
     const RECEIVERS: usize = 5;
     const TRANSMITTERS: usize = FOUR;
     const WEIGHTS: &'static [i32] = WEIGHTS;

@@ -5,9 +5,9 @@
 //! as for transmitters. The offsets for which it has follow from linear equations, and from these the positions along the line and the
 //! distances from it.
 
-use super::linear::LeastSquares;
 use super::rank::differences;
-use super::warning::Nodes;
+use crate::minimal::linear::LeastSquares;
+use crate::minimal::nodes::Nodes;
 use crate::network::Network;
 use crate::plane::flatness;
 use smallvec::SmallVec;
@@ -220,8 +220,8 @@ mod tests {
     use super::Collinear;
     use crate::accuracy::position_error;
     use crate::minimal::linear::LeastSquares;
+    use crate::minimal::nodes::Nodes;
     use crate::minimal::normalised::Normalised;
-    use crate::minimal::warning::Nodes;
     use crate::pseudoranges::Pseudoranges;
     use crate::simulate::{Layout, SimulateOptions, simulate};
 

@@ -1,7 +1,7 @@
 //! From a real root of the dual formulation to positions.
 
 use super::chart::COLUMNS;
-use super::linear::LeastSquares;
+use crate::minimal::linear::LeastSquares;
 use crate::network::Network;
 
 /// `D_i1`, `D_i2` of receiver `i = 2..m` (row `i - 2` of `f`), and `q_i1`.

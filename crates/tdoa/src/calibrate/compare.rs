@@ -1,0 +1,41 @@
+//! A calibration beside known positions.
+
+use super::calibration::Calibration;
+use super::truth::Truth;
+use crate::align::align;
+use crate::plane::distance;
+
+impl Calibration {
+    /// Compares with true positions of receivers, in the order of the receivers, as far as they are known. Does nothing
+    /// with fewer than two.
+    pub fn compare(&mut self, truth: &[Option<[f64; 2]>]) {
+        self.compare_all(truth, &[]);
+    }
+
+    /// [`Calibration::compare`] with true transmitters too, in the order of the transmitters, as far as they are known.
+    pub fn compare_all(&mut self, truth: &[Option<[f64; 2]>], transmitters: &[Option<[f64; 2]>]) {
+        let pairs: Vec<([f64; 2], [f64; 2])> =
+            self.receivers.iter().zip(truth).filter_map(|(a, b)| Some(((*a)?, (*b)?))).collect();
+        let (found, known): (Vec<_>, Vec<_>) = pairs.into_iter().unzip();
+        if found.len() < 2 {
+            return;
+        }
+        let (Some(rigid), Some(scaled)) = (align(&found, &known, false), align(&found, &known, true)) else { return };
+        let Some(back) = align(&known, &found, false) else { return };
+        let moved =
+            |all: &[Option<[f64; 2]>]| all.iter().map(|p| p.map(|p| back.transform.apply(p))).collect::<Vec<_>>();
+        let transmitter_positions = moved(transmitters);
+        let pairs = self.transmitters.iter().zip(&transmitter_positions).filter_map(|(a, b)| Some(((*a)?, (*b)?)));
+        let mut errors: Vec<f64> = pairs.map(|(a, b)| distance(a, b)).collect();
+        errors.sort_by(f64::total_cmp);
+        self.truth = Some(Truth {
+            receiver_rms: rigid.rms,
+            receiver_rms_scaled: scaled.rms,
+            scale: scaled.transform.scale,
+            receivers: found.len(),
+            positions: moved(truth),
+            transmitter_median: errors.get(errors.len() / 2).copied(),
+            transmitter_positions,
+        });
+    }
+}

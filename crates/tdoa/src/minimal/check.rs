@@ -1,0 +1,56 @@
+//! What a matrix must have before it is solved.
+
+use super::error::SolveError;
+use crate::degeneracy::is_solvable;
+use crate::pseudoranges::Pseudoranges;
+
+/// Measurements at most: the last refinement takes memory for a matrix of as many rows, and columns for all unknowns.
+const MAX_MEASUREMENTS: usize = 5_000;
+
+/// Refuses sizes that cannot be solved, missing measurements and nodes that coincide.
+pub(super) fn check(measured: &Pseudoranges) -> Result<(), SolveError> {
+    let (m, n) = (measured.receivers(), measured.transmitters());
+    let (constraints, unknowns) = (m * n, (2 * m + 3 * n).saturating_sub(3));
+    if !is_solvable(m, n) {
+        return Err(SolveError::Underdetermined { configuration: measured.configuration(), constraints, unknowns });
+    }
+    if constraints > MAX_MEASUREMENTS {
+        return Err(SolveError::TooLarge { configuration: measured.configuration(), limit: MAX_MEASUREMENTS });
+    }
+    for i in 0..m {
+        for j in 0..n {
+            if measured.get(i, j).is_none() {
+                return Err(SolveError::Missing {
+                    receiver: measured.receiver_names()[i].clone(),
+                    transmitter: measured.transmitter_names()[j].clone(),
+                });
+            }
+        }
+    }
+    let f = |i: usize, j: usize| measured.values()[i * n + j];
+    let largest = measured.values().iter().fold(0.0f64, |a, v| a.max(v.abs()));
+    let spread = |differences: &mut dyn Iterator<Item = f64>| {
+        let (low, high) =
+            differences.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), d| (low.min(d), high.max(d)));
+        high - low
+    };
+    // What rounding of the input alone can tell apart.
+    let resolution = 64.0 * f64::EPSILON * largest;
+    for i in 0..m {
+        for k in i + 1..m {
+            if spread(&mut (0..n).map(|j| f(i, j) - f(k, j))) <= resolution {
+                let names = measured.receiver_names();
+                return Err(SolveError::IdenticalReceivers { first: names[i].clone(), second: names[k].clone() });
+            }
+        }
+    }
+    for j in 0..n {
+        for k in j + 1..n {
+            if spread(&mut (0..m).map(|i| f(i, j) - f(i, k))) <= resolution {
+                let names = measured.transmitter_names();
+                return Err(SolveError::IdenticalTransmitters { first: names[j].clone(), second: names[k].clone() });
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,33 @@
+//! Whether the networks found are all there are, and can be told apart.
+
+use super::nodes::Nodes;
+use super::planar::collinear::Collinear;
+use super::solution::{Candidate, PathCounts};
+use super::warning::SolveWarning;
+use crate::plane::flatness;
+use crate::pseudoranges::Pseudoranges;
+
+/// Physical candidates flatter than this are said to lie in one line; exact data tell no more of them.
+const FLAT: f64 = 1e-4;
+
+/// What there is to say of the candidates; `line` is what the data show to lie exactly in one line.
+pub(super) fn warnings(
+    measured: &Pseudoranges,
+    paths: &PathCounts,
+    candidates: &[Candidate],
+    line: Option<&Collinear>,
+) -> Vec<SolveWarning> {
+    let mut warnings = Vec::new();
+    if paths.failed > 0 {
+        warnings.push(SolveWarning::PathsLost { lost: paths.failed, tracked: paths.tracked });
+    }
+    for kind in [Nodes::Receivers, Nodes::Transmitters] {
+        let flat = |c: &Candidate| c.physical && flatness(kind.positions(&c.network)) < FLAT;
+        if let Some(line) = line.filter(|line| line.kind == kind) {
+            warnings.push(SolveWarning::InOneLine { kind, names: kind.names(measured), listed: line.all_listed() });
+        } else if candidates.iter().any(flat) {
+            warnings.push(SolveWarning::NearlyInOneLine { kind, names: kind.names(measured) });
+        }
+    }
+    warnings
+}

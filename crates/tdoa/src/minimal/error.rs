@@ -1,0 +1,71 @@
+//! Why a matrix cannot be solved.
+
+use hc::tracker::OptionError;
+use thiserror::Error;
+
+/// Why a matrix cannot be solved.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum SolveError {
+    /// A setting of the tracker outside its range.
+    #[error(transparent)]
+    Option(#[from] OptionError),
+    /// Fewer constraints than unknowns.
+    #[error(
+        "{configuration} is underdetermined: {constraints} measurements for {unknowns} unknowns (positions up to a rigid motion, \
+         offsets); the smallest solvable networks are 6 receivers with 3 transmitters, 5 with 4, and 4 with 5"
+    )]
+    Underdetermined {
+        /// Size, such as `4r/4s`.
+        configuration: String,
+        /// Measurements.
+        constraints: usize,
+        /// Unknowns.
+        unknowns: usize,
+    },
+    /// More measurements than all of them can be refined with by dense algebra.
+    #[error(
+        "{configuration} has more than the {limit} measurements that exact solvers take; use `calibrate`, or select nodes"
+    )]
+    TooLarge {
+        /// Size, such as `400r/300s`.
+        configuration: String,
+        /// Measurements at most.
+        limit: usize,
+    },
+    /// The polyhedral route failed before any path was tracked.
+    #[error("the polyhedral start system: {0}")]
+    Polyhedral(String),
+    /// The polyhedral route was stopped through its monitor, `paths.tracker.monitor`.
+    #[error("the solve was cancelled")]
+    Cancelled,
+    /// A missing measurement.
+    #[error(
+        "receiver {receiver} did not hear transmitter {transmitter}: the exact solvers need every measurement; use `calibrate`"
+    )]
+    Missing {
+        /// Name of the receiver.
+        receiver: String,
+        /// Name of the transmitter.
+        transmitter: String,
+    },
+    /// Two receivers that cannot be told apart.
+    #[error(
+        "receivers {first} and {second} measure the same up to a constant: they coincide (or lie on one line with every transmitter); \
+         remove one of them"
+    )]
+    IdenticalReceivers {
+        /// Name of one.
+        first: String,
+        /// Name of the other.
+        second: String,
+    },
+    /// Two transmitters that cannot be told apart.
+    #[error("transmitters {first} and {second} are heard alike up to a constant: they coincide; remove one of them")]
+    IdenticalTransmitters {
+        /// Name of one.
+        first: String,
+        /// Name of the other.
+        second: String,
+    },
+}

@@ -1,0 +1,49 @@
+//! The two kinds of nodes.
+
+use crate::network::Network;
+use crate::pseudoranges::Pseudoranges;
+use std::fmt::{self, Display, Formatter};
+
+/// The one kind of nodes or the other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Nodes {
+    /// Receivers.
+    Receivers,
+    /// Transmitters.
+    Transmitters,
+}
+
+impl Display for Nodes {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Nodes::Receivers => "receivers",
+            Nodes::Transmitters => "transmitters",
+        })
+    }
+}
+
+impl Nodes {
+    /// Where they are.
+    pub(crate) fn positions(self, network: &Network) -> &[[f64; 2]] {
+        match self {
+            Nodes::Receivers => &network.receivers,
+            Nodes::Transmitters => &network.transmitters,
+        }
+    }
+
+    /// Their names.
+    pub(super) fn names(self, measured: &Pseudoranges) -> Vec<String> {
+        match self {
+            Nodes::Receivers => measured.receiver_names().to_vec(),
+            Nodes::Transmitters => measured.transmitter_names().to_vec(),
+        }
+    }
+
+    /// One of the other kind, in words.
+    pub(super) fn others(self) -> &'static str {
+        match self {
+            Nodes::Receivers => "transmitter",
+            Nodes::Transmitters => "receiver",
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Settings of the minimal solvers.
+
+use hc::fibre::FibreOptions;
+
+/// Settings of the minimal solvers.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct SolveOptions {
+    /// How far below zero a distance f_ij - o_j may lie for a candidate to count as physical, relative to the size of the data
+    /// (root mean square of f_ij - f_1j). Default 1e-6; for noisy data take the noise.
+    pub tolerance: f64,
+    /// Roots whose imaginary parts are at most this share of the size of the data are tried as real ones too: noise can
+    /// make two real roots complex. Default 0: real roots only.
+    pub near_real: f64,
+    /// Whether candidates are polished in the primal coordinates. Default true.
+    pub polish: bool,
+    /// For callers in a hurry: stop at the first physical candidate whose residual (root mean square, metres) is below this. Only sizes solved
+    /// by paths without a smaller part (6r/3s, 5r/4s, 4r/5s, 5r/6s) stop early; in 6r/3s and 4r/5s every candidate fits exactly, so that the first
+    /// physical one is given, which need not be the true one. Default `None`: all networks.
+    pub first_under: Option<f64>,
+    /// Settings for the paths; `paths.tracker.drop_complex` gives up paths that would hardly become real.
+    pub paths: FibreOptions,
+    /// What becomes of paths that fail or jump. Default [`Fallback::OtherCharts`].
+    pub fallback: Fallback,
+    /// Where paths start. Default [`Start::Stored`].
+    pub start: Start,
+}
+
+/// How paths are tracked again that fail, jump or take too many steps. A chart is the same problem with the nodes in another order. What
+/// each costs and loses is measured by `tdoa experiment charts`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Fallback {
+    /// In the other charts, from where they have broken off.
+    #[default]
+    OtherCharts,
+    /// In the other charts, from the start.
+    OtherChartsFromStart,
+    /// In the same chart, with shorter steps.
+    OneChart,
+}
+
+/// Where the paths of the minimal solvers start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Start {
+    /// From the stored solutions of a generic instance: as many paths as roots.
+    #[default]
+    Stored,
+    /// From a polyhedral start system that is computed for the data, as in the paper: slower, and independent of what is stored. Where that
+    /// leaves roots missing, all roots of a random member of the family are found in this way and tracked to the data; the paths that this takes count
+    /// as tracked again.
+    Polyhedral,
+}
+
+impl Default for SolveOptions {
+    fn default() -> Self {
+        let mut paths = FibreOptions::default();
+        paths.tracker.contraction = 0.2;
+        paths.tracker.corrector_tolerance = 3e-4;
+        paths.tracker.beta_omega = 1.2;
+        paths.tracker.beta_tau = 0.75;
+        paths.tracker.beta_tau_last = 0.5;
+        // Most paths take about 45 steps. One that takes many more is quicker in another chart.
+        paths.tracker.max_steps = 400;
+        SolveOptions {
+            tolerance: 1e-6,
+            near_real: 0.0,
+            polish: true,
+            first_under: None,
+            paths,
+            fallback: Fallback::OtherCharts,
+            start: Start::Stored,
+        }
+    }
+}

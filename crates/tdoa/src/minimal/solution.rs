@@ -1,0 +1,54 @@
+//! What a minimal solver finds.
+
+use super::warning::SolveWarning;
+use crate::network::Network;
+pub use hc::fibre::PathCounts;
+use serde::Serialize;
+
+/// One network that a minimal solver proposes.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Candidate {
+    /// The network.
+    #[serde(flatten)]
+    pub network: Network,
+    /// Root mean square of the unsquared residuals, in metres.
+    pub residual: f64,
+    /// Whether every f_ij - o_j is at least minus the tolerance.
+    pub physical: bool,
+    /// Condition number of the Jacobian at the candidate: how much an error of the data may grow.
+    pub condition: f64,
+}
+
+/// How many roots pass each condition; each is a part of the one before.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct RootCounts {
+    /// Complex roots.
+    pub complex: usize,
+    /// Real roots.
+    pub real: usize,
+    /// Real roots with positive definite H, that is with real positions.
+    pub positive_definite: usize,
+    /// Of these, roots with all f_ij - o_j >= 0 up to the tolerance.
+    pub physical: usize,
+}
+
+/// All that a minimal solver finds for one matrix.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MinimalSolution {
+    /// The size of the matrix, such as `6r/3s`.
+    pub configuration: String,
+    /// The solver that was used, such as `6r/3s` on a larger matrix.
+    pub solver: &'static str,
+    /// How its paths ended.
+    pub paths: PathCounts,
+    /// How many roots there are.
+    pub counts: RootCounts,
+    /// Whether the search was stopped at the first network that fits ([`super::SolveOptions::first_under`]): others may fit as well, and
+    /// `paths` and `counts` are those up to there.
+    pub stopped_early: bool,
+    /// What makes the result doubtful: lost paths, networks that the data cannot tell apart.
+    pub warnings: Vec<SolveWarning>,
+    /// The candidates, best first.
+    #[serde(rename = "solutions")]
+    pub candidates: Vec<Candidate>,
+}
