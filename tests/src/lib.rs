@@ -4,48 +4,17 @@ use std::path::{Path, PathBuf};
 #[cfg(unix)]
 use std::process::Stdio;
 use std::process::{Command, Output};
-use std::sync::Mutex;
 #[cfg(unix)]
 use std::time::{Duration, Instant};
 
-/// Whether this process has seen to it that the programs are built.
-static BUILT: Mutex<bool> = Mutex::new(false);
-
-/// The path of one of the workspace's programs, built with the profile of the running test.
+/// The path of one of the workspace's programs (`hc`, `tdoa`, `xtask`) or of an example of the guide, built with the profile of the running
+/// test.
 ///
 /// # Panics
-/// If the programs cannot be built.
+/// If this is not a test that cargo has started, or there is no such program.
 pub fn program(name: &str) -> PathBuf {
-    directory().join(format!("{name}{}", std::env::consts::EXE_SUFFIX))
-}
-
-/// The path of an example of the workspace, built in the same way.
-///
-/// # Panics
-/// If the examples cannot be built.
-pub fn example(name: &str) -> PathBuf {
-    directory().join("examples").join(format!("{name}{}", std::env::consts::EXE_SUFFIX))
-}
-
-/// The directory of the programs. `cargo test --workspace` builds no programs for other packages' tests, so this does; together
-/// with everything that it does build, because the same features are then chosen and nothing is compiled twice.
-fn directory() -> PathBuf {
-    let test = std::env::current_exe().expect("path of the test");
-    // target/<profile>/deps/<test>
-    let directory = test.parent().and_then(Path::parent).expect("target directory");
-    let mut built = BUILT.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    if !*built {
-        let mut cargo = Command::new(env!("CARGO"));
-        cargo.args(["build", "--quiet", "--workspace", "--bins", "--examples", "--tests"]);
-        cargo.arg("--target-dir").arg(directory.parent().expect("target directory"));
-        if directory.file_name().is_some_and(|profile| profile == "release") {
-            cargo.arg("--release");
-        }
-        cargo.current_dir(root());
-        assert!(cargo.status().expect("cargo runs").success(), "the programs do not build");
-        *built = true;
-    }
-    directory.to_path_buf()
+    let variable = format!("CARGO_BIN_EXE_end-to-end-{name}");
+    std::env::var_os(&variable).unwrap_or_else(|| panic!("{variable} is not set: cargo test sets it")).into()
 }
 
 /// Runs a program of the workspace to its end.
@@ -92,14 +61,14 @@ pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("workspace root")
 }
 
-/// A path in the shared folder of recordings, `SHARED_DIR` or else `../shared` beside the workspace; `None`, with a
-/// message, where it is absent.
-pub fn shared(path: &str) -> Option<PathBuf> {
-    let folder = std::env::var_os("SHARED_DIR").map_or_else(|| root().join("../shared"), PathBuf::from);
-    let path = folder.join(path);
-    if path.exists() {
-        return Some(path);
-    }
-    eprintln!("skipped: {} is not there (set SHARED_DIR to the folder of recordings)", path.display());
-    None
+/// A path among the recordings: `data` in the folder that `SHARED_DIR` names, by default `shared` beside the workspace. Where they are absent,
+/// the tests that ask for them are ignored (cfg `recordings`, see build.rs).
+///
+/// # Panics
+/// If the recordings are absent.
+pub fn recording(path: &str) -> PathBuf {
+    let Some(folder) = option_env!("RECORDINGS") else {
+        panic!("the recordings are absent: SHARED_DIR names the folder that has them in data/")
+    };
+    Path::new(folder).join(path)
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
-use end_to_end::{example, program, root};
+use end_to_end::{program, root};
 
 /// Commands that the tests do not run: steps that need the network, write into the repository, contain these tests, or take long.
 const NOT_RUN: &[&str] = &[
@@ -59,7 +59,7 @@ fn run(command: &str, folder: &Path) -> Output {
     }
     let examples = ["cargo run --release -p hc --example ", "cargo run --release -p tdoa --example "];
     let name = examples.iter().find_map(|prefix| command.strip_prefix(prefix)).expect("a known kind of command");
-    Command::new(example(name)).current_dir(root()).output().expect("the example starts")
+    Command::new(program(name)).current_dir(root()).output().expect("the example starts")
 }
 
 /// Runs all commands of a page, and gives what each printed.

@@ -119,10 +119,10 @@ fn collinear_receivers_are_warned_of() {
 }
 
 #[test]
+#[cfg_attr(not(recordings), ignore = "needs the recordings: SHARED_DIR names their folder")]
 fn data_from_space_are_no_plane() {
     for recording in ["lund_tdoa_real/data1", "xtdoa_real"] {
-        let Some(folder) = end_to_end::shared(&format!("data/{recording}")) else { return };
-        let file = folder.join("pseudoranges_m.csv");
+        let file = end_to_end::recording(recording).join("pseudoranges_m.csv");
         assert_says(of(&["calibrate", text(&file)]), 1, &["do not fit a network in the plane"]);
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use end_to_end::{run, shared};
+use end_to_end::{recording, run};
 
 /// Runs an experiment and gives its summary table, line by line.
 fn experiment(words: &str, output: &Path, threads: &str) -> Vec<String> {
@@ -96,8 +96,9 @@ fn growth_takes_time_and_memory() {
 }
 
 #[test]
+#[cfg_attr(not(recordings), ignore = "needs the recordings: SHARED_DIR names their folder")]
 fn damaged_recordings_beside_the_oracle() {
-    let Some(folder) = shared("data/lund_floor_planar/h40") else { return };
+    let folder = recording("lund_floor_planar/h40");
     let directory = tempfile::tempdir().expect("directory");
     let words = format!("damaged --recordings {} --instances 1 --triples 9", folder.display());
     let lines = experiment(&words, directory.path(), "2");

@@ -1,0 +1,61 @@
+//! The program `tdoa`: calibration of sensor networks from arrival times alone.
+
+mod calibrate;
+mod simulate;
+mod solve;
+mod summary;
+mod units;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use cli::{Failure, interrupt, on_threads, output};
+
+/// Calibrates sensor networks in the plane from arrival times alone.
+///
+/// Exit status: 0 success, 1 no solution or data that cannot determine the network, 2 unusable input or arguments, 130
+/// interrupted.
+#[derive(Parser)]
+#[command(version, arg_required_else_help = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Calibrate(calibrate::Arguments),
+    #[cfg(feature = "experiments")]
+    Experiment(experiments::command::Arguments),
+    Simulate(simulate::Arguments),
+    Solve(solve::Arguments),
+}
+
+/// Runs the program with the arguments of the process; its exit status.
+pub fn main() -> ExitCode {
+    // clap ends the program itself, with status 2, if the arguments are wrong.
+    let command = Arguments::parse().command;
+    let left = match &command {
+        #[cfg(feature = "experiments")]
+        Command::Experiment(_) => "the rows so far are kept, and the same command goes on from there",
+        _ => "nothing was written",
+    };
+    let result = match command {
+        Command::Calibrate(arguments) => calibrate::run(&arguments),
+        #[cfg(feature = "experiments")]
+        Command::Experiment(arguments) => experiments::command::run(&arguments),
+        Command::Simulate(arguments) => simulate::run(&arguments),
+        Command::Solve(arguments) => solve::run(&arguments),
+    };
+    cli::finish("tdoa", result, left)
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_arguments_are_consistent() {
+        super::Arguments::command().debug_assert();
+    }
+}
