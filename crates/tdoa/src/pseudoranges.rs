@@ -97,6 +97,8 @@ pub struct Pseudoranges {
     sigmas: Option<Vec<f64>>,
     receiver_names: Vec<String>,
     transmitter_names: Vec<String>,
+    /// Whether the receivers' names were given, not counted.
+    receivers_named: bool,
 }
 
 impl Pseudoranges {
@@ -121,6 +123,7 @@ impl Pseudoranges {
             sigmas: None,
             receiver_names: (1..=receivers).map(|i| format!("r{i}")).collect(),
             transmitter_names: (1..=transmitters).map(|j| format!("s{j}")).collect(),
+            receivers_named: false,
         };
         matrix.check_values()?;
         Ok(matrix)
@@ -137,21 +140,32 @@ impl Pseudoranges {
         }
     }
 
-    /// The same matrix with these names of receivers and transmitters.
+    /// The matrix with these names of receivers and transmitters.
     ///
     /// # Errors
     /// A wrong number of names, or a name given twice.
-    pub fn with_names(mut self, receivers: Vec<String>, transmitters: Vec<String>) -> Result<Self, PseudorangeError> {
-        check_count("names", "receiver", self.receivers, receivers.len())?;
-        check_count("names", "transmitter", self.transmitters, transmitters.len())?;
-        for (kind, names) in [("receiver", &receivers), ("transmitter", &transmitters)] {
-            let mut seen = std::collections::HashSet::new();
-            if let Some(name) = names.iter().find(|name| !seen.insert(name.as_str())) {
-                return Err(PseudorangeError::DuplicateName { kind, name: name.clone() });
-            }
-        }
-        self.receiver_names = receivers;
-        self.transmitter_names = transmitters;
+    pub fn with_names(self, receivers: Vec<String>, transmitters: Vec<String>) -> Result<Self, PseudorangeError> {
+        self.with_receiver_names(receivers)?.with_transmitter_names(transmitters)
+    }
+
+    /// The matrix with these names of receivers.
+    ///
+    /// # Errors
+    /// A wrong number of names, or a name given twice.
+    pub fn with_receiver_names(mut self, names: Vec<String>) -> Result<Self, PseudorangeError> {
+        check_names("receiver", self.receivers, &names)?;
+        self.receiver_names = names;
+        self.receivers_named = true;
+        Ok(self)
+    }
+
+    /// The matrix with these names of transmitters.
+    ///
+    /// # Errors
+    /// A wrong number of names, or a name given twice.
+    pub fn with_transmitter_names(mut self, names: Vec<String>) -> Result<Self, PseudorangeError> {
+        check_names("transmitter", self.transmitters, &names)?;
+        self.transmitter_names = names;
         Ok(self)
     }
 
@@ -218,6 +232,11 @@ impl Pseudoranges {
         &self.receiver_names
     }
 
+    /// Whether names were given to the receivers; else they are counted, `r1`, `r2`, ...
+    pub fn receivers_named(&self) -> bool {
+        self.receivers_named
+    }
+
     /// Names of the transmitters.
     pub fn transmitter_names(&self) -> &[String] {
         &self.transmitter_names
@@ -254,12 +273,22 @@ impl Pseudoranges {
             sigmas: self.sigmas.as_deref().map(pick),
             receiver_names: receivers.iter().map(|&i| self.receiver_names[i].clone()).collect(),
             transmitter_names: transmitters.iter().map(|&j| self.transmitter_names[j].clone()).collect(),
+            receivers_named: self.receivers_named,
         }
     }
 }
 
 fn check_count(what: &'static str, per: &'static str, expected: usize, found: usize) -> Result<(), PseudorangeError> {
     if expected == found { Ok(()) } else { Err(PseudorangeError::Count { what, per, expected, found }) }
+}
+
+fn check_names(kind: &'static str, expected: usize, names: &[String]) -> Result<(), PseudorangeError> {
+    check_count("names", kind, expected, names.len())?;
+    let mut seen = std::collections::HashSet::new();
+    match names.iter().find(|name| !seen.insert(name.as_str())) {
+        Some(name) => Err(PseudorangeError::DuplicateName { kind, name: name.clone() }),
+        None => Ok(()),
+    }
 }
 
 #[cfg(test)]

@@ -3,8 +3,9 @@
 use std::io::Read;
 use std::path::Path;
 
-use super::ReadError;
-use super::table::{number, records, shorten};
+use super::cells::{Decimals, number, records, shorten};
+use super::error::ReadError;
+use super::source::{open, text};
 use crate::calibrate::KnownDistance;
 
 /// Reads known distances in metres between receivers of these names.
@@ -13,7 +14,7 @@ use crate::calibrate::KnownDistance;
 /// A file that cannot be read, lines without two of the names and a number.
 pub fn read_distances(path: &Path, names: &[String]) -> Result<Vec<KnownDistance>, ReadError> {
     let file = path.display().to_string();
-    read_distances_from(super::open(path, &file)?, &file, names)
+    read_distances_from(open(path, &file)?, &file, names)
 }
 
 /// Reads distances as [`read_distances`] does; `file` names the source in errors.
@@ -21,10 +22,14 @@ pub fn read_distances(path: &Path, names: &[String]) -> Result<Vec<KnownDistance
 /// # Errors
 /// As [`read_distances`].
 pub fn read_distances_from(source: impl Read, file: &str, names: &[String]) -> Result<Vec<KnownDistance>, ReadError> {
-    let text = super::text(source, file)?;
+    let text = text(source, file)?;
     let mut all = Vec::new();
+    let mut decimals = Decimals::default();
     for (index, record) in records(&text, file).enumerate() {
         let record = record?;
+        if record.is_blank() {
+            continue;
+        }
         let bad = |problem: String| ReadError::Line { file: file.to_string(), line: record.line, problem };
         let [a, b, length, ..] = record.cells.as_slice() else {
             return Err(bad("needs two names of receivers and their distance in metres".to_string()));
@@ -38,8 +43,11 @@ pub fn read_distances_from(source: impl Read, file: &str, names: &[String]) -> R
                 bad(format!("no receiver is named {:?}; the first is {:?}", shorten(name), names.first()))
             })
         };
-        let distance = number(length).filter(|d| *d > 0.0 && d.is_finite());
-        let distance = distance.ok_or_else(|| bad(format!("{:?} is not a distance in metres", shorten(length))))?;
+        let no_distance = |remedy: String| bad(format!("{:?} is not a distance in metres; {remedy}", shorten(length)));
+        let distance = decimals.number(length).map_err(no_distance)?;
+        if !(distance > 0.0 && distance.is_finite()) {
+            return Err(no_distance("give a positive number".to_string()));
+        }
         all.push(KnownDistance { receivers: [find(a)?, find(b)?], distance });
     }
     if all.is_empty() {

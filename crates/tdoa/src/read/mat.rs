@@ -7,8 +7,10 @@
 //! variable has the sub-elements flags, dimensions, name and values, columns first.
 
 use std::io::Read;
+use std::ops::Range;
 
-use super::ReadError;
+use super::cells::shorten;
+use super::error::{MAX_BYTES, ReadError};
 use crate::pseudoranges::{MAX_CELLS, Pseudoranges};
 
 /// Bytes of a variable that are unpacked: values of [`MAX_CELLS`] doubles, and what stands before them.
@@ -33,53 +35,134 @@ impl Variable {
     }
 }
 
-pub(super) fn parse(source: impl Read, file: &str, factor: f64) -> Result<Pseudoranges, ReadError> {
-    let Some(z) = find(source, file, "z")? else {
-        return Err(ReadError::Mat {
-            file: file.to_string(),
-            problem: "has no variable z, the matrix of pseudoranges with receivers in rows".to_string(),
-        });
+/// Reads the matrix of this name; without one z, or the only matrix that the file has.
+pub(super) fn parse(source: impl Read, file: &str, name: Option<&str>, factor: f64) -> Result<Pseudoranges, ReadError> {
+    let found = File::read(source, file)?;
+    let has_z = found.entries.iter().any(|entry| entry.name == "z");
+    let matrices: Vec<&Entry> = found.entries.iter().filter(|entry| entry.is_matrix()).collect();
+    let name = match (name, matrices.as_slice()) {
+        (Some(name), _) => name,
+        (None, [only]) if !has_z => &only.name,
+        (None, _) => "z",
     };
-    let values = (0..z.rows * z.columns).map(|k| z.get(k / z.columns, k % z.columns) * factor).collect();
-    Pseudoranges::new(z.rows, z.columns, values).map_err(|source| ReadError::Matrix { file: file.to_string(), source })
+    let Some(values) = found.variable(name)? else {
+        return Err(
+            found.missing(name, "the matrix of pseudoranges with receivers in rows; choose one with --variable NAME")
+        );
+    };
+    let cells = (0..values.rows * values.columns).map(|k| values.get(k / values.columns, k % values.columns) * factor);
+    Pseudoranges::new(values.rows, values.columns, cells.collect())
+        .map_err(|source| ReadError::Matrix { file: file.to_string(), source })
 }
 
-/// The variable of this name; `None` if the file has none.
-pub(super) fn find(source: impl Read, file: &str, name: &str) -> Result<Option<Variable>, ReadError> {
-    let bad = |problem: &str| ReadError::Mat { file: file.to_string(), problem: problem.to_string() };
-    let mut bytes = Vec::new();
-    source
-        .take(super::MAX_BYTES)
-        .read_to_end(&mut bytes)
-        .map_err(|source| ReadError::Io { file: file.to_string(), source })?;
-    let Some((header, mut rest)) = bytes.split_at_checked(128) else { return Err(bad("is not a .mat file")) };
-    let order = match (&header[124..128], header.starts_with(b"MATLAB 7.3")) {
-        (_, true) => return Err(bad("is of version 7.3 (HDF5), which is not read")),
-        ([0, 1, b'I', b'M'], _) => Order::Little,
-        ([1, 0, b'M', b'I'], _) => Order::Big,
-        _ => return Err(bad("is not a .mat file of level 5")),
-    };
-    while !rest.is_empty() {
-        let (kind, data, after) = element(rest, order).ok_or_else(|| bad("is cut off or damaged"))?;
-        rest = after;
-        let unpacked;
-        let body = match kind {
-            MATRIX => data,
-            // The rest is unpacked only if it is wanted.
-            COMPRESSED if inner(&unpack(data, MAX_START), order).is_some_and(|body| is_named(body, name, order)) => {
-                unpacked = unpack(data, MAX_VARIABLE);
-                inner(&unpacked, order).unwrap_or(&[])
-            }
-            _ => continue,
+/// What a file says of one of its variables.
+struct Entry {
+    name: String,
+    /// Rows, columns and further dimensions.
+    sizes: Vec<usize>,
+    is_numeric: bool,
+}
+
+impl Entry {
+    /// Whether it may be the measurements: a two-dimensional array of real numbers, no single row or column, and not the truth.
+    fn is_matrix(&self) -> bool {
+        let is_truth = ["rgt", "sgt"].contains(&self.name.as_str());
+        self.is_numeric && !is_truth && self.sizes.len() == 2 && self.sizes.iter().all(|&size| size > 1)
+    }
+}
+
+/// A file in memory, with what it says of its variables.
+pub(super) struct File<'a> {
+    file: &'a str,
+    bytes: Vec<u8>,
+    order: Order,
+    entries: Vec<Entry>,
+    /// Type and place of the data of each entry.
+    places: Vec<(u32, Range<usize>)>,
+}
+
+impl<'a> File<'a> {
+    /// Reads the whole file, and the names and sizes of its variables.
+    pub(super) fn read(source: impl Read, file: &'a str) -> Result<File<'a>, ReadError> {
+        let bad = |problem: &str| ReadError::Mat { file: file.to_string(), problem: problem.to_string() };
+        let mut bytes = Vec::new();
+        source
+            .take(MAX_BYTES)
+            .read_to_end(&mut bytes)
+            .map_err(|source| ReadError::Io { file: file.to_string(), source })?;
+        let Some((header, mut rest)) = bytes.split_at_checked(128) else { return Err(bad("is not a .mat file")) };
+        let order = match (&header[124..128], header.starts_with(b"MATLAB 7.3")) {
+            (_, true) => return Err(bad("is of version 7.3 (HDF5), which is not read")),
+            ([0, 1, b'I', b'M'], _) => Order::Little,
+            ([1, 0, b'M', b'I'], _) => Order::Big,
+            _ => return Err(bad("is not a .mat file of level 5")),
         };
-        if let Some(found) = start(body, order).filter(|found| found.name == name.as_bytes()) {
-            return found.variable(order).map(Some).map_err(|problem| ReadError::Mat {
-                file: file.to_string(),
-                problem: format!("has a variable {name} that {problem}"),
-            });
+        let (mut entries, mut places) = (Vec::new(), Vec::new());
+        while !rest.is_empty() {
+            let damaged = || bad("is cut off or damaged");
+            let (kind, data, after) = element(rest, order).ok_or_else(damaged)?;
+            let (_, size, begin) = tag(rest, order).ok_or_else(damaged)?;
+            let begin = bytes.len() - rest.len() + begin;
+            let unpacked;
+            let body = match kind {
+                MATRIX => data,
+                COMPRESSED => {
+                    unpacked = unpack(data, MAX_START);
+                    inner(&unpacked, order).unwrap_or(&[])
+                }
+                _ => &[],
+            };
+            if let Some(found) = start(body, order) {
+                let name = String::from_utf8_lossy(found.name).into_owned();
+                entries.push(Entry { name, is_numeric: found.is_numeric(), sizes: found.dimensions });
+                places.push((kind, begin..begin + size));
+            }
+            rest = after;
+        }
+        Ok(File { file, bytes, order, entries, places })
+    }
+
+    /// The variable of this name; `None` if the file has none.
+    pub(super) fn variable(&self, name: &str) -> Result<Option<Variable>, ReadError> {
+        let Some(at) = self.entries.iter().position(|entry| entry.name == name) else { return Ok(None) };
+        let (kind, place) = &self.places[at];
+        let data = &self.bytes[place.clone()];
+        let unpacked;
+        let body = if *kind == COMPRESSED {
+            unpacked = unpack(data, MAX_VARIABLE);
+            inner(&unpacked, self.order).unwrap_or(&[])
+        } else {
+            data
+        };
+        let found = start(body, self.order).ok_or_else(|| "is damaged".to_string());
+        let variable = found.and_then(|found| found.variable(self.order)).map_err(|problem| ReadError::Variable {
+            file: self.file.to_string(),
+            problem: format!("has a variable {name} that {problem}; {}", self.list()),
+        })?;
+        Ok(Some(variable))
+    }
+
+    /// That a variable is not there, what it would be, and which there are.
+    pub(super) fn missing(&self, name: &str, meaning: &str) -> ReadError {
+        let problem = format!("has no variable {name}, {meaning}; {}", self.list());
+        ReadError::Variable { file: self.file.to_string(), problem }
+    }
+
+    /// The variables that there are, with their sizes.
+    fn list(&self) -> String {
+        const LISTED: usize = 20;
+        let shown = self.entries.iter().take(LISTED).map(|entry| {
+            let sizes: Vec<String> = entry.sizes.iter().map(usize::to_string).collect();
+            let kind = if entry.is_numeric { "" } else { ", no numbers" };
+            format!("{} ({}{kind})", shorten(&entry.name), sizes.join(" x "))
+        });
+        let shown: Vec<String> = shown.collect();
+        match self.entries.len() {
+            0 => "it has no variables".to_string(),
+            count if count > LISTED => format!("it has {} and {} more", shown.join(", "), count - LISTED),
+            _ => format!("it has {}", shown.join(", ")),
         }
     }
-    Ok(None)
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -148,10 +231,6 @@ fn inner(unpacked: &[u8], order: Order) -> Option<&[u8]> {
     }
 }
 
-fn is_named(body: &[u8], name: &str, order: Order) -> bool {
-    start(body, order).is_some_and(|found| found.name == name.as_bytes())
-}
-
 /// What a variable begins with, and the rest.
 struct Start<'a> {
     name: &'a [u8],
@@ -170,9 +249,13 @@ fn start(body: &[u8], order: Order) -> Option<Start<'_>> {
 }
 
 impl Start<'_> {
+    /// Whether it is an array of real numbers: classes 6 to 15 are numeric, bit 11 says complex.
+    fn is_numeric(&self) -> bool {
+        (6..=15).contains(&(self.flags & 0xff)) && self.flags & 0x800 == 0
+    }
+
     fn variable(&self, order: Order) -> Result<Variable, String> {
-        // Classes 6 to 15 are numeric; bit 11 says complex.
-        if !(6..=15).contains(&(self.flags & 0xff)) || self.flags & 0x800 != 0 {
+        if !self.is_numeric() {
             return Err("is no array of real numbers".to_string());
         }
         let &[rows, columns] = self.dimensions.as_slice() else {
@@ -223,21 +306,33 @@ mod tests {
     #[test]
     fn matrices_as_scipy_writes_them() {
         for file in [PLAIN, PACKED] {
-            let f = parse(file, "f.mat", 2.0).unwrap();
+            let f = parse(file, "f.mat", Some("z"), 2.0).unwrap();
             assert_eq!((f.receivers(), f.transmitters(), f.observed()), (2, 3, 5));
             assert_eq!((f.get(0, 1), f.get(0, 2), f.get(1, 0), f.get(1, 2)), (Some(5.0), None, Some(8.0), Some(-12.0)));
-            let counts = find(file, "f.mat", "counts").unwrap().unwrap();
+            let counts = File::read(file, "f.mat").unwrap().variable("counts").unwrap().unwrap();
             assert_eq!((counts.rows, counts.columns, counts.get(0, 1)), (1, 3, 200.0));
-            assert!(find(file, "f.mat", "nothing").unwrap().is_none());
-            let error = find(file, "f.mat", "label").map(|_| ()).unwrap_err().to_string();
+            let all = File::read(file, "f.mat").unwrap();
+            assert!(all.variable("nothing").unwrap().is_none());
+            let error = all.variable("label").map(|_| ()).unwrap_err().to_string();
             assert!(error.contains("no array of real numbers"), "{error}");
+            let error = parse(file, "f.mat", Some("Z"), 1.0).unwrap_err().to_string();
+            for part in [
+                "has no variable Z",
+                "counts (1 x 3)",
+                "label (1 x 4, no numbers)",
+                "z (2 x 3)",
+                "rgt (3 x 2)",
+                "--variable",
+            ] {
+                assert!(error.contains(part), "{part} is not in: {error}");
+            }
         }
     }
 
     #[test]
     fn what_is_no_such_file() {
         let says = |bytes: &[u8], part: &str| {
-            let error = parse(bytes, "f.mat", 1.0).unwrap_err().to_string();
+            let error = parse(bytes, "f.mat", None, 1.0).unwrap_err().to_string();
             assert!(error.contains(part), "{error}");
         };
         says(b"", "is not a .mat file");
@@ -256,7 +351,7 @@ mod tests {
             let length = file.len();
             file[at % length] = byte;
             file.truncate(length - cut % 64);
-            if let Ok(f) = parse(&*file, "f.mat", 1.0) {
+            if let Ok(f) = parse(&*file, "f.mat", None, 1.0) {
                 prop_assert!(f.receivers() * f.transmitters() <= MAX_CELLS);
             }
         }
@@ -264,7 +359,7 @@ mod tests {
         #[test]
         fn garbage_after_a_header(tail in proptest::collection::vec(any::<u8>(), 0..300)) {
             let file = [&PLAIN[..128], &tail].concat();
-            let _ = parse(&*file, "f.mat", 1.0);
+            let _ = parse(&*file, "f.mat", None, 1.0);
         }
     }
 }

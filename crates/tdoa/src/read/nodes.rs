@@ -1,25 +1,40 @@
-//! Known positions: `id,x,y` with a header (further columns are ignored), or `x,y` without one. Where the header has a
+//! Known positions: `id,x,y` with a first line (further columns are ignored), or `x,y` without one. Where the first line has a
 //! column `kind`, as in [`crate::node_table`], only the lines of receivers that have a position count.
 
+use std::collections::HashMap;
 use std::io::Read;
 use std::path::Path;
 
-use super::ReadError;
-use super::table::{number, records, shorten};
+use super::cells::{Decimals, Record, number, records, shorten};
+use super::error::ReadError;
+use super::heading::Heading;
+use super::mat::File;
+use super::source::{is_mat, open, text};
+
+const EXPECTED: &str = "expected a first line with name (or id, receiver, mic, anchor, sensor), x and y, in any order, then \
+     one node a line, metres; or lines name,x,y or x,y without a first line";
 
 /// Positions with the names that the file gives.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Nodes {
     /// Names, if the file has them.
     pub names: Option<Vec<String>>,
     /// Positions in metres.
     pub positions: Vec<[f64; 2]>,
+    /// Heights in metres, if the file has a column z; NaN where that is empty.
+    pub heights: Option<Vec<f64>>,
 }
 
 impl Nodes {
     /// Whether the file names any of these.
     pub fn names_any(&self, names: &[String]) -> bool {
         self.names.iter().flatten().any(|name| names.contains(name))
+    }
+
+    /// The names in the file that are none of these.
+    pub fn unknown<'a>(&'a self, names: &[String]) -> Vec<&'a str> {
+        self.names.iter().flatten().filter(|name| !names.contains(name)).map(String::as_str).collect()
     }
 
     /// The positions in the order of these names. By name if the file names any of them, else in the file's order, which
@@ -36,35 +51,48 @@ impl Nodes {
         }
         None
     }
+
+    /// The lowest and the highest height, if the file has any.
+    pub fn height_range(&self) -> Option<[f64; 2]> {
+        let known = self.heights.iter().flatten().copied().filter(|height| !height.is_nan());
+        known.fold(None, |range: Option<[f64; 2]>, height| {
+            let [low, high] = range.unwrap_or([height; 2]);
+            Some([low.min(height), high.max(height)])
+        })
+    }
 }
 
 /// Reads positions of receivers in metres: the variable rgt of a `.mat` file, else CSV.
 ///
 /// # Errors
-/// A file that cannot be read, lines without two numbers.
+/// A file that cannot be read, lines without two numbers, a name that is there twice.
 pub fn read_nodes(path: &Path) -> Result<Nodes, ReadError> {
     let file = path.display().to_string();
-    if super::is_mat(path) {
-        return read_mat_nodes(path)?.ok_or_else(|| ReadError::Mat {
-            file,
-            problem: "has no variable rgt, the positions of the receivers".to_string(),
-        });
+    let source = open(path, &file)?;
+    if is_mat(path) {
+        let found = File::read(source, &file)?;
+        return mat_nodes(&found, &file)?.ok_or_else(|| found.missing("rgt", "the positions of the receivers"));
     }
-    read_nodes_from(super::open(path, &file)?, &file)
+    read_nodes_from(source, &file)
 }
 
-/// Reads the variable rgt of a .mat file, one receiver a column with x and y in its first two rows; `None` if it has none.
+/// Reads the variable rgt of a .mat file, one receiver a column with x, y and perhaps z in its rows; `None` if it has none.
 ///
 /// # Errors
 /// As [`read_nodes`].
 pub fn read_mat_nodes(path: &Path) -> Result<Option<Nodes>, ReadError> {
-    let Some(all) = mat_positions(path, "rgt")? else { return Ok(None) };
-    let positions: Option<Vec<[f64; 2]>> = all.into_iter().collect();
+    let file = path.display().to_string();
+    mat_nodes(&File::read(open(path, &file)?, &file)?, &file)
+}
+
+fn mat_nodes(found: &File<'_>, file: &str) -> Result<Option<Nodes>, ReadError> {
+    let Some(all) = mat_positions(found, file, "rgt")? else { return Ok(None) };
+    let positions: Option<Vec<[f64; 2]>> = all.points.into_iter().collect();
     let positions = positions.ok_or_else(|| ReadError::Mat {
-        file: path.display().to_string(),
+        file: file.to_string(),
         problem: "has a variable rgt with numbers that are not finite".to_string(),
     })?;
-    Ok(Some(Nodes { names: None, positions }))
+    Ok(Some(Nodes { names: None, positions, heights: all.heights }))
 }
 
 /// Reads the variable sgt of a .mat file, the true transmitters, one a column with x and y in its first two rows (`None` where these
@@ -73,15 +101,22 @@ pub fn read_mat_nodes(path: &Path) -> Result<Option<Nodes>, ReadError> {
 /// # Errors
 /// As [`read_nodes`].
 pub fn read_mat_transmitters(path: &Path) -> Result<Option<Vec<Option<[f64; 2]>>>, ReadError> {
-    mat_positions(path, "sgt")
+    let file = path.display().to_string();
+    let found = File::read(open(path, &file)?, &file)?;
+    Ok(mat_positions(&found, &file, "sgt")?.map(|all| all.points))
 }
 
-fn mat_positions(path: &Path, variable: &str) -> Result<Option<Vec<Option<[f64; 2]>>>, ReadError> {
-    let file = path.display().to_string();
-    let Some(all) = super::mat::find(super::open(path, &file)?, &file, variable)? else { return Ok(None) };
+/// The columns of a matrix of positions.
+struct MatPositions {
+    points: Vec<Option<[f64; 2]>>,
+    heights: Option<Vec<f64>>,
+}
+
+fn mat_positions(found: &File<'_>, file: &str, variable: &str) -> Result<Option<MatPositions>, ReadError> {
+    let Some(all) = found.variable(variable)? else { return Ok(None) };
     if !matches!(all.rows, 2 | 3) || all.columns == 0 {
         return Err(ReadError::Mat {
-            file,
+            file: file.to_string(),
             problem: format!(
                 "has a variable {variable} of {} x {} that is no list of positions (2 or 3 rows)",
                 all.rows, all.columns
@@ -90,7 +125,55 @@ fn mat_positions(path: &Path, variable: &str) -> Result<Option<Vec<Option<[f64; 
     }
     let point = |k: usize| [all.get(0, k), all.get(1, k)];
     let finite = |p: &[f64; 2]| p.iter().all(|x| x.is_finite());
-    Ok(Some((0..all.columns).map(|k| Some(point(k)).filter(finite)).collect()))
+    Ok(Some(MatPositions {
+        points: (0..all.columns).map(|k| Some(point(k)).filter(finite)).collect(),
+        heights: (all.rows == 3).then(|| (0..all.columns).map(|k| all.get(2, k)).collect()),
+    }))
+}
+
+/// Where a table has its columns.
+#[derive(Clone, Copy)]
+struct Columns {
+    name: Option<usize>,
+    x: usize,
+    y: usize,
+    z: Option<usize>,
+    kind: Option<usize>,
+}
+
+impl Columns {
+    /// The columns by a first line that names them; `None` if it names no coordinates.
+    fn named(cells: &[String]) -> Result<Option<Columns>, String> {
+        let headings: Vec<Heading> = cells.iter().map(|cell| Heading::new(cell)).collect();
+        let at = |k: usize| headings.iter().position(|heading| heading.coordinate() == Some(k));
+        let (Some(x), Some(y)) = (at(0), at(1)) else { return Ok(None) };
+        let z = at(2);
+        for k in [Some(x), Some(y), z].into_iter().flatten() {
+            if let Some(unit) = headings[k].unit.filter(|unit| *unit != "m") {
+                return Err(format!("the column {:?} is in {unit}; convert it to metres", cells[k]));
+            }
+        }
+        let kind = headings.iter().position(|heading| heading.name == "kind");
+        let headed = headings.iter().position(|heading| heading.heads_nodes());
+        let name = headed.or_else(|| (0..x.min(y)).find(|k| Some(*k) != kind && Some(*k) != z));
+        Ok(Some(Columns { name, x, y, z, kind }))
+    }
+
+    /// The columns of a table whose first line is a node.
+    fn unnamed(cells: &[String]) -> Result<Columns, String> {
+        let is_number: Vec<bool> = cells.iter().map(|cell| number(cell).is_some()).collect();
+        let columns = |name: Option<usize>, x: usize, z: Option<usize>| Columns { name, x, y: x + 1, z, kind: None };
+        match is_number.as_slice() {
+            [true, true] => Ok(columns(None, 0, None)),
+            [false, true, true] => Ok(columns(Some(0), 1, None)),
+            [false, true, true, true] => Ok(columns(Some(0), 1, Some(3))),
+            [true, true, true, ..] => Err(format!(
+                "{} numbers a line may be id,x,y or x,y,z; give the file a first line that says which",
+                cells.len()
+            )),
+            _ => Err(EXPECTED.to_string()),
+        }
+    }
 }
 
 /// Reads positions as [`read_nodes`] does; `file` names the source in errors.
@@ -98,43 +181,119 @@ fn mat_positions(path: &Path, variable: &str) -> Result<Option<Vec<Option<[f64; 
 /// # Errors
 /// As [`read_nodes`].
 pub fn read_nodes_from(source: impl Read, file: &str) -> Result<Nodes, ReadError> {
-    let file = file.to_string();
-    let text = super::text(source, &file)?;
-    let mut names = Vec::new();
-    let mut positions = Vec::new();
-    let mut columns = None;
-    let mut kind = None;
-    for record in records(&text, &file) {
+    let text = text(source, file)?;
+    let mut lines: HashMap<String, u64> = HashMap::new();
+    let (mut names, mut positions, mut heights) = (Vec::new(), Vec::new(), Vec::new());
+    let mut columns: Option<Columns> = None;
+    let mut decimals = Decimals::default();
+    for record in records(&text, file) {
         let record = record?;
-        let bad = |problem: String| ReadError::Line { file: file.clone(), line: record.line, problem };
-        if columns.is_none() {
-            let at = |name: &str| record.cells.iter().position(|c| c.eq_ignore_ascii_case(name));
-            if let (Some(x), Some(y)) = (at("x"), at("y")) {
-                let headed = at("name").or_else(|| at("id")).or_else(|| at("receiver"));
-                let name = headed.or_else(|| (0..record.cells.len()).find(|k| *k < x.min(y)));
-                kind = at("kind");
-                columns = Some((name, x, y));
-                continue;
-            }
-            let named = record.cells.len() > 2 && number(&record.cells[0]).is_none();
-            columns = Some(if named { (Some(0), 1, 2) } else { (None, 0, 1) });
-        }
-        let Some((name, x, y)) = columns else { continue };
-        let cell = |k: usize| record.cells.get(k).map(String::as_str);
-        if kind.is_some_and(|k| cell(k) != Some("receiver") || (cell(x) == Some("") && cell(y) == Some(""))) {
+        if record.is_blank() {
             continue;
         }
-        let read = |k: usize| -> Result<f64, ReadError> {
-            let cell = record.cells.get(k).ok_or_else(|| bad(format!("has no column {}; expected id,x,y", k + 1)))?;
-            number(cell)
-                .filter(|v| v.is_finite())
-                .ok_or_else(|| bad(format!("column {}: {:?} is not a coordinate in metres", k + 1, shorten(cell))))
+        let bad = |problem: String| ReadError::Line { file: file.to_string(), line: record.line, problem };
+        let place = match columns {
+            Some(known) => known,
+            None => {
+                let named = Columns::named(&record.cells).map_err(bad)?;
+                let place = named.map_or_else(|| Columns::unnamed(&record.cells), Ok).map_err(bad)?;
+                columns = Some(place);
+                if named.is_some() {
+                    continue;
+                }
+                place
+            }
         };
-        positions.push([read(x)?, read(y)?]);
-        names.extend(name.and_then(|k| record.cells.get(k).cloned()));
+        let cell = |k: usize| record.cells.get(k).map(String::as_str);
+        let is_unlocated = cell(place.x) == Some("") && cell(place.y) == Some("");
+        if place.kind.is_some_and(|k| cell(k) != Some("receiver") || is_unlocated) {
+            continue;
+        }
+        let mut read = |k: usize| coordinate(&record, k, &mut decimals).map_err(bad);
+        let position = [read(place.x)?, read(place.y)?];
+        if let Some(z) = place.z {
+            heights.push(if cell(z).is_none_or(str::is_empty) { f64::NAN } else { read(z)? });
+        }
+        positions.push(position);
+        if let Some(name) = place.name.and_then(|k| record.cells.get(k)) {
+            if let Some(earlier) = lines.insert(name.clone(), record.line) {
+                return Err(bad(format!("receiver {name} is there twice, on line {earlier} too; keep one position")));
+            }
+            names.push(name.clone());
+        }
     }
     if positions.is_empty() {
-        return Err(ReadError::Line { file, line: 1, problem: "has no positions; expected lines id,x,y".to_string() });
+        let problem = format!("has no positions; {EXPECTED}");
+        return Err(ReadError::Line { file: file.to_string(), line: 1, problem });
     }
-    Ok(Nodes { names: if names.len() == positions.len() { Some(names) } else { None }, positions })
+    Ok(Nodes {
+        names: if names.len() == positions.len() { Some(names) } else { None },
+        positions,
+        heights: if heights.is_empty() { None } else { Some(heights) },
+    })
+}
+
+/// The coordinate in a cell.
+fn coordinate(record: &Record, k: usize, decimals: &mut Decimals) -> Result<f64, String> {
+    let cell = record.cells.get(k).ok_or_else(|| format!("has no column {}; {EXPECTED}", k + 1))?;
+    let wrong = |remedy: &str| format!("column {}: {:?} is not a coordinate in metres; {remedy}", k + 1, shorten(cell));
+    match decimals.number(cell) {
+        Ok(value) if value.is_finite() => Ok(value),
+        Ok(_) => Err(wrong("leave out the line of a node that is not known")),
+        Err(remedy) if number(cell).is_some() => Err(wrong(&remedy)),
+        Err(_) => Err(wrong("write a number")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn nodes(text: &str) -> Result<Nodes, String> {
+        read_nodes_from(text.as_bytes(), "f.csv").map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn first_lines_in_other_words_and_orders() {
+        let expected = Some(vec!["a".to_string(), "b".to_string()]);
+        for text in [
+            "name,x,y\na,1,2\nb,3,4\n",
+            "y,x,Mic\n2,1,a\n4,3,b\n",
+            "anchor;x (m);y (m)\na;1,0;2\nb;3;4,0\n",
+            "what,x,y\na,1,2\nb,3,4\n",
+            "a,1,2\nb,3,4\n",
+            "id,x,y,z\na,1,2,\nb,3,4,\n",
+            "\n# a comment\nid,x,y\n,,\na,1,2\nb,3,4\n",
+        ] {
+            let found = nodes(text).unwrap();
+            assert_eq!((found.names, found.positions), (expected.clone(), vec![[1.0, 2.0], [3.0, 4.0]]), "{text}");
+        }
+        assert_eq!(nodes("1,2\n3,4\n").unwrap().names, None);
+    }
+
+    #[test]
+    fn heights_are_kept() {
+        let found = nodes("id,x,y,z\na,1,2,0.5\nb,3,4,\nc,5,6,-1\n").unwrap();
+        assert_eq!(found.height_range(), Some([-1.0, 0.5]));
+        assert_eq!(nodes("a,1,2,7\n").unwrap().height_range(), Some([7.0, 7.0]));
+        assert_eq!(nodes("a,1,2\n").unwrap().height_range(), None);
+    }
+
+    #[test]
+    fn what_is_no_table_of_positions() {
+        for (text, part) in [
+            ("", "has no positions"),
+            ("id,x,y\n", "name (or id, receiver"),
+            ("1,2,3\n4,5,6\n", "may be id,x,y or x,y,z"),
+            ("id,lat,lon\na,1,2\n", "in any order"),
+            ("id,x_mm,y_mm\na,1,2\n", "convert it to metres"),
+            ("id,x,y\na,1,2\na,1,2\n", "receiver a is there twice, on line 2 too"),
+            ("id,x,y\na,1,nan\n", "line 2"),
+            ("id,x,y\na,1\n", "has no column 3"),
+            ("id,x,y\na,1,left\n", "\"left\" is not a coordinate"),
+        ] {
+            let error = nodes(text).unwrap_err();
+            assert!(error.contains(part), "{part:?} is not in: {error}");
+        }
+    }
 }

@@ -5,7 +5,8 @@
 
 use std::io::Read;
 
-use super::ReadError;
+use super::cells::shorten;
+use super::error::ReadError;
 use crate::pseudoranges::{MAX_CELLS, Pseudoranges};
 
 /// Headers of plain arrays have 118 bytes.
@@ -24,10 +25,7 @@ pub(super) fn parse(mut source: impl Read, file: &str, factor: f64) -> Result<Ps
         inner.split(',').map(str::trim).filter(|size| !size.is_empty()).map(|size| size.parse().ok()).collect()
     });
     let Some(&[rows, columns]) = sizes.as_deref() else {
-        return Err(bad(format!(
-            "has the shape {} instead of (receivers, transmitters)",
-            super::table::shorten(shape)
-        )));
+        return Err(bad(format!("has the shape {} instead of (receivers, transmitters)", shorten(shape))));
     };
     let Some(cells) = rows.checked_mul(columns).filter(|&cells| cells <= MAX_CELLS) else {
         return Err(bad(format!("has {rows} x {columns} cells, more than {MAX_CELLS}")));

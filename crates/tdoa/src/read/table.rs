@@ -1,87 +1,117 @@
-//! The two CSV forms.
+//! The CSV matrix: receivers in rows, transmitters in columns, with or without names.
 
-use std::collections::HashMap;
-
-use super::ReadError;
+use super::cells::{Decimals, Record, number, records, shorten};
+use super::error::{ACCEPTED, ReadError};
+use super::heading::{Heading, list_columns};
+use super::list::list;
+use super::units::Units;
 use crate::pseudoranges::{MAX_CELLS, Pseudoranges};
 
-/// One line of a table that is not empty.
-pub(super) struct Record {
-    pub(super) line: u64,
-    pub(super) cells: Vec<String>,
-}
-
-/// Splits text into records, lazily: a bad line is reported before the rest is looked at.
-pub(super) fn records<'a>(text: &'a str, file: &'a str) -> impl Iterator<Item = Result<Record, ReadError>> + 'a {
-    let first = text.lines().find(|line| !line.trim().is_empty()).unwrap_or("");
-    let delimiter = [b',', b';', b'\t'].into_iter().find(|&d| first.contains(d as char)).unwrap_or(b',');
-    let reader = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .delimiter(delimiter)
-        .trim(csv::Trim::All)
-        .comment(Some(b'#'))
-        .from_reader(text.as_bytes());
-    reader.into_records().map(move |record| {
-        let record = record.map_err(|error| ReadError::Line {
-            file: file.to_string(),
-            line: error.position().map_or(1, csv::Position::line),
-            problem: format!("cannot be read as CSV ({error})"),
-        })?;
-        let line = record.position().map_or(1, csv::Position::line);
-        Ok(Record { line, cells: record.iter().map(str::to_string).collect() })
-    })
-}
-
-/// A number, NaN for an empty cell or `nan`.
-pub(super) fn number(cell: &str) -> Option<f64> {
-    if cell.is_empty() || cell.eq_ignore_ascii_case("nan") || cell.eq_ignore_ascii_case("na") {
-        return Some(f64::NAN);
-    }
-    cell.parse::<f64>().ok()
-}
-
-pub(super) fn parse(text: &str, file: &str, factor: f64) -> Result<Pseudoranges, ReadError> {
+/// Reads a matrix, or a list if the first line is that of one.
+pub(super) fn parse(text: &str, file: &str, units: Option<Units>) -> Result<Pseudoranges, ReadError> {
+    let factor = units.unwrap_or_default().factor()?;
+    let mut records = records(text, file);
     let empty = || ReadError::Empty { file: file.to_string() };
-    let mut records = records(text, file).peekable();
-    let first = match records.peek() {
-        None => return Err(empty()),
-        Some(Ok(record)) => record,
-        Some(Err(_)) => return records.next().map_or(Err(empty()), |r| r.and(Err(empty()))),
-    };
-    // A line without any number is a header; one with both numbers and text is a matrix row with a mistake in it.
-    let is_header = first.cells.iter().all(|c| number(c).is_none_or(f64::is_nan))
-        && first.cells.iter().any(|c| number(c).is_none());
-    if !is_header {
-        return matrix(records, None, file, factor);
+    let first = records.next().ok_or_else(empty)??;
+    if only_names(&first.cells)
+        && let Some(columns) = list_columns(&first.cells, file, first.line, units)?
+    {
+        return list(records, &columns, file, factor);
     }
-    let header: Vec<String> = first.cells.clone();
-    records.next();
-    match list_columns(&header) {
-        Some(columns) => list(records, &columns, file, factor),
-        None => matrix(records, Some(header), file, factor),
+    let second = records.next().transpose()?;
+    let shape = Shape::of(&first.cells, second.as_ref().map(|record| record.cells.as_slice()));
+    let header = first.line;
+    let first = if shape.transmitters.is_some() { None } else { Some(Ok(first)) };
+    let rows = first.into_iter().chain(second.map(Ok)).chain(records);
+    matrix(rows, shape, header, file, factor)
+}
+
+/// A line without any number is a header; one with both numbers and text may be a row with a mistake in it.
+fn only_names(cells: &[String]) -> bool {
+    cells.iter().all(|c| number(c).is_none_or(f64::is_nan)) && cells.iter().any(|c| number(c).is_none())
+}
+
+/// What the first two lines say of a matrix.
+struct Shape {
+    /// Names of the transmitters, if the first line has them.
+    transmitters: Option<Vec<String>>,
+    /// Whether rows begin with names.
+    named: bool,
+}
+
+impl Shape {
+    fn of(first: &[String], second: Option<&[String]>) -> Shape {
+        let begins_with_name = |cells: &[String]| match cells {
+            [name, values @ ..] => {
+                number(name).is_none() && !values.is_empty() && values.iter().all(|cell| number(cell).is_some())
+            }
+            [] => false,
+        };
+        let is_counted = counts(first);
+        if !only_names(first) && !(is_counted && is_row_of_counted(first, second)) {
+            let named = begins_with_name(first) && second.is_none_or(begins_with_name);
+            return Shape { transmitters: None, named };
+        }
+        let mut names = first.to_vec();
+        // What follows a comma at the end of each line is no column.
+        while names.len() > 1 && names.last().is_some_and(String::is_empty) {
+            names.pop();
+        }
+        // Rows may have one cell more than the first line, their name.
+        let corner = second.is_none_or(|cells| !begins_with_name(cells) || cells.len() != first.len() + 1);
+        let heading = Heading::new(&first[0]);
+        let named = !corner || (names.len() > 1 && (heading.heads_receivers() || second.is_some_and(begins_with_name)));
+        let skip = usize::from(named && corner);
+        let numbered = |(k, name): (usize, &String)| if name.is_empty() { format!("s{}", k + 1) } else { name.clone() };
+        Shape { transmitters: Some(names[skip..].iter().enumerate().map(numbered).collect()), named }
     }
+}
+
+/// Whether a line is a corner and the numbers 0, 1, 2, ... or 1, 2, 3, ... of columns.
+fn counts(cells: &[String]) -> bool {
+    let [corner, numbers @ ..] = cells else { return false };
+    let counted = |first: usize| numbers.iter().enumerate().all(|(k, cell)| *cell == (first + k).to_string());
+    let is_corner = corner.is_empty() || (number(corner).is_none() && Heading::new(corner).heads_receivers());
+    is_corner && numbers.len() > 1 && (counted(0) || counted(1))
+}
+
+/// Whether numbers of columns and the next line belong together: below an empty corner stands a name, or the first of the numbers.
+fn is_row_of_counted(first: &[String], second: Option<&[String]>) -> bool {
+    let below = second.and_then(<[String]>::first);
+    !first[0].is_empty() || below.is_some_and(|cell| number(cell).is_none() || Some(cell) == first.get(1))
 }
 
 fn matrix(
-    records: impl Iterator<Item = Result<Record, ReadError>>,
-    header: Option<Vec<String>>,
+    rows: impl Iterator<Item = Result<Record, ReadError>>,
+    shape: Shape,
+    header: u64,
     file: &str,
     factor: f64,
 ) -> Result<Pseudoranges, ReadError> {
-    let heads_names = |cell: &str| ["", "receiver", "receivers", "id", "name"].contains(&cell.to_lowercase().as_str());
-    let named = header.as_ref().is_some_and(|h| h.len() > 1 && heads_names(&h[0]));
+    let Shape { transmitters, named } = shape;
     let skip = usize::from(named);
-    let transmitters = header.map(|h| h[skip..].to_vec());
     let mut receivers: Vec<String> = Vec::new();
     let mut values = Vec::new();
     let mut width = transmitters.as_ref().map(Vec::len);
-    for record in records {
-        let Record { line, cells } = record?;
+    let mut decimals = Decimals::default();
+    for record in rows {
+        let record = record?;
+        if named && record.is_blank() {
+            continue;
+        }
+        let Record { line, cells } = record;
         let counted = format!("r{}", receivers.len() + 1);
         let receiver = if named { cells.first().cloned().unwrap_or_default() } else { counted };
-        let cells = &cells[skip.min(cells.len())..];
+        if receiver.is_empty() {
+            let problem =
+                "the row has no name, but other rows begin with the name of a receiver; give it one".to_string();
+            return Err(ReadError::Line { file: file.to_string(), line, problem });
+        }
+        let mut cells = &cells[skip.min(cells.len())..];
         let expected = *width.get_or_insert(cells.len());
+        if transmitters.is_some() && cells.len() > expected && cells[expected..].iter().all(String::is_empty) {
+            cells = &cells[..expected];
+        }
         if cells.len() != expected {
             return Err(ReadError::Ragged { file: file.to_string(), line, receiver, expected, found: cells.len() });
         }
@@ -89,13 +119,21 @@ fn matrix(
             return Err(ReadError::TooManyCells { file: file.to_string(), line });
         }
         for (j, cell) in cells.iter().enumerate() {
-            let transmitter = transmitters.as_ref().map_or_else(|| format!("s{}", j + 1), |names| names[j].clone());
-            let value = number(cell).ok_or_else(|| ReadError::NotANumber {
-                file: file.to_string(),
-                line,
-                column: j + 1 + skip,
-                place: format!("receiver {receiver}, transmitter {transmitter}"),
-                text: shorten(cell),
+            let value = decimals.number(cell).map_err(|remedy| {
+                let transmitter = transmitters.as_ref().map_or_else(|| format!("s{}", j + 1), |names| names[j].clone());
+                let is_list = receivers.is_empty() && transmitters.is_some();
+                ReadError::NotANumber {
+                    file: file.to_string(),
+                    line,
+                    column: j + 1 + skip,
+                    place: format!("receiver {receiver}, transmitter {transmitter}"),
+                    text: shorten(cell),
+                    remedy: if is_list {
+                        format!("{remedy}; line {header} was taken for names: {ACCEPTED}")
+                    } else {
+                        remedy
+                    },
+                }
             })?;
             values.push(value * factor);
         }
@@ -105,111 +143,12 @@ fn matrix(
         return Err(ReadError::Empty { file: file.to_string() });
     }
     let wrap = |source| ReadError::Matrix { file: file.to_string(), source };
-    let measured = Pseudoranges::new(receivers.len(), width.unwrap_or(0), values).map_err(wrap)?;
-    let transmitters = transmitters.unwrap_or_else(|| measured.transmitter_names().to_vec());
-    measured.with_names(receivers, transmitters).map_err(wrap)
-}
-
-/// Where a list has its columns: receiver, transmitter, value, and sigma if there is one.
-struct Columns {
-    receiver: usize,
-    transmitter: usize,
-    value: usize,
-    sigma: Option<usize>,
-    count: usize,
-}
-
-fn list_columns(header: &[String]) -> Option<Columns> {
-    let find = |names: &[&str]| header.iter().position(|cell| names.contains(&cell.to_lowercase().as_str()));
-    Some(Columns {
-        receiver: find(&["receiver"])?,
-        transmitter: find(&["transmitter", "event"])?,
-        value: find(&["value", "pseudorange", "time", "toa"])?,
-        sigma: find(&["sigma", "std"]),
-        count: header.len(),
-    })
-}
-
-fn list(
-    records: impl Iterator<Item = Result<Record, ReadError>>,
-    columns: &Columns,
-    file: &str,
-    factor: f64,
-) -> Result<Pseudoranges, ReadError> {
-    let mut receivers = Names::default();
-    let mut transmitters = Names::default();
-    let mut entries: HashMap<(usize, usize), (f64, f64)> = HashMap::new();
-    for record in records {
-        let Record { line, cells } = record?;
-        let bad = |problem: String| ReadError::Line { file: file.to_string(), line, problem };
-        if cells.len() != columns.count {
-            return Err(bad(format!("has {} cells where the header has {}", cells.len(), columns.count)));
-        }
-        let (receiver, transmitter) = (&cells[columns.receiver], &cells[columns.transmitter]);
-        if receiver.is_empty() || transmitter.is_empty() {
-            return Err(bad("names no receiver or no transmitter; both are needed".to_string()));
-        }
-        let read = |column: usize| {
-            number(&cells[column]).ok_or_else(|| ReadError::NotANumber {
-                file: file.to_string(),
-                line,
-                column: column + 1,
-                place: format!("receiver {receiver}, transmitter {transmitter}"),
-                text: shorten(&cells[column]),
-            })
-        };
-        let value = read(columns.value)? * factor;
-        let sigma = columns.sigma.map(read).transpose()?.map_or(1.0, |sigma| sigma * factor);
-        let at = (receivers.index(receiver), transmitters.index(transmitter));
-        if value.is_nan() {
-            continue;
-        }
-        if entries.len() >= MAX_CELLS {
-            return Err(ReadError::TooManyCells { file: file.to_string(), line });
-        }
-        if entries.insert(at, (value, sigma)).is_some() {
-            return Err(bad(format!(
-                "receiver {receiver}, transmitter {transmitter} is there twice; keep one measurement of each pair"
-            )));
-        }
+    let mut measured = Pseudoranges::new(receivers.len(), width.unwrap_or(0), values).map_err(wrap)?;
+    if let Some(names) = transmitters {
+        measured = measured.with_transmitter_names(names).map_err(wrap)?;
     }
-    if receivers.names.is_empty() {
-        return Err(ReadError::Empty { file: file.to_string() });
+    if named {
+        measured = measured.with_receiver_names(receivers).map_err(wrap)?;
     }
-    let (m, n) = (receivers.names.len(), transmitters.names.len());
-    let wrap = |source| ReadError::Matrix { file: file.to_string(), source };
-    if m.checked_mul(n).is_none_or(|cells| cells > MAX_CELLS) {
-        return Err(wrap(crate::PseudorangeError::TooLarge { receivers: m, transmitters: n }));
-    }
-    let (mut values, mut sigmas) = (vec![f64::NAN; m * n], vec![f64::NAN; m * n]);
-    for ((i, j), (value, sigma)) in entries {
-        values[i * n + j] = value;
-        sigmas[i * n + j] = sigma;
-    }
-    let measured = Pseudoranges::new(m, n, values).map_err(wrap)?;
-    let measured = measured.with_names(receivers.names, transmitters.names).map_err(wrap)?;
-    if columns.sigma.is_some() { measured.with_sigmas(sigmas).map_err(wrap) } else { Ok(measured) }
-}
-
-/// Names in the order of their first appearance.
-#[derive(Default)]
-struct Names {
-    names: Vec<String>,
-    places: HashMap<String, usize>,
-}
-
-impl Names {
-    fn index(&mut self, name: &str) -> usize {
-        if let Some(&place) = self.places.get(name) {
-            return place;
-        }
-        self.names.push(name.to_string());
-        self.places.insert(name.to_string(), self.names.len() - 1);
-        self.names.len() - 1
-    }
-}
-
-/// The start of a cell, for messages.
-pub(super) fn shorten(cell: &str) -> String {
-    if cell.chars().count() <= 40 { cell.to_string() } else { cell.chars().take(40).chain("...".chars()).collect() }
+    Ok(measured)
 }

@@ -1,6 +1,6 @@
 use proptest::prelude::{ProptestConfig, any, proptest};
 
-use super::{ReadError, Units, read_csv, read_npy};
+use super::{ReadError, ReadOptions, Units, read_csv, read_npy};
 use crate::pseudoranges::Pseudoranges;
 
 fn parse(text: &str) -> Result<Pseudoranges, ReadError> {
@@ -62,6 +62,141 @@ fn mistakes_are_placed() {
     assert!(matches!(read_csv(&b"1"[..], "f", units), Err(ReadError::Speed(_))));
 }
 
+/// Tables of the exact values 1.5, 2.5, 3.5, 4.5 in all spellings.
+#[test]
+fn spellings_of_one_matrix() {
+    let bare = "1.5,2.5\n3.5,4.5\n";
+    for (text, named) in [
+        (bare, false),
+        ("1,5;2,5\n3,5;4,5\n", false),
+        ("1,5\t2,5\r\n3,5\t4,5\r\n", false),
+        ("1.5e+00 2.5e+00\n3.5e+00 4.5e+00\n", false),
+        ("# numbers\n\n \"1.5\" , 2.5\n\n3.5, 4.5\n", false),
+        ("\"1,5\",\"2,5\"\n\"3,5\",\"4,5\"\n", false),
+        ("receiver,a,b\nm,1.5,2.5\nn,3.5,4.5\n", true),
+        ("Mic;a;b\nm;1,5;2,5\nn;3,5;4,5\n", true),
+        // Some other word over names, no corner, names without a first line.
+        ("channel,a,b\nm,1.5,2.5\nn,3.5,4.5\n", true),
+        ("a,b\nm,1.5,2.5\nn,3.5,4.5\n", true),
+        ("m,1.5,2.5\nn,3.5,4.5\n", true),
+        // As pandas writes a frame with and without names of its rows.
+        (",0,1\nm,1.5,2.5\nn,3.5,4.5\n", true),
+        (",0,1\n0,1.5,2.5\n1,3.5,4.5\n", true),
+        ("receiver,1,2\n1,1.5,2.5\n2,3.5,4.5\n", true),
+        // What spreadsheets leave at the ends of lines and of the table.
+        (",a,b,\nm,1.5,2.5,\nn,3.5,4.5,\n,,,\n", true),
+    ] {
+        let f = parse(text).unwrap_or_else(|error| panic!("{text:?}: {error}"));
+        assert_eq!(f.values(), [1.5, 2.5, 3.5, 4.5], "{text:?}");
+        assert_eq!(f.receivers_named(), named, "{text:?}");
+    }
+    for order in [u16::to_le_bytes, u16::to_be_bytes] {
+        let wide: Vec<u8> = format!("\u{feff}{bare}").encode_utf16().flat_map(order).collect();
+        assert_eq!(read_csv(&wide[..], "f", Units::Metres).unwrap().values(), [1.5, 2.5, 3.5, 4.5]);
+        let cut = read_csv(&wide[..wide.len() - 1], "f", Units::Metres);
+        assert!(matches!(cut, Err(ReadError::NotText { line: 2, .. })));
+    }
+}
+
+#[test]
+fn spellings_of_one_list() {
+    for text in [
+        "receiver,transmitter,value\nm,a,1.5\nm,b,2.5\nn,a,3.5\nn,b,4.5\n",
+        "event,microphone,time\na,m,1.5\nb,m,2.5\na,n,3.5\nb,n,4.5\n",
+        "TOA;Mic;Source\n1,5;m;a\n2,5;m;b\n3,5;n;a\n4,5;n;b\n;;\n",
+        "anchor_id\ttag_id\trange\tquality\nm\ta\t1.5\t0\nm\tb\t2.5\t0\nn\ta\t3.5\t0\nn\tb\t4.5\t0\n",
+    ] {
+        let f = parse(text).unwrap_or_else(|error| panic!("{text:?}: {error}"));
+        assert_eq!(f.values(), [1.5, 2.5, 3.5, 4.5], "{text:?}");
+        assert_eq!(
+            (f.receiver_names(), f.transmitter_names()),
+            (&["m", "n"].map(String::from)[..], &["a", "b"].map(String::from)[..])
+        );
+    }
+}
+
+#[test]
+fn first_lines_that_are_not_understood() {
+    for (text, part) in [
+        ("event,microphone,loudness\na,m,1\n", "no column is the value"),
+        ("mic,time\nm,1\n", "no column is the transmitter"),
+        ("mic,sensor,event,time\nm,m,a,1\n", "\"mic\" and \"sensor\" may both be the receiver"),
+        ("a,b,c\nm,e,1\n", "taken for names: a list of measurements has the columns receiver"),
+        ("receiver,event,time\nm,a,0,5\n", "semicolons between cells"),
+        ("m,e,1\n4,5,6\n", "line 1, column 1"),
+        (",a,b\n,1,2\n", "has no name"),
+    ] {
+        let error = message(text);
+        assert!(error.contains(part), "{part:?} is not in: {error}");
+    }
+}
+
+#[test]
+fn lines_are_counted_as_an_editor_counts_them() {
+    for end in ["\n", "\r\n"] {
+        let text = ["# about", "", "  ", "1,2", "", "# more", "\"3\",4", "5,x"].join(end);
+        let error = message(&text);
+        assert!(error.contains("line 8, column 2 (receiver r3"), "{error}");
+    }
+    let error = message("\n#\n\n1,x,3\n");
+    assert!(error.contains("line 4, column 2"), "{error}");
+}
+
+#[test]
+fn numbers_in_other_spellings() {
+    for (cell, part) in [
+        ("1.234,5", "without marks between thousands"),
+        ("3 ms", "give that as --units"),
+        ("x", "leave the cell empty"),
+        ("2.5", "decimal mark ','"),
+    ] {
+        let error = message(&format!("1,5;2\n{cell};3\n"));
+        assert!(error.contains("line 2, column 1") && error.contains(part), "{error}");
+    }
+    let f = parse("1;n/a;3\n-;NA;null\n").unwrap();
+    assert_eq!(f.observed(), 2);
+}
+
+#[test]
+fn units_that_first_lines_name() {
+    let list = |heading: &str, options: ReadOptions| {
+        let text = format!("receiver,event,{heading}\nm,a,3\n");
+        read_csv(text.as_bytes(), "f", options).map(|f| f.get(0, 0)).map_err(|error| error.to_string())
+    };
+    let speed = 343.0;
+    let milliseconds = Units::Milliseconds { speed };
+    assert_eq!(list("time_ms", milliseconds.into()), Ok(Some(3.0 * milliseconds.metres())));
+    let samples = Units::Samples { speed, rate: 48_000.0 };
+    assert_eq!(list("time (samples)", samples.into()), Ok(Some(3.0 * samples.metres())));
+    assert_eq!(list("time", Units::Metres.into()), Ok(Some(3.0)));
+    assert_eq!(list("value", ReadOptions::default()), Ok(Some(3.0)));
+    assert_eq!(list("range_m", ReadOptions::default()), Ok(Some(3.0)));
+    for (heading, options, part) in [
+        ("time", ReadOptions::default(), "give --units s --speed"),
+        ("time_ms", ReadOptions::default(), "give --units ms --speed"),
+        ("Time [s]", milliseconds.into(), "is in s, but --units ms is asked for"),
+        ("samples", ReadOptions::default(), "--rate HZ"),
+        ("time_ns", ReadOptions::default(), "ns are not read: convert"),
+        ("range_m", milliseconds.into(), "leave out --units"),
+    ] {
+        let error = list(heading, options).unwrap_err();
+        assert!(error.contains("line 1") && error.contains(part), "{part:?} is not in: {error}");
+    }
+    let text = "receiver,event,time_ms,sigma_s\nm,a,3,1\n";
+    let error = read_csv(text.as_bytes(), "f", milliseconds).unwrap_err().to_string();
+    assert!(error.contains("different units"), "{error}");
+    let units = Units::Samples { speed, rate: 0.0 };
+    assert!(matches!(read_csv(&b"1"[..], "f", units), Err(ReadError::Rate(_))));
+}
+
+#[test]
+fn spreadsheets_and_archives_are_named() {
+    for magic in [&b"PK\x03\x04\x14\x00"[..], b"\xd0\xcf\x11\xe0\xa1\xb1"] {
+        let error = read_csv(magic, "f.xlsx", Units::Metres).unwrap_err().to_string();
+        assert!(error.contains("f.xlsx") && error.contains("export the sheet as CSV"), "{error}");
+    }
+}
+
 #[test]
 fn endless_garbage_is_refused_early() {
     struct Endless(u8, u64);
@@ -117,6 +252,25 @@ proptest! {
     fn random_tables_never_panic(text in "[-0-9.,;e\n\t nar#\"]{0,200}", list in any::<bool>()) {
         let header = if list { "receiver,transmitter,value\n" } else { "" };
         let _ = parse(&format!("{header}{text}"));
+    }
+
+    #[test]
+    fn random_cells_in_all_separators_never_panic(
+        cells in proptest::collection::vec("[a-z]{0,3}|-?[0-9]{0,2}[.,]?[0-9]{0,2}|time_ms|receiver|event|x|y|z|\"", 0..40),
+        separator in "[,; \t]",
+        width in 1usize..6,
+        wide: bool,
+    ) {
+        let lines: Vec<String> = cells.chunks(width).map(|line| line.join(&separator)).collect();
+        let text = lines.join("\n");
+        let bytes = if wide {
+            format!("\u{feff}{text}").encode_utf16().flat_map(u16::to_le_bytes).collect()
+        } else {
+            text.into_bytes()
+        };
+        let _ = read_csv(&bytes[..], "f", ReadOptions::default());
+        let _ = super::read_nodes_from(&bytes[..], "f");
+        let _ = super::read_distances_from(&bytes[..], "f", &["a".to_string(), "b".to_string()]);
     }
 
     #[test]

@@ -1,0 +1,107 @@
+//! The CSV list: one measurement a line.
+
+use std::collections::HashMap;
+
+use super::cells::{Decimals, Record, shorten};
+use super::error::ReadError;
+use super::heading::Columns;
+use crate::pseudoranges::{MAX_CELLS, PseudorangeError, Pseudoranges};
+
+/// Reads the lines below the first.
+pub(super) fn list(
+    records: impl Iterator<Item = Result<Record, ReadError>>,
+    columns: &Columns,
+    file: &str,
+    factor: f64,
+) -> Result<Pseudoranges, ReadError> {
+    let mut receivers = Names::default();
+    let mut transmitters = Names::default();
+    let mut entries: HashMap<(usize, usize), Entry> = HashMap::new();
+    let mut decimals = Decimals::default();
+    for record in records {
+        let record = record?;
+        if record.is_blank() {
+            continue;
+        }
+        let Record { line, cells } = record;
+        let bad = |problem: String| ReadError::Line { file: file.to_string(), line, problem };
+        let extra = cells.get(columns.count..).unwrap_or_default();
+        if cells.len() < columns.count || extra.iter().any(|cell| !cell.is_empty()) {
+            return Err(bad(format!(
+                "has {} cells where the header has {}; write decimal points, or decimal commas with semicolons between cells",
+                cells.len(),
+                columns.count
+            )));
+        }
+        let (receiver, transmitter) = (&cells[columns.receiver], &cells[columns.transmitter]);
+        if receiver.is_empty() || transmitter.is_empty() {
+            return Err(bad("names no receiver or no transmitter; both are needed".to_string()));
+        }
+        let mut read = |column: usize| {
+            decimals.number(&cells[column]).map_err(|remedy| ReadError::NotANumber {
+                file: file.to_string(),
+                line,
+                column: column + 1,
+                place: format!("receiver {receiver}, transmitter {transmitter}"),
+                text: shorten(&cells[column]),
+                remedy,
+            })
+        };
+        let value = read(columns.value)? * factor;
+        let sigma = columns.sigma.map(read).transpose()?.map_or(1.0, |sigma| sigma * factor);
+        let at = (receivers.index(receiver), transmitters.index(transmitter));
+        if value.is_nan() {
+            continue;
+        }
+        if entries.len() >= MAX_CELLS {
+            return Err(ReadError::TooManyCells { file: file.to_string(), line });
+        }
+        if let Some(earlier) = entries.insert(at, Entry { value, sigma, line }) {
+            return Err(bad(format!(
+                "receiver {receiver}, transmitter {transmitter} is there twice, on line {} too; keep one measurement of each pair",
+                earlier.line
+            )));
+        }
+    }
+    if receivers.names.is_empty() {
+        return Err(ReadError::Empty { file: file.to_string() });
+    }
+    let (m, n) = (receivers.names.len(), transmitters.names.len());
+    let wrap = |source| ReadError::Matrix { file: file.to_string(), source };
+    if m.checked_mul(n).is_none_or(|cells| cells > MAX_CELLS) {
+        return Err(wrap(PseudorangeError::TooLarge { receivers: m, transmitters: n }));
+    }
+    let (mut values, mut sigmas) = (vec![f64::NAN; m * n], vec![f64::NAN; m * n]);
+    for ((i, j), entry) in entries {
+        values[i * n + j] = entry.value;
+        sigmas[i * n + j] = entry.sigma;
+    }
+    let measured = Pseudoranges::new(m, n, values).map_err(wrap)?;
+    let measured = measured.with_names(receivers.names, transmitters.names).map_err(wrap)?;
+    if columns.sigma.is_some() { measured.with_sigmas(sigmas).map_err(wrap) } else { Ok(measured) }
+}
+
+/// A measurement, its standard deviation and where it stands.
+struct Entry {
+    value: f64,
+    sigma: f64,
+    line: u64,
+}
+
+/// Names in the order of their first appearance.
+#[derive(Default)]
+struct Names {
+    names: Vec<String>,
+    places: HashMap<String, usize>,
+}
+
+impl Names {
+    fn index(&mut self, name: &str) -> usize {
+        if let Some(&place) = self.places.get(name) {
+            return place;
+        }
+        self.names.push(name.to_string());
+        self.places.insert(name.to_string(), self.names.len() - 1);
+        self.names.len() - 1
+    }
+}

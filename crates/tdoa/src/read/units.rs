@@ -1,0 +1,99 @@
+//! The unit of the numbers in a file.
+
+use super::error::ReadError;
+
+/// How the numbers of a file become metres.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub enum Units {
+    /// They are metres. The default.
+    #[default]
+    Metres,
+    /// They are seconds.
+    Seconds {
+        /// Propagation speed in metres a second.
+        speed: f64,
+    },
+    /// They are milliseconds.
+    Milliseconds {
+        /// Propagation speed in metres a second.
+        speed: f64,
+    },
+    /// They are microseconds.
+    Microseconds {
+        /// Propagation speed in metres a second.
+        speed: f64,
+    },
+    /// They are sampling intervals.
+    Samples {
+        /// Propagation speed in metres a second.
+        speed: f64,
+        /// Samples a second.
+        rate: f64,
+    },
+}
+
+impl Units {
+    /// The length in metres that one of the unit stands for.
+    pub fn metres(self) -> f64 {
+        match self {
+            Units::Metres => 1.0,
+            Units::Seconds { speed } => speed,
+            Units::Milliseconds { speed } => 1e-3 * speed,
+            Units::Microseconds { speed } => 1e-6 * speed,
+            Units::Samples { speed, rate } => speed / rate,
+        }
+    }
+
+    /// The propagation speed in metres a second; `None` for metres.
+    pub fn speed(self) -> Option<f64> {
+        match self {
+            Units::Metres => None,
+            Units::Seconds { speed }
+            | Units::Milliseconds { speed }
+            | Units::Microseconds { speed }
+            | Units::Samples { speed, .. } => Some(speed),
+        }
+    }
+
+    /// The unit's short name: `m`, `s`, `ms`, `us` or `samples`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Units::Metres => "m",
+            Units::Seconds { .. } => "s",
+            Units::Milliseconds { .. } => "ms",
+            Units::Microseconds { .. } => "us",
+            Units::Samples { .. } => "samples",
+        }
+    }
+
+    /// [`Units::metres`], checked.
+    pub(super) fn factor(self) -> Result<f64, ReadError> {
+        let good = |value: f64| value > 0.0 && value.is_finite();
+        if let Some(speed) = self.speed().filter(|&speed| !good(speed)) {
+            return Err(ReadError::Speed(speed));
+        }
+        match self {
+            Units::Samples { rate, .. } if !good(rate) => Err(ReadError::Rate(rate)),
+            // The quotient of a tiny speed and a huge rate.
+            _ if !good(self.metres()) => Err(ReadError::Speed(self.metres())),
+            _ => Ok(self.metres()),
+        }
+    }
+}
+
+/// How a file of measurements is read.
+#[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
+pub struct ReadOptions {
+    /// Unit of the numbers. Default `None`: metres, but a file whose first line speaks of times is refused.
+    pub units: Option<Units>,
+    /// Name of the matrix in a .mat file. Default `None`: z, or the only matrix that the file has.
+    pub variable: Option<String>,
+}
+
+impl From<Units> for ReadOptions {
+    fn from(units: Units) -> ReadOptions {
+        ReadOptions { units: Some(units), variable: None }
+    }
+}
