@@ -116,6 +116,6 @@ impl Wide {
                 _ => return Err(line(&text)),
             }
         }
-        if bytes.len() % 2 == 0 { Ok(text) } else { Err(line(&text)) }
+        if bytes.len().is_multiple_of(2) { Ok(text) } else { Err(line(&text)) }
     }
 }

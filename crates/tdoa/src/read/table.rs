@@ -47,8 +47,8 @@ impl Shape {
             }
             [] => false,
         };
-        let is_counted = counts(first);
-        if !only_names(first) && !(is_counted && is_row_of_counted(first, second)) {
+        let is_header = only_names(first) || (counts(first) && is_row_of_counted(first, second));
+        if !is_header {
             let named = begins_with_name(first) && second.is_none_or(begins_with_name);
             return Shape { transmitters: None, named };
         }
