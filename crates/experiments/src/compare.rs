@@ -4,6 +4,7 @@
 #[path = "../../hc/tests/common/generators.rs"]
 mod generators;
 mod networks;
+mod plan;
 mod program;
 mod solving;
 mod volumes;
@@ -11,6 +12,7 @@ mod volumes;
 use crate::workspace;
 use anyhow::Result;
 use clap::{Args, ValueEnum};
+use plan::{Plan, Tools};
 use std::path::PathBuf;
 use std::process::Command;
 
@@ -49,24 +51,6 @@ enum Table {
     Macaulay2,
     Gfan,
     Networks,
-}
-
-/// What is measured, and how.
-struct Plan {
-    quick: bool,
-    repeats: u32,
-    instances: u64,
-    limit: u32,
-    systems: PathBuf,
-}
-
-/// Where the programs of this workspace are, and which peers there are.
-struct Tools {
-    hc: PathBuf,
-    tdoa: PathBuf,
-    phc: bool,
-    macaulay2: bool,
-    gfan: bool,
 }
 
 /// Runs the tables that are asked for and writes the page.

@@ -9,6 +9,8 @@ pub mod command;
 pub mod compare;
 #[cfg(feature = "records")]
 pub mod counts;
+#[cfg(any(feature = "trials", feature = "records"))]
+mod quantile;
 #[cfg(feature = "records")]
 pub mod results;
 #[cfg(feature = "trials")]

@@ -6,8 +6,9 @@ mod histogram;
 
 use crate::calibrate::Calibration;
 use crate::plane::{centroid, distance, spread};
+pub use canvas::Canvas;
 pub(crate) use canvas::escape;
-use canvas::{Canvas, Map, nice};
+use canvas::{Map, nice};
 
 const WIDTH: f64 = 900.0;
 const MAP_HEIGHT: f64 = 620.0;

@@ -6,7 +6,8 @@ use tdoa::{CalibrateOptions, SimulateOptions, Simulation, simulate};
 
 use super::common::{Common, Size, thread_seconds};
 use super::rows::{Rows, resume};
-use super::statistics::{mean, quantile, short};
+use super::statistics::{mean, short};
+use crate::quantile::{median, quantile};
 use cli::{Failure, output};
 
 /// Where the search gets its starts from.
@@ -246,7 +247,7 @@ fn report(common: &Common, rows: &Rows, cases: &[Case], each: usize) -> Result<(
             short(share(&wrong)),
             short(mean(&squares).sqrt()),
             short(held("covered") / held("ellipses")),
-            short(quantile(&seconds, 0.5)),
+            short(median(&seconds)),
             short(quantile(&seconds, 0.9)),
         ];
         summary += &(cells.join(",") + "\n");

@@ -1,6 +1,6 @@
 //! The two kinds of figures of the paper, as SVG: histograms and curves on logarithmic axes.
 
-use std::fmt::Write;
+use tdoa::picture::Canvas;
 
 const WIDTH: f64 = 520.0;
 const HEIGHT: f64 = 320.0;
@@ -45,7 +45,7 @@ pub(super) fn histogram(labels: &Labels, width: f64, series: &[Series]) -> Strin
         frame.curve(k, &path, 0.18);
         frame.legend(k, &series.name);
     }
-    frame.finish()
+    frame.canvas.finish()
 }
 
 /// Curves through points, both axes logarithmic (base ten).
@@ -64,35 +64,35 @@ pub(super) fn curves(labels: &Labels, series: &[Series]) -> String {
         frame.curve(k, &logarithms(&series.points), 0.0);
         frame.legend(k, &series.name);
     }
-    frame.finish()
+    frame.canvas.finish()
 }
 
 struct Frame {
-    body: String,
+    canvas: Canvas,
     x: [f64; 2],
     y: [f64; 2],
 }
 
 impl Frame {
     fn new(labels: &Labels, x: [f64; 2], y: [f64; 2], logarithmic: bool) -> Self {
-        let mut frame = Frame { body: String::new(), x, y };
+        let mut frame = Frame { canvas: Canvas::new(WIDTH, HEIGHT), x, y };
         let (right, base) = (WIDTH - RIGHT, HEIGHT - BOTTOM);
         let middle = 0.5 * (LEFT + right);
-        frame.text([middle, 20.0], "middle", 14.0, &labels.title);
-        frame.text([middle, base + 36.0], "middle", 12.0, &labels.x);
-        frame.text([LEFT - 52.0, TOP - 10.0], "start", 12.0, &labels.y);
+        frame.canvas.text([middle, 20.0], "middle", 14.0, &labels.title);
+        frame.canvas.text([middle, base + 36.0], "middle", 12.0, &labels.x);
+        frame.canvas.text([LEFT - 52.0, TOP - 10.0], "start", 12.0, &labels.y);
         let tick = |value: f64| {
             if logarithmic { format!("1e{value}") } else { super::statistics::short(value) }
         };
         for value in ticks(x, logarithmic) {
             let at = frame.at([value, y[0]]);
             frame.line(at, [at[0], TOP], "#ddd");
-            frame.text([at[0], base + 17.0], "middle", 11.0, &tick(value));
+            frame.canvas.text([at[0], base + 17.0], "middle", 11.0, &tick(value));
         }
         for value in ticks(y, logarithmic) {
             let at = frame.at([x[0], value]);
             frame.line(at, [right, at[1]], "#ddd");
-            frame.text([LEFT - 6.0, at[1] + 4.0], "end", 11.0, &tick(value));
+            frame.canvas.text([LEFT - 6.0, at[1] + 4.0], "end", 11.0, &tick(value));
         }
         frame.line([LEFT, base], [right, base], "#222");
         frame.line([LEFT, base], [LEFT, TOP], "#222");
@@ -106,45 +106,18 @@ impl Frame {
     }
 
     fn curve(&mut self, k: usize, points: &[[f64; 2]], fill: f64) {
-        let colour = COLOURS[k % COLOURS.len()];
-        let list: Vec<String> = points.iter().map(|&p| self.at(p)).map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
-        // Writing to a string does not fail.
-        let _ = writeln!(
-            self.body,
-            r#"<polyline points="{}" fill="{colour}" fill-opacity="{fill}" stroke="{colour}" stroke-width="1.5"/>"#,
-            list.join(" ")
-        );
+        let points: Vec<[f64; 2]> = points.iter().map(|&p| self.at(p)).collect();
+        self.canvas.polyline(&points, COLOURS[k % COLOURS.len()], fill);
     }
 
     fn legend(&mut self, k: usize, name: &str) {
         let (x, y) = (LEFT + 225.0 * (k % 2) as f64, HEIGHT - 24.0 + 16.0 * (k / 2) as f64);
         self.line([x, y - 4.0], [x + 18.0, y - 4.0], COLOURS[k % COLOURS.len()]);
-        self.text([x + 24.0, y], "start", 12.0, name);
+        self.canvas.text([x + 24.0, y], "start", 12.0, name);
     }
 
     fn line(&mut self, a: [f64; 2], b: [f64; 2], colour: &str) {
-        let _ = writeln!(
-            self.body,
-            r#"<line x1="{:.1}" y1="{:.1}" x2="{:.1}" y2="{:.1}" stroke="{colour}"/>"#,
-            a[0], a[1], b[0], b[1]
-        );
-    }
-
-    fn text(&mut self, at: [f64; 2], anchor: &str, size: f64, text: &str) {
-        let safe = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
-        let _ = writeln!(
-            self.body,
-            r##"<text x="{:.1}" y="{:.1}" text-anchor="{anchor}" font-size="{size}" fill="#222">{safe}</text>"##,
-            at[0], at[1]
-        );
-    }
-
-    fn finish(self) -> String {
-        format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" width=\"{WIDTH}\" height=\"{HEIGHT}\" \
-             font-family=\"sans-serif\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n{}</svg>\n",
-            self.body
-        )
+        self.canvas.line(a, b, colour, 1.0, "");
     }
 }
 

@@ -8,7 +8,8 @@ use tdoa::minimal::{SolveOptions, Solver};
 use super::chart::{Labels, Series, histogram};
 use super::common::{Common, Size, normal, thread_seconds};
 use super::rows::{Rows, resume};
-use super::statistics::{decades, moments, quantile, short};
+use super::statistics::{decades, moments, short};
+use crate::quantile::quantile;
 use cli::{Failure, output};
 
 /// Solves clean random networks (positions and offsets standard normal) and counts roots, lost paths and errors (the upper row of the

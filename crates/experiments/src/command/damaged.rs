@@ -10,7 +10,8 @@ use tdoa::{CalibrateError, CalibrateOptions, Calibration, Pseudoranges, calibrat
 
 use super::common::Common;
 use super::rows::resume;
-use super::statistics::{mean, quantile, short};
+use super::statistics::{mean, short};
+use crate::quantile::{median, quantile};
 use cli::{Failure, output};
 
 /// Calibrates recordings with ground truth as they are and damaged at random, beside the same refinement started at the truth.
@@ -87,15 +88,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             let first = (g * kinds.len() + l) * each;
             let of = |column: &str| rows.numbers(column, first..first + each);
             let good = of("ratio").iter().filter(|ratio| **ratio <= 1.1).count();
-            let median = |column: &str| short(quantile(&of(column), 0.5));
+            let typical = |column: &str| short(median(&of(column)));
             summary += &format!(
                 "{},{missing},{outliers},{each},{good},{},{},{},{},{}\n",
                 recording.name,
-                median("receiver_rms"),
-                median("oracle_rms"),
-                median("ratio"),
+                typical("receiver_rms"),
+                typical("oracle_rms"),
+                typical("ratio"),
                 short(quantile(&of("ratio"), 1.0)),
-                median("receiver_rms_scaled"),
+                typical("receiver_rms_scaled"),
             );
         }
     }

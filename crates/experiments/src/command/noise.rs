@@ -6,7 +6,8 @@ use tdoa::minimal::Solver;
 use super::chart::{Labels, Series, curves};
 use super::common::{Common, Size, normal};
 use super::rows::resume;
-use super::statistics::{quantile, short};
+use super::statistics::short;
+use crate::quantile::{median, quantile};
 use cli::{Failure, output};
 
 /// Solves noisy random networks and sets the errors against the noise, without and with refinement (the lower row of the paper's
@@ -61,7 +62,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             summary += &format!("{size},{noise:e},{each},{none}");
             for error in ERRORS {
                 let all = of(error);
-                summary += &format!(",{},{}", short(quantile(&all, 0.5)), short(quantile(&all, 0.9)));
+                summary += &format!(",{},{}", short(median(&all)), short(quantile(&all, 0.9)));
             }
             summary += "\n";
             let drawn =

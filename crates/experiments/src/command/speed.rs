@@ -8,7 +8,8 @@ use tdoa::Pseudoranges;
 use tdoa::minimal::{SolveOptions, Solver};
 
 use super::common::{Common, Size, normal};
-use super::statistics::{quantile, short};
+use super::statistics::short;
+use crate::quantile::{median, quantile};
 use cli::{Failure, output};
 
 /// Takes the time of the exact solvers on clean random networks, on one thread and on all, and counts what their paths need.
@@ -52,7 +53,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             a_path(counts.accepted),
             a_path(counts.rejected),
             a_path(counts.jacobians),
-            short(quantile(&milliseconds, 0.5)),
+            short(median(&milliseconds)),
             short(quantile(&milliseconds, 0.99)),
             short(1e6 * seconds / counts.paths.max(1) as f64),
             short(networks.len() as f64 / seconds),

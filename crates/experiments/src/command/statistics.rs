@@ -10,14 +10,6 @@ pub(super) fn moments(values: &[f64]) -> [f64; 4] {
     [least, largest, mean, variance.sqrt()]
 }
 
-/// The value below which this share of the numbers lies; not a number for none.
-pub(super) fn quantile(values: &[f64], share: f64) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let at = (share * sorted.len() as f64) as usize;
-    sorted.get(at.min(sorted.len().saturating_sub(1))).copied().unwrap_or(f64::NAN)
-}
-
 /// Mean of the numbers that are numbers; not a number for none.
 pub(super) fn mean(values: &[f64]) -> f64 {
     let known: Vec<f64> = values.iter().copied().filter(|v| !v.is_nan()).collect();
@@ -59,8 +51,6 @@ mod tests {
         let values = [3.0, 1.0, 2.0, 5.0, 4.0];
         // Squares of the differences from 3 add up to 10, over four.
         assert_eq!(moments(&values), [1.0, 5.0, 3.0, 2.5f64.sqrt()]);
-        assert_eq!((quantile(&values, 0.5), quantile(&values, 0.99), quantile(&values, 1.0)), (3.0, 5.0, 5.0));
-        assert!(quantile(&[], 0.5).is_nan());
         assert_eq!(mean(&[1.0, f64::NAN, 3.0]), 2.0);
     }
 

@@ -1,8 +1,8 @@
 //! `tdoa solve` beside PHCpack on the smallest networks.
 
+use super::plan::{Plan, Tools};
 use super::program::{Pairs, Run, run, typical};
 use super::solving::{phc, regular_solutions};
-use super::{Plan, Tools};
 use crate::workspace;
 use anyhow::{Context, Result, ensure};
 use hc::poly::{self, Exact, ExpandLimits};

@@ -1,5 +1,6 @@
 //! Programs built, started and measured.
 
+use crate::quantile::median;
 use anyhow::{Context, Result, ensure};
 use std::fs::File;
 use std::io::Write;
@@ -122,7 +123,7 @@ impl Pairs {
             return None;
         }
         let ratios = self.ours.iter().zip(&self.theirs).map(|(a, b)| quantity(b) / quantity(a));
-        Some(median(ratios.collect()))
+        Some(median(&ratios.collect::<Vec<f64>>()))
     }
 }
 
@@ -131,9 +132,4 @@ pub(super) fn typical(runs: &[Run]) -> Option<&Run> {
     let mut order: Vec<&Run> = runs.iter().collect();
     order.sort_by(|a, b| a.work().total_cmp(&b.work()));
     order.get(order.len() / 2).copied()
-}
-
-pub(super) fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }

@@ -1,8 +1,9 @@
 //! `hc solve` beside PHCpack and Macaulay2.
 
 use super::generators::{cyclic, eco, katsura, noon, reimer};
-use super::program::{Pairs, Run, median, run, typical};
-use super::{Plan, Tools};
+use super::plan::{Plan, Tools};
+use super::program::{Pairs, Run, run, typical};
+use crate::quantile::median;
 use anyhow::{Context, Result};
 use hc::poly::parse::phcpack;
 use std::fmt::Write;
@@ -155,9 +156,11 @@ pub(super) fn beside_macaulay2(tools: &Tools, plan: &Plan, text: &mut String) ->
             Some(theirs) => {
                 let regular = said(&theirs.output, "solutions").map_or("none".to_owned(), |n| format!("{n:.0}"));
                 // Macaulay2 counts processor seconds of its own thread.
-                let ratio = median(pairs.ours.iter().zip(&pairs.theirs).map(|(a, b)| b.seconds / a.work()).collect());
+                let ratios: Vec<f64> =
+                    pairs.ours.iter().zip(&pairs.theirs).map(|(a, b)| b.seconds / a.work()).collect();
+                let ratio = median(&ratios);
                 let over = if theirs.stopped { "over " } else { "" };
-                let seconds = median(pairs.theirs.iter().map(|run| run.seconds).collect());
+                let seconds = median(&pairs.theirs.iter().map(|run| run.seconds).collect::<Vec<f64>>());
                 let memory = theirs.megabytes.map_or_else(String::new, |m| format!("{m:.0}"));
                 writeln!(text, " {regular} | {over}{seconds:.3} | {memory} | {over}{ratio:.1} |")?;
             }
@@ -214,7 +217,7 @@ pub(super) fn small(tools: &Tools, plan: &Plan, text: &mut String) -> Result<()>
         text,
         "\n`hc solve` on cyclic-5 (70 solutions), from the start of the process to its end, by the wall: median {:.1} ms, least {least:.1} ms, \
          most {most:.1} ms of {count} runs.",
-        median(milliseconds)
+        median(&milliseconds)
     )?;
     Ok(())
 }

@@ -1,10 +1,12 @@
 //! docs/results.md from the tables in results/, byte for byte the same from the same tables.
 
+mod markdown;
 mod solvers;
 
 use super::plan::PLAN;
 use super::table::{Row, Table, record};
 use anyhow::Result;
+use markdown::{head, line, summary};
 use solvers::{clean, noise, routes, speed, table2};
 use std::path::Path;
 
@@ -43,19 +45,6 @@ const SECTIONS: &[Section] = &[
     ("growth", "Large networks", growth),
     ("damaged", "Recordings, as they are and damaged", recordings),
 ];
-
-fn summary(results: &Path, name: &str) -> Result<Table> {
-    Table::read(&results.join(name).join("summary.csv"))
-}
-
-/// A line of a Markdown table.
-fn line(cells: &[String]) -> String {
-    format!("| {} |\n", cells.join(" | "))
-}
-
-fn head(names: &[&str]) -> String {
-    format!("| {} |\n|{}\n", names.join(" | "), "---|".repeat(names.len()))
-}
 
 fn calibration(results: &Path) -> Result<String> {
     let table = summary(results, "calibrate")?;

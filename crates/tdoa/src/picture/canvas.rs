@@ -48,15 +48,24 @@ pub(super) fn nice(length: f64) -> f64 {
     format!("{:.1e}", step * power).parse().unwrap_or(step * power)
 }
 
-/// SVG text that grows.
-pub(super) struct Canvas {
+/// A picture in SVG, drawn shape by shape: lengths in pixels, x to the right, y downwards.
+///
+/// ```
+/// let mut canvas = tdoa::picture::Canvas::new(100.0, 50.0);
+/// canvas.line([10.0, 40.0], [90.0, 40.0], "#222", 1.0, "");
+/// canvas.text([50.0, 30.0], "middle", 12.0, "80 px");
+/// assert!(canvas.finish().starts_with("<svg"));
+/// ```
+#[derive(Debug, Clone)]
+pub struct Canvas {
     body: String,
     width: f64,
     height: f64,
 }
 
 impl Canvas {
-    pub(super) fn new(width: f64, height: f64) -> Self {
+    /// An empty white picture.
+    pub fn new(width: f64, height: f64) -> Self {
         Canvas { body: String::new(), width, height }
     }
 
@@ -66,10 +75,20 @@ impl Canvas {
         self.body.push('\n');
     }
 
-    pub(super) fn line(&mut self, a: [f64; 2], b: [f64; 2], colour: &str, width: f64, dashes: &str) {
+    /// A straight line; `dashes` as SVG has them, such as `5 3`, or empty.
+    pub fn line(&mut self, a: [f64; 2], b: [f64; 2], colour: &str, width: f64, dashes: &str) {
         self.add(format_args!(
             r#"<line x1="{:.2}" y1="{:.2}" x2="{:.2}" y2="{:.2}" stroke="{colour}" stroke-width="{width}" stroke-dasharray="{dashes}"/>"#,
             a[0], a[1], b[0], b[1]
+        ));
+    }
+
+    /// Lines from point to point; the area that they enclose is filled with this opacity, 0 to 1.
+    pub fn polyline(&mut self, points: &[[f64; 2]], colour: &str, fill: f64) {
+        let list: Vec<String> = points.iter().map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
+        self.add(format_args!(
+            r#"<polyline points="{}" fill="{colour}" fill-opacity="{fill}" stroke="{colour}" stroke-width="1.5"/>"#,
+            list.join(" ")
         ));
     }
 
@@ -127,7 +146,8 @@ impl Canvas {
         ));
     }
 
-    pub(super) fn text(&mut self, at: [f64; 2], anchor: &str, size: f64, text: &str) {
+    /// Text at a point of its baseline that is its `start`, `middle` or `end`.
+    pub fn text(&mut self, at: [f64; 2], anchor: &str, size: f64, text: &str) {
         self.coloured(at, anchor, size, "#222", text);
     }
 
@@ -166,7 +186,8 @@ impl Canvas {
         }
     }
 
-    pub(super) fn finish(self) -> String {
+    /// The whole text of the picture.
+    pub fn finish(self) -> String {
         let (width, height) = (self.width, self.height);
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
