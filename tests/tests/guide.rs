@@ -108,8 +108,8 @@ fn solving_a_polynomial_system() {
     let folder = tempfile::tempdir().expect("folder");
     let page = "docs/guide/polynomial-system.md";
     let text = std::fs::read_to_string(root().join(page)).expect("page");
-    let system = text.split("```phc\n").nth(1).and_then(|rest| rest.split("```").next()).expect("the system");
-    std::fs::write(folder.path().join("system.phc"), system).expect("written");
+    let system = text.split("```text\n").nth(1).and_then(|rest| rest.split("```").next()).expect("the system");
+    std::fs::write(folder.path().join("system.txt"), system).expect("written");
     run_page(page, folder.path());
     let text = std::fs::read_to_string(folder.path().join("solutions.json")).expect("JSON");
     let found: serde_json::Value = serde_json::from_str(&text).expect("JSON");

@@ -9,12 +9,11 @@ use crate::refill;
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use experiments::workspace;
+use hc::Family;
 use hc::distinct::coincidences;
-use hc::family::Compiled;
+use hc::family::StartFile;
 use hc::poly::program::{EmitOptions, emit};
-use hc::poly::{Evaluate, Family};
 use hc::refine::Refiner;
-use hc::start_file::StartFile;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -130,7 +129,7 @@ pub(crate) fn run(arguments: &CodegenArguments) -> Result<()> {
 }
 
 fn read_family(path: &Path) -> Result<Family> {
-    poly::parse::family(&workspace::read(path)?).with_context(|| format!("{} is not a family", path.display()))
+    workspace::read(path)?.parse::<Family>().with_context(|| format!("{} is not a family", path.display()))
 }
 
 /// Writes the module of a family, or with `--check` says whether the one on disk is stale.
@@ -167,19 +166,18 @@ fn place(arguments: &CodegenArguments, module: &str, output: &Path) -> Result<bo
 /// The stored fibre solves the family's equations, its solutions are distinct and regular, and their number is the stated one.
 fn verify(family: &Family, start: &StartFile) -> Result<()> {
     let fibre = start.fibre()?;
-    let compiled = Compiled::new(family)?;
-    compiled.check(&fibre)?;
-    if let Some(roots) = family.roots {
+    family.check(&fibre)?;
+    if let Some(roots) = family.roots() {
         ensure!(fibre.len() == roots, "{} solutions, but the family states {roots}", fibre.len());
     }
-    let mut refiner = Refiner::new(&compiled.system);
+    let mut refiner = Refiner::new(family.program());
     for k in 0..fibre.len() {
         let x = fibre.solution(k);
         let refined = refiner.refine(&fibre.parameters, x);
         let moved = hc::distinct::relative_distance(x, &refined.point);
         ensure!(moved < 1e-12, "solution {} is off by {moved:.1e}", k + 1);
         ensure!(refined.condition < 1e12, "solution {} is singular (condition {:.1e})", k + 1, refined.condition);
-        ensure!(compiled.accepts(&fibre.parameters, x), "solution {} is degenerate", k + 1);
+        ensure!(family.accepts(&fibre.parameters, x), "solution {} is degenerate", k + 1);
     }
     let same = coincidences((0..fibre.len()).map(|k| (k, fibre.solution(k))), 1e-8);
     ensure!(same.is_empty(), "solutions {:?} (counted from 0) coincide", same[0]);
@@ -188,26 +186,26 @@ fn verify(family: &Family, start: &StartFile) -> Result<()> {
 
 /// The Rust source of a family with its fibre.
 fn generate(family: &Family, start: &StartFile, source: &str) -> Result<String> {
-    let system = family.system.compile()?;
+    let system = family.system();
     let mut options = EmitOptions::default();
     options.crate_path = "hc::poly".to_owned();
     options.source = source.to_owned();
-    let mut text = emit(system.program(), &options)?;
+    let mut text = emit(family.program().program(), &options)?;
     let trace = start.trace_test.map_or("not run".to_owned(), |t| format!("deviation {t:.1e}"));
     writeln!(text, "/// A generic parameter point, `[re, im]` each.")?;
     writeln!(text, "static PARAMETERS: [[f64; 2]; {}] = [", start.parameters.len())?;
     rows(&mut text, &start.parameters)?;
     writeln!(text, "];")?;
-    writeln!(text, "/// All solutions there, {} coordinates each, one after the other.", system.variables())?;
+    writeln!(text, "/// All solutions there, {} coordinates each, one after the other.", system.variables().len())?;
     writeln!(text, "///\n/// Search ended: {}; trace test: {trace}.", start.stopped)?;
-    writeln!(text, "static SOLUTIONS: [[f64; 2]; {}] = [", start.solutions.len() * system.variables())?;
+    writeln!(text, "static SOLUTIONS: [[f64; 2]; {}] = [", start.solutions.len() * system.variables().len())?;
     for solution in &start.solutions {
         rows(&mut text, solution)?;
     }
     writeln!(text, "];")?;
     writeln!(text, "/// All solutions for a generic parameter point.")?;
-    writeln!(text, "pub fn fibre() -> hc::fibre::Fibre {{")?;
-    writeln!(text, "    hc::fibre::Fibre::from_pairs(&PARAMETERS, {}, &SOLUTIONS)", system.variables())?;
+    writeln!(text, "pub fn fibre() -> hc::Fibre {{")?;
+    writeln!(text, "    hc::Fibre::from_pairs(&PARAMETERS, {}, &SOLUTIONS)", system.variables().len())?;
     writeln!(text, "}}")?;
     Ok(text)
 }

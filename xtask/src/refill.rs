@@ -1,14 +1,10 @@
 //! Computes the generic fibre of a family anew: first pair, monodromy, trace test, and a well-placed parameter point.
 
 use anyhow::{Context, Result, ensure};
-use hc::family::Compiled;
-use hc::fibre::{Fibre, FibreOptions, move_fibre, track_fibre};
-use hc::monodromy::{MonodromyOptions, Stop, monodromy};
-use hc::pair::find_pair;
-use hc::poly::{Family, Interpreter};
+use hc::family::{StartFile, Stop, move_fibre, track_fibre};
+use hc::poly::Interpreter;
 use hc::random::Random;
-use hc::start_file::StartFile;
-use hc::trace::trace_test;
+use hc::{Family, Fibre, FibreOptions, Monitor, MonodromyOptions};
 use num_complex::Complex64;
 
 /// Parameter points that are tried as the place of the fibre, and real targets that each is judged by.
@@ -20,42 +16,35 @@ const TRACES: u64 = 4;
 
 /// The fibre of a family, found from nothing.
 pub(crate) fn refill(family: &Family, seed: u64, with_trace: bool) -> Result<StartFile> {
-    let compiled = Compiled::new(family)?;
-    let system = &compiled.system;
-    let accept = |p: &[Complex64], x: &[Complex64]| compiled.accepts(p, x);
-    let pair = find_pair(&family.system, accept, seed)?
-        .with_context(|| format!("{}: no first solution was found; state one with a seed pair", family.name))?;
-    let mut options = MonodromyOptions::default();
-    options.seed = seed;
-    options.roots = family.roots;
-    let found = monodromy(system, &pair, accept, &options);
-    eprintln!("{}: {} roots after {} loops and {} paths", family.name, found.fibre.len(), found.loops, found.paths);
+    let mut options = MonodromyOptions::new().seed(seed);
+    let found = family.monodromy(&options).with_context(|| family.name().to_owned())?;
+    eprintln!("{}: {} roots after {} loops and {} paths", family.name(), found.fibre.len(), found.loops, found.paths);
     let mut stopped = match found.stop {
         Stop::RootsReached => "roots reached",
         _ => "no progress",
     };
-    if let Some(roots) = family.roots {
-        ensure!(found.fibre.len() == roots, "{}: {} roots instead of {roots}", family.name, found.fibre.len());
+    if let Some(roots) = family.roots() {
+        ensure!(found.fibre.len() == roots, "{}: {} roots instead of {roots}", family.name(), found.fibre.len());
     }
-    let fibre = place(system, &found.fibre, seed)?;
+    let fibre = place(family.program(), &found.fibre, seed)?;
     let mut deviation = None;
     if with_trace {
         // One further point far out that no path reaches spoils the test; on another line it lies elsewhere.
         let mut passed = false;
         for attempt in 0..TRACES {
             options.seed = seed.wrapping_add(attempt);
-            let test = trace_test(&family.system, &fibre, &options)?;
-            eprintln!("{}: trace test {test:?}", family.name);
+            let test = family.trace_test(&fibre, &options, &Monitor::default())?;
+            eprintln!("{}: trace test {test:?}", family.name());
             deviation = Some(test.deviation);
             passed = test.passed(fibre.len());
             if passed {
                 break;
             }
         }
-        if passed && family.roots.is_none() {
+        if passed && family.roots().is_none() {
             stopped = "trace";
         }
-        ensure!(passed, "{}: the trace test does not confirm {} roots", family.name, fibre.len());
+        ensure!(passed, "{}: the trace test does not confirm {} roots", family.name(), fibre.len());
     }
     Ok(StartFile::new(&fibre, deviation, stopped))
 }

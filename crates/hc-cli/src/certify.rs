@@ -3,8 +3,7 @@
 use crate::{input, points};
 use cli::{Failure, output};
 use hc::certify::{Certificate, Certificates, CertifyOptions, Obstacle, Reality, certify};
-use hc::poly::{ComplexInterval, System};
-use hc::solve::Solution;
+use hc::poly::ComplexInterval;
 use num_complex::Complex64;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -16,7 +15,7 @@ use std::time::Instant;
 /// could not be certified.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The system, in PHCpack's format.
+    /// The system: plain text with one equation a line, PHCpack's format, or TOML.
     system: PathBuf,
     /// The solutions: what `hc solve --json` writes, a list of points [[number or [re, im], ...], ...], or a list of solutions in
     /// PHCpack's format, such as `phc -b` appends to its output.
@@ -141,24 +140,4 @@ fn summary(found: &Certificates) -> String {
         text += &format!("points {} and {}: neither proved equal nor different\n", a + 1, b + 1);
     }
     text
-}
-
-/// For given parameters, says of each solution whether it is certified as one of its own, and whether it is real where that is proved.
-pub(crate) fn fill(system: &System, parameters: &[ComplexInterval], solutions: &mut [Solution]) -> Result<(), String> {
-    let point = |s: &Solution| s.value.iter().map(|&[re, im]| Complex64::new(re, im)).collect();
-    let points: Vec<Vec<Complex64>> = solutions.iter().map(point).collect();
-    let found = certify(system, parameters, &points, &CertifyOptions::default()).map_err(|e| e.to_string())?;
-    for (k, solution) in solutions.iter_mut().enumerate() {
-        let unseparated = found.unseparated.iter().any(|pair| pair.contains(&k));
-        let proof = found.points[k].as_ref().ok().filter(|_| found.duplicate_of[k].is_none() && !unseparated);
-        solution.certified = Some(proof.is_some());
-        // What is certified is regular, however badly conditioned.
-        solution.singular &= proof.is_none();
-        match proof.map(|p| p.reality) {
-            Some(Reality::Real) => solution.real = true,
-            Some(Reality::NotReal) => solution.real = false,
-            Some(Reality::Undecided) | None => {}
-        }
-    }
-    Ok(())
 }

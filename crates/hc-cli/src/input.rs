@@ -3,21 +3,21 @@
 pub(crate) use cli::input::text;
 
 use cli::Failure;
-use hc::poly::{Exact, Polynomial, System, parse::phcpack};
+use hc::System;
 use num_complex::Complex64;
 use serde::Deserialize;
 use std::path::Path;
 
-/// Reads a system in PHCpack's format.
+/// Reads a system without parameters, in whichever format it is.
 pub(crate) fn system(file: &Path) -> Result<System, Failure> {
-    phcpack(&text(file)?).map_err(|e| Failure::in_file(file, e))
-}
-
-/// Reads a system and multiplies it out.
-pub(crate) fn polynomials(file: &Path) -> Result<(System, Vec<Polynomial<Exact>>), Failure> {
-    let system = system(file)?;
-    let polynomials = system.expand(&Default::default()).map_err(|e| Failure::in_file(file, e))?;
-    Ok((system, polynomials))
+    let system: System = text(file)?.parse().map_err(|e| Failure::in_file(file, e))?;
+    if let [first, ..] = system.parameters() {
+        let message = format!(
+            "a family of systems, not one: it has parameters ({first}, ...); write numbers for them, or see `hc monodromy` and `hc track`"
+        );
+        return Err(Failure::in_file(file, message));
+    }
+    Ok(system)
 }
 
 /// A real number, or real and imaginary part.

@@ -3,7 +3,7 @@
 use crate::{input, watch};
 use cli::{Failure, output};
 use hc::poly::Polynomial;
-use hc::start::{MixedError, watched_mixed_volume};
+use hc::start::{MixedError, mixed_volume_watched};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -13,7 +13,7 @@ use std::time::Instant;
 /// Interrupted, it gives the volume of the cells found so far, marked as partial, with exit status 130.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The system, in PHCpack's format.
+    /// The system: plain text with one equation a line, PHCpack's format, or TOML.
     file: PathBuf,
     /// Write the result as JSON to this file, `-` for standard output.
     #[arg(long, value_name = "OUT")]
@@ -37,13 +37,14 @@ struct Output {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (system, polynomials) = input::polynomials(&arguments.file)?;
+    let system = input::system(&arguments.file)?;
+    let polynomials = system.expand(&Default::default()).map_err(|error| Failure::in_file(&arguments.file, error))?;
     let supports: Vec<Vec<Vec<i32>>> = polynomials.iter().map(Polynomial::support).collect();
     let unknowns = system.variables().len();
     let start = Instant::now();
     let monitor = watch::interruptible()?;
     let found = watch::watched(arguments.threads, &monitor, watch::stages, || {
-        watched_mixed_volume(unknowns, &supports, &monitor)
+        mixed_volume_watched(unknowns, &supports, &monitor)
     })?;
     let (mixed_volume, cells, partial) = match found {
         Ok(found) => (found.volume, found.cells as u64, false),

@@ -1,12 +1,9 @@
 //! `hc monodromy`.
 
-use crate::family::Problem;
-use crate::watch;
+use crate::{family, watch};
 use cli::{Failure, output};
-use hc::monodromy::{MonodromyOptions, Stop, monodromy};
-use hc::pair::find_pair;
-use hc::start_file::StartFile;
-use hc::trace::trace_test;
+use hc::family::{StartFile, Stop};
+use hc::{FamilyError, MonodromyOptions};
 use std::path::PathBuf;
 
 /// Finds all solutions of a family for one generic parameter point, from a single one.
@@ -34,35 +31,27 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let problem = Problem::read(&arguments.family)?;
-    let accept = |p: &[num_complex::Complex64], x: &[num_complex::Complex64]| problem.compiled.accepts(p, x);
+    let path = &arguments.family;
+    let family = family::read(path)?;
     let start = match &arguments.seed_pair {
-        Some(path) => problem.fibre(path)?,
-        None => find_pair(&problem.family.system, accept, arguments.seed)
-            .map_err(|e| Failure::in_file(&arguments.family, e))?
-            .ok_or_else(|| {
-                Failure::Undetermined(
-                    "no regular solution was found for any parameters; give one with --seed-pair".to_string(),
-                )
-            })?,
+        Some(path) => family::fibre(&family, path)?,
+        None => family.find_pair(arguments.seed).map_err(|error| match error {
+            FamilyError::NoPair => Failure::Undetermined(format!("{error} with --seed-pair")),
+            error => Failure::in_file(path, error),
+        })?,
     };
-    let mut options = MonodromyOptions::default();
-    options.seed = arguments.seed;
-    options.roots = problem.family.roots;
+    let options = MonodromyOptions::new().seed(arguments.seed);
     let monitor = watch::interruptible()?;
-    options.set_monitor(monitor.clone());
-    let (found, test) = watch::watched(arguments.threads, &monitor, watch::stages, || {
-        let found = monodromy(&problem.compiled.system, &start, accept, &options);
+    let found = watch::watched(arguments.threads, &monitor, watch::stages, || {
+        let found = family.complete(&start, &options, &monitor)?;
         let wanted = !arguments.no_trace && !matches!(found.stop, Stop::RootsReached | Stop::Cancelled);
-        let test = wanted.then(|| trace_test(&problem.family.system, &found.fibre, &options));
-        (found, test)
+        let test = wanted.then(|| family.trace_test(&found.fibre, &options, &monitor)).transpose()?;
+        Ok((found, test))
     })?;
+    let (found, test) = found.map_err(|error: FamilyError| Failure::in_file(path, error))?;
+    // What an interrupted test says is no deviation.
+    let test = test.filter(|_| !monitor.is_cancelled());
     let count = found.fibre.len();
-    let test = match test {
-        // What an interrupted test says is no deviation.
-        Some(test) if !monitor.is_cancelled() => Some(test.map_err(|e| Failure::in_file(&arguments.family, e))?),
-        _ => None,
-    };
     let deviation = test.as_ref().map(|test| test.deviation);
     let stopped = match found.stop {
         Stop::RootsReached => "roots reached",
@@ -75,12 +64,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let trace = deviation.map_or(String::new(), |d| format!(", trace test {d:.1e}"));
     eprintln!(
         "{}: {count} solutions after {} loops and {} paths; stopped: {stopped}{trace}",
-        problem.family.name, found.loops, found.paths
+        family.name(),
+        found.loops,
+        found.paths
     );
     if stopped == "interrupted" {
         return Err(Failure::Interrupted);
     }
-    match problem.family.roots {
+    match family.roots() {
         Some(roots) if roots != count => {
             Err(Failure::Undetermined(format!("{count} solutions were found, the family states {roots}")))
         }

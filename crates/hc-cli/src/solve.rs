@@ -1,9 +1,9 @@
 //! `hc solve`.
 
 use crate::report::Report;
-use crate::{certify, input, watch};
+use crate::{input, watch};
 use cli::{Failure, output};
-use hc::solve::{SolveError, SolveOptions, Start, solve};
+use hc::{SolveOptions, Start, solve_watched};
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -12,7 +12,7 @@ use std::time::Instant;
 /// Interrupted, it gives the solutions found so far, marked as a partial result, with exit status 130.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The system, in PHCpack's format.
+    /// The system: plain text with one equation a line, PHCpack's format, or TOML.
     file: PathBuf,
     /// Write the result as JSON to this file, `-` for standard output.
     #[arg(long, value_name = "OUT")]
@@ -64,31 +64,26 @@ impl From<StartChoice> for Start {
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let begun = Instant::now();
     let file = &arguments.file;
-    let (system, polynomials) = input::polynomials(file)?;
+    let system = input::system(file)?;
     if arguments.certify && system.len() != system.variables().len() {
         let message = "only systems of as many equations as unknowns can be certified; leave out --certify";
         return Err(Failure::in_file(file, message));
     }
     let monitor = watch::interruptible()?;
-    let mut options = SolveOptions::default();
-    options.seed = arguments.seed;
-    options.start = arguments.start.into();
-    options.groups = groups(arguments, system.variables()).map_err(|message| Failure::in_file(file, message))?;
-    options.max_paths = arguments.max_paths;
-    options.torus_only = arguments.torus_only;
-    options.set_monitor(monitor.clone());
-    let found = watch::watched(arguments.threads, &monitor, watch::stages, || {
-        let mut found = solve(&polynomials, &options).map_err(|error| refusal(&error, system.variables()))?;
-        if arguments.certify {
-            certify::fill(&system, &[], &mut found.solutions)?;
-        }
-        Ok(found)
-    })?;
-    let found = found.map_err(|message: String| Failure::in_file(file, message))?;
-    let report = Report::new(system.variables(), &found, arguments.seed, begun.elapsed().as_secs_f64());
-    output::summary(arguments.json.as_deref(), || report.summary() + &report.listing())?;
+    let options = SolveOptions::new()
+        .seed(arguments.seed)
+        .start(arguments.start.into())
+        .groups(groups(arguments, system.variables()).map_err(|message| Failure::in_file(file, message))?)
+        .max_paths(arguments.max_paths)
+        .torus_only(arguments.torus_only)
+        .certify(arguments.certify);
+    let found =
+        watch::watched(arguments.threads, &monitor, watch::stages, || solve_watched(&system, &options, &monitor))?;
+    let found = found.map_err(|error| Failure::in_file(file, error))?;
+    let seconds = begun.elapsed().as_secs_f64();
+    output::summary(arguments.json.as_deref(), || format!("{found}{seconds:.3} s\n"))?;
     if let Some(out) = &arguments.json {
-        output::json(out, &report)?;
+        output::json(out, &Report::new(&found, arguments.seed, seconds))?;
     }
     // A list that may not be whole is not presented as a success.
     if found.interrupted {
@@ -97,25 +92,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if found.paths.failed > 0 {
         return Err(Failure::Undetermined(format!("{} paths were lost", found.paths.failed)));
     }
-    if report.uncertified() > 0 {
-        return Err(Failure::Undetermined(format!("{} regular solutions are not certified", report.uncertified())));
+    if found.uncertified() > 0 {
+        return Err(Failure::Undetermined(format!("{} regular solutions are not certified", found.uncertified())));
     }
-    if found.solutions.is_empty() {
+    if found.is_empty() {
         return Err(Failure::Undetermined("no isolated solutions".to_owned()));
     }
     Ok(())
-}
-
-/// Why the system is not solved, with the names of the unknowns where their number is the reason.
-fn refusal(error: &SolveError, variables: &[String]) -> String {
-    match error {
-        SolveError::Underdetermined { equations, .. } => format!(
-            "{equations} equations in {} unknowns ({}) have no isolated solutions; add equations, or numbers for some of the unknowns",
-            variables.len(),
-            variables.join(", ")
-        ),
-        other => other.to_string(),
-    }
 }
 
 /// The indices of the unknowns in each of the groups that were given.

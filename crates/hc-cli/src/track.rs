@@ -1,18 +1,19 @@
 //! `hc track`.
 
-use crate::family::Problem;
 use crate::input::{self, Number};
 use crate::report::Report;
-use crate::{certify, watch};
+use crate::{family, watch};
 use cli::{Failure, output};
-use hc::fibre::Fibre;
-use hc::poly::ComplexInterval;
-use hc::solve::{SolveOptions, Solved, solve_member};
+use hc::{Solutions, SolveOptions};
 use num_complex::Complex64;
 use serde::Deserialize;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
+
+/// Targets that a summary lists one by one, and warnings that it shows.
+const LISTED: usize = 10;
 
 /// Tracks a stored fibre of a family to one or several parameter points.
 ///
@@ -55,43 +56,34 @@ struct Target {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let problem = Problem::read(&arguments.family)?;
-    let fibre = problem.fibre(&arguments.start)?;
+    let begun = Instant::now();
+    let family = family::read(&arguments.family)?;
+    let fibre = family::fibre(&family, &arguments.start)?;
     let (targets, single) = targets(arguments, fibre.parameters.len())?;
     let monitor = watch::interruptible()?;
-    let mut options = SolveOptions::default();
-    options.set_monitor(monitor.clone());
-    let current = AtomicU64::new(0);
+    let done = AtomicU64::new(0);
     let count = targets.len() as u64;
-    let describe = |p: hc::monitor::Progress| {
+    let describe = |p: hc::Progress| {
         let (position, length, words) = watch::stages(p);
-        match count {
-            1 => (position, length, words),
-            _ => (current.load(Ordering::Relaxed), count, format!("targets; {position} of {length} {words}")),
-        }
+        if count == 1 { (position, length, words) } else { (done.load(Ordering::Relaxed), count, "targets".to_owned()) }
     };
+    let options = SolveOptions::new().certify(arguments.certify);
     let solved = watch::watched(arguments.threads, &monitor, describe, || {
-        let mut solved = Vec::new();
-        for target in &targets {
-            solved.push(member(&problem, &fibre, target, &options, arguments.certify)?);
-            current.fetch_add(1, Ordering::Relaxed);
-            if monitor.is_cancelled() {
-                break;
-            }
-        }
-        Ok(solved)
+        family.track(&fibre, &targets).options(&options).watched(&monitor).transform(|_, found| {
+            done.fetch_add(1, Ordering::Relaxed);
+            (found, begun.elapsed().as_secs_f64())
+        })
     })?;
-    let solved: Vec<(Solved, f64)> = solved.map_err(|e: String| Failure::in_file(&arguments.family, e))?;
-    let variables = problem.family.system.variables();
+    let solved: Vec<(Solutions, f64)> = solved.map_err(|error| Failure::in_file(&arguments.family, error))?;
     let reports: Vec<Report<'_>> =
-        solved.iter().map(|(found, seconds)| Report::new(variables, found, arguments.seed, *seconds)).collect();
+        solved.iter().map(|(found, seconds)| Report::new(found, arguments.seed, *seconds)).collect();
     if let Some(path) = &arguments.json {
         match &reports[..] {
             [report] if single => output::json(path, report)?,
             reports => output::json(path, &reports)?,
         }
     }
-    output::summary(arguments.json.as_deref(), || summary(&reports))?;
+    output::summary(arguments.json.as_deref(), || summary(&solved, begun.elapsed().as_secs_f64()))?;
     if solved.len() < targets.len() || solved.iter().any(|(found, _)| found.interrupted) {
         return Err(Failure::Interrupted);
     }
@@ -99,7 +91,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if failed > 0 {
         return Err(Failure::Undetermined(format!("{failed} paths were lost: the lists are not whole")));
     }
-    let uncertified: usize = reports.iter().map(Report::uncertified).sum();
+    let uncertified: usize = solved.iter().map(|(found, _)| found.uncertified()).sum();
     if uncertified > 0 {
         return Err(Failure::Undetermined(format!("{uncertified} regular solutions are not certified")));
     }
@@ -125,25 +117,40 @@ fn targets(arguments: &Arguments, parameters: usize) -> Result<(Vec<Vec<Complex6
     Ok((targets, single))
 }
 
-/// Solves one member, and says how many seconds that took.
-fn member(
-    problem: &Problem,
-    fibre: &Fibre,
-    target: &[Complex64],
-    options: &SolveOptions,
-    certified: bool,
-) -> Result<(Solved, f64), String> {
-    let started = Instant::now();
-    let family = &problem.family.system;
-    let mut found = solve_member(family, &problem.compiled.system, fibre, target, options);
-    if certified {
-        let parameters: Vec<ComplexInterval> = target.iter().map(|&p| ComplexInterval::point(p)).collect();
-        certify::fill(family, &parameters, &mut found.solutions)?;
+/// A few targets one by one, many in numbers.
+fn summary(solved: &[(Solutions, f64)], seconds: f64) -> String {
+    if solved.len() <= LISTED {
+        let each = solved.iter().enumerate();
+        return each.map(|(k, (found, seconds))| format!("target {}: {found}{seconds:.3} s\n", k + 1)).collect();
     }
-    Ok((found, started.elapsed().as_secs_f64()))
-}
-
-fn summary(reports: &[Report<'_>]) -> String {
-    let each = reports.iter().enumerate();
-    each.map(|(k, report)| format!("target {}: {}{}", k + 1, report.summary(), report.listing())).collect()
+    let sum = |count: &dyn Fn(&Solutions) -> usize| -> usize { solved.iter().map(|(found, _)| count(found)).sum() };
+    let mut text = format!(
+        "{} targets: {} isolated solutions, {} real; {} paths: {} finite, {} at infinity, {} failed, {} tracked again; {seconds:.3} s\n",
+        solved.len(),
+        sum(&Solutions::len),
+        sum(&|found| found.iter().filter(|s| s.real).count()),
+        sum(&|found| found.paths.tracked),
+        sum(&|found| found.paths.finite),
+        sum(&|found| found.paths.at_infinity),
+        sum(&|found| found.paths.failed),
+        sum(&|found| found.paths.retracked)
+    );
+    let mut numbers: BTreeMap<usize, usize> = BTreeMap::new();
+    for (found, _) in solved {
+        *numbers.entry(found.iter().filter(|s| s.real).count()).or_default() += 1;
+    }
+    for (real, targets) in numbers {
+        text += &format!("  {targets} targets with {real} real solutions\n");
+    }
+    let doubtful = solved.iter().enumerate().filter(|(_, (found, _))| !found.warnings().is_empty());
+    for (k, (found, _)) in doubtful.clone().take(LISTED) {
+        for warning in found.warnings() {
+            text += &format!("warning: target {}: {warning}\n", k + 1);
+        }
+    }
+    let more = doubtful.count().saturating_sub(LISTED);
+    if more > 0 {
+        text += &format!("warnings of {more} targets more\n");
+    }
+    text
 }

@@ -2,7 +2,7 @@
 
 use cli::bar::while_shown;
 use cli::{Failure, interrupt};
-use hc::monitor::{Monitor, Progress};
+use hc::{Monitor, Progress};
 
 /// A monitor for work that an interrupt of the program cancels.
 ///

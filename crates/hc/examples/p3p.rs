@@ -5,40 +5,31 @@
 //!
 //!     cargo run --release -p hc --example p3p
 
-use hc::fibre::{FibreOptions, track_fibre};
-use hc::monodromy::{MonodromyOptions, monodromy};
-use hc::pair::find_pair;
-use hc::poly::{Complex64, parse};
+use hc::poly::Complex64;
 use hc::random::Random;
-use hc::tracker::PathEnd;
+use hc::{Family, MonodromyOptions};
 use std::time::Instant;
 
 const PROBLEMS: usize = 1000;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let family = parse::family(include_str!("../../../examples/families/p3p.toml"))?;
-    let system = family.system.compile()?;
-    let first = find_pair(&family.system, |_, _| true, 0)?.ok_or("no first solution")?;
-    let mut options = MonodromyOptions::default();
-    options.roots = family.roots;
-    let fibre = monodromy(&system, &first, |_, _| true, &options).fibre;
-
+    let family: Family = include_str!("../../../examples/families/p3p.toml").parse()?;
+    let fibre = family.monodromy(&MonodromyOptions::new())?.fibre;
     let mut random = Random::new(0, 5);
-    let (mut found, mut lost, mut retracked, mut seconds) = (0, 0, 0, 0.0);
-    for _ in 0..PROBLEMS {
-        let (distances, target) = problem(&mut random);
-        let started = Instant::now();
-        let (paths, counts) = track_fibre(&system, &fibre, &target, &FibreOptions::default());
-        seconds += started.elapsed().as_secs_f64();
-        retracked += counts.retracked;
-        lost += counts.failed;
-        let near = |x: &[Complex64]| x.iter().zip(distances).all(|(x, d)| (x - d).norm() < 1e-6);
-        found += usize::from(paths.iter().any(|(r, x)| r.end == PathEnd::Success && near(x)));
-    }
-    let paths = PROBLEMS * fibre.len();
+    let (distances, targets): (Vec<_>, Vec<_>) = (0..PROBLEMS).map(|_| problem(&mut random)).unzip();
+
+    let started = Instant::now();
+    let solved = family.track(&fibre, &targets).run()?;
+    let seconds = started.elapsed().as_secs_f64();
+    let near = |x: &[Complex64], d: &[f64; 3]| x.iter().zip(d).all(|(x, d)| (x - d).norm() < 1e-6);
+    let camera = |(found, d): &(&hc::Solutions, &[f64; 3])| found.iter().any(|s| near(&s.value, d));
+    let found = solved.iter().zip(&distances).filter(camera).count();
+    let paths: usize = solved.iter().map(|found| found.paths.tracked).sum();
+    let retracked: usize = solved.iter().map(|found| found.paths.retracked).sum();
+    let lost: usize = solved.iter().map(|found| found.paths.failed).sum();
     println!("planted cameras found: {found} of {PROBLEMS}");
     println!("paths: {paths}, tracked again: {retracked}, lost: {lost}");
-    println!("microseconds a path on one thread: {:.1}", 1e6 * seconds / paths as f64);
+    println!("microseconds a path, all threads: {:.1}", 1e6 * seconds / paths as f64);
     if found < PROBLEMS || lost > 0 {
         return Err("a camera or a path is missing".into());
     }

@@ -8,12 +8,9 @@
 mod conics;
 
 use conics::{COUNTS, tangent_conics};
-use hc::certify::{CertifyOptions, certify};
-use hc::monodromy::{MonodromyOptions, monodromy};
-use hc::pair::find_pair;
-use hc::poly::{Complex64, ComplexInterval};
+use hc::family::{find_pair, monodromy, solve_member};
 use hc::random::Random;
-use hc::solve::{SolveOptions, solve_member};
+use hc::{MonodromyOptions, SolveOptions};
 use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -25,9 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let started = Instant::now();
     let first = find_pair(&family, |_, _| true, seed)?.ok_or("no first conic")?;
-    let mut options = MonodromyOptions::default();
-    options.roots = Some(count);
-    options.seed = seed;
+    let options = MonodromyOptions::new().roots(count).seed(seed);
     let generic = monodromy(&compiled, &first, |_, _| true, &options);
     let (found, seconds) = (generic.fibre.len(), started.elapsed().as_secs_f64());
     println!("monodromy: {found} conics after {} loops and {} paths, {seconds:.1} s", generic.loops, generic.paths);
@@ -37,21 +32,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     if real {
         target.iter_mut().for_each(|p| p.im = 0.0);
     }
-    let solved = solve_member(&family, &compiled, &generic.fibre, &target, &SolveOptions::default());
+    let mut solved = solve_member(&family, &compiled, &generic.fibre, &target, &SolveOptions::default());
     let (paths, seconds) = (solved.paths, started.elapsed().as_secs_f64());
-    let solutions = solved.solutions.iter().filter(|s| !s.singular);
     println!(
         "five random conics: {} solutions, {} paths lost, {} tracked again, {seconds:.1} s",
-        solved.solutions.len(),
+        solved.len(),
         paths.failed,
         paths.retracked
     );
 
     let started = Instant::now();
-    let points: Vec<Vec<Complex64>> =
-        solutions.map(|s| s.value.iter().map(|&[re, im]| Complex64::new(re, im)).collect()).collect();
-    let parameters: Vec<ComplexInterval> = target.iter().map(|&p| ComplexInterval::point(p)).collect();
-    let proofs = certify(&family, &parameters, &points, &CertifyOptions::default())?;
+    let proofs = solved.certify()?;
     println!(
         "certified: {} distinct, {} of them real, {:.1} s",
         proofs.distinct(),

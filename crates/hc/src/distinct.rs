@@ -8,6 +8,9 @@ use num_complex::Complex64;
 /// Components smaller than this share of the largest are compared on its scale.
 const FLOOR: f64 = 1e-4;
 
+/// Relative distance below which two singular ends are one point.
+pub(crate) const CLUSTER: f64 = 1e-6;
+
 /// Relative distance of two points: `max_j |a_j - b_j| / w_j`, `w_j` the size of the component, at least 1e-4 of the largest.
 pub fn relative_distance(a: &[Complex64], b: &[Complex64]) -> f64 {
     let largest = a.iter().chain(b).map(|z| z.norm()).fold(0.0, f64::max);
@@ -31,6 +34,19 @@ pub fn coincidences<'a>(points: impl IntoIterator<Item = (usize, &'a [Complex64]
     groups.iter_mut().for_each(|g| g.sort_unstable());
     groups.sort();
     groups
+}
+
+/// All points by groups of coinciding ones; a point alone is a group too.
+pub(crate) fn groups<'a>(
+    points: impl Iterator<Item = (usize, &'a [Complex64])> + Clone,
+    tolerance: f64,
+) -> Vec<Vec<usize>> {
+    let mut all = coincidences(points.clone(), tolerance);
+    let mut grouped: Vec<usize> = all.concat();
+    grouped.sort_unstable();
+    all.extend(points.map(|(k, _)| k).filter(|k| grouped.binary_search(k).is_err()).map(|k| vec![k]));
+    all.sort();
+    all
 }
 
 /// The memory of a search for coinciding points.

@@ -1,19 +1,4 @@
-//! Watching work from another thread: how far it is, and a way to stop it.
-//!
-//! ```
-//! use hc::monitor::Monitor;
-//! use hc::solve::{SolveOptions, solve};
-//!
-//! let system = hc::poly::parse::phcpack("2\n x^2 + y^2 - 5;\n x*y - 2;")?;
-//! let mut options = SolveOptions::default();
-//! options.set_monitor(Monitor::watched());
-//! let watched = options.monitor().clone();
-//! // From any thread, at any time:
-//! watched.cancel();
-//! let found = solve(&system.expand(&Default::default())?, &options)?;
-//! assert!(found.interrupted);
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
+//! Watching work, and stopping it: how far it is, asked from another thread or told to a callback.
 
 use std::fmt;
 use std::sync::Arc;
@@ -36,11 +21,13 @@ pub enum Stage {
     Endgame,
     /// A fibre is taken round a loop, three sides a path.
     Loop,
+    /// A search goes from start to start.
+    Search,
 }
 
 /// In the order of their numbers.
-const STAGES: [Stage; 6] =
-    [Stage::Preparing, Stage::MixedCells, Stage::Start, Stage::Paths, Stage::Endgame, Stage::Loop];
+const STAGES: [Stage; 7] =
+    [Stage::Preparing, Stage::MixedCells, Stage::Start, Stage::Paths, Stage::Endgame, Stage::Loop, Stage::Search];
 
 /// How far the work is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -52,7 +39,8 @@ pub struct Progress {
     pub done: u64,
     /// Paths of this stage; zero where their number is not known.
     pub total: u64,
-    /// Mixed cells: their volume so far. Later stages: paths that have ended at regular points.
+    /// Mixed cells: their volume so far. Paths: those that have ended at regular points. A search: the
+    /// starts that agree on the best result so far.
     pub counted: u64,
 }
 
@@ -65,16 +53,22 @@ impl fmt::Display for Progress {
             Stage::Start => f.write_str("paths to generic coefficients"),
             Stage::Paths => write!(f, "paths, {} of them at regular solutions", self.counted),
             Stage::Endgame => f.write_str("paths through the endgame"),
+            Stage::Search => write!(f, "starts, {} of them agree", self.counted),
             Stage::Loop => write!(f, "paths round a loop, {} solutions so far", self.total / 3),
         }
     }
 }
 
-#[derive(Debug, Default)]
+/// What is called with the progress.
+type Callback = dyn Fn(Progress) + Send + Sync;
+
+#[derive(Default)]
 struct Shared {
     cancelled: AtomicBool,
     /// A flag of somebody else that cancels too.
     flag: Option<&'static AtomicBool>,
+    /// Called whenever the progress changes.
+    callback: Option<Box<Callback>>,
     stage: AtomicU8,
     done: AtomicU64,
     total: AtomicU64,
@@ -82,8 +76,25 @@ struct Shared {
 }
 
 /// A handle on running work; clones share it. The default one is watched by nobody and costs nothing.
-#[derive(Clone, Debug, Default)]
+///
+/// ```
+/// use hc::{Monitor, SolveOptions, System, solve_watched};
+///
+/// let system: System = "x^2 + y^2 - 5; x*y - 2".parse()?;
+/// let monitor = Monitor::watched();
+/// // From any thread, at any time:
+/// monitor.cancel();
+/// assert!(solve_watched(&system, &SolveOptions::default(), &monitor)?.interrupted);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Default)]
 pub struct Monitor(Option<Arc<Shared>>);
+
+impl fmt::Debug for Monitor {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Monitor").field("progress", &self.progress()).field("cancelled", &self.is_cancelled()).finish()
+    }
+}
 
 /// Two handles are equal if they are on the same work.
 impl PartialEq for Monitor {
@@ -101,6 +112,12 @@ impl Monitor {
     /// A handle that somebody watches, on work that is to stop too once this flag is true: one that a handler of signals sets.
     pub fn heeding(flag: &'static AtomicBool) -> Monitor {
         Monitor(Some(Arc::new(Shared { flag: Some(flag), ..Shared::default() })))
+    }
+
+    /// A handle on work that calls `callback` with its progress, often and from any of its threads; the
+    /// callback may hold a clone of another handle that heeds it, but not of this one.
+    pub fn calling(callback: impl Fn(Progress) + Send + Sync + 'static) -> Monitor {
+        Monitor(Some(Arc::new(Shared { callback: Some(Box::new(callback)), ..Shared::default() })))
     }
 
     /// Asks the work to stop soon. What is finished by then is returned, marked as partial. Without effect on the default handle.
@@ -126,21 +143,29 @@ impl Monitor {
         Progress { stage, done, total, counted }
     }
 
-    /// Begins a stage of `total` paths.
-    pub(crate) fn enter(&self, stage: Stage, total: u64) {
+    /// Begins a stage of `total` paths, or of starts. For work that is to be watched.
+    pub fn enter(&self, stage: Stage, total: u64) {
         if let Some(shared) = &self.0 {
             shared.done.store(0, Ordering::Relaxed);
             shared.counted.store(0, Ordering::Relaxed);
             shared.total.store(total, Ordering::Relaxed);
             shared.stage.store(stage as u8, Ordering::Relaxed);
+            self.tell(shared);
         }
     }
 
-    /// Adds to what is done and counted.
-    pub(crate) fn add(&self, done: u64, counted: u64) {
+    /// Adds to what is done and counted. For work that is to be watched.
+    pub fn add(&self, done: u64, counted: u64) {
         if let Some(shared) = &self.0 {
             shared.done.fetch_add(done, Ordering::Relaxed);
             shared.counted.fetch_add(counted, Ordering::Relaxed);
+            self.tell(shared);
+        }
+    }
+
+    fn tell(&self, shared: &Shared) {
+        if let Some(callback) = &shared.callback {
+            callback(self.progress());
         }
     }
 }
@@ -166,6 +191,13 @@ mod tests {
         assert!(!heeding.is_cancelled());
         FLAG.store(true, Ordering::Relaxed);
         assert!(heeding.is_cancelled());
+        // A callback is told.
+        let told = Arc::new(AtomicU64::new(0));
+        let count = Arc::clone(&told);
+        let calling = Monitor::calling(move |progress| count.store(progress.done, Ordering::Relaxed));
+        calling.enter(Stage::Search, 3);
+        calling.add(2, 1);
+        assert_eq!(told.load(Ordering::Relaxed), 2);
         // Nobody watches: nothing to cancel.
         let none = Monitor::default();
         none.cancel();

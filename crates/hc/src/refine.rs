@@ -6,9 +6,10 @@ use crate::random::Random;
 use num_complex::Complex64;
 use poly::simd::Isa;
 use poly::{ComplexDd, Evaluate, Scalar};
+use serde::{Deserialize, Serialize};
 
 /// What refinement tells of a solution.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Refined {
     /// The refined point.
     pub point: Vec<Complex64>,

@@ -1,7 +1,7 @@
 //! Certified solutions of systems whose counts are known.
 
 use hc::certify::{Certificates, CertifyOptions, certify};
-use hc::solve::{SolveOptions, solve};
+use hc::{SolveOptions, solve};
 use num_complex::Complex64;
 use poly::{System, parse::phcpack};
 use std::path::Path;
@@ -9,11 +9,9 @@ use std::path::Path;
 /// Solves and certifies. Badly scaled solutions that the solver takes for points on a component are certified as well: what
 /// is certified is isolated.
 fn run(system: &System) -> Certificates {
-    let polynomials = system.expand(&Default::default()).unwrap();
-    let found = solve(&polynomials, &SolveOptions::default()).unwrap();
-    let point = |value: &[[f64; 2]]| value.iter().map(|&[re, im]| Complex64::new(re, im)).collect();
+    let found = solve(system, &SolveOptions::default()).unwrap();
     let values = found.solutions.iter().map(|s| &s.value).chain(&found.component_points);
-    let points: Vec<Vec<Complex64>> = values.map(|value| point(value)).collect();
+    let points: Vec<Vec<Complex64>> = values.cloned().collect();
     certify(system, &[], &points, &CertifyOptions::default()).unwrap()
 }
 
@@ -94,10 +92,9 @@ fn a_curve_of_degree_four_given_by_quotients() {
     for seed in 0..5 {
         let mut options = SolveOptions::default();
         options.seed = seed;
-        let found = solve(&polynomials.expand(&Default::default()).unwrap(), &options).unwrap();
+        let found = solve(&polynomials, &options).unwrap();
         assert_eq!((found.solutions.len(), found.paths.failed), (4, 0), "seed {seed}");
-        let point = |value: &Vec<[f64; 2]>| value.iter().map(|&[re, im]| Complex64::new(re, im)).collect();
-        let points: Vec<Vec<Complex64>> = found.solutions.iter().map(|s| point(&s.value)).collect();
+        let points: Vec<Vec<Complex64>> = found.iter().map(|s| s.value.clone()).collect();
         let proofs = certify(&quotients, &[], &points, &CertifyOptions::default()).unwrap();
         assert_eq!((proofs.distinct(), proofs.complete()), (4, true), "seed {seed}");
     }

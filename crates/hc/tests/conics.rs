@@ -5,14 +5,12 @@
 mod conics;
 
 use conics::{COUNTS, tangent_conics};
+use hc::Fibre;
 use hc::certify::{CertifyOptions, certify};
-use hc::fibre::Fibre;
-use hc::monodromy::{MonodromyOptions, Stop, monodromy};
-use hc::pair::find_pair;
+use hc::family::{MonodromyOptions, Stop, find_pair, monodromy, solve_member, trace_test};
 use hc::poly::{Complex64, ComplexInterval, System};
 use hc::random::Random;
-use hc::solve::{SolveOptions, Solved, solve, solve_member};
-use hc::trace::trace_test;
+use hc::{Solutions, SolveOptions, solve};
 
 fn fibre(family: &System, count: usize) -> Fibre {
     let start = find_pair(family, |_, _| true, 0).unwrap().expect("a first conic");
@@ -24,10 +22,8 @@ fn fibre(family: &System, count: usize) -> Fibre {
 }
 
 /// Number of solutions proved to exist and to be distinct, and of those proved real.
-fn proved(family: &System, target: &[Complex64], found: &Solved) -> (usize, usize) {
-    let point = |value: &Vec<[f64; 2]>| value.iter().map(|&[re, im]| Complex64::new(re, im)).collect();
-    let regular = found.solutions.iter().filter(|s| !s.singular);
-    let points: Vec<Vec<Complex64>> = regular.map(|s| point(&s.value)).collect();
+fn proved(family: &System, target: &[Complex64], found: &Solutions) -> (usize, usize) {
+    let points: Vec<Vec<Complex64>> = found.nonsingular().map(|s| s.value.clone()).collect();
     let parameters: Vec<ComplexInterval> = target.iter().map(|&p| ComplexInterval::point(p)).collect();
     let certificates = certify(family, &parameters, &points, &CertifyOptions::default()).unwrap();
     assert!(certificates.unseparated.is_empty());
@@ -66,7 +62,7 @@ fn from_the_front_door() {
         for seed in 0..3 {
             let mut options = SolveOptions::default();
             options.seed = seed;
-            let found = solve(&member.expand(&Default::default()).unwrap(), &options).unwrap();
+            let found = solve(&member, &options).unwrap();
             assert_eq!(found.paths.failed, 0, "{k} conics, seed {seed}");
             assert_eq!(proved(&member, &[], &found).0, COUNTS[k], "{k} conics, seed {seed}");
         }

@@ -7,7 +7,7 @@ mod generators;
 
 use common::{multiplicities, options, real, solved};
 use generators::{cyclic, eco, katsura, noon, reimer, system};
-use hc::solve::Start;
+use hc::Start;
 
 fn chandra(n: usize) -> String {
     let equation = |i: usize| {

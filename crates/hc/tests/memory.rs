@@ -2,7 +2,7 @@
 
 use allocation_counter::measure;
 use hc::poly::parse::phcpack;
-use hc::solve::{SolveOptions, Start, solve};
+use hc::{SolveOptions, Start, solve};
 
 /// Five pairs of quadrics in unknowns of their own with equal leading forms, and `z^degree - 1`: by the theorem of Bezout `1024 degree` paths,
 /// of which only `32 degree` end at solutions, since the difference of a pair is linear.
@@ -24,7 +24,7 @@ fn memory_grows_with_solutions_not_with_paths() {
     // Beyond what the paths under way take, which are at most 2048, and what is in memory before files are used: 13,000 paths need these.
     for (start, degrees) in [(Start::TotalDegree, [13, 27]), (Start::Polyhedral, [54, 81])] {
         let peak = |degree: usize| {
-            let system = phcpack(&deficient(degree)).unwrap().expand(&Default::default()).unwrap();
+            let system = phcpack(&deficient(degree)).unwrap();
             let mut options = SolveOptions::default();
             options.start = start;
             let mut found = None;

@@ -1,14 +1,14 @@
 //! The tracker and what is built on it, on families whose solutions are known.
 
-use hc::fibre::{Fibre, FibreOptions, track_fibre};
+use hc::Monitor;
+use hc::family::find_pair;
+use hc::family::trace_test;
+use hc::family::{Fibre, FibreOptions, track_fibre};
+use hc::family::{MonodromyOptions, Stop, monodromy};
 use hc::homotopy::Segment;
-use hc::monitor::Monitor;
-use hc::monodromy::{MonodromyOptions, Stop, monodromy};
-use hc::pair::find_pair;
 use hc::poly::{Family, Interpreter, Isa, Lane, Lanes8, parse};
 use hc::random::Random;
 use hc::refine::Refiner;
-use hc::trace::trace_test;
 use hc::tracker::{PathEnd, PathSet, Tracker, TrackerOptions, track};
 use num_complex::Complex64;
 
@@ -97,11 +97,7 @@ fn a_start_without_direction_is_refused() {
 fn a_singular_component_is_no_end_of_a_fibre() {
     // x = 0 solves both equations whatever y is, twice; the root of the fibre is (p, q). Next to that line every correction is tiny.
     let (_, system) = family("x y", "p q", "x^2*(x - p); x*(y - q)");
-    let fibre = Fibre {
-        parameters: reals(&[1.0, 2.0]),
-        dimension: 2,
-        solutions: reals(&[1.0, 2.0]).into_iter().chain(reals(&[1e-20, 2.0])).collect(),
-    };
+    let fibre = Fibre::new(reals(&[1.0, 2.0]), 2, reals(&[1.0, 2.0, 1e-20, 2.0]));
     let (paths, counts) = track_fibre(&system, &fibre, &reals(&[3.0, 2.0]), &FibreOptions::default());
     assert_eq!((counts.finite, counts.failed), (1, 1));
     assert!((paths.point(0)[0] - 3.0).norm() < 1e-14 && paths.results()[0].pivot > 0.1, "{paths:?}");
@@ -287,13 +283,13 @@ fn monodromy_without_a_known_count_says_that_it_only_stopped() {
 fn a_tracker_heeds_its_monitor() {
     let (_, system) = family("x", "a", "x^2 - a");
     let path = Segment::new(&reals(&[1.0]), &reals(&[2.0]));
-    let mut options = TrackerOptions::default();
-    options.monitor = Monitor::watched();
-    let mut tracker = Tracker::<_, Lanes8>::new(&system, &options);
+    let monitor = Monitor::watched();
+    let mut tracker = Tracker::<_, Lanes8>::new(&system, &TrackerOptions::default());
+    tracker.set_monitor(&monitor);
     let mut paths = PathSet::new(1);
     tracker.track(&path, &reals(&[1.0, -1.0]), 0..2, &mut paths);
     assert_eq!(paths.count(PathEnd::Success), 2);
-    options.monitor.cancel();
+    monitor.cancel();
     tracker.track(&path, &reals(&[1.0, -1.0]), 0..2, &mut paths);
     assert_eq!((paths.len(), paths.count(PathEnd::Cancelled)), (4, 2));
 }

@@ -24,7 +24,10 @@ fn print_systems() {
         let (values, jacobian) = (f.program().value_operations(), f.program().jacobian_operations());
         println!("system\t{}\t{values}\t{jacobian}", case.name);
         println!("{}\n{}", case.system.variables().join(" "), case.system.parameters().join(" "));
-        println!("{}end", case.system);
+        for formula in case.system.formulas() {
+            println!("{formula};");
+        }
+        println!("end");
     }
 }
 

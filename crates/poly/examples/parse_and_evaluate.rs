@@ -10,7 +10,7 @@ const TEXT: &str = "2
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let system = parse::phcpack(TEXT)?;
-    println!("unknowns {:?}\n{system}", system.variables());
+    print!("{system}");
     let f = system.compile()?;
     println!("{} operations, {} with the Jacobian", f.program().value_operations(), f.program().jacobian_operations());
 

@@ -25,7 +25,9 @@
 //! | step | what |
 //! |---|---|
 //! | [`Expressions`], [`System::build`] | formulas by operators, equal subformulas stored once |
-//! | [`parse::phcpack`], [`parse::family`] | the same from text, errors with line, column and a caret |
+//! | [`System::from_formulas`], `text.parse::<System>()` | systems from text: errors have line, column and a caret |
+//! | [`Family::from_formulas`], [`parse::family`] | parameter families, from formulas or TOML |
+//! | [`Formula`], [`System::new`] | formulas that own their parts |
 //! | [`System::expand`] | sparse [`Polynomial`]s where supports are needed, within [`ExpandLimits`] |
 //! | [`System::compile`] | an [`Interpreter`]: values, Jacobian by reverse or forward mode, Taylor coefficients |
 //! | [`SparseSystem`] | fixed supports, the coefficients as parameters |
@@ -41,6 +43,7 @@
 mod arena;
 mod display;
 mod exact;
+mod formula;
 mod graph;
 mod instantiate;
 
@@ -67,6 +70,7 @@ pub use evaluate::Evaluate;
 pub use exact::{Exact, ToExact};
 pub use expand::{ExpandError, ExpandLimits};
 pub use expression::{Expr, Expressions};
+pub use formula::Formula;
 pub use interval::ComplexInterval;
 pub use lanes::{Lanes8, Reals8};
 pub use monomial::Monomial;

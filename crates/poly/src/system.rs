@@ -42,6 +42,14 @@ pub enum SystemError {
     /// A floating-point constant was infinite or not a number.
     #[error("a constant in the formulas is not finite")]
     NonFinite,
+    /// A name in an equation that is neither an unknown nor a parameter.
+    #[error("equation {equation}: `{name}` is neither an unknown nor a parameter; declare it or correct the name")]
+    Undeclared {
+        /// The equation, from 1.
+        equation: usize,
+        /// The name.
+        name: String,
+    },
 }
 
 impl System {
@@ -152,8 +160,14 @@ pub(crate) fn is_name(name: &str) -> bool {
 }
 
 impl std::fmt::Display for System {
-    /// One equation a line, each ended by `;`.
+    /// The system in plain text, which parses to the system again: a line of unknowns, a line of parameters where there
+    /// are some, and one equation a line, each ended by `;`. A formula of more than 100,000 symbols is cut short by `...`.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        for (word, names) in [("variables", self.variables()), ("parameters", self.parameters())] {
+            if !names.is_empty() {
+                writeln!(f, "{word}: {}", names.join(" "))?;
+            }
+        }
         for &equation in &self.equations {
             display::write_node(f, &self.arena, equation)?;
             f.write_str(";\n")?;

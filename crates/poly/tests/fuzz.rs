@@ -1,6 +1,6 @@
 //! No text makes the parsers, the expansion or the compiler panic, hang or take memory out of proportion.
 
-use poly::{ExpandLimits, System, parse};
+use poly::{ExpandLimits, Formula, System, parse};
 use proptest::prelude::*;
 
 /// Everything that is done with a system, within small limits.
@@ -26,6 +26,13 @@ fn both(text: &str) {
         Err(error) => assert!(error.to_string().contains('^')),
     }
     let _ = parse::family(text);
+    let _ = System::from_formulas(&[text]);
+    let _ = text.parse::<Formula>().map(|formula| formula.to_string());
+    for plain in [text.to_owned(), format!("variables: x y p\n{text}"), format!("parameters: p # {text}\n{text}")] {
+        if let Ok(system) = plain.parse::<System>() {
+            digest(&system);
+        }
+    }
 }
 
 /// Texts made of the pieces of formulas.
@@ -61,6 +68,11 @@ fn formula_like() -> impl Strategy<Value = String> {
         ";",
         "\n",
         " ",
+        "=",
+        "#",
+        ":",
+        ",",
+        "variables:",
         "é",
         "\u{0}",
         "_a",
@@ -100,12 +112,33 @@ proptest! {
         // The sums in front fix the order of the unknowns in both readings.
         let fixed = "x - x + y - y + p - p + ";
         if let Ok(system) = parse::phcpack(&format!("1\n{fixed}{text};")) {
-            let again = parse::phcpack(&format!("1\n{fixed}{system}")).expect("text of a system parses");
+            let again: System = system.to_string().parse().expect("text of a system parses");
+            prop_assert_eq!(again.variables(), system.variables());
             let mut limits = ExpandLimits::default();
             limits.work = 20_000;
             if let (Ok(a), Ok(b)) = (system.expand(&limits), again.expand(&limits)) {
                 prop_assert_eq!(a, b);
             }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    /// Equations with a right side, comments and blank lines read back from the text that a system prints.
+    #[test]
+    fn plain_text_reads_back(lines in prop::collection::vec((formula(), formula(), 0..3usize), 1..6)) {
+        let mut text = "# x - y\nvariables: y x, p\n".to_owned();
+        for (left, right, end) in &lines {
+            text += &format!("{left} = {right}{}\n", [";", " # = 0;", "\n"][*end]);
+        }
+        // A quotient by zero is an error; and so is a sign that begins a line where only some lines end in `;`.
+        if let Ok(system) = text.parse::<System>() {
+            prop_assert_eq!((system.variables().join(" "), system.len()), ("y x p".to_owned(), lines.len()));
+            let again: System = system.to_string().parse().expect("text of a system parses");
+            prop_assert_eq!(again.formulas(), system.formulas());
+            prop_assert_eq!(again.variables(), system.variables());
         }
     }
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use serde::Serialize;
-use tdoa::minimal::{SolveOptions, Start, solve};
+use tdoa::minimal::{SolveOptions, Solver, Start};
 use tdoa::read::read;
 use tdoa::{MinimalSolution, Monitor};
 
@@ -78,13 +78,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         StartArgument::Polyhedral => Start::Polyhedral,
     };
     let monitor = Monitor::heeding(interrupt::watch()?);
-    options.paths.tracker.monitor = monitor.clone();
     let progress = || {
         let progress = monitor.progress();
         (progress.done, progress.total, progress.to_string())
     };
     let started = Instant::now();
-    let solved = cli::bar::while_shown(arguments.threads, progress, || solve(&measured, &options))?;
+    let solved = cli::bar::while_shown(arguments.threads, progress, || {
+        Solver::new().solve_watched(&measured, &options, &monitor)
+    })?;
     interrupt::check()?;
     let solution = solved.map_err(|error| Failure::Undetermined(format!("{}: {error}", arguments.file.display())))?;
     let seconds = started.elapsed().as_secs_f64();

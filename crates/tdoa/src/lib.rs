@@ -61,7 +61,7 @@ pub use calibrate::{
     Alternative, CalibrateError, CalibrateOptions, Calibration, Control, Hypotheses, KnownDistance, Progress,
     SpeedEstimate, Truth, calibrate, calibrate_with,
 };
-pub use hc::monitor::Monitor;
+pub use hc::Monitor;
 pub use minimal::{Candidate, MinimalSolution, PathCounts, RootCounts};
 pub use network::Network;
 pub use pseudoranges::{PseudorangeError, Pseudoranges};

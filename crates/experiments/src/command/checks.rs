@@ -7,7 +7,7 @@ use cli::{Failure, output};
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 use std::fmt::Write;
 use std::path::PathBuf;
-use tdoa::minimal::{Fallback, RootProofs, SolveError, SolveOptions, Solver};
+use tdoa::minimal::{RootProofs, SolveError, SolveOptions, Solver};
 use tdoa::{Layout, SimulateOptions, Simulation, simulate};
 
 /// What all of them take.
@@ -144,44 +144,36 @@ pub(super) fn hurry(arguments: &Arguments) -> Result<(), Failure> {
     arguments.write(&text)
 }
 
-/// Measures what becomes of paths that fail, with each fallback.
+/// Measures what becomes of paths that fail.
 pub(super) fn charts(arguments: &Arguments) -> Result<(), Failure> {
     let mut text = format!(
-        "# Paths that fail\n\n{}: each instance with each fallback, in one round at full steps and with four more rounds of shorter steps \
+        "# Paths that fail\n\n{}: each instance in one round at full steps and with four more rounds of shorter steps \
          (the default). Where up to four paths are left over, all are tracked again from turned starts, which counts as tracked again too. Complex roots come in pairs: an odd number of real ones would tell of paths that have jumped unseen.\n\n\
-         | configuration | fallback | rounds | instances | paths | lost | in instances | tracked again | odd | Jacobians a path | milliseconds \
-         a solve |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
+         | configuration | rounds | instances | paths | lost | in instances | tracked again | odd | Jacobians a path | milliseconds \
+         a solve |\n|---|---|---|---|---|---|---|---|---|---|\n",
         arguments.command("charts")
     );
-    let fallbacks = [
-        (Fallback::OtherCharts, "other charts, from where they broke off"),
-        (Fallback::OtherChartsFromStart, "other charts, from the start"),
-        (Fallback::OneChart, "the same chart"),
-    ];
     for &size in &arguments.configuration {
-        for (fallback, name) in fallbacks {
-            for retries in [0, 4] {
-                let one =
-                    |solver: &mut Solver, simulation: &Simulation| chart_trial(solver, simulation, fallback, retries);
-                let trials = arguments.each(size, one)?;
-                let sum = |f: fn(&ChartTrial) -> usize| trials.iter().map(f).sum::<usize>();
-                let paths = sum(|t| t.paths.tracked);
-                let seconds: f64 = trials.iter().map(|t| t.seconds).sum();
-                let _ = writeln!(
-                    text,
-                    "| {}r/{}s | {name} | {} | {} | {paths} | {} | {} | {} | {} | {:.1} | {:.1} |",
-                    size.0,
-                    size.1,
-                    retries + 1,
-                    trials.len(),
-                    sum(|t| t.paths.failed),
-                    sum(|t| usize::from(t.paths.failed > 0)),
-                    sum(|t| t.paths.retracked),
-                    sum(|t| usize::from(t.odd)),
-                    sum(|t| t.jacobians) as f64 / paths.max(1) as f64,
-                    1e3 * seconds / trials.len().max(1) as f64,
-                );
-            }
+        for retries in [0, 4] {
+            let one = |solver: &mut Solver, simulation: &Simulation| chart_trial(solver, simulation, retries);
+            let trials = arguments.each(size, one)?;
+            let sum = |f: fn(&ChartTrial) -> usize| trials.iter().map(f).sum::<usize>();
+            let paths = sum(|t| t.paths.tracked);
+            let seconds: f64 = trials.iter().map(|t| t.seconds).sum();
+            let _ = writeln!(
+                text,
+                "| {}r/{}s | {} | {} | {paths} | {} | {} | {} | {} | {:.1} | {:.1} |",
+                size.0,
+                size.1,
+                retries + 1,
+                trials.len(),
+                sum(|t| t.paths.failed),
+                sum(|t| usize::from(t.paths.failed > 0)),
+                sum(|t| t.paths.retracked),
+                sum(|t| usize::from(t.odd)),
+                sum(|t| t.jacobians) as f64 / paths.max(1) as f64,
+                1e3 * seconds / trials.len().max(1) as f64,
+            );
         }
     }
     arguments.write(&text)

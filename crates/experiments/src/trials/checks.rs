@@ -5,7 +5,7 @@ use serde::Serialize;
 use std::time::Instant;
 use tdoa::Simulation;
 use tdoa::accuracy::position_error;
-use tdoa::minimal::{Fallback, RootProofs, SolveError, SolveOptions, Solver, Start};
+use tdoa::minimal::{RootProofs, SolveError, SolveOptions, Solver, Start};
 use tdoa::{MinimalSolution, PathCounts, RootCounts};
 
 /// A candidate this near the truth (relative to the network's size) is the truth.
@@ -60,18 +60,12 @@ pub struct ChartTrial {
     pub seconds: f64,
 }
 
-/// Solves one clean instance with a fallback and so many rounds of it.
+/// Solves one clean instance with so many rounds of stricter steps for paths that fail.
 ///
 /// # Errors
 /// If the solver refuses the instance.
-pub fn chart_trial(
-    solver: &mut Solver,
-    simulation: &Simulation,
-    fallback: Fallback,
-    retries: u32,
-) -> Result<ChartTrial, SolveError> {
+pub fn chart_trial(solver: &mut Solver, simulation: &Simulation, retries: u32) -> Result<ChartTrial, SolveError> {
     let mut options = SolveOptions::default();
-    options.fallback = fallback;
     options.paths.retries = retries;
     let started = Instant::now();
     let solution = solver.solve(&simulation.pseudoranges, &options)?;

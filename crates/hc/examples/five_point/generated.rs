@@ -952,6 +952,6 @@ static SOLUTIONS: [[f64; 2]; 100] = [
     [0.508327041468335, -0.8978045553613382],
 ];
 /// All solutions for a generic parameter point.
-pub fn fibre() -> hc::fibre::Fibre {
-    hc::fibre::Fibre::from_pairs(&PARAMETERS, 5, &SOLUTIONS)
+pub fn fibre() -> hc::Fibre {
+    hc::Fibre::from_pairs(&PARAMETERS, 5, &SOLUTIONS)
 }

@@ -8,12 +8,11 @@
 #[rustfmt::skip]
 mod generated;
 
-use hc::fibre::doubtful;
-use hc::homotopy::Segment;
-use hc::poly::{Complex64, Lanes8};
+use hc::family::{FibreOptions, FibreTracker, OneChart};
+use hc::poly::Complex64;
 use hc::random::Random;
 use hc::refine::Refiner;
-use hc::tracker::{PathEnd, PathSet, Tracker, TrackerOptions};
+use hc::tracker::PathEnd;
 use std::time::Instant;
 
 /// Unknowns: rotation `x y z` by Cayley's parameters, translation `(1, u, v)`.
@@ -22,38 +21,26 @@ const PROBLEMS: usize = 1000;
 
 fn main() {
     let fibre = generated::fibre();
-    let (solutions, count) = (&fibre.solutions, fibre.len());
-    let system = generated::System;
-    let options = TrackerOptions::default();
-    let mut tracker = Tracker::<_, Lanes8>::new(&system, &options);
-    let mut strict = Tracker::<_, Lanes8>::new(&system, &options.stricter(2));
+    let (count, system, options) = (fibre.len(), generated::System, FibreOptions::default());
+    let mut tracker = FibreTracker::new(&system, OneChart, &fibre);
     let mut refiner = Refiner::new(&system);
     let mut random = Random::new(0, 5);
-    let (mut paths, mut again) = (PathSet::new(UNKNOWNS), PathSet::new(UNKNOWNS));
     let (mut found, mut lost, mut retracked, mut seconds) = (0, 0, 0, 0.0);
     for _ in 0..PROBLEMS {
         let (pose, points) = problem(&mut random);
         let target: Vec<Complex64> = points.iter().map(|&p| p.into()).collect();
         let started = Instant::now();
-        let path = Segment::new(&fibre.parameters, &target);
-        paths.clear(UNKNOWNS);
-        tracker.track(&path, solutions, 0..count, &mut paths);
-        paths.sort();
-        // Paths that failed or jumped, once more with shorter steps.
-        let which = doubtful(&paths, 1e-8);
-        again.clear(UNKNOWNS);
-        strict.track(&path, solutions, which.iter().copied(), &mut again);
-        for (result, point) in again.iter() {
-            paths.replace(result.path, *result, point);
-        }
+        // Paths that fail or jump are tracked again with shorter steps.
+        let counts = tracker.track(&fibre, &target, &options);
         seconds += started.elapsed().as_secs_f64();
-        retracked += which.len();
-        lost += doubtful(&paths, 1e-8).len();
+        retracked += counts.retracked;
+        lost += counts.failed;
         let near = |x: &[Complex64]| {
             let error = |x: &[Complex64]| x.iter().zip(&pose).map(|(x, p)| (x - p).norm()).fold(0.0, f64::max);
             error(x) < 1e-3 && error(&refiner.refine(&target, x).point) < 1e-8
         };
-        found += usize::from(paths.iter().filter(|(r, _)| r.end == PathEnd::Success).map(|(_, x)| x).any(near));
+        let mut ends = tracker.paths().iter().filter(|(r, _)| r.end == PathEnd::Success).map(|(_, x)| x);
+        found += usize::from(ends.any(near));
     }
     println!("planted poses found: {found} of {PROBLEMS}");
     println!("paths: {}, tracked again: {retracked}, lost: {lost}", PROBLEMS * count);

@@ -148,7 +148,7 @@ pub enum CertifyError {
 }
 
 /// What [`certify`] has proved.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Certificates {
     /// A certificate or the reason why there is none, in the order of the points.

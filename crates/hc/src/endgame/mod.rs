@@ -110,19 +110,20 @@ pub(crate) struct Ending {
 /// A path that goes to the endgame: its index, its `t > 0` and its point there.
 pub(crate) type Handed<'a> = (usize, f64, &'a [Complex64]);
 
-/// Finds the ends of paths of `system` along `segment`, in the order given.
+/// Finds the ends of paths along `segment`, in the order given.
 ///
 /// `tracker` are the settings for the legs; `turns` bounds the winding number, for instance by the number of all paths.
 ///
 /// # Panics
 /// If the system is not square or points and segment do not fit it.
 pub(crate) fn endgame<'a, E: Evaluate>(
-    system: &E,
+    trackers: &Trackers<'_, E>,
     segment: &Segment,
     paths: impl IntoIterator<Item = Handed<'a>>,
     turns: usize,
     tracker: &TrackerOptions,
     options: &EndgameOptions,
+    monitor: &Monitor,
 ) -> Vec<Ending> {
     let mut walkers: Vec<Walker> = paths.into_iter().map(|handed| Walker::new(handed, turns, options)).collect();
     let settings = TrackerOptions {
@@ -132,19 +133,19 @@ pub(crate) fn endgame<'a, E: Evaluate>(
         // Legs end at points like any others.
         endgame_start: 0.0,
         min_t: 0.0,
-        // Legs are no paths: they are not counted.
-        monitor: Monitor::default(),
         ..tracker.clone()
     };
-    tracker.monitor.enter(Stage::Endgame, walkers.len() as u64);
+    monitor.enter(Stage::Endgame, walkers.len() as u64);
+    // Legs are no paths: they are not counted.
+    let nobody = Monitor::default();
+    let to_zero = TrackerOptions { min_t: HOME_MIN, ..settings.clone() };
     let mut undecided = walkers.len();
-    let trackers = Trackers::new(system);
     let mut starts: Vec<Complex64> = Vec::new();
     loop {
         let live: Vec<usize> = (0..walkers.len()).filter(|&k| walkers[k].is_live()).collect();
-        tracker.monitor.add((undecided - live.len()) as u64, 0);
+        monitor.add((undecided - live.len()) as u64, 0);
         undecided = live.len();
-        if live.is_empty() || tracker.monitor.is_cancelled() {
+        if live.is_empty() || monitor.is_cancelled() {
             return walkers.into_iter().map(Walker::ending).collect();
         }
         let legs = Legs { segment, legs: live.iter().map(|&k| walkers[k].leg()).collect() };
@@ -153,14 +154,14 @@ pub(crate) fn endgame<'a, E: Evaluate>(
         let (home, round): (Vec<usize>, Vec<usize>) =
             (0..live.len()).partition(|&i| matches!(legs.legs[i], Leg::Home(_)));
         let ends = [
-            trackers.track(&legs, &starts, &round, &settings),
-            trackers.track(&legs, &starts, &home, &TrackerOptions { min_t: HOME_MIN, ..settings.clone() }),
+            trackers.track(&legs, &starts, &round, &settings, &nobody),
+            trackers.track(&legs, &starts, &home, &to_zero, &nobody),
         ];
         let ends: Vec<(&PathResult, &[Complex64])> = ends.iter().flat_map(PathSet::iter).collect();
         let polished: Vec<Option<Sample>> = ends
             .par_iter()
             .map_init(
-                || (Refiner::new(system), Vec::new()),
+                || (Refiner::new(trackers.system()), Vec::new()),
                 |(refiner, p), (result, point)| {
                     if result.end != PathEnd::Success {
                         return None;

@@ -1,16 +1,16 @@
 //! From the ends of paths to solutions: multiplicities, and which singular ends are isolated.
 
-use super::equations::Equations;
-use super::paths::{CLUSTER, Ends, groups};
-use super::{Direction, Solution};
-use crate::distinct::{coincidences, relative_distance};
-use crate::fibre::PathCounts;
+use super::excess::Excess;
+use super::paths::Ends;
+use super::solutions::{Direction, Solution, Solutions, is_real};
+use crate::distinct::{CLUSTER, coincidences, groups, relative_distance};
+use crate::family::PathCounts;
 use crate::linalg::Lu;
 use crate::random::Random;
 use crate::refine::{Refined, Refiner};
 use num_complex::Complex64;
 use poly::simd::Isa;
-use poly::{Evaluate, SparseSystem, SupportError};
+use poly::{Evaluate, SparseSystem};
 
 /// Imaginary parts of regular solutions up to this share of the point count as zero.
 const REAL: f64 = 1e-10;
@@ -20,11 +20,8 @@ const REAL_SINGULAR: f64 = 1e-7;
 /// Condition number from which the Jacobian counts as singular to working precision.
 const SINGULAR: f64 = 1e13;
 
-/// Residuals relative to the sizes of the terms from which a point does not solve an equation, regular and singular.
-const EXCESS: f64 = 1e-9;
+/// Residuals relative to the sizes of the terms from which a singular point does not solve an equation.
 const EXCESS_SINGULAR: f64 = 1e-6;
-/// Coordinates up to this share of the largest count as zero.
-const TORUS: f64 = 1e-12;
 
 /// What the ends of all paths amount to.
 #[derive(Debug, Default)]
@@ -44,8 +41,21 @@ pub(super) struct Classified {
 }
 
 impl Classified {
+    /// Without what is known of the start system; `tracked` paths, of which `retracked` were run again.
+    pub(super) fn solutions(self, tracked: usize, retracked: usize) -> Solutions {
+        Solutions {
+            paths: self.counts(tracked, retracked),
+            on_components: self.on_components,
+            component_points: self.component_points,
+            excess: self.excess,
+            directions: self.directions,
+            solutions: self.solutions,
+            ..Solutions::default()
+        }
+    }
+
     /// How `tracked` paths ended; `retracked` tracks were run again.
-    pub(super) fn counts(&self, tracked: usize, retracked: usize) -> PathCounts {
+    fn counts(&self, tracked: usize, retracked: usize) -> PathCounts {
         PathCounts {
             tracked,
             finite: tracked - self.infinite - self.lost - self.dropped,
@@ -108,7 +118,7 @@ pub(super) fn classify(
             continue;
         }
         out.solutions.push(Solution {
-            value: point.iter().map(|z| [z.re, z.im]).collect(),
+            value: point.to_vec(),
             multiplicity: group.len(),
             winding_number: group.iter().map(|&k| singular[k].1).max().unwrap_or(1),
             singular: true,
@@ -121,53 +131,9 @@ pub(super) fn classify(
     out
 }
 
-/// Which points were not asked for.
-pub(super) struct Excess {
-    /// All equations and their coefficients, where they are more than the unknowns.
-    all: Option<(SparseSystem, Vec<Complex64>)>,
-    torus_only: bool,
-}
-
-impl Excess {
-    pub(super) fn new(given: &Equations, torus_only: bool) -> Result<Excess, SupportError> {
-        let all = (given.len() > given.unknowns)
-            .then(|| Ok((SparseSystem::new(given.unknowns, &given.supports)?, given.coefficients.concat())))
-            .transpose()?;
-        Ok(Excess { all, torus_only })
-    }
-
-    /// Every point that is found was asked for.
-    pub(super) fn none() -> Excess {
-        Excess { all: None, torus_only: false }
-    }
-
-    /// Whether a regular end was not asked for.
-    pub(super) fn contains_regular(&self, point: &[Complex64]) -> bool {
-        self.contains(point, EXCESS)
-    }
-
-    /// Whether a point misses an equation by more than `tolerance` times the sizes of its terms, or has a zero coordinate
-    /// where only the torus was asked for.
-    fn contains(&self, point: &[Complex64], tolerance: f64) -> bool {
-        let largest = point.iter().map(|z| z.norm()).fold(0.0, f64::max);
-        if self.torus_only && point.iter().any(|z| z.norm() <= TORUS * largest) {
-            return true;
-        }
-        let Some((system, coefficients)) = &self.all else { return false };
-        let mut memory = system.memory(Isa::Portable);
-        let mut values = vec![Complex64::new(0.0, 0.0); system.equations()];
-        let mut sizes = values.clone();
-        system.values(&mut memory, point, coefficients, &mut values);
-        let absolute: Vec<Complex64> = point.iter().map(|z| z.norm().into()).collect();
-        let absolute_coefficients: Vec<Complex64> = coefficients.iter().map(|c| c.norm().into()).collect();
-        system.values(&mut memory, &absolute, &absolute_coefficients, &mut sizes);
-        values.iter().zip(&sizes).any(|(v, size)| v.norm() > tolerance * size.norm())
-    }
-}
-
 fn regular_solution(refined: &Refined) -> Solution {
     Solution {
-        value: refined.point.iter().map(|z| [z.re, z.im]).collect(),
+        value: refined.point.clone(),
         multiplicity: 1,
         winding_number: 1,
         singular: false,
@@ -176,11 +142,6 @@ fn regular_solution(refined: &Refined) -> Solution {
         condition: refined.condition,
         certified: None,
     }
-}
-
-fn is_real(point: &[Complex64], tolerance: f64) -> bool {
-    let size = point.iter().map(|z| z.norm()).fold(1.0, f64::max);
-    point.iter().all(|z| z.im.abs() <= tolerance * size)
 }
 
 /// Tells whether solutions near a singular one form a component of positive dimension: slices by random linear equations that

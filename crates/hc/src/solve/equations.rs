@@ -1,6 +1,6 @@
 //! From polynomials to supports and coefficients: checked, scaled, as many as unknowns, with the terms that start systems need.
 
-use super::SolveError;
+use super::error::SolveError;
 use crate::linalg::Lu;
 use crate::random::Random;
 use num_complex::Complex64;
@@ -23,8 +23,8 @@ pub(super) struct Equations {
 
 impl Equations {
     /// Reads polynomials, and scales equations and unknowns by powers of two.
-    pub(super) fn new(polynomials: &[Polynomial<Exact>]) -> Result<Equations, SolveError> {
-        let unknowns = polynomials.first().map_or(0, Polynomial::variables);
+    pub(super) fn new(polynomials: &[Polynomial<Exact>], names: &[String]) -> Result<Equations, SolveError> {
+        let unknowns = names.len();
         let mut supports: Vec<Vec<Vec<i32>>> = Vec::with_capacity(polynomials.len());
         let mut coefficients = Vec::with_capacity(polynomials.len());
         for (i, polynomial) in polynomials.iter().enumerate() {
@@ -45,7 +45,7 @@ impl Equations {
             coefficients.push(numbers.collect::<Option<Vec<Complex64>>>().ok_or(SolveError::Coefficient(i + 1))?);
         }
         if polynomials.len() < unknowns || unknowns == 0 {
-            return Err(SolveError::Underdetermined { equations: polynomials.len(), unknowns });
+            return Err(SolveError::Underdetermined { equations: polynomials.len(), unknowns: names.to_vec() });
         }
         let exponents = unknown_scales(unknowns, &supports, &coefficients);
         for (support, coefficients) in supports.iter().zip(&mut coefficients) {
@@ -107,8 +107,10 @@ impl Equations {
     }
 
     /// Coordinates for the given polynomials from those of the scaled equations.
-    pub(super) fn unscale(&self, value: &mut [[f64; 2]]) {
-        value.iter_mut().zip(&self.scale).for_each(|(z, s)| *z = z.map(|part| part * s));
+    pub(super) fn unscale(&self, value: &mut [Complex64]) {
+        for (z, s) in value.iter_mut().zip(&self.scale) {
+            *z *= s;
+        }
     }
 }
 
@@ -172,7 +174,8 @@ mod tests {
     #[test]
     fn scales_bring_coefficients_together() {
         let system = phcpack("2\n1.0E-12*x^2 - 1.0E-3*x*y + 1.0E6;\n1.0E-6*x*y^2 - y + 1.0E2;").unwrap();
-        let equations = Equations::new(&system.expand(&Default::default()).unwrap()).unwrap();
+        let polynomials = system.expand(&Default::default()).unwrap();
+        let equations = Equations::new(&polynomials, system.variables()).unwrap();
         let sizes: Vec<f64> = equations.coefficients.iter().flatten().map(|c| c.norm().log10()).collect();
         let spread = sizes.iter().copied().fold(f64::MIN, f64::max) - sizes.iter().copied().fold(f64::MAX, f64::min);
         assert!(spread < 6.0, "{sizes:?}");

@@ -1,18 +1,21 @@
 //! The coefficient stage: every path from the generic to the given coefficients, to its end.
 
-use super::classify::Excess;
-use super::prints::Prints;
-use crate::distinct::{coincidences, relative_distance};
-use crate::endgame::{Ending, Verdict, endgame};
+use super::excess::Excess;
+use super::prints::{Print, Prints};
+use super::record::{Record, RecordEnd, SingularEnd};
+use crate::SolveOptions;
+use crate::distinct::{CLUSTER, coincidences, groups, relative_distance};
+use crate::endgame::{Ending, Handed, Verdict, endgame};
 use crate::homotopy::Segment;
-use crate::monitor;
+use crate::monitor::{self, Monitor};
 use crate::refine::{Refined, Refiner};
-use crate::solve::SolveOptions;
+use crate::runner::{Flow, Policy, Room, Round, Work, run};
 use crate::start::Source;
 use crate::store::Records;
-use crate::tracker::{PathEnd, TrackerOptions, track};
+use crate::tracker::{PathEnd, TrackerOptions, Trackers};
 use num_complex::Complex64;
 use poly::Evaluate;
+use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use std::collections::BTreeMap;
 
 /// How a path ends: four bytes, since there is one for each path.
@@ -38,13 +41,6 @@ impl End {
     pub(super) fn direction(self) -> Option<usize> {
         self.0.checked_sub(4).map(|direction| direction as usize)
     }
-}
-
-#[derive(Clone, Debug)]
-pub(super) struct SingularEnd {
-    pub(super) point: Vec<Complex64>,
-    pub(super) winding: usize,
-    pub(super) error: f64,
 }
 
 /// The ends of all paths by their numbers.
@@ -89,106 +85,64 @@ pub(super) struct Ends {
 
 /// Relative distance below which two paths that have not yet ended are one: only paths that have crossed come that near.
 const CROSSED: f64 = 1e-11;
-/// Relative distance below which two singular ends are one point.
-pub(super) const CLUSTER: f64 = 1e-6;
 /// Paths that are under way at a time: memory for their points is bounded by this, not by the number of paths.
 const CHUNK: usize = 1 << 11;
+/// Ends that one thread refines at a time, at least.
+const LEAST: usize = 8;
 /// On trial, as many paths are followed first.
 const TRIAL: usize = 32;
 /// On trial, one path in as many may end irregularly.
 const IRREGULAR: usize = 8;
 
-/// Follows the paths with the numbers below `count` of a source to the parameters `target`; paths that share a start or a
-/// regular end, have crossed or are lost are tracked again with stricter steps. Regular ends in `excess` are none of the
-/// [known](SolveOptions::known) ones.
+/// What paths are followed along, and how.
+pub(super) struct Route<'a, 'e, E: Evaluate, S> {
+    pub(super) trackers: &'a Trackers<'e, E>,
+    pub(super) start: &'a S,
+    /// Number of paths.
+    pub(super) count: usize,
+    /// The parameters to which they lead.
+    pub(super) target: &'a [Complex64],
+    /// Regular ends in it are none of the [known](SolveOptions::known) ones.
+    pub(super) excess: &'a Excess,
+    pub(super) options: &'a SolveOptions,
+    pub(super) monitor: &'a Monitor,
+}
+
+/// Follows the paths of a route; those that share a start or a regular end, have crossed or are lost
+/// are tracked again with stricter steps.
 ///
-/// On `trial` they are abandoned as soon as too many do not end at regular solutions: with another source that may be less work.
-pub(super) fn follow<E: Evaluate, S: Source<E>>(
-    system: &E,
-    start: &S,
-    count: usize,
-    target: &[Complex64],
-    trial: bool,
-    excess: &Excess,
-    options: &SolveOptions,
-) -> Ends {
+/// On `trial` they are abandoned as soon as too many do not end at regular solutions: with another
+/// source that may be less work.
+pub(super) fn follow<E: Evaluate, S: Source<E>>(route: Route<'_, '_, E, S>, trial: bool) -> Ends {
+    let (count, options, monitor) = (route.count, route.options, route.monitor);
     let mut stage = Stage {
-        system,
-        start,
-        segment: Segment::new(start.parameters(), target),
-        target,
-        excess,
-        options,
+        segment: Segment::new(route.start.parameters(), route.target),
+        route,
+        trial,
         ends: EndList::new(count),
         regular: BTreeMap::new(),
         singular: BTreeMap::new(),
         directions: BTreeMap::new(),
         starts: Prints::new(count),
         middles: Prints::new(count),
+        round: Pass::default(),
     };
-    // In the first round all paths, afterwards those that are doubtful.
-    let mut again: Option<Vec<usize>> = None;
-    let mut retracked = 0;
-    for level in 0..=options.paths.retries {
-        let settings = if level == 0 { options.paths.tracker.clone() } else { options.paths.tracker.stricter(level) };
-        let all = again.as_ref().map_or(count, Vec::len);
-        retracked += if level == 0 { 0 } else { all };
-        let (mut done, mut regular) = (0, 0);
-        let mut next = if trial && level == 0 { TRIAL } else { CHUNK };
-        while done < all {
-            let to = (done + next).min(all);
-            next = CHUNK;
-            let numbers: Vec<usize> =
-                again.as_ref().map_or_else(|| (done..to).collect(), |which| which[done..to].to_vec());
-            stage.run(&numbers, &settings, level > 0, &|| {
-                options.monitor().enter(monitor::Stage::Paths, all as u64);
-                options.monitor().add(done as u64, regular as u64);
-            });
-            done = to;
-            if stage.is_whole() {
-                stage.drop_others();
-                return stage.finish(retracked, false);
-            }
-            regular += numbers.iter().filter(|&k| stage.regular.contains_key(k)).count();
-            let irregular = (done - regular) * IRREGULAR > done;
-            if trial && level == 0 && irregular && !options.monitor().is_cancelled() {
-                return stage.finish(retracked, true);
-            }
-        }
-        let doubtful = again.insert(stage.doubtful());
-        if options.known.is_some() {
-            // Where two paths share an end a solution is missing; other paths need not have one.
-            let jumped = stage.jumped();
-            if !jumped.is_empty() {
-                *doubtful = jumped;
-            }
-        }
-        if doubtful.is_empty() || options.monitor().is_cancelled() {
-            break;
-        }
+    let first = if trial { TRIAL } else { CHUNK };
+    let policy = Policy { retries: options.paths.retries, charts: 1, first, batch: CHUNK };
+    let mut room = Room::default();
+    let outcome = run(&mut stage, count, &policy, &mut room, monitor);
+    match outcome.flow {
+        Flow::Abandoned => return stage.finish(outcome.retracked, true),
+        Flow::Found => stage.drop_others(),
+        Flow::On => stage.lose_doubtful(&room.which),
     }
-    // Paths that still share an end: it counts once.
-    let which = again.unwrap_or_default();
-    for &k in &which {
-        let first = match stage.ends.get(k) {
-            End::REGULAR => !which.iter().take_while(|&&j| j < k).any(|&j| stage.same_regular(j, k)),
-            End::SINGULAR => true,
-            _ => false,
-        };
-        if !first {
-            stage.lose(k);
-        }
-    }
-    stage.finish(retracked, false)
+    stage.finish(outcome.retracked, false)
 }
 
-struct Stage<'a, E, S> {
-    system: &'a E,
-    start: &'a S,
+struct Stage<'a, 'e, E: Evaluate, S> {
+    route: Route<'a, 'e, E, S>,
     segment: Segment,
-    target: &'a [Complex64],
-    excess: &'a Excess,
-    options: &'a SolveOptions,
+    trial: bool,
     ends: EndList,
     regular: BTreeMap<usize, Refined>,
     singular: BTreeMap<usize, SingularEnd>,
@@ -198,62 +152,183 @@ struct Stage<'a, E, S> {
     starts: Prints,
     /// Where the paths that needed the endgame were at a common radius.
     middles: Prints,
+    round: Pass,
 }
 
-impl<E: Evaluate, S: Source<E>> Stage<'_, E, S> {
-    /// Tracks the paths with these numbers to their ends; `begun` is called when they are at their start.
-    fn run(&mut self, numbers: &[usize], settings: &TrackerOptions, again: bool, begun: &dyn Fn()) {
-        for &k in numbers {
-            self.lose(k);
-            self.middles.forget(k);
-            self.starts.forget(k);
+/// How far a round is.
+#[derive(Default)]
+struct Pass {
+    /// Paths of the round, those that have been tracked, and those of them with a regular end.
+    all: usize,
+    done: usize,
+    regular: usize,
+}
+
+impl<E: Evaluate, S: Source<E>> Work for Stage<'_, '_, E, S> {
+    type Batch = Vec<Record>;
+    type Memory = ();
+
+    fn begin(&mut self, _: Round, count: usize) {
+        self.round = Pass { all: count, ..Pass::default() };
+    }
+
+    fn batch(&self, (): &mut (), numbers: &[usize], round: Round, batch: &mut Vec<Record>) {
+        *batch = self.tracked(numbers, round);
+    }
+
+    fn absorb(&mut self, batch: &mut Vec<Record>, _: Round) -> Flow {
+        self.round.done += batch.len();
+        for record in &*batch {
+            self.take(record);
         }
-        if self.start.is_tracked() {
-            self.options.monitor().enter(monitor::Stage::Start, numbers.len() as u64);
+        if self.is_whole() { Flow::Found } else { Flow::On }
+    }
+
+    fn close(&mut self, (): &mut (), batch: &mut Vec<Record>, round: Round) -> Flow {
+        let open: Vec<Record> = batch.extract_if(.., |record| record.is_open()).collect();
+        for record in self.ended(&open, round) {
+            self.take(&record);
+            batch.push(record);
         }
-        let reached = self.start.solutions(self.system, numbers, settings);
-        if self.start.is_tracked() {
-            let n = self.system.variables();
-            for (&k, point) in reached.numbers.iter().zip(reached.points.chunks_exact(n)) {
-                self.starts.note(k, point, again);
+        self.round.regular += batch.iter().filter(|record| self.regular.contains_key(&record.path)).count();
+        if self.is_whole() {
+            return Flow::Found;
+        }
+        let irregular = (self.round.done - self.round.regular) * IRREGULAR > self.round.done;
+        let abandoned = self.trial && round.is_first() && irregular && !self.route.monitor.is_cancelled();
+        if abandoned { Flow::Abandoned } else { Flow::On }
+    }
+
+    fn doubtful(&mut self, (): &mut (), which: &mut Vec<usize>) {
+        *which = self.doubts();
+        if self.route.options.known.is_some() {
+            // Where two paths share an end a solution is missing; other paths need not have one.
+            let jumped = self.jumped();
+            if !jumped.is_empty() {
+                *which = jumped;
             }
         }
-        begun();
-        let start = self.options.endgame.start;
-        let tracker = TrackerOptions { endgame_start: 0.0, min_t: start, ..settings.clone() };
+    }
+}
+
+impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
+    fn settings(&self, round: Round) -> TrackerOptions {
+        let first = &self.route.options.paths.tracker;
+        if round.level == 0 { first.clone() } else { first.stricter(round.level) }
+    }
+
+    /// Tracks paths to regular ends, or to where the endgame begins. One record a path, in order.
+    fn tracked(&self, numbers: &[usize], round: Round) -> Vec<Record> {
+        let Route { trackers, start, target, options, monitor, .. } = self.route;
+        let settings = self.settings(round);
+        if start.is_tracked() {
+            monitor.enter(monitor::Stage::Start, numbers.len() as u64);
+        }
+        let reached = start.solutions(trackers, numbers, &settings, monitor);
+        monitor.enter(monitor::Stage::Paths, self.round.all as u64);
+        monitor.add(self.round.done as u64, self.round.regular as u64);
+        let tracker = TrackerOptions { endgame_start: 0.0, min_t: options.endgame.start, ..settings };
         let all: Vec<usize> = (0..reached.numbers.len()).collect();
-        let paths = track(self.system, &self.segment, &reached.points, &all, &tracker);
-        let mut refiner = Refiner::new(self.system);
-        let mut undecided = Vec::new();
-        let mut handed = Vec::new();
-        for (result, point) in paths.iter() {
-            match result.end {
-                PathEnd::Success => {
-                    let refined = refiner.refine(self.target, point);
-                    if refiner.is_regular(self.target, &refined) {
-                        self.end_regularly(reached.numbers[result.path], refined);
-                    } else {
-                        undecided.push(result.path);
+        let paths = trackers.track(&self.segment, &reached.points, &all, &tracker, monitor);
+        let ends: Vec<RecordEnd> = (0..paths.len())
+            .into_par_iter()
+            .with_min_len(LEAST)
+            .map_init(
+                || Refiner::new(trackers.system()),
+                |refiner, k| {
+                    let (result, point) = (&paths.results()[k], paths.point(k));
+                    match result.end {
+                        PathEnd::Success => {
+                            let refined = refiner.refine(target, point);
+                            if refiner.is_regular(target, &refined) {
+                                RecordEnd::Regular(refined)
+                            } else {
+                                // Once more up to where the endgame begins.
+                                RecordEnd::Undecided { start: reached.point(result.path).to_vec() }
+                            }
+                        }
+                        PathEnd::Singular => RecordEnd::Open { t: result.t, point: point.to_vec() },
+                        _ => RecordEnd::Lost,
                     }
+                },
+            )
+            .collect();
+        let mut records: Vec<Record> = numbers.iter().map(|&path| Record::lost(path)).collect();
+        for (result, end) in paths.results().iter().zip(ends) {
+            let path = reached.numbers[result.path];
+            let begun = start.is_tracked().then(|| Print::new(reached.point(result.path), !round.is_first()));
+            if let Ok(k) = numbers.binary_search(&path) {
+                records[k] = Record { path, begun, middle: None, end };
+            }
+        }
+        records
+    }
+
+    /// Takes open paths through the endgame. One record a path, in order.
+    fn ended(&self, open: &[Record], round: Round) -> Vec<Record> {
+        let Route { trackers, start, target, options, monitor, .. } = self.route;
+        let settings = self.settings(round);
+        // Paths that seemed to reach the target, but not at a regular solution: once more up to where the endgame begins.
+        let begin = options.endgame.start;
+        let near: Vec<Complex64> =
+            self.segment.target().iter().zip(self.segment.direction()).map(|(p, d)| p + d * begin).collect();
+        let tracker = TrackerOptions { endgame_start: 0.0, ..settings };
+        let to_near = Segment::new(start.parameters(), &near);
+        let mut undecided = Vec::new();
+        let mut starts = Vec::new();
+        let mut handed: Vec<Handed<'_>> = Vec::new();
+        for (k, record) in open.iter().enumerate() {
+            match &record.end {
+                RecordEnd::Undecided { start } => {
+                    undecided.push(k);
+                    starts.extend_from_slice(start);
                 }
-                PathEnd::Singular => handed.push((result.path, result.t, point)),
+                RecordEnd::Open { t, point } => handed.push((k, *t, point)),
                 _ => {}
             }
         }
-        if self.is_whole() {
-            return;
+        let all: Vec<usize> = (0..undecided.len()).collect();
+        let held = trackers.track(&to_near, &starts, &all, &tracker, monitor);
+        let held = held.iter().filter(|(r, _)| r.end == PathEnd::Success);
+        handed.extend(held.map(|(r, x)| (undecided[r.path], begin, x)));
+        let mut records: Vec<Record> =
+            open.iter().map(|record| Record { begun: record.begun.clone(), ..Record::lost(record.path) }).collect();
+        let mut refiner = Refiner::new(trackers.system());
+        for ending in endgame(trackers, &self.segment, handed, self.route.count, &tracker, &options.endgame, monitor) {
+            let record = &mut records[ending.path];
+            record.middle = (!ending.middle.is_empty()).then(|| Print::new(&ending.middle, !round.is_first()));
+            record.end = judged(&mut refiner, target, ending);
         }
-        // Paths that seemed to reach the target, but not at a regular solution: once more up to where the endgame begins.
-        let near: Vec<Complex64> =
-            self.segment.target().iter().zip(self.segment.direction()).map(|(p, d)| p + d * start).collect();
-        let settings = TrackerOptions { endgame_start: 0.0, ..settings.clone() };
-        let to_near = Segment::new(self.start.parameters(), &near);
-        let held = track(self.system, &to_near, &reached.points, &undecided, &settings);
-        let held = held.iter().filter(|(r, _)| r.end == PathEnd::Success).map(|(r, x)| (r.path, start, x));
-        let turns = self.ends.count;
-        let handed = handed.into_iter().chain(held);
-        for ending in endgame(self.system, &self.segment, handed, turns, &settings, &self.options.endgame) {
-            self.take(reached.numbers[ending.path], ending, &mut refiner, again);
+        records
+    }
+
+    /// Takes a record in, in the place of an earlier one of its path.
+    fn take(&mut self, record: &Record) {
+        let path = record.path;
+        self.lose(path);
+        self.middles.forget(path);
+        self.starts.forget(path);
+        if let Some(print) = &record.begun {
+            self.starts.note(path, print);
+        }
+        if let Some(print) = &record.middle {
+            self.middles.note(path, print);
+        }
+        match &record.end {
+            RecordEnd::Regular(refined) => {
+                self.ends.set(path, End::REGULAR);
+                self.regular.insert(path, refined.clone());
+            }
+            RecordEnd::Singular(end) => {
+                self.ends.set(path, End::SINGULAR);
+                self.singular.insert(path, end.clone());
+            }
+            RecordEnd::Infinite { valuations, winding } => {
+                let next = self.directions.len() as u32;
+                let direction = *self.directions.entry((valuations.clone(), *winding)).or_insert(next);
+                self.ends.set(path, End::infinite(direction));
+            }
+            RecordEnd::Lost | RecordEnd::Open { .. } | RecordEnd::Undecided { .. } => {}
         }
     }
 
@@ -263,44 +338,27 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, E, S> {
         self.singular.remove(&path);
     }
 
-    fn end_regularly(&mut self, path: usize, refined: Refined) {
-        self.ends.set(path, End::REGULAR);
-        self.regular.insert(path, refined);
-    }
-
-    fn take(&mut self, path: usize, ending: Ending, refiner: &mut Refiner<'_, E>, again: bool) {
-        if !ending.middle.is_empty() {
-            self.middles.note(path, &ending.middle, again);
-        }
-        if matches!(ending.verdict, Verdict::Reached | Verdict::Finite { winding: 1, .. }) {
-            let refined = refiner.refine(self.target, &ending.point);
-            let near = relative_distance(&refined.point, &ending.point) < CLUSTER;
-            if near && refiner.is_regular(self.target, &refined) {
-                self.end_regularly(path, refined);
-                return;
-            }
-        }
-        match ending.verdict {
-            Verdict::Finite { winding, error } => {
-                self.ends.set(path, End::SINGULAR);
-                self.singular.insert(path, SingularEnd { point: ending.point, winding, error });
-            }
-            Verdict::Infinite { winding, valuations } => {
-                let next = self.directions.len() as u32;
-                let direction = *self.directions.entry((valuations, winding)).or_insert(next);
-                self.ends.set(path, End::infinite(direction));
-            }
-            Verdict::Reached | Verdict::Lost => {}
-        }
-    }
-
     /// Whether as many regular solutions are found as are known to exist.
     fn is_whole(&self) -> bool {
-        let Some(known) = self.options.known.filter(|&known| self.regular.len() >= known) else { return false };
-        let asked = self.regular.iter().filter(|(_, end)| !self.excess.contains_regular(&end.point));
+        let Some(known) = self.route.options.known.filter(|&known| self.regular.len() >= known) else { return false };
+        let asked = self.regular.iter().filter(|(_, end)| !self.route.excess.contains_regular(&end.point));
         let points: Vec<(usize, &[Complex64])> = asked.map(|(&k, end)| (k, &end.point[..])).collect();
-        let groups = coincidences(points.iter().copied(), self.options.paths.coincidence);
+        let groups = coincidences(points.iter().copied(), self.route.options.paths.coincidence);
         points.len() - groups.iter().map(|group| group.len() - 1).sum::<usize>() >= known
+    }
+
+    /// Gives up paths that still share an end, which counts once, and others in doubt.
+    fn lose_doubtful(&mut self, which: &[usize]) {
+        for &k in which {
+            let first = match self.ends.get(k) {
+                End::REGULAR => !which.iter().take_while(|&&j| j < k).any(|&j| self.same_regular(j, k)),
+                End::SINGULAR => true,
+                _ => false,
+            };
+            if !first {
+                self.lose(k);
+            }
+        }
     }
 
     fn drop_others(&mut self) {
@@ -313,8 +371,9 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, E, S> {
 
     fn same_regular(&self, j: usize, k: usize) -> bool {
         let [a, b] = [j, k].map(|path| self.regular.get(&path));
-        let near =
-            |(a, b): (&Refined, &Refined)| relative_distance(&a.point, &b.point) <= self.options.paths.coincidence;
+        let near = |(a, b): (&Refined, &Refined)| {
+            relative_distance(&a.point, &b.point) <= self.route.options.paths.coincidence
+        };
         a.zip(b).is_some_and(near)
     }
 
@@ -325,7 +384,9 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, E, S> {
             let end = self.ends.get(path);
             lost += usize::from(end == End::LOST);
             dropped += usize::from(end == End::DROPPED);
-            end.direction().and_then(|direction| infinite.get_mut(direction)).into_iter().for_each(|paths| *paths += 1);
+            if let Some(paths) = end.direction().and_then(|direction| infinite.get_mut(direction)) {
+                *paths += 1;
+            }
         }
         let directions = self.directions.into_iter().map(|((v, winding), k)| (v, winding, infinite[k as usize]));
         let directions = directions.filter(|(_, _, paths)| *paths > 0).collect();
@@ -335,18 +396,20 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, E, S> {
     /// Paths that share a regular end, in their order.
     fn jumped(&self) -> Vec<usize> {
         let regular = self.regular.iter().map(|(&k, refined)| (k, &refined.point[..]));
-        let mut which = coincidences(regular, self.options.paths.coincidence).concat();
+        let mut which = coincidences(regular, self.route.options.paths.coincidence).concat();
         which.sort_unstable();
         which
     }
 
     /// Paths that are lost, share a start or a regular end, have crossed on the way, or end in a cycle that is not whole; all if what is
     /// known of them cannot be read.
-    fn doubtful(&mut self) -> Vec<usize> {
+    fn doubts(&mut self) -> Vec<usize> {
         let mut which = self.jumped();
-        let crossed = [self.starts.met(self.options.paths.coincidence), self.middles.met(CROSSED)];
+        let crossed = [self.starts.met(self.route.options.paths.coincidence), self.middles.met(CROSSED)];
         if crossed.iter().any(Result::is_err) {
-            (0..self.ends.count).for_each(|path| self.lose(path));
+            for path in 0..self.ends.count {
+                self.lose(path);
+            }
         }
         which.extend(crossed.into_iter().flatten().flatten());
         let singular = self.singular.iter().map(|(&k, end)| (k, &end.point[..]));
@@ -367,15 +430,18 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, E, S> {
     }
 }
 
-/// All points by groups of coinciding ones; a point alone is a group too.
-pub(super) fn groups<'a>(
-    points: impl Iterator<Item = (usize, &'a [Complex64])> + Clone,
-    tolerance: f64,
-) -> Vec<Vec<usize>> {
-    let mut all = coincidences(points.clone(), tolerance);
-    let mut grouped: Vec<usize> = all.concat();
-    grouped.sort_unstable();
-    all.extend(points.map(|(k, _)| k).filter(|k| grouped.binary_search(k).is_err()).map(|k| vec![k]));
-    all.sort();
-    all
+/// What the endgame tells of a path, its end refined where it is regular after all.
+fn judged<E: Evaluate>(refiner: &mut Refiner<'_, E>, target: &[Complex64], ending: Ending) -> RecordEnd {
+    if matches!(ending.verdict, Verdict::Reached | Verdict::Finite { winding: 1, .. }) {
+        let refined = refiner.refine(target, &ending.point);
+        let near = relative_distance(&refined.point, &ending.point) < CLUSTER;
+        if near && refiner.is_regular(target, &refined) {
+            return RecordEnd::Regular(refined);
+        }
+    }
+    match ending.verdict {
+        Verdict::Finite { winding, error } => RecordEnd::Singular(SingularEnd { point: ending.point, winding, error }),
+        Verdict::Infinite { winding, valuations } => RecordEnd::Infinite { valuations, winding },
+        Verdict::Reached | Verdict::Lost => RecordEnd::Lost,
+    }
 }

@@ -3,8 +3,25 @@
 use crate::distinct::{projection, relative_distance};
 use crate::store::{Records, Sorter};
 use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::io;
+
+/// A projection and the size of a point, and the point itself if it is to be compared in full.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Print {
+    key: f64,
+    size: f64,
+    point: Option<Vec<Complex64>>,
+}
+
+impl Print {
+    /// The print of a point; with `keep` the point stays with it.
+    pub(super) fn new(point: &[Complex64], keep: bool) -> Print {
+        let size = point.iter().map(|z| z.re.abs() + z.im.abs()).sum();
+        Print { key: projection(point), size, point: keep.then(|| point.to_vec()) }
+    }
+}
 
 /// A projection and roughly the size of a point for every path, twelve bytes; the points themselves only of few.
 pub(super) struct Prints {
@@ -51,16 +68,15 @@ impl Prints {
         }
     }
 
-    /// Notes where a path was; with `keep` the point too, so that it is compared in full with others that are kept.
-    pub(super) fn note(&mut self, path: usize, point: &[Complex64], keep: bool) {
+    /// Notes where a path was.
+    pub(super) fn note(&mut self, path: usize, print: &Print) {
         self.forget(path);
-        let size: f64 = point.iter().map(|z| z.re.abs() + z.im.abs()).sum();
-        let key = projection(point);
-        if !key.is_nan() {
-            self.records.get_or_insert_with(|| Records::new(WIDTH)).set(path, &written(key, size));
+        if !print.key.is_nan() {
+            let record = written(print.key, print.size);
+            self.records.get_or_insert_with(|| Records::new(WIDTH)).set(path, &record);
         }
-        if keep {
-            self.points.insert(path, point.to_vec());
+        if let Some(point) = &print.point {
+            self.points.insert(path, point.clone());
         }
     }
 
@@ -111,7 +127,7 @@ impl Prints {
 
 #[cfg(test)]
 mod tests {
-    use super::Prints;
+    use super::{Print, Prints};
     use num_complex::Complex64;
 
     #[test]
@@ -119,14 +135,14 @@ mod tests {
         let z = |re: f64, im: f64| Complex64::new(re, im);
         let points = [[z(1.0, 0.5), z(-2.0, 0.0)], [z(1.0, 0.5), z(-2.0, 1e-13)], [z(1.0, 0.5), z(-2.0, 1e-3)]];
         let mut prints = Prints::new(5);
-        points.iter().enumerate().for_each(|(k, x)| prints.note(k + 1, x, false));
+        points.iter().enumerate().for_each(|(k, x)| prints.note(k + 1, &Print::new(x, false)));
         assert_eq!(prints.met(1e-11).unwrap(), [1, 2]);
         prints.forget(1);
         assert_eq!(prints.met(1e-11).unwrap(), [0usize; 0]);
         // A small coordinate beside a large one shows only in points that are kept.
         for keep in [false, true] {
-            prints.note(0, &[z(1e9, 0.0), z(0.0, 0.0)], keep);
-            prints.note(1, &[z(1e9, 0.0), z(1e-5, 0.0)], keep);
+            prints.note(0, &Print::new(&[z(1e9, 0.0), z(0.0, 0.0)], keep));
+            prints.note(1, &Print::new(&[z(1e9, 0.0), z(1e-5, 0.0)], keep));
             assert_eq!(prints.met(1e-9).unwrap(), [0, 1]);
             assert_eq!(prints.met(1e-11).unwrap(), if keep { vec![] } else { vec![0, 1] });
         }
@@ -140,10 +156,10 @@ mod tests {
         for path in 0..7_999 {
             let size = 10f64.powi(path as i32 % 601 - 300);
             last = random.normals(4).iter().map(|z| z * size).collect();
-            prints.note(path, &last, false);
+            prints.note(path, &Print::new(&last, false));
         }
         assert_eq!(prints.met(1e-11).unwrap(), [0usize; 0]);
-        prints.note(7_999, &last, false);
+        prints.note(7_999, &Print::new(&last, false));
         assert_eq!(prints.met(1e-11).unwrap(), [7_998, 7_999]);
     }
 }

@@ -1,7 +1,9 @@
 //! Which start system is used, and the equations with the terms that it needs.
 
 use super::equations::Equations;
-use super::{SolveError, SolveOptions, Start};
+use super::error::SolveError;
+use super::options::{SolveOptions, Start};
+use crate::monitor::Monitor;
 use crate::start::{
     Grouped, MixedError, Multihomogeneous, Polyhedral, StartSystem, TotalDegree, bezout_number, degrees,
     mixed_volume_is_bezout,
@@ -49,7 +51,7 @@ impl Numbers {
 }
 
 impl Starts {
-    pub(super) fn new(given: Equations, options: &SolveOptions) -> Result<Starts, SolveError> {
+    pub(super) fn new(given: Equations, options: &SolveOptions, monitor: &Monitor) -> Result<Starts, SolveError> {
         let n = given.unknowns;
         let mut equations = if given.len() > n { given.squared(options.seed) } else { given };
         let laurent = equations.is_laurent();
@@ -75,8 +77,7 @@ impl Starts {
                 (Start::Polyhedral, bezout.unwrap_or(u64::MAX))
             }
             choice => {
-                match (Polyhedral::new(&equations.supports, options.seed, 0, options.monitor()), numbers.of_one_stage())
-                {
+                match (Polyhedral::new(&equations.supports, options.seed, 0, monitor), numbers.of_one_stage()) {
                     (Ok(cells), _) => {
                         let volume = cells.mixed_volume;
                         numbers.mixed_volume = Some(volume);
@@ -135,7 +136,12 @@ impl Starts {
     }
 
     /// A start system, another one for every attempt.
-    pub(super) fn system(&mut self, attempt: u64, options: &SolveOptions) -> Result<StartSystem, SolveError> {
+    pub(super) fn system(
+        &mut self,
+        attempt: u64,
+        options: &SolveOptions,
+        monitor: &Monitor,
+    ) -> Result<StartSystem, SolveError> {
         let supports = &self.equations.supports;
         Ok(match (self.kind, &self.grouped) {
             (Start::TotalDegree, _) => {
@@ -146,7 +152,7 @@ impl Starts {
             }
             _ => StartSystem::Polyhedral(match self.first.take() {
                 Some(cells) => cells,
-                None => Polyhedral::new(supports, options.seed, attempt, options.monitor())?,
+                None => Polyhedral::new(supports, options.seed, attempt, monitor)?,
             }),
         })
     }

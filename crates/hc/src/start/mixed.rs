@@ -79,7 +79,7 @@ impl From<Overflow> for MixedError {
 /// a system with generic coefficients. Runs on the threads of the current rayon pool.
 ///
 /// ```
-/// use hc::start::mixed_volume;
+/// use hc::mixed_volume;
 /// // a + b x + c y + d x y and the same again
 /// let square = vec![vec![0, 0], vec![1, 0], vec![0, 1], vec![1, 1]];
 /// assert_eq!(mixed_volume(2, &[square.clone(), square])?.volume, 2);
@@ -89,14 +89,14 @@ impl From<Overflow> for MixedError {
 /// # Errors
 /// If the supports are not as many as the unknowns, an exponent vector has another length, or volumes exceed 64 bits.
 pub fn mixed_volume(unknowns: usize, supports: &[Vec<Vec<i32>>]) -> Result<MixedVolume, MixedError> {
-    watched_mixed_volume(unknowns, supports, &Monitor::default())
+    mixed_volume_watched(unknowns, supports, &Monitor::default())
 }
 
 /// [`mixed_volume`], watched: [`Progress`](crate::monitor::Progress) has the cells found so far and their volume, a lower bound.
 ///
 /// # Errors
 /// As [`mixed_volume`], and [`MixedError::Cancelled`] after [`Monitor::cancel`].
-pub fn watched_mixed_volume(
+pub fn mixed_volume_watched(
     unknowns: usize,
     supports: &[Vec<Vec<i32>>],
     monitor: &Monitor,

@@ -19,15 +19,16 @@ mod total_degree;
 mod walk;
 
 pub(crate) use bezout::mixed_volume_is_bezout;
-pub use mixed::{MixedCell, MixedError, MixedVolume, mixed_cells, mixed_volume, watched_mixed_volume};
+pub use mixed::{MixedCell, MixedError, MixedVolume, mixed_cells, mixed_volume, mixed_volume_watched};
 pub(crate) use multihomogeneous::{Grouped, Multihomogeneous};
 pub(crate) use polyhedral::Polyhedral;
 pub(crate) use total_degree::{TotalDegree, bezout_number, degrees};
 
-use crate::fibre::Fibre;
-use crate::tracker::TrackerOptions;
+use crate::family::Fibre;
+use crate::monitor::Monitor;
+use crate::tracker::{TrackerOptions, Trackers};
 use num_complex::Complex64;
-use poly::SparseSystem;
+use poly::{Evaluate, SparseSystem};
 
 /// Exponent vectors of each equation.
 pub(crate) type Supports = [Vec<Vec<i32>>];
@@ -48,14 +49,28 @@ pub(crate) struct Reached {
     pub(crate) points: Vec<Complex64>,
 }
 
+impl Reached {
+    /// The `k`-th of them.
+    pub(crate) fn point(&self, k: usize) -> &[Complex64] {
+        let n = self.points.len() / self.numbers.len().max(1);
+        &self.points[k * n..(k + 1) * n]
+    }
+}
+
 /// Where the paths of a system `E` begin.
-pub(crate) trait Source<E> {
+pub(crate) trait Source<E: Evaluate>: Sync {
     /// The parameters there.
     fn parameters(&self) -> &[Complex64];
     /// Whether start solutions are ends of paths themselves, which may be lost or jump.
     fn is_tracked(&self) -> bool;
     /// The start solutions with these numbers, which ascend; where they are tracked, some may be missing.
-    fn solutions(&self, system: &E, numbers: &[usize], settings: &TrackerOptions) -> Reached;
+    fn solutions(
+        &self,
+        trackers: &Trackers<'_, E>,
+        numbers: &[usize],
+        settings: &TrackerOptions,
+        monitor: &Monitor,
+    ) -> Reached;
 }
 
 impl Source<SparseSystem> for StartSystem {
@@ -71,13 +86,19 @@ impl Source<SparseSystem> for StartSystem {
         matches!(self, StartSystem::Polyhedral(_))
     }
 
-    fn solutions(&self, system: &SparseSystem, numbers: &[usize], settings: &TrackerOptions) -> Reached {
+    fn solutions(
+        &self,
+        trackers: &Trackers<'_, SparseSystem>,
+        numbers: &[usize],
+        settings: &TrackerOptions,
+        monitor: &Monitor,
+    ) -> Reached {
         let made = |solution: &dyn Fn(u64) -> Vec<Complex64>| Reached {
             numbers: numbers.to_vec(),
             points: numbers.iter().flat_map(|&k| solution(k as u64)).collect(),
         };
         match self {
-            StartSystem::Polyhedral(start) => start.solutions(system, numbers, settings),
+            StartSystem::Polyhedral(start) => start.solutions(trackers, numbers, settings, monitor),
             StartSystem::Multihomogeneous(start) => made(&|k| start.solution(k)),
             StartSystem::TotalDegree(start) => made(&|k| start.solution(k)),
         }
@@ -85,7 +106,7 @@ impl Source<SparseSystem> for StartSystem {
 }
 
 /// The solutions that are stored.
-impl<E> Source<E> for Fibre {
+impl<E: Evaluate> Source<E> for Fibre {
     fn parameters(&self) -> &[Complex64] {
         &self.parameters
     }
@@ -94,7 +115,7 @@ impl<E> Source<E> for Fibre {
         false
     }
 
-    fn solutions(&self, _: &E, numbers: &[usize], _: &TrackerOptions) -> Reached {
+    fn solutions(&self, _: &Trackers<'_, E>, numbers: &[usize], _: &TrackerOptions, _: &Monitor) -> Reached {
         let points = numbers.iter().flat_map(|&k| self.solution(k).iter().copied()).collect();
         Reached { numbers: numbers.to_vec(), points }
     }

@@ -7,7 +7,7 @@ use super::{Reached, Supports};
 use crate::monitor::Monitor;
 use crate::random::Random;
 use crate::store::{Records, Sorter};
-use crate::tracker::{PathEnd, TrackerOptions, track};
+use crate::tracker::{PathEnd, TrackerOptions, Trackers};
 use num_complex::Complex64;
 use poly::SparseSystem;
 use std::sync::{Mutex, PoisonError};
@@ -85,12 +85,19 @@ impl Polyhedral {
     }
 
     /// Tracks roots of the binomials, by ascending numbers, to solutions for the generic coefficients.
-    pub(crate) fn solutions(&self, system: &SparseSystem, numbers: &[usize], settings: &TrackerOptions) -> Reached {
+    pub(crate) fn solutions(
+        &self,
+        trackers: &Trackers<'_, SparseSystem>,
+        numbers: &[usize],
+        settings: &TrackerOptions,
+        monitor: &Monitor,
+    ) -> Reached {
         let starts = self.starts(numbers);
         let which: Vec<usize> = (0..starts.numbers.len()).collect();
         let path = Toric { coefficients: &self.coefficients, rates: &starts.rates, cells: &starts.cells };
         let mut reached = Reached::default();
-        for (result, point) in track(system, &path, &starts.points, &which, settings).iter() {
+        let ends = trackers.track(&path, &starts.points, &which, settings, monitor);
+        for (result, point) in ends.iter() {
             if result.end == PathEnd::Success {
                 reached.numbers.push(starts.numbers[result.path]);
                 reached.points.extend_from_slice(point);

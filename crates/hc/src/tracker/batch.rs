@@ -12,6 +12,7 @@ use super::result::{PathEnd, PathResult, PathSet};
 use super::valuation::valuation;
 use crate::homotopy::ParameterPath;
 use crate::linalg::Lu;
+use crate::monitor::Monitor;
 use num_complex::Complex64;
 use poly::simd::Isa;
 use poly::{Evaluate, Lane};
@@ -20,6 +21,7 @@ use poly::{Evaluate, Lane};
 pub struct Tracker<'a, E: Evaluate, S: Lane> {
     system: &'a E,
     bounds: Bounds,
+    monitor: Monitor,
     isa: Isa,
     n: usize,
     lanes: Vec<Progress>,
@@ -66,6 +68,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         Tracker {
             system,
             bounds: Bounds::new(options),
+            monitor: Monitor::default(),
             isa,
             n,
             lanes: vec![Progress::idle(); S::LANES],
@@ -98,8 +101,13 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         self.bounds = Bounds::new(options);
     }
 
+    /// Replaces who may stop the paths to come. Nobody at first.
+    pub fn set_monitor(&mut self, monitor: &Monitor) {
+        self.monitor.clone_from(monitor);
+    }
+
     /// Tracks the paths with the given indices into `starts` (`n` coordinates a path) along `path` from `t = 1` to 0 and
-    /// appends their ends to `out`, in the order in which they end. Once the work is cancelled by the monitor of the options, paths that
+    /// appends their ends to `out`, in the order in which they end. Once the monitor is cancelled, paths that
     /// have not begun are appended as [`PathEnd::Cancelled`].
     ///
     /// # Panics
@@ -118,7 +126,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         self.taylor.fill(S::zero());
         loop {
             for l in 0..S::LANES {
-                if !self.lanes[l].is_live() && self.bounds.options.monitor.is_cancelled() {
+                if !self.lanes[l].is_live() && self.monitor.is_cancelled() {
                     let point = |k: usize| starts[k * self.n..(k + 1) * self.n].iter().copied();
                     which.by_ref().for_each(|k| out.push(PathResult::cancelled(k), point(k)));
                 } else if !self.lanes[l].is_live()

@@ -26,6 +26,7 @@ pub(crate) use pool::Trackers;
 pub use result::{PathEnd, PathResult, PathSet};
 
 use crate::homotopy::ParameterPath;
+use crate::monitor::Monitor;
 use num_complex::Complex64;
 use poly::Evaluate;
 
@@ -62,5 +63,5 @@ pub fn track<E: Evaluate, P: ParameterPath>(
     which: &[usize],
     options: &TrackerOptions,
 ) -> PathSet {
-    Trackers::new(system).track(path, starts, which, options)
+    Trackers::new(system).track(path, starts, which, options, &Monitor::default())
 }

@@ -1,6 +1,5 @@
 //! Settings of the tracker, with presets.
 
-use crate::monitor::Monitor;
 use poly::simd::Isa;
 
 /// A setting outside its range.
@@ -59,8 +58,6 @@ pub struct TrackerOptions {
     pub drop_complex: Option<f64>,
     /// Instruction set of the lane kernels; `None` takes the widest of the machine. The result does not depend on it. Default `None`.
     pub isa: Option<Isa>,
-    /// Who watches, and may stop, the tracking. Default nobody.
-    pub monitor: Monitor,
 }
 
 impl Default for TrackerOptions {
@@ -77,7 +74,6 @@ impl Default for TrackerOptions {
             extended_precision: true,
             drop_complex: None,
             isa: None,
-            monitor: Monitor::default(),
         }
     }
 }

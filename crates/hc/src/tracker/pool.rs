@@ -2,6 +2,7 @@
 
 use super::{PathEnd, PathSet, Tracker, TrackerOptions};
 use crate::homotopy::ParameterPath;
+use crate::monitor::Monitor;
 use num_complex::Complex64;
 use poly::{Evaluate, Lanes8};
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
@@ -37,6 +38,11 @@ impl<'a, E: Evaluate> Trackers<'a, E> {
         Trackers { system, idle: Mutex::new(Vec::new()) }
     }
 
+    /// The system.
+    pub(crate) fn system(&self) -> &'a E {
+        self.system
+    }
+
     /// As [`super::track`]. All calls must have the same instruction set in their options.
     pub(crate) fn track<P: ParameterPath>(
         &self,
@@ -44,6 +50,7 @@ impl<'a, E: Evaluate> Trackers<'a, E> {
         starts: &[Complex64],
         which: &[usize],
         options: &TrackerOptions,
+        monitor: &Monitor,
     ) -> PathSet {
         let n = self.system.variables();
         let threads = rayon::current_num_threads();
@@ -52,7 +59,7 @@ impl<'a, E: Evaluate> Trackers<'a, E> {
         let parts: Vec<PathSet> = (0..which.len().div_ceil(size))
             .into_par_iter()
             .map_init(
-                || self.borrow(options),
+                || self.borrow(options, monitor),
                 |borrowed, part| {
                     let mut out = PathSet::new(n);
                     let end = which.len().min((part + 1) * size);
@@ -60,7 +67,7 @@ impl<'a, E: Evaluate> Trackers<'a, E> {
                     if let Some(tracker) = &mut borrowed.tracker {
                         tracker.track(path, starts, which, &mut out);
                         let done = out.len() - out.count(PathEnd::Cancelled);
-                        options.monitor.add(done as u64, out.count(PathEnd::Success) as u64);
+                        monitor.add(done as u64, out.count(PathEnd::Success) as u64);
                     }
                     out
                 },
@@ -74,10 +81,11 @@ impl<'a, E: Evaluate> Trackers<'a, E> {
         all
     }
 
-    fn borrow(&self, options: &TrackerOptions) -> Borrowed<'a, '_, E> {
+    fn borrow(&self, options: &TrackerOptions, monitor: &Monitor) -> Borrowed<'a, '_, E> {
         let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
         let mut tracker = idle.unwrap_or_else(|| Tracker::new(self.system, options));
         tracker.set_options(options);
+        tracker.set_monitor(monitor);
         Borrowed { trackers: self, tracker: Some(tracker) }
     }
 }

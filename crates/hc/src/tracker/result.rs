@@ -147,6 +147,13 @@ impl PathSet {
         debug_assert_eq!(self.points.len(), self.results.len() * self.dimension);
     }
 
+    /// Adds paths in as many unknowns.
+    pub(crate) fn append(&mut self, others: &PathSet) {
+        debug_assert!(others.is_empty() || others.dimension == self.dimension);
+        self.results.extend_from_slice(&others.results);
+        self.points.extend_from_slice(&others.points);
+    }
+
     /// Replaces the `k`-th record.
     pub fn replace(&mut self, k: usize, result: PathResult, point: &[Complex64]) {
         self.results[k] = result;

@@ -1,22 +1,19 @@
 //! What the tests of the front door share.
 
 use hc::poly::parse::phcpack;
-use hc::solve::{SolveError, SolveOptions, Solved, solve};
+use hc::{Solutions, SolveError, SolveOptions, solve};
 use std::collections::BTreeMap;
 
 pub(crate) fn options(seed: u64) -> SolveOptions {
-    let mut options = SolveOptions::default();
-    options.seed = seed;
-    options
+    SolveOptions::new().seed(seed)
 }
 
-pub(crate) fn solve_text(text: &str, options: &SolveOptions) -> Result<Solved, SolveError> {
-    let polynomials = phcpack(text).expect("a system").expand(&Default::default()).expect("polynomials");
-    solve(&polynomials, options)
+pub(crate) fn solve_text(text: &str, options: &SolveOptions) -> Result<Solutions, SolveError> {
+    solve(&phcpack(text).expect("a system"), options)
 }
 
 /// Solves, and checks that no path is lost and every path accounted for.
-pub(crate) fn solved(text: &str, options: &SolveOptions) -> Solved {
+pub(crate) fn solved(text: &str, options: &SolveOptions) -> Solutions {
     let found = solve_text(text, options).expect("solved");
     assert_eq!(found.paths.failed, 0, "{text}");
     assert_eq!(found.paths.tracked, found.paths.finite + found.paths.at_infinity, "{text}");
@@ -28,12 +25,12 @@ pub(crate) fn solved(text: &str, options: &SolveOptions) -> Solved {
 }
 
 /// Number of solutions of each multiplicity, such as `16x1 1x11`.
-pub(crate) fn multiplicities(found: &Solved) -> String {
+pub(crate) fn multiplicities(found: &Solutions) -> String {
     let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
     found.solutions.iter().for_each(|s| *counts.entry(s.multiplicity).or_default() += 1);
     counts.iter().map(|(m, count)| format!("{count}x{m}")).collect::<Vec<_>>().join(" ")
 }
 
-pub(crate) fn real(found: &Solved) -> usize {
+pub(crate) fn real(found: &Solutions) -> usize {
     found.solutions.iter().filter(|s| s.real).count()
 }

@@ -1,26 +1,40 @@
 //! Parameter families in TOML.
 
-use super::ParseError;
-use super::formula::{FormulaParser, Names};
-use super::token::{Token, Tokens};
+use super::equations::equations;
+use super::error::ParseError;
+use super::formula::{Names, Role};
 use crate::arena::Arena;
-use crate::system::{System, is_name};
+use crate::system::System;
 use serde::Deserialize;
-use std::collections::HashMap;
+use std::str::FromStr;
 use toml::Spanned;
 
-/// A parameter family: a system whose parameters are to be given values later.
+/// A parameter family: a system whose parameters are given values later, and what is known of its solutions.
+///
+/// [`Family::from_formulas`] makes one from formulas; `text.parse::<Family>()` reads one in TOML.
 #[derive(Clone, Debug)]
 pub struct Family {
-    /// Name of the family.
+    /// Name of the family; empty if it has none.
     pub name: String,
     /// The equations.
     pub system: System,
     /// The number of isolated solutions for generic parameters, where known.
     pub roots: Option<usize>,
-    /// Factors whose vanishing is degenerate: the same unknowns and parameters, one equation a factor (none where
-    /// the family states none).
+    /// Factors that must not vanish at a solution: a system in the family's unknowns and parameters, one equation a
+    /// factor, none where the family states none.
     pub nonzero: System,
+    /// Symmetries: maps of the unknowns that take solutions to solutions for the same parameters. Each
+    /// has one formula an unknown, its image.
+    pub symmetry: Vec<System>,
+}
+
+impl FromStr for Family {
+    type Err = ParseError;
+
+    /// Reads a family in TOML, as [`family`] does.
+    fn from_str(text: &str) -> Result<Family, ParseError> {
+        family(text)
+    }
 }
 
 #[derive(Deserialize)]
@@ -34,6 +48,8 @@ struct FamilyText {
     roots: Option<usize>,
     #[serde(default)]
     nonzero: Vec<String>,
+    #[serde(default)]
+    symmetry: Vec<Vec<String>>,
 }
 
 /// Reads a parameter family.
@@ -60,32 +76,22 @@ pub fn family(text: &str) -> Result<Family, ParseError> {
         .map_err(|e| ParseError::at(text, e.span().map_or(0, |span| span.start), e.message().to_owned()))?;
     let system = system(text, &fields, "equation", &fields.equations)?;
     let nonzero = self::system(text, &fields, "nonzero factor", &fields.nonzero)?;
-    Ok(Family { name: fields.name, system, roots: fields.roots, nonzero })
+    let map =
+        |(k, map): (usize, &Vec<String>)| self::system(text, &fields, &format!("symmetry {}, formula", k + 1), map);
+    let symmetry = fields.symmetry.iter().enumerate().map(map).collect::<Result<_, _>>()?;
+    Ok(Family { name: fields.name, system, roots: fields.roots, nonzero, symmetry })
 }
 
 fn system(text: &str, fields: &FamilyText, part: &str, formulas: &[String]) -> Result<System, ParseError> {
     let mut arena = Arena::default();
-    let mut declared = HashMap::new();
-    let names = fields.unknowns.iter().map(|n| (n, true)).chain(fields.parameters.iter().map(|n| (n, false)));
-    for (declaration, unknown) in names {
-        let name = declaration.get_ref();
-        if !is_name(name) {
-            let message = format!("`{name}` cannot be a name (letters, digits, `_`; `i` is the imaginary unit)");
-            return Err(ParseError::at(text, offset(text, declaration), message));
-        }
-        let id = if unknown { arena.variable(name) } else { arena.parameter(name) };
-        if declared.insert(name.clone(), id).is_some() {
-            let message = format!("`{name}` is declared twice");
-            return Err(ParseError::at(text, offset(text, declaration), message));
+    let mut names = Names { closed: true, ..Names::default() };
+    for (declarations, role) in [(&fields.unknowns, Role::Unknown), (&fields.parameters, Role::Parameter)] {
+        for declaration in declarations {
+            let declared = names.declare(&mut arena, declaration.get_ref(), role);
+            declared.map_err(|message| ParseError::at(text, offset(text, declaration), message))?;
         }
     }
-    let mut names = Names::Declared(declared);
-    let mut equations = Vec::with_capacity(formulas.len());
-    for (k, formula) in formulas.iter().enumerate() {
-        let equation = parse_whole(&mut arena, &mut names, formula);
-        equations.push(equation.map_err(|e| e.within(format!("{part} {}", k + 1)))?);
-    }
-    Ok(System { arena, equations })
+    equations(arena, names, part, formulas)
 }
 
 /// Where a declared name begins: its span has the quotes in it.
@@ -93,16 +99,6 @@ fn offset(text: &str, declaration: &Spanned<String>) -> usize {
     let span = declaration.span();
     let quotes = text.get(span.clone()).and_then(|quoted| quoted.find(declaration.get_ref().as_str()));
     span.start + quotes.unwrap_or(0)
-}
-
-/// A formula that takes up the whole text.
-fn parse_whole(arena: &mut Arena, names: &mut Names, text: &str) -> Result<crate::graph::Id, ParseError> {
-    let mut tokens = Tokens::new(text, 0)?;
-    let id = FormulaParser::new(arena, names).sum(&mut tokens)?;
-    if *tokens.current() != Token::End {
-        return Err(tokens.error(format!("expected an operator, found {}", tokens.current().describe())));
-    }
-    Ok(id)
 }
 
 #[cfg(test)]

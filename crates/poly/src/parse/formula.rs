@@ -1,10 +1,11 @@
 //! Formulas by operator precedence, straight into the hash-consed graph.
 
-use super::ParseError;
+use super::error::ParseError;
 use super::token::{Token, Tokens};
 use crate::arena::Arena;
 use crate::exact::Exact;
 use crate::graph::Id;
+use crate::system::is_name;
 use num_complex::Complex;
 use num_rational::BigRational;
 use num_traits::{One, ToPrimitive, Zero};
@@ -14,11 +15,37 @@ use std::collections::HashMap;
 const DEPTH_LIMIT: usize = 256;
 
 /// What names mean.
-pub(super) enum Names {
-    /// Declared beforehand; anything else is an error.
-    Declared(HashMap<String, Id>),
-    /// Every new name is an unknown, in order of appearance.
-    Discovered(HashMap<String, Id>),
+#[derive(Default)]
+pub(super) struct Names {
+    /// Nodes of the names.
+    pub(super) known: HashMap<String, Id>,
+    /// Whether any other name is an error. It is a new unknown if not.
+    pub(super) closed: bool,
+}
+
+impl Names {
+    /// Declares an unknown or a parameter; says what is wrong with the name where it cannot be one.
+    pub(super) fn declare(&mut self, arena: &mut Arena, name: &str, role: Role) -> Result<(), String> {
+        if !is_name(name) {
+            return Err(format!("`{name}` cannot be a name (letters, digits, `_`; `i` is the imaginary unit)"));
+        }
+        if self.known.contains_key(name) {
+            return Err(format!("`{name}` is declared twice"));
+        }
+        let id = match role {
+            Role::Unknown => arena.variable(name),
+            Role::Parameter => arena.parameter(name),
+        };
+        self.known.insert(name.to_owned(), id);
+        Ok(())
+    }
+}
+
+/// What a declared name is.
+#[derive(Clone, Copy)]
+pub(super) enum Role {
+    Unknown,
+    Parameter,
 }
 
 /// Parses formulas into one arena.
@@ -31,6 +58,20 @@ pub(super) struct FormulaParser<'a> {
 impl<'a> FormulaParser<'a> {
     pub(super) fn new(arena: &'a mut Arena, names: &'a mut Names) -> FormulaParser<'a> {
         FormulaParser { arena, names, depth: 0 }
+    }
+
+    /// A sum, or the difference of two sums with `=` between them; stops at the first token that cannot continue it.
+    pub(super) fn equation(&mut self, tokens: &mut Tokens<'_>) -> Result<Id, ParseError> {
+        let left = self.sum(tokens)?;
+        if *tokens.current() != Token::Equals {
+            return Ok(left);
+        }
+        tokens.advance()?;
+        let right = self.sum(tokens)?;
+        if *tokens.current() == Token::Equals {
+            return Err(tokens.error("a second `=` in one equation"));
+        }
+        Ok(self.arena.graph.sub(left, right))
     }
 
     /// A sum of terms; stops at the first token that cannot continue it.
@@ -123,20 +164,40 @@ impl<'a> FormulaParser<'a> {
             let unit: Exact = Complex::new(BigRational::zero(), BigRational::one());
             return Ok(self.arena.graph.constant(unit));
         }
-        match self.names {
-            Names::Declared(names) => names.get(name).copied().ok_or_else(|| {
-                tokens.error(format!("`{name}` is neither an unknown nor a parameter; declare it or correct the name"))
-            }),
-            Names::Discovered(names) => {
-                if let Some(&id) = names.get(name) {
-                    return Ok(id);
-                }
-                let id = self.arena.variable(name);
-                names.insert(name.to_owned(), id);
-                Ok(id)
-            }
+        if let Some(&id) = self.names.known.get(name) {
+            return Ok(id);
         }
+        if self.names.closed {
+            let message = format!("`{name}` is neither an unknown nor a parameter; declare it or correct the name");
+            return Err(tokens.error(message));
+        }
+        let id = self.arena.variable(name);
+        self.names.known.insert(name.to_owned(), id);
+        Ok(id)
     }
+}
+
+/// A formula that takes up the whole text.
+pub(super) fn whole_formula(arena: &mut Arena, names: &mut Names, text: &str) -> Result<Id, ParseError> {
+    let mut tokens = Tokens::new(text, 0)?;
+    let id = FormulaParser::new(arena, names).sum(&mut tokens)?;
+    at_end(&tokens)?;
+    Ok(id)
+}
+
+/// An equation that takes up the whole text: a formula that is to vanish, or two with `=` between them.
+pub(super) fn whole_equation(arena: &mut Arena, names: &mut Names, text: &str) -> Result<Id, ParseError> {
+    let mut tokens = Tokens::new(text, 0)?;
+    let id = FormulaParser::new(arena, names).equation(&mut tokens)?;
+    at_end(&tokens)?;
+    Ok(id)
+}
+
+fn at_end(tokens: &Tokens<'_>) -> Result<(), ParseError> {
+    if *tokens.current() == Token::End {
+        return Ok(());
+    }
+    Err(tokens.error(format!("expected an operator, found {}", tokens.current().describe())))
 }
 
 /// Skips signs and tells whether they amount to a minus.

@@ -1,9 +1,13 @@
-//! Text to systems: parameter families in TOML and PHCpack's format, with errors that point at the place.
+//! Text to systems, with errors that point at the place: plain text, PHCpack's format, and families in TOML.
 
+mod detect;
+mod equations;
 mod error;
 mod family;
 mod formula;
+mod given;
 mod phcpack;
+mod plain;
 mod token;
 
 pub use error::ParseError;

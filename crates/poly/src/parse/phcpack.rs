@@ -1,11 +1,10 @@
 //! PHCpack's format: the number of polynomials, then polynomials ended by `;`.
 
-use super::ParseError;
+use super::error::ParseError;
 use super::formula::{FormulaParser, Names};
 use super::token::{Token, Tokens};
 use crate::arena::Arena;
 use crate::system::System;
-use std::collections::HashMap;
 
 /// Reads a system in PHCpack's format.
 ///
@@ -24,7 +23,7 @@ use std::collections::HashMap;
 pub fn phcpack(text: &str) -> Result<System, ParseError> {
     let (count, unknowns, body) = header(text)?;
     let mut arena = Arena::default();
-    let mut names = Names::Discovered(HashMap::new());
+    let mut names = Names::default();
     let mut equations = Vec::new();
     let mut position = body;
     for k in 0..count {
@@ -83,7 +82,7 @@ mod tests {
         let system = phcpack(text).unwrap();
         assert_eq!(system.variables(), ["x", "y"]);
         assert_eq!(system.len(), 2);
-        let again = phcpack(&format!("2\n{system}")).unwrap();
+        let again: System = system.to_string().parse().unwrap();
         assert_eq!(again.to_string(), system.to_string());
     }
 

@@ -1,6 +1,6 @@
 //! Tokens of formulas.
 
-use super::ParseError;
+use super::error::ParseError;
 use crate::exact::Exact;
 use num_bigint::BigInt;
 use num_complex::Complex;
@@ -24,6 +24,11 @@ pub(super) enum Token<'t> {
     Open,
     Close,
     Semicolon,
+    Equals,
+    Colon,
+    Comma,
+    /// The end of a line outside parentheses, where lines have a meaning.
+    LineEnd,
     End,
 }
 
@@ -41,6 +46,10 @@ impl Token<'_> {
             Token::Open => "`(`".to_owned(),
             Token::Close => "`)`".to_owned(),
             Token::Semicolon => "`;`".to_owned(),
+            Token::Equals => "`=`".to_owned(),
+            Token::Colon => "`:`".to_owned(),
+            Token::Comma => "`,`".to_owned(),
+            Token::LineEnd => "the end of the line".to_owned(),
             Token::End => "the end of the text".to_owned(),
         }
     }
@@ -54,12 +63,25 @@ pub(super) struct Tokens<'t> {
     current: Token<'t>,
     /// Where the current token begins.
     start: usize,
+    /// Whether line ends are tokens and `#` begins a comment.
+    lines: bool,
+    /// Parentheses that are open after the current token.
+    open: usize,
 }
 
 impl<'t> Tokens<'t> {
-    /// Begins at a byte offset of the text.
+    /// Begins at a byte offset of the text. Line ends are white space.
     pub(super) fn new(text: &'t str, position: usize) -> Result<Tokens<'t>, ParseError> {
-        let mut tokens = Tokens { text, position, current: Token::End, start: position };
+        Tokens::begin(text, position, false)
+    }
+
+    /// Begins a text in which line ends are tokens, except in parentheses, and `#` begins a comment.
+    pub(super) fn with_lines(text: &'t str) -> Result<Tokens<'t>, ParseError> {
+        Tokens::begin(text, 0, true)
+    }
+
+    fn begin(text: &'t str, position: usize, lines: bool) -> Result<Tokens<'t>, ParseError> {
+        let mut tokens = Tokens { text, position, current: Token::End, start: position, lines, open: 0 };
         tokens.advance()?;
         Ok(tokens)
     }
@@ -85,9 +107,8 @@ impl<'t> Tokens<'t> {
 
     /// Steps to the next token.
     pub(super) fn advance(&mut self) -> Result<(), ParseError> {
-        let rest = &self.text[self.position..];
-        let trimmed = rest.trim_start();
-        self.start = self.position + (rest.len() - trimmed.len());
+        let trimmed = self.skip_space();
+        self.start = self.text.len() - trimmed.len();
         let Some(first) = trimmed.chars().next() else {
             self.position = self.start;
             self.current = Token::End;
@@ -103,6 +124,10 @@ impl<'t> Tokens<'t> {
             '(' => (Token::Open, 1),
             ')' => (Token::Close, 1),
             ';' => (Token::Semicolon, 1),
+            '=' => (Token::Equals, 1),
+            ':' => (Token::Colon, 1),
+            ',' => (Token::Comma, 1),
+            '\n' => (Token::LineEnd, 1),
             c if c.is_ascii_digit() || c == '.' => {
                 let (value, length) = self.number(trimmed)?;
                 (Token::Number(value), length)
@@ -113,9 +138,34 @@ impl<'t> Tokens<'t> {
             }
             c => return Err(self.error(format!("unexpected character {c:?}"))),
         };
+        match token {
+            Token::Open => self.open += 1,
+            Token::Close => self.open = self.open.saturating_sub(1),
+            _ => {}
+        }
         self.position = self.start + length;
         self.current = token;
         Ok(())
+    }
+
+    /// The unread text from the next token on.
+    fn skip_space(&self) -> &'t str {
+        let mut rest = &self.text[self.position..];
+        if !self.lines {
+            return rest.trim_start();
+        }
+        loop {
+            rest = rest.trim_start_matches(|c: char| c.is_whitespace() && (c != '\n' || self.open > 0));
+            if !rest.starts_with('#') {
+                return rest;
+            }
+            rest = &rest[rest.find('\n').unwrap_or(rest.len())..];
+        }
+    }
+
+    /// Whether the token after the current one is a colon.
+    pub(super) fn colon_follows(&self) -> bool {
+        self.skip_space().starts_with(':')
     }
 
     /// An unsigned decimal number, kept exactly, and its length in bytes.

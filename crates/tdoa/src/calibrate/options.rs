@@ -1,7 +1,7 @@
 //! What calibration is asked for, and how it ends early.
 
 use crate::degeneracy::Degeneracy;
-use hc::monitor::Monitor;
+use hc::Monitor;
 use thiserror::Error;
 
 /// How to calibrate. All fields have defaults; start from `CalibrateOptions::default()`.

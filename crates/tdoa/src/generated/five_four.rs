@@ -2016,6 +2016,6 @@ static SOLUTIONS: [[f64; 2]; 1216] = [
     [0.47498162943839844, -0.04393613570047106],
 ];
 /// All solutions for a generic parameter point.
-pub fn fibre() -> hc::fibre::Fibre {
-    hc::fibre::Fibre::from_pairs(&PARAMETERS, 8, &SOLUTIONS)
+pub fn fibre() -> hc::Fibre {
+    hc::Fibre::from_pairs(&PARAMETERS, 8, &SOLUTIONS)
 }

@@ -519,6 +519,6 @@ static SOLUTIONS: [[f64; 2]; 30] = [
     [-0.695261774556274, 0.17684306741521433],
 ];
 /// All solutions for a generic parameter point.
-pub fn fibre() -> hc::fibre::Fibre {
-    hc::fibre::Fibre::from_pairs(&PARAMETERS, 6, &SOLUTIONS)
+pub fn fibre() -> hc::Fibre {
+    hc::Fibre::from_pairs(&PARAMETERS, 6, &SOLUTIONS)
 }

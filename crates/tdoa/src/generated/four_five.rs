@@ -2757,6 +2757,6 @@ static SOLUTIONS: [[f64; 2]; 2064] = [
     [0.47611601088272987, 1.8543708523872933],
 ];
 /// All solutions for a generic parameter point.
-pub fn fibre() -> hc::fibre::Fibre {
-    hc::fibre::Fibre::from_pairs(&PARAMETERS, 6, &SOLUTIONS)
+pub fn fibre() -> hc::Fibre {
+    hc::Fibre::from_pairs(&PARAMETERS, 6, &SOLUTIONS)
 }

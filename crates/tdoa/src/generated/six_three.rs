@@ -2055,6 +2055,6 @@ static SOLUTIONS: [[f64; 2]; 1440] = [
     [0.5323112873770809, 4.614337494417724],
 ];
 /// All solutions for a generic parameter point.
-pub fn fibre() -> hc::fibre::Fibre {
-    hc::fibre::Fibre::from_pairs(&PARAMETERS, 8, &SOLUTIONS)
+pub fn fibre() -> hc::Fibre {
+    hc::Fibre::from_pairs(&PARAMETERS, 8, &SOLUTIONS)
 }

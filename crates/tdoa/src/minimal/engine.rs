@@ -10,19 +10,21 @@ use super::options::{SolveOptions, Start};
 use super::polish::Polisher;
 use super::proofs::{RootProofs, prove};
 use super::real::real_root;
-use super::recover::{Again, BAD_LUCK, Recovery};
+use super::recharted::Recharted;
 use super::scratch;
 use super::solution::{Candidate, MinimalSolution, PathCounts, RootCounts};
 use crate::pseudoranges::Pseudoranges;
-use hc::fibre::Fibre;
-use hc::homotopy::Segment;
-use hc::poly::Lanes8;
+use hc::Monitor;
+use hc::family::{Fibre, FibreTracker};
 use hc::refine::{Refined, Refiner};
-use hc::tracker::{PathEnd, PathResult, PathSet, Tracker};
+use hc::tracker::{PathEnd, PathResult, PathSet};
 use num_complex::Complex64;
 
 /// Turns of the stored fibre, one after the other where paths stay lost: each gives other paths to the same ends.
 const TURNS: [f64; 3] = [0.0, 0.7, -1.1];
+
+/// More lost paths than this tell of a degenerate network rather than of bad luck.
+const BAD_LUCK: usize = 4;
 
 /// Paths tracked at a time where the search stops at the first network that fits: four batches of eight.
 const PART: usize = 32;
@@ -45,13 +47,10 @@ impl<F: Formulation> Engine<F> {
         let stored = F::fibre();
         let start = stored.clone();
         let tracking = Tracking {
-            tracker: Tracker::new(F::system(), &SolveOptions::default().paths.tracker),
-            paths: PathSet::with_capacity(stored.dimension, stored.len()),
-            again: Again::new(&stored),
+            tracker: FibreTracker::new(F::system(), Recharted::default(), &stored),
             stored,
             nearest: Nearest::default(),
             start,
-            segment: Segment::default(),
         };
         let roots = Roots {
             refiner: Refiner::new(F::system()),
@@ -68,6 +67,7 @@ impl<F: Formulation> Engine<F> {
         &mut self,
         measured: &Pseudoranges,
         options: &SolveOptions,
+        monitor: &Monitor,
     ) -> Result<MinimalSolution, SolveError> {
         let size = (measured.receivers(), measured.transmitters());
         assert_eq!(size, (F::RECEIVERS, F::TRANSMITTERS), "size of the matrix");
@@ -78,9 +78,10 @@ impl<F: Formulation> Engine<F> {
         let candidates = Vec::with_capacity(CANDIDATES);
         let mut found =
             Found::<F> { measured, data, options, target, roots, counts: RootCounts::default(), candidates };
+        self.tracking.tracker.set_monitor(monitor);
         let (paths, stopped_early) = match options.start {
             Start::Stored => self.tracking.run(&mut found),
-            Start::Polyhedral => self.tracking.run_polyhedral(&mut found)?,
+            Start::Polyhedral => self.tracking.run_polyhedral(&mut found, monitor)?,
         };
         let Found { counts, mut candidates, .. } = found;
         rank(&mut candidates);
@@ -90,26 +91,23 @@ impl<F: Formulation> Engine<F> {
 
     /// The records of the paths of the last call.
     pub(crate) fn records(&self) -> &[PathResult] {
-        self.tracking.paths.results()
+        self.tracking.tracker.paths().results()
     }
 
     /// Proofs that the complex roots of the last call exist and are distinct.
     pub(crate) fn prove(&self) -> Option<RootProofs> {
-        let ends = self.tracking.paths.iter().filter(|(r, _)| r.end == PathEnd::Success);
+        let ends = self.tracking.tracker.paths().iter().filter(|(r, _)| r.end == PathEnd::Success);
         prove::<F>(&self.target, &ends.map(|(_, x)| x.to_vec()).collect::<Vec<_>>())
     }
 }
 
 /// The paths, and what follows them.
 struct Tracking<F: Formulation> {
-    tracker: Tracker<'static, F::System, Lanes8>,
+    tracker: FibreTracker<'static, F::System, Recharted<F>>,
     stored: Fibre,
     nearest: Nearest,
     /// The stored fibre in the position nearest to the data.
     start: Fibre,
-    segment: Segment,
-    paths: PathSet,
-    again: Again<F>,
 }
 
 impl<F: Formulation> Tracking<F> {
@@ -118,54 +116,49 @@ impl<F: Formulation> Tracking<F> {
     fn run(&mut self, found: &mut Found<'_, F>) -> (PathCounts, bool) {
         let (target, options) = (found.target, found.options);
         let mut retracked = 0;
-        let mut best: Option<(usize, PathSet)> = None;
+        let mut best: Option<(PathCounts, PathSet)> = None;
         for (attempt, turn) in TURNS.into_iter().enumerate() {
             retracked += if attempt > 0 { self.stored.len() } else { 0 };
             self.nearest.find::<F>(&self.stored, target, turn, &mut self.start);
-            let parameters = |p: &[Complex64]| F::parameters(0, p);
-            self.segment.join(&parameters(&self.start.parameters), &parameters(target));
             let in_parts = attempt == 0 && options.first_under.is_some();
-            if in_parts && self.stops_early(found) {
-                return (self.counts(0, 0), true);
+            let size = if in_parts { PART } else { self.start.len() };
+            let enough = |part: &PathSet| in_parts && found.fits_after(part);
+            let (counts, early) = self.tracker.track_until(&self.start, target, &options.paths, size, enough);
+            if early {
+                return (counts, true);
             }
-            let recovery = Recovery::<F> {
-                start: &self.start,
-                segment: &self.segment,
-                target,
-                settings: &options.paths,
-                fallback: options.fallback,
-                tracker: &mut self.tracker,
-                paths: &mut self.paths,
-                again: &mut self.again,
-            };
-            let (lost, again) = recovery.run(in_parts);
-            retracked += again;
-            if attempt == 0 && lost == 0 {
+            retracked += counts.retracked;
+            if attempt == 0 && counts.failed == 0 {
                 best = None;
                 break;
             }
-            if best.as_ref().is_none_or(|(fewest, _)| lost < *fewest) {
-                best = Some((lost, self.paths.clone()));
+            if best.as_ref().is_none_or(|(fewest, _)| counts.failed < fewest.failed) {
+                best = Some((counts, self.tracker.paths().clone()));
             }
             // The roots of a degenerate network no other path reaches either.
-            if lost == 0 || lost > BAD_LUCK {
+            if counts.failed == 0 || counts.failed > BAD_LUCK {
                 break;
             }
         }
-        let failed = best.as_ref().map_or(0, |(lost, _)| *lost);
+        let failed = best.as_ref().map_or(0, |(counts, _)| counts.failed);
         if let Some((_, paths)) = best {
-            self.paths = paths;
+            self.tracker.set_paths(paths);
         }
-        let counts = self.counts(failed, retracked);
+        let counts = PathCounts { retracked, ..self.tracker.counts(failed) };
         found.clear();
-        self.paths.iter().filter(|(r, _)| r.end == PathEnd::Success).for_each(|(_, x)| found.add(x));
+        for (_, x) in self.tracker.paths().iter().filter(|(r, _)| r.end == PathEnd::Success) {
+            found.add(x);
+        }
         found.counts.complex = counts.finite;
         (counts, false)
     }
 
     /// The same from a polyhedral start system: for the data, and where that leaves roots missing through a random member.
-    fn run_polyhedral(&mut self, found: &mut Found<'_, F>) -> Result<(PathCounts, bool), SolveError> {
-        let monitor = &found.options.paths.tracker.monitor;
+    fn run_polyhedral(
+        &mut self,
+        found: &mut Found<'_, F>,
+        monitor: &Monitor,
+    ) -> Result<(PathCounts, bool), SolveError> {
         let direct = scratch::at_data::<F>(found.target, monitor)?;
         let mut spent = direct.paths.retracked;
         if !direct.whole {
@@ -182,41 +175,10 @@ impl<F: Formulation> Tracking<F> {
                 return Ok((PathCounts { retracked: spent + paths.retracked, ..paths }, stopped_early));
             }
         }
-        self.paths.clear(self.stored.dimension);
+        self.tracker.set_paths(PathSet::new(self.stored.dimension));
         direct.fibre.solutions.chunks_exact(self.stored.dimension).for_each(|root| found.add(root));
         found.counts.complex = direct.fibre.len();
         Ok((PathCounts { retracked: spent, ..direct.paths }, false))
-    }
-
-    /// How the paths that are stored have ended.
-    fn counts(&self, failed: usize, retracked: usize) -> PathCounts {
-        let (tracked, at_infinity) = (self.paths.len(), self.paths.count(PathEnd::AtInfinity));
-        let dropped = self.paths.count(PathEnd::Dropped);
-        let finite = tracked - at_infinity - dropped - failed;
-        PathCounts { tracked, finite, at_infinity, failed, dropped, retracked }
-    }
-
-    /// Tracks the paths a part at a time until one gives a physical network that fits; whether one did.
-    fn stops_early(&mut self, found: &mut Found<'_, F>) -> bool {
-        self.tracker.set_options(&found.options.paths.tracker);
-        self.paths.clear(self.start.dimension);
-        let mut from = 0;
-        while from < self.start.len() {
-            let to = (from + PART).min(self.start.len());
-            let before = self.paths.len();
-            self.tracker.track(&self.segment, &self.start.solutions, from..to, &mut self.paths);
-            for (_, x) in self.paths.iter().skip(before).filter(|(r, _)| r.end == PathEnd::Success) {
-                found.counts.complex += 1;
-                found.add(x);
-            }
-            if found.fits() {
-                // Paths that ended otherwise would be tracked again if the search went on.
-                return true;
-            }
-            from = to;
-        }
-        self.paths.sort();
-        false
     }
 }
 
@@ -259,6 +221,15 @@ impl<F: Formulation> Found<'_, F> {
         self.data.restore(&mut candidate.network);
         candidate.residual = candidate.network.rms(self.measured);
         self.candidates.push(candidate);
+    }
+
+    /// Adds the roots of a part of the paths. Returns whether a network is good enough to stop at.
+    fn fits_after(&mut self, part: &PathSet) -> bool {
+        for (_, x) in part.iter().filter(|(r, _)| r.end == PathEnd::Success) {
+            self.counts.complex += 1;
+            self.add(x);
+        }
+        self.fits()
     }
 
     /// Whether a network is good enough to stop at.

@@ -36,7 +36,7 @@ pub enum SolveError {
     /// The polyhedral route failed before any path was tracked.
     #[error("the polyhedral start system: {0}")]
     Polyhedral(String),
-    /// The polyhedral route was stopped through its monitor, `paths.tracker.monitor`.
+    /// The polyhedral route was stopped through its [`Monitor`](hc::Monitor).
     #[error("the solve was cancelled")]
     Cancelled,
     /// A missing measurement.

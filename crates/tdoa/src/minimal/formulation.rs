@@ -2,7 +2,7 @@
 
 use super::linear::LeastSquares;
 use crate::network::Network;
-use hc::fibre::Fibre;
+use hc::Fibre;
 use hc::poly::Evaluate;
 use num_complex::Complex64;
 use smallvec::SmallVec;

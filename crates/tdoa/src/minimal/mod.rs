@@ -28,7 +28,7 @@ mod planar;
 mod polish;
 mod proofs;
 mod real;
-mod recover;
+mod recharted;
 mod scratch;
 mod solution;
 mod solver;
@@ -37,7 +37,7 @@ mod warning;
 
 pub use error::SolveError;
 pub use nodes::Nodes;
-pub use options::{Fallback, SolveOptions, Start};
+pub use options::{SolveOptions, Start};
 pub use proofs::RootProofs;
 pub use solution::{Candidate, MinimalSolution, PathCounts, RootCounts};
 pub use solver::{Solver, solve};

@@ -4,7 +4,7 @@
 //! the stored fibre into others with known solutions. Of all these the one nearest to the data is taken: paths are shorter.
 
 use super::formulation::{Formulation, Free, Point};
-use hc::fibre::Fibre;
+use hc::Fibre;
 use num_complex::Complex64;
 
 /// Scratch space; keeps its memory from call to call.

@@ -1,6 +1,6 @@
 //! Settings of the minimal solvers.
 
-use hc::fibre::FibreOptions;
+use hc::family::FibreOptions;
 
 /// Settings of the minimal solvers.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,24 +20,8 @@ pub struct SolveOptions {
     pub first_under: Option<f64>,
     /// Settings for the paths; `paths.tracker.drop_complex` gives up paths that would hardly become real.
     pub paths: FibreOptions,
-    /// What becomes of paths that fail or jump. Default [`Fallback::OtherCharts`].
-    pub fallback: Fallback,
     /// Where paths start. Default [`Start::Stored`].
     pub start: Start,
-}
-
-/// How paths are tracked again that fail, jump or take too many steps. A chart is the same problem with the nodes in another order. What
-/// each costs and loses is measured by `tdoa experiment charts`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Fallback {
-    /// In the other charts, from where they have broken off.
-    #[default]
-    OtherCharts,
-    /// In the other charts, from the start.
-    OtherChartsFromStart,
-    /// In the same chart, with shorter steps.
-    OneChart,
 }
 
 /// Where the paths of the minimal solvers start.
@@ -63,14 +47,6 @@ impl Default for SolveOptions {
         paths.tracker.beta_tau_last = 0.5;
         // Most paths take about 45 steps. One that takes many more is quicker in another chart.
         paths.tracker.max_steps = 400;
-        SolveOptions {
-            tolerance: 1e-6,
-            near_real: 0.0,
-            polish: true,
-            first_under: None,
-            paths,
-            fallback: Fallback::OtherCharts,
-            start: Start::Stored,
-        }
+        SolveOptions { tolerance: 1e-6, near_real: 0.0, polish: true, first_under: None, paths, start: Start::Stored }
     }
 }

@@ -7,10 +7,8 @@
 use super::error::SolveError;
 use super::formulation::Formulation;
 use super::solution::PathCounts;
-use hc::fibre::Fibre;
-use hc::monitor::Monitor;
 use hc::random::Random;
-use hc::solve::{SolveOptions, Start, solve};
+use hc::{Fibre, Monitor, SolveOptions, Start, solve_watched};
 use num_complex::Complex64;
 
 /// So many random members are tried until all roots of one are found.
@@ -63,10 +61,8 @@ fn roots<F: Formulation>(
     let refused = |error: &dyn std::fmt::Display| SolveError::Polyhedral(error.to_string());
     let family = hc::poly::parse::family(F::FAMILY).map_err(|e| refused(&e))?;
     let system = family.system.at(parameters).map_err(|e| refused(&e))?;
-    let polynomials = system.expand(&Default::default()).map_err(|e| refused(&e))?;
     let mut options = SolveOptions::default();
     options.seed = seed;
-    options.set_monitor(monitor.clone());
     options.start = Start::Polyhedral;
     options.torus_only = true;
     // No member has more isolated roots than the generic one: once as many are found the other paths lead out of the torus.
@@ -77,14 +73,12 @@ fn roots<F: Formulation>(
     options.paths.tracker.max_steps = 1_000;
     options.paths.retries = retries;
     options.restarts = 0;
-    let found = solve(&polynomials, &options).map_err(|e| refused(&e))?;
+    let found = solve_watched(&system, &options, monitor).map_err(|e| refused(&e))?;
     if found.interrupted {
         return Err(SolveError::Cancelled);
     }
-    let regular = found.solutions.iter().filter(|s| !s.singular);
-    let solutions: Vec<Complex64> =
-        regular.flat_map(|s| s.value.iter().map(|&[re, im]| Complex64::new(re, im))).collect();
-    let fibre = Fibre { parameters: parameters.to_vec(), dimension: F::WEIGHTS.len(), solutions };
+    let solutions = found.nonsingular().flat_map(|s| s.value.iter().copied()).collect();
+    let fibre = Fibre::new(parameters.to_vec(), F::WEIGHTS.len(), solutions);
     let missing = family.roots.map_or(0, |known| known.saturating_sub(fibre.len()));
     let mut paths = PathCounts { finite: fibre.len(), dropped: 0, ..found.paths };
     // Special data may have fewer paths than a generic member has roots.

@@ -2,7 +2,7 @@
 
 use super::warning::SolveWarning;
 use crate::network::Network;
-pub use hc::fibre::PathCounts;
+pub use hc::family::PathCounts;
 use serde::Serialize;
 
 /// One network that a minimal solver proposes.

@@ -18,6 +18,7 @@ use super::proofs::RootProofs;
 use super::solution::{Candidate, MinimalSolution, PathCounts, RootCounts};
 use super::subset::{self, Subset};
 use crate::pseudoranges::Pseudoranges;
+use hc::Monitor;
 use hc::tracker::PathResult;
 
 /// Every network that explains the measurements, best first: [`Solver::solve`] with a new solver.
@@ -88,15 +89,28 @@ impl Solver {
     /// # Errors
     /// If the matrix is too small or too large, a measurement is missing, two nodes coincide, or a setting of the tracker is out of range.
     pub fn solve(&mut self, measured: &Pseudoranges, options: &SolveOptions) -> Result<MinimalSolution, SolveError> {
+        self.solve_watched(measured, options, &Monitor::default())
+    }
+
+    /// [`solve`](Self::solve), watched: a cancelled monitor ends it.
+    ///
+    /// # Errors
+    /// As [`solve`](Self::solve), and [`SolveError::Cancelled`] of the polyhedral route.
+    pub fn solve_watched(
+        &mut self,
+        measured: &Pseudoranges,
+        options: &SolveOptions,
+        monitor: &Monitor,
+    ) -> Result<MinimalSolution, SolveError> {
         options.paths.validate()?;
         let (m, n) = (measured.receivers(), measured.transmitters());
         check(measured)?;
         let method = Method::pick(m, n);
-        let mut solution = self.solve_by(method, measured, options)?;
+        let mut solution = self.solve_by(method, measured, options, monitor)?;
         if let Some(other) = method.fallback()
             && solution.candidates.is_empty()
         {
-            solution = self.solve_by(other, measured, options)?;
+            solution = self.solve_by(other, measured, options, monitor)?;
         }
         self.data.take(measured);
         let line = Collinear::find(self.data.parameters(), n, &mut self.squares);
@@ -152,14 +166,15 @@ impl Solver {
         method: Method,
         measured: &Pseudoranges,
         options: &SolveOptions,
+        monitor: &Monitor,
     ) -> Result<MinimalSolution, SolveError> {
         self.last = Some(method);
         let records = &mut self.records;
         match method {
-            Method::SixThree => through(&mut self.six_three, measured, options, records),
-            Method::FiveFour => through(&mut self.five_four, measured, options, records),
-            Method::FourFive => through(&mut self.four_five, measured, options, records),
-            Method::FiveSix => through(&mut self.five_six, measured, options, records),
+            Method::SixThree => through(&mut self.six_three, measured, options, monitor, records),
+            Method::FiveFour => through(&mut self.five_four, measured, options, monitor, records),
+            Method::FourFive => through(&mut self.four_five, measured, options, monitor, records),
+            Method::FiveSix => through(&mut self.five_six, measured, options, monitor, records),
             Method::SevenFour => {
                 records.clear();
                 Ok(seven_four(measured, options))
@@ -173,16 +188,17 @@ fn through<F: Formulation>(
     engine: &mut Option<Engine<F>>,
     measured: &Pseudoranges,
     options: &SolveOptions,
+    monitor: &Monitor,
     records: &mut Vec<PathResult>,
 ) -> Result<MinimalSolution, SolveError> {
     let engine = engine.get_or_insert_with(Engine::new);
     let solution = if (measured.receivers(), measured.transmitters()) == (F::RECEIVERS, F::TRANSMITTERS) {
-        engine.solve(measured, options)?
+        engine.solve(measured, options, monitor)?
     } else {
         let part = subset::best(measured, F::RECEIVERS, F::TRANSMITTERS);
         // Only all measurements together tell which candidate of the part is the network.
         let whole = SolveOptions { first_under: None, ..options.clone() };
-        let solution = engine.solve(&measured.select(&part.receivers, &part.transmitters), &whole)?;
+        let solution = engine.solve(&measured.select(&part.receivers, &part.transmitters), &whole, monitor)?;
         extend(measured, &part, solution, options)
     };
     records.clear();

@@ -5,7 +5,7 @@ use super::reseed::reseed;
 use crate::loss::Loss;
 use crate::network::Network;
 use crate::observations::Observations;
-use hc::monitor::Monitor;
+use hc::Monitor;
 
 /// Steps, rounds and tolerance of a search start. Chosen on nearly planar field recordings (6 x 46, 6 x 75, 6 x 132), with
 /// milder losses (2 and 4 degrees of freedom): many short rounds found the best network more often per time than few

@@ -4,7 +4,7 @@ use crate::generated::four_five as generated;
 use crate::minimal::formulation::{Formulation, Free, Parameters, Point};
 use crate::minimal::linear::LeastSquares;
 use crate::network::Network;
-use hc::fibre::Fibre;
+use hc::Fibre;
 use num_complex::Complex64;
 use num_traits::Num;
 use smallvec::smallvec;

@@ -7,7 +7,7 @@ use crate::generated::five_six;
 use crate::minimal::formulation::{Formulation, Free, Parameters, Point};
 use crate::minimal::linear::LeastSquares;
 use crate::network::Network;
-use hc::fibre::Fibre;
+use hc::Fibre;
 use num_complex::Complex64;
 use smallvec::{SmallVec, smallvec};
 

@@ -6,7 +6,7 @@ use crate::generated::{five_four, six_three};
 use crate::minimal::formulation::{Formulation, Free, Parameters, Point};
 use crate::minimal::linear::LeastSquares;
 use crate::network::Network;
-use hc::fibre::Fibre;
+use hc::Fibre;
 use num_complex::Complex64;
 
 /// Weights of `p1 p2 p3 k l m u v`: `k` and `m` are inverse squares of lengths, `l`, `u` and `v` are ratios.

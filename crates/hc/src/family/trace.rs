@@ -6,8 +6,11 @@
 //! choice only if, no point is missing (Leykin, Rodriguez, Sottile 2018, arXiv:1608.00540, for the bilinear case).
 //! The further points are found by monodromy in the enlarged family, starting from the fibre.
 
-use crate::fibre::{Fibre, FibreOptions, move_fibre, track_fibre};
-use crate::monodromy::{MonodromyOptions, monodromy};
+use super::fibre::{Fibre, FibreOptions};
+use super::monodromy::{MonodromyOptions, fill};
+use super::symmetry::Symmetry;
+use super::track::{move_fibre_watched, track_fibre_watched};
+use crate::monitor::Monitor;
 use crate::random::Random;
 use crate::refine::Refiner;
 use crate::tracker::PathEnd;
@@ -46,6 +49,16 @@ impl TraceTest {
 /// # Panics
 /// If the fibre does not fit the system.
 pub fn trace_test(system: &System, fibre: &Fibre, options: &MonodromyOptions) -> Result<TraceTest, CompileError> {
+    trace_test_watched(system, fibre, options, &Monitor::default())
+}
+
+/// [`trace_test`], watched.
+pub(super) fn trace_test_watched(
+    system: &System,
+    fibre: &Fibre,
+    options: &MonodromyOptions,
+    monitor: &Monitor,
+) -> Result<TraceTest, CompileError> {
     let (n, m) = (system.variables().len(), system.parameters().len());
     let failed = TraceTest { deviation: f64::INFINITY, fibre: 0, further: 0, complete: false };
     let Some(enlarged) = enlarge(system) else { return Ok(failed) };
@@ -66,18 +79,15 @@ pub fn trace_test(system: &System, fibre: &Fibre, options: &MonodromyOptions) ->
         solutions.extend_from_slice(fibre.solution(k));
         solutions.push(Complex64::new(0.0, 0.0));
     }
-    let on_fibre = Fibre { parameters: at(0.0), dimension: n + 1, solutions };
-    let Some(start) = move_fibre(&enlarged, &on_fibre, &at(1.0), &FibreOptions::default()) else { return Ok(failed) };
+    let on_fibre = Fibre::new(at(0.0), n + 1, solutions);
+    let careful = FibreOptions::default();
+    let moved = |fibre: &Fibre, factor: f64| move_fibre_watched(&enlarged, fibre, &at(factor), &careful, monitor);
+    let Some(start) = moved(&on_fibre, 1.0) else { return Ok(failed) };
     let mut search = options.clone();
     search.roots = None;
-    let filled = monodromy(&enlarged, &start, |_, _| true, &search).fibre;
-    let careful = FibreOptions::default();
+    let filled = fill(&enlarged, &start, |_, _| true, &Symmetry::default(), &search, monitor).fibre;
 
-    let (Some(second), Some(third)) =
-        (move_fibre(&enlarged, &filled, &at(2.0), &careful), move_fibre(&enlarged, &filled, &at(3.0), &careful))
-    else {
-        return Ok(failed);
-    };
+    let (Some(second), Some(third)) = (moved(&filled, 2.0), moved(&filled, 3.0)) else { return Ok(failed) };
     let sums = [&filled, &second, &third].map(|fibre| sum(&enlarged, fibre));
     // Each coordinate on its own scale: a few far points would drown the others.
     let deviation = (0..=n)
@@ -90,7 +100,7 @@ pub fn trace_test(system: &System, fibre: &Fibre, options: &MonodromyOptions) ->
         .fold(0.0, f64::max);
 
     // Back on lambda = 0: every point of the curve there must be one of the fibre.
-    let (ends, counts) = track_fibre(&enlarged, &filled, &at(0.0), &careful);
+    let (ends, counts) = track_fibre_watched(&enlarged, &filled, &at(0.0), &careful, monitor);
     let back = ends.iter().filter(|(r, x)| r.end == PathEnd::Success && x[n].norm() < 1e-8).count();
     Ok(TraceTest {
         deviation,

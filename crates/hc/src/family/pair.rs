@@ -3,7 +3,7 @@
 //! Newton's method in unknowns and parameters together, from a random complex point: the equations are underdetermined, so the
 //! correction of least length is taken (Gauss-Newton).
 
-use crate::fibre::Fibre;
+use super::fibre::Fibre;
 use crate::linalg::Lu;
 use crate::random::Random;
 use crate::refine::Refiner;
@@ -45,7 +45,7 @@ pub fn find_pair(
         let parameters = z[n..].to_vec();
         let refined = refiner.refine(&parameters, &z[..n]);
         if refined.accuracy < 1e-12 && refined.condition < 1e8 && accept(&parameters, &refined.point) {
-            return Ok(Some(Fibre { parameters, dimension: n, solutions: refined.point }));
+            return Ok(Some(Fibre::new(parameters, n, refined.point)));
         }
     }
     Ok(None)

@@ -1,6 +1,6 @@
 //! The file form of a fibre: what `hc monodromy` and `cargo xtask codegen` write and read.
 
-use crate::fibre::Fibre;
+use super::fibre::Fibre;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
@@ -11,9 +11,12 @@ pub struct StartFile {
     pub parameters: Vec<[f64; 2]>,
     /// The solutions, one list of `[re, im]` each, in the order of the family's unknowns.
     pub solutions: Vec<Vec<[f64; 2]>>,
-    /// Deviation found by the [trace test](crate::trace), if it was run: rounding error shows that the fibre is whole.
+    /// Deviation found by the [trace test](super::trace_test), if it was run: rounding error shows that the fibre is whole.
+    #[serde(default)]
     pub trace_test: Option<f64>,
-    /// Why the search ended: `roots reached`, `trace`, `no progress` or `interrupted`.
+    /// Why the search ended: `roots reached`, `trace`, `no progress` or `interrupted`; empty where
+    /// nobody says.
+    #[serde(default)]
     pub stopped: String,
 }
 
@@ -102,21 +105,21 @@ impl StartFile {
                 solutions.push(number(z, &|| format!("solution {}, coordinate {}", k + 1, j + 1))?);
             }
         }
-        Ok(Fibre { parameters, dimension, solutions })
+        Ok(Fibre::new(parameters, dimension, solutions))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::{StartFile, StartFileError};
-    use crate::fibre::Fibre;
+    use crate::family::Fibre;
     use crate::random::Random;
     use proptest::prelude::proptest;
 
     #[test]
     fn is_read_back_bit_for_bit() {
         let mut random = Random::new(3, 0);
-        let fibre = Fibre { parameters: random.normals(5), dimension: 2, solutions: random.normals(14) };
+        let fibre = Fibre::new(random.normals(5), 2, random.normals(14));
         let file = StartFile::new(&fibre, Some(1.5e-13), "roots reached");
         let again = StartFile::from_json(&file.to_json()).unwrap();
         assert_eq!(again, file);
@@ -125,7 +128,7 @@ mod tests {
 
     #[test]
     fn says_which_solution_is_ragged() {
-        let text = r#"{"parameters": [], "solutions": [[[1, 0], [2, 0]], [[1, 0]]], "stopped": "trace"}"#;
+        let text = r#"{"parameters": [], "solutions": [[[1, 0], [2, 0]], [[1, 0]]]}"#;
         let error = StartFile::from_json(text).unwrap().fibre().unwrap_err();
         assert_eq!(error, StartFileError::Ragged { index: 2, expected: 2, found: 1 });
     }

@@ -1,0 +1,216 @@
+//! A parameter family, ready to be tracked.
+
+use super::error::FamilyError;
+use super::fibre::Fibre;
+use super::monodromy::{Monodromy, MonodromyOptions, fill};
+use super::pair::find_pair;
+use super::symmetry::Symmetry;
+use super::targets::Targets;
+use super::trace::{TraceTest, trace_test_watched};
+use crate::distinct::relative_distance;
+use crate::monitor::Monitor;
+use num_complex::Complex64;
+use poly::{Evaluate, Interpreter, Isa, System};
+use std::str::FromStr;
+
+/// Values of this size and below count as zero where a family demands that something does not vanish.
+const VANISHES: f64 = 1e-9;
+
+/// Relative distance below which the image of a solution is taken for another solution.
+const SAME: f64 = 1e-8;
+
+/// A parameter family, compiled: its equations, what must not vanish at its solutions, and its
+/// symmetries.
+///
+/// ```
+/// use hc::{Family, MonodromyOptions};
+///
+/// let family: Family = r#"
+///     name = "circle and line"
+///     unknowns = ["x", "y"]
+///     parameters = ["r", "a"]
+///     equations = ["x^2 + y^2 - r^2", "y - a*x"]
+///     symmetry = [["-x", "-y"]]
+/// "#.parse()?;
+/// let found = family.monodromy(&MonodromyOptions::new().roots(2))?;
+/// let targets: Vec<[f64; 2]> = (1..=1000).map(|k| [k as f64, 0.75]).collect();
+/// for (solutions, target) in family.track(&found.fibre, &targets).run()?.iter().zip(&targets) {
+///     assert!(solutions.real_solutions().all(|x| (x[0].abs() - 0.8 * target[0]).abs() < 1e-9));
+/// }
+/// # Ok::<(), hc::FamilyError>(())
+/// ```
+#[derive(Debug)]
+pub struct Family {
+    pub(super) given: poly::Family,
+    pub(super) program: Interpreter,
+    nonzero: Interpreter,
+    pub(super) symmetry: Symmetry,
+}
+
+impl Family {
+    /// Compiles a family.
+    ///
+    /// # Errors
+    /// If a formula does not compile or the equations are not square.
+    pub fn new(family: poly::Family) -> Result<Family, FamilyError> {
+        let (program, nonzero) = (family.system.compile()?, family.nonzero.compile()?);
+        let (equations, unknowns) = (program.equations(), program.variables());
+        if equations != unknowns || unknowns == 0 {
+            return Err(FamilyError::NotSquare { equations, unknowns });
+        }
+        if let Some(k) = family.symmetry.iter().position(|map| map.len() != unknowns) {
+            return Err(FamilyError::Symmetry { map: k + 1, found: family.symmetry[k].len(), unknowns });
+        }
+        let symmetry = Symmetry::new(&family.symmetry)?;
+        Ok(Family { given: family, program, nonzero, symmetry })
+    }
+
+    /// A family of equations in these unknowns and parameters; [`poly::Family`] can have more.
+    ///
+    /// # Errors
+    /// If an equation does not parse, or as for [`new`](Self::new).
+    pub fn from_formulas<N: AsRef<str>, P: AsRef<str>, S: AsRef<str>>(
+        unknowns: &[N],
+        parameters: &[P],
+        formulas: &[S],
+    ) -> Result<Family, FamilyError> {
+        Family::new(poly::Family::from_formulas(unknowns, parameters, formulas)?)
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.given.name
+    }
+
+    /// The equations.
+    pub fn system(&self) -> &System {
+        &self.given.system
+    }
+
+    /// The number of solutions for generic parameters, where the family states it.
+    pub fn roots(&self) -> Option<usize> {
+        self.given.roots
+    }
+
+    /// The maps of the unknowns, one formula an unknown, that take solutions to solutions.
+    pub fn symmetry(&self) -> &[System] {
+        &self.given.symmetry
+    }
+
+    /// The equations as a program, for the lower layers of this crate.
+    pub fn program(&self) -> &Interpreter {
+        &self.program
+    }
+
+    /// Whether none of the factors that the family declares nonzero vanishes at the solution `x` (one
+    /// entry an unknown) for the parameters `p` (one entry a parameter).
+    pub fn accepts(&self, p: &[Complex64], x: &[Complex64]) -> bool {
+        let mut memory = self.nonzero.memory(Isa::Portable);
+        let mut values = vec![Complex64::new(0.0, 0.0); self.nonzero.equations()];
+        self.nonzero.values(&mut memory, x, p, &mut values);
+        values.iter().all(|z| z.norm() > VANISHES)
+    }
+
+    /// Checks that a fibre has the family's numbers of parameters and unknowns.
+    ///
+    /// # Errors
+    /// If it has not.
+    pub fn check(&self, fibre: &Fibre) -> Result<(), FamilyError> {
+        let (parameters, unknowns) = (self.program.parameters(), self.program.variables());
+        let (found_parameters, found_unknowns) = (fibre.parameters.len(), fibre.dimension);
+        if (found_parameters, found_unknowns) == (parameters, unknowns) {
+            return Ok(());
+        }
+        Err(FamilyError::Misfit { found_parameters, found_unknowns, parameters, unknowns })
+    }
+
+    /// The fibre with one solution of each orbit noted as representative, where the family has symmetries:
+    /// these alone are then tracked.
+    #[must_use]
+    pub fn folded(&self, fibre: Fibre) -> Fibre {
+        if self.symmetry.is_trivial() || fibre.representatives.is_some() {
+            return fibre;
+        }
+        let mut known = vec![false; fibre.len()];
+        let mut representatives = Vec::new();
+        for k in 0..fibre.len() {
+            if known[k] {
+                continue;
+            }
+            representatives.push(k);
+            let orbit = self.symmetry.orbit(&fibre.parameters, fibre.solution(k), SAME);
+            for (j, known) in known.iter_mut().enumerate() {
+                *known |= orbit.iter().any(|x| relative_distance(x, fibre.solution(j)) <= SAME);
+            }
+        }
+        Fibre { representatives: Some(representatives), ..fibre }
+    }
+
+    /// A first solution, for some generic parameters; the same for the same seed.
+    ///
+    /// # Errors
+    /// If no regular solution is found that the family accepts.
+    pub fn find_pair(&self, seed: u64) -> Result<Fibre, FamilyError> {
+        find_pair(self.system(), |p, x| self.accepts(p, x), seed)?.ok_or(FamilyError::NoPair)
+    }
+
+    /// All solutions for some generic parameters: a first pair, and what loops in parameter space make
+    /// of it. The number of roots that the family states ends the search, unless the options have one.
+    ///
+    /// # Errors
+    /// If no first solution is found.
+    pub fn monodromy(&self, options: &MonodromyOptions) -> Result<Monodromy, FamilyError> {
+        let first = self.find_pair(options.seed)?;
+        self.complete(&first, options, &Monitor::default())
+    }
+
+    /// All solutions for the parameters of `first`, which has one or several of them; a cancelled
+    /// monitor ends the search.
+    ///
+    /// # Errors
+    /// If `first` is of another family, or an option is out of range.
+    pub fn complete(
+        &self,
+        first: &Fibre,
+        options: &MonodromyOptions,
+        monitor: &Monitor,
+    ) -> Result<Monodromy, FamilyError> {
+        self.check(first)?;
+        options.fibre.validate()?;
+        let options = MonodromyOptions { roots: options.roots.or(self.roots()), ..options.clone() };
+        Ok(fill(&self.program, first, |p, x| self.accepts(p, x), &self.symmetry, &options, monitor))
+    }
+
+    /// The [trace test](super::trace) of a fibre: whether it is whole.
+    ///
+    /// # Errors
+    /// If the fibre is of another family, or the enlarged family of the test does not compile.
+    pub fn trace_test(
+        &self,
+        fibre: &Fibre,
+        options: &MonodromyOptions,
+        monitor: &Monitor,
+    ) -> Result<TraceTest, FamilyError> {
+        self.check(fibre)?;
+        Ok(trace_test_watched(self.system(), fibre, options, monitor)?)
+    }
+
+    /// The solutions for many parameter points, from those of a fibre: see [`Targets`] for what can be
+    /// asked for, [`Targets::run`] for the result.
+    pub fn track<'a, T, Z>(&'a self, fibre: &'a Fibre, targets: &[T]) -> Targets<'a>
+    where
+        T: AsRef<[Z]>,
+        Z: Copy + Into<Complex64>,
+    {
+        Targets::new(self, fibre, targets.iter().map(|p| p.as_ref().iter().map(|&z| z.into()).collect()).collect())
+    }
+}
+
+/// From TOML.
+impl FromStr for Family {
+    type Err = FamilyError;
+
+    fn from_str(text: &str) -> Result<Family, FamilyError> {
+        Family::new(poly::parse::family(text)?)
+    }
+}

@@ -1,0 +1,63 @@
+//! Why a family cannot be used.
+
+use crate::tracker::OptionError;
+use poly::{CompileError, ParseError};
+
+/// Why a family cannot be tracked.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FamilyError {
+    /// The text is no family.
+    #[error(transparent)]
+    Parse(#[from] ParseError),
+    /// The formulas do not compile.
+    #[error(transparent)]
+    Compile(#[from] CompileError),
+    /// A setting outside its range.
+    #[error(transparent)]
+    Option(#[from] OptionError),
+    /// Not as many equations as unknowns, or none.
+    #[error("{equations} equations in {unknowns} unknowns; as many equations as unknowns are needed, and at least one")]
+    NotSquare {
+        /// Number of equations.
+        equations: usize,
+        /// Number of unknowns.
+        unknowns: usize,
+    },
+    /// A symmetry with another number of formulas than there are unknowns.
+    #[error("symmetry {map} has {found} formulas; it needs one for each of the {unknowns} unknowns")]
+    Symmetry {
+        /// The map, from 1.
+        map: usize,
+        /// Its formulas.
+        found: usize,
+        /// Unknowns of the family.
+        unknowns: usize,
+    },
+    /// A fibre of another family.
+    #[error(
+        "{found_parameters} parameters and solutions of {found_unknowns} coordinates, but the family has {parameters} parameters and \
+         {unknowns} unknowns"
+    )]
+    Misfit {
+        /// Parameters of the fibre.
+        found_parameters: usize,
+        /// Coordinates of its solutions.
+        found_unknowns: usize,
+        /// Parameters of the family.
+        parameters: usize,
+        /// Unknowns of the family.
+        unknowns: usize,
+    },
+    /// A target that does not fit.
+    #[error("target {target}: {parameters} finite parameters are needed")]
+    Target {
+        /// The target, from 1.
+        target: usize,
+        /// Parameters of the family.
+        parameters: usize,
+    },
+    /// No first solution.
+    #[error("no regular solution was found for any parameters; give a pair of parameters and solution")]
+    NoPair,
+}

@@ -1,0 +1,112 @@
+//! Fibres: all solutions of a family for one parameter point.
+
+use crate::tracker::{OptionError, TrackerOptions};
+use num_complex::Complex64;
+use serde::Serialize;
+
+/// The solutions of a family for one parameter point.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Fibre {
+    /// The parameter point.
+    pub parameters: Vec<Complex64>,
+    /// Number of unknowns `n`.
+    pub dimension: usize,
+    /// The solutions, `n` coordinates each, one after the other.
+    pub solutions: Vec<Complex64>,
+    /// Numbers of the solutions that stand for the others, one of each orbit, where the family is
+    /// known to be [symmetric](crate::Family::symmetry); `None` where each stands for itself.
+    pub representatives: Option<Vec<usize>>,
+}
+
+impl Fibre {
+    /// The fibre with these solutions, `dimension` coordinates each, one after the other.
+    pub fn new(parameters: Vec<Complex64>, dimension: usize, solutions: Vec<Complex64>) -> Fibre {
+        Fibre { parameters, dimension, solutions, representatives: None }
+    }
+
+    /// The fibre of pairs `[re, im]`, as generated modules store them: the parameters, and the
+    /// solutions one after the other.
+    pub fn from_pairs(parameters: &[[f64; 2]], dimension: usize, solutions: &[[f64; 2]]) -> Fibre {
+        let numbers = |pairs: &[[f64; 2]]| pairs.iter().map(|&[re, im]| Complex64::new(re, im)).collect();
+        Fibre::new(numbers(parameters), dimension, numbers(solutions))
+    }
+
+    /// Number of solutions.
+    pub fn len(&self) -> usize {
+        self.solutions.len().checked_div(self.dimension).unwrap_or(0)
+    }
+
+    /// Whether there are no solutions.
+    pub fn is_empty(&self) -> bool {
+        self.solutions.is_empty()
+    }
+
+    /// The `k`-th solution.
+    ///
+    /// # Panics
+    /// If there are not so many.
+    pub fn solution(&self, k: usize) -> &[Complex64] {
+        &self.solutions[k * self.dimension..(k + 1) * self.dimension]
+    }
+
+    /// The solutions, one after the other.
+    pub fn iter(&self) -> impl Iterator<Item = &[Complex64]> {
+        (0..self.len()).map(|k| self.solution(k))
+    }
+
+    /// The solutions that are tracked: the representatives of orbits, or all.
+    pub(crate) fn tracked(&self) -> Fibre {
+        let Some(which) = &self.representatives else { return self.clone() };
+        let solutions = which.iter().flat_map(|&k| self.solution(k)).copied().collect();
+        Fibre::new(self.parameters.clone(), self.dimension, solutions)
+    }
+}
+
+/// Settings for tracking whole fibres.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct FibreOptions {
+    /// Settings of the tracker in the first pass.
+    pub tracker: TrackerOptions,
+    /// How often jumped and failed paths are tracked again, each time with steps half as long.
+    /// Default 4.
+    pub retries: u32,
+    /// Relative distance below which two endpoints are one point. Default 1e-8.
+    pub coincidence: f64,
+}
+
+impl Default for FibreOptions {
+    fn default() -> Self {
+        FibreOptions { tracker: TrackerOptions::default(), retries: 4, coincidence: 1e-8 }
+    }
+}
+
+impl FibreOptions {
+    /// Checks the numbers.
+    ///
+    /// # Errors
+    /// The first that is outside its range.
+    pub fn validate(&self) -> Result<(), OptionError> {
+        self.tracker.validate()?;
+        OptionError::positive(&[("coincidence", self.coincidence)])
+    }
+}
+
+/// How paths ended; `tracked` is the sum of the next four.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct PathCounts {
+    /// Paths tracked, one a start solution.
+    pub tracked: usize,
+    /// Paths that ended at a regular solution of their own.
+    pub finite: usize,
+    /// Paths that are shown to diverge.
+    pub at_infinity: usize,
+    /// Paths that ended otherwise, those included that still share their end with another.
+    pub failed: usize,
+    /// Paths given up on request: because they would hardly become real
+    /// ([`TrackerOptions::drop_complex`]), or since all solutions are known
+    /// ([`SolveOptions::known`](crate::SolveOptions::known)).
+    pub dropped: usize,
+    /// How many tracks were run a second time or more often.
+    pub retracked: usize,
+}

@@ -1,0 +1,256 @@
+//! Filling a fibre: all solutions of a family for one generic parameter point, from a single one.
+//!
+//! Parameters go round random triangles; solutions come back as other solutions of the same irreducible component
+//! (Duff, Hill, Jensen, Lee, Leykin, Sommars 2018, arXiv:1609.08722). That a fibre is whole is never guessed: it is told by a known count or by
+//! the [trace test](super::trace_test), and the result says which.
+
+use super::fibre::{Fibre, FibreOptions};
+use super::symmetry::Symmetry;
+use super::track::track_fibre_watched;
+use crate::distinct::{coincidences, relative_distance};
+use crate::monitor::{Monitor, Stage};
+use crate::random::Random;
+use crate::refine::Refiner;
+use crate::tracker::PathEnd;
+use num_complex::Complex64;
+use poly::Evaluate;
+
+/// Accuracy to which new solutions must be known.
+const ACCURATE: f64 = 1e-12;
+
+/// Settings of [`monodromy`].
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct MonodromyOptions {
+    /// Seed of the loops. Default 0.
+    pub seed: u64,
+    /// The known number of solutions, if any: reaching it ends the search. Default `None`.
+    pub roots: Option<usize>,
+    /// Loops without a new solution after which the search ends, provided that they had at least 64 chances (loops times solutions)
+    /// to bring one. Default 8.
+    pub patience: usize,
+    /// Solutions at most; a fibre that exceeds it is given up. Default 100,000.
+    pub max_solutions: usize,
+    /// Settings for the paths. By default difficult paths are given up early (2,000 steps, one retry): what they would have found, easier
+    /// paths of later loops find.
+    pub fibre: FibreOptions,
+}
+
+impl MonodromyOptions {
+    /// The defaults.
+    pub fn new() -> Self {
+        MonodromyOptions::default()
+    }
+
+    /// Sets [`seed`](Self::seed).
+    #[must_use]
+    pub fn seed(self, seed: u64) -> Self {
+        MonodromyOptions { seed, ..self }
+    }
+
+    /// Sets [`roots`](Self::roots).
+    #[must_use]
+    pub fn roots(self, roots: usize) -> Self {
+        MonodromyOptions { roots: Some(roots), ..self }
+    }
+
+    /// Sets [`patience`](Self::patience).
+    #[must_use]
+    pub fn patience(self, patience: usize) -> Self {
+        MonodromyOptions { patience, ..self }
+    }
+
+    /// Sets [`max_solutions`](Self::max_solutions).
+    #[must_use]
+    pub fn max_solutions(self, max_solutions: usize) -> Self {
+        MonodromyOptions { max_solutions, ..self }
+    }
+
+    /// Sets [`fibre`](Self::fibre).
+    #[must_use]
+    pub fn fibre(self, fibre: FibreOptions) -> Self {
+        MonodromyOptions { fibre, ..self }
+    }
+}
+
+impl Default for MonodromyOptions {
+    fn default() -> Self {
+        let mut fibre = FibreOptions::default();
+        fibre.tracker.max_steps = 2_000;
+        fibre.retries = 1;
+        MonodromyOptions { seed: 0, roots: None, patience: 8, max_solutions: 100_000, fibre }
+    }
+}
+
+/// Why the search for solutions ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Stop {
+    /// The known number of solutions was reached.
+    RootsReached,
+    /// The last loops brought nothing new. Not a proof: see the trace test.
+    NoProgress,
+    /// More solutions than allowed.
+    TooMany,
+    /// The monitor was cancelled: these are the solutions found so far.
+    Cancelled,
+}
+
+/// What monodromy found.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Monodromy {
+    /// The fibre, refined.
+    pub fibre: Fibre,
+    /// Why the search ended.
+    pub stop: Stop,
+    /// Loops gone.
+    pub loops: usize,
+    /// Paths tracked.
+    pub paths: usize,
+}
+
+/// Completes `start` (one or several solutions for generic parameters) by loops in parameter space.
+///
+/// `accept` is asked about every new solution; solutions that it refuses (degenerate ones) are dropped.
+///
+/// # Panics
+/// If the system is not square or the fibre does not fit it.
+pub fn monodromy<E: Evaluate>(
+    system: &E,
+    start: &Fibre,
+    accept: impl Fn(&[Complex64], &[Complex64]) -> bool,
+    options: &MonodromyOptions,
+) -> Monodromy {
+    fill(system, start, accept, &Symmetry::default(), options, &Monitor::default())
+}
+
+/// [`monodromy`], watched; of a symmetric family one solution of each orbit goes round the loops.
+pub(super) fn fill<E: Evaluate>(
+    system: &E,
+    start: &Fibre,
+    accept: impl Fn(&[Complex64], &[Complex64]) -> bool,
+    symmetry: &Symmetry,
+    options: &MonodromyOptions,
+    monitor: &Monitor,
+) -> Monodromy {
+    let mut filling = Filling { system, symmetry, options, monitor, fibre: start.clone() };
+    if !symmetry.is_trivial() {
+        filling.fibre.solutions.clear();
+        filling.fibre.representatives = Some(Vec::new());
+        filling.add(start.solutions.chunks_exact(start.dimension.max(1)));
+    }
+    let (mut loops, mut idle, mut paths) = (0, 0, 0);
+    let stop = loop {
+        if monitor.is_cancelled() {
+            break Stop::Cancelled;
+        }
+        let known = filling.fibre.len();
+        if options.roots.is_some_and(|roots| known >= roots) {
+            break Stop::RootsReached;
+        }
+        if idle >= options.patience && idle * known >= 64 {
+            break Stop::NoProgress;
+        }
+        if known > options.max_solutions {
+            break Stop::TooMany;
+        }
+        let mut random = Random::new(options.seed, loops as u64);
+        let corners = [0, 1].map(|_| random.normals(system.parameters()));
+        paths += filling.go_round(&corners, &accept);
+        loops += 1;
+        idle = if filling.fibre.len() > known { 0 } else { idle + 1 };
+    };
+    Monodromy { fibre: filling.fibre, stop, loops, paths }
+}
+
+/// A fibre that is being filled.
+struct Filling<'a, E> {
+    system: &'a E,
+    symmetry: &'a Symmetry,
+    options: &'a MonodromyOptions,
+    monitor: &'a Monitor,
+    fibre: Fibre,
+}
+
+impl<E: Evaluate> Filling<'_, E> {
+    /// Tracks the fibre round one triangle and adds what is new. Returns the number of paths.
+    fn go_round(
+        &mut self,
+        corners: &[Vec<Complex64>; 2],
+        accept: &impl Fn(&[Complex64], &[Complex64]) -> bool,
+    ) -> usize {
+        let n = self.fibre.dimension;
+        let mut moving = self.fibre.tracked();
+        let paths = 3 * moving.len();
+        self.monitor.enter(Stage::Loop, paths as u64);
+        for corner in [&corners[0], &corners[1], &self.fibre.parameters] {
+            let (ends, _) = track_fibre_watched(self.system, &moving, corner, &self.options.fibre, self.monitor);
+            // Paths that share an end have been counted as failed; whichever is true is found by a later loop.
+            let regular = ends.iter().filter(|(r, _)| r.end == PathEnd::Success);
+            let mut solutions: Vec<Complex64> = regular.flat_map(|(_, x)| x.iter().copied()).collect();
+            let drop = repeated(&solutions, n, 0, self.options.fibre.coincidence);
+            remove(&mut solutions, n, &drop);
+            moving = Fibre::new(corner.clone(), n, solutions);
+        }
+        let mut refiner = Refiner::new(self.system);
+        let mut new = Vec::new();
+        for x in moving.solutions.chunks_exact(n.max(1)) {
+            let refined = refiner.refine(&self.fibre.parameters, x);
+            if refined.accuracy < ACCURATE && accept(&self.fibre.parameters, &refined.point) {
+                new.push(refined.point);
+            }
+        }
+        self.add(new.iter().map(Vec::as_slice));
+        paths
+    }
+
+    /// Adds points that are not known yet, each with its orbit.
+    fn add<'x>(&mut self, points: impl Iterator<Item = &'x [Complex64]>) {
+        let (n, known, tolerance) = (self.fibre.dimension, self.fibre.len(), self.options.fibre.coincidence);
+        let mut first = Vec::new();
+        let mut refiner = Refiner::new(self.system);
+        for x in points {
+            if self.symmetry.is_trivial() {
+                self.fibre.solutions.extend_from_slice(x);
+                continue;
+            }
+            first.push(self.fibre.len());
+            self.fibre.solutions.extend_from_slice(x);
+            for image in self.symmetry.orbit(&self.fibre.parameters, x, tolerance).into_iter().skip(1) {
+                // What is no solution is no image under a symmetry.
+                let refined = refiner.refine(&self.fibre.parameters, &image);
+                if refined.accuracy < ACCURATE && relative_distance(&refined.point, &image) < tolerance {
+                    self.fibre.solutions.extend(refined.point);
+                }
+            }
+        }
+        let drop = repeated(&self.fibre.solutions, n, known, tolerance);
+        remove(&mut self.fibre.solutions, n, &drop);
+        if let Some(representatives) = &mut self.fibre.representatives {
+            // Numbers after those before them that are dropped.
+            let before = |k: usize| drop[..k].iter().filter(|&&dropped| dropped).count();
+            representatives.extend(first.into_iter().filter(|&k| !drop[k]).map(|k| k - before(k)));
+        }
+    }
+}
+
+/// Which points after the first `keep` coincide with an earlier one.
+fn repeated(solutions: &[Complex64], n: usize, keep: usize, tolerance: f64) -> Vec<bool> {
+    let mut drop = vec![false; solutions.len() / n.max(1)];
+    for group in coincidences(solutions.chunks_exact(n.max(1)).enumerate(), tolerance) {
+        for &k in group[1..].iter().filter(|&&k| k >= keep) {
+            drop[k] = true;
+        }
+    }
+    drop
+}
+
+/// Drops points.
+fn remove(solutions: &mut Vec<Complex64>, n: usize, drop: &[bool]) {
+    let mut k = 0;
+    solutions.retain(|_| {
+        k += 1;
+        !drop[(k - 1) / n]
+    });
+}

@@ -1,0 +1,46 @@
+//! Symmetries of a family: maps that take solutions to solutions, for the same parameters.
+
+use crate::distinct::relative_distance;
+use num_complex::Complex64;
+use poly::{CompileError, Evaluate, Interpreter, Isa, System};
+
+/// Points that an orbit may have; maps that make more are taken for no symmetry of finite order.
+const LARGEST_ORBIT: usize = 10_000;
+
+/// The group that some maps of the unknowns generate, compiled.
+#[derive(Debug, Default)]
+pub(super) struct Symmetry {
+    maps: Vec<Interpreter>,
+}
+
+impl Symmetry {
+    /// The group of maps that are given by one formula an unknown.
+    pub(super) fn new(maps: &[System]) -> Result<Symmetry, CompileError> {
+        Ok(Symmetry { maps: maps.iter().map(System::compile).collect::<Result<_, _>>()? })
+    }
+
+    /// Whether there are no maps.
+    pub(super) fn is_trivial(&self) -> bool {
+        self.maps.is_empty()
+    }
+
+    /// The orbit of the solution `x` for the parameters `p`, `x` first. Points within the relative
+    /// distance `tolerance` are one.
+    pub(super) fn orbit(&self, p: &[Complex64], x: &[Complex64], tolerance: f64) -> Vec<Vec<Complex64>> {
+        let mut orbit = vec![x.to_vec()];
+        let mut next = 0;
+        while next < orbit.len() && orbit.len() < LARGEST_ORBIT {
+            for map in &self.maps {
+                let mut memory = map.memory(Isa::Portable);
+                let mut image = vec![Complex64::new(0.0, 0.0); map.equations()];
+                map.values(&mut memory, &orbit[next], p, &mut image);
+                let known = orbit.iter().any(|y| relative_distance(y, &image) <= tolerance);
+                if !known && image.iter().all(|z| z.is_finite()) {
+                    orbit.push(image);
+                }
+            }
+            next += 1;
+        }
+        orbit
+    }
+}

@@ -1,0 +1,135 @@
+//! One fibre to many targets.
+
+use super::compiled::Family;
+use super::error::FamilyError;
+use super::fibre::Fibre;
+use crate::monitor::Monitor;
+use crate::solve::{Solution, Solutions, SolveOptions, solve_member};
+use crate::tracker::Trackers;
+use num_complex::Complex64;
+use rayon::prelude::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
+
+/// Targets that are tracked before it is asked whether enough are done: the answer depends on no
+/// number of threads.
+const BLOCK: usize = 256;
+
+/// Many targets of a family, about to be tracked in parallel; made by [`Family::track`].
+#[must_use = "nothing is tracked before `run` or `transform`"]
+pub struct Targets<'a> {
+    how: How<'a>,
+    targets: Vec<Vec<Complex64>>,
+    enough: Option<Box<dyn FnMut(usize, &Solutions) -> bool + Send + 'a>>,
+}
+
+/// How each target is tracked.
+struct How<'a> {
+    family: &'a Family,
+    fibre: &'a Fibre,
+    options: SolveOptions,
+    only_real: bool,
+    monitor: Monitor,
+}
+
+impl<'a> Targets<'a> {
+    pub(super) fn new(family: &'a Family, fibre: &'a Fibre, targets: Vec<Vec<Complex64>>) -> Targets<'a> {
+        let (options, monitor) = (SolveOptions::default(), Monitor::default());
+        Targets { how: How { family, fibre, options, only_real: false, monitor }, targets, enough: None }
+    }
+
+    /// Settings. Start systems have no meaning here. Default [`SolveOptions::default`].
+    pub fn options(self, options: &SolveOptions) -> Self {
+        Targets { how: How { options: options.clone(), ..self.how }, ..self }
+    }
+
+    /// Leaves only the real solutions in each result; counts are of all paths. Default false.
+    pub fn only_real(self, only_real: bool) -> Self {
+        Targets { how: How { only_real, ..self.how }, ..self }
+    }
+
+    /// Lets somebody watch, and stop, the work.
+    pub fn watched(self, monitor: &Monitor) -> Self {
+        Targets { how: How { monitor: monitor.clone(), ..self.how }, ..self }
+    }
+
+    /// Stops after the first target, in their order, of which `enough` says so; it is called with the
+    /// number of the target, from 0, and its result.
+    pub fn until(self, enough: impl FnMut(usize, &Solutions) -> bool + Send + 'a) -> Self {
+        Targets { enough: Some(Box::new(enough)), ..self }
+    }
+
+    /// Tracks, and returns a result for each target, in order; fewer if the work was cancelled or
+    /// stopped early.
+    ///
+    /// # Errors
+    /// If the fibre or a target does not fit the family, an option is out of range, or certificates
+    /// are asked for that there cannot be.
+    pub fn run(self) -> Result<Vec<Solutions>, FamilyError> {
+        self.transform(|_, solutions| solutions)
+    }
+
+    /// [`run`](Self::run), with what `transform` makes of each result: it is called on many threads
+    /// with the number of the target, from 0, and its solutions.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub fn transform<T: Send>(self, transform: impl Fn(usize, Solutions) -> T + Sync) -> Result<Vec<T>, FamilyError> {
+        let Targets { how, targets, mut enough } = self;
+        how.family.check(how.fibre)?;
+        how.options.validate()?;
+        let parameters = how.fibre.parameters.len();
+        let unusable = |target: &Vec<Complex64>| target.len() != parameters || target.iter().any(|z| !z.is_finite());
+        if let Some(k) = targets.iter().position(unusable) {
+            return Err(FamilyError::Target { target: k + 1, parameters });
+        }
+        let tracked = how.fibre.tracked();
+        let trackers = Trackers::new(&how.family.program);
+        let mut results = Vec::with_capacity(targets.len());
+        let numbers: Vec<usize> = (0..targets.len()).collect();
+        for block in numbers.chunks(BLOCK) {
+            let solved: Vec<Option<Solutions>> =
+                block.par_iter().map(|&k| how.solve(&trackers, &tracked, &targets[k])).collect();
+            // What is done before the first that was not begun.
+            let mut done: Vec<(usize, Solutions)> =
+                block.iter().copied().zip(solved.into_iter().map_while(|found| found)).collect();
+            let whole = done.len() == block.len();
+            let last = enough.as_mut().and_then(|enough| done.iter().position(|(k, found)| enough(*k, found)));
+            done.truncate(last.map_or(done.len(), |last| last + 1));
+            results.extend(done.into_par_iter().map(|(k, found)| transform(k, found)).collect::<Vec<T>>());
+            if last.is_some() || !whole {
+                break;
+            }
+        }
+        Ok(results)
+    }
+}
+
+impl How<'_> {
+    /// The solutions for one target; `None` if the work was cancelled before.
+    fn solve(
+        &self,
+        trackers: &Trackers<'_, poly::Interpreter>,
+        tracked: &Fibre,
+        target: &[Complex64],
+    ) -> Option<Solutions> {
+        if self.monitor.is_cancelled() {
+            return None;
+        }
+        let family = self.family;
+        let mut found = solve_member(family.system(), trackers, tracked, target, &self.options, &self.monitor);
+        if self.fibre.representatives.is_some() {
+            let orbit = |s: &Solution| {
+                let points = family.symmetry.orbit(target, &s.value, self.options.paths.coincidence);
+                points.into_iter().map(|value| Solution { value, ..s.clone() }).collect::<Vec<_>>()
+            };
+            found.solutions = found.solutions.iter().flat_map(orbit).collect();
+        }
+        if self.options.certify {
+            // A family is square: what cannot be certified says so itself.
+            let _ = found.certify();
+        }
+        if self.only_real {
+            found.solutions.retain(|s| s.real);
+        }
+        Some(found)
+    }
+}

@@ -1,0 +1,48 @@
+//! The members of a parameter family, from its stored fibre.
+
+use super::classify::classify;
+use super::excess::Excess;
+use super::options::SolveOptions;
+use super::paths::{Route, follow};
+use super::solutions::{Member, Solutions};
+use crate::family::Fibre;
+use crate::monitor::Monitor;
+use crate::tracker::Trackers;
+use num_complex::Complex64;
+use num_traits::ToPrimitive;
+use poly::{Evaluate, Polynomial, SparseSystem, System};
+
+/// The isolated solutions of the member of `family` at the parameters `target`, from those at the
+/// parameters of `fibre`, all of which are tracked. `trackers` are of the family, compiled.
+pub(crate) fn solve_member<E: Evaluate>(
+    family: &System,
+    trackers: &Trackers<'_, E>,
+    fibre: &Fibre,
+    target: &[Complex64],
+    options: &SolveOptions,
+    monitor: &Monitor,
+) -> Solutions {
+    let excess = Excess::none();
+    let route = Route { trackers, start: fibre, count: fibre.len(), target, excess: &excess, options, monitor };
+    let ends = follow(route, false);
+    let member = if !ends.singular.is_empty() { expanded(family, target) } else { None };
+    let member = member.as_ref().map(|(system, coefficients)| (system, &coefficients[..]));
+    let found = classify(member, &ends, &excess, options.paths.coincidence);
+    let interrupted = monitor.is_cancelled() && found.lost > 0;
+    Solutions {
+        variables: family.variables().to_vec(),
+        member: Member::new(family, target),
+        start_systems: 1,
+        interrupted,
+        ..found.solutions(fibre.len(), ends.retracked)
+    }
+}
+
+/// The polynomials of a member as supports and coefficients.
+fn expanded(family: &System, target: &[Complex64]) -> Option<(SparseSystem, Vec<Complex64>)> {
+    let polynomials = family.at(target).ok()?.expand(&Default::default()).ok()?;
+    let supports: Vec<Vec<Vec<i32>>> = polynomials.iter().map(Polynomial::support).collect();
+    let terms = polynomials.iter().flat_map(|p| p.terms());
+    let numbers = terms.map(|(_, c)| Some(Complex64::new(c.re.to_f64()?, c.im.to_f64()?)).filter(|z| z.is_finite()));
+    Some((SparseSystem::new(family.variables().len(), &supports).ok()?, numbers.collect::<Option<_>>()?))
+}

@@ -1,0 +1,161 @@
+//! Settings of a solve.
+
+use crate::endgame::EndgameOptions;
+use crate::family::FibreOptions;
+use crate::tracker::{OptionError, TrackerOptions};
+use serde::Serialize;
+use std::fmt;
+
+/// Which start system is used.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Start {
+    /// The one with the least work. Polyhedral never has more paths than the others, but two stages instead of one: where another has
+    /// hardly more (an eighth) that is tried first, and abandoned for polyhedral if more than an eighth of its paths do not end
+    /// at regular solutions, or if one is lost. Systems whose mixed cells do not fit into 126 bits are left to the others too.
+    #[default]
+    Auto,
+    /// Polyhedral: as many paths as the mixed volume.
+    Polyhedral,
+    /// Products of linear forms in the unknowns of given groups ([`SolveOptions::groups`]): as many paths as the multihomogeneous
+    /// Bezout number, and no stage before them.
+    Multihomogeneous,
+    /// Total degree: as many paths as the product of the degrees, and no stage before them. Its coefficients are so special that
+    /// paths may go to infinity in degenerate ways.
+    TotalDegree,
+}
+
+/// The name in words.
+impl fmt::Display for Start {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Start::Auto => "automatic",
+            Start::Polyhedral => "polyhedral",
+            Start::Multihomogeneous => "multihomogeneous",
+            Start::TotalDegree => "total degree",
+        })
+    }
+}
+
+/// Settings of [`solve`](crate::solve), which checks them.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct SolveOptions {
+    /// Seed of everything random. Default 0.
+    pub seed: u64,
+    /// The start system. Default [`Start::Auto`].
+    pub start: Start,
+    /// Groups of unknowns, by their indices, for [`Start::Multihomogeneous`]; every unknown belongs to just one. Default none.
+    pub groups: Vec<Vec<usize>>,
+    /// Whether solutions with zero coordinates are left out, with the paths that lead to them. Default false.
+    pub torus_only: bool,
+    /// More paths than this are refused. Default 2^24.
+    pub max_paths: u64,
+    /// Settings of both stages. Default [`TrackerOptions::fast`]: paths that jump are found by their ends and tracked again.
+    pub paths: FibreOptions,
+    /// Settings for the ends of paths that are not regular.
+    pub endgame: EndgameOptions,
+    /// How many regular solutions there are, if that is known, for instance of a family. Once so many are found, paths without an
+    /// end are left where they are and count as dropped; as long as paths share an end, these alone are tracked again. Default `None`:
+    /// every path is taken to its end.
+    pub known: Option<usize>,
+    /// How often everything is done again from another start system while paths are lost. Default 2.
+    pub restarts: u32,
+    /// Whether regular solutions are certified ([`Solutions::certify`](super::Solutions::certify)),
+    /// which systems of as many equations as unknowns allow. Default false.
+    pub certify: bool,
+}
+
+impl Default for SolveOptions {
+    fn default() -> Self {
+        SolveOptions {
+            seed: 0,
+            start: Start::Auto,
+            groups: Vec::new(),
+            torus_only: false,
+            max_paths: 1 << 24,
+            paths: FibreOptions { tracker: TrackerOptions::fast(), ..FibreOptions::default() },
+            endgame: EndgameOptions::default(),
+            known: None,
+            restarts: 2,
+            certify: false,
+        }
+    }
+}
+
+impl SolveOptions {
+    /// The defaults.
+    pub fn new() -> SolveOptions {
+        SolveOptions::default()
+    }
+
+    /// Checks the numbers.
+    ///
+    /// # Errors
+    /// The first that is outside its range.
+    pub fn validate(&self) -> Result<(), OptionError> {
+        self.paths.validate()?;
+        self.endgame.validate()
+    }
+
+    /// Sets [`seed`](Self::seed).
+    #[must_use]
+    pub fn seed(self, seed: u64) -> Self {
+        SolveOptions { seed, ..self }
+    }
+
+    /// Sets [`start`](Self::start).
+    #[must_use]
+    pub fn start(self, start: Start) -> Self {
+        SolveOptions { start, ..self }
+    }
+
+    /// Sets [`groups`](Self::groups).
+    #[must_use]
+    pub fn groups(self, groups: Vec<Vec<usize>>) -> Self {
+        SolveOptions { groups, ..self }
+    }
+
+    /// Sets [`torus_only`](Self::torus_only).
+    #[must_use]
+    pub fn torus_only(self, torus_only: bool) -> Self {
+        SolveOptions { torus_only, ..self }
+    }
+
+    /// Sets [`max_paths`](Self::max_paths).
+    #[must_use]
+    pub fn max_paths(self, max_paths: u64) -> Self {
+        SolveOptions { max_paths, ..self }
+    }
+
+    /// Sets [`paths`](Self::paths).
+    #[must_use]
+    pub fn paths(self, paths: FibreOptions) -> Self {
+        SolveOptions { paths, ..self }
+    }
+
+    /// Sets [`endgame`](Self::endgame).
+    #[must_use]
+    pub fn endgame(self, endgame: EndgameOptions) -> Self {
+        SolveOptions { endgame, ..self }
+    }
+
+    /// Sets [`known`](Self::known).
+    #[must_use]
+    pub fn known(self, known: usize) -> Self {
+        SolveOptions { known: Some(known), ..self }
+    }
+
+    /// Sets [`restarts`](Self::restarts).
+    #[must_use]
+    pub fn restarts(self, restarts: u32) -> Self {
+        SolveOptions { restarts, ..self }
+    }
+
+    /// Sets [`certify`](Self::certify).
+    #[must_use]
+    pub fn certify(self, certify: bool) -> Self {
+        SolveOptions { certify, ..self }
+    }
+}

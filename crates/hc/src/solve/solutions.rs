@@ -1,0 +1,255 @@
+//! What a solve has found.
+
+use super::options::Start;
+use super::warning::Warning;
+use crate::certify::{Certificates, CertifyError, CertifyOptions, Reality, certify};
+use crate::family::PathCounts;
+use num_complex::Complex64;
+use poly::{ComplexInterval, System};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::sync::Arc;
+
+/// Real solutions that a summary shows.
+const LISTED: usize = 20;
+
+/// An isolated solution.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Solution {
+    /// The coordinates, in the order of the unknowns.
+    pub value: Vec<Complex64>,
+    /// Multiplicity: the number of paths that end here.
+    pub multiplicity: usize,
+    /// The largest winding number of these paths.
+    pub winding_number: usize,
+    /// Whether the Jacobian is singular here, to working precision.
+    pub singular: bool,
+    /// Whether all imaginary parts are below 1e-10 of the largest coordinate (or of one); 1e-7 where singular.
+    pub real: bool,
+    /// Largest residual, relative to its row of the Jacobian times the sizes of the coordinates; where that is singular,
+    /// relative to the sizes of the terms of the equation.
+    pub residual: f64,
+    /// Condition number of the scaled Jacobian.
+    pub condition: f64,
+    /// Whether the solution is certified; `None` where that was not asked for.
+    pub certified: Option<bool>,
+}
+
+/// A direction in which paths go to infinity.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
+pub struct Direction {
+    /// Unknown `j` is of order `t^(valuations[j] / denominator)` as `t` falls to zero.
+    pub valuations: Vec<i64>,
+    /// The winding number.
+    pub denominator: usize,
+    /// Number of paths.
+    pub paths: usize,
+}
+
+/// The system that was solved, and its parameters: what certificates are about.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Member(Option<Arc<(System, Vec<ComplexInterval>)>>);
+
+impl Member {
+    pub(super) fn new(system: &System, parameters: &[Complex64]) -> Member {
+        let parameters = parameters.iter().map(|&p| ComplexInterval::point(p)).collect();
+        Member(Some(Arc::new((system.clone(), parameters))))
+    }
+}
+
+/// Results are compared by what was found.
+impl PartialEq for Member {
+    fn eq(&self, _: &Member) -> bool {
+        true
+    }
+}
+
+/// What [`solve`](crate::solve) has found: the distinct isolated solutions, and what became of the paths.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Solutions {
+    /// Names of the unknowns, in the order of the coordinates.
+    #[serde(skip)]
+    pub variables: Vec<String>,
+    #[serde(skip)]
+    pub(super) member: Member,
+    /// The start system that was used, never [`Start::Auto`]; `None` where paths came from a stored fibre or did not begin.
+    pub start: Option<Start>,
+    /// The mixed volume of the supports, the origin included unless only the torus was asked for; `None` where it was not needed.
+    pub mixed_volume: Option<u64>,
+    /// The product of the degrees: the paths of total degree. `None` if exponents are negative or the number does not fit.
+    pub bezout_number: Option<u64>,
+    /// The multihomogeneous Bezout number of the groups that were given; `None` as above, or without groups.
+    pub multihomogeneous_number: Option<u64>,
+    /// How the paths ended: `finite` at solutions, singular ones and such on components and in excess included.
+    pub paths: PathCounts,
+    /// Paths that ended on components of positive dimension.
+    pub on_components: usize,
+    /// Points on such components, one or more on each.
+    pub component_points: Vec<Vec<Complex64>>,
+    /// Paths that ended at points that were not asked for: those that solve only random combinations of more equations than
+    /// unknowns, and those outside the torus where that was asked for.
+    pub excess: usize,
+    /// Where the paths at infinity went.
+    pub directions: Vec<Direction>,
+    /// Start systems that were used: more than one if paths were lost.
+    pub start_systems: u32,
+    /// Whether the work was cancelled: the list is then partial, and paths not tracked count as failed. In JSON `partial`.
+    #[serde(rename = "partial")]
+    pub interrupted: bool,
+    /// The distinct isolated solutions, regular ones first.
+    pub solutions: Vec<Solution>,
+}
+
+impl Solutions {
+    /// Number of distinct isolated solutions.
+    pub fn len(&self) -> usize {
+        self.solutions.len()
+    }
+
+    /// Whether no isolated solution was found.
+    pub fn is_empty(&self) -> bool {
+        self.solutions.is_empty()
+    }
+
+    /// The solutions, regular ones first.
+    pub fn iter(&self) -> std::slice::Iter<'_, Solution> {
+        self.solutions.iter()
+    }
+
+    /// The real solutions ([`Solution::real`]), as real numbers.
+    pub fn real_solutions(&self) -> impl Iterator<Item = Vec<f64>> {
+        self.iter().filter(|s| s.real).map(|s| s.value.iter().map(|z| z.re).collect())
+    }
+
+    /// The solutions at which the Jacobian is not singular.
+    pub fn nonsingular(&self) -> impl Iterator<Item = &Solution> {
+        self.iter().filter(|s| !s.singular)
+    }
+
+    /// The solutions that are real to within `tolerance`: all imaginary parts are at most this share of
+    /// the largest coordinate, or of one.
+    pub fn at(&self, tolerance: f64) -> impl Iterator<Item = &Solution> {
+        self.iter().filter(move |s| is_real(&s.value, tolerance))
+    }
+
+    /// Proves of each regular solution that it exists, is one of its own, and whether it is real
+    /// ([`certify`](mod@crate::certify)); notes it in [`Solution::certified`], and what is proved in
+    /// [`Solution::real`] and [`Solution::singular`].
+    ///
+    /// # Errors
+    /// If the system has more equations than unknowns.
+    pub fn certify(&mut self) -> Result<Certificates, CertifyError> {
+        let points: Vec<Vec<Complex64>> = self.iter().map(|s| s.value.clone()).collect();
+        let Some(member) = &self.member.0 else { return Ok(Certificates::default()) };
+        let found = certify(&member.0, &member.1, &points, &CertifyOptions::default())?;
+        for (k, solution) in self.solutions.iter_mut().enumerate() {
+            let unseparated = found.unseparated.iter().any(|pair| pair.contains(&k));
+            let proof = found.points[k].as_ref().ok().filter(|_| found.duplicate_of[k].is_none() && !unseparated);
+            solution.certified = Some(proof.is_some());
+            // What is certified is regular, however badly conditioned.
+            solution.singular &= proof.is_none();
+            match proof.map(|p| p.reality) {
+                Some(Reality::Real) => solution.real = true,
+                Some(Reality::NotReal) => solution.real = false,
+                Some(Reality::Undecided) | None => {}
+            }
+        }
+        Ok(found)
+    }
+
+    /// Regular solutions for which certification was asked and failed.
+    pub fn uncertified(&self) -> usize {
+        self.nonsingular().filter(|s| s.certified == Some(false)).count()
+    }
+
+    /// What a reader of the list must know.
+    pub fn warnings(&self) -> Vec<Warning> {
+        let mut warnings = Vec::new();
+        if self.interrupted {
+            warnings.push(Warning::Partial);
+        }
+        if self.on_components > 0 {
+            warnings.push(Warning::Components { paths: self.on_components, points: self.component_points.len() });
+        }
+        if self.excess > 0 {
+            warnings.push(Warning::Excess { paths: self.excess });
+        }
+        if self.start_systems > 1 {
+            warnings.push(Warning::Restarted { start_systems: self.start_systems });
+        }
+        if self.paths.failed > 0 {
+            warnings.push(Warning::Lost { paths: self.paths.failed });
+        }
+        if self.uncertified() > 0 {
+            warnings.push(Warning::Uncertified { solutions: self.uncertified() });
+        }
+        warnings
+    }
+
+    /// The numbers of paths of the start systems that were not chosen, as far as they are known.
+    fn others(&self, chosen: Start) -> String {
+        let all = [
+            (Start::Polyhedral, self.mixed_volume),
+            (Start::Multihomogeneous, self.multihomogeneous_number),
+            (Start::TotalDegree, self.bezout_number),
+        ];
+        let others = all.into_iter().filter(|(start, _)| *start != chosen);
+        let known: Vec<String> = others.filter_map(|(start, paths)| Some(format!("{start}: {}", paths?))).collect();
+        if known.is_empty() { String::new() } else { format!("; {}", known.join(", ")) }
+    }
+}
+
+impl<'a> IntoIterator for &'a Solutions {
+    type Item = &'a Solution;
+    type IntoIter = std::slice::Iter<'a, Solution>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter()
+    }
+}
+
+/// One screen: numbers of solutions and paths, warnings, and the first real solutions.
+impl fmt::Display for Solutions {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (paths, real) = (&self.paths, self.iter().filter(|s| s.real).count());
+        writeln!(f, "{} isolated solutions, {real} real", self.len())?;
+        let mut multiplicities: BTreeMap<usize, usize> = BTreeMap::new();
+        for solution in self.iter().filter(|s| s.singular) {
+            *multiplicities.entry(solution.multiplicity).or_default() += 1;
+        }
+        for (multiplicity, count) in multiplicities {
+            writeln!(f, "  {count} of them singular, of multiplicity {multiplicity}")?;
+        }
+        if self.iter().any(|s| s.certified.is_some()) {
+            let certified = self.iter().filter(|s| s.certified == Some(true)).count();
+            writeln!(f, "  {certified} of them certified")?;
+        }
+        let start = self.start.map_or(String::new(), |start| format!(" ({start}{})", self.others(start)));
+        writeln!(
+            f,
+            "{} paths{start}: {} finite, {} at infinity, {} failed, {} tracked again",
+            paths.tracked, paths.finite, paths.at_infinity, paths.failed, paths.retracked
+        )?;
+        for warning in self.warnings() {
+            writeln!(f, "warning: {warning}")?;
+        }
+        for x in self.real_solutions().take(LISTED) {
+            let values = self.variables.iter().zip(x).map(|(name, x)| format!("{name} = {x:.12}"));
+            writeln!(f, "  {}", values.collect::<Vec<_>>().join(", "))?;
+        }
+        if real > LISTED {
+            writeln!(f, "  and {} real ones more", real - LISTED)?;
+        }
+        Ok(())
+    }
+}
+
+/// Whether all imaginary parts are at most this share of the largest coordinate, or of one.
+pub(super) fn is_real(point: &[Complex64], tolerance: f64) -> bool {
+    let size = point.iter().map(|z| z.norm()).fold(1.0, f64::max);
+    point.iter().all(|z| z.im.abs() <= tolerance * size)
+}

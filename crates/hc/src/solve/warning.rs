@@ -1,0 +1,42 @@
+//! What a reader of a list of solutions must know.
+
+/// A way in which a list of solutions may be less than whole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Warning {
+    /// The work was cancelled.
+    #[error("interrupted: this is a partial result")]
+    Partial,
+    /// There are solutions that are not isolated.
+    #[error("there are solution sets of positive dimension: {paths} paths end on them, at {points} points")]
+    Components {
+        /// Paths that end on them.
+        paths: usize,
+        /// Points at which they do.
+        points: usize,
+    },
+    /// Finite ends that are no solutions.
+    #[error("{paths} finite ends are left out: they do not solve all equations, or lie outside the torus")]
+    Excess {
+        /// Paths that end there.
+        paths: usize,
+    },
+    /// Paths were lost from the first start system.
+    #[error("{start_systems} start systems were used, since paths were lost")]
+    Restarted {
+        /// Start systems that were used.
+        start_systems: u32,
+    },
+    /// Paths whose ends are not known.
+    #[error("the list may be incomplete: it is not known where {paths} paths end")]
+    Lost {
+        /// Number of paths.
+        paths: usize,
+    },
+    /// Regular solutions that could not be certified.
+    #[error("{solutions} regular solutions are not certified")]
+    Uncertified {
+        /// Number of solutions.
+        solutions: usize,
+    },
+}
