@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use tdoa::{Layout, SimulateOptions, simulate};
+use tdoa::{Layout, ReceiverFault, SimulateOptions, simulate};
 
 use crate::Failure;
 use crate::output;
@@ -32,6 +32,25 @@ pub(crate) struct Arguments {
     /// Positions uniform in a room of WIDTHxHEIGHT metres, or `normal` for standard normal positions and offsets.
     #[arg(long, default_value = "10x10")]
     layout: String,
+    /// How receivers stand in the room: anywhere, one after the other along WIDTH, or at the points of a grid.
+    #[arg(long, value_enum, default_value = "anywhere")]
+    shape: Shape,
+    /// Each transmitter is heard by this many receivers, the nearest ones; by all if not given.
+    #[arg(long, value_name = "RECEIVERS")]
+    hearing: Option<usize>,
+    /// Share of measurements that come by a detour, 0 to 1; their number is rounded.
+    #[arg(long, default_value_t = 0.0)]
+    detours: f64,
+    /// Mean length of a detour, metres; lengths are exponentially distributed.
+    #[arg(long, default_value_t = 1.0)]
+    detour_size: f64,
+    /// An error of the first receiver in all its measurements: `delay=METRES`, `drift=METRES` from the first transmitter to the last one, or
+    /// `move=METRES` after half of the transmitters.
+    #[arg(long, value_name = "KIND=METRES")]
+    fault: Option<String>,
+    /// Standard deviation of a constant delay of each receiver, metres.
+    #[arg(long, default_value_t = 0.0)]
+    delays: f64,
     /// Seed of the random numbers.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -43,6 +62,14 @@ pub(crate) struct Arguments {
     output: PathBuf,
 }
 
+/// How receivers stand in the room.
+#[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
+enum Shape {
+    Anywhere,
+    Chain,
+    Grid,
+}
+
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut options = SimulateOptions::default();
     options.receivers = arguments.receivers;
@@ -51,7 +78,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     options.outliers = arguments.outliers;
     options.outlier_size = arguments.outlier_size;
     options.missing = arguments.missing;
-    options.layout = layout(&arguments.layout)?;
+    options.layout = layout(&arguments.layout, arguments.shape)?;
+    options.hearing = arguments.hearing;
+    options.detours = arguments.detours;
+    options.detour_size = arguments.detour_size;
+    options.fault = arguments.fault.as_deref().map(fault).transpose()?;
+    options.delays = arguments.delays;
     options.seed = arguments.seed;
     let simulation = crate::on_threads(arguments.threads, || simulate(&options))?.map_err(Failure::unusable)?;
     let measured = &simulation.pseudoranges;
@@ -104,14 +136,29 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     output::print(&text)
 }
 
-fn layout(text: &str) -> Result<Layout, Failure> {
-    if text == "normal" {
+fn layout(text: &str, shape: Shape) -> Result<Layout, Failure> {
+    if text == "normal" && shape == Shape::Anywhere {
         return Ok(Layout::Normal);
     }
     let sides = text.split_once('x').and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
-    match sides {
-        Some((width, height)) => Ok(Layout::Room { width, height }),
-        None => Err(Failure::Unusable(format!("--layout must be normal or WIDTHxHEIGHT in metres, not {text:?}"))),
+    match (sides, shape) {
+        (Some((width, height)), Shape::Anywhere) => Ok(Layout::Room { width, height }),
+        (Some((length, width)), Shape::Chain) => Ok(Layout::Chain { length, width }),
+        (Some((width, height)), Shape::Grid) => Ok(Layout::Grid { width, height }),
+        (None, Shape::Anywhere) => {
+            Err(Failure::Unusable(format!("--layout must be normal or WIDTHxHEIGHT in metres, not {text:?}")))
+        }
+        (None, _) => Err(Failure::Unusable(format!("--shape needs --layout WIDTHxHEIGHT in metres, not {text:?}"))),
+    }
+}
+
+fn fault(text: &str) -> Result<ReceiverFault, Failure> {
+    let parts = text.split_once('=').and_then(|(kind, size)| Some((kind, size.parse().ok()?)));
+    match parts {
+        Some(("delay", size)) => Ok(ReceiverFault::Delay(size)),
+        Some(("drift", size)) => Ok(ReceiverFault::Drift(size)),
+        Some(("move", size)) => Ok(ReceiverFault::Move(size)),
+        _ => Err(Failure::Unusable(format!("--fault must be delay=METRES, drift=METRES or move=METRES, not {text:?}"))),
     }
 }
 

@@ -66,4 +66,4 @@ pub use minimal::{Candidate, MinimalSolution, PathCounts, RootCounts};
 pub use network::Network;
 pub use pseudoranges::{PseudorangeError, Pseudoranges};
 pub use refine::PartialNetwork;
-pub use simulate::{Layout, SimulateError, SimulateOptions, Simulation, simulate};
+pub use simulate::{Layout, ReceiverFault, SimulateError, SimulateOptions, Simulation, simulate};

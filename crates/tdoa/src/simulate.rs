@@ -2,11 +2,12 @@
 
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
-use rand_distr::StandardNormal;
+use rand_distr::{Exp1, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 use thiserror::Error;
 
 use crate::network::Network;
+use crate::plane::distance;
 use crate::pseudoranges::{PseudorangeError, Pseudoranges};
 
 /// Where the nodes of a random network lie.
@@ -22,6 +23,43 @@ pub enum Layout {
         /// Extent in y, metres.
         height: f64,
     },
+    /// Receivers evenly along a road, up to a third of their spacing, and anywhere across it; transmitters uniform on it.
+    Chain {
+        /// Its length, metres.
+        length: f64,
+        /// Its width, metres.
+        width: f64,
+    },
+    /// Receivers at the points of a square grid over a rectangle, up to a third of their spacing; transmitters uniform in it.
+    Grid {
+        /// Extent in x, metres.
+        width: f64,
+        /// Extent in y, metres.
+        height: f64,
+    },
+}
+
+impl Layout {
+    /// Extent in x and y, metres; that of standard normal positions is 1.
+    fn extent(self) -> [f64; 2] {
+        match self {
+            Layout::Normal => [1.0, 1.0],
+            Layout::Room { width, height } | Layout::Grid { width, height } => [width, height],
+            Layout::Chain { length, width } => [length, width],
+        }
+    }
+}
+
+/// An error that all measurements of one receiver have in common.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum ReceiverFault {
+    /// All its measurements are this much too long, metres.
+    Delay(f64),
+    /// Its clock drifts: the error grows evenly from zero at the first transmitter to this at the last one, metres.
+    Drift(f64),
+    /// It is moved by this in x, metres, after half of the transmitters.
+    Move(f64),
 }
 
 /// What to simulate.
@@ -42,6 +80,16 @@ pub struct SimulateOptions {
     pub outlier_size: f64,
     /// Share of the measurements, 0 to 1, that are missing; their number is rounded. Default 0.
     pub missing: f64,
+    /// Each transmitter is heard by this many receivers, the nearest ones. Default `None`: by all.
+    pub hearing: Option<usize>,
+    /// Share of the measurements, 0 to 1, that come by a detour; their number is rounded. Default 0.
+    pub detours: f64,
+    /// Detours are longer by an exponentially distributed length of this mean, metres. Default 1.
+    pub detour_size: f64,
+    /// Errors of the first receiver alone. Default `None`.
+    pub fault: Option<ReceiverFault>,
+    /// Standard deviation of a constant error of each receiver, metres. Default 0.
+    pub delays: f64,
     /// Seed of the random numbers. Default 0.
     pub seed: u64,
 }
@@ -56,6 +104,11 @@ impl Default for SimulateOptions {
             outliers: 0.0,
             outlier_size: 10.0,
             missing: 0.0,
+            hearing: None,
+            detours: 0.0,
+            detour_size: 1.0,
+            fault: None,
+            delays: 0.0,
             seed: 0,
         }
     }
@@ -119,15 +172,27 @@ pub fn simulate(options: &SimulateOptions) -> Result<Simulation, SimulateError> 
     for value in &mut values {
         *value += options.noise * rng.sample::<f64, _>(StandardNormal);
     }
-    let mut order: Vec<usize> = (0..cells).collect();
+    spoil(&mut values, &network, options, &mut rng);
+    let mut order = audible(&network, options.hearing);
+    for (k, value) in values.iter_mut().enumerate() {
+        if order.binary_search(&k).is_err() {
+            *value = f64::NAN;
+        }
+    }
     order.shuffle(&mut rng);
     // Missing cells come first so that a share of outliers means outliers that are there to be seen.
-    let missing = ((options.missing * cells as f64).round() as usize).min(cells);
-    let outlying = ((options.outliers * cells as f64).round() as usize).min(cells - missing);
+    let share = |share: f64| (share * order.len() as f64).round() as usize;
+    let missing = share(options.missing).min(order.len());
+    let outlying = share(options.outliers).min(order.len() - missing);
+    let detours = share(options.detours).min(order.len() - missing - outlying);
     for &k in &order[..missing] {
         values[k] = f64::NAN;
     }
     let mut outliers = vec![false; cells];
+    for &k in &order[missing + outlying..missing + outlying + detours] {
+        values[k] += options.detour_size * rng.sample::<f64, _>(Exp1);
+        outliers[k] = true;
+    }
     for &k in &order[missing..missing + outlying] {
         values[k] += options.outlier_size * rng.random_range(-1.0..=1.0);
         outliers[k] = true;
@@ -136,31 +201,86 @@ pub fn simulate(options: &SimulateOptions) -> Result<Simulation, SimulateError> 
 }
 
 fn random_network(m: usize, n: usize, layout: Layout, rng: &mut Pcg64Mcg) -> Network {
-    let mut point = || match layout {
+    let [width, height] = layout.extent();
+    // The grid's points a row and rows.
+    let across = ((m as f64 * width / height).sqrt().round() as usize).clamp(1, m);
+    let rows = m.div_ceil(across);
+    let point = |rng: &mut Pcg64Mcg| match layout {
         Layout::Normal => [rng.sample(StandardNormal), rng.sample(StandardNormal)],
-        Layout::Room { width, height } => [width * rng.random::<f64>(), height * rng.random::<f64>()],
+        _ => [width * rng.random::<f64>(), height * rng.random::<f64>()],
     };
-    let receivers = (0..m).map(|_| point()).collect();
-    let transmitters = (0..n).map(|_| point()).collect();
+    let off = |rng: &mut Pcg64Mcg| 0.5 + rng.random_range(-1.0 / 3.0..=1.0 / 3.0);
+    let receiver = |i: usize, rng: &mut Pcg64Mcg| match layout {
+        Layout::Normal | Layout::Room { .. } => point(rng),
+        Layout::Chain { .. } => [width * (i as f64 + off(rng)) / m as f64, height * rng.random::<f64>()],
+        Layout::Grid { .. } => {
+            let (column, row) = ((i % across) as f64, (i / across) as f64);
+            [width * (column + off(rng)) / across as f64, height * (row + off(rng)) / rows as f64]
+        }
+    };
+    let receivers = (0..m).map(|i| receiver(i, rng)).collect();
+    let transmitters = (0..n).map(|_| point(rng)).collect();
     let offsets = (0..n).map(|_| match layout {
         Layout::Normal => rng.sample(StandardNormal),
-        Layout::Room { width, height } => width.hypot(height) * rng.random_range(-1.0..=1.0),
+        _ => width.hypot(height) * rng.random_range(-1.0..=1.0),
     });
     Network { receivers, transmitters, offsets: offsets.collect() }
+}
+
+/// Adds the errors that whole receivers have.
+fn spoil(values: &mut [f64], network: &Network, options: &SimulateOptions, rng: &mut Pcg64Mcg) {
+    let n = network.transmitters.len();
+    for j in 0..n {
+        values[j] += match options.fault {
+            None => 0.0,
+            Some(ReceiverFault::Delay(delay)) => delay,
+            Some(ReceiverFault::Drift(total)) => total * j as f64 / (n.max(2) - 1) as f64,
+            Some(ReceiverFault::Move(_)) if j < n / 2 => 0.0,
+            Some(ReceiverFault::Move(by)) => {
+                let [x, y] = network.receivers[0];
+                distance([x + by, y], network.transmitters[j]) - network.distance(0, j)
+            }
+        };
+    }
+    if options.delays > 0.0 {
+        for row in values.chunks_exact_mut(n) {
+            let delay = options.delays * rng.sample::<f64, _>(StandardNormal);
+            row.iter_mut().for_each(|value| *value += delay);
+        }
+    }
+}
+
+/// The cells, row-major, of transmitters and the receivers that hear them, in ascending order.
+fn audible(network: &Network, hearing: Option<usize>) -> Vec<usize> {
+    let (m, n) = (network.receivers.len(), network.transmitters.len());
+    let Some(hearing) = hearing.filter(|&hearing| hearing < m) else { return (0..m * n).collect() };
+    let mut cells = Vec::with_capacity(hearing * n);
+    let mut order: Vec<usize> = (0..m).collect();
+    for j in 0..n {
+        order.sort_by(|&a, &b| network.distance(a, j).total_cmp(&network.distance(b, j)));
+        cells.extend(order[..hearing].iter().map(|i| i * n + j));
+    }
+    cells.sort_unstable();
+    cells
 }
 
 fn check(options: &SimulateOptions) -> Result<(), SimulateError> {
     let fraction = "between 0 and 1";
     let size = "finite and not negative";
-    let (width, height) = match options.layout {
-        Layout::Normal => (1.0, 1.0),
-        Layout::Room { width, height } => (width, height),
+    let [width, height] = options.layout.extent();
+    let fault = match options.fault {
+        None => 0.0,
+        Some(ReceiverFault::Delay(size) | ReceiverFault::Drift(size) | ReceiverFault::Move(size)) => size,
     };
     let checks = [
         ("the share of outliers", fraction, options.outliers, (0.0..=1.0).contains(&options.outliers)),
         ("the share of missing measurements", fraction, options.missing, (0.0..=1.0).contains(&options.missing)),
         ("the noise", size, options.noise, (0.0..1e9).contains(&options.noise)),
         ("the size of outliers", size, options.outlier_size, (0.0..1e9).contains(&options.outlier_size)),
+        ("the share of detours", fraction, options.detours, (0.0..=1.0).contains(&options.detours)),
+        ("the size of detours", size, options.detour_size, (0.0..1e9).contains(&options.detour_size)),
+        ("the deviation of delays", size, options.delays, (0.0..1e9).contains(&options.delays)),
+        ("the first receiver's error", "finite and below 1e9 m", fault, fault.abs() < 1e9),
         ("the room's width", "positive and at most 1e9 m", width, width > 0.0 && width <= 1e9),
         ("the room's height", "positive and at most 1e9 m", height, height > 0.0 && height <= 1e9),
     ];
@@ -186,6 +306,53 @@ mod tests {
         for (residual, outlier) in residuals.iter().zip(&simulation.outliers) {
             assert!(residual.is_nan() || (residual.abs() > 1e-9) == *outlier);
         }
+    }
+
+    #[test]
+    fn a_transmitter_is_heard_by_the_nearest_receivers() {
+        for layout in [
+            Layout::Chain { length: 1000.0, width: 50.0 },
+            Layout::Grid { width: 1000.0, height: 1000.0 },
+            SimulateOptions::default().layout,
+        ] {
+            let options =
+                SimulateOptions { receivers: 17, transmitters: 30, hearing: Some(6), layout, ..Default::default() };
+            let simulation = simulate(&options).unwrap();
+            let (network, measured) = (&simulation.network, &simulation.pseudoranges);
+            for j in 0..30 {
+                let (heard, silent): (Vec<usize>, Vec<usize>) = (0..17).partition(|&i| measured.get(i, j).is_some());
+                let farthest = heard.iter().map(|&i| network.distance(i, j)).fold(0.0, f64::max);
+                assert_eq!(heard.len(), 6);
+                assert!(silent.iter().all(|&i| network.distance(i, j) >= farthest));
+            }
+        }
+    }
+
+    #[test]
+    fn faults_are_those_of_the_first_receiver() {
+        for (fault, first, last) in [
+            (ReceiverFault::Delay(0.3), Some(0.3), Some(0.3)),
+            (ReceiverFault::Drift(0.4), Some(0.0), Some(0.4)),
+            (ReceiverFault::Move(1.0), Some(0.0), None),
+        ] {
+            let simulation = simulate(&SimulateOptions { fault: Some(fault), ..Default::default() }).unwrap();
+            let residuals = simulation.network.residuals(&simulation.pseudoranges);
+            assert!(residuals[12..].iter().all(|e| e.abs() < 1e-12));
+            for (found, expected) in [(residuals[0], first), (residuals[11], last)] {
+                assert!(expected.is_none_or(|expected| (found - expected).abs() < 1e-12), "{fault:?}: {found}");
+            }
+            // The triangle inequality bounds what a move changes.
+            assert!(residuals[..12].iter().all(|e| e.abs() <= 1.0 + 1e-12));
+        }
+    }
+
+    #[test]
+    fn detours_only_lengthen() {
+        let options = SimulateOptions { detours: 0.25, detour_size: 0.5, ..Default::default() };
+        let simulation = simulate(&options).unwrap();
+        let residuals = simulation.network.residuals(&simulation.pseudoranges);
+        assert_eq!(residuals.iter().filter(|e| **e > 1e-9).count(), 24);
+        assert!(residuals.iter().all(|e| *e > -1e-9));
     }
 
     #[test]
