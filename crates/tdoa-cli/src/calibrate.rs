@@ -8,7 +8,10 @@ use tdoa::html::html;
 use tdoa::node_table::node_table;
 use tdoa::picture::picture;
 use tdoa::read::{Units, is_mat, read, read_distances, read_mat_nodes, read_mat_transmitters, read_nodes};
-use tdoa::{CalibrateError, CalibrateOptions, Calibration, Control, Monitor, Progress, Pseudoranges, calibrate_with};
+use tdoa::{
+    CalibrateError, CalibrateOptions, Calibration, Control, Monitor, Progress, Pseudoranges, ReceiverDelays,
+    calibrate_with,
+};
 
 use crate::{Failure, interrupt, output, summary};
 
@@ -34,6 +37,10 @@ pub(crate) struct Arguments {
     /// sharpens the rest.
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["frame", "scale"])]
     anchors: Option<PathBuf>,
+    /// What is done about receivers whose measurements are all too long or too short, as by a cable: told (none), estimated for those that show
+    /// it (auto; drifting and jumping clocks and moved receivers too), or estimated for all, as where clocks were started apart (all).
+    #[arg(long, value_enum, default_value = "none")]
+    receiver_delays: Delays,
     /// Known distances between some receivers (receiver,receiver,distance, metres), for --estimate-speed.
     #[arg(long, value_name = "FILE.csv", requires = "estimate_speed")]
     distances: Option<PathBuf>,
@@ -74,6 +81,14 @@ pub(crate) struct Arguments {
     nodes: Option<PathBuf>,
 }
 
+/// What is done about errors of whole receivers.
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum Delays {
+    None,
+    Auto,
+    All,
+}
+
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let units = arguments.units.units(arguments.estimate_speed)?;
     let measured = read(&arguments.file, units).map_err(Failure::unusable)?;
@@ -96,6 +111,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(path) = &arguments.distances {
         options.distances = read_distances(path, measured.receiver_names()).map_err(Failure::unusable)?;
     }
+    options.receiver_delays = match arguments.receiver_delays {
+        Delays::None => ReceiverDelays::None,
+        Delays::Auto => ReceiverDelays::Auto,
+        Delays::All => ReceiverDelays::All,
+    };
     options.estimate_speed = arguments.estimate_speed;
     options.sigma = arguments.sigma;
     options.seed = arguments.seed;
@@ -115,7 +135,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         calibrate_with(&measured, &options, &[], &control)
     })?;
     let mut calibration = solved.map_err(|error| match error {
-        CalibrateError::Degenerate(_) | CalibrateError::NotFound(_) => {
+        CalibrateError::Degenerate(_) | CalibrateError::NotFound(_) | CalibrateError::Delays { .. } => {
             Failure::Undetermined(format!("{}: {error}", arguments.file.display()))
         }
         CalibrateError::Cancelled => Failure::Interrupted,

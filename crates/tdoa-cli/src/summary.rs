@@ -29,7 +29,12 @@ pub(crate) fn text(calibration: &Calibration, time: Duration) -> String {
         time.as_secs_f64(),
         match (calibration.unique, calibration.alternatives.is_empty()) {
             (true, _) => "no other network found",
+            (false, true) if !calibration.receiver_errors.is_empty() =>
+                "A RECEIVER HAS ERRORS OF ITS OWN, see the warnings",
             (false, true) => "A BETTER NETWORK MAY HAVE BEEN MISSED, see the warnings",
+            (false, false) if calibration.unique_receivers => {
+                "no other receivers found; OTHER TRANSMITTERS FIT AS WELL, see `alternatives` in the JSON (--json)"
+            }
             (false, false) => "OTHER NETWORKS FIT AS WELL, see `alternatives` in the JSON (--json)",
         },
     );

@@ -59,7 +59,7 @@ pub mod simulate;
 
 pub use calibrate::{
     Alternative, CalibrateError, CalibrateOptions, Calibration, Control, Hypotheses, KnownDistance, Progress,
-    SpeedEstimate, Truth, calibrate, calibrate_with,
+    ReceiverDelays, ReceiverError, ReceiverErrorKind, SpeedEstimate, Truth, calibrate, calibrate_with,
 };
 pub use hc::Monitor;
 pub use minimal::{Candidate, MinimalSolution, PathCounts, RootCounts};

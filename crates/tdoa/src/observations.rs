@@ -35,6 +35,7 @@ pub(crate) struct Observations {
     rows: Vec<usize>,
     row_entries: Vec<usize>,
     held: Vec<bool>,
+    others: usize,
 }
 
 impl Observations {
@@ -52,15 +53,51 @@ impl Observations {
             }
             columns.push(entries.len());
         }
+        Observations::of(m, entries, columns)
+    }
+
+    /// Measurements in the order of the transmitters, of which `columns` holds the first of each and their number.
+    fn of(m: usize, entries: Vec<Observation>, columns: Vec<usize>) -> Self {
         let mut row_entries: Vec<usize> = (0..entries.len()).collect();
         row_entries.sort_by_key(|&k| entries[k].receiver);
         let rows = (0..=m).map(|i| row_entries.partition_point(|&k| entries[k].receiver < i)).collect();
-        Observations { receivers: m, transmitters: n, entries, columns, rows, row_entries, held: vec![false; m] }
+        let transmitters = columns.len() - 1;
+        Observations {
+            receivers: m,
+            transmitters,
+            entries,
+            columns,
+            rows,
+            row_entries,
+            held: vec![false; m],
+            others: 0,
+        }
+    }
+
+    /// Those measurements for which `keep` holds, of the same nodes.
+    pub(crate) fn subset(&self, keep: impl Fn(&Observation) -> bool) -> Self {
+        let mut columns = vec![0];
+        let mut entries = Vec::with_capacity(self.entries.len());
+        for j in 0..self.transmitters {
+            entries.extend(self.of_transmitter(j).iter().filter(|o| keep(o)).copied());
+            columns.push(entries.len());
+        }
+        Observations::of(self.receivers, entries, columns).holding(&self.held).beside(self.others)
     }
 
     /// The same measurements with receivers that stay where they are.
     pub(crate) fn holding(self, held: &[bool]) -> Self {
         Observations { held: held.to_vec(), ..self }
+    }
+
+    /// The same measurements, which have this many unknowns more than the nodes.
+    pub(crate) fn beside(self, others: usize) -> Self {
+        Observations { others, ..self }
+    }
+
+    /// Unknowns beside the nodes.
+    pub(crate) fn others(&self) -> usize {
+        self.others
     }
 
     /// Which receivers stay where they are.
@@ -92,7 +129,7 @@ impl Observations {
     /// receivers that are held. One held receiver leaves the rotation about it.
     pub(crate) fn unknowns(&self) -> usize {
         let held = self.held.iter().filter(|&&held| held).count();
-        (2 * self.receivers + 3 * self.transmitters).saturating_sub((2 * held).max(3))
+        (2 * self.receivers + 3 * self.transmitters).saturating_sub((2 * held).max(3)) + self.others
     }
 }
 

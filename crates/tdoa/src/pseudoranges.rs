@@ -254,6 +254,11 @@ impl Pseudoranges {
         Pseudoranges { values, ..self.clone() }
     }
 
+    /// The same matrix with other values, as many as before, none larger and all missing that were.
+    pub(crate) fn with_values(&self, values: Vec<f64>) -> Pseudoranges {
+        Pseudoranges { values, ..self.clone() }
+    }
+
     /// The matrix of these receivers and transmitters, in this order, with their names and standard deviations.
     ///
     /// # Panics

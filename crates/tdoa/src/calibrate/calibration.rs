@@ -1,6 +1,7 @@
 //! The result of a calibration: the network in a frame, its uncertainty, what may be wrong with it.
 
 use super::known::{Anchors, SpeedEstimate};
+use super::receiver_errors::ReceiverError;
 use super::truth::Truth;
 use crate::align::{Transform, align};
 use serde::Serialize;
@@ -14,7 +15,7 @@ pub struct Calibration {
     pub receiver_names: Vec<String>,
     /// Names of the transmitters.
     pub transmitter_names: Vec<String>,
-    /// Positions of the receivers. Unless another frame is asked for, the first receiver is the origin, the second lies
+    /// Positions of the receivers; `None` also for a receiver most of whose measurements are outliers. Unless another frame is asked for, the first receiver is the origin, the second lies
     /// on the positive x axis and the third above it.
     pub receivers: Vec<Option<[f64; 2]>>,
     /// Positions of the transmitters.
@@ -53,9 +54,13 @@ pub struct Calibration {
     pub speed: Option<SpeedEstimate>,
     /// What the covariances are relative to.
     pub gauge: &'static str,
-    /// Whether no other network that was found explains the measurements about as well, and more than one or two starts of the search
-    /// found this one.
+    /// Whether no other network that was found explains the measurements about as well, more than one or two starts of the search
+    /// found this one, and no receiver shows an error of its own that was left in.
     pub unique: bool,
+    /// Whether that holds for the receivers: in other networks only transmitters lie elsewhere.
+    pub unique_receivers: bool,
+    /// Whether that holds for the transmitters, of which one in ten may lie elsewhere.
+    pub unique_transmitters: bool,
     /// Other networks that do, best first.
     pub alternatives: Vec<Alternative>,
     /// Whether the measurements fit a network in the plane.
@@ -63,6 +68,9 @@ pub struct Calibration {
     /// Whether the measurements determine at least half of the receivers to a tenth of the network's size; true where the noise is
     /// not known. A table with receivers as columns is one that does not.
     pub determined: bool,
+    /// Errors of single receivers that the measurements show, most telling first, or delays of all receivers, relative to their mean.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub receiver_errors: Vec<ReceiverError>,
     /// What may be wrong, with names and a remedy.
     pub warnings: Vec<String>,
     /// Seed of the search.
@@ -149,6 +157,7 @@ impl Calibration {
         let lengths = lengths.chain(self.residuals.iter_mut().flatten());
         lengths.chain(self.alternatives.iter_mut().flat_map(|a| &mut a.offsets)).flatten().for_each(|x| *x *= factor);
         self.alternatives.iter_mut().for_each(|a| a.residual *= factor);
+        self.receiver_errors.iter_mut().for_each(|error| error.size *= factor);
         self.sigma *= factor;
         self.residual_rms *= factor;
         // The truth stays as large as it is, about the middle of the scaled network.

@@ -1,11 +1,11 @@
 //! The last refinement with what is known beforehand: the propagation speed from known distances, then the receivers of
 //! known position held in their places.
 
-use super::finish::{finish, inlier_deviation};
+use super::deviation::{inlier_deviation, median_size};
+use super::finish::finish;
 use super::known::{Anchors, SpeedEstimate};
 use super::options::{CalibrateError, CalibrateOptions, Control};
 use crate::degeneracy::Usable;
-use crate::network::Network;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::{Refined, covariance};
@@ -85,13 +85,6 @@ impl Free<'_> {
         let (ranked, deviation) = finish(&observations, ranked, first, known.is_some(), floor, options, control)?;
         Ok(Held { observations, ranked, deviation, anchors, speed, warnings })
     }
-}
-
-/// Median magnitude of the residuals.
-fn median_size(observations: &Observations, network: &Network) -> f64 {
-    let mut all: Vec<f64> = observations.all().iter().map(|o| o.residual(network).abs()).collect();
-    all.sort_by(f64::total_cmp);
-    all.get(all.len() / 2).copied().unwrap_or(0.0)
 }
 
 #[cfg(test)]

@@ -3,13 +3,19 @@
 
 mod calibration;
 mod compare;
+mod delays;
+mod deviation;
 mod finish;
 mod hold;
 mod hypotheses;
 mod known;
 mod minimal;
 mod options;
+mod ranking;
+mod receiver_errors;
 mod report;
+mod report_errors;
+mod same;
 mod search;
 mod truth;
 mod warnings;
@@ -18,8 +24,9 @@ pub use calibration::{Alternative, Calibration};
 pub use hypotheses::{Hypotheses, KnownReceivers, generator};
 pub use known::SpeedEstimate;
 pub use minimal::MinimalHypotheses;
-pub use options::{CalibrateError, CalibrateOptions, Control, KnownDistance, Progress};
-pub use search::SAME_NETWORK;
+pub use options::{CalibrateError, CalibrateOptions, Control, KnownDistance, Progress, ReceiverDelays};
+pub use receiver_errors::{ReceiverError, ReceiverErrorKind};
+pub use same::SAME_NETWORK;
 pub use truth::Truth;
 
 use crate::degeneracy::{Usable, usable};
@@ -27,7 +34,9 @@ use crate::loss::{Loss, SEARCH_NU, normal_deviation};
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::{PartialNetwork, RefineOptions, Refined, Refiner, SEARCH, extend};
-use finish::{finish, typical_deviation};
+use delays::{Cleared, Clearing, without_middle_delays};
+use deviation::typical_deviation;
+use finish::finish;
 use hold::{Free, Held};
 use hypotheses::RandomRestarts;
 use report::Solved;
@@ -71,10 +80,12 @@ pub fn calibrate_with(
     known::validate(measured, options)?;
     let usable = usable(measured)?;
     let (centred, shifts) = centre(&measured.select(&usable.receivers, &usable.transmitters));
-    let observations = Observations::new(&centred, |_, _| true);
+    let delayed = options.receiver_delays == ReceiverDelays::All;
+    let sought = if delayed { without_middle_delays(&centred) } else { centred.clone() };
+    let observations = Observations::new(&sought, |_, _| true);
 
-    let part = search_part(&centred, options);
-    let small = centred.select(&part.receivers, &part.transmitters);
+    let part = search_part(&sought, options);
+    let small = sought.select(&part.receivers, &part.transmitters);
     let small_observations = Observations::new(&small, |_, _| true);
     let to_deviation = normal_deviation(SEARCH_NU);
     let restarts = RandomRestarts::new(&small_observations);
@@ -83,7 +94,7 @@ pub fn calibrate_with(
     // Where measurements carry deviations, residuals are multiples of them, and so is the network's size.
     let unit = typical_deviation(&centred);
     let refine = RefineOptions {
-        scale: known.map(|sigma| sigma / to_deviation),
+        scale: known.filter(|_| !delayed).map(|sigma| sigma / to_deviation),
         anneal_from: Some(0.1 * diameter / unit),
         floor: RESOLUTION * diameter / unit,
         ..SEARCH
@@ -102,6 +113,7 @@ pub fn calibrate_with(
         refine,
         sources: all,
         wide: Loss { nu: SEARCH_NU, scale: 0.03 * diameter / unit },
+        deviation: known.filter(|_| !delayed).map(|sigma| sigma.max(refine.floor)),
     };
     let found = search.run(options, control)?;
 
@@ -117,13 +129,19 @@ pub fn calibrate_with(
     let Some(scale) = whole.iter().min_by(|a, b| a.objective.total_cmp(&b.objective)).map(|r| r.scale) else {
         return Err(CalibrateError::NotFound(found.starts));
     };
-    let first = known.unwrap_or(scale * to_deviation).max(refine.floor);
-    let (ranked, deviation) = finish(&observations, whole, first, known.is_some(), refine.floor, options, control)?;
+    let first = known.filter(|_| !delayed).unwrap_or(scale * to_deviation).max(refine.floor);
+    let (ranked, deviation) =
+        finish(&observations, whole, first, known.is_some() && !delayed, refine.floor, options, control)?;
+    let clearing = Clearing { measured: &centred, known, floor: refine.floor, options, control };
+    let Cleared { measured: centred, observations, ranked, deviation, taken, left } =
+        clearing.clear(ranked, deviation)?;
     let free = Free { observations, centred: &centred, known, floor: refine.floor };
     let held = free.hold(ranked, deviation, &usable, options, control)?;
     let Held { observations, ranked, deviation, anchors, speed, warnings } = held;
     let solved = Solved {
         measured,
+        taken: &taken,
+        left: &left,
         usable: &usable,
         observations: &observations,
         centred: &centred,
@@ -132,7 +150,6 @@ pub fn calibrate_with(
         deviation,
         known,
         starts: found.starts,
-        agreeing: found.agreeing,
         anchors,
         speed,
         warnings,
@@ -196,7 +213,7 @@ fn complete(
             let mut known = PartialNetwork::unknown(observations.receivers, observations.transmitters);
             known.place(&refined.network, &part.receivers, &part.transmitters);
             let network = extend(observations, &known, &Loss { nu: SEARCH_NU, scale: refined.scale })?;
-            Some(refiner.refine(network, &refine))
+            Some(Refined { starts: refined.starts, ..refiner.refine(network, &refine) })
         })
         .filter(|refined| refined.objective.is_finite() && refined.network.is_finite())
         .collect()

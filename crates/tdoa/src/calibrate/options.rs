@@ -4,6 +4,21 @@ use crate::degeneracy::Degeneracy;
 use hc::Monitor;
 use thiserror::Error;
 
+/// What is done about errors that all measurements of one receiver have in common.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum ReceiverDelays {
+    /// They are looked for and told.
+    #[default]
+    None,
+    /// They are looked for, told, and taken out: delays, drifts and jumps are estimated with the network, and of a receiver that was moved the
+    /// longer part of the measurements is kept.
+    Auto,
+    /// Every receiver has an unknown constant delay, as where their clocks were started apart: m - 1 unknowns more for m receivers, so that
+    /// at least 3m + 3n - 4 measurements are needed, for instance of 4 receivers and 8 transmitters, 5 and 6, 6 and 5, or 8 and 4.
+    All,
+}
+
 /// How to calibrate. All fields have defaults; start from `CalibrateOptions::default()`.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -41,6 +56,9 @@ pub struct CalibrateOptions {
     /// Known positions of receivers in metres, in the order of the receivers, `None` where unknown. They fix the frame; if
     /// they are in two places at least, they are held there in the last refinement. Default empty: none are known.
     pub anchors: Vec<Option<[f64; 2]>>,
+    /// What is done about receivers whose measurements are all too long or too short. Default [`ReceiverDelays::None`]: a warning names those
+    /// that show.
+    pub receiver_delays: ReceiverDelays,
     /// Known distances between receivers, for `estimate_speed`. Default empty.
     pub distances: Vec<KnownDistance>,
     /// Whether the propagation speed with which the measurements became metres is a guess, to be replaced by the one that
@@ -64,6 +82,7 @@ impl Default for CalibrateOptions {
             alternative_margin: 8.0,
             planar_limit: 0.04,
             anchors: Vec::new(),
+            receiver_delays: ReceiverDelays::None,
             distances: Vec::new(),
             estimate_speed: false,
         }
@@ -161,6 +180,19 @@ pub enum CalibrateError {
         range: &'static str,
         /// What was given.
         value: f64,
+    },
+    /// Fewer measurements than unknowns where receivers have delays.
+    #[error(
+        "{measurements} measurements cannot determine {unknowns} unknowns, {receivers} receivers with a delay each among them; measure more \
+         transmitters, or --receiver-delays auto if only a few receivers have one"
+    )]
+    Delays {
+        /// Measurements that can be used.
+        measurements: usize,
+        /// Unknowns.
+        unknowns: usize,
+        /// Receivers.
+        receivers: usize,
     },
     /// Known positions or distances that cannot be used.
     #[error("known positions and distances: {0}")]

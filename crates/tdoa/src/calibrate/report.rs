@@ -1,16 +1,18 @@
 //! From the networks that the search found to the result: residuals, uncertainty, alternatives and warnings.
 
 use super::calibration::{Alternative, Calibration};
-use super::finish::{inlier_deviation, typical_deviation};
+use super::deviation::{inlier_deviation, typical_deviation};
 use super::known::{Anchors, SpeedEstimate};
 use super::options::CalibrateOptions;
-use super::warnings::warn_of_nodes;
+use super::receiver_errors::Fault;
+use super::same::{same_receivers, same_transmitters};
+use super::warnings::{doubtful_receivers, warn_of_nodes};
 use crate::align::{Transform, align, frame};
 use crate::degeneracy::Usable;
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
-use crate::refine::{Covariance, Refined, covariance};
+use crate::refine::{Covariance, Refined};
 
 /// Starts that must end in the best network before it is called unique: one or two may have found it while a better one was missed.
 const SETTLED: usize = 3;
@@ -27,9 +29,11 @@ pub(super) struct Solved<'a> {
     pub(super) deviation: f64,
     pub(super) known: Option<f64>,
     pub(super) starts: usize,
-    pub(super) agreeing: usize,
     pub(super) anchors: Option<Anchors>,
     pub(super) speed: Option<SpeedEstimate>,
+    /// Errors of receivers that were taken out of the measurements, and those that were left in.
+    pub(super) taken: &'a [Fault],
+    pub(super) left: &'a [Fault],
     /// Warnings of the steps before.
     pub(super) warnings: Vec<String>,
 }
@@ -46,13 +50,14 @@ impl Solved<'_> {
         };
         let held = self.observations.held();
         let is_held = held.contains(&true);
-        let kept = Observations::new(self.centred, |i, j| inlier(best, i, j)).holding(held);
+        let kept =
+            Observations::new(self.centred, |i, j| inlier(best, i, j)).holding(held).beside(self.observations.others());
         let mut warnings = [self.usable.warnings.as_slice(), &self.warnings].concat();
         let redundancy = kept.len().saturating_sub(kept.unknowns());
         let ellipse_radius = radius_95(redundancy, self.known.is_some());
         let uncertainty = match ellipse_radius {
             // What the robust loss loses against least squares on normal noise is added.
-            Some(_) => covariance(&kept, best, sigma / EFFICIENCY.sqrt()).unwrap_or_default(),
+            Some(_) => self.covariance(&kept, sigma / EFFICIENCY.sqrt()),
             None => {
                 warnings.push(
                     "there are only as many measurements as unknowns, so the noise cannot be estimated and no uncertainty is \
@@ -62,8 +67,9 @@ impl Solved<'_> {
                 Covariance::default()
             }
         };
-        let planar = self.planar(best, estimated, options, &mut warnings);
+        let planar = self.planar(best, estimated, redundancy, options, &mut warnings);
         let noise_known = ellipse_radius.is_some();
+        let doubtful = doubtful_receivers(self.centred, &kept);
         let determined = warn_of_nodes(self.centred, best, &kept, &uncertainty, noise_known, &mut warnings);
 
         let (m, n) = (self.measured.receivers(), self.measured.transmitters());
@@ -109,21 +115,29 @@ impl Solved<'_> {
                 })
             })
             .collect();
+        let close = self.ranked[1..]
+            .iter()
+            .take_while(|r| r.objective - self.ranked[0].objective <= options.alternative_margin);
+        let receivers_agree = close.clone().all(|other| same_receivers(&other.network, best));
+        let transmitters_agree = close.clone().all(|other| same_transmitters(&other.network, best));
         if !alternatives.is_empty() {
             warnings.push(format!(
-                "{} other network{} explain{} the measurements about as well (see alternatives); add receivers or transmitters, \
+                "{} other network{} explain{} the measurements about as well (see alternatives){}; add receivers or transmitters, \
                  or give --sigma if the noise is known",
                 alternatives.len(),
                 if alternatives.len() == 1 { "" } else { "s" },
                 if alternatives.len() == 1 { "s" } else { "" },
+                if receivers_agree { ", with the same receivers and other transmitters" } else { "" },
             ));
         }
-        let settled = self.agreeing >= options.agreeing.min(options.max_starts).min(SETTLED);
+        let agreeing = self.ranked[0].starts;
+        self.warn_of_receivers(options, &mut warnings);
+        let settled = agreeing >= options.agreeing.min(options.max_starts).min(SETTLED);
         if !settled {
             warnings.push(format!(
                 "only {} of {} starts of the search ended in this network, so that a better one may have been missed; give --sigma, \
                  remove measurements that are known to be wrong, or raise --max-starts",
-                self.agreeing, self.starts
+                agreeing, self.starts
             ));
         }
         let located = |c: &Option<[[f64; 3]; 3]>| c.map(|c| [[c[0][0], c[0][1]], [c[1][0], c[1][1]]]);
@@ -157,19 +171,26 @@ impl Solved<'_> {
                     "relative to the receivers of known position, which have no error, at the estimated propagation speed"
                 }
             },
-            unique: alternatives.is_empty() && settled,
+            unique: alternatives.is_empty() && settled && self.left.is_empty(),
+            unique_receivers: receivers_agree && settled && self.left.is_empty(),
+            unique_transmitters: transmitters_agree && settled && self.left.is_empty(),
             alternatives,
             planar,
             determined,
+            receiver_errors: self.receiver_errors(),
             warnings,
             seed: options.seed,
             starts: self.starts,
-            agreeing: self.agreeing,
+            agreeing,
             confidence: 1.0 - 0.95f64.powi(self.starts.min(100_000) as i32),
             truth: None,
         };
         for i in &uncertainty.loose {
             calibration.receiver_covariance[rows[*i]] = None;
+        }
+        for &i in doubtful.iter().filter(|&&i| !held[i]) {
+            calibration.receivers[rows[i]] = None;
+            calibration.receiver_covariance[rows[i]] = None;
         }
         if !is_held {
             calibration.transform(&default_frame(&best.receivers));
@@ -183,17 +204,25 @@ impl Solved<'_> {
         calibration
     }
 
-    fn planar(&self, best: &Network, estimated: f64, options: &CalibrateOptions, warnings: &mut Vec<String>) -> bool {
+    fn planar(
+        &self,
+        best: &Network,
+        estimated: f64,
+        redundancy: usize,
+        options: &CalibrateOptions,
+        warnings: &mut Vec<String>,
+    ) -> bool {
         // In metres also where measurements carry their own deviations.
         let metre = self.speed.map_or(1.0, |speed| speed.factor);
         let misfit = metre * estimated * typical_deviation(self.centred);
         let size = metre * best.size();
         if let Some(sigma) = self.known
-            && estimated > 3.0 * sigma
+            && estimated > TOO_LARGE * sigma
+            && exceeds_chance(estimated / sigma, redundancy)
         {
             warnings.push(format!(
-                "the residuals are {:.1} times as large as the given standard deviation: it is too small, or the network is \
-                 not planar",
+                "the residuals are {:.1} times as large as the given standard deviation, and standard deviations of the nodes are too small by \
+                 that factor: give a larger --sigma, or none; or the network is not planar, or the measurements have errors beside noise",
                 estimated / sigma
             ));
         }
@@ -208,6 +237,17 @@ impl Solved<'_> {
         }
         true
     }
+}
+
+/// Residuals that are larger than the given deviation by less than this factor pass without a word.
+const TOO_LARGE: f64 = 1.5;
+
+/// Whether residuals of normal noise with `redundancy` left over are this many times as large as their deviation by a chance below one in a
+/// thousand: the square has the distribution of chi-squared over its degrees of freedom, whose cube root is nearly normal (Wilson and Hilferty
+/// 1931).
+fn exceeds_chance(ratio: f64, redundancy: usize) -> bool {
+    let variance = 2.0 / (9.0 * redundancy as f64);
+    redundancy > 0 && (ratio * ratio).cbrt() > 1.0 - variance + 3.09 * variance.sqrt()
 }
 
 /// Efficiency of the last refinement's Cauchy loss on normal noise.
@@ -248,6 +288,16 @@ fn default_frame(receivers: &[[f64; 2]]) -> Transform {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn chance_ends_where_tables_of_chi_squared_end() {
+        // 99.9 % quantiles of chi-squared: 10.83, 29.59 and 149.45 with 1, 10 and 100 degrees of freedom; the approximation is good to 2 %.
+        for (degrees, quantile) in [(1usize, 10.83f64), (10, 29.59), (100, 149.45)] {
+            let ratio = (quantile / degrees as f64).sqrt();
+            assert!(exceeds_chance(1.02 * ratio, degrees) && !exceeds_chance(0.98 * ratio, degrees), "{degrees}");
+        }
+        assert!(!exceeds_chance(100.0, 0));
+    }
 
     #[test]
     fn radius_of_ellipses() {

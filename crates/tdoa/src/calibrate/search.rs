@@ -4,7 +4,8 @@ use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 
 use super::hypotheses::Hypotheses;
 use super::options::{CalibrateError, CalibrateOptions, Control, Progress};
-use crate::align::align;
+use super::ranking::truncated_cost;
+use super::same::{distinct, same};
 use crate::loss::{Loss, SEARCH_NU};
 use crate::network::Network;
 use crate::observations::Observations;
@@ -25,17 +26,12 @@ const AS_GOOD: f64 = 4.0;
 /// log-likelihood): where few measurements are left over, one network has many minima of nearly the same objective.
 const SAME_BASIN: f64 = 20.0;
 
-/// Networks are the same if their nodes differ by less than this share of the network's size, root mean square.
-pub const SAME_NETWORK: f64 = 0.02;
-
 /// What the search found.
 pub(crate) struct Found {
-    /// Different networks, best objective first.
+    /// Different networks, best objective first, each with the starts that ended in it.
     pub(crate) networks: Vec<Refined>,
     /// Starts that were made.
     pub(crate) starts: usize,
-    /// Starts that ended in the best basin.
-    pub(crate) agreeing: usize,
 }
 
 /// The measurements to search and how.
@@ -47,6 +43,8 @@ pub(crate) struct Search<'a> {
     pub(crate) sources: Vec<&'a dyn Hypotheses>,
     /// Loss with which proposals are completed and ranked.
     pub(crate) wide: Loss,
+    /// Deviation of the measurements if it is known: networks are then ranked by what they explain.
+    pub(crate) deviation: Option<f64>,
 }
 
 /// Number of the first call of a source in another's turn; far above the numbers of its own turns.
@@ -74,10 +72,7 @@ impl Search<'_> {
             starts += batch;
             refined.extend(ended.into_iter().flatten());
             let best = refined.iter().min_by(|a, b| a.objective.total_cmp(&b.objective));
-            let agrees = |r: &&Refined| {
-                best.is_some_and(|best| r.objective < best.objective + SAME_BASIN && same(&r.network, &best.network))
-            };
-            let agreeing = refined.iter().filter(agrees).count();
+            let agreeing = best.map_or(0, |best| starts_in(best, &refined));
             if let Some(progress) = control.progress {
                 progress(Progress { starts, max_starts: options.max_starts, agreeing });
             }
@@ -87,7 +82,11 @@ impl Search<'_> {
                     return Err(CalibrateError::NotFound(starts));
                 }
                 refined.sort_by(|a, b| a.objective.total_cmp(&b.objective));
-                return Ok(Found { networks: distinct(refined, MOST_REFINED), starts, agreeing });
+                let mut networks = distinct(refined.clone(), MOST_REFINED);
+                for network in &mut networks {
+                    network.starts = starts_in(network, &refined);
+                }
+                return Ok(Found { networks, starts });
             }
         }
     }
@@ -112,10 +111,22 @@ impl Search<'_> {
             .into_iter()
             .take(promising.max(REFINED))
             .map(|(_, network)| refiner.refine(network, &self.refine))
+            .map(|refined| self.judge(refined))
             .filter(|refined| refined.objective.is_finite() && refined.network.is_finite())
             .collect();
         refined.sort_by(|a, b| a.objective.total_cmp(&b.objective));
         distinct(refined, MOST_REFINED)
+    }
+
+    /// Replaces the objective by the truncated cost where the noise is known.
+    fn judge(&self, refined: Refined) -> Refined {
+        match self.deviation {
+            Some(deviation) => {
+                let objective = truncated_cost(self.observations, &refined.network, deviation);
+                Refined { objective, ..refined }
+            }
+            None => refined,
+        }
     }
 
     fn rank(&self, network: &Network) -> f64 {
@@ -125,38 +136,8 @@ impl Search<'_> {
     }
 }
 
-/// The first of each kind of network in a list sorted by objective, at most `most` of them.
-pub(crate) fn distinct(sorted: Vec<Refined>, most: usize) -> Vec<Refined> {
-    let mut kept: Vec<Refined> = Vec::new();
-    for candidate in sorted {
-        if kept.len() == most {
-            break;
-        }
-        if !kept.iter().any(|k| same(&k.network, &candidate.network)) {
-            kept.push(candidate);
-        }
-    }
-    kept
-}
-
-/// Whether two networks agree up to a rigid motion or reflection. Transmitters far outside count in proportion to their
-/// distance, since their range is hardly determined.
-pub(crate) fn same(a: &Network, b: &Network) -> bool {
-    let size = a.size().max(b.size());
-    let Some(alignment) = align(&b.receivers, &a.receivers, false) else { return true };
-    if alignment.rms > SAME_NETWORK * size {
-        return false;
-    }
-    let centre = crate::plane::centroid(a.receivers.iter());
-    let differing = a
-        .transmitters
-        .iter()
-        .zip(&b.transmitters)
-        .filter(|(s, t)| {
-            let reach = size.max(crate::plane::distance(**s, centre));
-            crate::plane::distance(**s, alignment.transform.apply(**t)) > 5.0 * SAME_NETWORK * reach
-        })
-        .count();
-    // One stray transmitter is an ambiguity of that transmitter, not another network.
-    differing <= a.transmitters.len() / 10
+/// How many of `all` ended in the basin of `best`.
+fn starts_in(best: &Refined, all: &[Refined]) -> usize {
+    let agrees = |r: &&Refined| r.objective < best.objective + SAME_BASIN && same(&r.network, &best.network);
+    all.iter().filter(agrees).count()
 }

@@ -7,6 +7,15 @@ use crate::plane::{distance, flatness};
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::Covariance;
 
+/// Receivers most of whose measurements are outliers: the others' network says nothing of where they are.
+pub(super) fn doubtful_receivers(measured: &Pseudoranges, kept: &Observations) -> Vec<usize> {
+    let mostly_wrong = |i: &usize| {
+        let all = (0..measured.transmitters()).filter(|&j| measured.get(*i, j).is_some()).count();
+        2 * kept.of_receiver(*i).len() < all
+    };
+    (0..measured.receivers()).filter(mostly_wrong).collect()
+}
+
 /// Warnings about the geometry: in line, in one place, poorly tied down. Returns whether most receivers are determined, as far as
 /// the noise is known.
 pub(super) fn warn_of_nodes(
@@ -75,15 +84,12 @@ pub(super) fn warn_of_nodes(
     if !doubtful.is_empty() {
         warnings.push(format!("transmitters most of whose measurements are outliers: {}; check them", list(&doubtful)));
     }
-    let doubtful: Vec<String> = (0..measured.receivers())
-        .filter(|&i| {
-            let all = (0..measured.transmitters()).filter(|&j| measured.get(i, j).is_some()).count();
-            2 * kept.of_receiver(i).len() < all
-        })
-        .map(|i| names[i].clone())
-        .collect();
+    let doubtful: Vec<String> = doubtful_receivers(measured, kept).into_iter().map(|i| names[i].clone()).collect();
     if !doubtful.is_empty() {
-        warnings.push(format!("receivers most of whose measurements are outliers: {}; check them", list(&doubtful)));
+        warnings.push(format!(
+            "receivers most of whose measurements are outliers: {}; no position is given for them; check them",
+            list(&doubtful)
+        ));
     }
     determined
 }

@@ -10,11 +10,13 @@
 mod covariance;
 mod extend;
 mod normal;
+mod projection;
 mod refiner;
 mod reseed;
 
 pub(crate) use covariance::{Covariance, covariance};
 pub use extend::PartialNetwork;
 pub(crate) use extend::extend;
+pub(crate) use projection::{Motion, Projection};
 pub(crate) use refiner::{RefineOptions, Refined, Refiner, SEARCH, residuals};
 pub(crate) use reseed::place_transmitters;

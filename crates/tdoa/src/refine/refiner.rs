@@ -47,6 +47,8 @@ pub(crate) struct Refined {
     pub(crate) scale: f64,
     /// The negative log-likelihood, up to a constant: comparable between networks for the same measurements.
     pub(crate) objective: f64,
+    /// Starts of the search that ended here.
+    pub(crate) starts: usize,
 }
 
 /// Refines networks for one set of measurements; holds the buffers.
@@ -162,7 +164,7 @@ impl<'a> Refiner<'a> {
             }
         }
         let objective = cost + self.constant(loss.scale);
-        Refined { network, scale: loss.scale, objective }
+        Refined { network, scale: loss.scale, objective, starts: 1 }
     }
 
     /// The part of the objective that depends on the scale alone.

@@ -1,0 +1,54 @@
+//! The deviation of the measurements, from the residuals of a network.
+
+use crate::network::Network;
+use crate::observations::Observations;
+use crate::pseudoranges::Pseudoranges;
+
+/// Median of the deviations that measurements carry; 1 where they carry none.
+pub(super) fn typical_deviation(measured: &Pseudoranges) -> f64 {
+    let cells = (0..measured.receivers()).flat_map(|i| (0..measured.transmitters()).map(move |j| (i, j)));
+    let mut all: Vec<f64> = cells.filter_map(|(i, j)| measured.sigma(i, j)).collect();
+    all.sort_by(f64::total_cmp);
+    all.get(all.len() / 2).copied().unwrap_or(1.0)
+}
+
+/// Deviation of the residuals that are within `threshold` of it, corrected for the unknowns, repeated until it stays the
+/// same.
+pub(super) fn inlier_deviation(observations: &Observations, network: &Network, first: f64, threshold: f64) -> f64 {
+    let mut deviation = first;
+    for _ in 0..20 {
+        let (mut sum, mut count) = (0.0, 0usize);
+        for o in observations.all() {
+            let e = o.residual(network);
+            if e.abs() <= threshold * deviation {
+                sum += e * e;
+                count += 1;
+            }
+        }
+        let redundancy = count.saturating_sub(observations.unknowns());
+        if redundancy == 0 {
+            return deviation;
+        }
+        // Without the floor, exact data would shrink the limit to nothing and lose inliers to rounding.
+        let next = (sum / redundancy as f64).sqrt().max(0.1 * first);
+        if (next - deviation).abs() < 1e-6 * deviation {
+            return next;
+        }
+        deviation = next;
+    }
+    deviation
+}
+
+/// Median magnitude of the residuals.
+pub(super) fn median_size(observations: &Observations, network: &Network) -> f64 {
+    let mut all: Vec<f64> = observations.all().iter().map(|o| o.residual(network).abs()).collect();
+    all.sort_by(f64::total_cmp);
+    all.get(all.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// A guess of the deviation from the middle half of the residuals, corrected for the unknowns.
+pub(super) fn spread_of_residuals(observations: &Observations, network: &Network) -> f64 {
+    let (count, unknowns) = (observations.len() as f64, observations.unknowns() as f64);
+    // The median magnitude of a normal variable is 0.6745 deviations.
+    median_size(observations, network) / 0.6745 * (count / (count - unknowns).max(1.0)).sqrt()
+}

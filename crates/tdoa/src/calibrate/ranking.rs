@@ -1,0 +1,134 @@
+//! Networks ranked by the measurements that they explain.
+//!
+//! The search minimises the Cauchy loss, which pulls a network towards the truth from afar but never stops charging for a gross error:
+//! one of 360 standard deviations costs 28 units of log-likelihood and one of 10 costs 8: so that a wrong network whose outlier is smaller
+//! can beat the truth. Where the noise is known, networks are therefore ranked by the sum of min(e^2/2, h) over residuals e in standard
+//! deviations, after least squares over the measurements that cost less than h.
+
+use crate::network::Network;
+use crate::observations::Observations;
+use crate::refine::{RefineOptions, Refined, Refiner, SEARCH};
+
+use super::same::same;
+
+/// What an outlier costs, whatever its size (units of log-likelihood). It is what a gross error costs that hits one measurement in a thousand
+/// and is uniform over ten thousand standard deviations: ln(1e4/1e-3) less ln(2 pi)/2, about 15. Costs from 5 to 18 find the truth about as
+/// often; below 10, networks that leave one more measurement out would pass for alternatives.
+const OUTLIER_COST: f64 = 15.0;
+
+/// Rounds of choosing inliers and fitting them.
+const ROUNDS: usize = 8;
+
+/// Sum of min(e^2/2, h) over the residuals e of a network in standard deviations; `deviation` is that of the measurements.
+pub(super) fn truncated_cost(observations: &Observations, network: &Network, deviation: f64) -> f64 {
+    let cost = |e: f64| (0.5 * (e / deviation).powi(2)).min(OUTLIER_COST);
+    observations.all().iter().map(|o| cost(o.residual(network))).sum()
+}
+
+/// The networks with truncated costs as objectives, least first: of networks refitted to their inliers, as far as they are among the best.
+/// Of networks that the refit carries to the same one the first is kept.
+pub(super) fn rank(
+    observations: &Observations,
+    mut networks: Vec<Refined>,
+    deviation: f64,
+    margin: f64,
+) -> Vec<Refined> {
+    let mut least = f64::INFINITY;
+    for refined in &mut networks {
+        refined.objective = truncated_cost(observations, &refined.network, deviation);
+        least = least.min(refined.objective);
+    }
+    if networks.len() < 2 {
+        return networks;
+    }
+    let mut kept: Vec<(Network, Refined)> = Vec::new();
+    for mut refined in networks.into_iter().filter(|refined| refined.objective <= least + 4.0 * margin) {
+        let (network, cost) = refit(observations, &refined.network, deviation);
+        refined.objective = cost;
+        if !kept.iter().any(|(other, _)| same(other, &network)) {
+            kept.push((network, refined));
+        }
+    }
+    let mut ranked: Vec<Refined> = kept.into_iter().map(|(_, refined)| refined).collect();
+    ranked.sort_by(|a, b| a.objective.total_cmp(&b.objective));
+    ranked
+}
+
+/// The network of least truncated cost near a given one, with that cost: least squares over the inliers until they stay the same.
+fn refit(observations: &Observations, network: &Network, deviation: f64) -> (Network, f64) {
+    let limit = (2.0 * OUTLIER_COST).sqrt() * deviation;
+    let options = RefineOptions { scale: Some(deviation), steps: 20, rounds: 0, tolerance: 1e-9, ..SEARCH };
+    let mut best = (network.clone(), truncated_cost(observations, network, deviation));
+    for _ in 0..ROUNDS {
+        let inliers = observations.subset(|o| o.residual(&best.0).abs() <= limit);
+        let fitted = Refiner::new(&inliers, f64::INFINITY).refine(best.0.clone(), &options).network;
+        let cost = truncated_cost(observations, &fitted, deviation);
+        // Each round lowers the cost or leaves the inliers as they are.
+        let gain = best.1 - cost;
+        if gain > 0.0 && fitted.is_finite() {
+            best = (fitted, cost);
+        }
+        if gain.is_nan() || gain < 1e-6 {
+            break;
+        }
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{OUTLIER_COST, rank, refit, truncated_cost};
+    use crate::observations::Observations;
+    use crate::pseudoranges::Pseudoranges;
+    use crate::refine::Refined;
+    use crate::simulate::{SimulateOptions, simulate};
+
+    const SIGMA: f64 = 0.01;
+
+    fn measured(seed: u64) -> (Pseudoranges, crate::Network) {
+        let options = SimulateOptions { receivers: 8, transmitters: 10, noise: SIGMA, seed, ..Default::default() };
+        let simulation = simulate(&options).unwrap();
+        let mut values = simulation.pseudoranges.values().to_vec();
+        values[17] += 360.0 * SIGMA;
+        (Pseudoranges::new(8, 10, values).unwrap(), simulation.network)
+    }
+
+    #[test]
+    fn an_outlier_costs_the_same_whatever_its_size() {
+        let (pseudoranges, truth) = measured(1);
+        let observations = Observations::new(&pseudoranges, |_, _| true);
+        let inliers: f64 = (observations.all().iter().map(|o| o.residual(&truth)))
+            .filter(|e| e.abs() < 5.0 * SIGMA)
+            .map(|e| 0.5 * (e / SIGMA).powi(2))
+            .sum();
+        let cost = truncated_cost(&observations, &truth, SIGMA);
+        // Of 80 normal residuals none is expected beyond 4.4 deviations.
+        assert!((cost - inliers - OUTLIER_COST).abs() < 1e-9, "{cost} {inliers}");
+    }
+
+    #[test]
+    fn a_refit_is_least_squares_without_the_outlier() {
+        for seed in 0..20 {
+            let (pseudoranges, truth) = measured(seed);
+            let observations = Observations::new(&pseudoranges, |_, _| true);
+            let (network, cost) = refit(&observations, &truth, SIGMA);
+            assert!(cost <= truncated_cost(&observations, &truth, SIGMA));
+            // 79 measurements less 16 + 30 - 3 unknowns: half of chi-squared with 36 degrees of freedom, 99.9 % of which is below 68.
+            assert!(cost - OUTLIER_COST < 34.0, "seed {seed}: {cost}");
+            let outlier = observations.of_receiver(1).find(|o| o.transmitter == 7).unwrap();
+            assert!(outlier.residual(&network) > 300.0 * SIGMA, "seed {seed}");
+        }
+    }
+
+    #[test]
+    fn a_large_outlier_does_not_outweigh_a_bad_fit() {
+        let (pseudoranges, truth) = measured(2);
+        let observations = Observations::new(&pseudoranges, |_, _| true);
+        let mut wrong = truth.clone();
+        // Most of the eight measurements of this transmitter are then wrong by much more than the noise, and no refit of these reaches back.
+        wrong.transmitters[3] = [60.0, -40.0];
+        let refined = |network| Refined { network, scale: SIGMA, objective: 0.0, starts: 1 };
+        let ranked = rank(&observations, vec![refined(wrong), refined(truth.clone())], SIGMA, 8.0);
+        assert_eq!((ranked.len(), &ranked[0].network), (1, &truth), "the wrong one is no alternative");
+    }
+}

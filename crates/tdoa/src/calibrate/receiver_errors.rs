@@ -1,0 +1,274 @@
+//! Receivers with errors of their own: a delay, a clock that drifts or jumps, a receiver that was moved.
+//!
+//! Such an error is a column beside the Jacobian: what it adds to the residuals of one receiver. Its part that no motion of the nodes makes
+//! is compared with the residuals (a score test); the column that explains most is taken into the model, and the test goes on with what
+//! remains.
+
+use serde::Serialize;
+
+use super::deviation::{inlier_deviation, spread_of_residuals};
+use crate::network::Network;
+use crate::observations::Observations;
+use crate::refine::Projection;
+
+/// Probability of a false alarm in data with normal noise, at most.
+const FALSE_ALARM: f64 = 1e-3;
+
+/// Measurements before and after an event between which a jump or a move is looked for.
+const SIDE: usize = 4;
+
+/// Receivers whose columns are projected; in larger networks those with the most telling residuals.
+const PROJECTED: usize = 24;
+
+/// What is wrong with a receiver.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum ReceiverErrorKind {
+    /// All its measurements are too long or too short by one length.
+    Delay,
+    /// Its measurements grow too long or too short evenly from the first transmitter to the last one.
+    Drift,
+    /// Its clock jumps: from one transmitter on its measurements are too long or too short by one length.
+    Jump,
+    /// It stands elsewhere from one transmitter on.
+    Move,
+}
+
+/// An error of one receiver that its measurements show.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ReceiverError {
+    /// Name of the receiver.
+    pub receiver: String,
+    /// What is wrong.
+    pub kind: ReceiverErrorKind,
+    /// Name of the first transmitter after a jump or a move, in the order of the table.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub from: Option<String>,
+    /// How large it is, metres: the delay, the drift from the first transmitter to the last one, the jump, the distance of the move.
+    pub size: f64,
+    /// By how much the measurements are more likely with it, natural logarithm.
+    pub gain: f64,
+    /// Whether the network was found with it taken out.
+    pub taken_out: bool,
+}
+
+/// An error of one receiver, by indices.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Fault {
+    pub(super) receiver: usize,
+    pub(super) kind: ReceiverErrorKind,
+    /// First transmitter that has it; 0 for delay and drift.
+    pub(super) from: usize,
+    /// Metres; of a move in x and y, otherwise the first alone.
+    pub(super) size: [f64; 2],
+    pub(super) gain: f64,
+}
+
+impl Fault {
+    pub(super) fn length(&self) -> f64 {
+        if self.kind == ReceiverErrorKind::Move { self.size[0].hypot(self.size[1]) } else { self.size[0] }
+    }
+
+    /// What the error adds to a measurement of transmitter `j` of `n`, for a size of 1; a move is none of these.
+    pub(super) fn shape(&self, j: usize, n: usize) -> f64 {
+        match self.kind {
+            ReceiverErrorKind::Delay => 1.0,
+            ReceiverErrorKind::Drift => j as f64 / (n.max(2) - 1) as f64,
+            ReceiverErrorKind::Jump | ReceiverErrorKind::Move => f64::from(u8::from(j >= self.from)),
+        }
+    }
+}
+
+/// Errors of single receivers that the residuals at a network show, most telling first. `deviation` is that of the measurements.
+pub(super) fn find(observations: &Observations, network: &Network, deviation: f64, threshold: f64) -> Vec<Fault> {
+    // An error of one receiver makes residuals larger than the noise: the test takes the deviation that they have.
+    let wide = spread_of_residuals(observations, network).max(deviation);
+    let wide = inlier_deviation(observations, network, wide, threshold);
+    let kept = observations.subset(|o| o.residual(network).abs() <= threshold * wide);
+    let redundancy = kept.len().saturating_sub(kept.unknowns());
+    if redundancy < 4 {
+        return Vec::new();
+    }
+    let Some(projection) = Projection::new(&kept, network) else { return Vec::new() };
+    let residuals: Vec<f64> = kept.all().iter().map(|o| o.residual(network)).collect();
+    let (rest, _) = projection.off(&residuals);
+    Test { kept: &kept, projection, rest, taken: Vec::new(), redundancy: redundancy as f64 }.run()
+}
+
+struct Test<'a> {
+    kept: &'a Observations,
+    projection: Projection<'a>,
+    /// What neither the network nor the errors found so far explain.
+    rest: Vec<f64>,
+    /// Orthonormal parts of the columns of these, that no motion makes.
+    taken: Vec<Vec<f64>>,
+    redundancy: f64,
+}
+
+impl Test<'_> {
+    fn run(mut self) -> Vec<Fault> {
+        let mut found: Vec<Fault> = Vec::new();
+        let rows = self.rows();
+        while found.len() < self.kept.receivers / 2 {
+            let known = |fault: &Fault| found.iter().any(|f| f.receiver == fault.receiver && f.kind == fault.kind);
+            let candidates = self.candidates(&rows);
+            // A candidate of each kind has as many rivals as that kind has tests.
+            let tests = |kind| match kind {
+                ReceiverErrorKind::Delay | ReceiverErrorKind::Drift => self.kept.receivers as f64,
+                ReceiverErrorKind::Jump | ReceiverErrorKind::Move => self.kept.len() as f64,
+            };
+            let judged = candidates.into_iter().filter(|fault| !known(fault)).filter_map(|fault| {
+                let (gain, fault, columns) = self.judge(fault, &rows)?;
+                Some((gain - tests(fault.kind).ln(), fault, columns))
+            });
+            let Some((lead, fault, columns)) = judged.max_by(|a, b| a.0.total_cmp(&b.0)) else { break };
+            // Four kinds are tested.
+            if lead < (4.0 / FALSE_ALARM).ln() {
+                break;
+            }
+            found.push(fault);
+            if fault.kind == ReceiverErrorKind::Move {
+                // A move is large against what a linear model sees of it: what remains may be its own.
+                break;
+            }
+            for column in columns {
+                self.take(column);
+            }
+            self.redundancy -= 1.0;
+        }
+        found
+    }
+
+    /// Places of the measurements of each receiver, in the order of the transmitters.
+    fn rows(&self) -> Vec<Vec<usize>> {
+        let mut rows = vec![Vec::new(); self.kept.receivers];
+        for (k, o) in self.kept.all().iter().enumerate() {
+            rows[o.receiver].push(k);
+        }
+        rows
+    }
+
+    /// The most promising error of each kind and receiver, by the residuals alone.
+    fn candidates(&self, rows: &[Vec<usize>]) -> Vec<Fault> {
+        let mut all: Vec<(f64, Fault)> = Vec::new();
+        for (receiver, row) in rows.iter().enumerate() {
+            if row.len() < 3 {
+                continue;
+            }
+            let fault = |kind, from| Fault { receiver, kind, from, size: [0.0; 2], gain: 0.0 };
+            let mut best = [(f64::NEG_INFINITY, 0); 2];
+            for at in SIDE..(row.len() + 1).saturating_sub(SIDE) {
+                let from = self.kept.all()[row[at]].transmitter;
+                for (best, power) in best.iter_mut().zip([0, 1]) {
+                    let score = self.score(&row[..at], power) + self.score(&row[at..], power);
+                    if score > best.0 {
+                        *best = (score, from);
+                    }
+                }
+            }
+            let whole = self.score(row, 0).max(best[0].0).max(best[1].0);
+            all.push((whole, fault(ReceiverErrorKind::Delay, 0)));
+            all.push((whole, fault(ReceiverErrorKind::Drift, 0)));
+            for (best, kind) in best.into_iter().zip([ReceiverErrorKind::Jump, ReceiverErrorKind::Move]) {
+                if best.0.is_finite() {
+                    all.push((whole, fault(kind, best.1)));
+                }
+            }
+        }
+        // The sort is stable: the kinds of one receiver stay together.
+        all.sort_by(|a, b| b.0.total_cmp(&a.0));
+        all.truncate(4 * PROJECTED);
+        all.into_iter().map(|(_, fault)| fault).collect()
+    }
+
+    /// How much of the squares of the residuals in some cells of a receiver one length explains, or a motion of the receiver.
+    fn score(&self, row: &[usize], power: usize) -> f64 {
+        let (mut sum, mut square, mut g, mut h) = (0.0, 0.0, [0.0; 2], [0.0; 3]);
+        for &k in row {
+            let (p, u) = (self.kept.all()[k].precision, self.projection.rays()[k]);
+            let v = self.rest[k] * p;
+            (sum, square) = (sum + v, square + p * p);
+            g = [g[0] + u[0] * v, g[1] + u[1] * v];
+            h = [h[0] + p * p * u[0] * u[0], h[1] + p * p * u[0] * u[1], h[2] + p * p * u[1] * u[1]];
+        }
+        if power == 0 { sum * sum / square } else { solve2(h, g).map_or(0.0, |s| s[0] * g[0] + s[1] * g[1]) }
+    }
+
+    /// The gain of taking an error into the model, with its size, and the parts of its columns that nothing else explains. `None` where it
+    /// explains nothing.
+    fn judge(&self, fault: Fault, rows: &[Vec<usize>]) -> Option<(f64, Fault, Vec<Vec<f64>>)> {
+        let n = self.kept.transmitters;
+        let is_move = fault.kind == ReceiverErrorKind::Move;
+        let column = |axis: usize| -> Vec<f64> {
+            let mut column = vec![0.0; self.kept.len()];
+            for &k in &rows[fault.receiver] {
+                let o = &self.kept.all()[k];
+                let along = if is_move { -self.projection.rays()[k][axis] } else { 1.0 };
+                column[k] = o.precision * fault.shape(o.transmitter, n) * along;
+            }
+            let plain: f64 = column.iter().map(|x| x * x).sum();
+            let mut left = self.projection.off(&column).0;
+            for other in &self.taken {
+                let part = dot(&left, other);
+                left.iter_mut().zip(other).for_each(|(x, y)| *x -= part * y);
+            }
+            // What the network or another error absorbs to rounding cannot be told.
+            if dot(&left, &left) < 1e-6 * plain { Vec::new() } else { left }
+        };
+        let columns: Vec<Vec<f64>> = (0..if is_move { 2 } else { 1 }).map(column).collect();
+        let (a, b) = (columns.first()?, columns.get(1));
+        if columns.iter().any(Vec::is_empty) {
+            return None;
+        }
+        let solve = |h: [f64; 3], g: [f64; 2]| -> Option<[f64; 2]> {
+            if b.is_some() { solve2(h, g) } else { Some([g[0] / h[0], 0.0]) }
+        };
+        let products = |weight: &dyn Fn(usize) -> f64| -> [f64; 3] {
+            let mut h = [0.0; 3];
+            for k in 0..a.len() {
+                let (x, y, w) = (a[k], b.map_or(0.0, |b| b[k]), weight(k));
+                h = [h[0] + w * x * x, h[1] + w * x * y, h[2] + w * y * y];
+            }
+            h
+        };
+        let g = [dot(a, &self.rest), b.map_or(0.0, |b| dot(b, &self.rest))];
+        let size = solve(products(&|_| 1.0), g)?;
+        let explained = size[0] * g[0] + size[1] * g[1];
+        let total = dot(&self.rest, &self.rest);
+        let count = columns.len() as f64;
+        // Under normal noise explained / total follows Beta(q/2, (k-q)/2), whose tail is at most (1 - x)^((k - q)/2).
+        let tail = |x: f64| -0.5 * (self.redundancy - count) * (-x.min(1.0)).ln_1p();
+        // Receivers of uneven noise: with the spread of the residuals that the column meets. The smaller gain counts.
+        let left = |k: usize| self.rest[k] - size[0] * a[k] - b.map_or(0.0, |b| size[1] * b[k]);
+        let correction = self.kept.len() as f64 / (self.redundancy - count).max(1.0);
+        let s = solve(products(&|k| correction * left(k).powi(2)), g)?;
+        let squared = s[0] * g[0] + s[1] * g[1];
+        let uneven = squared / (squared + self.redundancy - count);
+        let gain = tail(explained / total).min(tail(uneven));
+        Some((gain, Fault { size, gain, ..fault }, columns.clone()))
+    }
+
+    /// Takes a column into the model.
+    fn take(&mut self, mut column: Vec<f64>) {
+        let length = dot(&column, &column).sqrt();
+        column.iter_mut().for_each(|x| *x /= length);
+        let part = dot(&self.rest, &column);
+        self.rest.iter_mut().zip(&column).for_each(|(x, y)| *x -= part * y);
+        self.taken.push(column);
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+/// Solves the symmetric system with the matrix xx, xy, yy; `None` if it is singular.
+fn solve2(h: [f64; 3], g: [f64; 2]) -> Option<[f64; 2]> {
+    let det = h[0] * h[2] - h[1] * h[1];
+    if det > 1e-12 * h[0] * h[2] {
+        Some([(h[2] * g[0] - h[1] * g[1]) / det, (h[0] * g[1] - h[1] * g[0]) / det])
+    } else {
+        None
+    }
+}

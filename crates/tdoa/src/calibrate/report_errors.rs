@@ -1,0 +1,108 @@
+//! What the report says of errors of single receivers, and what estimating them costs in certainty.
+
+use super::delays::{columns, gram};
+use super::options::{CalibrateOptions, ReceiverDelays};
+use super::receiver_errors::{Fault, ReceiverError, ReceiverErrorKind};
+use super::report::Solved;
+use crate::degeneracy::list;
+use crate::observations::Observations;
+use crate::refine::{Covariance, Projection, covariance};
+use faer::Mat;
+use faer::prelude::Solve;
+
+impl Solved<'_> {
+    /// The covariance of all nodes, with what the uncertainty of errors that were taken out adds.
+    pub(super) fn covariance(&self, kept: &Observations, sigma: f64) -> Covariance {
+        let best = &self.ranked[0].network;
+        let mut found = covariance(kept, best, sigma).unwrap_or_default();
+        if self.taken.is_empty() || found.receivers.is_empty() {
+            return found;
+        }
+        let Some(projection) = Projection::new(kept, best) else { return found };
+        // A delay for each receiver but one; that of the last one follows.
+        let free = if self.taken.len() == kept.receivers { &self.taken[1..] } else { self.taken };
+        let columns = columns(kept, &projection, free);
+        let Some(gram) = gram(&columns) else { return Covariance::default() };
+        // With sizes of covariance C = sigma^2 (products of the columns)^-1 and motions M that absorb them, M C M^T is added.
+        let inverse = gram.solve(&Mat::<f64>::identity(columns.len(), columns.len()));
+        let pairs = || (0..columns.len()).flat_map(|a| (0..columns.len()).map(move |b| (a, b)));
+        let size = 2 * kept.receivers;
+        for (a, b) in pairs() {
+            let factor = sigma * sigma * inverse[(a, b)];
+            let (p, q) = (&columns[a].1, &columns[b].1);
+            for x in 0..size {
+                for y in 0..size {
+                    found.joint[x * size + y] += factor * p.receivers[x] * q.receivers[y];
+                }
+            }
+            for (covariance, (s, t)) in found.transmitters.iter_mut().zip(p.transmitters.iter().zip(&q.transmitters)) {
+                for (row, s) in covariance.iter_mut().flatten().zip(s) {
+                    for (entry, t) in row.iter_mut().zip(t) {
+                        *entry += factor * s * t;
+                    }
+                }
+            }
+        }
+        for (i, receiver) in found.receivers.iter_mut().enumerate() {
+            *receiver = [0, 1].map(|x| [0, 1].map(|y| found.joint[(2 * i + x) * size + 2 * i + y]));
+        }
+        found
+    }
+
+    pub(super) fn receiver_errors(&self) -> Vec<ReceiverError> {
+        let named = |fault: &Fault, taken_out: bool| {
+            let later = matches!(fault.kind, ReceiverErrorKind::Jump | ReceiverErrorKind::Move);
+            ReceiverError {
+                receiver: self.centred.receiver_names()[fault.receiver].clone(),
+                kind: fault.kind,
+                from: later.then(|| self.centred.transmitter_names()[fault.from].clone()),
+                size: fault.length(),
+                gain: fault.gain,
+                taken_out,
+            }
+        };
+        let taken = self.taken.iter().map(|fault| named(fault, true));
+        taken.chain(self.left.iter().map(|fault| named(fault, false))).collect()
+    }
+
+    /// Warnings that name the receivers, what is wrong with them, by how much, and what to do.
+    pub(super) fn warn_of_receivers(&self, options: &CalibrateOptions, warnings: &mut Vec<String>) {
+        let all = options.receiver_delays == ReceiverDelays::All;
+        let metre = self.speed.map_or(1.0, |speed| speed.factor);
+        let delays = |f: &&Fault| f.kind == ReceiverErrorKind::Delay;
+        if self.left.iter().filter(delays).count() > 4 {
+            let names: Vec<String> =
+                self.left.iter().map(|f| self.centred.receiver_names()[f.receiver].clone()).collect();
+            warnings.push(format!(
+                "many receivers seem to have errors of their own ({}): are their clocks synchronised, and do all nodes lie in one plane? \
+                 --receiver-delays all estimates a delay for each",
+                list(&names)
+            ));
+            return;
+        }
+        if all {
+            return;
+        }
+        for error in self.receiver_errors() {
+            let (name, size) = (&error.receiver, metre * error.size);
+            let from = error.from.as_deref().unwrap_or_default();
+            let what = match error.kind {
+                ReceiverErrorKind::Delay => format!("a delay of {size:.3} m in all its measurements"),
+                ReceiverErrorKind::Drift => {
+                    format!("a clock that drifts by {size:.3} m from the first transmitter to the last")
+                }
+                ReceiverErrorKind::Jump => format!("a clock that jumps by {size:.3} m at transmitter {from}"),
+                ReceiverErrorKind::Move => format!("been moved by about {size:.3} m before transmitter {from}"),
+            };
+            let remedy = match (error.taken_out, error.kind) {
+                (true, ReceiverErrorKind::Move) => "only the longer part of its measurements was used".to_string(),
+                (true, _) => "it was taken out".to_string(),
+                (false, ReceiverErrorKind::Move) => {
+                    format!("give it another name from {from} on, or use --receiver-delays auto")
+                }
+                (false, _) => "remove it from the measurements, or use --receiver-delays auto".to_string(),
+            };
+            warnings.push(format!("receiver {name} seems to have {what}; {remedy}"));
+        }
+    }
+}

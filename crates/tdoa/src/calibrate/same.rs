@@ -1,0 +1,53 @@
+//! When two networks count as one.
+
+use crate::align::align;
+use crate::network::Network;
+use crate::plane::{centroid, distance};
+use crate::refine::Refined;
+
+/// Networks are the same if their nodes differ by less than this share of the network's size, root mean square.
+pub const SAME_NETWORK: f64 = 0.02;
+
+/// The first of each kind of network in a list sorted by objective, at most `most` of them.
+pub(super) fn distinct(sorted: Vec<Refined>, most: usize) -> Vec<Refined> {
+    let mut kept: Vec<Refined> = Vec::new();
+    for candidate in sorted {
+        if kept.len() == most {
+            break;
+        }
+        if !kept.iter().any(|k| same(&k.network, &candidate.network)) {
+            kept.push(candidate);
+        }
+    }
+    kept
+}
+
+/// Whether two networks agree up to a rigid motion or reflection. Transmitters far outside count in proportion to their
+/// distance, since their range is hardly determined.
+pub(super) fn same(a: &Network, b: &Network) -> bool {
+    same_receivers(a, b) && same_transmitters(a, b)
+}
+
+/// Whether the receivers of two networks agree.
+pub(super) fn same_receivers(a: &Network, b: &Network) -> bool {
+    let size = a.size().max(b.size());
+    align(&b.receivers, &a.receivers, false).is_none_or(|alignment| alignment.rms <= SAME_NETWORK * size)
+}
+
+/// Whether the transmitters of two networks agree once the receivers lie on each other.
+pub(super) fn same_transmitters(a: &Network, b: &Network) -> bool {
+    let size = a.size().max(b.size());
+    let Some(alignment) = align(&b.receivers, &a.receivers, false) else { return true };
+    let centre = centroid(a.receivers.iter());
+    let differing = a
+        .transmitters
+        .iter()
+        .zip(&b.transmitters)
+        .filter(|(s, t)| {
+            let reach = size.max(distance(**s, centre));
+            distance(**s, alignment.transform.apply(**t)) > 5.0 * SAME_NETWORK * reach
+        })
+        .count();
+    // One stray transmitter is an ambiguity of that transmitter, not another network.
+    differing <= a.transmitters.len() / 10
+}
