@@ -5,6 +5,7 @@ mod chart;
 mod checks;
 mod clean;
 mod common;
+mod conditions;
 mod damaged;
 mod growth;
 mod hard;
@@ -42,6 +43,7 @@ enum Kind {
     Speed(speed::Arguments),
     Calibrate(calibrate::Arguments),
     Coverage(calibrate::CoverageArguments),
+    Conditions(conditions::Arguments),
     Growth(growth::Arguments),
     Damaged(damaged::Arguments),
 }
@@ -63,6 +65,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Kind::Charts(arguments) => checks::charts(arguments),
         Kind::Calibrate(arguments) => calibrate::run(arguments),
         Kind::Coverage(arguments) => calibrate::run_coverage(arguments),
+        Kind::Conditions(arguments) => conditions::run(arguments),
         Kind::Growth(arguments) => growth::run(arguments),
         Kind::Damaged(arguments) => damaged::run(arguments),
     }

@@ -10,7 +10,7 @@ pub(crate) const SMALLEST: &str = "6 receivers and 3 transmitters, 5 and 4, or 4
 
 /// A node needs this many measurements to be kept: a transmitter three for its position and offset and one to fix which
 /// of two solutions is meant, a receiver two and one.
-const LEAST_PER_TRANSMITTER: usize = 4;
+pub(crate) const LEAST_PER_TRANSMITTER: usize = 4;
 const LEAST_PER_RECEIVER: usize = 3;
 
 /// Receivers at most: the normal equations are dense in their coordinates.

@@ -83,7 +83,6 @@ impl Clearing<'_> {
     /// The networks again with the errors in `taken` estimated for the best of them.
     fn without(&self, mut now: Cleared) -> Result<Cleared, CalibrateError> {
         let best = now.ranked[0].clone();
-        linear_mut(&mut now.taken).for_each(|fault| fault.size = [0.0; 2]);
         let (taken, _, _) = self.estimate(best, now.deviation, now.taken)?;
         now.taken = taken;
         now.measured = self.corrected(&now.taken);

@@ -10,6 +10,7 @@ mod hold;
 mod hypotheses;
 mod known;
 mod minimal;
+mod near;
 mod options;
 mod ranking;
 mod receiver_errors;
@@ -17,8 +18,10 @@ mod report;
 mod report_errors;
 mod same;
 mod search;
+mod submaps;
 mod truth;
 mod warnings;
+mod whole;
 
 pub use calibration::{Alternative, Calibration};
 pub use hypotheses::{Hypotheses, KnownReceivers, generator};
@@ -29,21 +32,13 @@ pub use receiver_errors::{ReceiverError, ReceiverErrorKind};
 pub use same::SAME_NETWORK;
 pub use truth::Truth;
 
-use crate::degeneracy::{Usable, usable};
-use crate::loss::{Loss, SEARCH_NU, normal_deviation};
-use crate::observations::Observations;
+use crate::degeneracy::{LEAST_PER_TRANSMITTER, Usable, list, usable};
 use crate::pseudoranges::Pseudoranges;
-use crate::refine::{PartialNetwork, RefineOptions, Refined, Refiner, SEARCH, extend};
 use delays::{Cleared, Clearing, without_middle_delays};
-use deviation::typical_deviation;
-use finish::finish;
 use hold::{Free, Held};
-use hypotheses::RandomRestarts;
 use report::Solved;
-use search::Search;
-
-/// No measurement is trusted beyond this share of the network's diameter.
-const RESOLUTION: f64 = 1e-9;
+use submaps::{Layout, OVERLAP, hearing_is_local, lay_out};
+use whole::{Sought, search_whole};
 
 /// Calibrates a network from its pseudoranges: by restarts of the robust refinement, and from the networks that the
 /// minimal solvers find for subsets.
@@ -78,68 +73,30 @@ pub fn calibrate_with(
 ) -> Result<Calibration, CalibrateError> {
     options.validate()?;
     known::validate(measured, options)?;
-    let usable = usable(measured)?;
+    let mut usable = usable(measured)?;
+    let known = options.sigma.or(if measured.has_sigmas() { Some(1.0) } else { None });
+    let local = if options.receiver_delays != ReceiverDelays::All {
+        local_layout(measured, &mut usable, known, options, sources, control)?
+    } else {
+        None
+    };
     let (centred, shifts) = centre(&measured.select(&usable.receivers, &usable.transmitters));
     let delayed = options.receiver_delays == ReceiverDelays::All;
     let sought = if delayed { without_middle_delays(&centred) } else { centred.clone() };
-    let observations = Observations::new(&sought, |_, _| true);
-
-    let part = search_part(&sought, options);
-    let small = sought.select(&part.receivers, &part.transmitters);
-    let small_observations = Observations::new(&small, |_, _| true);
-    let to_deviation = normal_deviation(SEARCH_NU);
-    let restarts = RandomRestarts::new(&small_observations);
-    let diameter = restarts.diameter();
-    let known = options.sigma.or(if centred.has_sigmas() { Some(1.0) } else { None });
-    // Where measurements carry deviations, residuals are multiples of them, and so is the network's size.
-    let unit = typical_deviation(&centred);
-    let refine = RefineOptions {
-        scale: known.filter(|_| !delayed).map(|sigma| sigma / to_deviation),
-        anneal_from: Some(0.1 * diameter / unit),
-        floor: RESOLUTION * diameter / unit,
-        ..SEARCH
+    let noise = known.filter(|_| !delayed);
+    let Sought { ranked, neighbours, deviation, floor, starts } = match &local {
+        Some((layout, places)) => layout.refine(&sought, places, noise, options, control)?,
+        None => search_whole(&sought, noise, options, sources, control)?,
     };
-    let mut all: Vec<&dyn Hypotheses> = sources.to_vec();
-    let minimal = MinimalHypotheses::at_most(options.minimal_subsets);
-    if options.restarts || all.is_empty() {
-        all.insert(0, &restarts);
-        if options.minimal_subsets > 0 && MinimalHypotheses::fit(small.receivers(), small.transmitters()) {
-            all.push(&minimal);
-        }
-    }
-    let search = Search {
-        measured: &small,
-        observations: &small_observations,
-        refine,
-        sources: all,
-        wide: Loss { nu: SEARCH_NU, scale: 0.03 * diameter / unit },
-        deviation: known.filter(|_| !delayed).map(|sigma| sigma.max(refine.floor)),
-    };
-    let found = search.run(options, control)?;
-
-    let best = found.networks[0].objective;
-    let close = found.networks.into_iter().filter(|r| r.objective <= best + 4.0 * options.alternative_margin);
-    let whole: Vec<Refined> =
-        if part.receivers.len() == centred.receivers() && part.transmitters.len() == centred.transmitters() {
-            close.collect()
-        } else {
-            complete(&observations, &part, close.take(4), &refine, control)
-        };
-    control.check()?;
-    let Some(scale) = whole.iter().min_by(|a, b| a.objective.total_cmp(&b.objective)).map(|r| r.scale) else {
-        return Err(CalibrateError::NotFound(found.starts));
-    };
-    let first = known.filter(|_| !delayed).unwrap_or(scale * to_deviation).max(refine.floor);
-    let (ranked, deviation) =
-        finish(&observations, whole, first, known.is_some() && !delayed, refine.floor, options, control)?;
-    let clearing = Clearing { measured: &centred, known, floor: refine.floor, options, control };
+    let clearing = Clearing { measured: &centred, known, floor, options, control };
     let Cleared { measured: centred, observations, ranked, deviation, taken, left } =
         clearing.clear(ranked, deviation)?;
-    let free = Free { observations, centred: &centred, known, floor: refine.floor };
+    let free = Free { observations, centred: &centred, known, floor };
     let held = free.hold(ranked, deviation, &usable, options, control)?;
     let Held { observations, ranked, deviation, anchors, speed, warnings } = held;
     let solved = Solved {
         measured,
+        neighbours: if taken.is_empty() && anchors.is_none() { neighbours } else { Vec::new() },
         taken: &taken,
         left: &left,
         usable: &usable,
@@ -149,12 +106,51 @@ pub fn calibrate_with(
         ranked,
         deviation,
         known,
-        starts: found.starts,
+        starts,
         anchors,
         speed,
         warnings,
     };
     Ok(solved.report(options))
+}
+
+/// Where hearing is local: the layout of the usable receivers by submaps, and which of them it places. Nodes that do not hang together with
+/// these are left out of `usable`, with a warning.
+fn local_layout(
+    measured: &Pseudoranges,
+    usable: &mut Usable,
+    known: Option<f64>,
+    options: &CalibrateOptions,
+    sources: &[&dyn Hypotheses],
+    control: &Control<'_>,
+) -> Result<Option<(Layout, Vec<usize>)>, CalibrateError> {
+    let (centred, _) = centre(&measured.select(&usable.receivers, &usable.transmitters));
+    if !hearing_is_local(&centred) {
+        return Ok(None);
+    }
+    let mut layout = match sources.first() {
+        None => lay_out(&centred, known, options, control)?,
+        Some(source) => match Layout::proposed(&centred, *source, options.seed) {
+            Some(layout) => layout,
+            None => return Ok(None),
+        },
+    };
+    layout.place_strays(&centred);
+    let places: Vec<usize> = (0..centred.receivers()).filter(|&i| layout.positions[i].is_some()).collect();
+    let heard = |&j: &usize| places.iter().filter(|&&i| centred.get(i, j).is_some()).count() >= LEAST_PER_TRANSMITTER;
+    let columns: Vec<usize> = (0..centred.transmitters()).filter(heard).collect();
+    let gone: Vec<String> =
+        (0..centred.receivers()).filter(|i| !places.contains(i)).map(|i| centred.receiver_names()[i].clone()).collect();
+    if !gone.is_empty() {
+        usable.warnings.push(format!(
+            "the measurements tie the receivers together in parts only; the largest part is calibrated, without {}; measure transmitters \
+             between the parts that at least {OVERLAP} receivers of each hear",
+            list(&gone)
+        ));
+    }
+    usable.receivers = places.iter().map(|&i| usable.receivers[i]).collect();
+    usable.transmitters = columns.iter().map(|&j| usable.transmitters[j]).collect();
+    Ok(Some((layout, places)))
 }
 
 /// Subtracts each column's median, which the offsets take back at the end: large common times cost digits.
@@ -167,54 +163,4 @@ fn centre(measured: &Pseudoranges) -> (Pseudoranges, Vec<f64>) {
         })
         .collect();
     (measured.shifted(&shifts), shifts)
-}
-
-/// The nodes that the search works on: where there are many, some of the better observed half, evenly spaced, because
-/// neighbours in a recording are often neighbours in the plane.
-fn search_part(measured: &Pseudoranges, options: &CalibrateOptions) -> Usable {
-    let (m, n) = (measured.receivers(), measured.transmitters());
-    let pick = |total: usize, most: usize, count: &dyn Fn(usize) -> usize| -> Vec<usize> {
-        if total <= most {
-            return (0..total).collect();
-        }
-        let mut order: Vec<usize> = (0..total).collect();
-        order.sort_by_key(|&k| std::cmp::Reverse(count(k)));
-        let better = most.max(total / 2);
-        let mut better: Vec<usize> = order[..better].to_vec();
-        better.sort_unstable();
-        (0..most).map(|k| better[k * better.len() / most]).collect()
-    };
-    let receivers = pick(m, options.search_receivers, &|i| (0..n).filter(|&j| measured.get(i, j).is_some()).count());
-    let heard = |j: usize| receivers.iter().filter(|&&i| measured.get(i, j).is_some()).count();
-    let transmitters = pick(n, options.search_transmitters, &heard);
-    // A part that cannot be solved on its own is no help.
-    match usable(&measured.select(&receivers, &transmitters)) {
-        Ok(part) => Usable {
-            receivers: part.receivers.iter().map(|&i| receivers[i]).collect(),
-            transmitters: part.transmitters.iter().map(|&j| transmitters[j]).collect(),
-            warnings: Vec::new(),
-        },
-        Err(_) => Usable { receivers: (0..m).collect(), transmitters: (0..n).collect(), warnings: Vec::new() },
-    }
-}
-
-/// Extends networks of a part of the nodes to all of them and refines them.
-fn complete(
-    observations: &Observations,
-    part: &Usable,
-    networks: impl Iterator<Item = Refined>,
-    refine: &RefineOptions,
-    control: &Control<'_>,
-) -> Vec<Refined> {
-    let mut refiner = Refiner::new(observations, SEARCH_NU).heeding(&control.monitor);
-    let refine = RefineOptions { anneal_from: None, ..*refine };
-    networks
-        .filter_map(|refined| {
-            let mut known = PartialNetwork::unknown(observations.receivers, observations.transmitters);
-            known.place(&refined.network, &part.receivers, &part.transmitters);
-            let network = extend(observations, &known, &Loss { nu: SEARCH_NU, scale: refined.scale })?;
-            Some(Refined { starts: refined.starts, ..refiner.refine(network, &refine) })
-        })
-        .filter(|refined| refined.objective.is_finite() && refined.network.is_finite())
-        .collect()
 }

@@ -55,7 +55,7 @@ pub(super) fn rank(
 }
 
 /// The network of least truncated cost near a given one, with that cost: least squares over the inliers until they stay the same.
-fn refit(observations: &Observations, network: &Network, deviation: f64) -> (Network, f64) {
+pub(super) fn refit(observations: &Observations, network: &Network, deviation: f64) -> (Network, f64) {
     let limit = (2.0 * OUTLIER_COST).sqrt() * deviation;
     let options = RefineOptions { scale: Some(deviation), steps: 20, rounds: 0, tolerance: 1e-9, ..SEARCH };
     let mut best = (network.clone(), truncated_cost(observations, network, deviation));

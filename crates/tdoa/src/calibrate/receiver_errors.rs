@@ -85,7 +85,9 @@ pub(super) fn find(observations: &Observations, network: &Network, deviation: f6
     // An error of one receiver makes residuals larger than the noise: the test takes the deviation that they have.
     let wide = spread_of_residuals(observations, network).max(deviation);
     let wide = inlier_deviation(observations, network, wide, threshold);
-    let kept = observations.subset(|o| o.residual(network).abs() <= threshold * wide);
+    // What the robust loss has given up of a receiver is what tells of its error: all cells near its own spread take part.
+    let reach = reaches(observations, network);
+    let kept = observations.subset(|o| o.residual(network).abs() <= threshold * wide.max(reach[o.receiver]));
     let redundancy = kept.len().saturating_sub(kept.unknowns());
     if redundancy < 4 {
         return Vec::new();
@@ -94,6 +96,17 @@ pub(super) fn find(observations: &Observations, network: &Network, deviation: f6
     let residuals: Vec<f64> = kept.all().iter().map(|o| o.residual(network)).collect();
     let (rest, _) = projection.off(&residuals);
     Test { kept: &kept, projection, rest, taken: Vec::new(), redundancy: redundancy as f64 }.run()
+}
+
+/// Spread of the residuals of each receiver about zero, from the smaller seven tenths of them.
+fn reaches(observations: &Observations, network: &Network) -> Vec<f64> {
+    let spread = |i: usize| {
+        let mut sizes: Vec<f64> = observations.of_receiver(i).map(|o| o.residual(network).abs()).collect();
+        sizes.sort_by(f64::total_cmp);
+        // Seven tenths of a normal variable are within 1.0364 deviations.
+        sizes.get(sizes.len() * 7 / 10).map_or(0.0, |size| size / 1.0364)
+    };
+    (0..observations.receivers).map(spread).collect()
 }
 
 struct Test<'a> {
@@ -270,5 +283,83 @@ fn solve2(h: [f64; 3], g: [f64; 2]) -> Option<[f64; 2]> {
         Some([(h[2] * g[0] - h[1] * g[1]) / det, (h[0] * g[1] - h[1] * g[0]) / det])
     } else {
         None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::ReceiverErrorKind;
+    use crate::align::align;
+    use crate::{CalibrateOptions, Calibration, ReceiverDelays, ReceiverFault, SimulateOptions, calibrate, simulate};
+
+    const SIGMA: f64 = 0.01;
+
+    /// A calibration and how far its receivers are from the truth, metres.
+    fn run(fault: Option<ReceiverFault>, delays: f64, handling: ReceiverDelays, seed: u64) -> (Calibration, f64) {
+        let options = SimulateOptions {
+            receivers: 10,
+            transmitters: 20,
+            noise: SIGMA,
+            fault,
+            delays,
+            seed,
+            ..Default::default()
+        };
+        let simulation = simulate(&options).unwrap();
+        let options = CalibrateOptions { receiver_delays: handling, seed, ..Default::default() };
+        let found = calibrate(&simulation.pseudoranges, &options).unwrap();
+        let pairs = found.receivers.iter().zip(&simulation.network.receivers).filter_map(|(p, q)| Some(((*p)?, *q)));
+        let (placed, truth): (Vec<_>, Vec<_>) = pairs.unzip();
+        let error = align(&placed, &truth, false).unwrap().rms;
+        (found, error)
+    }
+
+    #[test]
+    fn the_receiver_and_its_error_are_named_and_taken_out() {
+        for (fault, kind, size) in [
+            (ReceiverFault::Delay(0.3), ReceiverErrorKind::Delay, 0.3),
+            (ReceiverFault::Drift(0.5), ReceiverErrorKind::Drift, 0.5),
+            (ReceiverFault::Move(1.0), ReceiverErrorKind::Move, 1.0),
+        ] {
+            for seed in 0..3 {
+                let (told, _) = run(Some(fault), 0.0, ReceiverDelays::None, seed);
+                let error = &told.receiver_errors[0];
+                assert_eq!(
+                    (error.receiver.as_str(), error.kind, error.taken_out),
+                    ("r1", kind, false),
+                    "{fault:?} {seed}"
+                );
+                assert!(!told.unique && told.warnings.iter().any(|warning| warning.contains("receiver r1 seems")));
+                let (mended, right) = run(Some(fault), 0.0, ReceiverDelays::Auto, seed);
+                let error = &mended.receiver_errors[0];
+                assert_eq!(
+                    (error.receiver.as_str(), error.kind, error.taken_out),
+                    ("r1", kind, true),
+                    "{fault:?} {seed}"
+                );
+                assert!((error.size.abs() - size).abs() < 0.3 * size, "{fault:?} {seed}: {}", error.size);
+                // The noise alone makes errors of about its own size.
+                assert!(right < 3.0 * SIGMA && mended.receivers[0].is_some(), "{fault:?} {seed}: {right}");
+            }
+        }
+    }
+
+    #[test]
+    fn clean_networks_have_no_errors() {
+        // One false alarm in a thousand networks at most.
+        for seed in 0..12 {
+            let (found, _) = run(None, 0.0, ReceiverDelays::None, 100 + seed);
+            assert!(found.receiver_errors.is_empty(), "seed {seed}: {:?}", found.receiver_errors);
+        }
+    }
+
+    #[test]
+    fn receivers_without_a_common_clock_are_calibrated() {
+        for seed in 0..3 {
+            let (found, error) = run(None, 2.0, ReceiverDelays::All, seed);
+            assert_eq!(found.receiver_errors.len(), 10);
+            let mean: f64 = found.receiver_errors.iter().map(|error| error.size).sum::<f64>() / 10.0;
+            assert!(mean.abs() < 1e-9 && error < 5.0 * SIGMA, "seed {seed}: {error}");
+        }
     }
 }

@@ -3,6 +3,7 @@
 use super::calibration::{Alternative, Calibration};
 use super::deviation::{inlier_deviation, typical_deviation};
 use super::known::{Anchors, SpeedEstimate};
+use super::near::{BEYOND, Neighbour, widen};
 use super::options::CalibrateOptions;
 use super::receiver_errors::Fault;
 use super::same::{same_receivers, same_transmitters};
@@ -26,6 +27,8 @@ pub(super) struct Solved<'a> {
     pub(super) shifts: &'a [f64],
     /// At least one network.
     pub(super) ranked: Vec<Refined>,
+    /// Neighbours of the best network.
+    pub(super) neighbours: Vec<Neighbour>,
     pub(super) deviation: f64,
     pub(super) known: Option<f64>,
     pub(super) starts: usize,
@@ -55,7 +58,7 @@ impl Solved<'_> {
         let mut warnings = [self.usable.warnings.as_slice(), &self.warnings].concat();
         let redundancy = kept.len().saturating_sub(kept.unknowns());
         let ellipse_radius = radius_95(redundancy, self.known.is_some());
-        let uncertainty = match ellipse_radius {
+        let mut uncertainty = match ellipse_radius {
             // What the robust loss loses against least squares on normal noise is added.
             Some(_) => self.covariance(&kept, sigma / EFFICIENCY.sqrt()),
             None => {
@@ -67,6 +70,11 @@ impl Solved<'_> {
                 Covariance::default()
             }
         };
+        let mut apart: Vec<&Neighbour> = Vec::new();
+        if let Some(radius) = ellipse_radius {
+            apart.extend(self.neighbours.iter().filter(|n| n.distance(&uncertainty) >= BEYOND));
+            widen(&mut uncertainty, &self.neighbours, radius);
+        }
         let planar = self.planar(best, estimated, redundancy, options, &mut warnings);
         let noise_known = ellipse_radius.is_some();
         let doubtful = doubtful_receivers(self.centred, &kept);
@@ -96,15 +104,18 @@ impl Solved<'_> {
                 .collect();
             (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
         };
-        let alternatives: Vec<Alternative> = self.ranked[1..]
+        let others = self.ranked[1..].iter().map(|other| (&other.network, other.objective - self.ranked[0].objective));
+        let mut others: Vec<(&Network, f64)> =
+            others.chain(apart.iter().map(|other| (&other.network, other.loss))).collect();
+        others.retain(|(_, loss)| *loss <= options.alternative_margin);
+        others.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let alternatives: Vec<Alternative> = others
             .iter()
-            .map(|other| (other, other.objective - self.ranked[0].objective))
-            .filter(|(_, loss)| *loss <= options.alternative_margin)
-            .filter_map(|(other, loss)| {
+            .filter_map(|&(other, loss)| {
                 let network = if is_held {
-                    other.network.clone()
+                    other.clone()
                 } else {
-                    align(&other.network.receivers, &best.receivers, false)?.transform.apply_network(&other.network)
+                    align(&other.receivers, &best.receivers, false)?.transform.apply_network(other)
                 };
                 Some(Alternative {
                     receivers: spread_rows(&network.receivers),
@@ -115,11 +126,9 @@ impl Solved<'_> {
                 })
             })
             .collect();
-        let close = self.ranked[1..]
-            .iter()
-            .take_while(|r| r.objective - self.ranked[0].objective <= options.alternative_margin);
-        let receivers_agree = close.clone().all(|other| same_receivers(&other.network, best));
-        let transmitters_agree = close.clone().all(|other| same_transmitters(&other.network, best));
+        let near = apart.iter().any(|other| other.loss <= options.alternative_margin);
+        let receivers_agree = !near && others.iter().all(|(other, _)| same_receivers(other, best));
+        let transmitters_agree = others.iter().all(|(other, _)| same_transmitters(other, best));
         if !alternatives.is_empty() {
             warnings.push(format!(
                 "{} other network{} explain{} the measurements about as well (see alternatives){}; add receivers or transmitters, \

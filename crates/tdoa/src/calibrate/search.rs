@@ -3,6 +3,7 @@
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 
 use super::hypotheses::Hypotheses;
+use super::near::minima;
 use super::options::{CalibrateError, CalibrateOptions, Control, Progress};
 use super::ranking::truncated_cost;
 use super::same::{distinct, same};
@@ -30,6 +31,8 @@ const SAME_BASIN: f64 = 20.0;
 pub(crate) struct Found {
     /// Different networks, best objective first, each with the starts that ended in it.
     pub(crate) networks: Vec<Refined>,
+    /// Networks that count as the best one and end in other minima.
+    pub(crate) near: Vec<Network>,
     /// Starts that were made.
     pub(crate) starts: usize,
 }
@@ -86,7 +89,11 @@ impl Search<'_> {
                 for network in &mut networks {
                     network.starts = starts_in(network, &refined);
                 }
-                return Ok(Found { networks, starts });
+                let best = &networks[0];
+                let close = refined.iter().take_while(|r| r.objective <= best.objective + SAME_BASIN);
+                let close = close.filter(|r| same(&r.network, &best.network)).map(|r| r.network.clone());
+                let near = minima(&best.network, close);
+                return Ok(Found { networks, near, starts });
             }
         }
     }

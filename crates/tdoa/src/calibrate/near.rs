@@ -1,0 +1,120 @@
+//! Networks near the best one that explain the measurements about as well: too near to be called another, too far for ellipses about one alone.
+
+use super::ranking::refit;
+use crate::align::align;
+use crate::network::Network;
+use crate::observations::Observations;
+use crate::refine::{Covariance, Refined};
+
+/// Networks that differ by less than this share of their size, root mean square, ended in one minimum.
+const ONE_MINIMUM: f64 = 1e-3;
+
+/// Neighbours that are looked at.
+const MOST: usize = 8;
+
+/// A neighbour nearer than this many standard deviations (root mean square over the receivers) lies within what the ellipses say; one farther
+/// than the second number is another network.
+const WITHIN: f64 = 0.5;
+pub(super) const BEYOND: f64 = 4.0;
+
+/// Less likely neighbours, relative to the best network, are left out.
+const LIKELY: f64 = 0.02;
+
+/// A neighbour of the best network.
+pub(super) struct Neighbour {
+    pub(super) network: Network,
+    /// By how much the measurements are less likely than under the best network, natural logarithm; not negative.
+    pub(super) loss: f64,
+    /// Where its receivers lie from those of the best network.
+    shifts: Vec<[f64; 2]>,
+}
+
+/// One network of each minimum among those that the search counted as the best one, the best itself left out.
+pub(super) fn minima(best: &Network, same: impl Iterator<Item = Network>) -> Vec<Network> {
+    let mut kept = vec![best.clone()];
+    for network in same {
+        let limit = ONE_MINIMUM * best.size();
+        let known = |k: &Network| align(&network.receivers, &k.receivers, false).is_none_or(|a| a.rms <= limit);
+        if kept.len() <= MOST && !kept.iter().any(known) {
+            kept.push(network);
+        }
+    }
+    kept.split_off(1)
+}
+
+/// Neighbours that least squares over the inliers leaves apart, with what they cost more than the best.
+pub(super) fn neighbours(
+    observations: &Observations,
+    best: &Refined,
+    near: Vec<Network>,
+    deviation: f64,
+) -> Vec<Neighbour> {
+    if near.is_empty() {
+        return Vec::new();
+    }
+    let (centre, least) = refit(observations, &best.network, deviation);
+    let mut found: Vec<Neighbour> = Vec::new();
+    for network in near {
+        let (network, cost) = refit(observations, &network, deviation);
+        let Some(alignment) = align(&network.receivers, &centre.receivers, false) else { continue };
+        let network = alignment.transform.apply_network(&network);
+        let shifts = network.receivers.iter().zip(&centre.receivers).map(|(p, q)| [p[0] - q[0], p[1] - q[1]]).collect();
+        let limit = ONE_MINIMUM * centre.size();
+        let known =
+            |k: &Neighbour| align(&network.receivers, &k.network.receivers, false).is_none_or(|a| a.rms <= limit);
+        if alignment.rms > limit && !found.iter().any(known) {
+            found.push(Neighbour { network, loss: (cost - least).max(0.0), shifts });
+        }
+    }
+    found
+}
+
+impl Neighbour {
+    /// How far its receivers lie from those of the best network, in standard deviations, root mean square.
+    pub(super) fn distance(&self, uncertainty: &Covariance) -> f64 {
+        let square: f64 = self.shifts.iter().map(|s| s[0] * s[0] + s[1] * s[1]).sum();
+        let variance: f64 = uncertainty.receivers.iter().map(|c| c[0][0] + c[1][1]).sum();
+        (square / variance).sqrt()
+    }
+}
+
+/// Adds what likely neighbours add to the covariance of the receivers: that of the mixture of both, and enough for the ellipse to reach the other.
+pub(super) fn widen(uncertainty: &mut Covariance, neighbours: &[Neighbour], radius: f64) {
+    let total: f64 = 1.0 + neighbours.iter().map(|n| (-n.loss).exp()).sum::<f64>();
+    let distances: Vec<f64> = neighbours.iter().map(|n| n.distance(uncertainty)).collect();
+    for (neighbour, distance) in neighbours.iter().zip(distances) {
+        let share = (-neighbour.loss).exp() / total;
+        if share < LIKELY || !(WITHIN..BEYOND).contains(&distance) {
+            continue;
+        }
+        let factor = share + 1.0 / (radius * radius);
+        for (c, s) in uncertainty.receivers.iter_mut().zip(&neighbour.shifts) {
+            for a in 0..2 {
+                for b in 0..2 {
+                    c[a][b] += factor * s[a] * s[b];
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Neighbour, widen};
+    use crate::refine::Covariance;
+
+    #[test]
+    fn the_ellipse_reaches_a_neighbour_that_is_as_likely() {
+        let mut uncertainty = Covariance { receivers: vec![[[1.0, 0.0], [0.0, 1.0]]; 2], ..Default::default() };
+        let shifts = vec![[3.0, 0.0], [0.0, 0.0]];
+        let neighbour = |loss| Neighbour { network: Default::default(), loss, shifts: shifts.clone() };
+        // Half of the mixture lies 3 to the side: its variance about the best is 1 + 9/2, and 9/6 more for a radius of sqrt 6.
+        widen(&mut uncertainty, &[neighbour(0.0)], 6f64.sqrt());
+        assert!((uncertainty.receivers[0][0][0] - 7.0).abs() < 1e-12 && uncertainty.receivers[0][1][1] == 1.0);
+        assert_eq!(uncertainty.receivers[1], [[1.0, 0.0], [0.0, 1.0]]);
+        // One that is much less likely changes nothing.
+        let before = uncertainty.clone();
+        widen(&mut uncertainty, &[neighbour(6.0)], 6f64.sqrt());
+        assert_eq!(uncertainty.receivers, before.receivers);
+    }
+}

@@ -1,0 +1,384 @@
+//! Networks that nobody hears whole: small networks of neighbouring receivers, laid together where they overlap, then refined as one.
+
+use super::deviation::{median_size, typical_deviation};
+use super::finish::finish;
+use super::hypotheses::Hypotheses;
+use super::options::{CalibrateError, CalibrateOptions, Control, Progress};
+use super::whole::{Sought, search_whole};
+use crate::align::{Transform, align};
+use crate::degeneracy::usable;
+use crate::loss::{Loss, SEARCH_NU, normal_deviation};
+use crate::multilateration::{self, Sight};
+use crate::network::Network;
+use crate::observations::Observations;
+use crate::plane::{distance, flatness, spread};
+use crate::pseudoranges::Pseudoranges;
+use crate::refine::{PartialNetwork, RefineOptions, Refiner, SEARCH, extend};
+
+/// Receivers and transmitters of a submap.
+const RECEIVERS: usize = 10;
+const TRANSMITTERS: usize = 60;
+
+/// Fewest and most starts of the search of one submap, and how many must agree: submaps check each other, and one that needs more is no help.
+const STARTS: usize = 16;
+const MOST_STARTS: usize = 128;
+const AGREEING: usize = 5;
+
+/// Receivers that must hear a transmitter of a submap.
+const HEARD: usize = 5;
+
+/// Pairs of receivers with fewer common transmitters say nothing of their distance; where they are more than this share of all, hearing is
+/// local.
+const COMMON: usize = 3;
+const LOCAL: f64 = 0.2;
+
+/// Receivers that two networks must share to be laid together.
+pub(super) const OVERLAP: usize = 4;
+
+/// Submaps fit where common receivers lie within this share of the submap's size (root mean square).
+const FIT: f64 = 0.04;
+
+/// A network of a few receivers.
+struct Submap {
+    /// Their indices.
+    receivers: Vec<usize>,
+    /// Their positions, in a frame of its own and perhaps reflected.
+    positions: Vec<[f64; 2]>,
+    size: f64,
+}
+
+/// What the submaps say of the receivers: those that hang together.
+pub(super) struct Layout {
+    submaps: Vec<Submap>,
+    /// Positions in one frame; `None` where no submap ties a receiver to the others.
+    pub(super) positions: Vec<Option<[f64; 2]>>,
+    /// How many submaps were solved.
+    pub(super) solved: usize,
+    /// Size of the largest submap, metres.
+    size: f64,
+}
+
+/// Whether so many pairs of receivers hear no transmitter in common that no small part stands for the whole.
+pub(super) fn hearing_is_local(measured: &Pseudoranges) -> bool {
+    let m = measured.receivers();
+    if m <= RECEIVERS {
+        return false;
+    }
+    let common = common_transmitters(measured);
+    let few = (0..m).flat_map(|a| (a + 1..m).map(move |b| (a, b))).filter(|&(a, b)| common[a * m + b] < COMMON).count();
+    few as f64 > LOCAL * (m * (m - 1) / 2) as f64
+}
+
+/// Row-major: how many transmitters each two receivers hear in common.
+fn common_transmitters(measured: &Pseudoranges) -> Vec<usize> {
+    let m = measured.receivers();
+    let mut common = vec![0; m * m];
+    for j in 0..measured.transmitters() {
+        let heard: Vec<usize> = (0..m).filter(|&i| measured.get(i, j).is_some()).collect();
+        for &a in &heard {
+            for &b in &heard {
+                common[a * m + b] += 1;
+            }
+        }
+    }
+    common
+}
+
+/// Solves the neighbourhood of each receiver and lays the results together.
+///
+/// # Errors
+/// Cancelled, or no neighbourhood could be solved.
+pub(super) fn lay_out(
+    measured: &Pseudoranges,
+    known: Option<f64>,
+    options: &CalibrateOptions,
+    control: &Control<'_>,
+) -> Result<Layout, CalibrateError> {
+    let m = measured.receivers();
+    let common = common_transmitters(measured);
+    let quiet = Control { progress: None, monitor: control.monitor.clone() };
+    let options = &CalibrateOptions {
+        min_starts: options.min_starts.min(STARTS),
+        max_starts: options.max_starts.min(MOST_STARTS),
+        agreeing: options.agreeing.min(AGREEING),
+        ..options.clone()
+    };
+    let mut submaps: Vec<Submap> = Vec::new();
+    let mut tried: Vec<Vec<usize>> = Vec::new();
+    for centre in 0..m {
+        control.check()?;
+        let mut order: Vec<usize> = (0..m).filter(|&i| common[centre * m + i] >= COMMON).collect();
+        // The receiver itself hears all that it hears.
+        order.sort_by_key(|&i| std::cmp::Reverse(common[centre * m + i]));
+        order.truncate(RECEIVERS);
+        order.sort_unstable();
+        if tried.contains(&order) {
+            continue;
+        }
+        tried.push(order.clone());
+        if let Some(submap) = solve(measured, &order, known, options, &quiet)? {
+            submaps.push(submap);
+        }
+        if let Some(progress) = control.progress {
+            progress(Progress { starts: centre + 1, max_starts: m, agreeing: submaps.len() });
+        }
+    }
+    if submaps.is_empty() {
+        return Err(CalibrateError::NotFound(m));
+    }
+    let positions = largest(&submaps, m);
+    let size = submaps.iter().map(|submap| submap.size).fold(0.0, f64::max);
+    Ok(Layout { solved: submaps.len(), submaps, positions, size })
+}
+
+/// The network of some receivers if their transmitters determine it and no other network fits about as well.
+fn solve(
+    measured: &Pseudoranges,
+    receivers: &[usize],
+    known: Option<f64>,
+    options: &CalibrateOptions,
+    control: &Control<'_>,
+) -> Result<Option<Submap>, CalibrateError> {
+    let heard = |j: usize| receivers.iter().filter(|&&i| measured.get(i, j).is_some()).count();
+    let mut transmitters: Vec<usize> = (0..measured.transmitters()).filter(|&j| heard(j) >= HEARD).collect();
+    transmitters.sort_by_key(|&j| std::cmp::Reverse(heard(j)));
+    transmitters.truncate(TRANSMITTERS);
+    transmitters.sort_unstable();
+    let part = measured.select(receivers, &transmitters);
+    let Ok(kept) = usable(&part) else { return Ok(None) };
+    let part = part.select(&kept.receivers, &kept.transmitters);
+    let found = match search_whole(&part, known, options, &[], control) {
+        Ok(found) => found,
+        Err(CalibrateError::Cancelled) => return Err(CalibrateError::Cancelled),
+        Err(_) => return Ok(None),
+    };
+    let rivals =
+        found.ranked[1..].iter().any(|r| r.objective <= found.ranked[0].objective + options.alternative_margin);
+    let best = &found.ranked[0];
+    if rivals || best.starts < 2 {
+        return Ok(None);
+    }
+    Ok(Some(Submap {
+        receivers: kept.receivers.iter().map(|&i| receivers[i]).collect(),
+        positions: best.network.receivers.clone(),
+        size: best.network.size(),
+    }))
+}
+
+/// Positions of the receivers of the largest part that hangs together.
+fn largest(submaps: &[Submap], receivers: usize) -> Vec<Option<[f64; 2]>> {
+    let mut best = vec![None; receivers];
+    let mut used = vec![false; submaps.len()];
+    // Each part begins with the unused submap of the most receivers.
+    while let Some(first) =
+        (0..submaps.len()).filter(|&k| !used[k]).max_by_key(|&k| (submaps[k].receivers.len(), usize::MAX - k))
+    {
+        let part = grow(submaps, first, receivers, &mut used);
+        let placed = |part: &[Option<[f64; 2]>]| part.iter().flatten().count();
+        if placed(&part) > placed(&best) {
+            best = part;
+        }
+        used[first] = true;
+    }
+    best
+}
+
+/// A part from one submap on: the submap that fits in the most receivers is always the next.
+fn grow(submaps: &[Submap], first: usize, receivers: usize, used: &mut [bool]) -> Vec<Option<[f64; 2]>> {
+    let mut placed = vec![None; receivers];
+    for (&i, &p) in submaps[first].receivers.iter().zip(&submaps[first].positions) {
+        placed[i] = Some(p);
+    }
+    used[first] = true;
+    loop {
+        let fits = (0..submaps.len()).filter(|&k| !used[k]).filter_map(|k| {
+            let (count, map) = fit(&submaps[k], &placed)?;
+            Some((count, usize::MAX - k, map))
+        });
+        let Some((_, k, map)) = fits.max_by_key(|(count, k, _)| (*count, *k)) else { return placed };
+        let submap = &submaps[usize::MAX - k];
+        used[usize::MAX - k] = true;
+        for (&i, &p) in submap.receivers.iter().zip(&submap.positions) {
+            if placed[i].is_none() {
+                placed[i] = Some(map.apply(p));
+            }
+        }
+    }
+}
+
+/// The map that lays a submap on placed receivers, with how many of the common ones it fits: at least four that are not in one line, and more
+/// than half of those in common.
+fn fit(submap: &Submap, placed: &[Option<[f64; 2]>]) -> Option<(usize, Transform)> {
+    let pairs = submap.receivers.iter().zip(&submap.positions).filter_map(|(&i, &p)| Some((p, placed[i]?)));
+    let (mut from, mut to): (Vec<_>, Vec<_>) = pairs.unzip();
+    let common = from.len();
+    while from.len() >= OVERLAP && 2 * from.len() > common {
+        let alignment = align(&from, &to, false)?;
+        if alignment.rms <= FIT * submap.size {
+            // Receivers in one line leave open on which side of it the others lie.
+            return (flatness(&from) > 0.05).then_some((from.len(), alignment.transform));
+        }
+        let error = |k: usize| distance(alignment.transform.apply(from[k]), to[k]);
+        let worst = (0..from.len()).max_by(|&a, &b| error(a).total_cmp(&error(b)))?;
+        from.swap_remove(worst);
+        to.swap_remove(worst);
+    }
+    None
+}
+
+impl Layout {
+    /// The places that a source of networks proposes first, if it has receivers for all.
+    pub(super) fn proposed(measured: &Pseudoranges, source: &dyn Hypotheses, seed: u64) -> Option<Layout> {
+        let positions = source.propose(measured, 0, seed).into_iter().next()?.receivers;
+        let placed: Vec<[f64; 2]> = positions.iter().copied().collect::<Option<_>>()?;
+        // As much as ten neighbours would take of it.
+        let share = (RECEIVERS as f64 / placed.len() as f64).sqrt();
+        Some(Layout { submaps: Vec::new(), positions, solved: 1, size: share * spread(placed.iter()) })
+    }
+
+    /// Fewest submaps, over the receivers, that fit a network: how often each place was found on its own.
+    fn support(&self, network: &Network, receivers: &[usize]) -> usize {
+        let mut placed = vec![None; self.positions.len()];
+        for (&i, &p) in receivers.iter().zip(&network.receivers) {
+            placed[i] = Some(p);
+        }
+        let mut counts = vec![0; self.positions.len()];
+        for submap in &self.submaps {
+            let Some((_, map)) = fit(submap, &placed) else { continue };
+            for (&i, &p) in submap.receivers.iter().zip(&submap.positions) {
+                if placed[i].is_some_and(|q| distance(map.apply(p), q) <= 3.0 * FIT * submap.size) {
+                    counts[i] += 1;
+                }
+            }
+        }
+        receivers.iter().map(|&i| counts[i]).min().unwrap_or(0)
+    }
+
+    /// The network of the placed receivers, refined as one. `measured` has these receivers alone, with their indices beside.
+    ///
+    /// # Errors
+    /// Cancelled, or a transmitter that cannot be located.
+    pub(super) fn refine(
+        &self,
+        measured: &Pseudoranges,
+        receivers: &[usize],
+        known: Option<f64>,
+        options: &CalibrateOptions,
+        control: &Control<'_>,
+    ) -> Result<Sought, CalibrateError> {
+        let observations = Observations::new(measured, |_, _| true);
+        let unit = typical_deviation(measured);
+        let size = self.size / unit;
+        let mut part = PartialNetwork::unknown(measured.receivers(), measured.transmitters());
+        part.receivers = receivers.iter().map(|&i| self.positions[i]).collect();
+        let wide = Loss { nu: SEARCH_NU, scale: FIT * size };
+        let network = extend(&observations, &part, &wide).ok_or(CalibrateError::NotFound(self.solved))?;
+        // Submaps that were laid one beside the other bend a little as a whole.
+        let bent = median_size(&observations, &network).max(FIT * size);
+        let refine = RefineOptions { anneal_from: Some(bent), steps: 60, floor: 1e-9 * size, ..SEARCH };
+        let to_deviation = normal_deviation(SEARCH_NU);
+        let start = RefineOptions { scale: known.map(|sigma| sigma / to_deviation), ..refine };
+        let mut refiner = Refiner::new(&observations, SEARCH_NU).heeding(&control.monitor);
+        let mut refined = refiner.refine(network, &start);
+        control.check()?;
+        refined.starts = self.support(&refined.network, receivers);
+        let first = known.unwrap_or(refined.scale * to_deviation).max(refine.floor);
+        let (ranked, deviation) =
+            finish(&observations, vec![refined], first, known.is_some(), refine.floor, options, control)?;
+        Ok(Sought { ranked, neighbours: Vec::new(), deviation, floor: refine.floor, starts: self.solved })
+    }
+
+    /// Places receivers that no submap has from transmitters that five placed receivers or more have located.
+    pub(super) fn place_strays(&mut self, measured: &Pseudoranges) {
+        let size = self.size / typical_deviation(measured);
+        let loss = Loss { nu: SEARCH_NU, scale: FIT * size };
+        let precision = |i: usize, j: usize| measured.sigma(i, j).map_or(1.0, |sigma| 1.0 / sigma);
+        let located: Vec<Option<multilateration::Located>> = (0..measured.transmitters())
+            .map(|j| {
+                let sight = |i: usize| {
+                    Some(Sight {
+                        position: self.positions[i]?,
+                        length: measured.get(i, j)?,
+                        precision: precision(i, j),
+                    })
+                };
+                let sights: Vec<Sight> = (0..measured.receivers()).filter_map(sight).collect();
+                (sights.len() >= HEARD).then(|| multilateration::transmitter(&sights, &loss)).flatten()
+            })
+            .collect();
+        for i in 0..measured.receivers() {
+            if self.positions[i].is_some() {
+                continue;
+            }
+            let sight = |(j, found): (usize, &Option<multilateration::Located>)| {
+                let found = found.as_ref()?;
+                let length = measured.get(i, j)? - found.offset;
+                Some(Sight { position: found.position, length, precision: precision(i, j) })
+            };
+            let sights: Vec<Sight> = located.iter().enumerate().filter_map(sight).collect();
+            let around: Vec<[f64; 2]> = sights.iter().map(|s| s.position).collect();
+            if sights.len() >= 2 * OVERLAP && flatness(&around) > 0.05 {
+                self.positions[i] = multilateration::receiver(&sights, &loss).map(|found| found.position);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::align::align;
+    use crate::{CalibrateOptions, Layout, Pseudoranges, SimulateOptions, Simulation, calibrate, simulate};
+
+    fn chain(seed: u64) -> Simulation {
+        let layout = Layout::Chain { length: 400.0, width: 50.0 };
+        let options = SimulateOptions {
+            receivers: 20,
+            transmitters: 120,
+            hearing: Some(8),
+            noise: 0.1,
+            outliers: 0.02,
+            outlier_size: 50.0,
+            layout,
+            seed,
+            ..Default::default()
+        };
+        simulate(&options).unwrap()
+    }
+
+    #[test]
+    fn a_chain_that_nobody_hears_whole_is_found() {
+        let simulation = chain(1);
+        let found = calibrate(&simulation.pseudoranges, &CalibrateOptions::default()).unwrap();
+        let receivers: Vec<[f64; 2]> = found.receivers.iter().map(|p| p.unwrap()).collect();
+        let error = align(&receivers, &simulation.network.receivers, false).unwrap().rms;
+        // The covariance is that of least squares without the outliers.
+        let variance: f64 = found.receiver_std.iter().map(|std| std.map_or(f64::NAN, |[x, y]| x * x + y * y)).sum();
+        let expected = (variance / 20.0).sqrt();
+        assert!(error < 3.0 * expected && expected < 5.0, "{error} {expected}");
+        assert!(found.unique, "{:?}", found.warnings);
+    }
+
+    #[test]
+    fn parts_that_do_not_hang_together_are_named() {
+        let simulation = chain(2);
+        // Whoever is heard on both sides of the gap is not heard at all: only receivers up to the twelfth, or from the thirteenth on.
+        let measured = &simulation.pseudoranges;
+        let n = measured.transmitters();
+        let side = |j: usize| simulation.network.transmitters[j][0] < 240.0;
+        let values = measured.values().iter().enumerate();
+        let values = values.map(|(k, &value)| if side(k % n) == (k / n < 12) { value } else { f64::NAN }).collect();
+        let mut cut = Pseudoranges::new(20, n, values).unwrap();
+        // Two common transmitters leave each part free to turn about the other.
+        let mut joined = cut.values().to_vec();
+        for j in (0..n).filter(|&j| (simulation.network.transmitters[j][0] - 240.0).abs() < 20.0).take(2) {
+            for i in 9..15 {
+                joined[i * n + j] = simulation.network.pseudorange(i, j);
+            }
+        }
+        cut = Pseudoranges::new(20, n, joined).unwrap();
+        let found = calibrate(&cut, &CalibrateOptions::default()).unwrap();
+        let placed: Vec<usize> = (0..20).filter(|&i| found.receivers[i].is_some()).collect();
+        assert_eq!(placed, (0..12).collect::<Vec<_>>(), "{:?}", found.warnings);
+        assert!(found.warnings.iter().any(|warning| warning.contains("without r13, r14")), "{:?}", found.warnings);
+    }
+}

@@ -1,0 +1,140 @@
+//! The search where most receivers hear most transmitters: from a part of the nodes to all of them.
+
+use super::deviation::typical_deviation;
+use super::finish::finish;
+use super::hypotheses::{Hypotheses, RandomRestarts};
+use super::minimal::MinimalHypotheses;
+use super::near::{Neighbour, neighbours};
+use super::options::{CalibrateError, CalibrateOptions, Control};
+use super::search::Search;
+use crate::degeneracy::{Usable, usable};
+use crate::loss::{Loss, SEARCH_NU, normal_deviation};
+use crate::observations::Observations;
+use crate::pseudoranges::Pseudoranges;
+use crate::refine::{PartialNetwork, RefineOptions, Refined, Refiner, SEARCH, extend};
+
+/// No measurement is trusted beyond this share of the network's diameter.
+const RESOLUTION: f64 = 1e-9;
+
+/// Networks for all nodes.
+pub(super) struct Sought {
+    /// At least one network, best first.
+    pub(super) ranked: Vec<Refined>,
+    /// Deviation of the measurements.
+    pub(super) deviation: f64,
+    /// No measurement is trusted beyond this.
+    pub(super) floor: f64,
+    /// Neighbours of the best network, where the search had all nodes.
+    pub(super) neighbours: Vec<Neighbour>,
+    /// Starts of the search.
+    pub(super) starts: usize,
+}
+
+/// Searches networks for these measurements, whose deviation may be known.
+pub(super) fn search_whole(
+    measured: &Pseudoranges,
+    known: Option<f64>,
+    options: &CalibrateOptions,
+    sources: &[&dyn Hypotheses],
+    control: &Control<'_>,
+) -> Result<Sought, CalibrateError> {
+    let observations = Observations::new(measured, |_, _| true);
+
+    let part = search_part(measured, options);
+    let small = measured.select(&part.receivers, &part.transmitters);
+    let small_observations = Observations::new(&small, |_, _| true);
+    let to_deviation = normal_deviation(SEARCH_NU);
+    let restarts = RandomRestarts::new(&small_observations);
+    let diameter = restarts.diameter();
+    // Where measurements carry deviations, residuals are multiples of them, and so is the network's size.
+    let unit = typical_deviation(measured);
+    let refine = RefineOptions {
+        scale: known.map(|sigma| sigma / to_deviation),
+        anneal_from: Some(0.1 * diameter / unit),
+        floor: RESOLUTION * diameter / unit,
+        ..SEARCH
+    };
+    let mut all: Vec<&dyn Hypotheses> = sources.to_vec();
+    let minimal = MinimalHypotheses::at_most(options.minimal_subsets);
+    if options.restarts || all.is_empty() {
+        all.insert(0, &restarts);
+        if options.minimal_subsets > 0 && MinimalHypotheses::fit(small.receivers(), small.transmitters()) {
+            all.push(&minimal);
+        }
+    }
+    let search = Search {
+        measured: &small,
+        observations: &small_observations,
+        refine,
+        sources: all,
+        wide: Loss { nu: SEARCH_NU, scale: 0.03 * diameter / unit },
+        deviation: known.map(|sigma| sigma.max(refine.floor)),
+    };
+    let found = search.run(options, control)?;
+
+    let best = found.networks[0].objective;
+    let close = found.networks.into_iter().filter(|r| r.objective <= best + 4.0 * options.alternative_margin);
+    let complete_part =
+        part.receivers.len() == measured.receivers() && part.transmitters.len() == measured.transmitters();
+    let whole: Vec<Refined> =
+        if complete_part { close.collect() } else { complete(&observations, &part, close.take(4), &refine, control) };
+    control.check()?;
+    let Some(scale) = whole.iter().min_by(|a, b| a.objective.total_cmp(&b.objective)).map(|r| r.scale) else {
+        return Err(CalibrateError::NotFound(found.starts));
+    };
+    let first = known.unwrap_or(scale * to_deviation).max(refine.floor);
+    let (ranked, deviation) = finish(&observations, whole, first, known.is_some(), refine.floor, options, control)?;
+    let near = if complete_part { found.near } else { Vec::new() };
+    let neighbours = neighbours(&observations, &ranked[0], near, deviation);
+    Ok(Sought { ranked, neighbours, deviation, floor: refine.floor, starts: found.starts })
+}
+
+/// The nodes that the search works on: where there are many, some of the better observed half, evenly spaced, because
+/// neighbours in a recording are often neighbours in the plane.
+fn search_part(measured: &Pseudoranges, options: &CalibrateOptions) -> Usable {
+    let (m, n) = (measured.receivers(), measured.transmitters());
+    let pick = |total: usize, most: usize, count: &dyn Fn(usize) -> usize| -> Vec<usize> {
+        if total <= most {
+            return (0..total).collect();
+        }
+        let mut order: Vec<usize> = (0..total).collect();
+        order.sort_by_key(|&k| std::cmp::Reverse(count(k)));
+        let better = most.max(total / 2);
+        let mut better: Vec<usize> = order[..better].to_vec();
+        better.sort_unstable();
+        (0..most).map(|k| better[k * better.len() / most]).collect()
+    };
+    let receivers = pick(m, options.search_receivers, &|i| (0..n).filter(|&j| measured.get(i, j).is_some()).count());
+    let heard = |j: usize| receivers.iter().filter(|&&i| measured.get(i, j).is_some()).count();
+    let transmitters = pick(n, options.search_transmitters, &heard);
+    // A part that cannot be solved on its own is no help.
+    match usable(&measured.select(&receivers, &transmitters)) {
+        Ok(part) => Usable {
+            receivers: part.receivers.iter().map(|&i| receivers[i]).collect(),
+            transmitters: part.transmitters.iter().map(|&j| transmitters[j]).collect(),
+            warnings: Vec::new(),
+        },
+        Err(_) => Usable { receivers: (0..m).collect(), transmitters: (0..n).collect(), warnings: Vec::new() },
+    }
+}
+
+/// Extends networks of a part of the nodes to all of them and refines them.
+fn complete(
+    observations: &Observations,
+    part: &Usable,
+    networks: impl Iterator<Item = Refined>,
+    refine: &RefineOptions,
+    control: &Control<'_>,
+) -> Vec<Refined> {
+    let mut refiner = Refiner::new(observations, SEARCH_NU).heeding(&control.monitor);
+    let refine = RefineOptions { anneal_from: None, ..*refine };
+    networks
+        .filter_map(|refined| {
+            let mut known = PartialNetwork::unknown(observations.receivers, observations.transmitters);
+            known.place(&refined.network, &part.receivers, &part.transmitters);
+            let network = extend(observations, &known, &Loss { nu: SEARCH_NU, scale: refined.scale })?;
+            Some(Refined { starts: refined.starts, ..refiner.refine(network, &refine) })
+        })
+        .filter(|refined| refined.objective.is_finite() && refined.network.is_finite())
+        .collect()
+}
