@@ -58,6 +58,7 @@ pub mod family;
 pub mod homotopy;
 mod inverse;
 mod linalg;
+mod mixed;
 mod monitor;
 pub mod random;
 pub mod refine;

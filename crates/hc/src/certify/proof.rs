@@ -1,6 +1,6 @@
 //! What is proved of one point.
 
-use super::{Certificate, Reality};
+use super::certificate::{Certificate, Reality};
 use poly::interval::Interval;
 use poly::{ComplexBall, ComplexDd, ComplexInterval, Scalar};
 

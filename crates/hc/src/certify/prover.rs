@@ -1,8 +1,8 @@
 //! From a point to a proof: refinement, approximate inverse and weights, in double precision and then to twice the digits.
 
+use super::certificate::{CertifyOptions, Obstacle};
 use super::krawczyk::{Krawczyk, Place};
 use super::proof::Proof;
-use super::{CertifyOptions, Obstacle};
 use crate::inverse;
 use crate::linalg::Lu;
 use num_complex::Complex64;

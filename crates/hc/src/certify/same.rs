@@ -3,7 +3,7 @@
 //! Boxes are sorted by the lower end of their image under a fixed real projection; only boxes whose images meet
 //! are compared.
 
-use super::Obstacle;
+use super::certificate::Obstacle;
 use super::proof::Proof;
 use poly::interval::Interval;
 

@@ -9,106 +9,30 @@
 //!
 //! All paths take their legs together, in lanes and on all threads; the result does not depend on how they are spread.
 
+mod ending;
 mod laurent;
 mod legs;
+mod options;
 mod walker;
+
+pub(crate) use ending::{Ending, Handed, Verdict};
+pub use options::EndgameOptions;
 
 use crate::homotopy::Segment;
 use crate::monitor::{Monitor, Stage};
 use crate::refine::Refiner;
-use crate::tracker::{OptionError, PathEnd, PathResult, PathSet, TrackerOptions, Trackers};
+use crate::tracker::{PathEnd, PathResult, PathSet, TrackerOptions, Trackers};
 use legs::{Leg, Legs};
 use num_complex::Complex64;
 use poly::Evaluate;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
-use walker::{LEAST_SHRINK, Sample, Walker};
-
-/// Settings of the endgame.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct EndgameOptions {
-    /// A path whose `t` has fallen below this without reaching the target goes to the endgame. Default 1e-5.
-    pub start: f64,
-    /// Radius of the first loop. Default 1e-6.
-    pub radius: f64,
-    /// By what a radius is divided when the loop was too wide, at least 1.5. Default 30.
-    pub shrink: f64,
-    /// Paths that are undecided below this radius are lost. Default 1e-13.
-    pub min_radius: f64,
-    /// Turns after which the first loop is given up as too wide; each smaller loop may take twice as many. Default 16.
-    pub turns: usize,
-}
-
-impl Default for EndgameOptions {
-    fn default() -> Self {
-        EndgameOptions { start: 1e-5, radius: 1e-6, shrink: 30.0, min_radius: 1e-13, turns: 16 }
-    }
-}
-
-impl EndgameOptions {
-    /// Checks the numbers.
-    ///
-    /// # Errors
-    /// The first that is outside its range.
-    pub fn validate(&self) -> Result<(), OptionError> {
-        OptionError::positive(&[
-            ("endgame.start", self.start),
-            ("endgame.radius", self.radius),
-            ("endgame.min_radius", self.min_radius),
-            ("endgame.shrink", self.shrink),
-        ])?;
-        OptionError::at_least("endgame.shrink", self.shrink, LEAST_SHRINK, "at least 1.5")?;
-        OptionError::at_least("endgame.turns", self.turns as f64, 1.0, "at least 1")
-    }
-}
+use walker::{Sample, Walker};
 
 /// Share of a leg to zero that may be left before it is given up.
 const HOME_MIN: f64 = 1e-7;
 
 /// A leg may take the steps of a path divided by this.
 const LEGS: usize = 20;
-
-/// How a path ends, after its endgame.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub(crate) enum Verdict {
-    /// At a point; after `winding` turns round zero the path comes back to itself.
-    Finite {
-        /// Winding number.
-        winding: usize,
-        /// Error of the point, relative to the path's size on the last loop.
-        error: f64,
-    },
-    /// At a point to which the path could be tracked like a regular one.
-    Reached,
-    /// At infinity: coordinate `j` is of order `t^(valuations[j] / winding)`, one of them being negative.
-    Infinite {
-        /// Winding number.
-        winding: usize,
-        /// The direction: valuations times the winding number.
-        valuations: Vec<i64>,
-    },
-    /// Not known: the path could not be tracked, or no loop closed and showed a decaying series.
-    Lost,
-}
-
-/// A path and its end.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Ending {
-    /// Index of the path, as given.
-    pub(crate) path: usize,
-    /// How it ends.
-    pub(crate) verdict: Verdict,
-    /// The end if it is finite, otherwise the last point.
-    pub(crate) point: Vec<Complex64>,
-    /// The point at the first radius, common to all paths: two that coincide here have crossed. Empty if not reached.
-    pub(crate) middle: Vec<Complex64>,
-    /// Radius of the last loop.
-    pub(crate) radius: f64,
-}
-
-/// A path that goes to the endgame: its index, its `t > 0` and its point there.
-pub(crate) type Handed<'a> = (usize, f64, &'a [Complex64]);
 
 /// Finds the ends of paths along `segment`, in the order given.
 ///

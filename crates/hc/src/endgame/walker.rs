@@ -1,8 +1,9 @@
 //! One path in its endgame: which leg comes next, and when it is over.
 
+use super::ending::{Ending, Handed, Verdict};
 use super::laurent::{CLEAR, Loop, Reading, VAGUE};
 use super::legs::Leg;
-use super::{EndgameOptions, Ending, Handed, Verdict};
+use super::options::{EndgameOptions, LEAST_SHRINK};
 use crate::distinct::relative_distance;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -20,8 +21,6 @@ const CLOSED: f64 = 1e-10;
 
 /// After so many loops that were too wide the path is tracked straight to zero.
 const TRY_HOME: u32 = 2;
-/// Each circle is at least that many times smaller than the one before.
-pub(super) const LEAST_SHRINK: f64 = 1.5;
 
 /// The end of a leg.
 pub(super) struct Sample {

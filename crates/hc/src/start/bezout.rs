@@ -1,6 +1,6 @@
 //! Supports whose mixed volume is Bezout's number, known without a search for mixed cells.
 
-use super::Supports;
+use super::reached::Supports;
 
 /// Unknowns at most: all sets of them are looked at.
 const MOST_UNKNOWNS: usize = 14;

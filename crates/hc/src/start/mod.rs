@@ -1,27 +1,22 @@
 //! Start systems.
 //!
-//! * Polyhedral: the mixed cells of the supports ([`mixed_volume`], [`mixed_cells`]), found by tropical homotopy continuation
-//!   (Jensen 2016, arXiv:1601.02818) with one support brought in after the other.
+//! * Polyhedral: the mixed cells of the supports ([`mixed_volume`], [`mixed_cells`]), and a system of binomials for each.
 //! * Multihomogeneous: products of linear forms in groups of unknowns.
 //! * Total degree: `x_i^(d_i) - 1`, `d_i` the degrees of the equations.
 
 mod bezout;
 mod binomial;
-mod cell;
-mod integer;
-mod mixed;
 mod multihomogeneous;
-mod points;
 mod polyhedral;
-mod search;
+mod reached;
 mod toric;
 mod total_degree;
-mod walk;
 
+pub use crate::mixed::{MixedCell, MixedError, MixedVolume, mixed_cells, mixed_volume, mixed_volume_watched};
 pub(crate) use bezout::mixed_volume_is_bezout;
-pub use mixed::{MixedCell, MixedError, MixedVolume, mixed_cells, mixed_volume, mixed_volume_watched};
 pub(crate) use multihomogeneous::{Grouped, Multihomogeneous};
 pub(crate) use polyhedral::Polyhedral;
+pub(crate) use reached::Reached;
 pub(crate) use total_degree::{TotalDegree, bezout_number, degrees};
 
 use crate::family::Fibre;
@@ -30,31 +25,11 @@ use crate::tracker::{TrackerOptions, Trackers};
 use num_complex::Complex64;
 use poly::{Evaluate, SparseSystem};
 
-/// Exponent vectors of each equation.
-pub(crate) type Supports = [Vec<Vec<i32>>];
-
 /// A start system whose solutions are made by their numbers, when they are needed.
 pub(crate) enum StartSystem {
     Polyhedral(Polyhedral),
     Multihomogeneous(Multihomogeneous),
     TotalDegree(TotalDegree),
-}
-
-/// Solutions of a start system.
-#[derive(Default)]
-pub(crate) struct Reached {
-    /// Their numbers.
-    pub(crate) numbers: Vec<usize>,
-    /// Their coordinates, one solution after the other.
-    pub(crate) points: Vec<Complex64>,
-}
-
-impl Reached {
-    /// The `k`-th of them.
-    pub(crate) fn point(&self, k: usize) -> &[Complex64] {
-        let n = self.points.len() / self.numbers.len().max(1);
-        &self.points[k * n..(k + 1) * n]
-    }
 }
 
 /// Where the paths of a system `E` begin.

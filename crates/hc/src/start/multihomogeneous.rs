@@ -3,7 +3,7 @@
 //!
 //! A solution chooses a factor of every equation, so that each group has as many equations as unknowns.
 
-use super::Supports;
+use super::reached::Supports;
 use crate::linalg::Lu;
 use crate::random::Random;
 use num_complex::Complex64;

@@ -1,9 +1,9 @@
 //! The polyhedral start system: generic coefficients, and all solutions for them, from the mixed cells of a lifting.
 
 use super::binomial::Binomials;
-use super::mixed::{Keep, MixedError, watched_cells};
+use super::reached::{Reached, Supports};
 use super::toric::{Toric, rates};
-use super::{Reached, Supports};
+use crate::mixed::{Keep, MixedError, watched_cells};
 use crate::monitor::Monitor;
 use crate::random::Random;
 use crate::store::{Records, Sorter};

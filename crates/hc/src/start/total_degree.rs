@@ -1,6 +1,6 @@
 //! The total degree start system `g_i (x_i^(d_i) - 1)`, `d_i` the degrees and `g_i` random: as many paths as Bezout's number.
 
-use super::Supports;
+use super::reached::Supports;
 use crate::random::Random;
 use num_complex::Complex64;
 use std::f64::consts::TAU;

@@ -1,6 +1,6 @@
 //! Records by their numbers.
 
-use super::{read_at, write_at};
+use super::place::{read_at, write_at};
 use std::collections::BTreeMap;
 use std::fs::File;
 

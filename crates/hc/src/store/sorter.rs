@@ -1,6 +1,6 @@
 //! Records in ascending order.
 
-use super::{read_at, write_at};
+use super::place::{read_at, write_at};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::fs::File;

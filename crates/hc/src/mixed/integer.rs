@@ -1,16 +1,9 @@
 //! The sizes of integers in which mixed cells are found.
 
-use super::cell::Cell;
-use super::points::Points;
-use super::search::{AnyCell, Space};
 use std::cmp::Ordering;
 
-/// Integers in which a cell is held; where it outgrows them, it goes on in the [`Integer::Next`] size.
+/// Integers in which a cell is held.
 pub(super) trait Integer: Copy + Ord + Default + Send + Sync {
-    /// The next size, of the last one itself.
-    type Next: Integer;
-    /// Whether there is no larger size.
-    const LAST: bool;
     /// Half of what the type holds: volumes, and inner products of duals with differences of points, stay below this.
     const HALF: u128;
 
@@ -33,10 +26,6 @@ pub(super) trait Integer: Copy + Ord + Default + Send + Sync {
     fn compare(a: Self, b: Self, c: Self, d: Self) -> Option<Ordering>;
     /// Prepares division by a positive number.
     fn divisor(divisor: Self) -> Divisor<Self>;
-
-    /// The supports in this size, if they fit.
-    fn points(space: &Space) -> Option<&Points<Self>>;
-    fn any(cell: Cell<Self>) -> AnyCell;
 }
 
 /// A divisor `odd * 2^shift`, with the inverse of its odd part modulo the word size (Jebelean 1993, exact division).
@@ -48,10 +37,8 @@ pub(super) struct Divisor<T> {
 }
 
 macro_rules! integer {
-    ($type:ident, $next:ident, $last:expr, $steps:expr, $cell:ident, $points:ident, $below:expr, $compare:expr) => {
+    ($type:ident, $steps:expr, $below:expr, $compare:expr) => {
         impl Integer for $type {
-            type Next = $next;
-            const LAST: bool = $last;
             const HALF: u128 = 1 << ($type::BITS - 2);
 
             fn narrow(value: i128) -> Option<Self> {
@@ -123,14 +110,6 @@ macro_rules! integer {
                 }
                 Divisor { value: divisor, inverse, shift }
             }
-
-            fn points(space: &Space) -> Option<&Points<Self>> {
-                space.$points()
-            }
-
-            fn any(cell: Cell<Self>) -> AnyCell {
-                AnyCell::$cell(cell)
-            }
         }
     };
 }
@@ -143,11 +122,7 @@ fn products<T: Into<i128>>(a: T, b: T, c: T, d: T) -> Option<i128> {
 
 integer!(
     i32,
-    i64,
-    false,
     4,
-    Small,
-    small,
     |a: i32, b: i32, c: i32, d: i32, divisor: i32, limit: i32| {
         i64::from(a) * i64::from(b) + i64::from(c) * i64::from(d) < i64::from(divisor) * i64::from(limit)
     },
@@ -155,17 +130,13 @@ integer!(
 );
 integer!(
     i64,
-    i128,
-    false,
     5,
-    Medium,
-    medium,
     |a: i64, b: i64, c: i64, d: i64, divisor: i64, limit: i64| {
         i128::from(a) * i128::from(b) + i128::from(c) * i128::from(d) < i128::from(divisor) * i128::from(limit)
     },
     |a: i64, b: i64, c: i64, d: i64| Some((i128::from(a) * i128::from(b)).cmp(&(i128::from(c) * i128::from(d))))
 );
-integer!(i128, i128, true, 6, Large, large, |_, _, _, _, _, _| false, |a: i128, b: i128, c: i128, d: i128| Some(
+integer!(i128, 6, |_, _, _, _, _, _| false, |a: i128, b: i128, c: i128, d: i128| Some(
     a.checked_mul(b)?.cmp(&c.checked_mul(d)?)
 ));
 

@@ -4,15 +4,9 @@
 //! the duals are the integer vectors `u_j` with `<u_j, E_i> = V` for `i = j`, else zero. The circuit of any other point `g` of
 //! configuration `c` on the columns of the Cayley matrix has the entries `t_j = <u_j, g - b_c>`: `V (g - b_c) = sum_j t_j E_j`.
 
+use super::error::Overflow;
 use super::integer::Integer;
-use super::points::{Column, Points};
-
-/// Integers have grown beyond the limit of their type.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Overflow;
-
-/// Duals are padded with zeros to whole vectors of this length.
-pub(super) const LANES: usize = 8;
+use super::points::{Column, LANES, Points};
 
 /// Which point of an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,63 +3,15 @@
 //! Sending the lifting of `d_k Delta` to minus infinity at stage `k` leaves the mixed cells of `A_0 .. A_k, Delta, ..`, each of which is a
 //! start for the next stage. All stages make one tree, whose subtrees are tasks.
 
-use super::cell::{Cell, Flip, Overflow, Place};
+use super::cell::{Cell, Flip, Place};
+use super::error::{MixedError, Overflow};
 use super::integer::Integer;
-use super::mixed::MixedError;
 use super::points::Points;
+use super::space::{AnyCell, Size, Space};
 use super::walk::{Scratch, Step};
-use crate::monitor::Monitor;
 use poly::simd::{Isa, Kernel};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
-
-/// The supports in the sizes of integers that hold them, and where to go.
-pub(super) struct Space {
-    supports: Vec<Vec<Vec<i64>>>,
-    small: Option<Points<i32>>,
-    /// Made when they are needed.
-    medium: OnceLock<Option<Points<i64>>>,
-    large: OnceLock<Option<Points<i128>>>,
-    /// The lifting of each point, negated; without one the cells of the last stage are what is looked for.
-    tau: Option<Vec<i64>>,
-    /// Who may stop the search.
-    monitor: Monitor,
-}
-
-impl Space {
-    /// Supports whose least exponents are zero.
-    pub(super) fn new(supports: Vec<Vec<Vec<i64>>>, tau: Option<Vec<i64>>, monitor: &Monitor) -> Self {
-        let small = Points::new(&supports);
-        Space { supports, small, medium: OnceLock::new(), large: OnceLock::new(), tau, monitor: monitor.clone() }
-    }
-
-    pub(super) fn small(&self) -> Option<&Points<i32>> {
-        self.small.as_ref()
-    }
-
-    pub(super) fn medium(&self) -> Option<&Points<i64>> {
-        self.medium.get_or_init(|| Points::new(&self.supports)).as_ref()
-    }
-
-    pub(super) fn large(&self) -> Option<&Points<i128>> {
-        self.large.get_or_init(|| Points::new(&self.supports)).as_ref()
-    }
-
-    /// The cell in the smallest size that holds it.
-    fn smallest<T: Integer>(&self, cell: &Cell<T>) -> Option<AnyCell> {
-        let small = self.small().and_then(|p| cell.converted(p)).map(AnyCell::Small);
-        let medium = || self.medium().and_then(|p| cell.converted(p)).map(AnyCell::Medium);
-        let large = || self.large().and_then(|p| cell.converted(p)).map(AnyCell::Large);
-        small.or_else(medium).or_else(large)
-    }
-}
-
-/// A cell in any size of integers.
-pub(super) enum AnyCell {
-    Small(Cell<i32>),
-    Medium(Cell<i64>),
-    Large(Cell<i128>),
-}
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// What takes the cells that are found.
 pub(super) trait Sink: Send {
@@ -165,7 +117,7 @@ struct Subtree<'a, T, S> {
     handed: Vec<Task>,
 }
 
-impl<'a, T: Integer, S: Sink> Subtree<'a, T, S> {
+impl<'a, T: Size, S: Sink> Subtree<'a, T, S> {
     fn run(
         isa: Isa,
         space: &'a Space,
@@ -274,7 +226,7 @@ struct Search<'a, T, S> {
     pending: Pending,
 }
 
-impl<T: Integer, S: Sink> Kernel for Search<'_, T, S> {
+impl<T: Size, S: Sink> Kernel for Search<'_, T, S> {
     type Output = Result<Vec<Task>, Overflow>;
 
     #[inline(always)]

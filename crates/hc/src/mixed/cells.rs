@@ -1,8 +1,10 @@
 //! Mixed cells and mixed volume.
 
-use super::cell::{Cell, Overflow};
+use super::cell::Cell;
+use super::error::{MixedError, Overflow};
 use super::integer::Integer;
-use super::search::{Sink, Space, search};
+use super::search::{Sink, search};
+use super::space::Space;
 use crate::monitor::{Monitor, Stage};
 use std::cmp::Reverse;
 
@@ -24,55 +26,6 @@ pub struct MixedVolume {
     pub volume: u64,
     /// Number of mixed cells in the subdivision that gave it.
     pub cells: usize,
-}
-
-/// Why there are no mixed cells.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum MixedError {
-    /// Not as many supports as unknowns.
-    #[error("{supports} supports in {unknowns} unknowns; as many supports as unknowns are needed")]
-    NotSquare {
-        /// Number of supports.
-        supports: usize,
-        /// Number of unknowns.
-        unknowns: usize,
-    },
-    /// An exponent vector of the wrong length.
-    #[error("a point of support {support} has {found} exponents, there are {unknowns} unknowns")]
-    Length {
-        /// The support, from 1.
-        support: usize,
-        /// Length of the exponent vector.
-        found: usize,
-        /// Number of unknowns.
-        unknowns: usize,
-    },
-    /// A lifting that does not fit the supports.
-    #[error("support {support} has {points} points but its lifting {values} values")]
-    Lifting {
-        /// The support, from 1.
-        support: usize,
-        /// Its points.
-        points: usize,
-        /// Its values.
-        values: usize,
-    },
-    /// Volumes beyond 64 bits, or determinants beyond 126.
-    #[error("the exponents are so large that volumes of cells exceed 64 bits; divide exponents by common factors")]
-    TooLarge,
-    /// Mixed cells that had been written to a temporary file could not be read back.
-    #[error("mixed cells cannot be read back from a temporary file; look at the folder for such files (TMPDIR)")]
-    Storage,
-    /// The work was cancelled by its [`Monitor`].
-    #[error("cancelled before all mixed cells were found")]
-    Cancelled,
-}
-
-impl From<Overflow> for MixedError {
-    fn from(_: Overflow) -> Self {
-        MixedError::TooLarge
-    }
 }
 
 /// The mixed volume of `n` supports in `n` unknowns: by Bernstein's theorem the number of solutions with all coordinates nonzero of
@@ -149,7 +102,7 @@ pub fn mixed_cells(
 }
 
 /// Keeps what is wanted of the mixed cells that a thread finds.
-pub(super) trait Keep: Send {
+pub(crate) trait Keep: Send {
     /// A cell as in [`MixedCell`].
     fn keep(&mut self, edges: &[[u32; 2]], volume: u64, normal: &[i128]);
 }
@@ -162,7 +115,7 @@ impl Keep for Vec<MixedCell> {
 }
 
 /// What `make` makes, each with some of the cells, in any order: tasks end in any order, a cell is known by its edges.
-pub(super) fn watched_cells<K: Keep>(
+pub(crate) fn watched_cells<K: Keep>(
     unknowns: usize,
     supports: &[Vec<Vec<i32>>],
     lifting: &[Vec<i32>],

@@ -4,8 +4,10 @@
 //! of a configuration are numbered: those of a support in their order, corners of a simplex (the origin and the unit vectors)
 //! before them.
 
-use super::cell::LANES;
 use super::integer::Integer;
+
+/// Duals are padded with zeros to whole vectors of this length.
+pub(super) const LANES: usize = 8;
 
 /// A point of a configuration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

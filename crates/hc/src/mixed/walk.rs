@@ -4,9 +4,10 @@
 //! infinitely smaller, and so on. On the way from there in the direction `tau` a cell ends where the first of its inequalities
 //! `sum_j t_j (tau(a_j) - tau(b_j)) + V (tau(b_c) - tau(g)) >= 0` fails, one for every point `g` (Jensen 2016, sections 3 to 5).
 
-use super::cell::{Cell, LANES, Overflow};
+use super::cell::Cell;
+use super::error::Overflow;
 use super::integer::Integer;
-use super::points::{Column, Points};
+use super::points::{Column, LANES, Points};
 use std::cmp::Ordering;
 
 /// What becomes of a cell.

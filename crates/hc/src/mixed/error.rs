@@ -1,0 +1,54 @@
+//! Why there are no mixed cells.
+
+/// Integers have grown beyond the limit of their type.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Overflow;
+
+/// Why there are no mixed cells.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MixedError {
+    /// Not as many supports as unknowns.
+    #[error("{supports} supports in {unknowns} unknowns; as many supports as unknowns are needed")]
+    NotSquare {
+        /// Number of supports.
+        supports: usize,
+        /// Number of unknowns.
+        unknowns: usize,
+    },
+    /// An exponent vector of the wrong length.
+    #[error("a point of support {support} has {found} exponents, there are {unknowns} unknowns")]
+    Length {
+        /// The support, from 1.
+        support: usize,
+        /// Length of the exponent vector.
+        found: usize,
+        /// Number of unknowns.
+        unknowns: usize,
+    },
+    /// A lifting that does not fit the supports.
+    #[error("support {support} has {points} points but its lifting {values} values")]
+    Lifting {
+        /// The support, from 1.
+        support: usize,
+        /// Its points.
+        points: usize,
+        /// Its values.
+        values: usize,
+    },
+    /// Volumes beyond 64 bits, or determinants beyond 126.
+    #[error("the exponents are so large that volumes of cells exceed 64 bits; divide exponents by common factors")]
+    TooLarge,
+    /// Mixed cells that had been written to a temporary file could not be read back.
+    #[error("mixed cells cannot be read back from a temporary file; look at the folder for such files (TMPDIR)")]
+    Storage,
+    /// The work was cancelled by its [`Monitor`](crate::monitor::Monitor).
+    #[error("cancelled before all mixed cells were found")]
+    Cancelled,
+}
+
+impl From<Overflow> for MixedError {
+    fn from(_: Overflow) -> Self {
+        MixedError::TooLarge
+    }
+}

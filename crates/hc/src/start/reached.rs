@@ -1,0 +1,23 @@
+//! What start systems take and give.
+
+use num_complex::Complex64;
+
+/// Exponent vectors of each equation.
+pub(crate) type Supports = [Vec<Vec<i32>>];
+
+/// Solutions of a start system.
+#[derive(Default)]
+pub(crate) struct Reached {
+    /// Their numbers.
+    pub(crate) numbers: Vec<usize>,
+    /// Their coordinates, one solution after the other.
+    pub(crate) points: Vec<Complex64>,
+}
+
+impl Reached {
+    /// The `k`-th of them.
+    pub(crate) fn point(&self, k: usize) -> &[Complex64] {
+        let n = self.points.len() / self.numbers.len().max(1);
+        &self.points[k * n..(k + 1) * n]
+    }
+}
