@@ -37,7 +37,7 @@ enum Kind {
     Routes(routes::Arguments),
     /// Measures what the options for callers in a hurry save and lose.
     Hurry(checks::Arguments),
-    /// Measures what becomes of paths that fail, with each fallback.
+    /// Measures what becomes of paths that fail.
     Charts(checks::Arguments),
     Hard(hard::Arguments),
     Speed(speed::Arguments),

@@ -27,10 +27,6 @@ pub(crate) struct Arguments {
     /// Stops at the first physical network with a residual (root mean square, metres) below this; 6r/3s, 5r/4s, 4r/5s and 5r/6s only.
     #[arg(long, value_name = "METRES")]
     first_under: Option<f64>,
-    /// Gives up paths that would hardly become real: those whose extrapolation to the data is farther from real than this many times
-    /// its own error. Saves time and may lose networks.
-    #[arg(long, value_name = "MARGIN")]
-    drop_complex: Option<f64>,
     /// Accepted everywhere; the solvers draw no random numbers.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -64,14 +60,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.tolerance.is_nan() || arguments.tolerance < 0.0 {
         return Err(Failure::Unusable("--tolerance must not be negative".to_string()));
     }
-    for (name, value) in [("--first-under", arguments.first_under), ("--drop-complex", arguments.drop_complex)] {
-        if value.is_some_and(|v| v.is_nan() || v < 0.0) {
-            return Err(Failure::Unusable(format!("{name} must not be negative")));
-        }
+    if arguments.first_under.is_some_and(|v| v.is_nan() || v < 0.0) {
+        return Err(Failure::Unusable("--first-under must not be negative".to_string()));
     }
     let mut options = SolveOptions::default();
     options.first_under = arguments.first_under;
-    options.paths.tracker.drop_complex = arguments.drop_complex;
     options.tolerance = arguments.tolerance;
     options.start = match arguments.start {
         StartArgument::Stored => Start::Stored,
@@ -122,7 +115,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn summary(solution: &MinimalSolution, seconds: f64) -> String {
     let (paths, counts) = (solution.paths, solution.counts);
     let mut text = format!(
-        "{} by {} in {:.1} ms\npaths: {} tracked, {} finite, {} at infinity, {} failed, {} dropped, {} tracked again\n\
+        "{} by {} in {:.1} ms\npaths: {} tracked, {} finite, {} at infinity, {} failed, {} tracked again\n\
          roots: {} complex, {} real, {} with real positions, {} of these physical\n\n\
          {:>4} {:>12} {:>10} {:>10}\n",
         solution.configuration,
@@ -132,7 +125,6 @@ fn summary(solution: &MinimalSolution, seconds: f64) -> String {
         paths.finite,
         paths.at_infinity,
         paths.failed,
-        paths.dropped,
         paths.retracked,
         counts.complex,
         counts.real,

@@ -103,8 +103,7 @@ pub struct PathCounts {
     pub at_infinity: usize,
     /// Paths that ended otherwise, those included that still share their end with another.
     pub failed: usize,
-    /// Paths given up on request: because they would hardly become real
-    /// ([`TrackerOptions::drop_complex`]), or since all solutions are known
+    /// Paths left where they were once all solutions were known
     /// ([`SolveOptions::known`](crate::SolveOptions::known)).
     pub dropped: usize,
     /// How many tracks were run a second time or more often.

@@ -224,9 +224,8 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
     /// How the paths of the last call have ended, of which `failed` are lost.
     pub fn counts(&self, failed: usize) -> PathCounts {
         let (tracked, at_infinity) = (self.paths.len(), self.paths.count(PathEnd::AtInfinity));
-        let dropped = self.paths.count(PathEnd::Dropped);
-        let finite = tracked.saturating_sub(at_infinity + dropped + failed);
-        PathCounts { tracked, finite, at_infinity, failed, dropped, retracked: 0 }
+        let finite = tracked.saturating_sub(at_infinity + failed);
+        PathCounts { tracked, finite, at_infinity, failed, dropped: 0, retracked: 0 }
     }
 }
 
@@ -335,7 +334,7 @@ where
 /// one of several charts, they may end in the others.
 fn is_better<C: Charts>(result: &PathResult) -> bool {
     match result.end {
-        PathEnd::Success | PathEnd::Dropped => true,
+        PathEnd::Success => true,
         PathEnd::AtInfinity => C::COUNT == 1,
         _ => C::COUNT > 1 && is_broken_off(result),
     }

@@ -11,5 +11,5 @@ mod space;
 mod walk;
 
 pub(crate) use cells::{Keep, watched_cells};
-pub use cells::{MixedCell, MixedVolume, mixed_cells, mixed_volume, watched_mixed_volume};
+pub use cells::{MixedCell, MixedVolume, mixed_cells, mixed_volume, mixed_volume_watched};
 pub use error::MixedError;

@@ -188,8 +188,6 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
                 self.watch_valuations(l);
                 if let Some(end) = self.lanes[l].finished(&self.bounds) {
                     self.finish(l, end, out);
-                } else if self.bounds.options.drop_complex.is_some_and(|margin| self.stays_complex(l, margin)) {
-                    self.finish(l, PathEnd::Dropped, out);
                 }
             }
         }
@@ -395,20 +393,6 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             settled |= v + drift < -0.05 && drift < 0.01;
         }
         self.lanes[l].watch(settled);
-    }
-
-    /// Whether straight extrapolation to the target ends farther from real, in some coordinate, than `margin` times its own error as
-    /// the next two terms of the series tell it.
-    fn stays_complex(&self, l: usize, margin: f64) -> bool {
-        let t = self.lanes[l].t;
-        (0..self.n).any(|j| {
-            let [x, x1, x2, x3] = [0, 1, 2, 3].map(|k| self.taylor[k * self.n + j].get(l));
-            let far = x.im - t * x1.im;
-            let error = margin * t * t;
-            // No roots: 2 (a^2 + b^2) is at least (a + b)^2.
-            far * far > (error * error) * 2.0 * (x2.norm_sqr() + t * t * x3.norm_sqr())
-                && far * far > 1e-12 * x.norm_sqr()
-        })
     }
 
     fn finish(&mut self, l: usize, end: PathEnd, out: &mut PathSet) {

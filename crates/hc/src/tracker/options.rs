@@ -52,10 +52,6 @@ pub struct TrackerOptions {
     pub endgame_start: f64,
     /// Whether residuals may be computed in double-double where double precision ends. Default true.
     pub extended_precision: bool,
-    /// For callers who want the real solutions of a real target only: a path is given up where straight
-    /// extrapolation to the target ends farther from real than this many times its own error: `|Im (x_j - t x_j')| > margin * (t^2 |x_j''| / 2 + t^3
-    /// |x_j'''| / 6)` in some coordinate. Saves steps and may lose real solutions. Default `None`: no path.
-    pub drop_complex: Option<f64>,
     /// Instruction set of the lane kernels; `None` takes the widest of the machine. The result does not depend on it. Default `None`.
     pub isa: Option<Isa>,
 }
@@ -72,7 +68,6 @@ impl Default for TrackerOptions {
             min_t: 1e-14,
             endgame_start: 0.1,
             extended_precision: true,
-            drop_complex: None,
             isa: None,
         }
     }
@@ -110,7 +105,6 @@ impl TrackerOptions {
             ("corrector_tolerance", self.corrector_tolerance),
         ])?;
         OptionError::at_least("max_steps", self.max_steps as f64, 1.0, "at least 1")?;
-        OptionError::at_least("drop_complex", self.drop_complex.unwrap_or(0.0), 0.0, "zero or more")?;
         OptionError::at_least("min_t", self.min_t, 0.0, "zero or more")?;
         OptionError::at_least("endgame_start", self.endgame_start, 0.0, "zero or more")
     }

@@ -22,14 +22,12 @@ pub enum PathEnd {
     MaxSteps,
     /// Not tracked: the work was cancelled before.
     Cancelled,
-    /// It was given up because it would hardly become real ([`super::TrackerOptions::drop_complex`]).
-    Dropped,
 }
 
 impl PathEnd {
-    /// Whether the path ended as it should: at a regular solution, at infinity, or dropped as was asked for.
+    /// Whether the path ended as it should: at a regular solution or at infinity.
     pub fn is_good(self) -> bool {
-        matches!(self, PathEnd::Success | PathEnd::AtInfinity | PathEnd::Dropped)
+        matches!(self, PathEnd::Success | PathEnd::AtInfinity)
     }
 }
 

@@ -18,7 +18,7 @@ pub struct SolveOptions {
     /// by paths without a smaller part (6r/3s, 5r/4s, 4r/5s, 5r/6s) stop early; in 6r/3s and 4r/5s every candidate fits exactly, so that the first
     /// physical one is given, which need not be the true one. Default `None`: all networks.
     pub first_under: Option<f64>,
-    /// Settings for the paths; `paths.tracker.drop_complex` gives up paths that would hardly become real.
+    /// Settings for the paths.
     pub paths: FibreOptions,
     /// Where paths start. Default [`Start::Stored`].
     pub start: Start,
