@@ -18,6 +18,9 @@ const NOT_RUN: &[&str] = &[
     // Each experiment runs in small in tdoa_experiments.rs.
     "cargo xtask experiments --quick",
     "cargo bench -p poly --bench evaluate",
+    "cargo bench -p hc --bench tracker",
+    "cargo bench -p hc --bench mixed_volume",
+    "cargo bench -p tdoa --bench calibrate",
     "cargo xtask compare",
     // In examples/network/README.md, of files that the reader has.
     "tdoa calibrate pseudoranges.csv --anchors anchors.csv",

@@ -258,6 +258,8 @@ fn one(name: &str, system: &System, seed: u64) -> Result<Row> {
 /// Number of solutions of each multiplicity, such as `16x1 1x11`.
 fn structure(found: &Solutions) -> String {
     let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
-    found.solutions.iter().for_each(|s| *counts.entry(s.multiplicity).or_default() += 1);
+    for solution in &found.solutions {
+        *counts.entry(solution.multiplicity).or_default() += 1;
+    }
     counts.iter().map(|(m, count)| format!("{count}x{m}")).collect::<Vec<_>>().join(" ")
 }

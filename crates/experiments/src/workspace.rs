@@ -18,7 +18,9 @@ pub fn target() -> PathBuf {
 pub fn build(packages: &[&str]) -> Result<PathBuf> {
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.args(["build", "--quiet", "--release"]).current_dir(root());
-    packages.iter().for_each(|package| _ = cargo.args(["--package", package]));
+    for package in packages {
+        cargo.args(["--package", package]);
+    }
     let status = cargo.status().context("cargo cannot be started")?;
     ensure!(status.success(), "cannot build {}", packages.join(" and "));
     Ok(target().join("release"))

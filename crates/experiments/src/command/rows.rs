@@ -95,7 +95,11 @@ pub(super) fn resume<S: Send>(
         }
     };
     let pools = pools(threads)?;
-    std::thread::scope(|scope| pools.iter().for_each(|pool| _ = scope.spawn(|| worker(pool))));
+    std::thread::scope(|scope| {
+        for pool in &pools {
+            scope.spawn(|| worker(pool));
+        }
+    });
     bar.finish_and_clear();
     let fresh = outcome.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner)?;
     let wanted: Vec<&str> =

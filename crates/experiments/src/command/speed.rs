@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use tdoa::Pseudoranges;
-use tdoa::minimal::{SolveOptions, Solver};
+use tdoa::minimal::{SolveError, SolveOptions, Solver};
 
 use super::common::{Common, Size, normal};
 use super::statistics::short;
@@ -98,9 +98,12 @@ fn on_all(networks: &[Pseudoranges], threads: usize) -> Result<f64, Failure> {
     let options = SolveOptions::default();
     let started = Instant::now();
     let work = solvers.into_par_iter().enumerate().map(|(thread, mut solver)| {
-        networks.iter().skip(thread).step_by(threads).try_for_each(|network| solver.solve(network, &options).map(drop))
+        for network in networks.iter().skip(thread).step_by(threads) {
+            solver.solve(network, &options)?;
+        }
+        Ok(())
     });
-    work.collect::<Result<(), _>>().map_err(Failure::unusable)?;
+    work.collect::<Result<(), SolveError>>().map_err(Failure::unusable)?;
     Ok(started.elapsed().as_secs_f64())
 }
 

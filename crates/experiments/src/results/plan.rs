@@ -8,7 +8,7 @@ pub(super) struct Experiment {
     command: &'static str,
     /// Networks of each kind in the full run; none for experiments without that option.
     full: Option<u64>,
-    /// The same of the quick run, and what else is then said.
+    /// Networks of each kind in the quick run, and what else is then said.
     quick: (u64, &'static str),
     /// Whether it needs the recordings.
     pub(super) recordings: bool,

@@ -109,11 +109,11 @@ pub fn judge(
     trial
 }
 
-/// The same calibration started at known positions of the receivers instead of searched: the oracle that shows what the
+/// A calibration started at known positions of the receivers instead of searched: the oracle that shows what the
 /// data and the loss allow.
 ///
 /// # Errors
-/// As [`calibrate`].
+/// Those of [`calibrate`].
 pub fn oracle(
     measured: &Pseudoranges,
     truth: &[Option<[f64; 2]>],

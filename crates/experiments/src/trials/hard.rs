@@ -90,11 +90,17 @@ impl Case {
             Case::FarReceiver(factor) => network.receivers[1] = network.receivers[1].map(|x| x * factor),
             Case::Scale(factor) => {
                 let nodes = network.receivers.iter_mut().chain(&mut network.transmitters).flatten();
-                nodes.chain(&mut network.offsets).for_each(|x| *x *= factor);
+                for x in nodes.chain(&mut network.offsets) {
+                    *x *= factor;
+                }
             }
-            Case::Offsets(factor) => network.offsets.iter_mut().for_each(|o| *o *= factor),
-            Case::ReceiversNearLine(d) => network.receivers.iter_mut().for_each(|r| r[1] *= d),
-            Case::TransmittersNearLine(d) => network.transmitters.iter_mut().for_each(|s| s[1] *= d),
+            Case::Offsets(factor) => {
+                for offset in &mut network.offsets {
+                    *offset *= factor;
+                }
+            }
+            Case::ReceiversNearLine(d) => flatten(&mut network.receivers, d),
+            Case::TransmittersNearLine(d) => flatten(&mut network.transmitters, d),
             Case::NearReceivers(d) => network.receivers[1] = next_to(network.receivers[0], network.receivers[1], d),
             Case::NearTransmitters(d) => {
                 network.transmitters[1] = next_to(network.transmitters[0], network.transmitters[1], d);
@@ -108,6 +114,13 @@ impl Case {
                 }
             }
         }
+    }
+}
+
+/// Brings points nearer to the x axis by a factor.
+fn flatten(points: &mut [[f64; 2]], factor: f64) {
+    for p in points {
+        p[1] *= factor;
     }
 }
 

@@ -12,7 +12,7 @@ use tdoa::minimal::{SolveError, SolveOptions, Solver};
 pub struct NoiseTrial {
     /// Relative position and offset errors ([`position_error`], [`offset_error`]) of the unrefined candidate.
     pub raw: [f64; 2],
-    /// The same with refinement.
+    /// Errors of the refined candidate.
     pub refined: [f64; 2],
 }
 
