@@ -7,7 +7,8 @@ mod generated;
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use hc::fibre::{Fibre, FibreOptions, track_fibre};
+use hc::family::track_fibre;
+use hc::{Fibre, FibreOptions};
 use hc::homotopy::Segment;
 use hc::poly::{Complex64, Evaluate, Interpreter, Lane, Lanes8, parse};
 use hc::random::Random;
