@@ -8,11 +8,11 @@ mod generated;
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use hc::family::track_fibre;
-use hc::{Fibre, FibreOptions};
 use hc::homotopy::Segment;
 use hc::poly::{Complex64, Evaluate, Interpreter, Lane, Lanes8, parse};
 use hc::random::Random;
 use hc::tracker::{PathSet, Tracker, TrackerOptions};
+use hc::{Fibre, FibreOptions};
 
 fn main() {
     divan::main();
