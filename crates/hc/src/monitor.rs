@@ -88,7 +88,11 @@ struct Shared {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Default)]
-pub struct Monitor(Option<Arc<Shared>>);
+pub struct Monitor {
+    shared: Option<Arc<Shared>>,
+    /// Whether progress is kept to itself.
+    quiet: bool,
+}
 
 impl fmt::Debug for Monitor {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -99,30 +103,40 @@ impl fmt::Debug for Monitor {
 /// Two handles are equal if they are on the same work.
 impl PartialEq for Monitor {
     fn eq(&self, other: &Monitor) -> bool {
-        self.0.as_ref().map(Arc::as_ptr) == other.0.as_ref().map(Arc::as_ptr)
+        self.shared.as_ref().map(Arc::as_ptr) == other.shared.as_ref().map(Arc::as_ptr)
     }
 }
 
 impl Monitor {
     /// A handle that somebody watches.
     pub fn watched() -> Monitor {
-        Monitor(Some(Arc::default()))
+        Monitor::of(Shared::default())
     }
 
     /// A handle that somebody watches, on work that is to stop too once this flag is true: one that a handler of signals sets.
     pub fn heeding(flag: &'static AtomicBool) -> Monitor {
-        Monitor(Some(Arc::new(Shared { flag: Some(flag), ..Shared::default() })))
+        Monitor::of(Shared { flag: Some(flag), ..Shared::default() })
     }
 
     /// A handle on work that calls `callback` with its progress, often and from any of its threads; the
     /// callback may hold a clone of another handle that heeds it, but not of this one.
     pub fn calling(callback: impl Fn(Progress) + Send + Sync + 'static) -> Monitor {
-        Monitor(Some(Arc::new(Shared { callback: Some(Box::new(callback)), ..Shared::default() })))
+        Monitor::of(Shared { callback: Some(Box::new(callback)), ..Shared::default() })
+    }
+
+    fn of(shared: Shared) -> Monitor {
+        Monitor { shared: Some(Arc::new(shared)), quiet: false }
+    }
+
+    /// A handle that stops with this one but does not change the progress: for parts of the work.
+    #[must_use]
+    pub fn quiet(&self) -> Monitor {
+        Monitor { quiet: true, ..self.clone() }
     }
 
     /// Asks the work to stop soon. What is finished by then is returned, marked as partial. Without effect on the default handle.
     pub fn cancel(&self) {
-        if let Some(shared) = &self.0 {
+        if let Some(shared) = &self.shared {
             shared.cancelled.store(true, Ordering::Relaxed);
         }
     }
@@ -130,12 +144,12 @@ impl Monitor {
     /// Whether the work has been asked to stop.
     pub fn is_cancelled(&self) -> bool {
         let set = |flag: &AtomicBool| flag.load(Ordering::Relaxed);
-        self.0.as_ref().is_some_and(|shared| set(&shared.cancelled) || shared.flag.is_some_and(set))
+        self.shared.as_ref().is_some_and(|shared| set(&shared.cancelled) || shared.flag.is_some_and(set))
     }
 
     /// How far the work is. The numbers may be of slightly different instants.
     pub fn progress(&self) -> Progress {
-        let Some(shared) = &self.0 else { return Progress::default() };
+        let Some(shared) = &self.shared else { return Progress::default() };
         let number = usize::from(shared.stage.load(Ordering::Relaxed));
         let stage = STAGES.get(number).copied().unwrap_or(Stage::Preparing);
         let [done, total, counted] =
@@ -145,7 +159,7 @@ impl Monitor {
 
     /// Begins a stage of `total` paths, or of starts. For work that is to be watched.
     pub fn enter(&self, stage: Stage, total: u64) {
-        if let Some(shared) = &self.0 {
+        if let Some(shared) = self.told() {
             shared.done.store(0, Ordering::Relaxed);
             shared.counted.store(0, Ordering::Relaxed);
             shared.total.store(total, Ordering::Relaxed);
@@ -156,11 +170,25 @@ impl Monitor {
 
     /// Adds to what is done and counted. For work that is to be watched.
     pub fn add(&self, done: u64, counted: u64) {
-        if let Some(shared) = &self.0 {
+        if let Some(shared) = self.told() {
             shared.done.fetch_add(done, Ordering::Relaxed);
             shared.counted.fetch_add(counted, Ordering::Relaxed);
             self.tell(shared);
         }
+    }
+
+    /// Sets what is done and counted. For work that is to be watched.
+    pub fn reach(&self, done: u64, counted: u64) {
+        if let Some(shared) = self.told() {
+            shared.done.store(done, Ordering::Relaxed);
+            shared.counted.store(counted, Ordering::Relaxed);
+            self.tell(shared);
+        }
+    }
+
+    /// Who is told of progress.
+    fn told(&self) -> Option<&Shared> {
+        self.shared.as_deref().filter(|_| !self.quiet)
     }
 
     fn tell(&self, shared: &Shared) {

@@ -8,10 +8,7 @@ use tdoa::html::html;
 use tdoa::node_table::node_table;
 use tdoa::picture::picture;
 use tdoa::read::{Units, is_mat, read, read_distances, read_mat_nodes, read_mat_transmitters, read_nodes};
-use tdoa::{
-    CalibrateError, CalibrateOptions, Calibration, Control, Monitor, Progress, Pseudoranges, ReceiverDelays,
-    calibrate_with,
-};
+use tdoa::{CalibrateError, CalibrateOptions, Calibration, Monitor, Pseudoranges, ReceiverDelays, calibrate_with};
 
 use crate::{Failure, interrupt, output, summary};
 
@@ -125,15 +122,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
     let monitor = Monitor::heeding(interrupt::watch()?);
     let started = Instant::now();
-    let solved = crate::on_threads(arguments.threads, || {
-        let bar = cli::bar::Bar::new("{bar:40} {pos} of at most {len} starts, {msg}");
-        let show = |progress: Progress| {
-            let agreeing = || format!("{} agree", progress.agreeing);
-            bar.show(progress.starts as u64, progress.max_starts as u64, agreeing);
-        };
-        let control = Control { progress: Some(&show), monitor };
-        calibrate_with(&measured, &options, &[], &control)
-    })?;
+    let describe = || {
+        let progress = monitor.progress();
+        (progress.done, progress.total, progress.to_string())
+    };
+    let solved =
+        cli::bar::while_shown(arguments.threads, describe, || calibrate_with(&measured, &options, &[], &monitor))?;
     let mut calibration = solved.map_err(|error| match error {
         CalibrateError::Degenerate(_) | CalibrateError::NotFound(_) | CalibrateError::Delays { .. } => {
             Failure::Undetermined(format!("{}: {error}", arguments.file.display()))

@@ -58,10 +58,10 @@ mod restart;
 pub mod simulate;
 
 pub use calibrate::{
-    Alternative, CalibrateError, CalibrateOptions, Calibration, Control, Hypotheses, KnownDistance, Progress,
-    ReceiverDelays, ReceiverError, ReceiverErrorKind, SpeedEstimate, Truth, calibrate, calibrate_with,
+    Alternative, CalibrateError, CalibrateOptions, Calibration, Hypotheses, KnownDistance, ReceiverDelays,
+    ReceiverError, ReceiverErrorKind, SpeedEstimate, Truth, calibrate, calibrate_with,
 };
-pub use hc::Monitor;
+pub use hc::{Monitor, Progress};
 pub use minimal::{Candidate, MinimalSolution, PathCounts, RootCounts};
 pub use network::Network;
 pub use pseudoranges::{PseudorangeError, Pseudoranges};

@@ -1,7 +1,8 @@
 //! `tdoa experiment calibrate` and `coverage`: the calibration on simulated networks beside the truth and the Cramer-Rao bound.
 
 use crate::trials::calibration::{Trial, judge};
-use tdoa::calibrate::{Control, MinimalHypotheses, calibrate_with};
+use tdoa::Monitor;
+use tdoa::calibrate::{MinimalHypotheses, calibrate_with};
 use tdoa::{CalibrateOptions, SimulateOptions, Simulation, simulate};
 
 use super::common::{Common, Size, thread_seconds};
@@ -134,7 +135,7 @@ impl Case {
             }
         }
         let started = thread_seconds();
-        let found = calibrate_with(&simulation.pseudoranges, &options, &sources, &Control::default());
+        let found = calibrate_with(&simulation.pseudoranges, &options, &sources, &Monitor::default());
         Ok(judge(&simulation, self.noise, seed, thread_seconds() - started, &found))
     }
 }

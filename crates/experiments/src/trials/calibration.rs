@@ -12,7 +12,7 @@ use tdoa::Simulation;
 use tdoa::accuracy::cramer_rao;
 use tdoa::align::align;
 use tdoa::calibrate::{
-    CalibrateError, CalibrateOptions, Calibration, Control, KnownReceivers, SAME_NETWORK, calibrate, calibrate_with,
+    CalibrateError, CalibrateOptions, Calibration, KnownReceivers, Monitor, SAME_NETWORK, calibrate, calibrate_with,
 };
 use tdoa::{PseudorangeError, Pseudoranges};
 
@@ -124,7 +124,7 @@ pub fn oracle(
     let mut options = options.clone();
     options.restarts = false;
     (options.min_starts, options.max_starts) = (1, 1);
-    let mut calibration = calibrate_with(measured, &options, &[&KnownReceivers { positions }], &Control::default())?;
+    let mut calibration = calibrate_with(measured, &options, &[&KnownReceivers { positions }], &Monitor::default())?;
     calibration.compare(truth);
     Ok(calibration)
 }

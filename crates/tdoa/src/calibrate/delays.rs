@@ -2,10 +2,11 @@
 
 use faer::Mat;
 use faer::prelude::Solve;
+use hc::Monitor;
 
 use super::deviation::{inlier_deviation, spread_of_residuals};
 use super::finish::finish;
-use super::options::{CalibrateError, CalibrateOptions, Control, ReceiverDelays};
+use super::options::{CalibrateError, CalibrateOptions, ReceiverDelays, check};
 use super::receiver_errors::{Fault, ReceiverErrorKind, find};
 use crate::network::Network;
 use crate::observations::Observations;
@@ -28,7 +29,7 @@ pub(super) struct Clearing<'a> {
     pub(super) known: Option<f64>,
     pub(super) floor: f64,
     pub(super) options: &'a CalibrateOptions,
-    pub(super) control: &'a Control<'a>,
+    pub(super) monitor: &'a Monitor,
 }
 
 /// Networks for the measurements without the errors of receivers.
@@ -89,7 +90,7 @@ impl Clearing<'_> {
         now.observations = Observations::new(&now.measured, |_, _| true).beside(linear(&now.taken).count());
         let first = self.known.unwrap_or(spread_of_residuals(&now.observations, &now.ranked[0].network));
         let (ranked, deviation) =
-            finish(&now.observations, now.ranked, first, self.known.is_some(), self.floor, self.options, self.control)?;
+            finish(&now.observations, now.ranked, first, self.known.is_some(), self.floor, self.options, self.monitor)?;
         Ok(Cleared { ranked, deviation, ..now })
     }
 
@@ -147,7 +148,7 @@ impl Clearing<'_> {
     ) -> Result<(Vec<Fault>, Refined, f64), CalibrateError> {
         let count = linear(&faults).count();
         for step in 0..STEPS {
-            self.control.check()?;
+            check(self.monitor)?;
             let observations = Observations::new(&self.corrected(&faults), |_, _| true).beside(count);
             let wide = spread_of_residuals(&observations, &best.network).max(self.known.unwrap_or(self.floor));
             let first = if step == 0 { self.known.unwrap_or(wide) } else { self.known.unwrap_or(deviation.min(wide)) };
@@ -158,7 +159,7 @@ impl Clearing<'_> {
                 self.known.is_some(),
                 self.floor,
                 self.options,
-                self.control,
+                self.monitor,
             )?;
             (best, deviation) = (ranked.swap_remove(0), next);
             let wide = inlier_deviation(&observations, &best.network, wide, self.options.inlier_threshold);

@@ -1,11 +1,12 @@
 //! The last refinement of the networks that the search found, and their order.
 
 use super::deviation::inlier_deviation;
-use super::options::{CalibrateError, CalibrateOptions, Control};
+use super::options::{CalibrateError, CalibrateOptions, check};
 use super::ranking::rank;
 use super::same::distinct;
 use crate::observations::Observations;
 use crate::refine::{RefineOptions, Refined, Refiner, SEARCH};
+use hc::Monitor;
 
 /// Scale of the Cauchy loss, in standard deviations, that is 95 % efficient on normal noise (Holland and Welsch 1977).
 const CAUCHY: f64 = 2.385;
@@ -21,9 +22,9 @@ pub(super) fn finish(
     known: bool,
     floor: f64,
     options: &CalibrateOptions,
-    control: &Control<'_>,
+    monitor: &Monitor,
 ) -> Result<(Vec<Refined>, f64), CalibrateError> {
-    let mut refiner = Refiner::new(observations, 1.0).heeding(&control.monitor);
+    let mut refiner = Refiner::new(observations, 1.0).heeding(monitor);
     let mut deviation = first;
     let turns = if known { 1 } else { 4 };
     for turn in 0..turns {
@@ -43,7 +44,7 @@ pub(super) fn finish(
             network.objective = (network.objective - constant) * CAUCHY * CAUCHY / 2.0;
             network.starts = starts;
         }
-        control.check()?;
+        check(monitor)?;
         networks.sort_by(|a, b| a.objective.total_cmp(&b.objective));
         if known {
             networks = rank(observations, networks, deviation, options.alternative_margin);

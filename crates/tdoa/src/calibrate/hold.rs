@@ -4,11 +4,12 @@
 use super::deviation::{inlier_deviation, median_size};
 use super::finish::finish;
 use super::known::{Anchors, SpeedEstimate};
-use super::options::{CalibrateError, CalibrateOptions, Control};
+use super::options::{CalibrateError, CalibrateOptions};
 use crate::degeneracy::Usable;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::{Refined, covariance};
+use hc::Monitor;
 
 /// What is known when the network has been refined from the measurements alone.
 pub(super) struct Free<'a> {
@@ -36,7 +37,7 @@ impl Free<'_> {
         deviation: f64,
         usable: &Usable,
         options: &CalibrateOptions,
-        control: &Control<'_>,
+        monitor: &Monitor,
     ) -> Result<Held, CalibrateError> {
         let Free { observations, centred, known, floor } = self;
         let mut anchors = Anchors::new(usable, options)?;
@@ -82,7 +83,7 @@ impl Free<'_> {
         let observations = observations.holding(&held);
         // Where few measurements were left over, the free network took up most of the noise.
         let first = known.unwrap_or_else(|| deviation.max(median_size(&observations, &ranked[0].network) / 0.6745));
-        let (ranked, deviation) = finish(&observations, ranked, first, known.is_some(), floor, options, control)?;
+        let (ranked, deviation) = finish(&observations, ranked, first, known.is_some(), floor, options, monitor)?;
         Ok(Held { observations, ranked, deviation, anchors, speed, warnings })
     }
 }

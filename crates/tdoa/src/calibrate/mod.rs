@@ -27,7 +27,7 @@ pub use calibration::{Alternative, Calibration};
 pub use hypotheses::{Hypotheses, KnownReceivers, generator};
 pub use known::SpeedEstimate;
 pub use minimal::MinimalHypotheses;
-pub use options::{CalibrateError, CalibrateOptions, Control, KnownDistance, Progress, ReceiverDelays};
+pub use options::{CalibrateError, CalibrateOptions, KnownDistance, ReceiverDelays};
 pub use receiver_errors::{ReceiverError, ReceiverErrorKind};
 pub use same::SAME_NETWORK;
 pub use truth::Truth;
@@ -35,6 +35,7 @@ pub use truth::Truth;
 use crate::degeneracy::{LEAST_PER_TRANSMITTER, Usable, list, usable};
 use crate::pseudoranges::Pseudoranges;
 use delays::{Cleared, Clearing, without_middle_delays};
+use hc::Monitor;
 use hold::{Free, Held};
 use report::Solved;
 use submaps::{Layout, OVERLAP, hearing_is_local, lay_out};
@@ -57,7 +58,7 @@ use whole::{Sought, search_whole};
 /// # Errors
 /// Data that cannot determine a network, options outside their range, or no network found.
 pub fn calibrate(measured: &Pseudoranges, options: &CalibrateOptions) -> Result<Calibration, CalibrateError> {
-    calibrate_with(measured, options, &[], &Control::default())
+    calibrate_with(measured, options, &[], &Monitor::default())
 }
 
 /// [`calibrate`] with further sources of starts beside the restarts, which take turns, and with progress and
@@ -69,14 +70,14 @@ pub fn calibrate_with(
     measured: &Pseudoranges,
     options: &CalibrateOptions,
     sources: &[&dyn Hypotheses],
-    control: &Control<'_>,
+    monitor: &Monitor,
 ) -> Result<Calibration, CalibrateError> {
     options.validate()?;
     known::validate(measured, options)?;
     let mut usable = usable(measured)?;
     let known = options.sigma.or(if measured.has_sigmas() { Some(1.0) } else { None });
     let local = if options.receiver_delays != ReceiverDelays::All {
-        local_layout(measured, &mut usable, known, options, sources, control)?
+        local_layout(measured, &mut usable, known, options, sources, monitor)?
     } else {
         None
     };
@@ -85,14 +86,14 @@ pub fn calibrate_with(
     let sought = if delayed { without_middle_delays(&centred) } else { centred.clone() };
     let noise = known.filter(|_| !delayed);
     let Sought { ranked, neighbours, deviation, floor, starts } = match &local {
-        Some((layout, places)) => layout.refine(&sought, places, noise, options, control)?,
-        None => search_whole(&sought, noise, options, sources, control)?,
+        Some((layout, places)) => layout.refine(&sought, places, noise, options, monitor)?,
+        None => search_whole(&sought, noise, options, sources, monitor)?,
     };
-    let clearing = Clearing { measured: &centred, known, floor, options, control };
+    let clearing = Clearing { measured: &centred, known, floor, options, monitor };
     let Cleared { measured: centred, observations, ranked, deviation, taken, left } =
         clearing.clear(ranked, deviation)?;
     let free = Free { observations, centred: &centred, known, floor };
-    let held = free.hold(ranked, deviation, &usable, options, control)?;
+    let held = free.hold(ranked, deviation, &usable, options, monitor)?;
     let Held { observations, ranked, deviation, anchors, speed, warnings } = held;
     let solved = Solved {
         measured,
@@ -122,14 +123,14 @@ fn local_layout(
     known: Option<f64>,
     options: &CalibrateOptions,
     sources: &[&dyn Hypotheses],
-    control: &Control<'_>,
+    monitor: &Monitor,
 ) -> Result<Option<(Layout, Vec<usize>)>, CalibrateError> {
     let (centred, _) = centre(&measured.select(&usable.receivers, &usable.transmitters));
     if !hearing_is_local(&centred) {
         return Ok(None);
     }
     let mut layout = match sources.first() {
-        None => lay_out(&centred, known, options, control)?,
+        None => lay_out(&centred, known, options, monitor)?,
         Some(source) => match Layout::proposed(&centred, *source, options.seed) {
             Some(layout) => layout,
             None => return Ok(None),

@@ -132,31 +132,9 @@ impl CalibrateOptions {
     }
 }
 
-/// Where the search stands.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Progress {
-    /// Starts that have ended.
-    pub starts: usize,
-    /// Starts after which the search ends at the latest.
-    pub max_starts: usize,
-    /// Starts that ended in the best basin so far.
-    pub agreeing: usize,
-}
-
-/// Ways to watch and to stop a calibration from outside. The default does neither.
-#[derive(Default, Clone)]
-pub struct Control<'a> {
-    /// Called from the calling thread after every batch of starts.
-    pub progress: Option<&'a dyn Fn(Progress)>,
-    /// Calibration ends with [`CalibrateError::Cancelled`] soon after this is cancelled.
-    pub monitor: Monitor,
-}
-
-impl Control<'_> {
-    /// Ends the calibration if it has been cancelled.
-    pub(super) fn check(&self) -> Result<(), CalibrateError> {
-        if self.monitor.is_cancelled() { Err(CalibrateError::Cancelled) } else { Ok(()) }
-    }
+/// Ends the calibration if it has been cancelled.
+pub(super) fn check(monitor: &Monitor) -> Result<(), CalibrateError> {
+    if monitor.is_cancelled() { Err(CalibrateError::Cancelled) } else { Ok(()) }
 }
 
 /// Why there is no calibration.
@@ -197,7 +175,7 @@ pub enum CalibrateError {
     /// Known positions or distances that cannot be used.
     #[error("known positions and distances: {0}")]
     Known(String),
-    /// Stopped through [`Control::monitor`].
+    /// Stopped through its [`Monitor`].
     #[error("calibration was cancelled")]
     Cancelled,
 }

@@ -1,10 +1,11 @@
 //! The search: many starts, each refined on its own, until enough of them agree.
 
+use hc::{Monitor, Stage};
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 
 use super::hypotheses::Hypotheses;
 use super::near::minima;
-use super::options::{CalibrateError, CalibrateOptions, Control, Progress};
+use super::options::{CalibrateError, CalibrateOptions};
 use super::ranking::truncated_cost;
 use super::same::{distinct, same};
 use crate::loss::{Loss, SEARCH_NU};
@@ -54,10 +55,10 @@ pub(crate) struct Search<'a> {
 const EXTRA_TURNS: usize = 1 << 24;
 
 impl Search<'_> {
-    pub(crate) fn run(&self, options: &CalibrateOptions, control: &Control<'_>) -> Result<Found, CalibrateError> {
+    pub(crate) fn run(&self, options: &CalibrateOptions, monitor: &Monitor) -> Result<Found, CalibrateError> {
         let mut refined: Vec<Refined> = Vec::new();
         let mut starts = 0;
-        let monitor = &control.monitor;
+        monitor.enter(Stage::Search, options.max_starts as u64);
         loop {
             let batch = BATCH.min(options.max_starts - starts);
             let ended: Vec<Vec<Refined>> = (starts..starts + batch)
@@ -76,9 +77,7 @@ impl Search<'_> {
             refined.extend(ended.into_iter().flatten());
             let best = refined.iter().min_by(|a, b| a.objective.total_cmp(&b.objective));
             let agreeing = best.map_or(0, |best| starts_in(best, &refined));
-            if let Some(progress) = control.progress {
-                progress(Progress { starts, max_starts: options.max_starts, agreeing });
-            }
+            monitor.reach(starts as u64, agreeing as u64);
             let enough = starts >= options.min_starts && agreeing >= options.agreeing;
             if enough || starts >= options.max_starts {
                 if refined.is_empty() {

@@ -3,7 +3,7 @@
 use super::deviation::{median_size, typical_deviation};
 use super::finish::finish;
 use super::hypotheses::Hypotheses;
-use super::options::{CalibrateError, CalibrateOptions, Control, Progress};
+use super::options::{CalibrateError, CalibrateOptions, check};
 use super::whole::{Sought, search_whole};
 use crate::align::{Transform, align};
 use crate::degeneracy::usable;
@@ -14,6 +14,7 @@ use crate::observations::Observations;
 use crate::plane::{distance, flatness, spread};
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::{PartialNetwork, RefineOptions, Refiner, SEARCH, extend};
+use hc::Monitor;
 
 /// Receivers and transmitters of a submap.
 const RECEIVERS: usize = 10;
@@ -92,11 +93,10 @@ pub(super) fn lay_out(
     measured: &Pseudoranges,
     known: Option<f64>,
     options: &CalibrateOptions,
-    control: &Control<'_>,
+    monitor: &Monitor,
 ) -> Result<Layout, CalibrateError> {
     let m = measured.receivers();
     let common = common_transmitters(measured);
-    let quiet = Control { progress: None, monitor: control.monitor.clone() };
     let options = &CalibrateOptions {
         min_starts: options.min_starts.min(STARTS),
         max_starts: options.max_starts.min(MOST_STARTS),
@@ -106,7 +106,7 @@ pub(super) fn lay_out(
     let mut submaps: Vec<Submap> = Vec::new();
     let mut tried: Vec<Vec<usize>> = Vec::new();
     for centre in 0..m {
-        control.check()?;
+        check(monitor)?;
         let mut order: Vec<usize> = (0..m).filter(|&i| common[centre * m + i] >= COMMON).collect();
         // The receiver itself hears all that it hears.
         order.sort_by_key(|&i| std::cmp::Reverse(common[centre * m + i]));
@@ -116,12 +116,10 @@ pub(super) fn lay_out(
             continue;
         }
         tried.push(order.clone());
-        if let Some(submap) = solve(measured, &order, known, options, &quiet)? {
+        if let Some(submap) = solve(measured, &order, known, options, &monitor.quiet())? {
             submaps.push(submap);
         }
-        if let Some(progress) = control.progress {
-            progress(Progress { starts: centre + 1, max_starts: m, agreeing: submaps.len() });
-        }
+        monitor.reach(centre as u64 + 1, submaps.len() as u64);
     }
     if submaps.is_empty() {
         return Err(CalibrateError::NotFound(m));
@@ -137,7 +135,7 @@ fn solve(
     receivers: &[usize],
     known: Option<f64>,
     options: &CalibrateOptions,
-    control: &Control<'_>,
+    monitor: &Monitor,
 ) -> Result<Option<Submap>, CalibrateError> {
     let heard = |j: usize| receivers.iter().filter(|&&i| measured.get(i, j).is_some()).count();
     let mut transmitters: Vec<usize> = (0..measured.transmitters()).filter(|&j| heard(j) >= HEARD).collect();
@@ -147,7 +145,7 @@ fn solve(
     let part = measured.select(receivers, &transmitters);
     let Ok(kept) = usable(&part) else { return Ok(None) };
     let part = part.select(&kept.receivers, &kept.transmitters);
-    let found = match search_whole(&part, known, options, &[], control) {
+    let found = match search_whole(&part, known, options, &[], monitor) {
         Ok(found) => found,
         Err(CalibrateError::Cancelled) => return Err(CalibrateError::Cancelled),
         Err(_) => return Ok(None),
@@ -264,7 +262,7 @@ impl Layout {
         receivers: &[usize],
         known: Option<f64>,
         options: &CalibrateOptions,
-        control: &Control<'_>,
+        monitor: &Monitor,
     ) -> Result<Sought, CalibrateError> {
         let observations = Observations::new(measured, |_, _| true);
         let unit = typical_deviation(measured);
@@ -278,13 +276,13 @@ impl Layout {
         let refine = RefineOptions { anneal_from: Some(bent), steps: 60, floor: 1e-9 * size, ..SEARCH };
         let to_deviation = normal_deviation(SEARCH_NU);
         let start = RefineOptions { scale: known.map(|sigma| sigma / to_deviation), ..refine };
-        let mut refiner = Refiner::new(&observations, SEARCH_NU).heeding(&control.monitor);
+        let mut refiner = Refiner::new(&observations, SEARCH_NU).heeding(monitor);
         let mut refined = refiner.refine(network, &start);
-        control.check()?;
+        check(monitor)?;
         refined.starts = self.support(&refined.network, receivers);
         let first = known.unwrap_or(refined.scale * to_deviation).max(refine.floor);
         let (ranked, deviation) =
-            finish(&observations, vec![refined], first, known.is_some(), refine.floor, options, control)?;
+            finish(&observations, vec![refined], first, known.is_some(), refine.floor, options, monitor)?;
         Ok(Sought { ranked, neighbours: Vec::new(), deviation, floor: refine.floor, starts: self.solved })
     }
 

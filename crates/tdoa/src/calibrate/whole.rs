@@ -5,13 +5,14 @@ use super::finish::finish;
 use super::hypotheses::{Hypotheses, RandomRestarts};
 use super::minimal::MinimalHypotheses;
 use super::near::{Neighbour, neighbours};
-use super::options::{CalibrateError, CalibrateOptions, Control};
+use super::options::{CalibrateError, CalibrateOptions, check};
 use super::search::Search;
 use crate::degeneracy::{Usable, usable};
 use crate::loss::{Loss, SEARCH_NU, normal_deviation};
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::{PartialNetwork, RefineOptions, Refined, Refiner, SEARCH, extend};
+use hc::Monitor;
 
 /// No measurement is trusted beyond this share of the network's diameter.
 const RESOLUTION: f64 = 1e-9;
@@ -36,7 +37,7 @@ pub(super) fn search_whole(
     known: Option<f64>,
     options: &CalibrateOptions,
     sources: &[&dyn Hypotheses],
-    control: &Control<'_>,
+    monitor: &Monitor,
 ) -> Result<Sought, CalibrateError> {
     let observations = Observations::new(measured, |_, _| true);
 
@@ -70,20 +71,20 @@ pub(super) fn search_whole(
         wide: Loss { nu: SEARCH_NU, scale: 0.03 * diameter / unit },
         deviation: known.map(|sigma| sigma.max(refine.floor)),
     };
-    let found = search.run(options, control)?;
+    let found = search.run(options, monitor)?;
 
     let best = found.networks[0].objective;
     let close = found.networks.into_iter().filter(|r| r.objective <= best + 4.0 * options.alternative_margin);
     let complete_part =
         part.receivers.len() == measured.receivers() && part.transmitters.len() == measured.transmitters();
     let whole: Vec<Refined> =
-        if complete_part { close.collect() } else { complete(&observations, &part, close.take(4), &refine, control) };
-    control.check()?;
+        if complete_part { close.collect() } else { complete(&observations, &part, close.take(4), &refine, monitor) };
+    check(monitor)?;
     let Some(scale) = whole.iter().min_by(|a, b| a.objective.total_cmp(&b.objective)).map(|r| r.scale) else {
         return Err(CalibrateError::NotFound(found.starts));
     };
     let first = known.unwrap_or(scale * to_deviation).max(refine.floor);
-    let (ranked, deviation) = finish(&observations, whole, first, known.is_some(), refine.floor, options, control)?;
+    let (ranked, deviation) = finish(&observations, whole, first, known.is_some(), refine.floor, options, monitor)?;
     let near = if complete_part { found.near } else { Vec::new() };
     let neighbours = neighbours(&observations, &ranked[0], near, deviation);
     Ok(Sought { ranked, neighbours, deviation, floor: refine.floor, starts: found.starts })
@@ -124,9 +125,9 @@ fn complete(
     part: &Usable,
     networks: impl Iterator<Item = Refined>,
     refine: &RefineOptions,
-    control: &Control<'_>,
+    monitor: &Monitor,
 ) -> Vec<Refined> {
-    let mut refiner = Refiner::new(observations, SEARCH_NU).heeding(&control.monitor);
+    let mut refiner = Refiner::new(observations, SEARCH_NU).heeding(monitor);
     let refine = RefineOptions { anneal_from: None, ..*refine };
     networks
         .filter_map(|refined| {
