@@ -7,12 +7,13 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde::Serialize;
 
+use tdoa::Monitor;
 use tdoa::Network;
 use tdoa::Simulation;
 use tdoa::accuracy::cramer_rao;
 use tdoa::align::align;
 use tdoa::calibrate::{
-    CalibrateError, CalibrateOptions, Calibration, KnownReceivers, Monitor, SAME_NETWORK, calibrate, calibrate_with,
+    CalibrateError, CalibrateOptions, Calibration, KnownReceivers, SAME_NETWORK, calibrate, calibrate_with,
 };
 use tdoa::{PseudorangeError, Pseudoranges};
 

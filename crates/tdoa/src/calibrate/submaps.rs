@@ -14,7 +14,7 @@ use crate::observations::Observations;
 use crate::plane::{distance, flatness, spread};
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::{PartialNetwork, RefineOptions, Refiner, SEARCH, extend};
-use hc::Monitor;
+use hc::{Monitor, Stage};
 
 /// Receivers and transmitters of a submap.
 const RECEIVERS: usize = 10;
@@ -105,6 +105,7 @@ pub(super) fn lay_out(
     };
     let mut submaps: Vec<Submap> = Vec::new();
     let mut tried: Vec<Vec<usize>> = Vec::new();
+    monitor.enter(Stage::Search, m as u64);
     for centre in 0..m {
         check(monitor)?;
         let mut order: Vec<usize> = (0..m).filter(|&i| common[centre * m + i] >= COMMON).collect();
