@@ -88,6 +88,17 @@ fn calibrate_compares_sources_of_starts() {
 }
 
 #[test]
+fn conditions_stand_beside_the_oracle() {
+    let directory = tempfile::tempdir().expect("directory");
+    let lines = experiment("conditions --only sigma --instances 1", directory.path(), "2");
+    // Told deviations of 1, 0.67, 0.5 and 0.2 times the true one.
+    assert_eq!(lines.len(), 5);
+    let of = |line: usize, column: &str| cell(&lines[0], &lines[line], column);
+    assert!((1..5).all(|line| of(line, "success") == "1" && of(line, "oracle") == "1"), "{lines:?}");
+    assert_eq!((of(1, "warned"), of(4, "warned")), ("0".into(), "1".into()));
+}
+
+#[test]
 fn growth_takes_time_and_memory() {
     let directory = tempfile::tempdir().expect("directory");
     let lines = experiment("growth --configuration 10r/20s,20r/30s --missing 0.1", directory.path(), "2");
