@@ -45,8 +45,9 @@ pub(super) fn rank(
     for mut refined in networks.into_iter().filter(|refined| refined.objective <= least + 4.0 * margin) {
         let (network, cost) = refit(observations, &refined.network, deviation);
         refined.objective = cost;
-        if !kept.iter().any(|(other, _)| same(other, &network)) {
-            kept.push((network, refined));
+        match kept.iter_mut().find(|(other, _)| same(other, &network)) {
+            Some((_, first)) => first.starts = first.starts.max(refined.starts),
+            None => kept.push((network, refined)),
         }
     }
     let mut ranked: Vec<Refined> = kept.into_iter().map(|(_, refined)| refined).collect();

@@ -8,15 +8,17 @@ use crate::refine::Refined;
 /// Networks are the same if their nodes differ by less than this share of the network's size, root mean square.
 pub const SAME_NETWORK: f64 = 0.02;
 
-/// The first of each kind of network in a list sorted by objective, at most `most` of them.
+/// The first of each kind of network in a list sorted by objective, at most `most` of them, with the starts of the one that most ended in.
 pub(super) fn distinct(sorted: Vec<Refined>, most: usize) -> Vec<Refined> {
     let mut kept: Vec<Refined> = Vec::new();
     for candidate in sorted {
         if kept.len() == most {
             break;
         }
-        if !kept.iter().any(|k| same(&k.network, &candidate.network)) {
-            kept.push(candidate);
+        match kept.iter_mut().find(|k| same(&k.network, &candidate.network)) {
+            // Starts that ended apart may be refined to one network.
+            Some(first) => first.starts = first.starts.max(candidate.starts),
+            None => kept.push(candidate),
         }
     }
     kept
