@@ -100,6 +100,34 @@ fn relative_poses_planted_behind_five_points_are_found_on_any_number_of_threads(
     }
 }
 
+/// What `hc codegen` writes is what `cargo xtask codegen` writes, to the byte; a stale file and wrong inputs are named.
+#[test]
+fn the_solver_of_a_family_is_written_as_rust() {
+    let directory = tempfile::tempdir().expect("directory");
+    let solver = directory.path().join("solver.rs");
+    let start = family("five_point").replace(".toml", ".start.json");
+    let generate = |family: &str, start: &str, more: &[&str]| {
+        let mut arguments = vec!["codegen", family, start, "-o", text(&solver)];
+        arguments.extend(more);
+        let output = run("hc", &arguments);
+        (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    assert_eq!(generate(&family("five_point"), &start, &[]), (Some(0), String::new()));
+    let written = std::fs::read_to_string(&solver).expect("written");
+    let committed = std::fs::read_to_string(root().join("crates/hc/examples/five_point/generated.rs")).expect("source");
+    // The header names the family as it was given: the file name here, its place in the repository there.
+    assert_eq!(
+        written,
+        committed.replace("// Source: examples/families/five_point.toml", "// Source: five_point.toml")
+    );
+    assert_eq!(generate(&family("five_point"), &start, &["--check"]).0, Some(0));
+    std::fs::write(&solver, written + "\n").expect("written");
+    let (status, message) = generate(&family("five_point"), &start, &["--check"]);
+    assert!(status == Some(1) && message.contains("stale"), "{message}");
+    let (status, message) = generate(&family("p3p"), &start, &[]);
+    assert!(status == Some(2) && message.contains("the family has 6 parameters and 3 unknowns"), "{message}");
+}
+
 /// The common point of a double root, and roots at infinity, as in `hc solve`; regular roots are certified.
 #[test]
 fn special_members_are_solved_like_any_system() {

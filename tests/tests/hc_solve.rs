@@ -52,6 +52,40 @@ fn the_same_bytes_on_any_number_of_threads() {
     assert_eq!(without_time("1"), without_time("3"));
 }
 
+/// A circle and a hyperbola that meet in (1, 2), (2, 1) and their opposites, in each of the formats that are read.
+#[test]
+fn every_format_of_a_system_is_known() {
+    let results: Vec<Value> = [
+        "2\n x^2 + y^2 - 5;\n x*y - 2;\n",
+        "# A circle\nx^2 + y^2 = 5\n\nx*y = 2  # and a hyperbola",
+        "variables: x y\nx*y*0 + x^2 + y^2 - 5; x*y - 2;",
+        "name = 'conics'\nunknowns = ['x', 'y']\nequations = ['x^2 + y^2 = 5', 'x*y - 2']\n",
+    ]
+    .into_iter()
+    .map(|text| {
+        let (status, out, error) = solve(text, &["--json", "-"]);
+        assert_eq!(status, Some(0), "{text}: {error}");
+        let mut json: Value = serde_json::from_str(&out).expect("JSON");
+        json["seconds"] = Value::Null;
+        json
+    })
+    .collect();
+    let solutions = results[0]["solutions"].as_array().expect("solutions");
+    assert_eq!(solutions.len(), 4);
+    for solution in solutions {
+        let [x, y] = [0, 1].map(|k| solution["value"][k][0].as_f64().expect("a number"));
+        assert!((x * y - 2.0).abs() < 1e-12 && (x.abs() + y.abs() - 3.0).abs() < 1e-12, "{solution}");
+    }
+    assert!(results.iter().all(|result| result == &results[0]));
+    let family = "name = 'f'\nunknowns = ['x']\nparameters = ['a']\nequations = ['x^2 - a']\n";
+    for (text, words) in
+        [(family, "parameters (a"), ("x^2 = 5\nx*y = ", "line 2, column 7"), ("x^2\n+ y^2 = 5", "line 2")]
+    {
+        let (status, out, error) = solve(text, &[]);
+        assert!(status == Some(2) && error.contains(words), "{text}: {out}{error}");
+    }
+}
+
 #[test]
 fn multihomogeneous_start_with_given_groups() {
     // Bilinear in (x, y) and (z): the multihomogeneous number is the coefficient of a^2 b in (a + b)^3, three; the degree is eight.

@@ -10,11 +10,8 @@ use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use experiments::workspace;
 use hc::Family;
-use hc::distinct::coincidences;
+use hc::codegen::generate;
 use hc::family::StartFile;
-use hc::poly::program::{EmitOptions, emit};
-use hc::refine::Refiner;
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 /// A family of this workspace, and where its files are, from the root of the repository.
@@ -142,8 +139,8 @@ fn write_or_check(
 ) -> Result<bool> {
     let family = read_family(family)?;
     let start_file = StartFile::from_json(&workspace::read(start)?).with_context(|| start.display().to_string())?;
-    verify(&family, &start_file).with_context(|| start.display().to_string())?;
-    place(arguments, &generate(&family, &start_file, source)?, output)
+    let module = generate(&family, &start_file, source).with_context(|| start.display().to_string())?;
+    place(arguments, &module, output)
 }
 
 /// Writes one file, or with `--check` says whether what is there differs.
@@ -161,55 +158,4 @@ fn place(arguments: &CodegenArguments, module: &str, output: &Path) -> Result<bo
     workspace::write(output, module)?;
     eprintln!("wrote {}", output.display());
     Ok(false)
-}
-
-/// The stored fibre solves the family's equations, its solutions are distinct and regular, and their number is the stated one.
-fn verify(family: &Family, start: &StartFile) -> Result<()> {
-    let fibre = start.fibre()?;
-    family.check(&fibre)?;
-    if let Some(roots) = family.roots() {
-        ensure!(fibre.len() == roots, "{} solutions, but the family states {roots}", fibre.len());
-    }
-    let mut refiner = Refiner::new(family.program());
-    for k in 0..fibre.len() {
-        let x = fibre.solution(k);
-        let refined = refiner.refine(&fibre.parameters, x);
-        let moved = hc::distinct::relative_distance(x, &refined.point);
-        ensure!(moved < 1e-12, "solution {} is off by {moved:.1e}", k + 1);
-        ensure!(refined.condition < 1e12, "solution {} is singular (condition {:.1e})", k + 1, refined.condition);
-        ensure!(family.accepts(&fibre.parameters, x), "solution {} is degenerate", k + 1);
-    }
-    let same = coincidences((0..fibre.len()).map(|k| (k, fibre.solution(k))), 1e-8);
-    ensure!(same.is_empty(), "solutions {:?} (counted from 0) coincide", same[0]);
-    Ok(())
-}
-
-/// The Rust source of a family with its fibre.
-fn generate(family: &Family, start: &StartFile, source: &str) -> Result<String> {
-    let system = family.system();
-    let mut options = EmitOptions::default();
-    options.crate_path = "hc::poly".to_owned();
-    options.source = source.to_owned();
-    let mut text = emit(family.program().program(), &options)?;
-    let trace = start.trace_test.map_or("not run".to_owned(), |t| format!("deviation {t:.1e}"));
-    writeln!(text, "/// A generic parameter point, `[re, im]` each.")?;
-    writeln!(text, "static PARAMETERS: [[f64; 2]; {}] = [", start.parameters.len())?;
-    rows(&mut text, &start.parameters)?;
-    writeln!(text, "];")?;
-    writeln!(text, "/// All solutions there, {} coordinates each, one after the other.", system.variables().len())?;
-    writeln!(text, "///\n/// Search ended: {}; trace test: {trace}.", start.stopped)?;
-    writeln!(text, "static SOLUTIONS: [[f64; 2]; {}] = [", start.solutions.len() * system.variables().len())?;
-    for solution in &start.solutions {
-        rows(&mut text, solution)?;
-    }
-    writeln!(text, "];")?;
-    writeln!(text, "/// All solutions for a generic parameter point.")?;
-    writeln!(text, "pub fn fibre() -> hc::Fibre {{")?;
-    writeln!(text, "    hc::Fibre::from_pairs(&PARAMETERS, {}, &SOLUTIONS)", system.variables().len())?;
-    writeln!(text, "}}")?;
-    Ok(text)
-}
-
-fn rows(text: &mut String, numbers: &[[f64; 2]]) -> std::fmt::Result {
-    numbers.iter().try_for_each(|[re, im]| writeln!(text, "    [{re:?}, {im:?}],"))
 }

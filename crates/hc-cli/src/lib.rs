@@ -1,6 +1,7 @@
 //! The program `hc`: solutions of polynomial systems by homotopy continuation.
 
 mod certify;
+mod codegen;
 mod family;
 mod input;
 mod mixed_volume;
@@ -28,6 +29,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Certify(certify::Arguments),
+    Codegen(codegen::Arguments),
     MixedVolume(mixed_volume::Arguments),
     Monodromy(monodromy::Arguments),
     Solve(solve::Arguments),
@@ -39,6 +41,7 @@ pub fn main() -> ExitCode {
     // clap ends the program itself, with status 2, if the arguments are wrong.
     let result = match Arguments::parse().command {
         Command::Certify(arguments) => certify::run(&arguments),
+        Command::Codegen(arguments) => codegen::run(&arguments),
         Command::MixedVolume(arguments) => mixed_volume::run(&arguments),
         Command::Monodromy(arguments) => monodromy::run(&arguments),
         Command::Solve(arguments) => solve::run(&arguments),

@@ -19,7 +19,8 @@
 //!
 //! The path tracker is in [`tracker`]; its homotopies, a system and a path in its parameters, are in
 //! [`homotopy`]. [`family`] has what is below [`Family`], for programs of one's own, [`start`] mixed
-//! cells, and [`refine`], [`distinct`] and [`random`] what is used everywhere.
+//! cells, and [`refine`], [`distinct`] and [`random`] what is used everywhere. With the feature of its
+//! name, `codegen` writes a family and its solutions as Rust source.
 //!
 //! Systems come from the crate [`poly`], which is re-exported: everything that implements
 //! [`poly::Evaluate`] can be tracked.
@@ -52,6 +53,8 @@
 //! ```
 
 pub mod certify;
+#[cfg(feature = "codegen")]
+pub mod codegen;
 pub mod distinct;
 mod endgame;
 pub mod family;

@@ -227,7 +227,7 @@ impl PartialEq for Formula {
 }
 
 impl Display for Formula {
-    /// The formula as text that parses to the formula again. More than 100,000 symbols are cut short by `...`.
+    /// The formula as text that parses to a formula with the same values. More than 100,000 symbols are cut short by `...`.
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let (arena, [root]) = free([self]);
         if arena.non_finite {

@@ -160,7 +160,7 @@ pub(crate) fn is_name(name: &str) -> bool {
 }
 
 impl std::fmt::Display for System {
-    /// The system in plain text, which parses to the system again: a line of unknowns, a line of parameters where there
+    /// The system in plain text, which parses to a system with the same values: a line of unknowns, a line of parameters where there
     /// are some, and one equation a line, each ended by `;`. A formula of more than 100,000 symbols is cut short by `...`.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         for (word, names) in [("variables", self.variables()), ("parameters", self.parameters())] {

@@ -1,0 +1,40 @@
+//! `hc codegen`.
+
+use crate::{family, input};
+use cli::{Failure, output};
+use hc::codegen::generate;
+use hc::family::StartFile;
+use std::path::PathBuf;
+
+/// Writes a Rust module that solves a family: its equations as straight-line code, and its stored solutions.
+///
+/// The module depends on the crate hc alone. The same inputs give the same bytes.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The family (TOML).
+    family: PathBuf,
+    /// Its stored solutions: what `hc monodromy` writes.
+    start: PathBuf,
+    /// The Rust file; - for standard output.
+    #[arg(long, short)]
+    output: PathBuf,
+    /// Write nothing; exit status 1 if the file is stale.
+    #[arg(long)]
+    check: bool,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments { family: family_file, start: start_file, output, check } = arguments;
+    let family = family::read(family_file)?;
+    let start = StartFile::from_json(&input::text(start_file)?).map_err(|e| Failure::in_file(start_file, e))?;
+    let source = family_file.file_name().unwrap_or_default().to_string_lossy();
+    let module = generate(&family, &start, &source).map_err(|e| Failure::in_file(start_file, e))?;
+    if !check {
+        return output::text(output, &module);
+    }
+    if input::text(output)? == module {
+        eprintln!("{} is up to date", output.display());
+        return Ok(());
+    }
+    Err(Failure::Undetermined(format!("{} is stale; run the command without --check", output.display())))
+}

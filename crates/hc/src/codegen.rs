@@ -1,0 +1,206 @@
+//! A family as Rust source: its equations as straight-line code, and its stored solutions.
+//!
+//! The program `hc codegen` and build scripts use this module; it needs the feature `codegen`. The module that is written
+//! depends on this crate alone.
+
+use crate::distinct::{coincidences, relative_distance};
+use crate::family::{Family, FamilyError, StartFile, StartFileError};
+use crate::refine::Refiner;
+use poly::program::{EmitError, EmitOptions, emit};
+use std::fmt::Write;
+use thiserror::Error;
+
+/// Relative change by refinement from which on a stored solution is no solution.
+const MOVED: f64 = 1e-12;
+/// Condition from which on a stored solution is singular.
+const SINGULAR: f64 = 1e12;
+/// Relative distance below which two stored solutions are one.
+const SAME: f64 = 1e-8;
+
+/// Why no source is written.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum CodegenError {
+    /// The stored solutions are those of another family.
+    #[error(transparent)]
+    Family(#[from] FamilyError),
+    /// The start file cannot be used.
+    #[error(transparent)]
+    Start(#[from] StartFileError),
+    /// The program cannot be written as Rust.
+    #[error(transparent)]
+    Emit(#[from] EmitError),
+    /// Not as many solutions as the family states.
+    #[error("{found} solutions, but the family states {stated}; compute the start file anew or correct `roots`")]
+    Count {
+        /// Stored solutions.
+        found: usize,
+        /// Solutions that the family states.
+        stated: usize,
+    },
+    /// A stored solution does not solve the equations.
+    #[error("solution {index} is off by {distance:.1e}; is it of another family? Compute the start file anew")]
+    Inaccurate {
+        /// The solution, from 1.
+        index: usize,
+        /// Its relative distance from the solution that Newton's method finds from it.
+        distance: f64,
+    },
+    /// A stored solution is singular.
+    #[error("solution {index} is singular (condition {condition:.1e}); compute the start file anew")]
+    Singular {
+        /// The solution, from 1.
+        index: usize,
+        /// Condition number of its Jacobian.
+        condition: f64,
+    },
+    /// A factor that must not vanish does, at a stored solution.
+    #[error("solution {index} is degenerate: a factor of `nonzero` vanishes; compute the start file anew")]
+    Degenerate {
+        /// The solution, from 1.
+        index: usize,
+    },
+    /// Stored solutions that are one.
+    #[error("solutions {solutions:?} coincide; compute the start file anew")]
+    Coincident {
+        /// The solutions, from 1.
+        solutions: Vec<usize>,
+    },
+}
+
+/// Writes a family and its solutions for a generic parameter point as a Rust module.
+///
+/// The module has a unit struct `System` that implements [`Evaluate`](poly::Evaluate), and a function `fibre()` that gives the stored
+/// solutions as a [`Fibre`](crate::Fibre). Its header names the `source`. The arguments alone determine the
+/// bytes.
+///
+/// The stored solutions are checked first: they solve the equations, are regular, distinct and not degenerate, and are as
+/// many as the family states.
+///
+/// ```
+/// use hc::{Family, codegen, family::StartFile};
+/// let family = Family::from_formulas(&["x"], &["a"], &["x^2 = a"])?;
+/// let start = r#"{ "parameters": [[4, 0]], "solutions": [[[2, 0]], [[-2, 0]]], "stopped": "roots reached" }"#;
+/// let module = codegen::generate(&family, &StartFile::from_json(start)?, "roots.toml")?;
+/// assert!(module.contains("// Source: roots.toml") && module.contains("pub fn fibre()"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// If the stored solutions do not pass.
+pub fn generate(family: &Family, start: &StartFile, source: &str) -> Result<String, CodegenError> {
+    verify(family, start)?;
+    let mut options = EmitOptions::default();
+    options.crate_path = "hc::poly".to_owned();
+    options.source = one_line(source);
+    let mut text = emit(family.program().program(), &options)?;
+    // Writing to a string cannot fail.
+    let _ = append_fibre(&mut text, start, family.system().variables().len());
+    Ok(text)
+}
+
+/// Checks that the stored solutions solve the equations, are distinct and regular, and are as many as stated.
+fn verify(family: &Family, start: &StartFile) -> Result<(), CodegenError> {
+    let fibre = start.fibre()?;
+    family.check(&fibre)?;
+    if let Some(stated) = family.roots().filter(|&stated| stated != fibre.len()) {
+        return Err(CodegenError::Count { found: fibre.len(), stated });
+    }
+    let mut refiner = Refiner::new(family.program());
+    for k in 0..fibre.len() {
+        let (index, x) = (k + 1, fibre.solution(k));
+        let refined = refiner.refine(&fibre.parameters, x);
+        let distance = relative_distance(x, &refined.point);
+        // What is not a number is no solution either.
+        if !distance.lt(&MOVED) {
+            return Err(CodegenError::Inaccurate { index, distance });
+        }
+        if !refined.condition.lt(&SINGULAR) {
+            return Err(CodegenError::Singular { index, condition: refined.condition });
+        }
+        if !family.accepts(&fibre.parameters, x) {
+            return Err(CodegenError::Degenerate { index });
+        }
+    }
+    let same = coincidences((0..fibre.len()).map(|k| (k, fibre.solution(k))), SAME);
+    match same.first() {
+        Some(group) => Err(CodegenError::Coincident { solutions: group.iter().map(|k| k + 1).collect() }),
+        None => Ok(()),
+    }
+}
+
+/// The stored solutions as tables, and the function that makes a fibre of them.
+fn append_fibre(text: &mut String, start: &StartFile, unknowns: usize) -> std::fmt::Result {
+    let trace = start.trace_test.map_or("not run".to_owned(), |t| format!("deviation {t:.1e}"));
+    writeln!(text, "/// A generic parameter point, `[re, im]` each.")?;
+    writeln!(text, "static PARAMETERS: [[f64; 2]; {}] = [", start.parameters.len())?;
+    append_rows(text, &start.parameters)?;
+    writeln!(text, "];")?;
+    writeln!(text, "/// All solutions there, {unknowns} coordinates each, one after the other.")?;
+    let stopped = if start.stopped.is_empty() { "not said".to_owned() } else { one_line(&start.stopped) };
+    writeln!(text, "///\n/// Search ended: {stopped}; trace test: {trace}.")?;
+    writeln!(text, "static SOLUTIONS: [[f64; 2]; {}] = [", start.solutions.len() * unknowns)?;
+    for solution in &start.solutions {
+        append_rows(text, solution)?;
+    }
+    writeln!(text, "];")?;
+    writeln!(text, "/// All solutions for a generic parameter point.")?;
+    writeln!(text, "pub fn fibre() -> hc::Fibre {{")?;
+    writeln!(text, "    hc::Fibre::from_pairs(&PARAMETERS, {unknowns}, &SOLUTIONS)")?;
+    writeln!(text, "}}")
+}
+
+fn append_rows(text: &mut String, numbers: &[[f64; 2]]) -> std::fmt::Result {
+    for [re, im] in numbers {
+        writeln!(text, "    [{re:?}, {im:?}],")?;
+    }
+    Ok(())
+}
+
+/// Text that cannot break out of a comment of one line.
+fn one_line(text: &str) -> String {
+    text.replace(char::is_control, " ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{CodegenError, generate};
+    use crate::family::{Family, StartFile};
+
+    fn family() -> Family {
+        let family = poly::Family::from_formulas(&["x"], &["a", "b"], &["x^2 - (a + b)*x + a*b"]).unwrap();
+        Family::new(family.with_roots(2).with_nonzero(&["x - 5"]).unwrap()).unwrap()
+    }
+
+    fn start(parameters: [f64; 2], solutions: &[f64]) -> StartFile {
+        StartFile {
+            parameters: parameters.map(|p| [p, 0.0]).to_vec(),
+            solutions: solutions.iter().map(|&x| vec![[x, 0.0]]).collect(),
+            trace_test: None,
+            stopped: "by hand\n}".to_owned(),
+        }
+    }
+
+    #[test]
+    fn a_module_has_the_solutions_and_no_stray_text() {
+        let text = generate(&family(), &start([1.0, 2.0], &[1.0, 2.0]), "two\nroots").unwrap();
+        assert!(
+            text.contains("// Source: two roots\n") && text.contains("Search ended: by hand }; trace test: not run.")
+        );
+        assert!(text.contains("static SOLUTIONS: [[f64; 2]; 2] = [\n    [1.0, 0.0],\n    [2.0, 0.0],\n];"));
+    }
+
+    #[test]
+    fn solutions_that_do_not_pass_are_named() {
+        let error = |parameters, solutions: &[f64]| generate(&family(), &start(parameters, solutions), "").unwrap_err();
+        assert_eq!(error([1.0, 2.0], &[1.0]), CodegenError::Count { found: 1, stated: 2 });
+        assert!(matches!(error([1.0, 2.0], &[1.0, 2.01]), CodegenError::Inaccurate { index: 2, .. }));
+        assert_eq!(error([1.0, 2.0], &[1.0, 1.0]), CodegenError::Coincident { solutions: vec![1, 2] });
+        assert_eq!(error([1.0, 5.0], &[1.0, 5.0]), CodegenError::Degenerate { index: 2 });
+        assert!(matches!(error([1.0, 1.0], &[1.0, 1.0]), CodegenError::Singular { index: 1, .. }));
+        assert!(matches!(error([f64::NAN, 1.0], &[1.0, 1.0]), CodegenError::Start(_)));
+        let mut ragged = start([1.0, 2.0], &[1.0, 2.0]);
+        ragged.parameters.pop();
+        assert!(matches!(generate(&family(), &ragged, "").unwrap_err(), CodegenError::Family(_)));
+    }
+}
