@@ -17,7 +17,7 @@ const NOT_RUN: &[&str] = &[
     "cargo xtask experiments --page",
     // Each experiment runs in small in tdoa_experiments.rs.
     "cargo xtask experiments --quick",
-    "cargo bench -p poly --bench evaluate",
+    "cargo bench -p benches --bench evaluate",
     "cargo bench -p hc --bench tracker",
     "cargo bench -p hc --bench mixed_volume",
     "cargo bench -p tdoa --bench calibrate",

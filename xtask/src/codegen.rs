@@ -1,10 +1,8 @@
 //! `cargo xtask codegen`: families and stored fibres in, Rust source out.
 //!
 //! A generated module holds the evaluator of a family and the solutions for one generic parameter point. Both come from
-//! committed inputs alone (`NAME.toml` and `NAME.start.json`), so that the bytes are the same on any machine. Those of poly's benches
-//! are evaluators alone, of systems that the benches define.
+//! committed inputs alone (`NAME.toml` and `NAME.start.json`), so that the bytes are the same on any machine.
 
-use crate::benches;
 use crate::refill;
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
@@ -55,9 +53,6 @@ const FAMILIES: &[Known] = &[
     ),
 ];
 
-/// The name of the benches' modules for `--only`.
-const BENCHES: &str = "benches";
-
 const fn known(name: &'static str, family: &'static str, start: &'static str, output: &'static str) -> Known {
     Known { name, family, start, output }
 }
@@ -73,7 +68,7 @@ pub(crate) struct CodegenArguments {
     /// With --refill: leave out the trace test, which takes minutes.
     #[arg(long, requires = "refill")]
     no_trace: bool,
-    /// Only this family of the workspace, such as 6r3s, or the systems of poly's benches (benches).
+    /// Only this family of the workspace, such as 6r3s.
     #[arg(long)]
     only: Option<String>,
     /// Seed of --refill.
@@ -100,9 +95,8 @@ pub(crate) fn run(arguments: &CodegenArguments) -> Result<()> {
     let root = workspace::root();
     let chosen: Vec<&Known> =
         FAMILIES.iter().filter(|known| arguments.only.as_deref().is_none_or(|only| only == known.name)).collect();
-    let benches = arguments.only.as_deref().is_none_or(|only| only == BENCHES);
-    let names: Vec<&str> = FAMILIES.iter().map(|known| known.name).chain([BENCHES]).collect();
-    ensure!(benches || !chosen.is_empty(), "no family of that name; there are: {}", names.join(", "));
+    let names: Vec<&str> = FAMILIES.iter().map(|known| known.name).collect();
+    ensure!(!chosen.is_empty(), "no family of that name; there are: {}", names.join(", "));
     let mut stale = Vec::new();
     for known in chosen {
         let [family, start, output] = [known.family, known.start, known.output].map(|path| root.join(path));
@@ -112,11 +106,6 @@ pub(crate) fn run(arguments: &CodegenArguments) -> Result<()> {
         }
         if write_or_check(arguments, known.family, &family, &start, &output)? {
             stale.push(known.output.to_owned());
-        }
-    }
-    for module in if benches { benches::modules()? } else { Vec::new() } {
-        if place(arguments, &module.text, &root.join(&module.output))? {
-            stale.push(module.output);
         }
     }
     if !stale.is_empty() {

@@ -1,6 +1,5 @@
 //! Development tasks: `cargo xtask codegen | experiments | compare | counts`.
 
-mod benches;
 mod codegen;
 mod refill;
 

@@ -6,7 +6,8 @@ use hc::codegen::generate;
 use hc::family::StartFile;
 use std::path::PathBuf;
 
-/// Writes a Rust module that solves a family: its equations as straight-line code, and its stored solutions.
+/// Writes a Rust module that solves a family: its equations as straight-line code, and its stored
+/// solutions.
 ///
 /// The module depends on the crate hc alone. The same inputs give the same bytes.
 #[derive(clap::Args)]

@@ -1,7 +1,8 @@
-//! Builds a determinant without expanding it: minors that occur several times are one node of the graph.
+//! Builds a determinant without expanding it: minors that occur several times are one node of the
+//! graph.
 //!
-//! The 8 x 8 determinant of a matrix of parameters plus `x` on the diagonal has more than a hundred thousand terms
-//! when multiplied out, but takes fewer than a thousand operations as a program.
+//! The 8 x 8 determinant of a matrix of parameters plus `x` on the diagonal has more than a hundred
+//! thousand terms when multiplied out, but takes fewer than a thousand operations as a program.
 
 use poly::{Complex64, Evaluate, Expr, Isa, System};
 use std::collections::HashMap;

@@ -1,4 +1,5 @@
-//! Writes a parameter family as Rust source: `cargo run -p poly --features emit --example emit_program -- FAMILY.toml > family.rs`.
+//! Writes a parameter family as Rust source:
+//! `cargo run -p poly --features emit --example emit_program -- FAMILY.toml > family.rs`.
 //!
 //! Without an argument it writes the program of a small family of its own.
 

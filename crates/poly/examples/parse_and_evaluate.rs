@@ -1,5 +1,5 @@
-//! Reads a system in PHCpack's format and evaluates it: once in double precision, eight points at once, in
-//! double-double, and over intervals.
+//! Reads a system in PHCpack's format and evaluates it: once in double precision, eight points at
+//! once, in double-double, and over intervals.
 
 use poly::{Complex64, ComplexDd, ComplexInterval, Evaluate, Isa, Lane, Lanes8, Scalar, parse};
 
@@ -24,10 +24,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // Eight points, one a lane: the second unknown differs from lane to lane.
     let mut eight = [Lanes8::from_c64(x[0]), Lanes8::zero()];
-    (0..8).for_each(|l| eight[1].set(l, x[1] * (l as f64)));
+    for lane in 0..8 {
+        eight[1].set(lane, x[1] * (lane as f64));
+    }
     let mut out = [Lanes8::zero(); 2];
     f.values(&mut f.memory(isa), &eight, &[], &mut out);
-    (0..8).for_each(|l| println!("lane {l}: {:.6}", out[0].get(l)));
+    for lane in 0..8 {
+        println!("lane {lane}: {:.6}", out[0].get(lane));
+    }
 
     // The same program in double-double and over intervals bounds the rounding error.
     let mut precise = [ComplexDd::zero(); 2];

@@ -1,8 +1,9 @@
-//! Complex balls: a double-double midpoint and a radius that surely covers every error, about 32 digits of proof.
+//! Complex balls: a midpoint of about 32 digits and a radius that bounds its error.
 //!
-//! Midpoints follow the double-double algorithms of [`dd`](crate::dd), whose proven relative error bounds (Joldes,
-//! Muller, Popescu, ACM TOMS 44, 2017: 3u^2 for sums, 5u^2 for products, u = 2^-53) go into the radius, which is
-//! rounded up. [`ComplexInterval`] is faster and better for wide sets; balls are for residuals at one point.
+//! Midpoints follow the double-double algorithms of [`dd`](crate::dd), whose proven relative error
+//! bounds (Joldes, Muller, Popescu, ACM TOMS 44, 2017: 3u^2 for sums, 5u^2 for products, u = 2^-53)
+//! go into the radius, which is rounded up. [`ComplexInterval`] is faster and better for wide sets;
+//! balls are for residuals at one point.
 
 use crate::dd::{ComplexDd, Dd};
 use crate::interval::{ComplexInterval, Interval};
@@ -14,12 +15,12 @@ const ERROR: f64 = 1.0 / ((1u128 << 103) as f64);
 /// Covers products so small that their low parts underflow.
 const UNDERFLOW: f64 = 1e-280;
 
-/// A real number known to within a radius.
+/// A set of real numbers: all that lie within a radius of a double-double midpoint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {
     /// The midpoint.
     pub mid: Dd,
-    /// Largest distance from the midpoint; infinite when nothing is known.
+    /// The radius; infinite where nothing is known.
     pub radius: f64,
 }
 
@@ -44,10 +45,10 @@ fn size(a: Dd) -> f64 {
 }
 
 impl Ball {
-    /// Nothing is known.
+    /// The ball of all numbers.
     pub const ALL: Ball = Ball { mid: Dd { high: 0.0, low: 0.0 }, radius: f64::INFINITY };
 
-    /// A midpoint and a radius; everything if one of them is not finite.
+    /// The ball of this midpoint and radius; all numbers if one of them is not finite.
     #[inline(always)]
     pub fn new(mid: Dd, radius: f64) -> Ball {
         if mid.high.is_finite() && mid.low.is_finite() && radius < f64::INFINITY {
@@ -57,7 +58,7 @@ impl Ball {
         }
     }
 
-    /// A double, exactly.
+    /// The ball that holds one double alone.
     pub fn point(x: f64) -> Ball {
         Ball::new(Dd::new(x), 0.0)
     }
@@ -117,7 +118,7 @@ impl Ball {
         Ball::rounded(self.mid.times(b.mid), radius)
     }
 
-    /// `1 / self`; everything if zero lies in it.
+    /// `1 / self`; all numbers if zero lies in the ball.
     ///
     /// For the approximate reciprocal `r` of the midpoint `m` and any `a` within the radius `e`,
     /// `|1/a - r| = |1 - a r| / |a| <= (|1 - m r| + e |r|) / (|m| - e)`.
@@ -135,7 +136,7 @@ impl Ball {
     }
 }
 
-/// A complex number whose parts are known to within a radius each.
+/// A set of complex numbers: a ball of real parts and a ball of imaginary parts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ComplexBall {
     /// Real part.
@@ -145,7 +146,7 @@ pub struct ComplexBall {
 }
 
 impl ComplexBall {
-    /// A double-double number, exactly.
+    /// The ball that holds one double-double number alone.
     pub fn point(z: &ComplexDd) -> ComplexBall {
         // The sum of two doubles is exact; the bounds hold where the low part is below half an ulp.
         let normal = |a: Dd| Dd::new(a.high).plus(Dd::new(a.low));
@@ -167,7 +168,7 @@ impl ComplexBall {
         Complex64::new(self.re.mid.high, self.im.mid.high)
     }
 
-    /// Whether something is known of both parts.
+    /// Whether both radii are finite.
     pub fn is_finite(&self) -> bool {
         self.re.radius < f64::INFINITY && self.im.radius < f64::INFINITY
     }

@@ -1,18 +1,19 @@
-//! Double-double complex numbers: about 32 digits from pairs of doubles.
+//! Double-double numbers: about 32 digits from pairs of doubles.
 //!
-//! Error-free sums after Knuth and products by `f64::mul_add`; the algorithms for pairs are those analysed in
-//! Joldes, Muller, Popescu, *Tight and rigorous error bounds for basic building blocks of double-word arithmetic*
-//! (ACM TOMS 44, 2017), whose numbers are given below.
+//! Error-free sums after Knuth and products by `f64::mul_add`; the algorithms for pairs are those
+//! analysed in Joldes, Muller, Popescu, *Tight and rigorous error bounds for basic building blocks
+//! of double-word arithmetic* (ACM TOMS 44, 2017), whose numbers are given below.
 
 use crate::scalar::Scalar;
 use num_complex::Complex64;
 
-/// An unevaluated sum `high + low` with `|low|` at most half an ulp of `high`.
+/// A double-double number: the unevaluated sum `high + low`, with `|low|` at most half an ulp of
+/// `high`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Dd {
     /// The double nearest to the sum.
     pub high: f64,
-    /// What is left.
+    /// The rest.
     pub low: f64,
 }
 
@@ -24,7 +25,7 @@ fn two_sum(a: f64, b: f64) -> Dd {
     Dd { high, low: (a - (high - part)) + (b - part) }
 }
 
-/// As [`two_sum`] where `|a| >= |b|` or `a` is zero.
+/// `a + b` and its rounding error, exactly, where `|a| >= |b|` or `a` is zero.
 #[inline(always)]
 fn fast_two_sum(a: f64, b: f64) -> Dd {
     let high = a + b;
@@ -39,7 +40,7 @@ fn two_prod(a: f64, b: f64) -> Dd {
 }
 
 impl Dd {
-    /// A double as it is.
+    /// The double-double number that equals a double.
     #[inline(always)]
     pub fn new(high: f64) -> Dd {
         Dd { high, low: 0.0 }
@@ -98,7 +99,7 @@ pub struct ComplexDd {
 }
 
 impl ComplexDd {
-    /// The complex double, exactly.
+    /// The double-double number that equals a complex double.
     #[inline(always)]
     pub fn new(z: Complex64) -> ComplexDd {
         ComplexDd { re: Dd::new(z.re), im: Dd::new(z.im) }
@@ -110,7 +111,7 @@ impl ComplexDd {
         Complex64::new(self.re.high, self.im.high)
     }
 
-    /// What [`high`](ComplexDd::high) leaves.
+    /// The difference to [`high`](ComplexDd::high), as a complex double.
     #[inline(always)]
     pub fn low(&self) -> Complex64 {
         Complex64::new(self.re.low, self.im.low)

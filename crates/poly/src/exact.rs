@@ -5,13 +5,15 @@ use num_complex::{Complex, Complex64};
 use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
 
-/// A complex number with rational parts: how constants of expressions and coefficients of parsed
-/// polynomials are kept until they become floating point.
+/// A complex number with rational parts.
+///
+/// Constants of formulas and coefficients of parsed polynomials are exact until they become
+/// floating point.
 pub type Exact = Complex<BigRational>;
 
-/// Numbers with an exact value: what stands as a constant in a formula or is written as a coefficient.
+/// Numbers with an exact value, which can be constants of formulas and coefficients of polynomials.
 pub trait ToExact {
-    /// The exact value, `None` where it is not finite.
+    /// The exact value; `None` if the number is not finite.
     fn to_exact(&self) -> Option<Exact>;
 }
 
@@ -56,12 +58,12 @@ impl ToExact for Exact {
     }
 }
 
-/// Constants are folded only while numerators and denominators stay below this many bits, so that a short
-/// text such as `9^9^9` cannot ask for unbounded memory.
+/// Constants are folded only while numerators and denominators stay below this many bits, so that a
+/// short text such as `9^9^9` cannot ask for unbounded memory.
 pub(crate) const FOLD_BITS: u64 = 1 << 12;
 
-/// The rational as an unevaluated sum `high + low` of two doubles, about 32 digits; the low part is zero only where
-/// the high part is exact (intervals rely on it).
+/// The rational as an unevaluated sum `high + low` of two doubles, about 32 digits; the low part is
+/// zero only where the high part is exact (intervals rely on it).
 pub(crate) fn to_parts(q: &BigRational) -> [f64; 2] {
     let high = q.to_f64().unwrap_or(f64::NAN);
     let Some(h) = BigRational::from_float(high) else { return [high, 0.0] };

@@ -6,16 +6,16 @@ use crate::polynomial::{Polynomial, Terms, accumulate};
 use crate::system::System;
 use num_traits::One;
 
-/// How far formulas are multiplied out.
+/// Limits within which formulas are multiplied out.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct ExpandLimits {
     /// Most terms of any polynomial on the way. Default 200,000.
     pub terms: usize,
-    /// Most steps over the whole system; a step is a product of two machine words or four exponents made, about a
-    /// microsecond. Default 5,000,000.
+    /// Most steps for the whole system. A step multiplies two machine words or makes four
+    /// exponents, in about a microsecond. Default 5,000,000.
     pub work: usize,
-    /// Most bits of one coefficient, numerators and denominators together. Default 65,536.
+    /// Most bits of the numerators and denominators of one coefficient. Default 65,536.
     pub bits: u64,
 }
 
@@ -29,7 +29,7 @@ impl Default for ExpandLimits {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExpandError {
-    /// A quotient or negative power of a sum.
+    /// A formula divides by a sum.
     #[error(
         "equation {equation} divides by a sum that contains unknowns or parameters; multiply it out by the denominator"
     )]
@@ -37,7 +37,7 @@ pub enum ExpandError {
         /// The equation, from 1.
         equation: usize,
     },
-    /// Division by the constant zero.
+    /// A formula divides by the constant zero.
     #[error("equation {equation} divides by the constant zero")]
     DivisionByZero {
         /// The equation, from 1.
@@ -56,9 +56,9 @@ pub enum ExpandError {
 }
 
 impl System {
-    /// Every equation as a polynomial in the unknowns followed by the parameters.
+    /// The equations as polynomials in the unknowns, followed by the parameters.
     ///
-    /// Division by constants and by single terms is allowed, the latter gives negative exponents.
+    /// Divisions by constants and single terms are allowed. Those by terms give negative exponents.
     ///
     /// ```
     /// let system = poly::parse::phcpack("1\n (x + y)^2/2 - 1/x;")?;
@@ -135,8 +135,8 @@ impl Expansion<'_> {
         Ok(())
     }
 
-    /// Operands with signs; a sum counts the terms of inner sums that nothing else uses as its own, so that a
-    /// polynomial of many terms is added up once.
+    /// Operands with signs; a sum counts the terms of inner sums that nothing else uses as its own,
+    /// so that a polynomial of many terms is added up once.
     fn operands(&self, id: Id) -> Vec<(Id, bool)> {
         let graph = &self.system.arena.graph;
         if graph.node(id).is_sum() {
@@ -175,7 +175,8 @@ impl Expansion<'_> {
                     for (monomial, c) in self.take(operand).terms() {
                         let c = if negative { -c.clone() } else { c.clone() };
                         let total = accumulate(&mut sum, monomial.clone(), c);
-                        // Adding rationals takes a greatest common divisor, quadratic in their length.
+                        // Adding rationals takes a greatest common divisor, quadratic in their
+                        // length.
                         let words = (exact::bits(total) / 64) as usize;
                         self.spend(self.term_work() + words * words / 256)?;
                     }

@@ -1,4 +1,4 @@
-//! Formulas as a hash-consed graph: equal subformulas are stored and later computed once.
+//! Formulas as a hash-consed graph: equal subformulas are stored and computed once.
 
 use crate::arena::Arena;
 use crate::display;
@@ -10,7 +10,7 @@ use num_traits::Zero;
 use std::cell::RefCell;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// An arena in which formulas over named unknowns and parameters are built.
+/// An arena of formulas in named unknowns and parameters.
 ///
 /// ```
 /// use poly::Expressions;
@@ -24,9 +24,9 @@ pub struct Expressions {
     inner: RefCell<Arena>,
 }
 
-/// A formula: a handle into its [`Expressions`], as cheap to copy as a pointer.
+/// A formula in an arena of [`Expressions`], as cheap to copy as a pointer.
 ///
-/// Combining formulas of two different arenas panics.
+/// Formulas of two different arenas cannot be combined: that panics.
 #[derive(Clone, Copy)]
 pub struct Expr<'a> {
     arena: &'a Expressions,
@@ -39,12 +39,12 @@ impl Expressions {
         Expressions::default()
     }
 
-    /// The unknown of this name; unknowns are ordered by first mention.
+    /// The unknown of this name. Unknowns are ordered by first mention.
     pub fn variable(&self, name: &str) -> Expr<'_> {
         self.wrap(self.inner.borrow_mut().variable(name))
     }
 
-    /// The parameter of this name; parameters are ordered by first mention.
+    /// The parameter of this name. Parameters are ordered by first mention.
     pub fn parameter(&self, name: &str) -> Expr<'_> {
         self.wrap(self.inner.borrow_mut().parameter(name))
     }
@@ -69,12 +69,12 @@ impl Expressions {
         factors.into_iter().fold(self.constant(1), |product, factor| product * factor)
     }
 
-    /// Number of distinct subformulas stored so far.
+    /// Number of distinct subformulas in the arena.
     pub fn len(&self) -> usize {
         self.inner.borrow().graph.len()
     }
 
-    /// Whether nothing has been built yet.
+    /// Whether the arena has no formulas.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -89,7 +89,7 @@ impl Expressions {
 }
 
 impl<'a> Expr<'a> {
-    /// `self^exponent`; a negative exponent is a power of the reciprocal.
+    /// The formula to an integer power; a negative exponent is a power of the reciprocal.
     pub fn powi(self, exponent: i32) -> Expr<'a> {
         let id = self.arena.inner.borrow_mut().graph.pow(self.id, exponent);
         self.arena.wrap(id)

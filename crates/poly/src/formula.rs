@@ -13,10 +13,11 @@ use std::fmt::{self, Debug, Display, Formatter};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::Arc;
 
-/// A formula in named symbols: it owns its parts, is cheap to clone, and can be sent to other threads.
+/// A formula in named symbols: it owns its parts, is cheap to clone, and can be sent to other
+/// threads.
 ///
-/// A symbol is an unknown or a parameter only in the [`System`] that the formula becomes an equation of. Within
-/// [`System::build`], [`Expr`](crate::Expr) needs fewer clones.
+/// A symbol is an unknown or a parameter only in the [`System`] that the formula becomes an
+/// equation of. Within [`System::build`], [`Expr`](crate::Expr) needs fewer clones.
 ///
 /// ```
 /// use poly::{Formula, System};
@@ -48,7 +49,8 @@ enum Kind {
 }
 
 impl Formula {
-    /// The symbol of this name. A name that the parsers would not read is an error once a system is made.
+    /// The symbol of this name. A name that the parsers would not read is an error once a system is
+    /// made.
     pub fn symbol(name: &str) -> Formula {
         Formula::leaf(Kind::Symbol(name.to_owned()))
     }
@@ -83,7 +85,8 @@ impl System {
     /// The system of these equations in named unknowns and parameters.
     ///
     /// # Errors
-    /// If a name is used twice, could not be parsed back or is missing from both lists, or if a constant is not finite.
+    /// If a name is used twice, could not be parsed back or is missing from both lists, or if a
+    /// constant is not finite.
     pub fn new<U: AsRef<str>, P: AsRef<str>>(
         unknowns: &[U],
         parameters: &[P],
@@ -152,8 +155,8 @@ impl Built {
     }
 }
 
-/// The node of a formula in an arena; `lowered` holds what was lowered before, by address. Iterative, so that depth is
-/// no concern.
+/// The node of a formula in an arena; `lowered` holds what was lowered before, by address.
+/// Iterative, so that depth is no concern.
 fn lower<E>(
     arena: &mut Arena,
     lowered: &mut HashMap<*const Node, Id>,
@@ -207,7 +210,8 @@ fn free<const N: usize>(formulas: [&Formula; N]) -> (Arena, [Id; N]) {
 }
 
 impl Drop for Node {
-    /// Parts that nothing else holds are dropped one by one: a long formula would exhaust the stack otherwise.
+    /// Parts that nothing else holds are dropped one by one: a long formula would exhaust the stack
+    /// otherwise.
     fn drop(&mut self) {
         let mut pending = std::mem::take(&mut self.operands);
         while let Some(formula) = pending.pop() {
@@ -219,7 +223,8 @@ impl Drop for Node {
 }
 
 impl PartialEq for Formula {
-    /// Whether both are the same formula after trivial identities; formulas that are equal only after expansion differ.
+    /// Whether both are the same formula after trivial identities; formulas that are equal only
+    /// after expansion differ.
     fn eq(&self, other: &Formula) -> bool {
         let (arena, [a, b]) = free([self, other]);
         a == b && !arena.non_finite
@@ -227,7 +232,8 @@ impl PartialEq for Formula {
 }
 
 impl Display for Formula {
-    /// The formula as text that parses to a formula with the same values. More than 100,000 symbols are cut short by `...`.
+    /// The formula as text that parses to a formula with the same values. More than 100,000 symbols
+    /// are cut short by `...`.
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let (arena, [root]) = free([self]);
         if arena.non_finite {

@@ -271,7 +271,8 @@ impl Graph {
             return a;
         }
         if let Some(c) = self.as_constant(a) {
-            // Zero and one stay what they are however high the power; a zero left in a power would not be seen as one.
+            // Zero and one stay what they are however high the power; a zero left in a power would
+            // not be seen as one.
             if c.is_one() || (k > 0 && c.is_zero()) {
                 return a;
             }
@@ -306,7 +307,8 @@ impl Graph {
         seen
     }
 
-    /// How often each node is a root or an operand of a node that the roots depend on; zero for all others.
+    /// How often each node is a root or an operand of a node that the roots depend on; zero for all
+    /// others.
     pub(crate) fn uses(&self, roots: &[Id]) -> Vec<u32> {
         let used = self.reachable(roots.iter().copied());
         let mut uses = vec![0u32; self.len()];
@@ -317,8 +319,8 @@ impl Graph {
         uses
     }
 
-    /// The terms of a sum from first to last, each with whether it is subtracted. Inner sums are terms themselves but where they are
-    /// `part` of the outer one.
+    /// The terms of a sum from first to last, each with whether it is subtracted. Inner sums are
+    /// terms themselves but where they are `part` of the outer one.
     pub(crate) fn terms_of_sum(&self, sum: Id, part: impl Fn(Id) -> bool) -> Vec<(Id, bool)> {
         let mut terms = Vec::new();
         let mut stack = vec![(sum, false)];

@@ -1,4 +1,4 @@
-//! A system's formulas with other formulas put in for its unknowns and parameters.
+//! Systems with formulas in place of their unknowns and parameters.
 
 use crate::exact::{Exact, ToExact};
 use crate::expression::{Expr, Expressions};
@@ -7,7 +7,8 @@ use crate::system::{System, SystemError};
 use num_traits::Zero;
 
 impl System {
-    /// The member of a family at parameters, taken exactly: the same equations in the same unknowns, without parameters.
+    /// The system with numbers, taken exactly, in place of its parameters: a member of the family
+    /// that it stands for.
     ///
     /// ```
     /// let family = poly::System::build(|s| vec![s.variable("x") * s.variable("x") - s.parameter("a")])?;
@@ -31,8 +32,8 @@ impl System {
         })
     }
 
-    /// The equations, built anew in `arena` with `unknowns[j]` in place of unknown `j` and `parameters[i]` in place of
-    /// parameter `i`: so that a system becomes a part of another one.
+    /// The equations as formulas in `arena`, with `unknowns[j]` in place of unknown `j` and
+    /// `parameters[i]` in place of parameter `i`. A system becomes a part of another one this way.
     ///
     /// ```
     /// use poly::System;

@@ -1,12 +1,13 @@
-//! Complex intervals: rectangles that surely contain every result.
+//! Complex intervals: rectangles that contain every exact result.
 //!
-//! Each bound is computed in round-to-nearest and then moved one double outward, which contains the exact value
-//! because rounding errs by less than one step (Rump, *Verification methods*, Acta Numerica 19, 2010, section 4).
+//! Each bound is computed in round-to-nearest and then moved one double outward, which contains the
+//! exact value because rounding errs by less than one step (Rump, *Verification methods*, Acta
+//! Numerica 19, 2010, section 4).
 
 use crate::scalar::Scalar;
 use num_complex::Complex64;
 
-/// A closed real interval; bounds may be infinite, and "not a number" never is a bound.
+/// A closed real interval. Bounds may be infinite; none is "not a number".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
     /// Lower bound.
@@ -16,16 +17,16 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// The whole line: what is known when nothing is known.
+    /// The whole line: nothing is known.
     pub const ALL: Interval = Interval { low: f64::NEG_INFINITY, high: f64::INFINITY };
 
-    /// One number; the whole line if it is not finite.
+    /// The interval that holds one number alone; the whole line if the number is not finite.
     #[inline(always)]
     pub fn point(x: f64) -> Interval {
         if x.is_finite() { Interval { low: x, high: x } } else { Interval::ALL }
     }
 
-    /// From two bounds in either order; the whole line if one is not a number.
+    /// The interval between two bounds in either order; the whole line if one is not a number.
     #[inline(always)]
     pub fn new(a: f64, b: f64) -> Interval {
         if a.is_nan() || b.is_nan() {
@@ -129,12 +130,12 @@ pub struct ComplexInterval {
 }
 
 impl ComplexInterval {
-    /// One number; everything if it is not finite.
+    /// The rectangle that holds one number alone; the whole plane if the number is not finite.
     pub fn point(z: Complex64) -> ComplexInterval {
         ComplexInterval { re: Interval::point(z.re), im: Interval::point(z.im) }
     }
 
-    /// The square of half-width `radius` about a number, rounded outward.
+    /// The square about a number whose half-width is `radius`, rounded outward.
     pub fn around(z: Complex64, radius: f64) -> ComplexInterval {
         let r = Interval::new(-radius, radius);
         ComplexInterval { re: Interval::point(z.re).plus(r), im: Interval::point(z.im).plus(r) }
@@ -269,7 +270,8 @@ mod tests {
         }
     }
 
-    /// Whether a number known to 30 digits lies in an interval whose ends are at least a step away from it.
+    /// Whether a number known to 30 digits lies in an interval whose ends are at least a step away
+    /// from it.
     fn holds(i: Interval, x: Dd) -> bool {
         let above = i.low == f64::NEG_INFINITY || x.minus(Dd::new(i.low)).high >= 0.0;
         let below = i.high == f64::INFINITY || Dd::new(i.high).minus(x).high >= 0.0;

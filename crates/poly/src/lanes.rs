@@ -5,8 +5,9 @@ use num_complex::Complex64;
 
 /// Eight independent complex numbers, one a path.
 ///
-/// The loops over lanes are plain Rust; inside [`Isa::run`](crate::simd::Isa::run) the compiler turns each
-/// into one or two vector instructions. Each lane computes bit for bit what `Complex64` computes as a [`Scalar`].
+/// Each lane computes bit for bit what `Complex64` computes as a [`Scalar`]. Loops over lanes are
+/// plain Rust: inside [`Isa::run`](crate::simd::Isa::run) the compiler makes one or two vector
+/// instructions of each.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
 pub struct Lanes8 {

@@ -1,4 +1,5 @@
-//! Polynomials, expressions and straight-line programs: fast evaluation from any formula, one path or eight at once.
+//! Polynomials, formulas and straight-line programs: fast evaluation, for one path or eight at
+//! once.
 //!
 //! ```
 //! use poly::{Complex64, Evaluate, Isa, System};
@@ -24,21 +25,21 @@
 //! # From formula to numbers
 //! | step | what |
 //! |---|---|
-//! | [`Expressions`], [`System::build`] | formulas by operators, equal subformulas stored once |
+//! | [`Expressions`], [`System::build`] | formulas by operators; equal subformulas are stored once |
 //! | [`System::from_formulas`], `text.parse::<System>()` | systems from text: errors have line, column and a caret |
 //! | [`Family::from_formulas`], [`parse::family`] | parameter families, from formulas or TOML |
 //! | [`Formula`], [`System::new`] | formulas that own their parts |
-//! | [`System::expand`] | sparse [`Polynomial`]s where supports are needed, within [`ExpandLimits`] |
+//! | [`System::expand`] | sparse [`Polynomial`]s, within [`ExpandLimits`] |
 //! | [`System::compile`] | an [`Interpreter`]: values, Jacobian by reverse or forward mode, Taylor coefficients |
-//! | [`SparseSystem`] | fixed supports, the coefficients as parameters |
+//! | [`SparseSystem`] | a system of fixed supports, with the coefficients as parameters |
 //! | `program::emit`, with the feature `emit` | the program as Rust source |
 //!
-//! [`Evaluate`] is the one interface of all three kinds of system. It runs over any [`Scalar`]: [`Complex64`],
-//! [`Lanes8`] (eight paths side by side, each lane bit for bit what one path computes, on every
-//! [`Isa`]), [`ComplexDd`] (32 digits), [`ComplexInterval`] and [`ComplexBall`] (bounds that surely
-//! hold, of 16 and 32 digits) and [`Rational`] (exact).
+//! [`Evaluate`] is the interface of all three kinds of system. It runs over any [`Scalar`]:
+//! [`Complex64`], [`Lanes8`] (eight paths side by side, each bit for bit what one path computes, on
+//! every [`Isa`]), [`ComplexDd`] (32 digits), [`ComplexInterval`] and [`ComplexBall`] (proven
+//! bounds, of 16 and 32 digits) and [`Rational`] (exact).
 //!
-//! BENCHES.md has measured times.
+//! crates/benches/README.md in the repository has measured times.
 
 mod arena;
 mod display;

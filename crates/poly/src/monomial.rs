@@ -30,14 +30,14 @@ impl Monomial {
         self.exponents.iter().map(|&e| i64::from(e)).sum()
     }
 
-    /// The product, `None` if an exponent would not fit in 32 bits.
+    /// The product; `None` if an exponent would not fit in 32 bits.
     pub fn checked_mul(&self, other: &Monomial) -> Option<Monomial> {
         let pairs = self.exponents.iter().zip(&other.exponents);
         let exponents = pairs.map(|(a, b)| a.checked_add(*b)).collect::<Option<_>>()?;
         Some(Monomial { exponents })
     }
 
-    /// The power, `None` if an exponent would not fit in 32 bits.
+    /// The power; `None` if an exponent would not fit in 32 bits.
     pub fn checked_pow(&self, k: i32) -> Option<Monomial> {
         let exponents = self.exponents.iter().map(|e| e.checked_mul(k)).collect::<Option<_>>()?;
         Some(Monomial { exponents })

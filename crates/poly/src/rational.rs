@@ -1,23 +1,23 @@
-//! Exact rational arithmetic as a scalar: slow, and right.
+//! Exact rational arithmetic as a scalar: slow, for checks.
 
 use crate::exact::{self, Exact, ToExact};
 use crate::scalar::Scalar;
 use num_complex::Complex64;
 use num_traits::{One, Zero};
 
-/// A complex number with rational parts, or nothing where a division by zero has happened.
+/// A complex number with rational parts; `None` after a division by zero.
 ///
-/// For checks: programs run over it give exact values.
+/// Programs that run over it give exact values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rational(pub Option<Exact>);
 
 impl Rational {
-    /// An exact number.
+    /// The scalar of an exact number.
     pub fn new(value: Exact) -> Rational {
         Rational(Some(value))
     }
 
-    /// An integer.
+    /// The scalar of an integer.
     pub fn integer(k: i64) -> Rational {
         Rational(Some(exact::from_i64(k)))
     }

@@ -1,31 +1,31 @@
-//! What a straight-line program needs of its numbers.
+//! The numbers that straight-line programs run over.
 
 use crate::exact::{self, Exact};
 use num_complex::Complex64;
 
 /// A complex-number type that a straight-line program can run over.
 ///
-/// Every operation takes its operands by reference and is inlined, so that wide types
-/// ([`Lanes8`](crate::Lanes8)) stay in vector registers. The fused forms are *written* fused, not rounded
-/// once: `mul_add` is a product, rounded, then a sum, rounded, so that every implementation of one
-/// type agrees bit for bit on every instruction set.
+/// Operations take their operands by reference and are inlined, so that wide types
+/// ([`Lanes8`](crate::Lanes8)) stay in vector registers. Fused forms are fused in writing alone:
+/// `mul_add` rounds the product, then the sum. So all instruction sets give the same bits.
 pub trait Scalar: Clone + Send + Sync + std::fmt::Debug + 'static {
     /// The additive identity.
     fn zero() -> Self;
     /// The multiplicative identity.
     fn one() -> Self;
 
-    /// The same complex number in every lane.
+    /// A complex number, in every lane.
     fn from_c64(z: Complex64) -> Self;
 
-    /// A constant known to about 32 digits, as unevaluated sums `re[0] + re[1]` and `im[0] + im[1]`
-    /// (high part first); types of double precision drop the low parts.
+    /// A constant of about 32 digits, given as unevaluated sums `re[0] + re[1]` and
+    /// `im[0] + im[1]`, high parts first. Types of double precision drop the low parts.
     #[inline(always)]
     fn from_parts(re: [f64; 2], im: [f64; 2]) -> Self {
         Self::from_c64(Complex64::new(re[0], im[0]))
     }
 
-    /// An exact constant, as near as the type allows; types that hold more than 32 digits override it.
+    /// The number of the type that is nearest to an exact constant, to 32 digits; types with more
+    /// digits override it.
     fn from_exact(z: &Exact) -> Self {
         Self::from_parts(exact::to_parts(&z.re), exact::to_parts(&z.im))
     }
@@ -36,7 +36,7 @@ pub trait Scalar: Clone + Send + Sync + std::fmt::Debug + 'static {
     fn sub(a: &Self, b: &Self) -> Self;
     /// `a * b`
     fn mul(a: &Self, b: &Self) -> Self;
-    /// `a / b`; a zero divisor gives non-finite values, never a panic.
+    /// `a / b`. Division by zero gives values that are not finite; it does not panic.
     fn div(a: &Self, b: &Self) -> Self;
 
     /// `-a`
@@ -49,22 +49,22 @@ pub trait Scalar: Clone + Send + Sync + std::fmt::Debug + 'static {
     fn sqr(a: &Self) -> Self {
         Self::mul(a, a)
     }
-    /// `1 / a`; zero gives non-finite values, never a panic.
+    /// `1 / a`. Zero gives values that are not finite; it does not panic.
     #[inline(always)]
     fn inv(a: &Self) -> Self {
         Self::div(&Self::one(), a)
     }
-    /// `r * a` for a real factor
+    /// `r * a` for a real factor `r`
     #[inline(always)]
     fn scale(a: &Self, r: f64) -> Self {
         Self::mul(a, &Self::from_c64(Complex64::new(r, 0.0)))
     }
-    /// `a * r`, where `r` is known to be real
+    /// `a * r` for a real `r`
     #[inline(always)]
     fn mul_real(a: &Self, r: &Self) -> Self {
         Self::mul(a, r)
     }
-    /// `a * r + c`, where `r` is known to be real
+    /// `a * r + c` for a real `r`
     #[inline(always)]
     fn mul_real_add(a: &Self, r: &Self, c: &Self) -> Self {
         Self::add(&Self::mul_real(a, r), c)
@@ -96,16 +96,16 @@ pub trait Scalar: Clone + Send + Sync + std::fmt::Debug + 'static {
     }
 }
 
-/// A [`Scalar`] of double precision that carries one or several independent paths.
+/// A [`Scalar`] of double precision with one lane or several, one a path.
 ///
-/// Lanes never mix: the value in lane `l` of a result depends on lane `l` of the operands alone and is
-/// bit for bit what the one-lane type computes. The tracker is written once over this trait.
+/// Lanes never mix: lane `l` of a result depends on lane `l` of the operands alone. It is bit for
+/// bit what the type with one lane computes. The tracker is written once, over this trait.
 pub trait Lane: Scalar + Copy {
-    /// How many paths travel side by side.
+    /// Number of lanes.
     const LANES: usize;
     /// One real number a lane.
     type Real: Copy + Send + Sync + std::fmt::Debug + AsRef<[f64]> + AsMut<[f64]> + 'static;
-    /// The same real number in every lane.
+    /// A real number, in every lane.
     fn real(r: f64) -> Self::Real;
     /// `a * b` lane by lane.
     fn real_mul(a: &Self::Real, b: &Self::Real) -> Self::Real;

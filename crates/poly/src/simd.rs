@@ -1,15 +1,16 @@
-//! Run-time choice of the instruction set for lane kernels.
+//! The instruction set of lane kernels, chosen at run time.
 //!
-//! A kernel is plain inlined code over [`Lanes8`](crate::Lanes8); [`Isa::run`] compiles it once for each
-//! instruction set and calls the version that the machine has. The compiler never fuses a product and a sum by
-//! itself, so all versions agree bit for bit; the instruction is enabled beside AVX2 only for
-//! `f64::mul_add` asked for by name (double-double), whose result is the same everywhere.
+//! A kernel is plain inlined code over [`Lanes8`](crate::Lanes8); [`Isa::run`] compiles it once for
+//! each instruction set and calls the version that the machine has. The compiler never fuses a
+//! product and a sum by itself, so all versions agree bit for bit; the instruction is enabled
+//! beside AVX2 only for `f64::mul_add` asked for by name (double-double), whose result is the same
+//! everywhere.
 
-/// An instruction set for which kernels are compiled.
+/// An instruction set that kernels are compiled for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Isa {
-    /// What the target always has (SSE2 on x86-64).
+    /// The set that every machine of the target has (SSE2 on x86-64).
     Portable,
     /// AVX2 with FMA, four doubles a register.
     Avx2,
@@ -21,7 +22,7 @@ pub enum Isa {
 pub trait Kernel {
     /// What the kernel returns.
     type Output;
-    /// The work itself.
+    /// Does the work.
     fn run(self) -> Self::Output;
 }
 
@@ -40,7 +41,7 @@ impl Isa {
         Isa::Portable
     }
 
-    /// Whether this machine can run it.
+    /// Whether this machine has the instruction set.
     pub fn available(self) -> bool {
         match self {
             Isa::Portable => true,
@@ -58,13 +59,14 @@ impl Isa {
         }
     }
 
-    /// Runs a kernel compiled for this instruction set; falls back to [`Isa::Portable`] where the machine lacks it.
+    /// Runs a kernel, compiled for this instruction set or, where the machine lacks it, for
+    /// [`Isa::Portable`].
     #[inline]
     pub fn run<K: Kernel>(self, kernel: K) -> K::Output {
         match self {
             #[cfg(target_arch = "x86_64")]
-            // SAFETY: the guard has just asked the machine for every feature that the function enables
-            // (the answer is cached by the standard library; asking costs one load).
+            // SAFETY: the guard has just asked the machine for every feature that the function
+            // enables (the answer is cached by the standard library; asking costs one load).
             Isa::Avx512 if self.available() => unsafe { run_avx512(kernel) },
             #[cfg(target_arch = "x86_64")]
             // SAFETY: as above.
@@ -74,7 +76,7 @@ impl Isa {
     }
 }
 
-/// Put into a loop over numbers with lanes, keeps the compiler from vectorising across its turns, with gathers and scatters, instead
+/// Keeps the compiler from vectorising a loop across its turns, with gathers and scatters, instead
 /// of across lanes. Costs nothing.
 #[inline(always)]
 pub fn across_lanes() {

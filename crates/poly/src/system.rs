@@ -1,4 +1,4 @@
-//! Systems of equations: ordered unknowns, ordered parameters, formulas that are to vanish.
+//! Systems of equations in named unknowns and parameters.
 
 use crate::arena::Arena;
 use crate::display;
@@ -8,7 +8,8 @@ use crate::graph::Id;
 use crate::polynomial::{Polynomial, Ring};
 use std::collections::HashSet;
 
-/// Equations `F(x; p) = 0` in named unknowns and parameters, as formulas that are not expanded.
+/// A system of equations `F(x; p) = 0` in named unknowns and parameters, as formulas that are not
+/// expanded.
 ///
 /// ```
 /// use poly::System;
@@ -31,15 +32,15 @@ pub struct System {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SystemError {
-    /// A name cannot be read back by the parsers.
+    /// A name that the parsers would not read.
     #[error(
         "`{0}` cannot be a name: names are letters, digits and underscores, do not begin with a digit, and `i` and `I` mean the imaginary unit"
     )]
     Name(String),
-    /// One name for two things.
+    /// A name of two things.
     #[error("the name `{0}` stands for two things; rename one of them")]
     Duplicate(String),
-    /// A floating-point constant was infinite or not a number.
+    /// A constant that is infinite or not a number.
     #[error("a constant in the formulas is not finite")]
     NonFinite,
     /// A name in an equation that is neither an unknown nor a parameter.
@@ -53,7 +54,7 @@ pub enum SystemError {
 }
 
 impl System {
-    /// Makes a system from the formulas that a closure builds.
+    /// The system of the formulas that a closure builds.
     ///
     /// Unknowns and parameters are ordered by first mention.
     ///
@@ -72,7 +73,7 @@ impl System {
         System::from_arena(expressions.into_arena(), equations)
     }
 
-    /// A system of given polynomials, its unknowns named in order.
+    /// The system of some polynomials, with names for its unknowns.
     ///
     /// # Errors
     /// If a name is used twice or could not be parsed back, or if a coefficient is not finite.
@@ -160,8 +161,9 @@ pub(crate) fn is_name(name: &str) -> bool {
 }
 
 impl std::fmt::Display for System {
-    /// The system in plain text, which parses to a system with the same values: a line of unknowns, a line of parameters where there
-    /// are some, and one equation a line, each ended by `;`. A formula of more than 100,000 symbols is cut short by `...`.
+    /// The system in plain text, which parses to a system with the same values: a line of unknowns,
+    /// a line of parameters where there are some, and one equation a line, each ended by `;`. A
+    /// formula of more than 100,000 symbols is cut short by `...`.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         for (word, names) in [("variables", self.variables()), ("parameters", self.parameters())] {
             if !names.is_empty() {

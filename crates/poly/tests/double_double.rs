@@ -1,7 +1,9 @@
-//! Double-double arithmetic beside a reference crate, `twofloat`, on random numbers of widely different sizes.
+//! Double-double arithmetic beside a reference crate, `twofloat`, on random numbers of widely
+//! different sizes.
 //!
-//! Both follow Joldes, Muller, Popescu (ACM TOMS 44, 2017), by different algorithms in part: two results may differ
-//! by the sum of the relative error bounds proved there, in units of u^2 = 2^-106.
+//! Both follow Joldes, Muller, Popescu (ACM TOMS 44, 2017), by different algorithms in part: two
+//! results may differ by the sum of the relative error bounds proved there, in units of u^2 =
+//! 2^-106.
 
 use poly::dd::Dd;
 use twofloat::TwoFloat;
@@ -9,8 +11,8 @@ use twofloat::TwoFloat;
 /// Error bounds of both implementations together.
 const SUM: f64 = 3.0 + 3.0;
 const PRODUCT: f64 = 5.0 + 5.0;
-/// Our reciprocal and their product. (Their quotient, in version 0.8.4, errs by up to half an ulp of a double: exact
-/// rationals say so, and it is no reference here.)
+/// Our reciprocal and their product. (Their quotient, in version 0.8.4, errs by up to half an ulp
+/// of a double: exact rationals say so, and it is no reference here.)
 const INVERSE: f64 = 16.0 + 5.0;
 
 struct Stream(u64);

@@ -1,4 +1,5 @@
-//! Programs over exact rationals against expanded polynomials: values, Jacobian and Taylor coefficients agree exactly.
+//! Programs over exact rationals against expanded polynomials: values, Jacobian and Taylor
+//! coefficients agree exactly.
 
 use num_rational::BigRational;
 use num_traits::Zero;
@@ -65,7 +66,8 @@ fn taylor_coefficients_are_those_of_the_substituted_polynomials() {
             let mut out = vec![Rational::integer(0); 3];
             system.taylor(&mut memory, order, &x, &p, &mut out);
             let out = exact(&out);
-            // The path as polynomials in t, put in for the unknowns (whose coefficient `order` is zero) and parameters.
+            // The path as polynomials in t, put in for the unknowns (whose coefficient `order` is
+            // zero) and parameters.
             let path = |j: usize| {
                 let last = if j < 3 { order } else { order + 1 };
                 let t = Polynomial::<Exact>::variable(1, 0);
@@ -94,7 +96,8 @@ fn taylor_coefficients_are_those_of_the_substituted_polynomials() {
     }
 }
 
-/// A sum of multiples of a few formulas, which repeat, with parentheses and signs, and its value term by term.
+/// A sum of multiples of a few formulas, which repeat, with parentheses and signs, and its value
+/// term by term.
 fn repeating_sum(seed: i64, point: &[Exact]) -> (String, Exact) {
     let mut state = seed;
     let mut next = |below: i64| {
@@ -142,7 +145,8 @@ fn collected_sums_keep_their_values_and_have_no_term_twice() {
         let mut values = [Rational::integer(0)];
         system.values(&mut system.memory::<Rational>(Isa::Portable), &wrapped[..3], &wrapped[3..], &mut values);
         assert_eq!(exact(&values), [value], "{text}");
-        // Two products and a sum inside terms; then at most one operation a term and one more for the first.
+        // Two products and a sum inside terms; then at most one operation a term and one more for
+        // the first.
         assert!(system.program().value_operations() <= 3 + 5, "{text}: {}", system.program().value_operations());
     }
 }

@@ -1,4 +1,5 @@
-//! No text makes the parsers, the expansion or the compiler panic, hang or take memory out of proportion.
+//! No text makes the parsers, the expansion or the compiler panic, hang or take memory out of
+//! proportion.
 
 use poly::{ExpandLimits, Formula, System, parse};
 use proptest::prelude::*;
@@ -126,14 +127,16 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
-    /// Equations with a right side, comments and blank lines read back from the text that a system prints.
+    /// Equations with a right side, comments and blank lines read back from the text that a system
+    /// prints.
     #[test]
     fn plain_text_reads_back(lines in prop::collection::vec((formula(), formula(), 0..3usize), 1..6)) {
         let mut text = "# x - y\nvariables: y x, p\n".to_owned();
         for (left, right, end) in &lines {
             text += &format!("{left} = {right}{}\n", [";", " # = 0;", "\n"][*end]);
         }
-        // A quotient by zero is an error; and so is a sign that begins a line where only some lines end in `;`.
+        // A quotient by zero is an error; and so is a sign that begins a line where only some lines
+        // end in `;`.
         if let Ok(system) = text.parse::<System>() {
             prop_assert_eq!((system.variables().join(" "), system.len()), ("y x p".to_owned(), lines.len()));
             let again: System = system.to_string().parse().expect("text of a system parses");
@@ -147,7 +150,8 @@ proptest! {
     }
 }
 
-/// However large the exponent, a power of zero is zero, so that no negative power of it passes for a number.
+/// However large the exponent, a power of zero is zero, so that no negative power of it passes for
+/// a number.
 #[test]
 fn powers_of_zero_are_zero() {
     for text in ["(x - x)^1000000", "0^1000000000", "(0^1000000)^3"] {

@@ -18,7 +18,8 @@ fn every_file_parses_to_the_recorded_degrees() {
         let polynomials = system.expand(&Default::default()).unwrap_or_else(|e| panic!("{name}: {e}"));
         let product: i64 = polynomials.iter().map(|p| p.degree().unwrap()).product();
         assert_eq!(product.to_string(), total_degree, "{name}: product of degrees");
-        // As many terms as the text has: nothing was merged or lost, the files are written expanded.
+        // As many terms as the text has: nothing was merged or lost, the files are written
+        // expanded.
         let terms: usize = polynomials.iter().map(|p| p.len()).sum();
         let body: String = text.lines().skip(1).collect::<Vec<_>>().join(" ");
         let equations: Vec<&str> = body.split(';').take(system.len()).collect();
@@ -40,7 +41,8 @@ fn is_system(file: &std::fs::DirEntry) -> bool {
     file.path().extension().is_some_and(|e| e == "phc")
 }
 
-/// Number of terms of an expanded polynomial: signs outside parentheses and exponents, and the first term.
+/// Number of terms of an expanded polynomial: signs outside parentheses and exponents, and the
+/// first term.
 fn written_terms(text: &str) -> usize {
     let characters: Vec<char> = text.chars().filter(|c| !c.is_whitespace()).collect();
     let mut depth = 0;

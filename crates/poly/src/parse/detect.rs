@@ -12,16 +12,18 @@ impl FromStr for System {
 
     /// Reads a system from text, in whichever of three formats it is.
     ///
-    /// **Plain text** has one equation a line: a formula that is to vanish, or two with `=` between them. An equation
-    /// ends at the end of its line, or at `;`; in parentheses it runs on. `#` begins a comment. Names are unknowns, in
-    /// order of first appearance, unless a line `variables: x y z` before the equations gives them and their order. A
-    /// line `parameters: a b` makes these names parameters. `i` and `I` are the imaginary unit, powers are written `^`
-    /// or `**`, decimals are exact, and a product needs its `*`.
+    /// **Plain text** has one equation a line: a formula that is to vanish, or two with `=` between
+    /// them. An equation ends at the end of its line, or at `;`; in parentheses it runs on. `#`
+    /// begins a comment. Names are unknowns, in order of first appearance, unless a line
+    /// `variables: x y z` before the equations gives them and their order. A line `parameters: a b`
+    /// makes these names parameters. `i` and `I` are the imaginary unit, powers are written `^` or
+    /// `**`, decimals are exact, and a product needs its `*`.
     ///
-    /// **PHCpack's format** begins with the number of equations: a text whose first line is a whole number, or two, is
-    /// read by [`phcpack`].
+    /// **PHCpack's format** begins with the number of equations: a text whose first line is a whole
+    /// number, or two, is read by [`phcpack`].
     ///
-    /// **TOML** has a line that begins `equations =` or `unknowns =`, with a list: it is read by [`family`].
+    /// **TOML** has a line that begins `equations =` or `unknowns =`, with a list: it is read by
+    /// [`family`].
     ///
     /// ```
     /// use poly::System;
@@ -34,8 +36,8 @@ impl FromStr for System {
     /// ```
     ///
     /// # Errors
-    /// If the text does not parse, has no equations, or is a family with factors that must not vanish, which a system
-    /// cannot hold.
+    /// If the text does not parse, has no equations, or is a family with factors that must not
+    /// vanish, which a system cannot hold.
     fn from_str(text: &str) -> Result<System, ParseError> {
         if begins_with_count(text) {
             return phcpack(text);
@@ -61,7 +63,8 @@ fn begins_with_count(text: &str) -> bool {
     next.is_none_or(|c| c == '\n' || c.is_alphanumeric() || matches!(c, '_' | '(' | '.'))
 }
 
-/// Where the first line is that begins a list of equations or unknowns in TOML. No formula has a `[`.
+/// Where the first line is that begins a list of equations or unknowns in TOML. No formula has a
+/// `[`.
 fn list_of_toml(text: &str) -> Option<usize> {
     let mut offset = 0;
     for line in text.split_inclusive('\n') {

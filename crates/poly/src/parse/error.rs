@@ -8,7 +8,8 @@
 pub struct ParseError {
     /// What is wrong and what to do.
     pub message: String,
-    /// The part of the text that line and column are counted in, such as `equation 2`; `None` for the whole text.
+    /// The part of the text that line and column are counted in, such as `equation 2`; `None` for
+    /// the whole text.
     pub within: Option<String>,
     /// Line, from 1.
     pub line: usize,

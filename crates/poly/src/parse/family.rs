@@ -9,7 +9,8 @@ use serde::Deserialize;
 use std::str::FromStr;
 use toml::Spanned;
 
-/// A parameter family: a system whose parameters are given values later, and what is known of its solutions.
+/// A parameter family: a system whose parameters are given values later, and what is known of its
+/// solutions.
 ///
 /// [`Family::from_formulas`] makes one from formulas; `text.parse::<Family>()` reads one in TOML.
 #[derive(Clone, Debug)]
@@ -20,8 +21,8 @@ pub struct Family {
     pub system: System,
     /// The number of isolated solutions for generic parameters, where known.
     pub roots: Option<usize>,
-    /// Factors that must not vanish at a solution: a system in the family's unknowns and parameters, one equation a
-    /// factor, none where the family states none.
+    /// Factors that must not vanish at a solution: a system in the family's unknowns and
+    /// parameters, one equation a factor, none where the family states none.
     pub nonzero: System,
     /// Symmetries: maps of the unknowns that take solutions to solutions for the same parameters. Each
     /// has one formula an unknown, its image.
@@ -78,8 +79,9 @@ struct FamilyText {
 /// ```
 ///
 /// # Errors
-/// If the text is not TOML, misses a key or has one too many, declares a name twice, or if a formula does not parse;
-/// line and column then count within the formula that the field `within` of the error names.
+/// If the text is not TOML, misses a key or has one too many, declares a name twice, or if a
+/// formula does not parse; line and column then count within the formula that the field `within` of
+/// the error names.
 pub fn family(text: &str) -> Result<Family, ParseError> {
     let fields: FamilyText = toml::from_str(text)
         .map_err(|e| ParseError::at(text, e.span().map_or(0, |span| span.start), e.message().to_owned()))?;

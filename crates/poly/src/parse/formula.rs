@@ -60,7 +60,8 @@ impl<'a> FormulaParser<'a> {
         FormulaParser { arena, names, depth: 0 }
     }
 
-    /// A sum, or the difference of two sums with `=` between them; stops at the first token that cannot continue it.
+    /// A sum, or the difference of two sums with `=` between them; stops at the first token that
+    /// cannot continue it.
     pub(super) fn equation(&mut self, tokens: &mut Tokens<'_>) -> Result<Id, ParseError> {
         let left = self.sum(tokens)?;
         if *tokens.current() != Token::Equals {
@@ -185,7 +186,8 @@ pub(super) fn whole_formula(arena: &mut Arena, names: &mut Names, text: &str) ->
     Ok(id)
 }
 
-/// An equation that takes up the whole text: a formula that is to vanish, or two with `=` between them.
+/// An equation that takes up the whole text: a formula that is to vanish, or two with `=` between
+/// them.
 pub(super) fn whole_equation(arena: &mut Arena, names: &mut Names, text: &str) -> Result<Id, ParseError> {
     let mut tokens = Tokens::new(text, 0)?;
     let id = FormulaParser::new(arena, names).equation(&mut tokens)?;

@@ -26,8 +26,8 @@ impl FromStr for Formula {
 impl System {
     /// A system of equations given as text; every name is an unknown.
     ///
-    /// An equation is a formula that is to vanish, or two formulas with `=` between them. Unknowns are ordered by first
-    /// appearance. `i` and `I` are the imaginary unit.
+    /// An equation is a formula that is to vanish, or two formulas with `=` between them. Unknowns
+    /// are ordered by first appearance. `i` and `I` are the imaginary unit.
     ///
     /// ```
     /// let system = poly::System::from_formulas(&["x^2 + y^2 = 5", "x*y - 2"])?;
@@ -51,8 +51,8 @@ impl System {
     /// ```
     ///
     /// # Errors
-    /// If an equation does not parse or has a name that is not among the unknowns, or if an unknown is given twice or
-    /// cannot be a name.
+    /// If an equation does not parse or has a name that is not among the unknowns, or if an unknown
+    /// is given twice or cannot be a name.
     pub fn from_formulas_in<N: AsRef<str>, S: AsRef<str>>(
         unknowns: &[N],
         formulas: &[S],
@@ -64,8 +64,8 @@ impl System {
 }
 
 impl Family {
-    /// A family of equations in these unknowns and parameters, without a name, a number of roots or factors that must
-    /// not vanish.
+    /// A family of equations in these unknowns and parameters, without a name, a number of roots or
+    /// factors that must not vanish.
     ///
     /// ```
     /// use poly::Family;
@@ -79,7 +79,8 @@ impl Family {
     /// ```
     ///
     /// # Errors
-    /// If an equation does not parse or has an undeclared name, or if a name is declared twice or cannot be one.
+    /// If an equation does not parse or has an undeclared name, or if a name is declared twice or
+    /// cannot be one.
     pub fn from_formulas<N: AsRef<str>, P: AsRef<str>, S: AsRef<str>>(
         unknowns: &[N],
         parameters: &[P],
@@ -105,7 +106,8 @@ impl Family {
         self
     }
 
-    /// The family with these factors that must not vanish at a solution, instead of those that it had.
+    /// The family with these factors that must not vanish at a solution, instead of those that it
+    /// had.
     ///
     /// # Errors
     /// If a factor does not parse or has an undeclared name.

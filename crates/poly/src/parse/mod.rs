@@ -1,4 +1,5 @@
-//! Text to systems, with errors that point at the place: plain text, PHCpack's format, and families in TOML.
+//! Text to systems, with errors that point at the place: plain text, PHCpack's format, and families
+//! in TOML.
 
 mod detect;
 mod equations;

@@ -8,9 +8,10 @@ use crate::system::System;
 
 /// Reads a system in PHCpack's format.
 ///
-/// The first line is the number of polynomials, or that number and the number of unknowns. Each polynomial ends in
-/// `;`; powers are written `^` or `**`, the imaginary unit `i` or `I`. Unknowns are ordered by first
-/// appearance (so a leading `x - x + y - y` fixes an order). What follows the last polynomial is not read.
+/// The first line is the number of polynomials, or that number and the number of unknowns. Each
+/// polynomial ends in `;`; powers are written `^` or `**`, the imaginary unit `i` or `I`. Unknowns
+/// are ordered by first appearance (so a leading `x - x + y - y` fixes an order). What follows the
+/// last polynomial is not read.
 ///
 /// ```
 /// let system = poly::parse::phcpack("2\n x**2 + y^2 - 1;\n (x - y)*(1 + 2*i) - 1.5E-3;\nTITLE : an example")?;

@@ -24,7 +24,8 @@ struct Reader<'t> {
     /// Which of the two declarations have been read.
     unknowns_declared: bool,
     parameters_declared: bool,
-    /// Whether the last equation was ended by the end of its line, and whether any was ended by a semicolon.
+    /// Whether the last equation was ended by the end of its line, and whether any was ended by a
+    /// semicolon.
     ended_by_line: bool,
     semicolons: bool,
     /// The first equation that begins with `-` after one that the end of its line has ended.

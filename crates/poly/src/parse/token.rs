@@ -75,7 +75,8 @@ impl<'t> Tokens<'t> {
         Tokens::begin(text, position, false)
     }
 
-    /// Begins a text in which line ends are tokens, except in parentheses, and `#` begins a comment.
+    /// Begins a text in which line ends are tokens, except in parentheses, and `#` begins a
+    /// comment.
     pub(super) fn with_lines(text: &'t str) -> Result<Tokens<'t>, ParseError> {
         Tokens::begin(text, 0, true)
     }

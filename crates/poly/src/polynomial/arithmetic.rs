@@ -7,7 +7,8 @@ use std::cmp::Ordering;
 use std::ops::{Add, Mul, Neg, Sub};
 
 impl<R: Ring> Polynomial<R> {
-    /// Merges two descending lists of terms; `convert` is applied to the coefficients of the second.
+    /// Merges two descending lists of terms; `convert` is applied to the coefficients of the
+    /// second.
     fn merged(&self, other: &Polynomial<R>, convert: impl Fn(&R) -> R) -> Polynomial<R> {
         assert_eq!(self.variables, other.variables, "polynomials in equally many unknowns");
         let mut terms = Vec::with_capacity(self.len() + other.len());
@@ -60,7 +61,8 @@ impl<R: Ring> Polynomial<R> {
             let c = multiple(c, exponent);
             (!c.is_zero()).then_some((lowered, c))
         });
-        // Lowering one exponent everywhere keeps terms distinct, but zero ones are gone: order is kept.
+        // Lowering one exponent everywhere keeps terms distinct, but zero ones are gone: order is
+        // kept.
         Polynomial { variables: self.variables, terms: terms.collect() }
     }
 

@@ -8,11 +8,11 @@ use std::hash::BuildHasherDefault;
 /// Deterministic, so that nothing depends on a random seed.
 pub(crate) type Terms<R> = HashMap<Monomial, R, BuildHasherDefault<std::hash::DefaultHasher>>;
 
-/// A sum of terms `coefficient * monomial`.
+/// A sparse polynomial: a sum of terms `coefficient * monomial`.
 ///
-/// Terms are kept in descending order (total degree, then lexicographic) without zero coefficients, so that
-/// equal polynomials compare equal. Binary operations of polynomials in different numbers of
-/// unknowns panic, and so does an exponent that leaves the range of 32 bits.
+/// Terms are in descending order (total degree, then lexicographic) and have no zero coefficients,
+/// so that equal polynomials compare equal. Operations on polynomials in different numbers of
+/// unknowns panic, and so do exponents that leave the range of 32 bits.
 ///
 /// ```
 /// use poly::Polynomial;
@@ -29,17 +29,17 @@ pub struct Polynomial<R> {
 }
 
 impl<R: Ring> Polynomial<R> {
-    /// Zero in this many unknowns.
+    /// The zero polynomial in this many unknowns.
     pub fn zero(variables: usize) -> Polynomial<R> {
         Polynomial { variables, terms: Vec::new() }
     }
 
-    /// A constant.
+    /// A constant polynomial.
     pub fn constant(variables: usize, value: R) -> Polynomial<R> {
         Polynomial::term(Monomial::one(variables), value)
     }
 
-    /// One unknown.
+    /// The polynomial that is one unknown.
     ///
     /// # Panics
     /// If there is no unknown of this index.
@@ -48,7 +48,7 @@ impl<R: Ring> Polynomial<R> {
         Polynomial::term(Monomial::new((0..variables).map(|j| i32::from(j == index))), R::one())
     }
 
-    /// One term.
+    /// The polynomial of one term.
     pub fn term(monomial: Monomial, coefficient: R) -> Polynomial<R> {
         let variables = monomial.exponents().len();
         let terms = if coefficient.is_zero() { Vec::new() } else { vec![(monomial, coefficient)] };
@@ -94,17 +94,17 @@ impl<R: Ring> Polynomial<R> {
         self.terms.is_empty()
     }
 
-    /// The greatest term, `None` for zero.
+    /// The greatest term; `None` for zero.
     pub fn leading_term(&self) -> Option<&(Monomial, R)> {
         self.terms.first()
     }
 
-    /// Greatest total degree, `None` for zero.
+    /// Greatest total degree; `None` for zero.
     pub fn degree(&self) -> Option<i64> {
         self.terms.first().map(|(monomial, _)| monomial.degree())
     }
 
-    /// Greatest degree in each group of unknowns, `None` for zero.
+    /// Greatest degree in each group of unknowns; `None` for zero.
     pub fn multidegree(&self, groups: &[Vec<usize>]) -> Option<Vec<i64>> {
         (!self.terms.is_empty()).then(|| groups.iter().map(|group| self.group_degree(group)).collect())
     }
@@ -118,7 +118,7 @@ impl<R: Ring> Polynomial<R> {
         self.terms.iter().map(|(monomial, _)| monomial.exponents().to_vec()).collect()
     }
 
-    /// Every coefficient through a map, such as a conversion.
+    /// The polynomial with a function applied to every coefficient.
     pub fn map<Q: Ring>(&self, convert: impl Fn(&R) -> Q) -> Polynomial<Q> {
         let terms = self.terms.iter().map(|(monomial, c)| (monomial.clone(), convert(c)));
         Polynomial { variables: self.variables, terms: terms.filter(|(_, c)| !c.is_zero()).collect() }

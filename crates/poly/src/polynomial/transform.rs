@@ -5,8 +5,8 @@ use super::terms::{Polynomial, group_degree};
 use crate::monomial::Monomial;
 
 impl<R: Ring> Polynomial<R> {
-    /// The polynomial with unknown `index` replaced by `value`; `None` if that unknown has a negative
-    /// exponent somewhere.
+    /// The polynomial with unknown `index` replaced by `value`; `None` if that unknown has a
+    /// negative exponent somewhere.
     ///
     /// # Panics
     /// If `value` is in another number of unknowns.
@@ -34,8 +34,9 @@ impl<R: Ring> Polynomial<R> {
         Some(if last > 0 { &sum * &value.pow(last) } else { sum })
     }
 
-    /// The homogeneous polynomial with one more unknown for each group, in the order of the groups after the
-    /// old ones, such that every term has the same degree in each group and its new unknown.
+    /// The homogeneous polynomial with one more unknown for each group, in the order of the groups
+    /// after the old ones, such that every term has the same degree in each group and its new
+    /// unknown.
     ///
     /// # Panics
     /// If a degree leaves the range of 32 bits.

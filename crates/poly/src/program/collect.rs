@@ -5,9 +5,11 @@ use crate::graph::{Graph, Id, Node};
 use num_traits::{One, Zero};
 use std::collections::HashMap;
 
-/// The same formulas with the terms of every sum that repeats one collected by their coefficients.
+/// Formulas of equal value, in which the terms of every sum that repeats one are collected by their
+/// coefficients.
 ///
-/// Parts of a sum that something else uses as well count as one term, so that nothing is computed twice.
+/// Parts of a sum that something else uses as well count as one term, so that nothing is computed
+/// twice.
 pub(super) fn collect(graph: &Graph, roots: &[Id]) -> (Graph, Vec<Id>) {
     let part = parts_of_sums(graph, roots);
     let mut collected = Graph::default();

@@ -24,7 +24,7 @@ pub enum CompileError {
         /// The equation, from 1.
         equation: usize,
     },
-    /// The programs would be unreasonably long.
+    /// The programs would be too long.
     #[error(
         "the Jacobian needs more than {limit} operations; split the system or write its formulas with more in common"
     )]
@@ -35,10 +35,10 @@ pub enum CompileError {
 }
 
 impl Program {
-    /// Compiles a system.
+    /// The program of a system.
     ///
     /// # Errors
-    /// If a formula divides by the constant zero or the program would be unreasonably long.
+    /// If a formula divides by the constant zero or the program would be too long.
     pub fn new(system: &System) -> Result<Program, CompileError> {
         let (graph, roots) = &collect(&system.arena.graph, &system.equations);
         check_divisions(graph, roots)?;
@@ -52,7 +52,8 @@ impl Program {
         let mut reverse_graph = graph.clone();
         let reverse = derivative::reverse(&mut reverse_graph, roots);
         let mut jacobian = lower_jacobian(&reverse_graph, roots, &reverse, &mut constants)?;
-        // Forward mode needs a sweep an unknown over everything, so it is tried only where it can win.
+        // Forward mode needs a sweep an unknown over everything, so it is tried only where it can
+        // win.
         if graph.len().saturating_mul(variables) <= NODE_LIMIT {
             let mut forward_graph = graph.clone();
             let forward = derivative::forward(&mut forward_graph, roots, variables);
@@ -69,16 +70,17 @@ impl Program {
 }
 
 impl System {
-    /// The straight-line programs of the system, ready to run.
+    /// The system as straight-line programs, ready to be evaluated.
     ///
     /// # Errors
-    /// If a formula divides by the constant zero or the programs would be unreasonably long.
+    /// If a formula divides by the constant zero or the programs would be too long.
     pub fn compile(&self) -> Result<Interpreter, CompileError> {
         Ok(Interpreter::new(Program::new(self)?))
     }
 }
 
-/// Lowers values and derivatives together; row by row, so that what a row shares is live only there.
+/// Lowers values and derivatives together; row by row, so that what a row shares is live only
+/// there.
 fn lower_jacobian(
     graph: &Graph,
     roots: &[Id],

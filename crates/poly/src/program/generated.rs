@@ -1,4 +1,4 @@
-//! What code written by `poly::program::emit` (feature `emit`) builds on.
+//! The support that code written by `poly::program::emit` (feature `emit`) needs.
 
 use crate::scalar::Scalar;
 use crate::simd::Isa;
@@ -18,7 +18,8 @@ pub struct Memory<S> {
 }
 
 impl<S: Scalar> Memory<S> {
-    /// Scratch space for a system with these constants (real part high and low, imaginary part high and low).
+    /// Scratch space for a system with these constants (real part high and low, imaginary part high
+    /// and low).
     pub fn new(isa: Isa, constants: &[[f64; 4]], live: usize, taylor: &TaylorTape) -> Memory<S> {
         let constants: Vec<S> = constants.iter().map(|&[a, b, c, d]| S::from_parts([a, b], [c, d])).collect();
         Memory { isa, live: vec![S::zero(); live], taylor: taylor.memory(&constants) }

@@ -9,7 +9,7 @@ use crate::scalar::Scalar;
 use crate::simd::{Isa, Kernel};
 use std::sync::Arc;
 
-/// A compiled system; cheap to clone and to share between threads.
+/// A compiled system, ready to be evaluated; cheap to clone and to share between threads.
 #[derive(Clone, Debug)]
 pub struct Interpreter {
     compiled: Arc<Compiled>,

@@ -1,4 +1,5 @@
-//! From the formula graph to instructions: powers by shared squarings, quotients by shared reciprocals.
+//! From the formula graph to instructions: powers by shared squarings, quotients by shared
+//! reciprocals.
 
 use super::instruction::{Instruction, Op, Operand, Tape};
 use super::registers::Layout;

@@ -1,4 +1,5 @@
-//! Fusing of products into sums, removal of dead code, and an order of instructions with a small live set.
+//! Fusing of products into sums, removal of dead code, and an order of instructions with a small
+//! live set.
 
 use super::instruction::{Instruction, Op, Operand, Tape};
 use super::lower::Builder;

@@ -2,11 +2,11 @@
 //!
 //! Every operand and every result keeps its coefficients of orders 0 to 3. Each step computes
 //! coefficients `FROM ..= TO` of result `t` from those of its operands and relies on the result's
-//! coefficients below `FROM`. `TO` is the order asked for, at which the unknowns' coefficients are zero, and what is
-//! linear in parameters on a straight line has none beyond order 1: products with either leave out what vanishes.
-//! Coefficient 2 of a product is computed twice, without and with that of the unknowns; in between, the place of
-//! coefficient 3 keeps the part `a_1 b_1` that does not change.
-//! Formulas: Griewank and Walther, *Evaluating Derivatives*, chapter 13.
+//! coefficients below `FROM`. `TO` is the order asked for, at which the unknowns' coefficients are
+//! zero, and what is linear in parameters on a straight line has none beyond order 1: products with
+//! either leave out what vanishes. Coefficient 2 of a product is computed twice, without and with
+//! that of the unknowns; in between, the place of coefficient 3 keeps the part `a_1 b_1` that does
+//! not change. Formulas: Griewank and Walther, *Evaluating Derivatives*, chapter 13.
 
 use super::instruction::Op;
 use crate::scalar::Scalar;
@@ -30,9 +30,9 @@ pub(crate) const LINEAR_BY_UNKNOWN: u8 = 4;
 /// Both factors are free of unknowns and linear in `t`.
 pub(crate) const LINEARS: u8 = 5;
 
-// Helpers are functions that are always inlined, not closures: a closure that the compiler leaves out of line would
-// be compiled without the instruction set of its caller. Every kind adds up what does not vanish in the order of
-// the general formula, so that all agree bit for bit.
+// Helpers are functions that are always inlined, not closures: a closure that the compiler leaves
+// out of line would be compiled without the instruction set of its caller. Every kind adds up what
+// does not vanish in the order of the general formula, so that all agree bit for bit.
 
 /// `a_i b_j + a_j b_i`
 #[inline(always)]
@@ -57,7 +57,8 @@ fn combine_products<S: Scalar, const MINUS: bool>(a: &S, b: &S, c: &S, d: &S) ->
     if MINUS { S::mul_mul_sub(a, b, c, d) } else { S::mul_mul_add(a, b, c, d) }
 }
 
-/// What is left of a kind of product below the order asked for, where unknowns have coefficients like anything else.
+/// What is left of a kind of product below the order asked for, where unknowns have coefficients
+/// like anything else.
 #[inline(always)]
 const fn kind_at(kind: u8, top: bool) -> u8 {
     match kind {
@@ -66,7 +67,8 @@ const fn kind_at(kind: u8, top: bool) -> u8 {
     }
 }
 
-/// Coefficient `k` of `a b`; `top` says that the unknowns' coefficient is zero, `inner` is `a_1 b_1` where `k` is 2.
+/// Coefficient `k` of `a b`; `top` says that the unknowns' coefficient is zero, `inner` is
+/// `a_1 b_1` where `k` is 2.
 #[inline(always)]
 fn product<S: Scalar, const KIND: u8>(a: &Series<S>, b: &Series<S>, inner: &S, k: usize, top: bool) -> S {
     match (k, kind_at(KIND, top)) {
@@ -89,8 +91,8 @@ fn product<S: Scalar, const KIND: u8>(a: &Series<S>, b: &Series<S>, inner: &S, k
     }
 }
 
-/// Coefficient `k` of `a b + c d` or, if `MINUS`, of `a b - c d`, both of one kind; `inner` is `a_1 b_1 + c_1 d_1` or
-/// their difference.
+/// Coefficient `k` of `a b + c d` or, if `MINUS`, of `a b - c d`, both of one kind; `inner` is
+/// `a_1 b_1 + c_1 d_1` or their difference.
 #[inline(always)]
 fn products<S: Scalar, const KIND: u8, const MINUS: bool>(
     [a, b, c, d]: [&Series<S>; 4],
@@ -145,9 +147,9 @@ pub(crate) fn step<S: Scalar, const FROM: usize, const TO: usize, const KIND: u8
     operands: [usize; 4],
 ) {
     let [a, b, c, d] = operands.map(|k| &m[k]);
-    // The operation is chosen once, outside the loop over coefficients, and results are stored after all of them are
-    // known: operands need not be loaded twice. No range: the order must be known when the code is made, so that
-    // the match on it disappears.
+    // The operation is chosen once, outside the loop over coefficients, and results are stored
+    // after all of them are known: operands need not be loaded twice. No range: the order must be
+    // known when the code is made, so that the match on it disappears.
     macro_rules! each {
         ($k:ident => $value:expr) => {{
             if FROM < TO {

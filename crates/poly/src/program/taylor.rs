@@ -1,9 +1,9 @@
 //! Taylor coefficients along a path, one order at a time over resident memory.
 //!
-//! Every operand and every result keeps four coefficients. A call for order `k` first corrects coefficient
-//! `k - 1` of each value (its unknowns' coefficient `k - 1` has been found since the last call), then computes
-//! coefficient `k`, in one pass. Where the parameters move on a straight line, products with what is linear in
-//! them leave out its coefficients beyond order 1.
+//! Every operand and every result keeps four coefficients. A call for order `k` first corrects
+//! coefficient `k - 1` of each value (its unknowns' coefficient `k - 1` has been found since the
+//! last call), then computes coefficient `k`, in one pass. Where the parameters move on a straight
+//! line, products with what is linear in them leave out its coefficients beyond order 1.
 
 use super::instruction::{Op, Operand, Tape};
 use super::registers::{Layout, place};
@@ -17,8 +17,9 @@ use std::borrow::Cow;
 pub struct TaylorCode {
     /// The operation.
     pub op: Op,
-    /// What the factors of its products are: 0 anything, 1 anything and an unknown, 2 both unknowns, 3 anything and
-    /// something linear in parameters, 4 something linear in parameters and an unknown, 5 both linear in parameters.
+    /// What the factors of its products are: 0 anything, 1 anything and an unknown, 2 both
+    /// unknowns, 3 anything and something linear in parameters, 4 something linear in parameters
+    /// and an unknown, 5 both linear in parameters.
     pub kind: u8,
     /// Place of the result.
     pub target: u32,
@@ -131,7 +132,9 @@ impl TaylorTape {
             }
             bent[order] = true;
         } else if std::mem::take(&mut bent[order]) {
-            given.iter_mut().for_each(|series| series[order] = S::zero());
+            for series in given.iter_mut() {
+                series[order] = S::zero();
+            }
         }
         let unknowns = &mut series[constants + parameters..][..variables];
         for (series, x) in unknowns.iter_mut().zip(&x[(order - 1) * variables..][..variables]) {
@@ -192,7 +195,8 @@ fn kind(a: Factor, b: Factor) -> Option<u8> {
 /// Kinds, the ones that leave out most first.
 const BEST_FIRST: [u8; 6] = [LINEARS, LINEAR_BY_UNKNOWN, UNKNOWNS, BY_LINEAR, BY_UNKNOWN, GENERAL];
 
-/// The order of factors that leaves out most, and its kind, which holds for both products of an instruction.
+/// The order of factors that leaves out most, and its kind, which holds for both products of an
+/// instruction.
 fn sort_factors(op: Op, args: [Operand; 4], factor: impl Fn(Operand) -> Factor) -> ([Operand; 4], u8) {
     let [a, b, c, d] = args;
     let orders = match op {

@@ -1,4 +1,5 @@
-//! The interpreter against Cauchy's formula: derivatives and Taylor coefficients from values on a circle.
+//! The interpreter against Cauchy's formula: derivatives and Taylor coefficients from values on a
+//! circle.
 
 use crate::{ComplexDd, Evaluate, Isa, Lane, Lanes8, Scalar, System, parse};
 use num_complex::Complex64;
@@ -74,7 +75,8 @@ fn values_of_a_formula_written_by_hand() {
     assert!(close(&values(&f, &[x, y], &[a, b]), &expected));
 }
 
-/// Orders asked for in turn and how many orders of the parameters are given: a curve, then a straight line.
+/// Orders asked for in turn and how many orders of the parameters are given: a curve, then a
+/// straight line.
 const TURNS: [(usize, usize); 6] = [(1, 2), (2, 3), (3, 4), (1, 2), (2, 2), (3, 2)];
 
 proptest! {
@@ -158,7 +160,9 @@ proptest! {
             let pack = |z: &[C], count: usize| -> Vec<Lanes8> {
                 let mut packed = vec![Lanes8::zero(); count];
                 for (j, slot) in packed.iter_mut().enumerate() {
-                    (0..8).for_each(|l| slot.set(l, z[l * count + j]));
+                    for lane in 0..8 {
+                        slot.set(lane, z[lane * count + j]);
+                    }
                 }
                 packed
             };
@@ -255,7 +259,8 @@ fn gradient_of_a_product_takes_three_products_a_factor() {
 
 #[test]
 fn many_equations_in_one_unknown_are_derived_forward() {
-    // One chain of 20 squarings, used by 30 equations: row by row its derivative would be made 30 times.
+    // One chain of 20 squarings, used by 30 equations: row by row its derivative would be made 30
+    // times.
     let system = System::build(|s| {
         let x = s.variable("x");
         let chain = (0..20).fold(x, |y, _| y * y + x);

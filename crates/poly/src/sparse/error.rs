@@ -4,7 +4,7 @@
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SupportError {
-    /// An exponent vector has the wrong length.
+    /// An exponent vector of the wrong length.
     #[error("term {term} of equation {equation} has {found} exponents, the system has {expected} unknowns")]
     Length {
         /// The equation, from 1.
@@ -16,7 +16,7 @@ pub enum SupportError {
         /// Number of unknowns.
         expected: usize,
     },
-    /// An exponent vector occurs twice in one equation.
+    /// An exponent vector that occurs twice in one equation.
     #[error("term {term} of equation {equation} repeats an earlier exponent vector; add their coefficients")]
     Repeated {
         /// The equation, from 1.
@@ -24,7 +24,7 @@ pub enum SupportError {
         /// The term, from 1.
         term: usize,
     },
-    /// An exponent is the least 32-bit integer, which has no opposite.
+    /// An exponent that is the least 32-bit integer, which has no opposite.
     #[error("term {term} of equation {equation} has an exponent of -2^31")]
     Exponent {
         /// The equation, from 1.

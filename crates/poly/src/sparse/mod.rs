@@ -1,8 +1,9 @@
 //! Systems given by supports, with the coefficients as parameters: the kernel of polyhedral stages.
 //!
-//! Monomials of an equation are kept as a tree of shared prefixes whose edges are powers of unknowns. One sweep from
-//! the leaves to the root gives the value by Horner's rule and, kept apart by edge, the derivatives by those
-//! powers: the trick of Speelpenning for the gradient of a product, extended from chains to trees.
+//! Monomials of an equation are kept as a tree of shared prefixes whose edges are powers of
+//! unknowns. One sweep from the leaves to the root gives the value by Horner's rule and, kept apart
+//! by edge, the derivatives by those powers: the trick of Speelpenning for the gradient of a
+//! product, extended from chains to trees.
 
 mod error;
 mod plan;
@@ -20,8 +21,11 @@ use plan::{NONE, Plan, Power, Row, Step};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A system of sparse (Laurent) polynomials with fixed supports; parameter `k` is the coefficient of term `k`, terms
-/// counted equation after equation in the order of the supports. Cheap to clone.
+/// A system of sparse (Laurent) polynomials with fixed supports; its parameters are the
+/// coefficients.
+///
+/// Parameter `k` is the coefficient of term `k`. Terms are counted equation after equation, in the
+/// order of the supports. Cheap to clone.
 ///
 /// ```
 /// use poly::{Complex64, Evaluate, Isa, SparseSystem};
@@ -55,7 +59,7 @@ pub struct SparseMemory<S> {
 }
 
 impl SparseSystem {
-    /// A system with one equation a support; a support has one exponent vector a term.
+    /// The system with one equation a support. A support has one exponent vector a term.
     ///
     /// # Errors
     /// If an exponent vector has the wrong length or occurs twice in an equation.
@@ -63,7 +67,8 @@ impl SparseSystem {
         Ok(SparseSystem { plan: Arc::new(Plan::new(variables, supports)?) })
     }
 
-    /// The supports of polynomials, and their coefficients in the order of the parameters.
+    /// The system with the supports of some polynomials, and their coefficients in the order of the
+    /// parameters.
     ///
     /// # Errors
     /// If the polynomials are in different numbers of unknowns or an exponent is -2^31.
@@ -75,7 +80,7 @@ impl SparseSystem {
         Ok((SparseSystem::new(variables, &supports)?, coefficients))
     }
 
-    /// Which parameters are the coefficients of an equation.
+    /// The range of the parameters that are coefficients of an equation.
     ///
     /// # Panics
     /// If there is no such equation.
@@ -149,7 +154,8 @@ fn fill_powers<S: Scalar>(plan: &Plan, powers: &mut [S], x: &[S]) {
     }
 }
 
-/// What a node of a row's tree is multiplied with: its coefficient, or what its children have summed up.
+/// What a node of a row's tree is multiplied with: its coefficient, or what its children have
+/// summed up.
 #[inline(always)]
 fn cofactor<'a, S>(step: &Step, sums: &'a [S], p: &'a [S]) -> &'a S {
     if step.coefficient == NONE { &sums[step.node as usize] } else { &p[step.coefficient as usize] }

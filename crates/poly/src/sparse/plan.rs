@@ -1,4 +1,5 @@
-//! What the kernel does, worked out once: the table of powers, the tree of prefixes, and each row's sweep.
+//! What the kernel does, worked out once: the table of powers, the tree of prefixes, and each row's
+//! sweep.
 
 use super::error::SupportError;
 use crate::program::generated::TaylorTape;
@@ -182,7 +183,8 @@ fn steps(nodes: &[Node], coefficients: &BTreeMap<u32, u32>) -> Vec<Step> {
         .rev()
         .map(|node| {
             let Node { parent, power } = nodes[node as usize];
-            // A node with children has begun with its own coefficient when the first of them came by.
+            // A node with children has begun with its own coefficient when the first of them came
+            // by.
             let has_children = parents.contains(&node);
             Step {
                 node,
@@ -211,7 +213,7 @@ fn slopes(powers: &mut Powers, exponents: &BTreeMap<u32, (u32, i32)>) -> Vec<Slo
         .collect()
 }
 
-/// The same sweep as instructions, for Taylor coefficients.
+/// The sweep as instructions, for Taylor coefficients.
 fn taylor(variables: usize, terms: usize, powers: &[Power], rows: &[Row]) -> TaylorTape {
     let mut writer = TapeWriter::default();
     let mut table: Vec<Operand> = Vec::with_capacity(powers.len());

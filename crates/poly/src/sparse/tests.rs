@@ -13,7 +13,7 @@ fn supports() -> impl Strategy<Value = Vec<Vec<Vec<i32>>>> {
     proptest::collection::vec(support.prop_map(|s| s.into_iter().collect::<Vec<_>>()), 0..4)
 }
 
-/// The same polynomials as formulas.
+/// The polynomials as formulas.
 fn interpreter(supports: &[Vec<Vec<i32>>]) -> Interpreter {
     let system = System::build(|s| {
         let x: Vec<Expr<'_>> = (0..N).map(|j| s.variable(&format!("x{j}"))).collect();
@@ -31,10 +31,10 @@ fn interpreter(supports: &[Vec<Vec<i32>>]) -> Interpreter {
 /// A number of modulus between 0.5 and 2, the same for equal `k`.
 fn number<S: Lane>(k: usize) -> S {
     let mut z = S::zero();
-    (0..S::LANES).for_each(|l| {
-        let angle = (k * 8 + l) as f64;
-        z.set(l, Complex64::from_polar(1.25 + 0.75 * (1.7 * angle).sin(), angle));
-    });
+    for lane in 0..S::LANES {
+        let angle = (k * 8 + lane) as f64;
+        z.set(lane, Complex64::from_polar(1.25 + 0.75 * (1.7 * angle).sin(), angle));
+    }
     z
 }
 

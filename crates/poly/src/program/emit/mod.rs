@@ -13,7 +13,7 @@ use quote::quote;
 use straight::{Straight, zero_fill};
 use taylor::taylor_table;
 
-/// How source is written.
+/// Options of [`emit`].
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct EmitOptions {
@@ -21,11 +21,11 @@ pub struct EmitOptions {
     pub type_name: String,
     /// Path by which the source reaches this crate, such as `hc::poly`. Default `"poly"`.
     pub crate_path: String,
-    /// What the program was made from, for the header. Default empty.
+    /// Name of what the program was made from, for the header. Default empty.
     pub source: String,
-    /// Most operations in one function. Compile time grows faster than linearly above a few thousand; already
-    /// above a hundred or two the compiler may give up turning lanes into vector instructions, which
-    /// costs a factor of up to ten. Default 100.
+    /// Most operations in one function. Compile time grows faster than linearly above a few
+    /// thousand; already above a hundred or two the compiler may give up turning lanes into vector
+    /// instructions, which costs a factor of up to ten. Default 100.
     pub operations_per_function: usize,
 }
 
@@ -44,22 +44,23 @@ impl Default for EmitOptions {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EmitError {
-    /// The name of the type is no Rust identifier.
+    /// A name of a type that is no Rust identifier.
     #[error("`{0}` cannot name a Rust type")]
     TypeName(String),
-    /// The path to this crate is no Rust path.
+    /// A path to this crate that is no Rust path.
     #[error("`{0}` is not a Rust path")]
     CratePath(String),
-    /// What was written is not Rust: a fault of this module.
+    /// Source that is not Rust: a fault of this module.
     #[error("the source does not parse: {0}")]
     Syntax(String),
 }
 
 /// Writes a program as a Rust module: a unit struct that implements [`Evaluate`](crate::Evaluate).
 ///
-/// The same program and options give the same bytes. The module needs nothing but this crate, reached by
-/// [`EmitOptions::crate_path`]; results agree bit for bit with the [`Interpreter`](super::Interpreter) over types
-/// of double precision, and over double-double as constants are written to about 32 digits.
+/// Program and options determine the bytes. The module needs nothing but this crate, reached by
+/// [`EmitOptions::crate_path`]. Its results agree bit for bit with those of the
+/// [`Interpreter`](super::Interpreter) over types of double precision, and over double-double, as
+/// constants are written to about 32 digits.
 ///
 /// # Errors
 /// If an option is not what Rust admits as a name or a path.

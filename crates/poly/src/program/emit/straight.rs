@@ -68,7 +68,9 @@ impl Straight<'_> {
             for k in range.clone() {
                 let instruction = &self.tape.instructions[k];
                 let k = k as u32;
-                instruction.operands().iter().for_each(|&operand| note_constant(operand, &mut constants));
+                for &operand in instruction.operands() {
+                    note_constant(operand, &mut constants);
+                }
                 let value = self.expression(instruction, |j| {
                     if range.contains(&(j as usize)) {
                         let name = format_ident!("t{j}");

@@ -5,8 +5,8 @@ use crate::program::taylor::{TaylorCode, TaylorTape};
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
-/// The Taylor program as a static table: its instructions do so much each that finding them costs little,
-/// and as straight-line code they would take minutes to compile.
+/// The Taylor program as a static table: its instructions do so much each that finding them costs
+/// little, and as straight-line code they would take minutes to compile.
 pub(super) fn taylor_table(tape: &TaylorTape) -> TokenStream {
     let codes = |group: &[TaylorCode]| {
         let codes = group.iter().map(|code| {

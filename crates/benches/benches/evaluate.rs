@@ -1,12 +1,10 @@
-//! Evaluation of six systems: interpreted and generated, one path and eight at once; three of them also by the kernel
-//! for supports and coefficients.
+//! Evaluation of six systems: interpreted and generated, one path and eight at once; three of them
+//! also by the kernel for supports and coefficients.
 //!
-//! `benches/compare_sympy.py` runs this and SymPy and prints the table of BENCHES.md. With the environment
+//! `compare_sympy.py` runs this and SymPy and prints the tables of README.md. With the environment
 //! variable `POLY_PRINT_SYSTEMS` set, the systems are printed instead.
 
-mod common;
-mod generated;
-
+use benches::systems;
 use divan::{Bencher, black_box};
 use poly::{Complex64, Evaluate, Interpreter, Isa, Lane, Lanes8, SparseSystem};
 
@@ -19,7 +17,7 @@ fn main() {
 }
 
 fn print_systems() {
-    for case in common::cases() {
+    for case in systems::cases() {
         let f = case.system.compile().expect("a system that compiles");
         let (values, jacobian) = (f.program().value_operations(), f.program().jacobian_operations());
         println!("system\t{}\t{values}\t{jacobian}", case.name);
@@ -45,7 +43,9 @@ enum Job {
 fn numbers<S: Lane>(count: usize) -> Vec<S> {
     let number = |k: usize| {
         let mut z = S::zero();
-        (0..S::LANES).for_each(|l| z.set(l, Complex64::from_polar(1.0, (8 * k + l) as f64)));
+        for lane in 0..S::LANES {
+            z.set(lane, Complex64::from_polar(1.0, (8 * k + lane) as f64));
+        }
         z
     };
     (0..count).map(number).collect()
@@ -61,20 +61,24 @@ fn measure<S: Lane, E: Evaluate>(bencher: Bencher<'_, '_>, f: &E, job: Job) {
         match job {
             Job::Values => f.values(&mut memory, x, p, values),
             Job::Jacobian => f.jacobian(&mut memory, x, p, values, black_box(&mut jacobian)),
-            Job::Taylor => (1..=3).for_each(|order| f.taylor(&mut memory, order, x, &p[..2 * k], values)),
-            Job::Curved => (1..=3).for_each(|order| f.taylor(&mut memory, order, x, p, values)),
+            Job::Taylor | Job::Curved => {
+                let p = if matches!(job, Job::Taylor) { &p[..2 * k] } else { p };
+                for order in 1..=3 {
+                    f.taylor(&mut memory, order, x, p, values);
+                }
+            }
         }
     });
 }
 
 fn interpreter(name: &str) -> Interpreter {
-    let case = common::cases().into_iter().find(|case| case.name == name).expect("a known system");
+    let case = systems::cases().into_iter().find(|case| case.name == name).expect("a known system");
     case.system.compile().expect("a system that compiles")
 }
 
 /// The kernel for supports; the coefficients are its parameters.
 fn sparse(name: &str) -> SparseSystem {
-    let case = common::cases().into_iter().find(|case| case.name == name).expect("a known system");
+    let case = systems::cases().into_iter().find(|case| case.name == name).expect("a known system");
     let polynomials = case.system.expand(&Default::default()).expect("a small system");
     SparseSystem::from_polynomials(&polynomials).expect("supports of polynomials").0
 }
@@ -122,10 +126,10 @@ macro_rules! cases {
 }
 
 cases! {
-    cyclic "cyclic-7" crate::generated::cyclic_7::Cyclic7, sparse_one sparse_eight;
-    katsura "katsura-8" crate::generated::katsura_8::Katsura8, sparse_one sparse_eight;
-    noon "noon-5" crate::generated::noon_5::Noon5, sparse_one sparse_eight;
-    six_receivers "6r/3s" crate::generated::s6r_3s::S6r3s;
-    five_transmitters "4r/5s" crate::generated::s4r_5s::S4r5s;
-    pencils "pencils" crate::generated::pencils::Pencils;
+    cyclic "cyclic-7" benches::generated::cyclic_7::Cyclic7, sparse_one sparse_eight;
+    katsura "katsura-8" benches::generated::katsura_8::Katsura8, sparse_one sparse_eight;
+    noon "noon-5" benches::generated::noon_5::Noon5, sparse_one sparse_eight;
+    six_receivers "6r/3s" benches::generated::s6r_3s::S6r3s;
+    five_transmitters "4r/5s" benches::generated::s4r_5s::S4r5s;
+    pencils "pencils" benches::generated::pencils::Pencils;
 }

@@ -2,24 +2,32 @@
 
 use poly::{Expr, System, parse};
 
-/// A system with the name of its generated code.
-pub(crate) struct Case {
+/// A system that is measured.
+pub struct Case {
     /// Name in tables.
-    pub(crate) name: &'static str,
+    pub name: &'static str,
+    /// Module of its generated code.
+    pub module: &'static str,
+    /// Type of its generated code.
+    pub type_name: &'static str,
     /// The system.
-    pub(crate) system: System,
+    pub system: System,
 }
 
-/// All systems of the table.
-pub(crate) fn cases() -> Vec<Case> {
+/// All systems that are measured.
+///
+/// # Panics
+/// Never: the formulas are fixed.
+pub fn cases() -> Vec<Case> {
+    let case = |name, module, type_name, system| Case { name, module, type_name, system };
     let family = |text: &str| parse::family(text).expect("a family that parses").system;
     vec![
-        Case { name: "cyclic-7", system: cyclic(7) },
-        Case { name: "katsura-8", system: katsura(8) },
-        Case { name: "noon-5", system: noon(5) },
-        Case { name: "6r/3s", system: family(&six_receivers()) },
-        Case { name: "4r/5s", system: family(&five_transmitters()) },
-        Case { name: "pencils", system: pencils() },
+        case("cyclic-7", "cyclic_7", "Cyclic7", cyclic(7)),
+        case("katsura-8", "katsura_8", "Katsura8", katsura(8)),
+        case("noon-5", "noon_5", "Noon5", noon(5)),
+        case("6r/3s", "s6r_3s", "S6r3s", family(&six_receivers())),
+        case("4r/5s", "s4r_5s", "S4r5s", family(&five_transmitters())),
+        case("pencils", "pencils", "Pencils", pencils()),
     ]
 }
 
@@ -96,10 +104,11 @@ fn determinant<'a>(matrix: &[Vec<Expr<'a>>], columns: &[usize]) -> Expr<'a> {
     (1..columns.len()).fold(term(0), |sum, k| sum + term(k))
 }
 
-/// Six receivers, three transmitters: the dual formulation in offsets `o`, `H` and `b`, with `f_1j = 0`.
+/// Six receivers, three transmitters: the dual formulation in offsets `o`, `H` and `b`, with
+/// `f_1j = 0`.
 ///
 /// Parameters are `f_ij` for receivers 2 to 6, pseudoranges less those of receiver 1.
-pub(crate) fn six_receivers() -> String {
+fn six_receivers() -> String {
     let mut equations = vec![
         "(H22*b1^2 - 2*H12*b1*b2 + H11*b2^2) - o1^2*(H11*H22 - H12^2)".to_owned(),
         "H22/4 - (H22*b1 - H12*b2) - (o2^2 - o1^2)*(H11*H22 - H12^2)".to_owned(),
@@ -115,10 +124,11 @@ pub(crate) fn six_receivers() -> String {
     toml("6r/3s", &["o1", "o2", "o3", "H11", "H12", "H22", "b1", "b2"], &parameters, &equations, 180)
 }
 
-/// Four receivers, five transmitters, in the affine coordinates of receiver 4 and the Gram matrix of 2 and 3.
+/// Four receivers, five transmitters, in the affine coordinates of receiver 4 and the Gram matrix
+/// of 2 and 3.
 ///
 /// Parameters are pseudoranges of receivers 2 to 4 less those of receiver 1.
-pub(crate) fn five_transmitters() -> String {
+fn five_transmitters() -> String {
     let mut parameters = Vec::new();
     let mut equations = Vec::new();
     for j in 1..=5 {

@@ -1,12 +1,7 @@
 //! Generated code computes bit for bit what the interpreter computes.
 
-#[path = "../benches/common/mod.rs"]
-mod common;
-#[path = "../benches/generated/mod.rs"]
-mod generated;
-
-use num_complex::Complex64;
-use poly::{ComplexDd, Evaluate, Interpreter, Isa, Lane, Lanes8, Scalar};
+use benches::{generated, systems};
+use poly::{Complex64, ComplexDd, Evaluate, Interpreter, Isa, Lane, Lanes8, Scalar};
 
 /// A fixed sequence of numbers of modulus about one.
 fn numbers<S: Lane>(count: usize) -> Vec<S> {
@@ -17,7 +12,9 @@ fn numbers<S: Lane>(count: usize) -> Vec<S> {
     };
     let mut number = || {
         let mut z = S::zero();
-        (0..S::LANES).for_each(|l| z.set(l, Complex64::new(next(), next())));
+        for lane in 0..S::LANES {
+            z.set(lane, Complex64::new(next(), next()));
+        }
         z
     };
     (0..count).map(|_| number()).collect()
@@ -70,7 +67,7 @@ fn agrees_in_double_double<E: Evaluate>(interpreter: &Interpreter, f: &E) {
 
 #[test]
 fn generated_code_agrees_with_the_interpreter() {
-    for case in common::cases() {
+    for case in systems::cases() {
         let f = case.system.compile().unwrap();
         // Every kernel of a wide type takes long to compile, so those are tried on a few systems.
         match case.name {

@@ -15,7 +15,7 @@ import sympy
 JOBS = ["values", "jacobian", "taylor", "curved"]
 MODES = ["interpreted_one", "interpreted_eight", "generated_one", "generated_eight"]
 UNITS = {"ns": 1.0, "µs": 1e3, "ms": 1e6}
-BENCH = ["cargo", "bench", "--quiet", "-p", "poly", "--bench", "evaluate"]
+BENCH = ["cargo", "bench", "--quiet", "-p", "benches", "--bench", "evaluate"]
 
 
 def systems():
