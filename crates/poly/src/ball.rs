@@ -1,6 +1,6 @@
 //! Complex balls: a midpoint of about 32 digits and a radius that bounds its error.
 //!
-//! Midpoints follow the double-double algorithms of [`dd`](crate::dd), whose proven relative error
+//! Midpoints follow the double-double algorithms of [`Dd`], whose proven relative error
 //! bounds (Joldes, Muller, Popescu, ACM TOMS 44, 2017: 3u^2 for sums, 5u^2 for products, u = 2^-53)
 //! go into the radius, which is rounded up. [`ComplexInterval`] is faster and better for wide sets;
 //! balls are for residuals at one point.

@@ -5,7 +5,7 @@
 //! results may differ by the sum of the relative error bounds proved there, in units of u^2 =
 //! 2^-106.
 
-use poly::dd::Dd;
+use poly::Dd;
 use twofloat::TwoFloat;
 
 /// Error bounds of both implementations together.

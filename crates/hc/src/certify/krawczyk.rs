@@ -2,7 +2,7 @@
 
 use super::proof::{Proof, shifted, symmetric};
 use num_complex::Complex64;
-use poly::interval::Interval;
+use poly::Interval;
 use poly::{ComplexBall, ComplexDd, ComplexInterval, Evaluate, Interpreter, Isa, Scalar};
 
 /// Boxes that are tried, each smaller by [`SHRINK`] at least.

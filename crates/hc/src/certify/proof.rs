@@ -1,7 +1,7 @@
 //! What is proved of one point.
 
 use super::certificate::{Certificate, Reality};
-use poly::interval::Interval;
+use poly::Interval;
 use poly::{ComplexBall, ComplexDd, ComplexInterval, Scalar};
 
 /// A proved solution: exactly one in `centre + large box`, and that one in `centre + small`.

@@ -5,7 +5,7 @@
 
 use super::certificate::Obstacle;
 use super::proof::Proof;
-use poly::interval::Interval;
+use poly::Interval;
 
 pub(super) struct Compared {
     pub(super) duplicate_of: Vec<Option<usize>>,

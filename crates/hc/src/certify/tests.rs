@@ -211,7 +211,7 @@ fn parameters_may_be_intervals() {
     // The box of parameters is complex, so nothing is said of reality; a real interval tells.
     assert_eq!(certificate.reality, Reality::Undecided);
     let mut real = a;
-    real.im = poly::interval::Interval::point(0.0);
+    real.im = poly::Interval::point(0.0);
     let found = certify(&system, &[real], &point, &CertifyOptions::default()).unwrap();
     assert_eq!(found.points[0].as_ref().map(|p| p.reality), Ok(Reality::Real));
     // An interval that contains a singular instance.

@@ -3,7 +3,7 @@
 use super::progress::Progress;
 use crate::homotopy::ParameterPath;
 use num_complex::Complex64;
-use poly::dd::Dd;
+use poly::Dd;
 use poly::simd::Isa;
 use poly::{ComplexDd, Evaluate, Lane, Scalar};
 
