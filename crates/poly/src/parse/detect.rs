@@ -39,6 +39,8 @@ impl FromStr for System {
     /// If the text does not parse, has no equations, or is a family with factors that must not
     /// vanish, which a system cannot hold.
     fn from_str(text: &str) -> Result<System, ParseError> {
+        // The mark with which some editors begin a file.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         if begins_with_count(text) {
             return phcpack(text);
         }
@@ -92,6 +94,7 @@ mod tests {
             "2\nx^2 - 2;\ny - x;\n",
             "\n 2 2 \r\nx^2 - 2;\r\ny - x;\r\nTITLE : [",
             "2 x^2 - 2; y - x;",
+            "\u{feff}x^2 = 2\r\ny = x\r\n",
             "# equations\nname = 'n'\nunknowns = ['x', 'y']\nequations = [\n'x^2 - 2', 'y = x']\n",
             "equations = [\"x^2 - 2\", \"y = x\"]\nunknowns=['x', 'y']\nname = ''",
         ] {
