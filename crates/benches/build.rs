@@ -2,6 +2,7 @@
 
 // Each system is made from its formula, here and in the benches.
 #[path = "src/systems.rs"]
+#[expect(unreachable_pub, reason = "the module is public in the library")]
 mod systems;
 
 use poly::program::{EmitOptions, emit};
