@@ -1,7 +1,7 @@
 //! A family as Rust source: its equations as straight-line code, and its stored solutions.
 //!
-//! The program `hc codegen` and build scripts use this module; it needs the feature `codegen`. The module that is written
-//! depends on this crate alone.
+//! The program `hc codegen` and build scripts use this module; it needs the feature `codegen`. The
+//! module that is written depends on this crate alone.
 
 use crate::distinct::{coincidences, relative_distance};
 use crate::family::{Family, FamilyError, StartFile, StartFileError};
@@ -70,12 +70,12 @@ pub enum CodegenError {
 
 /// Writes a family and its solutions for a generic parameter point as a Rust module.
 ///
-/// The module has a unit struct `System` that implements [`Evaluate`](poly::Evaluate), and a function `fibre()` that gives the stored
-/// solutions as a [`Fibre`](crate::Fibre). Its header names the `source`. The arguments alone determine the
-/// bytes.
+/// The module has a unit struct `System` that implements [`Evaluate`](poly::Evaluate), and a
+/// function `fibre()` that gives the stored solutions as a [`Fibre`](crate::Fibre). Its header
+/// names the `source`. The arguments alone determine the bytes.
 ///
-/// The stored solutions are checked first: they solve the equations, are regular, distinct and not degenerate, and are as
-/// many as the family states.
+/// The stored solutions are checked first: they solve the equations, are regular, distinct and not
+/// degenerate, and are as many as the family states.
 ///
 /// ```
 /// use hc::{Family, codegen, family::StartFile};
@@ -99,7 +99,8 @@ pub fn generate(family: &Family, start: &StartFile, source: &str) -> Result<Stri
     Ok(text)
 }
 
-/// Checks that the stored solutions solve the equations, are distinct and regular, and are as many as stated.
+/// Checks that the stored solutions solve the equations, are distinct and regular, and are as many
+/// as stated.
 fn verify(family: &Family, start: &StartFile) -> Result<(), CodegenError> {
     let fibre = start.fibre()?;
     family.check(&fibre)?;

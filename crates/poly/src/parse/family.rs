@@ -24,8 +24,8 @@ pub struct Family {
     /// Factors that must not vanish at a solution: a system in the family's unknowns and
     /// parameters, one equation a factor, none where the family states none.
     pub nonzero: System,
-    /// Symmetries: maps of the unknowns that take solutions to solutions for the same parameters. Each
-    /// has one formula an unknown, its image.
+    /// Symmetries: maps of the unknowns that take solutions to solutions for the same parameters.
+    /// Each has one formula an unknown, its image.
     pub symmetry: Vec<System>,
 }
 

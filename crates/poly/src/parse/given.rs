@@ -117,8 +117,8 @@ impl Family {
         Ok(self)
     }
 
-    /// The family with one more symmetry: a map that takes solutions to solutions for the same parameters, one
-    /// formula an unknown.
+    /// The family with one more symmetry: a map that takes solutions to solutions for the same
+    /// parameters, one formula an unknown.
     ///
     /// # Errors
     /// If a formula does not parse or has an undeclared name.
