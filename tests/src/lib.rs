@@ -32,10 +32,7 @@ pub fn run(name: &str, arguments: &[&str]) -> Output {
 #[cfg(unix)]
 pub fn interrupted(command: &mut Command, after: Duration) -> Output {
     let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts");
-    let started = Instant::now();
-    while catches_interrupts(child.id()) == Some(false) && started.elapsed() < Duration::from_secs(300) {
-        std::thread::sleep(Duration::from_millis(20));
-    }
+    wait_for_handler(child.id());
     std::thread::sleep(after);
     let started = Instant::now();
     let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill runs");
@@ -43,6 +40,15 @@ pub fn interrupted(command: &mut Command, after: Duration) -> Output {
     let output = child.wait_with_output().expect("the program ends");
     assert!(started.elapsed() < Duration::from_secs(60));
     output
+}
+
+/// Waits until a process catches interrupts, five minutes at most.
+#[cfg(unix)]
+pub fn wait_for_handler(process: u32) {
+    let started = Instant::now();
+    while catches_interrupts(process) == Some(false) && started.elapsed() < Duration::from_secs(300) {
+        std::thread::sleep(Duration::from_millis(20));
+    }
 }
 
 /// Whether a process has a handler for SIGINT, signal 2; `None` where the system does not tell.

@@ -4,6 +4,7 @@ pub mod bar;
 pub mod input;
 pub mod interrupt;
 pub mod output;
+mod writing;
 
 use std::process::ExitCode;
 

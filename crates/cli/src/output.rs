@@ -6,29 +6,67 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::Failure;
+use crate::writing::Writing;
 
 /// Writes a file by way of a temporary one in the same directory, so that an interrupted run leaves no half of it.
 ///
 /// # Errors
 /// If the file cannot be written: the message says what to check.
 pub fn write(path: &Path, content: &[u8]) -> Result<(), Failure> {
+    let _writing = Writing::begin();
+    let failed = |error: std::io::Error| unwritable(path, &error);
+    // Devices such as /dev/null are written to, not replaced.
+    if is_special(path) {
+        return std::fs::write(path, content).map_err(failed);
+    }
+    let mut file = temporary(path)?;
+    file.write_all(content).and_then(|()| file.as_file().sync_all()).map_err(failed)?;
+    file.persist(path).map_err(|error| failed(error.error))?;
+    Ok(())
+}
+
+/// Writes a file that the user asked for, and says so on standard error.
+///
+/// # Errors
+/// As [`write()`].
+pub fn file(path: &Path, content: &[u8]) -> Result<(), Failure> {
+    write(path, content)?;
+    eprintln!("wrote {}", path.display());
+    Ok(())
+}
+
+/// Checks, before the work begins, that the files which options ask for can be written, each by its option's name. Nothing is left
+/// there.
+///
+/// # Errors
+/// For a file that cannot be written, and two options with one file.
+pub fn check(files: &[(&str, Option<&Path>)]) -> Result<(), Failure> {
+    let files: Vec<(&str, &Path)> = files.iter().filter_map(|(option, path)| Some((*option, (*path)?))).collect();
+    for (k, (option, path)) in files.iter().enumerate() {
+        if let Some((other, _)) = files[..k].iter().find(|(_, other)| other == path) {
+            return Err(Failure::in_file(path, format!("is asked for by {other} and {option}; give two names")));
+        }
+        if !is_standard_output(path) && !is_special(path) {
+            temporary(path)?;
+        }
+    }
+    Ok(())
+}
+
+/// Whether a path is neither a file nor a directory but a device or a pipe.
+fn is_special(path: &Path) -> bool {
+    path.exists() && !path.is_file() && !path.is_dir()
+}
+
+/// A new file beside the one that is to be written.
+fn temporary(path: &Path) -> Result<tempfile::NamedTempFile, Failure> {
+    if path.is_dir() {
+        return Err(Failure::Unusable(format!("{}: is a directory; give a file name in it", path.display())));
+    }
     let directory = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
     };
-    let failed = |error: std::io::Error| {
-        Failure::Unusable(format!(
-            "{}: cannot be written ({error}); check that the directory exists, is writable and has space",
-            path.display()
-        ))
-    };
-    if path.is_dir() {
-        return Err(Failure::Unusable(format!("{}: is a directory; give a file name in it", path.display())));
-    }
-    // Devices such as /dev/null are written to, not replaced.
-    if path.exists() && !path.is_file() {
-        return std::fs::write(path, content).map_err(failed);
-    }
     let mut builder = tempfile::Builder::new();
     builder.prefix(".part-");
     #[cfg(unix)]
@@ -37,10 +75,14 @@ pub fn write(path: &Path, content: &[u8]) -> Result<(), Failure> {
         // As for any new file; the umask takes away what the user does not want.
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
-    let mut file = builder.tempfile_in(directory).map_err(failed)?;
-    file.write_all(content).and_then(|()| file.as_file().sync_all()).map_err(failed)?;
-    file.persist(path).map_err(|error| failed(error.error))?;
-    Ok(())
+    builder.tempfile_in(directory).map_err(|error| unwritable(path, &error))
+}
+
+fn unwritable(path: &Path, error: &std::io::Error) -> Failure {
+    Failure::Unusable(format!(
+        "{}: cannot be written ({error}); check that the directory exists, is writable and has space",
+        path.display()
+    ))
 }
 
 /// Whether a path stands for standard output: `-`.
@@ -48,19 +90,20 @@ fn is_standard_output(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// Writes text to a file, or to standard output for `-`.
+/// Writes text to a file and says so on standard error, or to standard output for `-`.
 ///
 /// # Errors
 /// As [`write()`] and [`print()`].
 pub fn text(path: &Path, text: &str) -> Result<(), Failure> {
-    if is_standard_output(path) { print(text) } else { write(path, text.as_bytes()) }
+    if is_standard_output(path) { print(text) } else { file(path, text.as_bytes()) }
 }
 
-/// Writes JSON to a file, or to standard output for `-`.
+/// Writes JSON to a file and says so on standard error, or to standard output for `-`.
 ///
 /// # Errors
 /// As [`write()`] and [`print()`].
 pub fn json(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
+    let _writing = Writing::begin();
     let mut json = serde_json::to_string_pretty(value).map_err(Failure::unusable)?;
     json.push('\n');
     text(path, &json)
@@ -79,6 +122,7 @@ pub fn summary(json: Option<&Path>, text: impl FnOnce() -> String) -> Result<(),
 /// # Errors
 /// If standard output cannot be written for another reason.
 pub fn print(text: &str) -> Result<(), Failure> {
+    let _writing = Writing::begin();
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {

@@ -63,6 +63,7 @@ struct Point {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    output::check(&[("--json", arguments.json.as_deref())])?;
     let start = Instant::now();
     let file = &arguments.system;
     let system = input::system(file)?;

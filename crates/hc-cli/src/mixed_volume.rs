@@ -37,6 +37,7 @@ struct Output {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    output::check(&[("--json", arguments.json.as_deref())])?;
     let system = input::system(&arguments.file)?;
     let polynomials = system.expand(&Default::default()).map_err(|error| Failure::in_file(&arguments.file, error))?;
     let supports: Vec<Vec<Vec<i32>>> = polynomials.iter().map(Polynomial::support).collect();

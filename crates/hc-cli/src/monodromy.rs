@@ -31,6 +31,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    output::check(&[("--output", Some(&arguments.output))])?;
     let path = &arguments.family;
     let family = family::read(path)?;
     let start = match &arguments.seed_pair {

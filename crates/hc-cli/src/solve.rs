@@ -62,6 +62,7 @@ impl From<StartChoice> for Start {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    output::check(&[("--json", arguments.json.as_deref())])?;
     let begun = Instant::now();
     let file = &arguments.file;
     let system = input::system(file)?;

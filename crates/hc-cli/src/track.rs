@@ -56,6 +56,7 @@ struct Target {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    output::check(&[("--json", arguments.json.as_deref())])?;
     let begun = Instant::now();
     let family = family::read(&arguments.family)?;
     let fibre = family::fibre(&family, &arguments.start)?;
