@@ -79,7 +79,7 @@ pub enum Degeneracy {
     },
     /// Two receivers whose measurements differ by a constant.
     #[error(
-        "receivers {first} and {second} measure the same up to a constant ({constant} m): they stand in the same place or \
+        "receivers {first} and {second} measure the same up to a constant ({constant}): they stand in the same place or \
          one is a copy of the other, which determines nothing; remove one of them"
     )]
     IdenticalReceivers {
@@ -87,7 +87,7 @@ pub enum Degeneracy {
         first: String,
         /// Name of the other.
         second: String,
-        /// The constant, metres.
+        /// The constant, with its unit.
         constant: String,
     },
 }
@@ -142,7 +142,7 @@ pub(crate) fn usable(measured: &Pseudoranges) -> Result<Usable, Degeneracy> {
         return Err(Degeneracy::IdenticalReceivers {
             first: measured.receiver_names()[a].clone(),
             second: measured.receiver_names()[b].clone(),
-            constant: format!("{constant:.3}"),
+            constant: crate::quantity::length(constant),
         });
     }
     let distinct = transmitters.len() - repeated_transmitters(measured, &receivers, &transmitters);

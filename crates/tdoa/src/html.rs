@@ -5,6 +5,7 @@ use std::fmt::Write;
 
 use crate::calibrate::Calibration;
 use crate::picture::{escape, picture};
+use crate::quantity::{coordinate, decimals, length, number};
 
 /// Most measurements that the report lists; of more, the outliers and those of largest residual.
 const LISTED: usize = 20_000;
@@ -88,11 +89,12 @@ fn facts(calibration: &Calibration) -> String {
             "Standard deviation",
             match (calibration.sigma_estimated, calibration.redundancy) {
                 (true, 0) => "not known: there are as many measurements as unknowns".to_owned(),
-                (true, _) => format!("{} m, estimated", number(calibration.sigma)),
-                (false, _) => format!("{} as given", number(calibration.sigma)),
+                (true, _) => format!("{}, estimated", length(calibration.sigma)),
+                (false, _) => format!("{} as given", number(calibration.sigma, 3)),
             },
         ),
-        ("Residuals of inliers", format!("{} m root mean square", number(calibration.residual_rms))),
+        ("Residuals of inliers", format!("{} root mean square", length(calibration.residual_rms))),
+        ("Size", calibration.extent().map_or_else(String::new, |size| format!("{} across", length(size)))),
         ("Redundancy", format!("{} measurements more than unknowns", calibration.redundancy)),
         (
             "Other networks",
@@ -105,9 +107,10 @@ fn facts(calibration: &Calibration) -> String {
         ("Search", format!("{} of {} starts agree", calibration.agreeing, calibration.starts)),
     ];
     if let Some(speed) = &calibration.speed {
-        let value = speed
-            .metres_per_second
-            .map_or_else(|| format!("{:.6} times the assumed one", speed.factor), |value| format!("{value:.6e} m/s"));
+        let value = speed.metres_per_second.map_or_else(
+            || format!("{} times the assumed one", number(speed.factor, 6)),
+            |value| format!("{} m/s", number(value, 6)),
+        );
         list.push(("Propagation speed", format!("{value}, estimated from {} distances", speed.distances)));
     }
     let anchored: Vec<&str> = calibration
@@ -124,15 +127,15 @@ fn facts(calibration: &Calibration) -> String {
         list.push((
             "Against the truth",
             format!(
-                "{} receivers, {} m root mean square, {} m with scale {:.4}",
+                "{} receivers, {} root mean square, {} with scale {:.4}",
                 truth.receivers,
-                number(truth.receiver_rms),
-                number(truth.receiver_rms_scaled),
+                length(truth.receiver_rms),
+                length(truth.receiver_rms_scaled),
                 truth.scale
             ),
         ));
         if let Some(median) = truth.transmitter_median {
-            list.push(("True transmitters", format!("median distance {} m", number(median))));
+            list.push(("True transmitters", format!("median distance {}", length(median))));
         }
     }
     let entries = list.iter().map(|(term, value)| format!("<dt>{term}</dt><dd>{}</dd>\n", escape(value)));
@@ -160,11 +163,12 @@ fn table(id: &str, columns: &[Column], rows: impl IntoIterator<Item = Vec<String
 }
 
 fn receivers(calibration: &Calibration) -> Vec<Vec<String>> {
+    let position = position(calibration);
     let rows = calibration.receiver_names.iter().enumerate();
     rows.map(|(i, name)| {
         let mut row = vec![name.clone()];
-        row.extend(pair(calibration.receivers[i], position));
-        row.extend(pair(calibration.receiver_std[i], number));
+        row.extend(pair(calibration.receivers[i], &position));
+        row.extend(pair(calibration.receiver_std[i], small));
         row.extend(calibration.counts_of_receiver(i).map(|count| count.to_string()));
         row
     })
@@ -172,13 +176,14 @@ fn receivers(calibration: &Calibration) -> Vec<Vec<String>> {
 }
 
 fn transmitters(calibration: &Calibration) -> Vec<Vec<String>> {
+    let position = position(calibration);
     let rows = calibration.transmitter_names.iter().enumerate();
     rows.map(|(j, name)| {
         let mut row = vec![name.clone()];
-        row.extend(pair(calibration.transmitters[j], position));
-        row.extend(pair(calibration.transmitter_std[j], number));
-        row.push(calibration.offsets[j].map(position).unwrap_or_default());
-        row.push(calibration.offset_std[j].map(number).unwrap_or_default());
+        row.extend(pair(calibration.transmitters[j], &position));
+        row.extend(pair(calibration.transmitter_std[j], small));
+        row.push(calibration.offsets[j].map(&position).unwrap_or_default());
+        row.push(calibration.offset_std[j].map(small).unwrap_or_default());
         row.extend(calibration.counts_of_transmitter(j).map(|count| count.to_string()));
         row
     })
@@ -204,7 +209,7 @@ fn measurements(calibration: &Calibration) -> (Vec<Vec<String>>, usize) {
         vec![
             calibration.receiver_names[i].clone(),
             calibration.transmitter_names[j].clone(),
-            number(e),
+            small(e),
             if ratio.is_finite() { format!("{ratio:.2}") } else { String::new() },
             if outlier { "outlier".to_string() } else { String::new() },
         ]
@@ -212,19 +217,19 @@ fn measurements(calibration: &Calibration) -> (Vec<Vec<String>>, usize) {
     (rows.collect(), left_out)
 }
 
-fn pair(values: Option<[f64; 2]>, show: fn(f64) -> String) -> [String; 2] {
+fn pair(values: Option<[f64; 2]>, show: impl Fn(f64) -> String) -> [String; 2] {
     values.map_or_else(|| [String::new(), String::new()], |values| values.map(show))
 }
 
-fn position(value: f64) -> String {
-    // No sign before a zero.
-    let text = format!("{value:.4}");
-    if text.parse() == Ok(0.0) { "0.0000".to_string() } else { text }
+/// Coordinates with decimals that suit the network's size.
+fn position(calibration: &Calibration) -> impl Fn(f64) -> String + use<> {
+    let decimals = decimals(calibration.extent().unwrap_or(0.0));
+    move |value| coordinate(value, decimals)
 }
 
-/// A small number with about three digits.
-fn number(value: f64) -> String {
-    if value == 0.0 || value.abs() >= 1e-3 { format!("{value:.4}") } else { format!("{value:.2e}") }
+/// A standard deviation or residual in metres.
+fn small(value: f64) -> String {
+    number(value, 3)
 }
 
 #[cfg(test)]
@@ -258,11 +263,5 @@ mod tests {
         let addresses = page.matches("://").count();
         assert_eq!(addresses, page.matches("xmlns=\"http://www.w3.org/2000/svg\"").count());
         assert!(!page.contains(" src=") && !page.contains("url(") && !page.contains("NaN"));
-    }
-
-    #[test]
-    fn small_and_zero_numbers() {
-        assert_eq!([position(-0.00001), position(-1.25)], ["0.0000", "-1.2500"]);
-        assert_eq!([number(0.0), number(0.01234), number(-0.000012)], ["0.0000", "0.0123", "-1.20e-5"]);
     }
 }

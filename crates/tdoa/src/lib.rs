@@ -52,6 +52,7 @@ mod observations;
 pub mod picture;
 mod plane;
 pub mod pseudoranges;
+pub mod quantity;
 pub mod read;
 mod refine;
 mod restart;

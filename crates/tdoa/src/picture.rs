@@ -6,6 +6,7 @@ mod histogram;
 
 use crate::calibrate::Calibration;
 use crate::plane::{centroid, distance, spread};
+use crate::quantity::length;
 pub use canvas::Canvas;
 pub(crate) use canvas::escape;
 use canvas::{Map, nice};
@@ -79,9 +80,9 @@ pub fn picture(calibration: &Calibration) -> String {
 }
 
 fn title(calibration: &Calibration) -> String {
-    let mut title = format!("{}, standard deviation {:.4} m", calibration.configuration, calibration.sigma);
+    let mut title = format!("{}, standard deviation {}", calibration.configuration, length(calibration.sigma));
     if let Some(truth) = &calibration.truth {
-        title += &format!(", receivers {:.3} m from the truth (rms)", truth.receiver_rms);
+        title += &format!(", receivers {} from the truth (rms)", length(truth.receiver_rms));
     }
     if calibration.distrust().is_some() {
         title += ", NOT TO BE TRUSTED";
@@ -133,13 +134,13 @@ fn outliers(canvas: &mut Canvas, calibration: &Calibration, map: &Map) {
 }
 
 fn scale_bar(canvas: &mut Canvas, map: &Map) {
-    let length = nice(150.0 / map.scale);
+    let metres = nice(150.0 / map.scale);
     let [x, y] = [20.0, MAP_HEIGHT + 8.0];
-    let end = x + length * map.scale;
+    let end = x + metres * map.scale;
     canvas.line([x, y], [end, y], "#000", 2.0, "");
     canvas.line([x, y - 4.0], [x, y + 4.0], "#000", 2.0, "");
     canvas.line([end, y - 4.0], [end, y + 4.0], "#000", 2.0, "");
-    canvas.text([end + 8.0, y + 4.0], "start", 12.0, &format!("{length} m"));
+    canvas.text([end + 8.0, y + 4.0], "start", 12.0, &length(metres));
 }
 
 fn legend(canvas: &mut Canvas, calibration: &Calibration, outside: usize, at: [f64; 2]) {

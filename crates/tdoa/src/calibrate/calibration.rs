@@ -4,6 +4,7 @@ use super::known::{Anchors, SpeedEstimate};
 use super::receiver_errors::ReceiverError;
 use super::truth::Truth;
 use crate::align::{Transform, align};
+use crate::plane::distance;
 use serde::Serialize;
 
 /// A calibrated network. Lengths are in metres; `None` stands for what could not be determined.
@@ -111,6 +112,13 @@ impl Calibration {
         } else {
             None
         }
+    }
+
+    /// The largest distance between two receivers in metres; `None` if fewer than two could be located.
+    pub fn extent(&self) -> Option<f64> {
+        let located: Vec<[f64; 2]> = self.receivers.iter().flatten().copied().collect();
+        let pairs = located.iter().enumerate().flat_map(|(k, a)| located[..k].iter().map(|b| distance(*a, *b)));
+        pairs.reduce(f64::max)
     }
 
     /// Measurements of a receiver, and how many of them are outliers.

@@ -8,6 +8,7 @@ use super::options::{CalibrateError, CalibrateOptions};
 use crate::degeneracy::Usable;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
+use crate::quantity::length;
 use crate::refine::{Refined, covariance};
 use hc::Monitor;
 
@@ -67,10 +68,10 @@ impl Free<'_> {
         if let Some(expected) = expected.filter(|expected| misfit.iter().all(|misfit| *misfit > 4.0 * expected)) {
             let metre = speed.map_or(1.0, |speed| speed.factor);
             warnings.push(format!(
-                "the known positions are {:.3} m (root mean square) from where the measurements put these receivers, which \
-                 would be expected to {:.3} m; check the positions and names, and the propagation speed (--estimate-speed)",
-                metre * misfit[0],
-                metre * expected
+                "the known positions are {} (root mean square) from where the measurements put these receivers, which \
+                 would be expected to {}; check the positions and names, and the propagation speed (--estimate-speed)",
+                length(metre * misfit[0]),
+                length(metre * expected)
             ));
         }
         if places.leave_mirror() {

@@ -13,6 +13,7 @@ use crate::degeneracy::Usable;
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
+use crate::quantity::length;
 use crate::refine::{Covariance, Refined};
 
 /// Starts that must end in the best network before it is called unique: one or two may have found it while a better one was missed.
@@ -237,10 +238,12 @@ impl Solved<'_> {
         }
         if misfit > options.planar_limit * size {
             warnings.push(format!(
-                "the measurements do not fit a network in the plane: the residuals' deviation is {misfit:.3} m, {:.1} % of \
-                 the network's size {size:.3} m; receivers and transmitters must lie in one plane, and at most about a \
+                "the measurements do not fit a network in the plane: the residuals' deviation is {}, {:.1} % of \
+                 the network's size {}; receivers and transmitters must lie in one plane, and at most about a \
                  third of the measurements may be wrong",
-                100.0 * misfit / size
+                length(misfit),
+                100.0 * misfit / size,
+                length(size)
             ));
             return false;
         }

@@ -2,6 +2,7 @@
 
 use super::canvas::{Canvas, nice};
 use crate::calibrate::Calibration;
+use crate::quantity::number;
 
 const BINS: usize = 32;
 
@@ -36,13 +37,7 @@ pub(super) fn draw(canvas: &mut Canvas, calibration: &Calibration, corner: [f64;
     for k in -ticks..=ticks {
         let x = corner[0] + 0.5 * size[0] * (1.0 + k as f64 * step / reach);
         canvas.line([x, base], [x, base + 5.0], "#222", 1.0, "");
-        let value: f64 = format!("{:.3e}", k as f64 * step).parse().unwrap_or(0.0);
-        canvas.text(
-            [x, base + 19.0],
-            "middle",
-            11.0,
-            &if value.abs() < 1e-4 && value != 0.0 { format!("{value:e}") } else { format!("{value}") },
-        );
+        canvas.text([x, base + 19.0], "middle", 11.0, &number(k as f64 * step, 4));
     }
     let label = format!("residuals in metres ({} measurements)", residuals.len());
     canvas.text([corner[0] + 0.5 * size[0], base + 38.0], "middle", 12.0, &label);

@@ -44,20 +44,26 @@ pub(crate) fn covariance(observations: &Observations, network: &Network, sigma: 
         let (a, b) = (free[a], free[b]);
         lower[a.min(b) * size + a.max(b)]
     });
-    let eigen = schur.self_adjoint_eigen(Side::Lower).ok()?;
-    let largest = free.len().checked_sub(1).map_or(1.0, |last| eigen.S()[last]);
+    // Where all receivers are held there is nothing to decompose, which faer does not take.
+    let (values, modes) = if free.is_empty() {
+        (Vec::new(), Mat::zeros(0, 0))
+    } else {
+        let eigen = schur.self_adjoint_eigen(Side::Lower).ok()?;
+        ((0..free.len()).map(|k| eigen.S()[k]).collect::<Vec<f64>>(), eigen.U().to_owned())
+    };
+    let largest = values.last().copied().unwrap_or(1.0);
     if !(largest.is_finite() && largest > 0.0) {
         return None;
     }
     // Eigenvalues ascend; the three smallest belong to the rigid motions.
     let rigid = if free.len() == size { 3 } else { 0 };
-    let zero = (0..free.len()).filter(|&k| eigen.S()[k] < RANK_TOLERANCE * largest).count().max(rigid);
+    let zero = (0..free.len()).filter(|&k| values[k] < RANK_TOLERANCE * largest).count().max(rigid);
     let mut inverse = Mat::<f64>::zeros(size, size);
     for k in zero..free.len() {
-        let factor = sigma * sigma / eigen.S()[k];
+        let factor = sigma * sigma / values[k];
         for a in 0..free.len() {
             for b in 0..free.len() {
-                inverse[(free[a], free[b])] += factor * eigen.U()[(a, k)] * eigen.U()[(b, k)];
+                inverse[(free[a], free[b])] += factor * modes[(a, k)] * modes[(b, k)];
             }
         }
     }
@@ -98,7 +104,8 @@ pub(crate) fn covariance(observations: &Observations, network: &Network, sigma: 
         }));
     }
     let joint = (0..size * size).map(|k| inverse[(k / size, k % size)]).collect();
-    let loose = if rigid > 0 { loose(&eigen.U(), zero, network) } else { loose_beside_held(&eigen.U(), zero, &free) };
+    let loose =
+        if rigid > 0 { loose(&modes.as_ref(), zero, network) } else { loose_beside_held(&modes.as_ref(), zero, &free) };
     Some(Covariance { receivers, joint, transmitters, loose })
 }
 
@@ -138,7 +145,17 @@ mod tests {
     use super::*;
     use crate::simulate::{SimulateOptions, simulate};
 
-    /// The same covariance from the full normal equations with the inner constraint as a border, by dense algebra.
+    #[test]
+    fn receivers_that_are_all_held_have_no_error() {
+        let simulation = simulate(&SimulateOptions::default()).unwrap();
+        let held = vec![true; simulation.pseudoranges.receivers()];
+        let observations = Observations::new(&simulation.pseudoranges, |_, _| true).holding(&held);
+        let found = covariance(&observations, &simulation.network, 0.1).unwrap();
+        assert!(found.loose.is_empty() && found.receivers.iter().flatten().flatten().all(|&c| c == 0.0));
+        assert!(found.transmitters.iter().all(|c| c.is_some_and(|c| c[0][0] > 0.0 && c[1][1] > 0.0)));
+    }
+
+    /// The covariance from the full normal equations with the inner constraint as a border, by dense algebra.
     #[test]
     fn agrees_with_the_bordered_normal_equations() {
         let mut options = SimulateOptions { receivers: 6, transmitters: 5, ..Default::default() };
