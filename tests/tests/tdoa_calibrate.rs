@@ -133,16 +133,3 @@ fn a_transposed_table_is_refused() {
     let summary = String::from_utf8_lossy(&output.stdout);
     assert!(summary.contains("NOT TO BE TRUSTED") && summary.contains("are receivers the rows"), "{summary}");
 }
-
-#[test]
-fn a_truth_without_a_known_name_is_taken_in_order_and_says_so() {
-    let folder = root().join("examples/network");
-    let truth = std::fs::read_to_string(folder.join("receivers.csv")).expect("truth");
-    let directory = tempfile::tempdir().expect("directory");
-    let file = directory.path().join("renamed.csv");
-    std::fs::write(&file, truth.replace("\nr", "\nanchor ")).expect("file");
-    let table = folder.join("pseudoranges.csv");
-    let found = calibrate(&[text(&table), "--truth", text(&file)]);
-    assert_eq!(found["truth"]["receivers"], 8);
-    assert!(found["warnings"].to_string().contains("in the order of the receivers"), "{}", found["warnings"]);
-}

@@ -1,6 +1,8 @@
 //! The program `tdoa`: calibration of sensor networks from arrival times alone.
 
 mod calibrate;
+mod frame;
+mod known;
 mod simulate;
 mod solve;
 mod summary;

@@ -7,8 +7,11 @@ use tdoa::{Layout, ReceiverFault, SimulateOptions, simulate};
 
 use crate::Failure;
 use crate::output;
+use crate::units::{Unit, UnitArguments};
 
 /// Makes a random network and its measurements: pseudoranges.csv, receivers.csv, transmitters.csv and offsets.csv.
+///
+/// Lengths are metres; --units gives pseudoranges.csv in another unit, and offsets.csv a column in it.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Number of receivers.
@@ -57,6 +60,8 @@ pub(crate) struct Arguments {
     /// Threads; accepted everywhere, simulation needs only one.
     #[arg(long)]
     threads: Option<usize>,
+    #[command(flatten)]
+    units: UnitArguments,
     /// Directory for the files; made if it is not there.
     #[arg(long)]
     output: PathBuf,
@@ -92,13 +97,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     std::fs::create_dir_all(directory).map_err(|error| {
         Failure::Unusable(format!("{}: cannot be made ({error}); choose another --output", directory.display()))
     })?;
+    let unit = unit_of(&arguments.units)?;
+    // A micrometre is finer than any measurement, but tests of exact data want all digits.
+    let digits = unit.map_or(6, |unit| unit.decimals(6));
     let mut table = format!("receiver,{}\n", measured.transmitter_names().join(","));
     for (i, name) in measured.receiver_names().iter().enumerate() {
         table += name;
         for j in 0..measured.transmitters() {
-            // A micrometre is finer than any measurement, but tests of exact data want all digits.
-            match measured.get(i, j) {
-                Some(value) if arguments.noise > 0.0 => write!(table, ",{value:.6}"),
+            match measured.get(i, j).map(|value| unit.map_or(value, |unit| unit.of(value))) {
+                Some(value) if arguments.noise > 0.0 => write!(table, ",{value:.digits$}"),
                 Some(value) => write!(table, ",{value}"),
                 None => write!(table, ","),
             }
@@ -107,14 +114,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         table += "\n";
     }
     let network = &simulation.network;
-    output::write(&directory.join("pseudoranges.csv"), table.as_bytes())?;
+    output::file(&directory.join("pseudoranges.csv"), table.as_bytes())?;
     let receivers = positions(measured.receiver_names(), &network.receivers);
-    output::write(&directory.join("receivers.csv"), receivers.as_bytes())?;
+    output::file(&directory.join("receivers.csv"), receivers.as_bytes())?;
     let transmitters = positions(measured.transmitter_names(), &network.transmitters);
-    output::write(&directory.join("transmitters.csv"), transmitters.as_bytes())?;
+    output::file(&directory.join("transmitters.csv"), transmitters.as_bytes())?;
     let rows = measured.transmitter_names().iter().zip(&network.offsets);
-    let offsets: String = rows.map(|(name, offset)| format!("{name},{offset}\n")).collect();
-    output::write(&directory.join("offsets.csv"), format!("id,offset\n{offsets}").as_bytes())?;
+    let in_unit = |offset: f64| unit.map_or_else(String::new, |unit| format!(",{}", unit.of(offset)));
+    let offsets: String = rows.map(|(name, offset)| format!("{name},{offset}{}\n", in_unit(*offset))).collect();
+    let heading = unit.map_or_else(String::new, |unit| format!(",offset_{}", unit.name));
+    output::file(&directory.join("offsets.csv"), format!("id,offset{heading}\n{offsets}").as_bytes())?;
 
     let outliers: Vec<String> = (0..simulation.outliers.len())
         .filter(|&k| simulation.outliers[k])
@@ -134,6 +143,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         text += &format!("outliers: {}\n", outliers.join(" "));
     }
     output::print(&text)
+}
+
+/// The unit of the measurements, if not the metre.
+fn unit_of(arguments: &UnitArguments) -> Result<Option<Unit>, Failure> {
+    let units = arguments.units(false)?.unwrap_or_default();
+    let unit = Unit::new(units);
+    match unit.filter(|_| !(units.metres() > 0.0 && units.metres().is_finite())) {
+        Some(_) => Err(Failure::Unusable("--speed and --rate must be positive".to_string())),
+        None => Ok(unit),
+    }
 }
 
 fn layout(text: &str, shape: Shape) -> Result<Layout, Failure> {

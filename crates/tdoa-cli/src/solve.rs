@@ -5,9 +5,11 @@ use std::time::Instant;
 
 use serde::Serialize;
 use tdoa::minimal::{SolveOptions, Solver, Start};
+use tdoa::quantity::{coordinate, decimals};
 use tdoa::read::read;
-use tdoa::{MinimalSolution, Monitor};
+use tdoa::{MinimalSolution, Monitor, Pseudoranges};
 
+use crate::units::Unit;
 use crate::{Failure, interrupt, output};
 
 /// Finds every network that explains pseudoranges without errors, best first: 6r/3s, 4r/5s, 5r/4s and all larger sizes.
@@ -16,7 +18,7 @@ pub(crate) struct Arguments {
     /// The measurements, in the forms that `calibrate` takes; none may be missing.
     file: PathBuf,
     #[command(flatten)]
-    units: crate::units::UnitArguments,
+    input: crate::units::InputArguments,
     /// How far below zero a distance may lie for a network to count as physical, as a share of the size of the data; for
     /// noisy data the noise.
     #[arg(long, default_value_t = SolveOptions::default().tolerance)]
@@ -27,9 +29,6 @@ pub(crate) struct Arguments {
     /// Stops at the first physical network with a residual (root mean square, metres) below this; 6r/3s, 5r/4s, 4r/5s and 5r/6s only.
     #[arg(long, value_name = "METRES")]
     first_under: Option<f64>,
-    /// Accepted everywhere; the solvers draw no random numbers.
-    #[arg(long, default_value_t = 0)]
-    seed: u64,
     /// Threads; all cores if not given. The result does not depend on it.
     #[arg(long)]
     threads: Option<usize>,
@@ -52,11 +51,18 @@ struct Report<'a> {
     receiver_names: &'a [String],
     transmitter_names: &'a [String],
     seconds: f64,
+    /// Zero: the solvers draw no random numbers.
     seed: u64,
+    /// Unit of the input, where that is not the metre.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    units: Option<Unit>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let measured = read(&arguments.file, arguments.units.units(false)?).map_err(Failure::unusable)?;
+    output::check(&[("--json", arguments.json.as_deref())])?;
+    let input = arguments.input.options(false)?;
+    let unit = Unit::new(input.units.unwrap_or_default());
+    let measured = read(&arguments.file, input).map_err(Failure::unusable)?;
     if arguments.tolerance.is_nan() || arguments.tolerance < 0.0 {
         return Err(Failure::Unusable("--tolerance must not be negative".to_string()));
     }
@@ -88,14 +94,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             receiver_names: measured.receiver_names(),
             transmitter_names: measured.transmitter_names(),
             seconds,
-            seed: arguments.seed,
+            seed: 0,
+            units: unit,
         };
         output::json(path, &report)?;
     }
-    output::summary(arguments.json.as_deref(), || summary(&solution, seconds))?;
     for warning in &solution.warnings {
         eprintln!("warning: {warning}");
     }
+    output::summary(arguments.json.as_deref(), || summary(&solution, &measured, unit, seconds))?;
     if !solution.warnings.is_empty() {
         return Err(Failure::Undetermined(format!(
             "{}: the data do not determine the network, or the result is not whole; see the warnings",
@@ -112,7 +119,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     )))
 }
 
-fn summary(solution: &MinimalSolution, seconds: f64) -> String {
+fn summary(solution: &MinimalSolution, measured: &Pseudoranges, unit: Option<Unit>, seconds: f64) -> String {
     let (paths, counts) = (solution.paths, solution.counts);
     let mut text = format!(
         "{} by {} in {:.1} ms\npaths: {} tracked, {} finite, {} at infinity, {} failed, {} tracked again\n\
@@ -147,12 +154,19 @@ fn summary(solution: &MinimalSolution, seconds: f64) -> String {
         text += &format!("... and {} more, all in --json\n", solution.candidates.len() - 20);
     }
     if let Some(best) = solution.candidates.first() {
-        text += "\nbest network\n";
-        for (i, p) in best.network.receivers.iter().enumerate() {
-            text += &format!("receiver    {:>3} {:>13.6} {:>13.6}\n", i + 1, p[0], p[1]);
+        text += "\nbest network, metres\n";
+        let digits = decimals(best.network.size()) + 2;
+        let shown = |value: f64| coordinate(value, digits);
+        for (name, p) in measured.receiver_names().iter().zip(&best.network.receivers) {
+            text += &format!("receiver    {name:>5} {:>13} {:>13}\n", shown(p[0]), shown(p[1]));
         }
-        for (j, (p, o)) in best.network.transmitters.iter().zip(&best.network.offsets).enumerate() {
-            text += &format!("transmitter {:>3} {:>13.6} {:>13.6}   offset {o:>13.6}\n", j + 1, p[0], p[1]);
+        let transmitters = best.network.transmitters.iter().zip(&best.network.offsets);
+        for (name, (p, o)) in measured.transmitter_names().iter().zip(transmitters) {
+            let [x, y, offset] = [p[0], p[1], *o].map(shown);
+            let in_unit = unit.map_or_else(String::new, |unit| {
+                format!(" = {} {}", coordinate(unit.of(*o), unit.decimals(digits)), unit.name)
+            });
+            text += &format!("transmitter {name:>5} {x:>13} {y:>13}   offset {offset:>13}{in_unit}\n");
         }
     }
     text
