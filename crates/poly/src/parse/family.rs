@@ -38,15 +38,6 @@ impl FromStr for Family {
     }
 }
 
-impl FromStr for Family {
-    type Err = ParseError;
-
-    /// Reads a family in TOML, as [`family`] does.
-    fn from_str(text: &str) -> Result<Family, ParseError> {
-        family(text)
-    }
-}
-
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct FamilyText {
