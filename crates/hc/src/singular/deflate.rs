@@ -111,6 +111,20 @@ pub(crate) fn deflated<S: Number>(
     None
 }
 
+/// Steps of Newton's method towards a solution, regular or not.
+const APPROACH: usize = 5;
+
+/// A point after some steps of Newton's method.
+pub(crate) fn approached<S: Number>(local: &Local<'_, S>, mut point: Vec<S>) -> Vec<S> {
+    for _ in 0..APPROACH {
+        match step(local, &point, 1, Ranks::Tolerance(f64::NEG_INFINITY)) {
+            Some(next) if next.profile.is_regular() => point = next.point,
+            _ => break,
+        }
+    }
+    point
+}
+
 /// The logarithm to base 2 of the largest difference of coordinates.
 pub(crate) fn distance<S: Number>(a: &[S], b: &[S]) -> f64 {
     let differences: Vec<S> = a.iter().zip(b).map(|(a, b)| S::sub(a, b)).collect();

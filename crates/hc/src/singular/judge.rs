@@ -1,6 +1,6 @@
 //! What the end of a path is: a regular solution, an isolated multiple one, a point on a set of positive dimension, or none.
 
-use super::deflate::{CLEAR, Deflated, Profile, Reduced, ZERO, deflated, distance};
+use super::deflate::{CLEAR, Deflated, Profile, Reduced, ZERO, approached, deflated, distance};
 use super::dual::{Count, count};
 use super::eliminate::{Elimination, Stop};
 use super::equations::{Given, Local, Precision};
@@ -136,7 +136,8 @@ pub(crate) fn nearby(given: &Given, point: &[Complex64], wanted: usize) -> Nearb
             if found.len() >= wanted {
                 return nearby;
             }
-            let start: Vec<Complex64> = local.unscaled(&start).iter().map(Number::to_c64).collect();
+            // Newton's method leads to a component too, along which it drifts.
+            let start: Vec<Complex64> = local.unscaled(&approached(&local, start)).iter().map(Number::to_c64).collect();
             if nearby.component.is_none()
                 && let Ok(Verdict::OnComponent { dimension, point }) = multiple::<ComplexDd>(given, &start, 1)
             {
@@ -256,7 +257,10 @@ fn structure<S: Number>(local: &Local<'_, S>, found: &Deflated<S>, order: usize,
     let functionals = count(&reduced.basis, &reduced.equations, limit);
     // Where deflation has determined the point, it may be isolated with more paths than were counted.
     let functionals = match functionals {
-        Count::More if regular_after => count(&reduced.basis, &reduced.equations, 4 * limit),
+        Count::More if regular_after => match count(&reduced.basis, &reduced.equations, 4 * limit) {
+            Count::All(multiplicity) => Count::All(multiplicity),
+            _ => Count::More,
+        },
         other => other,
     };
     Some(match functionals {

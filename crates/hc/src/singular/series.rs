@@ -16,7 +16,7 @@ pub(crate) struct Basis {
 
 /// Replacing the variables of series by series takes as many products as there are monomials, and each as many steps as there are pairs of
 /// monomials within the order. More steps than this are not taken.
-const MAX_STEPS: f64 = 4e5;
+const MAX_STEPS: f64 = 6e5;
 
 impl Basis {
     /// `None` if there would be too many monomials.
