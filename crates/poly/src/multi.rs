@@ -98,7 +98,7 @@ impl<const LIMBS: usize> Float<LIMBS> {
     }
 
     /// The nearest double but for truncation; infinite or zero where that is out of range.
-    pub fn to_f64(&self) -> f64 {
+    pub fn to_f64(self) -> f64 {
         if !self.is_finite() {
             return f64::NAN;
         }

@@ -13,12 +13,15 @@ use rayon::prelude::{IntoParallelIterator, IntoParallelRefIterator, ParallelIter
 /// number of threads.
 const BLOCK: usize = 256;
 
+/// Says of the result for a target whether enough is done.
+type Enough<'a> = dyn FnMut(usize, &Solutions) -> bool + Send + 'a;
+
 /// Many targets of a family, about to be tracked in parallel; made by [`Family::track`].
 #[must_use = "nothing is tracked before `run` or `transform`"]
 pub struct Targets<'a> {
     how: How<'a>,
     targets: Vec<Vec<Complex64>>,
-    enough: Option<Box<dyn FnMut(usize, &Solutions) -> bool + Send + 'a>>,
+    enough: Option<Box<Enough<'a>>>,
 }
 
 /// How each target is tracked.
