@@ -24,6 +24,9 @@
 //! cells, and [`refine`], [`distinct`] and [`random`] what is used everywhere. With the feature of its
 //! name, `codegen` writes a family and its solutions as Rust source.
 //!
+//! The feature `threads`, on by default, runs paths, mixed cells and proofs on all threads of rayon;
+//! results are the same without.
+//!
 //! Systems come from the crate [`poly`], which is re-exported: everything that implements
 //! [`poly::Evaluate`] can be tracked.
 //!
@@ -72,6 +75,7 @@ mod singular;
 mod solve;
 pub mod start;
 mod store;
+mod threads;
 pub mod tracker;
 pub mod witness;
 

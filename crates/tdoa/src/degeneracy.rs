@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use crate::duplicates::{constant_difference, printed};
 use crate::pseudoranges::Pseudoranges;
 
 /// The smallest configurations that determine a network: the minimal ones 6r/3s and 4r/5s, and 5r/4s, which has one
@@ -286,7 +287,7 @@ fn identical_receivers(
     for (k, &a) in receivers.iter().enumerate() {
         for &b in &receivers[k + 1..] {
             let pairs = transmitters.iter().filter_map(|&j| Some((measured.get(a, j)?, measured.get(b, j)?)));
-            if let Some(constant) = constant_difference(pairs) {
+            if let Some(constant) = constant_difference(pairs.clone(), printed(pairs)) {
                 return Some((a, b, constant));
             }
         }
@@ -305,32 +306,10 @@ fn repeated_transmitters(measured: &Pseudoranges, receivers: &[usize], transmitt
         transmitters[..k].iter().any(|&a| {
             let b = transmitters[k];
             let pairs = receivers.iter().filter_map(|&i| Some((measured.get(i, a)?, measured.get(i, b)?)));
-            constant_difference(pairs).is_some()
+            constant_difference(pairs.clone(), printed(pairs)).is_some()
         })
     };
     (0..transmitters.len()).filter(|&k| repeats(k)).count()
-}
-
-/// The difference of the pairs if it is the same for all of at least three, up to the rounding of printed numbers: a
-/// millionth of how much the values themselves vary.
-fn constant_difference(pairs: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> {
-    let (mut least, mut most, mut size) = (f64::INFINITY, f64::NEG_INFINITY, 0.0f64);
-    for (x, y) in pairs.clone() {
-        least = least.min(x);
-        most = most.max(x);
-        size = size.max(x.abs()).max(y.abs());
-    }
-    let tolerance = 1e-6 * (most - least) + 1e-14 * size;
-    let (mut low, mut high, mut count) = (f64::INFINITY, f64::NEG_INFINITY, 0);
-    for (x, y) in pairs {
-        low = low.min(y - x);
-        high = high.max(y - x);
-        if high - low > tolerance {
-            return None;
-        }
-        count += 1;
-    }
-    if count >= 3 { Some(0.5 * (low + high)) } else { None }
 }
 
 #[cfg(test)]

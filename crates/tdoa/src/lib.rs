@@ -13,6 +13,9 @@
 //! * [`picture`] and [`html`]: a result to look at.
 //! * [`simulate()`] and [`accuracy`]: networks with a known truth, and how near to it an estimate comes and can come.
 //!
+//! Features, all on by default: `csv` ([`read`], [`node_table`]), `mat` (compressed MATLAB files), `pictures` ([`picture`], [`html`]) and `threads`
+//! (all threads of rayon; results are the same without). Arrays need none of them.
+//!
 //! ```
 //! use tdoa::{CalibrateOptions, Pseudoranges, SimulateOptions, calibrate, simulate};
 //!
@@ -41,18 +44,24 @@ pub mod accuracy;
 pub mod align;
 pub mod calibrate;
 pub mod degeneracy;
+mod duplicates;
 mod generated;
+#[cfg(feature = "pictures")]
 pub mod html;
 pub mod loss;
+mod median;
 pub mod minimal;
 pub mod multilateration;
 pub mod network;
+#[cfg(feature = "csv")]
 pub mod node_table;
 mod observations;
+#[cfg(feature = "pictures")]
 pub mod picture;
 mod plane;
 pub mod pseudoranges;
 pub mod quantity;
+#[cfg(feature = "csv")]
 pub mod read;
 mod refine;
 mod restart;

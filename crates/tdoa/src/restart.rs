@@ -13,6 +13,7 @@ use rand_distr::StandardNormal;
 use rand_pcg::Pcg64Mcg;
 
 use crate::loss::{Loss, SEARCH_NU};
+use crate::median::median;
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::refine::place_transmitters;
@@ -56,8 +57,8 @@ impl Restarts {
         let mut known: Vec<f64> = distances.iter().copied().filter(|&d| d > 0.0).collect();
         known.sort_by(f64::total_cmp);
         let diameter = known.get(known.len() * 9 / 10).copied().unwrap_or(1.0);
-        let median = known.get(known.len() / 2).copied().unwrap_or(1.0);
-        distances.iter_mut().filter(|d| d.is_nan()).for_each(|d| *d = median);
+        let typical = median(known).unwrap_or(1.0);
+        distances.iter_mut().filter(|d| d.is_nan()).for_each(|d| *d = typical);
         Restarts { receivers: m, distances, diameter }
     }
 

@@ -51,10 +51,10 @@ mod tests;
 
 pub use certificate::{Certificate, CertifyOptions, Obstacle, Reality};
 
+use crate::threads::{IntoParallelRefIterator, ParallelIterator};
 use num_complex::Complex64;
 use poly::{CompileError, ComplexInterval, Evaluate, System};
 use prover::{Prover, Target};
-use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
 /// Why nothing is certified at all.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -21,11 +21,11 @@ pub use options::EndgameOptions;
 use crate::homotopy::Segment;
 use crate::monitor::{Monitor, Stage};
 use crate::refine::Refiner;
+use crate::threads::{IntoParallelRefIterator, ParallelIterator};
 use crate::tracker::{PathEnd, PathResult, PathSet, TrackerOptions, Trackers};
 use legs::{Leg, Legs};
 use num_complex::Complex64;
 use poly::Evaluate;
-use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use walker::{Sample, Walker};
 
 /// Share of a leg to zero that may be left before it is given up.

@@ -5,9 +5,11 @@ use super::error::FamilyError;
 use super::fibre::Fibre;
 use crate::monitor::Monitor;
 use crate::solve::{Solution, Solutions, SolveOptions, solve_member};
+// One thread needs no trait for `map`.
+#[cfg_attr(not(feature = "threads"), allow(unused_imports))]
+use crate::threads::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use crate::tracker::Trackers;
 use num_complex::Complex64;
-use rayon::prelude::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 
 /// Targets that are tracked before it is asked whether enough are done: the answer depends on no
 /// number of threads.

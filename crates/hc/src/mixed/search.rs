@@ -9,6 +9,7 @@ use super::integer::Integer;
 use super::points::Points;
 use super::space::{AnyCell, Size, Space};
 use super::walk::{Scratch, Step};
+use crate::threads::{self, Scope};
 use poly::simd::{Isa, Kernel};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -53,7 +54,7 @@ pub(super) fn search<S: Sink>(space: &Space, sink: impl Fn() -> S + Sync) -> Res
     let start =
         Cell::<i64>::of_simplices(space.supports.len()).and_then(|cell| space.smallest(&cell)).ok_or(Overflow)?;
     let first = Task { stage: 0, pending: Pending::Enter, cell: start };
-    rayon::scope(|scope| state.run(scope, first));
+    threads::scope(|scope| state.run(scope, first));
     if state.overflow.into_inner() {
         return Err(MixedError::TooLarge);
     }
@@ -79,7 +80,7 @@ impl<S: Sink, F: Fn() -> S + Sync> State<'_, S, F> {
         self.sinks.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn run<'s>(&'s self, scope: &rayon::Scope<'s>, task: Task) {
+    fn run<'s>(&'s self, scope: &Scope<'s>, task: Task) {
         if self.overflow.load(Ordering::Relaxed) {
             return;
         }

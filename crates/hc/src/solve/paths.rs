@@ -12,10 +12,10 @@ use crate::refine::{Refined, Refiner};
 use crate::runner::{Flow, Policy, Room, Round, Work, run};
 use crate::start::Source;
 use crate::store::Records;
+use crate::threads::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use crate::tracker::{PathEnd, TrackerOptions, Trackers};
 use num_complex::Complex64;
 use poly::Evaluate;
-use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use std::collections::BTreeMap;
 
 /// How a path ends: four bytes, since there is one for each path.

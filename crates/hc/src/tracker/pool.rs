@@ -3,9 +3,9 @@
 use super::{PathEnd, PathSet, Tracker, TrackerOptions};
 use crate::homotopy::ParameterPath;
 use crate::monitor::Monitor;
+use crate::threads::{IntoParallelIterator, ParallelIterator, current_num_threads};
 use num_complex::Complex64;
 use poly::{Evaluate, Lanes8};
-use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 use std::sync::{Mutex, PoisonError};
 
 /// Paths that one thread takes at a time, at most: lanes run empty at the end of each part.
@@ -53,7 +53,7 @@ impl<'a, E: Evaluate> Trackers<'a, E> {
         monitor: &Monitor,
     ) -> PathSet {
         let n = self.system.variables();
-        let threads = rayon::current_num_threads();
+        let threads = current_num_threads();
         let parts = if threads > 1 { PARTS * threads } else { 1 };
         let size = which.len().div_ceil(parts).clamp(8, CHUNK);
         let parts: Vec<PathSet> = (0..which.len().div_ceil(size))

@@ -3,6 +3,7 @@
 use super::calibration::Calibration;
 use super::truth::Truth;
 use crate::align::align;
+use crate::median::median;
 use crate::plane::distance;
 
 impl Calibration {
@@ -26,15 +27,13 @@ impl Calibration {
             |all: &[Option<[f64; 2]>]| all.iter().map(|p| p.map(|p| back.transform.apply(p))).collect::<Vec<_>>();
         let transmitter_positions = moved(transmitters);
         let pairs = self.transmitters.iter().zip(&transmitter_positions).filter_map(|(a, b)| Some(((*a)?, (*b)?)));
-        let mut errors: Vec<f64> = pairs.map(|(a, b)| distance(a, b)).collect();
-        errors.sort_by(f64::total_cmp);
         self.truth = Some(Truth {
             receiver_rms: rigid.rms,
             receiver_rms_scaled: scaled.rms,
             scale: scaled.transform.scale,
             receivers: found.len(),
             positions: moved(truth),
-            transmitter_median: errors.get(errors.len() / 2).copied(),
+            transmitter_median: median(pairs.map(|(a, b)| distance(a, b)).collect()),
             transmitter_positions,
         });
     }

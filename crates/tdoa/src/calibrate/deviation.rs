@@ -1,5 +1,6 @@
 //! The deviation of the measurements, from the residuals of a network.
 
+use crate::median::median;
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
@@ -7,9 +8,7 @@ use crate::pseudoranges::Pseudoranges;
 /// Median of the deviations that measurements carry; 1 where they carry none.
 pub(super) fn typical_deviation(measured: &Pseudoranges) -> f64 {
     let cells = (0..measured.receivers()).flat_map(|i| (0..measured.transmitters()).map(move |j| (i, j)));
-    let mut all: Vec<f64> = cells.filter_map(|(i, j)| measured.sigma(i, j)).collect();
-    all.sort_by(f64::total_cmp);
-    all.get(all.len() / 2).copied().unwrap_or(1.0)
+    median(cells.filter_map(|(i, j)| measured.sigma(i, j)).collect()).unwrap_or(1.0)
 }
 
 /// Deviation of the residuals that are within `threshold` of it, corrected for the unknowns, repeated until it stays the
@@ -41,9 +40,7 @@ pub(super) fn inlier_deviation(observations: &Observations, network: &Network, f
 
 /// Median magnitude of the residuals.
 pub(super) fn median_size(observations: &Observations, network: &Network) -> f64 {
-    let mut all: Vec<f64> = observations.all().iter().map(|o| o.residual(network).abs()).collect();
-    all.sort_by(f64::total_cmp);
-    all.get(all.len() / 2).copied().unwrap_or(0.0)
+    median(observations.all().iter().map(|o| o.residual(network).abs()).collect()).unwrap_or(0.0)
 }
 
 /// A guess of the deviation from the middle half of the residuals, corrected for the unknowns.

@@ -157,11 +157,7 @@ fn local_layout(
 /// Subtracts each column's median, which the offsets take back at the end: large common times cost digits.
 fn centre(measured: &Pseudoranges) -> (Pseudoranges, Vec<f64>) {
     let shifts: Vec<f64> = (0..measured.transmitters())
-        .map(|j| {
-            let mut column: Vec<f64> = (0..measured.receivers()).filter_map(|i| measured.get(i, j)).collect();
-            column.sort_by(f64::total_cmp);
-            column.get(column.len() / 2).copied().unwrap_or(0.0)
-        })
+        .map(|j| median((0..measured.receivers()).filter_map(|i| measured.get(i, j)).collect()).unwrap_or(0.0))
         .collect();
     (measured.shifted(&shifts), shifts)
 }

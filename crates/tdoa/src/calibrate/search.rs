@@ -1,6 +1,7 @@
 //! The search: many starts, each refined on its own, until enough of them agree.
 
 use hc::{Monitor, Stage};
+#[cfg(feature = "threads")]
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 
 use super::hypotheses::Hypotheses;
@@ -61,19 +62,22 @@ impl Search<'_> {
         monitor.enter(Stage::Search, options.max_starts as u64);
         loop {
             let batch = BATCH.min(options.max_starts - starts);
-            let ended: Vec<Vec<Refined>> = (starts..starts + batch)
-                .into_par_iter()
-                .map_init(
-                    || Refiner::new(self.observations, SEARCH_NU).heeding(monitor),
-                    |refiner, index| {
-                        if monitor.is_cancelled() { Vec::new() } else { self.start(refiner, index, options.seed) }
-                    },
-                )
-                .collect();
+            let refiner = || Refiner::new(self.observations, SEARCH_NU).heeding(monitor);
+            let start = |refiner: &mut Refiner<'_>, index| {
+                if monitor.is_cancelled() { Vec::new() } else { self.start(refiner, index, options.seed) }
+            };
+            let batch = starts..starts + batch;
+            #[cfg(feature = "threads")]
+            let ended: Vec<Vec<Refined>> = batch.clone().into_par_iter().map_init(refiner, start).collect();
+            #[cfg(not(feature = "threads"))]
+            let ended: Vec<Vec<Refined>> = {
+                let mut refiner = refiner();
+                batch.clone().map(|index| start(&mut refiner, index)).collect()
+            };
             if monitor.is_cancelled() {
                 return Err(CalibrateError::Cancelled);
             }
-            starts += batch;
+            starts = batch.end;
             refined.extend(ended.into_iter().flatten());
             let best = refined.iter().min_by(|a, b| a.objective.total_cmp(&b.objective));
             let agreeing = best.map_or(0, |best| starts_in(best, &refined));

@@ -2,6 +2,7 @@
 
 use super::error::SolveError;
 use crate::degeneracy::is_solvable;
+use crate::duplicates::{constant_difference, rounding};
 use crate::pseudoranges::Pseudoranges;
 
 /// Measurements at most: the last refinement takes memory for a matrix of as many rows, and columns for all unknowns.
@@ -29,16 +30,10 @@ pub(super) fn check(measured: &Pseudoranges) -> Result<(), SolveError> {
     }
     let f = |i: usize, j: usize| measured.values()[i * n + j];
     let largest = measured.values().iter().fold(0.0f64, |a, v| a.max(v.abs()));
-    let spread = |differences: &mut dyn Iterator<Item = f64>| {
-        let (low, high) =
-            differences.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), d| (low.min(d), high.max(d)));
-        high - low
-    };
-    // What rounding of the input alone can tell apart.
-    let resolution = 64.0 * f64::EPSILON * largest;
+    let tolerance = rounding(largest);
     for i in 0..m {
         for k in i + 1..m {
-            if spread(&mut (0..n).map(|j| f(i, j) - f(k, j))) <= resolution {
+            if constant_difference((0..n).map(|j| (f(k, j), f(i, j))), tolerance).is_some() {
                 let names = measured.receiver_names();
                 return Err(SolveError::IdenticalReceivers { first: names[i].clone(), second: names[k].clone() });
             }
@@ -46,7 +41,7 @@ pub(super) fn check(measured: &Pseudoranges) -> Result<(), SolveError> {
     }
     for j in 0..n {
         for k in j + 1..n {
-            if spread(&mut (0..m).map(|i| f(i, j) - f(i, k))) <= resolution {
+            if constant_difference((0..m).map(|i| (f(i, k), f(i, j))), tolerance).is_some() {
                 let names = measured.transmitter_names();
                 return Err(SolveError::IdenticalTransmitters { first: names[j].clone(), second: names[k].clone() });
             }

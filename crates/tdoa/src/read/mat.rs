@@ -106,6 +106,11 @@ impl<'a> File<'a> {
             let unpacked;
             let body = match kind {
                 MATRIX => data,
+                COMPRESSED if !cfg!(feature = "mat") => {
+                    let problem =
+                        "has compressed variables, which take tdoa's feature `mat`; save with '-v6'".to_string();
+                    return Err(ReadError::Variable { file: file.to_string(), problem });
+                }
                 COMPRESSED => {
                     unpacked = unpack(data, MAX_START);
                     inner(&unpacked, order).unwrap_or(&[])
@@ -216,11 +221,18 @@ fn element(bytes: &[u8], order: Order) -> Option<(u32, &[u8], &[u8])> {
 }
 
 /// The first bytes of a packed element, as far as it can be unpacked.
+#[cfg(feature = "mat")]
 fn unpack(data: &[u8], most: usize) -> Vec<u8> {
     let mut unpacked = Vec::new();
     // On an error, what came before it remains.
     let _ = flate2::read::ZlibDecoder::new(data).take(most as u64).read_to_end(&mut unpacked);
     unpacked
+}
+
+/// Nothing: files with packed elements are refused.
+#[cfg(not(feature = "mat"))]
+fn unpack(_: &[u8], _: usize) -> Vec<u8> {
+    Vec::new()
 }
 
 /// The variable in an unpacked element. Its tag may promise more than was unpacked; that is noticed where it is needed.
@@ -292,7 +304,7 @@ fn decoder(kind: u32) -> Option<Decoder> {
     })
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "mat"))]
 mod tests {
     use proptest::prelude::{any, prop_assert, proptest};
 
