@@ -5,7 +5,6 @@ use super::fibre::Fibre;
 use super::monodromy::{Monodromy, MonodromyOptions, fill};
 use super::pair::find_pair;
 use super::symmetry::Symmetry;
-use super::targets::Targets;
 use super::trace::{TraceTest, trace_test_watched};
 use crate::distinct::relative_distance;
 use crate::monitor::Monitor;
@@ -193,16 +192,6 @@ impl Family {
     ) -> Result<TraceTest, FamilyError> {
         self.check(fibre)?;
         Ok(trace_test_watched(self.system(), fibre, options, monitor)?)
-    }
-
-    /// The solutions for many parameter points, from those of a fibre: see [`Targets`] for what can be
-    /// asked for, [`Targets::run`] for the result.
-    pub fn track<'a, T, Z>(&'a self, fibre: &'a Fibre, targets: &[T]) -> Targets<'a>
-    where
-        T: AsRef<[Z]>,
-        Z: Copy + Into<Complex64>,
-    {
-        Targets::new(self, fibre, targets.iter().map(|p| p.as_ref().iter().map(|&z| z.into()).collect()).collect())
     }
 }
 

@@ -18,6 +18,18 @@ const BLOCK: usize = 256;
 /// Says of the result for a target whether enough is done.
 type Enough<'a> = dyn FnMut(usize, &Solutions) -> bool + Send + 'a;
 
+impl Family {
+    /// The solutions for many parameter points, from those of a fibre: see [`Targets`] for what can be
+    /// asked for, [`Targets::run`] for the result.
+    pub fn track<'a, T, Z>(&'a self, fibre: &'a Fibre, targets: &[T]) -> Targets<'a>
+    where
+        T: AsRef<[Z]>,
+        Z: Copy + Into<Complex64>,
+    {
+        Targets::new(self, fibre, targets.iter().map(|p| p.as_ref().iter().map(|&z| z.into()).collect()).collect())
+    }
+}
+
 /// Many targets of a family, about to be tracked in parallel; made by [`Family::track`].
 #[must_use = "nothing is tracked before `run` or `transform`"]
 pub struct Targets<'a> {

@@ -10,7 +10,7 @@ use crate::refine::Refiner;
 use crate::singular::{self, Verdict};
 use num_complex::Complex64;
 use poly::SparseSystem;
-use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
+use crate::threads::{IntoParallelRefIterator, ParallelIterator};
 
 /// Imaginary parts of singular solutions up to this share of the point count as zero.
 const REAL_SINGULAR: f64 = 1e-7;

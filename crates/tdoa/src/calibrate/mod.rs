@@ -33,6 +33,7 @@ pub use same::SAME_NETWORK;
 pub use truth::Truth;
 
 use crate::degeneracy::{LEAST_PER_TRANSMITTER, Usable, list, usable};
+use crate::median::median;
 use crate::pseudoranges::Pseudoranges;
 use delays::{Cleared, Clearing, without_middle_delays};
 use hc::Monitor;
