@@ -72,10 +72,12 @@ fn trace<E: Evaluate>(family: &E, fibre: &Fibre, seed: u64) -> Option<f64> {
     let second = move_fibre(family, fibre, &at(1.0), &options)?;
     let third = move_fibre(family, &second, &at(2.0), &options)?;
     let sum = |fibre: &Fibre, j: usize| (0..fibre.len()).map(|k| fibre.solution(k)[j]).sum::<Complex64>();
+    // Of all coordinates together: some may be zero.
+    let all = [fibre, &second, &third];
+    let size = all.iter().flat_map(|fibre| &fibre.solutions).map(|z| z.norm()).fold(f64::MIN_POSITIVE, f64::max);
     let deviation = |j: usize| {
-        let [a, b, c] = [fibre, &second, &third].map(|fibre| sum(fibre, j));
-        let size = |fibre: &Fibre| (0..fibre.len()).map(|k| fibre.solution(k)[j].norm()).sum::<f64>();
-        (a - 2.0 * b + c).norm() / size(fibre).max(size(&second)).max(size(&third)).max(f64::MIN_POSITIVE)
+        let [a, b, c] = all.map(|fibre| sum(fibre, j));
+        (a - 2.0 * b + c).norm() / size
     };
     Some((0..fibre.dimension).map(deviation).fold(0.0, f64::max))
 }
