@@ -9,7 +9,7 @@ use hc::{SolveOptions, solve};
 pub(crate) enum Answer {
     /// All isolated solutions with their multiplicities, no others, and a component if there is one.
     Right,
-    /// It says that it is incomplete.
+    /// The program ends with status 1: the list is said to be incomplete, or is empty.
     Unknown,
     /// Anything else.
     Wrong,
@@ -19,7 +19,7 @@ pub(crate) enum Answer {
 pub(crate) fn answer(case: &Case, seed: u64) -> Answer {
     let system = hc::poly::parse::phcpack(&case.text).expect("a system");
     let found = solve(&system, &SolveOptions::new().seed(seed)).expect("a system that can be solved");
-    if found.paths.failed > 0 {
+    if found.paths.failed > 0 || found.is_empty() {
         return Answer::Unknown;
     }
     let is_there = |(point, multiplicity): &(Vec<f64>, usize)| {

@@ -103,8 +103,9 @@ impl Classified {
                 self.lost += 1;
                 continue;
             };
+            solution.residual = residual;
             if relative_distance(&point, &exact) > MOVED {
-                (solution.residual, solution.real) = (residual, is_real(&exact, REAL));
+                solution.real = is_real(&exact, REAL);
                 solution.value = exact;
             }
             if kept.iter().any(|s| relative_distance(&s.value, &solution.value) <= SAME) {
