@@ -8,9 +8,9 @@ use super::solutions::{Solution, Unresolved, is_real};
 use crate::distinct::{CLUSTER, groups, relative_distance};
 use crate::refine::Refiner;
 use crate::singular::{self, Verdict};
+use crate::threads::{IntoParallelRefIterator, ParallelIterator};
 use num_complex::Complex64;
 use poly::SparseSystem;
-use crate::threads::{IntoParallelRefIterator, ParallelIterator};
 
 /// Imaginary parts of singular solutions up to this share of the point count as zero.
 const REAL_SINGULAR: f64 = 1e-7;
