@@ -101,7 +101,10 @@ mod serial {
 
 #[cfg(test)]
 mod tests {
-    use super::serial::{IntoParallelIterator, ParallelIterator, scope};
+    use super::serial::{
+        IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, ParallelIterator, current_num_threads,
+        scope,
+    };
     use std::cell::RefCell;
 
     #[test]
@@ -117,6 +120,7 @@ mod tests {
             )
             .collect();
         assert_eq!(sums, [1, 3, 6, 10]);
+        assert_eq!(sums.par_iter().with_min_len(2).count(), 4 * current_num_threads());
         let done = RefCell::new(Vec::new());
         scope(|all| {
             done.borrow_mut().push(0);
