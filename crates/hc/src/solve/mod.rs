@@ -95,10 +95,13 @@ fn polynomials(system: &System, options: &SolveOptions, monitor: &Monitor) -> Re
             Err(SolveError::Mixed(MixedError::Cancelled)) => break,
             other => other?,
         };
-        let trackers = Trackers::new(&from.system);
         let (count, target) = (from.paths, &from.target[..]);
-        let route = Route { trackers: &trackers, start: &start, count, target, excess: &excess, options, monitor };
-        let ends = follow(route, trial);
+        let ends = {
+            // Their memory is given back before the ends are sorted.
+            let trackers = Trackers::new(&from.system);
+            let route = Route { trackers: &trackers, start: &start, count, target, excess: &excess, options, monitor };
+            follow(route, trial)
+        };
         if !ends.abandoned {
             start_systems += 1;
             retracked += ends.retracked;

@@ -87,6 +87,8 @@ pub(super) struct Ends {
 const CROSSED: f64 = 1e-11;
 /// Paths that are under way at a time: memory for their points is bounded by this, not by the number of paths.
 const CHUNK: usize = 1 << 11;
+/// Paths that go through the endgame at a time: there each takes more memory than on its way.
+const PORTION: usize = 1 << 9;
 /// Ends that one thread refines at a time, at least.
 const LEAST: usize = 8;
 /// On trial, as many paths are followed first.
@@ -186,9 +188,11 @@ impl<E: Evaluate, S: Source<E>> Work for Stage<'_, '_, E, S> {
 
     fn close(&mut self, (): &mut (), batch: &mut Vec<Record>, round: Round) -> Flow {
         let open: Vec<Record> = batch.extract_if(.., |record| record.is_open()).collect();
-        for record in self.ended(&open, round) {
-            self.take(&record);
-            batch.push(record);
+        for portion in open.chunks(PORTION) {
+            for record in self.ended(portion, round) {
+                self.take(&record);
+                batch.push(record);
+            }
         }
         self.round.regular += batch.iter().filter(|record| self.regular.contains_key(&record.path)).count();
         if self.is_whole() {
