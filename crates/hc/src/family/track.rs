@@ -132,6 +132,7 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
 
     fn over(system: &'a E, charts: C, lanes: Lanes<'a, E>, fibre: &Fibre) -> Self {
         let (paths, dimension) = (fibre.len(), fibre.dimension);
+        let ends = || [0, 1].map(|_| Vec::with_capacity(fibre.parameters.len()));
         let scratch = Scratch {
             lanes,
             refiner: Refiner::new(system),
@@ -141,7 +142,7 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
             carried: Vec::with_capacity(paths * dimension),
             back: Vec::with_capacity(dimension),
             segment: Segment::new(&fibre.parameters, &fibre.parameters),
-            ends: Default::default(),
+            ends: ends(),
             paths: PathSet::with_capacity(dimension, paths),
             which: Vec::with_capacity(paths),
         };
@@ -153,7 +154,7 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
             monitor: Monitor::default(),
             paths: PathSet::with_capacity(dimension, paths),
             segment: Segment::new(&fibre.parameters, &fibre.parameters),
-            ends: Default::default(),
+            ends: ends(),
             room: Room { memory: scratch, batch, which },
         }
     }
