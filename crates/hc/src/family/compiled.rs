@@ -180,7 +180,7 @@ impl Family {
         Ok(fill(&self.program, first, |p, x| self.accepts(p, x), &self.symmetry, &options, monitor))
     }
 
-    /// The [trace test](super::trace) of a fibre: whether it is whole.
+    /// The [trace test](super::trace_test) of a fibre: whether it is whole.
     ///
     /// # Errors
     /// If the fibre is of another family, or the enlarged family of the test does not compile.

@@ -144,7 +144,7 @@ impl Solver {
         rank(candidates);
     }
 
-    /// Proofs, in interval arithmetic, that the complex roots that the last call tracked exist and are distinct ([`hc::certify`]). `None` if
+    /// Proofs, in interval arithmetic, that the complex roots that the last call tracked exist and are distinct ([`hc::certify()`]). `None` if
     /// it tracked none; of a larger network the roots are those of the part that was solved.
     pub fn prove(&self) -> Option<RootProofs> {
         match self.last? {
