@@ -4,13 +4,62 @@ use num_complex::Complex64;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
+/// What random numbers are drawn for: streams of one seed for different purposes, or attempts, share no numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Stream {
+    /// A random member of a family and a point, by attempt.
+    Member(u64),
+    /// Coefficients and lifting of a polyhedral start system, by attempt.
+    Polyhedral(u64),
+    /// Coefficients of a total degree start system, by attempt.
+    TotalDegree(u64),
+    /// Linear forms of a multihomogeneous start system, by attempt.
+    Multihomogeneous(u64),
+    /// Hyperplanes by which points on components are told, by attempt.
+    Slice(u64),
+    /// Combinations of the equations of an overdetermined system.
+    Combinations,
+    /// The line of a trace test.
+    Trace,
+    /// The parameters of a loop of monodromy, by number.
+    Loop(u64),
+    /// A real target by which the place of a stored fibre is judged, by number.
+    Target(u64),
+    /// A place that is tried for a stored fibre, by number.
+    Place(u64),
+    /// Anything else, by a number of the caller's.
+    Other(u64),
+}
+
+impl Stream {
+    /// Its number; the numbers of purposes that have few attempts lie between each other, sixteen apart.
+    fn number(self) -> u64 {
+        let between = |first: u64, attempt: u64| attempt.wrapping_mul(16).wrapping_add(first);
+        let from = |first: u64, k: u64| k.wrapping_add(first);
+        match self {
+            Stream::Member(k) => between(0, k),
+            Stream::Polyhedral(k) => between(1, k),
+            Stream::TotalDegree(k) => between(2, k),
+            Stream::Multihomogeneous(k) => between(3, k),
+            Stream::Other(k) => between(5, k),
+            Stream::Slice(k) => between(7, k),
+            Stream::Combinations => 11,
+            Stream::Trace => 0x7ACE,
+            Stream::Target(k) => from(1000, k),
+            Stream::Place(k) => from(2000, k),
+            Stream::Loop(k) => from(1 << 32, k),
+        }
+    }
+}
+
 /// A stream of generic complex numbers.
 pub struct Random(Pcg64);
 
 impl Random {
-    /// The stream of a seed; `stream` tells apart streams of one seed.
-    pub fn new(seed: u64, stream: u64) -> Self {
-        let mixed = seed ^ stream.wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(17);
+    /// The stream of a seed for a purpose.
+    pub fn new(seed: u64, stream: Stream) -> Self {
+        let mixed = seed ^ stream.number().wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(17);
         Random(Pcg64::seed_from_u64(mixed))
     }
 
@@ -29,5 +78,33 @@ impl Random {
     /// Independent complex standard normal numbers.
     pub fn normals(&mut self, len: usize) -> Vec<Complex64> {
         (0..len).map(|_| self.normal()).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Stream;
+    use std::collections::HashSet;
+
+    #[test]
+    fn purposes_share_no_stream() {
+        let mut numbers = HashSet::from([Stream::Combinations, Stream::Trace].map(Stream::number));
+        for attempt in 0..60 {
+            let purposes = [
+                Stream::Member,
+                Stream::Polyhedral,
+                Stream::TotalDegree,
+                Stream::Multihomogeneous,
+                Stream::Slice,
+                Stream::Loop,
+                Stream::Target,
+                Stream::Place,
+                Stream::Other,
+            ];
+            for purpose in purposes {
+                assert!(numbers.insert(purpose(attempt).number()), "{:?}", purpose(attempt));
+            }
+        }
+        assert!((60..100_000).all(|k| numbers.insert(Stream::Loop(k).number())));
     }
 }

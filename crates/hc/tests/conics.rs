@@ -9,7 +9,7 @@ use hc::Fibre;
 use hc::certify::{CertifyOptions, certify};
 use hc::family::{MonodromyOptions, Stop, find_pair, monodromy, solve_member, trace_test};
 use hc::poly::{Complex64, ComplexInterval, System};
-use hc::random::Random;
+use hc::random::{Random, Stream};
 use hc::{Solutions, SolveOptions, solve};
 
 fn fibre(family: &System, count: usize) -> Fibre {
@@ -39,7 +39,7 @@ fn through_points_and_tangent_to_up_to_three_conics() {
         assert!(k > 2 || trace_test(&family, &fibre, &options).unwrap().passed(COUNTS[k]), "{k} conics");
         let compiled = family.compile().unwrap();
         for seed in 0..3 {
-            let target = Random::new(seed, 9).normals(fibre.parameters.len());
+            let target = Random::new(seed, Stream::Other(9)).normals(fibre.parameters.len());
             let found = solve_member(&family, &compiled, &fibre, &target, &SolveOptions::default());
             assert_eq!((found.solutions.len(), found.paths.failed), (COUNTS[k], 0), "{k} conics, seed {seed}");
             assert_eq!(proved(&family, &target, &found).0, COUNTS[k], "{k} conics, seed {seed}");
@@ -52,7 +52,7 @@ fn through_points_and_tangent_to_up_to_three_conics() {
 fn from_the_front_door() {
     for k in 1..=2 {
         let family = tangent_conics(k);
-        let target = Random::new(0, 9).normals(family.parameters().len());
+        let target = Random::new(0, Stream::Other(9)).normals(family.parameters().len());
         let member = System::build(|s| {
             let unknowns: Vec<_> = family.variables().iter().map(|name| s.variable(name)).collect();
             let parameters: Vec<_> = target.iter().map(|&p| s.constant(p)).collect();

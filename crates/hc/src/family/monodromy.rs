@@ -9,7 +9,7 @@ use super::symmetry::Symmetry;
 use super::track::track_fibre_watched;
 use crate::distinct::{coincidences, relative_distance};
 use crate::monitor::{Monitor, Stage};
-use crate::random::Random;
+use crate::random::{Random, Stream};
 use crate::refine::Refiner;
 use crate::tracker::PathEnd;
 use num_complex::Complex64;
@@ -155,7 +155,7 @@ pub(super) fn fill<E: Evaluate>(
         if known > options.max_solutions {
             break Stop::TooMany;
         }
-        let mut random = Random::new(options.seed, loops as u64);
+        let mut random = Random::new(options.seed, Stream::Loop(loops as u64));
         let corners = [0, 1].map(|_| random.normals(system.parameters()));
         paths += filling.go_round(&corners, &accept);
         loops += 1;

@@ -5,7 +5,7 @@
 
 use super::fibre::Fibre;
 use crate::linalg::Lu;
-use crate::random::Random;
+use crate::random::{Random, Stream};
 use crate::refine::Refiner;
 use num_complex::Complex64;
 use poly::simd::Isa;
@@ -38,7 +38,7 @@ pub fn find_pair(
     let free = free.compile()?;
     let mut refiner = Refiner::new(&compiled);
     for k in 0..TRIES {
-        let mut z = Random::new(seed, k).normals(n + m);
+        let mut z = Random::new(seed, Stream::Member(k)).normals(n + m);
         if !gauss_newton(&free, &mut z) {
             continue;
         }

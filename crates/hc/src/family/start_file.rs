@@ -113,12 +113,12 @@ impl StartFile {
 mod tests {
     use super::{StartFile, StartFileError};
     use crate::family::Fibre;
-    use crate::random::Random;
+    use crate::random::{Random, Stream};
     use proptest::prelude::proptest;
 
     #[test]
     fn is_read_back_bit_for_bit() {
-        let mut random = Random::new(3, 0);
+        let mut random = Random::new(3, Stream::Member(0));
         let fibre = Fibre::new(random.normals(5), 2, random.normals(14));
         let file = StartFile::new(&fibre, Some(1.5e-13), "roots reached");
         let again = StartFile::from_json(&file.to_json()).unwrap();

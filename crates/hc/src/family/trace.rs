@@ -11,7 +11,7 @@ use super::monodromy::{MonodromyOptions, fill};
 use super::symmetry::Symmetry;
 use super::track::{move_fibre_watched, track_fibre_watched};
 use crate::monitor::Monitor;
-use crate::random::Random;
+use crate::random::{Random, Stream};
 use crate::refine::Refiner;
 use crate::tracker::PathEnd;
 use num_complex::Complex64;
@@ -65,7 +65,7 @@ pub(super) fn trace_test_watched(
     let enlarged = enlarged.compile()?;
 
     // Parameters of the enlarged family: p, v, a, c, tau.
-    let mut random = Random::new(options.seed, 0x7ACE);
+    let mut random = Random::new(options.seed, Stream::Trace);
     let mut parameters = fibre.parameters.clone();
     parameters.extend(random.normals(m + n + 1));
     let tau = random.unit();

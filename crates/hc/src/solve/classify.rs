@@ -6,7 +6,7 @@ use super::solutions::{Direction, Solution, Solutions, is_real};
 use crate::distinct::{CLUSTER, coincidences, groups, relative_distance};
 use crate::family::PathCounts;
 use crate::linalg::Lu;
-use crate::random::Random;
+use crate::random::{Random, Stream};
 use crate::refine::{Refined, Refiner};
 use num_complex::Complex64;
 use poly::simd::Isa;
@@ -200,7 +200,7 @@ impl<'a> Local<'a> {
     fn meets_slices(&mut self, point: &[Complex64], dimension: usize, farthest: f64, start: u64) -> bool {
         let n = point.len();
         let scale = scale(point);
-        let mut random = Random::new(dimension as u64, 7 + 16 * start);
+        let mut random = Random::new(dimension as u64, Stream::Slice(start));
         let slopes: Vec<Vec<Complex64>> =
             (0..dimension).map(|_| (0..n).map(|j| random.unit() / scale[j]).collect()).collect();
         let offsets: Vec<Complex64> = (0..dimension).map(|_| random.unit()).collect();

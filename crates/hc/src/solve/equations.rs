@@ -2,7 +2,7 @@
 
 use super::error::SolveError;
 use crate::linalg::Lu;
-use crate::random::Random;
+use crate::random::{Random, Stream};
 use num_complex::Complex64;
 use num_traits::ToPrimitive;
 use poly::simd::Isa;
@@ -67,7 +67,7 @@ impl Equations {
             |i: usize| self.supports[i].iter().map(|p| p.iter().map(|&e| i64::from(e)).sum::<i64>()).max().unwrap_or(0);
         order.sort_by_key(|&i| std::cmp::Reverse(degree(i)));
         let (kept, others) = order.split_at(self.unknowns);
-        let mut random = Random::new(seed, 11);
+        let mut random = Random::new(seed, Stream::Combinations);
         let mut squared = Equations { supports: Vec::new(), coefficients: Vec::new(), ..self.clone() };
         for &i in kept {
             let mut sum: BTreeMap<&[i32], Complex64> = BTreeMap::new();

@@ -39,7 +39,7 @@ pub(crate) fn mixed_volume_is_bezout(supports: &Supports, degrees: &[u64]) -> bo
 #[cfg(test)]
 mod tests {
     use super::mixed_volume_is_bezout;
-    use crate::random::Random;
+    use crate::random::{Random, Stream};
     use crate::start::{bezout_number, degrees, mixed_volume};
 
     fn holds(supports: &[Vec<Vec<i32>>]) -> bool {
@@ -48,7 +48,7 @@ mod tests {
 
     #[test]
     fn never_against_the_mixed_volume() {
-        let mut random = Random::new(0, 0);
+        let mut random = Random::new(0, Stream::Member(0));
         let mut draw = |below: f64| ((random.unit().arg() / std::f64::consts::TAU + 0.5) * below) as i32;
         let (mut yes, mut no) = (0, 0);
         for _ in 0..400 {

@@ -89,7 +89,7 @@ impl Binomials {
 #[cfg(test)]
 mod tests {
     use super::Binomials;
-    use crate::random::Random;
+    use crate::random::{Random, Stream};
     use proptest::prelude::{prop, prop_assert, prop_assert_eq, proptest};
 
     proptest! {
@@ -115,7 +115,7 @@ mod tests {
                 prop_assert_eq!(det, 0);
                 return Ok(());
             };
-            let mut random = Random::new(seed, 0);
+            let mut random = Random::new(seed, Stream::Member(0));
             let b = [random.unit(), random.unit() * 2.0, random.unit() * 0.5];
             let solutions: Vec<_> = (0..det.unsigned_abs() as u64).map(|k| binomials.solution(&b, k)).collect();
             for (k, x) in solutions.iter().enumerate() {

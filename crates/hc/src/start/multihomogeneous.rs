@@ -5,7 +5,7 @@
 
 use super::reached::Supports;
 use crate::linalg::Lu;
-use crate::random::Random;
+use crate::random::{Random, Stream};
 use num_complex::Complex64;
 use poly::simd::Isa;
 use std::collections::BTreeMap;
@@ -127,7 +127,7 @@ pub(crate) struct Multihomogeneous {
 impl Multihomogeneous {
     /// In coefficients of the supports, which must contain all [`Grouped::terms`].
     pub(crate) fn new(supports: &Supports, grouped: Grouped, seed: u64, attempt: u64) -> Multihomogeneous {
-        let mut random = Random::new(seed, 3 + 16 * attempt);
+        let mut random = Random::new(seed, Stream::Multihomogeneous(attempt));
         let mut forms = Vec::new();
         let mut parameters = Vec::new();
         for (points, degrees) in supports.iter().zip(&grouped.degrees) {

@@ -5,7 +5,7 @@ use super::reached::{Reached, Supports};
 use super::toric::{Toric, rates};
 use crate::mixed::{Keep, MixedError, watched_cells};
 use crate::monitor::Monitor;
-use crate::random::Random;
+use crate::random::{Random, Stream};
 use crate::store::{Records, Sorter};
 use crate::tracker::{PathEnd, TrackerOptions, Trackers};
 use num_complex::Complex64;
@@ -57,7 +57,7 @@ impl Polyhedral {
         attempt: u64,
         monitor: &Monitor,
     ) -> Result<Polyhedral, MixedError> {
-        let mut random = Random::new(seed, 1 + 16 * attempt);
+        let mut random = Random::new(seed, Stream::Polyhedral(attempt));
         let terms = supports.iter().map(Vec::len).sum();
         let coefficients: Vec<Complex64> = (0..terms).map(|_| random.unit() * (1.0 + 0.1 * random.unit().re)).collect();
         let (lifting, parts) = fine_cells(supports, &mut random, monitor)?;

@@ -1,7 +1,7 @@
 //! The total degree start system `g_i (x_i^(d_i) - 1)`, `d_i` the degrees and `g_i` random: as many paths as Bezout's number.
 
 use super::reached::Supports;
-use crate::random::Random;
+use crate::random::{Random, Stream};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -28,7 +28,7 @@ pub(crate) struct TotalDegree {
 impl TotalDegree {
     /// In coefficients of the supports, which must contain `x_i^(d_i)` and the origin; the degrees are not zero.
     pub(crate) fn new(supports: &Supports, degrees: &[u64], seed: u64, attempt: u64) -> TotalDegree {
-        let mut random = Random::new(seed, 2 + 16 * attempt);
+        let mut random = Random::new(seed, Stream::TotalDegree(attempt));
         let mut parameters = Vec::new();
         for (i, (points, &degree)) in supports.iter().zip(degrees).enumerate() {
             let factor = random.unit();

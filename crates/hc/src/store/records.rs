@@ -107,7 +107,7 @@ impl Records {
 #[cfg(test)]
 mod tests {
     use super::{BLOCK, Records, SLOTS};
-    use crate::random::Random;
+    use crate::random::{Random, Stream};
     use std::collections::BTreeMap;
 
     /// Against a map, for records that need four times the memory there is.
@@ -116,7 +116,7 @@ mod tests {
         for width in [4, 12, 100] {
             let (mut records, mut expected) = (Records::new(width), BTreeMap::new());
             let count = 4 * SLOTS * (BLOCK / width);
-            let mut random = Random::new(width as u64, 0);
+            let mut random = Random::new(width as u64, Stream::Member(0));
             for step in 0..20_000usize {
                 let number = ((random.unit().arg().abs() / 3.2 * count as f64) as usize).min(count - 1);
                 let record: Vec<u8> = (0..width).map(|k| (number ^ (step * 31 + k)) as u8).collect();
