@@ -20,6 +20,10 @@ pub enum Stream {
     Slice(u64),
     /// Combinations of the equations of an overdetermined system.
     Combinations,
+    /// Directions in which a solution is left, to see whether Newton's method comes back.
+    Perturbation,
+    /// Changes of the parameters, to see how far rounding them moves a solution.
+    Rounding,
     /// The line of a trace test.
     Trace,
     /// The parameters of a loop of monodromy, by number.
@@ -44,6 +48,8 @@ impl Stream {
             Stream::Multihomogeneous(k) => between(3, k),
             Stream::Other(k) => between(5, k),
             Stream::Slice(k) => between(7, k),
+            Stream::Rounding => 4,
+            Stream::Perturbation => 6,
             Stream::Combinations => 11,
             Stream::Trace => 0x7ACE,
             Stream::Target(k) => from(1000, k),
@@ -88,7 +94,9 @@ mod tests {
 
     #[test]
     fn purposes_share_no_stream() {
-        let mut numbers = HashSet::from([Stream::Combinations, Stream::Trace].map(Stream::number));
+        let mut numbers = HashSet::from(
+            [Stream::Combinations, Stream::Perturbation, Stream::Rounding, Stream::Trace].map(Stream::number),
+        );
         for attempt in 0..60 {
             let purposes = [
                 Stream::Member,

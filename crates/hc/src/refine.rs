@@ -191,7 +191,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
     }
 
     fn comes_back(&mut self, p: &[ComplexDd], x: &[Complex64], perturbation: f64) -> bool {
-        let mut random = Random::new(0, Stream::Multihomogeneous(0));
+        let mut random = Random::new(0, Stream::Perturbation);
         let mut y = std::mem::take(&mut self.next);
         y.clear();
         sizes(x, &mut self.squares);
@@ -222,7 +222,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         let stays = x.iter().zip(&centre).zip(&sizes).all(|((x, z), w)| within(&(*x).into(), z, NEAR * w));
         let contracts = stays
             && PRECISE_PERTURBATIONS.iter().any(|&distance| {
-                let mut random = Random::new(0, Stream::Multihomogeneous(0));
+                let mut random = Random::new(0, Stream::Perturbation);
                 let away = |(z, w): (&ComplexDd, &f64)| ComplexDd::add(z, &(random.unit() * (distance * w)).into());
                 let mut y: Vec<ComplexDd> = centre.iter().zip(&sizes).map(away).collect();
                 self.newton_precisely(&exact, &mut y, &mut scratch);
@@ -250,7 +250,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
             self.factor(p, x);
         }
         if self.changes.is_empty() {
-            let mut random = Random::new(0, Stream::Other(4));
+            let mut random = Random::new(0, Stream::Rounding);
             self.changes.extend((0..BLUR_DRAWS * p.len()).map(|_| 1.0 + BLUR_STEP * random.unit()));
         }
         let mut blur = vec![0.0; x.len()];

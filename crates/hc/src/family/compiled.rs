@@ -4,7 +4,7 @@ use super::error::FamilyError;
 use super::fibre::Fibre;
 use super::monodromy::{Monodromy, MonodromyOptions, fill};
 use super::pair::find_pair;
-use super::symmetry::Symmetry;
+use super::symmetry::{SAME, Symmetry};
 use super::trace::{TraceTest, trace_test_watched};
 use crate::distinct::relative_distance;
 use crate::monitor::Monitor;
@@ -14,9 +14,6 @@ use std::str::FromStr;
 
 /// Values of this size and below count as zero where a family demands that something does not vanish.
 const VANISHES: f64 = 1e-9;
-
-/// Relative distance below which the image of a solution is taken for another solution.
-const SAME: f64 = 1e-8;
 
 /// A parameter family, compiled: its equations, what must not vanish at its solutions, and its
 /// symmetries.
@@ -123,6 +120,16 @@ impl Family {
         Err(FamilyError::Misfit { found_parameters, found_unknowns, parameters, unknowns })
     }
 
+    /// Checks that the stated maps take the tracked solutions of a fibre, whose parameters are generic,
+    /// to solutions: they do so for all parameters then.
+    pub(super) fn check_symmetry(&self, fibre: &Fibre) -> Result<(), FamilyError> {
+        let tracked = fibre.tracked();
+        match self.symmetry.broken(&self.program, &fibre.parameters, tracked.iter()) {
+            Some(map) => Err(FamilyError::NotSymmetric { map: map + 1 }),
+            None => Ok(()),
+        }
+    }
+
     /// The fibre with one solution of each orbit noted as representative, where the family has symmetries:
     /// these alone are then tracked.
     #[must_use]
@@ -167,7 +174,7 @@ impl Family {
     /// monitor ends the search.
     ///
     /// # Errors
-    /// If `first` is of another family, or an option is out of range.
+    /// If `first` is of another family, an option is out of range, or the stated symmetry is none.
     pub fn complete(
         &self,
         first: &Fibre,
@@ -176,6 +183,7 @@ impl Family {
     ) -> Result<Monodromy, FamilyError> {
         self.check(first)?;
         options.fibre.validate()?;
+        self.check_symmetry(first)?;
         let options = MonodromyOptions { roots: options.roots.or(self.roots()), ..options.clone() };
         Ok(fill(&self.program, first, |p, x| self.accepts(p, x), &self.symmetry, &options, monitor))
     }

@@ -11,6 +11,7 @@ mod error;
 mod fibre;
 mod judge;
 mod monodromy;
+mod orbits;
 mod pair;
 mod start_file;
 mod symmetry;

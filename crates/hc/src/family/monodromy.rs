@@ -16,7 +16,7 @@ use num_complex::Complex64;
 use poly::Evaluate;
 
 /// Accuracy to which new solutions must be known.
-const ACCURATE: f64 = 1e-12;
+pub(super) const ACCURATE: f64 = 1e-12;
 
 /// Settings of [`monodromy`].
 #[derive(Clone, Debug, PartialEq)]

@@ -117,18 +117,7 @@ pub(super) struct Route<'a, 'e, E: Evaluate, S> {
 /// source that may be less work.
 pub(super) fn follow<E: Evaluate, S: Source<E>>(route: Route<'_, '_, E, S>, trial: bool) -> Ends {
     let (count, options, monitor) = (route.count, route.options, route.monitor);
-    let mut stage = Stage {
-        segment: Segment::new(route.start.parameters(), route.target),
-        route,
-        trial,
-        ends: EndList::new(count),
-        regular: BTreeMap::new(),
-        singular: BTreeMap::new(),
-        directions: BTreeMap::new(),
-        starts: Prints::new(count),
-        middles: Prints::new(count),
-        round: Pass::default(),
-    };
+    let mut stage = Stage::new(route, trial);
     let first = if trial { TRIAL } else { CHUNK };
     let policy = Policy { retries: options.paths.retries, charts: 1, first, batch: CHUNK };
     let mut room = Room::default();
@@ -211,6 +200,25 @@ impl<E: Evaluate, S: Source<E>> Work for Stage<'_, '_, E, S> {
             if !jumped.is_empty() {
                 *which = jumped;
             }
+        }
+    }
+}
+
+impl<'a, 'e, E: Evaluate, S: Source<E>> Stage<'a, 'e, E, S> {
+    /// Before anything is tracked.
+    fn new(route: Route<'a, 'e, E, S>, trial: bool) -> Self {
+        let count = route.count;
+        Stage {
+            segment: Segment::new(route.start.parameters(), route.target),
+            route,
+            trial,
+            ends: EndList::new(count),
+            regular: BTreeMap::new(),
+            singular: BTreeMap::new(),
+            directions: BTreeMap::new(),
+            starts: Prints::new(count),
+            middles: Prints::new(count),
+            round: Pass::default(),
         }
     }
 }
@@ -449,3 +457,7 @@ fn judged<E: Evaluate>(refiner: &mut Refiner<'_, E>, target: &[Complex64], endin
         Verdict::Reached | Verdict::Lost => RecordEnd::Lost,
     }
 }
+
+#[cfg(test)]
+#[path = "paths_tests.rs"]
+mod tests;
