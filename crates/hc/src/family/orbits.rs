@@ -34,8 +34,9 @@ impl Orbits {
     }
 
     /// All solutions for a target, from those to which the representatives lead. `None` where they do
-    /// not tell how many paths end where, so that all have to be tracked: where one is singular, where
-    /// two lie in one orbit, and where an orbit is smaller than for generic parameters.
+    /// not tell how many paths end where, so that all have to be tracked: where one is singular or lost
+    /// (of the paths that share a singular end some are missing), where two lie in one orbit, and where
+    /// an orbit is smaller than for generic parameters.
     pub(super) fn expand(
         &self,
         symmetry: &Symmetry,
@@ -43,7 +44,8 @@ impl Orbits {
         tolerance: f64,
         found: &Solutions,
     ) -> Option<Vec<Solution>> {
-        if found.iter().any(|s| s.singular || s.multiplicity > 1) {
+        let lost = found.paths.failed > 0 && !found.interrupted;
+        if lost || found.iter().any(|s| s.singular || s.multiplicity > 1) {
             return None;
         }
         let orbits: Vec<Vec<Vec<Complex64>>> =

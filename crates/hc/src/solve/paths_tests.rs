@@ -31,7 +31,7 @@ fn batches_are_absorbed_in_any_order() {
     let fibre = Fibre::new(coefficients, 1, roots.to_vec());
     let target = TARGET.map(Complex64::from);
     let (excess, options, monitor) = (Excess::none(), SolveOptions::default(), Monitor::default());
-    let trackers = crate::tracker::Trackers::new(&family.program());
+    let trackers = crate::tracker::Trackers::new(family.program());
     let route = || Route {
         trackers: &trackers,
         start: &fibre,
@@ -44,7 +44,7 @@ fn batches_are_absorbed_in_any_order() {
 
     // Records of batches of some paths, through the text that another machine would send.
     let batches = |cuts: &[&[usize]]| -> Vec<Vec<Record>> {
-        let mut stage = Stage::new(route(), false);
+        let stage = Stage::new(route(), false);
         let batch = |numbers: &&[usize]| {
             let mut records = Vec::new();
             stage.batch(&mut (), numbers, Round::FIRST, &mut records);
