@@ -5,7 +5,7 @@ use super::fibre::Fibre;
 use super::monodromy::{Monodromy, MonodromyOptions, fill};
 use super::pair::find_pair;
 use super::symmetry::{SAME, Symmetry};
-use super::trace::{TraceTest, trace_test_watched};
+use super::trace::{TraceTest, trace_test};
 use crate::distinct::relative_distance;
 use crate::monitor::Monitor;
 use num_complex::Complex64;
@@ -44,11 +44,12 @@ pub struct Family {
 }
 
 impl Family {
-    /// Compiles a family.
+    /// Compiles a family: a [`poly::Family`], or a [`System`] with parameters.
     ///
     /// # Errors
     /// If a formula does not compile or the equations are not square.
-    pub fn new(family: poly::Family) -> Result<Family, FamilyError> {
+    pub fn new(family: impl Into<poly::Family>) -> Result<Family, FamilyError> {
+        let family = family.into();
         let (program, nonzero) = (family.system.compile()?, family.nonzero.compile()?);
         let (equations, unknowns) = (program.equations(), program.variables());
         if equations != unknowns || unknowns == 0 {
@@ -188,7 +189,8 @@ impl Family {
         Ok(fill(&self.program, first, |p, x| self.accepts(p, x), &self.symmetry, &options, monitor))
     }
 
-    /// The [trace test](super::trace_test) of a fibre: whether it is whole.
+    /// The trace test of a fibre: whether it is whole. It takes several times as long as finding the
+    /// fibre; `patience` of the options counts for the further points that it needs.
     ///
     /// # Errors
     /// If the fibre is of another family, or the enlarged family of the test does not compile.
@@ -199,7 +201,7 @@ impl Family {
         monitor: &Monitor,
     ) -> Result<TraceTest, FamilyError> {
         self.check(fibre)?;
-        Ok(trace_test_watched(self.system(), fibre, options, monitor)?)
+        Ok(trace_test(self.system(), fibre, options, monitor)?)
     }
 }
 
