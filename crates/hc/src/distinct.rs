@@ -34,7 +34,9 @@ pub(crate) fn coincidences<'a>(
         groups[root(&mut found.parent, i)].push(points[found.keyed[i].index].0);
     }
     groups.retain(|g| g.len() > 1);
-    groups.iter_mut().for_each(|g| g.sort_unstable());
+    for g in groups.iter_mut() {
+        g.sort_unstable();
+    }
     groups.sort();
     groups
 }

@@ -89,7 +89,7 @@ impl<'a> Targets<'a> {
     /// with the number of the target, from 0, and its solutions.
     ///
     /// # Errors
-    /// As [`run`](Self::run).
+    /// Those of [`run`](Self::run).
     pub fn transform<T: Send>(self, transform: impl Fn(usize, Solutions) -> T + Sync) -> Result<Vec<T>, FamilyError> {
         let Targets { how, targets, mut enough } = self;
         how.family.check(how.fibre)?;
@@ -143,7 +143,9 @@ impl How<'_> {
         let mut found = expanded.unwrap_or_else(|| from(self.fibre));
         if self.options.certify && found.certify().is_err() {
             // The family compiles and is square, which is all that can be wrong; nothing is proved if not.
-            found.solutions.iter_mut().for_each(|s| s.certified = Some(false));
+            for s in found.solutions.iter_mut() {
+                s.certified = Some(false);
+            }
         }
         if self.only_real {
             found.solutions.retain(|s| s.real);

@@ -122,7 +122,9 @@ fn sum<E: poly::Evaluate>(system: &E, fibre: &Fibre) -> Vec<ComplexDd> {
     let mut sum = vec![ComplexDd::from(Complex64::new(0.0, 0.0)); fibre.dimension];
     for k in 0..fibre.len() {
         let point = refiner.extend(&fibre.parameters, fibre.solution(k));
-        sum.iter_mut().zip(&point).for_each(|(s, x)| *s = Scalar::add(s, x));
+        for (s, x) in sum.iter_mut().zip(&point) {
+            *s = Scalar::add(s, x);
+        }
     }
     sum
 }

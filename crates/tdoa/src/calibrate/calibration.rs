@@ -163,9 +163,15 @@ impl Calibration {
         self.transform(&map);
         let lengths = self.offsets.iter_mut().chain(&mut self.offset_std);
         let lengths = lengths.chain(self.residuals.iter_mut().flatten());
-        lengths.chain(self.alternatives.iter_mut().flat_map(|a| &mut a.offsets)).flatten().for_each(|x| *x *= factor);
-        self.alternatives.iter_mut().for_each(|a| a.residual *= factor);
-        self.receiver_errors.iter_mut().for_each(|error| error.size *= factor);
+        for x in lengths.chain(self.alternatives.iter_mut().flat_map(|a| &mut a.offsets)).flatten() {
+            *x *= factor;
+        }
+        for a in self.alternatives.iter_mut() {
+            a.residual *= factor;
+        }
+        for error in self.receiver_errors.iter_mut() {
+            error.size *= factor;
+        }
         self.sigma *= factor;
         self.residual_rms *= factor;
         // The truth stays as large as it is, about the middle of the scaled network.
@@ -178,7 +184,9 @@ impl Calibration {
             {
                 truth.positions = positions;
                 truth.transmitter_positions = transmitters;
-                truth.points().for_each(|p| *p = p.map(|p| back.transform.apply(p)));
+                for p in truth.points() {
+                    *p = p.map(|p| back.transform.apply(p));
+                }
             }
         }
     }

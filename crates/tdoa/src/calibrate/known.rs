@@ -139,13 +139,17 @@ impl Anchors {
             ));
         }
         let centre = centroid(positions.iter().flatten());
-        positions.iter_mut().flatten().for_each(|p| *p = [p[0] - centre[0], p[1] - centre[1]]);
+        for p in positions.iter_mut().flatten() {
+            *p = [p[0] - centre[0], p[1] - centre[1]];
+        }
         Ok(Some(Anchors { positions, centre }))
     }
 
-    /// The same in units of which `factor` metres are one.
+    /// Changes to units of which `factor` metres are one.
     pub(super) fn divide(&mut self, factor: f64) {
-        self.positions.iter_mut().flatten().for_each(|p| *p = [p[0] / factor, p[1] / factor]);
+        for p in self.positions.iter_mut().flatten() {
+            *p = [p[0] / factor, p[1] / factor];
+        }
     }
 
     /// Which receivers are held: all anchors, if they are in two places at least.

@@ -224,7 +224,9 @@ impl Test<'_> {
             let mut left = self.projection.off(&column).0;
             for other in &self.taken {
                 let part = dot(&left, other);
-                left.iter_mut().zip(other).for_each(|(x, y)| *x -= part * y);
+                for (x, y) in left.iter_mut().zip(other) {
+                    *x -= part * y;
+                }
             }
             // What the network or another error absorbs to rounding cannot be told.
             if dot(&left, &left) < 1e-6 * plain { Vec::new() } else { left }
@@ -265,9 +267,13 @@ impl Test<'_> {
     /// Takes a column into the model.
     fn take(&mut self, mut column: Vec<f64>) {
         let length = dot(&column, &column).sqrt();
-        column.iter_mut().for_each(|x| *x /= length);
+        for x in column.iter_mut() {
+            *x /= length;
+        }
         let part = dot(&self.rest, &column);
-        self.rest.iter_mut().zip(&column).for_each(|(x, y)| *x -= part * y);
+        for (x, y) in self.rest.iter_mut().zip(&column) {
+            *x -= part * y;
+        }
         self.taken.push(column);
     }
 }

@@ -7,7 +7,7 @@ use serde::Serialize;
 pub struct Truth {
     /// Root mean square distance of the receivers after the best rigid alignment (reflection allowed).
     pub receiver_rms: f64,
-    /// The same with a common scale fitted as well.
+    /// That of the receivers, in metres, with a common scale fitted as well.
     pub receiver_rms_scaled: f64,
     /// That scale, from the calibration to the truth.
     pub scale: f64,
