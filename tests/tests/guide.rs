@@ -20,6 +20,7 @@ const NOT_RUN: &[&str] = &[
     "cargo xtask experiments --quick",
     "cargo bench -p benches --bench evaluate",
     "cargo bench -p hc --bench tracker",
+    "cargo bench -p hc --bench lu",
     "cargo bench -p hc --bench mixed_volume",
     "cargo bench -p tdoa --bench calibrate",
     "cargo xtask compare",
