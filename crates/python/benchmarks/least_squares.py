@@ -1,6 +1,6 @@
 """tdoa.calibrate beside scipy.optimize.least_squares with random restarts, what one would write today.
 
-    python crates/python/benchmarks/least_squares.py [--networks 100]
+    OPENBLAS_NUM_THREADS=1 python crates/python/benchmarks/least_squares.py [--networks 100] [--size 0]
 
 The same networks for both, one thread each: positions and offsets standard normal as in the paper, noise 0.001, a share of gross errors
 uniform in plus or minus 10. The peer minimises a robust loss (`soft_l1`, its scale that of the noise, which it is told) with analytic
@@ -70,10 +70,12 @@ def distance(found, truth):
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--networks", type=int, default=100)
-    count = parser.parse_args().networks
+    parser.add_argument("--size", type=int, choices=range(len(SIZES)), help="one of the sizes alone")
+    arguments = parser.parse_args()
+    count, sizes = arguments.networks, SIZES if arguments.size is None else [SIZES[arguments.size]]
     print("| network | gross errors | tdoa finds | s | tdoa calls unique | wrong of these | scipy finds | s | ratio |")
     print("|---|---|---|---|---|---|---|---|---|", flush=True)
-    for m, n in SIZES:
+    for m, n in sizes:
         for share in SHARES:
             ours, theirs, unique, wrong, times = 0, 0, 0, 0, []
             for k in range(count):

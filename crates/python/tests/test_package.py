@@ -17,7 +17,8 @@ FOLDER = ROOT / "crates/python"
 
 
 def test_stubs_agree_with_what_is_there():
-    output = subprocess.run([sys.executable, "-m", "mypy.stubtest", "hc", "tdoa"], capture_output=True, text=True, timeout=600)
+    command = [sys.executable, "-m", "mypy.stubtest", "--mypy-config-file", str(FOLDER / "pyproject.toml"), "hc", "tdoa"]
+    output = subprocess.run(command, capture_output=True, text=True, timeout=600)
     assert output.returncode == 0, output.stdout + output.stderr
 
 

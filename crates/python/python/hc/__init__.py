@@ -15,6 +15,7 @@ from ._solve import certify, mixed_volume, solve
 
 for _function in (solve, mixed_volume, certify):
     _function.__module__ = "hc"
+del _function
 
 __all__ = [
     "Certificates",

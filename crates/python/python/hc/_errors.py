@@ -20,3 +20,4 @@ class InternalError(Error, RuntimeError):
 for _class in (Error, InputError, UndeterminedError, InternalError):
     # Tracebacks and pickles name them as users do.
     _class.__module__ = "hc"
+del _class

@@ -110,7 +110,7 @@ class Fibre:
     def __eq__(self, other):
         return isinstance(other, Fibre) and self._text == other._text
 
-    __hash__ = None
+    __hash__ = None  # type: ignore[assignment]
 
     def __reduce__(self):
         return Fibre, (self._text,)
@@ -358,3 +358,4 @@ def _text_of(path):
 
 for _class in (End, Tracked, Fibre, Compiled, Family):
     _class.__module__ = "hc"
+del _class

@@ -6,6 +6,23 @@ from typing import Any, TypedDict, final
 import numpy as np
 from numpy.typing import NDArray
 
+__all__ = [
+    "Family",
+    "Fibre",
+    "calibrate",
+    "calibration_html",
+    "calibration_svg",
+    "certify",
+    "check_size",
+    "cramer_rao",
+    "fail_for_a_test",
+    "mixed_volume",
+    "read",
+    "simulate",
+    "solve",
+    "solve_network",
+]
+
 class _How(TypedDict):
     threads: int | None
     progress: Callable[[str, int, int], object] | None

@@ -165,3 +165,4 @@ def _finite(value):
 
 for _class in (Solutions, Certificates):
     _class.__module__ = "hc"
+del _class

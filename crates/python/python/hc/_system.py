@@ -4,56 +4,12 @@ import re
 import sys
 
 from ._errors import InputError
+from ._numbers import decimal
 
 
 def _is_sympy(thing):
     sympy = sys.modules.get("sympy")
     return sympy is not None and isinstance(thing, (sympy.Basic, sympy.MatrixBase))
-
-
-def _printer():
-    import sympy
-    from sympy.printing.str import StrPrinter
-
-    class Printer(StrPrinter):
-        """Formulas whose numbers are read back to the same bits; irrational numbers become doubles."""
-
-        def _print_Float(self, number):
-            if number._prec <= 53:
-                return _decimal(float(number))
-            exact = sympy.Rational(number)
-            return f"({exact.p}/{exact.q})"
-
-        def _print_NumberSymbol(self, number):
-            return _decimal(float(number))
-
-        def _print_ImaginaryUnit(self, _):
-            return "i"
-
-        def _print_Pow(self, power, rational=False):
-            if power.is_number and not power.exp.is_Integer:
-                value = complex(power)
-                return f"({_decimal(value.real)} + {_decimal(value.imag)}*i)" if value.imag else _decimal(value.real)
-            if power.exp.is_Integer:
-                base = self.parenthesize(power.base, 1000, strict=False)
-                if power.exp.is_negative:
-                    return f"(1/({base})**{-power.exp})"
-                return f"({base})**{power.exp}"
-            raise InputError(f"{power} is no polynomial")
-
-        def _print_Function(self, function):
-            if function.is_number:
-                value = complex(function)
-                return f"({_decimal(value.real)} + {_decimal(value.imag)}*i)" if value.imag else _decimal(value.real)
-            raise InputError(f"{function} is no polynomial")
-
-    return Printer({"order": None})
-
-
-def _decimal(value):
-    if value != value or value in (float("inf"), float("-inf")):
-        raise InputError(f"a coefficient is {value}")
-    return f"({value!r})" if value < 0 else repr(value)
 
 
 def _natural(name):
@@ -72,7 +28,10 @@ def formulas(name, given):
         elif _is_sympy(item):
             import sympy
 
-            printer = printer or _printer()
+            if printer is None:
+                from ._printer import Printer
+
+                printer = Printer({"order": None})
             symbolic = True
             expression = item
             if isinstance(item, sympy.Equality):
@@ -84,7 +43,7 @@ def formulas(name, given):
             names.update(symbol.name for symbol in expression.free_symbols)
             texts.append(printer.doprint(expression))
         elif isinstance(item, (int, float)) and not isinstance(item, bool):
-            texts.append(_decimal(item))
+            texts.append(decimal(item))
         else:
             raise InputError(f"{name} {len(texts) + 1} must be a string or a SymPy expression, not {type(item).__name__}")
     return texts, sorted(names, key=_natural) if symbolic else None

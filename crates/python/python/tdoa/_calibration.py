@@ -197,7 +197,7 @@ class Calibration:
     def __eq__(self, other):
         return isinstance(other, Calibration) and self._text == other._text
 
-    __hash__ = None
+    __hash__ = None  # type: ignore[assignment]
 
     def __reduce__(self):
         return Calibration, (self._text,)
@@ -214,3 +214,4 @@ def _rows(values, shape):
 
 for _class in (Alternative, Calibration):
     _class.__module__ = "tdoa"
+del _class

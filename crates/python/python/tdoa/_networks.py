@@ -392,3 +392,4 @@ def cramer_rao(receivers, transmitters, sigma, *, used=None):
 
 for _public in (Networks, Simulation, calibrate, solve, simulate, cramer_rao):
     _public.__module__ = "tdoa"
+del _public
