@@ -2,7 +2,7 @@
 
 use crate::errors::{Failure, guarded};
 use crate::measured::Table;
-use crate::work::{How, run, whole};
+use crate::work::{Done, How, run, whole};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use serde::Serialize;
@@ -75,11 +75,14 @@ pub(crate) fn calibrate<'py>(
     guarded(|| {
         let measured = table.measured()?;
         let options = settings.options()?;
-        let (found, stopped) = run(py, &how, move |monitor| calibrate_with(&measured, &options, &[], monitor))?;
+        let Done { result: found, stopped, .. } =
+            run(py, &how, move |monitor| calibrate_with(&measured, &options, &[], monitor))?;
         let mut calibration = match found {
             Ok(calibration) => calibration,
             Err(CalibrateError::Cancelled) => return whole(py, py.None().into_bound(py), stopped),
-            Err(error @ (CalibrateError::Degenerate(_) | CalibrateError::NotFound(_) | CalibrateError::Delays { .. })) => {
+            Err(
+                error @ (CalibrateError::Degenerate(_) | CalibrateError::NotFound(_) | CalibrateError::Delays { .. }),
+            ) => {
                 return Err(Failure::undetermined(error));
             }
             Err(error) => return Err(Failure::input(error)),

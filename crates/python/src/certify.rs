@@ -3,7 +3,7 @@
 use crate::arrays::{array, rows};
 use crate::errors::{Failure, guarded};
 use crate::system::Given;
-use crate::work::{How, run, whole};
+use crate::work::{Done, How, run, whole};
 use hc::certify::{CertifyOptions, Reality, certify as prove};
 use hc::poly::{ExpandLimits, Polynomial};
 use hc::start::{MixedError, mixed_volume_watched};
@@ -18,7 +18,7 @@ use pyo3::types::PyDict;
 pub(crate) fn mixed_volume(py: Python<'_>, system: Given, how: How) -> PyResult<Bound<'_, PyAny>> {
     guarded(|| {
         let system = system.system()?;
-        let (found, stopped) = run(py, &how, move |monitor| {
+        let Done { result: found, stopped, .. } = run(py, &how, move |monitor| {
             let polynomials = system.expand(&ExpandLimits::default()).map_err(Failure::input)?;
             let supports: Vec<Vec<Vec<i32>>> = polynomials.iter().map(Polynomial::support).collect();
             match mixed_volume_watched(system.variables().len(), &supports, monitor) {
@@ -43,7 +43,8 @@ pub(crate) fn certify<'py>(
         let (system, points) = (system.system()?, rows(&points)?);
         let (k, n) = (points.len(), system.variables().len());
         let given = points.clone();
-        let (found, stopped) = run(py, &how, move |_| prove(&system, &[], &given, &CertifyOptions::default()))?;
+        let Done { result: found, stopped, .. } =
+            run(py, &how, move |_| prove(&system, &[], &given, &CertifyOptions::default()))?;
         let found = found.map_err(Failure::input)?;
         let nothing = [[[f64::NAN; 2]; 2]].repeat(n);
         let mut boxes: Vec<f64> = Vec::with_capacity(4 * k * n);

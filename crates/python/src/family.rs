@@ -2,9 +2,9 @@
 
 use crate::arrays::{array, rows};
 use crate::errors::{Failure, guarded};
-use crate::work::{How, run, whole};
+use crate::work::{Done, How, run, whole};
 use hc::family::{StartFile, Stop};
-use hc::{FamilyError, MonodromyOptions, SolveOptions, Solutions};
+use hc::{FamilyError, MonodromyOptions, Solutions, SolveOptions};
 use num_complex::Complex64;
 use numpy::PyReadonlyArrayDyn;
 use pyo3::prelude::*;
@@ -90,7 +90,7 @@ impl Family {
             let mut options = MonodromyOptions::new().seed(seed);
             options.roots = roots;
             options.patience = patience.unwrap_or(options.patience);
-            let (found, stopped) = run(py, &how, move |monitor| {
+            let Done { result: found, stopped, .. } = run(py, &how, move |monitor| {
                 let first = match &first {
                     Some(first) => hc::Fibre::clone(first),
                     None => family.find_pair(seed)?,
@@ -133,7 +133,7 @@ impl Family {
             let (family, fibre, targets) = (self.0.clone(), fibre.0.clone(), rows(&targets)?);
             let (roots, unknowns) = (fibre.len(), fibre.dimension);
             let shown = fibre.representatives.as_ref().map_or(roots, Vec::len);
-            let (found, stopped) = run(py, &how, move |monitor| {
+            let Done { result: found, stopped, seconds } = run(py, &how, move |monitor| {
                 let options = SolveOptions::new().certify(certify);
                 let tracking = family.track(&fibre, &targets).options(&options).watched(monitor);
                 tracking.transform(|_, found| slots(&found, roots, shown, certify))
@@ -152,6 +152,7 @@ impl Family {
             result.set_item("points", array(py, points, &[found.len(), width, unknowns])?)?;
             result.set_item("ends", array(py, ends, &[found.len(), width])?)?;
             let uncertified: Vec<i64> = found.iter().map(|row| row.2 as i64).collect();
+            result.set_item("seconds", seconds)?;
             result.set_item("uncertified", array(py, uncertified, &[found.len()])?)?;
             whole(py, result.into_any(), stopped)
         })

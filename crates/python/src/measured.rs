@@ -5,8 +5,8 @@ use crate::errors::{Failure, guarded};
 use numpy::PyReadonlyArrayDyn;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use tdoa::Pseudoranges;
 use tdoa::PseudorangeError;
+use tdoa::Pseudoranges;
 use tdoa::pseudoranges::MAX_CELLS;
 use tdoa::read::{ReadOptions, Units, read as read_file};
 

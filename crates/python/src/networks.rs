@@ -3,7 +3,7 @@
 use crate::arrays::{array, elements};
 use crate::errors::{Failure, guarded};
 use crate::measured::Table;
-use crate::work::{How, run, whole};
+use crate::work::{Done, How, run, whole};
 use numpy::PyReadonlyArrayDyn;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -44,7 +44,7 @@ pub(crate) fn solve_network<'py>(
         }
         let measured = table.measured()?;
         let names = [measured.receiver_names().to_vec(), measured.transmitter_names().to_vec()];
-        let (solved, stopped) = run(py, &how, move |monitor| {
+        let Done { result: solved, stopped, seconds } = run(py, &how, move |monitor| {
             let kept = || SOLVERS.lock().unwrap_or_else(PoisonError::into_inner);
             let solver = kept().pop();
             let mut solver = solver.unwrap_or_default();
@@ -63,6 +63,7 @@ pub(crate) fn solve_network<'py>(
             Err(error) => return Err(Failure::undetermined(error)),
         };
         let result = solution(py, &found)?;
+        result.set_item("seconds", seconds)?;
         let [receivers, transmitters] = names;
         result.set_item("receiver_names", receivers)?;
         result.set_item("transmitter_names", transmitters)?;

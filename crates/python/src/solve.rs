@@ -4,8 +4,8 @@ use crate::arrays::array;
 use crate::errors::{Failure, guarded};
 use crate::networks::numbers;
 use crate::system::Given;
-use crate::work::{How, run, whole};
-use hc::{SolveOptions, Solutions, Start, solve_watched};
+use crate::work::{Done, How, run, whole};
+use hc::{Solutions, SolveOptions, Start, solve_watched};
 use num_complex::Complex64;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -55,9 +55,11 @@ pub(crate) fn solve(py: Python<'_>, system: Given, settings: Settings, how: How)
         let mut options = SolveOptions::new().seed(settings.seed).start(start).groups(groups?);
         options = options.torus_only(settings.torus_only).certify(settings.certify);
         options.max_paths = settings.max_paths.unwrap_or(options.max_paths);
-        let (found, stopped) = run(py, &how, move |monitor| solve_watched(&system, &options, monitor))?;
+        let Done { result: found, stopped, seconds } =
+            run(py, &how, move |monitor| solve_watched(&system, &options, monitor))?;
         let result = solutions(py, &found.map_err(Failure::input)?)?;
         result.set_item("seed", settings.seed)?;
+        result.set_item("seconds", seconds)?;
         whole(py, result.into_any(), stopped)
     })
 }

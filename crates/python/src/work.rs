@@ -60,7 +60,16 @@ fn pool(threads: Option<usize>) -> Result<Arc<ThreadPool>, Failure> {
     Ok(pool)
 }
 
-/// Runs work on threads of its own, and gives its result; if a signal has stopped it, with the exception that its handler has raised.
+/// What work has given.
+pub(crate) struct Done<R> {
+    pub(crate) result: R,
+    /// The exception that the handler of a signal has raised, if one has stopped the work.
+    pub(crate) stopped: Option<PyErr>,
+    /// Time of the work itself, without what Python adds.
+    pub(crate) seconds: f64,
+}
+
+/// Runs work on threads of its own.
 ///
 /// # Errors
 /// A wrong number of threads, a panic, or an exception of the progress.
@@ -68,13 +77,15 @@ pub(crate) fn run<R: Send + 'static>(
     py: Python<'_>,
     how: &How,
     work: impl FnOnce(&Monitor) -> R + Send + 'static,
-) -> Result<(R, Option<PyErr>), Failure> {
+) -> Result<Done<R>, Failure> {
     let pool = pool(how.threads)?;
     let monitor = Monitor::watched();
     let (sender, receiver) = channel();
     let watched = monitor.clone();
     pool.spawn(move || {
+        let begun = Instant::now();
         let ended = catch_unwind(AssertUnwindSafe(|| work(&watched)));
+        let ended = ended.map(|result| (result, begun.elapsed().as_secs_f64()));
         // Nobody waits any more where Python has gone.
         let _ = sender.send(ended);
     });
@@ -106,7 +117,8 @@ pub(crate) fn run<R: Send + 'static>(
     };
     // An interrupt that came with the end.
     let stopped = stopped.or_else(|| py.check_signals().err());
-    Ok((ended.map_err(|payload| Failure::panicked(payload.as_ref()))?, stopped))
+    let (result, seconds) = ended.map_err(|payload| Failure::panicked(payload.as_ref()))?;
+    Ok(Done { result, stopped, seconds })
 }
 
 /// A result, or what has stopped it with the partial result as its attribute `partial`.

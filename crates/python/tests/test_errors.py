@@ -49,24 +49,27 @@ def test_tables_that_determine_nothing():
 
 
 def test_memory_layouts_give_the_same_bits():
-    expected = tdoa.calibrate(TABLE).to_json()
+    # The same few starts for all.
+    def calibrate(table):
+        return tdoa.calibrate(table, max_starts=4, agreeing=1)
+
+    expected = calibrate(TABLE).to_json()
     wide = np.zeros((16, 30))
     wide[::2, ::3] = TABLE
     swapped = TABLE.astype(">f8")
     unaligned = np.frombuffer(b"x" + TABLE.tobytes(), dtype=np.uint8)[1:].view("<f8").reshape(TABLE.shape)
     for table in (np.asfortranarray(TABLE), wide[::2, ::3], TABLE[::-1, ::-1][::-1, ::-1], swapped, unaligned, TABLE.tolist()):
-        assert tdoa.calibrate(table).to_json() == expected
+        assert calibrate(table).to_json() == expected
     readonly = TABLE.copy()
     readonly.flags.writeable = False
-    assert tdoa.calibrate(readonly).to_json() == expected
+    assert calibrate(readonly).to_json() == expected
     # Doubles hold every number of the other types.
-    for kind in (np.float32, np.float16, np.int32):
-        small = TABLE.astype(kind)
-        assert tdoa.calibrate(small).to_json() == tdoa.calibrate(small.astype(float)).to_json()
+    for small in (TABLE.astype(np.float32), np.round(1000 * TABLE).astype(np.int32)):
+        assert calibrate(small).to_json() == calibrate(small.astype(float)).to_json()
     missing = [[None if (i, j) == (1, 2) else TABLE[i, j] for j in range(10)] for i in range(8)]
     gap = TABLE.copy()
     gap[1, 2] = np.nan
-    assert tdoa.calibrate(missing).to_json() == tdoa.calibrate(gap).to_json()
+    assert calibrate(missing).to_json() == calibrate(gap).to_json()
 
 
 @pytest.mark.parametrize(

@@ -57,6 +57,7 @@ class Solutions:
     warnings: list[str]
     summary: str
     seed: int
+    seconds: float
     def __init__(self, found: dict[str, Any]) -> None: ...
     @property
     def real(self) -> NDArray[np.float64]: ...
@@ -94,6 +95,7 @@ class Tracked(NamedTuple):
     points: NDArray[np.complex128]
     ends: NDArray[np.int8]
     uncertified: NDArray[np.int64]
+    seconds: float
     @property
     def complete(self) -> NDArray[np.bool_]: ...
     def real(self, tolerance: float = 1e-10) -> NDArray[np.bool_]: ...

@@ -35,11 +35,14 @@ class Tracked(NamedTuple):
         How each slot was filled, an `End`.
     uncertified : ndarray of int, shape (k,)
         Regular solutions that could not be certified, where that was asked for.
+    seconds : float
+        How long the work took, without what Python adds.
     """
 
     points: np.ndarray
     ends: np.ndarray
     uncertified: np.ndarray
+    seconds: float
 
     @property
     def complete(self):
@@ -142,7 +145,7 @@ class Compiled:
             bool(certify),
             threads=threads,
             progress=progress,
-            wrap=lambda found: Tracked(found["points"], found["ends"], found["uncertified"]),
+            wrap=lambda found: Tracked(found["points"], found["ends"], found["uncertified"], found["seconds"]),
         )
 
     def __repr__(self):

@@ -45,6 +45,8 @@ class Solutions:
         What a reader of the list must know.
     seed : int
         Seed of everything random.
+    seconds : float
+        How long the work took, without what Python adds.
     """
 
     def __init__(self, found):

@@ -123,7 +123,7 @@ def mixed_volume(system, *, variables=None, threads=None, progress=True):
     --------
     >>> import hc
     >>> hc.mixed_volume(["x^2*y + x + 1", "x*y^2 + y + 2"])
-    4
+    3
     """
     return call(_native.mixed_volume, _system(system, variables), threads=threads, progress=progress)
 

@@ -111,6 +111,7 @@ class Networks:
     configuration: str
     solver: str
     stopped_early: bool
+    seconds: float
     warnings: list[str]
     receiver_names: list[str]
     transmitter_names: list[str]

@@ -189,6 +189,8 @@ class Networks:
         What makes the result doubtful.
     receiver_names, transmitter_names : list of str
         Names of the nodes.
+    seconds : float
+        How long the work took, without what Python adds.
     """
 
     def __init__(self, found):
