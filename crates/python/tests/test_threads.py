@@ -149,7 +149,7 @@ def test_processes(method):
 def test_progress_is_told():
     told = []
     table = tdoa.simulate(20, 40, noise=0.02, outliers=0.1, seed=3).pseudoranges
-    tdoa.calibrate(table, progress=lambda *news: told.append(news), max_starts=2000, agreeing=2000)
+    tdoa.calibrate(table, progress=lambda *news: told.append(news), max_starts=400, agreeing=400)
     assert told and all(isinstance(words, str) and done <= total for words, done, total in told)
 
     def fail(*_):
@@ -160,7 +160,7 @@ def test_progress_is_told():
 
 
 def test_scripts_are_quiet(script):
-    code = "import tdoa\ntdoa.calibrate(tdoa.simulate(20, 40, noise=.1, seed=3).pseudoranges, max_starts=1500, agreeing=1500)\n"
+    code = "import tdoa\ntdoa.calibrate(tdoa.simulate(20, 40, noise=.1, seed=3).pseudoranges, max_starts=300, agreeing=300)\n"
     import subprocess
     import sys
 
