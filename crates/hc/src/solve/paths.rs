@@ -229,9 +229,14 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
         if round.level == 0 { first.clone() } else { first.stricter(round.level) }
     }
 
-    /// Tracks paths to regular ends, or to where the endgame begins. One record a path, in order.
+    /// Tracks paths to regular ends, or to where the endgame begins. One record a path, in order; none once the work is
+    /// cancelled.
     fn tracked(&self, numbers: &[usize], round: Round) -> Vec<Record> {
         let Route { trackers, start, target, options, monitor, .. } = self.route;
+        if monitor.is_cancelled() {
+            // Not even start solutions are made any more; there may be millions of paths to come.
+            return Vec::new();
+        }
         let settings = self.settings(round);
         if start.is_tracked() {
             monitor.enter(monitor::Stage::Start, numbers.len() as u64);

@@ -1,6 +1,6 @@
 //! Known positions and distances of receivers: they fix the frame, sharpen the rest and give the propagation speed.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::options::{CalibrateError, CalibrateOptions, KnownDistance};
 use crate::align::align;
@@ -11,7 +11,7 @@ use crate::pseudoranges::{MAX_MAGNITUDE, Pseudoranges};
 use crate::refine::Refined;
 
 /// The propagation speed as the known distances have it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SpeedEstimate {
     /// True speed over the one with which the measurements became metres.
     pub factor: f64,

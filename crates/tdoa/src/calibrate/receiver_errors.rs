@@ -4,7 +4,7 @@
 //! is compared with the residuals (a score test); the column that explains most is taken into the model, and the test goes on with what
 //! remains.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::deviation::{inlier_deviation, spread_of_residuals};
 use crate::network::Network;
@@ -21,7 +21,7 @@ const SIDE: usize = 4;
 const PROJECTED: usize = 24;
 
 /// What is wrong with a receiver.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum ReceiverErrorKind {
@@ -36,7 +36,7 @@ pub enum ReceiverErrorKind {
 }
 
 /// An error of one receiver that its measurements show.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ReceiverError {
     /// Name of the receiver.
     pub receiver: String,
