@@ -20,7 +20,8 @@ const REAL_SINGULAR: f64 = 1e-7;
 /// Condition number from which the Jacobian counts as singular to working precision.
 const SINGULAR: f64 = 1e13;
 
-/// Residuals relative to the sizes of the terms from which a singular point does not solve an equation.
+/// Residuals relative to the sizes of the terms from which a singular point does not solve an
+/// equation.
 const EXCESS_SINGULAR: f64 = 1e-6;
 
 /// What the ends of all paths amount to.
@@ -41,7 +42,8 @@ pub(super) struct Classified {
 }
 
 impl Classified {
-    /// Without what is known of the start system; `tracked` paths, of which `retracked` were run again.
+    /// Without what is known of the start system; `tracked` paths, of which `retracked` were run
+    /// again.
     pub(super) fn solutions(self, tracked: usize, retracked: usize) -> Solutions {
         Solutions {
             paths: self.counts(tracked, retracked),
@@ -67,7 +69,8 @@ impl Classified {
     }
 }
 
-/// Sorts ends into solutions; `member` is the system with its coefficients. Without it, singular ends are lost.
+/// Sorts ends into solutions; `member` is the system with its coefficients. Without it, singular
+/// ends are lost.
 pub(super) fn classify(
     member: Option<(&SparseSystem, &[Complex64])>,
     all: &Ends,
@@ -144,8 +147,9 @@ fn regular_solution(refined: &Refined) -> Solution {
     }
 }
 
-/// Tells whether solutions near a singular one form a component of positive dimension: slices by random linear equations that
-/// move away from the point meet such a component in solutions of the system, and an isolated point in none.
+/// Tells whether solutions near a singular one form a component of positive dimension: slices by
+/// random linear equations that move away from the point meet such a component in solutions of the
+/// system, and an isolated point in none.
 struct Local<'a> {
     system: &'a SparseSystem,
     target: &'a [Complex64],
@@ -156,9 +160,11 @@ struct Local<'a> {
     lu: Lu<Complex64>,
 }
 
-/// At the farthest slice an isolated point of multiplicity `m` must leave a residual of about this: its distance to the power of `m`.
+/// At the farthest slice an isolated point of multiplicity `m` must leave a residual of about this:
+/// its distance to the power of `m`.
 const VISIBLE: f64 = 1e-9;
-/// The farthest slice is at least at this relative distance, and this is how many lead up to it, each at half the distance of the next.
+/// The farthest slice is at least at this relative distance, and this is how many lead up to it,
+/// each at half the distance of the next.
 const FARTHEST: f64 = 1e-4;
 const SLICES: i32 = 5;
 /// Points from which slices are tried.
@@ -196,7 +202,8 @@ impl<'a> Local<'a> {
 
     /// Follows the solution in `dimension` slices `v (x - point) = distance` away from the point.
     ///
-    /// Where components cross, Newton's method has no direction at the point itself: all but start 0 begin beside it.
+    /// Where components cross, Newton's method has no direction at the point itself: all but start
+    /// 0 begin beside it.
     fn meets_slices(&mut self, point: &[Complex64], dimension: usize, farthest: f64, start: u64) -> bool {
         let n = point.len();
         let scale = scale(point);
@@ -238,7 +245,8 @@ impl<'a> Local<'a> {
         relative_distance(&x, point) > 1e-3 * farthest
     }
 
-    /// Largest residual relative to the sizes of the terms of its equation, in which coordinates count for 1 % of `scale` at least.
+    /// Largest residual relative to the sizes of the terms of its equation, in which coordinates
+    /// count for 1 % of `scale` at least.
     fn residual(&mut self, x: &[Complex64], scale: &[f64]) -> f64 {
         self.system.values(&mut self.memory, x, self.target, &mut self.values);
         let residuals: Vec<f64> = self.values.iter().map(|v| v.norm()).collect();
@@ -249,7 +257,8 @@ impl<'a> Local<'a> {
     }
 }
 
-/// The scale on which each coordinate of a point is measured: its size, or a tenth of the largest where it is as good as zero.
+/// The scale on which each coordinate of a point is measured: its size, or a tenth of the largest
+/// where it is as good as zero.
 fn scale(point: &[Complex64]) -> Vec<f64> {
     let largest = point.iter().map(|z| z.norm()).fold(0.0, f64::max);
     let largest = if largest > 0.0 { largest } else { 1.0 };

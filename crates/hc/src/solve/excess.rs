@@ -5,7 +5,8 @@ use num_complex::Complex64;
 use poly::simd::Isa;
 use poly::{Evaluate, SparseSystem, SupportError};
 
-/// Residuals relative to the sizes of the terms from which a regular point does not solve an equation.
+/// Residuals relative to the sizes of the terms from which a regular point does not solve an
+/// equation.
 const EXCESS: f64 = 1e-9;
 /// Coordinates up to this share of the largest count as zero.
 const TORUS: f64 = 1e-12;
@@ -35,8 +36,8 @@ impl Excess {
         self.contains(point, EXCESS)
     }
 
-    /// Whether a point misses an equation by more than `tolerance` times the sizes of its terms, or has a zero coordinate
-    /// where only the torus was asked for.
+    /// Whether a point misses an equation by more than `tolerance` times the sizes of its terms, or
+    /// has a zero coordinate where only the torus was asked for.
     pub(super) fn contains(&self, point: &[Complex64], tolerance: f64) -> bool {
         let largest = point.iter().map(|z| z.norm()).fold(0.0, f64::max);
         if self.torus_only && point.iter().any(|z| z.norm() <= TORUS * largest) {
