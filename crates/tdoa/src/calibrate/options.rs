@@ -188,3 +188,21 @@ pub enum CalibrateError {
     #[error("calibration was cancelled")]
     Cancelled(Option<Box<Unfinished>>),
 }
+
+impl CalibrateError {
+    /// Changes the network that a stopped calibration leaves.
+    pub(super) fn placing(self, place: impl FnOnce(Unfinished) -> Unfinished) -> CalibrateError {
+        match self {
+            CalibrateError::Cancelled(Some(best)) => CalibrateError::Cancelled(Some(Box::new(place(*best)))),
+            other => other,
+        }
+    }
+
+    /// Leaves this network where a stopped calibration leaves none.
+    pub(super) fn leaving(self, best: &Unfinished) -> CalibrateError {
+        match self {
+            CalibrateError::Cancelled(None) => CalibrateError::Cancelled(Some(Box::new(best.clone()))),
+            other => other,
+        }
+    }
+}

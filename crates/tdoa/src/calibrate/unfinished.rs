@@ -1,6 +1,5 @@
 //! What a calibration that was stopped leaves.
 
-use super::options::CalibrateError;
 use crate::network::Network;
 use serde::{Deserialize, Serialize};
 
@@ -58,24 +57,6 @@ fn scatter<T: Clone>(length: usize, at: &[usize], values: Vec<Option<T>>) -> Vec
         all[k] = value;
     }
     all
-}
-
-impl CalibrateError {
-    /// Changes the network that a stopped calibration leaves.
-    pub(super) fn placing(self, place: impl FnOnce(Unfinished) -> Unfinished) -> CalibrateError {
-        match self {
-            CalibrateError::Cancelled(Some(best)) => CalibrateError::Cancelled(Some(Box::new(place(*best)))),
-            other => other,
-        }
-    }
-
-    /// Leaves this network where a stopped calibration leaves none.
-    pub(super) fn leaving(self, best: &Unfinished) -> CalibrateError {
-        match self {
-            CalibrateError::Cancelled(None) => CalibrateError::Cancelled(Some(Box::new(best.clone()))),
-            other => other,
-        }
-    }
 }
 
 #[cfg(test)]
