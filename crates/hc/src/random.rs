@@ -18,6 +18,8 @@ pub enum Stream {
     Multihomogeneous(u64),
     /// Hyperplanes by which points on components are told, by attempt.
     Slice(u64),
+    /// Points beside one whose neighbourhood is searched.
+    Beside,
     /// Combinations of the equations of an overdetermined system.
     Combinations,
     /// The line of a trace test.
@@ -45,6 +47,7 @@ impl Stream {
             Stream::Other(k) => between(5, k),
             Stream::Slice(k) => between(7, k),
             Stream::Combinations => 11,
+            Stream::Beside => 13,
             Stream::Trace => 0x7ACE,
             Stream::Target(k) => from(1000, k),
             Stream::Place(k) => from(2000, k),
@@ -88,7 +91,7 @@ mod tests {
 
     #[test]
     fn purposes_share_no_stream() {
-        let mut numbers = HashSet::from([Stream::Combinations, Stream::Trace].map(Stream::number));
+        let mut numbers = HashSet::from([Stream::Combinations, Stream::Beside, Stream::Trace].map(Stream::number));
         for attempt in 0..60 {
             let purposes = [
                 Stream::Member,

@@ -4,6 +4,7 @@ use super::error::SolveError;
 use crate::linalg::Lu;
 use crate::random::{Random, Stream};
 use num_complex::Complex64;
+use num_rational::BigRational;
 use num_traits::ToPrimitive;
 use poly::simd::Isa;
 use poly::{Exact, Polynomial};
@@ -19,6 +20,8 @@ pub(super) struct Equations {
     pub(super) coefficients: Vec<Vec<Complex64>>,
     /// Unknown `j` is `scale[j]`, a power of two, times that of the scaled equations.
     scale: Vec<f64>,
+    /// Whether the coefficients are exactly those of the polynomials.
+    pub(super) exact: bool,
 }
 
 impl Equations {
@@ -27,6 +30,7 @@ impl Equations {
         let unknowns = names.len();
         let mut supports: Vec<Vec<Vec<i32>>> = Vec::with_capacity(polynomials.len());
         let mut coefficients = Vec::with_capacity(polynomials.len());
+        let mut exact = true;
         for (i, polynomial) in polynomials.iter().enumerate() {
             if polynomial.variables() != unknowns {
                 return Err(SolveError::Mismatched(i + 1));
@@ -39,6 +43,7 @@ impl Equations {
                 return Err(SolveError::Constant(i + 1));
             }
             supports.push(support);
+            exact &= polynomial.terms().iter().all(|(_, c)| is_double(&c.re) && is_double(&c.im));
             let numbers = polynomial.terms().iter().map(|(_, c)| {
                 Some(Complex64::new(c.re.to_f64()?, c.im.to_f64()?)).filter(|z| z.is_finite() && z.norm() > 0.0)
             });
@@ -52,7 +57,12 @@ impl Equations {
             *coefficients = scaled(support, coefficients, &exponents);
         }
         let scale = exponents.iter().map(|&e| 2f64.powi(e)).collect();
-        Ok(Equations { unknowns, supports, coefficients, scale })
+        Ok(Equations { unknowns, supports, coefficients, scale, exact })
+    }
+
+    /// Logarithms to base 2 of the units of the scaled unknowns.
+    pub(super) fn units(&self) -> Vec<i64> {
+        self.scale.iter().map(|s| s.log2().round() as i64).collect()
     }
 
     pub(super) fn len(&self) -> usize {
@@ -112,6 +122,11 @@ impl Equations {
             *z *= s;
         }
     }
+}
+
+/// Whether a rational is a double exactly.
+fn is_double(q: &BigRational) -> bool {
+    q.to_f64().and_then(BigRational::from_float).is_some_and(|double| double == *q)
 }
 
 /// Coefficients of an equation for unknowns in units of `2^exponents`, the largest of size one.

@@ -1,9 +1,11 @@
 //! All isolated solutions of a polynomial system.
 
 mod classify;
+mod conditioned;
 mod equations;
 mod error;
 mod excess;
+mod judged;
 mod member;
 mod options;
 mod paths;
@@ -16,21 +18,24 @@ mod warning;
 pub use error::SolveError;
 pub(crate) use member::solve_member;
 pub use options::{SolveOptions, Start};
-pub use solutions::{Direction, Solution, Solutions};
+pub use solutions::{Direction, Solution, Solutions, Unresolved};
 pub use warning::Warning;
 
 use crate::distinct::{CLUSTER, relative_distance};
 use crate::monitor::Monitor;
+use crate::singular::Given;
 use crate::start::MixedError;
 use crate::tracker::Trackers;
-use classify::{Classified, classify};
+use classify::{Classified, Tracked, classify};
+use conditioned::conditioned;
 use equations::Equations;
 use excess::Excess;
 use num_complex::Complex64;
 use paths::{Route, follow};
-use poly::{ExpandLimits, System};
+use poly::{Exact, ExpandLimits, Polynomial, System};
 use solutions::Member;
 use start::Starts;
+use std::borrow::Cow;
 
 /// Finds the isolated solutions of a system of polynomials, at least as many as unknowns.
 ///
@@ -65,7 +70,8 @@ pub fn solve_watched(system: &System, options: &SolveOptions, monitor: &Monitor)
     if !system.parameters().is_empty() {
         return Err(SolveError::Parameters(system.parameters().join(", ")));
     }
-    let mut found = polynomials(system, options, monitor)?;
+    let polynomials = system.expand(&ExpandLimits::default())?;
+    let mut found = solve_polynomials(&polynomials, system.variables(), options, monitor)?;
     found.variables = system.variables().to_vec();
     found.member = Member::new(system, &[]);
     if options.certify {
@@ -74,12 +80,25 @@ pub fn solve_watched(system: &System, options: &SolveOptions, monitor: &Monitor)
     Ok(found)
 }
 
-/// The solutions, without names.
-fn polynomials(system: &System, options: &SolveOptions, monitor: &Monitor) -> Result<Solutions, SolveError> {
-    let given = Equations::new(&system.expand(&ExpandLimits::default())?, system.variables())?;
-    let excess = Excess::new(&given, options.torus_only)?;
+/// The solutions of polynomials in unknowns of these names, which the result does not have.
+pub(crate) fn solve_polynomials(
+    polynomials: &[Polynomial<Exact>],
+    names: &[String],
+    options: &SolveOptions,
+    monitor: &Monitor,
+) -> Result<Solutions, SolveError> {
+    let equations = Equations::new(polynomials, names)?;
+    let equations = match conditioned(polynomials) {
+        Cow::Borrowed(_) => equations,
+        Cow::Owned(rewritten) => Equations::new(&rewritten, names)?,
+    };
+    let exact = equations.exact && polynomials.len() > 1;
+    let given = Given::new(polynomials, equations.units());
+    // Of a polynomial in one unknown there is a better way to all roots than other paths.
+    let univariate = given.univariate_degrees().filter(|_| !options.torus_only);
+    let excess = Excess::new(&given, options.torus_only);
     let nothing = Solutions { interrupted: true, ..Solutions::default() };
-    let mut starts = match Starts::new(given, options, monitor) {
+    let mut starts = match Starts::new(equations, options, monitor) {
         Err(SolveError::Mixed(MixedError::Cancelled)) => return Ok(nothing),
         other => other?,
     };
@@ -105,15 +124,27 @@ fn polynomials(system: &System, options: &SolveOptions, monitor: &Monitor) -> Re
         if !ends.abandoned {
             start_systems += 1;
             retracked += ends.retracked;
-            let member = Some((&from.system, &from.target[..]));
-            let found = classify(member, &ends, &excess, options.paths.coincidence);
+            let tracked = Tracked { given: &given, system: &from.system, target, exact };
+            let found = classify(Some(&tracked), &ends, &excess, options.paths.coincidence);
             let this = Best { start: Some(from.kind), tracked: from.paths, found };
             best = if start_systems == 1 { this } else { best.joined(this) };
-            if best.found.lost == 0 || start_systems > options.restarts || monitor.is_cancelled() {
+            let last = start_systems > options.restarts || univariate.is_some();
+            if best.found.lost == 0 || last || monitor.is_cancelled() {
                 break;
             }
         }
         direct = None;
+    }
+    if let Some((_, degree)) = univariate
+        && start_systems > 0
+        && !monitor.is_cancelled()
+        && degree != best.found.solutions.iter().map(|s| s.multiplicity).sum::<usize>()
+    {
+        best.found = match judged::univariate(&given, &starts.system, &starts.target) {
+            Some(roots) => Classified { solutions: roots, ..Classified::default() },
+            // All paths end at roots, those that seem to go to infinity too.
+            None => Classified { lost: best.found.lost + best.found.infinite, infinite: 0, ..best.found },
+        };
     }
     let whole = start_systems > 0 && best.found.lost == 0;
     let Best { start, tracked, found } = best;
@@ -123,6 +154,9 @@ fn polynomials(system: &System, options: &SolveOptions, monitor: &Monitor) -> Re
     }
     for point in &mut found.component_points {
         starts.equations.unscale(point);
+    }
+    for end in &mut found.unresolved {
+        starts.equations.unscale(&mut end.value);
     }
     Ok(Solutions {
         start: start.or(Some(starts.kind)),
@@ -155,7 +189,10 @@ impl Best {
         let known: Vec<Vec<Complex64>> = better.found.solutions.iter().map(|s| s.value.clone()).collect();
         let new = other.found.solutions.into_iter().filter(|s| !s.singular);
         let new = new.filter(|s| known.iter().all(|x| relative_distance(x, &s.value) > CLUSTER));
+        let before = better.found.solutions.len();
         better.found.solutions.extend(new);
+        // Each of them is the end of a path that was lost.
+        better.found.lost = better.found.lost.saturating_sub(better.found.solutions.len() - before);
         better
     }
 }

@@ -105,7 +105,7 @@ pub(super) struct Route<'a, 'e, E: Evaluate, S> {
     /// The parameters to which they lead.
     pub(super) target: &'a [Complex64],
     /// Regular ends in it are none of the [known](SolveOptions::known) ones.
-    pub(super) excess: &'a Excess,
+    pub(super) excess: &'a Excess<'a>,
     pub(super) options: &'a SolveOptions,
     pub(super) monitor: &'a Monitor,
 }

@@ -1,0 +1,402 @@
+//! What the end of a path is: a regular solution, an isolated multiple one, a point on a set of positive dimension, or none.
+
+use super::deflate::{CLEAR, Deflated, Profile, Reduced, ZERO, approached, deflated, distance};
+use super::dual::{Count, count};
+use super::eliminate::{Elimination, Stop};
+use super::equations::{Given, Local, Precision};
+use super::number::Number;
+use crate::random::{Random, Stream};
+use num_complex::Complex64;
+use poly::{ComplexDd, ComplexMulti, Scalar};
+
+/// What a point near which paths end is, by the given equations.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Verdict {
+    /// A solution at which the Jacobian has full rank, to all digits of a double.
+    Regular {
+        /// The solution.
+        point: Vec<Complex64>,
+        /// The largest value of an equation there, relative to the sizes of its terms.
+        residual: f64,
+    },
+    /// An isolated solution at which the Jacobian has not full rank.
+    Isolated {
+        /// The dimension of the local ring.
+        multiplicity: usize,
+        /// The solution.
+        point: Vec<Complex64>,
+        /// The largest value of an equation there, relative to the sizes of its terms.
+        residual: f64,
+    },
+    /// A point on a set of solutions of positive dimension.
+    OnComponent {
+        /// The local dimension; where the structure is too large to tell, a lower bound.
+        dimension: usize,
+        /// A solution on it near the end.
+        point: Vec<Complex64>,
+    },
+    /// The given equations have no solution nearby.
+    NotASolution,
+    /// None of these can be told.
+    Unresolved(Why),
+}
+
+/// Why an end is not resolved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub(crate) enum Why {
+    /// No solution was found near the end, though the equations nearly vanish there.
+    #[error("the equations nearly vanish, but no solution was found nearby")]
+    NoSolution,
+    /// Numbers that are neither zero nor clearly different from zero.
+    #[error("ranks are not clear to 300 digits")]
+    Unclear,
+    /// The local structure needs more orders than are looked at.
+    #[error("the local structure is too large to tell whether the solution is isolated")]
+    TooLarge,
+}
+
+/// Orders of the series that are tried.
+const ORDERS: [usize; 14] = [2, 3, 4, 6, 8, 11, 16, 23, 32, 45, 64, 90, 128, 180];
+/// Logarithms to base 2 of the tolerances at which ranks are read off near a solution.
+const TOLERANCES: [f64; 7] = [-40.0, -30.0, -20.0, -13.0, -10.0, -6.5, -3.5];
+/// Functionals are counted up to this number at least, whatever the number of paths.
+const FUNCTIONALS: usize = 12;
+/// A regular solution is at most this far from the end of a path, relatively, or this many times its error.
+const NEAR: f64 = 1e-7;
+const NEAR_ERRORS: f64 = 1e2;
+/// The same for singular ones, whose ends are less accurate.
+const NEAR_SINGULAR: f64 = 1e-3;
+/// Relative values of equations from which a point is none of their solutions.
+const NOT_ZERO: f64 = 1e-4;
+
+/// Judges a point near which `paths` paths end, with this relative error at most as far as is known.
+pub(crate) fn judge(given: &Given, point: &[Complex64], paths: usize, error: f64) -> Verdict {
+    if point.iter().any(|z| !z.is_finite()) {
+        return Verdict::Unresolved(Why::NoSolution);
+    }
+    let error = if error.is_finite() { error.abs() } else { NEAR_SINGULAR };
+    let at_once = regular::<ComplexDd>(given, point, error)
+        .or_else(|| regular::<ComplexMulti<4>>(given, point, error))
+        .or_else(|| regular::<ComplexMulti<8>>(given, point, error));
+    if let Some(verdict) = at_once {
+        return verdict;
+    }
+    let near = given.near::<ComplexDd>(point);
+    if near.residual(&near.scaled(point)) > NOT_ZERO.max(1e3 * error).min(0.5).log2() {
+        return Verdict::NotASolution;
+    }
+    let mut why = Why::NoSolution;
+    for examine in [multiple::<ComplexDd>, multiple::<ComplexMulti<4>>, multiple::<ComplexMulti<8>>] {
+        match examine(given, point, paths) {
+            Ok(verdict) => return verdict,
+            Err(reason) => why = reason,
+        }
+        if why == Why::TooLarge {
+            break;
+        }
+    }
+    // What only very many digits tell.
+    regular::<ComplexMulti<16>>(given, point, error).unwrap_or(Verdict::Unresolved(why))
+}
+
+/// Solutions near a point that is between them: the end of paths that were not told apart.
+#[derive(Debug, Default)]
+pub(crate) struct Nearby {
+    /// Regular ones.
+    pub(crate) regular: Vec<(Vec<Complex64>, f64)>,
+    /// A point on a set of positive dimension, with its dimension.
+    pub(crate) component: Option<(Vec<Complex64>, usize)>,
+}
+
+/// Logarithms to base 10 of distances from a point at which Newton's method starts, and how often.
+const DISTANCES: [i32; 7] = [-10, -9, -8, -7, -6, -5, -4];
+const STARTS: usize = 6;
+
+/// Searches the neighbourhood of a point for at most `wanted` regular solutions, and a component if they are fewer.
+pub(crate) fn nearby(given: &Given, point: &[Complex64], wanted: usize) -> Nearby {
+    let local = given.near::<ComplexMulti<4>>(point);
+    let centre = local.scaled(point);
+    let mut random = Random::new(0, Stream::Beside);
+    let mut found: Vec<Vec<ComplexMulti<4>>> = Vec::new();
+    let mut nearby = Nearby::default();
+    for power in DISTANCES {
+        let distance_to = f64::from(power) * 10f64.log2();
+        for _ in 0..STARTS {
+            let away =
+                |z: &ComplexMulti<4>| ComplexMulti::add(z, &ComplexMulti::from_c64(random.unit() * 10f64.powi(power)));
+            let start: Vec<ComplexMulti<4>> = centre.iter().map(away).collect();
+            let solution = deflated(&local, &start, 1, f64::NEG_INFINITY, &mut Vec::new());
+            if let Some(solution) = solution.filter(|s| s.profile.is_regular())
+                && distance(&centre, &solution.point) <= distance_to + 4.0
+                && found.iter().all(|known| distance(known, &solution.point) > -100.0)
+            {
+                nearby.regular.push(rounded(given, &local, &solution.point));
+                found.push(solution.point);
+            }
+            if found.len() >= wanted {
+                return nearby;
+            }
+            // Newton's method leads to a component too, along which it drifts.
+            let start: Vec<Complex64> = local.unscaled(&approached(&local, start)).iter().map(Number::to_c64).collect();
+            if nearby.component.is_none()
+                && let Ok(Verdict::OnComponent { dimension, point }) = multiple::<ComplexDd>(given, &start, 1)
+            {
+                nearby.component = Some((point, dimension));
+            }
+        }
+    }
+    nearby
+}
+
+/// Relative values of equations up to which a regular solution of combinations of them surely solves all, and from which it does not;
+/// between them it is refined.
+const SOLVES: f64 = 1e-13;
+const MISSES: f64 = 1e-6;
+
+/// Whether a regular solution of combinations of the equations, to all digits of a double, solves them all.
+pub(crate) fn solves(given: &Given, point: &[Complex64]) -> bool {
+    let near = given.near::<ComplexDd>(point);
+    let residual = near.residual(&near.scaled(point));
+    residual <= SOLVES.log2()
+        || residual < MISSES.log2() && matches!(judge(given, point, 1, 0.0), Verdict::Regular { .. })
+}
+
+/// Pivots of the Jacobian, as logarithms to base 2, from which rounding the coefficients does not matter.
+const STEADY: f64 = -20.0;
+
+/// Whether a regular solution may depend on more digits of the coefficients than doubles have.
+pub(crate) fn depends_on_rounding(given: &Given, point: &[Complex64]) -> bool {
+    let near = given.near::<ComplexDd>(point);
+    let (_, jacobian) = near.jacobian(&near.scaled(point));
+    let pivots = Elimination::new(jacobian, point.len(), Stop::Below(STEADY));
+    pivots.rank() < point.len()
+}
+
+/// The regular solution near a point, if there is one to one precision.
+fn regular<S: Precision>(given: &Given, point: &[Complex64], error: f64) -> Option<Verdict> {
+    let local = given.near::<S>(point);
+    let start = local.scaled(point);
+    let found = deflated(&local, &start, 1, f64::NEG_INFINITY, &mut Vec::new())?;
+    if !found.profile.is_regular() || distance(&start, &found.point) > NEAR.max(NEAR_ERRORS * error).log2() {
+        return None;
+    }
+    let (point, residual) = rounded(given, &local, &found.point);
+    Some(Verdict::Regular { point, residual })
+}
+
+/// The verdict on a point that is no regular solution, to one precision; an error if that is not enough.
+fn multiple<S: Precision>(given: &Given, point: &[Complex64], paths: usize) -> Result<Verdict, Why> {
+    let local = given.near::<S>(point);
+    let start = local.scaled(point);
+    let limit = (2 * paths + 2).max(FUNCTIONALS);
+    if let Some(verdict) = at_zeros(&local, &start, limit) {
+        return Ok(verdict);
+    }
+    let mut why = Why::NoSolution;
+    for order in ORDERS.into_iter().take_while(|&order| order <= 2 * limit) {
+        let mut tried: Vec<Profile> = Vec::new();
+        for tolerance in TOLERANCES {
+            let Some(found) = deflated(&local, &start, order, tolerance, &mut tried) else { continue };
+            if found.profile.is_regular() || distance(&start, &found.point) > NEAR_SINGULAR.log2() {
+                continue;
+            }
+            match structure(&local, &found, order, limit) {
+                Some(Structure::Isolated(multiplicity)) => {
+                    let (point, residual) = rounded(given, &local, &found.point);
+                    return Ok(Verdict::Isolated { multiplicity, point, residual });
+                }
+                Some(Structure::Component(dimension)) => {
+                    let (point, _) = rounded(given, &local, &found.point);
+                    return Ok(Verdict::OnComponent { dimension, point });
+                }
+                Some(Structure::Unfinished) => why = Why::TooLarge,
+                None if why == Why::NoSolution => why = Why::Unclear,
+                None => {}
+            }
+        }
+    }
+    Err(why)
+}
+
+/// The verdict where zeros in place of small coordinates give a solution exactly: nothing needs to be refined there.
+fn at_zeros<S: Number>(local: &Local<'_, S>, start: &[S], limit: usize) -> Option<Verdict> {
+    let snapped: Vec<S> = start.iter().map(|z| if z.log2() < NEAR_SINGULAR.log2() { S::zero() } else { *z }).collect();
+    let (values, jacobian) = local.jacobian(&snapped);
+    if !values.iter().all(Number::vanishes) {
+        return None;
+    }
+    let pivots = Elimination::new(jacobian, snapped.len(), Stop::Below(ZERO * S::BITS));
+    if pivots.smallest < CLEAR * S::BITS || pivots.rank() == snapped.len() {
+        return None;
+    }
+    for order in ORDERS {
+        let reduced = Reduced::new(local, &snapped, &pivots, order)?;
+        if let Count::All(multiplicity) = count(&reduced.basis, &reduced.equations, 4 * limit) {
+            let point = local.unscaled(&snapped).iter().map(Number::to_c64).collect();
+            return Some(Verdict::Isolated { multiplicity, point, residual: 0.0 });
+        }
+    }
+    None
+}
+
+enum Structure {
+    Isolated(usize),
+    Component(usize),
+    /// More orders are needed.
+    Unfinished,
+}
+
+/// The structure at a refined solution as far as series up to an order tell; `None` where ranks are not clear.
+fn structure<S: Number>(local: &Local<'_, S>, found: &Deflated<S>, order: usize, limit: usize) -> Option<Structure> {
+    let (_, jacobian) = local.jacobian(&found.point);
+    let pivots = Elimination::new(jacobian, found.point.len(), Stop::After(found.profile.ranks[0]));
+    let Some(reduced) = Reduced::new(local, &found.point, &pivots, order) else {
+        return Some(Structure::Unfinished);
+    };
+    let regular_after = found.profile.remaining == 0;
+    let functionals = count(&reduced.basis, &reduced.equations, limit);
+    // Where deflation has determined the point, it may be isolated with more paths than were counted.
+    let functionals = match functionals {
+        Count::More if regular_after => match count(&reduced.basis, &reduced.equations, 4 * limit) {
+            Count::All(multiplicity) => Count::All(multiplicity),
+            _ => Count::More,
+        },
+        other => other,
+    };
+    Some(match functionals {
+        Count::Unclear => return None,
+        Count::All(multiplicity) if regular_after => Structure::Isolated(multiplicity),
+        Count::More => Structure::Component(dimension(&reduced, found.profile.remaining.max(1))),
+        Count::All(_) | Count::Unfinished => Structure::Unfinished,
+    })
+}
+
+/// The local dimension, at least that of the points of the same structure: the number of general hyperplanes in which the solution is
+/// isolated. Where that is not seen, the lower bound.
+fn dimension<S: Number>(reduced: &Reduced<S>, at_least: usize) -> usize {
+    let variables = reduced.basis.variables();
+    let mut random = Random::new(0, Stream::Slice(0));
+    let mut equations = reduced.equations.clone();
+    let mut plane = || {
+        let mut form = reduced.basis.constant(S::zero(), 1);
+        for z in form.iter_mut().skip(1) {
+            *z = S::from_c64(random.unit());
+        }
+        form
+    };
+    equations.extend((0..at_least.min(variables)).map(|_| plane()));
+    for dimension in at_least..=variables {
+        if matches!(count(&reduced.basis, &equations, usize::MAX), Count::All(_)) {
+            return dimension;
+        }
+        equations.push(plane());
+    }
+    at_least
+}
+
+/// A point as doubles, and the values of the equations there relative to their terms.
+fn rounded<S: Number>(given: &Given, local: &Local<'_, S>, point: &[S]) -> (Vec<Complex64>, f64) {
+    let point: Vec<Complex64> = local.unscaled(point).iter().map(Number::to_c64).collect();
+    let near = given.near::<ComplexDd>(&point);
+    let residual = near.residual(&near.scaled(&point)).exp2();
+    (point, residual)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Verdict, judge};
+    use crate::singular::equations::Given;
+    use num_complex::Complex64;
+    use poly::parse::phcpack;
+
+    fn judged(text: &str, point: &[f64], paths: usize, error: f64) -> Verdict {
+        let system = phcpack(text).unwrap();
+        let given = Given::new(&system.expand(&Default::default()).unwrap(), vec![0; system.variables().len()]);
+        // Beside the point by the error that is said.
+        let point: Vec<Complex64> = point
+            .iter()
+            .enumerate()
+            .map(|(j, &x)| Complex64::new(x, 0.0) + Complex64::from_polar(0.7 * error, 1.0 + j as f64))
+            .collect();
+        judge(&given, &point, paths, error)
+    }
+
+    fn isolated(text: &str, at: &[f64], paths: usize, error: f64) -> usize {
+        match judged(text, at, paths, error) {
+            Verdict::Isolated { multiplicity, point, residual } => {
+                for (z, x) in point.iter().zip(at) {
+                    assert!((z - x).norm() < 1e-14, "{text}: {point:?}");
+                }
+                assert!(residual < 1e-15, "{text}: {residual}");
+                multiplicity
+            }
+            other => panic!("{text}: {other:?}"),
+        }
+    }
+
+    /// Multiplicities by hand: intersection numbers, or monomials outside the leading ideal.
+    #[test]
+    fn multiplicities_from_inaccurate_ends() {
+        for error in [0.0, 1e-14, 1e-9, 1e-5] {
+            assert_eq!(isolated("3 2\nx^2;\nx*y;\ny^2;", &[0.0, 0.0], 4, error), 3);
+            assert_eq!(isolated("2\ny+x-1;\nx^4+y*(y+x-1);", &[1.0, 0.0], 4, error), 4);
+            assert_eq!(isolated("1\n(x-3)^2;", &[3.0], 2, error), 2);
+            assert_eq!(isolated("2\n(29/16)*x^3-2*x*y;\nx^2-y;", &[0.0, 0.0], 3, error), 3);
+            assert_eq!(isolated("2\nx*(x-y);\ny*(x+y);", &[0.0, 0.0], 4, error), 4);
+            assert_eq!(isolated("3\nx^2-y;\ny^2-z;\nz^2;", &[0.0, 0.0, 0.0], 8, error), 8);
+            assert_eq!(isolated("3\nx^2+y*z;\ny^2-x*z;\nz^2+2*x*y+x^3;", &[0.0, 0.0, 0.0], 8, error), 8);
+            // Two cusps that cross transversally: order of the product.
+            assert_eq!(isolated("2\ny^2-x^3;\nx^2-y^3;", &[0.0, 0.0], 4, error), 4);
+            // The tacnode y (y - x^2) and a line through it in a general direction, and its tangent: 2 and 4 with y - x^4.
+            assert_eq!(isolated("2\ny*(y-x^2);\nx-2*y;", &[0.0, 0.0], 2, error), 2);
+            assert_eq!(isolated("2\n(x-1)^3*(y+2);\n(y-1)^2*(x+y-5);", &[1.0, 1.0], 6, error), 6);
+        }
+    }
+
+    #[test]
+    fn high_multiplicities() {
+        for error in [1e-8, 1e-4] {
+            assert_eq!(isolated("1\n(x-3)^12;", &[3.0], 12, error), 12);
+            assert_eq!(isolated("2\n(x-1)^5+y-2;\n(y-2)^3;", &[1.0, 2.0], 15, error), 15);
+        }
+        assert_eq!(isolated("4\nx^2;\ny^2+x*z;\nz^2-x*y;\nw^2+x+y;", &[0.0; 4], 16, 1e-7), 16);
+    }
+
+    #[test]
+    fn regular_solutions_with_others_nearby() {
+        for (text, at, error) in [
+            ("1\nx^2-2*x+1-1E-12;", vec![1.000001], 1e-9),
+            ("2\n(x-1-1E-7)*(x^2+y^2-1);\ny*(x^2+y^2-1);", vec![1.0000001, 0.0], 1e-10),
+            ("3 2\nx*y;\nx-1;\ny*(x+2);", vec![1.0, 0.0], 1e-9),
+            ("4 3\nx*y;\nx*z;\nx*(x-1);\ny*(y-z);", vec![1.0, 0.0, 0.0], 1e-9),
+        ] {
+            let verdict = judged(text, &at, 1, error);
+            assert!(matches!(verdict, Verdict::Regular { .. }), "{text}: {verdict:?}");
+        }
+    }
+
+    #[test]
+    fn points_on_sets_of_positive_dimension() {
+        for error in [0.0, 1e-12, 1e-8] {
+            for (text, at, dimension) in [
+                ("2\nx^2*(x+y-1);\nx^2*(x-y+2);", vec![0.0, 0.3], 1),
+                ("2\n(x-y)^2*(x+y-1);\n(x-y)^2*(x+2*y+2);", vec![0.7, 0.7], 1),
+                ("2\n(x-1-1E-7)*(x^2+y^2-1);\ny*(x^2+y^2-1);", vec![0.6, 0.8], 1),
+                ("4 3\nx*y;\nx*z;\nx*(x-1);\ny*(y-z);", vec![0.0, 0.4, 0.4], 1),
+                ("3\nx*(x^2+y+z);\nx*(y^2-3+z);\nx*(z-x*y+1);", vec![0.0, 0.4, 0.9], 2),
+                // Where two planes meet, one of them with an embedded line.
+                ("3\nx^3*y;\nx*y^2;\nx*y*(x+y);", vec![0.0, 0.0, 0.5], 2),
+            ] {
+                let verdict = judged(text, &at, 1, error);
+                let Verdict::OnComponent { dimension: found, .. } = verdict else { panic!("{text}: {verdict:?}") };
+                assert_eq!(found, dimension, "{text} {error}");
+            }
+        }
+    }
+
+    #[test]
+    fn points_that_solve_nothing() {
+        assert_eq!(judged("2\nx*y-1;\nx+y-7;", &[1.0, 2.0], 2, 1e-9), Verdict::NotASolution);
+        assert_eq!(judged("3 2\nx^2+y^2-2;\nx-y;\nx*y+3;", &[1.0, 1.0], 2, 1e-9), Verdict::NotASolution);
+    }
+}

@@ -1,0 +1,17 @@
+//! The local structure of solutions: isolated or not, multiplicity, digits by deflation.
+//!
+//! A point is judged by the given equations, with their exact coefficients, in numbers of 32 to 308 digits: the fewest in which what
+//! is zero is clearly told from what is not.
+
+mod deflate;
+mod dual;
+mod eliminate;
+mod equations;
+mod judge;
+mod number;
+mod series;
+mod univariate;
+
+pub(crate) use equations::Given;
+pub(crate) use judge::{Verdict, depends_on_rounding, judge, nearby, solves};
+pub(crate) use univariate::roots;

@@ -1,0 +1,223 @@
+//! Ends that the tracker alone cannot tell: singular ones, and regular ones of coefficients that were rounded.
+
+use super::classify::{Classified, REAL, Tracked};
+use super::excess::Excess;
+use super::paths::Ends;
+use super::record::SingularEnd;
+use super::solutions::{Solution, Unresolved, is_real};
+use crate::distinct::{CLUSTER, groups, relative_distance};
+use crate::refine::Refiner;
+use crate::singular::{self, Verdict};
+use crate::threads::{IntoParallelRefIterator, ParallelIterator};
+use num_complex::Complex64;
+use poly::SparseSystem;
+
+/// Imaginary parts of singular solutions up to this share of the point count as zero.
+const REAL_SINGULAR: f64 = 1e-7;
+/// Relative distance below which two refined solutions are one.
+const SAME: f64 = 1e-12;
+/// Regular solutions that exact coefficients move further than this, relatively, are replaced.
+const MOVED: f64 = 1e-11;
+
+/// A singular solution and the paths that end there.
+struct Multiple {
+    point: Vec<Complex64>,
+    multiplicity: usize,
+    residual: f64,
+    paths: usize,
+    winding: usize,
+}
+
+impl Classified {
+    /// Judges the singular ends.
+    pub(super) fn add_singular(&mut self, tracked: &Tracked<'_>, all: &Ends, excess: &Excess<'_>) {
+        let ends: Vec<&SingularEnd> = all.singular.values().collect();
+        let points = ends.iter().enumerate().map(|(k, end)| (k, &end.point[..]));
+        let groups = groups(points, CLUSTER);
+        let spare = self.lost;
+        let judged: Vec<Vec<(Vec<usize>, Verdict)>> =
+            groups.par_iter().map(|group| verdicts(tracked, &ends, group, spare)).collect();
+        let mut multiple: Vec<Multiple> = Vec::new();
+        let mut refiner = Refiner::new(tracked.system);
+        for (group, verdict) in judged.into_iter().flatten() {
+            let paths = group.len();
+            match verdict {
+                Verdict::Isolated { point, .. } if excess.outside(&point) => self.excess += paths,
+                Verdict::Regular { point, .. } if excess.outside(&point) => self.excess += paths,
+                Verdict::Isolated { multiplicity, point, residual } => {
+                    let winding = group.iter().map(|&k| ends[k].winding).max().unwrap_or(1);
+                    match multiple.iter_mut().find(|m| relative_distance(&m.point, &point) <= SAME) {
+                        Some(known) => {
+                            known.paths += paths;
+                            known.winding = known.winding.max(winding);
+                        }
+                        None => multiple.push(Multiple { point, multiplicity, residual, paths, winding }),
+                    }
+                }
+                Verdict::Regular { point, residual } => {
+                    // One path ends at a regular solution; any other has jumped.
+                    let known = self.solutions.iter().any(|s| relative_distance(&s.value, &point) <= SAME);
+                    self.lost += paths - usize::from(!known);
+                    if !known {
+                        let condition = refiner.judged(tracked.target, &point).condition;
+                        self.solutions.push(solution(&point, 1, 1, residual, condition, is_real(&point, REAL)));
+                    }
+                }
+                Verdict::OnComponent { point, .. } => {
+                    self.on_components += paths;
+                    self.component_points.push(point);
+                }
+                Verdict::NotASolution if excess.overdetermined() => self.excess += paths,
+                Verdict::NotASolution => self.lost += paths,
+                Verdict::Unresolved(why) => {
+                    self.lost += paths;
+                    let value = ends[group[0]].point.clone();
+                    self.unresolved.push(Unresolved { value, paths, reason: why.to_string() });
+                }
+            }
+        }
+        for found in multiple {
+            // As many paths as the multiplicity, or more where equations were combined: else some have gone astray.
+            let missing = found.multiplicity.saturating_sub(found.paths);
+            let surplus = if excess.overdetermined() { 0 } else { found.paths.saturating_sub(found.multiplicity) };
+            self.lost += missing + surplus;
+            let condition = refiner.judged(tracked.target, &found.point).condition;
+            let real = is_real(&found.point, REAL_SINGULAR);
+            self.solutions.push(Solution {
+                singular: true,
+                ..solution(&found.point, found.multiplicity, found.winding, found.residual, condition, real)
+            });
+        }
+    }
+
+    /// Replaces regular solutions that depend on what rounding took from the coefficients.
+    pub(super) fn correct_rounded(&mut self, tracked: &Tracked<'_>) {
+        let mut kept: Vec<Solution> = Vec::with_capacity(self.solutions.len());
+        for mut solution in std::mem::take(&mut self.solutions) {
+            let point = solution.value.clone();
+            if !singular::depends_on_rounding(tracked.given, &point) {
+                kept.push(solution);
+                continue;
+            }
+            let Verdict::Regular { point: exact, residual } = singular::judge(tracked.given, &point, 1, ROUNDED) else {
+                self.lost += 1;
+                continue;
+            };
+            solution.residual = residual;
+            if relative_distance(&point, &exact) > MOVED {
+                solution.real = is_real(&exact, REAL);
+                solution.value = exact;
+            }
+            if kept.iter().any(|s| relative_distance(&s.value, &solution.value) <= SAME) {
+                self.lost += 1;
+            } else {
+                kept.push(solution);
+            }
+        }
+        self.solutions = kept;
+    }
+}
+
+/// How far rounded coefficients may move a regular solution that is still told apart from others.
+const ROUNDED: f64 = 1e-4;
+
+/// Verdicts on ends that nearly coincide: on all at once, or on each where they are no multiple solution. `spare` paths more may
+/// end there.
+fn verdicts(tracked: &Tracked<'_>, ends: &[&SingularEnd], group: &[usize], spare: usize) -> Vec<(Vec<usize>, Verdict)> {
+    let verdict = |k: usize| singular::judge(tracked.given, &ends[k].point, group.len() + spare, ends[k].error);
+    // The most accurate of the ends stands for all.
+    let Some(&best) = group.iter().min_by(|&&a, &&b| ends[a].error.total_cmp(&ends[b].error)) else {
+        return Vec::new();
+    };
+    let own = match verdict(best) {
+        whole @ (Verdict::Isolated { .. } | Verdict::OnComponent { .. }) => return vec![(group.to_vec(), whole)],
+        own => own,
+    };
+    let mut each: Vec<(Vec<usize>, Verdict)> =
+        group.iter().map(|&k| (vec![k], if k == best { own.clone() } else { verdict(k) })).collect();
+    if are_told_apart(&each, tracked.given.len() > tracked.given.unknowns()) {
+        return each;
+    }
+    // Solutions so close to each other that the paths seemed to end between them.
+    let nearby = singular::nearby(tracked.given, &ends[best].point, group.len());
+    let mut regular = nearby.regular.into_iter();
+    for (_, verdict) in &mut each {
+        match (regular.next(), &nearby.component) {
+            (Some((point, residual)), _) => *verdict = Verdict::Regular { point, residual },
+            (None, Some((point, dimension))) => {
+                *verdict = Verdict::OnComponent { dimension: *dimension, point: point.clone() }
+            }
+            (None, None) => {}
+        }
+    }
+    each
+}
+
+/// Whether every end has a verdict of its own.
+fn are_told_apart(each: &[(Vec<usize>, Verdict)], overdetermined: bool) -> bool {
+    let mut regular: Vec<&[Complex64]> = Vec::new();
+    each.iter().all(|(_, verdict)| match verdict {
+        Verdict::Regular { point, .. } => {
+            let fresh = regular.iter().all(|known| relative_distance(known, point) > SAME);
+            regular.push(point);
+            fresh
+        }
+        Verdict::Unresolved(_) => false,
+        Verdict::NotASolution => overdetermined,
+        Verdict::Isolated { .. } | Verdict::OnComponent { .. } => true,
+    })
+}
+
+fn solution(
+    point: &[Complex64],
+    multiplicity: usize,
+    winding_number: usize,
+    residual: f64,
+    condition: f64,
+    real: bool,
+) -> Solution {
+    Solution {
+        value: point.to_vec(),
+        multiplicity,
+        winding_number,
+        singular: false,
+        real,
+        residual,
+        condition,
+        certified: None,
+    }
+}
+
+/// All roots of a polynomial in one unknown, with their multiplicities; `None` if they are not all clear, or it is none.
+pub(super) fn univariate(
+    given: &singular::Given,
+    system: &SparseSystem,
+    target: &[Complex64],
+) -> Option<Vec<Solution>> {
+    let (zero, degree) = given.univariate_degrees()?;
+    let mut points: Vec<Vec<Complex64>> = singular::roots(given)?.into_iter().map(|z| vec![z]).collect();
+    if zero > 0 {
+        points.push(vec![Complex64::new(0.0, 0.0)]);
+    }
+    let mut refiner = Refiner::new(system);
+    let mut found: Vec<Solution> = Vec::new();
+    for point in points {
+        let (multiplicity, point, residual) = match singular::judge(given, &point, degree, ACCURATE) {
+            Verdict::Regular { point, residual } => (1, point, residual),
+            Verdict::Isolated { multiplicity, point, residual } => (multiplicity, point, residual),
+            _ => return None,
+        };
+        if found.iter().any(|s| relative_distance(&s.value, &point) <= SAME) {
+            continue;
+        }
+        let condition = refiner.judged(target, &point).condition;
+        let real = is_real(&point, if multiplicity > 1 { REAL_SINGULAR } else { REAL });
+        let solution = solution(&point, multiplicity, multiplicity, residual, condition, real);
+        found.push(Solution { singular: multiplicity > 1, ..solution });
+    }
+    found.sort_by_key(|s| s.singular);
+    (found.iter().map(|s| s.multiplicity).sum::<usize>() == degree).then_some(found)
+}
+
+/// The relative error of simple roots of polynomials in one unknown.
+const ACCURATE: f64 = 1e-12;
