@@ -11,6 +11,7 @@ use super::eliminate::{Elimination, Stop};
 use super::equations::Local;
 use super::number::{Number, largest};
 use super::series::Basis;
+use num_complex::Complex64;
 
 /// How many unknowns each level of a deflation determines.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -90,9 +91,21 @@ pub(crate) fn deflated<S: Number>(
         return None;
     }
     tried.push(profile.clone());
-    let (mut before, mut point, mut slow) = (distance(start, &first.point), first.point, 0);
+    let before = distance(start, &first.point);
+    settled(local, first.point, order, &profile, before)
+}
+
+/// Iterates with the ranks of a profile, after a first correction of size `before`.
+pub(crate) fn settled<S: Number>(
+    local: &Local<'_, S>,
+    mut point: Vec<S>,
+    order: usize,
+    profile: &Profile,
+    mut before: f64,
+) -> Option<Deflated<S>> {
+    let mut slow = 0;
     for _ in 0..ITERATIONS {
-        let next = step(local, &point, order, Ranks::Known(&profile))?;
+        let next = step(local, &point, order, Ranks::Known(profile))?;
         let correction = distance(&point, &next.point);
         point = next.point;
         // Corrections shrink fast once they are small on the scale on which solutions lie apart.
@@ -102,13 +115,41 @@ pub(crate) fn deflated<S: Number>(
         }
         before = correction;
         if correction <= CONVERGED * S::BITS {
-            let last = step(local, &point, order, Ranks::Known(&profile))?;
+            let last = step(local, &point, order, Ranks::Known(profile))?;
             let clear = last.accepted >= CLEAR * S::BITS && last.rejected <= ZERO * S::BITS;
             let solves = local.residual(&last.point) <= ZERO * S::BITS;
             return (clear && solves).then_some(Deflated { point: last.point, profile: last.profile });
         }
     }
     None
+}
+
+/// The solution of the same profile to which the iteration leads from a point `stride` away, in a direction in which the linear parts of
+/// the equations do not change; `None` if it does not converge to one.
+pub(crate) fn moved<S: Number>(
+    local: &Local<'_, S>,
+    point: &[S],
+    order: usize,
+    profile: &Profile,
+    stride: f64,
+) -> Option<Vec<S>> {
+    let (_, jacobian) = local.jacobian(point);
+    let pivots = Elimination::new(jacobian, point.len(), Stop::After(profile.ranks[0]));
+    let mut direction = vec![S::zero(); point.len()];
+    for (k, vector) in pivots.null_space().iter().enumerate() {
+        // Phases without a pattern.
+        let factor = S::from_c64(Complex64::from_polar(1.0, 2.0 + 2.4 * k as f64));
+        for (sum, z) in direction.iter_mut().zip(vector) {
+            *sum = S::mul_add(&factor, z, sum);
+        }
+    }
+    let size = largest(&direction);
+    if !size.is_finite() {
+        return None;
+    }
+    let factor = S::from_c64(Complex64::new(stride * (-size).exp2(), 0.0));
+    let start = point.iter().zip(&direction).map(|(x, d)| S::mul_add(&factor, d, x)).collect();
+    Some(settled(local, start, order, profile, f64::INFINITY)?.point)
 }
 
 /// Steps of Newton's method towards a solution, regular or not.
@@ -144,6 +185,16 @@ fn step<S: Number>(local: &Local<'_, S>, x: &[S], order: usize, ranks: Ranks<'_>
         return Some(Step { point, profile, accepted, rejected: f64::NEG_INFINITY });
     }
     let mut rejected = pivots.rest;
+    if order == 1 {
+        // Nothing but the linear part: what it does not determine stays.
+        let mut point = x.to_vec();
+        for (&j, d) in pivots.columns.iter().zip(pivots.solve(&values)) {
+            point[j] = S::sub(&point[j], &d);
+        }
+        rejected = rejected.max(local.residual(&point));
+        profile.remaining = x.len() - pivots.rank();
+        return Some(Step { point, profile, accepted, rejected });
+    }
     let reduced = Reduced::new(local, x, &pivots, order)?;
     let mut levels: Vec<(Basis, Vec<Vec<S>>)> = Vec::new();
     let mut basis = Basis::new(reduced.basis.variables(), order)?;

@@ -6,6 +6,7 @@ use num_complex::Complex64;
 use poly::{ComplexDd, ComplexMulti, Exact, Polynomial};
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Equations as they were given, prepared for evaluation to many digits.
 ///
@@ -15,16 +16,22 @@ pub(crate) struct Given {
     /// Logarithms to base 2 of the units of the unknowns.
     scale: Vec<i64>,
     equations: Vec<Vec<Term>>,
+    /// The exponents of each unknown in terms and in their derivatives, ascending.
+    exponents: Vec<Vec<u32>>,
     /// Coefficients to 32, 77, 154 and 308 digits, once they are asked for.
     double_double: OnceLock<Vec<Vec<ComplexDd>>>,
     four: OnceLock<Vec<Vec<ComplexMulti<4>>>>,
     eight: OnceLock<Vec<Vec<ComplexMulti<8>>>>,
     sixteen: OnceLock<Vec<Vec<ComplexMulti<16>>>>,
+    /// Work done so far, in about as much as a product of complex double-doubles takes.
+    spent: AtomicU64,
 }
 
 struct Term {
     /// Unknowns with their exponents, those of exponent zero left out.
     powers: Vec<(usize, u32)>,
+    /// Places of these exponents among those of the unknown.
+    places: Vec<usize>,
     coefficient: Exact,
 }
 
@@ -69,23 +76,43 @@ impl Given {
             let term = |(monomial, coefficient): &(poly::Monomial, Exact)| {
                 let raised = monomial.exponents().iter().zip(&lowest).map(|(&e, low)| (i64::from(e) - low) as u32);
                 let powers = raised.enumerate().filter(|&(_, e)| e > 0).collect();
-                Term { powers, coefficient: coefficient.clone() }
+                Term { powers, places: Vec::new(), coefficient: coefficient.clone() }
             };
             polynomial.terms().iter().map(term).collect()
         };
+        let mut equations: Vec<Vec<Term>> = polynomials.iter().map(equation).collect();
+        let mut exponents: Vec<Vec<u32>> = vec![Vec::new(); unknowns];
+        for &(j, e) in equations.iter().flatten().flat_map(|t| &t.powers) {
+            exponents[j].extend([e - 1, e]);
+        }
+        for exponents in &mut exponents {
+            exponents.sort_unstable();
+            exponents.dedup();
+        }
+        for term in equations.iter_mut().flatten() {
+            let place = |&(j, e): &(usize, u32)| exponents[j].partition_point(|&f| f < e);
+            term.places = term.powers.iter().map(place).collect();
+        }
         Given {
             unknowns,
             scale,
-            equations: polynomials.iter().map(equation).collect(),
+            equations,
+            exponents,
             double_double: OnceLock::new(),
             four: OnceLock::new(),
             eight: OnceLock::new(),
             sixteen: OnceLock::new(),
+            spent: AtomicU64::new(0),
         }
     }
 
     pub(crate) fn unknowns(&self) -> usize {
         self.unknowns
+    }
+
+    /// The work done so far at all points, in products of complex double-doubles. It does not depend on the order of the points.
+    pub(crate) fn spent(&self) -> u64 {
+        self.spent.load(Ordering::Relaxed)
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -164,6 +191,17 @@ impl<S: Number> Local<'_, S> {
         self.given.len()
     }
 
+    /// Notes as much work, in products.
+    pub(crate) fn spend(&self, products: f64) {
+        let weight = (S::BITS / ComplexDd::BITS).powi(2);
+        self.given.spent.fetch_add((products * weight) as u64, Ordering::Relaxed);
+    }
+
+    /// Numbers of factors in all terms.
+    fn factors(&self) -> usize {
+        self.given.equations.iter().flatten().map(|t| t.powers.len() + 1).sum()
+    }
+
     /// A point in units of these equations.
     pub(crate) fn scaled(&self, point: &[Complex64]) -> Vec<S> {
         point.iter().zip(&self.units).map(|(z, u)| S::from_c64(*z).shifted(-u)).collect()
@@ -174,38 +212,44 @@ impl<S: Number> Local<'_, S> {
         point.iter().zip(&self.units).map(|(z, &u)| z.shifted(u)).collect()
     }
 
-    /// Powers of each coordinate that terms or their derivatives have.
-    fn powers(&self, x: &[S]) -> Vec<BTreeMap<u32, S>> {
-        let mut powers: Vec<BTreeMap<u32, S>> = vec![BTreeMap::new(); x.len()];
-        for &(j, e) in self.given.equations.iter().flatten().flat_map(|t| &t.powers) {
-            powers[j].insert(e, S::zero());
-            powers[j].insert(e - 1, S::zero());
-        }
-        for (powers, x) in powers.iter_mut().zip(x) {
+    /// Powers of each coordinate that terms or their derivatives have, by places.
+    fn powers(&self, x: &[S]) -> Vec<Vec<S>> {
+        let of = |(exponents, x): (&Vec<u32>, &S)| {
             let (mut last, mut value) = (0, S::one());
-            for (&exponent, power) in powers.iter_mut() {
+            let mut power = |exponent: u32| {
                 value = S::mul(&value, &raised(x, exponent - last));
-                (*power, last) = (value, exponent);
-            }
-        }
-        powers
+                last = exponent;
+                value
+            };
+            exponents.iter().map(|&e| power(e)).collect()
+        };
+        self.given.exponents.iter().zip(x).map(of).collect()
     }
 
     /// Values of the equations, and their derivatives by rows.
     pub(crate) fn jacobian(&self, x: &[S]) -> (Vec<S>, Vec<Vec<S>>) {
+        self.spend(4.0 * self.factors() as f64);
         let powers = self.powers(x);
         let (mut values, mut rows) = (Vec::new(), Vec::new());
+        let mut before: Vec<S> = Vec::new();
         for (terms, coefficients) in self.given.equations.iter().zip(&self.coefficients) {
             let (mut value, mut row) = (S::zero(), vec![S::zero(); x.len()]);
             for (term, c) in terms.iter().zip(coefficients) {
-                let whole = term.powers.iter().fold(*c, |product, &(j, e)| S::mul(&product, &powers[j][&e]));
-                value = S::add(&value, &whole);
-                for &(j, e) in &term.powers {
-                    let mut slope = S::scale(c, f64::from(e));
-                    for &(l, f) in &term.powers {
-                        slope = S::mul(&slope, &powers[l][&(if l == j { f - 1 } else { f })]);
-                    }
+                // Products of the powers before each, and then with those behind.
+                before.clear();
+                let mut product = *c;
+                for (&(j, _), &place) in term.powers.iter().zip(&term.places) {
+                    before.push(product);
+                    product = S::mul(&product, &powers[j][place]);
+                }
+                value = S::add(&value, &product);
+                let mut behind = S::one();
+                for ((&(j, e), &place), before) in term.powers.iter().zip(&term.places).zip(&before).rev() {
+                    let others = S::mul(before, &behind);
+                    // The power that is less by one stands before.
+                    let slope = if e == 1 { others } else { S::scale(&S::mul(&others, &powers[j][place - 1]), f64::from(e)) };
                     row[j] = S::add(&row[j], &slope);
+                    behind = S::mul(&behind, &powers[j][place]);
                 }
             }
             values.push(value);
@@ -214,13 +258,26 @@ impl<S: Number> Local<'_, S> {
         (values, rows)
     }
 
+    /// Values of the equations.
+    fn values(&self, x: &[S]) -> Vec<S> {
+        let powers = self.powers(x);
+        let product = |(term, c): (&Term, &S)| {
+            term.powers.iter().zip(&term.places).fold(*c, |product, (&(j, _), &k)| S::mul(&product, &powers[j][k]))
+        };
+        let value = |(terms, coefficients): (&Vec<Term>, &Vec<S>)| {
+            terms.iter().zip(coefficients).map(product).fold(S::zero(), |sum, z| S::add(&sum, &z))
+        };
+        self.given.equations.iter().zip(&self.coefficients).map(value).collect()
+    }
+
     /// The largest value of an equation at a point, as a logarithm to base 2: about that of its size relative to its terms.
     pub(crate) fn residual(&self, x: &[S]) -> f64 {
-        largest(&self.jacobian(x).0)
+        largest(&self.values(x))
     }
 
     /// Equations with series for the unknowns, up to an order.
     pub(crate) fn series(&self, which: &[usize], basis: &Basis, x: &[Vec<S>], order: usize) -> Vec<Vec<S>> {
+        self.spend((self.factors() * basis.pairs(order)) as f64);
         let mut powers: Vec<BTreeMap<u32, Vec<S>>> = vec![BTreeMap::new(); x.len()];
         for &(j, e) in which.iter().flat_map(|&i| &self.given.equations[i]).flat_map(|t| &t.powers) {
             powers[j].insert(e, Vec::new());

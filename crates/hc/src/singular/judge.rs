@@ -5,6 +5,7 @@ use super::dual::{Count, count};
 use super::eliminate::{Elimination, Stop};
 use super::equations::{Given, Local, Precision};
 use super::number::Number;
+use super::sheet::{NOT_REDUCED, REDUCED, is_touched, on_sheet};
 use crate::random::{Random, Stream};
 use num_complex::Complex64;
 use poly::{ComplexDd, ComplexMulti, Scalar};
@@ -50,6 +51,12 @@ pub(crate) enum Why {
     /// Numbers that are neither zero nor clearly different from zero.
     #[error("ranks are not clear to 300 digits")]
     Unclear,
+    /// The work that a solve may take for its ends is done.
+    #[error("too many ends need much work to be judged; this one was not looked at")]
+    TooMuch,
+    /// The work was cancelled.
+    #[error("interrupted")]
+    Interrupted,
     /// The local structure needs more orders than are looked at.
     #[error("the local structure is too large to tell whether the solution is isolated")]
     TooLarge,
@@ -75,8 +82,10 @@ pub(crate) fn judge(given: &Given, point: &[Complex64], paths: usize, error: f64
         return Verdict::Unresolved(Why::NoSolution);
     }
     let error = if error.is_finite() { error.abs() } else { NEAR_SINGULAR };
-    let at_once = regular::<ComplexDd>(given, point, error)
-        .or_else(|| regular::<ComplexMulti<4>>(given, point, error))
+    if let Some(verdict) = regular::<ComplexDd>(given, point, error).or_else(|| sheet(given, point, paths, error)) {
+        return verdict;
+    }
+    let at_once = regular::<ComplexMulti<4>>(given, point, error)
         .or_else(|| regular::<ComplexMulti<8>>(given, point, error));
     if let Some(verdict) = at_once {
         return verdict;
@@ -184,6 +193,21 @@ fn regular<S: Precision>(given: &Given, point: &[Complex64], error: f64) -> Opti
     Some(Verdict::Regular { point, residual })
 }
 
+/// A point on a set of positive dimension is at most this far from the end of a path, relatively, or as many times its error.
+const NEAR_SHEET: f64 = 1e-11;
+const NEAR_SHEET_ERRORS: f64 = 10.0;
+
+/// The verdict on a point that can be moved along a set of solutions.
+fn sheet(given: &Given, point: &[Complex64], paths: usize, error: f64) -> Option<Verdict> {
+    let local = given.near::<ComplexDd>(point);
+    let near = NEAR_SHEET.max(NEAR_SHEET_ERRORS * error).min(NEAR_SINGULAR).log2();
+    let start = local.scaled(point);
+    let (point, dimension) = on_sheet(&local, &start, paths, near, REDUCED)
+        .or_else(|| Some((start.clone(), is_touched(&local, &start, paths, error.log2())?)))
+        .or_else(|| on_sheet(&local, &start, paths, near, NOT_REDUCED))?;
+    Some(Verdict::OnComponent { dimension, point: rounded(given, &local, &point).0 })
+}
+
 /// The verdict on a point that is no regular solution, to one precision; an error if that is not enough.
 fn multiple<S: Precision>(given: &Given, point: &[Complex64], paths: usize) -> Result<Verdict, Why> {
     let local = given.near::<S>(point);
@@ -254,10 +278,17 @@ fn structure<S: Number>(local: &Local<'_, S>, found: &Deflated<S>, order: usize,
         return Some(Structure::Unfinished);
     };
     let regular_after = found.profile.remaining == 0;
-    let functionals = count(&reduced.basis, &reduced.equations, limit);
+    let counted = |bound: usize| {
+        let functionals = count(&reduced.basis, &reduced.equations, bound);
+        let many = if let Count::All(found) = functionals { found } else { bound.min(reduced.basis.count(order)) } as f64;
+        let n = reduced.basis.variables() as f64;
+        local.spend(order as f64 * (n * many).powi(2) * (0.5 * n + 1.0) * many / 3.0);
+        functionals
+    };
+    let functionals = counted(limit);
     // Where deflation has determined the point, it may be isolated with more paths than were counted.
     let functionals = match functionals {
-        Count::More if regular_after => match count(&reduced.basis, &reduced.equations, 4 * limit) {
+        Count::More if regular_after => match counted(4 * limit) {
             Count::All(multiplicity) => Count::All(multiplicity),
             _ => Count::More,
         },

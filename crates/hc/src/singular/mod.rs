@@ -10,8 +10,9 @@ mod equations;
 mod judge;
 mod number;
 mod series;
+mod sheet;
 mod univariate;
 
 pub(crate) use equations::Given;
-pub(crate) use judge::{Verdict, depends_on_rounding, judge, nearby, solves};
+pub(crate) use judge::{Verdict, Why, depends_on_rounding, judge, nearby, solves};
 pub(crate) use univariate::roots;

@@ -68,6 +68,19 @@ impl Basis {
         self.counts[order.min(self.order)]
     }
 
+    /// Number of pairs of monomials whose product is of an order or less.
+    pub(crate) fn pairs(&self, order: usize) -> usize {
+        let mut pairs = 0;
+        let mut degree = 0;
+        for k in 0..self.count(order) {
+            while k >= self.counts[degree] {
+                degree += 1;
+            }
+            pairs += self.count(order.min(self.order) - degree);
+        }
+        pairs
+    }
+
     pub(crate) fn exponents(&self) -> &[Vec<u16>] {
         &self.exponents
     }

@@ -5,6 +5,7 @@ use super::paths::Ends;
 use super::solutions::{Direction, Solution, Solutions, Unresolved, is_real};
 use crate::distinct::coincidences;
 use crate::family::PathCounts;
+use crate::monitor::Monitor;
 use crate::refine::Refined;
 use crate::singular::Given;
 use num_complex::Complex64;
@@ -68,6 +69,7 @@ pub(super) struct Tracked<'a> {
     pub(super) target: &'a [Complex64],
     /// Whether the coefficients that were tracked are exactly those that were given.
     pub(super) exact: bool,
+    pub(super) monitor: &'a Monitor,
 }
 
 /// Sorts ends into solutions. Without `tracked`, singular ends are lost.

@@ -7,7 +7,7 @@ use super::record::SingularEnd;
 use super::solutions::{Solution, Unresolved, is_real};
 use crate::distinct::{CLUSTER, groups, relative_distance};
 use crate::refine::Refiner;
-use crate::singular::{self, Verdict};
+use crate::singular::{self, Verdict, Why};
 use crate::threads::{IntoParallelRefIterator, ParallelIterator};
 use num_complex::Complex64;
 use poly::SparseSystem;
@@ -35,11 +35,10 @@ impl Classified {
         let points = ends.iter().enumerate().map(|(k, end)| (k, &end.point[..]));
         let groups = groups(points, CLUSTER);
         let spare = self.lost;
-        let judged: Vec<Vec<(Vec<usize>, Verdict)>> =
-            groups.par_iter().map(|group| verdicts(tracked, &ends, group, spare)).collect();
+        let judged = judged_groups(tracked, &ends, &groups, spare);
         let mut multiple: Vec<Multiple> = Vec::new();
         let mut refiner = Refiner::new(tracked.system);
-        for (group, verdict) in judged.into_iter().flatten() {
+        for (group, verdict) in judged {
             let paths = group.len();
             match verdict {
                 Verdict::Isolated { point, .. } if excess.outside(&point) => self.excess += paths,
@@ -95,7 +94,7 @@ impl Classified {
         let mut kept: Vec<Solution> = Vec::with_capacity(self.solutions.len());
         for mut solution in std::mem::take(&mut self.solutions) {
             let point = solution.value.clone();
-            if !singular::depends_on_rounding(tracked.given, &point) {
+            if solution.condition < STEADY || !singular::depends_on_rounding(tracked.given, &point) {
                 kept.push(solution);
                 continue;
             }
@@ -118,8 +117,40 @@ impl Classified {
     }
 }
 
+/// Condition numbers below which rounded coefficients move a solution by less than its own rounding errors matter.
+const STEADY: f64 = 1e4;
 /// How far rounded coefficients may move a regular solution that is still told apart from others.
 const ROUNDED: f64 = 1e-4;
+
+/// Groups that are judged at a time.
+const BATCH: usize = 64;
+/// Work that a solve takes for its singular ends, in products of complex double-doubles, but for the last batch: about half a minute of a
+/// processor.
+const WORK: u64 = 300_000_000;
+
+/// Verdicts on all groups of ends, until the work is done that one solve may take or it is cancelled.
+fn judged_groups(
+    tracked: &Tracked<'_>,
+    ends: &[&SingularEnd],
+    groups: &[Vec<usize>],
+    spare: usize,
+) -> Vec<(Vec<usize>, Verdict)> {
+    let mut judged = Vec::new();
+    for batch in groups.chunks(BATCH) {
+        let stop = if tracked.monitor.is_cancelled() {
+            Some(Why::Interrupted)
+        } else {
+            (tracked.given.spent() > WORK).then_some(Why::TooMuch)
+        };
+        if let Some(why) = stop {
+            judged.extend(batch.iter().map(|group| (group.clone(), Verdict::Unresolved(why))));
+            continue;
+        }
+        let verdicts: Vec<Vec<_>> = batch.par_iter().map(|group| verdicts(tracked, ends, group, spare)).collect();
+        judged.extend(verdicts.into_iter().flatten());
+    }
+    judged
+}
 
 /// Verdicts on ends that nearly coincide: on all at once, or on each where they are no multiple solution. `spare` paths more may
 /// end there.

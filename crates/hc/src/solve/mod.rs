@@ -124,7 +124,7 @@ pub(crate) fn solve_polynomials(
         if !ends.abandoned {
             start_systems += 1;
             retracked += ends.retracked;
-            let tracked = Tracked { given: &given, system: &from.system, target, exact };
+            let tracked = Tracked { given: &given, system: &from.system, target, exact, monitor };
             let found = classify(Some(&tracked), &ends, &excess, options.paths.coincidence);
             let this = Best { start: Some(from.kind), tracked: from.paths, found };
             best = if start_systems == 1 { this } else { best.joined(this) };
