@@ -40,6 +40,8 @@ pub(crate) struct Deflated<S> {
 pub(crate) const ZERO: f64 = -0.5;
 /// Those from this share on do not; what lies between is not clear.
 pub(crate) const CLEAR: f64 = -0.27;
+/// Equations at a refined point are this small at most, relative to their terms.
+const SOLVED: f64 = -0.65;
 /// Corrections up to this size end the iteration.
 const CONVERGED: f64 = -0.7;
 /// Iterations at most; corrections of an iteration that converges get small at once.
@@ -117,7 +119,7 @@ pub(crate) fn settled<S: Number>(
         if correction <= CONVERGED * S::BITS {
             let last = step(local, &point, order, Ranks::Known(profile))?;
             let clear = last.accepted >= CLEAR * S::BITS && last.rejected <= ZERO * S::BITS;
-            let solves = local.residual(&last.point) <= ZERO * S::BITS;
+            let solves = local.residual(&last.point) <= SOLVED * S::BITS;
             return (clear && solves).then_some(Deflated { point: last.point, profile: last.profile });
         }
     }

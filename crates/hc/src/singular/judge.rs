@@ -5,7 +5,7 @@ use super::dual::{Count, count};
 use super::eliminate::{Elimination, Stop};
 use super::equations::{Given, Local, Precision};
 use super::number::Number;
-use super::sheet::{NOT_REDUCED, REDUCED, is_touched, on_sheet};
+use super::sheet::on_sheet;
 use crate::random::{Random, Stream};
 use num_complex::Complex64;
 use poly::{ComplexDd, ComplexMulti, Scalar};
@@ -82,10 +82,9 @@ pub(crate) fn judge(given: &Given, point: &[Complex64], paths: usize, error: f64
         return Verdict::Unresolved(Why::NoSolution);
     }
     let error = if error.is_finite() { error.abs() } else { NEAR_SINGULAR };
-    if let Some(verdict) = regular::<ComplexDd>(given, point, error).or_else(|| sheet(given, point, paths, error)) {
-        return verdict;
-    }
-    let at_once = regular::<ComplexMulti<4>>(given, point, error)
+    let at_once = regular::<ComplexDd>(given, point, error)
+        .or_else(|| regular::<ComplexMulti<4>>(given, point, error))
+        .or_else(|| sheet(given, point, paths, error))
         .or_else(|| regular::<ComplexMulti<8>>(given, point, error));
     if let Some(verdict) = at_once {
         return verdict;
@@ -195,16 +194,14 @@ fn regular<S: Precision>(given: &Given, point: &[Complex64], error: f64) -> Opti
 
 /// A point on a set of positive dimension is at most this far from the end of a path, relatively, or as many times its error.
 const NEAR_SHEET: f64 = 1e-11;
+const NEAR_SHEET_AT_MOST: f64 = 1e-8;
 const NEAR_SHEET_ERRORS: f64 = 10.0;
 
 /// The verdict on a point that can be moved along a set of solutions.
 fn sheet(given: &Given, point: &[Complex64], paths: usize, error: f64) -> Option<Verdict> {
     let local = given.near::<ComplexDd>(point);
-    let near = NEAR_SHEET.max(NEAR_SHEET_ERRORS * error).min(NEAR_SINGULAR).log2();
-    let start = local.scaled(point);
-    let (point, dimension) = on_sheet(&local, &start, paths, near, REDUCED)
-        .or_else(|| Some((start.clone(), is_touched(&local, &start, paths, error.log2())?)))
-        .or_else(|| on_sheet(&local, &start, paths, near, NOT_REDUCED))?;
+    let near = NEAR_SHEET.max(NEAR_SHEET_ERRORS * error).min(NEAR_SHEET_AT_MOST).log2();
+    let (point, dimension) = on_sheet(&local, &local.scaled(point), paths, near)?;
     Some(Verdict::OnComponent { dimension, point: rounded(given, &local, &point).0 })
 }
 
