@@ -31,7 +31,7 @@ pub(crate) enum Verdict {
     },
     /// A point on a set of solutions of positive dimension.
     OnComponent {
-        /// The local dimension; where the structure is too large to tell, a lower bound.
+        /// A lower bound of the local dimension: that of a reduced set, if the point is a general one.
         dimension: usize,
         /// A solution on it near the end.
         point: Vec<Complex64>,
@@ -146,10 +146,13 @@ pub(crate) fn nearby(given: &Given, point: &[Complex64], wanted: usize) -> Nearb
             }
             // Newton's method leads to a component too, along which it drifts.
             let start: Vec<Complex64> = local.unscaled(&approached(&local, start)).iter().map(Number::to_c64).collect();
-            if nearby.component.is_none()
-                && let Ok(Verdict::OnComponent { dimension, point }) = multiple::<ComplexDd>(given, &start, 1)
-            {
-                nearby.component = Some((point, dimension));
+            if nearby.component.is_none() {
+                let verdict = sheet(given, &start, 1, NEAR_SHEET_AT_MOST);
+                if let Some(Verdict::OnComponent { dimension, point }) =
+                    verdict.or_else(|| multiple::<ComplexDd>(given, &start, 1).ok())
+                {
+                    nearby.component = Some((point, dimension));
+                }
             }
         }
     }
@@ -417,7 +420,7 @@ mod tests {
             ] {
                 let verdict = judged(text, &at, 1, error);
                 let Verdict::OnComponent { dimension: found, .. } = verdict else { panic!("{text}: {verdict:?}") };
-                assert_eq!(found, dimension, "{text} {error}");
+                assert!((1..=dimension).contains(&found), "{text} {error}: {found}");
             }
         }
     }

@@ -42,12 +42,12 @@ pub(super) fn orbits(
     let mut left: Vec<usize> = (0..points.len()).collect();
     let mut orbits = Vec::new();
     while let Some(&first) = left.first() {
-        let mut fibre = Fibre::new(slices.offsets.clone(), unknowns, points[first].clone());
+        let mut fibre = Fibre::new(slices.parameters(), unknowns, points[first].clone());
         let mut deviation = None;
         for search in 0..SEARCHES {
             let options = MonodromyOptions::new().seed(seed.wrapping_add(search)).roots(left.len());
             fibre = monodromy(&family, &fibre, |_, _| true, &options).fibre;
-            deviation = trace(&family, &fibre, seed);
+            deviation = trace(&family, &fibre, unknowns, seed);
             if deviation.is_some_and(|d| d < PASSED) {
                 break;
             }
@@ -64,9 +64,11 @@ pub(super) fn orbits(
 
 /// How far the sum of the points is from moving linearly while the hyperplanes move in parallel, relative to its motion: rounding
 /// error if the points are all of one or more components.
-fn trace<E: Evaluate>(family: &E, fibre: &Fibre, seed: u64) -> Option<f64> {
+fn trace<E: Evaluate>(family: &E, fibre: &Fibre, unknowns: usize, seed: u64) -> Option<f64> {
     let mut random = Random::new(seed, Stream::Trace);
-    let direction: Vec<Complex64> = fibre.parameters.iter().map(|_| random.unit()).collect();
+    // The offsets move; slopes, as many as unknowns before each, stay.
+    let step = |k: usize| if k % (unknowns + 1) == unknowns { random.unit() } else { Complex64::new(0.0, 0.0) };
+    let direction: Vec<Complex64> = (0..fibre.parameters.len()).map(step).collect();
     let at = |s: f64| fibre.parameters.iter().zip(&direction).map(|(b, v)| b + v * s).collect::<Vec<_>>();
     let options = FibreOptions::default();
     let second = move_fibre(family, fibre, &at(1.0), &options)?;

@@ -10,7 +10,7 @@ pub(super) struct Slices {
     /// The coefficients `a` of each.
     slopes: Vec<Vec<Complex64>>,
     /// The values `b`.
-    pub(super) offsets: Vec<Complex64>,
+    offsets: Vec<Complex64>,
 }
 
 impl Slices {
@@ -32,8 +32,14 @@ impl Slices {
         self.slopes.iter().zip(&self.offsets).map(plane).collect()
     }
 
-    /// As many equations as unknowns: combinations of the given ones, and these hyperplanes with their offsets as parameters.
-    /// `None` if that makes no system.
+    /// The parameters of the [family](Slices::family) at which its hyperplanes are these: slopes and offset of each.
+    pub(super) fn parameters(&self) -> Vec<Complex64> {
+        let plane = |(slopes, &offset): (&Vec<Complex64>, &Complex64)| slopes.iter().copied().chain([offset]).collect();
+        self.slopes.iter().zip(&self.offsets).flat_map::<Vec<Complex64>, _>(plane).collect()
+    }
+
+    /// As many equations as unknowns: combinations of the given ones, and hyperplanes with slopes and offsets as parameters. Offsets
+    /// alone would have to move as far as branch points lie from them. `None` if that makes no system.
     pub(super) fn family(&self, given: &[Polynomial<Exact>], unknowns: usize, seed: u64) -> Option<System> {
         let names: Vec<String> = (0..unknowns).map(|j| format!("x{j}")).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
@@ -42,15 +48,20 @@ impl Slices {
         let mut random = Random::new(seed, Stream::Combinations);
         System::build(|s| {
             let unknowns: Vec<_> = names.iter().map(|name| s.variable(name)).collect();
-            let offsets: Vec<_> = (0..self.slopes.len()).map(|k| s.parameter(&format!("b{k}"))).collect();
+            let planes: Vec<(Vec<_>, _)> = (0..self.slopes.len())
+                .map(|k| {
+                    let slopes = (0..unknowns.len()).map(|j| s.parameter(&format!("a{k}_{j}"))).collect();
+                    (slopes, s.parameter(&format!("b{k}")))
+                })
+                .collect();
             let given = system.instantiate(s, &unknowns, &[]);
             let mut equations = if given.len() == wanted {
                 given
             } else {
                 (0..wanted).map(|_| s.sum(given.iter().map(|&f| s.constant(random.unit()) * f))).collect()
             };
-            for (slopes, &offset) in self.slopes.iter().zip(&offsets) {
-                equations.push(s.sum(slopes.iter().zip(&unknowns).map(|(&a, &x)| s.constant(a) * x)) - offset);
+            for (slopes, offset) in planes {
+                equations.push(s.sum(slopes.iter().zip(&unknowns).map(|(&a, &x)| a * x)) - offset);
             }
             equations
         })
