@@ -247,7 +247,8 @@ impl<S: Number> Local<'_, S> {
                 for ((&(j, e), &place), before) in term.powers.iter().zip(&term.places).zip(&before).rev() {
                     let others = S::mul(before, &behind);
                     // The power that is less by one stands before.
-                    let slope = if e == 1 { others } else { S::scale(&S::mul(&others, &powers[j][place - 1]), f64::from(e)) };
+                    let slope =
+                        if e == 1 { others } else { S::scale(&S::mul(&others, &powers[j][place - 1]), f64::from(e)) };
                     row[j] = S::add(&row[j], &slope);
                     behind = S::mul(&behind, &powers[j][place]);
                 }

@@ -280,7 +280,8 @@ fn structure<S: Number>(local: &Local<'_, S>, found: &Deflated<S>, order: usize,
     let regular_after = found.profile.remaining == 0;
     let counted = |bound: usize| {
         let functionals = count(&reduced.basis, &reduced.equations, bound);
-        let many = if let Count::All(found) = functionals { found } else { bound.min(reduced.basis.count(order)) } as f64;
+        let many =
+            if let Count::All(found) = functionals { found } else { bound.min(reduced.basis.count(order)) } as f64;
         let n = reduced.basis.variables() as f64;
         local.spend(order as f64 * (n * many).powi(2) * (0.5 * n + 1.0) * many / 3.0);
         functionals

@@ -96,9 +96,7 @@ pub(super) fn classify(tracked: Option<&Tracked<'_>>, all: &Ends, excess: &Exces
         out.lost += all.singular.len();
         return out;
     };
-    if !tracked.exact {
-        out.correct_rounded(tracked);
-    }
+    out.correct_rounded(tracked);
     out.add_singular(tracked, all, excess);
     out
 }

@@ -89,17 +89,23 @@ impl Classified {
         }
     }
 
-    /// Replaces regular solutions that depend on what rounding took from the coefficients.
+    /// Replaces regular solutions that depend on what rounding took from the coefficients, or on more digits than doubles have.
     pub(super) fn correct_rounded(&mut self, tracked: &Tracked<'_>) {
         let mut kept: Vec<Solution> = Vec::with_capacity(self.solutions.len());
         for mut solution in std::mem::take(&mut self.solutions) {
             let point = solution.value.clone();
-            if solution.condition < STEADY || !singular::depends_on_rounding(tracked.given, &point) {
+            let steady = if tracked.exact { STEADY_EXACT } else { STEADY };
+            let steady = solution.condition < steady && solution.residual < ACCURATE_RESIDUAL;
+            if steady || !singular::depends_on_rounding(tracked.given, &point) {
                 kept.push(solution);
                 continue;
             }
             let Verdict::Regular { point: exact, residual } = singular::judge(tracked.given, &point, 1, ROUNDED) else {
-                self.lost += 1;
+                if tracked.exact {
+                    kept.push(solution);
+                } else {
+                    self.lost += 1;
+                }
                 continue;
             };
             solution.residual = residual;
@@ -119,6 +125,10 @@ impl Classified {
 
 /// Condition numbers below which rounded coefficients move a solution by less than its own rounding errors matter.
 const STEADY: f64 = 1e4;
+/// Those from which exact coefficients are looked at too, for the digits of the solution.
+const STEADY_EXACT: f64 = 1e8;
+/// Residuals of solutions on which rounding has no effect: a single equation has no condition number to tell.
+const ACCURATE_RESIDUAL: f64 = 1e-14;
 /// How far rounded coefficients may move a regular solution that is still told apart from others.
 const ROUNDED: f64 = 1e-4;
 
