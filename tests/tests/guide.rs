@@ -20,6 +20,7 @@ const NOT_RUN: &[&str] = &[
     "cargo xtask experiments --quick",
     "cargo bench -p benches --bench evaluate",
     "cargo bench -p hc --bench tracker",
+    "cargo bench -p hc --bench lu",
     "cargo bench -p hc --bench mixed_volume",
     "cargo bench -p tdoa --bench calibrate",
     "cargo xtask compare",
@@ -80,7 +81,15 @@ fn run_page(page: &str, folder: &Path) -> Vec<(String, String)> {
 
 #[test]
 fn no_page_is_left_out() {
-    let tested = ["calibrate-a-network.md", "polynomial-system.md", "minimal-problem.md", "tracker.md", "checks.md"];
+    // The page of Python is tested by crates/python/tests/test_guide.py.
+    let tested = [
+        "calibrate-a-network.md",
+        "polynomial-system.md",
+        "minimal-problem.md",
+        "tracker.md",
+        "checks.md",
+        "python.md",
+    ];
     let mut pages: Vec<String> = std::fs::read_dir(root().join("docs/guide"))
         .expect("folder")
         .map(|entry| entry.expect("entry").file_name().to_string_lossy().into_owned())

@@ -36,7 +36,7 @@ enum Job {
     Jacobian,
     /// Orders 1, 2 and 3, the parameters on a straight line.
     Taylor,
-    /// The same, the parameters on a curve.
+    /// Values with the parameters on a curve.
     Curved,
 }
 

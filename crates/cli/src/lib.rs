@@ -76,7 +76,7 @@ pub fn pool(threads: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
 /// Runs work on this many threads; all cores for `None`.
 ///
 /// # Errors
-/// As [`pool`].
+/// Those of [`pool`].
 pub fn on_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
     Ok(pool(threads)?.install(work))
 }

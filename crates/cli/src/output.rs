@@ -28,7 +28,7 @@ pub fn write(path: &Path, content: &[u8]) -> Result<(), Failure> {
 /// Writes a file that the user asked for, and says so on standard error.
 ///
 /// # Errors
-/// As [`write()`].
+/// Those of [`write()`].
 pub fn file(path: &Path, content: &[u8]) -> Result<(), Failure> {
     write(path, content)?;
     eprintln!("wrote {}", path.display());
@@ -93,7 +93,7 @@ fn is_standard_output(path: &Path) -> bool {
 /// Writes text to a file and says so on standard error, or to standard output for `-`.
 ///
 /// # Errors
-/// As [`write()`] and [`print()`].
+/// Those of [`write()`] and [`print()`].
 pub fn text(path: &Path, text: &str) -> Result<(), Failure> {
     if is_standard_output(path) { print(text) } else { file(path, text.as_bytes()) }
 }
@@ -101,7 +101,7 @@ pub fn text(path: &Path, text: &str) -> Result<(), Failure> {
 /// Writes JSON to a file and says so on standard error, or to standard output for `-`.
 ///
 /// # Errors
-/// As [`write()`] and [`print()`].
+/// Those of [`write()`] and [`print()`].
 pub fn json(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
     let _writing = Writing::begin();
     let mut json = serde_json::to_string_pretty(value).map_err(Failure::unusable)?;
@@ -112,7 +112,7 @@ pub fn json(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
 /// Prints a summary, unless the JSON is asked for on standard output instead.
 ///
 /// # Errors
-/// As [`print()`].
+/// Those of [`print()`].
 pub fn summary(json: Option<&Path>, text: impl FnOnce() -> String) -> Result<(), Failure> {
     if json.is_some_and(is_standard_output) { Ok(()) } else { print(&text()) }
 }

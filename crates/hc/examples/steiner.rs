@@ -8,22 +8,18 @@
 mod conics;
 
 use conics::{COUNTS, tangent_conics};
-use hc::family::{find_pair, monodromy, solve_member};
 use hc::random::{Random, Stream};
-use hc::{MonodromyOptions, SolveOptions};
+use hc::{Family, MonodromyOptions};
 use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
     let seed: u64 = arguments.next().map_or(Ok(0), |text| text.parse())?;
     let real = arguments.next().is_some_and(|word| word == "real");
-    let (family, count) = (tangent_conics(5), COUNTS[5]);
-    let compiled = family.compile()?;
+    let (family, count) = (Family::new(tangent_conics(5))?, COUNTS[5]);
 
     let started = Instant::now();
-    let first = find_pair(&family, |_, _| true, seed)?.ok_or("no first conic")?;
-    let options = MonodromyOptions::new().roots(count).seed(seed);
-    let generic = monodromy(&compiled, &first, |_, _| true, &options);
+    let generic = family.monodromy(&MonodromyOptions::new().roots(count).seed(seed))?;
     let (found, seconds) = (generic.fibre.len(), started.elapsed().as_secs_f64());
     println!("monodromy: {found} conics after {} loops and {} paths, {seconds:.1} s", generic.loops, generic.paths);
 
@@ -32,7 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     if real {
         target.iter_mut().for_each(|p| p.im = 0.0);
     }
-    let mut solved = solve_member(&family, &compiled, &generic.fibre, &target, &SolveOptions::default());
+    let mut solved = family.track(&generic.fibre, &[target]).run()?.remove(0);
     let (paths, seconds) = (solved.paths, started.elapsed().as_secs_f64());
     println!(
         "five random conics: {} solutions, {} paths lost, {} tracked again, {seconds:.1} s",

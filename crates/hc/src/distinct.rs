@@ -22,7 +22,10 @@ pub fn relative_distance(a: &[Complex64], b: &[Complex64]) -> f64 {
 
 /// Groups of two or more coinciding points among `points` (pairs of a label and `n` coordinates): points whose
 /// [`relative_distance`] is at most `tolerance`, and chains of such. Labels ascend within a group, groups by their first label.
-pub fn coincidences<'a>(points: impl IntoIterator<Item = (usize, &'a [Complex64])>, tolerance: f64) -> Vec<Vec<usize>> {
+pub(crate) fn coincidences<'a>(
+    points: impl IntoIterator<Item = (usize, &'a [Complex64])>,
+    tolerance: f64,
+) -> Vec<Vec<usize>> {
     let points: Vec<(usize, &[Complex64])> = points.into_iter().collect();
     let mut found = Coincidences::default();
     found.find(0..points.len(), |k| points[k].1, tolerance);
@@ -31,7 +34,9 @@ pub fn coincidences<'a>(points: impl IntoIterator<Item = (usize, &'a [Complex64]
         groups[root(&mut found.parent, i)].push(points[found.keyed[i].index].0);
     }
     groups.retain(|g| g.len() > 1);
-    groups.iter_mut().for_each(|g| g.sort_unstable());
+    for g in groups.iter_mut() {
+        g.sort_unstable();
+    }
     groups.sort();
     groups
 }
@@ -51,7 +56,7 @@ pub(crate) fn groups<'a>(
 
 /// The memory of a search for coinciding points.
 #[derive(Clone, Debug, Default)]
-pub struct Coincidences {
+pub(crate) struct Coincidences {
     /// In the order of the keys.
     keyed: Vec<Keyed>,
     /// Another member of the group, none for one of each group; by places in `keyed`.
@@ -67,7 +72,7 @@ struct Keyed {
 
 impl Coincidences {
     /// With room for so many points.
-    pub fn with_capacity(points: usize) -> Self {
+    pub(crate) fn with_capacity(points: usize) -> Self {
         Coincidences { keyed: Vec::with_capacity(points), parent: Vec::with_capacity(points) }
     }
 

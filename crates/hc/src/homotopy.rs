@@ -18,7 +18,7 @@ pub trait ParameterPath: Send + Sync {
     /// that of some other lane. Called inside a kernel: implementations are `#[inline(always)]`.
     fn coefficients<S: Lane>(&self, paths: &[usize], t: &S::Real, p: &mut [S]);
 
-    /// Replaces the parameters at `t` of one path, rounded to double precision, by their values to twice the digits.
+    /// Replaces the parameters at `t` of one path, rounded to double precision, by their values in double-double.
     ///
     /// A point with a Jacobian of condition `c` moves by `c` times the rounding error of the parameters, which spoils the predictor's
     /// idea of the path long before Newton's method fails. By default they stay rounded.
@@ -70,13 +70,13 @@ impl Segment {
         &self.direction
     }
 
-    /// Writes the parameters at `t`, real or complex, to twice the digits into `p`, one entry a parameter.
+    /// Writes the parameters at `t`, real or complex, in double-double into `p`, one entry a parameter.
     pub fn extended(&self, t: &ComplexDd, p: &mut [ComplexDd]) {
         Isa::detect().run(Extended { segment: self, t, p });
     }
 }
 
-/// The parameters of a segment to twice the digits.
+/// The parameters of a segment in double-double.
 struct Extended<'a> {
     segment: &'a Segment,
     t: &'a ComplexDd,

@@ -118,14 +118,22 @@ impl Lu<Complex64> {
         let norm = rows.iter().map(|[row, sum]| sum / row).fold(0.0, f64::max);
         // || B ||_inf = || B^H ||_1 for B = W^{-1} A^{-1} D^{-1}, estimated from products with B^H and B.
         let adjoint = |v: &mut [Complex64]| {
-            v.iter_mut().zip(weights_sqr).for_each(|(v, w)| *v /= w[0].sqrt());
+            for (v, w) in v.iter_mut().zip(weights_sqr) {
+                *v /= w[0].sqrt();
+            }
             self.solve_adjoint(v);
-            v.iter_mut().zip(&*rows).for_each(|(v, r)| *v *= r[0]);
+            for (v, r) in v.iter_mut().zip(&*rows) {
+                *v *= r[0];
+            }
         };
         let direct = |v: &mut [Complex64]| {
-            v.iter_mut().zip(&*rows).for_each(|(v, r)| *v *= r[0]);
+            for (v, r) in v.iter_mut().zip(&*rows) {
+                *v *= r[0];
+            }
             self.solve(v);
-            v.iter_mut().zip(weights_sqr).for_each(|(v, w)| *v /= w[0].sqrt());
+            for (v, w) in v.iter_mut().zip(weights_sqr) {
+                *v /= w[0].sqrt();
+            }
         };
         let length = |z: &Complex64| z.norm_sqr().sqrt();
         x.clear();
@@ -141,7 +149,9 @@ impl Lu<Complex64> {
                 break;
             }
             estimate = size;
-            x.iter_mut().for_each(|z| *z = if length(z) > 0.0 { *z / length(z) } else { Complex64::new(1.0, 0.0) });
+            for z in x.iter_mut() {
+                *z = if length(z) > 0.0 { *z / length(z) } else { Complex64::new(1.0, 0.0) };
+            }
             direct(x);
             let best = (0..n).max_by(|&i, &j| length(&x[i]).total_cmp(&length(&x[j]))).unwrap_or(0);
             x.fill(Complex64::new(0.0, 0.0));
@@ -318,9 +328,15 @@ mod tests {
             let mut b8 = vec![Lanes8::zero(); n];
             let mut w8 = vec![Lanes8::real(1.0); n];
             for l in 0..8 {
-                a8.iter_mut().for_each(|a| a.set(l, random(&mut rng)));
-                b8.iter_mut().for_each(|b| b.set(l, random(&mut rng)));
-                w8.iter_mut().for_each(|w| w.as_mut()[l] = rng.random_range(0.1..10.0));
+                for a in a8.iter_mut() {
+                    a.set(l, random(&mut rng));
+                }
+                for b in b8.iter_mut() {
+                    b.set(l, random(&mut rng));
+                }
+                for w in w8.iter_mut() {
+                    w.as_mut()[l] = rng.random_range(0.1..10.0);
+                }
             }
             wide.factor(&a8, &w8);
             portable.factor(&a8, &w8);

@@ -22,6 +22,10 @@ pub enum Stream {
     Beside,
     /// Combinations of the equations of an overdetermined system.
     Combinations,
+    /// Directions in which a solution is left, to see whether Newton's method comes back.
+    Perturbation,
+    /// Changes of the parameters, to see how far rounding them moves a solution.
+    Rounding,
     /// The line of a trace test.
     Trace,
     /// The parameters of a loop of monodromy, by number.
@@ -46,6 +50,8 @@ impl Stream {
             Stream::Multihomogeneous(k) => between(3, k),
             Stream::Other(k) => between(5, k),
             Stream::Slice(k) => between(7, k),
+            Stream::Rounding => 4,
+            Stream::Perturbation => 6,
             Stream::Combinations => 11,
             Stream::Beside => 13,
             Stream::Trace => 0x7ACE,
@@ -91,7 +97,9 @@ mod tests {
 
     #[test]
     fn purposes_share_no_stream() {
-        let mut numbers = HashSet::from([Stream::Combinations, Stream::Beside, Stream::Trace].map(Stream::number));
+        let single =
+            [Stream::Combinations, Stream::Beside, Stream::Perturbation, Stream::Rounding, Stream::Trace];
+        let mut numbers = HashSet::from(single.map(Stream::number));
         for attempt in 0..60 {
             let purposes = [
                 Stream::Member,

@@ -36,7 +36,7 @@ pub struct Refiner<'a, E: Evaluate> {
     values: Vec<Complex64>,
     jacobian: Vec<Complex64>,
     lu: Lu<Complex64>,
-    /// The parameters to twice the digits.
+    /// The parameters in double-double.
     exact_p: Vec<ComplexDd>,
     next: Vec<Complex64>,
     /// Squared sizes of unknowns.
@@ -57,7 +57,7 @@ const STEADY: f64 = 1e-3;
 const NEAR: f64 = 1e-6;
 /// Relative distances from one of which a regular solution must attract Newton's method.
 const PERTURBATIONS: [f64; 2] = [1e-8, 1e-6];
-/// The same where Jacobians are taken to twice the digits.
+/// Such distances where Jacobians are in double-double.
 const PRECISE_PERTURBATIONS: [f64; 2] = [1e-14, 1e-12];
 /// Last correction and condition of solutions that are plainly regular. At a distance of `d` from a singular solution the condition is
 /// about `1 / d` or more, and corrections are about `d` or more.
@@ -119,7 +119,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         (refined.accuracy, refined.residual, refined.condition) = (accuracy, residual, condition);
     }
 
-    /// Parameters to twice the digits, in memory to be given back.
+    /// Parameters in double-double, in memory to be given back.
     fn exact(&mut self, p: &[Complex64]) -> Vec<ComplexDd> {
         let mut exact = std::mem::take(&mut self.exact_p);
         exact.clear();
@@ -127,7 +127,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         exact
     }
 
-    /// The same in place, for parameters given to twice the digits; returns the relative size of the last correction, and how far rounding
+    /// Refines in place, for parameters in double-double; returns the relative size of the last correction, and how far rounding
     /// the parameters to double precision would move the point: absolute, to first order, for random roundings, and infinite where the
     /// Jacobian is singular.
     pub fn polish_and_blur(&mut self, p: &[ComplexDd], x: &mut [Complex64]) -> (f64, Vec<f64>) {
@@ -191,7 +191,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
     }
 
     fn comes_back(&mut self, p: &[ComplexDd], x: &[Complex64], perturbation: f64) -> bool {
-        let mut random = Random::new(0, Stream::Multihomogeneous(0));
+        let mut random = Random::new(0, Stream::Perturbation);
         let mut y = std::mem::take(&mut self.next);
         y.clear();
         sizes(x, &mut self.squares);
@@ -199,7 +199,9 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         for _ in 0..2 {
             self.factor(p, &y);
             self.correction(p, &y);
-            y.iter_mut().zip(&self.values).for_each(|(y, d)| *y -= d);
+            for (y, d) in y.iter_mut().zip(&self.values) {
+                *y -= d;
+            }
         }
         let mut distances = y.iter().zip(x).zip(&self.squares).map(|((y, x), w)| (y - x).norm() / w[0].sqrt());
         let comes_back = distances.all(|d| d <= 1e-3 * perturbation);
@@ -207,7 +209,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         comes_back
     }
 
-    /// The test of [`contracts`](Self::contracts) with points and Jacobians to twice the digits, from a point 1e-14 or 1e-12 away: it tells
+    /// The test of [`contracts`](Self::contracts) with points and Jacobians in double-double, from a point 1e-14 or 1e-12 away: it tells
     /// regular solutions whose Jacobians are singular as far as doubles can tell, as where nodes of a network nearly coincide. The
     /// parameters are taken as exact: two solutions into which rounding them has split a singular one are regular. Slow, and allocates.
     pub fn contracts_precisely(&mut self, p: &[Complex64], x: &[Complex64]) -> bool {
@@ -222,7 +224,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         let stays = x.iter().zip(&centre).zip(&sizes).all(|((x, z), w)| within(&(*x).into(), z, NEAR * w));
         let contracts = stays
             && PRECISE_PERTURBATIONS.iter().any(|&distance| {
-                let mut random = Random::new(0, Stream::Multihomogeneous(0));
+                let mut random = Random::new(0, Stream::Perturbation);
                 let away = |(z, w): (&ComplexDd, &f64)| ComplexDd::add(z, &(random.unit() * (distance * w)).into());
                 let mut y: Vec<ComplexDd> = centre.iter().zip(&sizes).map(away).collect();
                 self.newton_precisely(&exact, &mut y, &mut scratch);
@@ -232,7 +234,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         contracts
     }
 
-    /// Two corrections of a point, with Jacobians to twice the digits; not finite where they are singular. `scratch` holds two of them.
+    /// Two corrections of a point, with Jacobians in double-double; not finite where they are singular. `scratch` holds two of them.
     fn newton_precisely(&mut self, p: &[ComplexDd], x: &mut [ComplexDd], scratch: &mut [ComplexDd]) {
         let n = x.len();
         let (jacobian, inverse) = scratch.split_at_mut(n * n);
@@ -240,7 +242,9 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
             self.system.jacobian(&mut self.precise, x, p, &mut self.precise_values, jacobian);
             inverse::invert(n, jacobian, inverse);
             let step = inverse::product(n, inverse, &self.precise_values);
-            x.iter_mut().zip(&step).for_each(|(x, d)| *x = ComplexDd::sub(x, d));
+            for (x, d) in x.iter_mut().zip(&step) {
+                *x = ComplexDd::sub(x, d);
+            }
         }
     }
 
@@ -250,12 +254,14 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
             self.factor(p, x);
         }
         if self.changes.is_empty() {
-            let mut random = Random::new(0, Stream::Other(4));
+            let mut random = Random::new(0, Stream::Rounding);
             self.changes.extend((0..BLUR_DRAWS * p.len()).map(|_| 1.0 + BLUR_STEP * random.unit()));
         }
         let mut blur = vec![0.0; x.len()];
         for changes in self.changes.chunks_exact(p.len().max(1)) {
-            self.rounded_p.iter_mut().zip(p).zip(changes).for_each(|((r, p), change)| *r = p.high() * change);
+            for ((r, p), change) in self.rounded_p.iter_mut().zip(p).zip(changes) {
+                *r = p.high() * change;
+            }
             self.system.values(&mut self.memory, x, &self.rounded_p, &mut self.values);
             self.lu.solve(&mut self.values);
             for (blur, d) in blur.iter_mut().zip(&self.values) {
@@ -285,7 +291,9 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         self.precise_x.clear();
         self.precise_x.extend(x.iter().map(|&z| ComplexDd::from(z)));
         self.system.values(&mut self.precise, &self.precise_x, p, &mut self.precise_values);
-        self.values.iter_mut().zip(&self.precise_values).for_each(|(d, s)| *d = Complex64::from(*s));
+        for (d, s) in self.values.iter_mut().zip(&self.precise_values) {
+            *d = Complex64::from(*s);
+        }
         self.lu.solve(&mut self.values);
     }
 
@@ -301,9 +309,13 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         self.lu.factor(&self.jacobian, &self.squares);
         for _ in 0..EXTENSIONS {
             self.system.values(&mut self.precise, &x, &precise_p, &mut values);
-            self.values.iter_mut().zip(&values).for_each(|(d, s)| *d = Complex64::from(*s));
+            for (d, s) in self.values.iter_mut().zip(&values) {
+                *d = Complex64::from(*s);
+            }
             self.lu.solve(&mut self.values);
-            x.iter_mut().zip(&self.values).for_each(|(x, d)| *x = Scalar::sub(x, &(*d).into()));
+            for (x, d) in x.iter_mut().zip(&self.values) {
+                *x = Scalar::sub(x, &(*d).into());
+            }
         }
         x
     }
@@ -324,7 +336,9 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         scales.clear();
         scales.resize(n, 0.0);
         for (column, w) in self.jacobian.chunks_exact(n.max(1)).zip(&self.squares) {
-            scales.iter_mut().zip(column).for_each(|(scale, z)| *scale += z.norm_sqr().sqrt() * w[0].sqrt());
+            for (scale, z) in scales.iter_mut().zip(column) {
+                *scale += z.norm_sqr().sqrt() * w[0].sqrt();
+            }
         }
         let relative = self
             .values

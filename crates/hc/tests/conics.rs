@@ -5,18 +5,14 @@
 mod conics;
 
 use conics::{COUNTS, tangent_conics};
-use hc::Fibre;
 use hc::certify::{CertifyOptions, certify};
-use hc::family::{MonodromyOptions, Stop, find_pair, monodromy, solve_member, trace_test};
+use hc::family::Stop;
 use hc::poly::{Complex64, ComplexInterval, System};
 use hc::random::{Random, Stream};
-use hc::{Solutions, SolveOptions, solve};
+use hc::{Family, Fibre, Monitor, MonodromyOptions, Solutions, SolveOptions, solve};
 
-fn fibre(family: &System, count: usize) -> Fibre {
-    let start = find_pair(family, |_, _| true, 0).unwrap().expect("a first conic");
-    let mut options = MonodromyOptions::default();
-    options.roots = Some(count);
-    let found = monodromy(&family.compile().unwrap(), &start, |_, _| true, &options);
+fn fibre(family: &Family, count: usize) -> Fibre {
+    let found = family.monodromy(&MonodromyOptions::new().roots(count)).unwrap();
     assert_eq!((found.stop, found.fibre.len()), (Stop::RootsReached, count));
     found.fibre
 }
@@ -33,16 +29,15 @@ fn proved(family: &System, target: &[Complex64], found: &Solutions) -> (usize, u
 #[test]
 fn through_points_and_tangent_to_up_to_three_conics() {
     for k in 0..=3 {
-        let family = tangent_conics(k);
+        let family = Family::new(tangent_conics(k)).unwrap();
         let fibre = fibre(&family, COUNTS[k]);
-        let options = MonodromyOptions::default();
-        assert!(k > 2 || trace_test(&family, &fibre, &options).unwrap().passed(COUNTS[k]), "{k} conics");
-        let compiled = family.compile().unwrap();
+        let test = || family.trace_test(&fibre, &MonodromyOptions::default(), &Monitor::default()).unwrap();
+        assert!(k > 2 || test().passed(COUNTS[k]), "{k} conics");
         for seed in 0..3 {
             let target = Random::new(seed, Stream::Other(9)).normals(fibre.parameters.len());
-            let found = solve_member(&family, &compiled, &fibre, &target, &SolveOptions::default());
+            let found = &family.track(&fibre, &[&target]).run().unwrap()[0];
             assert_eq!((found.solutions.len(), found.paths.failed), (COUNTS[k], 0), "{k} conics, seed {seed}");
-            assert_eq!(proved(&family, &target, &found).0, COUNTS[k], "{k} conics, seed {seed}");
+            assert_eq!(proved(family.system(), &target, found).0, COUNTS[k], "{k} conics, seed {seed}");
         }
     }
 }

@@ -1,15 +1,12 @@
 //! The tracker and what is built on it, on families whose solutions are known.
 
-use hc::Monitor;
-use hc::family::find_pair;
-use hc::family::trace_test;
-use hc::family::{Fibre, FibreOptions, track_fibre};
-use hc::family::{MonodromyOptions, Stop, monodromy};
+use hc::family::{Stop, track_fibre};
 use hc::homotopy::Segment;
-use hc::poly::{Family, Interpreter, Isa, Lane, Lanes8, parse};
+use hc::poly::{Interpreter, Isa, Lane, Lanes8, parse};
 use hc::random::{Random, Stream};
 use hc::refine::Refiner;
 use hc::tracker::{PathEnd, PathSet, Tracker, TrackerOptions, track};
+use hc::{Family, Fibre, FibreOptions, Monitor, MonodromyOptions};
 use num_complex::Complex64;
 
 fn family(unknowns: &str, parameters: &str, equations: &str) -> (Family, Interpreter) {
@@ -22,8 +19,8 @@ fn family(unknowns: &str, parameters: &str, equations: &str) -> (Family, Interpr
         list(parameters, ' '),
         list(equations, ';')
     );
-    let family = parse::family(&text).unwrap();
-    let system = family.system.compile().unwrap();
+    let family = Family::new(parse::family(&text).unwrap()).unwrap();
+    let system = family.program().clone();
     (family, system)
 }
 
@@ -42,10 +39,7 @@ fn p3p() -> (Family, Interpreter) {
 
 fn p3p_fibre() -> (Family, Interpreter, Fibre) {
     let (family, system) = p3p();
-    let start = find_pair(&family.system, |_, _| true, 0).unwrap().expect("a first pair");
-    let mut options = MonodromyOptions::default();
-    options.roots = Some(8);
-    let found = monodromy(&system, &start, |_, _| true, &options);
+    let found = family.monodromy(&MonodromyOptions::new().roots(8)).unwrap();
     assert_eq!((found.stop, found.fibre.len()), (Stop::RootsReached, 8));
     (family, system, found.fibre)
 }
@@ -260,23 +254,24 @@ fn jumped_paths_are_found_and_mended() {
 #[test]
 fn the_trace_test_tells_a_whole_fibre_from_one_with_a_hole() {
     let (family, _, fibre) = p3p_fibre();
-    let options = MonodromyOptions::default();
-    let test = trace_test(&family.system, &fibre, &options).unwrap();
+    let (options, monitor) = (MonodromyOptions::default(), Monitor::default());
+    let test = family.trace_test(&fibre, &options, &monitor).unwrap();
     assert!(test.passed(8), "{test:?}");
     // The further points are found from the fibre, and with them the missing one: the count gives it away.
     let mut hole = fibre.clone();
     hole.solutions.truncate(7 * 3);
-    let test = trace_test(&family.system, &hole, &options).unwrap();
+    let test = family.trace_test(&hole, &options, &monitor).unwrap();
     assert!(!test.passed(7), "{test:?}");
 }
 
 #[test]
 fn monodromy_without_a_known_count_says_that_it_only_stopped() {
-    let (family, system) = family("x y", "r a b", "x^2 + y^2 - r; y - a*x - b");
-    let start = find_pair(&family.system, |_, _| true, 3).unwrap().unwrap();
-    let found = monodromy(&system, &start, |_, _| true, &MonodromyOptions::default());
+    let (family, _) = family("x y", "r a b", "x^2 + y^2 - r; y - a*x - b");
+    let start = family.find_pair(3).unwrap();
+    let (options, monitor) = (MonodromyOptions::default(), Monitor::default());
+    let found = family.complete(&start, &options, &monitor).unwrap();
     assert_eq!((found.stop, found.fibre.len()), (Stop::NoProgress, 2));
-    assert!(trace_test(&family.system, &found.fibre, &MonodromyOptions::default()).unwrap().passed(2));
+    assert!(family.trace_test(&found.fibre, &options, &monitor).unwrap().passed(2));
 }
 
 #[test]

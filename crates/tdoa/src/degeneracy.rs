@@ -347,7 +347,9 @@ mod tests {
     fn sparse_nodes_are_named_and_left_out() {
         let full = measured(7, 8);
         let mut values = full.values().to_vec();
-        (0..4).for_each(|i| values[i * 8 + 5] = f64::NAN);
+        for i in 0..4 {
+            values[i * 8 + 5] = f64::NAN;
+        }
         let found = usable(&Pseudoranges::new(7, 8, values).unwrap()).unwrap();
         assert_eq!(found.transmitters, [0, 1, 2, 3, 4, 6, 7]);
         assert!(found.warnings[0].contains("s6"), "{:?}", found.warnings);
@@ -369,7 +371,9 @@ mod tests {
     fn identical_receivers_are_named() {
         let full = measured(7, 6);
         let mut values = full.values().to_vec();
-        (0..6).for_each(|j| values[4 * 6 + j] = values[6 + j] + 0.25);
+        for j in 0..6 {
+            values[4 * 6 + j] = values[6 + j] + 0.25;
+        }
         let error = usable(&Pseudoranges::new(7, 6, values).unwrap()).unwrap_err();
         assert!(error.to_string().contains("receivers r2 and r5"), "{error}");
     }

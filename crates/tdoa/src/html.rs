@@ -62,7 +62,7 @@ pub fn html(calibration: &Calibration) -> String {
     }
     page += &facts(calibration);
     page += &format!("<figure>\n{}</figure>\n", picture(calibration));
-    page += &format!("<p class=\"note\">Lengths in metres. Standard deviations: {}.</p>\n", escape(calibration.gauge));
+    page += &format!("<p class=\"note\">Lengths in metres. Standard deviations: {}.</p>\n", escape(&calibration.gauge));
     page += "<h2>Receivers</h2>\n";
     page += &table("receivers", &RECEIVERS, receivers(calibration));
     page += "<h2>Transmitters</h2>\n";

@@ -104,7 +104,9 @@ fn for_subsets(count: usize, size: usize, mut visit: impl FnMut(&[usize])) {
                 if size == 2 {
                     visit(&[a, b]);
                 } else {
-                    (b + 1..count).for_each(|c| visit(&[a, b, c]));
+                    for c in b + 1..count {
+                        visit(&[a, b, c]);
+                    }
                 }
             }
         }

@@ -85,12 +85,12 @@ impl Observations {
         Observations::of(self.receivers, entries, columns).holding(&self.held).beside(self.others)
     }
 
-    /// The same measurements with receivers that stay where they are.
+    /// These measurements, with receivers that stay where they are.
     pub(crate) fn holding(self, held: &[bool]) -> Self {
         Observations { held: held.to_vec(), ..self }
     }
 
-    /// The same measurements, which have this many unknowns more than the nodes.
+    /// These measurements, which have this many unknowns more than the nodes.
     pub(crate) fn beside(self, others: usize) -> Self {
         Observations { others, ..self }
     }

@@ -169,7 +169,7 @@ impl Pseudoranges {
         Ok(self)
     }
 
-    /// The same matrix with a standard deviation (metres) for each cell, row-major; those of missing cells are ignored.
+    /// This matrix with a standard deviation (metres) for each cell, row-major; those of missing cells are ignored.
     ///
     /// # Errors
     /// A wrong number of them, or one that is not positive and finite.
@@ -247,14 +247,14 @@ impl Pseudoranges {
         format!("{}r/{}s", self.receivers, self.transmitters)
     }
 
-    /// The same matrix with a number subtracted from each column, as if the transmitters' clocks were set differently.
+    /// This matrix with a number subtracted from each column, as if the transmitters' clocks were set differently.
     pub(crate) fn shifted(&self, shifts: &[f64]) -> Pseudoranges {
         let n = self.transmitters;
         let values = self.values.iter().enumerate().map(|(k, value)| value - shifts[k % n]).collect();
         Pseudoranges { values, ..self.clone() }
     }
 
-    /// The same matrix with other values, as many as before, none larger and all missing that were.
+    /// This matrix with other values, as many as before, none larger and all missing that were.
     pub(crate) fn with_values(&self, values: Vec<f64>) -> Pseudoranges {
         Pseudoranges { values, ..self.clone() }
     }

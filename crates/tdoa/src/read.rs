@@ -56,7 +56,7 @@ pub fn read(path: &Path, options: impl Into<ReadOptions>) -> Result<Pseudoranges
 /// Reads CSV as [`read`] does; `file` names the source in errors.
 ///
 /// # Errors
-/// As [`read`].
+/// Those of [`read`].
 pub fn read_csv(source: impl Read, file: &str, options: impl Into<ReadOptions>) -> Result<Pseudoranges, ReadError> {
     let units = options.into().units;
     // A wrong speed is said before the file is read.
@@ -68,7 +68,7 @@ pub fn read_csv(source: impl Read, file: &str, options: impl Into<ReadOptions>) 
 /// Reads a .npy array as [`read`] does; `file` names the source in errors.
 ///
 /// # Errors
-/// As [`read`].
+/// Those of [`read`].
 pub fn read_npy(source: impl Read, file: &str, options: impl Into<ReadOptions>) -> Result<Pseudoranges, ReadError> {
     let factor = options.into().units.unwrap_or_default().factor()?;
     npy::parse(source.take(MAX_BYTES), file, factor)
@@ -78,7 +78,7 @@ pub fn read_npy(source: impl Read, file: &str, options: impl Into<ReadOptions>) 
 /// there is; `file` names the source in errors.
 ///
 /// # Errors
-/// As [`read`].
+/// Those of [`read`].
 pub fn read_mat(source: impl Read, file: &str, options: impl Into<ReadOptions>) -> Result<Pseudoranges, ReadError> {
     let options = options.into();
     let factor = options.units.unwrap_or_default().factor()?;

@@ -58,7 +58,9 @@ impl Restarts {
         known.sort_by(f64::total_cmp);
         let diameter = known.get(known.len() * 9 / 10).copied().unwrap_or(1.0);
         let typical = median(known).unwrap_or(1.0);
-        distances.iter_mut().filter(|d| d.is_nan()).for_each(|d| *d = typical);
+        for d in distances.iter_mut().filter(|d| d.is_nan()) {
+            *d = typical;
+        }
         Restarts { receivers: m, distances, diameter }
     }
 

@@ -245,7 +245,9 @@ fn spoil(values: &mut [f64], network: &Network, options: &SimulateOptions, rng: 
     if options.delays > 0.0 {
         for row in values.chunks_exact_mut(n) {
             let delay = options.delays * rng.sample::<f64, _>(StandardNormal);
-            row.iter_mut().for_each(|value| *value += delay);
+            for value in row.iter_mut() {
+                *value += delay;
+            }
         }
     }
 }

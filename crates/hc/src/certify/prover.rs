@@ -1,4 +1,4 @@
-//! From a point to a proof: refinement, approximate inverse and weights, in double precision and then to twice the digits.
+//! From a point to a proof: refinement, approximate inverse and weights, in doubles and then in double-double.
 
 use super::certificate::{CertifyOptions, Obstacle};
 use super::krawczyk::{Krawczyk, Place};
@@ -23,7 +23,7 @@ pub(super) struct Target<'a> {
     pub(super) parameters: &'a [ComplexInterval],
 }
 
-/// The arithmetic of Jacobians and their inverses; points and values always have twice the digits.
+/// The arithmetic of Jacobians and their inverses; points and values are always in double-double.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Precision {
     Double,
@@ -152,7 +152,9 @@ impl<'a> Prover<'a> {
             if size.is_nan() || size >= last {
                 break;
             }
-            centre.iter_mut().zip(&step).for_each(|(c, d)| *c = ComplexDd::sub(c, d));
+            for (c, d) in centre.iter_mut().zip(&step) {
+                *c = ComplexDd::sub(c, d);
+            }
             last = size;
         }
         Ok(centre)
@@ -166,7 +168,9 @@ impl<'a> Prover<'a> {
             Precision::Double => {
                 let rounded: Vec<Complex64> = x.iter().map(ComplexDd::high).collect();
                 target.system.jacobian(plain, &rounded, parameters, values, plain_jacobian);
-                jacobian.iter_mut().zip(plain_jacobian.iter()).for_each(|(a, &b)| *a = b.into());
+                for (a, &b) in jacobian.iter_mut().zip(plain_jacobian.iter()) {
+                    *a = b.into();
+                }
                 let (rows, columns) = inverse::sizes(n, jacobian);
                 let scaled: Vec<Complex64> =
                     (0..n * n).map(|entry| plain_jacobian[entry] / rows[entry % n] / columns[entry / n]).collect();
@@ -177,7 +181,9 @@ impl<'a> Prover<'a> {
                     column[k] = Complex64::new(1.0, 0.0);
                     lu.solve(&mut column);
                     let unscaled = column.iter().zip(&columns).map(|(z, size)| *z / rows[k] / size);
-                    inverse.iter_mut().zip(unscaled).for_each(|(entry, z)| *entry = z.into());
+                    for (entry, z) in inverse.iter_mut().zip(unscaled) {
+                        *entry = z.into();
+                    }
                 }
             }
             Precision::DoubleDouble => {
@@ -222,7 +228,9 @@ impl<'a> Prover<'a> {
         for _ in 0..2 {
             let carried: Vec<f64> =
                 errors.chunks(n).map(|row| row.iter().zip(&weights).map(|(e, w)| e * w).sum::<f64>()).collect();
-            weights.iter_mut().zip(carried).for_each(|(w, c)| *w = w.max(LEVEL * c));
+            for (w, c) in weights.iter_mut().zip(carried) {
+                *w = w.max(LEVEL * c);
+            }
         }
         weights
     }

@@ -42,7 +42,7 @@ pub(super) struct Legs<'a> {
 }
 
 impl Legs<'_> {
-    /// The parameters at the end of a leg to twice the digits: where the Jacobian is nearly singular, rounding errors of the
+    /// The parameters at the end of a leg in double-double: where the Jacobian is nearly singular, rounding errors of the
     /// parameters would show in the samples.
     pub(super) fn precise(&self, leg: usize, p: &mut Vec<ComplexDd>) {
         p.resize(self.segment.parameters(), ComplexDd::default());
@@ -60,7 +60,9 @@ impl ParameterPath for Legs<'_> {
         let m = self.parameters();
         let mut t = [S::zero(); 4];
         for (l, (&path, &u)) in paths.iter().zip(u.as_ref()).enumerate() {
-            t.iter_mut().zip(self.legs[path].time(u)).for_each(|(t, value)| t.set(l, value));
+            for (t, value) in t.iter_mut().zip(self.legs[path].time(u)) {
+                t.set(l, value);
+            }
         }
         for (i, (target, direction)) in self.segment.target().iter().zip(self.segment.direction()).enumerate() {
             let direction = S::from_c64(*direction);

@@ -74,7 +74,9 @@ pub(crate) fn endgame<'a, E: Evaluate>(
         }
         let legs = Legs { segment, legs: live.iter().map(|&k| walkers[k].leg()).collect() };
         starts.clear();
-        live.iter().for_each(|&k| starts.extend_from_slice(walkers[k].point()));
+        for &k in live.iter() {
+            starts.extend_from_slice(walkers[k].point());
+        }
         let (home, round): (Vec<usize>, Vec<usize>) =
             (0..live.len()).partition(|&i| matches!(legs.legs[i], Leg::Home(_)));
         let ends = [

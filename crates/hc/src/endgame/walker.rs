@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 const SAMPLES: usize = 4;
 /// Most samples a turn: valuations up to 16.
 const MAX_SAMPLES: usize = 64;
-/// The same where the radius cannot be made smaller.
+/// Samples at most where the radius cannot be made smaller.
 const MAX_SAMPLES_WIDE: usize = 16;
 /// Where rounded coefficients move a coordinate by more than this share of its size, a wider circle is better.
 const SHARP: f64 = 1e-6;
@@ -120,7 +120,9 @@ impl Walker {
         match end.filter(finite) {
             Some(sample) if on_loop => {
                 self.noise = self.noise.max(sample.accuracy);
-                self.blur.iter_mut().zip(&sample.blur).for_each(|(a, b)| *a = a.max(*b));
+                for (a, b) in self.blur.iter_mut().zip(&sample.blur) {
+                    *a = a.max(*b);
+                }
                 self.turn(&sample.point, options);
             }
             Some(sample) => self.arrive(sample, options),

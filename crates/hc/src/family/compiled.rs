@@ -4,8 +4,8 @@ use super::error::FamilyError;
 use super::fibre::Fibre;
 use super::monodromy::{Monodromy, MonodromyOptions, fill};
 use super::pair::find_pair;
-use super::symmetry::Symmetry;
-use super::trace::{TraceTest, trace_test_watched};
+use super::symmetry::{SAME, Symmetry};
+use super::trace::{TraceTest, trace_test};
 use crate::distinct::relative_distance;
 use crate::monitor::Monitor;
 use num_complex::Complex64;
@@ -14,9 +14,6 @@ use std::str::FromStr;
 
 /// Values of this size and below count as zero where a family demands that something does not vanish.
 const VANISHES: f64 = 1e-9;
-
-/// Relative distance below which the image of a solution is taken for another solution.
-const SAME: f64 = 1e-8;
 
 /// A parameter family, compiled: its equations, what must not vanish at its solutions, and its
 /// symmetries.
@@ -47,11 +44,12 @@ pub struct Family {
 }
 
 impl Family {
-    /// Compiles a family.
+    /// Compiles a family: a [`poly::Family`], or a [`System`] with parameters.
     ///
     /// # Errors
     /// If a formula does not compile or the equations are not square.
-    pub fn new(family: poly::Family) -> Result<Family, FamilyError> {
+    pub fn new(family: impl Into<poly::Family>) -> Result<Family, FamilyError> {
+        let family = family.into();
         let (program, nonzero) = (family.system.compile()?, family.nonzero.compile()?);
         let (equations, unknowns) = (program.equations(), program.variables());
         if equations != unknowns || unknowns == 0 {
@@ -123,6 +121,16 @@ impl Family {
         Err(FamilyError::Misfit { found_parameters, found_unknowns, parameters, unknowns })
     }
 
+    /// Checks that the stated maps take the tracked solutions of a fibre, whose parameters are generic,
+    /// to solutions: they do so for all parameters then.
+    pub(super) fn check_symmetry(&self, fibre: &Fibre) -> Result<(), FamilyError> {
+        let tracked = fibre.tracked();
+        match self.symmetry.broken(&self.program, &fibre.parameters, tracked.iter()) {
+            Some(map) => Err(FamilyError::NotSymmetric { map: map + 1 }),
+            None => Ok(()),
+        }
+    }
+
     /// The fibre with one solution of each orbit noted as representative, where the family has symmetries:
     /// these alone are then tracked.
     #[must_use]
@@ -167,7 +175,7 @@ impl Family {
     /// monitor ends the search.
     ///
     /// # Errors
-    /// If `first` is of another family, or an option is out of range.
+    /// If `first` is of another family, an option is out of range, or the stated symmetry is none.
     pub fn complete(
         &self,
         first: &Fibre,
@@ -176,11 +184,13 @@ impl Family {
     ) -> Result<Monodromy, FamilyError> {
         self.check(first)?;
         options.fibre.validate()?;
+        self.check_symmetry(first)?;
         let options = MonodromyOptions { roots: options.roots.or(self.roots()), ..options.clone() };
         Ok(fill(&self.program, first, |p, x| self.accepts(p, x), &self.symmetry, &options, monitor))
     }
 
-    /// The [trace test](super::trace_test) of a fibre: whether it is whole.
+    /// The trace test of a fibre: whether it is whole. It takes several times as long as finding the
+    /// fibre; `patience` of the options counts for the further points that it needs.
     ///
     /// # Errors
     /// If the fibre is of another family, or the enlarged family of the test does not compile.
@@ -191,7 +201,7 @@ impl Family {
         monitor: &Monitor,
     ) -> Result<TraceTest, FamilyError> {
         self.check(fibre)?;
-        Ok(trace_test_watched(self.system(), fibre, options, monitor)?)
+        Ok(trace_test(self.system(), fibre, options, monitor)?)
     }
 }
 

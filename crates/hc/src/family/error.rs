@@ -34,6 +34,14 @@ pub enum FamilyError {
         /// Unknowns of the family.
         unknowns: usize,
     },
+    /// A map that takes a solution to a point that is none.
+    #[error(
+        "symmetry {map} takes a solution to a point that is none; correct `symmetry` in the family, or leave it out"
+    )]
+    NotSymmetric {
+        /// The map, from 1.
+        map: usize,
+    },
     /// A fibre of another family.
     #[error(
         "{found_parameters} parameters and solutions of {found_unknowns} coordinates, but the family has {parameters} parameters and \

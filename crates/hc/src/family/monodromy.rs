@@ -2,7 +2,7 @@
 //!
 //! Parameters go round random triangles; solutions come back as other solutions of the same irreducible component
 //! (Duff, Hill, Jensen, Lee, Leykin, Sommars 2018, arXiv:1609.08722). That a fibre is whole is never guessed: it is told by a known count or by
-//! the [trace test](super::trace_test), and the result says which.
+//! the [trace test](crate::Family::trace_test), and the result says which.
 
 use super::fibre::{Fibre, FibreOptions};
 use super::symmetry::Symmetry;
@@ -16,9 +16,9 @@ use num_complex::Complex64;
 use poly::Evaluate;
 
 /// Accuracy to which new solutions must be known.
-const ACCURATE: f64 = 1e-12;
+pub(super) const ACCURATE: f64 = 1e-12;
 
-/// Settings of [`monodromy`].
+/// Settings of [`Family::monodromy`](crate::Family::monodromy).
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MonodromyOptions {
@@ -110,22 +110,10 @@ pub struct Monodromy {
     pub paths: usize,
 }
 
-/// Completes `start` (one or several solutions for generic parameters) by loops in parameter space.
+/// Completes `start` (one or several solutions for generic parameters) by loops in parameter space;
+/// of a symmetric family one solution of each orbit goes round.
 ///
 /// `accept` is asked about every new solution; solutions that it refuses (degenerate ones) are dropped.
-///
-/// # Panics
-/// If the system is not square or the fibre does not fit it.
-pub fn monodromy<E: Evaluate>(
-    system: &E,
-    start: &Fibre,
-    accept: impl Fn(&[Complex64], &[Complex64]) -> bool,
-    options: &MonodromyOptions,
-) -> Monodromy {
-    fill(system, start, accept, &Symmetry::default(), options, &Monitor::default())
-}
-
-/// [`monodromy`], watched; of a symmetric family one solution of each orbit goes round the loops.
 pub(super) fn fill<E: Evaluate>(
     system: &E,
     start: &Fibre,

@@ -21,7 +21,7 @@ const MAX_ITERATIONS: usize = 60;
 ///
 /// # Errors
 /// If the formulas cannot be compiled.
-pub fn find_pair(
+pub(super) fn find_pair(
     system: &System,
     accept: impl Fn(&[Complex64], &[Complex64]) -> bool,
     seed: u64,

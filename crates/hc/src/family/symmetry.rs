@@ -1,11 +1,16 @@
 //! Symmetries of a family: maps that take solutions to solutions, for the same parameters.
 
+use super::monodromy::ACCURATE;
 use crate::distinct::relative_distance;
+use crate::refine::Refiner;
 use num_complex::Complex64;
 use poly::{CompileError, Evaluate, Interpreter, Isa, System};
 
 /// Points that an orbit may have; maps that make more are taken for no symmetry of finite order.
 const LARGEST_ORBIT: usize = 10_000;
+
+/// Relative distance below which the image of a solution is taken for a solution.
+pub(super) const SAME: f64 = 1e-8;
 
 /// The group that some maps of the unknowns generate, compiled.
 #[derive(Debug, Default)]
@@ -31,9 +36,7 @@ impl Symmetry {
         let mut next = 0;
         while next < orbit.len() && orbit.len() < LARGEST_ORBIT {
             for map in &self.maps {
-                let mut memory = map.memory(Isa::Portable);
-                let mut image = vec![Complex64::new(0.0, 0.0); map.equations()];
-                map.values(&mut memory, &orbit[next], p, &mut image);
+                let image = image(map, p, &orbit[next]);
                 let known = orbit.iter().any(|y| relative_distance(y, &image) <= tolerance);
                 if !known && image.iter().all(|z| z.is_finite()) {
                     orbit.push(image);
@@ -43,4 +46,33 @@ impl Symmetry {
         }
         orbit
     }
+    /// The first map, from 0, that takes one of these solutions of `system` for the parameters `p` to a
+    /// point that is no regular solution.
+    pub(super) fn broken<'x>(
+        &self,
+        system: &Interpreter,
+        p: &[Complex64],
+        solutions: impl Iterator<Item = &'x [Complex64]>,
+    ) -> Option<usize> {
+        let mut refiner = Refiner::new(system);
+        for x in solutions {
+            let keeps = |map: &Interpreter, refiner: &mut Refiner<'_, Interpreter>| {
+                let image = image(map, p, x);
+                let refined = refiner.refine(p, &image);
+                refined.accuracy < ACCURATE && relative_distance(&refined.point, &image) <= SAME
+            };
+            if let Some(k) = self.maps.iter().position(|map| !keeps(map, &mut refiner)) {
+                return Some(k);
+            }
+        }
+        None
+    }
+}
+
+/// Where a map takes the point `x`.
+fn image(map: &Interpreter, p: &[Complex64], x: &[Complex64]) -> Vec<Complex64> {
+    let mut memory = map.memory(Isa::Portable);
+    let mut image = vec![Complex64::new(0.0, 0.0); map.equations()];
+    map.values(&mut memory, x, p, &mut image);
+    image
 }

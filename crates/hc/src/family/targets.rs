@@ -3,8 +3,9 @@
 use super::compiled::Family;
 use super::error::FamilyError;
 use super::fibre::Fibre;
+use super::orbits::Orbits;
 use crate::monitor::Monitor;
-use crate::solve::{Solution, Solutions, SolveOptions, solve_member};
+use crate::solve::{Solutions, SolveOptions, solve_member};
 // One thread needs no trait for `map`.
 #[cfg_attr(not(feature = "threads"), allow(unused_imports))]
 use crate::threads::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
@@ -78,8 +79,8 @@ impl<'a> Targets<'a> {
     /// stopped early.
     ///
     /// # Errors
-    /// If the fibre or a target does not fit the family, an option is out of range, or certificates
-    /// are asked for that there cannot be.
+    /// If the fibre or a target does not fit the family, a symmetry of the family is none, or an option
+    /// is out of range.
     pub fn run(self) -> Result<Vec<Solutions>, FamilyError> {
         self.transform(|_, solutions| solutions)
     }
@@ -88,7 +89,7 @@ impl<'a> Targets<'a> {
     /// with the number of the target, from 0, and its solutions.
     ///
     /// # Errors
-    /// As [`run`](Self::run).
+    /// Those of [`run`](Self::run).
     pub fn transform<T: Send>(self, transform: impl Fn(usize, Solutions) -> T + Sync) -> Result<Vec<T>, FamilyError> {
         let Targets { how, targets, mut enough } = self;
         how.family.check(how.fibre)?;
@@ -98,13 +99,13 @@ impl<'a> Targets<'a> {
         if let Some(k) = targets.iter().position(unusable) {
             return Err(FamilyError::Target { target: k + 1, parameters });
         }
-        let tracked = how.fibre.tracked();
+        let orbits = Orbits::of(how.family, how.fibre)?;
         let trackers = Trackers::new(&how.family.program);
         let mut results = Vec::with_capacity(targets.len());
         let numbers: Vec<usize> = (0..targets.len()).collect();
         for block in numbers.chunks(BLOCK) {
             let solved: Vec<Option<Solutions>> =
-                block.par_iter().map(|&k| how.solve(&trackers, &tracked, &targets[k])).collect();
+                block.par_iter().map(|&k| how.solve(&trackers, orbits.as_ref(), &targets[k])).collect();
             // What is done before the first that was not begun.
             let mut done: Vec<(usize, Solutions)> =
                 block.iter().copied().zip(solved.into_iter().map_while(|found| found)).collect();
@@ -125,24 +126,26 @@ impl How<'_> {
     fn solve(
         &self,
         trackers: &Trackers<'_, poly::Interpreter>,
-        tracked: &Fibre,
+        orbits: Option<&Orbits>,
         target: &[Complex64],
     ) -> Option<Solutions> {
         if self.monitor.is_cancelled() {
             return None;
         }
-        let family = self.family;
-        let mut found = solve_member(family.system(), trackers, tracked, target, &self.options, &self.monitor);
-        if self.fibre.representatives.is_some() {
-            let orbit = |s: &Solution| {
-                let points = family.symmetry.orbit(target, &s.value, self.options.paths.coincidence);
-                points.into_iter().map(|value| Solution { value, ..s.clone() }).collect::<Vec<_>>()
-            };
-            found.solutions = found.solutions.iter().flat_map(orbit).collect();
-        }
-        if self.options.certify {
-            // A family is square: what cannot be certified says so itself.
-            let _ = found.certify();
+        let system = self.family.system();
+        let from = |fibre| solve_member(system, trackers, fibre, target, &self.options, &self.monitor);
+        let expanded = orbits.and_then(|orbits| {
+            let mut found = from(&orbits.tracked);
+            let same = self.options.paths.coincidence;
+            found.solutions = orbits.expand(&self.family.symmetry, target, same, &found)?;
+            Some(found)
+        });
+        let mut found = expanded.unwrap_or_else(|| from(self.fibre));
+        if self.options.certify && found.certify().is_err() {
+            // The family compiles and is square, which is all that can be wrong; nothing is proved if not.
+            for s in found.solutions.iter_mut() {
+                s.certified = Some(false);
+            }
         }
         if self.only_real {
             found.solutions.retain(|s| s.real);

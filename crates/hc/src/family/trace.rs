@@ -39,21 +39,8 @@ impl TraceTest {
     }
 }
 
-/// Runs the trace test on a fibre of `system`.
-///
-/// The test takes several times as long as finding the fibre. `patience` of the options counts for the search of the further points.
-///
-/// # Errors
-/// If the formulas of the enlarged family cannot be compiled.
-///
-/// # Panics
-/// If the fibre does not fit the system.
-pub fn trace_test(system: &System, fibre: &Fibre, options: &MonodromyOptions) -> Result<TraceTest, CompileError> {
-    trace_test_watched(system, fibre, options, &Monitor::default())
-}
-
-/// [`trace_test`], watched.
-pub(super) fn trace_test_watched(
+/// The trace test of a fibre of `system`.
+pub(super) fn trace_test(
     system: &System,
     fibre: &Fibre,
     options: &MonodromyOptions,
@@ -135,7 +122,9 @@ fn sum<E: poly::Evaluate>(system: &E, fibre: &Fibre) -> Vec<ComplexDd> {
     let mut sum = vec![ComplexDd::from(Complex64::new(0.0, 0.0)); fibre.dimension];
     for k in 0..fibre.len() {
         let point = refiner.extend(&fibre.parameters, fibre.solution(k));
-        sum.iter_mut().zip(&point).for_each(|(s, x)| *s = Scalar::add(s, x));
+        for (s, x) in sum.iter_mut().zip(&point) {
+            *s = Scalar::add(s, x);
+        }
     }
     sum
 }

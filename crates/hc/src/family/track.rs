@@ -60,7 +60,7 @@ pub(crate) fn track_fibre_watched<E: Evaluate>(
 /// was lost.
 ///
 /// # Panics
-/// As [`track_fibre`].
+/// If the system is not square, or the fibre or the target does not fit it.
 pub fn move_fibre<E: Evaluate>(
     system: &E,
     fibre: &Fibre,
@@ -188,7 +188,7 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
     /// of the paths so far.
     ///
     /// # Panics
-    /// As [`track`](Self::track).
+    /// Those of [`track`](Self::track).
     pub fn track_until(
         &mut self,
         fibre: &Fibre,

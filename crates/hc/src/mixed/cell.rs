@@ -43,7 +43,9 @@ impl<T: Integer> Cell<T> {
         let one = T::narrow(1)?;
         let mut duals = vec![T::default(); n * width];
         // e_l = -(E_0 + .. + E_l), with e_0 the first unit vector.
-        (0..n).for_each(|j| duals[j * width + j..j * width + n].fill(minus));
+        for j in 0..n {
+            duals[j * width + j..j * width + n].fill(minus);
+        }
         let pairs = (0..n as u32).map(|j| [j, j + 1]).collect();
         Some(Cell { pairs, volume: one, duals, bounds: vec![one; n], width })
     }
@@ -66,7 +68,7 @@ impl<T: Integer> Cell<T> {
         self.bounds.copy_from_slice(&other.bounds);
     }
 
-    /// The same cell in integers of another size, if they hold it.
+    /// This cell in integers of another size, if they hold it.
     pub(super) fn converted<U: Integer>(&self, points: &Points<U>) -> Option<Cell<U>> {
         let convert = |v: &T| U::narrow(v.wide());
         let bounds = self.bounds.iter().map(convert).collect::<Option<Vec<U>>>()?;
@@ -160,6 +162,8 @@ impl<T: Integer> Cell<T> {
     /// Renumbers the points of configuration `k`, all of its support, without the corners of the simplex.
     pub(super) fn leave(&mut self, points: &Points<T>, k: usize) {
         let corners = points.n as u32 + 1;
-        self.pairs[k].iter_mut().for_each(|p| *p -= corners);
+        for p in self.pairs[k].iter_mut() {
+            *p -= corners;
+        }
     }
 }

@@ -48,7 +48,7 @@ pub fn mixed_volume(unknowns: usize, supports: &[Vec<Vec<i32>>]) -> Result<Mixed
 /// [`mixed_volume`], watched: [`Progress`](crate::monitor::Progress) has the cells found so far and their volume, a lower bound.
 ///
 /// # Errors
-/// As [`mixed_volume`], and [`MixedError::Cancelled`] after [`Monitor::cancel`].
+/// Those of [`mixed_volume`], and [`MixedError::Cancelled`] after [`Monitor::cancel`].
 pub fn mixed_volume_watched(
     unknowns: usize,
     supports: &[Vec<Vec<i32>>],

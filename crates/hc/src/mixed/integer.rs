@@ -18,7 +18,7 @@ pub(super) trait Integer: Copy + Ord + Default + Send + Sync {
     fn size(self) -> Self;
     /// `(a * b + c * d) / divisor` of a quotient known to fit, by wrapping arithmetic.
     fn exact(a: Self, b: Self, c: Self, d: Self, divisor: &Divisor<Self>) -> Self;
-    /// The same, `None` if it does not fit.
+    /// The quotient of [`exact`](Self::exact), `None` if it does not fit.
     fn checked_exact(a: Self, b: Self, c: Self, d: Self, divisor: &Divisor<Self>) -> Option<Self>;
     /// Whether `(a * b + c * d) / divisor` is surely below `limit` and right by [`Integer::exact`]; none is negative.
     fn surely_below(a: Self, b: Self, c: Self, d: Self, divisor: &Divisor<Self>, limit: Self) -> bool;

@@ -40,7 +40,9 @@ impl<T: Integer> Points<T> {
     pub(super) fn new(supports: &[Vec<Vec<i64>>]) -> Option<Self> {
         let n = supports.len();
         let mut first = vec![0];
-        supports.iter().for_each(|s| first.push(first[first.len() - 1] + s.len()));
+        for s in supports.iter() {
+            first.push(first[first.len() - 1] + s.len());
+        }
         let total = first[n];
         let stride = total.next_multiple_of(LANES);
         let mut coordinates = vec![T::default(); n * stride];

@@ -117,18 +117,7 @@ pub(super) struct Route<'a, 'e, E: Evaluate, S> {
 /// source that may be less work.
 pub(super) fn follow<E: Evaluate, S: Source<E>>(route: Route<'_, '_, E, S>, trial: bool) -> Ends {
     let (count, options, monitor) = (route.count, route.options, route.monitor);
-    let mut stage = Stage {
-        segment: Segment::new(route.start.parameters(), route.target),
-        route,
-        trial,
-        ends: EndList::new(count),
-        regular: BTreeMap::new(),
-        singular: BTreeMap::new(),
-        directions: BTreeMap::new(),
-        starts: Prints::new(count),
-        middles: Prints::new(count),
-        round: Pass::default(),
-    };
+    let mut stage = Stage::new(route, trial);
     let first = if trial { TRIAL } else { CHUNK };
     let policy = Policy { retries: options.paths.retries, charts: 1, first, batch: CHUNK };
     let mut room = Room::default();
@@ -215,15 +204,39 @@ impl<E: Evaluate, S: Source<E>> Work for Stage<'_, '_, E, S> {
     }
 }
 
+impl<'a, 'e, E: Evaluate, S: Source<E>> Stage<'a, 'e, E, S> {
+    /// Before anything is tracked.
+    fn new(route: Route<'a, 'e, E, S>, trial: bool) -> Self {
+        let count = route.count;
+        Stage {
+            segment: Segment::new(route.start.parameters(), route.target),
+            route,
+            trial,
+            ends: EndList::new(count),
+            regular: BTreeMap::new(),
+            singular: BTreeMap::new(),
+            directions: BTreeMap::new(),
+            starts: Prints::new(count),
+            middles: Prints::new(count),
+            round: Pass::default(),
+        }
+    }
+}
+
 impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
     fn settings(&self, round: Round) -> TrackerOptions {
         let first = &self.route.options.paths.tracker;
         if round.level == 0 { first.clone() } else { first.stricter(round.level) }
     }
 
-    /// Tracks paths to regular ends, or to where the endgame begins. One record a path, in order.
+    /// Tracks paths to regular ends, or to where the endgame begins. One record a path, in order; none once the work is
+    /// cancelled.
     fn tracked(&self, numbers: &[usize], round: Round) -> Vec<Record> {
         let Route { trackers, start, target, options, monitor, .. } = self.route;
+        if monitor.is_cancelled() {
+            // Not even start solutions are made any more; there may be millions of paths to come.
+            return Vec::new();
+        }
         let settings = self.settings(round);
         if start.is_tracked() {
             monitor.enter(monitor::Stage::Start, numbers.len() as u64);
@@ -449,3 +462,7 @@ fn judged<E: Evaluate>(refiner: &mut Refiner<'_, E>, target: &[Complex64], endin
         Verdict::Reached | Verdict::Lost => RecordEnd::Lost,
     }
 }
+
+#[cfg(test)]
+#[path = "paths_tests.rs"]
+mod tests;

@@ -135,7 +135,9 @@ mod tests {
         let z = |re: f64, im: f64| Complex64::new(re, im);
         let points = [[z(1.0, 0.5), z(-2.0, 0.0)], [z(1.0, 0.5), z(-2.0, 1e-13)], [z(1.0, 0.5), z(-2.0, 1e-3)]];
         let mut prints = Prints::new(5);
-        points.iter().enumerate().for_each(|(k, x)| prints.note(k + 1, &Print::new(x, false)));
+        for (k, x) in points.iter().enumerate() {
+            prints.note(k + 1, &Print::new(x, false));
+        }
         assert_eq!(prints.met(1e-11).unwrap(), [1, 2]);
         prints.forget(1);
         assert_eq!(prints.met(1e-11).unwrap(), [0usize; 0]);

@@ -56,7 +56,9 @@ impl Starts {
         let mut equations = if given.len() > n { given.squared(options.seed) } else { given };
         let laurent = equations.is_laurent();
         if !options.torus_only && !laurent {
-            (0..n).for_each(|i| equations.add_term(i, vec![0; n]));
+            for i in 0..n {
+                equations.add_term(i, vec![0; n]);
+            }
         }
         let degrees = degrees(&equations.supports).unwrap_or_default();
         let bezout = if laurent { None } else { bezout_number(&degrees) };

@@ -22,7 +22,9 @@ impl Binomials {
             // Euclid's algorithm on the columns from i on leaves one entry in row i.
             while (i + 1..n).any(|j| h[i][j] != 0) || h[i][i] == 0 {
                 let least = (i..n).filter(|&j| h[i][j] != 0).min_by_key(|&j| h[i][j].unsigned_abs())?;
-                h.iter_mut().chain(&mut u).for_each(|row| row.swap(i, least));
+                for row in h.iter_mut().chain(&mut u) {
+                    row.swap(i, least);
+                }
                 for j in i + 1..n {
                     let quotient = h[i][j].checked_div(h[i][i])?;
                     for row in h.iter_mut().chain(&mut u) {
@@ -31,7 +33,9 @@ impl Binomials {
                 }
             }
             if h[i][i] < 0 {
-                h.iter_mut().chain(&mut u).for_each(|row| row[i] = -row[i]);
+                for row in h.iter_mut().chain(&mut u) {
+                    row[i] = -row[i];
+                }
             }
             for j in 0..i {
                 let quotient = h[i][j].div_euclid(h[i][i]);

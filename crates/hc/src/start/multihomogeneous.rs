@@ -166,7 +166,9 @@ impl Multihomogeneous {
             let mut lu = Lu::new(size, Isa::Portable);
             lu.factor(&matrix, &vec![[1.0]; size]);
             lu.solve(&mut side);
-            group.iter().zip(&side).for_each(|(&j, &value)| x[j] = value);
+            for (&j, &value) in group.iter().zip(&side) {
+                x[j] = value;
+            }
         }
         x
     }

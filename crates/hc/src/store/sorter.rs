@@ -166,7 +166,9 @@ mod tests {
         let path = tempfile::NamedTempFile::new().unwrap();
         sorter.file = Some(std::fs::File::open(path.path()).unwrap());
         let count = 3 * BUFFER as u64 / 8;
-        (0..count).rev().for_each(|k| sorter.push(&k.to_be_bytes()));
+        for k in (0..count).rev() {
+            sorter.push(&k.to_be_bytes());
+        }
         assert!(sorter.full && sorter.ends.is_empty());
         let mut sorted = Sorter::merged(vec![sorter]).unwrap();
         assert!(

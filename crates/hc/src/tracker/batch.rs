@@ -30,14 +30,14 @@ pub struct Tracker<'a, E: Evaluate, S: Lane> {
     memory: E::Memory<S>,
     /// Taylor coefficients of the paths at their current points, orders 0 to 3.
     taylor: Vec<S>,
-    /// The same at the point just reached.
+    /// Taylor coefficients at the point just reached.
     taylor_next: Vec<S>,
     parameters: Vec<S>,
     predicted: Vec<S>,
     /// Where the Jacobian is evaluated.
     point: Vec<S>,
     corrected: Vec<S>,
-    /// What doubles leave of these two, and of the point of the last accepted step, for paths whose points have twice the digits; else anything.
+    /// What doubles leave of these two, and of the point of the last accepted step, for paths whose points are in double-double; else anything.
     point_low: Vec<S>,
     corrected_low: Vec<S>,
     taylor_low: Vec<S>,
@@ -128,13 +128,17 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             for l in 0..S::LANES {
                 if !self.lanes[l].is_live() && self.monitor.is_cancelled() {
                     let point = |k: usize| starts[k * self.n..(k + 1) * self.n].iter().copied();
-                    which.by_ref().for_each(|k| out.push(PathResult::cancelled(k), point(k)));
+                    for k in which.by_ref() {
+                        out.push(PathResult::cancelled(k), point(k));
+                    }
                 } else if !self.lanes[l].is_live()
                     && let Some(index) = which.next()
                 {
                     self.lanes[l] = Progress::start(index);
                     let start = &starts[index * self.n..(index + 1) * self.n];
-                    self.taylor.iter_mut().zip(start).for_each(|(x, z)| x.set(l, *z));
+                    for (x, z) in self.taylor.iter_mut().zip(start) {
+                        x.set(l, *z);
+                    }
                 }
             }
             if !self.lanes.iter().any(Progress::is_live) {
@@ -148,7 +152,9 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
     fn step<P: ParameterPath>(&mut self, path: &P, out: &mut PathSet) {
         self.predict();
         let mut t = S::real(1.0);
-        t.as_mut().iter_mut().zip(&self.lanes).for_each(|(t, lane)| *t = lane.t_next);
+        for (t, lane) in t.as_mut().iter_mut().zip(&self.lanes) {
+            *t = lane.t_next;
+        }
         let some = self.lanes.iter().find(|lane| lane.is_live()).map_or(0, |lane| lane.path);
         self.labels
             .iter_mut()
@@ -161,7 +167,9 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             }
         }
         self.point.copy_from_slice(&self.predicted);
-        self.lanes.iter_mut().for_each(|lane| lane.begin_correction(&self.bounds));
+        for lane in self.lanes.iter_mut() {
+            lane.begin_correction(&self.bounds);
+        }
         loop {
             self.correct();
             self.close();
@@ -227,7 +235,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         });
     }
 
-    /// Predictions from points to twice the digits, in the lanes that have them.
+    /// Predictions from points in double-double, in the lanes that have them.
     fn predict_precisely(&mut self, step: S::Real, radius_sqr: S::Real) {
         let n = self.n;
         self.point_low.fill(S::zero());
@@ -237,7 +245,9 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         derivatives[..n].fill(S::zero());
         self.isa.run(Predict { taylor: derivatives, step, radius_sqr, out: from_point });
         for l in (0..S::LANES).filter(|&l| self.lanes[l].wide && self.lanes[l].kept) {
-            from_point.iter_mut().for_each(|z| z.set(l, -z.get(l)));
+            for z in from_point.iter_mut() {
+                z.set(l, -z.get(l));
+            }
             let to = [&mut self.predicted[..], &mut self.point_low];
             subtract(l, [&self.taylor[..n], &self.taylor_low], from_point, to);
         }
@@ -364,11 +374,15 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         }
         self.isa.run(Take { from: &self.taylor_next, mask: accepted, to: &mut self.taylor });
         for (l, lane) in self.lanes.iter_mut().enumerate().filter(|(l, lane)| accepted >> l & 1 == 1 && lane.wide) {
-            self.taylor_low.iter_mut().zip(&self.corrected_low).for_each(|(to, from)| to.set(l, from.get(l)));
+            for (to, from) in self.taylor_low.iter_mut().zip(&self.corrected_low) {
+                to.set(l, from.get(l));
+            }
             lane.kept = true;
         }
         let mut omega_sqr = S::real(1.0);
-        omega_sqr.as_mut().iter_mut().zip(&self.lanes).for_each(|(o, lane)| *o = lane.omega() * lane.omega());
+        for (o, lane) in omega_sqr.as_mut().iter_mut().zip(&self.lanes) {
+            *o = lane.omega() * lane.omega();
+        }
         let (taylor, inverse_weights_sqr) = (&self.taylor, &self.inverse_weights_sqr);
         let radius = self.isa.run(Radius { n, taylor, inverse_weights_sqr, omega_sqr: &omega_sqr });
         for (l, lane) in self.lanes.iter_mut().enumerate() {

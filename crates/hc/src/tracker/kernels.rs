@@ -260,7 +260,9 @@ impl<S: Lane> Kernel for Negate<'_, S> {
 
     #[inline(always)]
     fn run(self) {
-        self.x.iter_mut().for_each(|x| *x = S::neg(x));
+        for x in self.x.iter_mut() {
+            *x = S::neg(x);
+        }
     }
 }
 

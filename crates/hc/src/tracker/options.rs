@@ -39,7 +39,7 @@ pub struct TrackerOptions {
     pub beta_omega: f64,
     /// Share of the radius of trust that a step may cover. Default 0.4; fast 0.85; conservative 0.25.
     pub beta_tau: f64,
-    /// The same for the step that reaches the target. Default 0.3; fast 0.6; conservative 0.1875.
+    /// `beta_tau` for the step that reaches the target. Default 0.3; fast 0.6; conservative 0.1875.
     pub beta_tau_last: f64,
     /// Newton's method stops when `omega |dx|` falls below this (dimensionless); one correction with the last Jacobian follows, which
     /// leaves a relative error of about its third power. Default 1e-4; fast 1e-3.

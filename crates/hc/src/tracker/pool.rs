@@ -43,7 +43,7 @@ impl<'a, E: Evaluate> Trackers<'a, E> {
         self.system
     }
 
-    /// As [`super::track`]. All calls must have the same instruction set in their options.
+    /// Tracks as [`super::track`] does. All calls must have the same instruction set in their options.
     pub(crate) fn track<P: ParameterPath>(
         &self,
         path: &P,
@@ -75,7 +75,9 @@ impl<'a, E: Evaluate> Trackers<'a, E> {
             .collect();
         let mut all = PathSet::new(n);
         for part in &parts {
-            part.iter().for_each(|(result, point)| all.push(*result, point.iter().copied()));
+            for (result, point) in part.iter() {
+                all.push(*result, point.iter().copied());
+            }
         }
         all.sort();
         all

@@ -37,7 +37,9 @@ impl<E: Evaluate> Precise<E> {
     ) {
         let m = path.parameters();
         let p = &mut self.p[l * m..(l + 1) * m];
-        p.iter_mut().zip(rounded).for_each(|(d, s)| *d = s.get(l).into());
+        for (d, s) in p.iter_mut().zip(rounded) {
+            *d = s.get(l).into();
+        }
         path.extend(lane.path, lane.t_next, p);
     }
 
@@ -48,11 +50,13 @@ impl<E: Evaluate> Precise<E> {
             *d = if wide { joined(high.get(l), low.get(l)) } else { high.get(l).into() };
         }
         system.values(&mut self.memory, &self.x, &self.p[l * m..(l + 1) * m], &mut self.values);
-        values.iter_mut().zip(&self.values).for_each(|(d, s)| d.set(l, Complex64::from(*s)));
+        for (d, s) in values.iter_mut().zip(&self.values) {
+            d.set(l, Complex64::from(*s));
+        }
     }
 }
 
-/// A number to twice the digits from its double and what that leaves.
+/// A double-double from a double and what it leaves.
 fn joined(high: Complex64, low: Complex64) -> ComplexDd {
     ComplexDd { re: Dd { high: high.re, low: low.re }, im: Dd { high: high.im, low: low.im } }
 }

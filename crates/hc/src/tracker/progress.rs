@@ -40,7 +40,7 @@ pub(crate) enum Stage {
     Rejected { theta: f64 },
     /// The path has come to an end for this reason.
     Failed(PathEnd),
-    /// The same step is to be tried again with residuals in double-double.
+    /// The step is to be tried again with residuals in double-double.
     Retry,
     /// The step was accepted.
     Accepted,
@@ -91,7 +91,7 @@ pub(crate) struct Progress {
     pub(crate) t_next: f64,
     pub(crate) radius: f64,
     pub(crate) extended: bool,
-    /// Whether the point has twice the digits too: another path is so near that doubles hardly tell them apart.
+    /// Whether the point is kept in double-double too: another path is so near that doubles hardly tell them apart.
     pub(crate) wide: bool,
     /// Whether that of the last accepted step was kept with all of them.
     pub(crate) kept: bool,

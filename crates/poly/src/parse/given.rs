@@ -63,6 +63,14 @@ impl System {
     }
 }
 
+/// A family without a name, of which nothing but the equations is known.
+impl From<System> for Family {
+    fn from(system: System) -> Family {
+        let nonzero = System { arena: system.arena.clone(), equations: Vec::new() };
+        Family { name: String::new(), system, roots: None, nonzero, symmetry: Vec::new() }
+    }
+}
+
 impl Family {
     /// A family of equations in these unknowns and parameters, without a name, a number of roots or
     /// factors that must not vanish.
@@ -87,9 +95,7 @@ impl Family {
         formulas: &[S],
     ) -> Result<Family, ParseError> {
         let (arena, names) = declared(unknowns, parameters)?;
-        let nonzero = System { arena: arena.clone(), equations: Vec::new() };
-        let system = equations(arena, names, "equation", formulas)?;
-        Ok(Family { name: String::new(), system, roots: None, nonzero, symmetry: Vec::new() })
+        Ok(Family::from(equations(arena, names, "equation", formulas)?))
     }
 
     /// The family under a name.

@@ -5,10 +5,11 @@ use super::receiver_errors::ReceiverError;
 use super::truth::Truth;
 use crate::align::{Transform, align};
 use crate::plane::distance;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// A calibrated network. Lengths are in metres; `None` stands for what could not be determined.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Calibration {
     /// Size of the matrix, such as `6r/46s`.
     pub configuration: String,
@@ -54,7 +55,7 @@ pub struct Calibration {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed: Option<SpeedEstimate>,
     /// What the covariances are relative to.
-    pub gauge: &'static str,
+    pub gauge: Cow<'static, str>,
     /// Whether no other network that was found explains the measurements about as well, more than one or two starts of the search
     /// found this one, and no receiver shows an error of its own that was left in.
     pub unique: bool,
@@ -70,7 +71,7 @@ pub struct Calibration {
     /// not known. A table with receivers as columns is one that does not.
     pub determined: bool,
     /// Errors of single receivers that the measurements show, most telling first, or delays of all receivers, relative to their mean.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub receiver_errors: Vec<ReceiverError>,
     /// What may be wrong, with names and a remedy.
     pub warnings: Vec<String>,
@@ -88,7 +89,7 @@ pub struct Calibration {
 }
 
 /// Another network that explains the measurements.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Alternative {
     /// Positions of the receivers.
     pub receivers: Vec<Option<[f64; 2]>>,
@@ -163,9 +164,15 @@ impl Calibration {
         self.transform(&map);
         let lengths = self.offsets.iter_mut().chain(&mut self.offset_std);
         let lengths = lengths.chain(self.residuals.iter_mut().flatten());
-        lengths.chain(self.alternatives.iter_mut().flat_map(|a| &mut a.offsets)).flatten().for_each(|x| *x *= factor);
-        self.alternatives.iter_mut().for_each(|a| a.residual *= factor);
-        self.receiver_errors.iter_mut().for_each(|error| error.size *= factor);
+        for x in lengths.chain(self.alternatives.iter_mut().flat_map(|a| &mut a.offsets)).flatten() {
+            *x *= factor;
+        }
+        for a in self.alternatives.iter_mut() {
+            a.residual *= factor;
+        }
+        for error in self.receiver_errors.iter_mut() {
+            error.size *= factor;
+        }
         self.sigma *= factor;
         self.residual_rms *= factor;
         // The truth stays as large as it is, about the middle of the scaled network.
@@ -178,7 +185,9 @@ impl Calibration {
             {
                 truth.positions = positions;
                 truth.transmitter_positions = transmitters;
-                truth.points().for_each(|p| *p = p.map(|p| back.transform.apply(p)));
+                for p in truth.points() {
+                    *p = p.map(|p| back.transform.apply(p));
+                }
             }
         }
     }

@@ -126,7 +126,9 @@ impl Clearing<'_> {
         let observations = Observations::new(&measured, |_, _| true).beside(unknown.len());
         let mut ranked: Vec<Refined> = all.into_iter().map(|(_, refined, _)| refined).collect();
         for refined in &mut ranked {
-            refined.network.offsets.iter_mut().for_each(|offset| *offset += mean);
+            for offset in refined.network.offsets.iter_mut() {
+                *offset += mean;
+            }
         }
         Ok(Cleared {
             measured,
@@ -242,7 +244,9 @@ fn middle_delays(measured: &Pseudoranges) -> Vec<f64> {
             }
         }
         let mean = delays.iter().sum::<f64>() / m as f64;
-        delays.iter_mut().for_each(|delay| *delay -= mean);
+        for delay in delays.iter_mut() {
+            *delay -= mean;
+        }
     }
     delays
 }

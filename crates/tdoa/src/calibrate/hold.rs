@@ -20,7 +20,7 @@ pub(super) struct Free<'a> {
     pub(super) floor: f64,
 }
 
-/// The same after receivers of known position were put in their places.
+/// A network after receivers of known position were put in their places.
 pub(super) struct Held {
     pub(super) observations: Observations,
     pub(super) ranked: Vec<Refined>,

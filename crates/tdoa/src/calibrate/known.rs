@@ -1,6 +1,6 @@
 //! Known positions and distances of receivers: they fix the frame, sharpen the rest and give the propagation speed.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::options::{CalibrateError, CalibrateOptions, KnownDistance};
 use crate::align::align;
@@ -11,7 +11,7 @@ use crate::pseudoranges::{MAX_MAGNITUDE, Pseudoranges};
 use crate::refine::Refined;
 
 /// The propagation speed as the known distances have it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SpeedEstimate {
     /// True speed over the one with which the measurements became metres.
     pub factor: f64,
@@ -139,13 +139,17 @@ impl Anchors {
             ));
         }
         let centre = centroid(positions.iter().flatten());
-        positions.iter_mut().flatten().for_each(|p| *p = [p[0] - centre[0], p[1] - centre[1]]);
+        for p in positions.iter_mut().flatten() {
+            *p = [p[0] - centre[0], p[1] - centre[1]];
+        }
         Ok(Some(Anchors { positions, centre }))
     }
 
-    /// The same in units of which `factor` metres are one.
+    /// Changes to units of which `factor` metres are one.
     pub(super) fn divide(&mut self, factor: f64) {
-        self.positions.iter_mut().flatten().for_each(|p| *p = [p[0] / factor, p[1] / factor]);
+        for p in self.positions.iter_mut().flatten() {
+            *p = [p[0] / factor, p[1] / factor];
+        }
     }
 
     /// Which receivers are held: all anchors, if they are in two places at least.

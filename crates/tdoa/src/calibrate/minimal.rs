@@ -39,7 +39,7 @@ impl MinimalHypotheses {
         MinimalHypotheses { options, solvers: Mutex::new(Vec::new()), most: usize::MAX }
     }
 
-    /// The same, for this many calls only.
+    /// A source that gives way after this many calls.
     pub fn at_most(calls: usize) -> Self {
         MinimalHypotheses { most: calls, ..MinimalHypotheses::new() }
     }

@@ -66,7 +66,7 @@ pub fn calibrate(measured: &Pseudoranges, options: &CalibrateOptions) -> Result<
 /// cancellation.
 ///
 /// # Errors
-/// As [`calibrate`], and [`CalibrateError::Cancelled`].
+/// Those of [`calibrate`], and [`CalibrateError::Cancelled`].
 pub fn calibrate_with(
     measured: &Pseudoranges,
     options: &CalibrateOptions,

@@ -4,7 +4,7 @@
 //! is compared with the residuals (a score test); the column that explains most is taken into the model, and the test goes on with what
 //! remains.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::deviation::{inlier_deviation, spread_of_residuals};
 use crate::network::Network;
@@ -21,7 +21,7 @@ const SIDE: usize = 4;
 const PROJECTED: usize = 24;
 
 /// What is wrong with a receiver.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum ReceiverErrorKind {
@@ -36,7 +36,7 @@ pub enum ReceiverErrorKind {
 }
 
 /// An error of one receiver that its measurements show.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ReceiverError {
     /// Name of the receiver.
     pub receiver: String,
@@ -224,7 +224,9 @@ impl Test<'_> {
             let mut left = self.projection.off(&column).0;
             for other in &self.taken {
                 let part = dot(&left, other);
-                left.iter_mut().zip(other).for_each(|(x, y)| *x -= part * y);
+                for (x, y) in left.iter_mut().zip(other) {
+                    *x -= part * y;
+                }
             }
             // What the network or another error absorbs to rounding cannot be told.
             if dot(&left, &left) < 1e-6 * plain { Vec::new() } else { left }
@@ -265,9 +267,13 @@ impl Test<'_> {
     /// Takes a column into the model.
     fn take(&mut self, mut column: Vec<f64>) {
         let length = dot(&column, &column).sqrt();
-        column.iter_mut().for_each(|x| *x /= length);
+        for x in column.iter_mut() {
+            *x /= length;
+        }
         let part = dot(&self.rest, &column);
-        self.rest.iter_mut().zip(&column).for_each(|(x, y)| *x -= part * y);
+        for (x, y) in self.rest.iter_mut().zip(&column) {
+            *x -= part * y;
+        }
         self.taken.push(column);
     }
 }

@@ -15,6 +15,7 @@ use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
 use crate::quantity::length;
 use crate::refine::{Covariance, Refined};
+use std::borrow::Cow;
 
 /// Starts that must end in the best network before it is called unique: one or two may have found it while a better one was missed.
 const SETTLED: usize = 3;
@@ -174,13 +175,13 @@ impl Solved<'_> {
             offset_std: scatter(n, columns, &offset_std).into_iter().map(Option::flatten).collect(),
             anchored: scatter(m, rows, held).into_iter().map(|held| held == Some(true)).collect(),
             speed: self.speed,
-            gauge: match (is_held, self.speed.is_some()) {
+            gauge: Cow::Borrowed(match (is_held, self.speed.is_some()) {
                 (false, _) => "inner constraint over the receivers: relative to their best rigid alignment",
                 (true, false) => "relative to the receivers of known position, which have no error",
                 (true, true) => {
                     "relative to the receivers of known position, which have no error, at the estimated propagation speed"
                 }
-            },
+            }),
             unique: alternatives.is_empty() && settled && self.left.is_empty(),
             unique_receivers: receivers_agree && settled && self.left.is_empty(),
             unique_transmitters: transmitters_agree && settled && self.left.is_empty(),

@@ -1,13 +1,13 @@
 //! How near a calibration comes to the truth.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Comparison with known positions of receivers.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Truth {
     /// Root mean square distance of the receivers after the best rigid alignment (reflection allowed).
     pub receiver_rms: f64,
-    /// The same with a common scale fitted as well.
+    /// That of the receivers, in metres, with a common scale fitted as well.
     pub receiver_rms_scaled: f64,
     /// That scale, from the calibration to the truth.
     pub scale: f64,
@@ -19,7 +19,7 @@ pub struct Truth {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub transmitter_median: Option<f64>,
     /// Their true positions in the frame of the calibration, in the order of the transmitters; empty if none were given.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub transmitter_positions: Vec<Option<[f64; 2]>>,
 }
 

@@ -153,7 +153,7 @@ impl<F: Formulation> Tracking<F> {
         (counts, false)
     }
 
-    /// The same from a polyhedral start system: for the data, and where that leaves roots missing through a random member.
+    /// Candidates from a polyhedral start system: for the data, and where that leaves roots missing through a random member.
     fn run_polyhedral(
         &mut self,
         found: &mut Found<'_, F>,
@@ -176,7 +176,9 @@ impl<F: Formulation> Tracking<F> {
             }
         }
         self.tracker.set_paths(PathSet::new(self.stored.dimension));
-        direct.fibre.solutions.chunks_exact(self.stored.dimension).for_each(|root| found.add(root));
+        for root in direct.fibre.solutions.chunks_exact(self.stored.dimension) {
+            found.add(root);
+        }
         found.counts.complex = direct.fibre.len();
         Ok((PathCounts { retracked: spent, ..direct.paths }, false))
     }

@@ -43,13 +43,17 @@ impl LeastSquares {
         self.scales.clear();
         for column in self.matrix.chunks_exact_mut(rows) {
             let length = column.iter().map(|a| a * a).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
-            column.iter_mut().for_each(|a| *a /= length);
+            for a in column.iter_mut() {
+                *a /= length;
+            }
             self.scales.push(length);
         }
         let block = recommended_block_size::<f64>(rows, columns);
         self.coefficients.clear();
         self.coefficients.resize(block * columns, 0.0);
-        self.order.iter_mut().for_each(|order| order.resize(columns, 0));
+        for order in self.order.iter_mut() {
+            order.resize(columns, 0);
+        }
         let parameters = Default::default();
         let factoring = factor::qr_in_place_scratch::<usize, f64>(rows, columns, block, Par::Seq, parameters);
         let solving = solve::solve_lstsq_in_place_scratch::<usize, f64>(rows, columns, block, 1, Par::Seq);
@@ -84,7 +88,9 @@ impl LeastSquares {
             Par::Seq,
             stack,
         );
-        self.rhs.iter_mut().zip(&self.scales).for_each(|(x, scale)| *x /= scale);
+        for (x, scale) in self.rhs.iter_mut().zip(&self.scales) {
+            *x /= scale;
+        }
         (matrix[(0, 0)], matrix[(columns - 1, columns - 1)])
     }
 
@@ -106,8 +112,12 @@ impl LeastSquares {
             return None;
         }
         let (matrix, rhs) = self.start(rows, columns);
-        matrix.iter_mut().enumerate().for_each(|(entry, value)| *value = a(entry % rows, entry / rows));
-        rhs.iter_mut().enumerate().for_each(|(i, value)| *value = b(i));
+        for (entry, value) in matrix.iter_mut().enumerate() {
+            *value = a(entry % rows, entry / rows);
+        }
+        for (i, value) in rhs.iter_mut().enumerate() {
+            *value = b(i);
+        }
         let (first, last) = self.solve();
         if last.is_nan() || last.abs() <= DEPENDENT * first.abs() {
             return None;

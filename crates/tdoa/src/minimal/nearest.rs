@@ -44,7 +44,9 @@ impl Nearest {
         moved.dimension = stored.dimension;
         moved.parameters.clone_from(&stored.parameters);
         for (b, &a) in best.order.iter().enumerate() {
-            (0..others).for_each(|k| moved.parameters[cell(b, k)] = factor * stored.parameters[cell(a, k)]);
+            for k in 0..others {
+                moved.parameters[cell(b, k)] = factor * stored.parameters[cell(a, k)];
+            }
         }
         let powers: Point = F::WEIGHTS.iter().map(|&w| factor.powi(w)).collect();
         moved.solutions.clear();

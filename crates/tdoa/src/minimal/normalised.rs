@@ -32,7 +32,9 @@ impl Normalised {
         self.matrix.extend((0..f.len()).map(|k| f[k] - f[k % n]));
         let count = (f.len() - n) as f64;
         let size = (self.matrix.iter().map(|d| d * d).sum::<f64>() / count).sqrt();
-        self.matrix.iter_mut().for_each(|d| *d /= size);
+        for d in self.matrix.iter_mut() {
+            *d /= size;
+        }
         self.size = size;
     }
 
@@ -59,14 +61,22 @@ impl Normalised {
 
     /// Back to metres and to the offsets of the data.
     pub(crate) fn restore(&self, network: &mut Network) {
-        network.receivers.iter_mut().chain(&mut network.transmitters).flatten().for_each(|x| *x *= self.size);
-        network.offsets.iter_mut().zip(&self.first).for_each(|(o, first)| *o = *o * self.size + first);
+        for x in network.receivers.iter_mut().chain(&mut network.transmitters).flatten() {
+            *x *= self.size;
+        }
+        for (o, first) in network.offsets.iter_mut().zip(&self.first) {
+            *o = *o * self.size + first;
+        }
     }
 
     /// From metres to these units; the inverse of [`Normalised::restore`].
     pub(crate) fn enter(&self, network: &mut Network) {
-        network.receivers.iter_mut().chain(&mut network.transmitters).flatten().for_each(|x| *x /= self.size);
-        network.offsets.iter_mut().zip(&self.first).for_each(|(o, first)| *o = (*o - first) / self.size);
+        for x in network.receivers.iter_mut().chain(&mut network.transmitters).flatten() {
+            *x /= self.size;
+        }
+        for (o, first) in network.offsets.iter_mut().zip(&self.first) {
+            *o = (*o - first) / self.size;
+        }
     }
 }
 

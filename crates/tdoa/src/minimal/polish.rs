@@ -80,7 +80,9 @@ impl Polisher {
         for row in m * n..m * n + 3 {
             let length = (0..unknowns).map(|j| jacobian[at(row, j)].powi(2)).sum::<f64>().sqrt();
             if length > 0.0 {
-                (0..unknowns).for_each(|j| jacobian[at(row, j)] /= length);
+                for j in 0..unknowns {
+                    jacobian[at(row, j)] /= length;
+                }
             }
         }
     }
@@ -104,10 +106,14 @@ fn move_by(step: &[f64], network: &Network, next: &mut Network) {
     next.transmitters.clone_from(&network.transmitters);
     next.offsets.clone_from(&network.offsets);
     for (i, r) in next.receivers.iter_mut().enumerate() {
-        (0..2).for_each(|k| r[k] -= step[2 * i + k]);
+        for k in 0..2 {
+            r[k] -= step[2 * i + k];
+        }
     }
     for j in 0..n {
-        (0..2).for_each(|k| next.transmitters[j][k] -= step[2 * m + 2 * j + k]);
+        for k in 0..2 {
+            next.transmitters[j][k] -= step[2 * m + 2 * j + k];
+        }
         next.offsets[j] -= step[2 * m + 2 * n + j];
     }
 }

@@ -38,12 +38,16 @@ pub(crate) fn prove<F: Formulation>(target: &[Complex64], points: &[Vec<Complex6
         for &i in &alone {
             proved[i] = true;
             real[i] |= found.points[i].as_ref().is_ok_and(|c| c.reality == Reality::Real);
-            alone.iter().for_each(|&j| different[i * count + j] = true);
+            for &j in alone.iter() {
+                different[i * count + j] = true;
+            }
         }
         found.unseparated.iter().for_each(|&[i, j]| {
             (different[i * count + j], different[j * count + i]) = (false, false);
         });
-        separated.iter_mut().zip(different).for_each(|(s, d)| *s |= d);
+        for (s, d) in separated.iter_mut().zip(different) {
+            *s |= d;
+        }
         if separated.iter().all(|&s| s) {
             break;
         }

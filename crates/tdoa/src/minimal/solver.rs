@@ -95,7 +95,7 @@ impl Solver {
     /// [`solve`](Self::solve), watched: a cancelled monitor ends it.
     ///
     /// # Errors
-    /// As [`solve`](Self::solve), and [`SolveError::Cancelled`] of the polyhedral route.
+    /// Those of [`solve`](Self::solve), and [`SolveError::Cancelled`] of the polyhedral route.
     pub fn solve_watched(
         &mut self,
         measured: &Pseudoranges,
@@ -245,7 +245,7 @@ mod tests {
     use crate::minimal::{SolveOptions, Start};
     use crate::simulate::{Layout, SimulateOptions, simulate};
 
-    /// The same networks from the stored start and from a polyhedral one, no more and no fewer; of 6r/3s one for the data and one for a
+    /// The stored start and a polyhedral one give one set of networks, no more and no fewer; of 6r/3s one for the data and one for a
     /// random member.
     #[test]
     fn the_polyhedral_route_finds_the_same_networks() {

@@ -52,7 +52,9 @@ fn combinations(count: usize, size: usize) -> Vec<Vec<usize>> {
         out.push(chosen.clone());
         let Some(k) = (0..size).rev().find(|&k| chosen[k] < count - size + k) else { return out };
         chosen[k] += 1;
-        (k + 1..size).for_each(|i| chosen[i] = chosen[i - 1] + 1);
+        for i in k + 1..size {
+            chosen[i] = chosen[i - 1] + 1;
+        }
     }
 }
 

@@ -20,7 +20,7 @@ pub fn read_distances(path: &Path, names: &[String]) -> Result<Vec<KnownDistance
 /// Reads distances as [`read_distances`] does; `file` names the source in errors.
 ///
 /// # Errors
-/// As [`read_distances`].
+/// Those of [`read_distances`].
 pub fn read_distances_from(source: impl Read, file: &str, names: &[String]) -> Result<Vec<KnownDistance>, ReadError> {
     let text = text(source, file)?;
     let mut all = Vec::new();

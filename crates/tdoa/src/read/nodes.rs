@@ -79,7 +79,7 @@ pub fn read_nodes(path: &Path) -> Result<Nodes, ReadError> {
 /// Reads the variable rgt of a .mat file, one receiver a column with x, y and perhaps z in its rows; `None` if it has none.
 ///
 /// # Errors
-/// As [`read_nodes`].
+/// Those of [`read_nodes`].
 pub fn read_mat_nodes(path: &Path) -> Result<Option<Nodes>, ReadError> {
     let file = path.display().to_string();
     mat_nodes(&File::read(open(path, &file)?, &file)?, &file)
@@ -99,7 +99,7 @@ fn mat_nodes(found: &File<'_>, file: &str) -> Result<Option<Nodes>, ReadError> {
 /// are not finite); `None` if it has none.
 ///
 /// # Errors
-/// As [`read_nodes`].
+/// Those of [`read_nodes`].
 pub fn read_mat_transmitters(path: &Path) -> Result<Option<Vec<Option<[f64; 2]>>>, ReadError> {
     let file = path.display().to_string();
     let found = File::read(open(path, &file)?, &file)?;
@@ -179,7 +179,7 @@ impl Columns {
 /// Reads positions as [`read_nodes`] does; `file` names the source in errors.
 ///
 /// # Errors
-/// As [`read_nodes`].
+/// Those of [`read_nodes`].
 pub fn read_nodes_from(source: impl Read, file: &str) -> Result<Nodes, ReadError> {
     let text = text(source, file)?;
     let mut lines: HashMap<String, u64> = HashMap::new();

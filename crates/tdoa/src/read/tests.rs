@@ -224,7 +224,9 @@ fn npy_both_orders_and_damage() {
         let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
         bytes.extend((header.len() as u16).to_le_bytes());
         bytes.extend(header.as_bytes());
-        values.iter().for_each(|v| bytes.extend(v.to_le_bytes()));
+        for v in values.iter() {
+            bytes.extend(v.to_le_bytes());
+        }
         bytes
     };
     let six = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];

@@ -98,7 +98,9 @@ pub(crate) fn covariance(observations: &Observations, network: &Network, sigma: 
                 let mut unit = [0.0; 3];
                 unit[y] = sigma * sigma;
                 let column = backward(factor, forward(factor, unit));
-                (0..3).for_each(|x| sum[x][y] += column[x]);
+                for x in 0..3 {
+                    sum[x][y] += column[x];
+                }
             }
             sum
         }));
@@ -134,7 +136,7 @@ fn loose(modes: &faer::MatRef<'_, f64>, zero: usize, network: &Network) -> Vec<u
     (0..m).filter(|&i| freedom(i) > 0.01).collect()
 }
 
-/// The same where receivers are held, which leaves no rigid motion.
+/// Loose nodes where receivers are held, which leaves no rigid motion.
 fn loose_beside_held(modes: &faer::MatRef<'_, f64>, zero: usize, free: &[usize]) -> Vec<usize> {
     let freedom = |at: usize| (0..zero).map(|k| modes[(at, k)].powi(2) + modes[(at + 1, k)].powi(2)).sum::<f64>();
     (0..free.len()).step_by(2).filter(|&at| freedom(at) > 0.01).map(|at| free[at] / 2).collect()

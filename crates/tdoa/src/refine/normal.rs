@@ -137,7 +137,9 @@ impl Normal {
                 }
             }
             for (row, z) in rows.chunks_exact(size).zip(z) {
-                self.receiver_steps.iter_mut().zip(row).for_each(|(g, b)| *g += b * z);
+                for (g, b) in self.receiver_steps.iter_mut().zip(row) {
+                    *g += b * z;
+                }
             }
             self.isa.run(Eliminate { schur: &mut self.schur, rows });
         }
@@ -148,7 +150,9 @@ impl Normal {
     fn hold(&mut self, held: &[bool]) {
         let size = 2 * self.receivers;
         for at in (0..size).filter(|&k| held[k / 2]) {
-            (0..at).for_each(|column| self.schur[column * size + at] = 0.0);
+            for column in 0..at {
+                self.schur[column * size + at] = 0.0;
+            }
             self.schur[at * size + at + 1..(at + 1) * size].fill(0.0);
             self.schur[at * size + at] = 1.0;
             self.receiver_steps[at] = 0.0;

@@ -79,7 +79,7 @@ impl<'a> Refiner<'a> {
         }
     }
 
-    /// The same, which stops before its next step once it is cancelled; what it then returns is not converged.
+    /// A refiner that stops before its next step once the monitor is cancelled; what it then returns is not converged.
     pub(crate) fn heeding(self, monitor: &Monitor) -> Self {
         Refiner { monitor: monitor.clone(), ..self }
     }

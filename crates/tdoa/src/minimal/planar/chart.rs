@@ -19,7 +19,9 @@ pub(crate) const CHARTS: [[usize; COLUMNS]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1
 pub(crate) fn permute_columns(f: &[Complex64], width: usize, chart: &[usize; COLUMNS]) -> Parameters {
     let mut out = Parameters::from_slice(f);
     for (row, from) in out.chunks_exact_mut(width).zip(f.chunks_exact(width)) {
-        chart.iter().enumerate().for_each(|(to, &j)| row[to] = from[j]);
+        for (to, &j) in chart.iter().enumerate() {
+            row[to] = from[j];
+        }
     }
     out
 }
@@ -51,7 +53,9 @@ pub(crate) fn enter(chart: &[usize; COLUMNS], x: &[Complex64]) -> [Complex64; UN
 /// Carries a solution of a chart back.
 pub(crate) fn leave(chart: &[usize; COLUMNS], x: &[Complex64]) -> [Complex64; UNKNOWNS] {
     let mut inverse = [0; COLUMNS];
-    chart.iter().enumerate().for_each(|(k, &j)| inverse[j] = k);
+    for (k, &j) in chart.iter().enumerate() {
+        inverse[j] = k;
+    }
     enter(&inverse, x)
 }
 

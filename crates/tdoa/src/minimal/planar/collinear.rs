@@ -190,7 +190,7 @@ fn by_columns(f: &[f64], width: usize, squares: &mut LeastSquares) -> Option<Sma
     Some(p)
 }
 
-/// The same from three rows and five columns or more: `q_ij - g_i q_2j = c_i` for `i = 3, 4`. Without the `p_j` these are linear in
+/// Candidates from three rows and five columns or more: `q_ij - g_i q_2j = c_i` for `i = 3, 4`. Without the `p_j` these are linear in
 /// `g_3`, `g_4`, `c_3`, `c_4` and `g_3 c_4 - g_4 c_3`.
 fn by_rows(f: &[f64], width: usize, squares: &mut LeastSquares) -> Option<SmallVec<[f64; 8]>> {
     let at = |i: usize, j: usize| f[i * width + j];
@@ -243,7 +243,9 @@ mod tests {
                             Nodes::Receivers => (&mut network.receivers, transmitters),
                             Nodes::Transmitters => (&mut network.transmitters, receivers),
                         };
-                        nodes.iter_mut().for_each(|x| x[1] *= distance);
+                        for x in nodes.iter_mut() {
+                            x[1] *= distance;
+                        }
                         let measured = Pseudoranges::new(receivers, transmitters, network.pseudoranges()).unwrap();
                         let data = Normalised::new(&measured);
                         let found = Collinear::find(data.parameters(), transmitters, &mut LeastSquares::default());

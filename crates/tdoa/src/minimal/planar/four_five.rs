@@ -54,7 +54,9 @@ impl Formulation for FourFive {
 
     fn leave(chart: usize, x: &[Complex64]) -> Point {
         let mut inverse = [0; ROWS];
-        CHARTS[chart].iter().enumerate().for_each(|(k, &i)| inverse[i] = k);
+        for (k, &i) in CHARTS[chart].iter().enumerate() {
+            inverse[i] = k;
+        }
         reorder(&inverse, x)
     }
 

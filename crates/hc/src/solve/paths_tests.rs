@@ -1,0 +1,88 @@
+//! Batches may come from anywhere, in any order.
+
+use super::{CHUNK, End, Route, Stage};
+use crate::family::Fibre;
+use crate::monitor::Monitor;
+use crate::runner::{Round, Work};
+use crate::solve::excess::Excess;
+use crate::solve::record::{Record, RecordEnd};
+use crate::{Family, SolveOptions};
+use num_complex::Complex64;
+
+/// From the fourth roots of one to `x^3 - 2 x^2 + x`: a double root at 1, a simple one at 0, one at
+/// infinity.
+const FAMILY: &str = "name = \"quartic\"\nunknowns = [\"x\"]\nparameters = [\"a\", \"b\", \"c\", \"d\", \"e\"]\n\
+    equations = [\"a*x^4 + b*x^3 + c*x^2 + d*x + e\"]";
+const TARGET: [f64; 5] = [0.0, 1.0, -2.0, 1.0, 0.0];
+
+#[test]
+fn batches_are_absorbed_in_any_order() {
+    let family: Family = FAMILY.parse().unwrap();
+    // Generic coefficients of a monic quartic with these roots.
+    let roots = [(0.3, 1.1), (-1.2, 0.4), (0.7, -0.9), (1.4, 0.6)].map(|(re, im)| Complex64::new(re, im));
+    let mut coefficients = vec![Complex64::from(1.0)];
+    for root in roots {
+        coefficients.push(Complex64::from(0.0));
+        for k in (1..coefficients.len()).rev() {
+            let below = coefficients[k - 1];
+            coefficients[k] -= root * below;
+        }
+    }
+    let fibre = Fibre::new(coefficients, 1, roots.to_vec());
+    let target = TARGET.map(Complex64::from);
+    let (excess, options, monitor) = (Excess::none(), SolveOptions::default(), Monitor::default());
+    let trackers = crate::tracker::Trackers::new(family.program());
+    let route = || Route {
+        trackers: &trackers,
+        start: &fibre,
+        count: 4,
+        target: &target,
+        excess: &excess,
+        options: &options,
+        monitor: &monitor,
+    };
+
+    // Records of batches of some paths, through the text that another machine would send.
+    let batches = |cuts: &[&[usize]]| -> Vec<Vec<Record>> {
+        let stage = Stage::new(route(), false);
+        let batch = |numbers: &&[usize]| {
+            let mut records = Vec::new();
+            stage.batch(&mut (), numbers, Round::FIRST, &mut records);
+            let open: Vec<Record> = records.extract_if(.., |record| record.is_open()).collect();
+            records.extend(stage.ended(&open, Round::FIRST));
+            let text = serde_json::to_string(&records).unwrap();
+            let back: Vec<Record> = serde_json::from_str(&text).unwrap();
+            assert_eq!(back, records);
+            back
+        };
+        cuts.iter().map(batch).collect()
+    };
+    let absorbed = |batches: Vec<Vec<Record>>| {
+        let mut stage = Stage::new(route(), false);
+        for mut batch in batches {
+            stage.absorb(&mut batch, Round::FIRST);
+        }
+        let doubts = stage.doubts();
+        let ends: Vec<End> = (0..4).map(|path| stage.ends.get(path)).collect();
+        (ends, stage.regular.clone(), stage.singular.clone(), stage.directions.clone(), doubts)
+    };
+
+    let whole = absorbed(batches(&[&[0, 1, 2, 3]]));
+    let count = |end: End| whole.0.iter().filter(|&&e| e == end).count();
+    let infinite = whole.0.iter().filter(|end| end.direction().is_some()).count();
+    assert_eq!((count(End::REGULAR), count(End::SINGULAR), infinite), (1, 2, 1));
+    assert!(whole.4.is_empty(), "{:?}", whole.4);
+    let single = batches(&[&[0], &[1], &[2], &[3]]);
+    for order in [[0, 1, 2, 3], [3, 2, 1, 0], [2, 0, 3, 1], [1, 3, 0, 2]] {
+        assert_eq!(absorbed(order.map(|k| single[k].clone()).to_vec()), whole, "{order:?}");
+    }
+    let pairs = batches(&[&[1, 2], &[0, 3]]);
+    assert_eq!(absorbed(pairs), whole);
+    // A record of a later round takes the place of an earlier one.
+    let mut again = single.clone();
+    again[2] = vec![Record::lost(2)];
+    again.push(single[2].clone());
+    assert_eq!(absorbed(again), whole);
+    assert!(single.iter().flatten().all(|record| !matches!(record.end, RecordEnd::Lost)));
+    assert!(whole.0.len() < CHUNK);
+}

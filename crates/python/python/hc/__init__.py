@@ -1,0 +1,35 @@
+"""Polynomial systems by homotopy continuation.
+
+* `solve`: all isolated solutions of a system.
+* `Family`: a system with parameters, solved once and tracked to thousands of parameter points.
+* `mixed_volume`: how many solutions a generic system with the same terms has.
+* `certify`: proofs that solutions exist, are distinct, are real.
+
+Arrays in, arrays out. Work runs on all cores without Python's lock, and Ctrl-C leaves what was found.
+"""
+
+from ._errors import Error, InputError, InternalError, UndeterminedError
+from ._family import Compiled, End, Family, Fibre, Tracked
+from ._solutions import Certificates, Solutions
+from ._solve import certify, mixed_volume, solve
+
+for _function in (solve, mixed_volume, certify):
+    _function.__module__ = "hc"
+del _function
+
+__all__ = [
+    "Certificates",
+    "Compiled",
+    "End",
+    "Error",
+    "Family",
+    "Fibre",
+    "InputError",
+    "InternalError",
+    "Solutions",
+    "Tracked",
+    "UndeterminedError",
+    "certify",
+    "mixed_volume",
+    "solve",
+]

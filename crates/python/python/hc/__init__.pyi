@@ -1,0 +1,196 @@
+"""Polynomial systems by homotopy continuation."""
+
+import enum
+import os
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__all__ = [
+    "Certificates",
+    "Compiled",
+    "End",
+    "Error",
+    "Family",
+    "Fibre",
+    "InputError",
+    "InternalError",
+    "Solutions",
+    "Tracked",
+    "UndeterminedError",
+    "certify",
+    "mixed_volume",
+    "solve",
+]
+
+# A formula is a string or an expression of SymPy, which need not be installed.
+_Formula = Any
+_Progress = bool | Callable[[str, int, int], object]
+_Path = str | os.PathLike[str]
+
+class Error(Exception): ...
+class InputError(Error, ValueError): ...
+class UndeterminedError(Error, RuntimeError): ...
+class InternalError(Error, RuntimeError): ...
+
+class Solutions:
+    variables: list[str]
+    points: NDArray[np.complex128]
+    multiplicities: NDArray[np.int64]
+    winding_numbers: NDArray[np.int64]
+    singular: NDArray[np.bool_]
+    is_real: NDArray[np.bool_]
+    residuals: NDArray[np.float64]
+    conditions: NDArray[np.float64]
+    certified: NDArray[np.bool_] | None
+    paths: dict[str, int]
+    component_points: NDArray[np.complex128]
+    directions: list[tuple[list[int], int, int]]
+    start: str | None
+    start_systems: int
+    mixed_volume: int | None
+    bezout_number: int | None
+    multihomogeneous_number: int | None
+    partial: bool
+    warnings: list[str]
+    summary: str
+    seed: int
+    seconds: float
+    def __init__(self, found: dict[str, Any]) -> None: ...
+    @property
+    def real(self) -> NDArray[np.float64]: ...
+    @property
+    def complete(self) -> bool: ...
+    def __len__(self) -> int: ...
+    def __iter__(self) -> Iterator[NDArray[np.complex128]]: ...
+    def __getitem__(self, which: Any) -> Any: ...
+    def _repr_html_(self) -> str: ...
+    def to_json(self) -> str: ...
+
+class Certificates:
+    points: NDArray[np.complex128]
+    boxes: NDArray[np.float64]
+    certified: NDArray[np.bool_]
+    reality: NDArray[np.int8]
+    duplicate_of: NDArray[np.int64]
+    unseparated: NDArray[np.int64]
+    reasons: list[str | None]
+    distinct: int
+    real: int
+    def __init__(self, found: dict[str, Any]) -> None: ...
+    @property
+    def complete(self) -> bool: ...
+    def __len__(self) -> int: ...
+
+class End(enum.IntEnum):
+    FINITE = 0
+    SINGULAR = 1
+    AT_INFINITY = 2
+    ON_COMPONENT = 3
+    FAILED = 4
+
+class Tracked(NamedTuple):
+    points: NDArray[np.complex128]
+    ends: NDArray[np.int8]
+    uncertified: NDArray[np.int64]
+    seconds: float
+    @property
+    def complete(self) -> NDArray[np.bool_]: ...
+    def real(self, tolerance: float = 1e-10) -> NDArray[np.bool_]: ...
+
+class Fibre:
+    parameters: NDArray[np.complex128]
+    solutions: NDArray[np.complex128]
+    trace_test: float | None
+    stopped: str
+    def __init__(self, text: str) -> None: ...
+    @property
+    def complete(self) -> bool: ...
+    def to_json(self) -> str: ...
+    def __len__(self) -> int: ...
+    def __eq__(self, other: object) -> bool: ...
+    __hash__: None  # type: ignore[assignment]
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+class Compiled:
+    def __init__(self, family: Family, fibre: Fibre) -> None: ...
+    @property
+    def roots(self) -> int: ...
+    def __call__(
+        self, targets: ArrayLike, *, certify: bool = False, threads: int | None = None, progress: _Progress = True
+    ) -> Tracked: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+class Family:
+    name: str
+    unknowns: list[str]
+    parameters: list[str]
+    roots: int | None
+    fibre: Fibre | None
+    def __init__(
+        self,
+        equations: str | Iterable[_Formula],
+        unknowns: str | Iterable[Any] | None = None,
+        parameters: str | Iterable[Any] | None = None,
+        *,
+        nonzero: Iterable[_Formula] = (),
+        symmetry: Iterable[Iterable[_Formula]] = (),
+        roots: int | None = None,
+        name: str = "",
+    ) -> None: ...
+    @classmethod
+    def read(cls, path: _Path, start: _Path | None = None) -> Family: ...
+    def monodromy(
+        self,
+        *,
+        seed: int = 0,
+        first: Fibre | tuple[ArrayLike, ArrayLike] | None = None,
+        roots: int | None = None,
+        patience: int | None = None,
+        trace: bool = True,
+        threads: int | None = None,
+        progress: _Progress = True,
+    ) -> Fibre: ...
+    def compile(self, fibre: Fibre | None = None) -> Compiled: ...
+    def track(
+        self,
+        targets: ArrayLike,
+        *,
+        fibre: Fibre | None = None,
+        certify: bool = False,
+        threads: int | None = None,
+        progress: _Progress = True,
+    ) -> Tracked: ...
+    def __getstate__(self) -> object: ...
+    def __setstate__(self, state: tuple[Any, ...]) -> None: ...
+
+def solve(
+    system: str | Iterable[_Formula],
+    *,
+    variables: str | Iterable[Any] | None = None,
+    seed: int = 0,
+    start: str = "auto",
+    groups: Sequence[Sequence[Any]] | None = None,
+    torus_only: bool = False,
+    max_paths: int | None = None,
+    certify: bool = False,
+    threads: int | None = None,
+    progress: _Progress = True,
+) -> Solutions: ...
+def mixed_volume(
+    system: str | Iterable[_Formula],
+    *,
+    variables: str | Iterable[Any] | None = None,
+    threads: int | None = None,
+    progress: _Progress = True,
+) -> int: ...
+def certify(
+    system: str | Iterable[_Formula],
+    points: ArrayLike | Solutions,
+    *,
+    variables: str | Iterable[Any] | None = None,
+    threads: int | None = None,
+    progress: _Progress = True,
+) -> Certificates: ...

@@ -1,0 +1,364 @@
+"""Families with parameters: solutions for one parameter point, tracked to thousands of others."""
+
+import enum
+import json
+import os
+from typing import NamedTuple
+
+import numpy as np
+
+from . import _native
+from ._errors import InputError
+from ._run import call, integer
+from ._solve import complex_rows
+from ._system import formulas, names
+
+
+class End(enum.IntEnum):
+    """How a slot of a target's solutions was filled."""
+
+    FINITE = 0
+    SINGULAR = 1
+    AT_INFINITY = 2
+    ON_COMPONENT = 3
+    FAILED = 4
+
+
+class Tracked(NamedTuple):
+    """Solutions of a family for many targets.
+
+    Attributes
+    ----------
+    points : ndarray of complex, shape (k, roots, n)
+        The solutions for each target; NaN where a slot has none. A singular solution fills as many slots as it counts.
+    ends : ndarray of int8, shape (k, roots)
+        How each slot was filled, an `End`.
+    uncertified : ndarray of int, shape (k,)
+        Regular solutions that could not be certified, where that was asked for.
+    seconds : float
+        How long the work took, without what Python adds.
+    """
+
+    points: np.ndarray
+    ends: np.ndarray
+    uncertified: np.ndarray
+    seconds: float
+
+    @property
+    def complete(self):
+        """Which targets have all their solutions: ndarray of bool, shape (k,)."""
+        return ~np.any(self.ends == End.FAILED, axis=1) & (self.uncertified == 0)
+
+    def real(self, tolerance=1e-10):
+        """Which slots hold a real solution: ndarray of bool, shape (k, roots).
+
+        Parameters
+        ----------
+        tolerance : float
+            Largest imaginary part, as a share of the largest coordinate or of one.
+        """
+        if self.points.shape[2] == 0:
+            return np.zeros(self.ends.shape, bool)
+        size = np.maximum(np.abs(self.points).max(axis=2), 1.0)
+        return np.abs(self.points.imag).max(axis=2) <= tolerance * size
+
+
+class Fibre:
+    """All solutions of a family for one generic parameter point.
+
+    Attributes
+    ----------
+    parameters : ndarray of complex, shape (p,)
+        The parameter point.
+    solutions : ndarray of complex, shape (roots, n)
+        The solutions.
+    trace_test : float or None
+        Deviation found by the trace test: rounding error shows that the solutions are all.
+    stopped : str
+        Why the search ended: `roots reached`, `trace`, `no progress` or `interrupted`.
+    """
+
+    def __init__(self, text):
+        self._text = text
+        try:
+            data = json.loads(text)
+            pairs = np.array(data["parameters"], dtype=float).reshape(-1, 2)
+            rows = np.array(data["solutions"], dtype=float)
+            rows = rows.reshape(len(data["solutions"]), -1, 2)
+        except (TypeError, ValueError, KeyError) as error:
+            raise InputError(f"not a start file: {error}") from None
+        self.parameters = pairs[:, 0] + 1j * pairs[:, 1]
+        # No arithmetic: zeros keep their signs.
+        self.solutions = rows.view(complex)[..., 0]
+        self.parameters = pairs.view(complex)[..., 0]
+        self.trace_test = data.get("trace_test")
+        self.stopped = data.get("stopped", "")
+
+    @property
+    def complete(self):
+        """Whether a known number of roots or the trace test shows that these are all solutions."""
+        return self.stopped in ("roots reached", "trace")
+
+    def to_json(self):
+        """The text of a start file, as `hc monodromy` writes it."""
+        return self._text
+
+    def __len__(self):
+        return len(self.solutions)
+
+    def __repr__(self):
+        trace = "" if self.trace_test is None else f", trace test {self.trace_test:.1e}"
+        return f"{len(self)} solutions; stopped: {self.stopped}{trace}"
+
+    def __eq__(self, other):
+        return isinstance(other, Fibre) and self._text == other._text
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __reduce__(self):
+        return Fibre, (self._text,)
+
+
+class Compiled:
+    """A family with its solutions for one parameter point, ready for targets: call it with an array of them.
+
+    Made by `Family.compile`; it is pickled as what it was made of.
+    """
+
+    def __init__(self, family, fibre):
+        self._family = family
+        self._fibre = fibre
+        self._native = family._native.fibre(fibre.to_json())
+
+    @property
+    def roots(self):
+        """Number of solutions that are tracked to each target."""
+        return len(self._fibre)
+
+    def __call__(self, targets, *, certify=False, threads=None, progress=True):
+        """Track all solutions to each target: see `Family.track`."""
+        rows = complex_rows("targets", targets)
+        return call(
+            self._family._native.track,
+            self._native,
+            rows,
+            bool(certify),
+            threads=threads,
+            progress=progress,
+            wrap=lambda found: Tracked(found["points"], found["ends"], found["uncertified"], found["seconds"]),
+        )
+
+    def __repr__(self):
+        return f"{self._family!r}, compiled"
+
+    def __reduce__(self):
+        return Compiled, (self._family, self._fibre)
+
+
+class Family:
+    """A system with parameters: solved once, then tracked to as many parameter points as there are.
+
+    Parameters
+    ----------
+    equations : str, or sequence of str or SymPy expressions
+        As many equations as unknowns; or one text in TOML with everything.
+    unknowns : sequence of str or symbols, optional
+        By default all names in SymPy expressions that are no parameters, sorted by name.
+    parameters : sequence of str or symbols, optional
+        Names of the parameters.
+    nonzero : sequence of str or SymPy expressions
+        Factors that must not vanish at a solution.
+    symmetry : sequence of sequences of str or SymPy expressions
+        Maps that take solutions to solutions for the same parameters, one formula an unknown: one solution of each orbit
+        is tracked.
+    roots : int, optional
+        The number of solutions for generic parameters, if it is known: it ends the search for them.
+    name : str
+        A name.
+
+    Attributes
+    ----------
+    fibre : Fibre or None
+        All solutions for one parameter point, once `monodromy` has found them; it can be set.
+
+    Examples
+    --------
+    >>> import hc, numpy as np
+    >>> family = hc.Family(["x^2 + y^2 - r^2", "y - a*x"], unknowns="x y", parameters="r a")
+    >>> family.monodromy()
+    2 solutions; stopped: trace, trace test ...
+    >>> points, ends = family.track([[5.0, 0.75], [10.0, 0.75]])[:2]
+    >>> points.shape, np.sort(points[1, :, 0].real).round(9).tolist()
+    ((2, 2, 2), [-8.0, 8.0])
+    """
+
+    def __init__(
+        self,
+        equations,
+        unknowns=None,
+        parameters=None,
+        *,
+        nonzero=(),
+        symmetry=(),
+        roots=None,
+        name="",
+    ):
+        if isinstance(equations, str) and unknowns is None and parameters is None:
+            self._given = equations
+        else:
+            texts, found = formulas("equation", equations)
+            factors, _ = formulas("factor", nonzero)
+            maps = [formulas("formula of a symmetry", each)[0] for each in symmetry]
+            parameters = names("parameters", parameters) or []
+            unknowns = names("unknowns", unknowns)
+            if unknowns is None:
+                if found is None:
+                    raise InputError("say which names are unknowns: unknowns=[...]")
+                unknowns = [each for each in found if each not in parameters]
+            roots = integer("roots", roots)
+            self._given = (unknowns, parameters, texts, factors, maps, roots, str(name))
+        self._build()
+        self.fibre = None
+
+    def _build(self):
+        if isinstance(self._given, str):
+            self._native = _native.Family.from_text(self._given)
+        else:
+            self._native = _native.Family.from_formulas(*self._given)
+        self.name, self.unknowns, self.parameters, self.roots = self._native.describe()
+
+    @classmethod
+    def read(cls, path, start=None):
+        """A family from a TOML file, with its solutions from a start file if one is given.
+
+        Parameters
+        ----------
+        path, start : path
+            What `hc monodromy` reads and writes.
+        """
+        family = cls(_text_of(path))
+        if start is not None:
+            family.fibre = Fibre(_text_of(start))
+            family.compile()
+        return family
+
+    def monodromy(self, *, seed=0, first=None, roots=None, patience=None, trace=True, threads=None, progress=True):
+        """Find all solutions for one generic parameter point, by loops in the parameters from a single one.
+
+        Parameters
+        ----------
+        seed : int
+            Seed of the loops.
+        first : Fibre or (parameters, solution), optional
+            A first pair; found by Newton's method by default.
+        roots : int, optional
+            The number of solutions, if it is known.
+        patience : int, optional
+            Loops without a new solution after which the search ends. Default 8.
+        trace : bool
+            Whether the trace test shows that the solutions are all, where their number is not known.
+        threads, progress
+            As in `hc.solve`.
+
+        Returns
+        -------
+        Fibre
+            It becomes the attribute `fibre` too.
+
+        Raises
+        ------
+        KeyboardInterrupt
+            On Ctrl-C, with the solutions so far as `partial`.
+        """
+        if first is not None and not isinstance(first, Fibre):
+            first = _pair(*first)
+        native = None if first is None else self._native.fibre(first.to_json())
+        seed = integer("seed", seed, 0, 2**64 - 1)
+        found = call(
+            self._native.monodromy,
+            seed,
+            integer("roots", roots),
+            integer("patience", patience),
+            bool(trace),
+            native,
+            threads=threads,
+            progress=progress,
+            wrap=lambda found: Fibre(found["json"]),
+        )
+        self.fibre = found
+        return found
+
+    def compile(self, fibre=None):
+        """The family with its solutions, ready for targets: for repeated calls.
+
+        Parameters
+        ----------
+        fibre : Fibre, optional
+            All solutions for one parameter point; by default those of `monodromy`, which is run if it has not been.
+
+        Returns
+        -------
+        Compiled
+            A function of targets.
+        """
+        fibre = fibre if fibre is not None else self.fibre
+        return Compiled(self, fibre if fibre is not None else self.monodromy())
+
+    def track(self, targets, *, fibre=None, certify=False, threads=None, progress=True):
+        """Find the solutions for many parameter points, in parallel.
+
+        Parameters
+        ----------
+        targets : array_like, shape (k, p)
+            Parameter points, real or complex.
+        fibre, certify, threads, progress
+            All solutions for one parameter point as in `compile`; whether solutions are proved; as in `hc.solve`.
+
+        Returns
+        -------
+        Tracked
+            `points` of shape (k, roots, n) and `ends` of shape (k, roots).
+
+        Raises
+        ------
+        KeyboardInterrupt
+            On Ctrl-C, with the targets so far as `partial`.
+        """
+        return self.compile(fibre)(targets, certify=certify, threads=threads, progress=progress)
+
+    def __repr__(self):
+        name = f"{self.name}: " if self.name else ""
+        unknowns, parameters = ", ".join(self.unknowns), ", ".join(self.parameters)
+        return f"{name}family in {unknowns} with parameters {parameters or 'none'}"
+
+    def __getstate__(self):
+        return self._given, self.fibre
+
+    def __setstate__(self, state):
+        self._given, self.fibre = state
+        self._build()
+
+
+def _pair(parameters, solution):
+    """A start file of one solution."""
+
+    def pairs(values):
+        values = complex_rows("first", values)[0]
+        return [[float(z.real), float(z.imag)] for z in values]
+
+    return Fibre(json.dumps({"parameters": pairs(parameters), "solutions": [pairs(solution)]}))
+
+
+def _text_of(path):
+    try:
+        with open(os.fspath(path), encoding="utf-8") as file:
+            return file.read()
+    except OSError:
+        raise
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{path}: {error}") from None
+
+
+for _class in (End, Tracked, Fibre, Compiled, Family):
+    _class.__module__ = "hc"
+del _class

@@ -1,0 +1,73 @@
+"""The extension module: what the modules beside it call."""
+
+from collections.abc import Callable
+from typing import Any, TypedDict, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = [
+    "Family",
+    "Fibre",
+    "calibrate",
+    "calibration_html",
+    "calibration_svg",
+    "certify",
+    "check_size",
+    "cramer_rao",
+    "fail_for_a_test",
+    "mixed_volume",
+    "read",
+    "simulate",
+    "solve",
+    "solve_network",
+]
+
+class _How(TypedDict):
+    threads: int | None
+    progress: Callable[[str, int, int], object] | None
+
+_System = str | tuple[list[str], list[str] | None]
+_Found = dict[str, Any]
+
+def solve(system: _System, settings: _Found, how: _How) -> _Found: ...
+def mixed_volume(system: _System, how: _How) -> int: ...
+def certify(system: _System, points: NDArray[np.complex128], how: _How) -> _Found: ...
+def calibrate(table: _Found, settings: _Found, speed: float | None, how: _How) -> str: ...
+def calibration_html(json: str) -> str: ...
+def calibration_svg(json: str) -> str: ...
+def solve_network(
+    table: _Found, tolerance: float | None, start: str, first_under: float | None, how: _How
+) -> _Found: ...
+def simulate(wanted: _Found) -> _Found: ...
+def cramer_rao(
+    receivers: NDArray[np.float64], transmitters: NDArray[np.float64], used: NDArray[np.bool_], sigma: float
+) -> float: ...
+def check_size(receivers: int, transmitters: int) -> None: ...
+def read(
+    path: str, units: str | None, speed: float | None, rate: float | None, variable: str | None
+) -> _Found: ...
+def fail_for_a_test(at_work: bool) -> None: ...
+@final
+class Fibre: ...
+
+@final
+class Family:
+    @staticmethod
+    def from_text(text: str) -> Family: ...
+    @staticmethod
+    def from_formulas(
+        unknowns: list[str],
+        parameters: list[str],
+        equations: list[str],
+        nonzero: list[str],
+        symmetry: list[list[str]],
+        roots: int | None,
+        name: str,
+    ) -> Family: ...
+    def describe(self) -> tuple[str, list[str], list[str], int | None]: ...
+    def fibre(self, json: str) -> Fibre: ...
+    def monodromy(
+        self, seed: int, roots: int | None, patience: int | None, trace: bool, first: Fibre | None, how: _How
+    ) -> _Found: ...
+    def track(self, fibre: Fibre, targets: NDArray[np.complex128], certify: bool, how: _How) -> _Found: ...

@@ -1,0 +1,36 @@
+"""Self-calibration of sensor networks from arrival times alone.
+
+Synchronised receivers hear transmitters whose send times are unknown. With all times multiplied by the propagation speed, receiver i
+measures of transmitter j the pseudorange |r_i - s_j| + o_j. From these alone come the positions r and s and the offsets o, up to
+a rotation, reflection and translation of the plane.
+
+* `calibrate`: any network from measurements as they come, with outliers, gaps and noise.
+* `solve`: every network that explains a small complete table exactly.
+* `read`: measurements from files.
+* `simulate`, `cramer_rao`: networks with a known truth, and how near to it an estimate can come.
+
+Arrays in, arrays out, lengths in metres, NaN for what is missing. Exceptions are those of the package `hc`.
+"""
+
+from hc import Error, InputError, InternalError, UndeterminedError
+
+from ._calibration import Alternative, Calibration
+from ._networks import Networks, Simulation, calibrate, cramer_rao, simulate, solve
+from ._tables import Pseudoranges, read
+
+__all__ = [
+    "Alternative",
+    "Calibration",
+    "Error",
+    "InputError",
+    "InternalError",
+    "Networks",
+    "Pseudoranges",
+    "Simulation",
+    "UndeterminedError",
+    "calibrate",
+    "cramer_rao",
+    "read",
+    "simulate",
+    "solve",
+]

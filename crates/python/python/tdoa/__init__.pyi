@@ -1,0 +1,184 @@
+"""Self-calibration of sensor networks from arrival times alone."""
+
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from hc import Error, InputError, InternalError, UndeterminedError
+from numpy.typing import ArrayLike, NDArray
+
+__all__ = [
+    "Alternative",
+    "Calibration",
+    "Error",
+    "InputError",
+    "InternalError",
+    "Networks",
+    "Pseudoranges",
+    "Simulation",
+    "UndeterminedError",
+    "calibrate",
+    "cramer_rao",
+    "read",
+    "simulate",
+    "solve",
+]
+
+_Floats = NDArray[np.float64]
+_Progress = bool | Callable[[str, int, int], object]
+_Path = str | os.PathLike[str]
+# An array, a pandas.DataFrame, which need not be installed, or Pseudoranges.
+_Table = Any
+_Names = Sequence[str] | tuple[Sequence[str] | None, Sequence[str] | None] | Mapping[str, Sequence[str]]
+
+class Pseudoranges:
+    values: _Floats
+    sigmas: _Floats | None
+    receiver_names: list[str] | None
+    transmitter_names: list[str] | None
+    def __init__(
+        self,
+        values: ArrayLike,
+        *,
+        sigmas: ArrayLike | None = None,
+        receiver_names: Iterable[str] | None = None,
+        transmitter_names: Iterable[str] | None = None,
+    ) -> None: ...
+    @property
+    def shape(self) -> tuple[int, int]: ...
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]: ...
+
+class Alternative:
+    receivers: _Floats
+    transmitters: _Floats
+    offsets: _Floats
+    residual: float
+    log_likelihood_loss: float
+    def __init__(self, data: dict[str, Any]) -> None: ...
+
+class Calibration:
+    data: dict[str, Any]
+    receiver_names: list[str]
+    transmitter_names: list[str]
+    warnings: list[str]
+    unique: bool
+    sigma: float
+    gauge: str
+    dimensions: int
+    def __init__(self, text: str) -> None: ...
+    @classmethod
+    def from_json(cls, text: str) -> Calibration: ...
+    @property
+    def receivers(self) -> _Floats: ...
+    @property
+    def transmitters(self) -> _Floats: ...
+    @property
+    def offsets(self) -> _Floats: ...
+    @property
+    def covariance(self) -> _Floats: ...
+    @property
+    def transmitter_covariance(self) -> _Floats: ...
+    @property
+    def offset_std(self) -> _Floats: ...
+    @property
+    def inliers(self) -> NDArray[np.bool_]: ...
+    @property
+    def residuals(self) -> _Floats: ...
+    @property
+    def alternatives(self) -> list[Alternative]: ...
+    @property
+    def trusted(self) -> bool: ...
+    # An Axes of matplotlib, which need not be installed.
+    def plot(self, ax: Any = None, *, names: bool = True) -> Any: ...
+    def to_json(self) -> str: ...
+    def to_svg(self) -> str: ...
+    def save_html(self, path: _Path) -> None: ...
+    def _repr_html_(self) -> str: ...
+    def __eq__(self, other: object) -> bool: ...
+    __hash__: None  # type: ignore[assignment]
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+class Networks:
+    receivers: _Floats
+    transmitters: _Floats
+    offsets: _Floats
+    residuals: _Floats
+    physical: NDArray[np.bool_]
+    conditions: _Floats
+    counts: dict[str, int]
+    paths: dict[str, int]
+    configuration: str
+    solver: str
+    stopped_early: bool
+    seconds: float
+    warnings: list[str]
+    receiver_names: list[str]
+    transmitter_names: list[str]
+    def __init__(self, found: dict[str, Any]) -> None: ...
+    def __len__(self) -> int: ...
+
+class Simulation(NamedTuple):
+    pseudoranges: _Floats
+    receivers: _Floats
+    transmitters: _Floats
+    offsets: _Floats
+    outliers: NDArray[np.bool_]
+
+def calibrate(
+    pseudoranges: _Table,
+    *,
+    sigma: ArrayLike | None = None,
+    speed: float | None = None,
+    dimensions: str | int = "auto",
+    anchors: ArrayLike | Mapping[str, ArrayLike] | None = None,
+    names: _Names | None = None,
+    seed: int = 0,
+    threads: int | None = None,
+    progress: _Progress = True,
+    receiver_delays: str = "none",
+    distances: Iterable[tuple[str | int, str | int, float]] | None = None,
+    estimate_speed: bool = False,
+    max_starts: int | None = None,
+    agreeing: int | None = None,
+) -> Calibration: ...
+def solve(
+    pseudoranges: _Table,
+    *,
+    speed: float | None = None,
+    dimensions: str | int = "auto",
+    tolerance: float | None = None,
+    start: str = "stored",
+    first_under: float | None = None,
+    names: _Names | None = None,
+    threads: int | None = None,
+    progress: _Progress = True,
+) -> Networks: ...
+def simulate(
+    receivers: int = 8,
+    transmitters: int = 12,
+    *,
+    layout: str = "room",
+    size: tuple[float, float] = (10.0, 10.0),
+    noise: float = 0.0,
+    outliers: float = 0.0,
+    outlier_size: float = 10.0,
+    missing: float = 0.0,
+    hearing: int | None = None,
+    detours: float = 0.0,
+    detour_size: float = 1.0,
+    fault: tuple[str, float] | None = None,
+    delays: float = 0.0,
+    seed: int = 0,
+) -> Simulation: ...
+def cramer_rao(
+    receivers: ArrayLike, transmitters: ArrayLike, sigma: float, *, used: ArrayLike | None = None
+) -> float: ...
+def read(
+    path: _Path,
+    *,
+    units: str | None = None,
+    speed: float | None = None,
+    rate: float | None = None,
+    variable: str | None = None,
+) -> Pseudoranges: ...

@@ -1,0 +1,217 @@
+"""A calibrated network."""
+
+import json
+import os
+from functools import cached_property
+
+import numpy as np
+
+from hc import InputError, _native
+
+
+class Alternative:
+    """Another network that explains the measurements about as well.
+
+    Attributes
+    ----------
+    receivers, transmitters : ndarray of float, shapes (m, d) and (n, d)
+        Positions in metres; NaN where they are not determined.
+    offsets : ndarray of float, shape (n,)
+        Offsets of the transmitters in metres.
+    residual : float
+        Root mean square of the residuals of its own inliers, metres.
+    log_likelihood_loss : float
+        By how much the measurements are less likely than under the best network, natural logarithm.
+    """
+
+    def __init__(self, data):
+        self.receivers = _rows(data["receivers"], (2,))
+        self.transmitters = _rows(data["transmitters"], (2,))
+        self.offsets = _rows(data["offsets"], ())
+        self.residual = data["residual"]
+        self.log_likelihood_loss = data["log_likelihood_loss"]
+
+    def __repr__(self):
+        return f"alternative, {self.log_likelihood_loss:.2f} less likely (natural logarithm)"
+
+
+class Calibration:
+    """A calibrated network: lengths in metres, NaN for what could not be determined.
+
+    Attributes
+    ----------
+    receivers : ndarray of float, shape (m, d)
+        Positions of the receivers. Without anchors the first is the origin, the second lies on the positive x axis and the third
+        above it.
+    transmitters : ndarray of float, shape (n, d)
+        Positions of the transmitters.
+    offsets : ndarray of float, shape (n,)
+        Send times of the transmitters times the propagation speed.
+    covariance : ndarray of float, shape (m, d, d)
+        Covariances of the receivers in square metres, relative to what `gauge` says.
+    transmitter_covariance : ndarray of float, shape (n, d, d)
+        Those of the transmitters.
+    offset_std : ndarray of float, shape (n,)
+        Standard deviations of the offsets.
+    inliers : ndarray of bool, shape (m, n)
+        Which measurements agree with the network; False where there is none.
+    residuals : ndarray of float, shape (m, n)
+        Pseudorange minus offset minus distance; NaN where nothing was measured.
+    unique : bool
+        Whether no other network was found that explains the measurements about as well, the search has settled, and no receiver
+        shows an error of its own.
+    alternatives : list of Alternative
+        Other networks that do, best first.
+    warnings : list of str
+        What may be wrong, with names and a remedy.
+    sigma : float
+        Standard deviation of the measurements: as given, or estimated.
+    receiver_names, transmitter_names : list of str
+        Names of the nodes.
+    dimensions : int
+        d: 2, for this version calibrates in the plane.
+    data : dict
+        Everything that the JSON holds, under the same keys.
+    """
+
+    def __init__(self, text):
+        self._text = text
+        try:
+            self.data = json.loads(text)
+            self.receiver_names = self.data["receiver_names"]
+            self.transmitter_names = self.data["transmitter_names"]
+            self.warnings = self.data["warnings"]
+            self.unique = self.data["unique"]
+            self.sigma = self.data["sigma"]
+            self.gauge = self.data["gauge"]
+        except (TypeError, ValueError, KeyError) as error:
+            raise InputError(f"no calibration: {error}") from None
+        self.dimensions = 2
+
+    @classmethod
+    def from_json(cls, text):
+        """A calibration from what `to_json`, or the program with --json, has written."""
+        return cls(text)
+
+    @cached_property
+    def receivers(self):
+        return _rows(self.data["receivers"], (2,))
+
+    @cached_property
+    def transmitters(self):
+        return _rows(self.data["transmitters"], (2,))
+
+    @cached_property
+    def offsets(self):
+        return _rows(self.data["offsets"], ())
+
+    @cached_property
+    def covariance(self):
+        return _rows(self.data["receiver_covariance"], (2, 2))
+
+    @cached_property
+    def transmitter_covariance(self):
+        return _rows(self.data["transmitter_covariance"], (2, 2))
+
+    @cached_property
+    def offset_std(self):
+        return _rows(self.data["offset_std"], ())
+
+    @cached_property
+    def inliers(self):
+        return np.array(self.data["inliers"], dtype=bool).reshape(len(self.receiver_names), -1)
+
+    @cached_property
+    def residuals(self):
+        return np.array(self.data["residuals"], dtype=float).reshape(len(self.receiver_names), -1)
+
+    @cached_property
+    def alternatives(self):
+        return [Alternative(each) for each in self.data["alternatives"]]
+
+    @property
+    def trusted(self):
+        """Whether the measurements fit a network in the plane and determine where most receivers are."""
+        return self.data["planar"] and self.data["determined"]
+
+    def plot(self, ax=None, *, names=True):
+        """Draw the network as the report does: nodes with 95 % ellipses, outliers as lines.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where; a new figure by default.
+        names : bool
+            Whether nodes get their names.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+        """
+        from ._plot import draw
+
+        return draw(self, ax, names)
+
+    def to_json(self):
+        """The text that `tdoa calibrate --json` writes, to the last bit of every number."""
+        return self._text
+
+    def to_svg(self):
+        """The picture of the report, as SVG text."""
+        return _native.calibration_svg(self._text)
+
+    def save_html(self, path):
+        """Write the report for a browser: the picture, and tables of nodes and measurements; one file without references to others.
+
+        Parameters
+        ----------
+        path : path
+            The file.
+        """
+        page = _native.calibration_html(self._text)
+        with open(os.fspath(path), "w", encoding="utf-8", newline="\n") as file:
+            file.write(page)
+
+    def __repr__(self):
+        measured = int(np.isfinite(self.residuals).sum())
+        outliers = measured - int(self.inliers.sum())
+        if not self.data["sigma_estimated"]:
+            how = "given"
+        else:
+            how = "estimated" if self.data["redundancy"] else "not known: as many measurements as unknowns"
+        verdict = "unique" if self.unique else f"NOT UNIQUE, {len(self.alternatives)} alternatives"
+        if not self.trusted:
+            verdict += "; NOT TO BE TRUSTED"
+        lines = [
+            f"{self.data['configuration']}: {measured} measurements, {outliers} of them outliers, "
+            f"standard deviation {self.sigma:.3g} m ({how})",
+            f"{self.data['agreeing']} of {self.data['starts']} starts agree; {verdict}",
+        ]
+        return "\n".join(lines + [f"warning: {warning}" for warning in self.warnings])
+
+    def _repr_html_(self):
+        import html
+
+        return f"<pre>{html.escape(repr(self))}</pre>{self.to_svg()}"
+
+    def __eq__(self, other):
+        return isinstance(other, Calibration) and self._text == other._text
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __reduce__(self):
+        return Calibration, (self._text,)
+
+
+def _rows(values, shape):
+    """An array of rows of a shape, NaN in place of those that are None."""
+    array = np.full((len(values), *shape), np.nan)
+    for k, value in enumerate(values):
+        if value is not None:
+            array[k] = value
+    return array
+
+
+for _class in (Alternative, Calibration):
+    _class.__module__ = "tdoa"
+del _class

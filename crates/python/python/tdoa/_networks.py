@@ -1,0 +1,397 @@
+"""Calibration, exact solution and simulation of networks."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from hc import InputError, _native
+from hc._run import call, integer, number, text
+
+from ._calibration import Calibration
+from ._tables import real_matrix, table
+
+
+def _plane(dimensions):
+    if isinstance(dimensions, str):
+        if dimensions == "auto":
+            return
+    elif not isinstance(dimensions, bool) and dimensions == 2:
+        return
+    elif not isinstance(dimensions, bool) and dimensions == 3:
+        raise InputError('this version calibrates in the plane: dimensions must be "auto" or 2, not 3')
+    raise InputError(f'dimensions must be "auto" or 2, not {dimensions!r}')
+
+
+def _anchors(anchors, names, count):
+    """Known positions in the order of the receivers."""
+    if anchors is None:
+        return []
+    if hasattr(anchors, "keys"):
+        names = names if names is not None else [f"r{i + 1}" for i in range(count)]
+        unknown = [str(name) for name in anchors.keys() if str(name) not in names]
+        if unknown:
+            raise InputError(f"no receiver is named {', '.join(unknown[:8])}; they are {', '.join(names[:8])}")
+        rows = np.full((count, 2), np.nan)
+        for name in anchors.keys():
+            rows[names.index(str(name))] = _position(name, anchors[name])
+    else:
+        rows = real_matrix("anchors", anchors)
+        if rows.shape != (count, 2):
+            raise InputError(f"anchors must have shape ({count}, 2), NaN where unknown, or be a dict by name, not {rows.shape}")
+    return [None if np.isnan(row).all() else (float(row[0]), float(row[1])) for row in rows]
+
+
+def _position(name, given):
+    try:
+        point = np.asarray(given, dtype=float)
+    except (TypeError, ValueError):
+        point = np.empty(0)
+    if point.shape != (2,):
+        raise InputError(f"the anchor {name} must be x and y in metres, not {given!r}")
+    return point
+
+
+def calibrate(
+    pseudoranges,
+    *,
+    sigma=None,
+    speed=None,
+    dimensions="auto",
+    anchors=None,
+    names=None,
+    seed=0,
+    threads=None,
+    progress=True,
+    receiver_delays="none",
+    distances=None,
+    estimate_speed=False,
+    max_starts=None,
+    agreeing=None,
+):
+    """Calibrate a network from its pseudoranges, with outliers, gaps and noise.
+
+    Parameters
+    ----------
+    pseudoranges : array_like of float, shape (m, n), or pandas.DataFrame, or Pseudoranges
+        What receiver i (row) measures of transmitter j (column): distance plus offset, metres; NaN where nothing was measured.
+        With `speed`: arrival times in seconds.
+    sigma : float or array_like of shape (m, n), optional
+        Standard deviation of the measurements in metres; an array has one for each. Estimated by default.
+    speed : float, optional
+        Propagation speed in metres a second that makes metres of times in seconds; sound in air: 343, radio: 299792458.
+    dimensions : {"auto", 2}
+        This version calibrates in the plane.
+    anchors : array_like of shape (m, 2), or dict of name to (x, y), optional
+        Known positions of some receivers in metres, NaN where unknown: they fix the frame, and two or more are held there.
+    names : list of str, or (list of str, list of str), or dict with receivers and transmitters, optional
+        Names of the receivers, and of the transmitters. A DataFrame has its own.
+    seed : int
+        Seed of the search; the same seed gives the same bits, those of the program `tdoa calibrate` too.
+    threads : int, optional
+        Threads; all cores by default. The result does not depend on it.
+    progress : bool or callable
+        Whether a bar is shown after a second, in a terminal or a notebook with tqdm; or a function of words, done, total.
+    receiver_delays : {"none", "auto", "all"}
+        What is done about receivers whose measurements are all too long or too short: told, estimated for those that show it, or
+        estimated for all.
+    distances : sequence of (receiver, receiver, metres), optional
+        Known distances between receivers, by name or by index, for `estimate_speed`.
+    estimate_speed : bool
+        Whether the propagation speed is estimated from known distances and those between anchors.
+    max_starts, agreeing : int, optional
+        Most starts of the search (default 480), and how many must agree on the best network (default 10).
+
+    Returns
+    -------
+    Calibration
+        With `receivers`, `transmitters`, `offsets`, `covariance`, `inliers`, `residuals`, `unique`, `alternatives`, `warnings`.
+
+    Raises
+    ------
+    InputError
+        If the input cannot be used: the message says why, and what to do.
+    UndeterminedError
+        If the measurements do not determine a network.
+    KeyboardInterrupt
+        On Ctrl-C; `partial` is None if the search had not ended.
+
+    Examples
+    --------
+    >>> import tdoa
+    >>> made = tdoa.simulate(noise=0.01, seed=1)
+    >>> found = tdoa.calibrate(made.pseudoranges)
+    >>> found.unique, found.receivers.shape
+    (True, (8, 2))
+    """
+    _plane(dimensions)
+    given, single = table(pseudoranges, names, sigma, speed)
+    count = len(given["values"])
+    settings = {
+        "sigma": single,
+        "anchors": _anchors(anchors, given["receivers"], count),
+        "distances": _distances(distances, given["receivers"], count),
+        "receiver_delays": text("receiver_delays", receiver_delays),
+        "estimate_speed": bool(estimate_speed),
+        "seed": integer("seed", seed, 0, 2**64 - 1),
+        "max_starts": integer("max_starts", max_starts),
+        "agreeing": integer("agreeing", agreeing),
+    }
+    arguments = given, settings, given["factor"]
+    return call(_native.calibrate, *arguments, threads=threads, progress=progress, wrap=Calibration)
+
+
+def _distances(distances, names, count):
+    names = names if names is not None else [f"r{i + 1}" for i in range(count)]
+
+    def place(node):
+        if isinstance(node, str):
+            if node not in names:
+                raise InputError(f"no receiver is named {node}; they are {', '.join(names[:8])}")
+            return names.index(node)
+        return integer("a receiver of distances", node, 0, count - 1)
+
+    found = []
+    for each in distances if distances is not None else ():
+        try:
+            first, second, metres = each
+        except (TypeError, ValueError):
+            raise InputError(f"distances must be triples (receiver, receiver, metres), not {each!r}") from None
+        found.append((place(first), place(second), number("a distance", metres)))
+    return found
+
+
+class Networks:
+    """Every network that explains a small table exactly, best first.
+
+    Attributes
+    ----------
+    receivers : ndarray of float, shape (k, m, d)
+        Positions of the receivers of each network, metres.
+    transmitters : ndarray of float, shape (k, n, d)
+        Positions of the transmitters.
+    offsets : ndarray of float, shape (k, n)
+        Offsets of the transmitters.
+    residuals : ndarray of float, shape (k,)
+        Root mean square of the residuals, metres.
+    physical : ndarray of bool, shape (k,)
+        Whether no distance is negative.
+    conditions : ndarray of float, shape (k,)
+        Condition numbers: how much an error of the data may grow.
+    counts : dict
+        Roots: `complex`, `real`, `positive_definite` (with real positions), `physical`.
+    paths : dict
+        How the paths ended.
+    configuration, solver : str
+        The size of the table, and of what was solved by paths.
+    stopped_early : bool
+        Whether the search was stopped at the first network that fits.
+    warnings : list of str
+        What makes the result doubtful.
+    receiver_names, transmitter_names : list of str
+        Names of the nodes.
+    seconds : float
+        How long the work took, without what Python adds.
+    """
+
+    def __init__(self, found):
+        self.__dict__.update(found)
+
+    def __len__(self):
+        return len(self.residuals)
+
+    def __repr__(self):
+        lines = [
+            f"{self.configuration} by {self.solver}: {len(self)} networks, {int(self.physical.sum())} of them physical; "
+            f"{self.paths['tracked']} paths, {self.paths['failed']} failed"
+        ]
+        return "\n".join(lines + [f"warning: {warning}" for warning in self.warnings])
+
+
+def solve(
+    pseudoranges,
+    *,
+    speed=None,
+    dimensions="auto",
+    tolerance=None,
+    start="stored",
+    first_under=None,
+    names=None,
+    threads=None,
+    progress=True,
+):
+    """Find every network that explains pseudoranges without errors: 6r/3s, 4r/5s, 5r/4s and all larger sizes.
+
+    Parameters
+    ----------
+    pseudoranges, speed, dimensions, names, threads, progress
+        As in `calibrate`; no measurement may be missing.
+    tolerance : float, optional
+        How far below zero a distance may lie for a network to count as physical, as a share of the size of the data. Default 1e-6.
+    start : {"stored", "polyhedral"}
+        Where paths start: at stored solutions of a generic instance, or at a start system computed for these data.
+    first_under : float, optional
+        Stops at the first physical network with a residual (metres) below this.
+
+    Returns
+    -------
+    Networks
+        With `receivers`, `transmitters`, `offsets`, `residuals`, `physical`.
+
+    Raises
+    ------
+    UndeterminedError
+        If the table is too small or incomplete, or nodes coincide.
+    KeyboardInterrupt
+        On Ctrl-C; `partial` is None.
+
+    Examples
+    --------
+    >>> import tdoa
+    >>> made = tdoa.simulate(6, 3, seed=2)
+    >>> found = tdoa.solve(made.pseudoranges)
+    >>> bool(found.residuals[0] < 1e-9), bool(found.physical[0])
+    (True, True)
+    """
+    _plane(dimensions)
+    given, _ = table(pseudoranges, names, None, speed)
+    arguments = given, number("tolerance", tolerance), text("start", start), number("first_under", first_under)
+    return call(_native.solve_network, *arguments, threads=threads, progress=progress, wrap=Networks)
+
+
+class Simulation(NamedTuple):
+    """A random network and its measurements, metres.
+
+    Attributes
+    ----------
+    pseudoranges : ndarray of float, shape (m, n)
+        The measurements; NaN where one is missing.
+    receivers, transmitters : ndarray of float, shapes (m, 2) and (n, 2)
+        True positions.
+    offsets : ndarray of float, shape (n,)
+        True offsets.
+    outliers : ndarray of bool, shape (m, n)
+        Which measurements are outliers.
+    """
+
+    pseudoranges: np.ndarray
+    receivers: np.ndarray
+    transmitters: np.ndarray
+    offsets: np.ndarray
+    outliers: np.ndarray
+
+
+def simulate(
+    receivers=8,
+    transmitters=12,
+    *,
+    layout="room",
+    size=(10.0, 10.0),
+    noise=0.0,
+    outliers=0.0,
+    outlier_size=10.0,
+    missing=0.0,
+    hearing=None,
+    detours=0.0,
+    detour_size=1.0,
+    fault=None,
+    delays=0.0,
+    seed=0,
+):
+    """A random network in the plane and its measurements, the same for the same arguments on any machine.
+
+    Parameters
+    ----------
+    receivers, transmitters : int
+        Numbers of nodes.
+    layout : {"room", "chain", "grid", "normal"}
+        Where they lie: anywhere in a room, receivers along a road or on a grid, or all coordinates and offsets standard normal.
+    size : (float, float)
+        Extent in x and y, metres.
+    noise : float
+        Standard deviation of the normal noise, metres.
+    outliers, outlier_size : float
+        Share of the measurements with a gross error, uniform in plus or minus this, metres.
+    missing : float
+        Share of the measurements that are missing.
+    hearing : int, optional
+        Each transmitter is heard by this many receivers, the nearest ones.
+    detours, detour_size : float
+        Share of the measurements that come by a detour, and its mean length, metres.
+    fault : (str, float), optional
+        An error of the first receiver: ("delay" or "drift" or "move", metres).
+    delays : float
+        Standard deviation of a constant error of each receiver, metres.
+    seed : int
+        Seed of the random numbers.
+
+    Returns
+    -------
+    Simulation
+    """
+    try:
+        width, height = size
+        kind = None if fault is None else (text("fault", fault[0]), number("fault", fault[1]))
+    except (TypeError, ValueError, IndexError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError("size must be two lengths, and fault a kind and a length") from None
+    wanted = {
+        "receivers": integer("receivers", receivers),
+        "transmitters": integer("transmitters", transmitters),
+        "layout": text("layout", layout),
+        "size": [number("size", width), number("size", height)],
+        "noise": number("noise", noise),
+        "outliers": number("outliers", outliers),
+        "outlier_size": number("outlier_size", outlier_size),
+        "missing": number("missing", missing),
+        "hearing": integer("hearing", hearing),
+        "detours": number("detours", detours),
+        "detour_size": number("detour_size", detour_size),
+        "fault": kind,
+        "delays": number("delays", delays),
+        "seed": integer("seed", seed, 0, 2**64 - 1),
+    }
+    missing_ones = [name for name, value in wanted.items() if value is None and name not in ("hearing", "fault")]
+    if missing_ones:
+        raise InputError(f"{missing_ones[0]} must be a number, not None")
+    return Simulation(**_native.simulate(wanted))
+
+
+def cramer_rao(receivers, transmitters, sigma, *, used=None):
+    """The Cramer-Rao bound: how near to the truth any unbiased estimate of the receivers can come.
+
+    Parameters
+    ----------
+    receivers, transmitters : array_like of float, shapes (m, 2) and (n, 2)
+        True positions in metres.
+    sigma : float
+        Standard deviation of the measurements in metres.
+    used : array_like of bool, shape (m, n), optional
+        Which measurements there are; all by default.
+
+    Returns
+    -------
+    float
+        Root mean square over the receivers of the smallest standard deviation, metres, after the best rigid alignment;
+        infinite if the measurements do not determine every receiver.
+    """
+    receivers = real_matrix("receivers", receivers)
+    transmitters = real_matrix("transmitters", transmitters)
+    _native.check_size(len(receivers), len(transmitters))
+    shape = len(receivers), len(transmitters)
+    try:
+        used = np.ones(shape, bool) if used is None else np.asarray(used)
+        if used.dtype.kind not in "bui":
+            raise InputError(f"used must be true or false, not {used.dtype}")
+        used = used.astype(bool)
+    except ValueError as error:
+        raise error if isinstance(error, InputError) else InputError(f"used: {error}") from None
+    sigma = number("sigma", sigma)
+    if sigma is None:
+        raise InputError("sigma must be a number, not None")
+    return _native.cramer_rao(receivers, transmitters, used, sigma)
+
+
+for _public in (Networks, Simulation, calibrate, solve, simulate, cramer_rao):
+    _public.__module__ = "tdoa"
+del _public

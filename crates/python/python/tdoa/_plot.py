@@ -1,0 +1,69 @@
+"""The picture of a calibration by matplotlib, in the style of the report."""
+
+import numpy as np
+
+from hc import InputError
+
+# The colours of the report: receivers, transmitters, outliers.
+_BLUE, _ORANGE, _PINK = "#0072B2", "#D55E00", "#CC79A7"
+
+# Transmitters farther than this many network sizes from the centre are left out; nodes of a kind that get names; outliers that are drawn.
+_REACH, _NAMED, _OUTLIERS = 5.0, 80, 200
+
+
+def draw(calibration, ax, names):
+    try:
+        import matplotlib.pyplot as pyplot
+        from matplotlib.patches import Ellipse
+    except ImportError:
+        raise InputError("plot needs matplotlib: pip install matplotlib; or to_svg(), save_html(path)") from None
+    if ax is None:
+        ax = pyplot.subplots(figsize=(8, 6))[1]
+    receivers, transmitters = calibration.receivers, calibration.transmitters
+    located = receivers[np.isfinite(receivers).all(axis=1)]
+    near = np.isfinite(transmitters).all(axis=1)
+    if len(located):
+        centre = located.mean(axis=0)
+        size = np.sqrt(((located - centre) ** 2).sum(axis=1).mean())
+        near &= np.hypot(*(np.nan_to_num(transmitters) - centre).T) <= _REACH * size
+    outlying = np.argwhere(np.isfinite(calibration.residuals) & ~calibration.inliers)
+    lines = [(i, j) for i, j in outlying if near[j] and np.isfinite(receivers[i]).all()]
+    for i, j in lines[:_OUTLIERS]:
+        ends = np.array([receivers[i], transmitters[j]])
+        ax.plot(*ends.T, color=_PINK, linewidth=1, linestyle=(0, (5, 3)), zorder=1)
+    radius = calibration.data["ellipse_radius"] or 0.0
+
+    def ellipses(points, covariances, colour, shown):
+        for point, covariance in zip(points[shown], covariances[shown]):
+            if np.isfinite(covariance).all() and radius:
+                values, vectors = np.linalg.eigh(covariance)
+                width, height = 2 * radius * np.sqrt(np.maximum(values, 0))
+                angle = np.degrees(np.arctan2(vectors[1, 0], vectors[0, 0]))
+                face = ax.add_patch(Ellipse(point, width, height, angle=angle, color=colour, alpha=0.15, zorder=2))
+                face.set_clip_on(True)
+
+    seen = np.isfinite(receivers).all(axis=1)
+    ellipses(transmitters, calibration.transmitter_covariance, _ORANGE, near)
+    ellipses(receivers, calibration.covariance, _BLUE, seen)
+    ax.plot(*transmitters[near].T, "o", color=_ORANGE, markersize=4, label="transmitter, with 95 % ellipse", zorder=3)
+    ax.plot(*receivers[seen].T, "^", color=_BLUE, markersize=8, label="receiver, with 95 % ellipse", zorder=4)
+    held = np.array(calibration.data["anchored"], dtype=bool) & seen
+    if held.any():
+        label = "receiver held at its known position"
+        ax.plot(*receivers[held].T, "s", color="none", markeredgecolor="#000", markersize=12, label=label, zorder=5)
+    if len(lines):
+        ax.plot([], [], color=_PINK, linestyle=(0, (5, 3)), label=f"{len(outlying)} outliers")
+    if names:
+        nodes = [(calibration.receiver_names, receivers, seen, _BLUE)]
+        nodes.append((calibration.transmitter_names, transmitters, near, _ORANGE))
+        for texts, points, shown, colour in nodes:
+            if shown.sum() <= _NAMED:
+                for k in np.flatnonzero(shown):
+                    ax.annotate(texts[k], points[k], (5, 5), textcoords="offset points", color=colour, fontsize=8)
+    title = f"{calibration.data['configuration']}, standard deviation {calibration.sigma:.3g} m"
+    ax.set_title(title if calibration.trusted else f"{title}, NOT TO BE TRUSTED")
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.set_xlabel("x, m")
+    ax.set_ylabel("y, m")
+    ax.legend(fontsize=8)
+    return ax

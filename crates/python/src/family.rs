@@ -1,0 +1,182 @@
+//! `hc.Family`: a compiled family, and its solutions for one parameter point.
+
+use crate::arrays::{array, rows};
+use crate::errors::{Failure, guarded};
+use crate::work::{Done, How, run, whole};
+use hc::family::{StartFile, Stop};
+use hc::{FamilyError, MonodromyOptions, Solutions, SolveOptions};
+use num_complex::Complex64;
+use numpy::PyReadonlyArrayDyn;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::sync::Arc;
+
+/// A family, compiled.
+#[pyclass(frozen, module = "hc._native")]
+pub(crate) struct Family(Arc<hc::Family>);
+
+/// All solutions of a family for one parameter point.
+#[pyclass(frozen, module = "hc._native")]
+pub(crate) struct Fibre(Arc<hc::Fibre>);
+
+/// How a slot of a target's solutions was filled.
+mod end {
+    pub(super) const FINITE: i8 = 0;
+    pub(super) const SINGULAR: i8 = 1;
+    pub(super) const AT_INFINITY: i8 = 2;
+    pub(super) const ON_COMPONENT: i8 = 3;
+    pub(super) const FAILED: i8 = 4;
+}
+
+#[pymethods]
+impl Family {
+    /// From TOML.
+    #[staticmethod]
+    fn from_text(text: &str) -> PyResult<Family> {
+        guarded(|| Ok(Family(Arc::new(text.parse().map_err(|error: FamilyError| Failure::input(error))?))))
+    }
+
+    /// From formulas, with factors that do not vanish and maps that take solutions to solutions.
+    #[staticmethod]
+    fn from_formulas(
+        unknowns: Vec<String>,
+        parameters: Vec<String>,
+        equations: Vec<String>,
+        nonzero: Vec<String>,
+        symmetry: Vec<Vec<String>>,
+        roots: Option<usize>,
+        name: String,
+    ) -> PyResult<Family> {
+        guarded(|| {
+            let made = hc::poly::Family::from_formulas(&unknowns, &parameters, &equations);
+            let made = made.and_then(|family| family.with_name(name).with_nonzero(&nonzero));
+            let made = symmetry.iter().fold(made, |made, map| made.and_then(|family| family.with_symmetry(map)));
+            let mut family = made.map_err(Failure::input)?;
+            family.roots = roots;
+            Ok(Family(Arc::new(hc::Family::new(family).map_err(Failure::input)?)))
+        })
+    }
+
+    /// Name, unknowns, parameters and the number of roots, where it is known.
+    fn describe(&self) -> (String, Vec<String>, Vec<String>, Option<usize>) {
+        let (name, system) = (self.0.name().to_owned(), self.0.system());
+        (name, system.variables().to_vec(), system.parameters().to_vec(), self.0.roots())
+    }
+
+    /// A fibre from the text of a start file.
+    fn fibre(&self, json: &str) -> PyResult<Fibre> {
+        guarded(|| {
+            let file = StartFile::from_json(json).map_err(Failure::input)?;
+            let fibre = file.fibre().map_err(Failure::input)?;
+            self.0.check(&fibre).map_err(Failure::input)?;
+            Ok(Fibre(Arc::new(self.0.folded(fibre))))
+        })
+    }
+
+    /// All solutions for some generic parameters: the text of a start file, and what the search says of itself.
+    fn monodromy<'py>(
+        &self,
+        py: Python<'py>,
+        seed: u64,
+        roots: Option<usize>,
+        patience: Option<usize>,
+        trace: bool,
+        first: Option<PyRef<'py, Fibre>>,
+        how: How,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        guarded(|| {
+            let family = self.0.clone();
+            let first = first.map(|first| first.0.clone());
+            let mut options = MonodromyOptions::new().seed(seed);
+            options.roots = roots;
+            options.patience = patience.unwrap_or(options.patience);
+            let Done { result: found, stopped, .. } = run(py, &how, move |monitor| {
+                let first = match &first {
+                    Some(first) => hc::Fibre::clone(first),
+                    None => family.find_pair(seed)?,
+                };
+                let found = family.complete(&first, &options, monitor)?;
+                let wanted = trace && !matches!(found.stop, Stop::RootsReached | Stop::Cancelled);
+                let test = wanted.then(|| family.trace_test(&found.fibre, &options, monitor)).transpose()?;
+                Ok((found, test.filter(|_| !monitor.is_cancelled()), monitor.is_cancelled()))
+            })?;
+            let (found, test, cancelled) = found.map_err(|error: FamilyError| match error {
+                FamilyError::NoPair => Failure::undetermined(error),
+                error => Failure::input(error),
+            })?;
+            let why = match found.stop {
+                Stop::RootsReached => "roots reached",
+                _ if cancelled => "interrupted",
+                _ if test.as_ref().is_some_and(|test| test.passed(found.fibre.len())) => "trace",
+                _ => "no progress",
+            };
+            let file = StartFile::new(&found.fibre, test.map(|test| test.deviation), why);
+            let result = PyDict::new(py);
+            result.set_item("json", file.to_json())?;
+            result.set_item("loops", found.loops)?;
+            result.set_item("paths", found.paths)?;
+            whole(py, result.into_any(), stopped)
+        })
+    }
+
+    /// The solutions for many targets, from those of a fibre: points of shape (targets, roots, unknowns), NaN where there is none, and
+    /// how each slot was filled.
+    fn track<'py>(
+        &self,
+        py: Python<'py>,
+        fibre: PyRef<'py, Fibre>,
+        targets: PyReadonlyArrayDyn<'py, Complex64>,
+        certify: bool,
+        how: How,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        guarded(|| {
+            let (family, fibre, targets) = (self.0.clone(), fibre.0.clone(), rows(&targets)?);
+            let (roots, unknowns) = (fibre.len(), fibre.dimension);
+            let shown = fibre.representatives.as_ref().map_or(roots, Vec::len);
+            let Done { result: found, stopped, seconds } = run(py, &how, move |monitor| {
+                let options = SolveOptions::new().certify(certify);
+                let tracking = family.track(&fibre, &targets).options(&options).watched(monitor);
+                tracking.transform(|_, found| slots(&found, roots, shown, certify))
+            })?;
+            let found = found.map_err(Failure::input)?;
+            let width = found.iter().map(|row| row.1.len()).max().unwrap_or(0).max(roots);
+            let (mut points, mut ends) = (Vec::new(), Vec::new());
+            let nothing = Complex64::new(f64::NAN, f64::NAN);
+            points.resize(found.len() * width * unknowns, nothing);
+            ends.resize(found.len() * width, end::AT_INFINITY);
+            for (k, row) in found.iter().enumerate() {
+                points[k * width * unknowns..][..row.0.len()].copy_from_slice(&row.0);
+                ends[k * width..][..row.1.len()].copy_from_slice(&row.1);
+            }
+            let result = PyDict::new(py);
+            result.set_item("points", array(py, points, &[found.len(), width, unknowns])?)?;
+            result.set_item("ends", array(py, ends, &[found.len(), width])?)?;
+            let uncertified: Vec<i64> = found.iter().map(|row| row.2 as i64).collect();
+            result.set_item("seconds", seconds)?;
+            result.set_item("uncertified", array(py, uncertified, &[found.len()])?)?;
+            whole(py, result.into_any(), stopped)
+        })
+    }
+}
+
+/// One target's solutions, a singular one as often as it counts, and the ends of all slots; regular ones without certificate.
+fn slots(found: &Solutions, roots: usize, tracked: usize, certify: bool) -> (Vec<Complex64>, Vec<i8>, usize) {
+    let (mut points, mut ends) = (Vec::new(), Vec::with_capacity(roots));
+    for solution in found {
+        let end = if solution.singular { end::SINGULAR } else { end::FINITE };
+        for _ in 0..if solution.singular { solution.multiplicity } else { 1 } {
+            points.extend(&solution.value);
+            ends.push(end);
+        }
+    }
+    let rest = roots.saturating_sub(ends.len());
+    // Of a symmetric family a path stands for an orbit whose size an end without a solution does not tell: one lost path leaves
+    // all the rest in doubt.
+    let whole = |paths: usize| if tracked == roots || paths == 0 { paths.min(rest) } else { rest };
+    let failed = whole(found.paths.failed);
+    let components = whole(found.on_components).min(rest - failed);
+    ends.extend(std::iter::repeat_n(end::FAILED, failed));
+    ends.extend(std::iter::repeat_n(end::ON_COMPONENT, components));
+    ends.extend(std::iter::repeat_n(end::AT_INFINITY, rest - failed - components));
+    (points, ends, if certify { found.uncertified() } else { 0 })
+}

@@ -1,0 +1,33 @@
+//! The extension module `hc._native`, under the Python packages `hc` and `tdoa`.
+//!
+//! It turns arrays into what the libraries take and results into arrays; all else, such as pictures and representations, is Python. Work
+//! runs beside the interpreter ([`work`]), errors keep the words of the libraries ([`errors`]).
+
+mod arrays;
+mod calibration;
+mod certify;
+mod errors;
+mod family;
+mod measured;
+mod networks;
+mod solve;
+mod system;
+mod work;
+
+#[pyo3::pymodule]
+mod _native {
+    #[pymodule_export]
+    use crate::calibration::{calibrate, calibration_html, calibration_svg};
+    #[pymodule_export]
+    use crate::certify::{certify, mixed_volume};
+    #[pymodule_export]
+    use crate::errors::fail_for_a_test;
+    #[pymodule_export]
+    use crate::family::{Family, Fibre};
+    #[pymodule_export]
+    use crate::measured::{check_size, read};
+    #[pymodule_export]
+    use crate::networks::{cramer_rao, simulate, solve_network};
+    #[pymodule_export]
+    use crate::solve::solve;
+}

@@ -1,0 +1,108 @@
+//! Measurements: from arrays, and from files.
+
+use crate::arrays::{array, elements};
+use crate::errors::{Failure, guarded};
+use numpy::PyReadonlyArrayDyn;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use tdoa::PseudorangeError;
+use tdoa::Pseudoranges;
+use tdoa::pseudoranges::MAX_CELLS;
+use tdoa::read::{ReadOptions, Units, read as read_file};
+
+/// A table of pseudoranges as Python gives it.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Table<'py> {
+    values: PyReadonlyArrayDyn<'py, f64>,
+    /// Standard deviations of the cells, metres.
+    sigmas: Option<PyReadonlyArrayDyn<'py, f64>>,
+    /// Names of receivers and transmitters.
+    receivers: Option<Vec<String>>,
+    transmitters: Option<Vec<String>>,
+    /// What makes metres of the values.
+    factor: Option<f64>,
+}
+
+impl Table<'_> {
+    pub(crate) fn measured(&self) -> Result<Pseudoranges, Failure> {
+        let shape = self.values.as_array().shape().to_vec();
+        if let [m, n] = shape[..] {
+            fits(m, n)?;
+        }
+        let (mut values, shape) = elements(&self.values, 2)?;
+        if let Some(factor) = self.factor {
+            values.iter_mut().for_each(|value| *value *= factor);
+        }
+        let mut measured = Pseudoranges::new(shape[0], shape[1], values).map_err(Failure::input)?;
+        if let Some(names) = &self.receivers {
+            measured = measured.with_receiver_names(names.clone()).map_err(Failure::input)?;
+        }
+        if let Some(names) = &self.transmitters {
+            measured = measured.with_transmitter_names(names.clone()).map_err(Failure::input)?;
+        }
+        if let Some(sigmas) = &self.sigmas {
+            measured = measured.with_sigmas(elements(sigmas, 2)?.0).map_err(Failure::input)?;
+        }
+        Ok(measured)
+    }
+}
+
+/// Refuses what is too large before anything is copied.
+fn fits(receivers: usize, transmitters: usize) -> Result<(), Failure> {
+    match receivers.checked_mul(transmitters) {
+        Some(cells) if cells <= MAX_CELLS => Ok(()),
+        _ => Err(Failure::input(PseudorangeError::TooLarge { receivers, transmitters })),
+    }
+}
+
+/// Refuses tables that are too large.
+#[pyfunction]
+pub(crate) fn check_size(receivers: usize, transmitters: usize) -> PyResult<()> {
+    guarded(|| fits(receivers, transmitters))
+}
+
+/// Measurements from a file: a dict of values, sigmas and names.
+#[pyfunction]
+pub(crate) fn read<'py>(
+    py: Python<'py>,
+    path: std::path::PathBuf,
+    units: Option<&str>,
+    speed: Option<f64>,
+    rate: Option<f64>,
+    variable: Option<String>,
+) -> PyResult<Bound<'py, PyDict>> {
+    guarded(|| {
+        let mut options = ReadOptions::default();
+        options.units = units.map(|units| unit(units, speed, rate)).transpose()?;
+        options.variable = variable;
+        let measured = py.detach(|| read_file(&path, options)).map_err(Failure::input)?;
+        let (m, n) = (measured.receivers(), measured.transmitters());
+        let sigma = |k: usize| measured.sigma(k / n, k % n).unwrap_or(f64::NAN);
+        let found = PyDict::new(py);
+        found.set_item("values", array(py, measured.values().to_vec(), &[m, n])?)?;
+        let sigmas = measured.has_sigmas().then(|| array(py, (0..m * n).map(sigma).collect(), &[m, n])).transpose()?;
+        found.set_item("sigmas", sigmas)?;
+        found.set_item("receiver_names", measured.receivers_named().then(|| measured.receiver_names()))?;
+        found.set_item("transmitter_names", measured.transmitter_names())?;
+        Ok(found)
+    })
+}
+
+fn unit(name: &str, speed: Option<f64>, rate: Option<f64>) -> Result<Units, Failure> {
+    let needs = |what: &str| Failure::Input(format!("units={name:?} needs {what}"));
+    if name == "m" {
+        return Ok(Units::Metres);
+    }
+    let speed = || speed.ok_or_else(|| needs("speed in metres a second, such as 343 for sound in air"));
+    Ok(match name {
+        "s" => Units::Seconds { speed: speed()? },
+        "ms" => Units::Milliseconds { speed: speed()? },
+        "us" => Units::Microseconds { speed: speed()? },
+        "samples" => {
+            let rate = rate.ok_or_else(|| needs("rate, the samples a second, such as 48000"))?;
+            Units::Samples { speed: speed()?, rate }
+        }
+        _ => return Err(Failure::Input(format!("units must be m, s, ms, us or samples, not {name:?}"))),
+    })
+}

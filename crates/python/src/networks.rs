@@ -1,0 +1,212 @@
+//! `tdoa.solve`, `tdoa.simulate` and `tdoa.cramer_rao`.
+
+use crate::arrays::{array, elements};
+use crate::errors::{Failure, guarded};
+use crate::measured::Table;
+use crate::work::{Done, How, run, whole};
+use numpy::PyReadonlyArrayDyn;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::sync::{Mutex, PoisonError};
+use tdoa::accuracy::cramer_rao as bound;
+use tdoa::minimal::{SolveError, SolveOptions, Solver, Start};
+use tdoa::{Layout, MinimalSolution, Network, Pseudoranges, ReceiverFault, SimulateOptions};
+
+/// Solvers that are not in use; they keep their start solutions and their memory.
+static SOLVERS: Mutex<Vec<Solver>> = Mutex::new(Vec::new());
+
+/// Solvers that are kept at most.
+const MOST_SOLVERS: usize = 16;
+
+/// All networks that explain a table exactly: a dict of arrays.
+#[pyfunction]
+pub(crate) fn solve_network<'py>(
+    py: Python<'py>,
+    table: Table<'py>,
+    tolerance: Option<f64>,
+    start: &str,
+    first_under: Option<f64>,
+    how: How,
+) -> PyResult<Bound<'py, PyAny>> {
+    guarded(|| {
+        let mut options = SolveOptions::default();
+        options.tolerance = tolerance.unwrap_or(options.tolerance);
+        options.first_under = first_under;
+        options.start = match start {
+            "stored" => Start::Stored,
+            "polyhedral" => Start::Polyhedral,
+            other => return Err(Failure::Input(format!("start must be stored or polyhedral, not {other:?}"))),
+        };
+        for (name, value) in [("tolerance", Some(options.tolerance)), ("first_under", first_under)] {
+            if value.is_some_and(|value| value.is_nan() || value < 0.0) {
+                return Err(Failure::Input(format!("{name} must not be negative")));
+            }
+        }
+        let measured = table.measured()?;
+        let names = [measured.receiver_names().to_vec(), measured.transmitter_names().to_vec()];
+        let Done { result: solved, stopped, seconds } = run(py, &how, move |monitor| {
+            let kept = || SOLVERS.lock().unwrap_or_else(PoisonError::into_inner);
+            let solver = kept().pop();
+            let mut solver = solver.unwrap_or_default();
+            let solved = solver.solve_watched(&measured, &options, monitor);
+            let mut solvers = kept();
+            if solvers.len() < MOST_SOLVERS {
+                solvers.push(solver);
+            }
+            solved
+        })?;
+        let found = match solved {
+            // What was tracked until then is no list of networks.
+            _ if stopped.is_some() => return whole(py, py.None().into_bound(py), stopped),
+            Ok(found) => found,
+            Err(error @ SolveError::Option(_)) => return Err(Failure::input(error)),
+            Err(error) => return Err(Failure::undetermined(error)),
+        };
+        let result = solution(py, &found)?;
+        result.set_item("seconds", seconds)?;
+        let [receivers, transmitters] = names;
+        result.set_item("receiver_names", receivers)?;
+        result.set_item("transmitter_names", transmitters)?;
+        whole(py, result.into_any(), None)
+    })
+}
+
+fn solution<'py>(py: Python<'py>, found: &MinimalSolution) -> Result<Bound<'py, PyDict>, Failure> {
+    let all = &found.candidates;
+    let first = all.first().map(|candidate| &candidate.network);
+    let (k, m, n) = (all.len(), first.map_or(0, |f| f.receivers.len()), first.map_or(0, |f| f.transmitters.len()));
+    let points = |pick: fn(&Network) -> &Vec<[f64; 2]>| {
+        all.iter().flat_map(|c| pick(&c.network)).flatten().copied().collect::<Vec<f64>>()
+    };
+    let result = PyDict::new(py);
+    result.set_item("receivers", array(py, points(|network| &network.receivers), &[k, m, 2])?)?;
+    result.set_item("transmitters", array(py, points(|network| &network.transmitters), &[k, n, 2])?)?;
+    let offsets = all.iter().flat_map(|c| &c.network.offsets).copied().collect();
+    result.set_item("offsets", array::<f64>(py, offsets, &[k, n])?)?;
+    result.set_item("residuals", array(py, all.iter().map(|c| c.residual).collect(), &[k])?)?;
+    result.set_item("physical", array(py, all.iter().map(|c| c.physical).collect(), &[k])?)?;
+    result.set_item("conditions", array(py, all.iter().map(|c| c.condition).collect(), &[k])?)?;
+    result.set_item("configuration", &found.configuration)?;
+    result.set_item("solver", found.solver)?;
+    let (paths, counts) = (&found.paths, &found.counts);
+    let of_paths = [
+        ("tracked", paths.tracked),
+        ("finite", paths.finite),
+        ("at_infinity", paths.at_infinity),
+        ("failed", paths.failed),
+        ("dropped", paths.dropped),
+        ("retracked", paths.retracked),
+    ];
+    result.set_item("paths", numbers(py, &of_paths)?)?;
+    let of_roots = [
+        ("complex", counts.complex),
+        ("real", counts.real),
+        ("positive_definite", counts.positive_definite),
+        ("physical", counts.physical),
+    ];
+    result.set_item("counts", numbers(py, &of_roots)?)?;
+    result.set_item("stopped_early", found.stopped_early)?;
+    result.set_item("warnings", found.warnings.iter().map(ToString::to_string).collect::<Vec<_>>())?;
+    Ok(result)
+}
+
+/// Counts under their names.
+pub(crate) fn numbers<'py>(py: Python<'py>, all: &[(&str, usize)]) -> PyResult<Bound<'py, PyDict>> {
+    let result = PyDict::new(py);
+    for (name, number) in all {
+        result.set_item(name, number)?;
+    }
+    Ok(result)
+}
+
+/// What is simulated, as Python gives it.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Wanted {
+    receivers: usize,
+    transmitters: usize,
+    layout: String,
+    size: [f64; 2],
+    noise: f64,
+    outliers: f64,
+    outlier_size: f64,
+    missing: f64,
+    hearing: Option<usize>,
+    detours: f64,
+    detour_size: f64,
+    fault: Option<(String, f64)>,
+    delays: f64,
+    seed: u64,
+}
+
+/// A random network and its measurements: a dict of arrays.
+#[pyfunction]
+pub(crate) fn simulate(py: Python<'_>, wanted: Wanted) -> PyResult<Bound<'_, PyDict>> {
+    guarded(|| {
+        let mut options = SimulateOptions::default();
+        let [width, height] = wanted.size;
+        options.layout = match wanted.layout.as_str() {
+            "room" => Layout::Room { width, height },
+            "chain" => Layout::Chain { length: width, width: height },
+            "grid" => Layout::Grid { width, height },
+            "normal" => Layout::Normal,
+            other => return Err(Failure::Input(format!("layout must be room, chain, grid or normal, not {other:?}"))),
+        };
+        options.fault = match &wanted.fault {
+            None => None,
+            Some((kind, size)) => Some(match kind.as_str() {
+                "delay" => ReceiverFault::Delay(*size),
+                "drift" => ReceiverFault::Drift(*size),
+                "move" => ReceiverFault::Move(*size),
+                other => return Err(Failure::Input(format!("fault must be delay, drift or move, not {other:?}"))),
+            }),
+        };
+        (options.receivers, options.transmitters, options.seed) = (wanted.receivers, wanted.transmitters, wanted.seed);
+        (options.noise, options.missing, options.hearing) = (wanted.noise, wanted.missing, wanted.hearing);
+        (options.outliers, options.outlier_size) = (wanted.outliers, wanted.outlier_size);
+        (options.detours, options.detour_size, options.delays) = (wanted.detours, wanted.detour_size, wanted.delays);
+        let made = py.detach(|| tdoa::simulate(&options)).map_err(Failure::input)?;
+        let (m, n) = (options.receivers, options.transmitters);
+        let result = PyDict::new(py);
+        let flat = |points: &[[f64; 2]]| points.iter().flatten().copied().collect();
+        result.set_item("pseudoranges", array(py, made.pseudoranges.values().to_vec(), &[m, n])?)?;
+        result.set_item("receivers", array(py, flat(&made.network.receivers), &[m, 2])?)?;
+        result.set_item("transmitters", array(py, flat(&made.network.transmitters), &[n, 2])?)?;
+        result.set_item("offsets", array(py, made.network.offsets, &[n])?)?;
+        result.set_item("outliers", array(py, made.outliers, &[m, n])?)?;
+        Ok(result)
+    })
+}
+
+/// The Cramer-Rao bound of the receivers, metres: positions of shape (m, 2) and (n, 2), used measurements (m, n).
+#[pyfunction]
+pub(crate) fn cramer_rao(
+    py: Python<'_>,
+    receivers: PyReadonlyArrayDyn<'_, f64>,
+    transmitters: PyReadonlyArrayDyn<'_, f64>,
+    used: PyReadonlyArrayDyn<'_, bool>,
+    sigma: f64,
+) -> PyResult<f64> {
+    guarded(|| {
+        let points = |array: &PyReadonlyArrayDyn<'_, f64>| {
+            let (values, shape) = elements(array, 2)?;
+            if shape[1] != 2 || values.iter().any(|x| !x.is_finite()) {
+                return Err(Failure::Input("positions must be finite and of shape (number, 2)".to_owned()));
+            }
+            Ok(values.chunks_exact(2).map(|p| [p[0], p[1]]).collect::<Vec<_>>())
+        };
+        let (receivers, transmitters) = (points(&receivers)?, points(&transmitters)?);
+        let (used, shape) = elements(&used, 2)?;
+        let (m, n) = (receivers.len(), transmitters.len());
+        if shape != [m, n] {
+            return Err(Failure::Input(format!("used must have shape ({m}, {n}), not ({}, {})", shape[0], shape[1])));
+        }
+        if !(sigma > 0.0 && sigma.is_finite()) {
+            return Err(Failure::Input(format!("sigma must be positive and finite, not {sigma}")));
+        }
+        let truth = Network { receivers, transmitters, offsets: vec![0.0; n] };
+        let values = truth.pseudoranges().into_iter().zip(&used).map(|(f, &used)| if used { f } else { f64::NAN });
+        let measured = Pseudoranges::new(m, n, values.collect()).map_err(Failure::input)?;
+        Ok(py.detach(|| bound(&measured, &vec![false; m * n], &truth, sigma)))
+    })
+}

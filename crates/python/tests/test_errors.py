@@ -1,0 +1,176 @@
+"""Input that cannot be used, and what Python hears of it."""
+
+import hc
+import numpy as np
+import pytest
+import tdoa
+
+TABLE = tdoa.simulate(8, 10, noise=0.01, seed=1).pseudoranges
+
+
+@pytest.mark.parametrize(
+    "table, words",
+    [
+        (np.zeros(5), "a matrix, receivers in rows"),
+        (np.zeros((2, 3, 4)), "a matrix, receivers in rows"),
+        (3.0, "a matrix, receivers in rows"),
+        (None, "a matrix, receivers in rows"),
+        ([[1.0, 2.0], [3.0]], "must be a matrix"),
+        (TABLE.astype(complex), "real numbers, not complex128"),
+        (TABLE.astype(str), "real numbers, not <U"),
+        ([["a", None], ["b", 2.0]], "must be a matrix of numbers"),
+        (np.array([["2026-01-01"]], dtype="datetime64[D]"), "real numbers, not datetime64"),
+        (np.zeros((0, 5)), "no receivers or no transmitters|0 receivers"),
+        (np.zeros((5, 0)), "no receivers or no transmitters|0 transmitters|5 receivers"),
+        (np.full((8, 10), np.inf), "inf"),
+        (np.full((8, 10), 1e300), "1e300|too large|largest"),
+        # Eight terabytes, if somebody copied it.
+        (np.broadcast_to(0.0, (10**6, 10**6)), "1000000"),
+        (np.broadcast_to(np.int8(0), (10**9, 10**9)), "1000000000"),
+    ],
+)
+def test_tables_that_are_none(table, words):
+    for function in (tdoa.calibrate, tdoa.solve):
+        with pytest.raises(hc.InputError, match=words) as caught:
+            function(table)
+        assert isinstance(caught.value, ValueError)
+
+
+def test_tables_that_determine_nothing():
+    for table in (np.full((8, 10), np.nan), TABLE[:2], TABLE[:, :2], np.zeros((8, 10))):
+        with pytest.raises(hc.UndeterminedError):
+            tdoa.calibrate(table)
+    with pytest.raises(hc.UndeterminedError, match="6 receivers with 3 transmitters"):
+        tdoa.solve(TABLE[:3, :3])
+    gap = TABLE[:6, :3].copy()
+    gap[2, 1] = np.nan
+    with pytest.raises(hc.UndeterminedError, match="receiver r3 did not hear transmitter s2"):
+        tdoa.solve(gap)
+
+
+def test_memory_layouts_give_the_same_bits():
+    # The same few starts for all.
+    def calibrate(table):
+        return tdoa.calibrate(table, max_starts=4, agreeing=1)
+
+    expected = calibrate(TABLE).to_json()
+    wide = np.zeros((16, 30))
+    wide[::2, ::3] = TABLE
+    swapped = TABLE.astype(">f8")
+    unaligned = np.frombuffer(b"x" + TABLE.tobytes(), dtype=np.uint8)[1:].view("<f8").reshape(TABLE.shape)
+    for table in (np.asfortranarray(TABLE), wide[::2, ::3], TABLE[::-1, ::-1][::-1, ::-1], swapped, unaligned, TABLE.tolist()):
+        assert calibrate(table).to_json() == expected
+    readonly = TABLE.copy()
+    readonly.flags.writeable = False
+    assert calibrate(readonly).to_json() == expected
+    # Doubles hold every number of the other types.
+    for small in (TABLE.astype(np.float32), np.round(1000 * TABLE).astype(np.int32)):
+        assert calibrate(small).to_json() == calibrate(small.astype(float)).to_json()
+    missing = [[None if (i, j) == (1, 2) else TABLE[i, j] for j in range(10)] for i in range(8)]
+    gap = TABLE.copy()
+    gap[1, 2] = np.nan
+    assert calibrate(missing).to_json() == calibrate(gap).to_json()
+
+
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        (dict(dimensions=3), "this version calibrates in the plane"),
+        (dict(dimensions=4), "dimensions must be"),
+        (dict(dimensions="two"), "dimensions must be"),
+        (dict(sigma=-1), "option sigma must be positive and finite, not -1"),
+        (dict(sigma="x"), "sigma must be a number"),
+        (dict(sigma=np.ones((3, 3))), "shape of the pseudoranges"),
+        (dict(sigma=np.zeros((8, 10))), "not 0|standard deviation"),
+        (dict(speed=0), "speed must be positive"),
+        (dict(speed=np.nan), "speed must be positive"),
+        (dict(seed=-1), "seed must be between 0"),
+        (dict(seed=1.5), "seed must be a whole number"),
+        (dict(seed=2**64), "seed must be between 0"),
+        (dict(threads=0), "threads must be between 1 and 1024, not 0"),
+        (dict(threads=5000), "threads must be between 1 and 1024"),
+        (dict(names=["a", "b"]), "2"),
+        (dict(names=["a"] * 8), "a"),
+        (dict(names=3), "names must be a list"),
+        (dict(anchors={"r9": (0, 0)}), "no receiver is named r9; they are r1, r2"),
+        (dict(anchors={"r1": (0,)}), "the anchor r1 must be x and y"),
+        (dict(anchors=np.zeros((3, 2))), r"anchors must have shape \(8, 2\)"),
+        (dict(receiver_delays="some"), "none, auto or all"),
+        (dict(distances=[(1, 2)]), "triples"),
+        (dict(distances=[("r1", "q", 1.0)]), "no receiver is named q"),
+        (dict(estimate_speed=True), "known positions and distances"),
+        (dict(max_starts=0), "option max_starts must be at least 1"),
+    ],
+)
+def test_arguments(arguments, words):
+    with pytest.raises(hc.InputError, match=words):
+        tdoa.calibrate(TABLE, **arguments)
+
+
+@pytest.mark.parametrize(
+    "system, words",
+    [
+        ("", "no equations|empty"),
+        ([], "no equations|unknowns"),
+        ("x^2 + ", "line 1"),
+        (["x^2 - y"], "add equations"),
+        (["sin(x)"], "sin|formula|name"),
+        (["x - 1", "1"], "constant"),
+        (["x^2 - 1", 3.0], "constant"),
+        ("parameters: a\nx - a", "a family of systems"),
+        (None, "must be a string or a SymPy expression"),
+        ([["x"]], "must be a string or a SymPy expression, not list"),
+        (["x^99999999999"], "exponent|large"),
+        (["((" * 500 + "x" + "))" * 500], "deep|nest|parenthes"),
+        (["x^1000000 - 1", "y^1000000 - 1"], "paths|large"),
+    ],
+)
+def test_systems_that_are_none(system, words):
+    for function in (hc.solve, hc.mixed_volume):
+        if function is hc.mixed_volume and words in ("add equations", "constant", "paths|large"):
+            continue
+        with pytest.raises(hc.InputError, match=words):
+            function(system)
+
+
+def test_families_that_are_none():
+    for arguments, words in [
+        ((["x - a"],), "say which names are unknowns"),
+        ((["x - b"], ["x"], ["a"]), "b"),
+        ((["x - a", "x"], ["x"], ["a"]), "2 equations in 1 unknowns"),
+        (("name = 3",), "line 1|string|expected"),
+    ]:
+        with pytest.raises(hc.InputError, match=words):
+            hc.Family(*arguments)
+    family = hc.Family(["x^2 - a"], "x", "a", roots=2)
+    for targets in ([[1.0, 2.0]], [[np.nan]], [[np.inf]], np.zeros((1, 0)), np.zeros((2, 2, 2)), [["b"]], None):
+        with pytest.raises(hc.InputError):
+            family.track(targets)
+    assert family.track(np.zeros((0, 1))).points.shape == (0, 2, 1)
+    with pytest.raises(hc.InputError, match="start file"):
+        hc.Fibre("[]")
+    with pytest.raises(hc.InputError, match="coordinates"):
+        family.compile(hc.Fibre('{"parameters": [[1, 0]], "solutions": [[[1, 0], [2, 0]]]}'))
+
+
+def test_files(tmp_path):
+    with pytest.raises(hc.InputError, match="nothing.csv"):
+        tdoa.read(tmp_path / "nothing.csv")
+    (tmp_path / "bad.csv").write_text("1,2\n3,x\n")
+    with pytest.raises(hc.InputError, match="bad.csv.*line 2"):
+        tdoa.read(tmp_path / "bad.csv")
+    with pytest.raises(hc.InputError, match="needs speed"):
+        tdoa.read(tmp_path / "bad.csv", units="s")
+    with pytest.raises(hc.InputError, match="units"):
+        tdoa.read(tmp_path / "bad.csv", units="parsec", speed=1.0)
+
+
+def test_panics_are_exceptions_of_this_library(capfd):
+    from hc import _native
+
+    for at_work in (False, True):
+        with pytest.raises(hc.InternalError, match="at work" if at_work else "before the work") as caught:
+            _native.fail_for_a_test(at_work)
+        assert isinstance(caught.value, Exception) and type(caught.value).__module__ == "hc"
+    # The threads still work.
+    assert len(hc.solve(["x^2 - 2"], threads=1)) == 2

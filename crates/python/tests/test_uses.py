@@ -1,0 +1,183 @@
+"""What people bring: SymPy, pandas, matplotlib, PHCpack; values known from elsewhere."""
+
+import hc
+import numpy as np
+import pytest
+import tdoa
+
+
+def test_sympy():
+    sympy = pytest.importorskip("sympy")
+    x, y = sympy.symbols("x y")
+    found = hc.solve([x**2 + y**2 - 5, sympy.Eq(x * y, 2)])
+    assert found.variables == ["x", "y"] and len(found.real) == 4
+    same = hc.solve(["x^2 + y^2 - 5", "x*y - 2"], variables="x y")
+    assert np.allclose(sorted(map(tuple, found.real)), sorted(map(tuple, same.real)), atol=1e-12)
+    # Names with numbers in their order, and the order that is asked for.
+    many = sympy.symbols("x1:12")
+    system = [v - k for k, v in enumerate(many)]
+    assert hc.solve(system).variables == [f"x{k}" for k in range(1, 12)]
+    assert hc.solve([y - 1, x - 2], variables=[y, x]).points.tolist() == [[1, 2]]
+    # Numbers of all kinds: the solution of x = c is c.
+    for number in (
+        sympy.Rational(1, 3),
+        sympy.Float(0.1),
+        sympy.Float(-2.5e-7),
+        sympy.pi,
+        sympy.sqrt(2),
+        1 / sympy.sqrt(3),
+        2 + 3 * sympy.I,
+        sympy.exp(1),
+        sympy.cos(1),
+        sympy.sqrt(-2),
+    ):
+        [[value]] = hc.solve([x - number]).points
+        assert value == pytest.approx(complex(number), rel=1e-15, abs=0)
+    # A double is read back to the last bit.
+    assert hc.solve([x - sympy.Float(0.1)]).points[0, 0].real == 0.1
+    # By areas: the sum of the two triangles has 4, each of them 1/2.
+    assert hc.mixed_volume([x**2 * y + x + 1, x * y**2 + y + 2]) == 3
+    assert len(hc.solve(sympy.Matrix([x**2 - 1, y - x]))) == len(hc.solve([sympy.Poly(x**2 - 1, x), y - x])) == 2
+    for formula in (sympy.sin(x), x**y, sympy.sqrt(x)):
+        with pytest.raises(hc.InputError, match="is no polynomial"):
+            hc.solve([formula])
+    a, b = sympy.symbols("a b")
+    family = hc.Family([x**2 + a * x + b], parameters=[a, b], nonzero=[b])
+    family.monodromy()
+    points, ends = family.track([[-3.0, 2.0], [0.0, -4.0]])[:2]
+    assert np.sort(points[:, :, 0].real, axis=1).round(12).tolist() == [[1, 2], [-2, 2]]
+    assert (ends == hc.End.FINITE).all()
+
+
+def test_pandas():
+    pandas = pytest.importorskip("pandas")
+    made = tdoa.simulate(8, 10, noise=0.01, seed=1)
+    rooms = [f"mic {k}" for k in range(8)]
+    frame = pandas.DataFrame(made.pseudoranges, index=rooms)
+    found = tdoa.calibrate(frame)
+    assert found.receiver_names == rooms and found.transmitter_names[0] == "s1"
+    assert np.array_equal(found.receivers, tdoa.calibrate(made.pseudoranges).receivers)
+    frame = frame.astype("Float64")
+    frame.iloc[1, 2] = pandas.NA
+    gap = made.pseudoranges.copy()
+    gap[1, 2] = np.nan
+    assert np.array_equal(tdoa.calibrate(frame).receivers, tdoa.calibrate(gap).receivers)
+    assert tdoa.calibrate(frame, anchors={"mic 0": (1, 2), "mic 5": (4, 3)}).data["anchored"][5] in (True, False)
+    with pytest.raises(hc.InputError, match="numbers"):
+        tdoa.calibrate(pandas.DataFrame({"a": ["x"]}))
+
+
+def test_names():
+    made = tdoa.simulate(6, 8, noise=0.01, seed=4)
+    receivers, transmitters = [f"m{k}" for k in range(6)], [f"clap{k}" for k in range(8)]
+    for names in ((receivers, transmitters), dict(receivers=receivers, transmitters=transmitters)):
+        found = tdoa.calibrate(made.pseudoranges, names=names)
+        assert (found.receiver_names, found.transmitter_names) == (receivers, transmitters)
+    assert tdoa.calibrate(made.pseudoranges, names=receivers).receiver_names == receivers
+
+
+def test_a_calibration_is_near_the_truth():
+    """Three times the Cramer-Rao bound, the measure of success of the experiments."""
+    made = tdoa.simulate(10, 20, noise=0.01, outliers=0.05, missing=0.05, seed=9)
+    found = tdoa.calibrate(made.pseudoranges)
+    assert found.unique and found.trusted and found.dimensions == 2
+    known = ~made.outliers & np.isfinite(made.pseudoranges)
+    bound = tdoa.cramer_rao(made.receivers, made.transmitters, 0.01, used=known)
+    a = found.receivers - found.receivers.mean(axis=0)
+    b = made.receivers - made.receivers.mean(axis=0)
+    u, _, v = np.linalg.svd(a.T @ b)
+    assert np.sqrt(((a @ u @ v - b) ** 2).sum(axis=1).mean()) < 3 * bound
+    assert found.covariance.shape == (10, 2, 2) and found.inliers.shape == (10, 20)
+    # Half a metre and more is an outlier beyond doubt.
+    size = np.abs(made.pseudoranges - np.linalg.norm(made.receivers[:, None] - made.transmitters, axis=2) - made.offsets)
+    assert not found.inliers[made.outliers & (size > 0.5)].any()
+    model = np.linalg.norm(found.receivers[:, None] - found.transmitters, axis=2) + found.offsets
+    residuals = made.pseudoranges - model
+    assert np.allclose(residuals, found.residuals, atol=1e-9, equal_nan=True)
+
+
+def test_bounds():
+    square = np.array([[0.0, 0], [1, 0], [0, 1], [1, 1], [0.4, 0.3], [0.2, 0.9]])
+    others = np.array([[0.5, 2.0], [3, 1], [-1, -1], [0.3, 0.6], [2, -2], [-2, 3], [1.5, 0.2], [0.1, -1.2]])
+    bound = tdoa.cramer_rao(square, others, 0.01)
+    # The covariance is proportional to the variance of the noise; what is left out makes it larger.
+    assert tdoa.cramer_rao(square, others, 0.02) == pytest.approx(2 * bound)
+    used = np.ones((6, 8), bool)
+    used[2, 3] = False
+    assert tdoa.cramer_rao(square, others, 0.01, used=used) > bound
+    # A receiver that hears nobody.
+    used[5] = False
+    assert tdoa.cramer_rao(square, others, 0.01, used=used) == np.inf
+    for arguments in ((square, others, -1.0), (square, others[:, :1], 0.01), (square * np.nan, others, 0.01)):
+        with pytest.raises(hc.InputError):
+            tdoa.cramer_rao(*arguments)
+
+
+def test_plots(tmp_path):
+    pytest.importorskip("matplotlib")
+    made = tdoa.simulate(8, 12, noise=0.02, outliers=0.05, seed=6)
+    found = tdoa.calibrate(made.pseudoranges)
+    ax = found.plot()
+    kinds = {line.get_marker(): line.get_xydata() for line in ax.lines if line.get_marker() in "^o"}
+    assert np.array_equal(kinds["^"], found.receivers)
+    assert {text.get_text() for text in ax.texts} >= set(found.receiver_names)
+    ax.figure.savefig(tmp_path / "network.png")
+    assert found.plot(ax) is ax
+    assert "<svg" in found._repr_html_() and "8r/12s" in repr(found)
+    found.save_html(tmp_path / "report.html")
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert page.startswith("<!DOCTYPE html>") and page.rstrip().endswith("</html>")
+    held = tdoa.calibrate(made.pseudoranges, anchors=np.where(np.arange(8)[:, None] < 3, made.receivers, np.nan))
+    assert held.data["anchored"][:3] == [True] * 3
+    assert np.allclose(held.receivers[:3], made.receivers[:3])
+    held.plot()
+    import matplotlib.pyplot as pyplot
+
+    pyplot.close("all")
+
+
+def test_reports_are_those_of_the_program(programs, tmp_path):
+    import subprocess
+
+    made = tdoa.simulate(8, 12, noise=0.02, outliers=0.05, seed=6)
+    path = tmp_path / "table.csv"
+    path.write_text("\n".join(",".join(map(repr, row)) for row in made.pseudoranges.tolist()) + "\n")
+    command = [programs["tdoa"], "calibrate", path, "--html", tmp_path / "a.html", "--svg", tmp_path / "a.svg"]
+    command += ["--json", tmp_path / "a.json"]
+    subprocess.run(command, check=True, capture_output=True)
+    found = tdoa.calibrate(made.pseudoranges)
+    found.save_html(tmp_path / "b.html")
+    assert (tmp_path / "a.html").read_bytes() == (tmp_path / "b.html").read_bytes()
+    assert found.to_svg() == (tmp_path / "a.svg").read_text()
+    assert found.to_json() == (tmp_path / "a.json").read_text()
+
+
+def test_solutions():
+    # By hand: the origin and (0, 1), (1, 1), each double.
+    found = hc.solve("2\nx*(x - y);\n(y - 1)^2*(y + x);", seed=1)
+    assert sorted(found.multiplicities.tolist()) == [2, 2, 2] and found.singular.all() and found.complete
+    found = hc.solve(["x^2 + y^2 - 5", "x*y - 2"], certify=True)
+    assert found.certified.all() and found.points.dtype == complex and found.real.dtype == float
+    assert len(found) == 4 and np.allclose(found.points[:, 0] * found.points[:, 1], 2)
+    assert repr(found).startswith("4 isolated solutions, 4 real") and "<pre>" in found._repr_html_()
+    assert len(hc.solve(["x*y - x", "x*y - y"], torus_only=True)) == 1
+    groups = hc.solve(["x*y - 2", "x + y - 3"], start="multihomogeneous", groups=[["x"], ["y"]])
+    assert sorted(groups.real.round(9).tolist()) == [[1, 2], [2, 1]]
+
+
+def test_families_at_special_targets():
+    # x^2 + a x + b at a double root; a x - b at infinity.
+    family = hc.Family(["x^2 + a*x + b"], "x", "a b", roots=2)
+    family.monodromy()
+    points, ends = family.track([[-6.0, 9.0]])[:2]
+    assert ends.tolist() == [[hc.End.SINGULAR] * 2] and np.allclose(points, 3, atol=1e-6)
+    line = hc.Family(["a*x - b"], "x", "a b", roots=1)
+    line.monodromy(first=([2.0, 4.0], [2.0]))
+    tracked = line.track([[0.0, 1.0], [2.0, 1.0]])
+    assert tracked.ends.tolist() == [[hc.End.AT_INFINITY], [hc.End.FINITE]]
+    assert np.isnan(tracked.points[0]).all() and tracked.points[1, 0, 0] == 0.5
+    assert tracked.complete.all() and tracked.real().tolist() == [[False], [True]]
+    assert line.track([[2.0, 1.0]], certify=True).uncertified.tolist() == [0]
+    # Nothing shows that these are all.
+    found = family.monodromy(first=([-3.0, 2.0], [1.0]), roots=3, patience=2, trace=False)
+    assert len(found) == 2 and not found.complete
