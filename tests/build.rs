@@ -1,4 +1,5 @@
-//! Looks for the folder of recordings, so that tests which need it show as ignored where it is absent.
+//! Looks for the folder of recordings, so that tests which need it show as ignored where it is
+//! absent.
 
 use std::path::Path;
 

@@ -7,8 +7,8 @@ use std::process::{Command, Output};
 #[cfg(unix)]
 use std::time::{Duration, Instant};
 
-/// The path of one of the workspace's programs (`hc`, `tdoa`, `xtask`) or of an example of the guide, built with the profile of the running
-/// test.
+/// The path of one of the workspace's programs (`hc`, `tdoa`, `xtask`) or of an example of the
+/// guide, built with the profile of the running test.
 ///
 /// # Panics
 /// If this is not a test that cargo has started, or there is no such program.
@@ -25,7 +25,8 @@ pub fn run(name: &str, arguments: &[&str]) -> Output {
     Command::new(program(name)).args(arguments).output().expect("the program starts")
 }
 
-/// Starts a program, interrupts it once it has caught interrupts for this long, and returns what it leaves.
+/// Starts a program, interrupts it once it has caught interrupts for this long, and returns what it
+/// leaves.
 ///
 /// # Panics
 /// If it does not start, or does not end within a minute of the interrupt.
@@ -67,8 +68,9 @@ pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("workspace root")
 }
 
-/// A path among the recordings: `data` in the folder that `SHARED_DIR` names, by default `shared` beside the workspace. Where they are absent,
-/// the tests that ask for them are ignored (cfg `recordings`, see build.rs).
+/// A path among the recordings: `data` in the folder that `SHARED_DIR` names, by default `shared`
+/// beside the workspace. Where they are absent, the tests that ask for them are ignored (cfg
+/// `recordings`, see build.rs).
 ///
 /// # Panics
 /// If the recordings are absent.

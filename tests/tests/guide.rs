@@ -1,11 +1,13 @@
-//! The commands of the documentation, as a reader would run them: those of a page one after the other, in one folder.
+//! The commands of the documentation, as a reader would run them: those of a page one after the
+//! other, in one folder.
 
 use std::path::Path;
 use std::process::{Command, Output};
 
 use end_to_end::{program, root};
 
-/// Commands that the tests do not run: steps that need the network, write into the repository, contain these tests, or take long.
+/// Commands that the tests do not run: steps that need the network, write into the repository,
+/// contain these tests, or take long.
 const NOT_RUN: &[&str] = &[
     "cargo test --workspace",
     "cargo fmt --all --check",
@@ -108,7 +110,8 @@ fn calibrating_a_network() {
     for name in ["report.html", "network.json", "nodes.csv", "network.svg"] {
         assert!(folder.path().join(name).exists(), "{name}");
     }
-    // Noise of 0.01 m and a robust estimate; three times the Cramer-Rao bound is the experiments' measure of success.
+    // Noise of 0.01 m and a robust estimate; three times the Cramer-Rao bound is the experiments'
+    // measure of success.
     let text = std::fs::read_to_string(folder.path().join("network.json")).expect("JSON");
     let found: serde_json::Value = serde_json::from_str(&text).expect("JSON");
     assert_eq!(found["unique"], true);
@@ -140,7 +143,8 @@ fn solving_a_polynomial_system() {
 #[test]
 fn minimal_problems() {
     let folder = tempfile::tempdir().expect("folder");
-    // Five points b in front of a camera that has turned by R (Cayley's x, y, z) and moved by t = (1, u, v): a = R b + t.
+    // Five points b in front of a camera that has turned by R (Cayley's x, y, z) and moved by t =
+    // (1, u, v): a = R b + t.
     let planted = [0.1, -0.2, 0.15, 0.3, -0.2];
     let [x, y, z, u, v] = planted;
     let d = 1.0 + x * x + y * y + z * z;
@@ -186,7 +190,8 @@ fn minimal_problems() {
 fn the_tracker_and_the_checks() {
     let folder = tempfile::tempdir().expect("folder");
     let printed = run_page("docs/guide/tracker.md", folder.path());
-    // Twenty networks each, all found and no path lost: configuration, instances, paths, lost, at infinity, tracked again, found.
+    // Twenty networks each, all found and no path lost: configuration, instances, paths, lost, at
+    // infinity, tracked again, found.
     for (line, paths) in printed[0].1.lines().skip(1).zip([180, 344]) {
         let cells: Vec<&str> = line.split(',').collect();
         assert_eq!((cells[1], cells[2], cells[3], cells[6]), ("20", (20 * paths).to_string().as_str(), "0", "20"));

@@ -100,7 +100,8 @@ fn relative_poses_planted_behind_five_points_are_found_on_any_number_of_threads(
     }
 }
 
-/// What `hc codegen` writes is what `cargo xtask codegen` writes, to the byte; a stale file and wrong inputs are named.
+/// What `hc codegen` writes is what `cargo xtask codegen` writes, to the byte; a stale file and
+/// wrong inputs are named.
 #[test]
 fn the_solver_of_a_family_is_written_as_rust() {
     let directory = tempfile::tempdir().expect("directory");
@@ -115,7 +116,8 @@ fn the_solver_of_a_family_is_written_as_rust() {
     assert_eq!(generate(&family("five_point"), &start, &[]), (Some(0), format!("wrote {}\n", solver.display())));
     let written = std::fs::read_to_string(&solver).expect("written");
     let committed = std::fs::read_to_string(root().join("crates/hc/examples/five_point/generated.rs")).expect("source");
-    // The header names the family as it was given: the file name here, its place in the repository there.
+    // The header names the family as it was given: the file name here, its place in the repository
+    // there.
     assert_eq!(
         written,
         committed.replace("// Source: examples/families/five_point.toml", "// Source: five_point.toml")
@@ -128,7 +130,8 @@ fn the_solver_of_a_family_is_written_as_rust() {
     assert!(status == Some(2) && message.contains("the family has 6 parameters and 3 unknowns"), "{message}");
 }
 
-/// The common point of a double root, and roots at infinity, as in `hc solve`; regular roots are certified.
+/// The common point of a double root, and roots at infinity, as in `hc solve`; regular roots are
+/// certified.
 #[test]
 fn special_members_are_solved_like_any_system() {
     let directory = tempfile::tempdir().expect("directory");
@@ -145,7 +148,8 @@ fn special_members_are_solved_like_any_system() {
     let start = directory.path().join("start.json");
     let output = run("hc", &["monodromy", &family, "--output", text(&start)]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    // A hyperbola that touches the circle twice; one that meets two lines in two points; one that crosses the circle.
+    // A hyperbola that touches the circle twice; one that meets two lines in two points; one that
+    // crosses the circle.
     let targets = r#"[{"parameters": [1, 2, 1]}, {"parameters": [0, 4, 3]}, {"parameters": [1, 5, [2, 0]]}]"#;
     let arguments =
         ["track", &family, "--start", text(&start), "--target", &write("t.json", targets), "--certify", "--json", "-"];

@@ -7,7 +7,8 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
 
-/// Runs `hc` with JSON to standard output, sends SIGINT after a second and a half, and returns what it leaves.
+/// Runs `hc` with JSON to standard output, sends SIGINT after a second and a half, and returns what
+/// it leaves.
 fn interrupted(arguments: &[&str]) -> Value {
     interrupted_with_output("--json", arguments)
 }

@@ -1,4 +1,5 @@
-//! The program `hc solve` as a user would run it: what it prints and writes, and what it says to unusable input.
+//! The program `hc solve` as a user would run it: what it prints and writes, and what it says to
+//! unusable input.
 
 use end_to_end::run;
 use serde_json::Value;
@@ -52,7 +53,8 @@ fn the_same_bytes_on_any_number_of_threads() {
     assert_eq!(without_time("1"), without_time("3"));
 }
 
-/// A circle and a hyperbola that meet in (1, 2), (2, 1) and their opposites, in each of the formats that are read.
+/// A circle and a hyperbola that meet in (1, 2), (2, 1) and their opposites, in each of the formats
+/// that are read.
 #[test]
 fn every_format_of_a_system_is_known() {
     let results: Vec<Value> = [
@@ -88,7 +90,8 @@ fn every_format_of_a_system_is_known() {
 
 #[test]
 fn multihomogeneous_start_with_given_groups() {
-    // Bilinear in (x, y) and (z): the multihomogeneous number is the coefficient of a^2 b in (a + b)^3, three; the degree is eight.
+    // Bilinear in (x, y) and (z): the multihomogeneous number is the coefficient of a^2 b in (a +
+    // b)^3, three; the degree is eight.
     let text = "3\nx*z+2*y+z-1;\n3*x*z-y*z+x+5;\nx+y*z-7*z+2;";
     let (status, out, error) = solve(text, &["--json", "-", "--start", "multihomogeneous", "--groups", "x,y;z"]);
     assert_eq!(status, Some(0), "{error}");

@@ -1,4 +1,5 @@
-//! Where results go: places are checked before the work begins, and a second interrupt leaves what the first one asked for.
+//! Where results go: places are checked before the work begins, and a second interrupt leaves what
+//! the first one asked for.
 
 use std::path::Path;
 use std::time::{Duration, Instant};

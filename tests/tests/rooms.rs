@@ -114,7 +114,8 @@ fn names(folder: &tempfile::TempDir, circles: &BTreeSet<Vec<PathBuf>>) -> Vec<Ve
 
 #[test]
 fn a_circle_is_named() {
-    // From a to c by a path in the code, from c to b by a re-export of the root, from b to a through a name.
+    // From a to c by a path in the code, from c to b by a re-export of the root, from b to a
+    // through a name.
     let (folder, imports) = example(&[
         ("lib.rs", "mod a; mod b; mod c; pub use b::B;"),
         ("a.rs", "pub struct A; pub fn f() { assert!(crate::c::C::new()); }"),

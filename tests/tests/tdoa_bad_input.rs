@@ -159,7 +159,8 @@ fn garbage_is_refused() {
 
 #[test]
 fn a_hundred_thousand_columns() {
-    // Three receivers cannot locate anything, however many transmitters they hear; said at once, with names.
+    // Three receivers cannot locate anything, however many transmitters they hear; said at once,
+    // with names.
     let row = |i: usize| (0..100_000).map(|j| ((i * j) % 97).to_string()).collect::<Vec<_>>().join(",");
     let table = [row(1), row(2), row(3)].join("\n");
     assert_says(
@@ -167,7 +168,8 @@ fn a_hundred_thousand_columns() {
         1,
         &["3 receivers and 100000 transmitters", "add 1 receiver"],
     );
-    // The other way round; and the exact solvers, whose last refinement is over all measurements at once.
+    // The other way round; and the exact solvers, whose last refinement is over all measurements at
+    // once.
     let table = vec!["1,2,3,5"; 100_000].join("\n");
     assert_says(calibrate("high.csv", table.as_bytes(), &[]), 1, &["100000 receivers", "2000", "in groups"]);
     let directory = tempfile::tempdir().unwrap();
@@ -179,7 +181,8 @@ fn a_hundred_thousand_columns() {
     assert_says(calibrate("wide.csv", table.as_bytes(), &[]), 2, &["line 41", "more than 4000000 cells", "split"]);
 }
 
-/// A gigabyte that is no table: refused by its size before it is read, whatever it claims to be. The file takes no space on the disk.
+/// A gigabyte that is no table: refused by its size before it is read, whatever it claims to be.
+/// The file takes no space on the disk.
 #[test]
 fn a_gigabyte_of_garbage() {
     let directory = tempfile::tempdir().expect("directory");

@@ -1,4 +1,5 @@
-//! `tdoa experiment` in small: every kind runs, goes on where it was stopped, and gives the same tables on any number of threads.
+//! `tdoa experiment` in small: every kind runs, goes on where it was stopped, and gives the same
+//! tables on any number of threads.
 
 use std::path::Path;
 
@@ -36,7 +37,8 @@ fn table2_goes_on_where_it_was_stopped() {
     for name in ["trials.csv", "summary.csv", "histogram.csv", "counts.svg"] {
         assert!(std::fs::read(one.join(name)).expect(name) == std::fs::read(two.join(name)).expect(name), "{name}");
     }
-    // 180 roots in all (Groebner basis); at least one physical network, the true one; real ones in pairs.
+    // 180 roots in all (Groebner basis); at least one physical network, the true one; real ones in
+    // pairs.
     let trials = std::fs::read_to_string(&trials).expect("trials");
     assert_eq!(trials.lines().count(), 25);
     assert!(trials.lines().skip(1).all(|line| line.split(',').nth(1) == Some("180")));
@@ -80,8 +82,8 @@ fn calibrate_compares_sources_of_starts() {
         assert_eq!(cell(&lines[0], line, "success"), "1", "{line}");
     }
     let lines = experiment("coverage --configuration 8r/12s --instances 5", &directory.path().join("coverage"), "2");
-    // The Cramer-Rao bound is a mean over noise; of five networks with 13 degrees of freedom each, the root mean square ratio lies
-    // well within a factor of two.
+    // The Cramer-Rao bound is a mean over noise; of five networks with 13 degrees of freedom each,
+    // the root mean square ratio lies well within a factor of two.
     assert!((0.5..2.0).contains(&number(&lines[0], &lines[1], "rms_over_bound")));
     let wrong = run("tdoa", &["experiment", "calibrate", "--starts", "1,2", "--output", "unused"]);
     assert_eq!(wrong.status.code(), Some(2));

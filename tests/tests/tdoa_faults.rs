@@ -1,4 +1,5 @@
-//! `tdoa calibrate` of networks as deployments bring them: receivers with errors of their own, and networks that nobody hears whole.
+//! `tdoa calibrate` of networks as deployments bring them: receivers with errors of their own, and
+//! networks that nobody hears whole.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,5 @@
-//! What users bring to `tdoa`: other units, spellings and orders, names that do not match, heights, several matrices in a file.
+//! What users bring to `tdoa`: other units, spellings and orders, names that do not match, heights,
+//! several matrices in a file.
 
 use std::path::{Path, PathBuf};
 
@@ -338,7 +339,8 @@ fn heights_are_never_dropped_without_a_word() {
     refused(&["calibrate", text(&table), "--anchors", text(&file)], &["\"x_mm\" is in mm; convert it to metres"]);
 }
 
-/// Largest of small: scaled copies of the example say how large they are, in numbers that people read.
+/// Largest of small: scaled copies of the example say how large they are, in numbers that people
+/// read.
 #[test]
 fn the_size_of_a_network_in_a_unit_that_suits() {
     let folder = Folder::new();
@@ -404,7 +406,8 @@ fn speeds_are_plain_numbers() {
     }
 }
 
-/// `tests/data/network.mat` has z and rgt, `crates/tdoa/src/read/plain.mat` counts, label, z and rgt.
+/// `tests/data/network.mat` has z and rgt, `crates/tdoa/src/read/plain.mat` counts, label, z and
+/// rgt.
 #[test]
 fn variables_of_a_mat_file() {
     let network = root().join("tests/data/network.mat");

@@ -1,5 +1,6 @@
-//! `tdoa calibrate` on a .mat file. `tests/data/network.mat` is `examples/network` as scipy.io.savemat (1.17.1) writes it
-//! with do_compression: z and rgt; `network_sgt.mat` has sgt, the transmitters, too.
+//! `tdoa calibrate` on a .mat file. `tests/data/network.mat` is `examples/network` as
+//! scipy.io.savemat (1.17.1) writes it with do_compression: z and rgt; `network_sgt.mat` has sgt,
+//! the transmitters, too.
 
 use std::path::Path;
 

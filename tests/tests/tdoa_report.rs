@@ -1,4 +1,5 @@
-//! The files that `tdoa calibrate` writes for people: the HTML report in a real browser, the table of nodes.
+//! The files that `tdoa calibrate` writes for people: the HTML report in a real browser, the table
+//! of nodes.
 
 use std::path::Path;
 use std::process::Command;

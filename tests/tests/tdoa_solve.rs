@@ -1,4 +1,5 @@
-//! `tdoa solve` as a user would run it: the JSON contract, and data that cannot determine the network.
+//! `tdoa solve` as a user would run it: the JSON contract, and data that cannot determine the
+//! network.
 
 use end_to_end::run;
 use serde_json::Value;

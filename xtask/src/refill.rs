@@ -1,4 +1,5 @@
-//! Computes the generic fibre of a family anew: first pair, monodromy, trace test, and a well-placed parameter point.
+//! Computes the generic fibre of a family anew: first pair, monodromy, trace test, and a
+//! well-placed parameter point.
 
 use anyhow::{Context, Result, ensure};
 use hc::family::{StartFile, Stop, move_fibre, track_fibre};
@@ -7,7 +8,8 @@ use hc::random::{Random, Stream};
 use hc::{Family, Fibre, FibreOptions, Monitor, MonodromyOptions};
 use num_complex::Complex64;
 
-/// Parameter points that are tried as the place of the fibre, and real targets that each is judged by.
+/// Parameter points that are tried as the place of the fibre, and real targets that each is judged
+/// by.
 const PLACES: u64 = 24;
 const TARGETS: u64 = 12;
 
@@ -29,7 +31,8 @@ pub(crate) fn refill(family: &Family, seed: u64, with_trace: bool) -> Result<Sta
     let fibre = place(family.program(), &found.fibre, seed)?;
     let mut deviation = None;
     if with_trace {
-        // One further point far out that no path reaches spoils the test; on another line it lies elsewhere.
+        // One further point far out that no path reaches spoils the test; on another line it lies
+        // elsewhere.
         let mut passed = false;
         for attempt in 0..TRACES {
             options.seed = seed.wrapping_add(attempt);
@@ -49,7 +52,8 @@ pub(crate) fn refill(family: &Family, seed: u64, with_trace: bool) -> Result<Sta
     Ok(StartFile::new(&fibre, deviation, stopped))
 }
 
-/// Moves the fibre to the parameter point, out of some random ones, from which random real targets are reached in the fewest steps.
+/// Moves the fibre to the parameter point, out of some random ones, from which random real targets
+/// are reached in the fewest steps.
 fn place(system: &Interpreter, fibre: &Fibre, seed: u64) -> Result<Fibre> {
     let m = fibre.parameters.len();
     let targets: Vec<Vec<Complex64>> = (0..TARGETS)

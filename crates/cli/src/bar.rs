@@ -80,7 +80,8 @@ impl Drop for Bar {
     }
 }
 
-/// Runs work on the given number of threads, while another thread shows how far it is: position, length and words from `describe`.
+/// Runs work on the given number of threads, while another thread shows how far it is: position,
+/// length and words from `describe`.
 ///
 /// # Errors
 /// If the threads cannot be had.

@@ -6,12 +6,13 @@ use std::time::Duration;
 
 static SEEN: AtomicBool = AtomicBool::new(false);
 
-/// How long a second interrupt waits for results that are being written, which may be to a pipe that nobody reads.
+/// How long a second interrupt waits for results that are being written, which may be to a pipe
+/// that nobody reads.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Set once the program has been interrupted. The first interrupt asks the work to stop, a second ends the program at
-/// once, or when the results that the first one asked for are written, ten seconds later at most. Files appear under their names only
-/// when they are whole.
+/// Set once the program has been interrupted. The first interrupt asks the work to stop, a second
+/// ends the program at once, or when the results that the first one asked for are written, ten
+/// seconds later at most. Files appear under their names only when they are whole.
 ///
 /// # Errors
 /// If the system lets no handler be set.

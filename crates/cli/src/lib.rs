@@ -1,4 +1,5 @@
-//! What the programs `hc` and `tdoa` share: exit statuses, files read and written, interrupts, threads, progress bars.
+//! What the programs `hc` and `tdoa` share: exit statuses, files read and written, interrupts,
+//! threads, progress bars.
 
 pub mod bar;
 pub mod input;
@@ -37,7 +38,8 @@ impl Failure {
     }
 }
 
-/// The end of a program: says on standard error why it has failed, `interrupted` being what an interrupt has left.
+/// The end of a program: says on standard error why it has failed, `interrupted` being what an
+/// interrupt has left.
 pub fn finish(program: &str, result: Result<(), Failure>, interrupted: &str) -> ExitCode {
     let (message, status) = match result {
         Ok(()) => return ExitCode::SUCCESS,

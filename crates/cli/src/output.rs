@@ -8,7 +8,8 @@ use serde::Serialize;
 use crate::Failure;
 use crate::writing::Writing;
 
-/// Writes a file by way of a temporary one in the same directory, so that an interrupted run leaves no half of it.
+/// Writes a file by way of a temporary one in the same directory, so that an interrupted run leaves
+/// no half of it.
 ///
 /// # Errors
 /// If the file cannot be written: the message says what to check.
@@ -35,8 +36,8 @@ pub fn file(path: &Path, content: &[u8]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Checks, before the work begins, that the files which options ask for can be written, each by its option's name. Nothing is left
-/// there.
+/// Checks, before the work begins, that the files which options ask for can be written, each by its
+/// option's name. Nothing is left there.
 ///
 /// # Errors
 /// For a file that cannot be written, and two options with one file.

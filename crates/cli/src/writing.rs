@@ -25,7 +25,8 @@ impl Drop for Writing {
     }
 }
 
-/// Waits until nothing has been written for a moment, or at most this long; not at all where nothing is being written.
+/// Waits until nothing has been written for a moment, or at most this long; not at all where
+/// nothing is being written.
 pub(crate) fn wait(most: Duration) {
     let begun = Instant::now();
     let mut quiet = None;

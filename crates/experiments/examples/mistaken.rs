@@ -1,5 +1,6 @@
-//! How calibrations go wrong that call their network unique: 250 simulated networks of 6 receivers and 10 transmitters, 1 cm of noise, a
-//! tenth of the measurements gone and a tenth of the others wrong, beside the same search started at the truth.
+//! How calibrations go wrong that call their network unique: 250 simulated networks of 6 receivers
+//! and 10 transmitters, 1 cm of noise, a tenth of the measurements gone and a tenth of the others
+//! wrong, beside the same search started at the truth.
 //!
 //!     cargo run --release -p experiments --example mistaken
 

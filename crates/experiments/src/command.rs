@@ -20,7 +20,8 @@ use cli::Failure;
 
 /// Repeats an experiment and writes its numbers as CSV and its figures as SVG.
 ///
-/// A run may be stopped at any time; the same command goes on where it was and ends with the same numbers.
+/// A run may be stopped at any time; the same command goes on where it was and ends with the same
+/// numbers.
 #[derive(clap::Args)]
 pub struct Arguments {
     #[command(subcommand)]
@@ -32,7 +33,8 @@ enum Kind {
     Table2(table2::Arguments),
     Clean(clean::Arguments),
     Noise(noise::Arguments),
-    /// Proves by interval arithmetic that all roots that the minimal solvers report exist and are distinct.
+    /// Proves by interval arithmetic that all roots that the minimal solvers report exist and are
+    /// distinct.
     Proofs(checks::Arguments),
     Routes(routes::Arguments),
     /// Measures what the options for callers in a hurry save and lose.

@@ -40,7 +40,8 @@ pub struct CompareArguments {
     /// A folder with the programs hc and tdoa; they are built in the release profile if not given.
     #[arg(long)]
     programs: Option<PathBuf>,
-    /// Markdown file for the tables, - for standard output; docs/compare.md if not given, standard output if --quick.
+    /// Markdown file for the tables, - for standard output; docs/compare.md if not given, standard
+    /// output if --quick.
     #[arg(long)]
     output: Option<PathBuf>,
 }

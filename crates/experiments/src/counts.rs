@@ -26,7 +26,8 @@ pub struct CountsArguments {
     /// The folder of systems, with expected.csv.
     #[arg(long, default_value_os_t = workspace::root().join("examples/systems"), hide_default_value = true)]
     systems: PathBuf,
-    /// Directory for counts.csv, whose rows are kept and continued, and counts.md; results if not given.
+    /// Directory for counts.csv, whose rows are kept and continued, and counts.md; results if not
+    /// given.
     #[arg(long, default_value_os_t = workspace::root().join("results"), hide_default_value = true)]
     output: PathBuf,
 }

@@ -1,7 +1,9 @@
-//! Experiments with the calibration and what is recorded of them. Not published; two programs give entry:
+//! Experiments with the calibration and what is recorded of them. Not published; two programs give
+//! entry:
 //!
 //! * `tdoa experiment` runs [`command`], whose trials are in [`trials`] (feature `trials`).
-//! * `cargo xtask experiments | compare | counts` runs [`results`], [`compare`] and [`counts`] (feature `records`).
+//! * `cargo xtask experiments | compare | counts` runs [`results`], [`compare`] and [`counts`]
+//!   (feature `records`).
 
 #[cfg(feature = "trials")]
 pub mod command;

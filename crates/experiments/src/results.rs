@@ -1,7 +1,8 @@
 //! `cargo xtask experiments`: everything that docs/results.md shows, from one command.
 //!
-//! Each experiment is one call of `tdoa experiment`. Its rows, one a network, collect under the target directory, where a stopped run goes
-//! on; sums and figures are copied to results/, with a record of how they were made, and the page is written from those alone.
+//! Each experiment is one call of `tdoa experiment`. Its rows, one a network, collect under the
+//! target directory, where a stopped run goes on; sums and figures are copied to results/, with a
+//! record of how they were made, and the page is written from those alone.
 
 mod page;
 mod plan;
@@ -35,8 +36,8 @@ pub struct ExperimentsArguments {
     /// Threads; all cores if not given.
     #[arg(long)]
     threads: Option<usize>,
-    /// Folder of the recordings h40, h50 and h60; by default data/lund_floor_planar in the folder that SHARED_DIR names. Without them the
-    /// experiment on recordings is left out.
+    /// Folder of the recordings h40, h50 and h60; by default data/lund_floor_planar in the folder
+    /// that SHARED_DIR names. Without them the experiment on recordings is left out.
     #[arg(long)]
     recordings: Option<PathBuf>,
 }

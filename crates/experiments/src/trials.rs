@@ -1,4 +1,5 @@
-//! Trials on simulated networks: how far from the truth the exact solvers and the calibration end, and what becomes of their paths.
+//! Trials on simulated networks: how far from the truth the exact solvers and the calibration end,
+//! and what becomes of their paths.
 
 pub mod calibration;
 pub mod checks;

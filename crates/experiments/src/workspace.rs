@@ -1,4 +1,5 @@
-//! This workspace: where it is, its commit, its programs built, files written whole; and the machine.
+//! This workspace: where it is, its commit, its programs built, files written whole; and the
+//! machine.
 
 use anyhow::{Context, Result, ensure};
 use std::path::{Path, PathBuf};

@@ -11,14 +11,14 @@ use std::time::Instant;
 
 /// Proves that solutions exist, are distinct and are real: Krawczyk's test in interval arithmetic.
 ///
-/// What is proved is about the system as written: decimals in the file are exact numbers. Exit status 1 if some point
-/// could not be certified.
+/// What is proved is about the system as written: decimals in the file are exact numbers. Exit
+/// status 1 if some point could not be certified.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The system: plain text with one equation a line, PHCpack's format, or TOML.
     system: PathBuf,
-    /// The solutions: what `hc solve --json` writes, a list of points [[number or [re, im], ...], ...], or a list of solutions in
-    /// PHCpack's format, such as `phc -b` appends to its output.
+    /// The solutions: what `hc solve --json` writes, a list of points [[number or [re, im], ...],
+    /// ...], or a list of solutions in PHCpack's format, such as `phc -b` appends to its output.
     solutions: PathBuf,
     /// Write the result as JSON to this file, `-` for standard output.
     #[arg(long, value_name = "OUT")]
@@ -53,7 +53,8 @@ struct Point {
     certified: bool,
     /// Null where nothing is proved.
     real: Option<bool>,
-    /// Bounds of the real and of the imaginary part of each coordinate; exactly one solution lies within.
+    /// Bounds of the real and of the imaginary part of each coordinate; exactly one solution lies
+    /// within.
     #[serde(rename = "box")]
     enclosure: Option<Vec<[[f64; 2]; 2]>>,
     /// Index, from 0, of an earlier point that stands for the same solution.

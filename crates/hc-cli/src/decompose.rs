@@ -8,7 +8,8 @@ use serde::Serialize;
 use std::path::PathBuf;
 use std::time::Instant;
 
-/// All solutions of a system, isolated ones and components of positive dimension with their degrees and multiplicities.
+/// All solutions of a system, isolated ones and components of positive dimension with their degrees
+/// and multiplicities.
 ///
 /// Exit status 1 if something may be missing.
 #[derive(clap::Args)]

@@ -18,8 +18,8 @@ use std::process::ExitCode;
 
 /// Homotopy continuation: all isolated solutions of polynomial systems and of parameter families.
 ///
-/// Exit status: 0 success, 1 no solution or an incomplete result, 2 unusable input or arguments, 130
-/// interrupted (the result is partial and says so).
+/// Exit status: 0 success, 1 no solution or an incomplete result, 2 unusable input or arguments,
+/// 130 interrupted (the result is partial and says so).
 #[derive(Parser)]
 #[command(name = "hc", version, arg_required_else_help = true)]
 struct Arguments {

@@ -8,9 +8,11 @@ use serde::Serialize;
 use std::path::PathBuf;
 use std::time::Instant;
 
-/// The mixed volume of a system: how many solutions without zero coordinates it has for generic coefficients.
+/// The mixed volume of a system: how many solutions without zero coordinates it has for generic
+/// coefficients.
 ///
-/// Interrupted, it gives the volume of the cells found so far, marked as partial, with exit status 130.
+/// Interrupted, it gives the volume of the cells found so far, marked as partial, with exit
+/// status 130.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The system: plain text with one equation a line, PHCpack's format, or TOML.

@@ -8,15 +8,18 @@ use std::path::PathBuf;
 
 /// Finds all solutions of a family for one generic parameter point, from a single one.
 ///
-/// Interrupted, it writes the solutions found so far, with "stopped": "interrupted" and exit status 130.
+/// Interrupted, it writes the solutions found so far, with "stopped": "interrupted" and exit
+/// status 130.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The family (TOML).
     family: PathBuf,
-    /// A first pair (JSON with "parameters" and one entry in "solutions"); found by Newton's method if not given.
+    /// A first pair (JSON with "parameters" and one entry in "solutions"); found by Newton's method
+    /// if not given.
     #[arg(long)]
     seed_pair: Option<PathBuf>,
-    /// Leaves out the trace test; without a known number of roots the result is then no more than what was found.
+    /// Leaves out the trace test; without a known number of roots the result is then no more than
+    /// what was found.
     #[arg(long)]
     no_trace: bool,
     /// Seed of the loops.

@@ -46,8 +46,8 @@ fn json(text: &str) -> Result<Named, String> {
     Ok((names, points.into_iter().map(|point| point.into_iter().map(Complex64::from).collect()).collect()))
 }
 
-/// The last list of solutions in a file of PHCpack: after a line `THE SOLUTIONS`, for each solution a line
-/// `the solution for t :`, lines `name : re im` and one that begins with `==`.
+/// The last list of solutions in a file of PHCpack: after a line `THE SOLUTIONS`, for each solution
+/// a line `the solution for t :`, lines `name : re im` and one that begins with `==`.
 fn phcpack(text: &str) -> Result<Named, String> {
     let start = text.rfind("THE SOLUTIONS").ok_or(
         "expected JSON, or PHCpack's list of solutions below a line THE SOLUTIONS; is it the output of `phc -b`?",

@@ -9,7 +9,8 @@ use std::time::Instant;
 
 /// All isolated solutions of a system, by homotopy continuation.
 ///
-/// Interrupted, it gives the solutions found so far, marked as a partial result, with exit status 130.
+/// Interrupted, it gives the solutions found so far, marked as a partial result, with exit
+/// status 130.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The system: plain text with one equation a line, PHCpack's format, or TOML.
@@ -20,11 +21,12 @@ pub(crate) struct Arguments {
     /// Seed of the generic coefficients.
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Start system: auto takes the one with the fewest paths, polyhedral unless its mixed cells cannot be computed, but tries another
-    /// first that has hardly more paths and one stage less.
+    /// Start system: auto takes the one with the fewest paths, polyhedral unless its mixed cells
+    /// cannot be computed, but tries another first that has hardly more paths and one stage less.
     #[arg(long, value_enum, default_value_t = StartChoice::Auto)]
     start: StartChoice,
-    /// Groups of unknowns for the multihomogeneous start system, such as `x,y;z`: names with commas, groups with semicolons.
+    /// Groups of unknowns for the multihomogeneous start system, such as `x,y;z`: names with
+    /// commas, groups with semicolons.
     #[arg(long, value_name = "GROUPS")]
     groups: Option<String>,
     /// More paths than this are refused.
@@ -33,8 +35,8 @@ pub(crate) struct Arguments {
     /// Threads; all processors by default. The result does not depend on it.
     #[arg(long)]
     threads: Option<usize>,
-    /// Prove that the solutions exist and are distinct, by interval arithmetic. Singular solutions cannot be certified; exit
-    /// status 1 if some regular one is not.
+    /// Prove that the solutions exist and are distinct, by interval arithmetic. Singular solutions
+    /// cannot be certified; exit status 1 if some regular one is not.
     #[arg(long)]
     certify: bool,
     /// Leave out solutions with zero coordinates.

@@ -17,7 +17,8 @@ const LISTED: usize = 10;
 
 /// Tracks a stored fibre of a family to one or several parameter points.
 ///
-/// Interrupted, it gives the targets done so far, the last of them marked as partial, with exit status 130.
+/// Interrupted, it gives the targets done so far, the last of them marked as partial, with exit
+/// status 130.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The family (TOML).
@@ -28,8 +29,8 @@ pub(crate) struct Arguments {
     /// JSON {"parameters": [number or [re, im], ...]}, or a list of such.
     #[arg(long)]
     target: PathBuf,
-    /// Prove that the solutions exist and are distinct, by interval arithmetic, for the parameters as they are in double precision.
-    /// Exit status 1 if some regular one is not certified.
+    /// Prove that the solutions exist and are distinct, by interval arithmetic, for the parameters
+    /// as they are in double precision. Exit status 1 if some regular one is not certified.
     #[arg(long)]
     certify: bool,
     /// Threads; all cores if not given. The result does not depend on it.

@@ -12,8 +12,8 @@ pub(crate) fn interruptible() -> Result<Monitor, Failure> {
     interrupt::watch().map(Monitor::heeding)
 }
 
-/// Runs work on the given number of threads, while another thread shows what `describe` makes of its progress (position,
-/// length, words).
+/// Runs work on the given number of threads, while another thread shows what `describe` makes of
+/// its progress (position, length, words).
 pub(crate) fn watched<R: Send>(
     threads: Option<usize>,
     monitor: &Monitor,

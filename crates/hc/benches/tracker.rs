@@ -1,5 +1,5 @@
-//! The tracker on the ten solutions of the five-point problem: one path or eight at once, the family interpreted or generated. Divan's items
-//! are paths.
+//! The tracker on the ten solutions of the five-point problem: one path or eight at once, the
+//! family interpreted or generated. Divan's items are paths.
 
 #[path = "../examples/five_point/generated.rs"]
 #[rustfmt::skip]

@@ -1,7 +1,7 @@
 //! A family from its formulas to 1,000 members: a camera's distances from three points (P3P).
 //!
-//! The generic fibre is filled by monodromy from one pair; each member has a planted camera, and the example says whether it is among the
-//! solutions every time, and how long a path takes:
+//! The generic fibre is filled by monodromy from one pair; each member has a planted camera, and
+//! the example says whether it is among the solutions every time, and how long a path takes:
 //!
 //!     cargo run --release -p hc --example p3p
 
@@ -36,8 +36,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Random distances, and the family's parameters for them: cosines of the angles between the points, as the camera sees them, and
-/// squares of the points' distances.
+/// Random distances, and the family's parameters for them: cosines of the angles between the
+/// points, as the camera sees them, and squares of the points' distances.
 fn problem(random: &mut Random) -> ([f64; 3], Vec<Complex64>) {
     let mut uniform = |low: f64, high: f64| low + (high - low) * (random.unit().arg() / std::f64::consts::TAU + 0.5);
     let d = [(); 3].map(|()| uniform(1.0, 5.0));

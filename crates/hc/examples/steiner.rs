@@ -1,6 +1,8 @@
-//! Steiner's problem: how many conics touch five given ones? 3264 (Chasles 1864), and here they are, with a proof of each.
+//! Steiner's problem: how many conics touch five given ones? 3264 (Chasles 1864), and here they
+//! are, with a proof of each.
 //!
-//! A generic fibre is filled by monodromy, then tracked to five random conics, complex or real, and every solution is certified:
+//! A generic fibre is filled by monodromy, then tracked to five random conics, complex or real, and
+//! every solution is certified:
 //!
 //!     cargo run --release -p hc --example steiner -- [SEED [real]]
 

@@ -1,7 +1,7 @@
 //! Which points coincide.
 //!
-//! Points are sorted by a fixed real projection, so that only neighbours in that order are compared: N log N for N points
-//! in general position.
+//! Points are sorted by a fixed real projection, so that only neighbours in that order are
+//! compared: N log N for N points in general position.
 
 use num_complex::Complex64;
 
@@ -11,7 +11,8 @@ const FLOOR: f64 = 1e-4;
 /// Relative distance below which two singular ends are one point.
 pub(crate) const CLUSTER: f64 = 1e-6;
 
-/// Relative distance of two points: `max_j |a_j - b_j| / w_j`, `w_j` the size of the component, at least 1e-4 of the largest.
+/// Relative distance of two points: `max_j |a_j - b_j| / w_j`, `w_j` the size of the component, at
+/// least 1e-4 of the largest.
 pub fn relative_distance(a: &[Complex64], b: &[Complex64]) -> f64 {
     let largest = a.iter().chain(b).map(|z| z.norm()).fold(0.0, f64::max);
     if largest == 0.0 {
@@ -20,8 +21,9 @@ pub fn relative_distance(a: &[Complex64], b: &[Complex64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).norm() / a.norm().max(b.norm()).max(FLOOR * largest)).fold(0.0, f64::max)
 }
 
-/// Groups of two or more coinciding points among `points` (pairs of a label and `n` coordinates): points whose
-/// [`relative_distance`] is at most `tolerance`, and chains of such. Labels ascend within a group, groups by their first label.
+/// Groups of two or more coinciding points among `points` (pairs of a label and `n` coordinates):
+/// points whose [`relative_distance`] is at most `tolerance`, and chains of such. Labels ascend
+/// within a group, groups by their first label.
 pub(crate) fn coincidences<'a>(
     points: impl IntoIterator<Item = (usize, &'a [Complex64])>,
     tolerance: f64,
@@ -93,7 +95,8 @@ impl Coincidences {
         self.parent.extend(0..self.keyed.len());
         for (i, a) in self.keyed.iter().enumerate() {
             for (k, b) in self.keyed.iter().enumerate().skip(i + 1) {
-                // The projection has coefficients of size at most one; sizes of coinciding points are nearly equal.
+                // The projection has coefficients of size at most one; sizes of coinciding points
+                // are nearly equal.
                 if b.key - a.key > 2.0 * tolerance * a.size.max(b.size) {
                     break;
                 }

@@ -1,9 +1,10 @@
-//! Inverses of small matrices in double-double, by way of matrices with rows and columns of equal size.
+//! Inverses of small matrices in double-double, by way of matrices with rows and columns of equal
+//! size.
 
 use poly::{ComplexDd, Scalar};
 
-/// Sizes of the rows of a column-major matrix of order `n`, and of its columns once rows are divided by theirs: the largest entries,
-/// one where all are zero.
+/// Sizes of the rows of a column-major matrix of order `n`, and of its columns once rows are
+/// divided by theirs: the largest entries, one where all are zero.
 pub(crate) fn sizes(n: usize, matrix: &[ComplexDd]) -> (Vec<f64>, Vec<f64>) {
     let norm = |entry: usize| matrix[entry].high().norm();
     let largest = |entries: &mut dyn Iterator<Item = f64>| {
@@ -15,7 +16,8 @@ pub(crate) fn sizes(n: usize, matrix: &[ComplexDd]) -> (Vec<f64>, Vec<f64>) {
     (rows, columns)
 }
 
-/// Leaves the inverse of a column-major matrix of order `n`; some of it is not finite if the matrix is singular.
+/// Leaves the inverse of a column-major matrix of order `n`; some of it is not finite if the matrix
+/// is singular.
 pub(crate) fn invert(n: usize, matrix: &[ComplexDd], inverse: &mut [ComplexDd]) {
     let (rows, columns) = sizes(n, matrix);
     // Powers of two scale without rounding.
@@ -70,7 +72,8 @@ mod tests {
 
     #[test]
     fn a_matrix_times_its_inverse_is_one_whatever_its_scales_and_condition() {
-        // Columns (1e12, 1) and (1e12, 1 + e): a condition of about 1 / e, beyond doubles, and rows of unequal size.
+        // Columns (1e12, 1) and (1e12, 1 + e): a condition of about 1 / e, beyond doubles, and rows
+        // of unequal size.
         let number = |x: f64| ComplexDd::from(Complex64::new(x, 0.0));
         let e = 2f64.powi(-60);
         let sum = Scalar::add(&number(1.0), &number(e));

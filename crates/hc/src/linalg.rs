@@ -1,9 +1,10 @@
 //! LU factorisation of small complex matrices, one or several at once.
 //!
-//! Threshold pivoting is done lane by lane with implicitly scaled rows (Skeel 1979): rows are measured by
-//! `|a_ik| / max_j |a_ij| w_j`, `w` the weights of the unknowns, and the row on the diagonal stays where it measures at
-//! least [`THRESHOLD`] of the largest. Lanes therefore never influence each other, a lane gives bit for bit what the
-//! one-lane factorisation gives, and rows are moved only where it matters, which is what costs time in lanes.
+//! Threshold pivoting is done lane by lane with implicitly scaled rows (Skeel 1979): rows are
+//! measured by `|a_ik| / max_j |a_ij| w_j`, `w` the weights of the unknowns, and the row on the
+//! diagonal stays where it measures at least [`THRESHOLD`] of the largest. Lanes therefore never
+//! influence each other, a lane gives bit for bit what the one-lane factorisation gives, and rows
+//! are moved only where it matters, which is what costs time in lanes.
 
 use num_complex::Complex64;
 use poly::Lane;
@@ -17,7 +18,8 @@ pub(crate) const THRESHOLD: f64 = 0.1;
 pub(crate) struct Lu<S: Lane> {
     n: usize,
     isa: Isa,
-    /// Column-major factors: unit lower triangle below the diagonal, upper triangle above, inverse pivots on it.
+    /// Column-major factors: unit lower triangle below the diagonal, upper triangle above, inverse
+    /// pivots on it.
     factors: Vec<S>,
     row_scale: Vec<S::Real>,
     /// Row exchanged with row `k` in step `k`, for lane `l`: `pivots[k * LANES + l]`.
@@ -39,7 +41,8 @@ impl<S: Lane> Lu<S> {
         }
     }
 
-    /// Factors the column-major matrix `a` (`n * n` entries); `weights_sqr[j]` is the square of the weight of unknown `j`.
+    /// Factors the column-major matrix `a` (`n * n` entries); `weights_sqr[j]` is the square of the
+    /// weight of unknown `j`.
     ///
     /// A singular matrix is not an error: its solutions are not finite.
     pub(crate) fn factor(&mut self, a: &[S], weights_sqr: &[S::Real]) {
@@ -47,8 +50,9 @@ impl<S: Lane> Lu<S> {
         isa.run(Factor { lu: self, a, weights_sqr });
     }
 
-    /// The smallest pivot of lane `l`, each relative to the largest entry of its row of the matrix as it was, unknowns measured by the
-    /// weights it was factored with: below the rounding error the matrix is singular as far as doubles can tell.
+    /// The smallest pivot of lane `l`, each relative to the largest entry of its row of the matrix
+    /// as it was, unknowns measured by the weights it was factored with: below the rounding error
+    /// the matrix is singular as far as doubles can tell.
     pub(crate) fn smallest_pivot(&self, l: usize, weights_sqr: &[S::Real]) -> f64 {
         let relative = |k: usize| {
             let inverse = self.factors[k * self.n + k].get(l);
@@ -72,7 +76,8 @@ pub(crate) struct Estimate {
 }
 
 impl Lu<Complex64> {
-    /// Replaces `b` by the solution of the system with the conjugate transpose of the factored matrix.
+    /// Replaces `b` by the solution of the system with the conjugate transpose of the factored
+    /// matrix.
     pub(crate) fn solve_adjoint(&self, b: &mut [Complex64]) {
         let n = self.n;
         // A = P L U  =>  A^H = U^H L^H P^T
@@ -95,11 +100,12 @@ impl Lu<Complex64> {
         }
     }
 
-    /// Estimate of the condition number `|| D A W || * || (D A W)^{-1} ||` in the maximum norm, `W` the diagonal of the
-    /// weights and `D` the scaling that gives rows of equal size.
+    /// Estimate of the condition number `|| D A W || * || (D A W)^{-1} ||` in the maximum norm, `W`
+    /// the diagonal of the weights and `D` the scaling that gives rows of equal size.
     ///
-    /// Hager's estimator (Higham, Accuracy and Stability of Numerical Algorithms, algorithm 15.1); a lower bound, rarely
-    /// off by more than a factor 3. Infinite for a singular matrix. `a` is the matrix that was factored, `weights_sqr` are the squared weights.
+    /// Hager's estimator (Higham, Accuracy and Stability of Numerical Algorithms, algorithm 15.1);
+    /// a lower bound, rarely off by more than a factor 3. Infinite for a singular matrix. `a` is
+    /// the matrix that was factored, `weights_sqr` are the squared weights.
     pub(crate) fn condition(&self, a: &[Complex64], weights_sqr: &[[f64; 1]], scratch: &mut Estimate) -> f64 {
         let n = self.n;
         let Estimate { rows, probe: x } = scratch;
@@ -209,7 +215,8 @@ impl<S: Lane> Kernel for Factor<'_, S> {
     }
 }
 
-/// Finds the pivot row of column `k` in every lane and exchanges it with row `k` where the diagonal is too small.
+/// Finds the pivot row of column `k` in every lane and exchanges it with row `k` where the diagonal
+/// is too small.
 #[inline(always)]
 fn exchange_rows<S: Lane>(n: usize, k: usize, f: &mut [S], scale: &mut [S::Real], pivots: &mut [u32]) -> bool {
     let diagonal = S::real_mul(&f[k * n + k].norm_sqr(), &scale[k]);
@@ -385,7 +392,8 @@ mod tests {
         let ones = [[1.0]; 3];
         // A permutation, rows of different sizes: both are scaled away.
         assert_eq!(pivot([0.0, 0.0, 3.0, 1e9, 0.0, 0.0, 0.0, 1e-9, 0.0], &ones), 1.0);
-        // Columns (1, 0, 0), (0, 1, 0), (0, 1, e): rank two but for e, measured against the 1 of the row's scale.
+        // Columns (1, 0, 0), (0, 1, 0), (0, 1, e): rank two but for e, measured against the 1 of
+        // the row's scale.
         assert!((pivot([1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1e-30], &ones) / 1e-30 - 1.0).abs() < 1e-12);
         assert_eq!(pivot([1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0], &ones), 0.0);
         // An unknown on a scale of 1e-30 is as good as any other.
@@ -398,7 +406,8 @@ mod tests {
         let (mut lu, mut scratch) = (Lu::new(2, Isa::Portable), super::Estimate::default());
         lu.factor(&identity, &[[1.0], [1.0]]);
         assert_eq!(lu.condition(&identity, &[[1.0]; 2], &mut scratch), 1.0);
-        // [[1, 1], [1, 1 + e]] has condition (2 + e)^2 / e in the maximum norm (nearly unchanged by row scaling).
+        // [[1, 1], [1, 1 + e]] has condition (2 + e)^2 / e in the maximum norm (nearly unchanged by
+        // row scaling).
         let e = 1e-6;
         let near = [1.0, 1.0, 1.0, 1.0 + e].map(|v| Complex64::new(v, 0.0));
         lu.factor(&near, &[[1.0], [1.0]]);

@@ -39,8 +39,8 @@ pub struct Progress {
     pub done: u64,
     /// Paths of this stage; zero where their number is not known.
     pub total: u64,
-    /// Mixed cells: their volume so far. Paths: those that have ended at regular points. A search: the
-    /// starts that agree on the best result so far.
+    /// Mixed cells: their volume so far. Paths: those that have ended at regular points. A search:
+    /// the starts that agree on the best result so far.
     pub counted: u64,
 }
 
@@ -75,7 +75,8 @@ struct Shared {
     counted: AtomicU64,
 }
 
-/// A handle on running work; clones share it. The default one is watched by nobody and costs nothing.
+/// A handle on running work; clones share it. The default one is watched by nobody and costs
+/// nothing.
 ///
 /// ```
 /// use hc::{Monitor, SolveOptions, System, solve_watched};
@@ -113,13 +114,14 @@ impl Monitor {
         Monitor::of(Shared::default())
     }
 
-    /// A handle that somebody watches, on work that is to stop too once this flag is true: one that a handler of signals sets.
+    /// A handle that somebody watches, on work that is to stop too once this flag is true: one that
+    /// a handler of signals sets.
     pub fn heeding(flag: &'static AtomicBool) -> Monitor {
         Monitor::of(Shared { flag: Some(flag), ..Shared::default() })
     }
 
-    /// A handle on work that calls `callback` with its progress, often and from any of its threads; the
-    /// callback may hold a clone of another handle that heeds it, but not of this one.
+    /// A handle on work that calls `callback` with its progress, often and from any of its threads;
+    /// the callback may hold a clone of another handle that heeds it, but not of this one.
     pub fn calling(callback: impl Fn(Progress) + Send + Sync + 'static) -> Monitor {
         Monitor::of(Shared { callback: Some(Box::new(callback)), ..Shared::default() })
     }
@@ -134,7 +136,8 @@ impl Monitor {
         Monitor { quiet: true, ..self.clone() }
     }
 
-    /// Asks the work to stop soon. What is finished by then is returned, marked as partial. Without effect on the default handle.
+    /// Asks the work to stop soon. What is finished by then is returned, marked as partial. Without
+    /// effect on the default handle.
     pub fn cancel(&self) {
         if let Some(shared) = &self.shared {
             shared.cancelled.store(true, Ordering::Relaxed);

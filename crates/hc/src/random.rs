@@ -4,7 +4,8 @@ use num_complex::Complex64;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-/// What random numbers are drawn for: streams of one seed for different purposes, or attempts, share no numbers.
+/// What random numbers are drawn for: streams of one seed for different purposes, or attempts,
+/// share no numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Stream {
@@ -39,7 +40,8 @@ pub enum Stream {
 }
 
 impl Stream {
-    /// Its number; the numbers of purposes that have few attempts lie between each other, sixteen apart.
+    /// Its number; the numbers of purposes that have few attempts lie between each other, sixteen
+    /// apart.
     fn number(self) -> u64 {
         let between = |first: u64, attempt: u64| attempt.wrapping_mul(16).wrapping_add(first);
         let from = |first: u64, k: u64| k.wrapping_add(first);
@@ -97,8 +99,7 @@ mod tests {
 
     #[test]
     fn purposes_share_no_stream() {
-        let single =
-            [Stream::Combinations, Stream::Beside, Stream::Perturbation, Stream::Rounding, Stream::Trace];
+        let single = [Stream::Combinations, Stream::Beside, Stream::Perturbation, Stream::Rounding, Stream::Trace];
         let mut numbers = HashSet::from(single.map(Stream::number));
         for attempt in 0..60 {
             let purposes = [

@@ -1,4 +1,5 @@
-//! Newton's method with residuals in double-double: a solution to the last bit that double precision can hold.
+//! Newton's method with residuals in double-double: a solution to the last bit that double
+//! precision can hold.
 
 use crate::inverse;
 use crate::linalg::{Estimate, Lu};
@@ -15,13 +16,16 @@ pub struct Refined {
     pub point: Vec<Complex64>,
     /// Relative size of the last correction, about the relative error of the point.
     pub accuracy: f64,
-    /// Whether the point is plainly a regular solution: corrections shrank by a factor of a thousand at once or were tiny from the
-    /// first, the last was tiny, the condition is good, and no row of the Jacobian is so small that it may be rounding error. Regular
-    /// solutions may be less plain.
+    /// Whether the point is plainly a regular solution: corrections shrank by a factor of a
+    /// thousand at once or were tiny from the first, the last was tiny, the condition is good, and
+    /// no row of the Jacobian is so small that it may be rounding error. Regular solutions may be
+    /// less plain.
     pub plain: bool,
-    /// Largest residual, each relative to its row of the Jacobian times the sizes of the coordinates.
+    /// Largest residual, each relative to its row of the Jacobian times the sizes of the
+    /// coordinates.
     pub residual: f64,
-    /// Condition number of the Jacobian, rows scaled to equal size, unknowns measured by their own size; infinite if singular.
+    /// Condition number of the Jacobian, rows scaled to equal size, unknowns measured by their own
+    /// size; infinite if singular.
     pub condition: f64,
 }
 
@@ -51,7 +55,8 @@ pub struct Refiner<'a, E: Evaluate> {
 
 /// Iterations at most; quadratic convergence from a tracked end point needs two.
 const MAX_ITERATIONS: usize = 6;
-/// A Jacobian serves for the next correction too while corrections shrink by this factor: its error is about that large then.
+/// A Jacobian serves for the next correction too while corrections shrink by this factor: its error
+/// is about that large then.
 const STEADY: f64 = 1e-3;
 /// Corrections up to this size may shrink as fast.
 const NEAR: f64 = 1e-6;
@@ -59,12 +64,13 @@ const NEAR: f64 = 1e-6;
 const PERTURBATIONS: [f64; 2] = [1e-8, 1e-6];
 /// Such distances where Jacobians are in double-double.
 const PRECISE_PERTURBATIONS: [f64; 2] = [1e-14, 1e-12];
-/// Last correction and condition of solutions that are plainly regular. At a distance of `d` from a singular solution the condition is
-/// about `1 / d` or more, and corrections are about `d` or more.
+/// Last correction and condition of solutions that are plainly regular. At a distance of `d` from a
+/// singular solution the condition is about `1 / d` or more, and corrections are about `d` or more.
 const TINY: f64 = 1e-12;
 const GOOD: f64 = 1e6;
-/// A row of the Jacobian below this share of the largest, or of one, may be what rounding left of a row that vanishes, as on a double
-/// component; the condition does not tell, since rows are scaled to equal size.
+/// A row of the Jacobian below this share of the largest, or of one, may be what rounding left of a
+/// row that vanishes, as on a double component; the condition does not tell, since rows are scaled
+/// to equal size.
 const FAINT: f64 = 1e-10;
 /// How many random changes of all parameters show how a solution depends on them.
 const BLUR_DRAWS: usize = 3;
@@ -127,19 +133,19 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         exact
     }
 
-    /// Refines in place, for parameters in double-double; returns the relative size of the last correction, and how far rounding
-    /// the parameters to double precision would move the point: absolute, to first order, for random roundings, and infinite where the
-    /// Jacobian is singular.
+    /// Refines in place, for parameters in double-double; returns the relative size of the last
+    /// correction, and how far rounding the parameters to double precision would move the point:
+    /// absolute, to first order, for random roundings, and infinite where the Jacobian is singular.
     pub fn polish_and_blur(&mut self, p: &[ComplexDd], x: &mut [Complex64]) -> (f64, Vec<f64>) {
         let (accuracy, steady) = self.polish(p, x);
         (accuracy, self.blur(p, x, steady && accuracy <= NEAR))
     }
 
-    /// Returns the size of the last correction and whether one that was no rounding error led to one a thousand times smaller, or the
-    /// first one was [`TINY`]: near a solution of multiplicity `k` at a distance `d` it would be `d / k`, and a row of the Jacobian
-    /// about `d` or less, which is [`FAINT`]. If so,
-    /// and if it is at most [`NEAR`], the Jacobian and its factors are those at `x`, or so near to it that Newton's method hardly noticed
-    /// the difference.
+    /// Returns the size of the last correction and whether one that was no rounding error led to
+    /// one a thousand times smaller, or the first one was [`TINY`]: near a solution of multiplicity
+    /// `k` at a distance `d` it would be `d / k`, and a row of the Jacobian about `d` or less,
+    /// which is [`FAINT`]. If so, and if it is at most [`NEAR`], the Jacobian and its factors are
+    /// those at `x`, or so near to it that Newton's method hardly noticed the difference.
     fn polish(&mut self, p: &[ComplexDd], x: &mut [Complex64]) -> (f64, bool) {
         let (mut accuracy, mut steady) = (f64::INFINITY, false);
         // Whether the last Jacobian serves for this correction.
@@ -176,13 +182,15 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         (accuracy, steady)
     }
 
-    /// Whether a refined point is a regular solution: [`plainly`](Refined::plain), or by the test of [`contracts`](Self::contracts).
+    /// Whether a refined point is a regular solution: [`plainly`](Refined::plain), or by the test
+    /// of [`contracts`](Self::contracts).
     pub fn is_regular(&mut self, p: &[Complex64], refined: &Refined) -> bool {
         refined.plain || self.contracts(p, &refined.point)
     }
 
-    /// Whether Newton's method comes back to the solution `x` from a point 1e-8 or 1e-6 away (relative): it does not where the
-    /// Jacobian is singular. Either is enough, since the first may drown in rounding errors and the second meet other solutions.
+    /// Whether Newton's method comes back to the solution `x` from a point 1e-8 or 1e-6 away
+    /// (relative): it does not where the Jacobian is singular. Either is enough, since the first
+    /// may drown in rounding errors and the second meet other solutions.
     pub fn contracts(&mut self, p: &[Complex64], x: &[Complex64]) -> bool {
         let exact = self.exact(p);
         let contracts = PERTURBATIONS.iter().any(|&perturbation| self.comes_back(&exact, x, perturbation));
@@ -209,9 +217,11 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         comes_back
     }
 
-    /// The test of [`contracts`](Self::contracts) with points and Jacobians in double-double, from a point 1e-14 or 1e-12 away: it tells
-    /// regular solutions whose Jacobians are singular as far as doubles can tell, as where nodes of a network nearly coincide. The
-    /// parameters are taken as exact: two solutions into which rounding them has split a singular one are regular. Slow, and allocates.
+    /// The test of [`contracts`](Self::contracts) with points and Jacobians in double-double, from
+    /// a point 1e-14 or 1e-12 away: it tells regular solutions whose Jacobians are singular as far
+    /// as doubles can tell, as where nodes of a network nearly coincide. The parameters are taken
+    /// as exact: two solutions into which rounding them has split a singular one are regular. Slow,
+    /// and allocates.
     pub fn contracts_precisely(&mut self, p: &[Complex64], x: &[Complex64]) -> bool {
         let exact = self.exact(p);
         let mut centre: Vec<ComplexDd> = x.iter().map(|&z| z.into()).collect();
@@ -234,7 +244,8 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         contracts
     }
 
-    /// Two corrections of a point, with Jacobians in double-double; not finite where they are singular. `scratch` holds two of them.
+    /// Two corrections of a point, with Jacobians in double-double; not finite where they are
+    /// singular. `scratch` holds two of them.
     fn newton_precisely(&mut self, p: &[ComplexDd], x: &mut [ComplexDd], scratch: &mut [ComplexDd]) {
         let n = x.len();
         let (jacobian, inverse) = scratch.split_at_mut(n * n);
@@ -286,7 +297,8 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         self.lu.factor(&self.jacobian, &self.squares);
     }
 
-    /// Leaves in `values` the correction of Newton's method at `x`, with the Jacobian that is factored.
+    /// Leaves in `values` the correction of Newton's method at `x`, with the Jacobian that is
+    /// factored.
     fn correction(&mut self, p: &[ComplexDd], x: &[Complex64]) {
         self.precise_x.clear();
         self.precise_x.extend(x.iter().map(|&z| ComplexDd::from(z)));
@@ -297,8 +309,8 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         self.lu.solve(&mut self.values);
     }
 
-    /// A refined point to about 30 digits, for sums in which large coordinates cancel: corrections of the point in double-double with the
-    /// Jacobian at its double part.
+    /// A refined point to about 30 digits, for sums in which large coordinates cancel: corrections
+    /// of the point in double-double with the Jacobian at its double part.
     pub fn extend(&mut self, p: &[Complex64], point: &[Complex64]) -> Vec<ComplexDd> {
         let n = self.system.variables();
         let precise_p: Vec<ComplexDd> = p.iter().map(|&z| z.into()).collect();
@@ -320,8 +332,8 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         x
     }
 
-    /// Residual, condition and smallest row of the Jacobian, relative to the largest or to one, at `x`; `factored` says that the Jacobian
-    /// and its factors are those of `x` already.
+    /// Residual, condition and smallest row of the Jacobian, relative to the largest or to one, at
+    /// `x`; `factored` says that the Jacobian and its factors are those of `x` already.
     fn judge(&mut self, p: &[Complex64], x: &[Complex64], factored: bool) -> (f64, f64, f64) {
         let n = x.len();
         sizes(x, &mut self.squares);
@@ -359,8 +371,8 @@ fn weights(x: &[Complex64], squares: &mut Vec<[f64; 1]>) {
     squares.extend(x.iter().map(|z| [z.norm_sqr().max(floor)]));
 }
 
-/// Squared sizes of the coordinates; those below 1e-12 of the largest, or of one if that is less, count as zero, which is measured on
-/// the scale of 1e-4 of that.
+/// Squared sizes of the coordinates; those below 1e-12 of the largest, or of one if that is less,
+/// count as zero, which is measured on the scale of 1e-4 of that.
 fn sizes(x: &[Complex64], squares: &mut Vec<[f64; 1]>) {
     let largest = x.iter().map(|z| z.norm_sqr()).fold(0.0, f64::max);
     let unit = if largest > 0.0 { largest.min(1.0) } else { 1.0 };

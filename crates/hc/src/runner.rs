@@ -1,8 +1,8 @@
 //! The path runner: rounds of tracking, first of all paths, then of those whose ends are in doubt.
 //!
 //! [`run`] is the one loop of the crate that tracks paths, looks at their ends, and tracks doubtful
-//! ones again. What is tracked, how ends are judged and which ends are in doubt is the business of a
-//! [`Work`]: its batches are functions of numbers of paths and a round, and their records are
+//! ones again. What is tracked, how ends are judged and which ends are in doubt is the business of
+//! a [`Work`]: its batches are functions of numbers of paths and a round, and their records are
 //! absorbed in any order.
 
 use crate::monitor::Monitor;
@@ -47,8 +47,8 @@ pub(crate) trait Work {
     /// Called before a round of `count` paths.
     fn begin(&mut self, _round: Round, _count: usize) {}
 
-    /// Tracks the paths with these numbers to their ends: a function of the arguments alone, or where
-    /// a round goes on from broken ends, of these too.
+    /// Tracks the paths with these numbers to their ends: a function of the arguments alone, or
+    /// where a round goes on from broken ends, of these too.
     fn batch(&self, memory: &mut Self::Memory, numbers: &[usize], round: Round, batch: &mut Self::Batch);
 
     /// Takes the records in; the order of batches does not matter.
@@ -62,8 +62,8 @@ pub(crate) trait Work {
     /// Writes the numbers of the paths whose ends are in doubt to `which`, ascending.
     fn doubtful(&mut self, memory: &mut Self::Memory, which: &mut Vec<usize>);
 
-    /// Whether another level is not worth its while after one that left `after` of `before` paths in
-    /// doubt.
+    /// Whether another level is not worth its while after one that left `after` of `before` paths
+    /// in doubt.
     fn is_hopeless(&mut self, _level: u32, _before: usize, _after: usize) -> bool {
         false
     }

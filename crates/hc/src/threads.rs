@@ -1,4 +1,5 @@
-//! Work on all threads of rayon, or on the one there is: what the crate uses of rayon, and its stand-in without the feature `threads`.
+//! Work on all threads of rayon, or on the one there is: what the crate uses of rayon, and its
+//! stand-in without the feature `threads`.
 //!
 //! Results are the same either way, as they do not depend on the number of threads.
 

@@ -6,8 +6,8 @@ use num_complex::Complex64;
 use poly::{System, parse::phcpack};
 use std::path::Path;
 
-/// Solves and certifies. Badly scaled solutions that the solver takes for points on a component are certified as well: what
-/// is certified is isolated.
+/// Solves and certifies. Badly scaled solutions that the solver takes for points on a component are
+/// certified as well: what is certified is isolated.
 fn run(system: &System) -> Certificates {
     let found = solve(system, &SolveOptions::default()).unwrap();
     let values = found.solutions.iter().map(|s| &s.value).chain(&found.component_points);
@@ -55,7 +55,8 @@ fn noon(n: usize) -> System {
 
 #[test]
 fn all_solutions_of_known_systems_are_certified() {
-    // Bjorck and Froberg 1991: cyclic-5 has 70; Katsura: 2^n; Noonburg: 3^n - 2n (noon-4: 73). Real ones: PHCpack's lists.
+    // Bjorck and Froberg 1991: cyclic-5 has 70; Katsura: 2^n; Noonburg: 3^n - 2n (noon-4: 73). Real
+    // ones: PHCpack's lists.
     for (name, system, distinct, real) in
         [("cyclic-5", cyclic(5), 70, Some(10)), ("katsura-6", katsura(6), 64, Some(32)), ("noon-4", noon(4), 73, None)]
     {
@@ -82,8 +83,9 @@ fn a_list_given_twice_has_half_as_many_solutions() {
     assert!(twice.complete() && twice.duplicate_of[18..].iter().zip(0..).all(|(d, k)| *d == Some(k)));
 }
 
-/// The sphere-like quadric and the rational surface meet in a curve of degree 4: a plane meets it in four points. The plane's
-/// points solve the rational equations themselves, not just those multiplied out.
+/// The sphere-like quadric and the rational surface meet in a curve of degree 4: a plane meets it
+/// in four points. The plane's points solve the rational equations themselves, not just those
+/// multiplied out.
 #[test]
 fn a_curve_of_degree_four_given_by_quotients() {
     let plane = "(0.3 + 0.7*i)*x - (1.1 - 0.2*i)*y + (0.4 + 0.5*i)*z - 0.9 + 0.6*i";

@@ -1,4 +1,5 @@
-//! Solution sets of positive dimension, with dimensions and degrees from geometry or the literature.
+//! Solution sets of positive dimension, with dimensions and degrees from geometry or the
+//! literature.
 
 use hc::witness::{Decomposition, decompose};
 use hc::{Monitor, SolveOptions};
@@ -8,7 +9,8 @@ fn decomposed(text: &str, seed: u64) -> Decomposition {
     decompose(&system, &SolveOptions::new().seed(seed), &Monitor::default()).unwrap()
 }
 
-/// Dimension, degree and multiplicity of each component, sorted, and the number of isolated solutions; all shown to be irreducible.
+/// Dimension, degree and multiplicity of each component, sorted, and the number of isolated
+/// solutions; all shown to be irreducible.
 fn check(text: &str, seeds: u64, components: &[(usize, usize, usize)], isolated: usize) {
     for seed in 0..seeds {
         let found = decomposed(text, seed);
@@ -31,7 +33,8 @@ fn curves() {
     check("2\n(x-y)^2*(x+y-1);\n(x-y)^2*(x+2*y+2);", 3, &[(1, 1, 2)], 1);
 }
 
-/// The example of Sommese, Verschelde & Wampler 2001 (SIAM J. Numer. Anal. 38:2022): a sphere, a twisted cubic and three lines, and a point.
+/// The example of Sommese, Verschelde & Wampler 2001 (SIAM J. Numer. Anal. 38:2022): a sphere, a
+/// twisted cubic and three lines, and a point.
 #[test]
 fn a_sphere_curves_and_a_point() {
     let (s, t) = ("(x^2+y^2+z^2-1)", "(y-x^2)");
@@ -40,8 +43,8 @@ fn a_sphere_curves_and_a_point() {
     check(&text, 1, &[&[(2, 2, 1), (1, 3, 1)], &lines[..]].concat(), 1);
 }
 
-/// Adjacent minors of a 2 x 3 matrix (Diaconis, Eisenbud & Sturmfels 1998): the matrices of rank one, of degree 3, and those whose
-/// middle column is zero.
+/// Adjacent minors of a 2 x 3 matrix (Diaconis, Eisenbud & Sturmfels 1998): the matrices of rank
+/// one, of degree 3, and those whose middle column is zero.
 #[test]
 fn adjacent_minors() {
     let found = decomposed("2 6\na*e-b*d;\nb*f-c*e;", 0);

@@ -1,5 +1,5 @@
-//! Conics tangent to conics: Chasles' numbers by monodromy, from the front door, and certified. All 3264 of Steiner's problem are counted by
-//! the example `steiner`.
+//! Conics tangent to conics: Chasles' numbers by monodromy, from the front door, and certified. All
+//! 3264 of Steiner's problem are counted by the example `steiner`.
 
 #[path = "common/conics.rs"]
 mod conics;
@@ -42,7 +42,8 @@ fn through_points_and_tangent_to_up_to_three_conics() {
     }
 }
 
-/// From the front door there are double lines besides, which touch everything and are no regular solutions.
+/// From the front door there are double lines besides, which touch everything and are no regular
+/// solutions.
 #[test]
 fn from_the_front_door() {
     for k in 1..=2 {

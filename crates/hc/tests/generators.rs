@@ -1,4 +1,5 @@
-//! Families of systems by their generators, with the numbers of solutions known from theory and the literature.
+//! Families of systems by their generators, with the numbers of solutions known from theory and the
+//! literature.
 
 mod common;
 
@@ -38,8 +39,8 @@ fn cyclic_roots() {
     assert_eq!((&multiplicities(&found)[..], found.on_components > 0), ("1152x1", true));
 }
 
-/// 2^n, the number of Bezout; real counts from PHCpack's lists of solutions, for katsura-5 from real Newton iterations in 40 digits,
-/// which keep 16 roots apart.
+/// 2^n, the number of Bezout; real counts from PHCpack's lists of solutions, for katsura-5 from
+/// real Newton iterations in 40 digits, which keep 16 roots apart.
 #[test]
 fn katsura_systems() {
     for (n, real) in [(5, 16), (6, 32), (7, 44), (8, 84), (9, 120), (10, 216)] {
@@ -71,7 +72,8 @@ fn chandra_systems() {
     }
 }
 
-/// Total degree has as many paths as polyhedral for katsura-5, all to regular solutions, and for reimer-4, most of them to infinity.
+/// Total degree has as many paths as polyhedral for katsura-5, all to regular solutions, and for
+/// reimer-4, most of them to infinity.
 #[test]
 fn auto_takes_one_stage_only_where_paths_end_well() {
     let cases = [("katsura-5", katsura(5), Start::TotalDegree, 32), ("reimer-4", reimer(4), Start::Polyhedral, 120)];

@@ -1,11 +1,13 @@
-//! Memory of a solve grows with the solutions, not with the paths: what is kept of each path lies in files beyond a fixed size.
+//! Memory of a solve grows with the solutions, not with the paths: what is kept of each path lies
+//! in files beyond a fixed size.
 
 use allocation_counter::measure;
 use hc::poly::parse::phcpack;
 use hc::{SolveOptions, Start, solve};
 
-/// Five pairs of quadrics in unknowns of their own with equal leading forms, and `z^degree - 1`: by the theorem of Bezout `1024 degree` paths,
-/// of which only `32 degree` end at solutions, since the difference of a pair is linear.
+/// Five pairs of quadrics in unknowns of their own with equal leading forms, and `z^degree - 1`: by
+/// the theorem of Bezout `1024 degree` paths, of which only `32 degree` end at solutions, since the
+/// difference of a pair is linear.
 fn deficient(degree: usize) -> String {
     let pair = |k: usize| {
         let leading = format!("x{k}^2 + x{k}*y{k}");
@@ -21,7 +23,8 @@ const A_SOLUTION: usize = 600;
 fn memory_grows_with_solutions_not_with_paths() {
     // Counted are the allocations of this thread.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build().unwrap();
-    // Beyond what the paths under way take, which are at most 2048, and what is in memory before files are used: 13,000 paths need these.
+    // Beyond what the paths under way take, which are at most 2048, and what is in memory before
+    // files are used: 13,000 paths need these.
     for (start, degrees) in [(Start::TotalDegree, [13, 27]), (Start::Polyhedral, [54, 81])] {
         let peak = |degree: usize| {
             let system = phcpack(&deficient(degree)).unwrap();

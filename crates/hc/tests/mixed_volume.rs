@@ -79,13 +79,15 @@ fn reduced_cyclic(n: usize) -> Vec<Support> {
     cyclic(n)[..n - 1].iter().map(|s| support(s.iter().map(|p| p[..n - 1].to_vec()))).collect()
 }
 
-/// `n` players with two strategies each: equation `i` is linear in every unknown but its own, which it lacks.
+/// `n` players with two strategies each: equation `i` is linear in every unknown but its own, which
+/// it lacks.
 fn game(n: usize) -> Vec<Support> {
     let subset = |bits: usize| (0..n).map(|j| (bits >> j & 1) as i32).collect::<Vec<_>>();
     (0..n).map(|i| support((0..1 << n).filter(|bits| bits >> i & 1 == 0).map(subset))).collect()
 }
 
-/// Distances between neighbours and second neighbours in a ring of eight atoms, the first three in a frame, and two linear equations.
+/// Distances between neighbours and second neighbours in a ring of eight atoms, the first three in
+/// a frame, and two linear equations.
 fn ring_of_eight() -> Vec<Support> {
     let n = 17;
     let unknown = |atom: usize, axis: usize| match (atom, axis) {
@@ -117,7 +119,8 @@ fn volume(system: &[Support]) -> u64 {
     mixed_volume(system.len(), system).unwrap().volume
 }
 
-/// Roots of cyclic-n counted by mixed volume, 5 to 11, as in the literature (Emiris & Canny 1995; Verschelde's PHCpack; Li & Li 2001).
+/// Roots of cyclic-n counted by mixed volume, 5 to 11, as in the literature (Emiris & Canny 1995;
+/// Verschelde's PHCpack; Li & Li 2001).
 #[test]
 fn cyclic_roots() {
     let expected = [70, 156, 924, 2560, 11016, 35940, 184756];
@@ -145,7 +148,8 @@ fn families_with_formulas() {
     }
     // Permutations without a fixed point.
     assert_eq!([4, 5, 6, 7].map(|n| volume(&game(n))), [9, 44, 265, 1854]);
-    // All 2^n roots, some of them with zero coordinates, which count where the origin belongs to every support (Li & Wang 1996).
+    // All 2^n roots, some of them with zero coordinates, which count where the origin belongs to
+    // every support (Li & Wang 1996).
     for n in 5..=10 {
         assert_eq!(volume(&with_origin(katsura(n))), 1 << n);
     }
@@ -232,7 +236,8 @@ fn check_normals(system: &[Support], lifting: &[Vec<i32>], cells: &[hc::start::M
     }
 }
 
-/// `n!` times the volume of the convex hull, by summing determinants over an exact triangulation of placed points.
+/// `n!` times the volume of the convex hull, by summing determinants over an exact triangulation of
+/// placed points.
 fn normalised_volume(points: &[Vec<i64>]) -> i64 {
     match points[0].len() {
         2 => hull_area(points),
@@ -257,7 +262,8 @@ fn hull_area(points: &[Vec<i64>]) -> i64 {
     half(sorted.clone()) + half(sorted.into_iter().rev().collect())
 }
 
-/// Six times the volume: cones from the first point over the facets, each facet measured by the area of its projection.
+/// Six times the volume: cones from the first point over the facets, each facet measured by the
+/// area of its projection.
 fn hull_volume(points: &[Vec<i64>]) -> i64 {
     let points: Vec<&Vec<i64>> = points.iter().collect::<BTreeSet<_>>().into_iter().collect();
     let sub = |a: &[i64], b: &[i64]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
@@ -356,8 +362,8 @@ proptest! {
     }
 }
 
-/// Exponents `s` times as large change no sign, so that there are the same cells, `s^n` times as large, in integers that need
-/// up to 128 bits.
+/// Exponents `s` times as large change no sign, so that there are the same cells, `s^n` times as
+/// large, in integers that need up to 128 bits.
 #[test]
 fn large_exponents_need_large_integers() {
     for (n, s) in [(5, 2), (5, 100), (5, 3000), (7, 7), (7, 150)] {
@@ -369,7 +375,8 @@ fn large_exponents_need_large_integers() {
     }
 }
 
-/// Two segments: the determinant of their directions, here `N^2 + 1`, with entries beyond what 64 bits allow.
+/// Two segments: the determinant of their directions, here `N^2 + 1`, with entries beyond what 64
+/// bits allow.
 #[test]
 fn segments_as_long_as_can_be() {
     let long = 2_000_000_000;

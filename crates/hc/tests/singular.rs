@@ -1,6 +1,7 @@
 //! Ends that are not regular, and systems that hide their solutions: right, or said to be unknown.
 //!
-//! What is expected is known by hand: factors, intersection numbers, Chebyshev's polynomials, roots of unity.
+//! What is expected is known by hand: factors, intersection numbers, Chebyshev's polynomials, roots
+//! of unity.
 
 mod common;
 
@@ -47,7 +48,8 @@ fn ends_that_solve_nothing() {
     check(&format!("1\n{};", sum.join("+")), 2, "150x1", 0, false);
 }
 
-/// `y^10 = x^2 + 1` and `y^3 = 2 x^-20`: then `x^200 (x^2 + 1)^3 = 2^10`, and `y = (x^2 + 1) x^60 / 8`.
+/// `y^10 = x^2 + 1` and `y^3 = 2 x^-20`: then `x^200 (x^2 + 1)^3 = 2^10`, and
+/// `y = (x^2 + 1) x^60 / 8`.
 #[test]
 fn sparse_of_high_degree() {
     check("2\nx^20*y^3-2;\nx^2-y^10+1;", 2, "206x1", 2, false);

@@ -1,4 +1,5 @@
-//! Small systems whose solutions are known by hand or from the tests of other codes, many of them traps.
+//! Small systems whose solutions are known by hand or from the tests of other codes, many of them
+//! traps.
 
 mod common;
 
@@ -83,7 +84,8 @@ fn zero_coordinates() {
     check("2\nx*(x-y);\nx+y-2;", "2x1", 2);
     check("2\ny*(x-y);\nx^2-1;", "4x1", 4);
     check("2\nx*(x-y);\ny*(x+y);", "1x4", 1);
-    // Three with a zero coordinate; in the torus x = (2 + 3 y) / y^2 with y^3 - 6 y^2 - 16 y - 8 = 0, discriminant 3136 > 0.
+    // Three with a zero coordinate; in the torus x = (2 + 3 y) / y^2 with y^3 - 6 y^2 - 16 y - 8 =
+    // 0, discriminant 3136 > 0.
     check("2\n2*y+3*y^2-x*y^3;\nx+4*x^2-2*x^3*y;", "6x1", 6);
 }
 
@@ -149,7 +151,8 @@ fn directions_at_infinity_are_exact() {
         options.start = Start::TotalDegree;
         let found = solved(&text, &options);
         let [direction] = &found.directions[..] else { panic!("{:?}", found.directions) };
-        // y = x^d up to lower terms, and x^(d + 1) grows like 1 / t over the square of the small factor.
+        // y = x^d up to lower terms, and x^(d + 1) grows like 1 / t over the square of the small
+        // factor.
         assert_eq!(direction.valuations[1], d * direction.valuations[0]);
         assert_eq!(direction.paths as i64, (d + 1) * (d + 1) - (d + 1));
         if d == 2 {
@@ -205,7 +208,8 @@ fn components_of_positive_dimension() {
     }
 }
 
-/// Coefficients over thirty decades; with x = 1e-9 u the roots are those of u^2 - 3 u + 2 and v = u.
+/// Coefficients over thirty decades; with x = 1e-9 u the roots are those of u^2 - 3 u + 2 and v =
+/// u.
 #[test]
 fn badly_scaled() {
     for seed in 0..3 {
@@ -265,7 +269,8 @@ fn threads_do_not_change_the_result() {
 /// The eigenvalues of a matrix: as many paths as there are, where Bezout's number is 2^n.
 #[test]
 fn groups_of_unknowns() {
-    // Rows of the matrix (2 1 0; 1 3 1; 0 1 4) times (x, y, z) minus l (x, y, z), and a random normalisation.
+    // Rows of the matrix (2 1 0; 1 3 1; 0 1 4) times (x, y, z) minus l (x, y, z), and a random
+    // normalisation.
     let text = "4\n2*x + y - l*x;\nx + 3*y + z - l*y;\ny + 4*z - l*z;\n3*x - 2*y + 5*z - 1;";
     let mut options = options(0);
     options.start = Start::Multihomogeneous;
@@ -289,8 +294,8 @@ fn groups_of_unknowns() {
     }
     options.groups.push(vec![0]);
     assert_eq!(solve_text(text, &options).unwrap_err(), SolveError::Groups(4));
-    // auto takes the groups: the polyhedral one has no fewer paths, and two stages. Without groups the polyhedral one has far fewer
-    // than the total degree.
+    // auto takes the groups: the polyhedral one has no fewer paths, and two stages. Without groups
+    // the polyhedral one has far fewer than the total degree.
     options.groups.pop();
     options.start = Start::Auto;
     let found = solve_text(text, &options).unwrap();

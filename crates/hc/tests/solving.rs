@@ -5,7 +5,8 @@ mod common;
 use common::{multiplicities, options, real, solved};
 use std::path::Path;
 
-/// The counts of `expected.csv`: distinct solutions, their multiplicities and real ones, as far as it states them.
+/// The counts of `expected.csv`: distinct solutions, their multiplicities and real ones, as far as
+/// it states them.
 fn check(name: &str, seeds: std::ops::Range<u64>) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/systems");
     let expected = std::fs::read_to_string(folder.join("expected.csv")).expect("the table");

@@ -28,7 +28,8 @@ fn reals(values: &[f64]) -> Vec<Complex64> {
     values.iter().map(|&v| v.into()).collect()
 }
 
-/// Three distances from three angles at a camera: 8 solutions (Grunert 1841; the eight come in pairs of opposite sign).
+/// Three distances from three angles at a camera: 8 solutions (Grunert 1841; the eight come in
+/// pairs of opposite sign).
 fn p3p() -> (Family, Interpreter) {
     family(
         "d1 d2 d3",
@@ -46,7 +47,8 @@ fn p3p_fibre() -> (Family, Interpreter, Fibre) {
 
 #[test]
 fn one_path_in_few_steps() {
-    // From (1, 1) for (a, b) = (1, 0) to (sqrt 2, -sqrt 2) for (2, 4); HomotopyContinuation.jl asserts at most 5 steps.
+    // From (1, 1) for (a, b) = (1, 0) to (sqrt 2, -sqrt 2) for (2, 4); HomotopyContinuation.jl
+    // asserts at most 5 steps.
     let (_, system) = family("x y", "a b", "x^2 - a; x*y - a + b");
     let path = Segment::new(&reals(&[1.0, 0.0]), &reals(&[2.0, 4.0]));
     let ends = track(&system, &path, &reals(&[1.0, 1.0]), &[0], &TrackerOptions::default());
@@ -59,7 +61,8 @@ fn one_path_in_few_steps() {
 
 #[test]
 fn a_coordinate_that_stays_zero_is_no_obstacle() {
-    // y (x - y) for the parameter x: the paths y = 0 and y = x (HomotopyContinuation.jl issue 647 lost the first).
+    // y (x - y) for the parameter x: the paths y = 0 and y = x (HomotopyContinuation.jl issue 647
+    // lost the first).
     let (_, system) = family("y", "x", "y*(x - y)");
     let start = Complex64::new(0.3, -1.2);
     let path = Segment::new(&[start], &reals(&[5.0]));
@@ -80,7 +83,8 @@ fn a_point_that_is_no_solution_is_refused() {
 
 #[test]
 fn a_start_without_direction_is_refused() {
-    // Two bars in one line, a rigid framework whose Jacobian has rank one: a solution, but no path begins there.
+    // Two bars in one line, a rigid framework whose Jacobian has rank one: a solution, but no path
+    // begins there.
     let (_, system) = family("x y", "a b", "x^2 + y^2 - a; (x - 2)^2 + y^2 - b");
     let path = Segment::new(&reals(&[1.0, 1.0]), &reals(&[2.0, 3.0]));
     let ends = track(&system, &path, &reals(&[1.0, 0.0]), &[0], &TrackerOptions::default());
@@ -89,7 +93,8 @@ fn a_start_without_direction_is_refused() {
 
 #[test]
 fn a_singular_component_is_no_end_of_a_fibre() {
-    // x = 0 solves both equations whatever y is, twice; the root of the fibre is (p, q). Next to that line every correction is tiny.
+    // x = 0 solves both equations whatever y is, twice; the root of the fibre is (p, q). Next to
+    // that line every correction is tiny.
     let (_, system) = family("x y", "p q", "x^2*(x - p); x*(y - q)");
     let fibre = Fibre::new(reals(&[1.0, 2.0]), 2, reals(&[1.0, 2.0, 1e-20, 2.0]));
     let (paths, counts) = track_fibre(&system, &fibre, &reals(&[3.0, 2.0]), &FibreOptions::default());
@@ -100,7 +105,8 @@ fn a_singular_component_is_no_end_of_a_fibre() {
 
 #[test]
 fn a_regular_solution_beyond_doubles_is_told_from_a_singular_one() {
-    // Linear, with the solution (p - q, q) and a determinant of e: with e = 1e-16 the Jacobian is singular in doubles, the solution is not.
+    // Linear, with the solution (p - q, q) and a determinant of e: with e = 1e-16 the Jacobian is
+    // singular in doubles, the solution is not.
     let (_, system) = family("x y", "p q e", "x + y - p; x + y + e*y - p - e*q");
     let mut refiner = Refiner::new(&system);
     let solution = reals(&[0.5, 1.5]);
@@ -122,8 +128,9 @@ fn a_regular_solution_beyond_doubles_is_told_from_a_singular_one() {
 
 #[test]
 fn points_to_twice_the_digits_tell_paths_apart() {
-    // x = 1 + s sqrt(a) and x = 1 - s sqrt(a), y = sqrt(a): the paths are 2 s sqrt(a) apart. Rounding a point to doubles moves y by the
-    // rounding error over s, which holds up the steps from there.
+    // x = 1 + s sqrt(a) and x = 1 - s sqrt(a), y = sqrt(a): the paths are 2 s sqrt(a) apart.
+    // Rounding a point to doubles moves y by the rounding error over s, which holds up the steps
+    // from there.
     let (_, system) = family("x y", "a s", "(x - 1)^2 - s*s*a; y - (x - 1)/s");
     for (from, to) in [(1e-10, 1e-10), (1e-12, 1e-12), (1e-6, 1e-11), (1e-6, 1e-12), (1e-6, 1e-13), (1e-6, 1e-14)] {
         let path = Segment::new(&reals(&[1.0, from]), &reals(&[4.0, to]));
@@ -139,7 +146,8 @@ fn points_to_twice_the_digits_tell_paths_apart() {
 
 #[test]
 fn parameters_to_twice_the_digits_keep_ill_conditioned_paths_smooth() {
-    // With d = 3 a all the way the path is x = sqrt(a), y = b; the rounding errors of a and d move y by c times as much, about 1e-3.
+    // With d = 3 a all the way the path is x = sqrt(a), y = b; the rounding errors of a and d move
+    // y by c times as much, about 1e-3.
     let (_, system) = family("x y", "a b c d", "x^2 - a; c*(3*x^2 - d) + (y - b)");
     let at = |a: f64, b: f64| reals(&[a, b, 1e13, 3.0 * a]);
     let path = Segment::new(&at(1.0, 0.1), &at(2.25, 0.7));
@@ -226,7 +234,8 @@ fn the_whole_fibre_reaches_a_hundred_targets() {
 
 #[test]
 fn jumped_paths_are_found_and_mended() {
-    // Steps as long as nothing but Newton's first corrections forbids, over many targets: some paths must land on a neighbour.
+    // Steps as long as nothing but Newton's first corrections forbids, over many targets: some
+    // paths must land on a neighbour.
     let (_, system, fibre) = p3p_fibre();
     let mut reckless = FibreOptions::default();
     reckless.tracker.beta_omega = 0.1;
@@ -257,7 +266,8 @@ fn the_trace_test_tells_a_whole_fibre_from_one_with_a_hole() {
     let (options, monitor) = (MonodromyOptions::default(), Monitor::default());
     let test = family.trace_test(&fibre, &options, &monitor).unwrap();
     assert!(test.passed(8), "{test:?}");
-    // The further points are found from the fibre, and with them the missing one: the count gives it away.
+    // The further points are found from the fibre, and with them the missing one: the count gives
+    // it away.
     let mut hole = fibre.clone();
     hole.solutions.truncate(7 * 3);
     let test = family.trace_test(&hole, &options, &monitor).unwrap();

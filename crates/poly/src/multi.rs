@@ -1,8 +1,10 @@
-//! Floating-point numbers of a fixed number of machine words: more digits than double-double, without an allocation each.
+//! Floating-point numbers of a fixed number of machine words: more digits than double-double,
+//! without an allocation each.
 //!
-//! Sums keep one guard word and all operations truncate, so that each is off by at most a few units in the last of
-//! `64 * LIMBS` binary digits. Exponents have 64 bits and do not overflow in practice; what would overflow is not a number.
-//! At 256 digits a product and a sum take about a tenth of the time of libraries whose precision is chosen at run time.
+//! Sums keep one guard word and all operations truncate, so that each is off by at most a few units
+//! in the last of `64 * LIMBS` binary digits. Exponents have 64 bits and do not overflow in
+//! practice; what would overflow is not a number. At 256 digits a product and a sum take about a
+//! tenth of the time of libraries whose precision is chosen at run time.
 
 use crate::exact::Exact;
 use crate::scalar::Scalar;
@@ -15,7 +17,8 @@ use std::cmp::Ordering;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Float<const LIMBS: usize> {
     negative: bool,
-    /// The number is its digits, read as a fraction in [1/2, 1), times two to this power; [`NOT_A_NUMBER`] says what it says.
+    /// The number is its digits, read as a fraction in [1/2, 1), times two to this power;
+    /// [`NOT_A_NUMBER`] says what it says.
     exponent: i64,
     /// Lowest word first; the top bit is set unless the number is zero or none.
     limbs: [u64; LIMBS],
@@ -264,7 +267,8 @@ impl<const LIMBS: usize> ComplexMulti<LIMBS> {
         Complex64::new(self.re.to_f64(), self.im.to_f64())
     }
 
-    /// The logarithm of the larger part's size to base 2: negative infinity for zero, not a number for what is none.
+    /// The logarithm of the larger part's size to base 2: negative infinity for zero, not a number
+    /// for what is none.
     pub fn log2(&self) -> f64 {
         let (re, im) = (self.re.log2(), self.im.log2());
         if re.is_nan() || im.is_nan() { f64::NAN } else { re.max(im) }

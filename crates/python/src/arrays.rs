@@ -14,7 +14,8 @@ pub(crate) fn array<'py, T: Element>(
     Ok(values.into_pyarray(py).reshape(shape.to_vec())?)
 }
 
-/// The elements of an array row by row, however they lie in memory, where it has `rank` axes; and its shape.
+/// The elements of an array row by row, however they lie in memory, where it has `rank` axes; and
+/// its shape.
 pub(crate) fn elements<T: Element + Copy>(
     array: &PyReadonlyArrayDyn<'_, T>,
     rank: usize,

@@ -63,7 +63,8 @@ struct Unit {
     metres: f64,
 }
 
-/// Calibrates, and gives the JSON that the program writes; `None` as partial result, for the search cannot be cut short.
+/// Calibrates, and gives the JSON that the program writes; `None` as partial result, for the search
+/// cannot be cut short.
 #[pyfunction]
 pub(crate) fn calibrate<'py>(
     py: Python<'py>,

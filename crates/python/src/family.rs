@@ -73,7 +73,8 @@ impl Family {
         })
     }
 
-    /// All solutions for some generic parameters: the text of a start file, and what the search says of itself.
+    /// All solutions for some generic parameters: the text of a start file, and what the search
+    /// says of itself.
     fn monodromy<'py>(
         &self,
         py: Python<'py>,
@@ -119,8 +120,8 @@ impl Family {
         })
     }
 
-    /// The solutions for many targets, from those of a fibre: points of shape (targets, roots, unknowns), NaN where there is none, and
-    /// how each slot was filled.
+    /// The solutions for many targets, from those of a fibre: points of shape (targets, roots,
+    /// unknowns), NaN where there is none, and how each slot was filled.
     fn track<'py>(
         &self,
         py: Python<'py>,
@@ -159,7 +160,8 @@ impl Family {
     }
 }
 
-/// One target's solutions, a singular one as often as it counts, and the ends of all slots; regular ones without certificate.
+/// One target's solutions, a singular one as often as it counts, and the ends of all slots; regular
+/// ones without certificate.
 fn slots(found: &Solutions, roots: usize, tracked: usize, certify: bool) -> (Vec<Complex64>, Vec<i8>, usize) {
     let (mut points, mut ends) = (Vec::new(), Vec::with_capacity(roots));
     for solution in found {
@@ -170,8 +172,8 @@ fn slots(found: &Solutions, roots: usize, tracked: usize, certify: bool) -> (Vec
         }
     }
     let rest = roots.saturating_sub(ends.len());
-    // Of a symmetric family a path stands for an orbit whose size an end without a solution does not tell: one lost path leaves
-    // all the rest in doubt.
+    // Of a symmetric family a path stands for an orbit whose size an end without a solution does
+    // not tell: one lost path leaves all the rest in doubt.
     let whole = |paths: usize| if tracked == roots || paths == 0 { paths.min(rest) } else { rest };
     let failed = whole(found.paths.failed);
     let components = whole(found.on_components).min(rest - failed);

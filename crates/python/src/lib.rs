@@ -1,7 +1,8 @@
 //! The extension module `hc._native`, under the Python packages `hc` and `tdoa`.
 //!
-//! It turns arrays into what the libraries take and results into arrays; all else, such as pictures and representations, is Python. Work
-//! runs beside the interpreter ([`work`]), errors keep the words of the libraries ([`errors`]).
+//! It turns arrays into what the libraries take and results into arrays; all else, such as pictures
+//! and representations, is Python. Work runs beside the interpreter ([`work`]), errors keep the
+//! words of the libraries ([`errors`]).
 
 mod arrays;
 mod calibration;

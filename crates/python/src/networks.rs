@@ -178,7 +178,8 @@ pub(crate) fn simulate(py: Python<'_>, wanted: Wanted) -> PyResult<Bound<'_, PyD
     })
 }
 
-/// The Cramer-Rao bound of the receivers, metres: positions of shape (m, 2) and (n, 2), used measurements (m, n).
+/// The Cramer-Rao bound of the receivers, metres: positions of shape (m, 2) and (n, 2), used
+/// measurements (m, n).
 #[pyfunction]
 pub(crate) fn cramer_rao(
     py: Python<'_>,

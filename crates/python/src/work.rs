@@ -1,4 +1,5 @@
-//! Work beside the interpreter: the lock is released, signals are heeded, progress is told, panics are caught.
+//! Work beside the interpreter: the lock is released, signals are heeded, progress is told, panics
+//! are caught.
 
 use crate::errors::Failure;
 use hc::Monitor;
@@ -38,7 +39,8 @@ struct Kept {
 /// Those of the last call.
 static KEPT: Mutex<Option<Kept>> = Mutex::new(None);
 
-/// This many threads, those of the last call where they are as many. A child process has none of its parent's.
+/// This many threads, those of the last call where they are as many. A child process has none of
+/// its parent's.
 fn pool(threads: Option<usize>) -> Result<Arc<ThreadPool>, Failure> {
     if let Some(count) = threads.filter(|count| !(1..=MOST_THREADS).contains(count)) {
         return Err(Failure::Input(format!("threads must be between 1 and {MOST_THREADS}, not {count}")));

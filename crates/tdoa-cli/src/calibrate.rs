@@ -18,11 +18,13 @@ use crate::{Failure, interrupt, output};
 
 /// Finds positions and offsets of a whole network from its pseudoranges.
 ///
-/// FILE is a CSV matrix (receivers in rows, transmitters in columns, empty or nan where nothing was measured, optionally with names in the
-/// first line and the first column), a CSV list with one measurement a line below a header that names the columns receiver (or mic,
-/// anchor, sensor), transmitter (or event, source, tag), value (or time, toa, range) and, if wanted, sigma, in any order, a .npy array, or a .mat
-/// file with the matrix z (or --variable) and, as truth, the positions rgt. Cells stand between commas, semicolons, tabs or blanks; with
-/// any but commas, numbers may have decimal commas.
+/// FILE is a CSV matrix (receivers in rows, transmitters in columns, empty or nan where nothing was
+/// measured, optionally with names in the first line and the first column), a CSV list with one
+/// measurement a line below a header that names the columns receiver (or mic, anchor, sensor),
+/// transmitter (or event, source, tag), value (or time, toa, range) and, if wanted, sigma, in any
+/// order, a .npy array, or a .mat file with the matrix z (or --variable) and, as truth, the
+/// positions rgt. Cells stand between commas, semicolons, tabs or blanks; with any but commas,
+/// numbers may have decimal commas.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The measurements.
@@ -32,30 +34,33 @@ pub(crate) struct Arguments {
     /// Standard deviation of the measurements in metres; estimated if not given.
     #[arg(long, allow_negative_numbers = true)]
     sigma: Option<f64>,
-    /// Fits a common scale when comparing with --truth and presents the network with it (the propagation speed is then
-    /// wrong by that factor).
+    /// Fits a common scale when comparing with --truth and presents the network with it (the
+    /// propagation speed is then wrong by that factor).
     #[arg(long)]
     scale: bool,
-    /// Known positions of some receivers (columns name, x and y in any order, metres): they fix the frame, and two or more are held
-    /// there, which sharpens the rest.
+    /// Known positions of some receivers (columns name, x and y in any order, metres): they fix the
+    /// frame, and two or more are held there, which sharpens the rest.
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["frame", "scale"])]
     anchors: Option<PathBuf>,
-    /// What is done about receivers whose measurements are all too long or too short, as by a cable: told (none), estimated for those that show
-    /// it (auto; drifting and jumping clocks and moved receivers too), or estimated for all, as where clocks were started apart (all).
+    /// What is done about receivers whose measurements are all too long or too short, as by a
+    /// cable: told (none), estimated for those that show it (auto; drifting and jumping clocks and
+    /// moved receivers too), or estimated for all, as where clocks were started apart (all).
     #[arg(long, value_enum, default_value = "none")]
     receiver_delays: Delays,
-    /// Known distances between some receivers (receiver,receiver,distance, metres), for --estimate-speed.
+    /// Known distances between some receivers (receiver,receiver,distance, metres), for
+    /// --estimate-speed.
     #[arg(long, value_name = "FILE.csv", requires = "estimate_speed")]
     distances: Option<PathBuf>,
-    /// Estimates the propagation speed from the known distances and those between anchors: with --units s, ms, us or samples in
-    /// metres a second (only --sigma depends on --speed then), otherwise as a factor on the one that made the measurements metres.
+    /// Estimates the propagation speed from the known distances and those between anchors: with
+    /// --units s, ms, us or samples in metres a second (only --sigma depends on --speed then),
+    /// otherwise as a factor on the one that made the measurements metres.
     #[arg(long)]
     estimate_speed: bool,
     /// Puts the node ORIGIN at (0, 0), XAXIS on the positive x axis and UP above it.
     #[arg(long, value_name = "ORIGIN,XAXIS,UP")]
     frame: Option<String>,
-    /// True positions of receivers (columns name, x and y, or rgt in a .mat file) to compare with: by name, or in the order of the
-    /// receivers where one side has no names.
+    /// True positions of receivers (columns name, x and y, or rgt in a .mat file) to compare with:
+    /// by name, or in the order of the receivers where one side has no names.
     #[arg(long, value_name = "RECEIVERS.csv")]
     truth: Option<PathBuf>,
     /// Seed of the search.
@@ -67,7 +72,8 @@ pub(crate) struct Arguments {
     /// Most starts of the search.
     #[arg(long, default_value_t = CalibrateOptions::default().max_starts)]
     max_starts: usize,
-    /// Starts that must have found the best network before the search ends: more for more certainty.
+    /// Starts that must have found the best network before the search ends: more for more
+    /// certainty.
     #[arg(long, default_value_t = CalibrateOptions::default().agreeing)]
     agreeing: usize,
     /// Writes the result as JSON; - for standard output instead of the summary.
@@ -76,11 +82,12 @@ pub(crate) struct Arguments {
     /// Writes a picture of the network.
     #[arg(long)]
     svg: Option<PathBuf>,
-    /// Writes a report for a browser and for paper: the picture, and tables of nodes and measurements that sort by a click.
-    /// One file, without references to others.
+    /// Writes a report for a browser and for paper: the picture, and tables of nodes and
+    /// measurements that sort by a click. One file, without references to others.
     #[arg(long)]
     html: Option<PathBuf>,
-    /// Writes the nodes as a CSV table: kind, name, position, standard deviations, offset, numbers of measurements.
+    /// Writes the nodes as a CSV table: kind, name, position, standard deviations, offset, numbers
+    /// of measurements.
     #[arg(long, value_name = "FILE.csv")]
     nodes: Option<PathBuf>,
 }

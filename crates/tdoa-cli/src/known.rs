@@ -59,7 +59,8 @@ impl Truth {
         Ok(truth)
     }
 
-    /// The positions in the order of the receivers: by name, or by order where one side has no names.
+    /// The positions in the order of the receivers: by name, or by order where one side has no
+    /// names.
     fn place(&mut self, path: &Path, nodes: &Nodes, measured: &Pseudoranges) -> Result<Positions, Failure> {
         let receivers = measured.receiver_names();
         let unusable = |problem: String| Err(Failure::in_file(path, problem));
@@ -104,8 +105,8 @@ impl Truth {
     }
 }
 
-/// Known positions in the order of the receivers, and what is to be said of them. A name that no receiver has is more likely a mistake than
-/// meant.
+/// Known positions in the order of the receivers, and what is to be said of them. A name that no
+/// receiver has is more likely a mistake than meant.
 pub(crate) fn anchors(path: &Path, measured: &Pseudoranges) -> Result<(Positions, Option<String>), Failure> {
     let nodes = read_nodes(path).map_err(Failure::unusable)?;
     let receivers = measured.receiver_names();

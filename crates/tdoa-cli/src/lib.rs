@@ -15,8 +15,8 @@ use cli::{Failure, interrupt, on_threads, output};
 
 /// Calibrates sensor networks in the plane from arrival times alone.
 ///
-/// Exit status: 0 success, 1 no solution or data that cannot determine the network, 2 unusable input or arguments, 130
-/// interrupted.
+/// Exit status: 0 success, 1 no solution or data that cannot determine the network, 2 unusable
+/// input or arguments, 130 interrupted.
 #[derive(Parser)]
 #[command(version, arg_required_else_help = true)]
 struct Arguments {

@@ -9,9 +9,11 @@ use crate::Failure;
 use crate::output;
 use crate::units::{Unit, UnitArguments};
 
-/// Makes a random network and its measurements: pseudoranges.csv, receivers.csv, transmitters.csv and offsets.csv.
+/// Makes a random network and its measurements: pseudoranges.csv, receivers.csv, transmitters.csv
+/// and offsets.csv.
 ///
-/// Lengths are metres; --units gives pseudoranges.csv in another unit, and offsets.csv a column in it.
+/// Lengths are metres; --units gives pseudoranges.csv in another unit, and offsets.csv a column in
+/// it.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Number of receivers.
@@ -32,10 +34,12 @@ pub(crate) struct Arguments {
     /// Share of missing measurements, 0 to 1; their number is rounded.
     #[arg(long, default_value_t = 0.0)]
     missing: f64,
-    /// Positions uniform in a room of WIDTHxHEIGHT metres, or `normal` for standard normal positions and offsets.
+    /// Positions uniform in a room of WIDTHxHEIGHT metres, or `normal` for standard normal
+    /// positions and offsets.
     #[arg(long, default_value = "10x10")]
     layout: String,
-    /// How receivers stand in the room: anywhere, one after the other along WIDTH, or at the points of a grid.
+    /// How receivers stand in the room: anywhere, one after the other along WIDTH, or at the points
+    /// of a grid.
     #[arg(long, value_enum, default_value = "anywhere")]
     shape: Shape,
     /// Each transmitter is heard by this many receivers, the nearest ones; by all if not given.
@@ -47,8 +51,8 @@ pub(crate) struct Arguments {
     /// Mean length of a detour, metres; lengths are exponentially distributed.
     #[arg(long, default_value_t = 1.0)]
     detour_size: f64,
-    /// An error of the first receiver in all its measurements: `delay=METRES`, `drift=METRES` from the first transmitter to the last one, or
-    /// `move=METRES` after half of the transmitters.
+    /// An error of the first receiver in all its measurements: `delay=METRES`, `drift=METRES` from
+    /// the first transmitter to the last one, or `move=METRES` after half of the transmitters.
     #[arg(long, value_name = "KIND=METRES")]
     fault: Option<String>,
     /// Standard deviation of a constant delay of each receiver, metres.

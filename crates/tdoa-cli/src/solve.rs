@@ -12,21 +12,24 @@ use tdoa::{MinimalSolution, Monitor, Pseudoranges};
 use crate::units::Unit;
 use crate::{Failure, interrupt, output};
 
-/// Finds every network that explains pseudoranges without errors, best first: 6r/3s, 4r/5s, 5r/4s and all larger sizes.
+/// Finds every network that explains pseudoranges without errors, best first: 6r/3s, 4r/5s, 5r/4s
+/// and all larger sizes.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The measurements, in the forms that `calibrate` takes; none may be missing.
     file: PathBuf,
     #[command(flatten)]
     input: crate::units::InputArguments,
-    /// How far below zero a distance may lie for a network to count as physical, as a share of the size of the data; for
-    /// noisy data the noise.
+    /// How far below zero a distance may lie for a network to count as physical, as a share of the
+    /// size of the data; for noisy data the noise.
     #[arg(long, default_value_t = SolveOptions::default().tolerance)]
     tolerance: f64,
-    /// Where paths start: at the stored solutions of a generic instance, or at a polyhedral start system computed for these data.
+    /// Where paths start: at the stored solutions of a generic instance, or at a polyhedral start
+    /// system computed for these data.
     #[arg(long, value_enum, default_value = "stored")]
     start: StartArgument,
-    /// Stops at the first physical network with a residual (root mean square, metres) below this; 6r/3s, 5r/4s, 4r/5s and 5r/6s only.
+    /// Stops at the first physical network with a residual (root mean square, metres) below this;
+    /// 6r/3s, 5r/4s, 4r/5s and 5r/6s only.
     #[arg(long, value_name = "METRES")]
     first_under: Option<f64>,
     /// Threads; all cores if not given. The result does not depend on it.

@@ -7,11 +7,13 @@ use crate::Failure;
 /// Unit of the measurements.
 #[derive(clap::Args)]
 pub(crate) struct UnitArguments {
-    /// Unit of the measurements: metres, seconds, milliseconds, microseconds or samples. What is written is in metres; offsets in this
-    /// unit too. Metres if not given, but then a table headed by times is refused.
+    /// Unit of the measurements: metres, seconds, milliseconds, microseconds or samples. What is
+    /// written is in metres; offsets in this unit too. Metres if not given, but then a table headed
+    /// by times is refused.
     #[arg(long, value_enum)]
     units: Option<Choice>,
-    /// Propagation speed in metres a second, for all units but metres; sound in air: 343, radio: 299792458.
+    /// Propagation speed in metres a second, for all units but metres; sound in air: 343,
+    /// radio: 299792458.
     #[arg(long, allow_negative_numbers = true, value_name = "M/S")]
     speed: Option<f64>,
     /// Samples a second, for --units samples.

@@ -8,7 +8,8 @@ fn main() {
     divan::main();
 }
 
-/// Receivers, transmitters, and the share of outliers: 1 cm of noise in a room of 10 m, a tenth of the measurements missing.
+/// Receivers, transmitters, and the share of outliers: 1 cm of noise in a room of 10 m, a tenth of
+/// the measurements missing.
 #[divan::bench(args = [(8, 12, 0.0), (8, 12, 0.1), (10, 20, 0.1), (25, 20, 0.1)], sample_count = 10)]
 fn networks(bencher: Bencher<'_, '_>, (receivers, transmitters, outliers): (usize, usize, f64)) {
     let mut options = SimulateOptions::default();

@@ -1,4 +1,5 @@
-//! A network calibrated from a table of arrival times, and a picture of the result where a file for it is named:
+//! A network calibrated from a table of arrival times, and a picture of the result where a file for
+//! it is named:
 //!
 //!     cargo run --release -p tdoa --example calibrate -- network.svg
 

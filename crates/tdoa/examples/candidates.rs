@@ -1,4 +1,5 @@
-//! Every network that explains a small table of arrival times exactly, for each size that has a solver of its own:
+//! Every network that explains a small table of arrival times exactly, for each size that has a
+//! solver of its own:
 //!
 //!     cargo run --release -p tdoa --example candidates
 
@@ -8,7 +9,8 @@ use tdoa::minimal::{SolveOptions, Solver};
 use tdoa::{SimulateOptions, simulate};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // A solver keeps its start solutions and its memory for the next network; here each is used once.
+    // A solver keeps its start solutions and its memory for the next network; here each is used
+    // once.
     let (mut solver, exact) = (Solver::new(), SolveOptions::default());
     println!("size    paths  lost  real  physical  milliseconds  truth among them");
     for (receivers, transmitters) in [(6, 3), (7, 3), (6, 4), (5, 4), (5, 5), (4, 5), (4, 6), (5, 6), (7, 4), (9, 3)] {

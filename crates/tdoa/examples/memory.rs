@@ -1,4 +1,5 @@
-//! What the minimal solvers keep in memory, and what a solve takes besides once the solver has been used:
+//! What the minimal solvers keep in memory, and what a solve takes besides once the solver has been
+//! used:
 //!
 //!     cargo run --release -p tdoa --example memory
 

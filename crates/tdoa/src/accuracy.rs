@@ -7,11 +7,12 @@ use crate::plane::spread;
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::covariance;
 
-/// The Cramer-Rao bound of a network's receivers: the root mean square over them of the smallest standard deviation that any unbiased
-/// estimate can have, metres, after the best rigid alignment.
+/// The Cramer-Rao bound of a network's receivers: the root mean square over them of the smallest
+/// standard deviation that any unbiased estimate can have, metres, after the best rigid alignment.
 ///
-/// `truth` is the true network and `noise` the standard deviation of the measurements in metres. Measurements that `outliers` names
-/// (row-major, one a cell) do not count. Infinite if the others do not determine every receiver.
+/// `truth` is the true network and `noise` the standard deviation of the measurements in metres.
+/// Measurements that `outliers` names (row-major, one a cell) do not count. Infinite if the others
+/// do not determine every receiver.
 ///
 /// # Panics
 /// If network, measurements and outliers differ in size.
@@ -25,8 +26,8 @@ pub fn cramer_rao(measured: &Pseudoranges, outliers: &[bool], truth: &Network, n
     (trace / found.receivers.len() as f64).sqrt()
 }
 
-/// The relative error `|X^ - X| / |X - mean X|` of the positions X of all nodes, after the best rigid alignment (reflection allowed).
-/// Infinite for networks of different sizes.
+/// The relative error `|X^ - X| / |X - mean X|` of the positions X of all nodes, after the best
+/// rigid alignment (reflection allowed). Infinite for networks of different sizes.
 pub fn position_error(found: &Network, truth: &Network) -> f64 {
     if found.receivers.len() != truth.receivers.len() {
         return f64::INFINITY;

@@ -1,5 +1,6 @@
-//! Procrustes alignment in the plane: the distance-preserving map (or similarity) that brings one set of points
-//! closest to another. Reflections are allowed, since arrival times cannot tell a network from its mirror image.
+//! Procrustes alignment in the plane: the distance-preserving map (or similarity) that brings one
+//! set of points closest to another. Reflections are allowed, since arrival times cannot tell a
+//! network from its mirror image.
 
 use serde::Serialize;
 
@@ -59,11 +60,13 @@ pub struct Alignment {
     pub rms: f64,
 }
 
-/// The map of least squared error from `from` to `to` (same number of points, paired by index): rotation or reflection
-/// and translation, and a common scale if `scale` is true. `None` for no points or different numbers of them.
+/// The map of least squared error from `from` to `to` (same number of points, paired by index):
+/// rotation or reflection and translation, and a common scale if `scale` is true. `None` for no
+/// points or different numbers of them.
 ///
-/// With points as complex numbers about their centroids, the best rotation is the phase of sum conj(a) b, the best
-/// reflection the phase of sum a b, and the better of both is the one of larger modulus.
+/// With points as complex numbers about their centroids, the best rotation is the phase of sum
+/// conj(a) b, the best reflection the phase of sum a b, and the better of both is the one of larger
+/// modulus.
 pub fn align(from: &[[f64; 2]], to: &[[f64; 2]], scale: bool) -> Option<Alignment> {
     if from.is_empty() || from.len() != to.len() {
         return None;
@@ -89,8 +92,8 @@ pub fn align(from: &[[f64; 2]], to: &[[f64; 2]], scale: bool) -> Option<Alignmen
     Some(Alignment { transform, rms: (sum / from.len() as f64).sqrt() })
 }
 
-/// The map that puts the point `origin` at (0, 0), `x_axis` on the positive x axis and `up` above it. `None` if the
-/// three do not fix a frame (coincident or collinear points).
+/// The map that puts the point `origin` at (0, 0), `x_axis` on the positive x axis and `up` above
+/// it. `None` if the three do not fix a frame (coincident or collinear points).
 pub fn frame(origin: [f64; 2], x_axis: [f64; 2], up: [f64; 2]) -> Option<Transform> {
     let length = distance(origin, x_axis);
     let (cos, sin) = ((x_axis[0] - origin[0]) / length, (x_axis[1] - origin[1]) / length);
@@ -126,7 +129,8 @@ mod tests {
             prop_assert!(found.rms < 1e-12 * 100.0);
             prop_assume!(points.iter().any(|&p| distance(p, points[0]) > 1e-3));
             prop_assert!((found.transform.scale - scale).abs() < 1e-9 * scale);
-            // Without scale no rigid map is better than the one found, for instance the one without its scale.
+            // Without scale no rigid map is better than the one found, for instance the one without
+            // its scale.
             let rigid = align(&points, &image, false).unwrap();
             prop_assert!(rigid.transform.scale == 1.0 && rigid.rms >= found.rms - 1e-12);
         }

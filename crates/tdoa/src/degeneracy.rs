@@ -5,26 +5,27 @@ use thiserror::Error;
 use crate::duplicates::{constant_difference, printed};
 use crate::pseudoranges::Pseudoranges;
 
-/// The smallest configurations that determine a network: the minimal ones 6r/3s and 4r/5s, and 5r/4s, which has one
-/// constraint to spare. A matrix is solvable if it holds one of them.
+/// The smallest configurations that determine a network: the minimal ones 6r/3s and 4r/5s, and
+/// 5r/4s, which has one constraint to spare. A matrix is solvable if it holds one of them.
 pub(crate) const SMALLEST: &str = "6 receivers and 3 transmitters, 5 and 4, or 4 and 5";
 
-/// A node needs this many measurements to be kept: a transmitter three for its position and offset and one to fix which
-/// of two solutions is meant, a receiver two and one.
+/// A node needs this many measurements to be kept: a transmitter three for its position and offset
+/// and one to fix which of two solutions is meant, a receiver two and one.
 pub(crate) const LEAST_PER_TRANSMITTER: usize = 4;
 const LEAST_PER_RECEIVER: usize = 3;
 
 /// Receivers at most: the normal equations are dense in their coordinates.
 const MAX_RECEIVERS: usize = 2_000;
 
-/// Number of equations minus number of unknowns of m receivers and n transmitters, all measured: mn - 2m - 3n + 3.
+/// Number of equations minus number of unknowns of m receivers and n transmitters, all measured:
+/// mn - 2m - 3n + 3.
 pub(crate) fn excess(receivers: usize, transmitters: usize) -> i64 {
     let (m, n) = (receivers as i64, transmitters as i64);
     m * n - 2 * m - 3 * n + 3
 }
 
-/// Whether a complete matrix of this size has finitely many solutions: at least four receivers, three transmitters, and
-/// no more unknowns than equations.
+/// Whether a complete matrix of this size has finitely many solutions: at least four receivers,
+/// three transmitters, and no more unknowns than equations.
 pub(crate) fn is_solvable(receivers: usize, transmitters: usize) -> bool {
     receivers >= 4 && transmitters >= 3 && excess(receivers, transmitters) >= 0
 }
@@ -278,7 +279,8 @@ pub(crate) fn list(names: &[String]) -> String {
     format!("{} and {} more", names[..12].join(", "), names.len() - 12)
 }
 
-/// Two receivers whose rows differ by a constant to rounding, over at least three common transmitters.
+/// Two receivers whose rows differ by a constant to rounding, over at least three common
+/// transmitters.
 fn identical_receivers(
     measured: &Pseudoranges,
     receivers: &[usize],
@@ -295,8 +297,8 @@ fn identical_receivers(
     None
 }
 
-/// How many transmitters repeat the column of an earlier one up to a constant (same place, another time): they are no
-/// new information.
+/// How many transmitters repeat the column of an earlier one up to a constant (same place, another
+/// time): they are no new information.
 fn repeated_transmitters(measured: &Pseudoranges, receivers: &[usize], transmitters: &[usize]) -> usize {
     // Only small networks can fail for it, and comparing all pairs of many is slow.
     if transmitters.len() > 64 {

@@ -1,10 +1,12 @@
-//! Nodes that measure the same up to a constant: they stand in one place, or one is a copy of the other.
+//! Nodes that measure the same up to a constant: they stand in one place, or one is a copy of the
+//! other.
 //!
-//! What "the same" means depends on what the numbers may be. Measurements from anywhere may be printed with few digits; data that are
-//! solved exactly are taken at their word, as two nodes a micrometre apart are two nodes.
+//! What "the same" means depends on what the numbers may be. Measurements from anywhere may be
+//! printed with few digits; data that are solved exactly are taken at their word, as two nodes a
+//! micrometre apart are two nodes.
 
-/// The constant by which the second of each pair exceeds the first, up to `tolerance`; `None` if it varies or there are fewer than
-/// three pairs.
+/// The constant by which the second of each pair exceeds the first, up to `tolerance`; `None` if it
+/// varies or there are fewer than three pairs.
 pub(crate) fn constant_difference(pairs: impl Iterator<Item = (f64, f64)>, tolerance: f64) -> Option<f64> {
     let (mut low, mut high, mut count) = (f64::INFINITY, f64::NEG_INFINITY, 0);
     for (x, y) in pairs {

@@ -1,5 +1,5 @@
-//! A calibration as one self-contained HTML report: the picture, the warnings, and sortable tables of nodes and
-//! measurements. It refers to nothing outside itself.
+//! A calibration as one self-contained HTML report: the picture, the warnings, and sortable tables
+//! of nodes and measurements. It refers to nothing outside itself.
 
 use std::fmt::Write;
 

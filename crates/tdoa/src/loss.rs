@@ -1,14 +1,16 @@
 //! The robust loss: residuals as draws of Student's t distribution.
 //!
-//! With nu degrees of freedom and scale s, a residual e costs (nu + 1)/2 ln(1 + (e/s)^2/nu), up to the term ln s that
-//! matters when s is estimated as well; nu = 1 is the Cauchy loss, an infinite nu least squares.
+//! With nu degrees of freedom and scale s, a residual e costs (nu + 1)/2 ln(1 + (e/s)^2/nu), up to
+//! the term ln s that matters when s is estimated as well; nu = 1 is the Cauchy loss, an infinite
+//! nu least squares.
 
 /// Student's t loss.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Loss {
     /// Degrees of freedom; infinite for least squares.
     pub nu: f64,
-    /// Scale of the residuals, metres (or a factor on the standard deviations where measurements carry their own).
+    /// Scale of the residuals, metres (or a factor on the standard deviations where measurements
+    /// carry their own).
     pub scale: f64,
 }
 
@@ -19,7 +21,8 @@ impl Loss {
         if self.nu.is_infinite() { 0.5 * u2 } else { 0.5 * (self.nu + 1.0) * (u2 / self.nu).ln_1p() }
     }
 
-    /// Sum of the costs of residuals. The logarithm is taken of products: it costs more than all else. Infinite for absurd residuals.
+    /// Sum of the costs of residuals. The logarithm is taken of products: it costs more than all
+    /// else. Infinite for absurd residuals.
     pub fn total(&self, residuals: impl Iterator<Item = f64>) -> f64 {
         if self.nu.is_infinite() {
             return residuals.map(|e| self.cost(e)).sum();
@@ -36,15 +39,17 @@ impl Loss {
         0.5 * (self.nu + 1.0) * (sum + product.ln())
     }
 
-    /// Weight of a residual in iteratively reweighted least squares, without the factor 1/scale^2: cost'(u)/u.
+    /// Weight of a residual in iteratively reweighted least squares, without the factor 1/scale^2:
+    /// cost'(u)/u.
     pub fn weight(&self, residual: f64) -> f64 {
         let u2 = (residual / self.scale).powi(2);
         if self.nu.is_infinite() { 1.0 } else { (self.nu + 1.0) / (self.nu + u2) }
     }
 }
 
-/// Factor from the scale that maximises the likelihood to the standard deviation, for residuals that are in truth normal:
-/// the tau with E[(nu + 1) z^2/(nu + z^2)] = 1 for z normal with deviation tau.
+/// Factor from the scale that maximises the likelihood to the standard deviation, for residuals
+/// that are in truth normal: the tau with E[(nu + 1) z^2/(nu + z^2)] = 1 for z normal with
+/// deviation tau.
 pub fn normal_deviation(nu: f64) -> f64 {
     if nu.is_infinite() {
         return 1.0;
@@ -65,10 +70,11 @@ pub fn normal_deviation(nu: f64) -> f64 {
 
 /// Degrees of freedom of the search.
 ///
-/// The scale is estimated from the restricted likelihood, (N - p) ln s + sum of costs for N measurements and p unknowns.
-/// With a share q = p/N it breaks down to scale 0 when more than a share 1 - (1 - q)/(nu + 1) of the residuals can be made
-/// zero at once (fitting as many as there are unknowns makes a share q zero), and grows without bound when a share
-/// (1 - q)/(nu + 1) are outliers. The Cauchy loss, nu = 1, leaves half of the redundancy to either side.
+/// The scale is estimated from the restricted likelihood, (N - p) ln s + sum of costs for N
+/// measurements and p unknowns. With a share q = p/N it breaks down to scale 0 when more than a
+/// share 1 - (1 - q)/(nu + 1) of the residuals can be made zero at once (fitting as many as there
+/// are unknowns makes a share q zero), and grows without bound when a share (1 - q)/(nu + 1) are
+/// outliers. The Cauchy loss, nu = 1, leaves half of the redundancy to either side.
 pub const SEARCH_NU: f64 = 1.0;
 
 #[cfg(test)]
@@ -100,8 +106,8 @@ mod tests {
 
     #[test]
     fn normal_deviation_of_the_cauchy_loss() {
-        // E[2 z^2/(1 + z^2)] = 1 means E[1/(1 + z^2)] = 1/2; with z = tau x that is sqrt(pi/2)/tau e^(1/(2 tau^2))
-        // erfc(1/(tau sqrt 2)) = 1/2, solved by tau = 1.6335.
+        // E[2 z^2/(1 + z^2)] = 1 means E[1/(1 + z^2)] = 1/2; with z = tau x that is sqrt(pi/2)/tau
+        // e^(1/(2 tau^2)) erfc(1/(tau sqrt 2)) = 1/2, solved by tau = 1.6335.
         assert!((normal_deviation(1.0) - 1.6335).abs() < 1e-3, "{}", normal_deviation(1.0));
         assert!((normal_deviation(1e6) - 1.0).abs() < 1e-5);
     }

@@ -1,6 +1,7 @@
 //! The median.
 
-/// The middle one of the numbers, of an even number of them the larger of the two in the middle; `None` of none.
+/// The middle one of the numbers, of an even number of them the larger of the two in the middle;
+/// `None` of none.
 pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied()

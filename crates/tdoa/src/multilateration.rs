@@ -1,9 +1,10 @@
-//! One more node from known ones: a transmitter with unknown offset from three or more receivers (time differences of
-//! arrival), or a receiver from two or more transmitters with known offsets (times of arrival).
+//! One more node from known ones: a transmitter with unknown offset from three or more receivers
+//! (time differences of arrival), or a receiver from two or more transmitters with known offsets
+//! (times of arrival).
 //!
-//! Minimal subsets of the measurements are solved in closed form, each solution is scored over all measurements with
-//! the robust loss, and the best are polished by damped Gauss-Newton steps. Outliers therefore do no harm as long as a
-//! subset without them is drawn.
+//! Minimal subsets of the measurements are solved in closed form, each solution is scored over all
+//! measurements with the robust loss, and the best are polished by damped Gauss-Newton steps.
+//! Outliers therefore do no harm as long as a subset without them is drawn.
 
 use crate::loss::Loss;
 use crate::plane::distance;
@@ -14,15 +15,17 @@ const SUBSETS: usize = 32;
 /// Most Gauss-Newton steps of a polish.
 const STEPS: usize = 12;
 
-/// One measurement of the wanted node: the known node's position and a length in metres. For a wanted transmitter
-/// the length is the pseudorange, for a wanted receiver the pseudorange minus the known transmitter's offset.
+/// One measurement of the wanted node: the known node's position and a length in metres. For a
+/// wanted transmitter the length is the pseudorange, for a wanted receiver the pseudorange minus
+/// the known transmitter's offset.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sight {
     /// Position of the known node.
     pub position: [f64; 2],
     /// Pseudorange (wanted transmitter) or distance (wanted receiver), metres.
     pub length: f64,
-    /// Factor on the residual before the loss sees it: 1, or one over the measurement's standard deviation.
+    /// Factor on the residual before the loss sees it: 1, or one over the measurement's standard
+    /// deviation.
     pub precision: f64,
 }
 
@@ -37,11 +40,11 @@ pub struct Located {
     pub cost: f64,
 }
 
-/// A transmitter and its offset from sights of at least three receivers. `None` for fewer, or if all subsets are
-/// degenerate (receivers in one point).
+/// A transmitter and its offset from sights of at least three receivers. `None` for fewer, or if
+/// all subsets are degenerate (receivers in one point).
 ///
-/// Three receivers give a line of solutions linear in p = o - f_1 and a quadratic for p (Bancroft's equations in the
-/// plane); both roots with f_1 - o >= 0 are tried.
+/// Three receivers give a line of solutions linear in p = o - f_1 and a quadratic for p (Bancroft's
+/// equations in the plane); both roots with f_1 - o >= 0 are tried.
 pub fn transmitter(sights: &[Sight], loss: &Loss) -> Option<Located> {
     let mut best = Best::default();
     for_subsets(sights.len(), 3, |s| {
@@ -52,8 +55,9 @@ pub fn transmitter(sights: &[Sight], loss: &Loss) -> Option<Located> {
     best.polish(sights, true, loss)
 }
 
-/// A receiver from sights of at least two transmitters. With exactly two, or all in line, its mirror image is as good;
-/// one of both is returned. `None` for fewer than two sights or coincident transmitters.
+/// A receiver from sights of at least two transmitters. With exactly two, or all in line, its
+/// mirror image is as good; one of both is returned. `None` for fewer than two sights or coincident
+/// transmitters.
 pub fn receiver(sights: &[Sight], loss: &Loss) -> Option<Located> {
     let mut best = Best::default();
     for_subsets(sights.len(), 2, |s| {
@@ -69,7 +73,8 @@ pub(crate) fn cost(sights: &[Sight], position: [f64; 2], offset: f64, loss: &Los
     loss.total(sights.iter().map(|s| (s.length - offset - distance(s.position, position)) * s.precision))
 }
 
-/// The two best solutions so far: an outlier's or a mirror image's basin may look better before the polish.
+/// The two best solutions so far: an outlier's or a mirror image's basin may look better before the
+/// polish.
 #[derive(Default)]
 struct Best([Option<Located>; 2]);
 
@@ -91,8 +96,8 @@ impl Best {
     }
 }
 
-/// Calls `visit` with subsets of 0..count: all of them if they are at most [`SUBSETS`], else that many which are spread
-/// evenly by a fixed rule.
+/// Calls `visit` with subsets of 0..count: all of them if they are at most [`SUBSETS`], else that
+/// many which are spread evenly by a fixed rule.
 fn for_subsets(count: usize, size: usize, mut visit: impl FnMut(&[usize])) {
     if count < size {
         return;
@@ -162,7 +167,8 @@ fn from_two(a: &Sight, b: &Sight) -> [Option<[f64; 2]>; 2] {
     [Some(at(across)), if across > 0.0 { Some(at(-across)) } else { None }]
 }
 
-/// Real roots of a x^2 + 2 b x + c, or the real part of a complex pair: with noise a double root may become one.
+/// Real roots of a x^2 + 2 b x + c, or the real part of a complex pair: with noise a double root
+/// may become one.
 fn quadratic(a: f64, b: f64, c: f64) -> [Option<f64>; 2] {
     let disc = (b * b - a * c).max(0.0).sqrt();
     let q = -(b + if b >= 0.0 { disc } else { -disc });

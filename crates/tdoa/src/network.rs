@@ -5,7 +5,8 @@ use serde::Serialize;
 use crate::plane::{distance, spread};
 use crate::pseudoranges::Pseudoranges;
 
-/// A complete network in the plane: every receiver, every transmitter and its offset, all in metres.
+/// A complete network in the plane: every receiver, every transmitter and its offset, all in
+/// metres.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Network {
     /// Positions of the receivers.
@@ -33,7 +34,8 @@ impl Network {
         (0..self.receivers.len()).flat_map(row).collect()
     }
 
-    /// The unsquared residuals f_ij - o_j - |r_i - s_j| in metres, row-major, NaN where the measurement is missing.
+    /// The unsquared residuals f_ij - o_j - |r_i - s_j| in metres, row-major, NaN where the
+    /// measurement is missing.
     ///
     /// # Panics
     /// If the network and the measurements differ in size.
@@ -47,7 +49,8 @@ impl Network {
         measured.values().iter().enumerate().map(move |(k, f)| f - self.pseudorange(k / n, k % n))
     }
 
-    /// Root mean square of the unsquared residuals over the measured cells, in metres; 0 if nothing was measured.
+    /// Root mean square of the unsquared residuals over the measured cells, in metres; 0 if nothing
+    /// was measured.
     ///
     /// # Panics
     /// If the network and the measurements differ in size.
@@ -63,8 +66,8 @@ impl Network {
         if count == 0 { 0.0 } else { (sum / count as f64).sqrt() }
     }
 
-    /// Whether every measured f_ij - o_j, which is a distance, is at least `-tolerance` (metres). The squared equations
-    /// lose this condition; a network that breaks it is a wrong-sign branch.
+    /// Whether every measured f_ij - o_j, which is a distance, is at least `-tolerance` (metres).
+    /// The squared equations lose this condition; a network that breaks it is a wrong-sign branch.
     ///
     /// # Panics
     /// If the network and the measurements differ in size.
@@ -83,7 +86,8 @@ impl Network {
         self.receivers.iter().chain(&self.transmitters).flatten().chain(&self.offsets).all(|x| x.is_finite())
     }
 
-    /// The network's size: root mean square distance of the receivers from their centroid, in metres.
+    /// The network's size: root mean square distance of the receivers from their centroid, in
+    /// metres.
     pub fn size(&self) -> f64 {
         spread(self.receivers.iter())
     }

@@ -56,7 +56,8 @@ impl Observations {
         Observations::of(m, entries, columns)
     }
 
-    /// Measurements in the order of the transmitters, of which `columns` holds the first of each and their number.
+    /// Measurements in the order of the transmitters, of which `columns` holds the first of each
+    /// and their number.
     fn of(m: usize, entries: Vec<Observation>, columns: Vec<usize>) -> Self {
         let mut row_entries: Vec<usize> = (0..entries.len()).collect();
         row_entries.sort_by_key(|&k| entries[k].receiver);
@@ -125,8 +126,8 @@ impl Observations {
         self.entries.len()
     }
 
-    /// Number of unknowns of the network: positions and offsets, up to a rigid motion of the plane or without the
-    /// receivers that are held. One held receiver leaves the rotation about it.
+    /// Number of unknowns of the network: positions and offsets, up to a rigid motion of the plane
+    /// or without the receivers that are held. One held receiver leaves the rotation about it.
     pub(crate) fn unknowns(&self) -> usize {
         let held = self.held.iter().filter(|&&held| held).count();
         (2 * self.receivers + 3 * self.transmitters).saturating_sub((2 * held).max(3)) + self.others

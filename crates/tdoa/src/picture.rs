@@ -1,5 +1,5 @@
-//! A calibration as an SVG picture: the network with 95 % ellipses, names, a scale bar, the truth and error vectors where
-//! it is given, outliers, and a histogram of the residuals.
+//! A calibration as an SVG picture: the network with 95 % ellipses, names, a scale bar, the truth
+//! and error vectors where it is given, outliers, and a histogram of the residuals.
 
 mod canvas;
 mod histogram;

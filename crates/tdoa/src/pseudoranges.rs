@@ -5,10 +5,12 @@ use thiserror::Error;
 /// Largest number of cells (receivers times transmitters) of a matrix: 4 million, 32 MB of values.
 pub const MAX_CELLS: usize = 4_000_000;
 
-/// Largest magnitude of a value, in metres. Above it a double cannot resolve a tenth of a millimetre.
+/// Largest magnitude of a value, in metres. Above it a double cannot resolve a tenth of a
+/// millimetre.
 pub const MAX_MAGNITUDE: f64 = 1e12;
 
-/// Why numbers do not form a [`Pseudoranges`] matrix. Receivers and transmitters are given by name, or counted from 1.
+/// Why numbers do not form a [`Pseudoranges`] matrix. Receivers and transmitters are given by name,
+/// or counted from 1.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PseudorangeError {
@@ -78,8 +80,8 @@ pub enum PseudorangeError {
     },
 }
 
-/// The matrix f_ij of pseudoranges in metres: f_ij = |r_i - s_j| + o_j + noise, receivers i in rows, transmitters j in
-/// columns. Cells that were not measured are missing.
+/// The matrix f_ij of pseudoranges in metres: f_ij = |r_i - s_j| + o_j + noise, receivers i in
+/// rows, transmitters j in columns. Cells that were not measured are missing.
 ///
 /// ```
 /// use tdoa::Pseudoranges;
@@ -102,8 +104,8 @@ pub struct Pseudoranges {
 }
 
 impl Pseudoranges {
-    /// A matrix of `receivers` rows and `transmitters` columns from row-major `values` in metres; NaN is a missing
-    /// cell. Nodes are named `r1`, `r2`, ... and `s1`, `s2`, ...
+    /// A matrix of `receivers` rows and `transmitters` columns from row-major `values` in metres;
+    /// NaN is a missing cell. Nodes are named `r1`, `r2`, ... and `s1`, `s2`, ...
     ///
     /// # Errors
     /// An empty or too large matrix, a wrong number of values, an infinite or huge value.
@@ -169,7 +171,8 @@ impl Pseudoranges {
         Ok(self)
     }
 
-    /// This matrix with a standard deviation (metres) for each cell, row-major; those of missing cells are ignored.
+    /// This matrix with a standard deviation (metres) for each cell, row-major; those of missing
+    /// cells are ignored.
     ///
     /// # Errors
     /// A wrong number of them, or one that is not positive and finite.
@@ -197,7 +200,8 @@ impl Pseudoranges {
         self.transmitters
     }
 
-    /// The pseudorange of receiver `i` and transmitter `j` in metres, `None` where it is missing or out of range.
+    /// The pseudorange of receiver `i` and transmitter `j` in metres, `None` where it is missing or
+    /// out of range.
     pub fn get(&self, i: usize, j: usize) -> Option<f64> {
         if i >= self.receivers || j >= self.transmitters {
             return None;
@@ -247,7 +251,8 @@ impl Pseudoranges {
         format!("{}r/{}s", self.receivers, self.transmitters)
     }
 
-    /// This matrix with a number subtracted from each column, as if the transmitters' clocks were set differently.
+    /// This matrix with a number subtracted from each column, as if the transmitters' clocks were
+    /// set differently.
     pub(crate) fn shifted(&self, shifts: &[f64]) -> Pseudoranges {
         let n = self.transmitters;
         let values = self.values.iter().enumerate().map(|(k, value)| value - shifts[k % n]).collect();
@@ -259,7 +264,8 @@ impl Pseudoranges {
         Pseudoranges { values, ..self.clone() }
     }
 
-    /// The matrix of these receivers and transmitters, in this order, with their names and standard deviations.
+    /// The matrix of these receivers and transmitters, in this order, with their names and standard
+    /// deviations.
     ///
     /// # Panics
     /// If an index is out of range.

@@ -1,7 +1,7 @@
 //! Numbers and lengths as people read them.
 
-/// A number with this many significant digits at most and none that are zeros at its end: `0.3`, `343`, `299792458`. Powers of ten appear
-/// only below a millionth and from 10^15 on.
+/// A number with this many significant digits at most and none that are zeros at its end: `0.3`,
+/// `343`, `299792458`. Powers of ten appear only below a millionth and from 10^15 on.
 ///
 /// ```
 /// use tdoa::quantity::number;
@@ -24,7 +24,8 @@ pub fn number(value: f64, digits: usize) -> String {
     if text == "-0" { "0".to_string() } else { text.to_string() }
 }
 
-/// A length with three significant digits in the unit that suits it, from micrometres to kilometres.
+/// A length with three significant digits in the unit that suits it, from micrometres to
+/// kilometres.
 ///
 /// ```
 /// use tdoa::quantity::length;
@@ -45,7 +46,8 @@ pub fn length(metres: f64) -> String {
     format!("{} {unit}", number(metres * factor, 3))
 }
 
-/// Decimals with which coordinates of a network of this size, in metres, show a hundred thousandth of it: 4 for ten metres.
+/// Decimals with which coordinates of a network of this size, in metres, show a hundred thousandth
+/// of it: 4 for ten metres.
 pub fn decimals(size: f64) -> usize {
     if size > 0.0 && size.is_finite() { (5.0 - size.log10().floor()).clamp(1.0, 12.0) as usize } else { 4 }
 }

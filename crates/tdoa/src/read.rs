@@ -1,4 +1,5 @@
-//! Pseudoranges from files: a CSV matrix, a CSV list with one measurement a line, NumPy's .npy, or MATLAB's .mat.
+//! Pseudoranges from files: a CSV matrix, a CSV list with one measurement a line, NumPy's .npy, or
+//! MATLAB's .mat.
 
 mod cells;
 mod distances;
@@ -26,13 +27,15 @@ use source::{has_extension, open, text};
 
 /// Reads pseudoranges from a file: `.npy` and `.mat` by their extension, else CSV.
 ///
-/// The CSV is a matrix, receivers in rows and transmitters in columns, empty or `nan` where nothing was measured, with an optional
-/// first line that names the transmitters and an optional first column that names the receivers (headed by `receiver`, `id`,
-/// `name` or nothing, or by any word if names stand below it); or a list of one measurement a line with a first line that
-/// names the columns receiver (or mic, microphone, anchor, sensor, station), transmitter (or event, source, emitter, sound,
-/// tag), value (or pseudorange, range, distance, time, toa, arrival) and optionally sigma, a standard deviation for each measurement. Cells
-/// are separated by semicolons, tabs, commas or blanks, whichever the first line has; with any but commas, numbers may have
-/// decimal commas. The text is UTF-8, or UTF-16 with a byte order mark.
+/// The CSV is a matrix, receivers in rows and transmitters in columns, empty or `nan` where nothing
+/// was measured, with an optional first line that names the transmitters and an optional first
+/// column that names the receivers (headed by `receiver`, `id`, `name` or nothing, or by any word
+/// if names stand below it); or a list of one measurement a line with a first line that names the
+/// columns receiver (or mic, microphone, anchor, sensor, station), transmitter (or event, source,
+/// emitter, sound, tag), value (or pseudorange, range, distance, time, toa, arrival) and optionally
+/// sigma, a standard deviation for each measurement. Cells are separated by semicolons, tabs,
+/// commas or blanks, whichever the first line has; with any but commas, numbers may have decimal
+/// commas. The text is UTF-8, or UTF-16 with a byte order mark.
 ///
 /// # Errors
 /// With file, line, column and the names of the nodes, and what to do.
@@ -74,8 +77,8 @@ pub fn read_npy(source: impl Read, file: &str, options: impl Into<ReadOptions>) 
     npy::parse(source.take(MAX_BYTES), file, factor)
 }
 
-/// Reads a matrix (receivers in rows) of a .mat file as [`read`] does: the variable that is asked for, else z, else the only matrix
-/// there is; `file` names the source in errors.
+/// Reads a matrix (receivers in rows) of a .mat file as [`read`] does: the variable that is asked
+/// for, else z, else the only matrix there is; `file` names the source in errors.
 ///
 /// # Errors
 /// Those of [`read`].

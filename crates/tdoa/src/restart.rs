@@ -1,10 +1,10 @@
 //! Networks to start the refinement from, when no minimal solver proposes any.
 //!
-//! A transmitter's pseudoranges of two receivers differ by at most the distance of the two, and by nearly that much if
-//! the transmitter lies near the line through them. The largest difference over all transmitters is therefore a guess
-//! of each distance from below; classical multidimensional scaling turns the guesses into positions. Starts differ in
-//! random factors on the guesses and in a random displacement of the positions. The transmitters are then located by
-//! multilateration.
+//! A transmitter's pseudoranges of two receivers differ by at most the distance of the two, and by
+//! nearly that much if the transmitter lies near the line through them. The largest difference over
+//! all transmitters is therefore a guess of each distance from below; classical multidimensional
+//! scaling turns the guesses into positions. Starts differ in random factors on the guesses and in
+//! a random displacement of the positions. The transmitters are then located by multilateration.
 
 use faer::Mat;
 use faer::Side;
@@ -64,7 +64,8 @@ impl Restarts {
         Restarts { receivers: m, distances, diameter }
     }
 
-    /// One start; `spread` says how far it may be from the plain guess (0: the guess itself, 1: anywhere).
+    /// One start; `spread` says how far it may be from the plain guess (0: the guess itself, 1:
+    /// anywhere).
     pub(crate) fn draw(&self, observations: &Observations, spread: f64, rng: &mut Pcg64Mcg) -> Network {
         let mut normal = || -> f64 { rng.sample(StandardNormal) };
         let m = self.receivers;

@@ -23,14 +23,16 @@ pub enum Layout {
         /// Extent in y, metres.
         height: f64,
     },
-    /// Receivers evenly along a road, up to a third of their spacing, and anywhere across it; transmitters uniform on it.
+    /// Receivers evenly along a road, up to a third of their spacing, and anywhere across it;
+    /// transmitters uniform on it.
     Chain {
         /// Its length, metres.
         length: f64,
         /// Its width, metres.
         width: f64,
     },
-    /// Receivers at the points of a square grid over a rectangle, up to a third of their spacing; transmitters uniform in it.
+    /// Receivers at the points of a square grid over a rectangle, up to a third of their spacing;
+    /// transmitters uniform in it.
     Grid {
         /// Extent in x, metres.
         width: f64,
@@ -56,7 +58,8 @@ impl Layout {
 pub enum ReceiverFault {
     /// All its measurements are this much too long, metres.
     Delay(f64),
-    /// Its clock drifts: the error grows evenly from zero at the first transmitter to this at the last one, metres.
+    /// Its clock drifts: the error grows evenly from zero at the first transmitter to this at the
+    /// last one, metres.
     Drift(f64),
     /// It is moved by this in x, metres, after half of the transmitters.
     Move(f64),
@@ -82,7 +85,8 @@ pub struct SimulateOptions {
     pub missing: f64,
     /// Each transmitter is heard by this many receivers, the nearest ones. Default `None`: by all.
     pub hearing: Option<usize>,
-    /// Share of the measurements, 0 to 1, that come by a detour; their number is rounded. Default 0.
+    /// Share of the measurements, 0 to 1, that come by a detour; their number is rounded.
+    /// Default 0.
     pub detours: f64,
     /// Detours are longer by an exponentially distributed length of this mean, metres. Default 1.
     pub detour_size: f64,
@@ -180,7 +184,8 @@ pub fn simulate(options: &SimulateOptions) -> Result<Simulation, SimulateError> 
         }
     }
     order.shuffle(&mut rng);
-    // Missing cells come first so that a share of outliers means outliers that are there to be seen.
+    // Missing cells come first so that a share of outliers means outliers that are there to be
+    // seen.
     let share = |share: f64| (share * order.len() as f64).round() as usize;
     let missing = share(options.missing).min(order.len());
     let outlying = share(options.outliers).min(order.len() - missing);

@@ -1,4 +1,5 @@
-//! A minimal solver that has been used allocates memory for its results alone, whatever becomes of the paths.
+//! A minimal solver that has been used allocates memory for its results alone, whatever becomes of
+//! the paths.
 
 use allocation_counter::measure;
 use tdoa::minimal::{SolveOptions, Solver};

@@ -1,4 +1,5 @@
-//! The minimal solvers on clean data: all roots are there and proved, the true network is among them, and no path is lost.
+//! The minimal solvers on clean data: all roots are there and proved, the true network is among
+//! them, and no path is lost.
 
 mod common;
 
@@ -7,7 +8,8 @@ use tdoa::MinimalSolution;
 use tdoa::accuracy::{offset_error, position_error};
 use tdoa::minimal::{SolveOptions, Solver};
 
-/// Solves `count` networks of a size: no path is lost, the truth is found, and with at most 1e-12 of error in the median.
+/// Solves `count` networks of a size: no path is lost, the truth is found, and with at most 1e-12
+/// of error in the median.
 fn solve_all(receivers: usize, transmitters: usize, count: u64) -> Vec<MinimalSolution> {
     let size = format!("{receivers}r/{transmitters}s");
     let mut solver = Solver::new();
@@ -36,7 +38,8 @@ fn solve_all(receivers: usize, transmitters: usize, count: u64) -> Vec<MinimalSo
 
 #[test]
 fn families_are_solved_completely() {
-    // Root counts by Groebner bases over a prime field and by monodromy with the trace test; real networks come in pairs.
+    // Root counts by Groebner bases over a prime field and by monodromy with the trace test; real
+    // networks come in pairs.
     for (receivers, transmitters, roots, count) in [(6, 3, 180, 60), (5, 4, 152, 40), (4, 5, 344, 25)] {
         for solution in solve_all(receivers, transmitters, count) {
             assert!(solution.counts.positive_definite.is_multiple_of(2));
@@ -67,7 +70,8 @@ fn all_roots_are_proved_distinct() {
     }
 }
 
-/// The path to one of the real roots ends at a point whose imaginary part is more than 1e-4 of its size.
+/// The path to one of the real roots ends at a point whose imaginary part is more than 1e-4 of its
+/// size.
 #[test]
 fn real_roots_known_roughly_are_real() {
     let mut solver = Solver::new();
@@ -100,7 +104,8 @@ fn the_first_network_that_fits_ends_the_search() {
     assert_eq!(solver.solve(&measured, &options).unwrap(), all);
 }
 
-/// Some paths of this one pass so near to a singularity that one was lost, of 5,000 networks, before they went on in other charts.
+/// Some paths of this one pass so near to a singularity that one was lost, of 5,000 networks,
+/// before they went on in other charts.
 #[test]
 fn hard_paths_are_recovered() {
     let solution = Solver::new().solve(&clean(5, 4, 1943).pseudoranges, &SolveOptions::default()).unwrap();
@@ -108,9 +113,10 @@ fn hard_paths_are_recovered() {
     assert!(solution.counts.real.is_multiple_of(2));
 }
 
-/// Real roots come with the parity of all. In these they were odd in number, and no path was reported lost: a path had ended at the
-/// root of another, or at none, too roughly to be seen before ends were refined, or had shrunk to the singular solutions with all
-/// receivers in one point (the last three).
+/// Real roots come with the parity of all. In these they were odd in number, and no path was
+/// reported lost: a path had ended at the root of another, or at none, too roughly to be seen
+/// before ends were refined, or had shrunk to the singular solutions with all receivers in one
+/// point (the last three).
 #[test]
 fn jumped_paths_are_seen() {
     let mut solver = Solver::new();

@@ -59,7 +59,8 @@ fn nodes_that_nearly_coincide_lose_no_path() {
     }
 }
 
-/// Largest distance of a point from the line through the first and the one farthest from it, over the distance of these two.
+/// Largest distance of a point from the line through the first and the one farthest from it, over
+/// the distance of these two.
 fn flatness(points: &[[f64; 2]]) -> f64 {
     let from_first = |p: &[f64; 2]| [p[0] - points[0][0], p[1] - points[0][1]];
     let length = |v: [f64; 2]| v[0].hypot(v[1]);
@@ -96,7 +97,8 @@ fn nodes_in_one_line_are_found_and_named() {
 
 #[test]
 fn a_symmetric_network_ends_in_time_and_says_what_is_lost() {
-    // Such data have roots next to which pivots vanish: their paths come as near as doubles allow and no farther.
+    // Such data have roots next to which pivots vanish: their paths come as near as doubles allow
+    // and no farther.
     let corner = |k: u32| {
         let (sin, cos) = (f64::from(k) * std::f64::consts::FRAC_PI_3).sin_cos();
         [cos, sin]
@@ -111,7 +113,8 @@ fn a_symmetric_network_ends_in_time_and_says_what_is_lost() {
     let solution = solver.solve(&measured, &SolveOptions::default()).unwrap();
     let lost = solution.paths.failed;
     assert!(lost > 0 && solution.warnings.contains(&SolveWarning::PathsLost { lost, tracked: 180 }), "{solution:?}");
-    // About 64 paths with six charts of 1,600 steps in the last round, not four rounds of up to 102,400.
+    // About 64 paths with six charts of 1,600 steps in the last round, not four rounds of up to
+    // 102,400.
     let steps: usize = solver.records().iter().map(|r| r.accepted + r.rejected).sum();
     assert!(steps < 2_000_000, "{steps}");
 }

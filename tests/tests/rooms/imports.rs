@@ -24,8 +24,8 @@ struct Crate {
 
 /// Reads the crate whose root is this file, without what is compiled for tests only.
 ///
-/// A path leads to the file that defines what it names: re-exports are followed. Mentions in comments, in attributes and
-/// as the extent of a visibility are no imports.
+/// A path leads to the file that defines what it names: re-exports are followed. Mentions in
+/// comments, in attributes and as the extent of a visibility are no imports.
 pub(crate) fn of_crate(root: &Path) -> Imports {
     let mut all = Crate::default();
     all.load(root.to_path_buf(), 0);
@@ -145,7 +145,8 @@ impl Crate {
         }
     }
 
-    /// The file that defines what a path names; `None` for what is of another crate or of the same scope.
+    /// The file that defines what a path names; `None` for what is of another crate or of the same
+    /// scope.
     fn definition(&self, module: usize, path: &[String], depth: usize) -> Option<&PathBuf> {
         assert!(depth < 100, "{}: re-exports in a circle: {}", self.modules[module].file.display(), path.join("::"));
         let (mut at, mut k) = (module, 0);

@@ -1,4 +1,5 @@
-//! `tdoa experiment calibrate` and `coverage`: the calibration on simulated networks beside the truth and the Cramer-Rao bound.
+//! `tdoa experiment calibrate` and `coverage`: the calibration on simulated networks beside the
+//! truth and the Cramer-Rao bound.
 
 use crate::trials::calibration::{Trial, judge};
 use tdoa::Monitor;
@@ -32,7 +33,8 @@ impl Method {
     }
 }
 
-/// Calibrates random networks in a room of 10 m by 10 m and compares the errors with the Cramer-Rao bound.
+/// Calibrates random networks in a room of 10 m by 10 m and compares the errors with the Cramer-Rao
+/// bound.
 #[derive(clap::Args)]
 pub(super) struct Arguments {
     /// The configurations.
@@ -56,15 +58,16 @@ pub(super) struct Arguments {
     /// Where the search gets its starts from.
     #[arg(long, value_enum, default_value = "portfolio", value_delimiter = ',')]
     method: Vec<Method>,
-    /// Exactly as many starts of the search: one number for all kinds of networks, or one for each (by configuration, noise, outliers); as
-    /// many as `tdoa calibrate` makes if not given.
+    /// Exactly as many starts of the search: one number for all kinds of networks, or one for each
+    /// (by configuration, noise, outliers); as many as `tdoa calibrate` makes if not given.
     #[arg(long, value_delimiter = ',')]
     starts: Vec<usize>,
     #[command(flatten)]
     common: Common,
 }
 
-/// Compares the errors of many calibrations with the Cramer-Rao bound, and counts how often the 95 % ellipses hold the truth.
+/// Compares the errors of many calibrations with the Cramer-Rao bound, and counts how often the 95
+/// % ellipses hold the truth.
 #[derive(clap::Args)]
 pub(super) struct CoverageArguments {
     /// The configurations.
@@ -225,11 +228,13 @@ fn report(common: &Common, rows: &Rows, cases: &[Case], each: usize) -> Result<(
         let of = |column: &str| rows.numbers(column, g * each..(g + 1) * each);
         let (determined, success, among, unique) =
             (of("determined"), of("success"), of("among_alternatives"), of("unique"));
-        // Networks that even the inliers alone do not determine are counted apart, not as successes or failures.
+        // Networks that even the inliers alone do not determine are counted apart, not as successes
+        // or failures.
         let count = determined.iter().sum::<f64>();
         let share = |all: &[f64]| all.iter().zip(&determined).map(|(a, d)| a * d).sum::<f64>() / count;
         let wrong: Vec<f64> = unique.iter().zip(&among).map(|(u, a)| u * (1.0 - a)).collect();
-        // Relative to the bound of each network, so that networks of poor geometry do not drown the others.
+        // Relative to the bound of each network, so that networks of poor geometry do not drown the
+        // others.
         let good = |k: &usize| success[*k] * determined[*k] > 0.0;
         let (rms, bound) = (of("receiver_rms"), of("bound"));
         let squares: Vec<f64> = (0..each).filter(good).map(|k| (rms[k] / bound[k]).powi(2)).collect();

@@ -25,7 +25,8 @@ pub(super) struct Labels {
     pub(super) y: String,
 }
 
-/// Outlines of histograms over one another: a point is the left end of a bin of this width, and its height.
+/// Outlines of histograms over one another: a point is the left end of a bin of this width, and its
+/// height.
 pub(super) fn histogram(labels: &Labels, width: f64, series: &[Series]) -> String {
     let all = || series.iter().flat_map(|s| &s.points);
     // Empty bins at both ends are left out.

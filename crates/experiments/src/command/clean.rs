@@ -12,8 +12,8 @@ use super::statistics::{decades, moments, short};
 use crate::quantile::quantile;
 use cli::{Failure, output};
 
-/// Solves clean random networks (positions and offsets standard normal) and counts roots, lost paths and errors (the upper row of the
-/// paper's figure 1).
+/// Solves clean random networks (positions and offsets standard normal) and counts roots, lost
+/// paths and errors (the upper row of the paper's figure 1).
 #[derive(clap::Args)]
 pub(super) struct Arguments {
     /// The configurations, such as 6r/3s, 4r/5s or 9r/4s.
@@ -107,7 +107,8 @@ impl Group<'_> {
         }
         let times = self.numbers("milliseconds");
         cells.extend([0.5, 0.99].map(|share| short(quantile(&times, share))));
-        // Real networks come in pairs: an odd number tells of a path that was lost or jumped unseen.
+        // Real networks come in pairs: an odd number tells of a path that was lost or jumped
+        // unseen.
         let odd = self.numbers("positive_definite").iter().filter(|&&count| count % 2.0 == 1.0).count();
         cells.push(odd.to_string());
         cells.join(",") + "\n"

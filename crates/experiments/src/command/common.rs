@@ -16,7 +16,8 @@ pub(super) struct Common {
     /// Threads; all cores if not given. Only times depend on it.
     #[arg(long)]
     pub(super) threads: Option<usize>,
-    /// Directory for the tables (CSV) and figures (SVG); made if it is not there. Where trials.csv is there already, the run goes on from it.
+    /// Directory for the tables (CSV) and figures (SVG); made if it is not there. Where trials.csv
+    /// is there already, the run goes on from it.
     #[arg(long)]
     pub(super) output: PathBuf,
 }
@@ -96,8 +97,8 @@ pub(super) fn normal(size: Size, noise: f64, seed: u64) -> Result<Simulation, Fa
     simulate(&options).map_err(Failure::unusable)
 }
 
-/// Processor seconds of this thread so far, where the system tells them (Linux); else seconds on the clock. Other programs on the same
-/// cores then do not count.
+/// Processor seconds of this thread so far, where the system tells them (Linux); else seconds on
+/// the clock. Other programs on the same cores then do not count.
 pub(super) fn thread_seconds() -> f64 {
     let told = std::fs::read_to_string(Path::new("/proc/thread-self/schedstat")).ok();
     let nanoseconds = told.and_then(|text| text.split_whitespace().next()?.parse::<u64>().ok());

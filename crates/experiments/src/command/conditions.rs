@@ -1,4 +1,5 @@
-//! `tdoa experiment conditions`: networks as deployments bring them, beside the truth, the Cramer-Rao bound and the oracle.
+//! `tdoa experiment conditions`: networks as deployments bring them, beside the truth, the
+//! Cramer-Rao bound and the oracle.
 
 use crate::quantile::median;
 use crate::trials::calibration::{Trial, judge, oracle};
@@ -9,7 +10,8 @@ use super::rows::{Rows, resume};
 use super::statistics::short;
 use cli::{Failure, output};
 
-/// Calibrates networks that nobody hears whole, with gross errors in few measurements, and with receivers that have errors of their own.
+/// Calibrates networks that nobody hears whole, with gross errors in few measurements, and with
+/// receivers that have errors of their own.
 #[derive(clap::Args)]
 pub(super) struct Arguments {
     /// Names of conditions (their beginnings are enough); all if not given.

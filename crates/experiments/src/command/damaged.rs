@@ -14,10 +14,12 @@ use super::statistics::{mean, short};
 use crate::quantile::{median, quantile};
 use cli::{Failure, output};
 
-/// Calibrates recordings with ground truth as they are and damaged at random, beside the same refinement started at the truth.
+/// Calibrates recordings with ground truth as they are and damaged at random, beside the same
+/// refinement started at the truth.
 #[derive(clap::Args)]
 pub(super) struct Arguments {
-    /// Folders with pseudoranges_m.csv and receivers_gt.csv; named by their last part in the tables.
+    /// Folders with pseudoranges_m.csv and receivers_gt.csv; named by their last part in the
+    /// tables.
     #[arg(long, required = true, value_delimiter = ',')]
     recordings: Vec<PathBuf>,
     /// Seeds a recording.
@@ -29,7 +31,8 @@ pub(super) struct Arguments {
     /// Share of the rest that is replaced by gross errors.
     #[arg(long, default_value_t = 0.1)]
     outliers: f64,
-    /// Spread triples of transmitters a recording whose 6r/3s candidates are compared with the truth.
+    /// Spread triples of transmitters a recording whose 6r/3s candidates are compared with the
+    /// truth.
     #[arg(long, default_value_t = 500)]
     triples: u64,
     #[command(flatten)]
@@ -150,8 +153,8 @@ fn row(recording: &Recording, missing: f64, outliers: f64, seed: u64) -> Result<
     }
 }
 
-/// Candidates of one spread triple, and the distance of the nearest from the truth in sizes of the network, before any refinement
-/// with other measurements.
+/// Candidates of one spread triple, and the distance of the nearest from the truth in sizes of the
+/// network, before any refinement with other measurements.
 fn nearest(source: &MinimalHypotheses, recording: &Recording, triple: u64) -> String {
     // The sizes of the subsets take turns; the first of the three is 6r/3s.
     let proposals = source.propose(&recording.measured, 3 * triple as usize, 0);

@@ -9,7 +9,8 @@ use super::common::{Common, Size};
 use super::rows::resume;
 use cli::{Failure, output};
 
-/// Calibrates larger and larger networks with gaps and outliers, one after the other, and takes time and memory.
+/// Calibrates larger and larger networks with gaps and outliers, one after the other, and takes
+/// time and memory.
 #[derive(clap::Args)]
 pub(super) struct Arguments {
     /// The configurations, smallest first: memory is the largest so far.

@@ -10,7 +10,8 @@ use std::path::PathBuf;
 use tdoa::minimal::Solver;
 use tdoa::{Layout, SimulateOptions, simulate};
 
-/// Solves networks next to degenerate ones, degenerate ones, and ones of extreme scales, without noise.
+/// Solves networks next to degenerate ones, degenerate ones, and ones of extreme scales, without
+/// noise.
 #[derive(clap::Args)]
 pub(super) struct Arguments {
     /// The configurations.

@@ -10,8 +10,8 @@ use super::statistics::short;
 use crate::quantile::{median, quantile};
 use cli::{Failure, output};
 
-/// Solves noisy random networks and sets the errors against the noise, without and with refinement (the lower row of the paper's
-/// figure 1).
+/// Solves noisy random networks and sets the errors against the noise, without and with refinement
+/// (the lower row of the paper's figure 1).
 #[derive(clap::Args)]
 pub(super) struct Arguments {
     /// The configurations.

@@ -10,8 +10,9 @@ use super::rows::resume;
 use super::statistics::short;
 use cli::{Failure, output};
 
-/// Compares all real networks from the stored start of the minimal solvers with those from a polyhedral start system, which is computed for
-/// each network as in the paper; where that leaves roots missing, another one is computed for a random member of the family.
+/// Compares all real networks from the stored start of the minimal solvers with those from a
+/// polyhedral start system, which is computed for each network as in the paper; where that leaves
+/// roots missing, another one is computed for a random member of the family.
 #[derive(clap::Args)]
 pub(super) struct Arguments {
     /// The configurations.

@@ -1,8 +1,10 @@
-//! Tables of trials that grow by whole rows, so that a run may be stopped at any time and goes on where it was.
+//! Tables of trials that grow by whole rows, so that a run may be stopped at any time and goes on
+//! where it was.
 //!
-//! Every row begins with its key: all that the trial depends on. A row that is in the file is not computed again, whoever wrote it; what
-//! an interrupt left of a last line is dropped. When all is done, the file holds the rows in the order of the keys, the same as after one
-//! run without a stop (but for columns that measure time).
+//! Every row begins with its key: all that the trial depends on. A row that is in the file is not
+//! computed again, whoever wrote it; what an interrupt left of a last line is dropped. When all is
+//! done, the file holds the rows in the order of the keys, the same as after one run without a stop
+//! (but for columns that measure time).
 
 use cli::bar::Bar;
 use std::collections::HashMap;
@@ -36,11 +38,13 @@ impl Rows {
     }
 }
 
-/// Computes the rows that are not yet in the file at `path`. `header` names the columns, those of the key first; `keys` are the key
-/// columns of every row, joined by commas; `row` gives the other columns. Rows are computed in parallel, each with a state of its thread.
+/// Computes the rows that are not yet in the file at `path`. `header` names the columns, those of
+/// the key first; `keys` are the key columns of every row, joined by commas; `row` gives the other
+/// columns. Rows are computed in parallel, each with a state of its thread.
 ///
 /// # Errors
-/// If a row fails, the file is another table, or the run is interrupted; what was computed so far is kept.
+/// If a row fails, the file is another table, or the run is interrupted; what was computed so far
+/// is kept.
 pub(super) fn resume<S: Send>(
     path: &Path,
     header: &str,
@@ -76,8 +80,8 @@ pub(super) fn resume<S: Send>(
         append(&file, &line).map_err(failed)?;
         Ok(line)
     };
-    // A row stays on one thread, so that its processor time can be told from that of the others; what it does in parallel runs in a
-    // pool of its own.
+    // A row stays on one thread, so that its processor time can be told from that of the others;
+    // what it does in parallel runs in a pool of its own.
     let worker = |pool: &rayon::ThreadPool| {
         let mut state = state();
         while let Some(&k) = missing.get(next.fetch_add(1, Ordering::Relaxed)) {

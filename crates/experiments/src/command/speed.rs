@@ -12,7 +12,8 @@ use super::statistics::short;
 use crate::quantile::{median, quantile};
 use cli::{Failure, output};
 
-/// Takes the time of the exact solvers on clean random networks, on one thread and on all, and counts what their paths need.
+/// Takes the time of the exact solvers on clean random networks, on one thread and on all, and
+/// counts what their paths need.
 ///
 /// Times are by the wall: nothing else should run. A run that was stopped starts anew.
 #[derive(clap::Args)]

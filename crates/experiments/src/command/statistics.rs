@@ -1,6 +1,7 @@
 //! Sums over trials.
 
-/// Least, largest, mean and standard deviation of some numbers, of which there must be one at least.
+/// Least, largest, mean and standard deviation of some numbers, of which there must be one at
+/// least.
 pub(super) fn moments(values: &[f64]) -> [f64; 4] {
     let count = values.len().max(1) as f64;
     let mean = values.iter().sum::<f64>() / count;
@@ -16,8 +17,9 @@ pub(super) fn mean(values: &[f64]) -> f64 {
     known.iter().sum::<f64>() / known.len() as f64
 }
 
-/// Half-decade bins of the logarithm to base ten, from 1e-17 to 1e1: how many of the values fall into each, as shares of all. What
-/// lies outside (zero, infinity) counts in the first and the last.
+/// Half-decade bins of the logarithm to base ten, from 1e-17 to 1e1: how many of the values fall
+/// into each, as shares of all. What lies outside (zero, infinity) counts in the first and the
+/// last.
 pub(super) fn decades(values: &[f64]) -> Vec<(f64, f64)> {
     const BINS: usize = 36;
     let mut counts = [0usize; BINS];

@@ -10,7 +10,8 @@ use super::rows::{Rows, resume};
 use super::statistics::{moments, short};
 use cli::{Failure, output};
 
-/// Counts the solutions of clean random 6r/3s networks (the paper's Table 2): real, with positive definite H, physical.
+/// Counts the solutions of clean random 6r/3s networks (the paper's Table 2): real, with positive
+/// definite H, physical.
 #[derive(clap::Args)]
 pub(super) struct Arguments {
     /// Number of networks.

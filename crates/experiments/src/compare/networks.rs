@@ -76,7 +76,8 @@ fn member(receivers: usize, transmitters: usize, matrix: &Path) -> Result<String
         .filter_map(|line| line.split(',').skip(1).map(|v| v.trim().parse().ok()).collect())
         .collect();
     ensure!(rows.len() == receivers && rows.iter().all(|r| r.len() == transmitters), "a whole matrix was expected");
-    // All three families have the measurements less those of the first receiver for parameters, row by row.
+    // All three families have the measurements less those of the first receiver for parameters, row
+    // by row.
     let parameters: Vec<f64> = (1..receivers)
         .flat_map(|i| (0..transmitters).map(move |j| (i, j)))
         .map(|(i, j)| rows[i][j] - rows[0][j])

@@ -23,7 +23,8 @@ pub(super) struct Run {
 }
 
 impl Run {
-    /// Processor seconds, which other work on the machine changes little; where they are not known, seconds by the wall.
+    /// Processor seconds, which other work on the machine changes little; where they are not known,
+    /// seconds by the wall.
     pub(super) fn work(&self) -> f64 {
         self.processor.unwrap_or(self.seconds)
     }
@@ -92,7 +93,8 @@ pub(super) struct Pairs {
 const CRASHES: usize = 5;
 
 impl Pairs {
-    /// Repeats both; a peer that takes longer than a minute is not repeated, one that crashes is run again.
+    /// Repeats both; a peer that takes longer than a minute is not repeated, one that crashes is
+    /// run again.
     pub(super) fn measure(
         repeats: u32,
         mut ours: impl FnMut() -> Result<Run>,

@@ -35,8 +35,8 @@ const fn plain(name: &'static str, command: &'static str, full: u64, quick: u64)
 
 /// All of them, in the order of the page.
 ///
-/// The comparisons at equal time have numbers of starts that take about as long as the portfolio does on the same networks; the page shows
-/// the processor seconds of each.
+/// The comparisons at equal time have numbers of starts that take about as long as the portfolio
+/// does on the same networks; the page shows the processor seconds of each.
 pub(super) const PLAN: &[Experiment] = &[
     plain("table2", "table2", 10_000, 200),
     plain("clean-6r3s", "clean --configuration 6r/3s", 100_000, 20),

@@ -1,4 +1,5 @@
-//! The tables in results/: CSV without quotes, read as text so that the page shows the figures as they stand.
+//! The tables in results/: CSV without quotes, read as text so that the page shows the figures as
+//! they stand.
 
 use anyhow::{Context, Result, ensure};
 use std::path::Path;

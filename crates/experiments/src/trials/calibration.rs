@@ -1,4 +1,5 @@
-//! Trials of the calibration on simulated networks: how far from the truth, compared with what the noise allows.
+//! Trials of the calibration on simulated networks: how far from the truth, compared with what the
+//! noise allows.
 
 use std::time::Instant;
 
@@ -22,8 +23,8 @@ use tdoa::{PseudorangeError, Pseudoranges};
 pub struct Trial {
     /// Seed of the simulation.
     pub seed: u64,
-    /// Root mean square distance of the receivers from the truth after the best rigid alignment, metres; `None` if there
-    /// was no calibration.
+    /// Root mean square distance of the receivers from the truth after the best rigid alignment,
+    /// metres; `None` if there was no calibration.
     pub receiver_rms: Option<f64>,
     /// The Cramer-Rao bound on it, from the measurements that are no outliers, metres.
     pub bound: f64,
@@ -48,8 +49,9 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Whether the true network is among the alternatives: its receivers are within three times the Cramer-Rao bound, or within the share of
-    /// the network's size below which networks count as the same. (Near a fold the bound, which is linear, is too small.)
+    /// Whether the true network is among the alternatives: its receivers are within three times the
+    /// Cramer-Rao bound, or within the share of the network's size below which networks count as
+    /// the same. (Near a fold the bound, which is linear, is too small.)
     pub fn among_alternatives(&self) -> bool {
         self.best_of_alternatives.is_some_and(|rms| rms <= (3.0 * self.bound).max(SAME_NETWORK * self.size))
     }
@@ -60,7 +62,8 @@ impl Trial {
     }
 }
 
-/// Calibrates a simulated network whose noise had the standard deviation `noise` (metres) and compares with the truth.
+/// Calibrates a simulated network whose noise had the standard deviation `noise` (metres) and
+/// compares with the truth.
 pub fn trial(simulation: &Simulation, noise: f64, seed: u64, options: &CalibrateOptions) -> Trial {
     let started = Instant::now();
     let result = calibrate(&simulation.pseudoranges, options);
@@ -68,8 +71,8 @@ pub fn trial(simulation: &Simulation, noise: f64, seed: u64, options: &Calibrate
     judge(simulation, noise, seed, seconds, &result)
 }
 
-/// Compares a calibration, or why there is none, with the truth of the simulated network; `noise` is the standard deviation of the
-/// measurements in metres, `seconds` what the calibration took.
+/// Compares a calibration, or why there is none, with the truth of the simulated network; `noise`
+/// is the standard deviation of the measurements in metres, `seconds` what the calibration took.
 pub fn judge(
     simulation: &Simulation,
     noise: f64,
@@ -110,8 +113,8 @@ pub fn judge(
     trial
 }
 
-/// A calibration started at known positions of the receivers instead of searched: the oracle that shows what the
-/// data and the loss allow.
+/// A calibration started at known positions of the receivers instead of searched: the oracle that
+/// shows what the data and the loss allow.
 ///
 /// # Errors
 /// Those of [`calibrate`].
@@ -155,11 +158,12 @@ fn coverage(calibration: &Calibration, truth: &Network) -> (usize, usize) {
     (covered, ellipses)
 }
 
-/// The measurements with this share of the cells removed and then this share of the rest replaced by numbers uniform
-/// over the range of all measurements of their transmitter: gross errors.
+/// The measurements with this share of the cells removed and then this share of the rest replaced
+/// by numbers uniform over the range of all measurements of their transmitter: gross errors.
 ///
 /// # Errors
-/// None for measurements of this library; those of the constructors of [`Pseudoranges`] are passed on.
+/// None for measurements of this library; those of the constructors of [`Pseudoranges`] are passed
+/// on.
 pub fn damage(
     measured: &Pseudoranges,
     missing: f64,

@@ -1,5 +1,6 @@
-//! Checks of the minimal solvers on clean data by other means: interval proofs of the roots, the polyhedral route beside the stored
-//! start, what the options for callers in a hurry save and lose, and what becomes of paths that fail.
+//! Checks of the minimal solvers on clean data by other means: interval proofs of the roots, the
+//! polyhedral route beside the stored start, what the options for callers in a hurry save and lose,
+//! and what becomes of paths that fail.
 
 use serde::Serialize;
 use std::time::Instant;
@@ -11,7 +12,8 @@ use tdoa::{MinimalSolution, PathCounts, RootCounts};
 /// A candidate this near the truth (relative to the network's size) is the truth.
 const FOUND: f64 = 1e-4;
 
-/// Solves one clean instance and proves its roots; with the number of roots that the solver counts as real.
+/// Solves one clean instance and proves its roots; with the number of roots that the solver counts
+/// as real.
 ///
 /// # Errors
 /// If the solver refuses the instance.
@@ -53,8 +55,8 @@ pub struct ChartTrial {
     pub paths: PathCounts,
     /// Evaluations of the Jacobian in the first starts of all paths and what follows these.
     pub jacobians: usize,
-    /// Whether the real roots, of which there are as many as all roots up to pairs, are odd in number: then a path has jumped unseen, or a real root was
-    /// called complex.
+    /// Whether the real roots, of which there are as many as all roots up to pairs, are odd in
+    /// number: then a path has jumped unseen, or a real root was called complex.
     pub odd: bool,
     /// Seconds.
     pub seconds: f64,

@@ -1,5 +1,5 @@
-//! Trials of the minimal solvers on clean data: is the true network among the candidates, how accurate, and how many roots are
-//! there (the paper's Table 2 and the upper row of its figure 1).
+//! Trials of the minimal solvers on clean data: is the true network among the candidates, how
+//! accurate, and how many roots are there (the paper's Table 2 and the upper row of its figure 1).
 
 use serde::Serialize;
 use tdoa::Simulation;
@@ -19,7 +19,8 @@ pub struct CleanTrial {
     pub counts: RootCounts,
     /// Whether the true network is among the physical candidates.
     pub found: bool,
-    /// `|X^ - X| / |X - mean X|` over all nodes after the best rigid alignment (reflection allowed), for the candidate nearest to the truth.
+    /// `|X^ - X| / |X - mean X|` over all nodes after the best rigid alignment (reflection
+    /// allowed), for the candidate nearest to the truth.
     pub position_error: f64,
     /// `|o^ - o| / |o|` of the same candidate.
     pub offset_error: f64,

@@ -1,5 +1,5 @@
-//! Trials of the minimal solvers on networks that are hard: far and near nodes, extreme scales, networks next to degenerate ones and
-//! degenerate ones.
+//! Trials of the minimal solvers on networks that are hard: far and near nodes, extreme scales,
+//! networks next to degenerate ones and degenerate ones.
 
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -8,7 +8,8 @@ use tdoa::Pseudoranges;
 use tdoa::accuracy::position_error;
 use tdoa::minimal::{SolveOptions, Solver};
 
-/// A candidate whose positions are this near the truth (relative to the network's size) is the truth.
+/// A candidate whose positions are this near the truth (relative to the network's size) is the
+/// truth.
 const FOUND: f64 = 1e-3;
 
 /// What makes a network hard.
@@ -191,7 +192,8 @@ mod tests {
     use tdoa::minimal::Solver;
     use tdoa::{Layout, SimulateOptions, simulate};
 
-    /// What is answered in which way is counted: networks on a circle are found, coincident nodes refused by name.
+    /// What is answered in which way is counted: networks on a circle are found, coincident nodes
+    /// refused by name.
     #[test]
     fn answers_are_counted() {
         let networks = || {

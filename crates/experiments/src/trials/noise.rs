@@ -1,5 +1,6 @@
-//! Trials of the minimal solvers on noisy data (the lower row of the paper's figure 1): errors against noise, with the candidate as it
-//! comes from the paths and with it refined over all measurements.
+//! Trials of the minimal solvers on noisy data (the lower row of the paper's figure 1): errors
+//! against noise, with the candidate as it comes from the paths and with it refined over all
+//! measurements.
 
 use serde::Serialize;
 use tdoa::Candidate;
@@ -7,19 +8,23 @@ use tdoa::Simulation;
 use tdoa::accuracy::{offset_error, position_error};
 use tdoa::minimal::{SolveError, SolveOptions, Solver};
 
-/// One noisy instance, solved without and with refinement. Errors are infinite where no candidate was left.
+/// One noisy instance, solved without and with refinement. Errors are infinite where no candidate
+/// was left.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct NoiseTrial {
-    /// Relative position and offset errors ([`position_error`], [`offset_error`]) of the unrefined candidate.
+    /// Relative position and offset errors ([`position_error`], [`offset_error`]) of the unrefined
+    /// candidate.
     pub raw: [f64; 2],
     /// Errors of the refined candidate.
     pub refined: [f64; 2],
 }
 
-/// Solves an instance whose measurements have normal noise of standard deviation `noise` (in units of the normal positions).
+/// Solves an instance whose measurements have normal noise of standard deviation `noise` (in units
+/// of the normal positions).
 ///
-/// Where more is measured than there are unknowns, the candidate of smallest residual is judged, as in the paper; the minimal sizes
-/// 6r/3s and 4r/5s fit every candidate exactly, and there the one nearest to the truth is.
+/// Where more is measured than there are unknowns, the candidate of smallest residual is judged, as
+/// in the paper; the minimal sizes 6r/3s and 4r/5s fit every candidate exactly, and there the one
+/// nearest to the truth is.
 ///
 /// # Errors
 /// If the solver refuses the instance.
@@ -53,7 +58,8 @@ mod tests {
     use tdoa::minimal::Solver;
     use tdoa::{Layout, SimulateOptions, simulate};
 
-    /// To first order errors are proportional to the noise: the median over the same networks falls by about the noise's factor.
+    /// To first order errors are proportional to the noise: the median over the same networks falls
+    /// by about the noise's factor.
     #[test]
     fn errors_fall_with_the_noise() {
         let mut solver = Solver::new();

@@ -1,7 +1,9 @@
-//! A solver generated for one minimal problem: the relative pose of two calibrated cameras from five points.
+//! A solver generated for one minimal problem: the relative pose of two calibrated cameras from
+//! five points.
 //!
-//! `generated.rs` comes from `cargo xtask codegen` (family: `examples/families/five_point.toml`). Here it solves 1,000 problems with a
-//! planted pose, says whether the pose is among the solutions each time, and how long a path takes:
+//! `generated.rs` comes from `cargo xtask codegen` (family: `examples/families/five_point.toml`).
+//! Here it solves 1,000 problems with a planted pose, says whether the pose is among the solutions
+//! each time, and how long a path takes:
 //!
 //!     cargo run --release -p hc --example five_point
 

@@ -109,7 +109,8 @@ fn not_reduced(draw: &mut Draw) -> Case {
     }
 }
 
-/// Points with different first coordinates, none of them zero, in four equations; some second coordinates are zero.
+/// Points with different first coordinates, none of them zero, in four equations; some second
+/// coordinates are zero.
 fn overdetermined(draw: &mut Draw) -> Case {
     let mut firsts: Vec<i64> = Vec::new();
     while firsts.len() < 3 {
@@ -145,7 +146,8 @@ fn overdetermined_multiple(draw: &mut Draw) -> Case {
     }
 }
 
-/// `u + c v^2`, and `v^m` with a multiple of it: a smooth curve that meets another in one point, `m`-fold.
+/// `u + c v^2`, and `v^m` with a multiple of it: a smooth curve that meets another in one point,
+/// `m`-fold.
 fn corank_one(draw: &mut Draw) -> Case {
     let (u, v, at) = draw.frame();
     let (m, c, k) = (draw.between(3, 6), draw.nonzero(), draw.between(-3, 3));

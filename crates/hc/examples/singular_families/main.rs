@@ -1,4 +1,5 @@
-//! Random systems of each kind with singular, hidden or badly conditioned solutions: how many are right, how many are said to be unknown.
+//! Random systems of each kind with singular, hidden or badly conditioned solutions: how many are
+//! right, how many are said to be unknown.
 //!
 //!     cargo run --release -p hc --example singular_families [SYSTEMS [FIRST]]
 

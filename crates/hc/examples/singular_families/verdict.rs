@@ -7,7 +7,8 @@ use hc::{SolveOptions, solve};
 /// What a result is worth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Answer {
-    /// All isolated solutions with their multiplicities, no others, and a component if there is one.
+    /// All isolated solutions with their multiplicities, no others, and a component if there is
+    /// one.
     Right,
     /// The program ends with status 1: the list is said to be incomplete, or is empty.
     Unknown,

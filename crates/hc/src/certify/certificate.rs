@@ -7,9 +7,9 @@ use poly::ComplexInterval;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct CertifyOptions {
-    /// How far a point may be from the solution that it stands for, as a share of the size of each coordinate, which counts
-    /// as at least 1e-4 of the largest coordinate or of one. Newton's method must contract from the point in any case.
-    /// Default 1e-3.
+    /// How far a point may be from the solution that it stands for, as a share of the size of each
+    /// coordinate, which counts as at least 1e-4 of the largest coordinate or of one. Newton's
+    /// method must contract from the point in any case. Default 1e-3.
     pub reach: f64,
     /// Largest box that is tried, as a share of the weights of the unknowns. Default 2^-8.
     pub largest_box: f64,

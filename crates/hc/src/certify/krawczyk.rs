@@ -146,13 +146,15 @@ impl<'a, S: Enclosure> Krawczyk<'a, S> {
             if large.iter().zip(&least).all(|(r, l)| r == l) {
                 break;
             }
-            // Beyond rounding, the norm is proportional to the size of small boxes; that of large ones grows as a higher power.
+            // Beyond rounding, the norm is proportional to the size of small boxes; that of large
+            // ones grows as a higher power.
             share *= if norm.is_finite() { (0.25 / norm).clamp(SHRINK * SHRINK, SHRINK) } else { SHRINK * SHRINK };
         }
         None
     }
 
-    /// `-C F(c) + (I - C J(c + D)) D`, and a bound of the norm of `I - C J(c + D)` with coordinates weighted by the box.
+    /// `-C F(c) + (I - C J(c + D)) D`, and a bound of the norm of `I - C J(c + D)` with coordinates
+    /// weighted by the box.
     fn image(&mut self, centre: &[ComplexDd], boxes: &[ComplexInterval]) -> (Vec<ComplexInterval>, f64) {
         let n = self.n;
         let Krawczyk { system, parameters, memory, inverse, newton, values, jacobian, .. } = self;
@@ -183,8 +185,8 @@ impl<'a, S: Enclosure> Krawczyk<'a, S> {
         (image.iter().map(S::interval).collect(), norm)
     }
 
-    /// The image of a box that contains the solution contains it too: as small as that makes it. Boxes are extended to the
-    /// centre, from where differences are taken.
+    /// The image of a box that contains the solution contains it too: as small as that makes it.
+    /// Boxes are extended to the centre, from where differences are taken.
     fn tighten(
         &mut self,
         centre: &[ComplexDd],

@@ -1,10 +1,11 @@
 //! Proofs that solutions exist: the test of Krawczyk in complex interval arithmetic.
 //!
-//! [`certify`] takes a system and approximate solutions. For each that passes it returns a box of complex rectangles in
-//! which the system has **exactly one** solution, a regular one, says whether that solution is proved real, and which
-//! of the points stand for the same solution. What is proved is about the system *as it is written*: decimal
-//! coefficients and fractions are exact numbers, enclosed by intervals wherever they are no doubles, and parameters are
-//! the intervals that are given. All arithmetic is rounded outward; nothing rests on a tolerance.
+//! [`certify`] takes a system and approximate solutions. For each that passes it returns a box of
+//! complex rectangles in which the system has **exactly one** solution, a regular one, says whether
+//! that solution is proved real, and which of the points stand for the same solution. What is
+//! proved is about the system *as it is written*: decimal coefficients and fractions are exact
+//! numbers, enclosed by intervals wherever they are no doubles, and parameters are the intervals
+//! that are given. All arithmetic is rounded outward; nothing rests on a tolerance.
 //!
 //! ```
 //! use hc::certify::{CertifyOptions, Reality, certify};
@@ -21,25 +22,29 @@
 //! ```
 //!
 //! # The proof
-//! Let `c` be the refined point (double-double), `C` an approximate inverse of the Jacobian and `D` a box about zero. With
+//! Let `c` be the refined point (double-double), `C` an approximate inverse of the Jacobian and `D`
+//! a box about zero. With
 //!
 //! `K = -C F(c) + (I - C J(c + D)) D`
 //!
-//! `g(x) = x - C F(x)` maps `c + D` into `c + K`, because `F(x) - F(y) = A (x - y)` for a matrix `A` in the interval matrix
-//! `J(c + D)` (rectangles are convex). If `K` lies in the interior of `D`, Brouwer's theorem gives a fixed point of `g`; if
-//! also the norm of `I - C J(c + D)`, with moduli of entries and coordinates weighted by the box, is below one, then `C` is
-//! regular, so that fixed points are solutions, and `g` contracts, so that there is only one. (Krawczyk 1969, Moore
-//! 1977, Rump 1983; for polynomial systems Breiding, Rose, Timme, *Certifying zeros of polynomial systems using interval
-//! arithmetic*, arXiv:2011.05000.) Then `c + K` contains the solution, and repetition makes it small. `F(c)` is
-//! evaluated over balls of 32 digits ([`poly::ComplexBall`]), so that ill-conditioned solutions do not fail by rounding.
+//! `g(x) = x - C F(x)` maps `c + D` into `c + K`, because `F(x) - F(y) = A (x - y)` for a matrix
+//! `A` in the interval matrix `J(c + D)` (rectangles are convex). If `K` lies in the interior of
+//! `D`, Brouwer's theorem gives a fixed point of `g`; if also the norm of `I - C J(c + D)`, with
+//! moduli of entries and coordinates weighted by the box, is below one, then `C` is regular, so
+//! that fixed points are solutions, and `g` contracts, so that there is only one. (Krawczyk 1969,
+//! Moore 1977, Rump 1983; for polynomial systems Breiding, Rose, Timme, *Certifying zeros of
+//! polynomial systems using interval arithmetic*, arXiv:2011.05000.) Then `c + K` contains the
+//! solution, and repetition makes it small. `F(c)` is evaluated over balls of 32 digits
+//! ([`poly::ComplexBall`]), so that ill-conditioned solutions do not fail by rounding.
 //!
-//! * **Real**: for a system with real coefficients the conjugate of a solution is one; if the conjugate of the small box
-//!   lies in the large one, both are the same. **Not real**: the imaginary part of some coordinate is not zero in the
-//!   small box.
-//! * **The same solution**: the small box of one point lies in the large box of another. **Different solutions**: the small
-//!   boxes are disjoint.
+//! * **Real**: for a system with real coefficients the conjugate of a solution is one; if the
+//!   conjugate of the small box lies in the large one, both are the same. **Not real**: the
+//!   imaginary part of some coordinate is not zero in the small box.
+//! * **The same solution**: the small box of one point lies in the large box of another.
+//!   **Different solutions**: the small boxes are disjoint.
 //!
-//! Weights of unknowns and rows come from the system, `|C| |J| |x|`, so badly scaled systems need no scaling beforehand.
+//! Weights of unknowns and rows come from the system, `|C| |J| |x|`, so badly scaled systems need
+//! no scaling beforehand.
 
 mod certificate;
 mod krawczyk;
@@ -97,8 +102,8 @@ pub enum CertifyError {
 pub struct Certificates {
     /// A certificate or the reason why there is none, in the order of the points.
     pub points: Vec<Result<Certificate, Obstacle>>,
-    /// The first point that is proved to stand for the same solution; `None` for points that are the first of their kind and
-    /// for those without certificate.
+    /// The first point that is proved to stand for the same solution; `None` for points that are
+    /// the first of their kind and for those without certificate.
     pub duplicate_of: Vec<Option<usize>>,
     /// Pairs of points that are proved neither the same solution nor different ones.
     pub unseparated: Vec<[usize; 2]>,
@@ -116,7 +121,8 @@ impl Certificates {
         self.points.iter().filter(|p| p.is_ok()).count()
     }
 
-    /// Number of distinct solutions, a lower bound of the number of regular solutions if no pair is left unseparated.
+    /// Number of distinct solutions, a lower bound of the number of regular solutions if no pair is
+    /// left unseparated.
     pub fn distinct(&self) -> usize {
         self.solutions().count()
     }
@@ -132,15 +138,16 @@ impl Certificates {
     }
 }
 
-/// Tries to prove that each point is near exactly one solution of `F(x; p) = 0`, for every `p` in the boxes given.
+/// Tries to prove that each point is near exactly one solution of `F(x; p) = 0`, for every `p` in
+/// the boxes given.
 ///
-/// Points are treated independently on all threads of rayon; the result does not depend on their number. Cost for each: a
-/// few interval Jacobians and products of `n x n` matrices; comparing the boxes of N points costs N log N in general
-/// position.
+/// Points are treated independently on all threads of rayon; the result does not depend on their
+/// number. Cost for each: a few interval Jacobians and products of `n x n` matrices; comparing the
+/// boxes of N points costs N log N in general position.
 ///
 /// # Errors
-/// If the system is not square or does not compile, or if points or parameters do not fit. A point that cannot be
-/// certified is no error: see [`Certificates::points`].
+/// If the system is not square or does not compile, or if points or parameters do not fit. A point
+/// that cannot be certified is no error: see [`Certificates::points`].
 pub fn certify(
     system: &System,
     parameters: &[ComplexInterval],

@@ -15,7 +15,8 @@ pub(super) struct Proof {
 }
 
 impl Proof {
-    /// Whether the published box, whose bounds are doubles, lies in the large one, so that no other solution is in it.
+    /// Whether the published box, whose bounds are doubles, lies in the large one, so that no other
+    /// solution is in it.
     pub(super) fn is_publishable(&self) -> bool {
         self.centre.iter().zip(&self.small).zip(&self.large).all(|((c, small), &large)| {
             let published = shifted(c, small);

@@ -1,4 +1,5 @@
-//! From a point to a proof: refinement, approximate inverse and weights, in doubles and then in double-double.
+//! From a point to a proof: refinement, approximate inverse and weights, in doubles and then in
+//! double-double.
 
 use super::certificate::{CertifyOptions, Obstacle};
 use super::krawczyk::{Krawczyk, Place};
@@ -8,11 +9,14 @@ use crate::linalg::Lu;
 use num_complex::Complex64;
 use poly::{ComplexBall, ComplexDd, ComplexInterval, Evaluate, Interpreter, Isa, Scalar};
 
-/// Newton steps at most: from two digits, each step about doubles them, later ones add what the inverse is good for.
+/// Newton steps at most: from two digits, each step about doubles them, later ones add what the
+/// inverse is good for.
 const NEWTON_STEPS: usize = 12;
-/// The second correction is at most this share of the first: near a double root it would be one half.
+/// The second correction is at most this share of the first: near a double root it would be one
+/// half.
 const CONTRACTION: f64 = 0.25;
-/// First corrections so small, relative to the weights, are rounding errors, and nothing follows from the second.
+/// First corrections so small, relative to the weights, are rounding errors, and nothing follows
+/// from the second.
 const ROUNDING: f64 = 1e-12;
 /// What is carried over from other unknowns stays below one part in this many of a box.
 const LEVEL: f64 = 16.0;
@@ -100,7 +104,8 @@ impl<'a> Prover<'a> {
         let mut first = None;
         for precision in [Precision::Double, Precision::DoubleDouble] {
             self.precision = precision;
-            // Once more with all unknowns of one size: beside zeros, tiny coordinates say nothing of the scale of their unknowns.
+            // Once more with all unknowns of one size: beside zeros, tiny coordinates say nothing
+            // of the scale of their unknowns.
             for scale in [|weights| weights, level] {
                 match self.attempt(point, scale) {
                     Ok(proof) => return Ok(proof),
@@ -122,7 +127,8 @@ impl<'a> Prover<'a> {
             return Err(Obstacle::Away);
         }
         self.invert(&centre)?;
-        // At a solution with coordinates zero, the refined point says nothing of their scale, the point given does.
+        // At a solution with coordinates zero, the refined point says nothing of their scale, the
+        // point given does.
         let weights: Vec<f64> = self.weights(&rounded).iter().zip(&first_weights).map(|(a, b)| a.max(*b)).collect();
         let weights = scale(self.levelled(weights));
         self.evaluate_residuals(&centre);
@@ -160,7 +166,8 @@ impl<'a> Prover<'a> {
         Ok(centre)
     }
 
-    /// The Jacobian at a point and its approximate inverse, by way of a matrix with rows and columns of equal size.
+    /// The Jacobian at a point and its approximate inverse, by way of a matrix with rows and
+    /// columns of equal size.
     fn invert(&mut self, x: &[ComplexDd]) -> Result<(), Obstacle> {
         let n = self.n;
         let Prover { target, parameters, plain, values, plain_jacobian, jacobian, lu, inverse, .. } = self;
@@ -195,8 +202,8 @@ impl<'a> Prover<'a> {
         if inverse.iter().all(|z| z.high().is_finite()) { Ok(()) } else { Err(Obstacle::Singular) }
     }
 
-    /// `|C| |J| |x|`: what relative changes of the terms do to each unknown. Unknowns that it leaves at zero, as at the
-    /// origin, count as of size one.
+    /// `|C| |J| |x|`: what relative changes of the terms do to each unknown. Unknowns that it
+    /// leaves at zero, as at the origin, count as of size one.
     fn weights(&self, x: &[Complex64]) -> Vec<f64> {
         let n = self.n;
         let (jacobian, inverse) =
@@ -213,7 +220,8 @@ impl<'a> Prover<'a> {
         weights.iter().zip(unit).map(|(&w, u)| if w > 0.0 { w } else { u }).collect()
     }
 
-    /// Weights raised to where the errors of the inverse, `|I - C J|` and the rounding of that, carry those of other unknowns.
+    /// Weights raised to where the errors of the inverse, `|I - C J|` and the rounding of that,
+    /// carry those of other unknowns.
     fn levelled(&self, mut weights: Vec<f64>) -> Vec<f64> {
         let n = self.n;
         let error = |i: usize, j: usize| {
@@ -241,8 +249,8 @@ impl<'a> Prover<'a> {
     }
 }
 
-/// Whether no coordinate differs by more than a share of its size, which counts as at least 1e-4 of the largest
-/// coordinate or of one.
+/// Whether no coordinate differs by more than a share of its size, which counts as at least 1e-4 of
+/// the largest coordinate or of one.
 fn within(point: &[Complex64], solution: &[Complex64], share: f64) -> bool {
     let floor = 1e-4 * solution.iter().map(|z| z.norm()).fold(1.0, f64::max);
     point.iter().zip(solution).all(|(a, b)| (a - b).norm() <= share * b.norm().max(floor))

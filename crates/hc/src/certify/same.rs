@@ -1,7 +1,7 @@
 //! Which proofs are about the same solution.
 //!
-//! Boxes are sorted by the lower end of their image under a fixed real projection; only boxes whose images meet
-//! are compared.
+//! Boxes are sorted by the lower end of their image under a fixed real projection; only boxes whose
+//! images meet are compared.
 
 use super::certificate::Obstacle;
 use super::proof::Proof;

@@ -56,7 +56,8 @@ fn the_solutions_of_the_written_decimals_are_enclosed() {
         let found = run(text, &[vec![z(0.1, 1e-9)]]);
         let [x] = found.points[0].as_ref().unwrap().enclosure[..] else { panic!("one unknown") };
         assert!(holds(&x, &tenth, &BigRational::from_integer(0.into())), "{text}: {x:?}");
-        // The nearest double is not the solution, and the box is hardly wider than the gap between doubles.
+        // The nearest double is not the solution, and the box is hardly wider than the gap between
+        // doubles.
         assert!(x.re.low < x.re.high && x.re.high - x.re.low <= 1e-16, "{text}: {x:?}");
     }
 }
@@ -73,7 +74,8 @@ fn points_of_one_solution_are_duplicates() {
 
 #[test]
 fn tiny_coordinates_do_not_set_the_size_of_a_box() {
-    // katsura-8: (1, 0, .., 0) is a solution; rounding leaves some coordinates far smaller than any scale of the system.
+    // katsura-8: (1, 0, .., 0) is a solution; rounding leaves some coordinates far smaller than any
+    // scale of the system.
     let text = include_str!("../../../../examples/systems/katsura8.phc");
     let mut point = vec![z(0.0, 0.0); 9];
     (point[0], point[7], point[8]) = (z(1.0, 0.0), z(0.0, -9.2888628151065e-69), z(-1.85586238071561e-68, 0.0));
@@ -174,7 +176,8 @@ fn badly_scaled_systems_need_no_scaling() {
 
 #[test]
 fn ill_conditioned_roots_are_certified() {
-    // Wilkinson's polynomial with roots 1 to 15, multiplied out: relative condition numbers reach 1e13.
+    // Wilkinson's polynomial with roots 1 to 15, multiplied out: relative condition numbers reach
+    // 1e13.
     let mut coefficients = vec![num_bigint::BigInt::from(1)];
     for root in 1..=15 {
         let mut next = vec![num_bigint::BigInt::from(0); coefficients.len() + 1];
@@ -238,8 +241,9 @@ fn what_does_not_fit_is_an_error() {
 
 #[test]
 fn boxes_as_small_as_doubles_allow_are_tried() {
-    // With the smallest box that doubles can bound, and one a few times larger no longer: coefficients of size one, coordinates from 1e-4
-    // to 1e9, condition 1e10. The equations are those of four receivers and five transmitters (alpha, beta, e, l, h, C).
+    // With the smallest box that doubles can bound, and one a few times larger no longer:
+    // coefficients of size one, coordinates from 1e-4 to 1e9, condition 1e10. The equations are
+    // those of four receivers and five transmitters (alpha, beta, e, l, h, C).
     let mut text = String::from(
         "name = 'f'\nunknowns = ['a', 'b', 'e', 'l', 'h', 'c']\n\
          parameters = ['x1', 'x2', 'x3', 'x4', 'x5', 'y1', 'y2', 'y3', 'y4', 'y5', 'z1', 'z2', 'z3', 'z4', 'z5']\nequations = [",
@@ -291,7 +295,8 @@ fn small() -> impl Strategy<Value = (i64, i64)> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
-    /// Two quadrics with a rational solution by construction: what is certified near it contains it.
+    /// Two quadrics with a rational solution by construction: what is certified near it contains
+    /// it.
     #[test]
     fn boxes_contain_the_rational_solution(
         s in [small(), small()],
@@ -312,7 +317,8 @@ proptest! {
         let zero = BigRational::from_integer(0.into());
         match &found.points[0] {
             Ok(certificate) => {
-                // Another solution may be as near; the box of the rational one, taken from the exact point, is apart then.
+                // Another solution may be as near; the box of the rational one, taken from the
+                // exact point, is apart then.
                 let from_exact = run(&text, &[s.map(|(p, q)| z(p as f64 / q as f64, 0.0)).to_vec(), certificate.value.clone()]);
                 let inside = certificate.enclosure.iter().zip(s).all(|(x, s)| holds(x, &rational(s), &zero));
                 prop_assert!(inside || from_exact.duplicate_of[1].is_none(), "{text} {certificate:?}");
@@ -322,7 +328,8 @@ proptest! {
             }
             Err(obstacle) => {
                 let size = determinant.numer().bits() as i64 - determinant.denom().bits() as i64;
-                // The Jacobian at the solution is far from singular only if its determinant is not small.
+                // The Jacobian at the solution is far from singular only if its determinant is not
+                // small.
                 prop_assert!(determinant == zero || size < 2 || *obstacle == Obstacle::Away, "{text} {obstacle:?}");
             }
         }

@@ -15,7 +15,8 @@ pub(crate) enum Verdict {
     },
     /// At a point to which the path could be tracked like a regular one.
     Reached,
-    /// At infinity: coordinate `j` is of order `t^(valuations[j] / winding)`, one of them being negative.
+    /// At infinity: coordinate `j` is of order `t^(valuations[j] / winding)`, one of them being
+    /// negative.
     Infinite {
         /// Winding number.
         winding: usize,
@@ -35,7 +36,8 @@ pub(crate) struct Ending {
     pub(crate) verdict: Verdict,
     /// The end if it is finite, otherwise the last point.
     pub(crate) point: Vec<Complex64>,
-    /// The point at the first radius, common to all paths: two that coincide here have crossed. Empty if not reached.
+    /// The point at the first radius, common to all paths: two that coincide here have crossed.
+    /// Empty if not reached.
     pub(crate) middle: Vec<Complex64>,
     /// Radius of the last loop.
     pub(crate) radius: f64,

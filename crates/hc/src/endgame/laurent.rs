@@ -1,9 +1,10 @@
 //! What the samples of a closed loop tell: Laurent coefficients by the discrete Fourier transform.
 //!
-//! Near `t = 0` a path is a convergent series in `t^(1/m)`, with finitely many negative powers where it diverges; `m` is
-//! its winding number. On a loop of `m` turns round the circle `|t| = r` its coefficients, times powers of `r`, are the Fourier coefficients
-//! of the samples up to aliasing, whose error falls with the number of samples a turn as `(r / R)^samples`, `R` the distance to the next
-//! singularity (Morgan, Sommese & Wampler 1991).
+//! Near `t = 0` a path is a convergent series in `t^(1/m)`, with finitely many negative powers
+//! where it diverges; `m` is its winding number. On a loop of `m` turns round the circle `|t| = r`
+//! its coefficients, times powers of `r`, are the Fourier coefficients of the samples up to
+//! aliasing, whose error falls with the number of samples a turn as `(r / R)^samples`, `R` the
+//! distance to the next singularity (Morgan, Sommese & Wampler 1991).
 
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -14,24 +15,26 @@ pub(super) struct Loop<'a> {
     pub(super) n: usize,
     /// Samples on each turn.
     pub(super) per_turn: usize,
-    /// Points at equal angles, `t` turning clockwise, `n` coordinates each; as many as `per_turn` times the winding number.
+    /// Points at equal angles, `t` turning clockwise, `n` coordinates each; as many as `per_turn`
+    /// times the winding number.
     pub(super) samples: &'a [Complex64],
     /// Relative error of the samples.
     pub(super) noise: f64,
-    /// How far each coordinate moves if the coefficients are rounded. That makes up singularities deep inside the
-    /// loop, which must not count.
+    /// How far each coordinate moves if the coefficients are rounded. That makes up singularities
+    /// deep inside the loop, which must not count.
     pub(super) blur: &'a [f64],
 }
 
 /// What a loop says of the end of its path.
 #[derive(Debug, PartialEq)]
 pub(super) enum Reading {
-    /// The path ends at `limit`, known up to about `error` (relative to the path's size on the loop); coordinates
-    /// that vanish within it are exactly zero.
+    /// The path ends at `limit`, known up to about `error` (relative to the path's size on the
+    /// loop); coordinates that vanish within it are exactly zero.
     Finite { limit: Vec<Complex64>, error: f64 },
     /// It diverges: coordinate `j` is of order `t^(valuations[j] / m)`.
     Infinite { valuations: Vec<i64> },
-    /// The loop is too wide: singularities other than that at zero are not far outside, or there are some within.
+    /// The loop is too wide: singularities other than that at zero are not far outside, or there
+    /// are some within.
     TooWide,
     /// So near to zero rounded coefficients have ends of their own.
     TooDeep,
@@ -44,20 +47,22 @@ pub(super) struct View {
     tail: f64,
     /// Fourier coefficients below this share of their coordinate count as zero.
     zero: f64,
-    /// Where lower powers do not vanish, a coordinate is of the order of the lowest power that makes up this share of it.
+    /// Where lower powers do not vanish, a coordinate is of the order of the lowest power that
+    /// makes up this share of it.
     largest: f64,
 }
 
 /// A loop that leaves no doubt; aliasing is below 1e-13.
 pub(super) const CLEAR: View = View { tail: 1e-5, zero: 1e-9, largest: f64::INFINITY };
-/// For paths of which no loop is clear, since there are singularities so near to zero that double precision cannot go inside.
+/// For paths of which no loop is clear, since there are singularities so near to zero that double
+/// precision cannot go inside.
 pub(super) const VAGUE: View = View { tail: 1e-2, zero: 1e-5, largest: 0.35 };
 /// A loop on which rounded coefficients move a coordinate by this share of its size says nothing.
 const BLURRED: f64 = 1e-4;
 /// The worst rounding of all coefficients does this much more than a random one.
 const MARGIN: f64 = 256.0;
-/// The lowest power of a diverging coordinate must reach this share of it; a singularity within the loop, unlike a
-/// pole at zero, leaves coefficients that fade towards the lower powers.
+/// The lowest power of a diverging coordinate must reach this share of it; a singularity within the
+/// loop, unlike a pole at zero, leaves coefficients that fade towards the lower powers.
 const DOMINANT: f64 = 1e-2;
 
 impl Loop<'_> {
@@ -95,7 +100,8 @@ impl Loop<'_> {
             if tail > (view.tail * size).max(16.0 * noise).max(16.0 * blur) {
                 return Reading::TooWide;
             }
-            // Negative frequencies are aliases of positive ones, the lowest of those in the tail, the others above five eighths of the samples.
+            // Negative frequencies are aliases of positive ones, the lowest of those in the tail,
+            // the others above five eighths of the samples.
             let significant = significant.max(4.0 * size * (tail / size).powf(5.0 / 3.0));
             let Some(&(lowest, share)) = sizes.iter().find(|(p, c)| *c > significant && !(*p < 0 && in_tail(*p)))
             else {

@@ -1,11 +1,12 @@
-//! Straight legs in logarithmic time `s = -ln t`, along the radius or round the origin of the plane of `t`.
+//! Straight legs in logarithmic time `s = -ln t`, along the radius or round the origin of the plane
+//! of `t`.
 
 use crate::homotopy::{ParameterPath, Segment};
 use num_complex::Complex64;
 use poly::{ComplexDd, Lane};
 
-/// The way that a path goes in one piece, in the parameters `target + t direction` of a segment; the tracker's own time
-/// `u` goes from 1 to 0 on it.
+/// The way that a path goes in one piece, in the parameters `target + t direction` of a segment;
+/// the tracker's own time `u` goes from 1 to 0 on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Leg {
     /// Straight in logarithmic time, from the first value of `s` to the second.
@@ -42,8 +43,8 @@ pub(super) struct Legs<'a> {
 }
 
 impl Legs<'_> {
-    /// The parameters at the end of a leg in double-double: where the Jacobian is nearly singular, rounding errors of the
-    /// parameters would show in the samples.
+    /// The parameters at the end of a leg in double-double: where the Jacobian is nearly singular,
+    /// rounding errors of the parameters would show in the samples.
     pub(super) fn precise(&self, leg: usize, p: &mut Vec<ComplexDd>) {
         p.resize(self.segment.parameters(), ComplexDd::default());
         self.segment.extended(&ComplexDd::new(self.legs[leg].target()), p);

@@ -1,13 +1,16 @@
 //! The end of paths that do not run into a regular solution.
 //!
-//! Near `t = 0` such a path is a Puiseux series in `t`, or it is not known yet that it is none. It is tracked in logarithmic time
-//! `s = -ln t`, in which steps need not shrink, to a small circle round `t = 0`, and round the circle until it closes (Cauchy's
-//! endgame: Morgan, Sommese & Wampler 1991): the number of turns is the winding number, the Laurent coefficients tell whether the
-//! path is finite or diverges, with valuations that are exact fractions, and the mean of the samples is the end,
-//! far more accurate than any point near it. Where the coefficients do not decay, the circle was too wide and a
-//! smaller one follows; once it is plain that singularities lie close to zero the regular tracker tries too.
+//! Near `t = 0` such a path is a Puiseux series in `t`, or it is not known yet that it is none. It
+//! is tracked in logarithmic time `s = -ln t`, in which steps need not shrink, to a small circle
+//! round `t = 0`, and round the circle until it closes (Cauchy's endgame: Morgan, Sommese & Wampler
+//! 1991): the number of turns is the winding number, the Laurent coefficients tell whether the path
+//! is finite or diverges, with valuations that are exact fractions, and the mean of the samples is
+//! the end, far more accurate than any point near it. Where the coefficients do not decay, the
+//! circle was too wide and a smaller one follows; once it is plain that singularities lie close to
+//! zero the regular tracker tries too.
 //!
-//! All paths take their legs together, in lanes and on all threads; the result does not depend on how they are spread.
+//! All paths take their legs together, in lanes and on all threads; the result does not depend on
+//! how they are spread.
 
 mod ending;
 mod laurent;
@@ -36,7 +39,8 @@ const LEGS: usize = 20;
 
 /// Finds the ends of paths along `segment`, in the order given.
 ///
-/// `tracker` are the settings for the legs; `turns` bounds the winding number, for instance by the number of all paths.
+/// `tracker` are the settings for the legs; `turns` bounds the winding number, for instance by the
+/// number of all paths.
 ///
 /// # Panics
 /// If the system is not square or points and segment do not fit it.

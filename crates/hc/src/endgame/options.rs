@@ -9,7 +9,8 @@ pub(super) const LEAST_SHRINK: f64 = 1.5;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct EndgameOptions {
-    /// A path whose `t` has fallen below this without reaching the target goes to the endgame. Default 1e-5.
+    /// A path whose `t` has fallen below this without reaching the target goes to the endgame.
+    /// Default 1e-5.
     pub start: f64,
     /// Radius of the first loop. Default 1e-6.
     pub radius: f64,
@@ -17,7 +18,8 @@ pub struct EndgameOptions {
     pub shrink: f64,
     /// Paths that are undecided below this radius are lost. Default 1e-13.
     pub min_radius: f64,
-    /// Turns after which the first loop is given up as too wide; each smaller loop may take twice as many. Default 16.
+    /// Turns after which the first loop is given up as too wide; each smaller loop may take twice
+    /// as many. Default 16.
     pub turns: usize,
 }
 

@@ -14,9 +14,11 @@ const SAMPLES: usize = 4;
 const MAX_SAMPLES: usize = 64;
 /// Samples at most where the radius cannot be made smaller.
 const MAX_SAMPLES_WIDE: usize = 16;
-/// Where rounded coefficients move a coordinate by more than this share of its size, a wider circle is better.
+/// Where rounded coefficients move a coordinate by more than this share of its size, a wider circle
+/// is better.
 const SHARP: f64 = 1e-6;
-/// Relative distance below which a loop counts as closed, unless the samples are less accurate than that.
+/// Relative distance below which a loop counts as closed, unless the samples are less accurate than
+/// that.
 const CLOSED: f64 = 1e-10;
 
 /// After so many loops that were too wide the path is tracked straight to zero.
@@ -217,7 +219,8 @@ impl Walker {
         if self.radius / shrink > self.deepest {
             self.radius /= shrink;
         } else if self.per_turn < MAX_SAMPLES_WIDE {
-            // No smaller circle will do: once more with more samples, which may also stand a singularity not far outside.
+            // No smaller circle will do: once more with more samples, which may also stand a
+            // singularity not far outside.
             self.per_turn *= 2;
         } else {
             self.lose();
@@ -257,7 +260,8 @@ fn judged(reading: Reading, winding: usize) -> Option<(Verdict, Vec<Complex64>)>
     }
 }
 
-/// The largest valuation in size, from points `ds` apart in logarithmic time; coordinates that may be rounding error are left out.
+/// The largest valuation in size, from points `ds` apart in logarithmic time; coordinates that may
+/// be rounding error are left out.
 fn steepest(from: &[Complex64], to: &[Complex64], ds: f64) -> f64 {
     let floor = |x: &[Complex64]| 1e-12 * x.iter().map(|z| z.norm()).fold(0.0, f64::max);
     let (a, b) = (floor(from), floor(to));
@@ -265,7 +269,8 @@ fn steepest(from: &[Complex64], to: &[Complex64], ds: f64) -> f64 {
     clear.map(|(x, y)| ((y.norm() / x.norm()).ln() / ds).abs()).fold(0.0, f64::max)
 }
 
-/// Samples a turn that tell powers up to `steepest` from their aliases, with room for the decay beyond them.
+/// Samples a turn that tell powers up to `steepest` from their aliases, with room for the decay
+/// beyond them.
 fn samples_for(steepest: f64) -> usize {
     let mut samples = SAMPLES;
     while samples < MAX_SAMPLES && steepest > 0.25 * samples as f64 + 0.25 {

@@ -4,8 +4,8 @@ use crate::homotopy::{ParameterPath, Segment};
 use num_complex::Complex64;
 use poly::{ComplexDd, Lane, Scalar};
 
-/// Forms of one problem in one family, for instance with its points in another order: a path that is
-/// hard in one chart may be easy in the next. Chart 0 is the family as it stands.
+/// Forms of one problem in one family, for instance with its points in another order: a path that
+/// is hard in one chart may be easy in the next. Chart 0 is the family as it stands.
 pub trait Charts {
     /// Number of charts, at least 1.
     const COUNT: usize;
@@ -100,7 +100,8 @@ mod tests {
             assert!((whole[i] - rest[i]).norm() < 1e-15);
             assert!((whole[2 + i] * 0.25 - rest[2 + i]).norm() < 1e-15);
         }
-        // In double-double both agree to a rounding error, and both ways to the same digits, since 0.25 t is exact.
+        // In double-double both agree to a rounding error, and both ways to the same digits, since
+        // 0.25 t is exact.
         let mut extended = [[poly::ComplexDd::default(); 2]; 2];
         rests.extend(1, 0.8, &mut extended[0]);
         segment.extend(0, 0.25 * 0.8, &mut extended[1]);

@@ -12,7 +12,8 @@ use num_complex::Complex64;
 use poly::{Evaluate, Interpreter, Isa, System};
 use std::str::FromStr;
 
-/// Values of this size and below count as zero where a family demands that something does not vanish.
+/// Values of this size and below count as zero where a family demands that something does not
+/// vanish.
 const VANISHES: f64 = 1e-9;
 
 /// A parameter family, compiled: its equations, what must not vanish at its solutions, and its
@@ -99,8 +100,8 @@ impl Family {
         &self.program
     }
 
-    /// Whether none of the factors that the family declares nonzero vanishes at the solution `x` (one
-    /// entry an unknown) for the parameters `p` (one entry a parameter).
+    /// Whether none of the factors that the family declares nonzero vanishes at the solution `x`
+    /// (one entry an unknown) for the parameters `p` (one entry a parameter).
     pub fn accepts(&self, p: &[Complex64], x: &[Complex64]) -> bool {
         let mut memory = self.nonzero.memory(Isa::Portable);
         let mut values = vec![Complex64::new(0.0, 0.0); self.nonzero.equations()];
@@ -121,8 +122,8 @@ impl Family {
         Err(FamilyError::Misfit { found_parameters, found_unknowns, parameters, unknowns })
     }
 
-    /// Checks that the stated maps take the tracked solutions of a fibre, whose parameters are generic,
-    /// to solutions: they do so for all parameters then.
+    /// Checks that the stated maps take the tracked solutions of a fibre, whose parameters are
+    /// generic, to solutions: they do so for all parameters then.
     pub(super) fn check_symmetry(&self, fibre: &Fibre) -> Result<(), FamilyError> {
         let tracked = fibre.tracked();
         match self.symmetry.broken(&self.program, &fibre.parameters, tracked.iter()) {
@@ -131,8 +132,8 @@ impl Family {
         }
     }
 
-    /// The fibre with one solution of each orbit noted as representative, where the family has symmetries:
-    /// these alone are then tracked.
+    /// The fibre with one solution of each orbit noted as representative, where the family has
+    /// symmetries: these alone are then tracked.
     #[must_use]
     pub fn folded(&self, fibre: Fibre) -> Fibre {
         if self.symmetry.is_trivial() || fibre.representatives.is_some() {
@@ -161,8 +162,9 @@ impl Family {
         find_pair(self.system(), |p, x| self.accepts(p, x), seed)?.ok_or(FamilyError::NoPair)
     }
 
-    /// All solutions for some generic parameters: a first pair, and what loops in parameter space make
-    /// of it. The number of roots that the family states ends the search, unless the options have one.
+    /// All solutions for some generic parameters: a first pair, and what loops in parameter space
+    /// make of it. The number of roots that the family states ends the search, unless the options
+    /// have one.
     ///
     /// # Errors
     /// If no first solution is found.
@@ -189,8 +191,8 @@ impl Family {
         Ok(fill(&self.program, first, |p, x| self.accepts(p, x), &self.symmetry, &options, monitor))
     }
 
-    /// The trace test of a fibre: whether it is whole. It takes several times as long as finding the
-    /// fibre; `patience` of the options counts for the further points that it needs.
+    /// The trace test of a fibre: whether it is whole. It takes several times as long as finding
+    /// the fibre; `patience` of the options counts for the further points that it needs.
     ///
     /// # Errors
     /// If the fibre is of another family, or the enlarged family of the test does not compile.

@@ -1,8 +1,9 @@
 //! Filling a fibre: all solutions of a family for one generic parameter point, from a single one.
 //!
-//! Parameters go round random triangles; solutions come back as other solutions of the same irreducible component
-//! (Duff, Hill, Jensen, Lee, Leykin, Sommars 2018, arXiv:1609.08722). That a fibre is whole is never guessed: it is told by a known count or by
-//! the [trace test](crate::Family::trace_test), and the result says which.
+//! Parameters go round random triangles; solutions come back as other solutions of the same
+//! irreducible component (Duff, Hill, Jensen, Lee, Leykin, Sommars 2018, arXiv:1609.08722). That a
+//! fibre is whole is never guessed: it is told by a known count or by the [trace
+//! test](crate::Family::trace_test), and the result says which.
 
 use super::fibre::{Fibre, FibreOptions};
 use super::symmetry::Symmetry;
@@ -26,13 +27,13 @@ pub struct MonodromyOptions {
     pub seed: u64,
     /// The known number of solutions, if any: reaching it ends the search. Default `None`.
     pub roots: Option<usize>,
-    /// Loops without a new solution after which the search ends, provided that they had at least 64 chances (loops times solutions)
-    /// to bring one. Default 8.
+    /// Loops without a new solution after which the search ends, provided that they had at least 64
+    /// chances (loops times solutions) to bring one. Default 8.
     pub patience: usize,
     /// Solutions at most; a fibre that exceeds it is given up. Default 100,000.
     pub max_solutions: usize,
-    /// Settings for the paths. By default difficult paths are given up early (2,000 steps, one retry): what they would have found, easier
-    /// paths of later loops find.
+    /// Settings for the paths. By default difficult paths are given up early (2,000 steps, one
+    /// retry): what they would have found, easier paths of later loops find.
     pub fibre: FibreOptions,
 }
 
@@ -113,7 +114,8 @@ pub struct Monodromy {
 /// Completes `start` (one or several solutions for generic parameters) by loops in parameter space;
 /// of a symmetric family one solution of each orbit goes round.
 ///
-/// `accept` is asked about every new solution; solutions that it refuses (degenerate ones) are dropped.
+/// `accept` is asked about every new solution; solutions that it refuses (degenerate ones) are
+/// dropped.
 pub(super) fn fill<E: Evaluate>(
     system: &E,
     start: &Fibre,
@@ -174,7 +176,8 @@ impl<E: Evaluate> Filling<'_, E> {
         self.monitor.enter(Stage::Loop, paths as u64);
         for corner in [&corners[0], &corners[1], &self.fibre.parameters] {
             let (ends, _) = track_fibre_watched(self.system, &moving, corner, &self.options.fibre, self.monitor);
-            // Paths that share an end have been counted as failed; whichever is true is found by a later loop.
+            // Paths that share an end have been counted as failed; whichever is true is found by a
+            // later loop.
             let regular = ends.iter().filter(|(r, _)| r.end == PathEnd::Success);
             let mut solutions: Vec<Complex64> = regular.flat_map(|(_, x)| x.iter().copied()).collect();
             let drop = repeated(&solutions, n, 0, self.options.fibre.coincidence);

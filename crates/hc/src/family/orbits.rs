@@ -33,10 +33,10 @@ impl Orbits {
         Ok(Some(Orbits { tracked, sizes }))
     }
 
-    /// All solutions for a target, from those to which the representatives lead. `None` where they do
-    /// not tell how many paths end where, so that all have to be tracked: where one is singular or lost
-    /// (of the paths that share a singular end some are missing), where two lie in one orbit, and where
-    /// an orbit is smaller than for generic parameters.
+    /// All solutions for a target, from those to which the representatives lead. `None` where they
+    /// do not tell how many paths end where, so that all have to be tracked: where one is singular
+    /// or lost (of the paths that share a singular end some are missing), where two lie in one
+    /// orbit, and where an orbit is smaller than for generic parameters.
     pub(super) fn expand(
         &self,
         symmetry: &Symmetry,

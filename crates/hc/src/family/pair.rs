@@ -1,7 +1,7 @@
 //! A first solution of a family: one pair of parameters and unknowns.
 //!
-//! Newton's method in unknowns and parameters together, from a random complex point: the equations are underdetermined, so the
-//! correction of least length is taken (Gauss-Newton).
+//! Newton's method in unknowns and parameters together, from a random complex point: the equations
+//! are underdetermined, so the correction of least length is taken (Gauss-Newton).
 
 use super::fibre::Fibre;
 use crate::linalg::Lu;
@@ -15,9 +15,11 @@ use poly::{CompileError, Evaluate, System};
 const TRIES: u64 = 1000;
 const MAX_ITERATIONS: usize = 60;
 
-/// Finds a regular solution of a square system for some generic parameters, deterministic for a seed.
+/// Finds a regular solution of a square system for some generic parameters, deterministic for a
+/// seed.
 ///
-/// `accept` is asked about parameters and solution; `None` if no try led to a regular solution that it accepts.
+/// `accept` is asked about parameters and solution; `None` if no try led to a regular solution that
+/// it accepts.
 ///
 /// # Errors
 /// If the formulas cannot be compiled.

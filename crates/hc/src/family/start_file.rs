@@ -11,7 +11,8 @@ pub struct StartFile {
     pub parameters: Vec<[f64; 2]>,
     /// The solutions, one list of `[re, im]` each, in the order of the family's unknowns.
     pub solutions: Vec<Vec<[f64; 2]>>,
-    /// Deviation found by the [trace test](crate::Family::trace_test), if it was run: rounding error shows that the fibre is whole.
+    /// Deviation found by the [trace test](crate::Family::trace_test), if it was run: rounding
+    /// error shows that the fibre is whole.
     #[serde(default)]
     pub trace_test: Option<f64>,
     /// Why the search ended: `roots reached`, `trace`, `no progress` or `interrupted`; empty where

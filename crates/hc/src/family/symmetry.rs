@@ -46,8 +46,8 @@ impl Symmetry {
         }
         orbit
     }
-    /// The first map, from 0, that takes one of these solutions of `system` for the parameters `p` to a
-    /// point that is no regular solution.
+    /// The first map, from 0, that takes one of these solutions of `system` for the parameters `p`
+    /// to a point that is no regular solution.
     pub(super) fn broken<'x>(
         &self,
         system: &Interpreter,

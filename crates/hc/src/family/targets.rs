@@ -20,8 +20,8 @@ const BLOCK: usize = 256;
 type Enough<'a> = dyn FnMut(usize, &Solutions) -> bool + Send + 'a;
 
 impl Family {
-    /// The solutions for many parameter points, from those of a fibre: see [`Targets`] for what can be
-    /// asked for, [`Targets::run`] for the result.
+    /// The solutions for many parameter points, from those of a fibre: see [`Targets`] for what can
+    /// be asked for, [`Targets::run`] for the result.
     pub fn track<'a, T, Z>(&'a self, fibre: &'a Fibre, targets: &[T]) -> Targets<'a>
     where
         T: AsRef<[Z]>,
@@ -69,8 +69,8 @@ impl<'a> Targets<'a> {
         Targets { how: How { monitor: monitor.clone(), ..self.how }, ..self }
     }
 
-    /// Stops after the first target, in their order, of which `enough` says so; it is called with the
-    /// number of the target, from 0, and its result.
+    /// Stops after the first target, in their order, of which `enough` says so; it is called with
+    /// the number of the target, from 0, and its result.
     pub fn until(self, enough: impl FnMut(usize, &Solutions) -> bool + Send + 'a) -> Self {
         Targets { enough: Some(Box::new(enough)), ..self }
     }
@@ -79,8 +79,8 @@ impl<'a> Targets<'a> {
     /// stopped early.
     ///
     /// # Errors
-    /// If the fibre or a target does not fit the family, a symmetry of the family is none, or an option
-    /// is out of range.
+    /// If the fibre or a target does not fit the family, a symmetry of the family is none, or an
+    /// option is out of range.
     pub fn run(self) -> Result<Vec<Solutions>, FamilyError> {
         self.transform(|_, solutions| solutions)
     }
@@ -142,7 +142,8 @@ impl How<'_> {
         });
         let mut found = expanded.unwrap_or_else(|| from(self.fibre));
         if self.options.certify && found.certify().is_err() {
-            // The family compiles and is square, which is all that can be wrong; nothing is proved if not.
+            // The family compiles and is square, which is all that can be wrong; nothing is proved
+            // if not.
             for s in found.solutions.iter_mut() {
                 s.certified = Some(false);
             }

@@ -1,10 +1,12 @@
 //! The trace test: numerical proof that a fibre of a parameter family is whole.
 //!
-//! On a generic line `p + lambda v` through the parameter point, the solutions `(x, lambda)` form a curve. The fibre is its intersection with
-//! `lambda = 0`; intersected with `(a x - c) lambda = tau` instead, the curve has the points of the fibre and further ones
-//! near `a x = c`. Over parallel such hypersurfaces (in `tau`) the sum of all points moves linearly if, and for a generic
-//! choice only if, no point is missing (Leykin, Rodriguez, Sottile 2018, arXiv:1608.00540, for the bilinear case).
-//! The further points are found by monodromy in the enlarged family, starting from the fibre.
+//! On a generic line `p + lambda v` through the parameter point, the solutions `(x, lambda)` form a
+//! curve. The fibre is its intersection with `lambda = 0`; intersected with
+//! `(a x - c) lambda = tau` instead, the curve has the points of the fibre and further ones near
+//! `a x = c`. Over parallel such hypersurfaces (in `tau`) the sum of all points moves linearly if,
+//! and for a generic choice only if, no point is missing (Leykin, Rodriguez, Sottile 2018,
+//! arXiv:1608.00540, for the bilinear case). The further points are found by monodromy in the
+//! enlarged family, starting from the fibre.
 
 use super::fibre::{Fibre, FibreOptions};
 use super::monodromy::{MonodromyOptions, fill};
@@ -21,8 +23,8 @@ use poly::{CompileError, ComplexDd, Scalar, System};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct TraceTest {
-    /// Deviation of the sum of the points from linear motion, relative to the size of that motion; rounding error if the
-    /// fibre is whole, of the order of one if a point is missing.
+    /// Deviation of the sum of the points from linear motion, relative to the size of that motion;
+    /// rounding error if the fibre is whole, of the order of one if a point is missing.
     pub deviation: f64,
     /// Points of the fibre that were counted where the further points had been added.
     pub fibre: usize,

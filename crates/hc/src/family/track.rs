@@ -19,17 +19,17 @@ const CARRIED: f64 = 1e-8;
 /// More lost paths than this tell of a degenerate member of the family rather than of bad luck.
 const BAD_LUCK: usize = 4;
 
-/// In several charts: of so many lost paths a level of more than [`LONG`] steps in all brings back one
-/// at least, or there is no other level; of fewer it may bring back none.
+/// In several charts: of so many lost paths a level of more than [`LONG`] steps in all brings back
+/// one at least, or there is no other level; of fewer it may bring back none.
 const WORTHWHILE: usize = 8;
 const LONG: usize = 100_000;
 
 /// Tracks all solutions of a fibre to the parameters `target`, on the threads of the current rayon
 /// pool.
 ///
-/// Regular endpoints that coincide prove that a path has jumped: all paths that share an end, and all
-/// that failed, are tracked again with stricter steps. What is still not whole afterwards is counted
-/// as failed.
+/// Regular endpoints that coincide prove that a path has jumped: all paths that share an end, and
+/// all that failed, are tracked again with stricter steps. What is still not whole afterwards is
+/// counted as failed.
 ///
 /// # Panics
 /// If the system is not square or `target` or the fibre do not fit it.
@@ -86,8 +86,8 @@ pub(crate) fn move_fibre_watched<E: Evaluate>(
 
 /// Tracks fibres of one family again and again, on one thread; keeps its memory from call to call.
 ///
-/// In several [`Charts`] a lost path goes on in the next chart from where it broke off, and at stricter
-/// levels starts again in all of them.
+/// In several [`Charts`] a lost path goes on in the next chart from where it broke off, and at
+/// stricter levels starts again in all of them.
 pub struct FibreTracker<'a, E: Evaluate, C: Charts = OneChart> {
     charts: C,
     monitor: Monitor,
@@ -183,9 +183,9 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
         self.track_until(fibre, target, options, fibre.len(), |_| false).0
     }
 
-    /// [`track`](Self::track) in portions of `size` paths in the first pass, which `enough` is shown:
-    /// once it says so, the rest of the paths is left. Returns also whether it did; the counts are then
-    /// of the paths so far.
+    /// [`track`](Self::track) in portions of `size` paths in the first pass, which `enough` is
+    /// shown: once it says so, the rest of the paths is left. Returns also whether it did; the
+    /// counts are then of the paths so far.
     ///
     /// # Panics
     /// Those of [`track`](Self::track).
@@ -331,8 +331,8 @@ where
     }
 }
 
-/// Whether a path that was tracked again has come farther than before. Where paths go to infinity in
-/// one of several charts, they may end in the others.
+/// Whether a path that was tracked again has come farther than before. Where paths go to infinity
+/// in one of several charts, they may end in the others.
 fn is_better<C: Charts>(result: &PathResult) -> bool {
     match result.end {
         PathEnd::Success => true,

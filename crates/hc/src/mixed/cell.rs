@@ -1,8 +1,10 @@
 //! A mixed cell as its edges and the duals of them.
 //!
-//! Of every configuration `j` a cell holds two points `a_j`, `b_j`; with the edges `E_j = a_j - b_j` and `V = |det(E_0 .. E_{n-1})|`
-//! the duals are the integer vectors `u_j` with `<u_j, E_i> = V` for `i = j`, else zero. The circuit of any other point `g` of
-//! configuration `c` on the columns of the Cayley matrix has the entries `t_j = <u_j, g - b_c>`: `V (g - b_c) = sum_j t_j E_j`.
+//! Of every configuration `j` a cell holds two points `a_j`, `b_j`; with the edges
+//! `E_j = a_j - b_j` and `V = |det(E_0 .. E_{n-1})|` the duals are the integer vectors `u_j` with
+//! `<u_j, E_i> = V` for `i = j`, else zero. The circuit of any other point `g` of configuration `c`
+//! on the columns of the Cayley matrix has the entries `t_j = <u_j, g - b_c>`:
+//! `V (g - b_c) = sum_j t_j E_j`.
 
 use super::error::Overflow;
 use super::integer::Integer;
@@ -35,8 +37,8 @@ pub(super) struct Cell<T> {
 }
 
 impl<T: Integer> Cell<T> {
-    /// The mixed cell of `n` standard simplices: with the lifting of the first point the largest, the second
-    /// next, and so on, its edges are `(j, j + 1)`.
+    /// The mixed cell of `n` standard simplices: with the lifting of the first point the largest,
+    /// the second next, and so on, its edges are `(j, j + 1)`.
     pub(super) fn of_simplices(n: usize) -> Option<Self> {
         let width = n.next_multiple_of(LANES);
         let minus = T::narrow(-1)?;
@@ -94,13 +96,15 @@ impl<T: Integer> Cell<T> {
         }
     }
 
-    /// Does a flip, given the circuit of its column, whose entry at the point that leaves is positive; unchanged on overflow.
+    /// Does a flip, given the circuit of its column, whose entry at the point that leaves is
+    /// positive; unchanged on overflow.
     #[inline(always)]
     pub(super) fn flip(&mut self, points: &Points<T>, flip: Flip, circuit: &[T]) -> Result<(), Overflow> {
         let (n, width) = (points.n, self.width);
         let i = flip.column.config;
         let zero = T::default();
-        // With d the entry at the point that leaves: u'_j = (d u_j -/+ t_j u_i) / V, the dual u_i stays.
+        // With d the entry at the point that leaves: u'_j = (d u_j -/+ t_j u_i) / V, the dual u_i
+        // stays.
         let d = if flip.place == Place::First { circuit[i] } else { T::difference(self.volume, circuit[i]) };
         if d.wide() >= T::HALF as i128 {
             return Err(Overflow);
@@ -140,8 +144,8 @@ impl<T: Integer> Cell<T> {
         Ok(())
     }
 
-    /// From the end of stage `k - 1` to the start of stage `k`: the simplex of configuration `k` grows by its degree; unchanged on
-    /// overflow.
+    /// From the end of stage `k - 1` to the start of stage `k`: the simplex of configuration `k`
+    /// grows by its degree; unchanged on overflow.
     pub(super) fn enter(&mut self, points: &Points<T>, k: usize) -> Result<(), Overflow> {
         let degree = points.degrees[k].wide();
         let fits = |x: T, limit: i128| x.wide().checked_mul(degree).is_some_and(|y| y < limit);
@@ -159,7 +163,8 @@ impl<T: Integer> Cell<T> {
         Ok(())
     }
 
-    /// Renumbers the points of configuration `k`, all of its support, without the corners of the simplex.
+    /// Renumbers the points of configuration `k`, all of its support, without the corners of the
+    /// simplex.
     pub(super) fn leave(&mut self, points: &Points<T>, k: usize) {
         let corners = points.n as u32 + 1;
         for p in self.pairs[k].iter_mut() {

@@ -15,7 +15,8 @@ pub struct MixedCell {
     pub edges: Vec<[usize; 2]>,
     /// Volume `V`.
     pub volume: u64,
-    /// `V` times the inner normal `g`: `<g, a> + lift(a)` is least over each support just on its edge.
+    /// `V` times the inner normal `g`: `<g, a> + lift(a)` is least over each support just on its
+    /// edge.
     pub normal: Vec<i128>,
 }
 
@@ -28,8 +29,9 @@ pub struct MixedVolume {
     pub cells: usize,
 }
 
-/// The mixed volume of `n` supports in `n` unknowns: by Bernstein's theorem the number of solutions with all coordinates nonzero of
-/// a system with generic coefficients. Runs on the threads of the current rayon pool.
+/// The mixed volume of `n` supports in `n` unknowns: by Bernstein's theorem the number of solutions
+/// with all coordinates nonzero of a system with generic coefficients. Runs on the threads of the
+/// current rayon pool.
 ///
 /// ```
 /// use hc::mixed_volume;
@@ -40,12 +42,14 @@ pub struct MixedVolume {
 /// ```
 ///
 /// # Errors
-/// If the supports are not as many as the unknowns, an exponent vector has another length, or volumes exceed 64 bits.
+/// If the supports are not as many as the unknowns, an exponent vector has another length, or
+/// volumes exceed 64 bits.
 pub fn mixed_volume(unknowns: usize, supports: &[Vec<Vec<i32>>]) -> Result<MixedVolume, MixedError> {
     mixed_volume_watched(unknowns, supports, &Monitor::default())
 }
 
-/// [`mixed_volume`], watched: [`Progress`](crate::monitor::Progress) has the cells found so far and their volume, a lower bound.
+/// [`mixed_volume`], watched: [`Progress`](crate::monitor::Progress) has the cells found so far and
+/// their volume, a lower bound.
 ///
 /// # Errors
 /// Those of [`mixed_volume`], and [`MixedError::Cancelled`] after [`Monitor::cancel`].
@@ -83,10 +87,12 @@ impl Sink for Total<'_> {
     }
 }
 
-/// The mixed cells of the regular subdivision of a lifting (one value a point), in the order of their edges.
+/// The mixed cells of the regular subdivision of a lifting (one value a point), in the order of
+/// their edges.
 ///
-/// The lifting is perturbed symbolically, so that all cells are fine and their volumes add up to the mixed volume; where
-/// it was not generic, the least value over a support is taken at further points besides those of the edge.
+/// The lifting is perturbed symbolically, so that all cells are fine and their volumes add up to
+/// the mixed volume; where it was not generic, the least value over a support is taken at further
+/// points besides those of the edge.
 ///
 /// # Errors
 /// If the numbers of supports, exponents, points and values do not fit, or volumes exceed 64 bits.
@@ -114,7 +120,8 @@ impl Keep for Vec<MixedCell> {
     }
 }
 
-/// What `make` makes, each with some of the cells, in any order: tasks end in any order, a cell is known by its edges.
+/// What `make` makes, each with some of the cells, in any order: tasks end in any order, a cell is
+/// known by its edges.
 pub(crate) fn watched_cells<K: Keep>(
     unknowns: usize,
     supports: &[Vec<Vec<i32>>],
@@ -164,8 +171,8 @@ impl<K: Keep> Sink for Cells<'_, K> {
     }
 }
 
-/// Supports as the search takes them: those of low degree first, which keeps the numbers of cells small, each moved so
-/// that the least exponent of each unknown is zero.
+/// Supports as the search takes them: those of low degree first, which keeps the numbers of cells
+/// small, each moved so that the least exponent of each unknown is zero.
 struct Ordered {
     supports: Vec<Vec<Vec<i64>>>,
     /// The given number of each.

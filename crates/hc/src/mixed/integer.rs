@@ -4,7 +4,8 @@ use std::cmp::Ordering;
 
 /// Integers in which a cell is held.
 pub(super) trait Integer: Copy + Ord + Default + Send + Sync {
-    /// Half of what the type holds: volumes, and inner products of duals with differences of points, stay below this.
+    /// Half of what the type holds: volumes, and inner products of duals with differences of
+    /// points, stay below this.
     const HALF: u128;
 
     /// The number, `None` if it is not below [`Integer::HALF`] in size.
@@ -20,7 +21,8 @@ pub(super) trait Integer: Copy + Ord + Default + Send + Sync {
     fn exact(a: Self, b: Self, c: Self, d: Self, divisor: &Divisor<Self>) -> Self;
     /// The quotient of [`exact`](Self::exact), `None` if it does not fit.
     fn checked_exact(a: Self, b: Self, c: Self, d: Self, divisor: &Divisor<Self>) -> Option<Self>;
-    /// Whether `(a * b + c * d) / divisor` is surely below `limit` and right by [`Integer::exact`]; none is negative.
+    /// Whether `(a * b + c * d) / divisor` is surely below `limit` and right by [`Integer::exact`];
+    /// none is negative.
     fn surely_below(a: Self, b: Self, c: Self, d: Self, divisor: &Divisor<Self>, limit: Self) -> bool;
     /// `a * b` against `c * d`, `None` on overflow.
     fn compare(a: Self, b: Self, c: Self, d: Self) -> Option<Ordering>;
@@ -28,7 +30,8 @@ pub(super) trait Integer: Copy + Ord + Default + Send + Sync {
     fn divisor(divisor: Self) -> Divisor<Self>;
 }
 
-/// A divisor `odd * 2^shift`, with the inverse of its odd part modulo the word size (Jebelean 1993, exact division).
+/// A divisor `odd * 2^shift`, with the inverse of its odd part modulo the word size (Jebelean 1993,
+/// exact division).
 #[derive(Clone, Copy)]
 pub(super) struct Divisor<T> {
     value: T,

@@ -1,8 +1,8 @@
 //! The points of all supports, for inner products with many duals.
 //!
-//! Stage `k` of a search has the supports `A_0 .. A_{k-1}`, then `d_k Delta` together with `A_k`, then standard simplices `Delta`. Points
-//! of a configuration are numbered: those of a support in their order, corners of a simplex (the origin and the unit vectors)
-//! before them.
+//! Stage `k` of a search has the supports `A_0 .. A_{k-1}`, then `d_k Delta` together with `A_k`,
+//! then standard simplices `Delta`. Points of a configuration are numbered: those of a support in
+//! their order, corners of a simplex (the origin and the unit vectors) before them.
 
 use super::integer::Integer;
 
@@ -29,9 +29,11 @@ pub(super) struct Points<T> {
     /// Coordinates of each point that are not zero, and where those of each point begin.
     terms: Vec<(u32, T)>,
     first_term: Vec<usize>,
-    /// Duals stay below this, so that their inner products with differences of points stay below [`Integer::HALF`].
+    /// Duals stay below this, so that their inner products with differences of points stay below
+    /// [`Integer::HALF`].
     pub(super) limit: T,
-    /// Twice the largest degree: inner products with differences of points are at most so many times as large as the dual.
+    /// Twice the largest degree: inner products with differences of points are at most so many
+    /// times as large as the dual.
     pub(super) reach: u128,
 }
 

@@ -13,7 +13,8 @@ pub(super) struct Space {
     /// Made when they are needed.
     medium: OnceLock<Option<Points<i64>>>,
     large: OnceLock<Option<Points<i128>>>,
-    /// The lifting of each point, negated; without one the cells of the last stage are what is looked for.
+    /// The lifting of each point, negated; without one the cells of the last stage are what is
+    /// looked for.
     pub(super) tau: Option<Vec<i64>>,
     /// Who may stop the search.
     pub(super) monitor: Monitor,

@@ -1,8 +1,11 @@
-//! From the mixed cells of one lifting to those of another by flips, depth first and without a list of visited cells.
+//! From the mixed cells of one lifting to those of another by flips, depth first and without a list
+//! of visited cells.
 //!
-//! The lifting is perturbed symbolically: the first point of the first configuration is lifted by an infinitesimal, the next one by one
-//! infinitely smaller, and so on. On the way from there in the direction `tau` a cell ends where the first of its inequalities
-//! `sum_j t_j (tau(a_j) - tau(b_j)) + V (tau(b_c) - tau(g)) >= 0` fails, one for every point `g` (Jensen 2016, sections 3 to 5).
+//! The lifting is perturbed symbolically: the first point of the first configuration is lifted by
+//! an infinitesimal, the next one by one infinitely smaller, and so on. On the way from there in
+//! the direction `tau` a cell ends where the first of its inequalities
+//! `sum_j t_j (tau(a_j) - tau(b_j)) + V (tau(b_c) - tau(g)) >= 0` fails, one for every point `g`
+//! (Jensen 2016, sections 3 to 5).
 
 use super::cell::Cell;
 use super::error::Overflow;
@@ -44,8 +47,8 @@ impl<T: Integer> Scratch<T> {
         }
     }
 
-    /// One step of the stage that sends the simplex of configuration `k` to minus infinity. Where a cell ends, `circuit` is that
-    /// of the column.
+    /// One step of the stage that sends the simplex of configuration `k` to minus infinity. Where a
+    /// cell ends, `circuit` is that of the column.
     #[inline(always)]
     pub(super) fn regenerate(&mut self, points: &Points<T>, k: usize, cell: &Cell<T>) -> Result<Step, Overflow> {
         let n = points.n;
@@ -127,7 +130,8 @@ impl<T: Integer> Scratch<T> {
         let differences =
             (0..n).map(|j| i128::from(tau_of(j, cell.pairs[j][0])) - i128::from(tau_of(j, cell.pairs[j][1])));
         let highest = tau.iter().map(|t| t.unsigned_abs()).max().unwrap_or(0);
-        // Inner products with the direction are sums of multiples of inner products with duals; volumes come beside them.
+        // Inner products with the direction are sums of multiples of inner products with duals;
+        // volumes come beside them.
         let spread = differences.clone().try_fold(0u128, |sum, d| sum.checked_add(d.unsigned_abs()));
         let slopes =
             spread.and_then(|s| s.checked_mul(points.reach)?.checked_mul(cell.largest_dual().wide().unsigned_abs()));
@@ -180,8 +184,8 @@ impl<T: Integer> Scratch<T> {
         Ok(Step::Ends { column, children })
     }
 
-    /// Puts the candidate in the place of the best if it fails before it: lexicographic order of the circuits, each
-    /// times the other's rate.
+    /// Puts the candidate in the place of the best if it fails before it: lexicographic order of
+    /// the circuits, each times the other's rate.
     #[inline(always)]
     fn challenge(
         &mut self,
@@ -233,7 +237,8 @@ fn entry<T: Integer>(points: &Points<T>, stage: usize, cell: &Cell<T>, column: C
     T::difference(points.value(dual, stage, column), points.value(dual, stage, base))
 }
 
-/// Order at the columns of configuration `j` of two circuits, at least one of them of a column of that configuration.
+/// Order at the columns of configuration `j` of two circuits, at least one of them of a column of
+/// that configuration.
 fn own_order<T: Integer>(
     cell: &Cell<T>,
     j: usize,

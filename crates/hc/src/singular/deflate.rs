@@ -1,11 +1,13 @@
 //! Newton's method for singular solutions: deflation by elimination.
 //!
-//! At a point near a solution, pivots of the Jacobian that are clearly not zero tell which unknowns the equations determine as power
-//! series in the others. What is left are equations in the few others (Lyapunov and Schmidt's reduction) whose linear
-//! part vanishes at the solution. Hence their derivatives vanish there too, and take their place: a system of less
-//! multiplicity (the deflation of Leykin, Verschelde & Zhao 2006, with minors in place of new unknowns as in Hauenstein, Mourrain & Szanto
-//! 2017). This ends with a system that determines all unknowns, on which Newton's method doubles digits, or with one that is
-//! zero to the order at hand: the solution lies on a set of positive dimension.
+//! At a point near a solution, pivots of the Jacobian that are clearly not zero tell which unknowns
+//! the equations determine as power series in the others. What is left are equations in the few
+//! others (Lyapunov and Schmidt's reduction) whose linear part vanishes at the solution. Hence
+//! their derivatives vanish there too, and take their place: a system of less multiplicity (the
+//! deflation of Leykin, Verschelde & Zhao 2006, with minors in place of new unknowns as in
+//! Hauenstein, Mourrain & Szanto 2017). This ends with a system that determines all unknowns, on
+//! which Newton's method doubles digits, or with one that is zero to the order at hand: the
+//! solution lies on a set of positive dimension.
 
 use super::eliminate::{Elimination, Stop};
 use super::equations::Local;
@@ -36,7 +38,8 @@ pub(crate) struct Deflated<S> {
     pub(crate) profile: Profile,
 }
 
-/// Numbers whose logarithm to base 2 is at most this share of the digits count as zero at a refined point.
+/// Numbers whose logarithm to base 2 is at most this share of the digits count as zero at a refined
+/// point.
 pub(crate) const ZERO: f64 = -0.5;
 /// Those from this share on do not; what lies between is not clear.
 pub(crate) const CLEAR: f64 = -0.27;
@@ -78,8 +81,9 @@ struct Step<S> {
     rejected: f64,
 }
 
-/// Finds the solution near `start` with the profile that pivots above `tolerance` (a logarithm to base 2) show there, by series up to
-/// `order`; `None` if there is none to which the iteration converges as Newton's method does, or the profile was `tried` before.
+/// Finds the solution near `start` with the profile that pivots above `tolerance` (a logarithm to
+/// base 2) show there, by series up to `order`; `None` if there is none to which the iteration
+/// converges as Newton's method does, or the profile was `tried` before.
 pub(crate) fn deflated<S: Number>(
     local: &Local<'_, S>,
     start: &[S],
@@ -126,8 +130,9 @@ pub(crate) fn settled<S: Number>(
     None
 }
 
-/// The solution of the same profile to which the iteration leads from a point `stride` away, in a direction in which the linear parts of
-/// the equations do not change; `None` if it does not converge to one.
+/// The solution of the same profile to which the iteration leads from a point `stride` away, in a
+/// direction in which the linear parts of the equations do not change; `None` if it does not
+/// converge to one.
 pub(crate) fn moved<S: Number>(
     local: &Local<'_, S>,
     point: &[S],
@@ -204,8 +209,8 @@ fn step<S: Number>(local: &Local<'_, S>, x: &[S], order: usize, ranks: Ranks<'_>
     rejected = rejected.max(largest(equations.iter().filter_map(|e| e.first())));
     let mut left = order;
     let shift = loop {
-        // The linear part of the equations is zero at the solution: their derivatives take their place, divided so that the
-        // derivatives of powers are binomials.
+        // The linear part of the equations is zero at the solution: their derivatives take their
+        // place, divided so that the derivatives of powers are binomials.
         let variables = basis.variables();
         let part = 1.0 / (order - left + 1) as f64;
         let slope = |e: &Vec<S>, j: usize| basis.derivative(e, j).iter().map(|z| S::scale(z, part)).collect::<Vec<S>>();
@@ -273,7 +278,8 @@ impl<S: Number> Reduced<S> {
                 unknowns[j][basis.variable(k)] = S::one();
             }
         }
-        // Every round gains an order, and as many digits of the lower ones as the point is known to.
+        // Every round gains an order, and as many digits of the lower ones as the point is known
+        // to.
         for round in 0..=order {
             if pivots.rank() == 0 {
                 break;
@@ -287,8 +293,8 @@ impl<S: Number> Reduced<S> {
     }
 }
 
-/// Solves equations in series over `basis` for the unknowns of the pivots of their linear part: those as series over `inner` in the
-/// others, and the equations that are left.
+/// Solves equations in series over `basis` for the unknowns of the pivots of their linear part:
+/// those as series over `inner` in the others, and the equations that are left.
 fn implicit<S: Number>(
     basis: &Basis,
     equations: &[Vec<S>],
@@ -312,7 +318,8 @@ fn implicit<S: Number>(
     (map, others)
 }
 
-/// Takes from the unknowns of the pivots what solves the linear part for these values of the pivots' equations, a series each.
+/// Takes from the unknowns of the pivots what solves the linear part for these values of the
+/// pivots' equations, a series each.
 fn correct<S: Number>(unknowns: &mut [Vec<S>], values: &[Vec<S>], pivots: &Elimination<S>) {
     let length = values.first().map_or(0, Vec::len);
     let height = pivots.rows.iter().max().map_or(0, |m| m + 1);

@@ -1,9 +1,12 @@
-//! The dual space of the local ring at a solution: the differential functionals that vanish on all multiples of the equations.
+//! The dual space of the local ring at a solution: the differential functionals that vanish on all
+//! multiples of the equations.
 //!
-//! Their number is the multiplicity (Dayton & Zeng 2005). They are found order by order: the derivatives of a functional, in the sense
-//! of lowered exponents, are functionals of a lower order, so that each is a combination of integrals of known ones (Mourrain 1997;
-//! the closedness subspace of Zeng 2009). If an order adds none, all are found and the solution is isolated; if there are more than
-//! paths can end at an isolated solution, it is not isolated (Bates, Hauenstein, Peterson & Sommese 2009).
+//! Their number is the multiplicity (Dayton & Zeng 2005). They are found order by order: the
+//! derivatives of a functional, in the sense of lowered exponents, are functionals of a lower
+//! order, so that each is a combination of integrals of known ones (Mourrain 1997; the closedness
+//! subspace of Zeng 2009). If an order adds none, all are found and the solution is isolated; if
+//! there are more than paths can end at an isolated solution, it is not isolated (Bates,
+//! Hauenstein, Peterson & Sommese 2009).
 
 use super::deflate::{CLEAR, ZERO};
 use super::eliminate::{Elimination, Stop};
@@ -23,8 +26,8 @@ pub(crate) enum Count {
     Unclear,
 }
 
-/// Counts the functionals at the origin of equations in a few unknowns, given as series without constant terms, up to the order
-/// of the basis; more than `bound` are not sought.
+/// Counts the functionals at the origin of equations in a few unknowns, given as series without
+/// constant terms, up to the order of the basis; more than `bound` are not sought.
 pub(crate) fn count<S: Number>(basis: &Basis, equations: &[Vec<S>], bound: usize) -> Count {
     let mut space = Space::new(basis);
     for order in 1..=basis.order() {
@@ -44,7 +47,8 @@ struct Space<'a, S> {
     basis: &'a Basis,
     /// By their coefficients at the monomials of the basis; the first is the value at the origin.
     functionals: Vec<Vec<S>>,
-    /// `lowered[i][b]`: functional `b` with its exponents of variable `i` lowered, in terms of the functionals.
+    /// `lowered[i][b]`: functional `b` with its exponents of variable `i` lowered, in terms of the
+    /// functionals.
     lowered: Vec<Vec<Vec<S>>>,
 }
 
@@ -124,7 +128,8 @@ impl<S: Number> Space<'_, S> {
         Some(vectors.len())
     }
 
-    /// What is lowered in variable `i` gives the functional, as far as monomials go whose last variable is that one.
+    /// What is lowered in variable `i` gives the functional, as far as monomials go whose last
+    /// variable is that one.
     fn integral(&self, i: usize, functional: &[S], order: usize) -> Vec<S> {
         let mut integral = vec![S::zero(); self.basis.count(order)];
         for (k, c) in functional.iter().enumerate() {

@@ -1,4 +1,5 @@
-//! Gaussian elimination with complete pivoting: ranks, solutions and null spaces of small matrices of many digits.
+//! Gaussian elimination with complete pivoting: ranks, solutions and null spaces of small matrices
+//! of many digits.
 
 use super::number::Number;
 
@@ -26,7 +27,8 @@ pub(crate) struct Elimination<S> {
 }
 
 impl<S: Number> Elimination<S> {
-    /// Eliminates in a matrix by rows of `width` entries. What is no number ends it, with nothing left that is clear.
+    /// Eliminates in a matrix by rows of `width` entries. What is no number ends it, with nothing
+    /// left that is clear.
     pub(crate) fn new(mut matrix: Vec<Vec<S>>, width: usize, stop: Stop) -> Elimination<S> {
         let height = matrix.len();
         let (mut rows, mut columns) = (Vec::new(), Vec::new());
@@ -85,7 +87,8 @@ impl<S: Number> Elimination<S> {
         (0..self.width).filter(|j| !self.columns.contains(j)).collect()
     }
 
-    /// The entries of the pivots' columns that solve the pivots' rows for this right-hand side, one entry a row of the matrix.
+    /// The entries of the pivots' columns that solve the pivots' rows for this right-hand side, one
+    /// entry a row of the matrix.
     pub(crate) fn solve(&self, side: &[S]) -> Vec<S> {
         let mut x: Vec<S> = self.rows.iter().map(|&i| side[i]).collect();
         for k in 0..x.len() {
@@ -134,7 +137,8 @@ mod tests {
     type Number = ComplexMulti<4>;
 
     proptest! {
-        /// A product of a tall and a wide matrix of integers has at most their common width as its rank, and what is left is rounding.
+        /// A product of a tall and a wide matrix of integers has at most their common width as its
+        /// rank, and what is left is rounding.
         #[test]
         fn products_have_the_rank_of_their_factors(a in prop::collection::vec(-9i32..9, 18), b in prop::collection::vec(-9i32..9, 15)) {
             let entry = |i: usize, j: usize| (0..3).map(|k| a[3 * i + k] * b[5 * k + j]).sum::<i32>();

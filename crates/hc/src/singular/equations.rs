@@ -1,4 +1,5 @@
-//! The given equations, exact, and their values, derivatives and series near a point in numbers of any precision.
+//! The given equations, exact, and their values, derivatives and series near a point in numbers of
+//! any precision.
 
 use super::number::{Number, largest};
 use super::series::Basis;
@@ -10,7 +11,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Equations as they were given, prepared for evaluation to many digits.
 ///
-/// Where exponents are negative an equation is multiplied by a monomial; its solutions without zero coordinates stay.
+/// Where exponents are negative an equation is multiplied by a monomial; its solutions without zero
+/// coordinates stay.
 pub(crate) struct Given {
     unknowns: usize,
     /// Logarithms to base 2 of the units of the unknowns.
@@ -35,7 +37,8 @@ struct Term {
     coefficient: Exact,
 }
 
-/// Coordinates below this share of the largest, or of one, may be zero in truth: ends at multiple solutions are not accurate.
+/// Coordinates below this share of the largest, or of one, may be zero in truth: ends at multiple
+/// solutions are not accurate.
 const SMALL: f64 = 1e-2;
 
 /// A precision that the equations can be had in.
@@ -66,7 +69,8 @@ impl Precision for ComplexMulti<16> {
 }
 
 impl Given {
-    /// Takes polynomials in equally many unknowns; points have unknown `j` in units of `2^scale[j]`.
+    /// Takes polynomials in equally many unknowns; points have unknown `j` in units of
+    /// `2^scale[j]`.
     pub(crate) fn new(polynomials: &[Polynomial<Exact>], scale: Vec<i64>) -> Given {
         let unknowns = scale.len();
         let equation = |polynomial: &Polynomial<Exact>| {
@@ -110,7 +114,8 @@ impl Given {
         self.unknowns
     }
 
-    /// The work done so far at all points, in products of complex double-doubles. It does not depend on the order of the points.
+    /// The work done so far at all points, in products of complex double-doubles. It does not
+    /// depend on the order of the points.
     pub(crate) fn spent(&self) -> u64 {
         self.spent.load(Ordering::Relaxed)
     }
@@ -126,7 +131,8 @@ impl Given {
         })
     }
 
-    /// The terms of a single equation in a single unknown, by ascending exponent; `None` for any other equations.
+    /// The terms of a single equation in a single unknown, by ascending exponent; `None` for any
+    /// other equations.
     pub(crate) fn univariate<S: Precision>(&self) -> Option<Vec<(u32, S)>> {
         let [terms] = &self.equations[..] else { return None };
         if self.unknowns != 1 {
@@ -140,8 +146,8 @@ impl Given {
         Some(terms)
     }
 
-    /// The multiplicity of zero and the number of all roots of a single equation in a single unknown, as often as they count; `None` for
-    /// any other equations.
+    /// The multiplicity of zero and the number of all roots of a single equation in a single
+    /// unknown, as often as they count; `None` for any other equations.
     pub(crate) fn univariate_degrees(&self) -> Option<(usize, usize)> {
         let [terms] = &self.equations[..] else { return None };
         let exponents = || terms.iter().map(|t| t.powers.first().map_or(0, |&(_, e)| e as usize));
@@ -170,8 +176,8 @@ impl Given {
     }
 }
 
-/// Logarithms to base 2 of the units in which coordinates are about one: their sizes, or a tenth of the largest, or of one, where they
-/// are much smaller and may be zero.
+/// Logarithms to base 2 of the units in which coordinates are about one: their sizes, or a tenth of
+/// the largest, or of one, where they are much smaller and may be zero.
 fn units(point: &[Complex64]) -> Vec<i64> {
     let largest = point.iter().map(|z| z.norm()).fold(1.0, f64::max);
     let unit = |z: &Complex64| if z.norm() > SMALL * largest { z.norm() } else { 0.1 * largest };
@@ -271,7 +277,8 @@ impl<S: Number> Local<'_, S> {
         self.given.equations.iter().zip(&self.coefficients).map(value).collect()
     }
 
-    /// The largest value of an equation at a point, as a logarithm to base 2: about that of its size relative to its terms.
+    /// The largest value of an equation at a point, as a logarithm to base 2: about that of its
+    /// size relative to its terms.
     pub(crate) fn residual(&self, x: &[S]) -> f64 {
         largest(&self.values(x))
     }

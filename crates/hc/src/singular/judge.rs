@@ -1,4 +1,5 @@
-//! What the end of a path is: a regular solution, an isolated multiple one, a point on a set of positive dimension, or none.
+//! What the end of a path is: a regular solution, an isolated multiple one, a point on a set of
+//! positive dimension, or none.
 
 use super::deflate::{CLEAR, Deflated, Profile, Reduced, ZERO, approached, deflated, distance};
 use super::dual::{Count, count};
@@ -31,7 +32,8 @@ pub(crate) enum Verdict {
     },
     /// A point on a set of solutions of positive dimension.
     OnComponent {
-        /// A lower bound of the local dimension: that of a reduced set, if the point is a general one.
+        /// A lower bound of the local dimension: that of a reduced set, if the point is a general
+        /// one.
         dimension: usize,
         /// A solution on it near the end.
         point: Vec<Complex64>,
@@ -68,7 +70,8 @@ const ORDERS: [usize; 14] = [2, 3, 4, 6, 8, 11, 16, 23, 32, 45, 64, 90, 128, 180
 const TOLERANCES: [f64; 7] = [-40.0, -30.0, -20.0, -13.0, -10.0, -6.5, -3.5];
 /// Functionals are counted up to this number at least, whatever the number of paths.
 const FUNCTIONALS: usize = 12;
-/// A regular solution is at most this far from the end of a path, relatively, or this many times its error.
+/// A regular solution is at most this far from the end of a path, relatively, or this many times
+/// its error.
 const NEAR: f64 = 1e-7;
 const NEAR_ERRORS: f64 = 1e2;
 /// The same for singular ones, whose ends are less accurate.
@@ -76,7 +79,8 @@ const NEAR_SINGULAR: f64 = 1e-3;
 /// Relative values of equations from which a point is none of their solutions.
 const NOT_ZERO: f64 = 1e-4;
 
-/// Judges a point near which `paths` paths end, with this relative error at most as far as is known.
+/// Judges a point near which `paths` paths end, with this relative error at most as far as is
+/// known.
 pub(crate) fn judge(given: &Given, point: &[Complex64], paths: usize, error: f64) -> Verdict {
     if point.iter().any(|z| !z.is_finite()) {
         return Verdict::Unresolved(Why::NoSolution);
@@ -120,7 +124,8 @@ pub(crate) struct Nearby {
 const DISTANCES: [i32; 7] = [-10, -9, -8, -7, -6, -5, -4];
 const STARTS: usize = 6;
 
-/// Searches the neighbourhood of a point for at most `wanted` regular solutions, and a component if they are fewer.
+/// Searches the neighbourhood of a point for at most `wanted` regular solutions, and a component if
+/// they are fewer.
 pub(crate) fn nearby(given: &Given, point: &[Complex64], wanted: usize) -> Nearby {
     let local = given.near::<ComplexMulti<4>>(point);
     let centre = local.scaled(point);
@@ -159,12 +164,13 @@ pub(crate) fn nearby(given: &Given, point: &[Complex64], wanted: usize) -> Nearb
     nearby
 }
 
-/// Relative values of equations up to which a regular solution of combinations of them surely solves all, and from which it does not;
-/// between them it is refined.
+/// Relative values of equations up to which a regular solution of combinations of them surely
+/// solves all, and from which it does not; between them it is refined.
 const SOLVES: f64 = 1e-13;
 const MISSES: f64 = 1e-6;
 
-/// Whether a regular solution of combinations of the equations, to all digits of a double, solves them all.
+/// Whether a regular solution of combinations of the equations, to all digits of a double, solves
+/// them all.
 pub(crate) fn solves(given: &Given, point: &[Complex64]) -> bool {
     let near = given.near::<ComplexDd>(point);
     let residual = near.residual(&near.scaled(point));
@@ -172,7 +178,8 @@ pub(crate) fn solves(given: &Given, point: &[Complex64]) -> bool {
         || residual < MISSES.log2() && matches!(judge(given, point, 1, 0.0), Verdict::Regular { .. })
 }
 
-/// Pivots of the Jacobian, as logarithms to base 2, from which rounding the coefficients does not matter.
+/// Pivots of the Jacobian, as logarithms to base 2, from which rounding the coefficients does not
+/// matter.
 const STEADY: f64 = -20.0;
 
 /// Whether a regular solution may depend on more digits of the coefficients than doubles have.
@@ -195,7 +202,8 @@ fn regular<S: Precision>(given: &Given, point: &[Complex64], error: f64) -> Opti
     Some(Verdict::Regular { point, residual })
 }
 
-/// A point on a set of positive dimension is at most this far from the end of a path, relatively, or as many times its error.
+/// A point on a set of positive dimension is at most this far from the end of a path, relatively,
+/// or as many times its error.
 const NEAR_SHEET: f64 = 1e-11;
 const NEAR_SHEET_AT_MOST: f64 = 1e-8;
 const NEAR_SHEET_ERRORS: f64 = 10.0;
@@ -208,7 +216,8 @@ fn sheet(given: &Given, point: &[Complex64], paths: usize, error: f64) -> Option
     Some(Verdict::OnComponent { dimension, point: rounded(given, &local, &point).0 })
 }
 
-/// The verdict on a point that is no regular solution, to one precision; an error if that is not enough.
+/// The verdict on a point that is no regular solution, to one precision; an error if that is not
+/// enough.
 fn multiple<S: Precision>(given: &Given, point: &[Complex64], paths: usize) -> Result<Verdict, Why> {
     let local = given.near::<S>(point);
     let start = local.scaled(point);
@@ -242,7 +251,8 @@ fn multiple<S: Precision>(given: &Given, point: &[Complex64], paths: usize) -> R
     Err(why)
 }
 
-/// The verdict where zeros in place of small coordinates give a solution exactly: nothing needs to be refined there.
+/// The verdict where zeros in place of small coordinates give a solution exactly: nothing needs to
+/// be refined there.
 fn at_zeros<S: Number>(local: &Local<'_, S>, start: &[S], limit: usize) -> Option<Verdict> {
     let snapped: Vec<S> = start.iter().map(|z| if z.log2() < NEAR_SINGULAR.log2() { S::zero() } else { *z }).collect();
     let (values, jacobian) = local.jacobian(&snapped);
@@ -270,7 +280,8 @@ enum Structure {
     Unfinished,
 }
 
-/// The structure at a refined solution as far as series up to an order tell; `None` where ranks are not clear.
+/// The structure at a refined solution as far as series up to an order tell; `None` where ranks are
+/// not clear.
 fn structure<S: Number>(local: &Local<'_, S>, found: &Deflated<S>, order: usize, limit: usize) -> Option<Structure> {
     let (_, jacobian) = local.jacobian(&found.point);
     let pivots = Elimination::new(jacobian, found.point.len(), Stop::After(found.profile.ranks[0]));
@@ -287,7 +298,8 @@ fn structure<S: Number>(local: &Local<'_, S>, found: &Deflated<S>, order: usize,
         functionals
     };
     let functionals = counted(limit);
-    // Where deflation has determined the point, it may be isolated with more paths than were counted.
+    // Where deflation has determined the point, it may be isolated with more paths than were
+    // counted.
     let functionals = match functionals {
         Count::More if regular_after => match counted(4 * limit) {
             Count::All(multiplicity) => Count::All(multiplicity),
@@ -303,8 +315,8 @@ fn structure<S: Number>(local: &Local<'_, S>, found: &Deflated<S>, order: usize,
     })
 }
 
-/// The local dimension, at least that of the points of the same structure: the number of general hyperplanes in which the solution is
-/// isolated. Where that is not seen, the lower bound.
+/// The local dimension, at least that of the points of the same structure: the number of general
+/// hyperplanes in which the solution is isolated. Where that is not seen, the lower bound.
 fn dimension<S: Number>(reduced: &Reduced<S>, at_least: usize) -> usize {
     let variables = reduced.basis.variables();
     let mut random = Random::new(0, Stream::Slice(0));
@@ -379,7 +391,8 @@ mod tests {
             assert_eq!(isolated("3\nx^2+y*z;\ny^2-x*z;\nz^2+2*x*y+x^3;", &[0.0, 0.0, 0.0], 8, error), 8);
             // Two cusps that cross transversally: order of the product.
             assert_eq!(isolated("2\ny^2-x^3;\nx^2-y^3;", &[0.0, 0.0], 4, error), 4);
-            // The tacnode y (y - x^2) and a line through it in a general direction, and its tangent: 2 and 4 with y - x^4.
+            // The tacnode y (y - x^2) and a line through it in a general direction, and its
+            // tangent: 2 and 4 with y - x^4.
             assert_eq!(isolated("2\ny*(y-x^2);\nx-2*y;", &[0.0, 0.0], 2, error), 2);
             assert_eq!(isolated("2\n(x-1)^3*(y+2);\n(y-1)^2*(x+y-5);", &[1.0, 1.0], 6, error), 6);
         }

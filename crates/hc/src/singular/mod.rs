@@ -1,7 +1,7 @@
 //! The local structure of solutions: isolated or not, multiplicity, digits by deflation.
 //!
-//! A point is judged by the given equations, with their exact coefficients, in numbers of 32 to 308 digits: the fewest in which what
-//! is zero is clearly told from what is not.
+//! A point is judged by the given equations, with their exact coefficients, in numbers of 32 to 308
+//! digits: the fewest in which what is zero is clearly told from what is not.
 
 mod deflate;
 mod dual;

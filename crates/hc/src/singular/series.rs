@@ -3,7 +3,8 @@
 use super::number::Number;
 use std::collections::HashMap;
 
-/// The monomials of some variables up to an order, by their order: a series of a lower order is a shorter list of coefficients.
+/// The monomials of some variables up to an order, by their order: a series of a lower order is a
+/// shorter list of coefficients.
 pub(crate) struct Basis {
     variables: usize,
     order: usize,
@@ -14,14 +15,16 @@ pub(crate) struct Basis {
     products: Vec<Vec<u32>>,
 }
 
-/// Replacing the variables of series by series takes as many products as there are monomials, and each as many steps as there are pairs of
-/// monomials within the order. More steps than this are not taken.
+/// Replacing the variables of series by series takes as many products as there are monomials, and
+/// each as many steps as there are pairs of monomials within the order. More steps than this are
+/// not taken.
 const MAX_STEPS: f64 = 6e5;
 
 impl Basis {
     /// `None` if there would be too many monomials.
     pub(crate) fn new(variables: usize, order: usize) -> Option<Basis> {
-        // Pairs of monomials in `v` variables that stay within order `k` are monomials in `2 v` variables.
+        // Pairs of monomials in `v` variables that stay within order `k` are monomials in `2 v`
+        // variables.
         let choices = |from: usize| (1..=order).map(|i| (from + i) as f64 / i as f64).product::<f64>();
         if choices(variables) * choices(2 * variables) > MAX_STEPS || order > usize::from(u16::MAX) {
             return None;
@@ -168,7 +171,8 @@ impl Basis {
         a.iter().zip(&monomials).fold(S::zero(), |sum, (a, m)| S::mul_add(a, m, &sum))
     }
 
-    /// Series in the variables of `self` with each variable replaced by a series over `inner`, up to an order.
+    /// Series in the variables of `self` with each variable replaced by a series over `inner`, up
+    /// to an order.
     pub(crate) fn composed<S: Number>(
         &self,
         all: &[Vec<S>],

@@ -1,12 +1,13 @@
-//! Points on sets of positive dimension, told in little time: such a point can be moved along the set.
+//! Points on sets of positive dimension, told in little time: such a point can be moved along the
+//! set.
 
 use super::deflate::{Deflated, Profile, deflated, distance, moved, settled};
 use super::equations::Local;
 use super::number::Number;
 use crate::random::{Random, Stream};
 
-/// Deflations that are tried: orders of the series, with logarithms to base 2 of the tolerances at which ranks are read off. The first is
-/// for reduced sets.
+/// Deflations that are tried: orders of the series, with logarithms to base 2 of the tolerances at
+/// which ranks are read off. The first is for reduced sets.
 const TRIED: [(usize, f64); 5] = [(1, -20.0), (2, -20.0), (2, -12.0), (3, -20.0), (3, -12.0)];
 /// How far a point is moved, in units of the coordinates, and how often.
 const STRIDES: [f64; 2] = [0.25, 0.0625];
@@ -14,11 +15,12 @@ const MOVES: u32 = 3;
 /// Where a set ends after all, equations are this small at most relative to their terms.
 const UNSEEN: f64 = -80.0;
 
-/// A solution on a set of positive dimension near `start`, at a distance of at most `near` (a logarithm to base 2), and how many of its
-/// unknowns are free: the dimension of the set.
+/// A solution on a set of positive dimension near `start`, at a distance of at most `near` (a
+/// logarithm to base 2), and how many of its unknowns are free: the dimension of the set.
 ///
-/// The point is refined with the ranks that are seen there, and moved along the solutions of the same ranks. At an isolated solution at which
-/// not more than `paths` paths end the equations cannot be as small as they are required to be where it leads: they grow with that power of the
+/// The point is refined with the ranks that are seen there, and moved along the solutions of the
+/// same ranks. At an isolated solution at which not more than `paths` paths end the equations
+/// cannot be as small as they are required to be where it leads: they grow with that power of the
 /// distance at most. `None` tells nothing.
 pub(crate) fn on_sheet<S: Number>(
     local: &Local<'_, S>,
@@ -49,17 +51,19 @@ pub(crate) fn on_sheet<S: Number>(
     None
 }
 
-/// Paths at most that end at points for which [`touched`] tells something: of an isolated solution of a higher multiplicity
-/// equations are too small at the least distance.
+/// Paths at most that end at points for which [`touched`] tells something: of an isolated solution
+/// of a higher multiplicity equations are too small at the least distance.
 const FEW: usize = 3;
-/// Logarithms to base 2 of distances at which solutions are sought, and points at each from which that is done.
+/// Logarithms to base 2 of distances at which solutions are sought, and points at each from which
+/// that is done.
 const DISTANCES: [f64; 5] = [-4.0, -9.0, -14.0, -19.0, -24.0];
 const STARTS: usize = 20;
 /// Dimensions of sets that are sought.
 const DIMENSIONS: usize = 2;
 
-/// The dimension of a reduced set on which a solution lies though ranks are lower there than beside it, as where a curve crosses itself: at
-/// all distances there are solutions of a common rank. `None` tells nothing.
+/// The dimension of a reduced set on which a solution lies though ranks are lower there than beside
+/// it, as where a curve crosses itself: at all distances there are solutions of a common rank.
+/// `None` tells nothing.
 fn touched<S: Number>(local: &Local<'_, S>, point: &[S], paths: usize) -> Option<usize> {
     if paths > FEW {
         return None;

@@ -1,7 +1,8 @@
 //! All roots of a polynomial in one unknown, to many digits: the iteration of Ehrlich and Aberth.
 //!
-//! Starting points lie on the circles that the Newton polygon of the coefficients gives (Bini 1996). Unlike paths, the iteration
-//! can take all the digits it needs where roots depend on the last ones of the coefficients.
+//! Starting points lie on the circles that the Newton polygon of the coefficients gives (Bini
+//! 1996). Unlike paths, the iteration can take all the digits it needs where roots depend on the
+//! last ones of the coefficients.
 
 use super::equations::{Given, Precision};
 use super::number::Number;
@@ -15,8 +16,8 @@ const ROUNDS: usize = 300;
 /// Relative corrections that end the iteration for a root, as a logarithm to base 2.
 const SMALL: f64 = -50.0;
 
-/// Approximations to all roots but zero, each as often as its multiplicity; `None` for more than one equation or unknown, a degree
-/// too high, or if the iteration does not settle.
+/// Approximations to all roots but zero, each as often as its multiplicity; `None` for more than
+/// one equation or unknown, a degree too high, or if the iteration does not settle.
 pub(crate) fn roots(given: &Given) -> Option<Vec<Complex64>> {
     settled::<ComplexMulti<4>>(given).or_else(|| settled::<ComplexMulti<16>>(given))
 }

@@ -34,7 +34,8 @@ pub(super) struct Classified {
 }
 
 impl Classified {
-    /// Without what is known of the start system; `tracked` paths, of which `retracked` were run again.
+    /// Without what is known of the start system; `tracked` paths, of which `retracked` were run
+    /// again.
     pub(super) fn solutions(self, tracked: usize, retracked: usize) -> Solutions {
         Solutions {
             paths: self.counts(tracked, retracked),

@@ -6,13 +6,15 @@ use poly::{Exact, Monomial, Polynomial};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-/// What is left of an equation of size one apart from combinations of those before it, from which on it stays as it is.
+/// What is left of an equation of size one apart from combinations of those before it, from which
+/// on it stays as it is.
 const DEPENDENT: f64 = 1e-5;
 /// More coefficients than this, zeros included, are not looked at.
 const MAX_SIZE: usize = 1 << 20;
 
-/// The polynomials themselves, or others that span the same space, if some nearly depend on others: then exact multiples of these are taken
-/// from them, so that what tells them apart is not lost to rounding.
+/// The polynomials themselves, or others that span the same space, if some nearly depend on others:
+/// then exact multiples of these are taken from them, so that what tells them apart is not lost to
+/// rounding.
 pub(super) fn conditioned(polynomials: &[Polynomial<Exact>]) -> Cow<'_, [Polynomial<Exact>]> {
     let mut monomials: BTreeMap<&Monomial, usize> = BTreeMap::new();
     for (monomial, _) in polynomials.iter().flat_map(Polynomial::terms) {
@@ -49,7 +51,8 @@ fn coefficient(polynomial: &Polynomial<Exact>, monomial: &Monomial) -> Option<Ex
     polynomial.terms().iter().find(|(m, _)| m == monomial).map(|(_, c)| c.clone()).filter(|c| !c.is_zero())
 }
 
-/// Which polynomials are nearly combinations of those before them, by Gram and Schmidt's orthogonalisation.
+/// Which polynomials are nearly combinations of those before them, by Gram and Schmidt's
+/// orthogonalisation.
 fn nearly_dependent(polynomials: &[Polynomial<Exact>], monomials: &BTreeMap<&Monomial, usize>) -> Vec<bool> {
     let mut basis: Vec<Vec<Complex64>> = Vec::new();
     let mut nearly = Vec::with_capacity(polynomials.len());

@@ -1,4 +1,5 @@
-//! From polynomials to supports and coefficients: checked, scaled, as many as unknowns, with the terms that start systems need.
+//! From polynomials to supports and coefficients: checked, scaled, as many as unknowns, with the
+//! terms that start systems need.
 
 use super::error::SolveError;
 use crate::linalg::Lu;
@@ -69,8 +70,9 @@ impl Equations {
         self.supports.len()
     }
 
-    /// As many equations as unknowns: those of highest degree, each with a random combination of the others added, so that Bezout's number
-    /// is the product of the highest degrees. They have all solutions of these equations, and excess ones.
+    /// As many equations as unknowns: those of highest degree, each with a random combination of
+    /// the others added, so that Bezout's number is the product of the highest degrees. They have
+    /// all solutions of these equations, and excess ones.
     pub(super) fn squared(&self, seed: u64) -> Equations {
         let mut order: Vec<usize> = (0..self.len()).collect();
         let degree =
@@ -141,13 +143,15 @@ fn scaled(support: &[Vec<i32>], coefficients: &[Complex64], exponents: &[i32]) -
     coefficients.iter().zip(&shifts).map(|(c, &s)| c * scale(s - largest).0 * scale(s - largest).1).collect()
 }
 
-/// Spread of the logarithms (base 2) of coefficients in an equation below which unknowns are left as they are.
+/// Spread of the logarithms (base 2) of coefficients in an equation below which unknowns are left
+/// as they are.
 const MILD: f64 = 14.0;
 /// Scales beyond this are not used.
 const MAX_EXPONENT: f64 = 200.0;
 
-/// Powers of two for the unknowns that bring coefficients of each equation near to each other: least squares in their logarithms
-/// (Meintjes & Morgan 1987, ACM TOMS 16:143), with a small penalty on the scales so that directions without effect stay at zero.
+/// Powers of two for the unknowns that bring coefficients of each equation near to each other:
+/// least squares in their logarithms (Meintjes & Morgan 1987, ACM TOMS 16:143), with a small
+/// penalty on the scales so that directions without effect stay at zero.
 fn unknown_scales(n: usize, supports: &[Vec<Vec<i32>>], coefficients: &[Vec<Complex64>]) -> Vec<i32> {
     let spread = |logs: &[f64]| {
         logs.iter().copied().fold(f64::NEG_INFINITY, f64::max) - logs.iter().copied().fold(f64::INFINITY, f64::min)

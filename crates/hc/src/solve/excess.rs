@@ -23,7 +23,8 @@ impl<'a> Excess<'a> {
         Excess { all: None, torus_only: false }
     }
 
-    /// Whether a regular end was not asked for: it does not solve all equations, or lies outside the torus.
+    /// Whether a regular end was not asked for: it does not solve all equations, or lies outside
+    /// the torus.
     pub(super) fn contains_regular(&self, point: &[Complex64]) -> bool {
         self.outside(point) || self.all.is_some_and(|given| !singular::solves(given, point))
     }

@@ -1,4 +1,5 @@
-//! Ends that the tracker alone cannot tell: singular ones, and regular ones of coefficients that were rounded.
+//! Ends that the tracker alone cannot tell: singular ones, and regular ones of coefficients that
+//! were rounded.
 
 use super::classify::{Classified, REAL, Tracked};
 use super::excess::Excess;
@@ -76,7 +77,8 @@ impl Classified {
             }
         }
         for found in multiple {
-            // As many paths as the multiplicity, or more where equations were combined: else some have gone astray.
+            // As many paths as the multiplicity, or more where equations were combined: else some
+            // have gone astray.
             let missing = found.multiplicity.saturating_sub(found.paths);
             let surplus = if excess.overdetermined() { 0 } else { found.paths.saturating_sub(found.multiplicity) };
             self.lost += missing + surplus;
@@ -89,7 +91,8 @@ impl Classified {
         }
     }
 
-    /// Replaces regular solutions that depend on what rounding took from the coefficients, or on more digits than doubles have.
+    /// Replaces regular solutions that depend on what rounding took from the coefficients, or on
+    /// more digits than doubles have.
     pub(super) fn correct_rounded(&mut self, tracked: &Tracked<'_>) {
         let mut kept: Vec<Solution> = Vec::with_capacity(self.solutions.len());
         for mut solution in std::mem::take(&mut self.solutions) {
@@ -123,22 +126,25 @@ impl Classified {
     }
 }
 
-/// Condition numbers below which rounded coefficients move a solution by less than its own rounding errors matter.
+/// Condition numbers below which rounded coefficients move a solution by less than its own rounding
+/// errors matter.
 const STEADY: f64 = 1e4;
 /// Those from which exact coefficients are looked at too, for the digits of the solution.
 const STEADY_EXACT: f64 = 1e8;
-/// Residuals of solutions on which rounding has no effect: a single equation has no condition number to tell.
+/// Residuals of solutions on which rounding has no effect: a single equation has no condition
+/// number to tell.
 const ACCURATE_RESIDUAL: f64 = 1e-14;
 /// How far rounded coefficients may move a regular solution that is still told apart from others.
 const ROUNDED: f64 = 1e-4;
 
 /// Groups that are judged at a time.
 const BATCH: usize = 64;
-/// Work that a solve takes for its singular ends, in products of complex double-doubles, but for the last batch: about half a minute of a
-/// processor.
+/// Work that a solve takes for its singular ends, in products of complex double-doubles, but for
+/// the last batch: about half a minute of a processor.
 const WORK: u64 = 300_000_000;
 
-/// Verdicts on all groups of ends, until the work is done that one solve may take or it is cancelled.
+/// Verdicts on all groups of ends, until the work is done that one solve may take or it is
+/// cancelled.
 fn judged_groups(
     tracked: &Tracked<'_>,
     ends: &[&SingularEnd],
@@ -162,8 +168,8 @@ fn judged_groups(
     judged
 }
 
-/// Verdicts on ends that nearly coincide: on all at once, or on each where they are no multiple solution. `spare` paths more may
-/// end there.
+/// Verdicts on ends that nearly coincide: on all at once, or on each where they are no multiple
+/// solution. `spare` paths more may end there.
 fn verdicts(tracked: &Tracked<'_>, ends: &[&SingularEnd], group: &[usize], spare: usize) -> Vec<(Vec<usize>, Verdict)> {
     let verdict = |k: usize| singular::judge(tracked.given, &ends[k].point, group.len() + spare, ends[k].error);
     // The most accurate of the ends stands for all.
@@ -229,7 +235,8 @@ fn solution(
     }
 }
 
-/// All roots of a polynomial in one unknown, with their multiplicities; `None` if they are not all clear, or it is none.
+/// All roots of a polynomial in one unknown, with their multiplicities; `None` if they are not all
+/// clear, or it is none.
 pub(super) fn univariate(
     given: &singular::Given,
     system: &SparseSystem,

@@ -39,8 +39,9 @@ use std::borrow::Cow;
 
 /// Finds the isolated solutions of a system of polynomials, at least as many as unknowns.
 ///
-/// From the solutions of a start system (polyhedral: Huber & Sturmfels 1995, with the origin added to supports for zero coordinates, Li &
-/// Wang 1996; or one of fewer stages, [`Start`]) paths lead along a straight line in the coefficients to all isolated solutions. Ends that are not regular
+/// From the solutions of a start system (polyhedral: Huber & Sturmfels 1995, with the origin added
+/// to supports for zero coordinates, Li & Wang 1996; or one of fewer stages, [`Start`]) paths lead
+/// along a straight line in the coefficients to all isolated solutions. Ends that are not regular
 /// go through the endgame. More equations than unknowns are combined at random, and the excess
 /// solutions are left out again. The same seed gives the same bits on any number of threads.
 ///
@@ -55,7 +56,8 @@ use std::borrow::Cow;
 /// ```
 ///
 /// # Errors
-/// If there are too few equations or too many paths, an equation without unknowns, or a number or an option out of range.
+/// If there are too few equations or too many paths, an equation without unknowns, or a number or
+/// an option out of range.
 pub fn solve(system: &System, options: &SolveOptions) -> Result<Solutions, SolveError> {
     solve_watched(system, options, &Monitor::default())
 }

@@ -11,18 +11,19 @@ use std::fmt;
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Start {
-    /// The one with the least work. Polyhedral never has more paths than the others, but two stages instead of one: where another has
-    /// hardly more (an eighth) that is tried first, and abandoned for polyhedral if more than an eighth of its paths do not end
-    /// at regular solutions, or if one is lost. Systems whose mixed cells do not fit into 126 bits are left to the others too.
+    /// The one with the least work. Polyhedral never has more paths than the others, but two stages
+    /// instead of one: where another has hardly more (an eighth) that is tried first, and abandoned
+    /// for polyhedral if more than an eighth of its paths do not end at regular solutions, or if
+    /// one is lost. Systems whose mixed cells do not fit into 126 bits are left to the others too.
     #[default]
     Auto,
     /// Polyhedral: as many paths as the mixed volume.
     Polyhedral,
-    /// Products of linear forms in the unknowns of given groups ([`SolveOptions::groups`]): as many paths as the multihomogeneous
-    /// Bezout number, and no stage before them.
+    /// Products of linear forms in the unknowns of given groups ([`SolveOptions::groups`]): as many
+    /// paths as the multihomogeneous Bezout number, and no stage before them.
     Multihomogeneous,
-    /// Total degree: as many paths as the product of the degrees, and no stage before them. Its coefficients are so special that
-    /// paths may go to infinity in degenerate ways.
+    /// Total degree: as many paths as the product of the degrees, and no stage before them. Its
+    /// coefficients are so special that paths may go to infinity in degenerate ways.
     TotalDegree,
 }
 
@@ -46,21 +47,26 @@ pub struct SolveOptions {
     pub seed: u64,
     /// The start system. Default [`Start::Auto`].
     pub start: Start,
-    /// Groups of unknowns, by their indices, for [`Start::Multihomogeneous`]; every unknown belongs to just one. Default none.
+    /// Groups of unknowns, by their indices, for [`Start::Multihomogeneous`]; every unknown belongs
+    /// to just one. Default none.
     pub groups: Vec<Vec<usize>>,
-    /// Whether solutions with zero coordinates are left out, with the paths that lead to them. Default false.
+    /// Whether solutions with zero coordinates are left out, with the paths that lead to them.
+    /// Default false.
     pub torus_only: bool,
     /// More paths than this are refused. Default 2^24.
     pub max_paths: u64,
-    /// Settings of both stages. Default [`TrackerOptions::fast`]: paths that jump are found by their ends and tracked again.
+    /// Settings of both stages. Default [`TrackerOptions::fast`]: paths that jump are found by
+    /// their ends and tracked again.
     pub paths: FibreOptions,
     /// Settings for the ends of paths that are not regular.
     pub endgame: EndgameOptions,
-    /// How many regular solutions there are, if that is known, for instance of a family. Once so many are found, paths without an
-    /// end are left where they are and count as dropped; as long as paths share an end, these alone are tracked again. Default `None`:
-    /// every path is taken to its end.
+    /// How many regular solutions there are, if that is known, for instance of a family. Once so
+    /// many are found, paths without an end are left where they are and count as dropped; as long
+    /// as paths share an end, these alone are tracked again. Default `None`: every path is taken to
+    /// its end.
     pub known: Option<usize>,
-    /// How often everything is done again from another start system while paths are lost. Default 2.
+    /// How often everything is done again from another start system while paths are lost.
+    /// Default 2.
     pub restarts: u32,
     /// Whether regular solutions are certified ([`Solutions::certify`](super::Solutions::certify)),
     /// which systems of as many equations as unknowns allow. Default false.

@@ -74,8 +74,8 @@ pub(super) struct Ends {
     pub(super) regular: BTreeMap<usize, Refined>,
     /// The singular ends likewise.
     pub(super) singular: BTreeMap<usize, SingularEnd>,
-    /// Directions of paths to infinity, in order: valuations in units of the reciprocal winding number, that number, and the number
-    /// of paths.
+    /// Directions of paths to infinity, in order: valuations in units of the reciprocal winding
+    /// number, that number, and the number of paths.
     pub(super) directions: Vec<(Vec<i64>, usize, usize)>,
     /// Tracks that were run again.
     pub(super) retracked: usize,
@@ -83,9 +83,11 @@ pub(super) struct Ends {
     pub(super) abandoned: bool,
 }
 
-/// Relative distance below which two paths that have not yet ended are one: only paths that have crossed come that near.
+/// Relative distance below which two paths that have not yet ended are one: only paths that have
+/// crossed come that near.
 const CROSSED: f64 = 1e-11;
-/// Paths that are under way at a time: memory for their points is bounded by this, not by the number of paths.
+/// Paths that are under way at a time: memory for their points is bounded by this, not by the
+/// number of paths.
 const CHUNK: usize = 1 << 11;
 /// Paths that go through the endgame at a time: there each takes more memory than on its way.
 const PORTION: usize = 1 << 9;
@@ -110,8 +112,8 @@ pub(super) struct Route<'a, 'e, E: Evaluate, S> {
     pub(super) monitor: &'a Monitor,
 }
 
-/// Follows the paths of a route; those that share a start or a regular end, have crossed or are lost
-/// are tracked again with stricter steps.
+/// Follows the paths of a route; those that share a start or a regular end, have crossed or are
+/// lost are tracked again with stricter steps.
 ///
 /// On `trial` they are abandoned as soon as too many do not end at regular solutions: with another
 /// source that may be less work.
@@ -229,8 +231,8 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
         if round.level == 0 { first.clone() } else { first.stricter(round.level) }
     }
 
-    /// Tracks paths to regular ends, or to where the endgame begins. One record a path, in order; none once the work is
-    /// cancelled.
+    /// Tracks paths to regular ends, or to where the endgame begins. One record a path, in order;
+    /// none once the work is cancelled.
     fn tracked(&self, numbers: &[usize], round: Round) -> Vec<Record> {
         let Route { trackers, start, target, options, monitor, .. } = self.route;
         if monitor.is_cancelled() {
@@ -285,7 +287,8 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
     fn ended(&self, open: &[Record], round: Round) -> Vec<Record> {
         let Route { trackers, start, target, options, monitor, .. } = self.route;
         let settings = self.settings(round);
-        // Paths that seemed to reach the target, but not at a regular solution: once more up to where the endgame begins.
+        // Paths that seemed to reach the target, but not at a regular solution: once more up to
+        // where the endgame begins.
         let begin = options.endgame.start;
         let near: Vec<Complex64> =
             self.segment.target().iter().zip(self.segment.direction()).map(|(p, d)| p + d * begin).collect();
@@ -418,8 +421,8 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
         which
     }
 
-    /// Paths that are lost, share a start or a regular end, have crossed on the way, or end in a cycle that is not whole; all if what is
-    /// known of them cannot be read.
+    /// Paths that are lost, share a start or a regular end, have crossed on the way, or end in a
+    /// cycle that is not whole; all if what is known of them cannot be read.
     fn doubts(&mut self) -> Vec<usize> {
         let mut which = self.jumped();
         let crossed = [self.starts.met(self.route.options.paths.coincidence), self.middles.met(CROSSED)];

@@ -1,4 +1,5 @@
-//! Where paths were, in two numbers each: enough to tell which ones may have met, without keeping their points.
+//! Where paths were, in two numbers each: enough to tell which ones may have met, without keeping
+//! their points.
 
 use crate::distinct::{projection, relative_distance};
 use crate::store::{Records, Sorter};
@@ -23,7 +24,8 @@ impl Print {
     }
 }
 
-/// A projection and roughly the size of a point for every path, twelve bytes; the points themselves only of few.
+/// A projection and roughly the size of a point for every path, twelve bytes; the points themselves
+/// only of few.
 pub(super) struct Prints {
     paths: usize,
     /// None until a path has a point.
@@ -80,8 +82,8 @@ impl Prints {
         }
     }
 
-    /// Paths that may have met others: all that are within the relative distance `tolerance` of another, and perhaps some
-    /// that merely look so because one of the two points is not kept.
+    /// Paths that may have met others: all that are within the relative distance `tolerance` of
+    /// another, and perhaps some that merely look so because one of the two points is not kept.
     ///
     /// # Errors
     /// If prints cannot be read back.
@@ -105,7 +107,8 @@ impl Prints {
         while let Some(record) = sorted.next()? {
             let (key, size) = read(&[&record[..8], &record[16..]].concat());
             let b = record[8..16].iter().fold(0, |path, &byte| path << 8 | usize::from(byte));
-            // Projections have coefficients of size at most one; sizes of coinciding points are nearly equal.
+            // Projections have coefficients of size at most one; sizes of coinciding points are
+            // nearly equal.
             before.retain(|&(other, _, size)| key - other <= 4.0 * tolerance * size);
             for &(other, a, other_size) in &before {
                 let largest = size.max(other_size) * (1.0 + ROUGH);

@@ -32,8 +32,8 @@ pub(crate) enum RecordEnd {
         /// Its point there.
         point: Vec<Complex64>,
     },
-    /// Not yet: it came to the target, but not to a regular solution, and is to be tracked again up to
-    /// the endgame.
+    /// Not yet: it came to the target, but not to a regular solution, and is to be tracked again up
+    /// to the endgame.
     Undecided {
         /// Where it begins.
         start: Vec<Complex64>,

@@ -20,17 +20,18 @@ const LISTED: usize = 20;
 pub struct Solution {
     /// The coordinates, in the order of the unknowns.
     pub value: Vec<Complex64>,
-    /// Multiplicity: the dimension of the local ring of the given equations. As many paths end here, or more where there are more
-    /// equations than unknowns.
+    /// Multiplicity: the dimension of the local ring of the given equations. As many paths end
+    /// here, or more where there are more equations than unknowns.
     pub multiplicity: usize,
     /// The largest winding number of these paths.
     pub winding_number: usize,
     /// Whether the Jacobian is singular here, to working precision.
     pub singular: bool,
-    /// Whether all imaginary parts are below 1e-10 of the largest coordinate (or of one); 1e-7 where singular.
+    /// Whether all imaginary parts are below 1e-10 of the largest coordinate (or of one); 1e-7
+    /// where singular.
     pub real: bool,
-    /// Largest residual, relative to its row of the Jacobian times the sizes of the coordinates; where that is singular,
-    /// relative to the sizes of the terms of the equation.
+    /// Largest residual, relative to its row of the Jacobian times the sizes of the coordinates;
+    /// where that is singular, relative to the sizes of the terms of the equation.
     pub residual: f64,
     /// Condition number of the scaled Jacobian.
     pub condition: f64,
@@ -68,7 +69,8 @@ impl PartialEq for Member {
     }
 }
 
-/// What [`solve`](crate::solve) has found: the distinct isolated solutions, and what became of the paths.
+/// What [`solve`](crate::solve) has found: the distinct isolated solutions, and what became of the
+/// paths.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Solutions {
@@ -77,33 +79,41 @@ pub struct Solutions {
     pub variables: Vec<String>,
     #[serde(skip)]
     pub(super) member: Member,
-    /// The start system that was used, never [`Start::Auto`]; `None` where paths came from a stored fibre or did not begin.
+    /// The start system that was used, never [`Start::Auto`]; `None` where paths came from a stored
+    /// fibre or did not begin.
     pub start: Option<Start>,
-    /// The mixed volume of the supports, the origin included unless only the torus was asked for; `None` where it was not needed.
+    /// The mixed volume of the supports, the origin included unless only the torus was asked for;
+    /// `None` where it was not needed.
     pub mixed_volume: Option<u64>,
-    /// The product of the degrees: the paths of total degree. `None` if exponents are negative or the number does not fit.
+    /// The product of the degrees: the paths of total degree. `None` if exponents are negative or
+    /// the number does not fit.
     pub bezout_number: Option<u64>,
-    /// The multihomogeneous Bezout number of the groups that were given; `None` as above, or without groups.
+    /// The multihomogeneous Bezout number of the groups that were given; `None` as above, or
+    /// without groups.
     pub multihomogeneous_number: Option<u64>,
-    /// How the paths ended: `finite` at solutions, singular ones and such on components and in excess included.
+    /// How the paths ended: `finite` at solutions, singular ones and such on components and in
+    /// excess included.
     pub paths: PathCounts,
     /// Paths that ended on components of positive dimension.
     pub on_components: usize,
     /// Points on such components, one or more on each.
     pub component_points: Vec<Vec<Complex64>>,
-    /// Paths that ended at points that were not asked for: those that solve only random combinations of more equations than
-    /// unknowns, and those outside the torus where that was asked for.
+    /// Paths that ended at points that were not asked for: those that solve only random
+    /// combinations of more equations than unknowns, and those outside the torus where that was
+    /// asked for.
     pub excess: usize,
     /// Where the paths at infinity went.
     pub directions: Vec<Direction>,
     /// Start systems that were used: more than one if paths were lost.
     pub start_systems: u32,
-    /// Whether the work was cancelled: the list is then partial, and paths not tracked count as failed. In JSON `partial`.
+    /// Whether the work was cancelled: the list is then partial, and paths not tracked count as
+    /// failed. In JSON `partial`.
     #[serde(rename = "partial")]
     pub interrupted: bool,
     /// The distinct isolated solutions, regular ones first.
     pub solutions: Vec<Solution>,
-    /// Ends of paths near which the equations nearly vanish, but that could not be judged. Their paths count as failed.
+    /// Ends of paths near which the equations nearly vanish, but that could not be judged. Their
+    /// paths count as failed.
     pub unresolved: Vec<Unresolved>,
 }
 
@@ -145,15 +155,15 @@ impl Solutions {
         self.iter().filter(|s| !s.singular)
     }
 
-    /// The solutions that are real to within `tolerance`: all imaginary parts are at most this share of
-    /// the largest coordinate, or of one.
+    /// The solutions that are real to within `tolerance`: all imaginary parts are at most this
+    /// share of the largest coordinate, or of one.
     pub fn at(&self, tolerance: f64) -> impl Iterator<Item = &Solution> {
         self.iter().filter(move |s| is_real(&s.value, tolerance))
     }
 
     /// Proves of each regular solution that it exists, is one of its own, and whether it is real
-    /// ([`certify`](mod@crate::certify)); notes it in [`Solution::certified`], and what is proved in
-    /// [`Solution::real`] and [`Solution::singular`].
+    /// ([`certify`](mod@crate::certify)); notes it in [`Solution::certified`], and what is proved
+    /// in [`Solution::real`] and [`Solution::singular`].
     ///
     /// # Errors
     /// If the system has more equations than unknowns.

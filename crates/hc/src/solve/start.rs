@@ -11,7 +11,8 @@ use crate::start::{
 use num_complex::Complex64;
 use poly::SparseSystem;
 
-/// Polyhedral paths take two stages, the others one: up to this part of the paths more are worth a trial.
+/// Polyhedral paths take two stages, the others one: up to this part of the paths more are worth a
+/// trial.
 const HARDLY_MORE: u64 = 8;
 
 /// A source of start systems for given equations.
@@ -128,8 +129,9 @@ impl Starts {
         Ok(Starts { system, equations, target, kind, numbers, paths, degrees, grouped, first: None })
     }
 
-    /// Instead of these polyhedral ones, and only for [`Start::Auto`]: those of one stage that have hardly more paths. Whether they are
-    /// less work shows after some paths, see [`super::paths::follow`].
+    /// Instead of these polyhedral ones, and only for [`Start::Auto`]: those of one stage that have
+    /// hardly more paths. Whether they are less work shows after some paths, see
+    /// [`super::paths::follow`].
     pub(super) fn direct(&self, options: &SolveOptions) -> Option<Starts> {
         let volume = self.numbers.mixed_volume.filter(|_| options.start == Start::Auto && !options.torus_only)?;
         let (kind, paths) = self.numbers.of_one_stage().filter(|(_, paths)| *paths <= volume + volume / HARDLY_MORE)?;
@@ -160,7 +162,8 @@ impl Starts {
     }
 }
 
-/// The given groups with the degrees in them; `None` without groups, or if they are too many or exponents negative.
+/// The given groups with the degrees in them; `None` without groups, or if they are too many or
+/// exponents negative.
 fn groups(equations: &Equations, options: &SolveOptions) -> Result<Option<Grouped>, SolveError> {
     let n = equations.unknowns;
     if options.groups.is_empty() && options.start != Start::Multihomogeneous {

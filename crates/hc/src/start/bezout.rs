@@ -5,13 +5,15 @@ use super::reached::Supports;
 /// Unknowns at most: all sets of them are looked at.
 const MOST_UNKNOWNS: usize = 14;
 
-/// Whether the mixed volume of supports that all hold the origin is sure to be the product of the `degrees`; not seldom it is though this
-/// says no.
+/// Whether the mixed volume of supports that all hold the origin is sure to be the product of the
+/// `degrees`; not seldom it is though this says no.
 ///
-/// A system with these supports and generic coefficients has as many zeros as the mixed volume (Li & Wang 1996), and as many as the product
-/// of the degrees if there are none at infinity. Zeros there solve the forms of highest degree. Where just the unknowns in a set `S` are
-/// not zero, the forms that do not vanish identically have generic coefficients and no common zeros on the torus, so that each lowers
-/// the dimension by one, which is `|S| - 1` at first: there is no zero if they are at least `|S|`.
+/// A system with these supports and generic coefficients has as many zeros as the mixed volume (Li
+/// & Wang 1996), and as many as the product of the degrees if there are none at infinity. Zeros
+/// there solve the forms of highest degree. Where just the unknowns in a set `S` are not zero, the
+/// forms that do not vanish identically have generic coefficients and no common zeros on the torus,
+/// so that each lowers the dimension by one, which is `|S| - 1` at first: there is no zero if they
+/// are at least `|S|`.
 pub(crate) fn mixed_volume_is_bezout(supports: &Supports, degrees: &[u64]) -> bool {
     let n = supports.len();
     if n > MOST_UNKNOWNS || !supports.iter().all(|points| points.iter().any(|p| p.iter().all(|&e| e == 0))) {

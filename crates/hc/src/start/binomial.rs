@@ -47,7 +47,8 @@ impl Binomials {
         Some(Binomials { hermite: h, transform: u })
     }
 
-    /// The integers `x` with `<m_i, x> = sides[i]` for the exponents `m_i`; `None` if there are none, or integers outgrow 127 bits.
+    /// The integers `x` with `<m_i, x> = sides[i]` for the exponents `m_i`; `None` if there are
+    /// none, or integers outgrow 127 bits.
     pub(crate) fn integers(&self, sides: &[i128]) -> Option<Vec<i128>> {
         let sum = |row: &[i128], y: &[i128]| {
             row.iter().zip(y).try_fold(0i128, |sum, (a, y)| sum.checked_add(a.checked_mul(*y)?))
@@ -64,7 +65,8 @@ impl Binomials {
         self.transform.iter().map(|row| sum(row, &y)).collect()
     }
 
-    /// The solution number `k` below the determinant, for the right-hand sides `b`, none of them zero.
+    /// The solution number `k` below the determinant, for the right-hand sides `b`, none of them
+    /// zero.
     pub(crate) fn solution(&self, b: &[Complex64], mut k: u64) -> Vec<Complex64> {
         let n = b.len();
         // Logarithms of moduli, and angles in turns, of y with x = y^transform.

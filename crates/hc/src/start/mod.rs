@@ -1,6 +1,7 @@
 //! Start systems.
 //!
-//! * Polyhedral: the mixed cells of the supports ([`mixed_volume`], [`mixed_cells`]), and a system of binomials for each.
+//! * Polyhedral: the mixed cells of the supports ([`mixed_volume`], [`mixed_cells`]), and a system
+//!   of binomials for each.
 //! * Multihomogeneous: products of linear forms in groups of unknowns.
 //! * Total degree: `x_i^(d_i) - 1`, `d_i` the degrees of the equations.
 
@@ -38,7 +39,8 @@ pub(crate) trait Source<E: Evaluate>: Sync {
     fn parameters(&self) -> &[Complex64];
     /// Whether start solutions are ends of paths themselves, which may be lost or jump.
     fn is_tracked(&self) -> bool;
-    /// The start solutions with these numbers, which ascend; where they are tracked, some may be missing.
+    /// The start solutions with these numbers, which ascend; where they are tracked, some may be
+    /// missing.
     fn solutions(
         &self,
         trackers: &Trackers<'_, E>,

@@ -1,7 +1,9 @@
-//! The multihomogeneous start system (Morgan & Sommese 1987; Wampler 1993): the unknowns stand in groups, and every equation becomes a
-//! product of linear forms, as many in the unknowns of each group as the equation has degrees in them.
+//! The multihomogeneous start system (Morgan & Sommese 1987; Wampler 1993): the unknowns stand in
+//! groups, and every equation becomes a product of linear forms, as many in the unknowns of each
+//! group as the equation has degrees in them.
 //!
-//! A solution chooses a factor of every equation, so that each group has as many equations as unknowns.
+//! A solution chooses a factor of every equation, so that each group has as many equations as
+//! unknowns.
 
 use super::reached::Supports;
 use crate::linalg::Lu;
@@ -20,16 +22,16 @@ pub(crate) struct Grouped {
     groups: Vec<Vec<usize>>,
     /// `degrees[i][g]`: of equation `i` in the unknowns of group `g`.
     degrees: Vec<Vec<u64>>,
-    /// `counts[i][s]`: the number of ways to choose factors of the equations from `i` on if `s` says how many equations each
-    /// group still takes.
+    /// `counts[i][s]`: the number of ways to choose factors of the equations from `i` on if `s`
+    /// says how many equations each group still takes.
     counts: Vec<Vec<u64>>,
     /// What one equation of each group adds to `s`.
     strides: Vec<usize>,
 }
 
 impl Grouped {
-    /// `None` if an exponent is negative or there are too many solutions or groups to be counted. The groups hold
-    /// every unknown once.
+    /// `None` if an exponent is negative or there are too many solutions or groups to be counted.
+    /// The groups hold every unknown once.
     pub(crate) fn new(supports: &Supports, groups: &[Vec<usize>]) -> Option<Grouped> {
         let n = supports.len();
         let degree = |points: &Vec<Vec<i32>>, group: &[usize]| {

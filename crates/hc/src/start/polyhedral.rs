@@ -1,4 +1,5 @@
-//! The polyhedral start system: generic coefficients, and all solutions for them, from the mixed cells of a lifting.
+//! The polyhedral start system: generic coefficients, and all solutions for them, from the mixed
+//! cells of a lifting.
 
 use super::binomial::Binomials;
 use super::reached::{Reached, Supports};
@@ -12,8 +13,8 @@ use num_complex::Complex64;
 use poly::SparseSystem;
 use std::sync::{Mutex, PoisonError};
 
-/// The mixed cells of one lifting, each with its edges and the number of its first path. What belongs to a cell besides, its binomials,
-/// normal and weights, is made when its paths start.
+/// The mixed cells of one lifting, each with its edges and the number of its first path. What
+/// belongs to a cell besides, its binomials, normal and weights, is made when its paths start.
 pub(crate) struct Polyhedral {
     supports: Vec<Vec<Vec<i32>>>,
     lifting: Vec<Vec<i32>>,
@@ -23,7 +24,8 @@ pub(crate) struct Polyhedral {
     pub(crate) mixed_volume: u64,
 }
 
-/// Cells in ascending order of their edges: the edges, one a support, then the number of the first path.
+/// Cells in ascending order of their edges: the edges, one a support, then the number of the first
+/// path.
 struct Cells {
     records: Records,
     count: usize,
@@ -84,7 +86,8 @@ impl Polyhedral {
         &self.coefficients
     }
 
-    /// Tracks roots of the binomials, by ascending numbers, to solutions for the generic coefficients.
+    /// Tracks roots of the binomials, by ascending numbers, to solutions for the generic
+    /// coefficients.
     pub(crate) fn solutions(
         &self,
         trackers: &Trackers<'_, SparseSystem>,
@@ -106,7 +109,8 @@ impl Polyhedral {
         reached
     }
 
-    /// The roots with these numbers; those of a cell whose integers outgrow 127 bits, or that cannot be read, are left out.
+    /// The roots with these numbers; those of a cell whose integers outgrow 127 bits, or that
+    /// cannot be read, are left out.
     fn starts(&self, numbers: &[usize]) -> Starts {
         let mut starts = Starts { rates: Vec::new(), cells: Vec::new(), points: Vec::new(), numbers: Vec::new() };
         let mut cells = self.cells.lock().unwrap_or_else(PoisonError::into_inner);

@@ -4,9 +4,10 @@ use crate::homotopy::ParameterPath;
 use num_complex::Complex64;
 use poly::Lane;
 
-/// Coefficients `c_k exp(-w_k u0 t)`, `t` from 1 to 0: the polyhedral homotopy `c_k s^(w_k)` of Huber & Sturmfels (1995) in
-/// logarithmic time, so that terms of large and of small weight fade in over many scales of `t` alike. Every path has the weights
-/// of its own cell, so that paths of many cells travel side by side.
+/// Coefficients `c_k exp(-w_k u0 t)`, `t` from 1 to 0: the polyhedral homotopy `c_k s^(w_k)` of
+/// Huber & Sturmfels (1995) in logarithmic time, so that terms of large and of small weight fade in
+/// over many scales of `t` alike. Every path has the weights of its own cell, so that paths of many
+/// cells travel side by side.
 #[derive(Clone, Debug)]
 pub(crate) struct Toric<'a> {
     /// The final coefficients.
@@ -17,7 +18,8 @@ pub(crate) struct Toric<'a> {
     pub(crate) cells: &'a [usize],
 }
 
-/// `u0` times the least positive weight: what is not part of the binomials starts at `exp(-30)`, about 1e-13, of its size.
+/// `u0` times the least positive weight: what is not part of the binomials starts at `exp(-30)`,
+/// about 1e-13, of its size.
 const FADED: f64 = 30.0;
 
 /// The rates that belong to the weights of a cell, which are zero for its binomials.

@@ -1,4 +1,5 @@
-//! The total degree start system `g_i (x_i^(d_i) - 1)`, `d_i` the degrees and `g_i` random: as many paths as Bezout's number.
+//! The total degree start system `g_i (x_i^(d_i) - 1)`, `d_i` the degrees and `g_i` random: as many
+//! paths as Bezout's number.
 
 use super::reached::Supports;
 use crate::random::{Random, Stream};
@@ -26,7 +27,8 @@ pub(crate) struct TotalDegree {
 }
 
 impl TotalDegree {
-    /// In coefficients of the supports, which must contain `x_i^(d_i)` and the origin; the degrees are not zero.
+    /// In coefficients of the supports, which must contain `x_i^(d_i)` and the origin; the degrees
+    /// are not zero.
     pub(crate) fn new(supports: &Supports, degrees: &[u64], seed: u64, attempt: u64) -> TotalDegree {
         let mut random = Random::new(seed, Stream::TotalDegree(attempt));
         let mut parameters = Vec::new();

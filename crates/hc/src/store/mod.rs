@@ -1,5 +1,5 @@
-//! Rows of small records, one a path or a mixed cell, that may be far more than the solutions: what exceeds a fixed amount of memory
-//! lies in a temporary file.
+//! Rows of small records, one a path or a mixed cell, that may be far more than the solutions: what
+//! exceeds a fixed amount of memory lies in a temporary file.
 //!
 //! A file that cannot be written is done without: the records then stay in memory.
 

@@ -8,7 +8,8 @@ use std::fs::File;
 const BLOCK: usize = 1 << 14;
 const SLOTS: usize = 4;
 
-/// Records of `width` bytes, all zero at first. What cannot be read from the file again is zero too.
+/// Records of `width` bytes, all zero at first. What cannot be read from the file again is zero
+/// too.
 pub(crate) struct Records {
     width: usize,
     /// Records of a block.
@@ -131,7 +132,8 @@ mod tests {
         }
     }
 
-    /// A changed block whose file cannot be written comes back from memory, also when it is changed again.
+    /// A changed block whose file cannot be written comes back from memory, also when it is changed
+    /// again.
     #[test]
     fn without_a_file_records_stay_in_memory() {
         let mut records = Records::new(8);

@@ -139,7 +139,8 @@ mod tests {
     use super::{BUFFER, Sorter};
     use crate::random::{Random, Stream};
 
-    /// Against the sort in memory, for records of several sorters that need several runs each, and for none.
+    /// Against the sort in memory, for records of several sorters that need several runs each, and
+    /// for none.
     #[test]
     fn all_records_come_back_in_order() {
         for (width, count) in [(20, 0), (20, 3), (20, 3 * BUFFER / 20), (96, 2 * BUFFER / 96 + 1)] {

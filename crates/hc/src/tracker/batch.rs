@@ -1,8 +1,9 @@
 //! The tracking loop: one path a lane, lanes refilled as paths end.
 //!
-//! All lanes share every evaluation, factorisation and vector operation; what is decided is decided lane by
-//! lane in [`Progress`]. A lane that has finished its part of a step is evaluated again at the same point until the others
-//! have finished theirs, so its numbers do not depend on its neighbours. Nothing is allocated in the loop.
+//! All lanes share every evaluation, factorisation and vector operation; what is decided is decided
+//! lane by lane in [`Progress`]. A lane that has finished its part of a step is evaluated again at
+//! the same point until the others have finished theirs, so its numbers do not depend on its
+//! neighbours. Nothing is allocated in the loop.
 
 use super::kernels::{Coefficients, Correct, Distance, Negate, Predict, Radius, Take, Weigh};
 use super::options::TrackerOptions;
@@ -37,7 +38,8 @@ pub struct Tracker<'a, E: Evaluate, S: Lane> {
     /// Where the Jacobian is evaluated.
     point: Vec<S>,
     corrected: Vec<S>,
-    /// What doubles leave of these two, and of the point of the last accepted step, for paths whose points are in double-double; else anything.
+    /// What doubles leave of these two, and of the point of the last accepted step, for paths whose
+    /// points are in double-double; else anything.
     point_low: Vec<S>,
     corrected_low: Vec<S>,
     taylor_low: Vec<S>,
@@ -106,12 +108,13 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         self.monitor.clone_from(monitor);
     }
 
-    /// Tracks the paths with the given indices into `starts` (`n` coordinates a path) along `path` from `t = 1` to 0 and
-    /// appends their ends to `out`, in the order in which they end. Once the monitor is cancelled, paths that
-    /// have not begun are appended as [`PathEnd::Cancelled`].
+    /// Tracks the paths with the given indices into `starts` (`n` coordinates a path) along `path`
+    /// from `t = 1` to 0 and appends their ends to `out`, in the order in which they end. Once the
+    /// monitor is cancelled, paths that have not begun are appended as [`PathEnd::Cancelled`].
     ///
     /// # Panics
-    /// If an index lies outside `starts` or `path` has another number of parameters than the system.
+    /// If an index lies outside `starts` or `path` has another number of parameters than the
+    /// system.
     pub fn track<P: ParameterPath>(
         &mut self,
         path: &P,
@@ -303,7 +306,8 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         }
     }
 
-    /// One more correction with the last Jacobian: it makes the points accurate and measures how accurate.
+    /// One more correction with the last Jacobian: it makes the points accurate and measures how
+    /// accurate.
     fn close(&mut self) {
         if !self.lanes.iter().any(|lane| lane.stage == Stage::Converged) {
             return;
@@ -331,7 +335,8 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
                 inverse_weights_sqr: &self.inverse_weights_sqr,
             });
         }
-        // `point` stays where the Jacobian was taken: lanes that are done are evaluated there again if others go on.
+        // `point` stays where the Jacobian was taken: lanes that are done are evaluated there again
+        // if others go on.
         self.closing.copy_from_slice(&self.corrected);
         self.closing_low.copy_from_slice(&self.corrected_low);
         let mut running = 0u8;

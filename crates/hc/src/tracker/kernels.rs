@@ -1,6 +1,8 @@
-//! The tracker's arithmetic over coordinates, all lanes at once: predictor, radius of trust, weights and norms.
+//! The tracker's arithmetic over coordinates, all lanes at once: predictor, radius of trust,
+//! weights and norms.
 //!
-//! All lengths are relative to weights, `|x| = max_j |x_j| / w_j`; squares are kept, so no root is taken per coordinate.
+//! All lengths are relative to weights, `|x| = max_j |x_j| / w_j`; squares are kept, so no root is
+//! taken per coordinate.
 
 use crate::homotopy::ParameterPath;
 use poly::Lane;
@@ -10,13 +12,15 @@ use poly::simd::Kernel;
 const RELATIVE_FLOOR_SQR: f64 = 1e-8;
 /// Nor below 1e-6: the square of that.
 const ABSOLUTE_FLOOR_SQR: f64 = 1e-12;
-/// Parts of a path below this share of the region in which Newton's method converges do not bound the step by their radius alone.
+/// Parts of a path below this share of the region in which Newton's method converges do not bound
+/// the step by their radius alone.
 const FAINT: f64 = 0.01;
 /// The radius of faint parts counts at most so many times.
 const MOST: f64 = 10.0;
 
 /// Pade predictor of type [2/1], coordinate by coordinate (Timme 2020, section 4):
-/// `x + d (x1 + d x2 / (1 - d x3 / x2))`, and the Taylor polynomial of order 2 where `x2` or `x3` is negligible.
+/// `x + d (x1 + d x2 / (1 - d x3 / x2))`, and the Taylor polynomial of order 2 where `x2` or `x3`
+/// is negligible.
 pub(crate) struct Predict<'a, S: Lane> {
     /// Taylor coefficients of orders 0 to 3, `n` each.
     pub(crate) taylor: &'a [S],
@@ -56,13 +60,15 @@ impl<S: Lane> Kernel for Predict<'_, S> {
     }
 }
 
-/// Square of the radius of trust: the smallest `r_j = |x2_j / x3_j|`, the distance to the pole of the approximant and
-/// an estimate of the distance to the nearest singularity of the path (Fabry's ratio).
+/// Square of the radius of trust: the smallest `r_j = |x2_j / x3_j|`, the distance to the pole of
+/// the approximant and an estimate of the distance to the nearest singularity of the path (Fabry's
+/// ratio).
 ///
-/// A part of the path that varies quickly but hardly at all, such as a term of a toric homotopy that is still fading in, must not
-/// hold up the rest: where `a_j = omega |x2_j| r_j^2` is less than [`FAINT`], `r_j` counts `1 + ln(FAINT / a_j) / 3` times, at most
-/// [`MOST`]. For `exp(c t)`, whose ratio is `3 / c`, that is where the part has grown to `FAINT / omega`, still far inside the region in
-/// which Newton's method converges to this path.
+/// A part of the path that varies quickly but hardly at all, such as a term of a toric homotopy
+/// that is still fading in, must not hold up the rest: where `a_j = omega |x2_j| r_j^2` is less
+/// than [`FAINT`], `r_j` counts `1 + ln(FAINT / a_j) / 3` times, at most [`MOST`]. For `exp(c t)`,
+/// whose ratio is `3 / c`, that is where the part has grown to `FAINT / omega`, still far inside
+/// the region in which Newton's method converges to this path.
 pub(crate) struct Radius<'a, S: Lane> {
     pub(crate) n: usize,
     pub(crate) taylor: &'a [S],
@@ -80,7 +86,8 @@ impl<S: Lane> Kernel for Radius<'_, S> {
         let mut radius = S::real(f64::INFINITY);
         let mut norms = [S::real(0.0); 4];
         for j in 0..n {
-            // Written out: a closure that is not inlined would be compiled without the instruction set of the kernel.
+            // Written out: a closure that is not inlined would be compiled without the instruction
+            // set of the kernel.
             let t = self.taylor;
             let sizes = [t[j].norm_sqr(), t[n + j].norm_sqr(), t[2 * n + j].norm_sqr(), t[3 * n + j].norm_sqr()];
             let weight = self.inverse_weights_sqr[j];
@@ -106,7 +113,8 @@ impl<S: Lane> Kernel for Radius<'_, S> {
             if radius.as_ref()[l].is_finite() {
                 continue;
             }
-            // No coordinate has a usable pair: the ratio of norms, and at last the scale of the derivatives.
+            // No coordinate has a usable pair: the ratio of norms, and at last the scale of the
+            // derivatives.
             let [s0, s1, s2, s3] = [0, 1, 2, 3].map(|k| norms[k].as_ref()[l]);
             let ratio = s2 / s3;
             let largest = s1.max(s2).max(s3);
@@ -122,7 +130,8 @@ impl<S: Lane> Kernel for Radius<'_, S> {
     }
 }
 
-/// Square of the factor on the radius of trust of a part of the size `a`, from `a^2`; the logarithm is that of the power of two below.
+/// Square of the factor on the radius of trust of a part of the size `a`, from `a^2`; the logarithm
+/// is that of the power of two below.
 #[inline(always)]
 fn reach_sqr(size_sqr: f64) -> f64 {
     let faintness = (FAINT * FAINT) / size_sqr;
@@ -134,8 +143,8 @@ fn reach_sqr(size_sqr: f64) -> f64 {
     factor * factor
 }
 
-/// Weights of the coordinates, squared, with their reciprocals: half the old square, half the size of the predicted point,
-/// bounded below; lanes in `fresh` forget their old weights.
+/// Weights of the coordinates, squared, with their reciprocals: half the old square, half the size
+/// of the predicted point, bounded below; lanes in `fresh` forget their old weights.
 pub(crate) struct Weigh<'a, S: Lane> {
     pub(crate) x: &'a [S],
     pub(crate) fresh: u8,
@@ -173,7 +182,8 @@ impl<S: Lane> Kernel for Weigh<'_, S> {
     }
 }
 
-/// `out = x - dx` in the `running` lanes, and the squared norm of `dx`; a coordinate that is not a number makes the norm NaN.
+/// `out = x - dx` in the `running` lanes, and the squared norm of `dx`; a coordinate that is not a
+/// number makes the norm NaN.
 pub(crate) struct Correct<'a, S: Lane> {
     pub(crate) x: &'a [S],
     pub(crate) dx: &'a [S],

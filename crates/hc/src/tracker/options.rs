@@ -28,31 +28,39 @@ impl OptionError {
     }
 }
 
-/// Settings of the path tracker. Steps are bounded twice: by the radius of trust of the predictor (`beta_tau`) and by the
-/// bound under which Newton's method converges at once (`beta_omega`), see [`crate::tracker`].
+/// Settings of the path tracker. Steps are bounded twice: by the radius of trust of the predictor
+/// (`beta_tau`) and by the bound under which Newton's method converges at once (`beta_omega`), see
+/// [`crate::tracker`].
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct TrackerOptions {
-    /// Largest contraction `|dx_1| / |dx_0|` of Newton's method that is accepted (dimensionless). Default 1/8 (Timme 2020); fast 1/5.
+    /// Largest contraction `|dx_1| / |dx_0|` of Newton's method that is accepted (dimensionless).
+    /// Default 1/8 (Timme 2020); fast 1/5.
     pub contraction: f64,
-    /// Safety factor of the Newton bound: the step is divided by it. Default 3; fast 1; conservative 4.
+    /// Safety factor of the Newton bound: the step is divided by it. Default 3; fast 1;
+    /// conservative 4.
     pub beta_omega: f64,
-    /// Share of the radius of trust that a step may cover. Default 0.4; fast 0.85; conservative 0.25.
+    /// Share of the radius of trust that a step may cover. Default 0.4; fast 0.85; conservative
+    /// 0.25.
     pub beta_tau: f64,
     /// `beta_tau` for the step that reaches the target. Default 0.3; fast 0.6; conservative 0.1875.
     pub beta_tau_last: f64,
-    /// Newton's method stops when `omega |dx|` falls below this (dimensionless); one correction with the last Jacobian follows, which
-    /// leaves a relative error of about its third power. Default 1e-4; fast 1e-3.
+    /// Newton's method stops when `omega |dx|` falls below this (dimensionless); one correction
+    /// with the last Jacobian follows, which leaves a relative error of about its third power.
+    /// Default 1e-4; fast 1e-3.
     pub corrector_tolerance: f64,
     /// Steps, accepted and rejected, before a path is given up. Default 10,000.
     pub max_steps: usize,
-    /// A path whose `t` has fallen below this without reaching the target ends as singular or at infinity. Default 1e-14.
+    /// A path whose `t` has fallen below this without reaching the target ends as singular or at
+    /// infinity. Default 1e-14.
     pub min_t: f64,
     /// From this `t` on valuations are watched for divergence. Default 0.1.
     pub endgame_start: f64,
-    /// Whether residuals may be computed in double-double where double precision ends. Default true.
+    /// Whether residuals may be computed in double-double where double precision ends. Default
+    /// true.
     pub extended_precision: bool,
-    /// Instruction set of the lane kernels; `None` takes the widest of the machine. The result does not depend on it. Default `None`.
+    /// Instruction set of the lane kernels; `None` takes the widest of the machine. The result does
+    /// not depend on it. Default `None`.
     pub isa: Option<Isa>,
 }
 
@@ -74,8 +82,9 @@ impl Default for TrackerOptions {
 }
 
 impl TrackerOptions {
-    /// Longer steps, for whole solution sets, where paths that jump show by their ends and are tracked again: results/counts.md says
-    /// how many, system by system. The factors are less careful than those of HomotopyContinuation.jl's fast preset (2, 0.75, 0.4).
+    /// Longer steps, for whole solution sets, where paths that jump show by their ends and are
+    /// tracked again: results/counts.md says how many, system by system. The factors are less
+    /// careful than those of HomotopyContinuation.jl's fast preset (2, 0.75, 0.4).
     pub fn fast() -> Self {
         TrackerOptions {
             contraction: 0.2,
@@ -109,7 +118,8 @@ impl TrackerOptions {
         OptionError::at_least("endgame_start", self.endgame_start, 0.0, "zero or more")
     }
 
-    /// Shorter steps than these, for paths that are tracked again: `level` 1 is about half as long, each further level half of that.
+    /// Shorter steps than these, for paths that are tracked again: `level` 1 is about half as long,
+    /// each further level half of that.
     pub fn stricter(&self, level: u32) -> Self {
         let factor = 0.5f64.powi(level as i32);
         TrackerOptions {

@@ -13,8 +13,8 @@ const CHUNK: usize = 256;
 /// Parts that each thread gets, if there are paths enough, so that none waits long for another.
 const PARTS: usize = 4;
 
-/// Trackers of one system, as many as threads have asked for. The legs of an endgame are so short that making a tracker for each
-/// would show.
+/// Trackers of one system, as many as threads have asked for. The legs of an endgame are so short
+/// that making a tracker for each would show.
 pub(crate) struct Trackers<'a, E: Evaluate> {
     system: &'a E,
     idle: Mutex<Vec<Tracker<'a, E, Lanes8>>>,
@@ -43,7 +43,8 @@ impl<'a, E: Evaluate> Trackers<'a, E> {
         self.system
     }
 
-    /// Tracks as [`super::track`] does. All calls must have the same instruction set in their options.
+    /// Tracks as [`super::track`] does. All calls must have the same instruction set in their
+    /// options.
     pub(crate) fn track<P: ParameterPath>(
         &self,
         path: &P,

@@ -1,4 +1,5 @@
-//! What ill-conditioned paths need beyond double precision, one lane at a time: residuals, parameters and points in double-double.
+//! What ill-conditioned paths need beyond double precision, one lane at a time: residuals,
+//! parameters and points in double-double.
 
 use super::progress::Progress;
 use crate::homotopy::ParameterPath;
@@ -43,7 +44,8 @@ impl<E: Evaluate> Precise<E> {
         path.extend(lane.path, lane.t_next, p);
     }
 
-    /// Overwrites lane `l` of `values` with residuals at the point `x`, or `x + low` where the lane is wide.
+    /// Overwrites lane `l` of `values` with residuals at the point `x`, or `x + low` where the lane
+    /// is wide.
     pub(super) fn overwrite<S: Lane>(&mut self, system: &E, l: usize, wide: bool, x: [&[S]; 2], values: &mut [S]) {
         let m = system.parameters();
         for (d, (high, low)) in self.x.iter_mut().zip(x[0].iter().zip(x[1])) {

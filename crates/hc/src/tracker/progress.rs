@@ -9,17 +9,19 @@ use super::result::{PathEnd, PathResult};
 pub(crate) const MAX_ITERATIONS: usize = 6;
 /// Share of a step that is left after a rejection without a usable contraction.
 const HARD_CUT: f64 = 0.25;
-/// After so many rejections in a row the steps may be held up by rounding errors of the parameters, which the corrector does not see.
+/// After so many rejections in a row the steps may be held up by rounding errors of the parameters,
+/// which the corrector does not see.
 const RESISTANT: usize = 4;
 /// Assumed `omega` at the start of a path; the first steps replace it.
 const INITIAL_OMEGA: f64 = 10.0;
 const MIN_OMEGA: f64 = 0.1;
 /// Corrections up to this multiple of the noise are taken for noise.
 const NOISE_MARGIN: f64 = 16.0;
-/// Larger corrections are not taken for rounding error: they say that `omega` is larger than was thought.
+/// Larger corrections are not taken for rounding error: they say that `omega` is larger than was
+/// thought.
 const MOST_NOISE: f64 = 1e-10;
-/// A closing correction above this share of the one before it, and above the noise, says that Newton's method has not converged yet:
-/// after quadratic convergence it is far smaller.
+/// A closing correction above this share of the one before it, and above the noise, says that
+/// Newton's method has not converged yet: after quadratic convergence it is far smaller.
 const UNFINISHED: f64 = 0.05;
 
 /// `h(a) = 2a (sqrt(4a^2 + 1) - 2a)` (Timme 2020, lemma 4.2).
@@ -91,7 +93,8 @@ pub(crate) struct Progress {
     pub(crate) t_next: f64,
     pub(crate) radius: f64,
     pub(crate) extended: bool,
-    /// Whether the point is kept in double-double too: another path is so near that doubles hardly tell them apart.
+    /// Whether the point is kept in double-double too: another path is so near that doubles hardly
+    /// tell them apart.
     pub(crate) wide: bool,
     /// Whether that of the last accepted step was kept with all of them.
     pub(crate) kept: bool,
@@ -185,7 +188,8 @@ impl Progress {
         self.t_next - self.t
     }
 
-    /// Chooses the next step from the radius of trust and the Newton bound (reference: Timme 2020, section 5).
+    /// Chooses the next step from the radius of trust and the Newton bound (reference: Timme 2020,
+    /// section 5).
     pub(crate) fn choose_step(&mut self, bounds: &Bounds) {
         if self.fresh || self.stage == Stage::Retry {
             return;
@@ -241,7 +245,8 @@ impl Progress {
         }
         if i == 0 {
             self.first = norm;
-            // Predicted not to be an approximate zero (the Newton-Kantorovich bound with a margin of 4).
+            // Predicted not to be an approximate zero (the Newton-Kantorovich bound with a margin
+            // of 4).
             if !self.fresh && 0.125 * self.omega * norm > bounds.h {
                 self.last = norm;
                 self.stage = Stage::Rejected { theta: f64::INFINITY };
@@ -272,8 +277,9 @@ impl Progress {
         }
     }
 
-    /// Judges the closing correction with the last Jacobian, of size `norm` (an upper bound for the limiting accuracy `mu`);
-    /// `double` is the size that residuals in double precision give at the same point, for paths in extended precision.
+    /// Judges the closing correction with the last Jacobian, of size `norm` (an upper bound for the
+    /// limiting accuracy `mu`); `double` is the size that residuals in double precision give at the
+    /// same point, for paths in extended precision.
     pub(crate) fn judge_closing(&mut self, norm: f64, double: Option<f64>, bounds: &Bounds) {
         if self.stage != Stage::Converged {
             return;
@@ -301,7 +307,8 @@ impl Progress {
         if norm <= omega * self.last * self.last {
             self.noise = self.noise.min(norm).max(self.rounding());
         } else if norm <= MOST_NOISE {
-            // More than quadratic convergence leaves is rounding error, if it is small enough for that.
+            // More than quadratic convergence leaves is rounding error, if it is small enough for
+            // that.
             self.noise = norm.max(self.rounding());
         } else {
             omega = norm / (self.last * self.last);
@@ -379,14 +386,16 @@ impl Progress {
         }
         if self.t - self.step == self.t || self.step < 4.0 * f64::EPSILON * self.t {
             if !self.extended && bounds.options.extended_precision {
-                // The corrector may have failed for rounding errors alone: once more from a workable step.
+                // The corrector may have failed for rounding errors alone: once more from a
+                // workable step.
                 self.extended = true;
                 self.used_extended = true;
                 self.step = 1e-3 * self.radius.min(self.t);
                 return None;
             }
             if !self.wide && bounds.options.extended_precision {
-                // And once more, since the predictor may have failed for those of the point it starts from.
+                // And once more, since the predictor may have failed for those of the point it
+                // starts from.
                 self.widen();
                 self.step = 1e-3 * self.radius.min(self.t);
                 return None;
@@ -413,12 +422,14 @@ impl Progress {
         (self.accepted + self.rejected >= bounds.options.max_steps).then_some(PathEnd::MaxSteps)
     }
 
-    /// Watches the valuations: `settled` says that some are negative and constant at the current point.
+    /// Watches the valuations: `settled` says that some are negative and constant at the current
+    /// point.
     pub(crate) fn watch(&mut self, settled: bool) {
         self.diverges_since = if settled { self.diverges_since.or(Some(self.t)) } else { None };
     }
 
-    /// The record of the path; a path that breaks off while it has long been diverging ends at infinity.
+    /// The record of the path; a path that breaks off while it has long been diverging ends at
+    /// infinity.
     pub(crate) fn result(&self, end: PathEnd, pivot: f64) -> PathResult {
         let long = self.diverges_since.is_some_and(|since| self.t < 1e-3 * since);
         let end = match end {

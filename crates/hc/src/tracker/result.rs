@@ -40,13 +40,14 @@ pub struct PathResult {
     pub end: PathEnd,
     /// Where it ended: 0 where the target was reached.
     pub t: f64,
-    /// Size of the last correction relative to the point (weighted maximum norm): a bound for the relative error.
+    /// Size of the last correction relative to the point (weighted maximum norm): a bound for the
+    /// relative error.
     pub accuracy: f64,
-    /// Estimate of the Lipschitz constant `omega` of Newton's method at the end (a reciprocal relative length): no
-    /// other solution lies much nearer than `1 / omega`.
+    /// Estimate of the Lipschitz constant `omega` of Newton's method at the end (a reciprocal
+    /// relative length): no other solution lies much nearer than `1 / omega`.
     pub omega: f64,
-    /// Smallest pivot of the last Jacobian, rows and unknowns scaled: below 2e-16 it is singular as far as doubles can tell, as on a
-    /// component of solutions of positive dimension.
+    /// Smallest pivot of the last Jacobian, rows and unknowns scaled: below 2e-16 it is singular as
+    /// far as doubles can tell, as on a component of solutions of positive dimension.
     pub pivot: f64,
     /// Accepted steps.
     pub accepted: usize,
@@ -165,7 +166,8 @@ impl PathSet {
 
     /// Sorts by the index of the start solution.
     pub fn sort(&mut self) {
-        // Mostly these are all numbers up to the largest: each record goes to its place, without more memory.
+        // Mostly these are all numbers up to the largest: each record goes to its place, without
+        // more memory.
         for k in 0..self.len() {
             loop {
                 let place = self.results[k].path;

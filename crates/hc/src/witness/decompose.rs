@@ -19,8 +19,9 @@ pub struct Component {
     pub degree: usize,
     /// The multiplicity of these points there: one for a reduced component.
     pub multiplicity: usize,
-    /// Whether it is shown to be one irreducible component: by monodromy, which joins its points, and the trace test, which finds none
-    /// missing. If not, it may be several of this dimension and multiplicity together, or a part of one.
+    /// Whether it is shown to be one irreducible component: by monodromy, which joins its points,
+    /// and the trace test, which finds none missing. If not, it may be several of this dimension
+    /// and multiplicity together, or a part of one.
     pub irreducible: bool,
     /// The points, their coordinates in the order of the unknowns.
     pub witness_points: Vec<Vec<Complex64>>,
@@ -36,16 +37,18 @@ pub struct Decomposition {
     pub isolated: Vec<Solution>,
     /// Ends that could not be judged, in all dimensions.
     pub unresolved: Vec<Unresolved>,
-    /// Paths that were lost, in all dimensions, and witness points that do not fit together: if there are any, something may be missing.
+    /// Paths that were lost, in all dimensions, and witness points that do not fit together: if
+    /// there are any, something may be missing.
     pub failed: usize,
     /// Whether the work was cancelled: the result is then partial.
     pub partial: bool,
 }
 
-/// Finds all components of the solution set of a system with their degrees and multiplicities, and the isolated solutions.
+/// Finds all components of the solution set of a system with their degrees and multiplicities, and
+/// the isolated solutions.
 ///
-/// In each dimension the given equations and as many general hyperplanes are [solved](crate::solve) with these options. The same seed
-/// gives the same bits on any number of threads.
+/// In each dimension the given equations and as many general hyperplanes are [solved](crate::solve)
+/// with these options. The same seed gives the same bits on any number of threads.
 ///
 /// ```
 /// // The twisted cubic.

@@ -1,4 +1,5 @@
-//! Which witness points belong to one irreducible component: monodromy of the hyperplanes, and the trace test.
+//! Which witness points belong to one irreducible component: monodromy of the hyperplanes, and the
+//! trace test.
 
 use super::slices::Slices;
 use crate::distinct::relative_distance;
@@ -62,8 +63,8 @@ pub(super) fn orbits(
     Some(orbits)
 }
 
-/// How far the sum of the points is from moving linearly while the hyperplanes move in parallel, relative to its motion: rounding
-/// error if the points are all of one or more components.
+/// How far the sum of the points is from moving linearly while the hyperplanes move in parallel,
+/// relative to its motion: rounding error if the points are all of one or more components.
 fn trace<E: Evaluate>(family: &E, fibre: &Fibre, unknowns: usize, seed: u64) -> Option<f64> {
     let mut random = Random::new(seed, Stream::Trace);
     // The offsets move; slopes, as many as unknowns before each, stay.

@@ -32,14 +32,16 @@ impl Slices {
         self.slopes.iter().zip(&self.offsets).map(plane).collect()
     }
 
-    /// The parameters of the [family](Slices::family) at which its hyperplanes are these: slopes and offset of each.
+    /// The parameters of the [family](Slices::family) at which its hyperplanes are these: slopes
+    /// and offset of each.
     pub(super) fn parameters(&self) -> Vec<Complex64> {
         let plane = |(slopes, &offset): (&Vec<Complex64>, &Complex64)| slopes.iter().copied().chain([offset]).collect();
         self.slopes.iter().zip(&self.offsets).flat_map::<Vec<Complex64>, _>(plane).collect()
     }
 
-    /// As many equations as unknowns: combinations of the given ones, and hyperplanes with slopes and offsets as parameters. Offsets
-    /// alone would have to move as far as branch points lie from them. `None` if that makes no system.
+    /// As many equations as unknowns: combinations of the given ones, and hyperplanes with slopes
+    /// and offsets as parameters. Offsets alone would have to move as far as branch points lie from
+    /// them. `None` if that makes no system.
     pub(super) fn family(&self, given: &[Polynomial<Exact>], unknowns: usize, seed: u64) -> Option<System> {
         let names: Vec<String> = (0..unknowns).map(|j| format!("x{j}")).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();

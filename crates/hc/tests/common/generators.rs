@@ -1,4 +1,5 @@
-//! Families of systems by their generators, in PHCpack's format. `cargo xtask compare` uses this file too.
+//! Families of systems by their generators, in PHCpack's format. `cargo xtask compare` uses this
+//! file too.
 
 pub(crate) fn system(equations: Vec<String>) -> String {
     format!("{}\n{};\n", equations.len(), equations.join(";\n"))

@@ -17,8 +17,9 @@ pub struct Calibration {
     pub receiver_names: Vec<String>,
     /// Names of the transmitters.
     pub transmitter_names: Vec<String>,
-    /// Positions of the receivers; `None` also for a receiver most of whose measurements are outliers. Unless another frame is asked for, the first receiver is the origin, the second lies
-    /// on the positive x axis and the third above it.
+    /// Positions of the receivers; `None` also for a receiver most of whose measurements are
+    /// outliers. Unless another frame is asked for, the first receiver is the origin, the second
+    /// lies on the positive x axis and the third above it.
     pub receivers: Vec<Option<[f64; 2]>>,
     /// Positions of the transmitters.
     pub transmitters: Vec<Option<[f64; 2]>>,
@@ -28,8 +29,8 @@ pub struct Calibration {
     pub inliers: Vec<Vec<bool>>,
     /// Residuals f_ij - o_j - |r_i - s_j|, where measured.
     pub residuals: Vec<Vec<Option<f64>>>,
-    /// Standard deviation of the measurements: as given, or estimated from the inliers. A factor on the deviations that
-    /// measurements carry, if they do.
+    /// Standard deviation of the measurements: as given, or estimated from the inliers. A factor on
+    /// the deviations that measurements carry, if they do.
     pub sigma: f64,
     /// Whether `sigma` was estimated.
     pub sigma_estimated: bool,
@@ -37,7 +38,8 @@ pub struct Calibration {
     pub residual_rms: f64,
     /// Inliers minus unknowns: what the estimate of `sigma` rests on.
     pub redundancy: usize,
-    /// Radius of 95 % ellipses in standard deviations; `None` if nothing is left over to estimate `sigma` from.
+    /// Radius of 95 % ellipses in standard deviations; `None` if nothing is left over to estimate
+    /// `sigma` from.
     pub ellipse_radius: Option<f64>,
     /// Standard deviations of the receivers' coordinates in the gauge.
     pub receiver_std: Vec<Option<[f64; 2]>>,
@@ -56,8 +58,9 @@ pub struct Calibration {
     pub speed: Option<SpeedEstimate>,
     /// What the covariances are relative to.
     pub gauge: Cow<'static, str>,
-    /// Whether no other network that was found explains the measurements about as well, more than one or two starts of the search
-    /// found this one, and no receiver shows an error of its own that was left in.
+    /// Whether no other network that was found explains the measurements about as well, more than
+    /// one or two starts of the search found this one, and no receiver shows an error of its own
+    /// that was left in.
     pub unique: bool,
     /// Whether that holds for the receivers: in other networks only transmitters lie elsewhere.
     pub unique_receivers: bool,
@@ -67,10 +70,12 @@ pub struct Calibration {
     pub alternatives: Vec<Alternative>,
     /// Whether the measurements fit a network in the plane.
     pub planar: bool,
-    /// Whether the measurements determine at least half of the receivers to a tenth of the network's size; true where the noise is
-    /// not known. A table with receivers as columns is one that does not.
+    /// Whether the measurements determine at least half of the receivers to a tenth of the
+    /// network's size; true where the noise is not known. A table with receivers as columns is one
+    /// that does not.
     pub determined: bool,
-    /// Errors of single receivers that the measurements show, most telling first, or delays of all receivers, relative to their mean.
+    /// Errors of single receivers that the measurements show, most telling first, or delays of all
+    /// receivers, relative to their mean.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub receiver_errors: Vec<ReceiverError>,
     /// What may be wrong, with names and a remedy.
@@ -115,7 +120,8 @@ impl Calibration {
         }
     }
 
-    /// The largest distance between two receivers in metres; `None` if fewer than two could be located.
+    /// The largest distance between two receivers in metres; `None` if fewer than two could be
+    /// located.
     pub fn extent(&self) -> Option<f64> {
         let located: Vec<[f64; 2]> = self.receivers.iter().flatten().copied().collect();
         let pairs = located.iter().enumerate().flat_map(|(k, a)| located[..k].iter().map(|b| distance(*a, *b)));
@@ -156,8 +162,8 @@ impl Calibration {
         self.transmitter_std = std(&self.transmitter_covariance);
     }
 
-    /// Multiplies all lengths of the result by a factor, as if the propagation speed were that much larger. A comparison
-    /// with the truth keeps its figures.
+    /// Multiplies all lengths of the result by a factor, as if the propagation speed were that much
+    /// larger. A comparison with the truth keeps its figures.
     pub fn rescale(&mut self, factor: f64) {
         let positions = self.truth.as_ref().map(|truth| [truth.positions.clone(), truth.transmitter_positions.clone()]);
         let map = Transform { rotation: [[1.0, 0.0], [0.0, 1.0]], scale: factor, translation: [0.0; 2] };
@@ -192,7 +198,8 @@ impl Calibration {
         }
     }
 
-    /// Moves the result to where the anchors are: held ones are about their centroid so far, a single one is anywhere.
+    /// Moves the result to where the anchors are: held ones are about their centroid so far, a
+    /// single one is anywhere.
     pub(super) fn put_on(&mut self, anchors: &Anchors, rows: &[usize], held: bool) {
         let first = anchors.positions.iter().position(Option::is_some).and_then(|a| self.receivers[rows[a]]);
         let [x, y] = if held { [0.0; 2] } else { first.unwrap_or([0.0; 2]) };

@@ -1,4 +1,5 @@
-//! Errors of whole receivers taken out: estimated beside the network, or left out with the measurements that have them.
+//! Errors of whole receivers taken out: estimated beside the network, or left out with the
+//! measurements that have them.
 
 use faer::Mat;
 use faer::prelude::Solve;
@@ -46,7 +47,8 @@ pub(super) struct Cleared {
 }
 
 impl Clearing<'_> {
-    /// Looks for errors of receivers in the best of some networks and takes them out as the options say.
+    /// Looks for errors of receivers in the best of some networks and takes them out as the options
+    /// say.
     pub(super) fn clear(&self, ranked: Vec<Refined>, deviation: f64) -> Result<Cleared, CalibrateError> {
         let observations = Observations::new(self.measured, |_, _| true);
         let mut now = Cleared {
@@ -94,7 +96,8 @@ impl Clearing<'_> {
         Ok(Cleared { ranked, deviation, ..now })
     }
 
-    /// A delay for every receiver, for each of the best networks on its own; relative to their mean.
+    /// A delay for every receiver, for each of the best networks on its own; relative to their
+    /// mean.
     fn all(&self, now: Cleared) -> Result<Cleared, CalibrateError> {
         let receivers = self.measured.receivers();
         let middle = middle_delays(self.measured);
@@ -140,8 +143,8 @@ impl Clearing<'_> {
         })
     }
 
-    /// Sizes of errors beside a network: steps of least squares for the errors with the network, and the robust refinement of the network
-    /// at these sizes, in turns.
+    /// Sizes of errors beside a network: steps of least squares for the errors with the network,
+    /// and the robust refinement of the network at these sizes, in turns.
     fn estimate(
         &self,
         mut best: Refined,
@@ -178,7 +181,8 @@ impl Clearing<'_> {
         Ok((faults, best, deviation))
     }
 
-    /// The change of the sizes by least squares over the inliers, network and sizes together; `None` if it is not determined.
+    /// The change of the sizes by least squares over the inliers, network and sizes together;
+    /// `None` if it is not determined.
     fn step(&self, observations: &Observations, network: &Network, wide: f64, faults: &[Fault]) -> Option<Vec<f64>> {
         let kept = observations.subset(|o| o.residual(network).abs() <= self.options.inlier_threshold * wide);
         let projection = Projection::new(&kept, network)?;
@@ -191,7 +195,8 @@ impl Clearing<'_> {
         steps.iter().all(|x| x.is_finite()).then_some(steps)
     }
 
-    /// The measurements without these errors: the shorter part of a receiver that was moved is missing.
+    /// The measurements without these errors: the shorter part of a receiver that was moved is
+    /// missing.
     fn corrected(&self, faults: &[Fault]) -> Pseudoranges {
         let (m, n) = (self.measured.receivers(), self.measured.transmitters());
         let mut values = self.measured.values().to_vec();
@@ -213,8 +218,9 @@ impl Clearing<'_> {
     }
 }
 
-/// A first guess of the delays of all receivers: a transmitter on the far side of one of two receivers makes their difference as large as one on
-/// the far side of the other makes it small, so that the middle of the differences is the delay between them. Zero in the mean.
+/// A first guess of the delays of all receivers: a transmitter on the far side of one of two
+/// receivers makes their difference as large as one on the far side of the other makes it small, so
+/// that the middle of the differences is the delay between them. Zero in the mean.
 fn middle_delays(measured: &Pseudoranges) -> Vec<f64> {
     let (m, n) = (measured.receivers(), measured.transmitters());
     let mut delays = vec![0.0; m];
@@ -267,7 +273,8 @@ fn linear_mut(faults: &mut [Fault]) -> impl Iterator<Item = &mut Fault> {
     faults.iter_mut().filter(|fault| fault.kind != ReceiverErrorKind::Move)
 }
 
-/// What errors of size 1 add to the residuals, less what motions of the nodes make of it, with those motions.
+/// What errors of size 1 add to the residuals, less what motions of the nodes make of it, with
+/// those motions.
 pub(super) fn columns(kept: &Observations, projection: &Projection<'_>, faults: &[Fault]) -> Vec<(Vec<f64>, Motion)> {
     let n = kept.transmitters;
     let column = |fault: &Fault| -> Vec<f64> {

@@ -11,8 +11,8 @@ pub(super) fn typical_deviation(measured: &Pseudoranges) -> f64 {
     median(cells.filter_map(|(i, j)| measured.sigma(i, j)).collect()).unwrap_or(1.0)
 }
 
-/// Deviation of the residuals that are within `threshold` of it, corrected for the unknowns, repeated until it stays the
-/// same.
+/// Deviation of the residuals that are within `threshold` of it, corrected for the unknowns,
+/// repeated until it stays the same.
 pub(super) fn inlier_deviation(observations: &Observations, network: &Network, first: f64, threshold: f64) -> f64 {
     let mut deviation = first;
     for _ in 0..20 {
@@ -28,7 +28,8 @@ pub(super) fn inlier_deviation(observations: &Observations, network: &Network, f
         if redundancy == 0 {
             return deviation;
         }
-        // Without the floor, exact data would shrink the limit to nothing and lose inliers to rounding.
+        // Without the floor, exact data would shrink the limit to nothing and lose inliers to
+        // rounding.
         let next = (sum / redundancy as f64).sqrt().max(0.1 * first);
         if (next - deviation).abs() < 1e-6 * deviation {
             return next;

@@ -8,13 +8,15 @@ use crate::observations::Observations;
 use crate::refine::{RefineOptions, Refined, Refiner, SEARCH};
 use hc::Monitor;
 
-/// Scale of the Cauchy loss, in standard deviations, that is 95 % efficient on normal noise (Holland and Welsch 1977).
+/// Scale of the Cauchy loss, in standard deviations, that is 95 % efficient on normal noise
+/// (Holland and Welsch 1977).
 const CAUCHY: f64 = 2.385;
 
-/// Refines all networks with the same fixed loss, which makes their objectives differences of log-likelihood, and puts
-/// the best first; where the deviation is known, the one of least truncated cost. The deviation behind the loss is the given
-/// one or that of the inliers of the best network, in turns with the refinement: the search's own scale is too small where
-/// few measurements are left over and too large where many are outliers.
+/// Refines all networks with the same fixed loss, which makes their objectives differences of
+/// log-likelihood, and puts the best first; where the deviation is known, the one of least
+/// truncated cost. The deviation behind the loss is the given one or that of the inliers of the
+/// best network, in turns with the refinement: the search's own scale is too small where few
+/// measurements are left over and too large where many are outliers.
 pub(super) fn finish(
     observations: &Observations,
     mut networks: Vec<Refined>,
@@ -36,7 +38,8 @@ pub(super) fn finish(
             tolerance: if turn + 1 == turns { 1e-12 } else { 1e-6 },
             ..SEARCH
         };
-        // The loss is c^2/2 ln(1 + (e/c)^2) in deviations e; the objective lacks the factor and has a constant.
+        // The loss is c^2/2 ln(1 + (e/c)^2) in deviations e; the objective lacks the factor and has
+        // a constant.
         let constant = refiner.constant(CAUCHY * deviation);
         for network in &mut networks {
             let starts = network.starts;

@@ -1,5 +1,5 @@
-//! The last refinement with what is known beforehand: the propagation speed from known distances, then the receivers of
-//! known position held in their places.
+//! The last refinement with what is known beforehand: the propagation speed from known distances,
+//! then the receivers of known position held in their places.
 
 use super::deviation::{inlier_deviation, median_size};
 use super::finish::finish;
@@ -129,7 +129,8 @@ mod tests {
                 }
             }
         }
-        // Sixty networks with one mean each, of deviation at most 1: three deviations of their mean are 0.39.
+        // Sixty networks with one mean each, of deviation at most 1: three deviations of their mean
+        // are 0.39.
         assert_eq!(count, 300.0);
         assert!((sum / count - 1.0).abs() < 0.39, "{}", sum / count);
     }
@@ -185,7 +186,8 @@ mod tests {
             assert!((at[0] - all[1][0]).hypot(at[1] - all[1][1]) < 0.2, "seed {seed}: {at:?}, {:?}", all[1]);
         }
         let mean = squares.iter().sum::<f64>() / 60.0;
-        // The square of a normal variable has the deviation sqrt(2): three deviations of the mean are 0.55.
+        // The square of a normal variable has the deviation sqrt(2): three deviations of the mean
+        // are 0.55.
         assert!((mean - 1.0).abs() < 0.55, "{mean}");
     }
 

@@ -1,4 +1,5 @@
-//! Known positions and distances of receivers: they fix the frame, sharpen the rest and give the propagation speed.
+//! Known positions and distances of receivers: they fix the frame, sharpen the rest and give the
+//! propagation speed.
 
 use serde::{Deserialize, Serialize};
 
@@ -81,8 +82,9 @@ fn distances(options: &CalibrateOptions) -> Vec<KnownDistance> {
     all
 }
 
-/// The factor that brings found distances closest to known ones, sum d D / sum d^2 for found d and known D; its
-/// deviation from the joint covariance (row-major) of the receivers by its derivative, -factor d / sum d^2 for each d.
+/// The factor that brings found distances closest to known ones, sum d D / sum d^2 for found d and
+/// known D; its deviation from the joint covariance (row-major) of the receivers by its derivative,
+/// -factor d / sum d^2 for each d.
 pub(super) fn speed(
     network: &Network,
     usable: &Usable,
@@ -158,14 +160,15 @@ impl Anchors {
         self.positions.iter().map(|p| fix && p.is_some()).collect()
     }
 
-    /// Whether the network's mirror image fits the anchors as well: they lie in one line (by a thousandth of its length).
+    /// Whether the network's mirror image fits the anchors as well: they lie in one line (by a
+    /// thousandth of its length).
     pub(super) fn leave_mirror(&self) -> bool {
         let all: Vec<[f64; 2]> = self.positions.iter().flatten().copied().collect();
         flatness(&all) < 1e-3 || all.len() < 3
     }
 
-    /// Moves a network onto the anchors and puts them in their places; root mean square of the distances that remain
-    /// before.
+    /// Moves a network onto the anchors and puts them in their places; root mean square of the
+    /// distances that remain before.
     pub(super) fn place(&self, refined: &mut Refined) -> f64 {
         let pairs = refined.network.receivers.iter().zip(&self.positions);
         let (from, to): (Vec<_>, Vec<_>) = pairs.filter_map(|(r, p)| Some((*r, (*p)?))).unzip();
@@ -177,7 +180,8 @@ impl Anchors {
         alignment.rms
     }
 
-    /// Root mean square distance by which the anchors would be missed by chance, from the covariances of the receivers.
+    /// Root mean square distance by which the anchors would be missed by chance, from the
+    /// covariances of the receivers.
     pub(super) fn expected(&self, covariance: &[[[f64; 2]; 2]]) -> f64 {
         let traces =
             covariance.iter().zip(&self.positions).filter(|(_, p)| p.is_some()).map(|(c, _)| c[0][0] + c[1][1]);
@@ -198,8 +202,8 @@ mod tests {
             distances: vec![KnownDistance { receivers: [2, 0], distance: 10.0 }],
             ..Default::default()
         };
-        // The distance 5 m with independent errors of 0.1 m in all coordinates has a deviation of 0.1 sqrt(2); the factor
-        // 10 / 5 has 10 / 25 of it.
+        // The distance 5 m with independent errors of 0.1 m in all coordinates has a deviation of
+        // 0.1 sqrt(2); the factor 10 / 5 has 10 / 25 of it.
         let joint: Vec<f64> = (0..36).map(|k| if k % 7 == 0 { 0.01 } else { 0.0 }).collect();
         let found = speed(&network, &usable, Some(&joint), &options).unwrap();
         assert_eq!((found.factor, found.distances, found.residual), (2.0, 1, 0.0));

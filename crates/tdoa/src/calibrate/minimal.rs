@@ -14,10 +14,12 @@ use crate::refine::PartialNetwork;
 /// Subsets that are drawn for one call; the one whose nodes lie farthest apart is solved.
 const DRAWS: usize = 12;
 
-/// Sizes of the subsets, receivers and transmitters, which take turns as far as the measurements have them.
+/// Sizes of the subsets, receivers and transmitters, which take turns as far as the measurements
+/// have them.
 const SHAPES: [(usize, usize); 3] = [(6, 3), (5, 4), (4, 5)];
 
-/// Proposes every candidate of a minimal solver (6r/3s, 5r/4s or 4r/5s) on one random, spread-out, completely measured subset a call.
+/// Proposes every candidate of a minimal solver (6r/3s, 5r/4s or 4r/5s) on one random, spread-out,
+/// completely measured subset a call.
 pub struct MinimalHypotheses {
     options: SolveOptions,
     solvers: Mutex<Vec<Solver>>,
@@ -32,8 +34,8 @@ impl Default for MinimalHypotheses {
 }
 
 impl MinimalHypotheses {
-    /// With settings for noisy data: roots that noise has made slightly complex count as real, and distances may be
-    /// negative by a twentieth of the network's size.
+    /// With settings for noisy data: roots that noise has made slightly complex count as real, and
+    /// distances may be negative by a twentieth of the network's size.
     pub fn new() -> Self {
         let options = SolveOptions { near_real: 0.1, tolerance: 0.05, ..SolveOptions::default() };
         MinimalHypotheses { options, solvers: Mutex::new(Vec::new()), most: usize::MAX }

@@ -1,5 +1,5 @@
-//! From any matrix of pseudoranges to a network: leave out what cannot be determined, search from many starts, refine the
-//! best, say how sure the result is.
+//! From any matrix of pseudoranges to a network: leave out what cannot be determined, search from
+//! many starts, refine the best, say how sure the result is.
 
 mod calibration;
 mod compare;
@@ -42,8 +42,8 @@ use report::Solved;
 use submaps::{Layout, OVERLAP, hearing_is_local, lay_out};
 use whole::{Sought, search_whole};
 
-/// Calibrates a network from its pseudoranges: by restarts of the robust refinement, and from the networks that the
-/// minimal solvers find for subsets.
+/// Calibrates a network from its pseudoranges: by restarts of the robust refinement, and from the
+/// networks that the minimal solvers find for subsets.
 ///
 /// ```
 /// let mut options = tdoa::SimulateOptions::default();
@@ -62,8 +62,8 @@ pub fn calibrate(measured: &Pseudoranges, options: &CalibrateOptions) -> Result<
     calibrate_with(measured, options, &[], &Monitor::default())
 }
 
-/// [`calibrate`] with further sources of starts beside the restarts, which take turns, and with progress and
-/// cancellation.
+/// [`calibrate`] with further sources of starts beside the restarts, which take turns, and with
+/// progress and cancellation.
 ///
 /// # Errors
 /// Those of [`calibrate`], and [`CalibrateError::Cancelled`].
@@ -116,8 +116,8 @@ pub fn calibrate_with(
     Ok(solved.report(options))
 }
 
-/// Where hearing is local: the layout of the usable receivers by submaps, and which of them it places. Nodes that do not hang together with
-/// these are left out of `usable`, with a warning.
+/// Where hearing is local: the layout of the usable receivers by submaps, and which of them it
+/// places. Nodes that do not hang together with these are left out of `usable`, with a warning.
 fn local_layout(
     measured: &Pseudoranges,
     usable: &mut Usable,
@@ -155,7 +155,8 @@ fn local_layout(
     Ok(Some((layout, places)))
 }
 
-/// Subtracts each column's median, which the offsets take back at the end: large common times cost digits.
+/// Subtracts each column's median, which the offsets take back at the end: large common times cost
+/// digits.
 fn centre(measured: &Pseudoranges) -> (Pseudoranges, Vec<f64>) {
     let shifts: Vec<f64> = (0..measured.transmitters())
         .map(|j| median((0..measured.receivers()).filter_map(|i| measured.get(i, j)).collect()).unwrap_or(0.0))

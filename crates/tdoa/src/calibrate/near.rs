@@ -1,4 +1,5 @@
-//! Networks near the best one that explain the measurements about as well: too near to be called another, too far for ellipses about one alone.
+//! Networks near the best one that explain the measurements about as well: too near to be called
+//! another, too far for ellipses about one alone.
 
 use super::ranking::refit;
 use crate::align::align;
@@ -6,14 +7,15 @@ use crate::network::Network;
 use crate::observations::Observations;
 use crate::refine::{Covariance, Refined};
 
-/// Networks that differ by less than this share of their size, root mean square, ended in one minimum.
+/// Networks that differ by less than this share of their size, root mean square, ended in one
+/// minimum.
 const ONE_MINIMUM: f64 = 1e-3;
 
 /// Neighbours that are looked at.
 const MOST: usize = 8;
 
-/// A neighbour nearer than this many standard deviations (root mean square over the receivers) lies within what the ellipses say; one farther
-/// than the second number is another network.
+/// A neighbour nearer than this many standard deviations (root mean square over the receivers) lies
+/// within what the ellipses say; one farther than the second number is another network.
 const WITHIN: f64 = 0.5;
 pub(super) const BEYOND: f64 = 4.0;
 
@@ -23,13 +25,15 @@ const LIKELY: f64 = 0.02;
 /// A neighbour of the best network.
 pub(super) struct Neighbour {
     pub(super) network: Network,
-    /// By how much the measurements are less likely than under the best network, natural logarithm; not negative.
+    /// By how much the measurements are less likely than under the best network, natural logarithm;
+    /// not negative.
     pub(super) loss: f64,
     /// Where its receivers lie from those of the best network.
     shifts: Vec<[f64; 2]>,
 }
 
-/// One network of each minimum among those that the search counted as the best one, the best itself left out.
+/// One network of each minimum among those that the search counted as the best one, the best itself
+/// left out.
 pub(super) fn minima(best: &Network, same: impl Iterator<Item = Network>) -> Vec<Network> {
     let mut kept = vec![best.clone()];
     for network in same {
@@ -42,7 +46,8 @@ pub(super) fn minima(best: &Network, same: impl Iterator<Item = Network>) -> Vec
     kept.split_off(1)
 }
 
-/// Neighbours that least squares over the inliers leaves apart, with what they cost more than the best.
+/// Neighbours that least squares over the inliers leaves apart, with what they cost more than the
+/// best.
 pub(super) fn neighbours(
     observations: &Observations,
     best: &Refined,
@@ -70,7 +75,8 @@ pub(super) fn neighbours(
 }
 
 impl Neighbour {
-    /// How far its receivers lie from those of the best network, in standard deviations, root mean square.
+    /// How far its receivers lie from those of the best network, in standard deviations, root mean
+    /// square.
     pub(super) fn distance(&self, uncertainty: &Covariance) -> f64 {
         let square: f64 = self.shifts.iter().map(|s| s[0] * s[0] + s[1] * s[1]).sum();
         let variance: f64 = uncertainty.receivers.iter().map(|c| c[0][0] + c[1][1]).sum();
@@ -78,7 +84,8 @@ impl Neighbour {
     }
 }
 
-/// Adds what likely neighbours add to the covariance of the receivers: that of the mixture of both, and enough for the ellipse to reach the other.
+/// Adds what likely neighbours add to the covariance of the receivers: that of the mixture of both,
+/// and enough for the ellipse to reach the other.
 pub(super) fn widen(uncertainty: &mut Covariance, neighbours: &[Neighbour], radius: f64) {
     let total: f64 = 1.0 + neighbours.iter().map(|n| (-n.loss).exp()).sum::<f64>();
     let distances: Vec<f64> = neighbours.iter().map(|n| n.distance(uncertainty)).collect();
@@ -108,7 +115,8 @@ mod tests {
         let mut uncertainty = Covariance { receivers: vec![[[1.0, 0.0], [0.0, 1.0]]; 2], ..Default::default() };
         let shifts = vec![[3.0, 0.0], [0.0, 0.0]];
         let neighbour = |loss| Neighbour { network: Default::default(), loss, shifts: shifts.clone() };
-        // Half of the mixture lies 3 to the side: its variance about the best is 1 + 9/2, and 9/6 more for a radius of sqrt 6.
+        // Half of the mixture lies 3 to the side: its variance about the best is 1 + 9/2, and 9/6
+        // more for a radius of sqrt 6.
         widen(&mut uncertainty, &[neighbour(0.0)], 6f64.sqrt());
         assert!((uncertainty.receivers[0][0][0] - 7.0).abs() < 1e-12 && uncertainty.receivers[0][1][1] == 1.0);
         assert_eq!(uncertainty.receivers[1], [[1.0, 0.0], [0.0, 1.0]]);

@@ -11,11 +11,12 @@ pub enum ReceiverDelays {
     /// They are looked for and told.
     #[default]
     None,
-    /// They are looked for, told, and taken out: delays, drifts and jumps are estimated with the network, and of a receiver that was moved the
-    /// longer part of the measurements is kept.
+    /// They are looked for, told, and taken out: delays, drifts and jumps are estimated with the
+    /// network, and of a receiver that was moved the longer part of the measurements is kept.
     Auto,
-    /// Every receiver has an unknown constant delay, as where their clocks were started apart: m - 1 unknowns more for m receivers, so that
-    /// at least 3m + 3n - 4 measurements are needed, for instance of 4 receivers and 8 transmitters, 5 and 6, 6 and 5, or 8 and 4.
+    /// Every receiver has an unknown constant delay, as where their clocks were started apart: m -
+    /// 1 unknowns more for m receivers, so that at least 3m + 3n - 4 measurements are needed, for
+    /// instance of 4 receivers and 8 transmitters, 5 and 6, 6 and 5, or 8 and 4.
     All,
 }
 
@@ -23,46 +24,53 @@ pub enum ReceiverDelays {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct CalibrateOptions {
-    /// Standard deviation of the measurements in metres; where measurements carry their own, a factor on those. Default
-    /// `None`: estimated, or 1 where measurements carry their own.
+    /// Standard deviation of the measurements in metres; where measurements carry their own, a
+    /// factor on those. Default `None`: estimated, or 1 where measurements carry their own.
     pub sigma: Option<f64>,
-    /// Seed of all random draws: the same seed gives the same result, whatever the number of threads. Default 0.
+    /// Seed of all random draws: the same seed gives the same result, whatever the number of
+    /// threads. Default 0.
     pub seed: u64,
-    /// Fewest starts of the search. Default 48: a basin that catches one start in sixteen is then missed with a probability
-    /// of 5 %.
+    /// Fewest starts of the search. Default 48: a basin that catches one start in sixteen is then
+    /// missed with a probability of 5 %.
     pub min_starts: usize,
     /// Most starts of the search. Default 480.
     pub max_starts: usize,
-    /// The search ends, after the fewest starts, when this many starts have found the best network. Default 10.
+    /// The search ends, after the fewest starts, when this many starts have found the best network.
+    /// Default 10.
     pub agreeing: usize,
     /// Whether the search starts from random networks, besides any other sources. Default true.
     pub restarts: bool,
-    /// Starts, besides those from random networks, that come from solving a small part of the data exactly. Default 6: with few nodes,
-    /// random networks alone miss networks that fit as well; with many, each of these starts ends in the best basin more often
-    /// than a random one does. 0 for none.
+    /// Starts, besides those from random networks, that come from solving a small part of the data
+    /// exactly. Default 6: with few nodes, random networks alone miss networks that fit as well;
+    /// with many, each of these starts ends in the best basin more often than a random one does. 0
+    /// for none.
     pub minimal_subsets: usize,
-    /// Most transmitters that the search works on; the others are located when it has ended. Default 48.
+    /// Most transmitters that the search works on; the others are located when it has ended.
+    /// Default 48.
     pub search_transmitters: usize,
-    /// Most receivers that the search works on; the others are located when it has ended. Default 32.
+    /// Most receivers that the search works on; the others are located when it has ended.
+    /// Default 32.
     pub search_receivers: usize,
     /// Measurements whose residual exceeds this many standard deviations are outliers. Default 3.5.
     pub inlier_threshold: f64,
-    /// Another network is an alternative if the data are less likely under it by at most this (natural logarithm).
-    /// Default 8.
+    /// Another network is an alternative if the data are less likely under it by at most this
+    /// (natural logarithm). Default 8.
     pub alternative_margin: f64,
-    /// Above this ratio of the residuals' deviation to the network's size (root mean square distance of the receivers
-    /// from their centroid) the data are called not planar. Default 0.04.
+    /// Above this ratio of the residuals' deviation to the network's size (root mean square
+    /// distance of the receivers from their centroid) the data are called not planar. Default 0.04.
     pub planar_limit: f64,
-    /// Known positions of receivers in metres, in the order of the receivers, `None` where unknown. They fix the frame; if
-    /// they are in two places at least, they are held there in the last refinement. Default empty: none are known.
+    /// Known positions of receivers in metres, in the order of the receivers, `None` where unknown.
+    /// They fix the frame; if they are in two places at least, they are held there in the last
+    /// refinement. Default empty: none are known.
     pub anchors: Vec<Option<[f64; 2]>>,
-    /// What is done about receivers whose measurements are all too long or too short. Default [`ReceiverDelays::None`]: a warning names those
-    /// that show.
+    /// What is done about receivers whose measurements are all too long or too short. Default
+    /// [`ReceiverDelays::None`]: a warning names those that show.
     pub receiver_delays: ReceiverDelays,
     /// Known distances between receivers, for `estimate_speed`. Default empty.
     pub distances: Vec<KnownDistance>,
-    /// Whether the propagation speed with which the measurements became metres is a guess, to be replaced by the one that
-    /// the known distances and the distances between anchors have. Default false.
+    /// Whether the propagation speed with which the measurements became metres is a guess, to be
+    /// replaced by the one that the known distances and the distances between anchors have. Default
+    /// false.
     pub estimate_speed: bool,
 }
 

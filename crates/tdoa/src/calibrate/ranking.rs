@@ -1,9 +1,11 @@
 //! Networks ranked by the measurements that they explain.
 //!
-//! The search minimises the Cauchy loss, which pulls a network towards the truth from afar but never stops charging for a gross error:
-//! one of 360 standard deviations costs 28 units of log-likelihood and one of 10 costs 8: so that a wrong network whose outlier is smaller
-//! can beat the truth. Where the noise is known, networks are therefore ranked by the sum of min(e^2/2, h) over residuals e in standard
-//! deviations, after least squares over the measurements that cost less than h.
+//! The search minimises the Cauchy loss, which pulls a network towards the truth from afar but
+//! never stops charging for a gross error: one of 360 standard deviations costs 28 units of
+//! log-likelihood and one of 10 costs 8: so that a wrong network whose outlier is smaller can beat
+//! the truth. Where the noise is known, networks are therefore ranked by the sum of min(e^2/2, h)
+//! over residuals e in standard deviations, after least squares over the measurements that cost
+//! less than h.
 
 use crate::network::Network;
 use crate::observations::Observations;
@@ -11,22 +13,25 @@ use crate::refine::{RefineOptions, Refined, Refiner, SEARCH};
 
 use super::same::same;
 
-/// What an outlier costs, whatever its size (units of log-likelihood). It is what a gross error costs that hits one measurement in a thousand
-/// and is uniform over ten thousand standard deviations: ln(1e4/1e-3) less ln(2 pi)/2, about 15. Costs from 5 to 18 find the truth about as
+/// What an outlier costs, whatever its size (units of log-likelihood). It is what a gross error
+/// costs that hits one measurement in a thousand and is uniform over ten thousand standard
+/// deviations: ln(1e4/1e-3) less ln(2 pi)/2, about 15. Costs from 5 to 18 find the truth about as
 /// often; below 10, networks that leave one more measurement out would pass for alternatives.
 const OUTLIER_COST: f64 = 15.0;
 
 /// Rounds of choosing inliers and fitting them.
 const ROUNDS: usize = 8;
 
-/// Sum of min(e^2/2, h) over the residuals e of a network in standard deviations; `deviation` is that of the measurements.
+/// Sum of min(e^2/2, h) over the residuals e of a network in standard deviations; `deviation` is
+/// that of the measurements.
 pub(super) fn truncated_cost(observations: &Observations, network: &Network, deviation: f64) -> f64 {
     let cost = |e: f64| (0.5 * (e / deviation).powi(2)).min(OUTLIER_COST);
     observations.all().iter().map(|o| cost(o.residual(network))).sum()
 }
 
-/// The networks with truncated costs as objectives, least first: of networks refitted to their inliers, as far as they are among the best.
-/// Of networks that the refit carries to the same one the first is kept.
+/// The networks with truncated costs as objectives, least first: of networks refitted to their
+/// inliers, as far as they are among the best. Of networks that the refit carries to the same one
+/// the first is kept.
 pub(super) fn rank(
     observations: &Observations,
     mut networks: Vec<Refined>,
@@ -55,7 +60,8 @@ pub(super) fn rank(
     ranked
 }
 
-/// The network of least truncated cost near a given one, with that cost: least squares over the inliers until they stay the same.
+/// The network of least truncated cost near a given one, with that cost: least squares over the
+/// inliers until they stay the same.
 pub(super) fn refit(observations: &Observations, network: &Network, deviation: f64) -> (Network, f64) {
     let limit = (2.0 * OUTLIER_COST).sqrt() * deviation;
     let options = RefineOptions { scale: Some(deviation), steps: 20, rounds: 0, tolerance: 1e-9, ..SEARCH };
@@ -114,7 +120,8 @@ mod tests {
             let observations = Observations::new(&pseudoranges, |_, _| true);
             let (network, cost) = refit(&observations, &truth, SIGMA);
             assert!(cost <= truncated_cost(&observations, &truth, SIGMA));
-            // 79 measurements less 16 + 30 - 3 unknowns: half of chi-squared with 36 degrees of freedom, 99.9 % of which is below 68.
+            // 79 measurements less 16 + 30 - 3 unknowns: half of chi-squared with 36 degrees of
+            // freedom, 99.9 % of which is below 68.
             assert!(cost - OUTLIER_COST < 34.0, "seed {seed}: {cost}");
             let outlier = observations.of_receiver(1).find(|o| o.transmitter == 7).unwrap();
             assert!(outlier.residual(&network) > 300.0 * SIGMA, "seed {seed}");
@@ -126,7 +133,8 @@ mod tests {
         let (pseudoranges, truth) = measured(2);
         let observations = Observations::new(&pseudoranges, |_, _| true);
         let mut wrong = truth.clone();
-        // Most of the eight measurements of this transmitter are then wrong by much more than the noise, and no refit of these reaches back.
+        // Most of the eight measurements of this transmitter are then wrong by much more than the
+        // noise, and no refit of these reaches back.
         wrong.transmitters[3] = [60.0, -40.0];
         let refined = |network| Refined { network, scale: SIGMA, objective: 0.0, starts: 1 };
         let ranked = rank(&observations, vec![refined(wrong), refined(truth.clone())], SIGMA, 8.0);

@@ -1,8 +1,9 @@
-//! Receivers with errors of their own: a delay, a clock that drifts or jumps, a receiver that was moved.
+//! Receivers with errors of their own: a delay, a clock that drifts or jumps, a receiver that was
+//! moved.
 //!
-//! Such an error is a column beside the Jacobian: what it adds to the residuals of one receiver. Its part that no motion of the nodes makes
-//! is compared with the residuals (a score test); the column that explains most is taken into the model, and the test goes on with what
-//! remains.
+//! Such an error is a column beside the Jacobian: what it adds to the residuals of one receiver.
+//! Its part that no motion of the nodes makes is compared with the residuals (a score test); the
+//! column that explains most is taken into the model, and the test goes on with what remains.
 
 use serde::{Deserialize, Serialize};
 
@@ -27,9 +28,11 @@ const PROJECTED: usize = 24;
 pub enum ReceiverErrorKind {
     /// All its measurements are too long or too short by one length.
     Delay,
-    /// Its measurements grow too long or too short evenly from the first transmitter to the last one.
+    /// Its measurements grow too long or too short evenly from the first transmitter to the last
+    /// one.
     Drift,
-    /// Its clock jumps: from one transmitter on its measurements are too long or too short by one length.
+    /// Its clock jumps: from one transmitter on its measurements are too long or too short by one
+    /// length.
     Jump,
     /// It stands elsewhere from one transmitter on.
     Move,
@@ -45,7 +48,8 @@ pub struct ReceiverError {
     /// Name of the first transmitter after a jump or a move, in the order of the table.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub from: Option<String>,
-    /// How large it is, metres: the delay, the drift from the first transmitter to the last one, the jump, the distance of the move.
+    /// How large it is, metres: the delay, the drift from the first transmitter to the last one,
+    /// the jump, the distance of the move.
     pub size: f64,
     /// By how much the measurements are more likely with it, natural logarithm.
     pub gain: f64,
@@ -70,7 +74,8 @@ impl Fault {
         if self.kind == ReceiverErrorKind::Move { self.size[0].hypot(self.size[1]) } else { self.size[0] }
     }
 
-    /// What the error adds to a measurement of transmitter `j` of `n`, for a size of 1; a move is none of these.
+    /// What the error adds to a measurement of transmitter `j` of `n`, for a size of 1; a move is
+    /// none of these.
     pub(super) fn shape(&self, j: usize, n: usize) -> f64 {
         match self.kind {
             ReceiverErrorKind::Delay => 1.0,
@@ -80,12 +85,15 @@ impl Fault {
     }
 }
 
-/// Errors of single receivers that the residuals at a network show, most telling first. `deviation` is that of the measurements.
+/// Errors of single receivers that the residuals at a network show, most telling first. `deviation`
+/// is that of the measurements.
 pub(super) fn find(observations: &Observations, network: &Network, deviation: f64, threshold: f64) -> Vec<Fault> {
-    // An error of one receiver makes residuals larger than the noise: the test takes the deviation that they have.
+    // An error of one receiver makes residuals larger than the noise: the test takes the deviation
+    // that they have.
     let wide = spread_of_residuals(observations, network).max(deviation);
     let wide = inlier_deviation(observations, network, wide, threshold);
-    // What the robust loss has given up of a receiver is what tells of its error: all cells near its own spread take part.
+    // What the robust loss has given up of a receiver is what tells of its error: all cells near
+    // its own spread take part.
     let reach = reaches(observations, network);
     let kept = observations.subset(|o| o.residual(network).abs() <= threshold * wide.max(reach[o.receiver]));
     let redundancy = kept.len().saturating_sub(kept.unknowns());
@@ -142,7 +150,8 @@ impl Test<'_> {
             }
             found.push(fault);
             if fault.kind == ReceiverErrorKind::Move {
-                // A move is large against what a linear model sees of it: what remains may be its own.
+                // A move is large against what a linear model sees of it: what remains may be its
+                // own.
                 break;
             }
             for column in columns {
@@ -195,7 +204,8 @@ impl Test<'_> {
         all.into_iter().map(|(_, fault)| fault).collect()
     }
 
-    /// How much of the squares of the residuals in some cells of a receiver one length explains, or a motion of the receiver.
+    /// How much of the squares of the residuals in some cells of a receiver one length explains, or
+    /// a motion of the receiver.
     fn score(&self, row: &[usize], power: usize) -> f64 {
         let (mut sum, mut square, mut g, mut h) = (0.0, 0.0, [0.0; 2], [0.0; 3]);
         for &k in row {
@@ -208,8 +218,8 @@ impl Test<'_> {
         if power == 0 { sum * sum / square } else { solve2(h, g).map_or(0.0, |s| s[0] * g[0] + s[1] * g[1]) }
     }
 
-    /// The gain of taking an error into the model, with its size, and the parts of its columns that nothing else explains. `None` where it
-    /// explains nothing.
+    /// The gain of taking an error into the model, with its size, and the parts of its columns that
+    /// nothing else explains. `None` where it explains nothing.
     fn judge(&self, fault: Fault, rows: &[Vec<usize>]) -> Option<(f64, Fault, Vec<Vec<f64>>)> {
         let n = self.kept.transmitters;
         let is_move = fault.kind == ReceiverErrorKind::Move;
@@ -252,9 +262,11 @@ impl Test<'_> {
         let explained = size[0] * g[0] + size[1] * g[1];
         let total = dot(&self.rest, &self.rest);
         let count = columns.len() as f64;
-        // Under normal noise explained / total follows Beta(q/2, (k-q)/2), whose tail is at most (1 - x)^((k - q)/2).
+        // Under normal noise explained / total follows Beta(q/2, (k-q)/2), whose tail is at most
+        // (1 - x)^((k - q)/2).
         let tail = |x: f64| -0.5 * (self.redundancy - count) * (-x.min(1.0)).ln_1p();
-        // Receivers of uneven noise: with the spread of the residuals that the column meets. The smaller gain counts.
+        // Receivers of uneven noise: with the spread of the residuals that the column meets. The
+        // smaller gain counts.
         let left = |k: usize| self.rest[k] - size[0] * a[k] - b.map_or(0.0, |b| size[1] * b[k]);
         let correction = self.kept.len() as f64 / (self.redundancy - count).max(1.0);
         let s = solve(products(&|k| correction * left(k).powi(2)), g)?;

@@ -1,4 +1,5 @@
-//! From the networks that the search found to the result: residuals, uncertainty, alternatives and warnings.
+//! From the networks that the search found to the result: residuals, uncertainty, alternatives and
+//! warnings.
 
 use super::calibration::{Alternative, Calibration};
 use super::deviation::{inlier_deviation, typical_deviation};
@@ -17,7 +18,8 @@ use crate::quantity::length;
 use crate::refine::{Covariance, Refined};
 use std::borrow::Cow;
 
-/// Starts that must end in the best network before it is called unique: one or two may have found it while a better one was missed.
+/// Starts that must end in the best network before it is called unique: one or two may have found
+/// it while a better one was missed.
 const SETTLED: usize = 3;
 
 /// What the search and the refinement leave to report.
@@ -255,8 +257,9 @@ impl Solved<'_> {
 /// Residuals that are larger than the given deviation by less than this factor pass without a word.
 const TOO_LARGE: f64 = 1.5;
 
-/// Whether residuals of normal noise with `redundancy` left over are this many times as large as their deviation by a chance below one in a
-/// thousand: the square has the distribution of chi-squared over its degrees of freedom, whose cube root is nearly normal (Wilson and Hilferty
+/// Whether residuals of normal noise with `redundancy` left over are this many times as large as
+/// their deviation by a chance below one in a thousand: the square has the distribution of
+/// chi-squared over its degrees of freedom, whose cube root is nearly normal (Wilson and Hilferty
 /// 1931).
 fn exceeds_chance(ratio: f64, redundancy: usize) -> bool {
     let variance = 2.0 / (9.0 * redundancy as f64);
@@ -266,9 +269,9 @@ fn exceeds_chance(ratio: f64, redundancy: usize) -> bool {
 /// Efficiency of the last refinement's Cauchy loss on normal noise.
 const EFFICIENCY: f64 = 0.95;
 
-/// Radius of the 95 % ellipse in standard deviations. With the deviation known its square is the 95 % quantile of
-/// chi-squared with two degrees of freedom, -2 ln 0.05; with one estimated from k residuals left over it is twice that of
-/// F(2, k), which is k (0.05^(-2/k) - 1).
+/// Radius of the 95 % ellipse in standard deviations. With the deviation known its square is the 95
+/// % quantile of chi-squared with two degrees of freedom, -2 ln 0.05; with one estimated from k
+/// residuals left over it is twice that of F(2, k), which is k (0.05^(-2/k) - 1).
 fn radius_95(redundancy: usize, known: bool) -> Option<f64> {
     let k = redundancy as f64;
     if known {
@@ -289,8 +292,8 @@ fn scatter<T: Copy>(length: usize, at: &[usize], values: &[T]) -> Vec<Option<T>>
     all
 }
 
-/// First receiver at the origin, second on the x axis, third above; other receivers take their place where these
-/// coincide or are in line.
+/// First receiver at the origin, second on the x axis, third above; other receivers take their
+/// place where these coincide or are in line.
 fn default_frame(receivers: &[[f64; 2]]) -> Transform {
     let identity = Transform { rotation: [[1.0, 0.0], [0.0, 1.0]], scale: 1.0, translation: [0.0; 2] };
     let origin = receivers[0];
@@ -304,7 +307,8 @@ mod tests {
 
     #[test]
     fn chance_ends_where_tables_of_chi_squared_end() {
-        // 99.9 % quantiles of chi-squared: 10.83, 29.59 and 149.45 with 1, 10 and 100 degrees of freedom; the approximation is good to 2 %.
+        // 99.9 % quantiles of chi-squared: 10.83, 29.59 and 149.45 with 1, 10 and 100 degrees of
+        // freedom; the approximation is good to 2 %.
         for (degrees, quantile) in [(1usize, 10.83f64), (10, 29.59), (100, 149.45)] {
             let ratio = (quantile / degrees as f64).sqrt();
             assert!(exceeds_chance(1.02 * ratio, degrees) && !exceeds_chance(0.98 * ratio, degrees), "{degrees}");
@@ -314,7 +318,8 @@ mod tests {
 
     #[test]
     fn radius_of_ellipses() {
-        // Tables: the 95 % quantile of chi-squared with 2 degrees of freedom is 5.991; of F(2, 1) 199.5, F(2, 10) 4.103.
+        // Tables: the 95 % quantile of chi-squared with 2 degrees of freedom is 5.991; of F(2, 1)
+        // 199.5, F(2, 10) 4.103.
         assert!((radius_95(7, true).unwrap().powi(2) - 5.991).abs() < 1e-3);
         assert!((radius_95(1, false).unwrap().powi(2) - 2.0 * 199.5).abs() < 0.1);
         assert!((radius_95(10, false).unwrap().powi(2) - 2.0 * 4.103).abs() < 1e-3);

@@ -23,7 +23,8 @@ impl Solved<'_> {
         let free = if self.taken.len() == kept.receivers { &self.taken[1..] } else { self.taken };
         let columns = columns(kept, &projection, free);
         let Some(gram) = gram(&columns) else { return Covariance::default() };
-        // With sizes of covariance C = sigma^2 (products of the columns)^-1 and motions M that absorb them, M C M^T is added.
+        // With sizes of covariance C = sigma^2 (products of the columns)^-1 and motions M that
+        // absorb them, M C M^T is added.
         let inverse = gram.solve(&Mat::<f64>::identity(columns.len(), columns.len()));
         let pairs = || (0..columns.len()).flat_map(|a| (0..columns.len()).map(move |b| (a, b)));
         let size = 2 * kept.receivers;

@@ -5,10 +5,12 @@ use crate::network::Network;
 use crate::plane::{centroid, distance};
 use crate::refine::Refined;
 
-/// Networks are the same if their nodes differ by less than this share of the network's size, root mean square.
+/// Networks are the same if their nodes differ by less than this share of the network's size, root
+/// mean square.
 pub const SAME_NETWORK: f64 = 0.02;
 
-/// The first of each kind of network in a list sorted by objective, at most `most` of them, with the starts of the one that most ended in.
+/// The first of each kind of network in a list sorted by objective, at most `most` of them, with
+/// the starts of the one that most ended in.
 pub(super) fn distinct(sorted: Vec<Refined>, most: usize) -> Vec<Refined> {
     let mut kept: Vec<Refined> = Vec::new();
     for candidate in sorted {
@@ -24,8 +26,8 @@ pub(super) fn distinct(sorted: Vec<Refined>, most: usize) -> Vec<Refined> {
     kept
 }
 
-/// Whether two networks agree up to a rigid motion or reflection. Transmitters far outside count in proportion to their
-/// distance, since their range is hardly determined.
+/// Whether two networks agree up to a rigid motion or reflection. Transmitters far outside count in
+/// proportion to their distance, since their range is hardly determined.
 pub(super) fn same(a: &Network, b: &Network) -> bool {
     same_receivers(a, b) && same_transmitters(a, b)
 }

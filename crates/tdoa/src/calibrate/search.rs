@@ -15,18 +15,21 @@ use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::{RefineOptions, Refined, Refiner, extend, residuals};
 
-/// Starts that run between two looks at the result. Fixed, so that the result does not depend on the number of threads.
+/// Starts that run between two looks at the result. Fixed, so that the result does not depend on
+/// the number of threads.
 const BATCH: usize = 16;
 
-/// Proposals of one call that are refined in any case, and at most; also the most networks that the search returns.
+/// Proposals of one call that are refined in any case, and at most; also the most networks that the
+/// search returns.
 const REFINED: usize = 3;
 const MOST_REFINED: usize = 40;
 
 /// Further proposals are refined if they fit about as well as the best (units of log-likelihood).
 const AS_GOOD: f64 = 4.0;
 
-/// A start counts for the best network if it found the same one with an objective this close to it (units of
-/// log-likelihood): where few measurements are left over, one network has many minima of nearly the same objective.
+/// A start counts for the best network if it found the same one with an objective this close to it
+/// (units of log-likelihood): where few measurements are left over, one network has many minima of
+/// nearly the same objective.
 const SAME_BASIN: f64 = 20.0;
 
 /// What the search found.
@@ -105,7 +108,8 @@ impl Search<'_> {
         let source = self.sources[index % self.sources.len()];
         let mut proposals = source.propose(self.measured, index / self.sources.len(), seed);
         if proposals.is_empty() && self.sources.len() > 1 {
-            // A source that has nothing more to say leaves its turn to the first, under a number that no other call has.
+            // A source that has nothing more to say leaves its turn to the first, under a number
+            // that no other call has.
             proposals = self.sources[0].propose(self.measured, EXTRA_TURNS + index, seed);
         }
         let mut ranked: Vec<(f64, Network)> = proposals

@@ -1,4 +1,5 @@
-//! Networks that nobody hears whole: small networks of neighbouring receivers, laid together where they overlap, then refined as one.
+//! Networks that nobody hears whole: small networks of neighbouring receivers, laid together where
+//! they overlap, then refined as one.
 
 use super::deviation::{median_size, typical_deviation};
 use super::finish::finish;
@@ -20,7 +21,8 @@ use hc::{Monitor, Stage};
 const RECEIVERS: usize = 10;
 const TRANSMITTERS: usize = 60;
 
-/// Fewest and most starts of the search of one submap, and how many must agree: submaps check each other, and one that needs more is no help.
+/// Fewest and most starts of the search of one submap, and how many must agree: submaps check each
+/// other, and one that needs more is no help.
 const STARTS: usize = 16;
 const MOST_STARTS: usize = 128;
 const AGREEING: usize = 5;
@@ -28,15 +30,16 @@ const AGREEING: usize = 5;
 /// Receivers that must hear a transmitter of a submap.
 const HEARD: usize = 5;
 
-/// Pairs of receivers with fewer common transmitters say nothing of their distance; where they are more than this share of all, hearing is
-/// local.
+/// Pairs of receivers with fewer common transmitters say nothing of their distance; where they are
+/// more than this share of all, hearing is local.
 const COMMON: usize = 3;
 const LOCAL: f64 = 0.2;
 
 /// Receivers that two networks must share to be laid together.
 pub(super) const OVERLAP: usize = 4;
 
-/// Submaps fit where common receivers lie within this share of the submap's size (root mean square).
+/// Submaps fit where common receivers lie within this share of the submap's size (root mean
+/// square).
 const FIT: f64 = 0.04;
 
 /// A network of a few receivers.
@@ -59,7 +62,8 @@ pub(super) struct Layout {
     size: f64,
 }
 
-/// Whether so many pairs of receivers hear no transmitter in common that no small part stands for the whole.
+/// Whether so many pairs of receivers hear no transmitter in common that no small part stands for
+/// the whole.
 pub(super) fn hearing_is_local(measured: &Pseudoranges) -> bool {
     let m = measured.receivers();
     if m <= RECEIVERS {
@@ -130,7 +134,8 @@ pub(super) fn lay_out(
     Ok(Layout { solved: submaps.len(), submaps, positions, size })
 }
 
-/// The network of some receivers if their transmitters determine it and no other network fits about as well.
+/// The network of some receivers if their transmitters determine it and no other network fits about
+/// as well.
 fn solve(
     measured: &Pseudoranges,
     receivers: &[usize],
@@ -205,8 +210,8 @@ fn grow(submaps: &[Submap], first: usize, receivers: usize, used: &mut [bool]) -
     }
 }
 
-/// The map that lays a submap on placed receivers, with how many of the common ones it fits: at least four that are not in one line, and more
-/// than half of those in common.
+/// The map that lays a submap on placed receivers, with how many of the common ones it fits: at
+/// least four that are not in one line, and more than half of those in common.
 fn fit(submap: &Submap, placed: &[Option<[f64; 2]>]) -> Option<(usize, Transform)> {
     let pairs = submap.receivers.iter().zip(&submap.positions).filter_map(|(&i, &p)| Some((p, placed[i]?)));
     let (mut from, mut to): (Vec<_>, Vec<_>) = pairs.unzip();
@@ -235,7 +240,8 @@ impl Layout {
         Some(Layout { submaps: Vec::new(), positions, solved: 1, size: share * spread(placed.iter()) })
     }
 
-    /// Fewest submaps, over the receivers, that fit a network: how often each place was found on its own.
+    /// Fewest submaps, over the receivers, that fit a network: how often each place was found on
+    /// its own.
     fn support(&self, network: &Network, receivers: &[usize]) -> usize {
         let mut placed = vec![None; self.positions.len()];
         for (&i, &p) in receivers.iter().zip(&network.receivers) {
@@ -253,7 +259,8 @@ impl Layout {
         receivers.iter().map(|&i| counts[i]).min().unwrap_or(0)
     }
 
-    /// The network of the placed receivers, refined as one. `measured` has these receivers alone, with their indices beside.
+    /// The network of the placed receivers, refined as one. `measured` has these receivers alone,
+    /// with their indices beside.
     ///
     /// # Errors
     /// Cancelled, or a transmitter that cannot be located.
@@ -287,7 +294,8 @@ impl Layout {
         Ok(Sought { ranked, neighbours: Vec::new(), deviation, floor: refine.floor, starts: self.solved })
     }
 
-    /// Places receivers that no submap has from transmitters that five placed receivers or more have located.
+    /// Places receivers that no submap has from transmitters that five placed receivers or more
+    /// have located.
     pub(super) fn place_strays(&mut self, measured: &Pseudoranges) {
         let size = self.size / typical_deviation(measured);
         let loss = Loss { nu: SEARCH_NU, scale: FIT * size };
@@ -360,7 +368,8 @@ mod tests {
     #[test]
     fn parts_that_do_not_hang_together_are_named() {
         let simulation = chain(2);
-        // Whoever is heard on both sides of the gap is not heard at all: only receivers up to the twelfth, or from the thirteenth on.
+        // Whoever is heard on both sides of the gap is not heard at all: only receivers up to the
+        // twelfth, or from the thirteenth on.
         let measured = &simulation.pseudoranges;
         let n = measured.transmitters();
         let side = |j: usize| simulation.network.transmitters[j][0] < 240.0;

@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 /// Comparison with known positions of receivers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Truth {
-    /// Root mean square distance of the receivers after the best rigid alignment (reflection allowed).
+    /// Root mean square distance of the receivers after the best rigid alignment (reflection
+    /// allowed).
     pub receiver_rms: f64,
     /// That of the receivers, in metres, with a common scale fitted as well.
     pub receiver_rms_scaled: f64,
@@ -13,12 +14,15 @@ pub struct Truth {
     pub scale: f64,
     /// Receivers that were compared.
     pub receivers: usize,
-    /// The true positions in the frame of the calibration (rigid alignment), in the order of the receivers.
+    /// The true positions in the frame of the calibration (rigid alignment), in the order of the
+    /// receivers.
     pub positions: Vec<Option<[f64; 2]>>,
-    /// Median distance of the transmitters from the truth after the alignment of the receivers, if true transmitters were given.
+    /// Median distance of the transmitters from the truth after the alignment of the receivers, if
+    /// true transmitters were given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub transmitter_median: Option<f64>,
-    /// Their true positions in the frame of the calibration, in the order of the transmitters; empty if none were given.
+    /// Their true positions in the frame of the calibration, in the order of the transmitters;
+    /// empty if none were given.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub transmitter_positions: Vec<Option<[f64; 2]>>,
 }

@@ -7,7 +7,8 @@ use crate::plane::{distance, flatness};
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::Covariance;
 
-/// Receivers most of whose measurements are outliers: the others' network says nothing of where they are.
+/// Receivers most of whose measurements are outliers: the others' network says nothing of where
+/// they are.
 pub(super) fn doubtful_receivers(measured: &Pseudoranges, kept: &Observations) -> Vec<usize> {
     let mostly_wrong = |i: &usize| {
         let all = (0..measured.transmitters()).filter(|&j| measured.get(*i, j).is_some()).count();
@@ -16,8 +17,8 @@ pub(super) fn doubtful_receivers(measured: &Pseudoranges, kept: &Observations) -
     (0..measured.receivers()).filter(mostly_wrong).collect()
 }
 
-/// Warnings about the geometry: in line, in one place, poorly tied down. Returns whether most receivers are determined, as far as
-/// the noise is known.
+/// Warnings about the geometry: in line, in one place, poorly tied down. Returns whether most
+/// receivers are determined, as far as the noise is known.
 pub(super) fn warn_of_nodes(
     measured: &Pseudoranges,
     network: &Network,

@@ -47,7 +47,8 @@ pub(super) fn search_whole(
     let to_deviation = normal_deviation(SEARCH_NU);
     let restarts = RandomRestarts::new(&small_observations);
     let diameter = restarts.diameter();
-    // Where measurements carry deviations, residuals are multiples of them, and so is the network's size.
+    // Where measurements carry deviations, residuals are multiples of them, and so is the network's
+    // size.
     let unit = typical_deviation(measured);
     let refine = RefineOptions {
         scale: known.map(|sigma| sigma / to_deviation),
@@ -90,8 +91,8 @@ pub(super) fn search_whole(
     Ok(Sought { ranked, neighbours, deviation, floor: refine.floor, starts: found.starts })
 }
 
-/// The nodes that the search works on: where there are many, some of the better observed half, evenly spaced, because
-/// neighbours in a recording are often neighbours in the plane.
+/// The nodes that the search works on: where there are many, some of the better observed half,
+/// evenly spaced, because neighbours in a recording are often neighbours in the plane.
 fn search_part(measured: &Pseudoranges, options: &CalibrateOptions) -> Usable {
     let (m, n) = (measured.receivers(), measured.transmitters());
     let pick = |total: usize, most: usize, count: &dyn Fn(usize) -> usize| -> Vec<usize> {

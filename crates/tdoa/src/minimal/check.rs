@@ -5,7 +5,8 @@ use crate::degeneracy::is_solvable;
 use crate::duplicates::{constant_difference, rounding};
 use crate::pseudoranges::Pseudoranges;
 
-/// Measurements at most: the last refinement takes memory for a matrix of as many rows, and columns for all unknowns.
+/// Measurements at most: the last refinement takes memory for a matrix of as many rows, and columns
+/// for all unknowns.
 const MAX_MEASUREMENTS: usize = 5_000;
 
 /// Refuses sizes that cannot be solved, missing measurements and nodes that coincide.

@@ -7,7 +7,8 @@ use super::warning::SolveWarning;
 use crate::plane::flatness;
 use crate::pseudoranges::Pseudoranges;
 
-/// Physical candidates flatter than this are said to lie in one line; exact data tell no more of them.
+/// Physical candidates flatter than this are said to lie in one line; exact data tell no more of
+/// them.
 const FLAT: f64 = 1e-4;
 
 /// What there is to say of the candidates; `line` is what the data show to lie exactly in one line.

@@ -1,5 +1,5 @@
-//! From measurements to all networks that explain them, for any [`Formulation`]: tracks the stored fibre to the data, accounts for
-//! every path, and turns real solutions into networks.
+//! From measurements to all networks that explain them, for any [`Formulation`]: tracks the stored
+//! fibre to the data, accounts for every path, and turns real solutions into networks.
 
 use super::error::SolveError;
 use super::formulation::Formulation;
@@ -20,13 +20,15 @@ use hc::refine::{Refined, Refiner};
 use hc::tracker::{PathEnd, PathResult, PathSet};
 use num_complex::Complex64;
 
-/// Turns of the stored fibre, one after the other where paths stay lost: each gives other paths to the same ends.
+/// Turns of the stored fibre, one after the other where paths stay lost: each gives other paths to
+/// the same ends.
 const TURNS: [f64; 3] = [0.0, 0.7, -1.1];
 
 /// More lost paths than this tell of a degenerate network rather than of bad luck.
 const BAD_LUCK: usize = 4;
 
-/// Paths tracked at a time where the search stops at the first network that fits: four batches of eight.
+/// Paths tracked at a time where the search stops at the first network that fits: four batches of
+/// eight.
 const PART: usize = 32;
 
 /// Room for so many candidates is made at once; there are hardly ever more.
@@ -61,8 +63,10 @@ impl<F: Formulation> Engine<F> {
         Engine { tracking, roots, data: Normalised::default(), target: Vec::new() }
     }
 
-    /// Every network that explains a matrix of the formulation's size that has passed the checks, warnings left to the caller. After the first call memory is allocated for the result alone, unless
-    /// all paths have to be tracked again or a root is so ill-conditioned that only double-double tells it from a singular one.
+    /// Every network that explains a matrix of the formulation's size that has passed the checks,
+    /// warnings left to the caller. After the first call memory is allocated for the result alone,
+    /// unless all paths have to be tracked again or a root is so ill-conditioned that only
+    /// double-double tells it from a singular one.
     pub(crate) fn solve(
         &mut self,
         measured: &Pseudoranges,
@@ -111,8 +115,9 @@ struct Tracking<F: Formulation> {
 }
 
 impl<F: Formulation> Tracking<F> {
-    /// Tracks all paths, again from a turned fibre where some stay lost, keeps the most complete set and adds its roots to `found`.
-    /// Returns the counts and whether the search stopped at a network that fits.
+    /// Tracks all paths, again from a turned fibre where some stay lost, keeps the most complete
+    /// set and adds its roots to `found`. Returns the counts and whether the search stopped at a
+    /// network that fits.
     fn run(&mut self, found: &mut Found<'_, F>) -> (PathCounts, bool) {
         let (target, options) = (found.target, found.options);
         let mut retracked = 0;
@@ -153,7 +158,8 @@ impl<F: Formulation> Tracking<F> {
         (counts, false)
     }
 
-    /// Candidates from a polyhedral start system: for the data, and where that leaves roots missing through a random member.
+    /// Candidates from a polyhedral start system: for the data, and where that leaves roots missing
+    /// through a random member.
     fn run_polyhedral(
         &mut self,
         found: &mut Found<'_, F>,

@@ -12,7 +12,8 @@ pub(crate) type Point = SmallVec<[Complex64; 8]>;
 /// Parameters likewise.
 pub(crate) type Parameters = SmallVec<[Complex64; 24]>;
 
-/// A square family whose parameters are the differences `f_ij - f_1j`, rows `i = 2..m`, row-major, in any unit of length.
+/// A square family whose parameters are the differences `f_ij - f_1j`, rows `i = 2..m`, row-major,
+/// in any unit of length.
 pub(crate) trait Formulation {
     /// The generated evaluator.
     type System: Evaluate + 'static;
@@ -26,7 +27,8 @@ pub(crate) trait Formulation {
     const TRANSMITTERS: usize;
     /// By which power of the unit of length each unknown grows.
     const WEIGHTS: &'static [i32];
-    /// Number of charts: forms of the same problem with the nodes in another order. Chart 0 is that of the data.
+    /// Number of charts: forms of the same problem with the nodes in another order. Chart 0 is that
+    /// of the data.
     const CHARTS: usize;
     /// What can be permuted in the data without changing a solution.
     const FREE: Free;
@@ -49,7 +51,8 @@ pub(crate) trait Formulation {
     /// `p_j = o_j - f_1j` of a solution, one a transmitter.
     fn offsets(f: &[Complex64], x: &[Complex64]) -> Point;
 
-    /// The network of a real solution, its first receiver in the origin, its offsets `p_j`; `None` unless the positions are real.
+    /// The network of a real solution, its first receiver in the origin, its offsets `p_j`; `None`
+    /// unless the positions are real.
     fn network(f: &[f64], x: &[f64], squares: &mut LeastSquares) -> Option<Network>;
 }
 

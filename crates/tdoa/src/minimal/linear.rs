@@ -10,7 +10,8 @@ use smallvec::SmallVec;
 /// Columns that depend on the others to this relative precision make a problem underdetermined.
 const DEPENDENT: f64 = 1e-12;
 
-/// Solves least-squares problems by orthogonal factors with pivoting; keeps its memory from call to call.
+/// Solves least-squares problems by orthogonal factors with pivoting; keeps its memory from call to
+/// call.
 #[derive(Default)]
 pub(crate) struct LeastSquares {
     rows: usize,
@@ -26,7 +27,8 @@ pub(crate) struct LeastSquares {
 }
 
 impl LeastSquares {
-    /// Starts a problem: the matrix of zeros, column-major, and the right-hand side, to be filled in. There are at least as many rows as columns.
+    /// Starts a problem: the matrix of zeros, column-major, and the right-hand side, to be filled
+    /// in. There are at least as many rows as columns.
     pub(crate) fn start(&mut self, rows: usize, columns: usize) -> (&mut [f64], &mut [f64]) {
         (self.rows, self.columns) = (rows, columns);
         self.matrix.clear();
@@ -36,8 +38,8 @@ impl LeastSquares {
         (&mut self.matrix, &mut self.rhs)
     }
 
-    /// Solves it, with columns scaled to unit length; returns the first and the last entry on the diagonal of the triangular factor, whose
-    /// quotient is an estimate of the condition.
+    /// Solves it, with columns scaled to unit length; returns the first and the last entry on the
+    /// diagonal of the triangular factor, whose quotient is an estimate of the condition.
     pub(crate) fn solve(&mut self) -> (f64, f64) {
         let (rows, columns) = (self.rows, self.columns);
         self.scales.clear();
@@ -99,8 +101,8 @@ impl LeastSquares {
         &self.rhs[..self.columns]
     }
 
-    /// The least-squares solution of `rows` equations `sum_c a(i, c) x_c = b(i)` in `columns` unknowns; `None` if it is not unique or there
-    /// are fewer equations than unknowns.
+    /// The least-squares solution of `rows` equations `sum_c a(i, c) x_c = b(i)` in `columns`
+    /// unknowns; `None` if it is not unique or there are fewer equations than unknowns.
     pub(crate) fn fit(
         &mut self,
         rows: usize,

@@ -1,7 +1,8 @@
 //! The stored fibre in the position nearest to the data.
 //!
-//! Reordering nodes that the unknowns do not tell apart, and multiplying all lengths by a complex number of size one, turn
-//! the stored fibre into others with known solutions. Of all these the one nearest to the data is taken: paths are shorter.
+//! Reordering nodes that the unknowns do not tell apart, and multiplying all lengths by a complex
+//! number of size one, turn the stored fibre into others with known solutions. Of all these the one
+//! nearest to the data is taken: paths are shorter.
 
 use super::formulation::{Formulation, Free, Point};
 use hc::Fibre;
@@ -16,8 +17,8 @@ pub(crate) struct Nearest {
 }
 
 impl Nearest {
-    /// Turns `stored` towards the data `target` and then by `turn` (radians) away again; a turn gives other paths to the same ends. The
-    /// fibre goes into `moved`.
+    /// Turns `stored` towards the data `target` and then by `turn` (radians) away again; a turn
+    /// gives other paths to the same ends. The fibre goes into `moved`.
     pub(crate) fn find<F: Formulation>(&mut self, stored: &Fibre, target: &[Complex64], turn: f64, moved: &mut Fibre) {
         let (rows, columns) = (F::RECEIVERS - 1, F::TRANSMITTERS);
         let cell = |node: usize, other: usize| match F::FREE {

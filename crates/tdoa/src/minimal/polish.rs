@@ -16,10 +16,12 @@ pub(crate) struct Polisher {
 }
 
 impl Polisher {
-    /// Moves the network to the least-squares solution of `|r_i - s_j| = +-(f_ij - o_j)`, signs as they are at the start, and returns
-    /// the condition number of that problem (columns of unit length, the three rigid motions excluded).
+    /// Moves the network to the least-squares solution of `|r_i - s_j| = +-(f_ij - o_j)`, signs as
+    /// they are at the start, and returns the condition number of that problem (columns of unit
+    /// length, the three rigid motions excluded).
     ///
-    /// `f` is row-major, receivers in rows. The network stays as it is where a step would not bring it nearer.
+    /// `f` is row-major, receivers in rows. The network stays as it is where a step would not bring
+    /// it nearer.
     pub(crate) fn polish(&mut self, f: &[f64], network: &mut Network) -> f64 {
         let n = network.transmitters.len();
         self.signs.clear();
@@ -49,7 +51,8 @@ impl Polisher {
         if condition.is_nan() { f64::INFINITY } else { condition }
     }
 
-    /// Sets up the linear problem of a step: residuals and their Jacobian, and three rows that hold position and rotation fixed.
+    /// Sets up the linear problem of a step: residuals and their Jacobian, and three rows that hold
+    /// position and rotation fixed.
     fn linearise(&mut self, f: &[f64], network: &Network) {
         let (m, n) = (network.receivers.len(), network.transmitters.len());
         let (rows, unknowns) = (m * n + 3, 2 * m + 3 * n);
@@ -68,7 +71,8 @@ impl Polisher {
                 values[row] = residual(f, &self.signs, network, row);
             }
         }
-        // Translations and the rotation about the centroid of all nodes: steps are orthogonal to them.
+        // Translations and the rotation about the centroid of all nodes: steps are orthogonal to
+        // them.
         let nodes = || network.receivers.iter().chain(&network.transmitters);
         let centre = centroid(nodes());
         for (a, p) in nodes().enumerate() {

@@ -19,8 +19,9 @@ pub struct RootProofs {
     pub unseparated: usize,
 }
 
-/// Puts the roots `points` for the parameters `target` to the test of Krawczyk, in every chart until all are proved: a root that is ill-conditioned
-/// in one, as next to a far node, is none in another. What is proved is about the differences `f_ij - f_1j` as they are in `target`.
+/// Puts the roots `points` for the parameters `target` to the test of Krawczyk, in every chart
+/// until all are proved: a root that is ill-conditioned in one, as next to a far node, is none in
+/// another. What is proved is about the differences `f_ij - f_1j` as they are in `target`.
 pub(crate) fn prove<F: Formulation>(target: &[Complex64], points: &[Vec<Complex64>]) -> Option<RootProofs> {
     let family = parse::family(F::FAMILY).ok()?;
     let count = points.len();
@@ -58,8 +59,8 @@ pub(crate) fn prove<F: Formulation>(target: &[Complex64], points: &[Vec<Complex6
     Some(RootProofs { roots: count, proved: total(&proved), real: total(&real), unseparated })
 }
 
-/// The equations of a chart in the parameters of chart 0, of which those of the chart are sums and differences: as formulas, so that nothing is
-/// rounded before the proof.
+/// The equations of a chart in the parameters of chart 0, of which those of the chart are sums and
+/// differences: as formulas, so that nothing is rounded before the proof.
 fn in_chart<F: Formulation>(family: &System, chart: usize) -> Option<System> {
     let count = family.parameters().len();
     let unit = |k: usize| (0..count).map(|i| if i == k { 1.0.into() } else { 0.0.into() }).collect::<Vec<Complex64>>();

@@ -5,9 +5,11 @@ use hc::refine::{Refined, Refiner};
 use num_complex::Complex64;
 use smallvec::SmallVec;
 
-/// The real root near a complex one, and whether it is that very root: Newton's method from the real parts stays real.
+/// The real root near a complex one, and whether it is that very root: Newton's method from the
+/// real parts stays real.
 ///
-/// With `near > 0` a root whose offsets have imaginary parts up to `near` is given back as real too, with `false`. `refined` is scratch.
+/// With `near > 0` a root whose offsets have imaginary parts up to `near` is given back as real
+/// too, with `false`. `refined` is scratch.
 pub(crate) fn real_root<F: Formulation>(
     refiner: &mut Refiner<'_, F::System>,
     target: &[Complex64],
@@ -18,12 +20,14 @@ pub(crate) fn real_root<F: Formulation>(
     let offsets = F::offsets(target, root);
     let size = offsets.iter().map(|z| z.norm()).fold(1.0, f64::max);
     let imaginary = largest_imaginary(&offsets);
-    // Newton's method decides; this only spares it the roots that are far from real. Ends of ill-conditioned paths at real roots have been
-    // seen with imaginary parts above 1e-4 of their size.
+    // Newton's method decides; this only spares it the roots that are far from real. Ends of
+    // ill-conditioned paths at real roots have been seen with imaginary parts above 1e-4 of their
+    // size.
     if imaginary > 1e-2 * size && imaginary > near {
         return None;
     }
-    // Ends of difficult paths are known to a few digits only; the last ones decide between a real root and a complex pair.
+    // Ends of difficult paths are known to a few digits only; the last ones decide between a real
+    // root and a complex pair.
     refiner.refine_into(target, root, refined);
     let root = Point::from_slice(if refined.accuracy < 1e-10 { &refined.point } else { root });
     let imaginary = largest_imaginary(&F::offsets(target, &root));

@@ -1,8 +1,9 @@
 //! The paper's own route: a family solved from nothing, by a polyhedral start system.
 //!
-//! First the member at the data is solved as it stands, as in the paper. Far more paths leave the torus than end in it, and roots
-//! with large coordinates look like such paths for long. Where that leaves roots missing, a member at random complex parameters, whose
-//! roots are of ordinary size, is solved by a polyhedral start system too, and its roots are tracked to the data.
+//! First the member at the data is solved as it stands, as in the paper. Far more paths leave the
+//! torus than end in it, and roots with large coordinates look like such paths for long. Where that
+//! leaves roots missing, a member at random complex parameters, whose roots are of ordinary size,
+//! is solved by a polyhedral start system too, and its roots are tracked to the data.
 
 use super::error::SolveError;
 use super::formulation::Formulation;
@@ -16,7 +17,8 @@ const MEMBERS: u64 = 4;
 
 /// The roots of one member, and the paths that led to them.
 pub(crate) struct Roots {
-    /// The parameters, and the roots in the torus. In the families of this crate the spurious roots and components lie outside it.
+    /// The parameters, and the roots in the torus. In the families of this crate the spurious roots
+    /// and components lie outside it.
     pub(crate) fibre: Fibre,
     pub(crate) paths: PathCounts,
     /// Whether there are as many as a generic member has.
@@ -28,8 +30,8 @@ pub(crate) fn at_data<F: Formulation>(target: &[Complex64], monitor: &Monitor) -
     roots::<F>(target, seed(target), 0, monitor)
 }
 
-/// All roots of a random member, another one for other data, with the number of paths it took; none if some stay missing in every
-/// member that is tried.
+/// All roots of a random member, another one for other data, with the number of paths it took; none
+/// if some stay missing in every member that is tried.
 pub(crate) fn at_random<F: Formulation>(
     target: &[Complex64],
     monitor: &Monitor,
@@ -65,9 +67,11 @@ fn roots<F: Formulation>(
     options.seed = seed;
     options.start = Start::Polyhedral;
     options.torus_only = true;
-    // No member has more isolated roots than the generic one: once as many are found the other paths lead out of the torus.
+    // No member has more isolated roots than the generic one: once as many are found the other
+    // paths lead out of the torus.
     options.known = family.roots;
-    // Paths that need many steps or more than one small loop of the endgame nearly all lead out of the torus.
+    // Paths that need many steps or more than one small loop of the endgame nearly all lead out of
+    // the torus.
     options.endgame.min_radius = options.endgame.radius;
     options.endgame.turns = 2;
     options.paths.tracker.max_steps = 1_000;

@@ -43,8 +43,9 @@ pub struct MinimalSolution {
     pub paths: PathCounts,
     /// How many roots there are.
     pub counts: RootCounts,
-    /// Whether the search was stopped at the first network that fits ([`super::SolveOptions::first_under`]): others may fit as well, and
-    /// `paths` and `counts` are those up to there.
+    /// Whether the search was stopped at the first network that fits
+    /// ([`super::SolveOptions::first_under`]): others may fit as well, and `paths` and `counts` are
+    /// those up to there.
     pub stopped_early: bool,
     /// What makes the result doubtful: lost paths, networks that the data cannot tell apart.
     pub warnings: Vec<SolveWarning>,

@@ -80,14 +80,17 @@ impl Solver {
 
     /// Every network that explains the measurements, best first.
     ///
-    /// Networks whose receivers or transmitters lie exactly in one line are found without paths, all mirror images of the other nodes, and
-    /// a warning names the nodes; [`MinimalSolution::counts`] is of roots at the ends of paths.
+    /// Networks whose receivers or transmitters lie exactly in one line are found without paths,
+    /// all mirror images of the other nodes, and a warning names the nodes;
+    /// [`MinimalSolution::counts`] is of roots at the ends of paths.
     ///
-    /// The minimal sizes 6r/3s and 4r/5s, 5r/4s, and 5r/6s are solved by homotopy continuation, 7r/4s linearly, larger ones through the best
-    /// spread part of one of these sizes: its candidates are extended to all nodes and refined over all measurements.
+    /// The minimal sizes 6r/3s and 4r/5s, 5r/4s, and 5r/6s are solved by homotopy continuation,
+    /// 7r/4s linearly, larger ones through the best spread part of one of these sizes: its
+    /// candidates are extended to all nodes and refined over all measurements.
     ///
     /// # Errors
-    /// If the matrix is too small or too large, a measurement is missing, two nodes coincide, or a setting of the tracker is out of range.
+    /// If the matrix is too small or too large, a measurement is missing, two nodes coincide, or a
+    /// setting of the tracker is out of range.
     pub fn solve(&mut self, measured: &Pseudoranges, options: &SolveOptions) -> Result<MinimalSolution, SolveError> {
         self.solve_watched(measured, options, &Monitor::default())
     }
@@ -144,8 +147,9 @@ impl Solver {
         rank(candidates);
     }
 
-    /// Proofs, in interval arithmetic, that the complex roots that the last call tracked exist and are distinct ([`hc::certify()`]). `None` if
-    /// it tracked none; of a larger network the roots are those of the part that was solved.
+    /// Proofs, in interval arithmetic, that the complex roots that the last call tracked exist and
+    /// are distinct ([`hc::certify()`]). `None` if it tracked none; of a larger network the roots
+    /// are those of the part that was solved.
     pub fn prove(&self) -> Option<RootProofs> {
         match self.last? {
             Method::SixThree => self.six_three.as_ref()?.prove(),
@@ -206,7 +210,8 @@ fn through<F: Formulation>(
     Ok(solution)
 }
 
-/// Seven or more receivers, four or more transmitters: the offsets of the four best spread transmitters by rank, then everything linearly.
+/// Seven or more receivers, four or more transmitters: the offsets of the four best spread
+/// transmitters by rank, then everything linearly.
 fn seven_four(measured: &Pseudoranges, options: &SolveOptions) -> MinimalSolution {
     let m = measured.receivers();
     let four = subset::best(measured, m, 4).transmitters;
@@ -245,8 +250,8 @@ mod tests {
     use crate::minimal::{SolveOptions, Start};
     use crate::simulate::{Layout, SimulateOptions, simulate};
 
-    /// The stored start and a polyhedral one give one set of networks, no more and no fewer; of 6r/3s one for the data and one for a
-    /// random member.
+    /// The stored start and a polyhedral one give one set of networks, no more and no fewer; of
+    /// 6r/3s one for the data and one for a random member.
     #[test]
     fn the_polyhedral_route_finds_the_same_networks() {
         let mut solver = Solver::new();

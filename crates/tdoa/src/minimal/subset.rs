@@ -1,4 +1,5 @@
-//! Which part of a larger matrix to solve: the one whose nodes are farthest apart, as far as the measurements tell.
+//! Which part of a larger matrix to solve: the one whose nodes are farthest apart, as far as the
+//! measurements tell.
 
 use crate::pseudoranges::Pseudoranges;
 use rand::SeedableRng;
@@ -15,7 +16,8 @@ pub(crate) struct Subset {
     pub(crate) transmitters: Vec<usize>,
 }
 
-/// The part of `m` receivers and `n` transmitters with the largest [`spread`]; the whole where it has that size.
+/// The part of `m` receivers and `n` transmitters with the largest [`spread`]; the whole where it
+/// has that size.
 pub(crate) fn best(measured: &Pseudoranges, m: usize, n: usize) -> Subset {
     let all = combinations(measured.receivers(), m);
     let others = combinations(measured.transmitters(), n);
@@ -32,8 +34,9 @@ pub(crate) fn best(measured: &Pseudoranges, m: usize, n: usize) -> Subset {
     Subset { receivers: all[best.1 / others.len()].clone(), transmitters: others[best.1 % others.len()].clone() }
 }
 
-/// Subsets of `size` out of `count`, each ascending: all of them in lexicographic order if these are at most [`LOOKED_AT`], else that
-/// many which are drawn at random, the same for the same sizes.
+/// Subsets of `size` out of `count`, each ascending: all of them in lexicographic order if these
+/// are at most [`LOOKED_AT`], else that many which are drawn at random, the same for the same
+/// sizes.
 fn combinations(count: usize, size: usize) -> Vec<Vec<usize>> {
     let total = (0..size).try_fold(1usize, |t, k| Some(t.checked_mul(count - k)? / (k + 1)));
     if total.is_none_or(|t| t > LOOKED_AT) {
@@ -58,8 +61,8 @@ fn combinations(count: usize, size: usize) -> Vec<Vec<usize>> {
     }
 }
 
-/// The smallest difference between two rows (their common offset apart) or two columns: a bound from below on how near
-/// two of the nodes are.
+/// The smallest difference between two rows (their common offset apart) or two columns: a bound
+/// from below on how near two of the nodes are.
 pub(crate) fn spread(measured: &Pseudoranges, receivers: &[usize], transmitters: &[usize]) -> f64 {
     let n = measured.transmitters();
     let f = |i: usize, j: usize| measured.values()[receivers[i] * n + transmitters[j]];

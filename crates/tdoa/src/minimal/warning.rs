@@ -5,8 +5,8 @@ use crate::degeneracy::list;
 use serde::{Serialize, Serializer};
 use thiserror::Error;
 
-/// Why the networks of a [`MinimalSolution`](super::MinimalSolution) may not be all there are, or cannot be told apart. In JSON
-/// it is its text.
+/// Why the networks of a [`MinimalSolution`](super::MinimalSolution) may not be all there are, or
+/// cannot be told apart. In JSON it is its text.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum SolveWarning {
@@ -21,7 +21,8 @@ pub enum SolveWarning {
         /// Paths tracked.
         tracked: usize,
     },
-    /// The data fit networks with all nodes of a kind exactly in one line, so that each node of the other kind may be its mirror image.
+    /// The data fit networks with all nodes of a kind exactly in one line, so that each node of the
+    /// other kind may be its mirror image.
     #[error(
         "the {kind} {} lie exactly in one line: every {} may be its mirror image{}; move some {kind} off the line",
         list(names), kind.others(), if *listed { ", and all these networks are among those found" } else { ", more than are listed" }
@@ -31,7 +32,8 @@ pub enum SolveWarning {
         kind: Nodes,
         /// Their names.
         names: Vec<String>,
-        /// Whether all mirror images are among the candidates; of many nodes there would be too many.
+        /// Whether all mirror images are among the candidates; of many nodes there would be too
+        /// many.
         listed: bool,
     },
     /// In a physical candidate the nodes of a kind lie in one line, as far as the data tell.

@@ -6,11 +6,12 @@ use crate::quantity::number;
 
 const BINS: usize = 32;
 
-/// Bars of the residuals in metres over plus and minus about four standard deviations; what lies beyond is counted at
-/// the ends.
+/// Bars of the residuals in metres over plus and minus about four standard deviations; what lies
+/// beyond is counted at the ends.
 pub(super) fn draw(canvas: &mut Canvas, calibration: &Calibration, corner: [f64; 2], size: [f64; 2]) {
     let residuals: Vec<f64> = calibration.residuals.iter().flatten().flatten().copied().collect();
-    // Measurements with their own deviations make sigma a factor, so the spread of the inliers sets the scale.
+    // Measurements with their own deviations make sigma a factor, so the spread of the inliers sets
+    // the scale.
     let reach = 4.0 * calibration.residual_rms.max(1e-12);
     let mut bins = [0usize; BINS];
     let (mut below, mut above) = (0, 0);

@@ -115,7 +115,8 @@ impl Decimals {
     /// The number in a cell, NaN for what was not measured.
     ///
     /// # Errors
-    /// What to do, for a cell that holds no number or one with another decimal mark than the file's.
+    /// What to do, for a cell that holds no number or one with another decimal mark than the
+    /// file's.
     pub(super) fn number(&mut self, cell: &str) -> Result<f64, String> {
         let Some(value) = number(cell) else {
             return Err(remedy(cell));
@@ -131,7 +132,8 @@ impl Decimals {
     }
 }
 
-/// A number with a decimal point or comma, NaN for an empty cell and the usual words for a missing one.
+/// A number with a decimal point or comma, NaN for an empty cell and the usual words for a missing
+/// one.
 pub(super) fn number(cell: &str) -> Option<f64> {
     const MISSING: [&str; 6] = ["", "nan", "na", "n/a", "null", "-"];
     if MISSING.iter().any(|word| cell.eq_ignore_ascii_case(word)) {

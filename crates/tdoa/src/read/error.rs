@@ -147,7 +147,8 @@ pub enum ReadError {
         /// What is wrong.
         problem: String,
     },
-    /// A .mat file without the variable that is looked for, or a variable asked for of another kind of file.
+    /// A .mat file without the variable that is looked for, or a variable asked for of another kind
+    /// of file.
     #[error("{file}: {problem}")]
     Variable {
         /// The file.

@@ -39,8 +39,8 @@ const UNITS: &[(&str, &str)] = &[
     ("km", "km"),
 ];
 
-/// A column's name in lower case, with single underscores between its words, and the unit behind it, such as that of `Time (ms)`
-/// and `time_ms`.
+/// A column's name in lower case, with single underscores between its words, and the unit behind
+/// it, such as that of `Time (ms)` and `time_ms`.
 pub(super) struct Heading {
     pub(super) name: String,
     pub(super) unit: Option<&'static str>,

@@ -1,10 +1,12 @@
-//! MATLAB's .mat files, level 5 (what `save` and scipy write unless told otherwise). Own code because matfile 0.5 prints
-//! to standard output, overflows on damaged lengths and unpacks without a bound.
+//! MATLAB's .mat files, level 5 (what `save` and scipy write unless told otherwise). Own code
+//! because matfile 0.5 prints to standard output, overflows on damaged lengths and unpacks without
+//! a bound.
 //!
-//! The format (MathWorks, "MAT-File Format", 2023): 128 bytes of header whose last four are the version and `IM` if
-//! little endian; then elements, each a tag of type and size (4 bytes each, or 2 each with the data in the other 4) and
-//! data padded to 8 bytes. Variables are of type 14, or of type 15, which is one of type 14 packed by zlib. A numeric
-//! variable has the sub-elements flags, dimensions, name and values, columns first.
+//! The format (MathWorks, "MAT-File Format", 2023): 128 bytes of header whose last four are the
+//! version and `IM` if little endian; then elements, each a tag of type and size (4 bytes each, or
+//! 2 each with the data in the other 4) and data padded to 8 bytes. Variables are of type 14, or of
+//! type 15, which is one of type 14 packed by zlib. A numeric variable has the sub-elements flags,
+//! dimensions, name and values, columns first.
 
 use std::io::Read;
 use std::ops::Range;
@@ -13,7 +15,8 @@ use super::cells::shorten;
 use super::error::{MAX_BYTES, ReadError};
 use crate::pseudoranges::{MAX_CELLS, Pseudoranges};
 
-/// Bytes of a variable that are unpacked: values of [`MAX_CELLS`] doubles, and what stands before them.
+/// Bytes of a variable that are unpacked: values of [`MAX_CELLS`] doubles, and what stands before
+/// them.
 const MAX_VARIABLE: usize = 8 * MAX_CELLS + MAX_START;
 
 /// Bytes of a packed variable that surely hold its name.
@@ -64,7 +67,8 @@ struct Entry {
 }
 
 impl Entry {
-    /// Whether it may be the measurements: a two-dimensional array of real numbers, no single row or column, and not the truth.
+    /// Whether it may be the measurements: a two-dimensional array of real numbers, no single row
+    /// or column, and not the truth.
     fn is_matrix(&self) -> bool {
         let is_truth = ["rgt", "sgt"].contains(&self.name.as_str());
         self.is_numeric && !is_truth && self.sizes.len() == 2 && self.sizes.iter().all(|&size| size > 1)
@@ -235,7 +239,8 @@ fn unpack(_: &[u8], _: usize) -> Vec<u8> {
     Vec::new()
 }
 
-/// The variable in an unpacked element. Its tag may promise more than was unpacked; that is noticed where it is needed.
+/// The variable in an unpacked element. Its tag may promise more than was unpacked; that is noticed
+/// where it is needed.
 fn inner(unpacked: &[u8], order: Order) -> Option<&[u8]> {
     match tag(unpacked, order)? {
         (MATRIX, _, start) => unpacked.get(start..),
@@ -310,8 +315,8 @@ mod tests {
 
     use super::*;
 
-    /// Written by scipy.io.savemat (1.17.1) without and with do_compression: counts = uint8 [[1, 200, 3]], label =
-    /// "text", z = [[1, 2.5, nan], [4, 5, -6]], rgt = [[0, 1], [2, 3], [0, 0]].
+    /// Written by scipy.io.savemat (1.17.1) without and with do_compression: counts = uint8 [[1,
+    /// 200, 3]], label = "text", z = [[1, 2.5, nan], [4, 5, -6]], rgt = [[0, 1], [2, 3], [0, 0]].
     const PLAIN: &[u8] = include_bytes!("plain.mat");
     const PACKED: &[u8] = include_bytes!("packed.mat");
 

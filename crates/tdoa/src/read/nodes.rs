@@ -1,5 +1,6 @@
-//! Known positions: `id,x,y` with a first line (further columns are ignored), or `x,y` without one. Where the first line has a
-//! column `kind`, as in [`crate::node_table`], only the lines of receivers that have a position count.
+//! Known positions: `id,x,y` with a first line (further columns are ignored), or `x,y` without one.
+//! Where the first line has a column `kind`, as in [`crate::node_table`], only the lines of
+//! receivers that have a position count.
 
 use std::collections::HashMap;
 use std::io::Read;
@@ -37,8 +38,8 @@ impl Nodes {
         self.names.iter().flatten().filter(|name| !names.contains(name)).map(String::as_str).collect()
     }
 
-    /// The positions in the order of these names. By name if the file names any of them, else in the file's order, which
-    /// needs as many positions as names. `None` if neither works.
+    /// The positions in the order of these names. By name if the file names any of them, else in
+    /// the file's order, which needs as many positions as names. `None` if neither works.
     pub fn in_order(&self, names: &[String]) -> Option<Vec<Option<[f64; 2]>>> {
         if let Some(own) = &self.names
             && self.names_any(names)
@@ -76,7 +77,8 @@ pub fn read_nodes(path: &Path) -> Result<Nodes, ReadError> {
     read_nodes_from(source, &file)
 }
 
-/// Reads the variable rgt of a .mat file, one receiver a column with x, y and perhaps z in its rows; `None` if it has none.
+/// Reads the variable rgt of a .mat file, one receiver a column with x, y and perhaps z in its
+/// rows; `None` if it has none.
 ///
 /// # Errors
 /// Those of [`read_nodes`].
@@ -95,8 +97,8 @@ fn mat_nodes(found: &File<'_>, file: &str) -> Result<Option<Nodes>, ReadError> {
     Ok(Some(Nodes { names: None, positions, heights: all.heights }))
 }
 
-/// Reads the variable sgt of a .mat file, the true transmitters, one a column with x and y in its first two rows (`None` where these
-/// are not finite); `None` if it has none.
+/// Reads the variable sgt of a .mat file, the true transmitters, one a column with x and y in its
+/// first two rows (`None` where these are not finite); `None` if it has none.
 ///
 /// # Errors
 /// Those of [`read_nodes`].

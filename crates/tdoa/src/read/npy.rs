@@ -1,7 +1,9 @@
-//! NumPy arrays. Own code because npyz 0.9 overflows (and in debug builds panics) on the product of a damaged shape.
+//! NumPy arrays. Own code because npyz 0.9 overflows (and in debug builds panics) on the product of
+//! a damaged shape.
 //!
-//! The format: "\x93NUMPY", major and minor version, the header's length (2 bytes in version 1, else 4, little endian), the
-//! header as a Python dictionary of `descr`, `fortran_order` and `shape`, then the raw elements.
+//! The format: "\x93NUMPY", major and minor version, the header's length (2 bytes in version 1,
+//! else 4, little endian), the header as a Python dictionary of `descr`, `fortran_order` and
+//! `shape`, then the raw elements.
 
 use std::io::Read;
 

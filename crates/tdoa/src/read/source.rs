@@ -28,8 +28,8 @@ pub(super) fn open(path: &Path, file: &str) -> Result<BufReader<File>, ReadError
     Ok(BufReader::new(File::open(path).map_err(io)?))
 }
 
-/// The whole text, of UTF-8, or of UTF-16 with a byte order mark. A file that is no text is refused at its first bad block, so that
-/// garbage is not read to its end.
+/// The whole text, of UTF-8, or of UTF-16 with a byte order mark. A file that is no text is refused
+/// at its first bad block, so that garbage is not read to its end.
 pub(super) fn text(mut source: impl Read, file: &str) -> Result<String, ReadError> {
     let mut bytes = Vec::new();
     let mut checked = 0;

@@ -26,7 +26,8 @@ pub(super) fn parse(text: &str, file: &str, units: Option<Units>) -> Result<Pseu
     matrix(rows, shape, header, file, factor)
 }
 
-/// A line without any number is a header; one with both numbers and text may be a row with a mistake in it.
+/// A line without any number is a header; one with both numbers and text may be a row with a
+/// mistake in it.
 fn only_names(cells: &[String]) -> bool {
     cells.iter().all(|c| number(c).is_none_or(f64::is_nan)) && cells.iter().any(|c| number(c).is_none())
 }
@@ -75,7 +76,8 @@ fn counts(cells: &[String]) -> bool {
     is_corner && numbers.len() > 1 && (counted(0) || counted(1))
 }
 
-/// Whether numbers of columns and the next line belong together: below an empty corner stands a name, or the first of the numbers.
+/// Whether numbers of columns and the next line belong together: below an empty corner stands a
+/// name, or the first of the numbers.
 fn is_row_of_counted(first: &[String], second: Option<&[String]>) -> bool {
     let below = second.and_then(<[String]>::first);
     !first[0].is_empty() || below.is_some_and(|cell| number(cell).is_none() || Some(cell) == first.get(1))

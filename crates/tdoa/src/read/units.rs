@@ -86,7 +86,8 @@ impl Units {
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct ReadOptions {
-    /// Unit of the numbers. Default `None`: metres, but a file whose first line speaks of times is refused.
+    /// Unit of the numbers. Default `None`: metres, but a file whose first line speaks of times is
+    /// refused.
     pub units: Option<Units>,
     /// Name of the matrix in a .mat file. Default `None`: z, or the only matrix that the file has.
     pub variable: Option<String>,

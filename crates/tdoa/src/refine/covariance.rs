@@ -1,9 +1,10 @@
 //! Covariance of all nodes.
 //!
-//! Arrival times leave a rigid motion of the plane open, so a covariance needs a gauge. Here it is the inner constraint
-//! over the receivers: of all covariances that explain the same data the one of smallest trace over the receivers, which
-//! is sigma^2 times the pseudo-inverse of the normal equations reduced to the receivers. It says how well the nodes lie
-//! relative to the receivers as a whole after the best rigid alignment of the receivers. Held receivers are the gauge
+//! Arrival times leave a rigid motion of the plane open, so a covariance needs a gauge. Here it is
+//! the inner constraint over the receivers: of all covariances that explain the same data the one
+//! of smallest trace over the receivers, which is sigma^2 times the pseudo-inverse of the normal
+//! equations reduced to the receivers. It says how well the nodes lie relative to the receivers as
+//! a whole after the best rigid alignment of the receivers. Held receivers are the gauge
 //! themselves: they have no error, and the normal equations of the others are inverted.
 
 use faer::Mat;
@@ -27,12 +28,14 @@ pub(crate) struct Covariance {
     pub(crate) joint: Vec<f64>,
     /// Per transmitter: x, y, offset; `None` where its own measurements do not determine it.
     pub(crate) transmitters: Vec<Option<[[f64; 3]; 3]>>,
-    /// Receivers that could move without a change of the measurements (to first order) beyond a rigid motion.
+    /// Receivers that could move without a change of the measurements (to first order) beyond a
+    /// rigid motion.
     pub(crate) loose: Vec<usize>,
 }
 
-/// The covariance at `network` of least squares over `observations` with deviation `sigma` (a factor on the deviations
-/// of the measurements where they have their own). `None` if the decomposition fails.
+/// The covariance at `network` of least squares over `observations` with deviation `sigma` (a
+/// factor on the deviations of the measurements where they have their own). `None` if the
+/// decomposition fails.
 pub(crate) fn covariance(observations: &Observations, network: &Network, sigma: f64) -> Option<Covariance> {
     let m = observations.receivers;
     let mut refiner = Refiner::new(observations, f64::INFINITY);
@@ -75,7 +78,8 @@ pub(crate) fn covariance(observations: &Observations, network: &Network, sigma: 
         let rays = &normal.rays()[first..first + column.len()];
         first += column.len();
         transmitters.push(normal.inverse_factor(j).map(|factor| {
-            // dt = C^-1 (own noise + sum_i w g u^T dr_i), so Cov = sigma^2 C^-1 + K Cov_r K^T with K_i = C^-1 g w u^T.
+            // dt = C^-1 (own noise + sum_i w g u^T dr_i), so Cov = sigma^2 C^-1 + K Cov_r K^T with
+            // K_i = C^-1 g w u^T.
             let gains: Vec<([f64; 3], [f64; 2], usize)> = column
                 .iter()
                 .zip(rays)
@@ -157,7 +161,8 @@ mod tests {
         assert!(found.transmitters.iter().all(|c| c.is_some_and(|c| c[0][0] > 0.0 && c[1][1] > 0.0)));
     }
 
-    /// The covariance from the full normal equations with the inner constraint as a border, by dense algebra.
+    /// The covariance from the full normal equations with the inner constraint as a border, by
+    /// dense algebra.
     #[test]
     fn agrees_with_the_bordered_normal_equations() {
         let mut options = SimulateOptions { receivers: 6, transmitters: 5, ..Default::default() };

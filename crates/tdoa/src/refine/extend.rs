@@ -1,4 +1,5 @@
-//! From a part of a network to all of it: nodes are located one after the other from those that are already there.
+//! From a part of a network to all of it: nodes are located one after the other from those that are
+//! already there.
 
 use crate::loss::Loss;
 use crate::multilateration::{self, Sight};
@@ -31,9 +32,9 @@ impl PartialNetwork {
     }
 }
 
-/// Locates all unknown nodes, best observed ones first: transmitters from at least four known receivers, receivers from
-/// at least three known transmitters, and with one less of them when nothing else is left. `None` if some node cannot be
-/// located at all.
+/// Locates all unknown nodes, best observed ones first: transmitters from at least four known
+/// receivers, receivers from at least three known transmitters, and with one less of them when
+/// nothing else is left. `None` if some node cannot be located at all.
 pub(crate) fn extend(observations: &Observations, part: &PartialNetwork, loss: &Loss) -> Option<Network> {
     let mut part = part.clone();
     let mut sights = Vec::new();
@@ -134,7 +135,8 @@ mod tests {
             let observations = Observations::new(&simulation.pseudoranges, |_, _| true);
             let found = extend(&observations, &part, &Loss { nu: 2.0, scale: 1e-3 }).unwrap();
             let nodes = |n: &Network| [n.receivers.clone(), n.transmitters.clone()].concat();
-            // A node seen by as few as determine it may be its mirror image: most, not all, must be right.
+            // A node seen by as few as determine it may be its mirror image: most, not all, must be
+            // right.
             let wrong =
                 nodes(&found).iter().zip(nodes(truth)).filter(|(a, b)| crate::plane::distance(**a, *b) > 1e-4).count();
             assert!(wrong <= 1, "seed {seed}: {wrong} nodes");

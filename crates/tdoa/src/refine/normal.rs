@@ -1,9 +1,11 @@
-//! The damped normal equations of all nodes, reduced to the receivers by the Schur complement over the transmitters.
+//! The damped normal equations of all nodes, reduced to the receivers by the Schur complement over
+//! the transmitters.
 //!
-//! Residual e = f - o - |r - s|. With u the unit vector from receiver to transmitter and g = (u, 1), its derivatives are
-//! u by the receiver and -g by transmitter and offset. Each transmitter j has a 3x3 block C_j = sum w g g^T and couples
-//! to its receivers by -w u g^T, so that eliminating it subtracts w_i w_k (g_i^T C_j^-1 g_k) u_i u_k^T from block (i, k): with
-//! C_j = L L^T the product B^T B of the columns w_i (L^-1 g_i) u_i^T.
+//! Residual e = f - o - |r - s|. With u the unit vector from receiver to transmitter and g = (u,
+//! 1), its derivatives are u by the receiver and -g by transmitter and offset. Each transmitter j
+//! has a 3x3 block C_j = sum w g g^T and couples to its receivers by -w u g^T, so that eliminating
+//! it subtracts w_i w_k (g_i^T C_j^-1 g_k) u_i u_k^T from block (i, k): with C_j = L L^T the
+//! product B^T B of the columns w_i (L^-1 g_i) u_i^T.
 
 use faer::MatMut;
 use faer::Par;
@@ -30,7 +32,8 @@ pub(crate) struct Normal {
     schur: Vec<f64>,
     receiver_steps: Vec<f64>,
     transmitter_steps: Vec<[f64; 3]>,
-    /// Three rows: what a transmitter couples to the receivers, in the frame in which its block is the identity.
+    /// Three rows: what a transmitter couples to the receivers, in the frame in which its block is
+    /// the identity.
     coupling: Vec<f64>,
     isa: Isa,
     scratch: MemBuffer,
@@ -56,7 +59,8 @@ impl Normal {
         }
     }
 
-    /// Takes the derivatives at `network`; `residuals` are those of `observations.all()`, over their deviations.
+    /// Takes the derivatives at `network`; `residuals` are those of `observations.all()`, over
+    /// their deviations.
     pub(crate) fn linearise(&mut self, observations: &Observations, network: &Network, residuals: &[f64], loss: &Loss) {
         self.receiver_blocks.fill(([0.0; 3], [0.0; 2]));
         self.transmitter_blocks.fill(([0.0; 6], [0.0; 3]));
@@ -78,7 +82,8 @@ impl Normal {
         }
     }
 
-    /// Solves for a step with this damping (a factor on the diagonal); false if the equations are singular.
+    /// Solves for a step with this damping (a factor on the diagonal); false if the equations are
+    /// singular.
     pub(crate) fn solve(&mut self, observations: &Observations, damping: f64) -> bool {
         self.reduce(observations, damping);
         let size = 2 * self.receivers;
@@ -93,8 +98,8 @@ impl Normal {
         self.receiver_steps.iter().all(|x| x.is_finite())
     }
 
-    /// Forms the Schur complement (lower triangle) and its right-hand side. A transmitter whose block is singular takes
-    /// no part: it stays where it is and its measurements hold nothing.
+    /// Forms the Schur complement (lower triangle) and its right-hand side. A transmitter whose
+    /// block is singular takes no part: it stays where it is and its measurements hold nothing.
     pub(crate) fn reduce(&mut self, observations: &Observations, damping: f64) {
         let size = 2 * self.receivers;
         let grow = 1.0 + damping;
@@ -194,7 +199,8 @@ impl Normal {
         &self.schur
     }
 
-    /// Inverse Cholesky factor of a transmitter's block, of the last `reduce`; `None` if the block is singular.
+    /// Inverse Cholesky factor of a transmitter's block, of the last `reduce`; `None` if the block
+    /// is singular.
     pub(crate) fn inverse_factor(&self, j: usize) -> Option<&[f64; 6]> {
         self.inverse_factors[j].as_ref()
     }
@@ -205,7 +211,8 @@ impl Normal {
     }
 }
 
-/// Subtracts `B^T B` from the lower triangle of a column-major matrix; `B` has three rows, one after the other.
+/// Subtracts `B^T B` from the lower triangle of a column-major matrix; `B` has three rows, one
+/// after the other.
 struct Eliminate<'a> {
     schur: &'a mut [f64],
     rows: &'a [f64],

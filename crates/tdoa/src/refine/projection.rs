@@ -1,4 +1,5 @@
-//! What a network can absorb of a change of its measurements, and what it cannot: the projection off the Jacobian of all nodes.
+//! What a network can absorb of a change of its measurements, and what it cannot: the projection
+//! off the Jacobian of all nodes.
 
 use super::covariance::covariance;
 use super::normal::{backward, forward};
@@ -7,14 +8,17 @@ use crate::loss::Loss;
 use crate::network::Network;
 use crate::observations::{Observation, Observations};
 
-/// The Jacobian of the residuals at a network, in the frame in which all measurements have deviation 1, ready for least squares.
+/// The Jacobian of the residuals at a network, in the frame in which all measurements have
+/// deviation 1, ready for least squares.
 pub(crate) struct Projection<'a> {
     observations: &'a Observations,
     /// Unit vectors from receiver to transmitter.
     rays: Vec<[f64; 2]>,
-    /// Inverse Cholesky factors of the transmitters' normal equations; `None` where those are singular.
+    /// Inverse Cholesky factors of the transmitters' normal equations; `None` where those are
+    /// singular.
     factors: Vec<Option<[f64; 6]>>,
-    /// Inverse of the receivers' normal equations with the transmitters eliminated, 2m x 2m by rows.
+    /// Inverse of the receivers' normal equations with the transmitters eliminated, 2m x 2m by
+    /// rows.
     inverse: Vec<f64>,
 }
 
@@ -38,8 +42,9 @@ impl<'a> Projection<'a> {
         Some(Projection { observations, rays, factors, inverse })
     }
 
-    /// The part of `values`, one for each measurement in units of its deviation, that no motion of the nodes makes, and that motion.
-    /// Measurements of transmitters that nothing ties down have no part of it.
+    /// The part of `values`, one for each measurement in units of its deviation, that no motion of
+    /// the nodes makes, and that motion. Measurements of transmitters that nothing ties down have
+    /// no part of it.
     pub(crate) fn off(&self, values: &[f64]) -> (Vec<f64>, Motion) {
         let motion = self.solve(values);
         let mut rest = Vec::with_capacity(values.len());
@@ -128,7 +133,8 @@ mod tests {
         assert!(product.abs() < 1e-4, "{product}");
         let (again, _) = projection.off(&rest);
         assert!(rest.iter().zip(&again).all(|(a, b)| (a - b).abs() < 1e-9));
-        // As many dimensions are left as there are more measurements than unknowns: the trace of the projection.
+        // As many dimensions are left as there are more measurements than unknowns: the trace of
+        // the projection.
         let unit = |k: usize| -> Vec<f64> { (0..observations.len()).map(|l| f64::from(u8::from(k == l))).collect() };
         let trace: f64 = (0..observations.len()).map(|k| projection.off(&unit(k)).0[k]).sum();
         let expected = observations.len() - observations.unknowns();

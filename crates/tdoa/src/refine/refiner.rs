@@ -7,9 +7,9 @@ use crate::network::Network;
 use crate::observations::Observations;
 use hc::Monitor;
 
-/// Steps, rounds and tolerance of a search start. Chosen on nearly planar field recordings (6 x 46, 6 x 75, 6 x 132), with
-/// milder losses (2 and 4 degrees of freedom): many short rounds found the best network more often per time than few
-/// long ones.
+/// Steps, rounds and tolerance of a search start. Chosen on nearly planar field recordings (6 x 46,
+/// 6 x 75, 6 x 132), with milder losses (2 and 4 degrees of freedom): many short rounds found the
+/// best network more often per time than few long ones.
 pub(crate) const SEARCH: RefineOptions = RefineOptions {
     scale: None,
     anneal_from: None,
@@ -45,7 +45,8 @@ pub(crate) struct Refined {
     pub(crate) network: Network,
     /// Scale of the residuals.
     pub(crate) scale: f64,
-    /// The negative log-likelihood, up to a constant: comparable between networks for the same measurements.
+    /// The negative log-likelihood, up to a constant: comparable between networks for the same
+    /// measurements.
     pub(crate) objective: f64,
     /// Starts of the search that ended here.
     pub(crate) starts: usize,
@@ -65,7 +66,8 @@ pub(crate) struct Refiner<'a> {
 }
 
 impl<'a> Refiner<'a> {
-    /// With these degrees of freedom of the loss; infinite for least squares, which needs the scale to be given.
+    /// With these degrees of freedom of the loss; infinite for least squares, which needs the scale
+    /// to be given.
     pub(crate) fn new(observations: &'a Observations, nu: f64) -> Self {
         Refiner {
             observations,
@@ -79,7 +81,8 @@ impl<'a> Refiner<'a> {
         }
     }
 
-    /// A refiner that stops before its next step once the monitor is cancelled; what it then returns is not converged.
+    /// A refiner that stops before its next step once the monitor is cancelled; what it then
+    /// returns is not converged.
     pub(crate) fn heeding(self, monitor: &Monitor) -> Self {
         Refiner { monitor: monitor.clone(), ..self }
     }
@@ -188,7 +191,8 @@ pub(crate) fn residuals(observations: &Observations, network: &Network, out: &mu
     }
 }
 
-/// Maximum likelihood of the scale at fixed residuals, by a few fixed-point steps s^2 = sum w e^2 / sum w.
+/// Maximum likelihood of the scale at fixed residuals, by a few fixed-point steps s^2 = sum w e^2 /
+/// sum w.
 fn fit_scale(residuals: &[f64], loss: &Loss, share: f64, steps: usize) -> f64 {
     let mut loss = *loss;
     for _ in 0..steps {

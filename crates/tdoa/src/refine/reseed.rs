@@ -1,16 +1,17 @@
-//! Single nodes located anew from all others: a joint minimisation cannot carry a node across a ridge of its own cost,
-//! multilateration can.
+//! Single nodes located anew from all others: a joint minimisation cannot carry a node across a
+//! ridge of its own cost, multilateration can.
 
 use crate::loss::Loss;
 use crate::multilateration::{self, Located, Sight};
 use crate::network::Network;
 use crate::observations::{Observation, Observations};
 
-/// A node moves only if the cost of its measurements falls by more than this (units of log-likelihood).
+/// A node moves only if the cost of its measurements falls by more than this (units of
+/// log-likelihood).
 const GAIN: f64 = 0.01;
 
-/// Locates every transmitter from the receivers, which alone of `network` are used. Transmitters that cannot be located
-/// keep their place; their number is returned.
+/// Locates every transmitter from the receivers, which alone of `network` are used. Transmitters
+/// that cannot be located keep their place; their number is returned.
 pub(crate) fn place_transmitters(observations: &Observations, network: &mut Network, loss: &Loss) -> usize {
     let mut sights = Vec::new();
     let mut kept = 0;
@@ -27,8 +28,8 @@ pub(crate) fn place_transmitters(observations: &Observations, network: &mut Netw
     kept
 }
 
-/// Locates every transmitter, then every receiver that is not held, from all other nodes and moves those whose measurements then fit
-/// better. Returns how many moved.
+/// Locates every transmitter, then every receiver that is not held, from all other nodes and moves
+/// those whose measurements then fit better. Returns how many moved.
 pub(crate) fn reseed(observations: &Observations, network: &mut Network, loss: &Loss) -> usize {
     let mut sights = Vec::new();
     let mut moved = 0;

@@ -1,8 +1,10 @@
-//! Charts of the dual formulation on three transmitters: the same network with these in another order.
+//! Charts of the dual formulation on three transmitters: the same network with these in another
+//! order.
 //!
-//! A path that comes near a far transmitter, or near a triangle of transmitters whose first side is isotropic, is hard in one chart and
-//! easy in another. The equations keep their form when the columns of the measurements are permuted, so a path continues in another
-//! chart with the same family: its start solution is carried over, and its end carried back.
+//! A path that comes near a far transmitter, or near a triangle of transmitters whose first side is
+//! isotropic, is hard in one chart and easy in another. The equations keep their form when the
+//! columns of the measurements are permuted, so a path continues in another chart with the same
+//! family: its start solution is carried over, and its end carried back.
 
 use crate::minimal::formulation::Parameters;
 use num_complex::Complex64;
@@ -28,9 +30,10 @@ pub(crate) fn permute_columns(f: &[Complex64], width: usize, chart: &[usize; COL
 
 /// Carries a solution over into a chart.
 ///
-/// In the basis `L e_1 = -2 (s_2 - s_1)`, `L e_2 = -2 (s_3 - s_1)` with Gram matrix `G = L'L` the transmitters are `b`, `b - e_1 / 2` and
-/// `b - e_2 / 2`. The basis of the chart is `L T` with an integer matrix `T` of determinant one or minus one, so
-/// `G' = T' G T` and `b' = T^{-1} s`, `s` the new first transmitter; `det G = 1 / (k m)` stays.
+/// In the basis `L e_1 = -2 (s_2 - s_1)`, `L e_2 = -2 (s_3 - s_1)` with Gram matrix `G = L'L` the
+/// transmitters are `b`, `b - e_1 / 2` and `b - e_2 / 2`. The basis of the chart is `L T` with an
+/// integer matrix `T` of determinant one or minus one, so `G' = T' G T` and `b' = T^{-1} s`, `s`
+/// the new first transmitter; `det G = 1 / (k m)` stays.
 pub(crate) fn enter(chart: &[usize; COLUMNS], x: &[Complex64]) -> [Complex64; UNKNOWNS] {
     let &[_, _, _, k, l, m, u, v] = x else { return [Complex64::new(f64::NAN, 0.0); UNKNOWNS] };
     let b = [u - l * v, v];
@@ -69,7 +72,8 @@ mod tests {
     use hc::random::{Random, Stream};
     use num_complex::Complex64;
 
-    /// Solutions of the stored fibre solve the equations of every chart, and come back from there as they were.
+    /// Solutions of the stored fibre solve the equations of every chart, and come back from there
+    /// as they were.
     fn solutions_stay_solutions<F: Formulation>() {
         let fibre = F::fibre();
         let n = fibre.dimension;

@@ -1,9 +1,11 @@
-//! Nodes exactly in one line, told from the measurements alone, and the networks that they may belong to.
+//! Nodes exactly in one line, told from the measurements alone, and the networks that they may
+//! belong to.
 //!
-//! Each node off the line may be its mirror image, one by one, and the roots of such networks are singular: paths seldom reach them. But
-//! `D_ij = q_ij - q_i1 = -2 r_i . (s_j - s_1)`, `q_ij = f_ij (f_ij - 2 p_j)`, then has rank one instead of two, for receivers in a line
-//! as for transmitters. The offsets for which it has follow from linear equations, and from these the positions along the line and the
-//! distances from it.
+//! Each node off the line may be its mirror image, one by one, and the roots of such networks are
+//! singular: paths seldom reach them. But `D_ij = q_ij - q_i1 = -2 r_i . (s_j - s_1)`,
+//! `q_ij = f_ij (f_ij - 2 p_j)`, then has rank one instead of two, for receivers in a line as for
+//! transmitters. The offsets for which it has follow from linear equations, and from these the
+//! positions along the line and the distances from it.
 
 use super::rank::differences;
 use crate::minimal::linear::LeastSquares;
@@ -24,16 +26,17 @@ const LISTED: usize = 7;
 pub(crate) struct Collinear {
     /// Which nodes lie in one line.
     pub(crate) kind: Nodes,
-    /// The network with all other nodes on one side of the line, which is the first axis; offsets are `p_j`.
+    /// The network with all other nodes on one side of the line, which is the first axis; offsets
+    /// are `p_j`.
     network: Network,
 }
 
 impl Collinear {
-    /// The networks with all receivers or all transmitters in one line that fit the data `f_ij - f_1j` (`i = 2..m`, rows of `width`),
-    /// if there are any.
+    /// The networks with all receivers or all transmitters in one line that fit the data
+    /// `f_ij - f_1j` (`i = 2..m`, rows of `width`), if there are any.
     ///
-    /// `None` too for matrices so small that some offsets always give rank one: six receivers with three transmitters, five with four and
-    /// four with five are the smallest that tell.
+    /// `None` too for matrices so small that some offsets always give rank one: six receivers with
+    /// three transmitters, five with four and four with five are the smallest that tell.
     pub(crate) fn find(f: &[f64], width: usize, squares: &mut LeastSquares) -> Option<Collinear> {
         let rows = f.len() / width;
         let p = match (rows, width) {
@@ -66,8 +69,8 @@ impl Collinear {
         self.others().len() <= LISTED
     }
 
-    /// The networks, each node off the line on the one side or the other, but for the mirror image of the whole; the first alone where
-    /// there are too many.
+    /// The networks, each node off the line on the one side or the other, but for the mirror image
+    /// of the whole; the first alone where there are too many.
     pub(crate) fn networks(&self) -> impl Iterator<Item = Network> {
         let count = if self.all_listed() { 1usize << self.others().len().saturating_sub(1) } else { 1 };
         (0..count).map(|sides| {
@@ -102,7 +105,8 @@ impl Collinear {
     }
 }
 
-/// `D` of rank one: `across_i along_j`, receivers from the second, transmitters from the first (`along_1 = 0`), the largest `along` one.
+/// `D` of rank one: `across_i along_j`, receivers from the second, transmitters from the first
+/// (`along_1 = 0`), the largest `along` one.
 struct RankOne<'a> {
     p: &'a [f64],
     q: &'a [f64],
@@ -111,8 +115,9 @@ struct RankOne<'a> {
 }
 
 impl RankOne<'_> {
-    /// Receivers `r_i = c x_i e` with the first in the origin, `x_i` in the ratio of the rows and one in row `row`:
-    /// `q_i1 = c^2 x_i^2 - 2 c x_i (e . s_1)` has to be a quadratic without constant. `entry` is that of the row where `along` is one.
+    /// Receivers `r_i = c x_i e` with the first in the origin, `x_i` in the ratio of the rows and
+    /// one in row `row`: `q_i1 = c^2 x_i^2 - 2 c x_i (e . s_1)` has to be a quadratic without
+    /// constant. `entry` is that of the row where `along` is one.
     fn receivers(&self, entry: f64, row: usize, squares: &mut LeastSquares) -> Option<Collinear> {
         let x: SmallVec<[f64; 8]> = self.across.iter().map(|d| d / self.across[row]).collect();
         let q = self.q;
@@ -134,7 +139,8 @@ impl RankOne<'_> {
         })
     }
 
-    /// Transmitters `s_j = c along_j e`: `p_j^2 = |r_1 - s_j|^2 = c^2 along_j^2 - 2 c along_j (e . r_1) + |r_1|^2`.
+    /// Transmitters `s_j = c along_j e`:
+    /// `p_j^2 = |r_1 - s_j|^2 = c^2 along_j^2 - 2 c along_j (e . r_1) + |r_1|^2`.
     fn transmitters(&self, f: &[f64], width: usize, squares: &mut LeastSquares) -> Option<Collinear> {
         let (y, p) = (&self.along, self.p);
         let fit = squares.fit(width, 3, |j, c| [y[j] * y[j], y[j], 1.0][c], |j| p[j] * p[j])?;
@@ -156,14 +162,16 @@ impl RankOne<'_> {
     }
 }
 
-/// The node with this foot on the line, on one side of it, at a squared distance from the origin; `None` if it is nearer than its foot.
+/// The node with this foot on the line, on one side of it, at a squared distance from the origin;
+/// `None` if it is nearer than its foot.
 fn off_line(foot: f64, distance_sqr: f64) -> Option<[f64; 2]> {
     let height_sqr = distance_sqr - foot * foot;
     (height_sqr >= -FITS * distance_sqr).then(|| [foot, height_sqr.max(0.0).sqrt()])
 }
 
-/// Offsets `p_j` that make `D` rank one: three columns of `q` then obey `q_i3 = w q_i1 + (1 - w) q_i2`, which is linear in `w`, `w p_1`, `(1 - w) p_2`
-/// and `p_3`; four rows or more.
+/// Offsets `p_j` that make `D` rank one: three columns of `q` then obey
+/// `q_i3 = w q_i1 + (1 - w) q_i2`, which is linear in `w`, `w p_1`, `(1 - w) p_2` and `p_3`; four
+/// rows or more.
 fn by_columns(f: &[f64], width: usize, squares: &mut LeastSquares) -> Option<SmallVec<[f64; 8]>> {
     let mut p = SmallVec::new();
     for j in 2..width {
@@ -190,8 +198,8 @@ fn by_columns(f: &[f64], width: usize, squares: &mut LeastSquares) -> Option<Sma
     Some(p)
 }
 
-/// Candidates from three rows and five columns or more: `q_ij - g_i q_2j = c_i` for `i = 3, 4`. Without the `p_j` these are linear in
-/// `g_3`, `g_4`, `c_3`, `c_4` and `g_3 c_4 - g_4 c_3`.
+/// Candidates from three rows and five columns or more: `q_ij - g_i q_2j = c_i` for `i = 3, 4`.
+/// Without the `p_j` these are linear in `g_3`, `g_4`, `c_3`, `c_4` and `g_3 c_4 - g_4 c_3`.
 fn by_rows(f: &[f64], width: usize, squares: &mut LeastSquares) -> Option<SmallVec<[f64; 8]>> {
     let at = |i: usize, j: usize| f[i * width + j];
     let entry = |j: usize, c: usize| {
@@ -225,8 +233,9 @@ mod tests {
     use crate::pseudoranges::Pseudoranges;
     use crate::simulate::{Layout, SimulateOptions, simulate};
 
-    /// Networks of many sizes with nodes of both kinds in one line, next to one, and off it: only the first are noticed, and the truth is one
-    /// of as many networks as there are sides to lie on.
+    /// Networks of many sizes with nodes of both kinds in one line, next to one, and off it: only
+    /// the first are noticed, and the truth is one of as many networks as there are sides to lie
+    /// on.
     #[test]
     fn nodes_in_one_line_are_noticed_and_the_networks_found() {
         for (receivers, transmitters) in [(6, 3), (5, 4), (4, 5), (7, 3), (6, 5), (4, 6)] {

@@ -10,11 +10,13 @@ fn differences(row: &[f64], x: &[f64]) -> [f64; COLUMNS] {
     [q[1] - q[0], q[2] - q[0], q[0]]
 }
 
-/// The network of a real root `p1 p2 p3 k l m u v`, `None` unless `H` is positive definite, that is `k > 0` and `m > 0`.
+/// The network of a real root `p1 p2 p3 k l m u v`, `None` unless `H` is positive definite, that is
+/// `k > 0` and `m > 0`.
 ///
-/// With the upper triangular `L`, `L'L = H^{-1}`, which is `(1 / sqrt k) (1, l; 0, sqrt(k / m))`: `r_i = L^{-T} D_i'`, `s_1 = L b`,
-/// `s_j = s_1 - L e_{j-1} / 2` (paper, equation (5)); the first receiver is the origin. Offsets are relative to the first
-/// receiver's measurements: `o_j - f_1j = p_j`. `f` holds `f_ij - f_1j` for `i = 2..m` in rows of `width`.
+/// With the upper triangular `L`, `L'L = H^{-1}`, which is `(1 / sqrt k) (1, l; 0, sqrt(k / m))`:
+/// `r_i = L^{-T} D_i'`, `s_1 = L b`, `s_j = s_1 - L e_{j-1} / 2` (paper, equation (5)); the first
+/// receiver is the origin. Offsets are relative to the first receiver's measurements:
+/// `o_j - f_1j = p_j`. `f` holds `f_ij - f_1j` for `i = 2..m` in rows of `width`.
 pub(crate) fn network(f: &[f64], width: usize, x: &[f64]) -> Option<Network> {
     let &[p1, p2, p3, k, l, m, u, v] = x else { return None };
     if !(k > 0.0 && m > 0.0) {
@@ -40,8 +42,9 @@ pub(crate) fn network(f: &[f64], width: usize, x: &[f64]) -> Option<Network> {
     network.is_finite().then_some(network)
 }
 
-/// Position and offset of the transmitter in column `j` beyond the third, by rank: `f_ij^2 - q_i1 = y D_i1 + z D_i2 + 2 f_ij p_j` over the
-/// receivers, and then `s_j = s_1 + y (s_2 - s_1) + z (s_3 - s_1)`.
+/// Position and offset of the transmitter in column `j` beyond the third, by rank:
+/// `f_ij^2 - q_i1 = y D_i1 + z D_i2 + 2 f_ij p_j` over the receivers, and then
+/// `s_j = s_1 + y (s_2 - s_1) + z (s_3 - s_1)`.
 pub(crate) fn further_transmitter(
     f: &[f64],
     width: usize,

@@ -16,8 +16,8 @@ const COLUMNS: usize = 5;
 /// `alpha beta e l h C`: ratios, then `e`, `h` and `C` squares of lengths.
 const WEIGHTS: &[i32] = &[0, 0, 2, 0, 2, 2];
 
-/// Orders of the receivers, that of the data first: each receiver is once the origin and once the one expressed by the others, with both
-/// directions of elimination.
+/// Orders of the receivers, that of the data first: each receiver is once the origin and once the
+/// one expressed by the others, with both directions of elimination.
 const CHARTS: [[usize; ROWS]; 8] =
     [[0, 1, 2, 3], [1, 2, 3, 0], [2, 3, 0, 1], [3, 0, 1, 2], [0, 2, 1, 3], [1, 3, 2, 0], [2, 0, 3, 1], [3, 1, 0, 2]];
 
@@ -107,7 +107,8 @@ impl<T: Num + Copy> Sight<T> {
     }
 }
 
-/// The unknowns with the receivers in another order: the Gram matrix of the new basis, and the fourth receiver in it.
+/// The unknowns with the receivers in another order: the Gram matrix of the new basis, and the
+/// fourth receiver in it.
 fn reorder(order: &[usize; ROWS], x: &[Complex64]) -> Point {
     let &[alpha, beta, e, l, h, _] = x else { return smallvec![Complex64::new(f64::NAN, 0.0); WEIGHTS.len()] };
     let (zero, one) = (Complex64::new(0.0, 0.0), Complex64::new(1.0, 0.0));

@@ -1,5 +1,5 @@
-//! Larger networks through smaller ones: a well-spread part is solved, the other nodes follow linearly from squared distances, and all
-//! measurements enter the last refinement.
+//! Larger networks through smaller ones: a well-spread part is solved, the other nodes follow
+//! linearly from squared distances, and all measurements enter the last refinement.
 
 use crate::minimal::linear::LeastSquares;
 use crate::minimal::normalised::{Normalised, rank};
@@ -10,7 +10,8 @@ use crate::minimal::subset::Subset;
 use crate::network::Network;
 use crate::pseudoranges::Pseudoranges;
 
-/// Extends the candidates of a part, the receivers and transmitters `part` of `measured`, to the whole.
+/// Extends the candidates of a part, the receivers and transmitters `part` of `measured`, to the
+/// whole.
 pub(crate) fn extend(
     measured: &Pseudoranges,
     part: &Subset,
@@ -62,7 +63,8 @@ fn spread_out(measured: &Pseudoranges, part: &Subset, known: &Network, squares: 
     network.is_finite().then_some(network)
 }
 
-/// A transmitter from four or more receivers: `|r_i - s|^2 = (f_i - o)^2`, the first subtracted, is linear in `s` and `o`.
+/// A transmitter from four or more receivers: `|r_i - s|^2 = (f_i - o)^2`, the first subtracted, is
+/// linear in `s` and `o`.
 fn transmitter(sights: &[([f64; 2], f64)], squares: &mut LeastSquares) -> Option<([f64; 2], f64)> {
     let (origin, first) = sights[0];
     let at = |i: usize| {
@@ -109,7 +111,8 @@ mod tests {
 
     #[test]
     fn nodes_by_hand() {
-        // A transmitter at (3, 4) with offset 10: distances 5, 5, 4, 3 from the corners of a 6 by 8 cross.
+        // A transmitter at (3, 4) with offset 10: distances 5, 5, 4, 3 from the corners of a 6 by 8
+        // cross.
         let sights =
             [([0.0, 0.0], 15.0), ([6.0, 0.0], 15.0), ([3.0, 0.0], 14.0), ([0.0, 4.0], 13.0), ([3.0, 8.0], 14.0)];
         let mut squares = LeastSquares::default();

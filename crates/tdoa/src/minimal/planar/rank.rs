@@ -1,7 +1,9 @@
-//! Offsets by rank alone: seven receivers with four transmitters (one root), five with six (five roots), and networks from offsets.
+//! Offsets by rank alone: seven receivers with four transmitters (one root), five with six (five
+//! roots), and networks from offsets.
 //!
-//! With the first receiver's measurements subtracted, `q_ij = f_ij (f_ij - 2 p_j)` is the difference of the squared distances, and
-//! `q_ij - q_i1` has rank two in the plane. Where that fixes the offsets, the rest is linear.
+//! With the first receiver's measurements subtracted, `q_ij = f_ij (f_ij - 2 p_j)` is the
+//! difference of the squared distances, and `q_ij - q_i1` has rank two in the plane. Where that
+//! fixes the offsets, the rest is linear.
 
 use crate::generated::five_six;
 use crate::minimal::formulation::{Formulation, Free, Parameters, Point};
@@ -55,7 +57,8 @@ impl Formulation for FiveSix {
         (0..n)
             .map(|j| {
                 let [a, b, c, g] = [0, 1, 2, 3].map(|i| f[i * n + j]);
-                // Both quotients are equal at a root; the one with the larger denominator is the more accurate.
+                // Both quotients are equal at a root; the one with the larger denominator is the
+                // more accurate.
                 let first = (x[0] * a * a + x[1] * b * b - c * c + x[2], x[0] * a + x[1] * b - c);
                 let second = (x[3] * a * a + x[4] * b * b - g * g + x[5], x[3] * a + x[4] * b - g);
                 let (n, d) = if first.1.norm() >= second.1.norm() { first } else { second };
@@ -74,8 +77,9 @@ impl Formulation for FiveSix {
 /// Orders of the receivers after the first.
 const CHARTS: [[usize; 4]; 3] = [[0, 1, 2, 3], [1, 0, 2, 3], [0, 1, 3, 2]];
 
-/// `p_j` of four transmitters from six or more receivers besides the first, in rows of four: with `s_4 = w_1 s_1 + w_2 s_2 + w_3 s_3`,
-/// `w_1 + w_2 + w_3 = 1`, the equations `sum_j w_j f_ij (f_ij - 2 p_j) = f_i4 (f_i4 - 2 p_4)` are linear in `w` and `w_j p_j`.
+/// `p_j` of four transmitters from six or more receivers besides the first, in rows of four: with
+/// `s_4 = w_1 s_1 + w_2 s_2 + w_3 s_3`, `w_1 + w_2 + w_3 = 1`, the equations
+/// `sum_j w_j f_ij (f_ij - 2 p_j) = f_i4 (f_i4 - 2 p_4)` are linear in `w` and `w_j p_j`.
 pub(crate) fn offsets_of_four(f: &[f64], squares: &mut LeastSquares) -> Option<[f64; 4]> {
     let rows: Vec<[f64; 7]> = f
         .chunks_exact(4)
@@ -97,8 +101,8 @@ pub(crate) fn differences(f: &[f64], p: &[f64]) -> (SmallVec<[f64; 32]>, SmallVe
     (d, rows.map(|row| q(row, 0)).collect())
 }
 
-/// The network of known `p_j` where there are five or more receivers besides the first: the equations (C) of the paper are linear in
-/// `H` and `b`. `None` unless the positions are real.
+/// The network of known `p_j` where there are five or more receivers besides the first: the
+/// equations (C) of the paper are linear in `H` and `b`. `None` unless the positions are real.
 pub(crate) fn by_receivers(f: &[f64], p: &[f64], squares: &mut LeastSquares) -> Option<Network> {
     let (d, q) = differences(f, p);
     let w = p.len() - 1;
@@ -118,8 +122,9 @@ pub(crate) fn by_receivers(f: &[f64], p: &[f64], squares: &mut LeastSquares) -> 
     assemble(f, p, &d, gram, w, squares)
 }
 
-/// The network of known `p_j` where there are six or more transmitters: with `s_j = s_1 - L c_j / 2` the differences of the
-/// norms `p_j^2 - p_1^2 = c_j' G c_j / 4 - w' c_j` are linear in `G` and `w = G b`. `None` unless the positions are real.
+/// The network of known `p_j` where there are six or more transmitters: with
+/// `s_j = s_1 - L c_j / 2` the differences of the norms `p_j^2 - p_1^2 = c_j' G c_j / 4 - w' c_j`
+/// are linear in `G` and `w = G b`. `None` unless the positions are real.
 fn by_transmitters(f: &[f64], p: &[f64], squares: &mut LeastSquares) -> Option<Network> {
     let (d, _) = differences(f, p);
     let c = affine(&d, p.len() - 1, squares)?;
@@ -147,7 +152,8 @@ fn affine(d: &[f64], width: usize, squares: &mut LeastSquares) -> Option<SmallVe
         .collect()
 }
 
-/// Positions from `G = L'L` (entries 11, 12, 22) and `w = G b`: `r_i = L^{-T} D_i'`, `s_1 = L^{-T} w`, `s_j = s_1 - L c_j / 2`.
+/// Positions from `G = L'L` (entries 11, 12, 22) and `w = G b`: `r_i = L^{-T} D_i'`,
+/// `s_1 = L^{-T} w`, `s_j = s_1 - L c_j / 2`.
 fn assemble(
     f: &[f64],
     p: &[f64],

@@ -1,4 +1,5 @@
-//! The dual formulation on three transmitters: six receivers with three transmitters, five with four.
+//! The dual formulation on three transmitters: six receivers with three transmitters, five with
+//! four.
 
 use super::chart::{CHARTS, COLUMNS, enter, leave, permute_columns};
 use super::dual;
@@ -9,7 +10,8 @@ use crate::network::Network;
 use hc::Fibre;
 use num_complex::Complex64;
 
-/// Weights of `p1 p2 p3 k l m u v`: `k` and `m` are inverse squares of lengths, `l`, `u` and `v` are ratios.
+/// Weights of `p1 p2 p3 k l m u v`: `k` and `m` are inverse squares of lengths, `l`, `u` and `v`
+/// are ratios.
 const WEIGHTS: &[i32] = &[1, 1, 1, -2, 0, -2, 0, 0];
 
 /// Six receivers, three transmitters: 180 paths.
