@@ -69,7 +69,7 @@ pub(crate) fn fail_for_a_test(py: Python<'_>, at_work: bool) -> PyResult<()> {
     guarded(|| {
         assert!(at_work, "before the work");
         let how = crate::work::How { threads: Some(1), progress: None };
-        crate::work::run(py, &how, |_| -> () { panic!("at work") })?.result;
+        crate::work::run(py, &how, |_| -> () { panic!("at work") })?;
         Ok(())
     })
 }

@@ -24,14 +24,14 @@ def check(function, *arguments, **options):
         assert str(error)
 
 
-@settings(max_examples=3000, **MANY)
+@settings(max_examples=1000, **MANY)
 @given(ANYTHING)
 def test_anything_as_a_table(thing):
     check(tdoa.solve, thing)
     check(tdoa.calibrate, thing, max_starts=1)
 
 
-@settings(max_examples=2500, **MANY)
+@settings(max_examples=1000, **MANY)
 @given(st.integers(1, 7), st.integers(1, 6), st.data())
 def test_tables(m, n, data):
     values = data.draw(st.lists(NUMBERS, min_size=m * n, max_size=m * n))
@@ -46,14 +46,14 @@ def test_tables(m, n, data):
 ALPHABET = st.text(alphabet="xyzi0123456789.+-*/^()=;:,# \n\"[]eE", max_size=30)
 
 
-@settings(max_examples=2500, **MANY)
+@settings(max_examples=4000, **MANY)
 @given(st.one_of(ALPHABET, st.lists(ALPHABET, max_size=3), ANYTHING))
 def test_anything_as_a_system(thing):
     check(hc.solve, thing, max_paths=64)
     check(hc.mixed_volume, thing)
 
 
-@settings(max_examples=2000, **MANY)
+@settings(max_examples=4000, **MANY)
 @given(ANYTHING, ANYTHING)
 def test_anything_as_arguments(thing, other):
     family = _family()

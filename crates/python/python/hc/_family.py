@@ -9,7 +9,7 @@ import numpy as np
 
 from . import _native
 from ._errors import InputError
-from ._run import call, integer
+from ._run import call, integer, seeded
 from ._solve import complex_rows
 from ._system import formulas, names
 
@@ -273,7 +273,7 @@ class Family:
         if first is not None and not isinstance(first, Fibre):
             first = _pair(*first)
         native = None if first is None else self._native.fibre(first.to_json())
-        seed = integer("seed", seed, 0, 2**64 - 1)
+        seed = seeded(seed)
         found = call(
             self._native.monodromy,
             seed,

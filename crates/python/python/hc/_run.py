@@ -23,6 +23,14 @@ def integer(name, value, least=0, most=2**63 - 1):
     return number
 
 
+def seeded(seed):
+    """A seed."""
+    found = integer("seed", seed, 0, 2**64 - 1)
+    if found is None:
+        raise InputError("seed must be a whole number, not None")
+    return found
+
+
 def number(name, value):
     """A real number, or `None`."""
     if value is None:

@@ -4,7 +4,7 @@ import numpy as np
 
 from . import _native
 from ._errors import InputError
-from ._run import call, integer, text
+from ._run import call, integer, seeded, text
 from ._solutions import Certificates, Solutions
 from ._system import names, system as _system
 
@@ -92,7 +92,7 @@ def solve(
     if start == "multihomogeneous" and not wanted:
         raise InputError('say which unknowns form groups, for instance groups=[["x"], ["y"]]')
     settings = {
-        "seed": integer("seed", seed, 0, 2**64 - 1),
+        "seed": seeded(seed),
         "start": text("start", start),
         "groups": wanted,
         "torus_only": bool(torus_only),

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hc import InputError, _native
-from hc._run import call, integer, number, text
+from hc._run import call, integer, number, seeded, text
 
 from ._calibration import Calibration
 from ._tables import real_matrix, table
@@ -132,7 +132,7 @@ def calibrate(
         "distances": _distances(distances, given["receivers"], count),
         "receiver_delays": text("receiver_delays", receiver_delays),
         "estimate_speed": bool(estimate_speed),
-        "seed": integer("seed", seed, 0, 2**64 - 1),
+        "seed": seeded(seed),
         "max_starts": integer("max_starts", max_starts),
         "agreeing": integer("agreeing", agreeing),
     }
@@ -349,7 +349,7 @@ def simulate(
         "detour_size": number("detour_size", detour_size),
         "fault": kind,
         "delays": number("delays", delays),
-        "seed": integer("seed", seed, 0, 2**64 - 1),
+        "seed": seeded(seed),
     }
     missing_ones = [name for name, value in wanted.items() if value is None and name not in ("hearing", "fault")]
     if missing_ones:

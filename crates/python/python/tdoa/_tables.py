@@ -113,7 +113,7 @@ def table(pseudoranges, names=None, sigma=None, speed=None):
             raise InputError(f"speed must be positive and finite, not {factor}")
     single = None
     if sigma is not None:
-        if np.ndim(sigma) == 0:
+        if isinstance(sigma, (str, bytes)) or not hasattr(sigma, "__iter__") or getattr(sigma, "ndim", 1) == 0:
             single = number("sigma", sigma)
         else:
             sigmas = real_matrix("sigma", sigma)
