@@ -47,7 +47,7 @@ pub(super) fn orbits(
         let mut deviation = None;
         for search in 0..SEARCHES {
             let options = MonodromyOptions::new().seed(seed.wrapping_add(search)).roots(left.len());
-            fibre = monodromy(&family, &fibre, |_, _| true, &options).fibre;
+            fibre = monodromy(&family, &fibre, &options).fibre;
             deviation = trace(&family, &fibre, unknowns, seed);
             if deviation.is_some_and(|d| d < PASSED) {
                 break;
