@@ -99,7 +99,7 @@ pub(crate) fn judge(given: &Given, point: &[Complex64], paths: usize, error: f64
             Ok(verdict) => return verdict,
             Err(reason) => why = reason,
         }
-        if why == Why::TooLarge {
+        if why == Why::TooLarge && point.len() > 1 {
             break;
         }
     }
