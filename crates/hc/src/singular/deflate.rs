@@ -44,7 +44,7 @@ pub(crate) const ZERO: f64 = -0.5;
 /// Those from this share on do not; what lies between is not clear.
 pub(crate) const CLEAR: f64 = -0.27;
 /// Equations at a refined point are this small at most, relative to their terms.
-const SOLVED: f64 = -0.65;
+const SOLVED: f64 = -0.58;
 /// Corrections up to this size end the iteration.
 const CONVERGED: f64 = -0.7;
 /// Iterations at most; corrections of an iteration that converges get small at once.

@@ -103,7 +103,7 @@ pub(crate) fn judge(given: &Given, point: &[Complex64], paths: usize, error: f64
             Ok(verdict) => return verdict,
             Err(reason) => why = reason,
         }
-        if why == Why::TooLarge {
+        if why == Why::TooLarge && point.len() > 1 {
             break;
         }
     }
@@ -210,6 +210,9 @@ const NEAR_SHEET_ERRORS: f64 = 10.0;
 
 /// The verdict on a point that can be moved along a set of solutions.
 fn sheet(given: &Given, point: &[Complex64], paths: usize, error: f64) -> Option<Verdict> {
+    if point.len() == 1 {
+        return None;
+    }
     let local = given.near::<ComplexDd>(point);
     let near = NEAR_SHEET.max(NEAR_SHEET_ERRORS * error).min(NEAR_SHEET_AT_MOST).log2();
     let (point, dimension) = on_sheet(&local, &local.scaled(point), paths, near)?;
