@@ -111,7 +111,8 @@ pub struct Monodromy {
     pub paths: usize,
 }
 
-/// [`fill`] of a program without symmetries, all of whose solutions are wanted and that nobody watches.
+/// [`fill`] of a program without symmetries, all of whose solutions are wanted and that nobody
+/// watches.
 pub(crate) fn monodromy<E: Evaluate>(system: &E, start: &Fibre, options: &MonodromyOptions) -> Monodromy {
     fill(system, start, |_, _| true, &Symmetry::default(), options, &Monitor::default())
 }
