@@ -62,14 +62,3 @@ pub(crate) fn guarded<R>(body: impl FnOnce() -> Result<R, Failure>) -> PyResult<
     let ended = catch_unwind(AssertUnwindSafe(body));
     Ok(ended.unwrap_or_else(|payload| Err(Failure::panicked(payload.as_ref())))?)
 }
-
-/// Panics, on a thread of the work or before it: tests see what comes of that.
-#[pyfunction]
-pub(crate) fn fail_for_a_test(py: Python<'_>, at_work: bool) -> PyResult<()> {
-    guarded(|| {
-        assert!(at_work, "before the work");
-        let how = crate::work::How { threads: Some(1), progress: None };
-        crate::work::run(py, &how, |_| -> () { panic!("at work") })?;
-        Ok(())
-    })
-}

@@ -22,8 +22,6 @@ mod _native {
     #[pymodule_export]
     use crate::certify::{certify, mixed_volume};
     #[pymodule_export]
-    use crate::errors::fail_for_a_test;
-    #[pymodule_export]
     use crate::family::{Family, Fibre};
     #[pymodule_export]
     use crate::measured::{check_size, read};
@@ -31,4 +29,6 @@ mod _native {
     use crate::networks::{cramer_rao, simulate, solve_network};
     #[pymodule_export]
     use crate::solve::solve;
+    #[pymodule_export]
+    use crate::work::fail_for_a_test;
 }

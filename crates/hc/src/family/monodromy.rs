@@ -6,7 +6,7 @@
 //! test](crate::Family::trace_test), and the result says which.
 
 use super::fibre::{Fibre, FibreOptions};
-use super::symmetry::Symmetry;
+use super::symmetry::{ACCURATE, Symmetry};
 use super::track::track_fibre_watched;
 use crate::distinct::{coincidences, relative_distance};
 use crate::monitor::{Monitor, Stage};
@@ -15,9 +15,6 @@ use crate::refine::Refiner;
 use crate::tracker::PathEnd;
 use num_complex::Complex64;
 use poly::Evaluate;
-
-/// Accuracy to which new solutions must be known.
-pub(super) const ACCURATE: f64 = 1e-12;
 
 /// Settings of [`Family::monodromy`](crate::Family::monodromy).
 #[derive(Clone, Debug, PartialEq)]

@@ -1,6 +1,5 @@
 //! Symmetries of a family: maps that take solutions to solutions, for the same parameters.
 
-use super::monodromy::ACCURATE;
 use crate::distinct::relative_distance;
 use crate::refine::Refiner;
 use num_complex::Complex64;
@@ -8,6 +7,9 @@ use poly::{CompileError, Evaluate, Interpreter, Isa, System};
 
 /// Points that an orbit may have; maps that make more are taken for no symmetry of finite order.
 const LARGEST_ORBIT: usize = 10_000;
+
+/// Accuracy to which new solutions, and images of solutions, must be known.
+pub(super) const ACCURATE: f64 = 1e-12;
 
 /// Relative distance below which the image of a solution is taken for a solution.
 pub(super) const SAME: f64 = 1e-8;

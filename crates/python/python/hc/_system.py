@@ -16,10 +16,16 @@ def _natural(name):
     return [(int(part), "") if part.isdigit() else (-1, part) for part in re.split(r"(\d+)", name)]
 
 
+def _listed(given):
+    """One thing or many as a list. A SymPy matrix is many, though it has no `__iter__`."""
+    if _is_sympy(given):
+        return list(given) if hasattr(given, "shape") else [given]
+    return given if hasattr(given, "__iter__") and not isinstance(given, str) else [given]
+
+
 def formulas(name, given):
     """A list of formulas as strings, and the names in them where they come from SymPy."""
-    if isinstance(given, str) or not hasattr(given, "__iter__") or _is_sympy(given) and not hasattr(given, "shape"):
-        given = [given]
+    given = _listed(given)
     texts, names, symbolic = [], set(), False
     printer = None
     for item in given:
@@ -55,10 +61,8 @@ def names(name, given):
         return None
     if isinstance(given, str):
         given = given.replace(",", " ").split()
-    if not hasattr(given, "__iter__") or _is_sympy(given) and not hasattr(given, "shape"):
-        given = [given]
     found = []
-    for item in given:
+    for item in _listed(given):
         if isinstance(item, str):
             found.append(item)
         elif _is_sympy(item) and item.is_Symbol:
