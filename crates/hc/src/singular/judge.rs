@@ -93,8 +93,7 @@ pub(crate) fn judge(given: &Given, point: &[Complex64], paths: usize, error: f64
     if let Some(verdict) = at_once {
         return verdict;
     }
-    let near = given.near::<ComplexDd>(point);
-    if near.residual(&near.scaled(point)) > NOT_ZERO.max(1e3 * error).min(0.5).log2() {
+    if residual(given, point) > NOT_ZERO.max(1e3 * error).min(0.5) {
         return Verdict::NotASolution;
     }
     let mut why = Why::NoSolution;
@@ -172,10 +171,8 @@ const MISSES: f64 = 1e-6;
 /// Whether a regular solution of combinations of the equations, to all digits of a double, solves
 /// them all.
 pub(crate) fn solves(given: &Given, point: &[Complex64]) -> bool {
-    let near = given.near::<ComplexDd>(point);
-    let residual = near.residual(&near.scaled(point));
-    residual <= SOLVES.log2()
-        || residual < MISSES.log2() && matches!(judge(given, point, 1, 0.0), Verdict::Regular { .. })
+    let residual = residual(given, point);
+    residual <= SOLVES || residual < MISSES && matches!(judge(given, point, 1, 0.0), Verdict::Regular { .. })
 }
 
 /// Pivots of the Jacobian, as logarithms to base 2, from which rounding the coefficients does not
@@ -344,9 +341,14 @@ fn dimension<S: Number>(reduced: &Reduced<S>, at_least: usize) -> usize {
 /// A point as doubles, and the values of the equations there relative to their terms.
 fn rounded<S: Number>(given: &Given, local: &Local<'_, S>, point: &[S]) -> (Vec<Complex64>, f64) {
     let point: Vec<Complex64> = local.unscaled(point).iter().map(Number::to_c64).collect();
-    let near = given.near::<ComplexDd>(&point);
-    let residual = near.residual(&near.scaled(&point)).exp2();
+    let residual = residual(given, &point);
     (point, residual)
+}
+
+/// The largest value of an equation at a point, relative to the sizes of its terms.
+pub(crate) fn residual(given: &Given, point: &[Complex64]) -> f64 {
+    let near = given.near::<ComplexDd>(point);
+    near.residual(&near.scaled(point)).exp2()
 }
 
 #[cfg(test)]

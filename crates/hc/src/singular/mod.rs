@@ -11,8 +11,10 @@ mod judge;
 mod number;
 mod series;
 mod sheet;
+mod squarefree;
 mod univariate;
 
 pub(crate) use equations::Given;
-pub(crate) use judge::{Verdict, Why, depends_on_rounding, judge, nearby, solves};
+pub(crate) use judge::{Verdict, Why, depends_on_rounding, judge, nearby, residual, solves};
+pub(crate) use squarefree::squarefree;
 pub(crate) use univariate::roots;

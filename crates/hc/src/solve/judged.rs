@@ -11,7 +11,7 @@ use crate::refine::Refiner;
 use crate::singular::{self, Verdict, Why};
 use crate::threads::{IntoParallelRefIterator, ParallelIterator};
 use num_complex::Complex64;
-use poly::SparseSystem;
+use poly::{Exact, Polynomial, SparseSystem};
 
 /// Imaginary parts of singular solutions up to this share of the point count as zero.
 const REAL_SINGULAR: f64 = 1e-7;
@@ -236,32 +236,37 @@ fn solution(
 }
 
 /// All roots of a polynomial in one unknown, with their multiplicities; `None` if they are not all
-/// clear, or it is none.
+/// clear, or it is none. `units` are the logarithms to base 2 of the unit of the unknown.
 pub(super) fn univariate(
+    polynomials: &[Polynomial<Exact>],
+    units: &[i64],
     given: &singular::Given,
     system: &SparseSystem,
     target: &[Complex64],
 ) -> Option<Vec<Solution>> {
-    let (zero, degree) = given.univariate_degrees()?;
-    let mut points: Vec<Vec<Complex64>> = singular::roots(given)?.into_iter().map(|z| vec![z]).collect();
-    if zero > 0 {
-        points.push(vec![Complex64::new(0.0, 0.0)]);
-    }
+    let [polynomial] = polynomials else { return None };
+    let (_, degree) = given.univariate_degrees()?;
     let mut refiner = Refiner::new(system);
     let mut found: Vec<Solution> = Vec::new();
-    for point in points {
-        let (multiplicity, point, residual) = match singular::judge(given, &point, degree, ACCURATE) {
-            Verdict::Regular { point, residual } => (1, point, residual),
-            Verdict::Isolated { multiplicity, point, residual } => (multiplicity, point, residual),
-            _ => return None,
-        };
-        if found.iter().any(|s| relative_distance(&s.value, &point) <= SAME) {
-            continue;
+    for (part, multiplicity) in singular::squarefree(polynomial)? {
+        // The roots of each part are simple.
+        let part = singular::Given::new(&[part], units.to_vec());
+        let (zero, _) = part.univariate_degrees()?;
+        let roots = singular::roots(&part)?.into_iter().chain((zero > 0).then(Complex64::default));
+        for root in roots {
+            let point = match singular::judge(&part, &[root], 1, ACCURATE) {
+                Verdict::Regular { point, .. } => point,
+                _ => return None,
+            };
+            if found.iter().any(|s| relative_distance(&s.value, &point) <= SAME) {
+                return None;
+            }
+            let condition = refiner.judged(target, &point).condition;
+            let real = is_real(&point, if multiplicity > 1 { REAL_SINGULAR } else { REAL });
+            let residual = singular::residual(given, &point);
+            let solution = solution(&point, multiplicity, multiplicity, residual, condition, real);
+            found.push(Solution { singular: multiplicity > 1, ..solution });
         }
-        let condition = refiner.judged(target, &point).condition;
-        let real = is_real(&point, if multiplicity > 1 { REAL_SINGULAR } else { REAL });
-        let solution = solution(&point, multiplicity, multiplicity, residual, condition, real);
-        found.push(Solution { singular: multiplicity > 1, ..solution });
     }
     found.sort_by_key(|s| s.singular);
     (found.iter().map(|s| s.multiplicity).sum::<usize>() == degree).then_some(found)

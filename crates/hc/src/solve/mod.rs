@@ -95,7 +95,8 @@ pub(crate) fn solve_polynomials(
         Cow::Owned(rewritten) => Equations::new(&rewritten, names)?,
     };
     let exact = equations.exact && polynomials.len() > 1;
-    let given = Given::new(polynomials, equations.units());
+    let units = equations.units();
+    let given = Given::new(polynomials, units.clone());
     // Of a polynomial in one unknown there is a better way to all roots than other paths.
     let univariate = given.univariate_degrees().filter(|_| !options.torus_only);
     let excess = Excess::new(&given, options.torus_only);
@@ -140,9 +141,9 @@ pub(crate) fn solve_polynomials(
     if let Some((_, degree)) = univariate
         && start_systems > 0
         && !monitor.is_cancelled()
-        && degree != best.found.solutions.iter().map(|s| s.multiplicity).sum::<usize>()
+        && (degree != best.found.solutions.len() || best.found.lost > 0)
     {
-        best.found = match judged::univariate(&given, &starts.system, &starts.target) {
+        best.found = match judged::univariate(polynomials, &units, &given, &starts.system, &starts.target) {
             Some(roots) => Classified { solutions: roots, ..Classified::default() },
             // All paths end at roots, those that seem to go to infinity too.
             None => Classified { lost: best.found.lost + best.found.infinite, infinite: 0, ..best.found },
