@@ -14,12 +14,13 @@ pub(crate) struct Case {
 pub(crate) type Kind = fn(&mut Draw) -> Case;
 
 /// The kinds of systems, by name.
-pub(crate) const KINDS: [(&str, Kind); 9] = [
+pub(crate) const KINDS: [(&str, Kind); 10] = [
     ("component not reduced", not_reduced),
     ("overdetermined, a zero coordinate", overdetermined),
     ("overdetermined, multiple", overdetermined_multiple),
     ("isolated, corank 1", corank_one),
     ("isolated, corank 2", corank_two),
+    ("multiple beside regular", multiple_beside_regular),
     ("close pair", close_pair),
     ("near a component", near_component),
     ("ill-conditioned", ill_conditioned),
@@ -170,6 +171,27 @@ fn corank_two(draw: &mut Draw) -> Case {
         text: format!("2\n{u}^{a};\n{v}^{b}+({c})*{u}^{a};"),
         solutions: vec![(at.iter().map(|&c| c as f64).collect(), (a * b) as usize)],
         component: false,
+    }
+}
+
+/// `(u + c v^2) l` and `v^m (u + 4 c)`: two points of multiplicity `m`, three simple ones.
+fn multiple_beside_regular(draw: &mut Draw) -> Case {
+    loop {
+        let (u, v, _) = draw.frame();
+        let (m, c, l) = (draw.between(2, 5), draw.nonzero(), draw.line());
+        let moved = |line: [i64; 3], by: i64| [line[0], line[1], line[2] + by];
+        let far = moved(u, 4 * c);
+        // Where `u = -4 c`, `v` is 2 or -2.
+        let points =
+            [(u, v), (l, v), (far, moved(v, 2)), (far, moved(v, -2)), (l, far)].map(|(a, b)| crossing(a, b));
+        let Some(points) = points.into_iter().collect::<Option<Vec<_>>>().filter(|p| apart(p)) else { continue };
+        let multiplicities = [m as usize, m as usize, 1, 1, 1];
+        let (u, v, far, l) = (show(u), show(v), show(far), show(l));
+        return Case {
+            text: format!("2\n({u}+({c})*{v}^2)*{l};\n{v}^{m}*{far};"),
+            solutions: points.iter().map(|p| p.to_vec()).zip(multiplicities).collect(),
+            component: false,
+        };
     }
 }
 

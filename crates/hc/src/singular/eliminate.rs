@@ -17,7 +17,9 @@ pub(crate) struct Elimination<S> {
     /// Rows and columns of the pivots, in their order.
     pub(crate) rows: Vec<usize>,
     pub(crate) columns: Vec<usize>,
-    /// The logarithm to base 2 of the smallest pivot.
+    /// The logarithms to base 2 of the pivots, in their order.
+    pub(crate) sizes: Vec<f64>,
+    /// The least of them.
     pub(crate) smallest: f64,
     /// The same of the largest entry that is left.
     pub(crate) rest: f64,
@@ -33,7 +35,7 @@ impl<S: Number> Elimination<S> {
         let height = matrix.len();
         let (mut rows, mut columns) = (Vec::new(), Vec::new());
         let (mut free_rows, mut free_columns): (Vec<usize>, Vec<usize>) = ((0..height).collect(), (0..width).collect());
-        let (mut smallest, mut rest) = (f64::INFINITY, f64::NEG_INFINITY);
+        let (mut sizes, mut rest) = (Vec::new(), f64::NEG_INFINITY);
         loop {
             let mut best = (f64::NEG_INFINITY, 0, 0);
             for (a, &i) in free_rows.iter().enumerate() {
@@ -56,7 +58,7 @@ impl<S: Number> Elimination<S> {
             let (row, column) = (free_rows.swap_remove(a), free_columns.swap_remove(b));
             free_rows.sort_unstable();
             free_columns.sort_unstable();
-            smallest = smallest.min(size);
+            sizes.push(size);
             let inverse = S::inv(&matrix[row][column]);
             let pivot_row = matrix[row].clone();
             for &i in &free_rows {
@@ -75,7 +77,8 @@ impl<S: Number> Elimination<S> {
                 break;
             }
         }
-        Elimination { rows, columns, smallest, rest, factors: matrix, width }
+        let smallest = sizes.iter().copied().fold(f64::INFINITY, f64::min);
+        Elimination { rows, columns, sizes, smallest, rest, factors: matrix, width }
     }
 
     pub(crate) fn rank(&self) -> usize {

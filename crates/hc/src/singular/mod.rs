@@ -15,6 +15,6 @@ mod squarefree;
 mod univariate;
 
 pub(crate) use equations::Given;
-pub(crate) use judge::{Verdict, Why, depends_on_rounding, judge, nearby, residual, solves};
+pub(crate) use judge::{Verdict, Why, is_moved, judge, nearby, residual, solves};
 pub(crate) use squarefree::squarefree;
 pub(crate) use univariate::roots;

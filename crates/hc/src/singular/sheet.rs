@@ -1,14 +1,17 @@
 //! Points on sets of positive dimension, told in little time: such a point can be moved along the
 //! set.
 
-use super::deflate::{Deflated, Profile, deflated, distance, moved, settled};
+use super::deflate::{CLEAR, Deflated, Profile, deflated, distance, moved, settled};
+use super::eliminate::{Elimination, Stop};
 use super::equations::Local;
 use super::number::Number;
 use crate::random::{Random, Stream};
 
-/// Deflations that are tried: orders of the series, with logarithms to base 2 of the tolerances at
-/// which ranks are read off. The first is for reduced sets.
-const TRIED: [(usize, f64); 5] = [(1, -20.0), (2, -20.0), (2, -12.0), (3, -20.0), (3, -12.0)];
+/// Deflations that are tried where sets are not reduced: orders of the series, with logarithms to
+/// base 2 of the tolerances at which ranks are read off.
+const TRIED: [(usize, f64); 4] = [(2, -20.0), (2, -12.0), (3, -20.0), (3, -12.0)];
+/// Pivots up to this size (logarithm to base 2) may be zero on a reduced set.
+const DOUBTFUL: f64 = -4.0;
 /// How far a point is moved, in units of the coordinates, and how often.
 const STRIDES: [f64; 2] = [0.25, 0.0625];
 const MOVES: u32 = 3;
@@ -28,27 +31,43 @@ pub(crate) fn on_sheet<S: Number>(
     paths: usize,
     near: f64,
 ) -> Option<(Vec<S>, usize)> {
-    let mut tried = Vec::new();
-    for (order, tolerance) in TRIED {
-        let Some(found) = deflated(local, start, order, tolerance, &mut tried) else { continue };
+    let sheet = |found: &Deflated<S>, order: usize| {
         if found.profile.is_regular() || distance(start, &found.point) > near {
-            continue;
+            return None;
         }
         if found.profile.remaining == 0 {
-            if let Some(dimension) = touched(local, &found.point, paths) {
-                return Some((found.point, dimension));
-            }
-            continue;
+            return touched(local, &found.point, paths);
         }
-        for stride in STRIDES {
-            // The distance that is reached, to the power of the multiplicity, must be visible.
-            if paths as f64 * stride.log2() > 0.5 * UNSEEN && leads_on(local, &found, order, stride) {
-                let dimension = found.profile.remaining;
-                return Some((found.point, dimension));
-            }
+        // The distance that is reached, to the power of the multiplicity, must be visible.
+        let leads =
+            |&stride: &f64| paths as f64 * stride.log2() > 0.5 * UNSEEN && leads_on(local, found, order, stride);
+        STRIDES.iter().any(leads).then_some(found.profile.remaining)
+    };
+    for rank in ranks(local, start) {
+        let profile = Profile { ranks: vec![rank], remaining: start.len() - rank };
+        if let Some(found) = settled(local, start.to_vec(), 1, &profile, f64::INFINITY)
+            && let Some(dimension) = sheet(&found, 1)
+        {
+            return Some((found.point, dimension));
+        }
+    }
+    let mut tried = Vec::new();
+    for (order, tolerance) in TRIED {
+        if let Some(found) = deflated(local, start, order, tolerance, &mut tried)
+            && let Some(dimension) = sheet(&found, order)
+        {
+            return Some((found.point, dimension));
         }
     }
     None
+}
+
+/// Ranks that the Jacobian may have at a point of a reduced set nearby, the highest first.
+fn ranks<S: Number>(local: &Local<'_, S>, start: &[S]) -> Vec<usize> {
+    let (_, jacobian) = local.jacobian(start);
+    let sizes = Elimination::new(jacobian, start.len(), Stop::Below(CLEAR * S::BITS)).sizes;
+    let others = |rank: usize| sizes.get(rank).copied().unwrap_or(f64::NEG_INFINITY);
+    (1..=sizes.len().min(start.len() - 1)).rev().filter(|&rank| others(rank) <= DOUBTFUL).collect()
 }
 
 /// Paths at most that end at points for which [`touched`] tells something: of an isolated solution

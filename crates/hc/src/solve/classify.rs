@@ -1,6 +1,7 @@
 //! From the ends of paths to solutions: multiplicities, and which singular ends are isolated.
 
 use super::excess::Excess;
+use super::infinity::Line;
 use super::paths::Ends;
 use super::solutions::{Direction, Solution, Solutions, Unresolved, is_real};
 use crate::distinct::coincidences;
@@ -68,6 +69,8 @@ pub(super) struct Tracked<'a> {
     /// As many equations as unknowns, their coefficients as parameters.
     pub(super) system: &'a SparseSystem,
     pub(super) target: &'a [Complex64],
+    /// The same as supports and coefficients, where these move along a straight line.
+    pub(super) line: Option<Line<'a>>,
     /// Whether the coefficients that were tracked are exactly those that were given.
     pub(super) exact: bool,
     pub(super) monitor: &'a Monitor,
@@ -97,8 +100,10 @@ pub(super) fn classify(tracked: Option<&Tracked<'_>>, all: &Ends, excess: &Exces
         out.lost += all.singular.len();
         return out;
     };
-    out.correct_rounded(tracked);
-    out.add_singular(tracked, all, excess);
+    let impossible = tracked.line.as_ref().map_or(0, |line| line.impossible(all));
+    (out.infinite, out.lost) = (out.infinite - impossible, out.lost + impossible);
+    let doubtful = out.correct_rounded(tracked);
+    out.add_singular(tracked, all, &doubtful, excess);
     out
 }
 

@@ -17,8 +17,6 @@ use poly::{Exact, Polynomial, SparseSystem};
 const REAL_SINGULAR: f64 = 1e-7;
 /// Relative distance below which two refined solutions are one.
 const SAME: f64 = 1e-12;
-/// Regular solutions that exact coefficients move further than this, relatively, are replaced.
-const MOVED: f64 = 1e-11;
 
 /// A singular solution and the paths that end there.
 struct Multiple {
@@ -30,13 +28,19 @@ struct Multiple {
 }
 
 impl Classified {
-    /// Judges the singular ends.
-    pub(super) fn add_singular(&mut self, tracked: &Tracked<'_>, all: &Ends, excess: &Excess<'_>) {
-        let ends: Vec<&SingularEnd> = all.singular.values().collect();
+    /// Judges the singular ends, and the doubtful among the regular ones.
+    pub(super) fn add_singular(
+        &mut self,
+        tracked: &Tracked<'_>,
+        all: &Ends,
+        doubtful: &[SingularEnd],
+        excess: &Excess<'_>,
+    ) {
+        let ends: Vec<&SingularEnd> = all.singular.values().chain(doubtful).collect();
         let points = ends.iter().enumerate().map(|(k, end)| (k, &end.point[..]));
         let groups = groups(points, CLUSTER);
         let spare = self.lost;
-        let judged = judged_groups(tracked, &ends, &groups, spare);
+        let judged = judged_groups(tracked, &ends, &groups, &self.solutions, spare);
         let mut multiple: Vec<Multiple> = Vec::new();
         let mut refiner = Refiner::new(tracked.system);
         for (group, verdict) in judged {
@@ -91,48 +95,39 @@ impl Classified {
         }
     }
 
-    /// Replaces regular solutions that depend on what rounding took from the coefficients, or on
-    /// more digits than doubles have.
-    pub(super) fn correct_rounded(&mut self, tracked: &Tracked<'_>) {
+    /// Replaces regular solutions by those of the given equations, where rounded coefficients move
+    /// them or doubles have too few digits. Returns those that are not clearly regular, to be
+    /// judged as singular ends are.
+    pub(super) fn correct_rounded(&mut self, tracked: &Tracked<'_>) -> Vec<SingularEnd> {
         let mut kept: Vec<Solution> = Vec::with_capacity(self.solutions.len());
+        let mut doubtful = Vec::new();
         for mut solution in std::mem::take(&mut self.solutions) {
-            let point = solution.value.clone();
-            let steady = if tracked.exact { STEADY_EXACT } else { STEADY };
-            let steady = solution.condition < steady && solution.residual < ACCURATE_RESIDUAL;
-            if steady || !singular::depends_on_rounding(tracked.given, &point) {
+            let steady = tracked.exact && solution.condition < STEADY && solution.residual < ACCURATE_RESIDUAL;
+            if steady || !singular::is_moved(tracked.given, &solution.value) {
                 kept.push(solution);
                 continue;
             }
+            let point = std::mem::take(&mut solution.value);
             let Verdict::Regular { point: exact, residual } = singular::judge(tracked.given, &point, 1, ROUNDED) else {
-                if tracked.exact {
-                    kept.push(solution);
-                } else {
-                    self.lost += 1;
-                }
+                doubtful.push(SingularEnd { point, winding: 1, error: ROUNDED });
                 continue;
             };
             solution.residual = residual;
-            if relative_distance(&point, &exact) > MOVED {
-                solution.real = is_real(&exact, REAL);
-                solution.value = exact;
-            }
-            if kept.iter().any(|s| relative_distance(&s.value, &solution.value) <= SAME) {
+            solution.real = is_real(&exact, REAL);
+            if kept.iter().any(|s| relative_distance(&s.value, &exact) <= SAME) {
                 self.lost += 1;
             } else {
-                kept.push(solution);
+                kept.push(Solution { value: exact, ..solution });
             }
         }
         self.solutions = kept;
+        doubtful
     }
 }
 
-/// Condition numbers below which rounded coefficients move a solution by less than its own rounding
-/// errors matter.
-const STEADY: f64 = 1e4;
-/// Those from which exact coefficients are looked at too, for the digits of the solution.
-const STEADY_EXACT: f64 = 1e8;
-/// Residuals of solutions on which rounding has no effect: a single equation has no condition
-/// number to tell.
+/// Condition numbers below which solutions of exact coefficients have all their digits.
+const STEADY: f64 = 1e8;
+/// Residuals of such solutions: a single equation has no condition number to tell.
 const ACCURATE_RESIDUAL: f64 = 1e-14;
 /// How far rounded coefficients may move a regular solution that is still told apart from others.
 const ROUNDED: f64 = 1e-4;
@@ -149,6 +144,7 @@ fn judged_groups(
     tracked: &Tracked<'_>,
     ends: &[&SingularEnd],
     groups: &[Vec<usize>],
+    known: &[Solution],
     spare: usize,
 ) -> Vec<(Vec<usize>, Verdict)> {
     let mut judged = Vec::new();
@@ -162,15 +158,22 @@ fn judged_groups(
             judged.extend(batch.iter().map(|group| (group.clone(), Verdict::Unresolved(why))));
             continue;
         }
-        let verdicts: Vec<Vec<_>> = batch.par_iter().map(|group| verdicts(tracked, ends, group, spare)).collect();
+        let of = |group: &Vec<usize>| verdicts(tracked, ends, group, known, spare);
+        let verdicts: Vec<Vec<_>> = batch.par_iter().map(of).collect();
         judged.extend(verdicts.into_iter().flatten());
     }
     judged
 }
 
 /// Verdicts on ends that nearly coincide: on all at once, or on each where they are no multiple
-/// solution. `spare` paths more may end there.
-fn verdicts(tracked: &Tracked<'_>, ends: &[&SingularEnd], group: &[usize], spare: usize) -> Vec<(Vec<usize>, Verdict)> {
+/// solution. `spare` paths more may end there; at the `known` solutions others do.
+fn verdicts(
+    tracked: &Tracked<'_>,
+    ends: &[&SingularEnd],
+    group: &[usize],
+    known: &[Solution],
+    spare: usize,
+) -> Vec<(Vec<usize>, Verdict)> {
     let verdict = |k: usize| singular::judge(tracked.given, &ends[k].point, group.len() + spare, ends[k].error);
     // The most accurate of the ends stands for all.
     let Some(&best) = group.iter().min_by(|&&a, &&b| ends[a].error.total_cmp(&ends[b].error)) else {
@@ -185,8 +188,12 @@ fn verdicts(tracked: &Tracked<'_>, ends: &[&SingularEnd], group: &[usize], spare
     if are_told_apart(&each, tracked.given.len() > tracked.given.unknowns()) {
         return each;
     }
-    // Solutions so close to each other that the paths seemed to end between them.
-    let nearby = singular::nearby(tracked.given, &ends[best].point, group.len());
+    // Solutions so close to each other that the paths seemed to end between them, after turns in
+    // which they changed places.
+    let turns = group.iter().map(|&k| ends[k].winding).max().unwrap_or(1);
+    let mut nearby = singular::nearby(tracked.given, &ends[best].point, group.len().max(turns));
+    let taken = |point: &[Complex64]| known.iter().any(|s| relative_distance(&s.value, point) <= SAME);
+    nearby.regular.retain(|(point, _)| !taken(point));
     let mut regular = nearby.regular.into_iter();
     for (_, verdict) in &mut each {
         match (regular.next(), &nearby.component) {

@@ -27,8 +27,14 @@ pub(crate) fn solve_member<E: Evaluate>(
     let route = Route { trackers, start: fibre, count: fibre.len(), target, excess: &excess, options, monitor };
     let ends = follow(route, false);
     let expanded = if !ends.singular.is_empty() { expanded(family, target) } else { None };
-    let tracked =
-        expanded.as_ref().map(|(given, system, target)| Tracked { given, system, target, exact: true, monitor });
+    let tracked = expanded.as_ref().map(|(given, system, target)| Tracked {
+        given,
+        system,
+        target,
+        line: None,
+        exact: true,
+        monitor,
+    });
     let found = classify(tracked.as_ref(), &ends, &excess, options.paths.coincidence);
     let interrupted = monitor.is_cancelled() && found.lost > 0;
     Solutions {

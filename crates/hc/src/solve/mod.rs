@@ -5,6 +5,7 @@ mod conditioned;
 mod equations;
 mod error;
 mod excess;
+mod infinity;
 mod judged;
 mod member;
 mod options;
@@ -30,6 +31,7 @@ use classify::{Classified, Tracked, classify};
 use conditioned::conditioned;
 use equations::Equations;
 use excess::Excess;
+use infinity::Line;
 use num_complex::Complex64;
 use paths::{Route, follow};
 use poly::{Exact, ExpandLimits, Polynomial, System};
@@ -127,7 +129,8 @@ pub(crate) fn solve_polynomials(
         if !ends.abandoned {
             start_systems += 1;
             retracked += ends.retracked;
-            let tracked = Tracked { given: &given, system: &from.system, target, exact, monitor };
+            let line = Line { supports: &from.equations.supports, target };
+            let tracked = Tracked { given: &given, system: &from.system, target, line: Some(line), exact, monitor };
             let found = classify(Some(&tracked), &ends, &excess, options.paths.coincidence);
             let this = Best { start: Some(from.kind), tracked: from.paths, found };
             best = if start_systems == 1 { this } else { best.joined(this) };

@@ -398,15 +398,12 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
     }
 
     fn finish(mut self, retracked: usize, abandoned: bool) -> Ends {
-        let mut infinite = vec![0; self.directions.len()];
+        let infinite = self.infinite();
         let (mut lost, mut dropped) = (0, 0);
         for path in 0..self.ends.count {
             let end = self.ends.get(path);
             lost += usize::from(end == End::LOST);
             dropped += usize::from(end == End::DROPPED);
-            if let Some(paths) = end.direction().and_then(|direction| infinite.get_mut(direction)) {
-                *paths += 1;
-            }
         }
         let directions = self.directions.into_iter().map(|((v, winding), k)| (v, winding, infinite[k as usize]));
         let directions = directions.filter(|(_, _, paths)| *paths > 0).collect();
@@ -443,10 +440,33 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
                 }
             }
         }
-        which.extend((0..self.ends.count).filter(|&path| self.ends.get(path) == End::LOST));
+        let partial = self.partial_cycles();
+        let is_doubtful = |end: End| end == End::LOST || end.direction().is_some_and(|d| partial.contains(&d));
+        which.extend((0..self.ends.count).filter(|&path| is_doubtful(self.ends.get(path))));
         which.sort_unstable();
         which.dedup();
         which
+    }
+}
+
+impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
+    /// How many paths go in each direction, by its number.
+    fn infinite(&mut self) -> Vec<usize> {
+        let mut infinite = vec![0; self.directions.len()];
+        for path in 0..self.ends.count {
+            let direction = self.ends.get(path).direction();
+            if let Some(paths) = direction.and_then(|direction| infinite.get_mut(direction)) {
+                *paths += 1;
+            }
+        }
+        infinite
+    }
+
+    /// The numbers of directions to infinity with cycles that are not whole.
+    fn partial_cycles(&mut self) -> Vec<usize> {
+        let infinite = self.infinite();
+        let numbers = self.directions.iter().map(|((_, winding), &number)| (*winding, number as usize));
+        numbers.filter(|&(winding, k)| !infinite[k].is_multiple_of(winding)).map(|(_, k)| k).collect()
     }
 }
 

@@ -1,0 +1,61 @@
+//! Directions in which paths to infinity may go.
+
+use super::paths::Ends;
+use num_complex::Complex64;
+
+/// A system whose coefficients move along a straight line to the target.
+pub(super) struct Line<'a> {
+    /// Exponent vectors of the terms of each equation.
+    pub(super) supports: &'a [Vec<Vec<i32>>],
+    /// The coefficients at the end, of all equations in one row; some may be zero.
+    pub(super) target: &'a [Complex64],
+}
+
+impl Line<'_> {
+    /// The number of paths in `all` that cannot have ended as they seem to: in a direction in which
+    /// none go, or in cycles that are not whole.
+    pub(super) fn impossible(&self, all: &Ends) -> usize {
+        let impossible = |(valuations, winding, paths): &&(Vec<i64>, usize, usize)| {
+            !paths.is_multiple_of(*winding) || !self.is_balanced(valuations, *winding)
+        };
+        all.directions.iter().filter(impossible).map(|(_, _, paths)| paths).sum()
+    }
+
+    /// Whether the leading terms of every equation can cancel where unknowns grow like powers
+    /// `t^(valuation / winding)`: there are two of them at least. Terms whose coefficient vanishes
+    /// at the end have it in first order of `t`.
+    fn is_balanced(&self, valuations: &[i64], winding: usize) -> bool {
+        let mut coefficients = self.target.iter();
+        self.supports.iter().all(|support| {
+            let (mut least, mut count) = (i64::MAX, 0);
+            for (point, c) in support.iter().zip(&mut coefficients) {
+                let order: i64 = point.iter().zip(valuations).map(|(&a, &v)| i64::from(a).saturating_mul(v)).sum();
+                let order = if *c == Complex64::new(0.0, 0.0) { order.saturating_add(winding as i64) } else { order };
+                match order.cmp(&least) {
+                    std::cmp::Ordering::Less => (least, count) = (order, 1),
+                    std::cmp::Ordering::Equal => count += 1,
+                    std::cmp::Ordering::Greater => {}
+                }
+            }
+            count > 1
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Line;
+    use num_complex::Complex64;
+
+    #[test]
+    fn leading_terms_must_cancel() {
+        // x^2 + x y + 0, x y - 1: where x falls like t, y grows like 1 / t.
+        let supports = [vec![vec![2, 0], vec![1, 1], vec![0, 0]], vec![vec![1, 1], vec![0, 0]]];
+        let target = [1.0, 1.0, 0.0, 1.0, -1.0].map(|c| Complex64::new(c, 0.0));
+        let line = Line { supports: &supports, target: &target };
+        assert!(!line.is_balanced(&[1, -1], 1) && !line.is_balanced(&[-1, -1], 1));
+        // x^2 + x y is t^2 + 1, and the missing constant is of order t.
+        let line = Line { supports: &supports[..1], target: &target };
+        assert!(line.is_balanced(&[-1, -1], 1) && line.is_balanced(&[1, 1], 2) && !line.is_balanced(&[-1, 0], 1));
+    }
+}
