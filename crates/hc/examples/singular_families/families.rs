@@ -182,8 +182,7 @@ fn multiple_beside_regular(draw: &mut Draw) -> Case {
         let moved = |line: [i64; 3], by: i64| [line[0], line[1], line[2] + by];
         let far = moved(u, 4 * c);
         // Where `u = -4 c`, `v` is 2 or -2.
-        let points =
-            [(u, v), (l, v), (far, moved(v, 2)), (far, moved(v, -2)), (l, far)].map(|(a, b)| crossing(a, b));
+        let points = [(u, v), (l, v), (far, moved(v, 2)), (far, moved(v, -2)), (l, far)].map(|(a, b)| crossing(a, b));
         let Some(points) = points.into_iter().collect::<Option<Vec<_>>>().filter(|p| apart(p)) else { continue };
         let multiplicities = [m as usize, m as usize, 1, 1, 1];
         let (u, v, far, l) = (show(u), show(v), show(far), show(l));

@@ -2,6 +2,7 @@
 
 use super::paths::Ends;
 use num_complex::Complex64;
+use std::cmp::Ordering;
 
 /// A system whose coefficients move along a straight line to the target.
 pub(super) struct Line<'a> {
@@ -23,21 +24,23 @@ impl Line<'_> {
 
     /// Whether the leading terms of every equation can cancel where unknowns grow like powers
     /// `t^(valuation / winding)`: there are two of them at least. Terms whose coefficient vanishes
-    /// at the end have it in first order of `t`.
+    /// at the end have it in first order of `t`. Unknowns of valuation zero may vanish as well, too
+    /// fast to be seen, and terms with them cancel with any.
     fn is_balanced(&self, valuations: &[i64], winding: usize) -> bool {
         let mut coefficients = self.target.iter();
         self.supports.iter().all(|support| {
-            let (mut least, mut count) = (i64::MAX, 0);
+            let (mut least, mut cancels) = (i64::MAX, false);
             for (point, c) in support.iter().zip(&mut coefficients) {
                 let order: i64 = point.iter().zip(valuations).map(|(&a, &v)| i64::from(a).saturating_mul(v)).sum();
                 let order = if *c == Complex64::new(0.0, 0.0) { order.saturating_add(winding as i64) } else { order };
+                let may_vanish = point.iter().zip(valuations).any(|(&a, &v)| a != 0 && v == 0);
                 match order.cmp(&least) {
-                    std::cmp::Ordering::Less => (least, count) = (order, 1),
-                    std::cmp::Ordering::Equal => count += 1,
-                    std::cmp::Ordering::Greater => {}
+                    Ordering::Less => (least, cancels) = (order, may_vanish),
+                    Ordering::Equal => cancels = true,
+                    Ordering::Greater => {}
                 }
             }
-            count > 1
+            cancels
         })
     }
 }
@@ -57,5 +60,7 @@ mod tests {
         // x^2 + x y is t^2 + 1, and the missing constant is of order t.
         let line = Line { supports: &supports[..1], target: &target };
         assert!(line.is_balanced(&[-1, -1], 1) && line.is_balanced(&[1, 1], 2) && !line.is_balanced(&[-1, 0], 1));
+        // Beside x y, what is not seen of x may count.
+        assert!(line.is_balanced(&[0, -1], 1));
     }
 }

@@ -11,7 +11,7 @@ use crate::refine::Refiner;
 use crate::singular::{self, Verdict, Why};
 use crate::threads::{IntoParallelRefIterator, ParallelIterator};
 use num_complex::Complex64;
-use poly::{Exact, Polynomial, SparseSystem};
+use poly::{Exact, Polynomial};
 
 /// Imaginary parts of singular solutions up to this share of the point count as zero.
 const REAL_SINGULAR: f64 = 1e-7;
@@ -247,13 +247,11 @@ fn solution(
 pub(super) fn univariate(
     polynomials: &[Polynomial<Exact>],
     units: &[i64],
-    given: &singular::Given,
-    system: &SparseSystem,
-    target: &[Complex64],
+    tracked: &Tracked<'_>,
 ) -> Option<Vec<Solution>> {
     let [polynomial] = polynomials else { return None };
-    let (_, degree) = given.univariate_degrees()?;
-    let mut refiner = Refiner::new(system);
+    let (_, degree) = tracked.given.univariate_degrees()?;
+    let mut refiner = Refiner::new(tracked.system);
     let mut found: Vec<Solution> = Vec::new();
     for (part, multiplicity) in singular::squarefree(polynomial)? {
         // The roots of each part are simple.
@@ -268,9 +266,9 @@ pub(super) fn univariate(
             if found.iter().any(|s| relative_distance(&s.value, &point) <= SAME) {
                 return None;
             }
-            let condition = refiner.judged(target, &point).condition;
+            let condition = refiner.judged(tracked.target, &point).condition;
             let real = is_real(&point, if multiplicity > 1 { REAL_SINGULAR } else { REAL });
-            let residual = singular::residual(given, &point);
+            let residual = singular::residual(tracked.given, &point);
             let solution = solution(&point, multiplicity, multiplicity, residual, condition, real);
             found.push(Solution { singular: multiplicity > 1, ..solution });
         }

@@ -99,7 +99,6 @@ pub(crate) fn solve_polynomials(
     let exact = equations.exact && polynomials.len() > 1;
     let units = equations.units();
     let given = Given::new(polynomials, units.clone());
-    // Of a polynomial in one unknown there is a better way to all roots than other paths.
     let univariate = given.univariate_degrees().filter(|_| !options.torus_only);
     let excess = Excess::new(&given, options.torus_only);
     let nothing = Solutions { interrupted: true, ..Solutions::default() };
@@ -131,7 +130,20 @@ pub(crate) fn solve_polynomials(
             retracked += ends.retracked;
             let line = Line { supports: &from.equations.supports, target };
             let tracked = Tracked { given: &given, system: &from.system, target, line: Some(line), exact, monitor };
-            let found = classify(Some(&tracked), &ends, &excess, options.paths.coincidence);
+            // Of a polynomial in one unknown there is a better way to all roots than other paths.
+            let whole = univariate.is_none_or(|(_, degree)| ends.lost == 0 && ends.regular.len() == degree);
+            let roots = (!whole && !monitor.is_cancelled())
+                .then(|| judged::univariate(polynomials, &units, &tracked))
+                .flatten();
+            let found = match roots {
+                Some(roots) => Classified { solutions: roots, ..Classified::default() },
+                None => {
+                    let found = classify(Some(&tracked), &ends, &excess, options.paths.coincidence);
+                    // All paths end at roots, those that seem to go to infinity too.
+                    let astray = if univariate.is_some() { found.infinite } else { 0 };
+                    Classified { lost: found.lost + astray, infinite: found.infinite - astray, ..found }
+                }
+            };
             let this = Best { start: Some(from.kind), tracked: from.paths, found };
             best = if start_systems == 1 { this } else { best.joined(this) };
             let last = start_systems > options.restarts || univariate.is_some();
@@ -140,17 +152,6 @@ pub(crate) fn solve_polynomials(
             }
         }
         direct = None;
-    }
-    if let Some((_, degree)) = univariate
-        && start_systems > 0
-        && !monitor.is_cancelled()
-        && (degree != best.found.solutions.len() || best.found.lost > 0)
-    {
-        best.found = match judged::univariate(polynomials, &units, &given, &starts.system, &starts.target) {
-            Some(roots) => Classified { solutions: roots, ..Classified::default() },
-            // All paths end at roots, those that seem to go to infinity too.
-            None => Classified { lost: best.found.lost + best.found.infinite, infinite: 0, ..best.found },
-        };
     }
     let whole = start_systems > 0 && best.found.lost == 0;
     let Best { start, tracked, found } = best;
