@@ -104,7 +104,9 @@ pub(crate) fn endgame<'a, E: Evaluate>(
             )
             .collect();
         for ((result, _), end) in ends.iter().zip(polished) {
-            walkers[live[result.path]].advance(end, options);
+            let walker = &mut walkers[live[result.path]];
+            walker.advance(end, options);
+            walker.spend(result.accepted + result.rejected, tracker.max_steps);
         }
     }
 }

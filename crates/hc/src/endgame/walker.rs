@@ -51,6 +51,8 @@ pub(super) struct Walker {
     turns: usize,
     max_turns: usize,
     shrunk: u32,
+    /// Steps of all legs so far.
+    steps: usize,
     /// Whether the next leg leads to zero.
     going_home: bool,
     noise: f64,
@@ -75,6 +77,7 @@ impl Walker {
             turns: options.turns.min(max_turns).max(1),
             max_turns,
             shrunk: 0,
+            steps: 0,
             going_home: false,
             noise: 0.0,
             blur: Vec::new(),
@@ -131,6 +134,14 @@ impl Walker {
             None if on_loop => self.shrink(options),
             None if self.middle.is_empty() => self.widen(),
             None => self.lose(),
+        }
+    }
+
+    /// Counts the steps of a leg; a path that is not over after so many in all is given up.
+    pub(super) fn spend(&mut self, steps: usize, limit: usize) {
+        self.steps = self.steps.saturating_add(steps);
+        if self.is_live() && self.steps > limit {
+            self.lose();
         }
     }
 

@@ -14,12 +14,12 @@ pub(super) struct Line<'a> {
 
 impl Line<'_> {
     /// The number of paths in `all` that cannot have ended as they seem to: in a direction in which
-    /// none go, or in cycles that are not whole.
+    /// none go, or in a cycle that is not whole.
     pub(super) fn impossible(&self, all: &Ends) -> usize {
-        let impossible = |(valuations, winding, paths): &&(Vec<i64>, usize, usize)| {
-            !paths.is_multiple_of(*winding) || !self.is_balanced(valuations, *winding)
+        let impossible = |(valuations, winding, paths): &(Vec<i64>, usize, usize)| {
+            if self.is_balanced(valuations, *winding) { paths % winding.max(&1) } else { *paths }
         };
-        all.directions.iter().filter(impossible).map(|(_, _, paths)| paths).sum()
+        all.directions.iter().map(impossible).sum()
     }
 
     /// Whether the leading terms of every equation can cancel where unknowns grow like powers

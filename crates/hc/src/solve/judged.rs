@@ -104,6 +104,9 @@ impl Classified {
         for mut solution in std::mem::take(&mut self.solutions) {
             let steady = tracked.exact && solution.condition < STEADY && solution.residual < ACCURATE_RESIDUAL;
             if steady || !singular::is_moved(tracked.given, &solution.value) {
+                if solution.residual >= ACCURATE_RESIDUAL {
+                    solution.residual = singular::residual(tracked.given, &solution.value);
+                }
                 kept.push(solution);
                 continue;
             }

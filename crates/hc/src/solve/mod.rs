@@ -33,7 +33,7 @@ use equations::Equations;
 use excess::Excess;
 use infinity::Line;
 use num_complex::Complex64;
-use paths::{Route, follow};
+use paths::{Route, are_hopeless, follow};
 use poly::{Exact, ExpandLimits, Polynomial, System};
 use solutions::Member;
 use start::Starts;
@@ -146,7 +146,8 @@ pub(crate) fn solve_polynomials(
             };
             let this = Best { start: Some(from.kind), tracked: from.paths, found };
             best = if start_systems == 1 { this } else { best.joined(this) };
-            let last = start_systems > options.restarts || univariate.is_some();
+            let hopeless = univariate.is_some() || are_hopeless(ends.lost, count);
+            let last = start_systems > options.restarts || hopeless;
             if best.found.lost == 0 || last || monitor.is_cancelled() {
                 break;
             }

@@ -64,6 +64,12 @@ impl EndList {
     }
 }
 
+/// Whether so many paths of `count` are lost or in doubt after the first round that stricter steps
+/// or another start system would not help.
+pub(super) fn are_hopeless(lost: usize, count: usize) -> bool {
+    lost >= HOPELESS && lost > count - count / 4
+}
+
 /// How all paths end. Of paths to infinity no points are kept.
 pub(super) struct Ends {
     /// Paths whose end is not known.
@@ -91,6 +97,8 @@ const CROSSED: f64 = 1e-11;
 const CHUNK: usize = 1 << 11;
 /// Paths that go through the endgame at a time: there each takes more memory than on its way.
 const PORTION: usize = 1 << 9;
+/// Fewer lost paths are never given up.
+const HOPELESS: usize = 32;
 /// Ends that one thread refines at a time, at least.
 const LEAST: usize = 8;
 /// On trial, as many paths are followed first.
@@ -192,6 +200,11 @@ impl<E: Evaluate, S: Source<E>> Work for Stage<'_, '_, E, S> {
         let irregular = (self.round.done - self.round.regular) * IRREGULAR > self.round.done;
         let abandoned = self.trial && round.is_first() && irregular && !self.route.monitor.is_cancelled();
         if abandoned { Flow::Abandoned } else { Flow::On }
+    }
+
+    fn is_hopeless(&mut self, level: u32, before: usize, _: usize) -> bool {
+        // In one unknown there are better ways to all roots than tracking again.
+        level == 0 && (self.route.trackers.system().variables() == 1 || are_hopeless(before, self.ends.count))
     }
 
     fn doubtful(&mut self, (): &mut (), which: &mut Vec<usize>) {
@@ -398,12 +411,15 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
     }
 
     fn finish(mut self, retracked: usize, abandoned: bool) -> Ends {
-        let infinite = self.infinite();
+        let mut infinite = vec![0; self.directions.len()];
         let (mut lost, mut dropped) = (0, 0);
         for path in 0..self.ends.count {
             let end = self.ends.get(path);
             lost += usize::from(end == End::LOST);
             dropped += usize::from(end == End::DROPPED);
+            if let Some(paths) = end.direction().and_then(|direction| infinite.get_mut(direction)) {
+                *paths += 1;
+            }
         }
         let directions = self.directions.into_iter().map(|((v, winding), k)| (v, winding, infinite[k as usize]));
         let directions = directions.filter(|(_, _, paths)| *paths > 0).collect();
@@ -440,33 +456,10 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
                 }
             }
         }
-        let partial = self.partial_cycles();
-        let is_doubtful = |end: End| end == End::LOST || end.direction().is_some_and(|d| partial.contains(&d));
-        which.extend((0..self.ends.count).filter(|&path| is_doubtful(self.ends.get(path))));
+        which.extend((0..self.ends.count).filter(|&path| self.ends.get(path) == End::LOST));
         which.sort_unstable();
         which.dedup();
         which
-    }
-}
-
-impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
-    /// How many paths go in each direction, by its number.
-    fn infinite(&mut self) -> Vec<usize> {
-        let mut infinite = vec![0; self.directions.len()];
-        for path in 0..self.ends.count {
-            let direction = self.ends.get(path).direction();
-            if let Some(paths) = direction.and_then(|direction| infinite.get_mut(direction)) {
-                *paths += 1;
-            }
-        }
-        infinite
-    }
-
-    /// The numbers of directions to infinity with cycles that are not whole.
-    fn partial_cycles(&mut self) -> Vec<usize> {
-        let infinite = self.infinite();
-        let numbers = self.directions.iter().map(|((_, winding), &number)| (*winding, number as usize));
-        numbers.filter(|&(winding, k)| !infinite[k].is_multiple_of(winding)).map(|(_, k)| k).collect()
     }
 }
 
