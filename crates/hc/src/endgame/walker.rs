@@ -17,6 +17,8 @@ const MAX_SAMPLES_WIDE: usize = 16;
 /// Where rounded coefficients move a coordinate by more than this share of its size, a wider circle
 /// is better.
 const SHARP: f64 = 1e-6;
+/// Where they do by more than this on the widest circle too, samples would tell nothing.
+const HOPELESS: f64 = 1e-2;
 /// Relative distance below which a loop counts as closed, unless the samples are less accurate than
 /// that.
 const CLOSED: f64 = 1e-10;
@@ -151,9 +153,13 @@ impl Walker {
             self.middle = point.clone();
         }
         let largest = point.iter().map(|z| z.norm()).fold(0.0, f64::max);
-        let blurred = point.iter().zip(&blur).any(|(z, b)| *b > SHARP * z.norm().max(1e-4 * largest));
-        if blurred && self.widen_to().is_some_and(|wider| wider <= options.start) {
+        let blurred = |share: f64| point.iter().zip(&blur).any(|(z, b)| *b > share * z.norm().max(1e-4 * largest));
+        if blurred(SHARP) && self.widen_to().is_some_and(|wider| wider <= options.start) {
             self.widen();
+            return;
+        }
+        if blurred(HOPELESS) {
+            self.lose();
             return;
         }
         let s = -self.radius.ln();

@@ -54,8 +54,8 @@ pub(crate) enum Why {
     /// Numbers that are neither zero nor clearly different from zero.
     #[error("ranks are not clear to 300 digits")]
     Unclear,
-    /// The work that a solve may take for its ends is done.
-    #[error("too many ends need much work to be judged; this one was not looked at")]
+    /// The work that a solve may take for its ends, or for one, is done.
+    #[error("too much work is needed to judge this end, or was needed for others")]
     TooMuch,
     /// The work was cancelled.
     #[error("interrupted")]
@@ -77,6 +77,8 @@ const NEAR: f64 = 1e-7;
 const NEAR_ERRORS: f64 = 1e2;
 /// The same for singular ones, whose ends are less accurate.
 const NEAR_SINGULAR: f64 = 1e-3;
+/// Work at one point in one precision, in products of complex double-doubles: about three seconds.
+const WORK: f64 = 3e7;
 /// Relative values of equations from which a point is none of their solutions.
 const NOT_ZERO: f64 = 1e-4;
 
@@ -102,6 +104,9 @@ pub(crate) fn judge(given: &Given, point: &[Complex64], paths: usize, error: f64
         match examine(given, point, paths) {
             Ok(verdict) => return verdict,
             Err(reason) => why = reason,
+        }
+        if why == Why::TooMuch {
+            return Verdict::Unresolved(why);
         }
         if why == Why::TooLarge && point.len() > 1 {
             break;
@@ -246,6 +251,9 @@ fn multiple<S: Precision>(given: &Given, point: &[Complex64], paths: usize) -> R
     for order in ORDERS.into_iter().take_while(|&order| order <= 2 * limit) {
         let mut tried: Vec<Profile> = Vec::new();
         for tolerance in TOLERANCES {
+            if local.used() > WORK {
+                return Err(Why::TooMuch);
+            }
             let Some(found) = deflated(&local, &start, order, tolerance, &mut tried) else { continue };
             if found.profile.is_regular() || distance(&start, &found.point) > NEAR_SINGULAR.log2() {
                 continue;

@@ -54,8 +54,13 @@ impl Equations {
             return Err(SolveError::Underdetermined { equations: polynomials.len(), unknowns: names.to_vec() });
         }
         let exponents = unknown_scales(unknowns, &supports, &coefficients);
-        for (support, coefficients) in supports.iter().zip(&mut coefficients) {
+        for (i, (support, coefficients)) in supports.iter().zip(&mut coefficients).enumerate() {
             *coefficients = scaled(support, coefficients, &exponents);
+            let decades = decades(coefficients);
+            if coefficients.len() > DENSE && decades > SPREAD {
+                let (terms, decades) = (coefficients.len(), decades.min(600.0) as usize);
+                return Err(SolveError::Spread { equation: i + 1, terms, decades });
+            }
         }
         let scale = exponents.iter().map(|&e| 2f64.powi(e)).collect();
         Ok(Equations { unknowns, supports, coefficients, scale, exact })
@@ -143,6 +148,16 @@ fn scaled(support: &[Vec<i32>], coefficients: &[Complex64], exponents: &[i32]) -
     coefficients.iter().zip(&shifts).map(|(c, &s)| c * scale(s - largest).0 * scale(s - largest).1).collect()
 }
 
+/// Equations of more terms are refused if their coefficients, scaled, differ by more decades.
+const DENSE: usize = 1000;
+const SPREAD: f64 = 30.0;
+
+/// The decimal logarithm of the quotient of the largest and the smallest size.
+fn decades(coefficients: &[Complex64]) -> f64 {
+    let sizes = || coefficients.iter().map(|c| c.norm().log10());
+    sizes().fold(f64::NEG_INFINITY, f64::max) - sizes().fold(f64::INFINITY, f64::min)
+}
+
 /// Spread of the logarithms (base 2) of coefficients in an equation below which unknowns are left
 /// as they are.
 const MILD: f64 = 14.0;
@@ -186,7 +201,7 @@ fn unknown_scales(n: usize, supports: &[Vec<Vec<i32>>], coefficients: &[Vec<Comp
 
 #[cfg(test)]
 mod tests {
-    use super::Equations;
+    use super::{Equations, SolveError};
     use poly::parse::phcpack;
 
     /// Coefficients over 18 decades: what counts is that the spread falls to a few.
@@ -198,5 +213,14 @@ mod tests {
         let sizes: Vec<f64> = equations.coefficients.iter().flatten().map(|c| c.norm().log10()).collect();
         let spread = sizes.iter().copied().fold(f64::MIN, f64::max) - sizes.iter().copied().fold(f64::MAX, f64::min);
         assert!(spread < 6.0, "{sizes:?}");
+    }
+
+    #[test]
+    fn powers_of_sums_are_refused_with_a_remedy() {
+        let system = phcpack("2\n(x+y+1)^100-1;\nx-y;").unwrap();
+        let polynomials = system.expand(&Default::default()).unwrap();
+        let error = Equations::new(&polynomials, system.variables()).unwrap_err();
+        assert!(matches!(error, SolveError::Spread { equation: 1, terms: 5150, .. }), "{error}");
+        assert!(error.to_string().contains("new unknown"), "{error}");
     }
 }

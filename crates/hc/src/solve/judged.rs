@@ -135,8 +135,9 @@ const ACCURATE_RESIDUAL: f64 = 1e-14;
 /// How far rounded coefficients may move a regular solution that is still told apart from others.
 const ROUNDED: f64 = 1e-4;
 
-/// Groups that are judged at a time.
+/// Groups that are judged at a time, fewer in systems of more terms than that.
 const BATCH: usize = 64;
+const TERMS: usize = 256;
 /// Work that a solve takes for its singular ends, in products of complex double-doubles, but for
 /// the last batch: about half a minute of a processor.
 const WORK: u64 = 300_000_000;
@@ -151,7 +152,8 @@ fn judged_groups(
     spare: usize,
 ) -> Vec<(Vec<usize>, Verdict)> {
     let mut judged = Vec::new();
-    for batch in groups.chunks(BATCH) {
+    let size = BATCH / (1 + tracked.target.len() / TERMS).min(BATCH);
+    for batch in groups.chunks(size.max(1)) {
         let stop = if tracked.monitor.is_cancelled() {
             Some(Why::Interrupted)
         } else {
@@ -184,6 +186,7 @@ fn verdicts(
     };
     let own = match verdict(best) {
         whole @ (Verdict::Isolated { .. } | Verdict::OnComponent { .. }) => return vec![(group.to_vec(), whole)],
+        own @ Verdict::Unresolved(Why::TooMuch) => return group.iter().map(|&k| (vec![k], own.clone())).collect(),
         own => own,
     };
     let mut each: Vec<(Vec<usize>, Verdict)> =
