@@ -96,7 +96,8 @@ pub(crate) fn solve_polynomials(
         Cow::Borrowed(_) => equations,
         Cow::Owned(rewritten) => Equations::new(&rewritten, names)?,
     };
-    let exact = equations.exact && polynomials.len() > 1;
+    // A single equation has no condition number to tell, and combinations are rounded.
+    let exact = equations.exact && (2..=names.len()).contains(&polynomials.len());
     let units = equations.units();
     let given = Given::new(polynomials, units.clone());
     let univariate = given.univariate_degrees().filter(|_| !options.torus_only);
