@@ -5,7 +5,6 @@ use super::number::{Number, largest};
 use super::series::Basis;
 use num_complex::Complex64;
 use poly::{ComplexDd, ComplexMulti, Exact, Polynomial};
-use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -173,7 +172,7 @@ impl Given {
             let top = if top.is_finite() { top.ceil() as i64 } else { 0 };
             coefficients.push(numbers.iter().zip(&shifts).map(|(c, s)| c.shifted(s - top)).collect());
         }
-        Local { given: self, units, coefficients, used: Cell::new(0.0) }
+        Local { given: self, units, coefficients }
     }
 }
 
@@ -190,8 +189,6 @@ pub(crate) struct Local<'a, S> {
     given: &'a Given,
     units: Vec<i64>,
     coefficients: Vec<Vec<S>>,
-    /// Work done with these.
-    used: Cell<f64>,
 }
 
 impl<S: Number> Local<'_, S> {
@@ -203,13 +200,7 @@ impl<S: Number> Local<'_, S> {
     /// Notes as much work, in products.
     pub(crate) fn spend(&self, products: f64) {
         let weight = (S::BITS / ComplexDd::BITS).powi(2);
-        self.used.set(self.used.get() + products * weight);
         self.given.spent.fetch_add((products * weight) as u64, Ordering::Relaxed);
-    }
-
-    /// The work done here so far, as in [`Given::spent`].
-    pub(crate) fn used(&self) -> f64 {
-        self.used.get()
     }
 
     /// Numbers of factors in all terms.

@@ -54,8 +54,8 @@ pub(crate) enum Why {
     /// Numbers that are neither zero nor clearly different from zero.
     #[error("ranks are not clear to 300 digits")]
     Unclear,
-    /// The work that a solve may take for its ends, or for one, is done.
-    #[error("too much work is needed to judge this end, or was needed for others")]
+    /// The work that a solve may take for its ends is done.
+    #[error("too many ends need much work to be judged; this one was not looked at")]
     TooMuch,
     /// The work was cancelled.
     #[error("interrupted")]
@@ -77,8 +77,6 @@ const NEAR: f64 = 1e-7;
 const NEAR_ERRORS: f64 = 1e2;
 /// The same for singular ones, whose ends are less accurate.
 const NEAR_SINGULAR: f64 = 1e-3;
-/// Work at one point in one precision, in products of complex double-doubles: about three seconds.
-const WORK: f64 = 3e7;
 /// Relative values of equations from which a point is none of their solutions.
 const NOT_ZERO: f64 = 1e-4;
 
@@ -104,9 +102,6 @@ pub(crate) fn judge(given: &Given, point: &[Complex64], paths: usize, error: f64
         match examine(given, point, paths) {
             Ok(verdict) => return verdict,
             Err(reason) => why = reason,
-        }
-        if why == Why::TooMuch {
-            return Verdict::Unresolved(why);
         }
         if why == Why::TooLarge && point.len() > 1 {
             break;
@@ -193,6 +188,8 @@ pub(crate) fn solves(given: &Given, point: &[Complex64]) -> bool {
 
 /// Relative corrections up to this size are due to rounding the point.
 const STEADY: f64 = 1e-13;
+/// Pivots of the Jacobian, as logarithms to base 2, that may be due to that as well.
+const FAINT: f64 = -36.0;
 
 /// Whether the given equations move a regular solution of rounded ones by more than its own
 /// rounding error, or do not determine it.
@@ -206,7 +203,7 @@ pub(crate) fn is_moved(given: &Given, point: &[Complex64]) -> bool {
     }
     let moved: Vec<Complex64> = near.unscaled(&x).iter().map(Number::to_c64).collect();
     // Written so that what is no number is moved.
-    !(pivots.rank() == point.len() && relative_distance(point, &moved) <= STEADY)
+    !(pivots.rank() == point.len() && pivots.smallest > FAINT && relative_distance(point, &moved) <= STEADY)
 }
 
 /// The regular solution near a point, if there is one to one precision.
@@ -251,9 +248,6 @@ fn multiple<S: Precision>(given: &Given, point: &[Complex64], paths: usize) -> R
     for order in ORDERS.into_iter().take_while(|&order| order <= 2 * limit) {
         let mut tried: Vec<Profile> = Vec::new();
         for tolerance in TOLERANCES {
-            if local.used() > WORK {
-                return Err(Why::TooMuch);
-            }
             let Some(found) = deflated(&local, &start, order, tolerance, &mut tried) else { continue };
             if found.profile.is_regular() || distance(&start, &found.point) > NEAR_SINGULAR.log2() {
                 continue;

@@ -1,3 +1,5 @@
+//! Points whose local structure is known by hand.
+
 use super::{Verdict, judge};
 use crate::singular::equations::Given;
 use num_complex::Complex64;

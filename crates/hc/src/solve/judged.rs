@@ -186,7 +186,6 @@ fn verdicts(
     };
     let own = match verdict(best) {
         whole @ (Verdict::Isolated { .. } | Verdict::OnComponent { .. }) => return vec![(group.to_vec(), whole)],
-        own @ Verdict::Unresolved(Why::TooMuch) => return group.iter().map(|&k| (vec![k], own.clone())).collect(),
         own => own,
     };
     let mut each: Vec<(Vec<usize>, Verdict)> =
