@@ -62,6 +62,9 @@ impl fmt::Display for Progress {
 /// What is called with the progress.
 type Callback = dyn Fn(Progress) + Send + Sync;
 
+/// What is asked whether the work is to stop.
+type Question = dyn Fn(Progress) -> bool + Send + Sync;
+
 #[derive(Default)]
 struct Shared {
     cancelled: AtomicBool,
@@ -69,6 +72,8 @@ struct Shared {
     flag: Option<&'static AtomicBool>,
     /// Called whenever the progress changes.
     callback: Option<Box<Callback>>,
+    /// Asked whenever the work looks whether it is to stop.
+    question: Option<Box<Question>>,
     stage: AtomicU8,
     done: AtomicU64,
     total: AtomicU64,
@@ -126,6 +131,12 @@ impl Monitor {
         Monitor::of(Shared { callback: Some(Box::new(callback)), ..Shared::default() })
     }
 
+    /// A handle on work that stops once `question` answers true. It is asked with the progress, very
+    /// often and from any of its threads: it should look at the time first.
+    pub fn asking(question: impl Fn(Progress) -> bool + Send + Sync + 'static) -> Monitor {
+        Monitor::of(Shared { question: Some(Box::new(question)), ..Shared::default() })
+    }
+
     fn of(shared: Shared) -> Monitor {
         Monitor { shared: Some(Arc::new(shared)), quiet: false }
     }
@@ -147,7 +158,11 @@ impl Monitor {
     /// Whether the work has been asked to stop.
     pub fn is_cancelled(&self) -> bool {
         let set = |flag: &AtomicBool| flag.load(Ordering::Relaxed);
-        self.shared.as_ref().is_some_and(|shared| set(&shared.cancelled) || shared.flag.is_some_and(set))
+        let Some(shared) = &self.shared else { return false };
+        if !set(&shared.cancelled) && shared.question.as_ref().is_some_and(|question| question(self.progress())) {
+            self.cancel();
+        }
+        set(&shared.cancelled) || shared.flag.is_some_and(set)
     }
 
     /// How far the work is. The numbers may be of slightly different instants.
@@ -229,6 +244,14 @@ mod tests {
         calling.enter(Stage::Search, 3);
         calling.add(2, 1);
         assert_eq!(told.load(Ordering::Relaxed), 2);
+        // A question is asked until it is answered with yes.
+        let asked = Arc::new(AtomicU64::new(0));
+        let count = Arc::clone(&asked);
+        let asking = Monitor::asking(move |progress| count.fetch_add(1, Ordering::Relaxed) + progress.done >= 3);
+        assert!(!asking.is_cancelled());
+        asking.add(2, 0);
+        assert!(asking.is_cancelled() && asking.quiet().is_cancelled());
+        assert_eq!(asked.load(Ordering::Relaxed), 2);
         // Nobody watches: nothing to cancel.
         let none = Monitor::default();
         none.cancel();

@@ -1,12 +1,14 @@
 //! `tdoa.calibrate`.
 
+use crate::arrays::array;
 use crate::errors::{Failure, guarded};
 use crate::measured::Table;
 use crate::work::{Done, How, run, whole};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use serde::Serialize;
-use tdoa::{CalibrateError, CalibrateOptions, Calibration, KnownDistance, ReceiverDelays, calibrate_with};
+use tdoa::{CalibrateError, CalibrateOptions, Calibration, KnownDistance, ReceiverDelays, Unfinished, calibrate_with};
 
 /// Settings as Python gives them.
 #[derive(FromPyObject)]
@@ -63,8 +65,8 @@ struct Unit {
     metres: f64,
 }
 
-/// Calibrates, and gives the JSON that the program writes; `None` as partial result, for the search
-/// cannot be cut short.
+/// Calibrates, and gives the JSON that the program writes; as partial result a dict of the best
+/// network so far, or `None`.
 #[pyfunction]
 pub(crate) fn calibrate<'py>(
     py: Python<'py>,
@@ -80,7 +82,10 @@ pub(crate) fn calibrate<'py>(
             run(py, &how, move |monitor| calibrate_with(&measured, &options, &[], monitor))?;
         let mut calibration = match found {
             Ok(calibration) => calibration,
-            Err(CalibrateError::Cancelled) => return whole(py, py.None().into_bound(py), stopped),
+            Err(CalibrateError::Cancelled(best)) => {
+                let best = best.map(|best| unfinished(py, &best)).transpose()?;
+                return whole(py, best.into_bound_py_any(py)?, stopped);
+            }
             Err(
                 error @ (CalibrateError::Degenerate(_) | CalibrateError::NotFound(_) | CalibrateError::Delays { .. }),
             ) => {
@@ -102,6 +107,19 @@ pub(crate) fn calibrate<'py>(
         json.push('\n');
         whole(py, json.into_bound_py_any(py)?, stopped)
     })
+}
+
+fn unfinished<'py>(py: Python<'py>, best: &Unfinished) -> Result<Bound<'py, PyDict>, Failure> {
+    let found = PyDict::new(py);
+    for (name, points) in [("receivers", &best.receivers), ("transmitters", &best.transmitters)] {
+        let numbers: Vec<f64> = points.iter().flat_map(|point| point.unwrap_or([f64::NAN; 2])).collect();
+        found.set_item(name, array(py, numbers, &[points.len(), 2])?)?;
+    }
+    let offsets: Vec<f64> = best.offsets.iter().map(|offset| offset.unwrap_or(f64::NAN)).collect();
+    found.set_item("offsets", array(py, offsets, &[best.offsets.len()])?)?;
+    found.set_item("starts", best.starts)?;
+    found.set_item("agreeing", best.agreeing)?;
+    Ok(found)
 }
 
 fn parsed(json: &str) -> Result<Calibration, Failure> {

@@ -2,12 +2,13 @@
 //! are caught.
 
 use crate::errors::{Failure, guarded};
-use hc::Monitor;
+use hc::{Monitor, Progress};
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::thread::ThreadId;
 use std::time::{Duration, Instant};
 
 /// How often signals are looked for: an interrupt is to end the work within a tenth of a second.
@@ -71,7 +72,7 @@ pub(crate) struct Done<R> {
     pub(crate) seconds: f64,
 }
 
-/// Runs work on threads of its own.
+/// Runs work: on threads of its own, or on the thread that calls where that is to do it alone.
 ///
 /// # Errors
 /// A wrong number of threads, a panic, or an exception of the progress.
@@ -80,47 +81,104 @@ pub(crate) fn run<R: Send + 'static>(
     how: &How,
     work: impl FnOnce(&Monitor) -> R + Send + 'static,
 ) -> Result<Done<R>, Failure> {
-    let pool = pool(how.threads)?;
-    let monitor = Monitor::watched();
-    let (sender, receiver) = channel();
-    let watched = monitor.clone();
-    pool.spawn(move || {
+    let timed = move |monitor: &Monitor| {
         let begun = Instant::now();
-        let ended = catch_unwind(AssertUnwindSafe(|| work(&watched)));
-        let ended = ended.map(|result| (result, begun.elapsed().as_secs_f64()));
-        // Nobody waits any more where Python has gone.
-        let _ = sender.send(ended);
-    });
-    let mut told = Instant::now();
-    let mut stopped = None;
-    // `Receiver` is for one thread; whoever releases the lock must not move.
-    let receiver = Mutex::new(receiver);
-    let ended = loop {
-        let wait = || receiver.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(TICK);
-        match py.detach(wait) {
-            Ok(ended) => break ended,
-            Err(RecvTimeoutError::Disconnected) => {
-                return Err(Failure::Internal("the threads of the work have gone".to_owned()));
-            }
-            Err(RecvTimeoutError::Timeout) if stopped.is_some() => {}
-            Err(RecvTimeoutError::Timeout) => {
-                let mut heard = py.check_signals();
-                if let Some(progress) = how.progress.as_ref().filter(|_| heard.is_ok() && told.elapsed() >= TOLD) {
-                    let now = monitor.progress();
-                    heard = progress.call1(py, (now.to_string(), now.done, now.total)).map(|_| ());
-                    told = Instant::now();
-                }
-                if let Err(error) = heard {
-                    monitor.cancel();
-                    stopped = Some(error);
-                }
-            }
+        let ended = catch_unwind(AssertUnwindSafe(|| work(monitor)));
+        ended.map(|result| (result, begun.elapsed().as_secs_f64()))
+    };
+    let (ended, stopped) = match (how.threads == Some(1)).then(alone).flatten() {
+        Some(pool) => {
+            let (monitor, stopped) = heeding(py, how);
+            let ended = py.detach(|| pool.install(|| timed(&monitor)));
+            (ended, stopped.lock().unwrap_or_else(PoisonError::into_inner).take())
         }
+        None => beside(py, how, timed)?,
     };
     // An interrupt that came with the end.
     let stopped = stopped.or_else(|| py.check_signals().err());
     let (result, seconds) = ended.map_err(|payload| Failure::panicked(payload.as_ref()))?;
     Ok(Done { result, stopped, seconds })
+}
+
+/// A pool of the calling thread alone: work of one thread need not wait for another to wake, twice.
+/// `None` if another thread has been the first to ask.
+fn alone() -> Option<&'static ThreadPool> {
+    static ALONE: OnceLock<Option<(ThreadId, ThreadPool)>> = OnceLock::new();
+    let this = std::thread::current().id();
+    let pool = || ThreadPoolBuilder::new().num_threads(1).use_current_thread().build().ok().map(|pool| (this, pool));
+    ALONE.get_or_init(pool).as_ref().filter(|(thread, _)| *thread == this).map(|(_, pool)| pool)
+}
+
+/// Looks for signals, and tells how far the work is.
+fn heed(py: Python<'_>, progress: Option<&Py<PyAny>>, now: Progress, told: &mut Instant) -> PyResult<()> {
+    py.check_signals()?;
+    if let Some(progress) = progress.filter(|_| told.elapsed() >= TOLD) {
+        progress.call1(py, (now.to_string(), now.done, now.total))?;
+        *told = Instant::now();
+    }
+    Ok(())
+}
+
+/// The exception that has stopped work.
+type Stopped = Arc<Mutex<Option<PyErr>>>;
+
+/// A monitor of work on this thread: where the work asks whether it is to stop, signals are heeded.
+fn heeding(py: Python<'_>, how: &How) -> (Monitor, Stopped) {
+    let stopped = Stopped::default();
+    let (kept, progress) = (stopped.clone(), how.progress.as_ref().map(|progress| progress.clone_ref(py)));
+    let times = Mutex::new((Instant::now(), Instant::now()));
+    let monitor = Monitor::asking(move |now| {
+        let mut times = times.lock().unwrap_or_else(PoisonError::into_inner);
+        let (asked, told) = &mut *times;
+        if asked.elapsed() < TICK {
+            return false;
+        }
+        let heard = Python::attach(|py| heed(py, progress.as_ref(), now, told));
+        *asked = Instant::now();
+        let stop = heard.is_err();
+        *kept.lock().unwrap_or_else(PoisonError::into_inner) = heard.err();
+        stop
+    });
+    (monitor, stopped)
+}
+
+/// What has come of work: its result and time, or what it panicked with.
+type Ended<R> = std::thread::Result<(R, f64)>;
+
+/// Runs work on other threads; this one heeds signals meanwhile.
+fn beside<R: Send + 'static>(
+    py: Python<'_>,
+    how: &How,
+    work: impl FnOnce(&Monitor) -> Ended<R> + Send + 'static,
+) -> Result<(Ended<R>, Option<PyErr>), Failure> {
+    let pool = pool(how.threads)?;
+    let monitor = Monitor::watched();
+    let (sender, receiver) = channel();
+    let watched = monitor.clone();
+    pool.spawn(move || {
+        // Nobody waits any more where Python has gone.
+        let _ = sender.send(work(&watched));
+    });
+    let mut told = Instant::now();
+    let mut stopped = None;
+    // `Receiver` is for one thread; whoever releases the lock must not move.
+    let receiver = Mutex::new(receiver);
+    loop {
+        let wait = || receiver.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(TICK);
+        match py.detach(wait) {
+            Ok(ended) => return Ok((ended, stopped)),
+            Err(RecvTimeoutError::Disconnected) => {
+                return Err(Failure::Internal("the threads of the work have gone".to_owned()));
+            }
+            Err(RecvTimeoutError::Timeout) if stopped.is_some() => {}
+            Err(RecvTimeoutError::Timeout) => {
+                stopped = heed(py, how.progress.as_ref(), monitor.progress(), &mut told).err();
+                if stopped.is_some() {
+                    monitor.cancel();
+                }
+            }
+        }
+    }
 }
 
 /// A result, or what has stopped it with the partial result as its attribute `partial`.

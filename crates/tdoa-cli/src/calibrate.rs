@@ -171,7 +171,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         CalibrateError::Degenerate(_) | CalibrateError::NotFound(_) | CalibrateError::Delays { .. } => {
             Failure::Undetermined(format!("{}: {error}", arguments.file.display()))
         }
-        CalibrateError::Cancelled => Failure::Interrupted,
+        CalibrateError::Cancelled(_) => Failure::Interrupted,
         other => Failure::unusable(other),
     })?;
     if let (Some(speed), Some(found)) = (units.speed(), &mut calibration.speed) {

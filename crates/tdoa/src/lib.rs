@@ -74,7 +74,7 @@ pub mod simulate;
 
 pub use calibrate::{
     Alternative, CalibrateError, CalibrateOptions, Calibration, Hypotheses, KnownDistance, ReceiverDelays,
-    ReceiverError, ReceiverErrorKind, SpeedEstimate, Truth, calibrate, calibrate_with,
+    ReceiverError, ReceiverErrorKind, SpeedEstimate, Truth, Unfinished, calibrate, calibrate_with,
 };
 pub use hc::{Monitor, Progress};
 pub use minimal::{Candidate, MinimalSolution, PathCounts, RootCounts};

@@ -15,7 +15,7 @@ Arrays in, arrays out, lengths in metres, NaN for what is missing. Exceptions ar
 from hc import Error, InputError, InternalError, UndeterminedError
 
 from ._calibration import Alternative, Calibration
-from ._networks import Networks, Simulation, calibrate, cramer_rao, simulate, solve
+from ._networks import Networks, Simulation, Unfinished, calibrate, cramer_rao, simulate, solve
 from ._tables import Pseudoranges, read
 
 __all__ = [
@@ -28,6 +28,7 @@ __all__ = [
     "Pseudoranges",
     "Simulation",
     "UndeterminedError",
+    "Unfinished",
     "calibrate",
     "cramer_rao",
     "read",

@@ -18,6 +18,7 @@ __all__ = [
     "Pseudoranges",
     "Simulation",
     "UndeterminedError",
+    "Unfinished",
     "calibrate",
     "cramer_rao",
     "read",
@@ -48,6 +49,14 @@ class Pseudoranges:
     @property
     def shape(self) -> tuple[int, int]: ...
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]: ...
+
+class Unfinished:
+    receivers: _Floats
+    transmitters: _Floats
+    offsets: _Floats
+    starts: int
+    agreeing: int
+    def __init__(self, found: dict[str, Any]) -> None: ...
 
 class Alternative:
     receivers: _Floats

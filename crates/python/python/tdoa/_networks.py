@@ -113,7 +113,7 @@ def calibrate(
     UndeterminedError
         If the measurements do not determine a network.
     KeyboardInterrupt
-        On Ctrl-C; `partial` is None if the search had not ended.
+        On Ctrl-C; `partial` is the best network so far, an `Unfinished`, or None if there was none yet.
 
     Examples
     --------
@@ -137,7 +137,7 @@ def calibrate(
         "agreeing": integer("agreeing", agreeing),
     }
     arguments = given, settings, given["factor"]
-    return call(_native.calibrate, *arguments, threads=threads, progress=progress, wrap=Calibration)
+    return call(_native.calibrate, *arguments, threads=threads, progress=progress, wrap=_calibrated)
 
 
 def _distances(distances, names, count):
@@ -158,6 +158,33 @@ def _distances(distances, names, count):
             raise InputError(f"distances must be triples (receiver, receiver, metres), not {each!r}") from None
         found.append((place(first), place(second), number("a distance", metres)))
     return found
+
+
+class Unfinished:
+    """The best network so far of a calibration that was stopped: a longer search may find a better one.
+
+    Attributes
+    ----------
+    receivers : ndarray of float, shape (m, d)
+        Positions of the receivers in metres, in a frame of their own; NaN for those that the search had left for later.
+    transmitters : ndarray of float, shape (n, d)
+        Positions of the transmitters.
+    offsets : ndarray of float, shape (n,)
+        Offsets of the transmitters, metres.
+    starts, agreeing : int
+        How many starts of the search had ended, and how many of them in this network.
+    """
+
+    def __init__(self, found):
+        self.__dict__.update(found)
+
+    def __repr__(self):
+        m, n = len(self.receivers), len(self.transmitters)
+        return f"unfinished calibration of {m} receivers and {n} transmitters: {self.agreeing} of {self.starts} starts agree"
+
+
+def _calibrated(found):
+    return Unfinished(found) if isinstance(found, dict) else Calibration(found)
 
 
 class Networks:
@@ -392,6 +419,6 @@ def cramer_rao(receivers, transmitters, sigma, *, used=None):
     return _native.cramer_rao(receivers, transmitters, used, sigma)
 
 
-for _public in (Networks, Simulation, calibrate, solve, simulate, cramer_rao):
+for _public in (Networks, Simulation, Unfinished, calibrate, solve, simulate, cramer_rao):
     _public.__module__ = "tdoa"
 del _public

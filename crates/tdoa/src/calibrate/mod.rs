@@ -20,6 +20,7 @@ mod same;
 mod search;
 mod submaps;
 mod truth;
+mod unfinished;
 mod warnings;
 mod whole;
 
@@ -31,6 +32,7 @@ pub use options::{CalibrateError, CalibrateOptions, KnownDistance, ReceiverDelay
 pub use receiver_errors::{ReceiverError, ReceiverErrorKind};
 pub use same::SAME_NETWORK;
 pub use truth::Truth;
+pub use unfinished::Unfinished;
 
 use crate::degeneracy::{LEAST_PER_TRANSMITTER, Usable, list, usable};
 use crate::median::median;
@@ -86,15 +88,19 @@ pub fn calibrate_with(
     let delayed = options.receiver_delays == ReceiverDelays::All;
     let sought = if delayed { without_middle_delays(&centred) } else { centred.clone() };
     let noise = known.filter(|_| !delayed);
-    let Sought { ranked, neighbours, deviation, floor, starts } = match &local {
-        Some((layout, places)) => layout.refine(&sought, places, noise, options, monitor)?,
-        None => search_whole(&sought, noise, options, sources, monitor)?,
+    let found = match &local {
+        Some((layout, places)) => layout.refine(&sought, places, noise, options, monitor),
+        None => search_whole(&sought, noise, options, sources, monitor),
     };
+    let (m, n) = (measured.receivers(), measured.transmitters());
+    let place = |best: Unfinished| best.shifted(&shifts).among(m, &usable.receivers, n, &usable.transmitters);
+    let Sought { ranked, neighbours, deviation, floor, starts } = found.map_err(|error| error.placing(place))?;
+    let so_far = place(Unfinished::of(&ranked[0].network, starts, ranked[0].starts));
     let clearing = Clearing { measured: &centred, known, floor, options, monitor };
     let Cleared { measured: centred, observations, ranked, deviation, taken, left } =
-        clearing.clear(ranked, deviation)?;
+        clearing.clear(ranked, deviation).map_err(|error| error.leaving(&so_far))?;
     let free = Free { observations, centred: &centred, known, floor };
-    let held = free.hold(ranked, deviation, &usable, options, monitor)?;
+    let held = free.hold(ranked, deviation, &usable, options, monitor).map_err(|error| error.leaving(&so_far))?;
     let Held { observations, ranked, deviation, anchors, speed, warnings } = held;
     let solved = Solved {
         measured,

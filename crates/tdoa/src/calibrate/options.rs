@@ -1,5 +1,6 @@
 //! What calibration is asked for, and how it ends early.
 
+use super::unfinished::Unfinished;
 use crate::degeneracy::Degeneracy;
 use hc::Monitor;
 use thiserror::Error;
@@ -142,7 +143,7 @@ impl CalibrateOptions {
 
 /// Ends the calibration if it has been cancelled.
 pub(super) fn check(monitor: &Monitor) -> Result<(), CalibrateError> {
-    if monitor.is_cancelled() { Err(CalibrateError::Cancelled) } else { Ok(()) }
+    if monitor.is_cancelled() { Err(CalibrateError::Cancelled(None)) } else { Ok(()) }
 }
 
 /// Why there is no calibration.
@@ -183,7 +184,7 @@ pub enum CalibrateError {
     /// Known positions or distances that cannot be used.
     #[error("known positions and distances: {0}")]
     Known(String),
-    /// Stopped through its [`Monitor`].
+    /// Stopped through its [`Monitor`]; with the best network so far, if there was one.
     #[error("calibration was cancelled")]
-    Cancelled,
+    Cancelled(Option<Box<Unfinished>>),
 }

@@ -9,6 +9,7 @@ use super::near::minima;
 use super::options::{CalibrateError, CalibrateOptions};
 use super::ranking::truncated_cost;
 use super::same::{distinct, same};
+use super::unfinished::Unfinished;
 use crate::loss::{Loss, SEARCH_NU};
 use crate::network::Network;
 use crate::observations::Observations;
@@ -77,11 +78,17 @@ impl Search<'_> {
                 let mut refiner = refiner();
                 batch.clone().map(|index| start(&mut refiner, index)).collect()
             };
-            if monitor.is_cancelled() {
-                return Err(CalibrateError::Cancelled);
+            let stopped = monitor.is_cancelled();
+            // The refinements of a batch that was stopped have not ended.
+            if !stopped || refined.is_empty() {
+                refined.extend(ended.into_iter().flatten());
+            }
+            if stopped {
+                let best = refined.iter().min_by(|a, b| a.objective.total_cmp(&b.objective));
+                let left = best.map(|best| Unfinished::of(&best.network, starts, starts_in(best, &refined)));
+                return Err(CalibrateError::Cancelled(left.map(Box::new)));
             }
             starts = batch.end;
-            refined.extend(ended.into_iter().flatten());
             let best = refined.iter().min_by(|a, b| a.objective.total_cmp(&b.objective));
             let agreeing = best.map_or(0, |best| starts_in(best, &refined));
             monitor.reach(starts as u64, agreeing as u64);

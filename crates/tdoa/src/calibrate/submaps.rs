@@ -153,7 +153,7 @@ fn solve(
     let part = part.select(&kept.receivers, &kept.transmitters);
     let found = match search_whole(&part, known, options, &[], monitor) {
         Ok(found) => found,
-        Err(CalibrateError::Cancelled) => return Err(CalibrateError::Cancelled),
+        Err(CalibrateError::Cancelled(_)) => return Err(CalibrateError::Cancelled(None)),
         Err(_) => return Ok(None),
     };
     let rivals =

@@ -7,6 +7,7 @@ use super::minimal::MinimalHypotheses;
 use super::near::{Neighbour, neighbours};
 use super::options::{CalibrateError, CalibrateOptions, check};
 use super::search::Search;
+use super::unfinished::Unfinished;
 use crate::degeneracy::{Usable, usable};
 use crate::loss::{Loss, SEARCH_NU, normal_deviation};
 use crate::observations::Observations;
@@ -72,20 +73,23 @@ pub(super) fn search_whole(
         wide: Loss { nu: SEARCH_NU, scale: 0.03 * diameter / unit },
         deviation: known.map(|sigma| sigma.max(refine.floor)),
     };
-    let found = search.run(options, monitor)?;
+    let (m, n) = (measured.receivers(), measured.transmitters());
+    let place = |best: Unfinished| best.among(m, &part.receivers, n, &part.transmitters);
+    let found = search.run(options, monitor).map_err(|error| error.placing(place))?;
+    let so_far = place(Unfinished::of(&found.networks[0].network, found.starts, found.networks[0].starts));
 
     let best = found.networks[0].objective;
     let close = found.networks.into_iter().filter(|r| r.objective <= best + 4.0 * options.alternative_margin);
-    let complete_part =
-        part.receivers.len() == measured.receivers() && part.transmitters.len() == measured.transmitters();
+    let complete_part = part.receivers.len() == m && part.transmitters.len() == n;
     let whole: Vec<Refined> =
         if complete_part { close.collect() } else { complete(&observations, &part, close.take(4), &refine, monitor) };
-    check(monitor)?;
+    check(monitor).map_err(|error| error.leaving(&so_far))?;
     let Some(scale) = whole.iter().min_by(|a, b| a.objective.total_cmp(&b.objective)).map(|r| r.scale) else {
         return Err(CalibrateError::NotFound(found.starts));
     };
     let first = known.unwrap_or(scale * to_deviation).max(refine.floor);
-    let (ranked, deviation) = finish(&observations, whole, first, known.is_some(), refine.floor, options, monitor)?;
+    let (ranked, deviation) = finish(&observations, whole, first, known.is_some(), refine.floor, options, monitor)
+        .map_err(|error| error.leaving(&so_far))?;
     let near = if complete_part { found.near } else { Vec::new() };
     let neighbours = neighbours(&observations, &ranked[0], near, deviation);
     Ok(Sought { ranked, neighbours, deviation, floor: refine.floor, starts: found.starts })

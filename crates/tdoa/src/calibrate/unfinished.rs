@@ -1,0 +1,118 @@
+//! What a calibration that was stopped leaves.
+
+use super::options::CalibrateError;
+use crate::network::Network;
+use serde::{Deserialize, Serialize};
+
+/// The best network so far of a calibration that was stopped, in a frame of its own. A longer search
+/// may find a better one, outliers may have bent it, and its uncertainty is not known.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct Unfinished {
+    /// Positions of the receivers in metres; `None` for those that the search had left for later.
+    pub receivers: Vec<Option<[f64; 2]>>,
+    /// Positions of the transmitters in metres, as for receivers.
+    pub transmitters: Vec<Option<[f64; 2]>>,
+    /// Offsets of the transmitters in metres.
+    pub offsets: Vec<Option<f64>>,
+    /// Starts of the search that had ended.
+    pub starts: usize,
+    /// Starts that had ended in this network.
+    pub agreeing: usize,
+}
+
+impl Unfinished {
+    pub(super) fn of(network: &Network, starts: usize, agreeing: usize) -> Unfinished {
+        Unfinished {
+            receivers: network.receivers.iter().copied().map(Some).collect(),
+            transmitters: network.transmitters.iter().copied().map(Some).collect(),
+            offsets: network.offsets.iter().copied().map(Some).collect(),
+            starts,
+            agreeing,
+        }
+    }
+
+    /// The same network among `m` receivers and `n` transmitters, of which its own are those at
+    /// `rows` and `columns`.
+    pub(super) fn among(self, m: usize, rows: &[usize], n: usize, columns: &[usize]) -> Unfinished {
+        Unfinished {
+            receivers: scatter(m, rows, self.receivers),
+            transmitters: scatter(n, columns, self.transmitters),
+            offsets: scatter(n, columns, self.offsets),
+            ..self
+        }
+    }
+
+    /// Undoes the centring of the measurements: `shifts` were taken from those of the transmitters.
+    pub(super) fn shifted(mut self, shifts: &[f64]) -> Unfinished {
+        for (offset, shift) in self.offsets.iter_mut().zip(shifts) {
+            *offset = offset.map(|offset| offset + shift);
+        }
+        self
+    }
+}
+
+fn scatter<T: Clone>(length: usize, at: &[usize], values: Vec<Option<T>>) -> Vec<Option<T>> {
+    let mut all = vec![None; length];
+    for (&k, value) in at.iter().zip(values) {
+        all[k] = value;
+    }
+    all
+}
+
+impl CalibrateError {
+    /// Changes the network that a stopped calibration leaves.
+    pub(super) fn placing(self, place: impl FnOnce(Unfinished) -> Unfinished) -> CalibrateError {
+        match self {
+            CalibrateError::Cancelled(Some(best)) => CalibrateError::Cancelled(Some(Box::new(place(*best)))),
+            other => other,
+        }
+    }
+
+    /// Leaves this network where a stopped calibration leaves none.
+    pub(super) fn leaving(self, best: &Unfinished) -> CalibrateError {
+        match self {
+            CalibrateError::Cancelled(None) => CalibrateError::Cancelled(Some(Box::new(best.clone()))),
+            other => other,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::calibrate::{CalibrateError, CalibrateOptions, calibrate_with};
+    use crate::{SimulateOptions, simulate};
+    use hc::{Monitor, Stage};
+
+    /// A search that is stopped after its first starts leaves the network, every node in its place.
+    #[test]
+    fn a_stopped_search_leaves_its_best_network() {
+        let made = simulate(&SimulateOptions { seed: 3, ..SimulateOptions::default() }).unwrap();
+        // The node that nobody hears is left out of the search.
+        let mut values = made.pseudoranges.values().to_vec();
+        let (m, n) = (made.pseudoranges.receivers(), made.pseudoranges.transmitters());
+        for i in 0..m {
+            values[i * n + 2] = f64::NAN;
+        }
+        let measured = crate::Pseudoranges::new(m, n, values).unwrap();
+        let mut options = CalibrateOptions::default();
+        options.max_starts = usize::MAX >> 8;
+        options.agreeing = options.max_starts;
+        let monitor = Monitor::asking(|now| now.stage == Stage::Search && now.done >= 48);
+        let Err(CalibrateError::Cancelled(Some(best))) = calibrate_with(&measured, &options, &[], &monitor) else {
+            panic!("it ended")
+        };
+        assert!(best.starts >= 48 && best.agreeing > 0);
+        assert!(best.transmitters[2].is_none() && best.offsets[2].is_none());
+        for (j, s) in best.transmitters.iter().enumerate().filter(|(j, _)| *j != 2) {
+            for (i, r) in best.receivers.iter().enumerate() {
+                let ([x, y], [u, v]) = (r.unwrap(), s.unwrap());
+                let error = (x - u).hypot(y - v) + best.offsets[j].unwrap() - measured.get(i, j).unwrap();
+                assert!(error.abs() < 1e-6, "{i} {j} {error}");
+            }
+        }
+        // Nothing had been found.
+        let monitor = Monitor::asking(|_| true);
+        assert_eq!(calibrate_with(&measured, &options, &[], &monitor).unwrap_err(), CalibrateError::Cancelled(None));
+    }
+}
