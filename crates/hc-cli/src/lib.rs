@@ -2,6 +2,7 @@
 
 mod certify;
 mod codegen;
+mod decompose;
 mod family;
 mod input;
 mod mixed_volume;
@@ -30,6 +31,7 @@ struct Arguments {
 enum Command {
     Certify(certify::Arguments),
     Codegen(codegen::Arguments),
+    Decompose(decompose::Arguments),
     MixedVolume(mixed_volume::Arguments),
     Monodromy(monodromy::Arguments),
     Solve(solve::Arguments),
@@ -42,6 +44,7 @@ pub fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Certify(arguments) => certify::run(&arguments),
         Command::Codegen(arguments) => codegen::run(&arguments),
+        Command::Decompose(arguments) => decompose::run(&arguments),
         Command::MixedVolume(arguments) => mixed_volume::run(&arguments),
         Command::Monodromy(arguments) => monodromy::run(&arguments),
         Command::Solve(arguments) => solve::run(&arguments),

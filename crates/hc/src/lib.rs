@@ -19,6 +19,8 @@
 //!   has.
 //! * [`Monitor`]: how far any of these is, and a way to stop it.
 //!
+//! [`witness`] decomposes solution sets of positive dimension.
+//!
 //! The path tracker is in [`tracker`]; its homotopies, a system and a path in its parameters, are
 //! in [`homotopy`]. [`family`] has what is below [`Family`], for programs of one's own, [`start`]
 //! mixed cells, and [`refine`], [`distinct`] and [`random`] what is used everywhere. With the
@@ -71,11 +73,13 @@ mod monitor;
 pub mod random;
 pub mod refine;
 mod runner;
+mod singular;
 mod solve;
 pub mod start;
 mod store;
 mod threads;
 pub mod tracker;
+pub mod witness;
 
 pub use certify::{Certificates, CertifyOptions, certify};
 pub use endgame::EndgameOptions;
@@ -83,6 +87,8 @@ pub use family::{Family, FamilyError, Fibre, FibreOptions, Monodromy, MonodromyO
 pub use monitor::{Monitor, Progress, Stage};
 pub use poly;
 pub use poly::System;
-pub use solve::{Direction, Solution, Solutions, SolveError, SolveOptions, Start, Warning, solve, solve_watched};
+pub use solve::{
+    Direction, Solution, Solutions, SolveError, SolveOptions, Start, Unresolved, Warning, solve, solve_watched,
+};
 pub use start::mixed_volume;
 pub use tracker::{OptionError, TrackerOptions};

@@ -19,6 +19,8 @@ pub enum Stream {
     Multihomogeneous(u64),
     /// Hyperplanes by which points on components are told, by attempt.
     Slice(u64),
+    /// Points beside one whose neighbourhood is searched.
+    Beside,
     /// Combinations of the equations of an overdetermined system.
     Combinations,
     /// Directions in which a solution is left, to see whether Newton's method comes back.
@@ -53,6 +55,7 @@ impl Stream {
             Stream::Rounding => 4,
             Stream::Perturbation => 6,
             Stream::Combinations => 11,
+            Stream::Beside => 13,
             Stream::Trace => 0x7ACE,
             Stream::Target(k) => from(1000, k),
             Stream::Place(k) => from(2000, k),
@@ -96,9 +99,8 @@ mod tests {
 
     #[test]
     fn purposes_share_no_stream() {
-        let mut numbers = HashSet::from(
-            [Stream::Combinations, Stream::Perturbation, Stream::Rounding, Stream::Trace].map(Stream::number),
-        );
+        let single = [Stream::Combinations, Stream::Beside, Stream::Perturbation, Stream::Rounding, Stream::Trace];
+        let mut numbers = HashSet::from(single.map(Stream::number));
         for attempt in 0..60 {
             let purposes = [
                 Stream::Member,

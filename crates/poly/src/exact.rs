@@ -79,7 +79,12 @@ fn real(value: BigRational) -> Exact {
 
 /// An integer constant.
 pub(crate) fn from_i64(k: i64) -> Exact {
-    real(BigRational::from_integer(BigInt::from(k)))
+    from_integer(&BigInt::from(k))
+}
+
+/// An integer constant of any size.
+pub(crate) fn from_integer(k: &BigInt) -> Exact {
+    real(BigRational::from_integer(k.clone()))
 }
 
 /// Whether the constant is real.

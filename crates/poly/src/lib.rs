@@ -36,7 +36,8 @@
 //!
 //! [`Evaluate`] is the interface of all three kinds of system. It runs over any [`Scalar`]:
 //! [`Complex64`], [`Lanes8`] (eight paths side by side, each bit for bit what one path computes, on
-//! every [`Isa`]), [`ComplexDd`] (32 digits), [`ComplexInterval`] and [`ComplexBall`] (proven
+//! every [`Isa`]), [`ComplexDd`] (32 digits),
+//! [`ComplexMulti`] (as many digits as asked for), [`ComplexInterval`] and [`ComplexBall`] (proven
 //! bounds, of 16 and 32 digits) and [`Rational`] (exact).
 //!
 //! crates/benches/README.md in the repository has measured times.
@@ -54,6 +55,7 @@ mod instantiate;
 mod interval;
 mod lanes;
 mod monomial;
+mod multi;
 mod polynomial;
 mod rational;
 mod sparse;
@@ -75,6 +77,7 @@ pub use formula::Formula;
 pub use interval::{ComplexInterval, Interval};
 pub use lanes::{Lanes8, Reals8};
 pub use monomial::Monomial;
+pub use multi::ComplexMulti;
 pub use num_complex::Complex64;
 pub use parse::{Family, ParseError};
 pub use polynomial::{Polynomial, Ring};

@@ -37,6 +37,10 @@ const HOME_MIN: f64 = 1e-7;
 /// A leg may take the steps of a path divided by this.
 const LEGS: usize = 20;
 
+/// All legs of a path may take the steps of a path, or fewer where a step is much work: half as many
+/// in a system of as many parameters.
+const HEAVY: usize = 256;
+
 /// Finds the ends of paths along `segment`, in the order given.
 ///
 /// `tracker` are the settings for the legs; `turns` bounds the winding number, for instance by the
@@ -63,6 +67,7 @@ pub(crate) fn endgame<'a, E: Evaluate>(
         min_t: 0.0,
         ..tracker.clone()
     };
+    let max_steps = tracker.max_steps / (1 + segment.target().len() / HEAVY);
     monitor.enter(Stage::Endgame, walkers.len() as u64);
     // Legs are no paths: they are not counted.
     let nobody = Monitor::default();
@@ -104,7 +109,9 @@ pub(crate) fn endgame<'a, E: Evaluate>(
             )
             .collect();
         for ((result, _), end) in ends.iter().zip(polished) {
-            walkers[live[result.path]].advance(end, options);
+            let walker = &mut walkers[live[result.path]];
+            walker.advance(end, options);
+            walker.spend(result.accepted + result.rejected, max_steps);
         }
     }
 }

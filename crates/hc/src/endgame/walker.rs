@@ -17,6 +17,8 @@ const MAX_SAMPLES_WIDE: usize = 16;
 /// Where rounded coefficients move a coordinate by more than this share of its size, a wider circle
 /// is better.
 const SHARP: f64 = 1e-6;
+/// Where they do by more than this on the widest circle too, samples would tell nothing.
+const HOPELESS: f64 = 1e-2;
 /// Relative distance below which a loop counts as closed, unless the samples are less accurate than
 /// that.
 const CLOSED: f64 = 1e-10;
@@ -51,6 +53,8 @@ pub(super) struct Walker {
     turns: usize,
     max_turns: usize,
     shrunk: u32,
+    /// Steps of all legs so far.
+    steps: usize,
     /// Whether the next leg leads to zero.
     going_home: bool,
     noise: f64,
@@ -75,6 +79,7 @@ impl Walker {
             turns: options.turns.min(max_turns).max(1),
             max_turns,
             shrunk: 0,
+            steps: 0,
             going_home: false,
             noise: 0.0,
             blur: Vec::new(),
@@ -134,15 +139,27 @@ impl Walker {
         }
     }
 
+    /// Counts the steps of a leg; a path that is not over after so many in all is given up.
+    pub(super) fn spend(&mut self, steps: usize, limit: usize) {
+        self.steps = self.steps.saturating_add(steps);
+        if self.is_live() && self.steps > limit {
+            self.lose();
+        }
+    }
+
     /// At the end of a leg along the radius.
     fn arrive(&mut self, Sample { point, accuracy, blur }: Sample, options: &EndgameOptions) {
         if self.radius == options.radius && self.middle.is_empty() {
             self.middle = point.clone();
         }
         let largest = point.iter().map(|z| z.norm()).fold(0.0, f64::max);
-        let blurred = point.iter().zip(&blur).any(|(z, b)| *b > SHARP * z.norm().max(1e-4 * largest));
-        if blurred && self.widen_to().is_some_and(|wider| wider <= options.start) {
+        let blurred = |share: f64| point.iter().zip(&blur).any(|(z, b)| *b > share * z.norm().max(1e-4 * largest));
+        if blurred(SHARP) && self.widen_to().is_some_and(|wider| wider <= options.start) {
             self.widen();
+            return;
+        }
+        if blurred(HOPELESS) {
+            self.lose();
             return;
         }
         let s = -self.radius.ln();

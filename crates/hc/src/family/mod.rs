@@ -23,6 +23,7 @@ pub use charts::{Charts, OneChart};
 pub use compiled::Family;
 pub use error::FamilyError;
 pub use fibre::{Fibre, FibreOptions, PathCounts};
+pub(crate) use monodromy::monodromy;
 pub use monodromy::{Monodromy, MonodromyOptions, Stop};
 pub use start_file::{StartFile, StartFileError};
 pub use targets::Targets;

@@ -5,6 +5,7 @@ use super::error::SolveError;
 use crate::linalg::Lu;
 use crate::random::{Random, Stream};
 use num_complex::Complex64;
+use num_rational::BigRational;
 use num_traits::ToPrimitive;
 use poly::simd::Isa;
 use poly::{Exact, Polynomial};
@@ -20,6 +21,8 @@ pub(super) struct Equations {
     pub(super) coefficients: Vec<Vec<Complex64>>,
     /// Unknown `j` is `scale[j]`, a power of two, times that of the scaled equations.
     scale: Vec<f64>,
+    /// Whether the coefficients are exactly those of the polynomials.
+    pub(super) exact: bool,
 }
 
 impl Equations {
@@ -28,6 +31,7 @@ impl Equations {
         let unknowns = names.len();
         let mut supports: Vec<Vec<Vec<i32>>> = Vec::with_capacity(polynomials.len());
         let mut coefficients = Vec::with_capacity(polynomials.len());
+        let mut exact = true;
         for (i, polynomial) in polynomials.iter().enumerate() {
             if polynomial.variables() != unknowns {
                 return Err(SolveError::Mismatched(i + 1));
@@ -40,6 +44,7 @@ impl Equations {
                 return Err(SolveError::Constant(i + 1));
             }
             supports.push(support);
+            exact &= polynomial.terms().iter().all(|(_, c)| is_double(&c.re) && is_double(&c.im));
             let numbers = polynomial.terms().iter().map(|(_, c)| {
                 Some(Complex64::new(c.re.to_f64()?, c.im.to_f64()?)).filter(|z| z.is_finite() && z.norm() > 0.0)
             });
@@ -49,11 +54,21 @@ impl Equations {
             return Err(SolveError::Underdetermined { equations: polynomials.len(), unknowns: names.to_vec() });
         }
         let exponents = unknown_scales(unknowns, &supports, &coefficients);
-        for (support, coefficients) in supports.iter().zip(&mut coefficients) {
+        for (i, (support, coefficients)) in supports.iter().zip(&mut coefficients).enumerate() {
             *coefficients = scaled(support, coefficients, &exponents);
+            let decades = decades(coefficients);
+            if coefficients.len() > DENSE && decades > SPREAD {
+                let (terms, decades) = (coefficients.len(), decades.min(600.0) as usize);
+                return Err(SolveError::Spread { equation: i + 1, terms, decades });
+            }
         }
         let scale = exponents.iter().map(|&e| 2f64.powi(e)).collect();
-        Ok(Equations { unknowns, supports, coefficients, scale })
+        Ok(Equations { unknowns, supports, coefficients, scale, exact })
+    }
+
+    /// Logarithms to base 2 of the units of the scaled unknowns.
+    pub(super) fn units(&self) -> Vec<i64> {
+        self.scale.iter().map(|s| s.log2().round() as i64).collect()
     }
 
     pub(super) fn len(&self) -> usize {
@@ -116,6 +131,11 @@ impl Equations {
     }
 }
 
+/// Whether a rational is a double exactly.
+fn is_double(q: &BigRational) -> bool {
+    q.to_f64().and_then(BigRational::from_float).is_some_and(|double| double == *q)
+}
+
 /// Coefficients of an equation for unknowns in units of `2^exponents`, the largest of size one.
 fn scaled(support: &[Vec<i32>], coefficients: &[Complex64], exponents: &[i32]) -> Vec<Complex64> {
     let shifts: Vec<f64> =
@@ -126,6 +146,16 @@ fn scaled(support: &[Vec<i32>], coefficients: &[Complex64], exponents: &[i32]) -
     let power = |s: f64| 2f64.powi(s.clamp(-1000.0, 1000.0) as i32);
     let scale = |s: f64| (power((0.5 * s).floor()), power(s - (0.5 * s).floor()));
     coefficients.iter().zip(&shifts).map(|(c, &s)| c * scale(s - largest).0 * scale(s - largest).1).collect()
+}
+
+/// Equations of more terms are refused if their coefficients, scaled, differ by more decades.
+const DENSE: usize = 1000;
+const SPREAD: f64 = 30.0;
+
+/// The decimal logarithm of the quotient of the largest and the smallest size.
+fn decades(coefficients: &[Complex64]) -> f64 {
+    let sizes = || coefficients.iter().map(|c| c.norm().log10());
+    sizes().fold(f64::NEG_INFINITY, f64::max) - sizes().fold(f64::INFINITY, f64::min)
 }
 
 /// Spread of the logarithms (base 2) of coefficients in an equation below which unknowns are left
@@ -171,7 +201,7 @@ fn unknown_scales(n: usize, supports: &[Vec<Vec<i32>>], coefficients: &[Vec<Comp
 
 #[cfg(test)]
 mod tests {
-    use super::Equations;
+    use super::{Equations, SolveError};
     use poly::parse::phcpack;
 
     /// Coefficients over 18 decades: what counts is that the spread falls to a few.
@@ -183,5 +213,14 @@ mod tests {
         let sizes: Vec<f64> = equations.coefficients.iter().flatten().map(|c| c.norm().log10()).collect();
         let spread = sizes.iter().copied().fold(f64::MIN, f64::max) - sizes.iter().copied().fold(f64::MAX, f64::min);
         assert!(spread < 6.0, "{sizes:?}");
+    }
+
+    #[test]
+    fn powers_of_sums_are_refused_with_a_remedy() {
+        let system = phcpack("2\n(x+y+1)^100-1;\nx-y;").unwrap();
+        let polynomials = system.expand(&Default::default()).unwrap();
+        let error = Equations::new(&polynomials, system.variables()).unwrap_err();
+        assert!(matches!(error, SolveError::Spread { equation: 1, terms: 5150, .. }), "{error}");
+        assert!(error.to_string().contains("new unknown"), "{error}");
     }
 }

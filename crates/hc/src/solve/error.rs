@@ -53,6 +53,20 @@ pub enum SolveError {
         "equation {0} has a coefficient beyond the range of double precision; divide it by its largest coefficient"
     )]
     Coefficient(usize),
+    /// An equation of very many terms whose coefficients differ so much that doubles cannot tell its
+    /// solutions, as the power of a sum, multiplied out.
+    #[error(
+        "equation {equation} has {terms} terms with coefficients over {decades} decades, too many for double \
+        precision; give powers of sums a new unknown: instead of (x + y + 1)^100 - 1 write z^100 - 1 and z - (x + y + 1)"
+    )]
+    Spread {
+        /// The equation, from 1.
+        equation: usize,
+        /// Number of its terms.
+        terms: usize,
+        /// Decimal logarithm of the quotient of its largest and smallest coefficient.
+        decades: usize,
+    },
     /// Another start system than the polyhedral one was asked for, but some exponents are negative.
     #[error("this start system needs exponents that are not negative; take the polyhedral one")]
     NegativeExponents,

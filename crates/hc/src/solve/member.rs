@@ -1,12 +1,13 @@
 //! The members of a parameter family, from its stored fibre.
 
-use super::classify::classify;
+use super::classify::{Tracked, classify};
 use super::excess::Excess;
 use super::options::SolveOptions;
 use super::paths::{Route, follow};
 use super::solutions::{Member, Solutions};
 use crate::family::Fibre;
 use crate::monitor::Monitor;
+use crate::singular::Given;
 use crate::tracker::Trackers;
 use num_complex::Complex64;
 use num_traits::ToPrimitive;
@@ -25,9 +26,16 @@ pub(crate) fn solve_member<E: Evaluate>(
     let excess = Excess::none();
     let route = Route { trackers, start: fibre, count: fibre.len(), target, excess: &excess, options, monitor };
     let ends = follow(route, false);
-    let member = if !ends.singular.is_empty() { expanded(family, target) } else { None };
-    let member = member.as_ref().map(|(system, coefficients)| (system, &coefficients[..]));
-    let found = classify(member, &ends, &excess, options.paths.coincidence);
+    let expanded = if !ends.singular.is_empty() { expanded(family, target) } else { None };
+    let tracked = expanded.as_ref().map(|(given, system, target)| Tracked {
+        given,
+        system,
+        target,
+        line: None,
+        exact: true,
+        monitor,
+    });
+    let found = classify(tracked.as_ref(), &ends, &excess, options.paths.coincidence);
     let interrupted = monitor.is_cancelled() && found.lost > 0;
     Solutions {
         variables: family.variables().to_vec(),
@@ -38,11 +46,13 @@ pub(crate) fn solve_member<E: Evaluate>(
     }
 }
 
-/// The polynomials of a member as supports and coefficients.
-fn expanded(family: &System, target: &[Complex64]) -> Option<(SparseSystem, Vec<Complex64>)> {
+/// The polynomials of a member, and the same as supports and coefficients.
+fn expanded(family: &System, target: &[Complex64]) -> Option<(Given, SparseSystem, Vec<Complex64>)> {
     let polynomials = family.at(target).ok()?.expand(&Default::default()).ok()?;
+    let unknowns = family.variables().len();
     let supports: Vec<Vec<Vec<i32>>> = polynomials.iter().map(Polynomial::support).collect();
     let terms = polynomials.iter().flat_map(|p| p.terms());
     let numbers = terms.map(|(_, c)| Some(Complex64::new(c.re.to_f64()?, c.im.to_f64()?)).filter(|z| z.is_finite()));
-    Some((SparseSystem::new(family.variables().len(), &supports).ok()?, numbers.collect::<Option<_>>()?))
+    let system = SparseSystem::new(unknowns, &supports).ok()?;
+    Some((Given::new(&polynomials, vec![0; unknowns]), system, numbers.collect::<Option<_>>()?))
 }

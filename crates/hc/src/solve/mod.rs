@@ -1,9 +1,12 @@
 //! All isolated solutions of a polynomial system.
 
 mod classify;
+mod conditioned;
 mod equations;
 mod error;
 mod excess;
+mod infinity;
+mod judged;
 mod member;
 mod options;
 mod paths;
@@ -16,21 +19,25 @@ mod warning;
 pub use error::SolveError;
 pub(crate) use member::solve_member;
 pub use options::{SolveOptions, Start};
-pub use solutions::{Direction, Solution, Solutions};
+pub use solutions::{Direction, Solution, Solutions, Unresolved};
 pub use warning::Warning;
 
 use crate::distinct::{CLUSTER, relative_distance};
 use crate::monitor::Monitor;
+use crate::singular::Given;
 use crate::start::MixedError;
 use crate::tracker::Trackers;
-use classify::{Classified, classify};
+use classify::{Classified, Tracked, classify};
+use conditioned::conditioned;
 use equations::Equations;
 use excess::Excess;
+use infinity::Line;
 use num_complex::Complex64;
-use paths::{Route, follow};
-use poly::{ExpandLimits, System};
+use paths::{Route, are_hopeless, follow};
+use poly::{Exact, ExpandLimits, Polynomial, System};
 use solutions::Member;
 use start::Starts;
+use std::borrow::Cow;
 
 /// Finds the isolated solutions of a system of polynomials, at least as many as unknowns.
 ///
@@ -67,7 +74,8 @@ pub fn solve_watched(system: &System, options: &SolveOptions, monitor: &Monitor)
     if !system.parameters().is_empty() {
         return Err(SolveError::Parameters(system.parameters().join(", ")));
     }
-    let mut found = polynomials(system, options, monitor)?;
+    let polynomials = system.expand(&ExpandLimits::default())?;
+    let mut found = solve_polynomials(&polynomials, system.variables(), options, monitor)?;
     found.variables = system.variables().to_vec();
     found.member = Member::new(system, &[]);
     if options.certify {
@@ -76,12 +84,26 @@ pub fn solve_watched(system: &System, options: &SolveOptions, monitor: &Monitor)
     Ok(found)
 }
 
-/// The solutions, without names.
-fn polynomials(system: &System, options: &SolveOptions, monitor: &Monitor) -> Result<Solutions, SolveError> {
-    let given = Equations::new(&system.expand(&ExpandLimits::default())?, system.variables())?;
-    let excess = Excess::new(&given, options.torus_only)?;
+/// The solutions of polynomials in unknowns of these names, which the result does not have.
+pub(crate) fn solve_polynomials(
+    polynomials: &[Polynomial<Exact>],
+    names: &[String],
+    options: &SolveOptions,
+    monitor: &Monitor,
+) -> Result<Solutions, SolveError> {
+    let equations = Equations::new(polynomials, names)?;
+    let equations = match conditioned(polynomials) {
+        Cow::Borrowed(_) => equations,
+        Cow::Owned(rewritten) => Equations::new(&rewritten, names)?,
+    };
+    // A single equation has no condition number to tell, and combinations are rounded.
+    let exact = equations.exact && (2..=names.len()).contains(&polynomials.len());
+    let units = equations.units();
+    let given = Given::new(polynomials, units.clone());
+    let univariate = given.univariate_degrees().filter(|_| !options.torus_only);
+    let excess = Excess::new(&given, options.torus_only);
     let nothing = Solutions { interrupted: true, ..Solutions::default() };
-    let mut starts = match Starts::new(given, options, monitor) {
+    let mut starts = match Starts::new(equations, options, monitor) {
         Err(SolveError::Mixed(MixedError::Cancelled)) => return Ok(nothing),
         other => other?,
     };
@@ -107,11 +129,27 @@ fn polynomials(system: &System, options: &SolveOptions, monitor: &Monitor) -> Re
         if !ends.abandoned {
             start_systems += 1;
             retracked += ends.retracked;
-            let member = Some((&from.system, &from.target[..]));
-            let found = classify(member, &ends, &excess, options.paths.coincidence);
+            let line = Line { supports: &from.equations.supports, target };
+            let tracked = Tracked { given: &given, system: &from.system, target, line: Some(line), exact, monitor };
+            // Of a polynomial in one unknown there is a better way to all roots than other paths.
+            let whole = univariate.is_none_or(|(_, degree)| ends.lost == 0 && ends.regular.len() == degree);
+            let roots = (!whole && !monitor.is_cancelled())
+                .then(|| judged::univariate(polynomials, &units, &tracked))
+                .flatten();
+            let found = match roots {
+                Some(roots) => Classified { solutions: roots, ..Classified::default() },
+                None => {
+                    let found = classify(Some(&tracked), &ends, &excess, options.paths.coincidence);
+                    // All paths end at roots, those that seem to go to infinity too.
+                    let astray = if univariate.is_some() { found.infinite } else { 0 };
+                    Classified { lost: found.lost + astray, infinite: found.infinite - astray, ..found }
+                }
+            };
             let this = Best { start: Some(from.kind), tracked: from.paths, found };
             best = if start_systems == 1 { this } else { best.joined(this) };
-            if best.found.lost == 0 || start_systems > options.restarts || monitor.is_cancelled() {
+            let hopeless = univariate.is_some() || are_hopeless(ends.lost, count);
+            let last = start_systems > options.restarts || hopeless;
+            if best.found.lost == 0 || last || monitor.is_cancelled() {
                 break;
             }
         }
@@ -125,6 +163,9 @@ fn polynomials(system: &System, options: &SolveOptions, monitor: &Monitor) -> Re
     }
     for point in &mut found.component_points {
         starts.equations.unscale(point);
+    }
+    for end in &mut found.unresolved {
+        starts.equations.unscale(&mut end.value);
     }
     Ok(Solutions {
         start: start.or(Some(starts.kind)),
@@ -157,7 +198,10 @@ impl Best {
         let known: Vec<Vec<Complex64>> = better.found.solutions.iter().map(|s| s.value.clone()).collect();
         let new = other.found.solutions.into_iter().filter(|s| !s.singular);
         let new = new.filter(|s| known.iter().all(|x| relative_distance(x, &s.value) > CLUSTER));
+        let before = better.found.solutions.len();
         better.found.solutions.extend(new);
+        // Each of them is the end of a path that was lost.
+        better.found.lost = better.found.lost.saturating_sub(better.found.solutions.len() - before);
         better
     }
 }

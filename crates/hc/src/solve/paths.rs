@@ -64,6 +64,12 @@ impl EndList {
     }
 }
 
+/// Whether so many paths of `count` are lost or in doubt after the first round that stricter steps
+/// or another start system would not help.
+pub(super) fn are_hopeless(lost: usize, count: usize) -> bool {
+    lost >= HOPELESS && lost > count - count / 4
+}
+
 /// How all paths end. Of paths to infinity no points are kept.
 pub(super) struct Ends {
     /// Paths whose end is not known.
@@ -91,6 +97,8 @@ const CROSSED: f64 = 1e-11;
 const CHUNK: usize = 1 << 11;
 /// Paths that go through the endgame at a time: there each takes more memory than on its way.
 const PORTION: usize = 1 << 9;
+/// Fewer lost paths are never given up.
+const HOPELESS: usize = 32;
 /// Ends that one thread refines at a time, at least.
 const LEAST: usize = 8;
 /// On trial, as many paths are followed first.
@@ -107,7 +115,7 @@ pub(super) struct Route<'a, 'e, E: Evaluate, S> {
     /// The parameters to which they lead.
     pub(super) target: &'a [Complex64],
     /// Regular ends in it are none of the [known](SolveOptions::known) ones.
-    pub(super) excess: &'a Excess,
+    pub(super) excess: &'a Excess<'a>,
     pub(super) options: &'a SolveOptions,
     pub(super) monitor: &'a Monitor,
 }
@@ -192,6 +200,11 @@ impl<E: Evaluate, S: Source<E>> Work for Stage<'_, '_, E, S> {
         let irregular = (self.round.done - self.round.regular) * IRREGULAR > self.round.done;
         let abandoned = self.trial && round.is_first() && irregular && !self.route.monitor.is_cancelled();
         if abandoned { Flow::Abandoned } else { Flow::On }
+    }
+
+    fn is_hopeless(&mut self, level: u32, before: usize, _: usize) -> bool {
+        // In one unknown there are better ways to all roots than tracking again.
+        level == 0 && (self.route.trackers.system().variables() == 1 || are_hopeless(before, self.ends.count))
     }
 
     fn doubtful(&mut self, (): &mut (), which: &mut Vec<usize>) {

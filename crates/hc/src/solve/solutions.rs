@@ -20,7 +20,8 @@ const LISTED: usize = 20;
 pub struct Solution {
     /// The coordinates, in the order of the unknowns.
     pub value: Vec<Complex64>,
-    /// Multiplicity: the number of paths that end here.
+    /// Multiplicity: the dimension of the local ring of the given equations. As many paths end
+    /// here, or more where there are more equations than unknowns.
     pub multiplicity: usize,
     /// The largest winding number of these paths.
     pub winding_number: usize,
@@ -111,6 +112,21 @@ pub struct Solutions {
     pub interrupted: bool,
     /// The distinct isolated solutions, regular ones first.
     pub solutions: Vec<Solution>,
+    /// Ends of paths near which the equations nearly vanish, but that could not be judged. Their
+    /// paths count as failed.
+    pub unresolved: Vec<Unresolved>,
+}
+
+/// An end of paths of which it is not known what it is.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Unresolved {
+    /// The coordinates, in the order of the unknowns.
+    pub value: Vec<Complex64>,
+    /// The number of paths that end here.
+    pub paths: usize,
+    /// Why it could not be judged.
+    pub reason: String,
 }
 
 impl Solutions {
@@ -192,6 +208,9 @@ impl Solutions {
         }
         if self.paths.failed > 0 {
             warnings.push(Warning::Lost { paths: self.paths.failed });
+        }
+        if !self.unresolved.is_empty() {
+            warnings.push(Warning::Unresolved { ends: self.unresolved.len() });
         }
         if self.uncertified() > 0 {
             warnings.push(Warning::Uncertified { solutions: self.uncertified() });

@@ -33,6 +33,12 @@ pub enum Warning {
         /// Number of paths.
         paths: usize,
     },
+    /// Ends near which the equations nearly vanish, but of which it is not known what they are.
+    #[error("{ends} ends could not be judged; they are listed as unresolved")]
+    Unresolved {
+        /// Number of ends.
+        ends: usize,
+    },
     /// Regular solutions that could not be certified.
     #[error("{solutions} regular solutions are not certified")]
     Uncertified {

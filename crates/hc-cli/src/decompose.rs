@@ -1,0 +1,81 @@
+//! `hc decompose`.
+
+use crate::{input, watch};
+use cli::{Failure, output};
+use hc::SolveOptions;
+use hc::witness::{Decomposition, decompose};
+use serde::Serialize;
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// All solutions of a system, isolated ones and components of positive dimension with their degrees
+/// and multiplicities.
+///
+/// Exit status 1 if something may be missing.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The system, in PHCpack's format.
+    file: PathBuf,
+    /// Write the result as JSON to this file, `-` for standard output.
+    #[arg(long, value_name = "OUT")]
+    json: Option<PathBuf>,
+    /// Seed of the hyperplanes and of the generic coefficients.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Threads; all processors by default. The result does not depend on it.
+    #[arg(long)]
+    threads: Option<usize>,
+}
+
+#[derive(Serialize)]
+struct Output<'a> {
+    variables: &'a [String],
+    seed: u64,
+    seconds: f64,
+    #[serde(flatten)]
+    found: &'a Decomposition,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let begun = Instant::now();
+    let system = input::system(&arguments.file)?;
+    let monitor = watch::interruptible()?;
+    let options = SolveOptions::new().seed(arguments.seed);
+    let found = watch::watched(arguments.threads, &monitor, watch::stages, || decompose(&system, &options, &monitor))?;
+    let found = found.map_err(|error| Failure::in_file(&arguments.file, error))?;
+    let seconds = begun.elapsed().as_secs_f64();
+    output::summary(arguments.json.as_deref(), || summary(&found, seconds))?;
+    if let Some(out) = &arguments.json {
+        output::json(out, &Output { variables: system.variables(), seed: arguments.seed, seconds, found: &found })?;
+    }
+    if found.partial {
+        return Err(Failure::Interrupted);
+    }
+    if found.failed > 0 {
+        return Err(Failure::Undetermined(format!("{} paths or witness points are not accounted for", found.failed)));
+    }
+    if found.components.iter().any(|c| !c.irreducible) {
+        return Err(Failure::Undetermined("some components are not shown to be irreducible".to_owned()));
+    }
+    Ok(())
+}
+
+/// In words, a line for each component.
+fn summary(found: &Decomposition, seconds: f64) -> String {
+    let mut text = format!(
+        "{} components of positive dimension, {} isolated solutions, {seconds:.3} s\n",
+        found.components.len(),
+        found.isolated.len()
+    );
+    for component in &found.components {
+        text += &format!("  dimension {}, degree {}", component.dimension, component.degree);
+        if component.multiplicity > 1 {
+            text += &format!(", multiplicity {}", component.multiplicity);
+        }
+        text += if component.irreducible { "\n" } else { ", perhaps several together\n" };
+    }
+    for end in &found.unresolved {
+        text += &format!("unresolved: an end of {} paths: {}\n", end.paths, end.reason);
+    }
+    text
+}

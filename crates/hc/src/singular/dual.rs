@@ -1,0 +1,142 @@
+//! The dual space of the local ring at a solution: the differential functionals that vanish on all
+//! multiples of the equations.
+//!
+//! Their number is the multiplicity (Dayton & Zeng 2005). They are found order by order: the
+//! derivatives of a functional, in the sense of lowered exponents, are functionals of a lower
+//! order, so that each is a combination of integrals of known ones (Mourrain 1997; the closedness
+//! subspace of Zeng 2009). If an order adds none, all are found and the solution is isolated; if
+//! there are more than paths can end at an isolated solution, it is not isolated (Bates,
+//! Hauenstein, Peterson & Sommese 2009).
+
+use super::deflate::{CLEAR, ZERO};
+use super::eliminate::{Elimination, Stop};
+use super::number::{Number, largest};
+use super::series::Basis;
+
+/// What the functionals up to an order tell.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Count {
+    /// There are so many in all; the solution is isolated.
+    All(usize),
+    /// There are more than the bound.
+    More,
+    /// As many orders are not enough.
+    Unfinished,
+    /// Numbers that are neither clearly zero nor clearly not.
+    Unclear,
+}
+
+/// Counts the functionals at the origin of equations in a few unknowns, given as series without
+/// constant terms, up to the order of the basis; more than `bound` are not sought.
+pub(crate) fn count<S: Number>(basis: &Basis, equations: &[Vec<S>], bound: usize) -> Count {
+    let mut space = Space::new(basis);
+    for order in 1..=basis.order() {
+        let Some(found) = space.grown(equations, order) else { return Count::Unclear };
+        if found == 0 {
+            return Count::All(space.functionals.len());
+        }
+        if space.functionals.len() > bound {
+            return Count::More;
+        }
+    }
+    Count::Unfinished
+}
+
+/// Functionals found so far.
+struct Space<'a, S> {
+    basis: &'a Basis,
+    /// By their coefficients at the monomials of the basis; the first is the value at the origin.
+    functionals: Vec<Vec<S>>,
+    /// `lowered[i][b]`: functional `b` with its exponents of variable `i` lowered, in terms of the
+    /// functionals.
+    lowered: Vec<Vec<Vec<S>>>,
+}
+
+impl<S: Number> Space<'_, S> {
+    fn new(basis: &Basis) -> Space<'_, S> {
+        Space {
+            basis,
+            functionals: vec![basis.constant(S::one(), 0)],
+            lowered: vec![vec![vec![S::zero()]]; basis.variables()],
+        }
+    }
+
+    /// Adds the functionals of an order, and returns how many; `None` where that is not clear.
+    fn grown(&mut self, equations: &[Vec<S>], order: usize) -> Option<usize> {
+        let (n, m) = (self.basis.variables(), self.functionals.len());
+        // Unknowns: functional `b` in what lowering variable `i` gives, at `i * m + b`.
+        let mut rows: Vec<Vec<S>> = Vec::new();
+        for i in 0..n {
+            for j in i + 1..n {
+                // Lowering `i` and then `j` is lowering `j` and then `i`.
+                for a in 0..m {
+                    let mut row = vec![S::zero(); n * m];
+                    for b in 0..m {
+                        row[i * m + b] = self.lowered[j][b][a];
+                        row[j * m + b] = S::neg(&self.lowered[i][b][a]);
+                    }
+                    rows.push(row);
+                }
+            }
+        }
+        let integrals: Vec<Vec<S>> =
+            (0..n * m).map(|k| self.integral(k / m, &self.functionals[k % m], order)).collect();
+        for equation in equations {
+            let value =
+                |integral: &Vec<S>| integral.iter().zip(equation).fold(S::zero(), |sum, (a, b)| S::mul_add(a, b, &sum));
+            rows.push(integrals.iter().map(value).collect());
+        }
+        // Those that are known already are left out.
+        for b in 1..m {
+            let known = |k: usize| self.lowered[k / m][b][k % m].conjugate();
+            rows.push((0..n * m).map(known).collect());
+        }
+        for row in &mut rows {
+            let size = largest(row.iter());
+            if size > ZERO * S::BITS && size < CLEAR * S::BITS {
+                return None;
+            }
+            // Rows of rounding errors stay as small as they are.
+            if size.is_finite() && size >= CLEAR * S::BITS {
+                row.iter_mut().for_each(|z| *z = z.shifted(-(size.round() as i64)));
+            }
+        }
+        let found = Elimination::new(rows, n * m, Stop::Below(0.5 * (ZERO + CLEAR) * S::BITS));
+        if !(found.rest <= ZERO * S::BITS && found.smallest >= CLEAR * S::BITS) {
+            return None;
+        }
+        let vectors = found.null_space();
+        for (new, vector) in vectors.iter().enumerate() {
+            let mut functional = vec![S::zero(); self.basis.count(order)];
+            for (integral, c) in integrals.iter().zip(vector) {
+                for (sum, z) in functional.iter_mut().zip(integral) {
+                    *sum = S::mul_add(c, z, sum);
+                }
+            }
+            let size = largest(&functional);
+            let unit = if size.is_finite() { -(size.round() as i64) } else { 0 };
+            functional.iter_mut().for_each(|z| *z = z.shifted(unit));
+            self.functionals.push(functional);
+            for (i, lowered) in self.lowered.iter_mut().enumerate() {
+                let mut row: Vec<S> = vector[i * m..(i + 1) * m].iter().map(|z| z.shifted(unit)).collect();
+                row.resize(m + new + 1, S::zero());
+                lowered.push(row);
+            }
+        }
+        let total = self.functionals.len();
+        self.lowered.iter_mut().flatten().for_each(|row| row.resize(total, S::zero()));
+        Some(vectors.len())
+    }
+
+    /// What is lowered in variable `i` gives the functional, as far as monomials go whose last
+    /// variable is that one.
+    fn integral(&self, i: usize, functional: &[S], order: usize) -> Vec<S> {
+        let mut integral = vec![S::zero(); self.basis.count(order)];
+        for (k, c) in functional.iter().enumerate() {
+            if self.basis.exponents()[k][i + 1..].iter().all(|&e| e == 0) {
+                integral[self.basis.raised(k, i)] = *c;
+            }
+        }
+        integral
+    }
+}

@@ -1,0 +1,333 @@
+//! The given equations, exact, and their values, derivatives and series near a point in numbers of
+//! any precision.
+
+use super::number::{Number, largest};
+use super::series::Basis;
+use num_complex::Complex64;
+use poly::{ComplexDd, ComplexMulti, Exact, Polynomial};
+use std::collections::BTreeMap;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Equations as they were given, prepared for evaluation to many digits.
+///
+/// Where exponents are negative an equation is multiplied by a monomial; its solutions without zero
+/// coordinates stay.
+pub(crate) struct Given {
+    unknowns: usize,
+    /// Logarithms to base 2 of the units of the unknowns.
+    scale: Vec<i64>,
+    equations: Vec<Vec<Term>>,
+    /// The exponents of each unknown in terms and in their derivatives, ascending.
+    exponents: Vec<Vec<u32>>,
+    /// Coefficients to 32, 77, 154 and 308 digits, once they are asked for.
+    double_double: OnceLock<Vec<Vec<ComplexDd>>>,
+    four: OnceLock<Vec<Vec<ComplexMulti<4>>>>,
+    eight: OnceLock<Vec<Vec<ComplexMulti<8>>>>,
+    sixteen: OnceLock<Vec<Vec<ComplexMulti<16>>>>,
+    /// Work done so far, in about as much as a product of complex double-doubles takes.
+    spent: AtomicU64,
+}
+
+struct Term {
+    /// Unknowns with their exponents, those of exponent zero left out.
+    powers: Vec<(usize, u32)>,
+    /// Places of these exponents among those of the unknown.
+    places: Vec<usize>,
+    coefficient: Exact,
+}
+
+/// Coordinates below this share of the largest, or of one, may be zero in truth: ends at multiple
+/// solutions are not accurate.
+const SMALL: f64 = 1e-2;
+
+/// A precision that the equations can be had in.
+pub(crate) trait Precision: Number {
+    /// Where its coefficients are kept.
+    fn kept(given: &Given) -> &OnceLock<Vec<Vec<Self>>>;
+}
+
+impl Precision for ComplexDd {
+    fn kept(given: &Given) -> &OnceLock<Vec<Vec<Self>>> {
+        &given.double_double
+    }
+}
+impl Precision for ComplexMulti<4> {
+    fn kept(given: &Given) -> &OnceLock<Vec<Vec<Self>>> {
+        &given.four
+    }
+}
+impl Precision for ComplexMulti<8> {
+    fn kept(given: &Given) -> &OnceLock<Vec<Vec<Self>>> {
+        &given.eight
+    }
+}
+impl Precision for ComplexMulti<16> {
+    fn kept(given: &Given) -> &OnceLock<Vec<Vec<Self>>> {
+        &given.sixteen
+    }
+}
+
+impl Given {
+    /// Takes polynomials in equally many unknowns; points have unknown `j` in units of
+    /// `2^scale[j]`.
+    pub(crate) fn new(polynomials: &[Polynomial<Exact>], scale: Vec<i64>) -> Given {
+        let unknowns = scale.len();
+        let equation = |polynomial: &Polynomial<Exact>| {
+            let exponents = || polynomial.terms().iter().map(|(m, _)| m.exponents());
+            let lowest: Vec<i64> =
+                (0..unknowns).map(|j| exponents().map(|e| i64::from(e[j])).min().unwrap_or(0).min(0)).collect();
+            let term = |(monomial, coefficient): &(poly::Monomial, Exact)| {
+                let raised = monomial.exponents().iter().zip(&lowest).map(|(&e, low)| (i64::from(e) - low) as u32);
+                let powers = raised.enumerate().filter(|&(_, e)| e > 0).collect();
+                Term { powers, places: Vec::new(), coefficient: coefficient.clone() }
+            };
+            polynomial.terms().iter().map(term).collect()
+        };
+        let mut equations: Vec<Vec<Term>> = polynomials.iter().map(equation).collect();
+        let mut exponents: Vec<Vec<u32>> = vec![Vec::new(); unknowns];
+        for &(j, e) in equations.iter().flatten().flat_map(|t| &t.powers) {
+            exponents[j].extend([e - 1, e]);
+        }
+        for exponents in &mut exponents {
+            exponents.sort_unstable();
+            exponents.dedup();
+        }
+        for term in equations.iter_mut().flatten() {
+            let place = |&(j, e): &(usize, u32)| exponents[j].partition_point(|&f| f < e);
+            term.places = term.powers.iter().map(place).collect();
+        }
+        Given {
+            unknowns,
+            scale,
+            equations,
+            exponents,
+            double_double: OnceLock::new(),
+            four: OnceLock::new(),
+            eight: OnceLock::new(),
+            sixteen: OnceLock::new(),
+            spent: AtomicU64::new(0),
+        }
+    }
+
+    pub(crate) fn unknowns(&self) -> usize {
+        self.unknowns
+    }
+
+    /// The work done so far at all points, in products of complex double-doubles. It does not
+    /// depend on the order of the points.
+    pub(crate) fn spent(&self) -> u64 {
+        self.spent.load(Ordering::Relaxed)
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.equations.len()
+    }
+
+    fn coefficients<S: Precision>(&self) -> &Vec<Vec<S>> {
+        S::kept(self).get_or_init(|| {
+            let numbers = |terms: &Vec<Term>| terms.iter().map(|t| S::from_exact(&t.coefficient)).collect();
+            self.equations.iter().map(numbers).collect()
+        })
+    }
+
+    /// The terms of a single equation in a single unknown, by ascending exponent; `None` for any
+    /// other equations.
+    pub(crate) fn univariate<S: Precision>(&self) -> Option<Vec<(u32, S)>> {
+        let [terms] = &self.equations[..] else { return None };
+        if self.unknowns != 1 {
+            return None;
+        }
+        let exponent = |t: &Term| t.powers.first().map_or(0, |&(_, e)| e);
+        let scaled = |c: &S, e: u32| c.shifted(i64::from(e) * self.scale[0]);
+        let mut terms: Vec<(u32, S)> =
+            terms.iter().map(exponent).zip(&self.coefficients::<S>()[0]).map(|(e, c)| (e, scaled(c, e))).collect();
+        terms.sort_by_key(|&(e, _)| e);
+        Some(terms)
+    }
+
+    /// The multiplicity of zero and the number of all roots of a single equation in a single
+    /// unknown, as often as they count; `None` for any other equations.
+    pub(crate) fn univariate_degrees(&self) -> Option<(usize, usize)> {
+        let [terms] = &self.equations[..] else { return None };
+        let exponents = || terms.iter().map(|t| t.powers.first().map_or(0, |&(_, e)| e as usize));
+        Some((exponents().min()?, exponents().max()?)).filter(|_| self.unknowns == 1)
+    }
+
+    /// The equations in unknowns of about unit size near a point.
+    pub(crate) fn near<S: Precision>(&self, point: &[Complex64]) -> Local<'_, S> {
+        let units = units(point);
+        let mut coefficients = Vec::with_capacity(self.len());
+        for (terms, numbers) in self.equations.iter().zip(self.coefficients::<S>()) {
+            let shift =
+                |t: &Term| t.powers.iter().map(|&(j, e)| i64::from(e) * (units[j] + self.scale[j])).sum::<i64>();
+            let shifts: Vec<i64> = terms.iter().map(shift).collect();
+            // Sizes of the terms at the point, coordinates counted as one at least.
+            let excess = |t: &Term| {
+                let size = |&(j, e): &(usize, u32)| f64::from(e) * (point[j].norm().log2() - units[j] as f64).max(0.0);
+                t.powers.iter().map(size).sum::<f64>()
+            };
+            let sizes = numbers.iter().zip(&shifts).zip(terms);
+            let top = sizes.map(|((c, &s), t)| c.log2() + s as f64 + excess(t)).fold(f64::NEG_INFINITY, f64::max);
+            let top = if top.is_finite() { top.ceil() as i64 } else { 0 };
+            coefficients.push(numbers.iter().zip(&shifts).map(|(c, s)| c.shifted(s - top)).collect());
+        }
+        Local { given: self, units, coefficients }
+    }
+}
+
+/// Logarithms to base 2 of the units in which coordinates are about one: their sizes, or a tenth of
+/// the largest, or of one, where they are much smaller and may be zero.
+fn units(point: &[Complex64]) -> Vec<i64> {
+    let largest = point.iter().map(|z| z.norm()).fold(1.0, f64::max);
+    let unit = |z: &Complex64| if z.norm() > SMALL * largest { z.norm() } else { 0.1 * largest };
+    point.iter().map(|z| unit(z).log2().round() as i64).collect()
+}
+
+/// The given equations in unknowns and terms of about unit size near a point.
+pub(crate) struct Local<'a, S> {
+    given: &'a Given,
+    units: Vec<i64>,
+    coefficients: Vec<Vec<S>>,
+}
+
+impl<S: Number> Local<'_, S> {
+    /// Number of equations.
+    pub(crate) fn equations(&self) -> usize {
+        self.given.len()
+    }
+
+    /// Notes as much work, in products.
+    pub(crate) fn spend(&self, products: f64) {
+        let weight = (S::BITS / ComplexDd::BITS).powi(2);
+        self.given.spent.fetch_add((products * weight) as u64, Ordering::Relaxed);
+    }
+
+    /// Numbers of factors in all terms.
+    fn factors(&self) -> usize {
+        self.given.equations.iter().flatten().map(|t| t.powers.len() + 1).sum()
+    }
+
+    /// A point in units of these equations.
+    pub(crate) fn scaled(&self, point: &[Complex64]) -> Vec<S> {
+        point.iter().zip(&self.units).map(|(z, u)| S::from_c64(*z).shifted(-u)).collect()
+    }
+
+    /// A point in the units of the unknowns.
+    pub(crate) fn unscaled(&self, point: &[S]) -> Vec<S> {
+        point.iter().zip(&self.units).map(|(z, &u)| z.shifted(u)).collect()
+    }
+
+    /// Powers of each coordinate that terms or their derivatives have, by places.
+    fn powers(&self, x: &[S]) -> Vec<Vec<S>> {
+        let of = |(exponents, x): (&Vec<u32>, &S)| {
+            let (mut last, mut value) = (0, S::one());
+            let mut power = |exponent: u32| {
+                value = S::mul(&value, &raised(x, exponent - last));
+                last = exponent;
+                value
+            };
+            exponents.iter().map(|&e| power(e)).collect()
+        };
+        self.given.exponents.iter().zip(x).map(of).collect()
+    }
+
+    /// Values of the equations, and their derivatives by rows.
+    pub(crate) fn jacobian(&self, x: &[S]) -> (Vec<S>, Vec<Vec<S>>) {
+        self.spend(4.0 * self.factors() as f64);
+        let powers = self.powers(x);
+        let (mut values, mut rows) = (Vec::new(), Vec::new());
+        let mut before: Vec<S> = Vec::new();
+        for (terms, coefficients) in self.given.equations.iter().zip(&self.coefficients) {
+            let (mut value, mut row) = (S::zero(), vec![S::zero(); x.len()]);
+            for (term, c) in terms.iter().zip(coefficients) {
+                // Products of the powers before each, and then with those behind.
+                before.clear();
+                let mut product = *c;
+                for (&(j, _), &place) in term.powers.iter().zip(&term.places) {
+                    before.push(product);
+                    product = S::mul(&product, &powers[j][place]);
+                }
+                value = S::add(&value, &product);
+                let mut behind = S::one();
+                for ((&(j, e), &place), before) in term.powers.iter().zip(&term.places).zip(&before).rev() {
+                    let others = S::mul(before, &behind);
+                    // The power that is less by one stands before.
+                    let slope =
+                        if e == 1 { others } else { S::scale(&S::mul(&others, &powers[j][place - 1]), f64::from(e)) };
+                    row[j] = S::add(&row[j], &slope);
+                    behind = S::mul(&behind, &powers[j][place]);
+                }
+            }
+            values.push(value);
+            rows.push(row);
+        }
+        (values, rows)
+    }
+
+    /// Values of the equations.
+    fn values(&self, x: &[S]) -> Vec<S> {
+        let powers = self.powers(x);
+        let product = |(term, c): (&Term, &S)| {
+            term.powers.iter().zip(&term.places).fold(*c, |product, (&(j, _), &k)| S::mul(&product, &powers[j][k]))
+        };
+        let value = |(terms, coefficients): (&Vec<Term>, &Vec<S>)| {
+            terms.iter().zip(coefficients).map(product).fold(S::zero(), |sum, z| S::add(&sum, &z))
+        };
+        self.given.equations.iter().zip(&self.coefficients).map(value).collect()
+    }
+
+    /// The largest value of an equation at a point, as a logarithm to base 2: about that of its
+    /// size relative to its terms.
+    pub(crate) fn residual(&self, x: &[S]) -> f64 {
+        largest(&self.values(x))
+    }
+
+    /// Equations with series for the unknowns, up to an order.
+    pub(crate) fn series(&self, which: &[usize], basis: &Basis, x: &[Vec<S>], order: usize) -> Vec<Vec<S>> {
+        self.spend((self.factors() * basis.pairs(order)) as f64);
+        let mut powers: Vec<BTreeMap<u32, Vec<S>>> = vec![BTreeMap::new(); x.len()];
+        for &(j, e) in which.iter().flat_map(|&i| &self.given.equations[i]).flat_map(|t| &t.powers) {
+            powers[j].insert(e, Vec::new());
+        }
+        for (powers, x) in powers.iter_mut().zip(x) {
+            let (mut last, mut value) = (0, basis.constant(S::one(), order));
+            for (&exponent, power) in powers.iter_mut() {
+                value = basis.product(&value, &basis.power(x, exponent - last, order), order);
+                (*power, last) = (value.clone(), exponent);
+            }
+        }
+        let equation = |&i: &usize| {
+            let mut sum = vec![S::zero(); basis.count(order)];
+            for (term, c) in self.given.equations[i].iter().zip(&self.coefficients[i]) {
+                let mut product: Option<Vec<S>> = None;
+                for (j, e) in &term.powers {
+                    let power = &powers[*j][e];
+                    product = Some(product.map_or_else(|| power.clone(), |p| basis.product(&p, power, order)));
+                }
+                match product {
+                    None => sum[0] = S::add(&sum[0], c),
+                    Some(product) => {
+                        for (s, p) in sum.iter_mut().zip(&product) {
+                            *s = S::mul_add(c, p, s);
+                        }
+                    }
+                }
+            }
+            sum
+        };
+        which.iter().map(equation).collect()
+    }
+}
+
+/// A power of a number.
+fn raised<S: Number>(x: &S, exponent: u32) -> S {
+    let mut power = S::one();
+    for bit in (0..32 - exponent.leading_zeros()).rev() {
+        power = S::sqr(&power);
+        if exponent >> bit & 1 == 1 {
+            power = S::mul(&power, x);
+        }
+    }
+    power
+}

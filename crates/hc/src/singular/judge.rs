@@ -1,0 +1,375 @@
+//! What the end of a path is: a regular solution, an isolated multiple one, a point on a set of
+//! positive dimension, or none.
+
+use super::deflate::{CLEAR, Deflated, Profile, Reduced, ZERO, approached, deflated, distance};
+use super::dual::{Count, count};
+use super::eliminate::{Elimination, Stop};
+use super::equations::{Given, Local, Precision};
+use super::number::Number;
+use super::sheet::on_sheet;
+use crate::distinct::relative_distance;
+use crate::random::{Random, Stream};
+use num_complex::Complex64;
+use poly::{ComplexDd, ComplexMulti, Scalar};
+
+/// What a point near which paths end is, by the given equations.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Verdict {
+    /// A solution at which the Jacobian has full rank, to all digits of a double.
+    Regular {
+        /// The solution.
+        point: Vec<Complex64>,
+        /// The largest value of an equation there, relative to the sizes of its terms.
+        residual: f64,
+    },
+    /// An isolated solution at which the Jacobian has not full rank.
+    Isolated {
+        /// The dimension of the local ring.
+        multiplicity: usize,
+        /// The solution.
+        point: Vec<Complex64>,
+        /// The largest value of an equation there, relative to the sizes of its terms.
+        residual: f64,
+    },
+    /// A point on a set of solutions of positive dimension.
+    OnComponent {
+        /// A lower bound of the local dimension: that of a reduced set, if the point is a general
+        /// one.
+        dimension: usize,
+        /// A solution on it near the end.
+        point: Vec<Complex64>,
+    },
+    /// The given equations have no solution nearby.
+    NotASolution,
+    /// None of these can be told.
+    Unresolved(Why),
+}
+
+/// Why an end is not resolved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub(crate) enum Why {
+    /// No solution was found near the end, though the equations nearly vanish there.
+    #[error("the equations nearly vanish, but no solution was found nearby")]
+    NoSolution,
+    /// Numbers that are neither zero nor clearly different from zero.
+    #[error("ranks are not clear to 300 digits")]
+    Unclear,
+    /// The work that a solve may take for its ends is done.
+    #[error("too many ends need much work to be judged; this one was not looked at")]
+    TooMuch,
+    /// The work was cancelled.
+    #[error("interrupted")]
+    Interrupted,
+    /// The local structure needs more orders than are looked at.
+    #[error("the local structure is too large to tell whether the solution is isolated")]
+    TooLarge,
+}
+
+/// Orders of the series that are tried.
+const ORDERS: [usize; 14] = [2, 3, 4, 6, 8, 11, 16, 23, 32, 45, 64, 90, 128, 180];
+/// Logarithms to base 2 of the tolerances at which ranks are read off near a solution.
+const TOLERANCES: [f64; 7] = [-40.0, -30.0, -20.0, -13.0, -10.0, -6.5, -3.5];
+/// Functionals are counted up to this number at least, whatever the number of paths.
+const FUNCTIONALS: usize = 12;
+/// A regular solution is at most this far from the end of a path, relatively, or this many times
+/// its error.
+const NEAR: f64 = 1e-7;
+const NEAR_ERRORS: f64 = 1e2;
+/// The same for singular ones, whose ends are less accurate.
+const NEAR_SINGULAR: f64 = 1e-3;
+/// Relative values of equations from which a point is none of their solutions.
+const NOT_ZERO: f64 = 1e-4;
+
+/// Judges a point near which `paths` paths end, with this relative error at most as far as is
+/// known.
+pub(crate) fn judge(given: &Given, point: &[Complex64], paths: usize, error: f64) -> Verdict {
+    if point.iter().any(|z| !z.is_finite()) {
+        return Verdict::Unresolved(Why::NoSolution);
+    }
+    let error = if error.is_finite() { error.abs() } else { NEAR_SINGULAR };
+    let at_once = regular::<ComplexDd>(given, point, error)
+        .or_else(|| regular::<ComplexMulti<4>>(given, point, error))
+        .or_else(|| sheet(given, point, paths, error))
+        .or_else(|| regular::<ComplexMulti<8>>(given, point, error));
+    if let Some(verdict) = at_once {
+        return verdict;
+    }
+    if residual(given, point) > NOT_ZERO.max(1e3 * error).min(0.5) {
+        return Verdict::NotASolution;
+    }
+    let mut why = Why::NoSolution;
+    for examine in [multiple::<ComplexDd>, multiple::<ComplexMulti<4>>, multiple::<ComplexMulti<8>>] {
+        match examine(given, point, paths) {
+            Ok(verdict) => return verdict,
+            Err(reason) => why = reason,
+        }
+        if why == Why::TooLarge && point.len() > 1 {
+            break;
+        }
+    }
+    // What only very many digits tell.
+    regular::<ComplexMulti<16>>(given, point, error).unwrap_or(Verdict::Unresolved(why))
+}
+
+/// Solutions near a point that is between them: the end of paths that were not told apart.
+#[derive(Debug, Default)]
+pub(crate) struct Nearby {
+    /// Regular ones.
+    pub(crate) regular: Vec<(Vec<Complex64>, f64)>,
+    /// A point on a set of positive dimension, with its dimension.
+    pub(crate) component: Option<(Vec<Complex64>, usize)>,
+}
+
+/// Logarithms to base 10 of distances from a point at which Newton's method starts, and how often.
+const DISTANCES: [i32; 7] = [-10, -9, -8, -7, -6, -5, -4];
+const STARTS: usize = 6;
+
+/// A component near a point, but further than this, is believed only beside a regular solution that
+/// is not nearer by much: the point is then between them.
+const NEAR_COMPONENT: f64 = 1e-7;
+/// Logarithm to base 2 of how much further.
+const FURTHER: f64 = 3.0;
+
+/// Searches the neighbourhood of a point for at most `wanted` regular solutions, and a component if
+/// they are fewer.
+pub(crate) fn nearby(given: &Given, point: &[Complex64], wanted: usize) -> Nearby {
+    let local = given.near::<ComplexMulti<4>>(point);
+    let centre = local.scaled(point);
+    let mut random = Random::new(0, Stream::Beside);
+    let mut found: Vec<Vec<ComplexMulti<4>>> = Vec::new();
+    let mut nearby = Nearby::default();
+    for power in DISTANCES {
+        let distance_to = f64::from(power) * 10f64.log2();
+        for _ in 0..STARTS {
+            let away =
+                |z: &ComplexMulti<4>| ComplexMulti::add(z, &ComplexMulti::from_c64(random.unit() * 10f64.powi(power)));
+            let start: Vec<ComplexMulti<4>> = centre.iter().map(away).collect();
+            let solution = deflated(&local, &start, 1, f64::NEG_INFINITY, &mut Vec::new());
+            if let Some(solution) = solution.filter(|s| s.profile.is_regular())
+                && distance(&centre, &solution.point) <= distance_to + 4.0
+                && found.iter().all(|known| distance(known, &solution.point) > -100.0)
+            {
+                nearby.regular.push(rounded(given, &local, &solution.point));
+                found.push(solution.point);
+            }
+            if found.len() >= wanted {
+                return nearby;
+            }
+            // Newton's method leads to a component too, along which it drifts.
+            let start: Vec<Complex64> = local.unscaled(&approached(&local, start)).iter().map(Number::to_c64).collect();
+            if nearby.component.is_none() {
+                let verdict = sheet(given, &start, 1, NEAR_SHEET_AT_MOST);
+                if let Some(Verdict::OnComponent { dimension, point }) =
+                    verdict.or_else(|| multiple::<ComplexDd>(given, &start, 1).ok())
+                {
+                    let away = distance(&centre, &local.scaled(&point));
+                    let solution = found.iter().map(|z| distance(&centre, z)).fold(f64::INFINITY, f64::min);
+                    if away <= NEAR_COMPONENT.log2() || away <= solution + FURTHER && solution.is_finite() {
+                        nearby.component = Some((point, dimension));
+                    }
+                }
+            }
+        }
+    }
+    nearby
+}
+
+/// Relative values of equations up to which a regular solution of combinations of them surely
+/// solves all, and from which it does not; between them it is refined.
+const SOLVES: f64 = 1e-13;
+const MISSES: f64 = 1e-6;
+
+/// Whether a regular solution of combinations of the equations, to all digits of a double, solves
+/// them all.
+pub(crate) fn solves(given: &Given, point: &[Complex64]) -> bool {
+    let residual = residual(given, point);
+    residual <= SOLVES || residual < MISSES && matches!(judge(given, point, 1, 0.0), Verdict::Regular { .. })
+}
+
+/// Relative corrections up to this size are due to rounding the point.
+const STEADY: f64 = 1e-13;
+/// Pivots of the Jacobian, as logarithms to base 2, that may be due to that as well.
+const FAINT: f64 = -36.0;
+
+/// Whether the given equations move a regular solution of rounded ones by more than its own
+/// rounding error, or do not determine it.
+pub(crate) fn is_moved(given: &Given, point: &[Complex64]) -> bool {
+    let near = given.near::<ComplexDd>(point);
+    let mut x = near.scaled(point);
+    let (values, jacobian) = near.jacobian(&x);
+    let pivots = Elimination::new(jacobian, point.len(), Stop::Below(f64::NEG_INFINITY));
+    for (&j, d) in pivots.columns.iter().zip(pivots.solve(&values)) {
+        x[j] = ComplexDd::sub(&x[j], &d);
+    }
+    let moved: Vec<Complex64> = near.unscaled(&x).iter().map(Number::to_c64).collect();
+    // Written so that what is no number is moved.
+    !(pivots.rank() == point.len() && pivots.smallest > FAINT && relative_distance(point, &moved) <= STEADY)
+}
+
+/// The regular solution near a point, if there is one to one precision.
+fn regular<S: Precision>(given: &Given, point: &[Complex64], error: f64) -> Option<Verdict> {
+    let local = given.near::<S>(point);
+    let start = local.scaled(point);
+    let found = deflated(&local, &start, 1, f64::NEG_INFINITY, &mut Vec::new())?;
+    if !found.profile.is_regular() || distance(&start, &found.point) > NEAR.max(NEAR_ERRORS * error).log2() {
+        return None;
+    }
+    let (point, residual) = rounded(given, &local, &found.point);
+    Some(Verdict::Regular { point, residual })
+}
+
+/// A point on a set of positive dimension is at most this far from the end of a path, relatively,
+/// or as many times its error.
+const NEAR_SHEET: f64 = 1e-11;
+const NEAR_SHEET_AT_MOST: f64 = 1e-8;
+const NEAR_SHEET_ERRORS: f64 = 10.0;
+
+/// The verdict on a point that can be moved along a set of solutions.
+fn sheet(given: &Given, point: &[Complex64], paths: usize, error: f64) -> Option<Verdict> {
+    if point.len() == 1 {
+        return None;
+    }
+    let local = given.near::<ComplexDd>(point);
+    let near = NEAR_SHEET.max(NEAR_SHEET_ERRORS * error).min(NEAR_SHEET_AT_MOST).log2();
+    let (point, dimension) = on_sheet(&local, &local.scaled(point), paths, near)?;
+    Some(Verdict::OnComponent { dimension, point: rounded(given, &local, &point).0 })
+}
+
+/// The verdict on a point that is no regular solution, to one precision; an error if that is not
+/// enough.
+fn multiple<S: Precision>(given: &Given, point: &[Complex64], paths: usize) -> Result<Verdict, Why> {
+    let local = given.near::<S>(point);
+    let start = local.scaled(point);
+    let limit = (2 * paths + 2).max(FUNCTIONALS);
+    if let Some(verdict) = at_zeros(&local, &start, limit) {
+        return Ok(verdict);
+    }
+    let mut why = Why::NoSolution;
+    for order in ORDERS.into_iter().take_while(|&order| order <= 2 * limit) {
+        let mut tried: Vec<Profile> = Vec::new();
+        for tolerance in TOLERANCES {
+            let Some(found) = deflated(&local, &start, order, tolerance, &mut tried) else { continue };
+            if found.profile.is_regular() || distance(&start, &found.point) > NEAR_SINGULAR.log2() {
+                continue;
+            }
+            match structure(&local, &found, order, limit) {
+                Some(Structure::Isolated(multiplicity)) => {
+                    let (point, residual) = rounded(given, &local, &found.point);
+                    return Ok(Verdict::Isolated { multiplicity, point, residual });
+                }
+                Some(Structure::Component(dimension)) => {
+                    let (point, _) = rounded(given, &local, &found.point);
+                    return Ok(Verdict::OnComponent { dimension, point });
+                }
+                Some(Structure::Unfinished) => why = Why::TooLarge,
+                None if why == Why::NoSolution => why = Why::Unclear,
+                None => {}
+            }
+        }
+    }
+    Err(why)
+}
+
+/// The verdict where zeros in place of small coordinates give a solution exactly: nothing needs to
+/// be refined there.
+fn at_zeros<S: Number>(local: &Local<'_, S>, start: &[S], limit: usize) -> Option<Verdict> {
+    let snapped: Vec<S> = start.iter().map(|z| if z.log2() < NEAR_SINGULAR.log2() { S::zero() } else { *z }).collect();
+    let (values, jacobian) = local.jacobian(&snapped);
+    if !values.iter().all(Number::vanishes) {
+        return None;
+    }
+    let pivots = Elimination::new(jacobian, snapped.len(), Stop::Below(ZERO * S::BITS));
+    if pivots.smallest < CLEAR * S::BITS || pivots.rank() == snapped.len() {
+        return None;
+    }
+    for order in ORDERS {
+        let reduced = Reduced::new(local, &snapped, &pivots, order)?;
+        if let Count::All(multiplicity) = count(&reduced.basis, &reduced.equations, 4 * limit) {
+            let point = local.unscaled(&snapped).iter().map(Number::to_c64).collect();
+            return Some(Verdict::Isolated { multiplicity, point, residual: 0.0 });
+        }
+    }
+    None
+}
+
+enum Structure {
+    Isolated(usize),
+    Component(usize),
+    /// More orders are needed.
+    Unfinished,
+}
+
+/// The structure at a refined solution as far as series up to an order tell; `None` where ranks are
+/// not clear.
+fn structure<S: Number>(local: &Local<'_, S>, found: &Deflated<S>, order: usize, limit: usize) -> Option<Structure> {
+    let (_, jacobian) = local.jacobian(&found.point);
+    let pivots = Elimination::new(jacobian, found.point.len(), Stop::After(found.profile.ranks[0]));
+    let Some(reduced) = Reduced::new(local, &found.point, &pivots, order) else {
+        return Some(Structure::Unfinished);
+    };
+    let regular_after = found.profile.remaining == 0;
+    let counted = |bound: usize| {
+        let functionals = count(&reduced.basis, &reduced.equations, bound);
+        let many =
+            if let Count::All(found) = functionals { found } else { bound.min(reduced.basis.count(order)) } as f64;
+        let n = reduced.basis.variables() as f64;
+        local.spend(order as f64 * (n * many).powi(2) * (0.5 * n + 1.0) * many / 3.0);
+        functionals
+    };
+    let functionals = counted(limit);
+    // Where deflation has determined the point, it may be isolated with more paths than were
+    // counted.
+    let functionals = match functionals {
+        Count::More if regular_after => match counted(4 * limit) {
+            Count::All(multiplicity) => Count::All(multiplicity),
+            _ => Count::More,
+        },
+        other => other,
+    };
+    Some(match functionals {
+        Count::Unclear => return None,
+        Count::All(multiplicity) if regular_after => Structure::Isolated(multiplicity),
+        Count::More => Structure::Component(dimension(&reduced, found.profile.remaining.max(1))),
+        Count::All(_) | Count::Unfinished => Structure::Unfinished,
+    })
+}
+
+/// The local dimension, at least that of the points of the same structure: the number of general
+/// hyperplanes in which the solution is isolated. Where that is not seen, the lower bound.
+fn dimension<S: Number>(reduced: &Reduced<S>, at_least: usize) -> usize {
+    let variables = reduced.basis.variables();
+    let mut random = Random::new(0, Stream::Slice(0));
+    let mut equations = reduced.equations.clone();
+    let mut plane = || {
+        let mut form = reduced.basis.constant(S::zero(), 1);
+        for z in form.iter_mut().skip(1) {
+            *z = S::from_c64(random.unit());
+        }
+        form
+    };
+    equations.extend((0..at_least.min(variables)).map(|_| plane()));
+    for dimension in at_least..=variables {
+        if matches!(count(&reduced.basis, &equations, usize::MAX), Count::All(_)) {
+            return dimension;
+        }
+        equations.push(plane());
+    }
+    at_least
+}
+
+/// A point as doubles, and the values of the equations there relative to their terms.
+fn rounded<S: Number>(given: &Given, local: &Local<'_, S>, point: &[S]) -> (Vec<Complex64>, f64) {
+    let point: Vec<Complex64> = local.unscaled(point).iter().map(Number::to_c64).collect();
+    let residual = residual(given, &point);
+    (point, residual)
+}
+
+/// The largest value of an equation at a point, relative to the sizes of its terms.
+pub(crate) fn residual(given: &Given, point: &[Complex64]) -> f64 {
+    let near = given.near::<ComplexDd>(point);
+    near.residual(&near.scaled(point)).exp2()
+}
+
+#[cfg(test)]
+#[path = "judge_tests.rs"]
+mod tests;

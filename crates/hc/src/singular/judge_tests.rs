@@ -1,0 +1,101 @@
+//! Points whose local structure is known by hand.
+
+use super::{Verdict, judge};
+use crate::singular::equations::Given;
+use num_complex::Complex64;
+use poly::parse::phcpack;
+
+fn judged(text: &str, point: &[f64], paths: usize, error: f64) -> Verdict {
+    let system = phcpack(text).unwrap();
+    let given = Given::new(&system.expand(&Default::default()).unwrap(), vec![0; system.variables().len()]);
+    // Beside the point by the error that is said.
+    let point: Vec<Complex64> = point
+        .iter()
+        .enumerate()
+        .map(|(j, &x)| Complex64::new(x, 0.0) + Complex64::from_polar(0.7 * error, 1.0 + j as f64))
+        .collect();
+    judge(&given, &point, paths, error)
+}
+
+fn isolated(text: &str, at: &[f64], paths: usize, error: f64) -> usize {
+    match judged(text, at, paths, error) {
+        Verdict::Isolated { multiplicity, point, residual } => {
+            for (z, x) in point.iter().zip(at) {
+                assert!((z - x).norm() < 1e-14, "{text}: {point:?}");
+            }
+            assert!(residual < 1e-15, "{text}: {residual}");
+            multiplicity
+        }
+        other => panic!("{text}: {other:?}"),
+    }
+}
+
+/// Multiplicities by hand: intersection numbers, or monomials outside the leading ideal.
+#[test]
+fn multiplicities_from_inaccurate_ends() {
+    for error in [0.0, 1e-14, 1e-9, 1e-5] {
+        assert_eq!(isolated("3 2\nx^2;\nx*y;\ny^2;", &[0.0, 0.0], 4, error), 3);
+        assert_eq!(isolated("2\ny+x-1;\nx^4+y*(y+x-1);", &[1.0, 0.0], 4, error), 4);
+        assert_eq!(isolated("1\n(x-3)^2;", &[3.0], 2, error), 2);
+        assert_eq!(isolated("2\n(29/16)*x^3-2*x*y;\nx^2-y;", &[0.0, 0.0], 3, error), 3);
+        assert_eq!(isolated("2\nx*(x-y);\ny*(x+y);", &[0.0, 0.0], 4, error), 4);
+        assert_eq!(isolated("3\nx^2-y;\ny^2-z;\nz^2;", &[0.0, 0.0, 0.0], 8, error), 8);
+        assert_eq!(isolated("3\nx^2+y*z;\ny^2-x*z;\nz^2+2*x*y+x^3;", &[0.0, 0.0, 0.0], 8, error), 8);
+        // Two cusps that cross transversally: order of the product.
+        assert_eq!(isolated("2\ny^2-x^3;\nx^2-y^3;", &[0.0, 0.0], 4, error), 4);
+        // The tacnode y (y - x^2) and a line through it in a general direction, and its
+        // tangent: 2 and 4 with y - x^4.
+        assert_eq!(isolated("2\ny*(y-x^2);\nx-2*y;", &[0.0, 0.0], 2, error), 2);
+        assert_eq!(isolated("2\n(x-1)^3*(y+2);\n(y-1)^2*(x+y-5);", &[1.0, 1.0], 6, error), 6);
+    }
+}
+
+#[test]
+fn high_multiplicities() {
+    for error in [1e-8, 1e-4] {
+        assert_eq!(isolated("1\n(x-3)^12;", &[3.0], 12, error), 12);
+        assert_eq!(isolated("2\n(x-1)^5+y-2;\n(y-2)^3;", &[1.0, 2.0], 15, error), 15);
+    }
+    assert_eq!(isolated("4\nx^2;\ny^2+x*z;\nz^2-x*y;\nw^2+x+y;", &[0.0; 4], 16, 1e-7), 16);
+}
+
+#[test]
+fn regular_solutions_with_others_nearby() {
+    for (text, at, error) in [
+        ("1\nx^2-2*x+1-1E-12;", vec![1.000001], 1e-9),
+        ("2\n(x-1-1E-7)*(x^2+y^2-1);\ny*(x^2+y^2-1);", vec![1.0000001, 0.0], 1e-10),
+        ("3 2\nx*y;\nx-1;\ny*(x+2);", vec![1.0, 0.0], 1e-9),
+        ("4 3\nx*y;\nx*z;\nx*(x-1);\ny*(y-z);", vec![1.0, 0.0, 0.0], 1e-9),
+    ] {
+        let verdict = judged(text, &at, 1, error);
+        assert!(matches!(verdict, Verdict::Regular { .. }), "{text}: {verdict:?}");
+    }
+}
+
+#[test]
+fn points_on_sets_of_positive_dimension() {
+    for error in [0.0, 1e-12, 1e-8] {
+        for (text, at, dimension) in [
+            ("2\nx^2*(x+y-1);\nx^2*(x-y+2);", vec![0.0, 0.3], 1),
+            ("2\n(x-y)^2*(x+y-1);\n(x-y)^2*(x+2*y+2);", vec![0.7, 0.7], 1),
+            ("2\n(x-1-1E-7)*(x^2+y^2-1);\ny*(x^2+y^2-1);", vec![0.6, 0.8], 1),
+            ("4 3\nx*y;\nx*z;\nx*(x-1);\ny*(y-z);", vec![0.0, 0.4, 0.4], 1),
+            ("3\nx*(x^2+y+z);\nx*(y^2-3+z);\nx*(z-x*y+1);", vec![0.0, 0.4, 0.9], 2),
+        ] {
+            let verdict = judged(text, &at, 1, error);
+            let Verdict::OnComponent { dimension: found, .. } = verdict else { panic!("{text}: {verdict:?}") };
+            assert_eq!(found, dimension, "{text} {error}");
+        }
+        // Where two planes meet, one of them with an embedded line: the point is no general one,
+        // and the bound may be that of the line.
+        let verdict = judged("3\nx^3*y;\nx*y^2;\nx*y*(x+y);", &[0.0, 0.0, 0.5], 1, error);
+        let Verdict::OnComponent { dimension, .. } = verdict else { panic!("{verdict:?}") };
+        assert!(dimension == 1 || dimension == 2, "{error}: {dimension}");
+    }
+}
+
+#[test]
+fn points_that_solve_nothing() {
+    assert_eq!(judged("2\nx*y-1;\nx+y-7;", &[1.0, 2.0], 2, 1e-9), Verdict::NotASolution);
+    assert_eq!(judged("3 2\nx^2+y^2-2;\nx-y;\nx*y+3;", &[1.0, 1.0], 2, 1e-9), Verdict::NotASolution);
+}

@@ -1,0 +1,20 @@
+//! The local structure of solutions: isolated or not, multiplicity, digits by deflation.
+//!
+//! A point is judged by the given equations, with their exact coefficients, in numbers of 32 to 308
+//! digits: the fewest in which what is zero is clearly told from what is not.
+
+mod deflate;
+mod dual;
+mod eliminate;
+mod equations;
+mod judge;
+mod number;
+mod series;
+mod sheet;
+mod squarefree;
+mod univariate;
+
+pub(crate) use equations::Given;
+pub(crate) use judge::{Verdict, Why, is_moved, judge, nearby, residual, solves};
+pub(crate) use squarefree::squarefree;
+pub(crate) use univariate::roots;

@@ -1,0 +1,207 @@
+//! Power series in a few variables, cut off at an order.
+
+use super::number::Number;
+use std::collections::HashMap;
+
+/// The monomials of some variables up to an order, by their order: a series of a lower order is a
+/// shorter list of coefficients.
+pub(crate) struct Basis {
+    variables: usize,
+    order: usize,
+    exponents: Vec<Vec<u16>>,
+    /// The number of monomials of each order or less.
+    counts: Vec<usize>,
+    /// The places of the products of each monomial with those that leave it within the order.
+    products: Vec<Vec<u32>>,
+}
+
+/// Replacing the variables of series by series takes as many products as there are monomials, and
+/// each as many steps as there are pairs of monomials within the order. More steps than this are
+/// not taken.
+const MAX_STEPS: f64 = 6e5;
+
+impl Basis {
+    /// `None` if there would be too many monomials.
+    pub(crate) fn new(variables: usize, order: usize) -> Option<Basis> {
+        // Pairs of monomials in `v` variables that stay within order `k` are monomials in `2 v`
+        // variables.
+        let choices = |from: usize| (1..=order).map(|i| (from + i) as f64 / i as f64).product::<f64>();
+        if choices(variables) * choices(2 * variables) > MAX_STEPS || order > usize::from(u16::MAX) {
+            return None;
+        }
+        let mut exponents: Vec<Vec<u16>> = vec![vec![0; variables]];
+        let mut counts = vec![1];
+        let mut last = 0;
+        for _ in 0..order {
+            let to = exponents.len();
+            for k in last..to {
+                // Each monomial once: from the one without its last variable.
+                let from = exponents[k].iter().rposition(|&e| e > 0).unwrap_or(0);
+                for j in from..variables {
+                    let mut raised = exponents[k].clone();
+                    raised[j] += 1;
+                    exponents.push(raised);
+                }
+            }
+            last = to;
+            counts.push(exponents.len());
+        }
+        let places: HashMap<&[u16], u32> = exponents.iter().enumerate().map(|(k, e)| (&e[..], k as u32)).collect();
+        let degree = |e: &[u16]| e.iter().map(|&e| usize::from(e)).sum::<usize>();
+        let products = exponents.iter().map(|a| {
+            let within = &exponents[..counts[order - degree(a)]];
+            let sum = |b: &Vec<u16>| a.iter().zip(b).map(|(a, b)| a + b).collect::<Vec<u16>>();
+            within.iter().filter_map(|b| places.get(&sum(b)[..]).copied()).collect()
+        });
+        let products = products.collect();
+        drop(places);
+        Some(Basis { variables, order, exponents, counts, products })
+    }
+
+    pub(crate) fn variables(&self) -> usize {
+        self.variables
+    }
+
+    pub(crate) fn order(&self) -> usize {
+        self.order
+    }
+
+    /// Number of monomials of an order or less.
+    pub(crate) fn count(&self, order: usize) -> usize {
+        self.counts[order.min(self.order)]
+    }
+
+    /// Number of pairs of monomials whose product is of an order or less.
+    pub(crate) fn pairs(&self, order: usize) -> usize {
+        let mut pairs = 0;
+        let mut degree = 0;
+        for k in 0..self.count(order) {
+            while k >= self.counts[degree] {
+                degree += 1;
+            }
+            pairs += self.count(order.min(self.order) - degree);
+        }
+        pairs
+    }
+
+    pub(crate) fn exponents(&self) -> &[Vec<u16>] {
+        &self.exponents
+    }
+
+    /// The order of a series, by its length.
+    fn order_of<S>(&self, series: &[S]) -> usize {
+        self.counts.iter().position(|&count| count == series.len()).unwrap_or(self.order)
+    }
+
+    pub(crate) fn constant<S: Number>(&self, value: S, order: usize) -> Vec<S> {
+        let mut series = vec![S::zero(); self.count(order)];
+        series[0] = value;
+        series
+    }
+
+    /// The place of a variable among the monomials.
+    pub(crate) fn variable(&self, index: usize) -> usize {
+        1 + index
+    }
+
+    /// The place of a monomial times a variable; its order must be below that of the basis.
+    pub(crate) fn raised(&self, monomial: usize, variable: usize) -> usize {
+        self.products[monomial][self.variable(variable)] as usize
+    }
+
+    /// The product up to an order; factors may be shorter.
+    pub(crate) fn product<S: Number>(&self, a: &[S], b: &[S], order: usize) -> Vec<S> {
+        let mut product = vec![S::zero(); self.count(order)];
+        let mut degree = 0;
+        for (i, x) in a.iter().enumerate().take(product.len()) {
+            while i >= self.counts[degree] {
+                degree += 1;
+            }
+            if x.vanishes() {
+                continue;
+            }
+            let within = self.count(order - degree);
+            for (y, &place) in b.iter().zip(&self.products[i]).take(within) {
+                if !y.vanishes() {
+                    let sum = &mut product[place as usize];
+                    *sum = S::mul_add(x, y, sum);
+                }
+            }
+        }
+        product
+    }
+
+    /// A power of a series up to an order.
+    pub(crate) fn power<S: Number>(&self, a: &[S], exponent: u32, order: usize) -> Vec<S> {
+        let mut power = self.constant(S::one(), order);
+        for bit in (0..32 - exponent.leading_zeros()).rev() {
+            power = self.product(&power, &power, order);
+            if exponent >> bit & 1 == 1 {
+                power = self.product(&power, a, order);
+            }
+        }
+        power
+    }
+
+    /// The derivative by a variable, of an order less; that of a constant is none.
+    pub(crate) fn derivative<S: Number>(&self, a: &[S], variable: usize) -> Vec<S> {
+        let order = self.order_of(a);
+        if order == 0 {
+            return Vec::new();
+        }
+        let raised = &self.products[self.variable(variable)];
+        let term = |k: usize| {
+            let place = raised[k] as usize;
+            S::scale(&a[place], f64::from(self.exponents[place][variable]))
+        };
+        (0..self.count(order - 1)).map(term).collect()
+    }
+
+    /// The value of a series at a point.
+    pub(crate) fn value<S: Number>(&self, a: &[S], point: &[S]) -> S {
+        let mut monomials: Vec<S> = vec![S::one()];
+        for exponents in &self.exponents[1..a.len().max(1)] {
+            let j = exponents.iter().rposition(|&e| e > 0).unwrap_or(0);
+            let mut lower = exponents.clone();
+            lower[j] -= 1;
+            // The monomial without its last variable stands before.
+            let place = self.exponents[..monomials.len()].iter().rposition(|e| *e == lower).unwrap_or(0);
+            monomials.push(S::mul(&monomials[place], &point[j]));
+        }
+        a.iter().zip(&monomials).fold(S::zero(), |sum, (a, m)| S::mul_add(a, m, &sum))
+    }
+
+    /// Series in the variables of `self` with each variable replaced by a series over `inner`, up
+    /// to an order.
+    pub(crate) fn composed<S: Number>(
+        &self,
+        all: &[Vec<S>],
+        inner: &Basis,
+        map: &[Vec<S>],
+        order: usize,
+    ) -> Vec<Vec<S>> {
+        let length = all.iter().map(Vec::len).max().unwrap_or(0);
+        let mut sums = vec![vec![S::zero(); inner.count(order)]; all.len()];
+        let mut monomials: Vec<Vec<S>> = Vec::with_capacity(length);
+        for (k, exponents) in self.exponents[..length].iter().enumerate() {
+            let monomial = match exponents.iter().rposition(|&e| e > 0) {
+                None => inner.constant(S::one(), order),
+                Some(j) => {
+                    let mut lower = exponents.clone();
+                    lower[j] -= 1;
+                    let place = self.exponents[..k].iter().rposition(|e| *e == lower).unwrap_or(0);
+                    inner.product(&monomials[place], &map[j], order)
+                }
+            };
+            for (sum, series) in sums.iter_mut().zip(all) {
+                if let Some(c) = series.get(k).filter(|c| !c.vanishes()) {
+                    for (s, m) in sum.iter_mut().zip(&monomial) {
+                        *s = S::mul_add(c, m, s);
+                    }
+                }
+            }
+            monomials.push(monomial);
+        }
+        sums
+    }
+}

@@ -1,0 +1,117 @@
+//! Points on sets of positive dimension, told in little time: such a point can be moved along the
+//! set.
+
+use super::deflate::{CLEAR, Deflated, Profile, deflated, distance, moved, settled};
+use super::eliminate::{Elimination, Stop};
+use super::equations::Local;
+use super::number::Number;
+use crate::random::{Random, Stream};
+
+/// Deflations that are tried where sets are not reduced: orders of the series, with logarithms to
+/// base 2 of the tolerances at which ranks are read off.
+const TRIED: [(usize, f64); 4] = [(2, -20.0), (2, -12.0), (3, -20.0), (3, -12.0)];
+/// Pivots up to this size (logarithm to base 2) may be zero on a reduced set.
+const DOUBTFUL: f64 = -4.0;
+/// How far a point is moved, in units of the coordinates, and how often.
+const STRIDES: [f64; 2] = [0.25, 0.0625];
+const MOVES: u32 = 3;
+/// Where a set ends after all, equations are this small at most relative to their terms.
+const UNSEEN: f64 = -80.0;
+
+/// A solution on a set of positive dimension near `start`, at a distance of at most `near` (a
+/// logarithm to base 2), and how many of its unknowns are free: the dimension of the set.
+///
+/// The point is refined with the ranks that are seen there, and moved along the solutions of the
+/// same ranks. At an isolated solution at which not more than `paths` paths end the equations
+/// cannot be as small as they are required to be where it leads: they grow with that power of the
+/// distance at most. `None` tells nothing.
+pub(crate) fn on_sheet<S: Number>(
+    local: &Local<'_, S>,
+    start: &[S],
+    paths: usize,
+    near: f64,
+) -> Option<(Vec<S>, usize)> {
+    let sheet = |found: &Deflated<S>, order: usize| {
+        if found.profile.is_regular() || distance(start, &found.point) > near {
+            return None;
+        }
+        if found.profile.remaining == 0 {
+            return touched(local, &found.point, paths);
+        }
+        // The distance that is reached, to the power of the multiplicity, must be visible.
+        let leads =
+            |&stride: &f64| paths as f64 * stride.log2() > 0.5 * UNSEEN && leads_on(local, found, order, stride);
+        STRIDES.iter().any(leads).then_some(found.profile.remaining)
+    };
+    for rank in ranks(local, start) {
+        let profile = Profile { ranks: vec![rank], remaining: start.len() - rank };
+        if let Some(found) = settled(local, start.to_vec(), 1, &profile, f64::INFINITY)
+            && let Some(dimension) = sheet(&found, 1)
+        {
+            return Some((found.point, dimension));
+        }
+    }
+    let mut tried = Vec::new();
+    for (order, tolerance) in TRIED {
+        if let Some(found) = deflated(local, start, order, tolerance, &mut tried)
+            && let Some(dimension) = sheet(&found, order)
+        {
+            return Some((found.point, dimension));
+        }
+    }
+    None
+}
+
+/// Ranks that the Jacobian may have at a point of a reduced set nearby, the highest first.
+fn ranks<S: Number>(local: &Local<'_, S>, start: &[S]) -> Vec<usize> {
+    let (_, jacobian) = local.jacobian(start);
+    let sizes = Elimination::new(jacobian, start.len(), Stop::Below(CLEAR * S::BITS)).sizes;
+    let others = |rank: usize| sizes.get(rank).copied().unwrap_or(f64::NEG_INFINITY);
+    (1..=sizes.len().min(start.len() - 1)).rev().filter(|&rank| others(rank) <= DOUBTFUL).collect()
+}
+
+/// Paths at most that end at points for which [`touched`] tells something: of an isolated solution
+/// of a higher multiplicity equations are too small at the least distance.
+const FEW: usize = 3;
+/// Logarithms to base 2 of distances at which solutions are sought, and points at each from which
+/// that is done.
+const DISTANCES: [f64; 5] = [-4.0, -9.0, -14.0, -19.0, -24.0];
+const STARTS: usize = 20;
+/// Dimensions of sets that are sought.
+const DIMENSIONS: usize = 2;
+
+/// The dimension of a reduced set on which a solution lies though ranks are lower there than beside
+/// it, as where a curve crosses itself: at all distances there are solutions of a common rank.
+/// `None` tells nothing.
+fn touched<S: Number>(local: &Local<'_, S>, point: &[S], paths: usize) -> Option<usize> {
+    if paths > FEW {
+        return None;
+    }
+    let variables = point.len();
+    let mut random = Random::new(0, Stream::Beside);
+    let mut is_beside = |dimension: usize, away: f64| {
+        let profile = Profile { ranks: vec![variables - dimension], remaining: dimension };
+        (0..STARTS).any(|_| {
+            let start: Vec<S> = point.iter().map(|z| S::add(z, &S::from_c64(random.unit() * away.exp2()))).collect();
+            settled(local, start, 1, &profile, f64::INFINITY).is_some_and(|found| {
+                let reached = distance(point, &found.point);
+                (away - 5.0..away + 3.0).contains(&reached) && local.residual(&found.point) <= UNSEEN
+            })
+        })
+    };
+    (1..=DIMENSIONS.min(variables - 1)).find(|&d| DISTANCES.iter().all(|&away| is_beside(d, away)))
+}
+
+/// Whether the point can be moved by some strides, each to another solution of the same ranks.
+fn leads_on<S: Number>(local: &Local<'_, S>, found: &Deflated<S>, order: usize, stride: f64) -> bool {
+    let mut point = found.point.clone();
+    for _ in 0..MOVES {
+        let Some(next) = moved(local, &point, order, &found.profile, stride) else { return false };
+        let way = distance(&point, &next);
+        if !(way >= stride.log2() - 3.0 && way <= stride.log2() + 3.0) || local.residual(&next) > UNSEEN {
+            return false;
+        }
+        point = next;
+    }
+    distance(&found.point, &point) > stride.log2() - 1.0
+}

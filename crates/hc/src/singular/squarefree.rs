@@ -1,0 +1,212 @@
+//! A polynomial in one unknown as a product of powers of others without multiple roots, exactly.
+//!
+//! That there are no multiple roots is proven modulo a prime, in little time. Where there are, Yun's
+//! algorithm (1976) finds the factors by greatest common divisors of exact polynomials.
+
+use num_bigint::{BigInt, Sign};
+use num_complex::Complex;
+use num_rational::BigRational;
+use num_traits::{One, Zero};
+use poly::{Exact, Monomial, Polynomial};
+
+/// Coefficients by ascending exponents, the last not zero; none for the zero polynomial.
+type Dense = Vec<Exact>;
+
+/// Polynomials of a higher degree are not looked at.
+const MAX_DEGREE: usize = 3000;
+/// Exact divisors are computed up to this work, about a second: the square of the degree times that
+/// of the number of words of their coefficients.
+const MAX_WORK: f64 = 1e9;
+
+/// Factors without multiple roots and their exponents, whose product is the polynomial up to a
+/// constant; `None` for more than one unknown, negative exponents, or too much work.
+pub(crate) fn squarefree(polynomial: &Polynomial<Exact>) -> Option<Vec<(Polynomial<Exact>, usize)>> {
+    let whole = dense(polynomial)?;
+    if is_squarefree(&whole) {
+        return Some(vec![(polynomial.clone(), 1)]);
+    }
+    let degree = (whole.len() - 1) as f64;
+    let bits = |q: &BigRational| q.numer().bits() + q.denom().bits();
+    let largest = whole.iter().map(|c| bits(&c.re) + bits(&c.im)).max()?;
+    if (degree * degree * largest as f64 / 32.0).powi(2) > MAX_WORK {
+        return None;
+    }
+    let parts = yun(&whole).into_iter().map(|(part, exponent)| (sparse(&part), exponent));
+    Some(parts.collect())
+}
+
+fn dense(polynomial: &Polynomial<Exact>) -> Option<Dense> {
+    let mut coefficients: Dense = Vec::new();
+    for (monomial, c) in polynomial.terms() {
+        let [exponent] = monomial.exponents()[..] else { return None };
+        let place = usize::try_from(exponent).ok().filter(|&e| e <= MAX_DEGREE)?;
+        if coefficients.len() <= place {
+            coefficients.resize(place + 1, Exact::zero());
+        }
+        coefficients[place] = c.clone();
+    }
+    Some(trimmed(coefficients)).filter(|c| c.len() > 1)
+}
+
+fn sparse(coefficients: &[Exact]) -> Polynomial<Exact> {
+    let terms = coefficients.iter().enumerate().map(|(e, c)| (Monomial::new([e as i32]), c.clone()));
+    Polynomial::from_terms(1, terms.filter(|(_, c)| !c.is_zero()))
+}
+
+fn trimmed(mut coefficients: Dense) -> Dense {
+    while coefficients.last().is_some_and(Zero::is_zero) {
+        coefficients.pop();
+    }
+    coefficients
+}
+
+/// Yun's factors with their exponents, constants left out.
+fn yun(whole: &[Exact]) -> Vec<(Dense, usize)> {
+    let slope = derivative(whole);
+    let common = divisor(whole.to_vec(), slope.clone());
+    let (mut rest, mut other) = (divided(whole, &common).0, divided(&slope, &common).0);
+    let mut parts = Vec::new();
+    for exponent in 1..whole.len() {
+        let difference = minus(&other, &derivative(&rest));
+        let part = divisor(rest.clone(), difference.clone());
+        (rest, other) = (divided(&rest, &part).0, divided(&difference, &part).0);
+        if part.len() > 1 {
+            parts.push((part, exponent));
+        }
+        if rest.len() <= 1 {
+            break;
+        }
+    }
+    parts
+}
+
+fn derivative(a: &[Exact]) -> Dense {
+    let factor = |e: usize| Exact::new(BigRational::from_integer(BigInt::from(e)), BigRational::zero());
+    a.iter().enumerate().skip(1).map(|(e, c)| c * factor(e)).collect()
+}
+
+fn minus(a: &[Exact], b: &[Exact]) -> Dense {
+    let at = |c: &[Exact], k: usize| c.get(k).cloned().unwrap_or_else(Exact::zero);
+    trimmed((0..a.len().max(b.len())).map(|k| at(a, k) - at(b, k)).collect())
+}
+
+/// Quotient and remainder; the divisor is not zero.
+fn divided(a: &[Exact], b: &[Exact]) -> (Dense, Dense) {
+    let (mut rest, mut quotient) = (a.to_vec(), Dense::new());
+    let Some(leading) = b.last() else { return (quotient, rest) };
+    while rest.len() >= b.len() {
+        let (place, Some(last)) = (rest.len() - b.len(), rest.pop()) else { break };
+        let factor = last / leading;
+        if !factor.is_zero() {
+            for (r, c) in rest[place..].iter_mut().zip(b) {
+                *r = &*r - &factor * c;
+            }
+        }
+        quotient.push(factor);
+    }
+    quotient.reverse();
+    (quotient, trimmed(rest))
+}
+
+/// The monic greatest common divisor of two polynomials, not both zero.
+fn divisor(mut a: Dense, mut b: Dense) -> Dense {
+    while !b.is_empty() {
+        let rest = divided(&a, &b).1;
+        (a, b) = (b, monic(rest));
+    }
+    monic(a)
+}
+
+fn monic(a: Dense) -> Dense {
+    match a.last().cloned() {
+        Some(leading) if !leading.is_one() => a.iter().map(|c| c / &leading).collect(),
+        _ => a,
+    }
+}
+
+/// A prime modulo which -1 is a square.
+const PRIME: u64 = 0xFFFF_FFFF_0000_0001;
+/// A square root of -1.
+const ROOT: u64 = 1 << 48;
+
+fn times(a: u64, b: u64) -> u64 {
+    (u128::from(a) * u128::from(b) % u128::from(PRIME)) as u64
+}
+
+fn difference(a: u64, b: u64) -> u64 {
+    if a >= b { a - b } else { a.wrapping_sub(b).wrapping_add(PRIME) }
+}
+
+fn inverse(a: u64) -> u64 {
+    let (mut power, mut base, mut exponent) = (1, a, PRIME - 2);
+    while exponent > 0 {
+        if exponent & 1 == 1 {
+            power = times(power, base);
+        }
+        base = times(base, base);
+        exponent >>= 1;
+    }
+    power
+}
+
+/// Whether a polynomial has no multiple roots even modulo the prime. Where the coefficients have an
+/// image there and the degree stays, a square factor has one too.
+fn is_squarefree(whole: &[Exact]) -> bool {
+    let integer = |n: &BigInt| {
+        let size = (n.magnitude() % PRIME).iter_u64_digits().next().unwrap_or(0);
+        if n.sign() == Sign::Minus { difference(0, size) } else { size }
+    };
+    let rational = |q: &BigRational| {
+        let below = integer(q.denom());
+        (below != 0).then(|| times(integer(q.numer()), inverse(below)))
+    };
+    let image = |c: &Complex<BigRational>| {
+        let imaginary = times(ROOT, rational(&c.im)?);
+        Some(difference(rational(&c.re)?, difference(0, imaginary)))
+    };
+    let Some(mut a) = whole.iter().map(image).collect::<Option<Vec<u64>>>() else { return false };
+    if a.last() == Some(&0) {
+        return false;
+    }
+    let mut b: Vec<u64> = a.iter().zip(0..).skip(1).map(|(&c, e)| times(c, e)).collect();
+    while let Some(&leading) = b.last() {
+        let factor = inverse(leading);
+        while a.len() >= b.len() {
+            let (place, Some(last)) = (a.len() - b.len(), a.pop()) else { break };
+            let factor = times(last, factor);
+            for (r, &c) in a[place..].iter_mut().zip(&b) {
+                *r = difference(*r, times(factor, c));
+            }
+        }
+        while a.last() == Some(&0) {
+            a.pop();
+        }
+        std::mem::swap(&mut a, &mut b);
+    }
+    a.len() == 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::squarefree;
+    use poly::parse::phcpack;
+
+    fn parts(text: &str) -> Vec<(String, usize)> {
+        let system = phcpack(&format!("1\n{text};")).unwrap();
+        let polynomials = system.expand(&Default::default()).unwrap();
+        let parts = squarefree(&polynomials[0]).unwrap();
+        parts.iter().map(|(p, k)| (p.display(&["x"]).to_string(), *k)).collect()
+    }
+
+    #[test]
+    fn factors_by_multiplicity() {
+        assert_eq!(parts("x^2-2*x+1-1E-12").len(), 1);
+        assert_eq!(parts("x^150-1"), [("x^150 - 1".to_owned(), 1)]);
+        let found = parts("4*(x-1)^3*(x-1.0001)^2*(x+1/3)");
+        let want = [("x + 1/3", 1), ("x - 10001/10000", 2), ("x - 1", 3)];
+        assert_eq!(found, want.map(|(text, k)| (text.to_owned(), k)));
+        let found = parts("x^4*(x^2+1)^2*(x-i)");
+        assert_eq!(found.iter().map(|(_, k)| *k).collect::<Vec<_>>(), [2, 3, 4], "{found:?}");
+        assert_eq!(parts("(x-2)^7"), [("x - 2".to_owned(), 7)]);
+    }
+}

@@ -1,0 +1,286 @@
+//! Ends that the tracker alone cannot tell: singular ones, and regular ones of coefficients that
+//! were rounded.
+
+use super::classify::{Classified, REAL, Tracked};
+use super::excess::Excess;
+use super::paths::Ends;
+use super::record::SingularEnd;
+use super::solutions::{Solution, Unresolved, is_real};
+use crate::distinct::{CLUSTER, groups, relative_distance};
+use crate::refine::Refiner;
+use crate::singular::{self, Verdict, Why};
+use crate::threads::{IntoParallelRefIterator, ParallelIterator};
+use num_complex::Complex64;
+use poly::{Exact, Polynomial};
+
+/// Imaginary parts of singular solutions up to this share of the point count as zero.
+const REAL_SINGULAR: f64 = 1e-7;
+/// Relative distance below which two refined solutions are one.
+const SAME: f64 = 1e-12;
+
+/// A singular solution and the paths that end there.
+struct Multiple {
+    point: Vec<Complex64>,
+    multiplicity: usize,
+    residual: f64,
+    paths: usize,
+    winding: usize,
+}
+
+impl Classified {
+    /// Judges the singular ends, and the doubtful among the regular ones.
+    pub(super) fn add_singular(
+        &mut self,
+        tracked: &Tracked<'_>,
+        all: &Ends,
+        doubtful: &[SingularEnd],
+        excess: &Excess<'_>,
+    ) {
+        let ends: Vec<&SingularEnd> = all.singular.values().chain(doubtful).collect();
+        let points = ends.iter().enumerate().map(|(k, end)| (k, &end.point[..]));
+        let groups = groups(points, CLUSTER);
+        let spare = self.lost;
+        let judged = judged_groups(tracked, &ends, &groups, &self.solutions, spare);
+        let mut multiple: Vec<Multiple> = Vec::new();
+        let mut refiner = Refiner::new(tracked.system);
+        for (group, verdict) in judged {
+            let paths = group.len();
+            match verdict {
+                Verdict::Isolated { point, .. } if excess.outside(&point) => self.excess += paths,
+                Verdict::Regular { point, .. } if excess.outside(&point) => self.excess += paths,
+                Verdict::Isolated { multiplicity, point, residual } => {
+                    let winding = group.iter().map(|&k| ends[k].winding).max().unwrap_or(1);
+                    match multiple.iter_mut().find(|m| relative_distance(&m.point, &point) <= SAME) {
+                        Some(known) => {
+                            known.paths += paths;
+                            known.winding = known.winding.max(winding);
+                        }
+                        None => multiple.push(Multiple { point, multiplicity, residual, paths, winding }),
+                    }
+                }
+                Verdict::Regular { point, residual } => {
+                    // One path ends at a regular solution; any other has jumped.
+                    let known = self.solutions.iter().any(|s| relative_distance(&s.value, &point) <= SAME);
+                    self.lost += paths - usize::from(!known);
+                    if !known {
+                        let condition = refiner.judged(tracked.target, &point).condition;
+                        self.solutions.push(solution(&point, 1, 1, residual, condition, is_real(&point, REAL)));
+                    }
+                }
+                Verdict::OnComponent { point, .. } => {
+                    self.on_components += paths;
+                    self.component_points.push(point);
+                }
+                Verdict::NotASolution if excess.overdetermined() => self.excess += paths,
+                Verdict::NotASolution => self.lost += paths,
+                Verdict::Unresolved(why) => {
+                    self.lost += paths;
+                    let value = ends[group[0]].point.clone();
+                    self.unresolved.push(Unresolved { value, paths, reason: why.to_string() });
+                }
+            }
+        }
+        for found in multiple {
+            // As many paths as the multiplicity, or more where equations were combined: else some
+            // have gone astray.
+            let missing = found.multiplicity.saturating_sub(found.paths);
+            let surplus = if excess.overdetermined() { 0 } else { found.paths.saturating_sub(found.multiplicity) };
+            self.lost += missing + surplus;
+            let condition = refiner.judged(tracked.target, &found.point).condition;
+            let real = is_real(&found.point, REAL_SINGULAR);
+            self.solutions.push(Solution {
+                singular: true,
+                ..solution(&found.point, found.multiplicity, found.winding, found.residual, condition, real)
+            });
+        }
+    }
+
+    /// Replaces regular solutions by those of the given equations, where rounded coefficients move
+    /// them or doubles have too few digits. Returns those that are not clearly regular, to be
+    /// judged as singular ends are.
+    pub(super) fn correct_rounded(&mut self, tracked: &Tracked<'_>) -> Vec<SingularEnd> {
+        let mut kept: Vec<Solution> = Vec::with_capacity(self.solutions.len());
+        let mut doubtful = Vec::new();
+        for mut solution in std::mem::take(&mut self.solutions) {
+            let steady = tracked.exact && solution.condition < STEADY && solution.residual < ACCURATE_RESIDUAL;
+            if steady || !singular::is_moved(tracked.given, &solution.value) {
+                if solution.residual >= ACCURATE_RESIDUAL {
+                    solution.residual = singular::residual(tracked.given, &solution.value);
+                }
+                kept.push(solution);
+                continue;
+            }
+            let point = std::mem::take(&mut solution.value);
+            let Verdict::Regular { point: exact, residual } = singular::judge(tracked.given, &point, 1, ROUNDED) else {
+                doubtful.push(SingularEnd { point, winding: 1, error: ROUNDED });
+                continue;
+            };
+            solution.residual = residual;
+            solution.real = is_real(&exact, REAL);
+            if kept.iter().any(|s| relative_distance(&s.value, &exact) <= SAME) {
+                self.lost += 1;
+            } else {
+                kept.push(Solution { value: exact, ..solution });
+            }
+        }
+        self.solutions = kept;
+        doubtful
+    }
+}
+
+/// Condition numbers below which solutions of exact coefficients have all their digits.
+const STEADY: f64 = 1e8;
+/// Residuals of such solutions: a single equation has no condition number to tell.
+const ACCURATE_RESIDUAL: f64 = 1e-14;
+/// How far rounded coefficients may move a regular solution that is still told apart from others.
+const ROUNDED: f64 = 1e-4;
+
+/// Groups that are judged at a time, fewer in systems of more terms than that.
+const BATCH: usize = 64;
+const TERMS: usize = 256;
+/// Work that a solve takes for its singular ends, in products of complex double-doubles, but for
+/// the last batch: about half a minute of a processor.
+const WORK: u64 = 300_000_000;
+
+/// Verdicts on all groups of ends, until the work is done that one solve may take or it is
+/// cancelled.
+fn judged_groups(
+    tracked: &Tracked<'_>,
+    ends: &[&SingularEnd],
+    groups: &[Vec<usize>],
+    known: &[Solution],
+    spare: usize,
+) -> Vec<(Vec<usize>, Verdict)> {
+    let mut judged = Vec::new();
+    let size = BATCH / (1 + tracked.target.len() / TERMS).min(BATCH);
+    for batch in groups.chunks(size.max(1)) {
+        let stop = if tracked.monitor.is_cancelled() {
+            Some(Why::Interrupted)
+        } else {
+            (tracked.given.spent() > WORK).then_some(Why::TooMuch)
+        };
+        if let Some(why) = stop {
+            judged.extend(batch.iter().map(|group| (group.clone(), Verdict::Unresolved(why))));
+            continue;
+        }
+        let of = |group: &Vec<usize>| verdicts(tracked, ends, group, known, spare);
+        let verdicts: Vec<Vec<_>> = batch.par_iter().map(of).collect();
+        judged.extend(verdicts.into_iter().flatten());
+    }
+    judged
+}
+
+/// Verdicts on ends that nearly coincide: on all at once, or on each where they are no multiple
+/// solution. `spare` paths more may end there; at the `known` solutions others do.
+fn verdicts(
+    tracked: &Tracked<'_>,
+    ends: &[&SingularEnd],
+    group: &[usize],
+    known: &[Solution],
+    spare: usize,
+) -> Vec<(Vec<usize>, Verdict)> {
+    let verdict = |k: usize| singular::judge(tracked.given, &ends[k].point, group.len() + spare, ends[k].error);
+    // The most accurate of the ends stands for all.
+    let Some(&best) = group.iter().min_by(|&&a, &&b| ends[a].error.total_cmp(&ends[b].error)) else {
+        return Vec::new();
+    };
+    let own = match verdict(best) {
+        whole @ (Verdict::Isolated { .. } | Verdict::OnComponent { .. }) => return vec![(group.to_vec(), whole)],
+        own => own,
+    };
+    let mut each: Vec<(Vec<usize>, Verdict)> =
+        group.iter().map(|&k| (vec![k], if k == best { own.clone() } else { verdict(k) })).collect();
+    if are_told_apart(&each, tracked.given.len() > tracked.given.unknowns()) {
+        return each;
+    }
+    // Solutions so close to each other that the paths seemed to end between them, after turns in
+    // which they changed places.
+    let turns = group.iter().map(|&k| ends[k].winding).max().unwrap_or(1);
+    let mut nearby = singular::nearby(tracked.given, &ends[best].point, group.len().max(turns));
+    let taken = |point: &[Complex64]| known.iter().any(|s| relative_distance(&s.value, point) <= SAME);
+    nearby.regular.retain(|(point, _)| !taken(point));
+    let mut regular = nearby.regular.into_iter();
+    for (_, verdict) in &mut each {
+        match (regular.next(), &nearby.component) {
+            (Some((point, residual)), _) => *verdict = Verdict::Regular { point, residual },
+            (None, Some((point, dimension))) => {
+                *verdict = Verdict::OnComponent { dimension: *dimension, point: point.clone() }
+            }
+            (None, None) => {}
+        }
+    }
+    each
+}
+
+/// Whether every end has a verdict of its own.
+fn are_told_apart(each: &[(Vec<usize>, Verdict)], overdetermined: bool) -> bool {
+    let mut regular: Vec<&[Complex64]> = Vec::new();
+    each.iter().all(|(_, verdict)| match verdict {
+        Verdict::Regular { point, .. } => {
+            let fresh = regular.iter().all(|known| relative_distance(known, point) > SAME);
+            regular.push(point);
+            fresh
+        }
+        Verdict::Unresolved(_) => false,
+        Verdict::NotASolution => overdetermined,
+        Verdict::Isolated { .. } | Verdict::OnComponent { .. } => true,
+    })
+}
+
+fn solution(
+    point: &[Complex64],
+    multiplicity: usize,
+    winding_number: usize,
+    residual: f64,
+    condition: f64,
+    real: bool,
+) -> Solution {
+    Solution {
+        value: point.to_vec(),
+        multiplicity,
+        winding_number,
+        singular: false,
+        real,
+        residual,
+        condition,
+        certified: None,
+    }
+}
+
+/// All roots of a polynomial in one unknown, with their multiplicities; `None` if they are not all
+/// clear, or it is none. `units` are the logarithms to base 2 of the unit of the unknown.
+pub(super) fn univariate(
+    polynomials: &[Polynomial<Exact>],
+    units: &[i64],
+    tracked: &Tracked<'_>,
+) -> Option<Vec<Solution>> {
+    let [polynomial] = polynomials else { return None };
+    let (_, degree) = tracked.given.univariate_degrees()?;
+    let mut refiner = Refiner::new(tracked.system);
+    let mut found: Vec<Solution> = Vec::new();
+    for (part, multiplicity) in singular::squarefree(polynomial)? {
+        // The roots of each part are simple.
+        let part = singular::Given::new(&[part], units.to_vec());
+        let (zero, _) = part.univariate_degrees()?;
+        let roots = singular::roots(&part)?.into_iter().chain((zero > 0).then(Complex64::default));
+        for root in roots {
+            let point = match singular::judge(&part, &[root], 1, ACCURATE) {
+                Verdict::Regular { point, .. } => point,
+                _ => return None,
+            };
+            if found.iter().any(|s| relative_distance(&s.value, &point) <= SAME) {
+                return None;
+            }
+            let condition = refiner.judged(tracked.target, &point).condition;
+            let real = is_real(&point, if multiplicity > 1 { REAL_SINGULAR } else { REAL });
+            let residual = singular::residual(tracked.given, &point);
+            let solution = solution(&point, multiplicity, multiplicity, residual, condition, real);
+            found.push(Solution { singular: multiplicity > 1, ..solution });
+        }
+    }
+    found.sort_by_key(|s| s.singular);
+    (found.iter().map(|s| s.multiplicity).sum::<usize>() == degree).then_some(found)
+}
+
+/// The relative error of simple roots of polynomials in one unknown.
+const ACCURATE: f64 = 1e-12;

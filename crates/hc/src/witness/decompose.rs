@@ -1,0 +1,129 @@
+//! Decomposition into components, dimension by dimension.
+
+use super::irreducible::orbits;
+use super::slices::Slices;
+use crate::monitor::Monitor;
+use crate::solve::{Solution, SolveError, SolveOptions, Unresolved, solve_polynomials};
+use num_complex::Complex64;
+use poly::{Exact, ExpandLimits, Polynomial, System};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// A component of positive dimension.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Component {
+    /// Its dimension, one at least.
+    pub dimension: usize,
+    /// The number of its points in as many general hyperplanes as its dimension.
+    pub degree: usize,
+    /// The multiplicity of these points there: one for a reduced component.
+    pub multiplicity: usize,
+    /// Whether it is shown to be one irreducible component: by monodromy, which joins its points,
+    /// and the trace test, which finds none missing. If not, it may be several of this dimension
+    /// and multiplicity together, or a part of one.
+    pub irreducible: bool,
+    /// The points, their coordinates in the order of the unknowns.
+    pub witness_points: Vec<Vec<Complex64>>,
+}
+
+/// All solutions of a system.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Decomposition {
+    /// Components of positive dimension, higher dimensions first.
+    pub components: Vec<Component>,
+    /// Isolated solutions.
+    pub isolated: Vec<Solution>,
+    /// Ends that could not be judged, in all dimensions.
+    pub unresolved: Vec<Unresolved>,
+    /// Paths that were lost, in all dimensions, and witness points that do not fit together: if
+    /// there are any, something may be missing.
+    pub failed: usize,
+    /// Whether the work was cancelled: the result is then partial.
+    pub partial: bool,
+}
+
+/// Finds all components of the solution set of a system with their degrees and multiplicities, and
+/// the isolated solutions.
+///
+/// In each dimension the given equations and as many general hyperplanes are [solved](crate::solve)
+/// with these options. The same seed gives the same bits on any number of threads.
+///
+/// ```
+/// // The twisted cubic.
+/// let system: hc::System = "y - x^2; z - x*y; x*z - y^2".parse()?;
+/// let found = hc::witness::decompose(&system, &hc::SolveOptions::new(), &hc::Monitor::default())?;
+/// assert_eq!((found.components.len(), found.isolated.len(), found.failed), (1, 0, 0));
+/// let cubic = &found.components[0];
+/// assert_eq!((cubic.dimension, cubic.degree, cubic.multiplicity, cubic.irreducible), (1, 3, 1, true));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// As [`solve`](fn@crate::solve), but fewer equations than unknowns are no error.
+pub fn decompose(system: &System, options: &SolveOptions, monitor: &Monitor) -> Result<Decomposition, SolveError> {
+    options.validate()?;
+    if !system.parameters().is_empty() {
+        return Err(SolveError::Parameters(system.parameters().join(", ")));
+    }
+    let polynomials = system.expand(&ExpandLimits::default())?;
+    let names = system.variables();
+    let lowest = names.len().saturating_sub(polynomials.len());
+    let mut all = Decomposition::default();
+    for dimension in (lowest..names.len()).rev() {
+        let slices = Slices::new(names.len(), dimension, options.seed);
+        let sliced = [polynomials.clone(), slices.polynomials(names.len())].concat();
+        let found = solve_polynomials(&sliced, names, options, monitor)?;
+        all.failed += found.paths.failed;
+        all.partial |= found.interrupted;
+        all.unresolved.extend(found.unresolved);
+        if dimension == 0 {
+            all.isolated = found.solutions;
+        } else {
+            all.add(&polynomials, dimension, &slices, found.solutions, options.seed);
+        }
+        if all.partial {
+            break;
+        }
+    }
+    Ok(all)
+}
+
+impl Decomposition {
+    /// Adds the components of a dimension, by their witness points.
+    fn add(
+        &mut self,
+        polynomials: &[Polynomial<Exact>],
+        dimension: usize,
+        slices: &Slices,
+        solutions: Vec<Solution>,
+        seed: u64,
+    ) {
+        let mut by_multiplicity: BTreeMap<usize, Vec<Vec<Complex64>>> = BTreeMap::new();
+        for solution in solutions {
+            by_multiplicity.entry(solution.multiplicity).or_default().push(solution.value);
+        }
+        for (multiplicity, points) in by_multiplicity {
+            let component = |witness_points: Vec<Vec<Complex64>>, irreducible: bool| Component {
+                dimension,
+                degree: witness_points.len(),
+                multiplicity,
+                irreducible,
+                witness_points,
+            };
+            // Points of multiple components are singular: they are not tracked.
+            let orbits = if multiplicity == 1 { orbits(polynomials, slices, &points, seed) } else { None };
+            let Some(orbits) = orbits else {
+                let single = points.len() == 1;
+                self.components.push(component(points, single));
+                continue;
+            };
+            for orbit in orbits {
+                self.failed += orbit.further;
+                let whole = orbit.is_whole();
+                self.components.push(component(orbit.points.iter().map(|&k| points[k].clone()).collect(), whole));
+            }
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! Which witness points belong to one irreducible component: monodromy of the hyperplanes, and the
+//! trace test.
+
+use super::slices::Slices;
+use crate::distinct::relative_distance;
+use crate::family::{Fibre, FibreOptions, MonodromyOptions, monodromy, move_fibre};
+use crate::random::{Random, Stream};
+use num_complex::Complex64;
+use poly::{Evaluate, Exact, Polynomial};
+
+/// Points whose relative distance is less are one.
+const SAME: f64 = 1e-8;
+/// Searches with other loops, while the trace test says that points are missing.
+const SEARCHES: u64 = 4;
+/// Deviations below this pass the trace test.
+const PASSED: f64 = 1e-8;
+
+/// Witness points of one component, by their indices.
+pub(super) struct Orbit {
+    pub(super) points: Vec<usize>,
+    /// The deviation of the trace from linear motion; `None` where it could not be computed.
+    pub(super) trace: Option<f64>,
+    /// Points that monodromy found and that are not among the witness points.
+    pub(super) further: usize,
+}
+
+impl Orbit {
+    /// Whether these are shown to be all points of one irreducible component.
+    pub(super) fn is_whole(&self) -> bool {
+        self.further == 0 && self.trace.is_some_and(|deviation| deviation < PASSED)
+    }
+}
+
+/// Groups regular witness points by component; `None` if the family cannot be tracked.
+pub(super) fn orbits(
+    given: &[Polynomial<Exact>],
+    slices: &Slices,
+    points: &[Vec<Complex64>],
+    seed: u64,
+) -> Option<Vec<Orbit>> {
+    let unknowns = points.first()?.len();
+    let family = slices.family(given, unknowns, seed)?.compile().ok()?;
+    let mut left: Vec<usize> = (0..points.len()).collect();
+    let mut orbits = Vec::new();
+    while let Some(&first) = left.first() {
+        let mut fibre = Fibre::new(slices.parameters(), unknowns, points[first].clone());
+        let mut deviation = None;
+        for search in 0..SEARCHES {
+            let options = MonodromyOptions::new().seed(seed.wrapping_add(search)).roots(left.len());
+            fibre = monodromy(&family, &fibre, &options).fibre;
+            deviation = trace(&family, &fibre, unknowns, seed);
+            if deviation.is_some_and(|d| d < PASSED) {
+                break;
+            }
+        }
+        let found: Vec<&[Complex64]> = (0..fibre.len()).map(|k| fibre.solution(k)).collect();
+        let is_found = |k: &usize| found.iter().any(|x| relative_distance(x, &points[*k]) < SAME);
+        let (here, others): (Vec<usize>, Vec<usize>) = left.iter().copied().partition(|k| *k == first || is_found(k));
+        let further = found.len().saturating_sub(here.len());
+        orbits.push(Orbit { points: here, trace: deviation, further });
+        left = others;
+    }
+    Some(orbits)
+}
+
+/// How far the sum of the points is from moving linearly while the hyperplanes move in parallel,
+/// relative to its motion: rounding error if the points are all of one or more components.
+fn trace<E: Evaluate>(family: &E, fibre: &Fibre, unknowns: usize, seed: u64) -> Option<f64> {
+    let mut random = Random::new(seed, Stream::Trace);
+    // The offsets move; slopes, as many as unknowns before each, stay.
+    let step = |k: usize| if k % (unknowns + 1) == unknowns { random.unit() } else { Complex64::new(0.0, 0.0) };
+    let direction: Vec<Complex64> = (0..fibre.parameters.len()).map(step).collect();
+    let at = |s: f64| fibre.parameters.iter().zip(&direction).map(|(b, v)| b + v * s).collect::<Vec<_>>();
+    let options = FibreOptions::default();
+    let second = move_fibre(family, fibre, &at(1.0), &options)?;
+    let third = move_fibre(family, &second, &at(2.0), &options)?;
+    let sum = |fibre: &Fibre, j: usize| (0..fibre.len()).map(|k| fibre.solution(k)[j]).sum::<Complex64>();
+    // Of all coordinates together: some may be zero.
+    let all = [fibre, &second, &third];
+    let size = all.iter().flat_map(|fibre| &fibre.solutions).map(|z| z.norm()).fold(f64::MIN_POSITIVE, f64::max);
+    let deviation = |j: usize| {
+        let [a, b, c] = all.map(|fibre| sum(fibre, j));
+        (a - 2.0 * b + c).norm() / size
+    };
+    Some((0..fibre.dimension).map(deviation).fold(0.0, f64::max))
+}

@@ -1,0 +1,72 @@
+//! General hyperplanes, and the family of systems in which they move.
+
+use crate::random::{Random, Stream};
+use num_complex::Complex64;
+use num_traits::Zero;
+use poly::{Exact, Monomial, Polynomial, System, ToExact};
+
+/// Hyperplanes `a x = b`.
+pub(super) struct Slices {
+    /// The coefficients `a` of each.
+    slopes: Vec<Vec<Complex64>>,
+    /// The values `b`.
+    offsets: Vec<Complex64>,
+}
+
+impl Slices {
+    /// As many in general position.
+    pub(super) fn new(unknowns: usize, dimension: usize, seed: u64) -> Slices {
+        let mut random = Random::new(seed, Stream::Slice(dimension as u64));
+        let slopes = (0..dimension).map(|_| (0..unknowns).map(|_| random.unit()).collect()).collect();
+        Slices { slopes, offsets: (0..dimension).map(|_| random.unit()).collect() }
+    }
+
+    /// As polynomials, exactly.
+    pub(super) fn polynomials(&self, unknowns: usize) -> Vec<Polynomial<Exact>> {
+        let exact = |z: Complex64| z.to_exact().unwrap_or_else(Exact::zero);
+        let plane = |(slopes, offset): (&Vec<Complex64>, &Complex64)| {
+            let unit = |j: usize| Monomial::new((0..unknowns).map(|k| i32::from(k == j)));
+            let linear = slopes.iter().enumerate().map(|(j, &a)| (unit(j), exact(a)));
+            Polynomial::from_terms(unknowns, linear.chain([(Monomial::one(unknowns), exact(-offset))]))
+        };
+        self.slopes.iter().zip(&self.offsets).map(plane).collect()
+    }
+
+    /// The parameters of the [family](Slices::family) at which its hyperplanes are these: slopes
+    /// and offset of each.
+    pub(super) fn parameters(&self) -> Vec<Complex64> {
+        let plane = |(slopes, &offset): (&Vec<Complex64>, &Complex64)| slopes.iter().copied().chain([offset]).collect();
+        self.slopes.iter().zip(&self.offsets).flat_map::<Vec<Complex64>, _>(plane).collect()
+    }
+
+    /// As many equations as unknowns: combinations of the given ones, and hyperplanes with slopes
+    /// and offsets as parameters. Offsets alone would have to move as far as branch points lie from
+    /// them. `None` if that makes no system.
+    pub(super) fn family(&self, given: &[Polynomial<Exact>], unknowns: usize, seed: u64) -> Option<System> {
+        let names: Vec<String> = (0..unknowns).map(|j| format!("x{j}")).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let system = System::from_polynomials(&names, given).ok()?;
+        let wanted = unknowns.checked_sub(self.slopes.len())?;
+        let mut random = Random::new(seed, Stream::Combinations);
+        System::build(|s| {
+            let unknowns: Vec<_> = names.iter().map(|name| s.variable(name)).collect();
+            let planes: Vec<(Vec<_>, _)> = (0..self.slopes.len())
+                .map(|k| {
+                    let slopes = (0..unknowns.len()).map(|j| s.parameter(&format!("a{k}_{j}"))).collect();
+                    (slopes, s.parameter(&format!("b{k}")))
+                })
+                .collect();
+            let given = system.instantiate(s, &unknowns, &[]);
+            let mut equations = if given.len() == wanted {
+                given
+            } else {
+                (0..wanted).map(|_| s.sum(given.iter().map(|&f| s.constant(random.unit()) * f))).collect()
+            };
+            for (slopes, offset) in planes {
+                equations.push(s.sum(slopes.iter().zip(&unknowns).map(|(&a, &x)| a * x)) - offset);
+            }
+            equations
+        })
+        .ok()
+    }
+}

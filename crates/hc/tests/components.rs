@@ -1,0 +1,54 @@
+//! Solution sets of positive dimension, with dimensions and degrees from geometry or the
+//! literature.
+
+use hc::witness::{Decomposition, decompose};
+use hc::{Monitor, SolveOptions};
+
+fn decomposed(text: &str, seed: u64) -> Decomposition {
+    let system = hc::poly::parse::phcpack(text).unwrap();
+    decompose(&system, &SolveOptions::new().seed(seed), &Monitor::default()).unwrap()
+}
+
+/// Dimension, degree and multiplicity of each component, sorted, and the number of isolated
+/// solutions; all shown to be irreducible.
+fn check(text: &str, seeds: u64, components: &[(usize, usize, usize)], isolated: usize) {
+    for seed in 0..seeds {
+        let found = decomposed(text, seed);
+        let mut have: Vec<_> = found.components.iter().map(|c| (c.dimension, c.degree, c.multiplicity)).collect();
+        have.sort_unstable();
+        have.reverse();
+        assert_eq!((&have[..], found.isolated.len(), found.failed), (components, isolated, 0), "{text} {seed}");
+        assert!(found.components.iter().all(|c| c.irreducible && c.witness_points.len() == c.degree), "{text} {seed}");
+    }
+}
+
+#[test]
+fn curves() {
+    check("3\nx-x+y-x^2;\nz-x*y;\nx*z-y^2;", 3, &[(1, 3, 1)], 0);
+    // Three lines.
+    check("2 3\nx*z+y;\ny*z+x;", 3, &[(1, 1, 1), (1, 1, 1), (1, 1, 1)], 0);
+    // Cyclic-4: two conics.
+    check("4\na+b+c+d;\na*b+b*c+c*d+d*a;\na*b*c+b*c*d+c*d*a+d*a*b;\na*b*c*d-1;", 2, &[(1, 2, 1), (1, 2, 1)], 0);
+    // A double line and a point.
+    check("2\n(x-y)^2*(x+y-1);\n(x-y)^2*(x+2*y+2);", 3, &[(1, 1, 2)], 1);
+}
+
+/// The example of Sommese, Verschelde & Wampler 2001 (SIAM J. Numer. Anal. 38:2022): a sphere, a
+/// twisted cubic and three lines, and a point.
+#[test]
+fn a_sphere_curves_and_a_point() {
+    let (s, t) = ("(x^2+y^2+z^2-1)", "(y-x^2)");
+    let text = format!("3\n{t}*{s}*(x-1/2);\n(z-x^3)*{s}*(y-1/2);\n{t}*(z-x^3)*{s}*(z-1/2);");
+    let lines = [(1, 1, 1); 3];
+    check(&text, 1, &[&[(2, 2, 1), (1, 3, 1)], &lines[..]].concat(), 1);
+}
+
+/// Adjacent minors of a 2 x 3 matrix (Diaconis, Eisenbud & Sturmfels 1998): the matrices of rank
+/// one, of degree 3, and those whose middle column is zero.
+#[test]
+fn adjacent_minors() {
+    let found = decomposed("2 6\na*e-b*d;\nb*f-c*e;", 0);
+    let have: Vec<_> = found.components.iter().map(|c| (c.dimension, c.degree, c.multiplicity)).collect();
+    assert_eq!((have.iter().map(|c| c.1).sum::<usize>(), have.len(), found.failed), (4, 2, 0), "{have:?}");
+    assert!(found.components.iter().all(|c| c.irreducible && c.dimension == 4));
+}

@@ -1,0 +1,109 @@
+//! Ends that are not regular, and systems that hide their solutions: right, or said to be unknown.
+//!
+//! What is expected is known by hand: factors, intersection numbers, Chebyshev's polynomials, roots
+//! of unity.
+
+mod common;
+
+use common::{multiplicities, options, real, solve_text, solved};
+use hc::Solutions;
+use hc::poly::Complex64;
+
+/// From some seeds: multiplicities, the number of real solutions, and whether there is a component.
+fn check(text: &str, seeds: u64, expected: &str, expected_real: usize, component: bool) {
+    for seed in 0..seeds {
+        let found = solve_text(text, &options(seed)).unwrap();
+        assert_eq!(
+            (&multiplicities(&found)[..], real(&found), found.on_components > 0, found.paths.failed),
+            (expected, expected_real, component, 0),
+            "{text} {seed}"
+        );
+        assert!(found.solutions.iter().all(|s| s.residual < 1e-12), "{text} {seed}: {found}");
+    }
+}
+
+fn has(found: &Solutions, point: &[f64], tolerance: f64) -> bool {
+    let near = |value: &[Complex64]| value.iter().zip(point).all(|(z, p)| (z - p).norm() < tolerance);
+    found.solutions.iter().any(|s| near(&s.value))
+}
+
+#[test]
+fn overdetermined_with_a_zero_coordinate() {
+    check("3 2\nx*y;\nx-1;\ny*(x+2);", 20, "1x1", 1, false);
+    check("4 3\nx*y;\nx*z;\nx^2-1;\ny^2-z;", 20, "2x1", 2, false);
+    // And two lines: x = y = 0 and x = y - z = 0.
+    check("4 3\nx*y;\nx*z;\nx*(x-1);\ny*(y-z);", 12, "1x1", 1, true);
+}
+
+#[test]
+fn components_that_are_not_reduced() {
+    // (-1/2, 3/2) and a line.
+    check("2\nx^2*(x+y-1);\nx^2*(x-y+2);", 10, "1x1", 1, true);
+    check("2\n(x-y)^2*(x+y-1);\n(x-y)^2*(x+2*y+2);", 10, "1x1", 1, true);
+}
+
+#[test]
+fn ends_that_solve_nothing() {
+    let sum: Vec<String> = (0..=150).map(|k| format!("x^{k}")).collect();
+    check(&format!("1\n{};", sum.join("+")), 2, "150x1", 0, false);
+}
+
+/// `y^10 = x^2 + 1` and `y^3 = 2 x^-20`: then `x^200 (x^2 + 1)^3 = 2^10`, and
+/// `y = (x^2 + 1) x^60 / 8`.
+#[test]
+fn sparse_of_high_degree() {
+    check("2\nx^20*y^3-2;\nx^2-y^10+1;", 2, "206x1", 2, false);
+}
+
+#[test]
+fn badly_conditioned_in_one_unknown() {
+    // T_50 = 2 T_25^2 - 1, T_25 = T_5 (T_5).
+    let t5 = |x: &str| format!("(16*{x}^5-20*{x}^3+5*{x})");
+    let chebyshev = format!("1\n2*{}^2-1;", t5(&t5("x")));
+    check(&chebyshev, 1, "50x1", 50, false);
+    let factors: Vec<String> = (1..=16).map(|k| format!("(x-{k})")).collect();
+    check(&format!("1\n{};", factors.join("*")), 1, "16x1", 16, false);
+    check("1\nx^2-2*x+1-1E-12;", 6, "2x1", 2, false);
+    check("1\n(x-1)^3*(x-1.0001)^2*(x+1/3);", 6, "1x1 1x2 1x3", 3, false);
+}
+
+#[test]
+fn isolated_or_on_a_component() {
+    for seed in 0..6 {
+        let found = solved("2\ny+x-1;\nx^4+y*(y+x-1);", &options(seed));
+        assert_eq!((multiplicities(&found), found.on_components), ("1x4".to_owned(), 0), "{seed}");
+        assert!(has(&found, &[1.0, 0.0], 1e-14));
+        let near = solve_text("2\n(x-1-1E-7)*(x^2+y^2-1);\ny*(x^2+y^2-1);", &options(seed)).unwrap();
+        assert_eq!((multiplicities(&near), near.on_components > 0), ("1x1".to_owned(), true), "{seed}");
+        assert!(has(&near, &[1.0000001, 0.0], 1e-12));
+    }
+    check("2\nx^4;\ny+x^3;", 4, "1x4", 1, false);
+    // x = z^4 and z^6 (1 + z^2) = 0.
+    check("3\nx-y^2;\ny-z^2;\nz^2*x+x^2;", 4, "2x1 1x6", 1, false);
+}
+
+#[test]
+fn multiplicities_of_overdetermined_systems() {
+    check("3 2\nx^2;\nx*y;\ny^2;", 6, "1x3", 1, false);
+}
+
+#[test]
+fn a_condition_of_ten_to_the_twelve() {
+    check("2\nx^2+y^2-2;\n(x^2+y^2-2)*3+1E-12*(x*y-1)*(x-3)+1E-12*(y-2);", 6, "6x1", 4, false);
+}
+
+#[path = "../examples/singular_families/families.rs"]
+mod families;
+#[path = "../examples/singular_families/verdict.rs"]
+mod verdict;
+
+/// The example `singular_families` takes more of each kind.
+#[test]
+fn random_systems_of_each_kind() {
+    for (name, kind) in families::KINDS {
+        for seed in 0..6 {
+            let case = kind(&mut families::Draw(1000 + seed));
+            assert_ne!(verdict::answer(&case, seed), verdict::Answer::Wrong, "{name} {seed}: {}", case.text);
+        }
+    }
+}
