@@ -104,8 +104,8 @@ impl Classified {
         let mut kept: Vec<Solution> = Vec::with_capacity(self.solutions.len());
         let mut doubtful = Vec::new();
         for mut solution in std::mem::take(&mut self.solutions) {
-            let limit = if tracked.exact { STEADY } else { STEADY_ROUNDED };
-            let steady = solution.condition < limit && solution.residual < ACCURATE_RESIDUAL;
+            // The condition does not tell of rounded coefficients: it is that of scaled rows.
+            let steady = tracked.exact && solution.condition < STEADY && solution.residual < ACCURATE_RESIDUAL;
             if steady || !singular::is_moved(tracked.given, &solution.value) {
                 if solution.residual >= ACCURATE_RESIDUAL {
                     solution.residual = singular::residual(tracked.given, &solution.value);
@@ -133,8 +133,6 @@ impl Classified {
 
 /// Condition numbers below which solutions of exact coefficients have all their digits.
 const STEADY: f64 = 1e8;
-/// Condition numbers below which rounded coefficients take a solution at most four of its digits.
-const STEADY_ROUNDED: f64 = 1e4;
 /// Residuals of such solutions: a single equation has no condition number to tell.
 const ACCURATE_RESIDUAL: f64 = 1e-14;
 /// How far rounded coefficients may move a regular solution that is still told apart from others.
