@@ -85,6 +85,11 @@ pub(crate) fn solutions<'py>(py: Python<'py>, found: &Solutions) -> Result<Bound
     result.set_item("component_points", array(py, components, &[found.component_points.len(), n])?)?;
     let directions = found.directions.iter().map(|d| (d.valuations.clone(), d.denominator, d.paths));
     result.set_item("directions", directions.collect::<Vec<_>>())?;
+    let unresolved = found.unresolved.iter().map(|end| {
+        let value = array(py, end.value.clone(), &[n])?;
+        Ok((value, end.paths, end.reason.as_str()))
+    });
+    result.set_item("unresolved", unresolved.collect::<Result<Vec<_>, Failure>>()?)?;
     let paths = &found.paths;
     let counts = [
         ("tracked", paths.tracked),

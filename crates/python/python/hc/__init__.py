@@ -10,7 +10,7 @@ Arrays in, arrays out. Work runs on all cores without Python's lock, and Ctrl-C 
 
 from ._errors import Error, InputError, InternalError, UndeterminedError
 from ._family import Compiled, End, Family, Fibre, Tracked
-from ._solutions import Certificates, Solutions
+from ._solutions import Certificates, Solutions, Unresolved
 from ._solve import certify, mixed_volume, solve
 
 for _function in (solve, mixed_volume, certify):
@@ -29,6 +29,7 @@ __all__ = [
     "Solutions",
     "Tracked",
     "UndeterminedError",
+    "Unresolved",
     "certify",
     "mixed_volume",
     "solve",

@@ -20,6 +20,7 @@ __all__ = [
     "Solutions",
     "Tracked",
     "UndeterminedError",
+    "Unresolved",
     "certify",
     "mixed_volume",
     "solve",
@@ -35,6 +36,11 @@ class InputError(Error, ValueError): ...
 class UndeterminedError(Error, RuntimeError): ...
 class InternalError(Error, RuntimeError): ...
 
+class Unresolved(NamedTuple):
+    value: NDArray[np.complex128]
+    paths: int
+    reason: str
+
 class Solutions:
     variables: list[str]
     points: NDArray[np.complex128]
@@ -48,6 +54,7 @@ class Solutions:
     paths: dict[str, int]
     component_points: NDArray[np.complex128]
     directions: list[tuple[list[int], int, int]]
+    unresolved: list[Unresolved]
     start: str | None
     start_systems: int
     mixed_volume: int | None

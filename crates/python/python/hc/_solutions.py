@@ -2,8 +2,17 @@
 
 import html
 import json
+from typing import Any, NamedTuple
 
 import numpy as np
+
+
+class Unresolved(NamedTuple):
+    """An end of paths of which it is not known what it is: `value` (ndarray of shape (n,)), the number of `paths` that end there, and the `reason`."""
+
+    value: Any
+    paths: int
+    reason: str
 
 
 class Solutions:
@@ -33,6 +42,8 @@ class Solutions:
         How the paths ended: `tracked`, `finite`, `at_infinity`, `failed`, `on_components`, `excess` and so on.
     component_points : ndarray of complex, shape (c, n)
         Points on components of positive dimension.
+    unresolved : list of Unresolved
+        Ends of paths near which the equations nearly vanish, but that could not be judged; their paths count as failed.
     directions : list of tuple
         Valuations, denominator and number of the paths that went to infinity.
     start : str or None
@@ -51,6 +62,7 @@ class Solutions:
 
     def __init__(self, found):
         self.__dict__.update(found)
+        self.unresolved = [Unresolved(*end) for end in self.unresolved]
 
     @property
     def real(self):
@@ -80,9 +92,8 @@ class Solutions:
 
     def to_json(self):
         """The solutions as JSON text, in the form that `hc solve --json` writes."""
-        pairs = np.stack([self.points.real, self.points.imag], axis=-1).tolist()
         rows = []
-        for k, value in enumerate(pairs):
+        for k, value in enumerate(_pairs(self.points)):
             rows.append(
                 {
                     "value": value,
@@ -98,7 +109,6 @@ class Solutions:
         counts = dict(self.paths)
         components, excess = counts.pop("on_components"), counts.pop("excess")
         keys = ("valuations", "denominator", "paths")
-        points = self.component_points
         whole = {
             "variables": self.variables,
             "seed": self.seed,
@@ -108,12 +118,15 @@ class Solutions:
             "multihomogeneous_number": self.multihomogeneous_number,
             "paths": counts,
             "on_components": components,
-            "component_points": np.stack([points.real, points.imag], axis=-1).tolist(),
+            "component_points": _pairs(self.component_points),
             "excess": excess,
             "directions": [dict(zip(keys, direction)) for direction in self.directions],
             "start_systems": self.start_systems,
             "partial": self.partial,
             "solutions": rows,
+            "unresolved": [
+                {"value": _pairs(end.value), "paths": end.paths, "reason": end.reason} for end in self.unresolved
+            ],
         }
         return json.dumps(whole, indent=2) + "\n"
 
@@ -160,11 +173,16 @@ class Certificates:
         )
 
 
+def _pairs(values):
+    """Complex numbers as pairs of their parts."""
+    return np.stack([values.real, values.imag], axis=-1).tolist()
+
+
 def _finite(value):
     value = float(value)
     return value if np.isfinite(value) else None
 
 
-for _class in (Solutions, Certificates):
+for _class in (Solutions, Certificates, Unresolved):
     _class.__module__ = "hc"
 del _class
