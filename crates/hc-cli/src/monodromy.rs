@@ -56,7 +56,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     // What an interrupted test says is no deviation.
     let test = test.filter(|_| !monitor.is_cancelled());
     let count = found.fibre.len();
-    let deviation = test.as_ref().map(|test| test.deviation);
+    let deviation = test.and_then(|test| test.result(count));
     let stopped = match found.stop {
         Stop::RootsReached => "roots reached",
         _ if monitor.is_cancelled() => "interrupted",
@@ -65,7 +65,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let text = StartFile::new(&found.fibre, deviation, stopped).to_json();
     output::text(&arguments.output, &text)?;
-    let trace = deviation.map_or(String::new(), |d| format!(", trace test {d:.1e}"));
+    let trace = match (test, deviation) {
+        (_, Some(deviation)) => format!(", trace test {deviation:.1e}"),
+        (Some(_), None) => ", trace test without a result (paths were lost, or led to other solutions)".to_owned(),
+        (None, None) => String::new(),
+    };
     eprintln!(
         "{}: {count} solutions after {} loops and {} paths; stopped: {stopped}{trace}",
         family.name(),

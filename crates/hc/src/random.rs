@@ -35,6 +35,8 @@ pub enum Stream {
     Target(u64),
     /// A place that is tried for a stored fibre, by number.
     Place(u64),
+    /// A point of parameters through which a detour leads, by number.
+    Detour(u64),
     /// Anything else, by a number of the caller's.
     Other(u64),
 }
@@ -52,6 +54,7 @@ impl Stream {
             Stream::Multihomogeneous(k) => between(3, k),
             Stream::Other(k) => between(5, k),
             Stream::Slice(k) => between(7, k),
+            Stream::Detour(k) => between(9, k),
             Stream::Rounding => 4,
             Stream::Perturbation => 6,
             Stream::Combinations => 11,
@@ -111,6 +114,7 @@ mod tests {
                 Stream::Loop,
                 Stream::Target,
                 Stream::Place,
+                Stream::Detour,
                 Stream::Other,
             ];
             for purpose in purposes {

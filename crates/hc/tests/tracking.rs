@@ -1,12 +1,13 @@
 //! The tracker and what is built on it, on families whose solutions are known.
 
+use hc::distinct::relative_distance;
 use hc::family::{Stop, track_fibre};
 use hc::homotopy::Segment;
 use hc::poly::{Interpreter, Isa, Lane, Lanes8, parse};
 use hc::random::{Random, Stream};
 use hc::refine::Refiner;
 use hc::tracker::{PathEnd, PathSet, Tracker, TrackerOptions, track};
-use hc::{Family, Fibre, FibreOptions, Monitor, MonodromyOptions};
+use hc::{Family, Fibre, FibreOptions, Monitor, MonodromyOptions, Solutions, SolveOptions};
 use num_complex::Complex64;
 
 fn family(unknowns: &str, parameters: &str, equations: &str) -> (Family, Interpreter) {
@@ -282,6 +283,57 @@ fn monodromy_without_a_known_count_says_that_it_only_stopped() {
     let found = family.complete(&start, &options, &monitor).unwrap();
     assert_eq!((found.stop, found.fibre.len()), (Stop::NoProgress, 2));
     assert!(family.trace_test(&found.fibre, &options, &monitor).unwrap().passed(2));
+}
+
+/// Branch points far from one: a = 16 and -16; a = 2 and -2, where the loops have to part; lengths
+/// in millimetres.
+#[test]
+fn monodromy_finds_branch_points_at_any_scale() {
+    let cases = [
+        ("x", "a", "x^3 - 12*x - a", 3),
+        ("x y", "a", "x^2 + y^2 - a; x*y - 1", 4),
+        ("x", "a", "x^2 - 1000000*a", 2),
+        ("x y", "a b r", "(x - a)^2 + (y - b)^2 - r^2; x^2 + y^2 - 1000000", 2),
+        ("x", "a", "x^2 - a + 1/1000000", 2),
+    ];
+    let monitor = Monitor::default();
+    for (unknowns, parameters, equations, roots) in cases {
+        let (family, _) = family(unknowns, parameters, equations);
+        let mut whole = 0;
+        for seed in 0..20 {
+            let options = MonodromyOptions::new().seed(seed);
+            let found = family.complete(&family.find_pair(seed).unwrap(), &options, &monitor).unwrap();
+            let test = family.trace_test(&found.fibre, &options, &monitor).unwrap();
+            // Never more than there are, and never fewer that are said to be all.
+            let count = found.fibre.len();
+            assert!(count == roots || count < roots && !test.passed(count), "{equations} {seed}: {count} {test:?}");
+            whole += usize::from(count == roots && test.passed(count));
+        }
+        assert!(whole >= 18, "{equations}: all found {whole} times");
+    }
+}
+
+#[test]
+fn detours_find_what_a_path_has_lost() {
+    // So few steps that some paths fail; another way is as short as the first.
+    let (family, _, fibre) = p3p_fibre();
+    let targets: Vec<_> = (0..300).map(|seed| Random::new(seed, Stream::Polyhedral(0)).normals(6)).collect();
+    let run = |retries: u32| {
+        let mut options = SolveOptions::default();
+        options.paths.tracker.max_steps = 25;
+        options.paths.retries = retries;
+        family.track(&fibre, &targets).options(&options).run().unwrap()
+    };
+    let lost = |found: &[Solutions]| found.iter().map(|s| s.paths.failed).sum::<usize>();
+    let (before, after) = (run(0), run(1));
+    assert!(lost(&before) > 0, "the settings are meant to lose paths");
+    assert_eq!(lost(&after), 0);
+    for (k, found) in after.iter().enumerate() {
+        let points: Vec<_> = found.iter().map(|s| &s.value).collect();
+        assert!(points.len() == 8 && found.iter().all(|s| !s.singular && s.residual < 1e-14), "target {k}");
+        let apart = |i: usize| points[..i].iter().all(|y| relative_distance(points[i], y) > 1e-6);
+        assert!((1..8).all(apart), "target {k}");
+    }
 }
 
 #[test]

@@ -111,7 +111,7 @@ impl Family {
                 _ if test.as_ref().is_some_and(|test| test.passed(found.fibre.len())) => "trace",
                 _ => "no progress",
             };
-            let file = StartFile::new(&found.fibre, test.map(|test| test.deviation), why);
+            let file = StartFile::new(&found.fibre, test.and_then(|test| test.result(found.fibre.len())), why);
             let result = PyDict::new(py);
             result.set_item("json", file.to_json())?;
             result.set_item("loops", found.loops)?;

@@ -7,12 +7,14 @@
 
 mod charts;
 mod compiled;
+mod detour;
 mod error;
 mod fibre;
 mod judge;
 mod monodromy;
 mod orbits;
 mod pair;
+mod size;
 mod start_file;
 mod symmetry;
 mod targets;

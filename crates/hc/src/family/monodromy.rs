@@ -6,6 +6,7 @@
 //! test](crate::Family::trace_test), and the result says which.
 
 use super::fibre::{Fibre, FibreOptions};
+use super::size::natural_size;
 use super::symmetry::{ACCURATE, Symmetry};
 use super::track::track_fibre_watched;
 use crate::distinct::{coincidences, relative_distance};
@@ -133,6 +134,7 @@ pub(super) fn fill<E: Evaluate>(
         filling.fibre.representatives = Some(Vec::new());
         filling.add(start.solutions.chunks_exact(start.dimension.max(1)));
     }
+    let sizes: Vec<f64> = start.parameters.iter().map(|p| natural_size(p.norm())).collect();
     let (mut loops, mut idle, mut paths) = (0, 0, 0);
     let stop = loop {
         if monitor.is_cancelled() {
@@ -149,12 +151,28 @@ pub(super) fn fill<E: Evaluate>(
             break Stop::TooMany;
         }
         let mut random = Random::new(options.seed, Stream::Loop(loops as u64));
-        let corners = [0, 1].map(|_| random.normals(system.parameters()));
+        let scale = scale(idle, options.patience);
+        let corner = |z: Complex64, size: f64| z * size * scale;
+        let corners =
+            [0, 1].map(|_| random.normals(sizes.len()).into_iter().zip(&sizes).map(|(z, &s)| corner(z, s)).collect());
         paths += filling.go_round(&corners, &accept);
         loops += 1;
         idle = if filling.fibre.len() > known { 0 } else { idle + 1 };
     };
     Monodromy { fibre: filling.fibre, stop, loops, paths }
+}
+
+/// The ratio of one scale of loops to the next.
+const SCALE: f64 = 4.0;
+/// Scales above one, and as many below.
+const SCALES: usize = 8;
+
+/// The scale of the next loop: loops that keep to one scale may miss all branch points, so that of
+/// those after half the patience two are larger and one smaller in turn.
+fn scale(idle: usize, patience: usize) -> f64 {
+    let Some(k) = idle.checked_sub(patience.div_ceil(2)) else { return 1.0 };
+    let steps = (k / 3 % SCALES + 1) as i32;
+    SCALE.powi(if k % 3 < 2 { steps } else { -steps })
 }
 
 /// A fibre that is being filled.

@@ -1,9 +1,11 @@
 //! One fibre to many targets.
 
 use super::compiled::Family;
+use super::detour::{DETOURS, corner};
 use super::error::FamilyError;
 use super::fibre::Fibre;
 use super::orbits::Orbits;
+use super::track::move_fibre_watched;
 use crate::monitor::Monitor;
 use crate::solve::{Solutions, SolveOptions, solve_member};
 // One thread needs no trait for `map`.
@@ -122,6 +124,40 @@ impl<'a> Targets<'a> {
 }
 
 impl How<'_> {
+    /// The solutions for a target from a fibre, or where paths are lost, from one on a detour: more
+    /// steps come last.
+    fn from(&self, trackers: &Trackers<'_, poly::Interpreter>, fibre: &Fibre, target: &[Complex64]) -> Solutions {
+        let system = self.family.system();
+        let solve = |from: &Fibre, options| solve_member(system, trackers, from, target, options, &self.monitor);
+        let mut once = self.options.clone();
+        once.paths.retries = 0;
+        let mut found = solve(fibre, &once);
+        let mut tracked = found.paths.tracked;
+        for number in 0..DETOURS {
+            if found.paths.failed == 0 || self.options.paths.retries == 0 || self.monitor.is_cancelled() {
+                break;
+            }
+            let (corner, paths) = (corner(fibre, target, number), &self.options.paths);
+            let Some(moved) = move_fibre_watched(&self.family.program, fibre, &corner, paths, &self.monitor) else {
+                continue;
+            };
+            let other = solve(&moved, &once);
+            tracked += moved.len() + other.paths.tracked;
+            if other.paths.failed < found.paths.failed {
+                found = other;
+            }
+        }
+        if found.paths.failed > 0 && self.options.paths.retries > 0 {
+            let last = solve(fibre, &self.options);
+            tracked += last.paths.tracked;
+            if last.paths.failed <= found.paths.failed {
+                found = last;
+            }
+        }
+        found.paths.retracked += tracked.saturating_sub(found.paths.tracked);
+        found
+    }
+
     /// The solutions for one target; `None` if the work was cancelled before.
     fn solve(
         &self,
@@ -132,8 +168,7 @@ impl How<'_> {
         if self.monitor.is_cancelled() {
             return None;
         }
-        let system = self.family.system();
-        let from = |fibre| solve_member(system, trackers, fibre, target, &self.options, &self.monitor);
+        let from = |fibre: &Fibre| self.from(trackers, fibre, target);
         let expanded = orbits.and_then(|orbits| {
             let mut found = from(&orbits.tracked);
             let same = self.options.paths.coincidence;

@@ -10,6 +10,7 @@
 
 use super::fibre::{Fibre, FibreOptions};
 use super::monodromy::{MonodromyOptions, fill};
+use super::size::natural_size;
 use super::symmetry::Symmetry;
 use super::track::{move_fibre_watched, track_fibre_watched};
 use crate::monitor::Monitor;
@@ -17,14 +18,18 @@ use crate::random::{Random, Stream};
 use crate::refine::Refiner;
 use crate::tracker::PathEnd;
 use num_complex::Complex64;
-use poly::{CompileError, ComplexDd, Scalar, System};
+use poly::{CompileError, ComplexDd, Evaluate, Scalar, System};
+
+/// Points that move off the straight by less than this share of their size move straight: what is
+/// left is rounding error of double-double.
+const STRAIGHT: f64 = 1e-20;
 
 /// What the trace test found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct TraceTest {
-    /// Deviation of the sum of the points from linear motion, relative to the size of that motion;
-    /// rounding error if the fibre is whole, of the order of one if a point is missing.
+    /// Deviation of the sum of the points from linear motion, relative to those of the single
+    /// points; rounding error if the fibre is whole, of the order of one if a point is missing.
     pub deviation: f64,
     /// Points of the fibre that were counted where the further points had been added.
     pub fibre: usize,
@@ -37,7 +42,13 @@ pub struct TraceTest {
 impl TraceTest {
     /// Whether the test shows that a fibre of `len` points is whole.
     pub fn passed(&self, len: usize) -> bool {
-        self.complete && self.fibre == len && self.deviation < 1e-8
+        self.result(len).is_some_and(|deviation| deviation < 1e-8)
+    }
+
+    /// The deviation for a fibre of `len` points, if it means something: every path ended well, and
+    /// these points and no others were found on the fibre.
+    pub fn result(&self, len: usize) -> Option<f64> {
+        (self.complete && self.fibre == len && self.deviation.is_finite()).then_some(self.deviation)
     }
 }
 
@@ -56,8 +67,14 @@ pub(super) fn trace_test(
     // Parameters of the enlarged family: p, v, a, c, tau.
     let mut random = Random::new(options.seed, Stream::Trace);
     let mut parameters = fibre.parameters.clone();
-    parameters.extend(random.normals(m + n + 1));
+    let sizes = fibre.parameters.iter().map(|p| natural_size(p.norm()));
+    let largest = |j: usize| (0..fibre.len()).map(|k| fibre.solution(k)[j].norm()).fold(0.0, f64::max);
+    let shares = (0..n).map(|j| 1.0 / natural_size(largest(j)));
+    let scales = sizes.chain(shares).chain([1.0]);
+    parameters.extend(random.normals(m + n + 1).into_iter().zip(scales).map(|(z, scale)| z * scale));
+    // Of so few digits that its multiples are at equal distances to the last bit.
     let tau = random.unit();
+    let tau = Complex64::new(f64::from(tau.re as f32), f64::from(tau.im as f32));
     let at = |factor: f64| {
         let mut p = parameters.clone();
         p.push(tau * factor);
@@ -77,16 +94,7 @@ pub(super) fn trace_test(
     let filled = fill(&enlarged, &start, |_, _| true, &Symmetry::default(), &search, monitor).fibre;
 
     let (Some(second), Some(third)) = (moved(&filled, 2.0), moved(&filled, 3.0)) else { return Ok(failed) };
-    let sums = [&filled, &second, &third].map(|fibre| sum(&enlarged, fibre));
-    // Each coordinate on its own scale: a few far points would drown the others.
-    let deviation = (0..=n)
-        .map(|j| {
-            let [a, b, c] = [0, 1, 2].map(|k: usize| &sums[k][j]);
-            let second = Complex64::from(Scalar::sub(&Scalar::add(a, c), &Scalar::add(b, b)));
-            let [a, c] = [a, c].map(|z| Complex64::from(*z));
-            second.norm() / (c - a).norm().max(a.norm()).max(f64::MIN_POSITIVE)
-        })
-        .fold(0.0, f64::max);
+    let deviation = deviation(&enlarged, &[&filled, &second, &third]);
 
     // Back on lambda = 0: every point of the curve there must be one of the fibre.
     let (ends, counts) = track_fibre_watched(&enlarged, &filled, &at(0.0), &careful, monitor);
@@ -118,15 +126,28 @@ fn enlarge(system: &System) -> Option<System> {
     .ok()
 }
 
-/// The sum of all points, in double-double: far points would drown the others.
-fn sum<E: poly::Evaluate>(system: &E, fibre: &Fibre) -> Vec<ComplexDd> {
+/// How far the sum of the points of three fibres at equal distances, in the same order, moves off
+/// the straight: the largest of the coordinates', each relative to what the single points move off
+/// it. That does not depend on the scale, nor on how far the points move.
+fn deviation<E: Evaluate>(system: &E, fibres: &[&Fibre; 3]) -> f64 {
+    let n = fibres[0].dimension;
+    let zero = ComplexDd::from(Complex64::default());
     let mut refiner = Refiner::new(system);
-    let mut sum = vec![ComplexDd::from(Complex64::new(0.0, 0.0)); fibre.dimension];
-    for k in 0..fibre.len() {
-        let point = refiner.extend(&fibre.parameters, fibre.solution(k));
-        for (s, x) in sum.iter_mut().zip(&point) {
-            *s = Scalar::add(s, x);
+    // In double-double: far points would drown the others.
+    let (mut whole, mut single, mut sizes) = (vec![zero; n], vec![0.0; n], vec![0.0; n]);
+    for k in 0..fibres[0].len() {
+        let [a, b, c] = fibres.map(|fibre| refiner.extend(&fibre.parameters, fibre.solution(k)));
+        for j in 0..n {
+            let bend = Scalar::sub(&Scalar::add(&a[j], &c[j]), &Scalar::add(&b[j], &b[j]));
+            whole[j] = Scalar::add(&whole[j], &bend);
+            single[j] += Complex64::from(bend).norm();
+            sizes[j] += Complex64::from(b[j]).norm();
         }
     }
-    sum
+    let relative = |j: usize| {
+        let least = (STRAIGHT * sizes[j]).max(f64::MIN_POSITIVE);
+        Complex64::from(whole[j]).norm() / single[j].max(least)
+    };
+    let largest = |a: f64, b: f64| if b.is_nan() { f64::INFINITY } else { a.max(b) };
+    (0..n).map(relative).fold(0.0, largest)
 }

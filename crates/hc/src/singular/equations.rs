@@ -157,16 +157,15 @@ impl Given {
     /// The equations in unknowns of about unit size near a point.
     pub(crate) fn near<S: Precision>(&self, point: &[Complex64]) -> Local<'_, S> {
         let units = units(point);
+        // By how much coordinates exceed their units, as logarithms to base 2.
+        let excess: Vec<f64> = point.iter().zip(&units).map(|(z, &u)| (z.norm().log2() - u as f64).max(0.0)).collect();
         let mut coefficients = Vec::with_capacity(self.len());
         for (terms, numbers) in self.equations.iter().zip(self.coefficients::<S>()) {
             let shift =
                 |t: &Term| t.powers.iter().map(|&(j, e)| i64::from(e) * (units[j] + self.scale[j])).sum::<i64>();
             let shifts: Vec<i64> = terms.iter().map(shift).collect();
             // Sizes of the terms at the point, coordinates counted as one at least.
-            let excess = |t: &Term| {
-                let size = |&(j, e): &(usize, u32)| f64::from(e) * (point[j].norm().log2() - units[j] as f64).max(0.0);
-                t.powers.iter().map(size).sum::<f64>()
-            };
+            let excess = |t: &Term| t.powers.iter().map(|&(j, e)| f64::from(e) * excess[j]).sum::<f64>();
             let sizes = numbers.iter().zip(&shifts).zip(terms);
             let top = sizes.map(|((c, &s), t)| c.log2() + s as f64 + excess(t)).fold(f64::NEG_INFINITY, f64::max);
             let top = if top.is_finite() { top.ceil() as i64 } else { 0 };
@@ -191,7 +190,13 @@ pub(crate) struct Local<'a, S> {
     coefficients: Vec<Vec<S>>,
 }
 
-impl<S: Number> Local<'_, S> {
+impl<'a, S: Number> Local<'a, S> {
+    /// The same in doubles.
+    pub(crate) fn rounded(&self) -> Local<'a, Complex64> {
+        let coefficients = self.coefficients.iter().map(|row| row.iter().map(S::to_c64).collect()).collect();
+        Local { given: self.given, units: self.units.clone(), coefficients }
+    }
+
     /// Number of equations.
     pub(crate) fn equations(&self) -> usize {
         self.given.len()
@@ -266,7 +271,7 @@ impl<S: Number> Local<'_, S> {
     }
 
     /// Values of the equations.
-    fn values(&self, x: &[S]) -> Vec<S> {
+    pub(crate) fn values(&self, x: &[S]) -> Vec<S> {
         let powers = self.powers(x);
         let product = |(term, c): (&Term, &S)| {
             term.powers.iter().zip(&term.places).fold(*c, |product, (&(j, _), &k)| S::mul(&product, &powers[j][k]))

@@ -191,19 +191,36 @@ const STEADY: f64 = 1e-13;
 /// Pivots of the Jacobian, as logarithms to base 2, that may be due to that as well.
 const FAINT: f64 = -36.0;
 
+/// Such pivots that are clear in doubles already.
+const PLAIN: f64 = -20.0;
+
 /// Whether the given equations move a regular solution of rounded ones by more than its own
 /// rounding error, or do not determine it.
 pub(crate) fn is_moved(given: &Given, point: &[Complex64]) -> bool {
     let near = given.near::<ComplexDd>(point);
-    let mut x = near.scaled(point);
-    let (values, jacobian) = near.jacobian(&x);
-    let pivots = Elimination::new(jacobian, point.len(), Stop::Below(f64::NEG_INFINITY));
-    for (&j, d) in pivots.columns.iter().zip(pivots.solve(&values)) {
-        x[j] = ComplexDd::sub(&x[j], &d);
-    }
-    let moved: Vec<Complex64> = near.unscaled(&x).iter().map(Number::to_c64).collect();
+    let x = near.scaled(point);
+    // Values need all digits, derivatives few, unless the Jacobian is nearly singular.
+    let rough = near.rounded();
+    let (_, jacobian) = rough.jacobian(&rough.scaled(point));
+    let values: Vec<Complex64> = near.values(&x).iter().map(Number::to_c64).collect();
+    let corrected = newton(&rough.scaled(point), &values, jacobian, PLAIN).map(|x| rough.unscaled(&x)).or_else(|| {
+        let (values, jacobian) = near.jacobian(&x);
+        let x = newton(&x, &values, jacobian, FAINT)?;
+        Some(near.unscaled(&x).iter().map(Number::to_c64).collect())
+    });
     // Written so that what is no number is moved.
-    !(pivots.rank() == point.len() && pivots.smallest > FAINT && relative_distance(point, &moved) <= STEADY)
+    !corrected.is_some_and(|corrected| relative_distance(point, &corrected) <= STEADY)
+}
+
+/// A step of Newton's method, if all pivots of the Jacobian are larger than that (logarithm to
+/// base 2).
+fn newton<S: Number>(x: &[S], values: &[S], jacobian: Vec<Vec<S>>, smallest: f64) -> Option<Vec<S>> {
+    let pivots = Elimination::new(jacobian, x.len(), Stop::Below(f64::NEG_INFINITY));
+    let mut x = x.to_vec();
+    for (&j, d) in pivots.columns.iter().zip(pivots.solve(values)) {
+        x[j] = S::sub(&x[j], &d);
+    }
+    (pivots.rank() == x.len() && pivots.smallest > smallest).then_some(x)
 }
 
 /// The regular solution near a point, if there is one to one precision.

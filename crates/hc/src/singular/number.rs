@@ -1,10 +1,10 @@
-//! Complex numbers of more digits than doubles, as far as the local algebra needs them.
+//! Complex numbers, mostly of more digits than doubles, as far as the local algebra needs them.
 
 use num_complex::Complex64;
 use poly::Dd;
 use poly::{ComplexDd, ComplexMulti, Scalar};
 
-/// A complex number type of more digits than doubles.
+/// A complex number type.
 pub(crate) trait Number: Scalar + Copy {
     /// Binary digits that a product keeps.
     const BITS: f64;
@@ -26,6 +26,37 @@ pub(crate) trait Number: Scalar + Copy {
     fn to_c64(&self) -> Complex64;
 }
 
+impl Number for Complex64 {
+    const BITS: f64 = 52.0;
+
+    fn log2(&self) -> f64 {
+        if self.is_nan() { f64::NAN } else { self.re.abs().max(self.im.abs()).log2() }
+    }
+
+    fn vanishes(&self) -> bool {
+        *self == Complex64::new(0.0, 0.0)
+    }
+
+    fn shifted(&self, k: i64) -> Self {
+        let (a, b) = powers_of_two(k);
+        self * a * b
+    }
+
+    fn conjugate(&self) -> Self {
+        self.conj()
+    }
+
+    fn to_c64(&self) -> Complex64 {
+        *self
+    }
+}
+
+/// Two powers of two with the product `2^k`, which may be out of range alone.
+fn powers_of_two(k: i64) -> (f64, f64) {
+    let k = k.clamp(-2000, 2000) as i32;
+    (2f64.powi(k / 2), 2f64.powi(k - k / 2))
+}
+
 impl Number for ComplexDd {
     const BITS: f64 = 104.0;
 
@@ -39,9 +70,7 @@ impl Number for ComplexDd {
     }
 
     fn shifted(&self, k: i64) -> Self {
-        // In two steps, since the power alone may be out of range.
-        let k = k.clamp(-2000, 2000) as i32;
-        let (a, b) = (2f64.powi(k / 2), 2f64.powi(k - k / 2));
+        let (a, b) = powers_of_two(k);
         let part = |x: Dd| Dd { high: x.high * a * b, low: x.low * a * b };
         ComplexDd { re: part(self.re), im: part(self.im) }
     }
