@@ -15,6 +15,8 @@ const NOT_RUN: &[&str] = &[
     "RUSTDOCFLAGS=\"-D warnings\" cargo doc -p poly --no-deps",
     "RUSTDOCFLAGS=\"-D warnings\" cargo doc --workspace --no-deps",
     "cargo deny check",
+    // Takes minutes, and builds what the tests have built.
+    "cargo build --profile dist -p tdoa-cli -p hc-cli",
     // Written into the repository; `--check` is run instead.
     "cargo xtask codegen",
     "cargo xtask experiments --page",

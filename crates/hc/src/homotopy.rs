@@ -92,6 +92,7 @@ struct Extended<'a> {
 
 impl Kernel for Extended<'_> {
     type Output = ();
+    const WIDEST: Isa = ComplexDd::WIDEST;
 
     #[inline(always)]
     fn run(self) {

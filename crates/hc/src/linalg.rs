@@ -175,6 +175,7 @@ struct Factor<'a, S: Lane> {
 
 impl<S: Lane> Kernel for Factor<'_, S> {
     type Output = ();
+    const WIDEST: Isa = S::WIDEST;
 
     #[inline(always)]
     fn run(self) {
@@ -274,6 +275,7 @@ struct Solve<'a, S: Lane> {
 
 impl<S: Lane> Kernel for Solve<'_, S> {
     type Output = ();
+    const WIDEST: Isa = S::WIDEST;
 
     #[inline(always)]
     fn run(self) {

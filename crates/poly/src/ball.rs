@@ -8,6 +8,7 @@
 use crate::dd::{ComplexDd, Dd};
 use crate::interval::{ComplexInterval, Interval};
 use crate::scalar::Scalar;
+use crate::simd::Isa;
 use num_complex::Complex64;
 
 /// Relative error of one double-double sum or product: `8 u^2 = 2^-103`, above both proven bounds.
@@ -183,6 +184,9 @@ fn constant([high, low]: [f64; 2]) -> Ball {
 }
 
 impl Scalar for ComplexBall {
+    /// For the fused products of [`Dd`].
+    const WIDEST: Isa = Isa::Avx2;
+
     #[inline(always)]
     fn zero() -> Self {
         ComplexBall { re: Ball { mid: Dd::default(), radius: 0.0 }, im: Ball { mid: Dd::default(), radius: 0.0 } }

@@ -5,6 +5,7 @@
 //! of double-word arithmetic* (ACM TOMS 44, 2017), whose numbers are given below.
 
 use crate::scalar::Scalar;
+use crate::simd::Isa;
 use num_complex::Complex64;
 
 /// A double-double number: the unevaluated sum `high + low`, with `|low|` at most half an ulp of
@@ -131,6 +132,9 @@ impl From<ComplexDd> for Complex64 {
 }
 
 impl Scalar for ComplexDd {
+    /// For its fused products.
+    const WIDEST: Isa = Isa::Avx2;
+
     #[inline(always)]
     fn zero() -> Self {
         ComplexDd::default()

@@ -1,6 +1,7 @@
 //! Eight complex numbers side by side, in planes: eight real parts, then eight imaginary parts.
 
 use crate::scalar::{Lane, Scalar};
+use crate::simd::Isa;
 use num_complex::Complex64;
 
 /// Eight independent complex numbers, one a path.
@@ -57,6 +58,11 @@ impl Lanes8 {
 }
 
 impl Scalar for Lanes8 {
+    const WIDEST: Isa = Isa::Avx512;
+    /// On x86-64 nearly every machine has AVX2, and code for the others is the longest to compile.
+    const STRAIGHT: Option<Isa> = Some(if cfg!(target_arch = "x86_64") { Isa::Avx2 } else { Isa::Portable });
+    const TAYLOR_COMPILED: bool = true;
+
     #[inline(always)]
     fn zero() -> Self {
         Lanes8 { re: [0.0; 8], im: [0.0; 8] }

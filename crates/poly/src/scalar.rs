@@ -1,6 +1,7 @@
 //! The numbers that straight-line programs run over.
 
 use crate::exact::{self, Exact};
+use crate::simd::Isa;
 use num_complex::Complex64;
 
 /// A complex-number type that a straight-line program can run over.
@@ -9,6 +10,18 @@ use num_complex::Complex64;
 /// ([`Lanes8`](crate::Lanes8)) stay in vector registers. Fused forms are fused in writing alone:
 /// `mul_add` rounds the product, then the sum. So all instruction sets give the same bits.
 pub trait Scalar: Clone + Send + Sync + std::fmt::Debug + 'static {
+    /// The widest instruction set that gains anything: kernels over these numbers are compiled for
+    /// it and the narrower ones. Default: the portable one, right for numbers with one lane.
+    const WIDEST: Isa = Isa::Portable;
+    /// The narrowest instruction set for which generated systems have straight-line code over these
+    /// numbers; on narrower ones, or everywhere by default, they are interpreted. That is right for
+    /// long operations, beside which interpretation costs nothing.
+    const STRAIGHT: Option<Isa> = None;
+    /// Whether the kernels for Taylor coefficients over these numbers are compiled in this crate,
+    /// once, and called from others. They are by far the largest of all kernels.
+    #[doc(hidden)]
+    const TAYLOR_COMPILED: bool = false;
+
     /// The additive identity.
     fn zero() -> Self;
     /// The multiplicative identity.
@@ -94,6 +107,20 @@ pub trait Scalar: Clone + Send + Sync + std::fmt::Debug + 'static {
     fn mul_mul_sub(a: &Self, b: &Self, c: &Self, d: &Self) -> Self {
         Self::sub(&Self::mul(a, b), &Self::mul(c, d))
     }
+
+    /// Whether generated systems run straight-line code over these numbers on an instruction set.
+    #[inline]
+    fn is_straight(isa: Isa) -> bool {
+        Self::STRAIGHT.is_some_and(|narrowest| narrowest == Isa::Portable || isa.within_machine() >= narrowest)
+    }
+}
+
+/// The narrowest instruction set that straight-line code over these numbers is compiled for.
+pub const fn narrowest<S: Scalar>() -> Isa {
+    match S::STRAIGHT {
+        Some(isa) => isa,
+        None => Isa::Portable,
+    }
 }
 
 /// A [`Scalar`] of double precision with one lane or several, one a path.
@@ -130,6 +157,9 @@ pub trait Lane: Scalar + Copy {
 }
 
 impl Scalar for Complex64 {
+    const STRAIGHT: Option<Isa> = Some(Isa::Portable);
+    const TAYLOR_COMPILED: bool = true;
+
     #[inline(always)]
     fn zero() -> Self {
         Complex64::new(0.0, 0.0)

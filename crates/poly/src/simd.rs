@@ -1,13 +1,14 @@
 //! The instruction set of lane kernels, chosen at run time.
 //!
-//! A kernel is plain inlined code over [`Lanes8`](crate::Lanes8); [`Isa::run`] compiles it once for
-//! each instruction set and calls the version that the machine has. The compiler never fuses a
+//! A kernel is plain inlined code over [`Lanes8`](crate::Lanes8) or another number; [`Isa::run`]
+//! compiles it for the instruction sets that gain something and calls the version that the machine
+//! has. The compiler never fuses a
 //! product and a sum by itself, so all versions agree bit for bit; the instruction is enabled
 //! beside AVX2 only for `f64::mul_add` asked for by name (double-double), whose result is the same
 //! everywhere.
 
-/// An instruction set that kernels are compiled for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// An instruction set that kernels are compiled for, narrower ones first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Isa {
     /// The set that every machine of the target has (SSE2 on x86-64).
@@ -22,6 +23,10 @@ pub enum Isa {
 pub trait Kernel {
     /// What the kernel returns.
     type Output;
+    /// The widest instruction set that it is compiled for.
+    const WIDEST: Isa;
+    /// The narrowest one; it must not be run on a narrower one. Default: the portable one.
+    const NARROWEST: Isa = Isa::Portable;
     /// Does the work.
     fn run(self) -> Self::Output;
 }
@@ -42,6 +47,7 @@ impl Isa {
     }
 
     /// Whether this machine has the instruction set.
+    #[inline]
     pub fn available(self) -> bool {
         match self {
             Isa::Portable => true,
@@ -59,20 +65,36 @@ impl Isa {
         }
     }
 
-    /// Runs a kernel, compiled for this instruction set or, where the machine lacks it, for
-    /// [`Isa::Portable`].
+    /// The widest instruction set of this machine that is no wider than this one.
+    #[inline]
+    pub fn within_machine(self) -> Isa {
+        let sets = [Isa::Avx512, Isa::Avx2];
+        sets.into_iter().find(|&isa| isa <= self && isa.available()).unwrap_or(Isa::Portable)
+    }
+
+    /// Runs a kernel, compiled for the widest instruction set that is no wider than this one and
+    /// [`Kernel::WIDEST`] and that the machine has.
+    ///
+    /// # Panics
+    /// If that one is narrower than [`Kernel::NARROWEST`].
     #[inline]
     pub fn run<K: Kernel>(self, kernel: K) -> K::Output {
-        match self {
-            #[cfg(target_arch = "x86_64")]
-            // SAFETY: the guard has just asked the machine for every feature that the function
-            // enables (the answer is cached by the standard library; asking costs one load).
-            Isa::Avx512 if self.available() => unsafe { run_avx512(kernel) },
-            #[cfg(target_arch = "x86_64")]
-            // SAFETY: as above.
-            Isa::Avx2 if self.available() => unsafe { run_avx2(kernel) },
-            _ => kernel.run(),
+        // Constants first: a version that is never called is not compiled.
+        #[cfg(target_arch = "x86_64")]
+        if const { K::WIDEST as u8 >= Isa::Avx512 as u8 } && self >= Isa::Avx512 && Isa::Avx512.available() {
+            // SAFETY: the machine has just been asked for every feature that the function enables
+            // (the answer is cached by the standard library; asking costs one load).
+            return unsafe { run_avx512(kernel) };
         }
+        #[cfg(target_arch = "x86_64")]
+        if const { K::WIDEST as u8 >= Isa::Avx2 as u8 } && self >= Isa::Avx2 && Isa::Avx2.available() {
+            // SAFETY: as above.
+            return unsafe { run_avx2(kernel) };
+        }
+        if const { K::NARROWEST as u8 > Isa::Portable as u8 } {
+            panic!("a kernel for {:?} is run on {self:?}", K::NARROWEST);
+        }
+        kernel.run()
     }
 }
 

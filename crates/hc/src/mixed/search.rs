@@ -20,6 +20,18 @@ pub(super) trait Sink: Send {
     fn take<T: Integer>(&mut self, cell: &Cell<T>) -> Result<(), Overflow>;
 }
 
+/// A [`Sink`] for cells of one size of integers, of which the search need not know more: it is
+/// compiled once for each size.
+trait Take<T> {
+    fn take_cell(&mut self, cell: &Cell<T>) -> Result<(), Overflow>;
+}
+
+impl<T: Integer, S: Sink> Take<T> for S {
+    fn take_cell(&mut self, cell: &Cell<T>) -> Result<(), Overflow> {
+        self.take(cell)
+    }
+}
+
 /// What is still to be done with a cell before it is searched.
 #[derive(Clone, Copy)]
 enum Pending {
@@ -106,12 +118,12 @@ impl<S: Sink, F: Fn() -> S + Sync> State<'_, S, F> {
 }
 
 /// A task in one size of integers.
-struct Subtree<'a, T, S> {
+struct Subtree<'a, T> {
     space: &'a Space,
     points: &'a Points<T>,
     stage: usize,
     cell: Cell<T>,
-    sink: &'a mut S,
+    sink: &'a mut dyn Take<T>,
     scratch: Scratch<T>,
     /// Cells still to be visited, and memory for more.
     stack: Vec<(usize, Cell<T>)>,
@@ -119,14 +131,14 @@ struct Subtree<'a, T, S> {
     handed: Vec<Task>,
 }
 
-impl<'a, T: Size, S: Sink> Subtree<'a, T, S> {
+impl<'a, T: Size> Subtree<'a, T> {
     fn run(
         isa: Isa,
         space: &'a Space,
         stage: usize,
         pending: Pending,
         cell: Cell<T>,
-        sink: &'a mut S,
+        sink: &'a mut dyn Take<T>,
     ) -> Result<Vec<Task>, Overflow> {
         let points = T::points(space).ok_or(Overflow)?;
         let scratch = Scratch::new(points);
@@ -182,7 +194,7 @@ impl<'a, T: Size, S: Sink> Subtree<'a, T, S> {
         };
         match found {
             Err(Overflow) => self.promote(Pending::Nothing)?,
-            Ok(Step::Arrived) if self.stage == n => self.sink.take(&self.cell)?,
+            Ok(Step::Arrived) if self.stage == n => self.sink.take_cell(&self.cell)?,
             Ok(Step::Arrived) => {
                 self.cell.leave(self.points, self.stage);
                 self.stage += 1;
@@ -193,7 +205,7 @@ impl<'a, T: Size, S: Sink> Subtree<'a, T, S> {
                 } else if self.space.tau.is_some() {
                     return Ok(true);
                 } else {
-                    self.sink.take(&self.cell)?;
+                    self.sink.take_cell(&self.cell)?;
                 }
             }
             Ok(Step::Ends { column, children: [first, second] }) => {
@@ -223,13 +235,14 @@ impl<'a, T: Size, S: Sink> Subtree<'a, T, S> {
     }
 }
 
-struct Search<'a, T, S> {
-    tree: Subtree<'a, T, S>,
+struct Search<'a, T> {
+    tree: Subtree<'a, T>,
     pending: Pending,
 }
 
-impl<T: Size, S: Sink> Kernel for Search<'_, T, S> {
+impl<T: Size> Kernel for Search<'_, T> {
     type Output = Result<Vec<Task>, Overflow>;
+    const WIDEST: Isa = T::WIDEST;
 
     #[inline(always)]
     fn run(self) -> Self::Output {

@@ -4,6 +4,7 @@ use super::cell::Cell;
 use super::integer::Integer;
 use super::points::Points;
 use crate::monitor::Monitor;
+use poly::simd::Isa;
 use std::sync::OnceLock;
 
 /// The supports in the sizes of integers that hold them, and where to go.
@@ -61,6 +62,8 @@ pub(super) trait Size: Integer {
     type Next: Size;
     /// Whether there is no larger size.
     const LAST: bool;
+    /// The widest instruction set that the search gains anything from.
+    const WIDEST: Isa;
 
     /// The supports in this size, if they fit.
     fn points(space: &Space) -> Option<&Points<Self>>;
@@ -68,10 +71,11 @@ pub(super) trait Size: Integer {
 }
 
 macro_rules! size {
-    ($type:ident, $next:ident, $last:expr, $cell:ident, $points:ident) => {
+    ($type:ident, $next:ident, $last:expr, $widest:ident, $cell:ident, $points:ident) => {
         impl Size for $type {
             type Next = $next;
             const LAST: bool = $last;
+            const WIDEST: Isa = Isa::$widest;
 
             fn points(space: &Space) -> Option<&Points<Self>> {
                 space.$points()
@@ -84,6 +88,6 @@ macro_rules! size {
     };
 }
 
-size!(i32, i64, false, Small, small);
-size!(i64, i128, false, Medium, medium);
-size!(i128, i128, true, Large, large);
+size!(i32, i64, false, Avx512, Small, small);
+size!(i64, i128, false, Avx512, Medium, medium);
+size!(i128, i128, true, Portable, Large, large);

@@ -6,7 +6,7 @@
 
 use crate::homotopy::ParameterPath;
 use poly::Lane;
-use poly::simd::Kernel;
+use poly::simd::{Isa, Kernel};
 
 /// Weights never fall below 1e-4 of the largest coordinate: the square of that.
 const RELATIVE_FLOOR_SQR: f64 = 1e-8;
@@ -33,6 +33,7 @@ pub(crate) struct Predict<'a, S: Lane> {
 
 impl<S: Lane> Kernel for Predict<'_, S> {
     type Output = ();
+    const WIDEST: Isa = S::WIDEST;
 
     #[inline(always)]
     fn run(self) {
@@ -79,6 +80,7 @@ pub(crate) struct Radius<'a, S: Lane> {
 
 impl<S: Lane> Kernel for Radius<'_, S> {
     type Output = S::Real;
+    const WIDEST: Isa = S::WIDEST;
 
     #[inline(always)]
     fn run(self) -> S::Real {
@@ -154,6 +156,7 @@ pub(crate) struct Weigh<'a, S: Lane> {
 
 impl<S: Lane> Kernel for Weigh<'_, S> {
     type Output = ();
+    const WIDEST: Isa = S::WIDEST;
 
     #[inline(always)]
     fn run(self) {
@@ -194,6 +197,7 @@ pub(crate) struct Correct<'a, S: Lane> {
 
 impl<S: Lane> Kernel for Correct<'_, S> {
     type Output = S::Real;
+    const WIDEST: Isa = S::WIDEST;
 
     #[inline(always)]
     fn run(self) -> S::Real {
@@ -214,6 +218,7 @@ pub(crate) struct Distance<'a, S: Lane> {
 
 impl<S: Lane> Kernel for Distance<'_, S> {
     type Output = S::Real;
+    const WIDEST: Isa = S::WIDEST;
 
     #[inline(always)]
     fn run(self) -> S::Real {
@@ -235,6 +240,7 @@ pub(crate) struct Coefficients<'a, S: Lane, P: ParameterPath> {
 
 impl<S: Lane, P: ParameterPath> Kernel for Coefficients<'_, S, P> {
     type Output = ();
+    const WIDEST: Isa = S::WIDEST;
 
     #[inline(always)]
     fn run(self) {
@@ -251,6 +257,7 @@ pub(crate) struct Take<'a, S: Lane> {
 
 impl<S: Lane> Kernel for Take<'_, S> {
     type Output = ();
+    const WIDEST: Isa = S::WIDEST;
 
     #[inline(always)]
     fn run(self) {
@@ -267,6 +274,7 @@ pub(crate) struct Negate<'a, S: Lane> {
 
 impl<S: Lane> Kernel for Negate<'_, S> {
     type Output = ();
+    const WIDEST: Isa = S::WIDEST;
 
     #[inline(always)]
     fn run(self) {

@@ -4,7 +4,21 @@ use crate::scalar::Scalar;
 use crate::simd::Isa;
 
 pub use super::instruction::Op;
+pub use super::tape::{Code, RegisterTape};
 pub use super::taylor::{TaylorCode, TaylorMemory, TaylorTape};
+pub use crate::scalar::narrowest;
+
+/// The instructions of a generated system as tables, beside its straight-line code.
+#[derive(Debug)]
+pub struct Tables {
+    /// For the values.
+    pub values: RegisterTape,
+    /// For values and Jacobian.
+    pub jacobian: RegisterTape,
+    /// For Taylor coefficients, which have no straight-line code: instructions do so much each that
+    /// finding them costs little.
+    pub taylor: TaylorTape,
+}
 
 /// Scratch space of generated code.
 #[derive(Clone, Debug)]
@@ -13,6 +27,9 @@ pub struct Memory<S> {
     pub isa: Isa,
     /// Values that one function hands to the next.
     pub live: Vec<S>,
+    straight: bool,
+    /// Inputs and registers, where instructions are interpreted.
+    array: Vec<S>,
     /// Taylor coefficients that stay between orders.
     taylor: TaylorMemory<S>,
 }
@@ -20,9 +37,29 @@ pub struct Memory<S> {
 impl<S: Scalar> Memory<S> {
     /// Scratch space for a system with these constants (real part high and low, imaginary part high
     /// and low).
-    pub fn new(isa: Isa, constants: &[[f64; 4]], live: usize, taylor: &TaylorTape) -> Memory<S> {
+    pub fn new(isa: Isa, constants: &[[f64; 4]], live: usize, tables: &Tables) -> Memory<S> {
         let constants: Vec<S> = constants.iter().map(|&[a, b, c, d]| S::from_parts([a, b], [c, d])).collect();
-        Memory { isa, live: vec![S::zero(); live], taylor: taylor.memory(&constants) }
+        let taylor = tables.taylor.memory(isa, &constants);
+        if S::is_straight(isa) {
+            return Memory { isa, live: vec![S::zero(); live], straight: true, array: Vec::new(), taylor };
+        }
+        let mut array = constants;
+        array.resize(tables.values.size.max(tables.jacobian.size), S::zero());
+        Memory { isa, live: Vec::new(), straight: false, array, taylor }
+    }
+
+    /// Whether straight-line code is run.
+    #[inline]
+    pub fn is_straight(&self) -> bool {
+        self.straight
+    }
+
+    /// Runs a table for values, or values and Jacobian, instead.
+    ///
+    /// # Panics
+    /// If [`is_straight`](Memory::is_straight), or a slice is too short.
+    pub fn interpret(&mut self, tape: &RegisterTape, x: &[S], p: &[S], values: &mut [S], jacobian: &mut [S]) {
+        tape.run(self.isa, &mut self.array, x, p, values, jacobian);
     }
 
     /// Taylor coefficients, as [`Evaluate::taylor`](crate::Evaluate::taylor) says.
@@ -32,6 +69,11 @@ impl<S: Scalar> Memory<S> {
     pub fn taylor(&mut self, tape: &TaylorTape, order: usize, x: &[S], p: &[S], out: &mut [S]) {
         tape.run(self.isa, &mut self.taylor, order, x, p, out);
     }
+}
+
+/// One instruction of a generated [`RegisterTape`].
+pub const fn instruction(op: Op, target: u32, operands: [u32; 4]) -> Code {
+    Code { op, target, operands }
 }
 
 /// One instruction of a generated [`TaylorTape`].

@@ -1,12 +1,12 @@
 //! Runs a program over any scalar.
 
-use super::instruction::Op;
-use super::registers::{Code, Layout, RegisterTape, allocate};
+use super::registers::allocate;
 use super::straight_line::Program;
+use super::tape::RegisterTape;
 use super::taylor::{TaylorMemory, TaylorTape};
 use crate::evaluate::Evaluate;
 use crate::scalar::Scalar;
-use crate::simd::{Isa, Kernel};
+use crate::simd::Isa;
 use std::sync::Arc;
 
 /// A compiled system, ready to be evaluated; cheap to clone and to share between threads.
@@ -18,7 +18,6 @@ pub struct Interpreter {
 #[derive(Debug)]
 struct Compiled {
     program: Program,
-    layout: Layout,
     values: RegisterTape,
     jacobian: RegisterTape,
     taylor: TaylorTape,
@@ -41,7 +40,7 @@ impl Interpreter {
         let values = allocate(&program.values, layout, program.equations);
         let jacobian = allocate(&program.jacobian, layout, program.equations * (1 + program.variables));
         let taylor = TaylorTape::new(&program.values, layout);
-        Interpreter { compiled: Arc::new(Compiled { program, layout, values, jacobian, taylor }) }
+        Interpreter { compiled: Arc::new(Compiled { program, values, jacobian, taylor }) }
     }
 
     /// The program that is run.
@@ -75,18 +74,14 @@ impl Evaluate for Interpreter {
             isa,
             values: array(compiled.values.size),
             jacobian: array(compiled.jacobian.size),
-            taylor: compiled.taylor.memory(&constants),
+            taylor: compiled.taylor.memory(isa, &constants),
         }
     }
 
     fn values<S: Scalar>(&self, memory: &mut InterpreterMemory<S>, x: &[S], p: &[S], values: &mut [S]) {
         let compiled = &*self.compiled;
-        compiled.load(&mut memory.values, x, p);
-        memory.isa.run(Run { code: &compiled.values.code, array: &mut memory.values });
-        let outputs = &mut values[..compiled.program.equations];
-        for &(slot, register) in &compiled.values.outputs {
-            outputs[slot as usize] = memory.values[register as usize].clone();
-        }
+        let values = &mut values[..compiled.program.equations];
+        compiled.values.run(memory.isa, &mut memory.values, x, p, values, &mut []);
     }
 
     fn jacobian<S: Scalar>(
@@ -99,65 +94,12 @@ impl Evaluate for Interpreter {
     ) {
         let compiled = &*self.compiled;
         let rows = compiled.program.equations;
-        compiled.load(&mut memory.jacobian, x, p);
-        memory.isa.run(Run { code: &compiled.jacobian.code, array: &mut memory.jacobian });
         let (values, jacobian) = (&mut values[..rows], &mut jacobian[..rows * compiled.program.variables]);
-        for &slot in &compiled.jacobian.zeros {
-            jacobian[slot as usize - rows] = S::zero();
-        }
-        for &(slot, register) in &compiled.jacobian.outputs {
-            let value = memory.jacobian[register as usize].clone();
-            match (slot as usize).checked_sub(rows) {
-                None => values[slot as usize] = value,
-                Some(entry) => jacobian[entry] = value,
-            }
-        }
+        compiled.jacobian.run(memory.isa, &mut memory.jacobian, x, p, values, jacobian);
     }
 
     fn taylor<S: Scalar>(&self, memory: &mut InterpreterMemory<S>, order: usize, x: &[S], p: &[S], out: &mut [S]) {
         let compiled = &*self.compiled;
         compiled.taylor.run(memory.isa, &mut memory.taylor, order, x, p, out);
-    }
-}
-
-impl Compiled {
-    fn load<S: Scalar>(&self, array: &mut [S], x: &[S], p: &[S]) {
-        let Layout { constants, parameters, variables } = self.layout;
-        array[constants..][..parameters].clone_from_slice(&p[..parameters]);
-        array[constants + parameters..][..variables].clone_from_slice(&x[..variables]);
-    }
-}
-
-/// The loop over instructions.
-struct Run<'a, S> {
-    code: &'a [Code],
-    array: &'a mut [S],
-}
-
-impl<S: Scalar> Kernel for Run<'_, S> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        let array = self.array;
-        for &Code { op, target, a, b, c, d } in self.code {
-            let [a, b, c, d] = [a, b, c, d].map(|k| &array[k as usize]);
-            let result = match op {
-                Op::Add => S::add(a, b),
-                Op::Sub => S::sub(a, b),
-                Op::Neg => S::neg(a),
-                Op::Mul => S::mul(a, b),
-                Op::MulReal => S::mul_real(a, b),
-                Op::Sqr => S::sqr(a),
-                Op::Inv => S::inv(a),
-                Op::MulAdd => S::mul_add(a, b, c),
-                Op::MulSub => S::mul_sub(a, b, c),
-                Op::SubMul => S::sub_mul(a, b, c),
-                Op::MulRealAdd => S::mul_real_add(a, b, c),
-                Op::MulMulAdd => S::mul_mul_add(a, b, c, d),
-                Op::MulMulSub => S::mul_mul_sub(a, b, c, d),
-            };
-            array[target as usize] = result;
-        }
     }
 }

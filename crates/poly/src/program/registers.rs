@@ -1,29 +1,7 @@
 //! Register allocation: results share registers as soon as their last use is past.
 
-use super::instruction::{Op, Operand, Tape};
-
-/// An instruction over one array `[constants | parameters | unknowns | registers]`.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Code {
-    pub(crate) op: Op,
-    pub(crate) target: u32,
-    pub(crate) a: u32,
-    pub(crate) b: u32,
-    pub(crate) c: u32,
-    pub(crate) d: u32,
-}
-
-/// A tape ready to run.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct RegisterTape {
-    pub(crate) code: Vec<Code>,
-    /// Slot of the output and the register that holds it at the end.
-    pub(crate) outputs: Vec<(u32, u32)>,
-    /// Slots that are zero whatever the input.
-    pub(crate) zeros: Vec<u32>,
-    /// Length of the whole array.
-    pub(crate) size: usize,
-}
+use super::instruction::{Operand, Tape};
+use super::tape::{Code, RegisterTape};
 
 /// How inputs lie in the array.
 #[derive(Clone, Copy, Debug, Default)]
@@ -71,7 +49,7 @@ pub(crate) fn allocate(tape: &Tape, layout: Layout, slots: usize) -> RegisterTap
     let mut size = layout.inputs();
     let mut code = Vec::with_capacity(tape.instructions.len());
     for (k, instruction) in tape.instructions.iter().enumerate() {
-        let [a, b, c, d] = instruction.args.map(|operand| place(operand, layout, |j| register[j as usize]));
+        let places = instruction.args.map(|operand| place(operand, layout, |j| register[j as usize]));
         let operands = instruction.operands();
         for (n, operand) in operands.iter().enumerate() {
             if let Operand::Temporary(j) = *operand
@@ -87,9 +65,10 @@ pub(crate) fn allocate(tape: &Tape, layout: Layout, slots: usize) -> RegisterTap
             (size - 1) as u32
         });
         register[k] = target;
-        code.push(Code { op: instruction.op, target, a, b, c, d });
+        code.push(Code { op: instruction.op, target, operands: places });
     }
     let outputs =
         tape.outputs.iter().map(|&(slot, operand)| (slot, place(operand, layout, |j| register[j as usize]))).collect();
-    RegisterTape { code, outputs, zeros: tape.zeros(slots), size }
+    let inputs = [layout.constants, layout.parameters, layout.variables];
+    RegisterTape { code: code.into(), outputs, zeros: tape.zeros(slots).into(), inputs, size }
 }

@@ -138,49 +138,41 @@ fn reciprocal<S: Scalar>(r: &Series<S>, a: &Series<S>, k: usize) -> S {
     S::neg(&S::mul(&r[0], &sum))
 }
 
-/// An operation of [`Op`] on series; `TO` is `FROM` or the next order.
+// In the two kinds of steps the operation is chosen once, outside the loop over coefficients, and
+// results are stored after all of them are known: operands need not be loaded twice. No range: the
+// order must be known when the code is made, so that the match on it disappears.
+macro_rules! each {
+    ($m:ident[$t:ident]; $k:ident => $value:expr) => {{
+        if FROM < TO {
+            let $k = FROM;
+            let low = $value;
+            let $k = TO;
+            let high = $value;
+            $m[$t][FROM] = low;
+            $m[$t][TO] = high;
+        } else {
+            let $k = TO;
+            $m[$t][TO] = $value;
+        }
+    }};
+}
+
+/// An operation of [`Op`] on series that multiplies no two of them; `TO` is `FROM` or the next
+/// order. Products are left, and said so by `false`.
 #[inline(always)]
-pub(crate) fn step<S: Scalar, const FROM: usize, const TO: usize, const KIND: u8>(
+pub(crate) fn step_sum<S: Scalar, const FROM: usize, const TO: usize>(
     m: &mut [Series<S>],
     op: Op,
     t: usize,
     operands: [usize; 4],
-) {
-    let [a, b, c, d] = operands.map(|k| &m[k]);
-    // The operation is chosen once, outside the loop over coefficients, and results are stored
-    // after all of them are known: operands need not be loaded twice. No range: the order must be
-    // known when the code is made, so that the match on it disappears.
-    macro_rules! each {
-        ($k:ident => $value:expr) => {{
-            if FROM < TO {
-                let $k = FROM;
-                let low = $value;
-                let $k = TO;
-                let high = $value;
-                m[t][FROM] = low;
-                m[t][TO] = high;
-            } else {
-                let $k = TO;
-                m[t][TO] = $value;
-            }
-        }};
-    }
-    // `$inner` belongs to order 2; at order 3 it comes back from where order 2 has left it.
-    macro_rules! keeping {
-        ($inner:ident = $first:expr; $k:ident => $value:expr) => {{
-            let $inner = if TO == 2 { $first } else { m[t][3].clone() };
-            each!($k => $value);
-            if TO == 2 {
-                m[t][3] = $inner;
-            }
-        }};
-    }
+) -> bool {
+    let [a, b, c, _] = operands.map(|k| &m[k]);
     match op {
-        Op::Add => each!(k => S::add(&a[k], &b[k])),
-        Op::Sub => each!(k => S::sub(&a[k], &b[k])),
-        Op::Neg => each!(k => S::neg(&a[k])),
-        Op::MulReal => each!(k => S::mul_real(&a[k], &b[0])),
-        Op::MulRealAdd => each!(k => S::mul_real_add(&a[k], &b[0], &c[k])),
+        Op::Add => each!(m[t]; k => S::add(&a[k], &b[k])),
+        Op::Sub => each!(m[t]; k => S::sub(&a[k], &b[k])),
+        Op::Neg => each!(m[t]; k => S::neg(&a[k])),
+        Op::MulReal => each!(m[t]; k => S::mul_real(&a[k], &b[0])),
+        Op::MulRealAdd => each!(m[t]; k => S::mul_real_add(&a[k], &b[0], &c[k])),
         Op::Inv => {
             let a = a.clone();
             if FROM < TO {
@@ -188,6 +180,32 @@ pub(crate) fn step<S: Scalar, const FROM: usize, const TO: usize, const KIND: u8
             }
             m[t][TO] = reciprocal(&m[t], &a, TO);
         }
+        _ => return false,
+    }
+    true
+}
+
+/// A product of [`Op`] of series; `TO` is `FROM` or the next order. Everything else is done by
+/// [`step_sum`].
+#[inline(always)]
+pub(crate) fn step_product<S: Scalar, const FROM: usize, const TO: usize, const KIND: u8>(
+    m: &mut [Series<S>],
+    op: Op,
+    t: usize,
+    operands: [usize; 4],
+) {
+    let [a, b, c, d] = operands.map(|k| &m[k]);
+    // `$inner` belongs to order 2; at order 3 it comes back from where order 2 has left it.
+    macro_rules! keeping {
+        ($inner:ident = $first:expr; $k:ident => $value:expr) => {{
+            let $inner = if TO == 2 { $first } else { m[t][3].clone() };
+            each!(m[t]; $k => $value);
+            if TO == 2 {
+                m[t][3] = $inner;
+            }
+        }};
+    }
+    match op {
         Op::Mul => keeping!(inner = S::mul(&a[1], &b[1]); k => product::<S, KIND>(a, b, &inner, k, k == TO)),
         Op::Sqr => keeping!(inner = S::sqr(&a[1]); k => square::<S, KIND>(a, &inner, k, k == TO)),
         Op::MulAdd => keeping!(
@@ -210,5 +228,6 @@ pub(crate) fn step<S: Scalar, const FROM: usize, const TO: usize, const KIND: u8
             inner = S::mul_mul_sub(&a[1], &b[1], &c[1], &d[1]);
             k => products::<S, KIND, true>([a, b, c, d], &inner, k, k == TO)
         ),
+        Op::Add | Op::Sub | Op::Neg | Op::MulReal | Op::MulRealAdd | Op::Inv => {}
     }
 }

@@ -7,9 +7,14 @@
 
 use super::instruction::{Op, Operand, Tape};
 use super::registers::{Layout, place};
-use super::series::{BY_LINEAR, BY_UNKNOWN, GENERAL, LINEAR_BY_UNKNOWN, LINEARS, Series, UNKNOWNS, WIDTH, step};
-use crate::scalar::Scalar;
+use super::series::{
+    BY_LINEAR, BY_UNKNOWN, GENERAL, LINEAR_BY_UNKNOWN, LINEARS, Series, UNKNOWNS, WIDTH, step_product, step_sum,
+};
+use crate::lanes::Lanes8;
+use crate::scalar::{Lane, Scalar, narrowest};
 use crate::simd::{Isa, Kernel};
+use num_complex::Complex64;
+use std::any::Any;
 use std::borrow::Cow;
 
 /// An instruction over the array of series `[constants | parameters | unknowns | results]`.
@@ -48,6 +53,8 @@ pub struct TaylorTape {
 #[derive(Clone, Debug)]
 pub struct TaylorMemory<S> {
     series: Vec<Series<S>>,
+    /// Those of one lane, where lanes are run one by one.
+    lane: Vec<Series<Complex64>>,
     /// Orders at which the parameters' coefficients are not known to be zero.
     bent: [bool; WIDTH],
 }
@@ -99,13 +106,15 @@ impl TaylorTape {
     }
 
     /// Resident coefficients, with those of the constants in place.
-    pub(crate) fn memory<S: Scalar>(&self, constants: &[S]) -> TaylorMemory<S> {
+    pub(crate) fn memory<S: Scalar>(&self, isa: Isa, constants: &[S]) -> TaylorMemory<S> {
         let zero = || [S::zero(), S::zero(), S::zero(), S::zero()];
         let mut series: Vec<Series<S>> = (0..self.size).map(|_| zero()).collect();
         for (series, constant) in series.iter_mut().zip(constants) {
             series[0] = constant.clone();
         }
-        TaylorMemory { series, bent: [false; WIDTH] }
+        let by_lane = S::STRAIGHT.is_some() && !S::is_straight(isa);
+        let lane = if by_lane { vec![[Complex64::zero(); WIDTH]; self.size] } else { Vec::new() };
+        TaylorMemory { series, lane, bent: [false; WIDTH] }
     }
 
     /// One call of [`Evaluate::taylor`](crate::Evaluate::taylor).
@@ -120,7 +129,7 @@ impl TaylorTape {
     ) {
         assert!((1..WIDTH).contains(&order), "Taylor coefficients are of order 1, 2 or 3, not {order}");
         let [constants, parameters, variables] = self.inputs;
-        let TaylorMemory { series, bent } = memory;
+        let TaylorMemory { series, lane, bent } = memory;
         let straight = order > 1 && p.len() < (order + 1) * parameters;
         // Lower coefficients of the parameters are in place since the calls before.
         let given = &mut series[constants..][..parameters];
@@ -141,12 +150,18 @@ impl TaylorTape {
             series[order - 1] = x.clone();
             series[order] = S::zero();
         }
-        match (order, straight) {
-            (1, _) => isa.run(Order1 { tape: self, series }),
-            (2, false) => isa.run(Later::<2, false, S> { tape: self, series }),
-            (2, true) => isa.run(Later::<2, true, S> { tape: self, series }),
-            (_, false) => isa.run(Later::<3, false, S> { tape: self, series }),
-            (_, true) => isa.run(Later::<3, true, S> { tape: self, series }),
+        let pass = Pass { tape: self, order, straight };
+        if const { S::TAYLOR_COMPILED } {
+            let series: &mut dyn Any = series;
+            if let Some(series) = series.downcast_mut() {
+                pass.run_eight(isa, series, lane);
+            } else if let Some(series) = series.downcast_mut() {
+                pass.run_one(series);
+            } else {
+                unreachable!("numbers of this crate alone have TAYLOR_COMPILED");
+            }
+        } else {
+            pass.run::<S>(isa, series);
         }
         for (value, &place) in out[..self.outputs.len()].iter_mut().zip(&*self.outputs) {
             *value = series[place as usize][order].clone();
@@ -215,6 +230,54 @@ fn sort_factors(op: Op, args: [Operand; 4], factor: impl Fn(Operand) -> Factor) 
     best.map_or((args, GENERAL), |(rank, args)| (args, BEST_FIRST[rank]))
 }
 
+/// The instructions of a tape for one order, 1, 2 or 3.
+struct Pass<'a> {
+    tape: &'a TaylorTape,
+    order: usize,
+    /// Whether the parameters' coefficients of that order are zero.
+    straight: bool,
+}
+
+impl Pass<'_> {
+    #[inline(always)]
+    fn run<S: Scalar>(self, isa: Isa, series: &mut [Series<S>]) {
+        let Pass { tape, order, straight } = self;
+        match (order, straight) {
+            (1, _) => isa.run(Order1 { tape, series }),
+            (2, false) => isa.run(Later::<2, false, S> { tape, series }),
+            (2, true) => isa.run(Later::<2, true, S> { tape, series }),
+            (_, false) => isa.run(Later::<3, false, S> { tape, series }),
+            (_, true) => isa.run(Later::<3, true, S> { tape, series }),
+        }
+    }
+
+    /// The pass for one path, compiled here.
+    #[inline(never)]
+    fn run_one(self, series: &mut Vec<Series<Complex64>>) {
+        self.run(Isa::Portable, series);
+    }
+
+    /// The pass for eight paths, compiled here; one lane after the other, to the same bits, where
+    /// there is no code for lanes.
+    #[inline(never)]
+    fn run_eight(self, isa: Isa, series: &mut Vec<Series<Lanes8>>, lane: &mut Vec<Series<Complex64>>) {
+        if Lanes8::is_straight(isa) {
+            return self.run(isa, series);
+        }
+        for l in 0..Lanes8::LANES {
+            for (to, from) in lane.iter_mut().zip(&*series) {
+                *to = [from[0].get(l), from[1].get(l), from[2].get(l), from[3].get(l)];
+            }
+            Pass { ..self }.run_one(lane);
+            for (to, from) in series.iter_mut().zip(&*lane) {
+                for (to, &from) in to.iter_mut().zip(from) {
+                    to.set(l, from);
+                }
+            }
+        }
+    }
+}
+
 struct Order1<'a, S> {
     tape: &'a TaylorTape,
     series: &'a mut [Series<S>],
@@ -222,6 +285,8 @@ struct Order1<'a, S> {
 
 impl<S: Scalar> Kernel for Order1<'_, S> {
     type Output = ();
+    const WIDEST: Isa = S::WIDEST;
+    const NARROWEST: Isa = narrowest::<S>();
 
     #[inline(always)]
     fn run(self) {
@@ -229,8 +294,11 @@ impl<S: Scalar> Kernel for Order1<'_, S> {
         sweep::<S, 0, 1, false, true>(series, &tape.parameters_only);
         for code in &*tape.variables_only {
             let operands = code.operands.map(|k| k as usize);
-            step::<S, 0, 0, GENERAL>(series, code.op, code.target as usize, operands);
-            series[code.target as usize][1] = S::zero();
+            let t = code.target as usize;
+            if !step_sum::<S, 0, 0>(series, code.op, t, operands) {
+                step_product::<S, 0, 0, GENERAL>(series, code.op, t, operands);
+            }
+            series[t][1] = S::zero();
         }
         sweep::<S, 0, 1, false, false>(series, &tape.mixed);
     }
@@ -244,6 +312,8 @@ struct Later<'a, const K: usize, const STRAIGHT: bool, S> {
 
 impl<const K: usize, const STRAIGHT: bool, S: Scalar> Kernel for Later<'_, K, STRAIGHT, S> {
     type Output = ();
+    const WIDEST: Isa = S::WIDEST;
+    const NARROWEST: Isa = narrowest::<S>();
 
     #[inline(always)]
     fn run(self) {
@@ -271,16 +341,21 @@ fn sweep<S: Scalar, const FROM: usize, const TO: usize, const STRAIGHT: bool, co
     codes: &[TaylorCode],
 ) {
     for code in codes {
-        let (t, operands) = (code.target as usize, code.operands.map(|k| k as usize));
+        let (op, t, operands) = (code.op, code.target as usize, code.operands.map(|k| k as usize));
+        if step_sum::<S, FROM, TO>(series, op, t, operands) {
+            continue;
+        }
         match code.kind {
-            BY_LINEAR if STRAIGHT => step::<S, FROM, TO, BY_LINEAR>(series, code.op, t, operands),
+            BY_LINEAR if STRAIGHT => step_product::<S, FROM, TO, BY_LINEAR>(series, op, t, operands),
             LINEAR_BY_UNKNOWN if STRAIGHT && !FREE => {
-                step::<S, FROM, TO, LINEAR_BY_UNKNOWN>(series, code.op, t, operands);
+                step_product::<S, FROM, TO, LINEAR_BY_UNKNOWN>(series, op, t, operands);
             }
-            LINEARS if STRAIGHT => step::<S, FROM, TO, LINEARS>(series, code.op, t, operands),
-            BY_UNKNOWN | LINEAR_BY_UNKNOWN if !FREE => step::<S, FROM, TO, BY_UNKNOWN>(series, code.op, t, operands),
-            UNKNOWNS if !FREE => step::<S, FROM, TO, UNKNOWNS>(series, code.op, t, operands),
-            _ => step::<S, FROM, TO, GENERAL>(series, code.op, t, operands),
+            LINEARS if STRAIGHT => step_product::<S, FROM, TO, LINEARS>(series, op, t, operands),
+            BY_UNKNOWN | LINEAR_BY_UNKNOWN if !FREE => {
+                step_product::<S, FROM, TO, BY_UNKNOWN>(series, op, t, operands);
+            }
+            UNKNOWNS if !FREE => step_product::<S, FROM, TO, UNKNOWNS>(series, op, t, operands),
+            _ => step_product::<S, FROM, TO, GENERAL>(series, op, t, operands),
         }
     }
 }

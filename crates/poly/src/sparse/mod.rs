@@ -111,14 +111,15 @@ impl Evaluate for SparseSystem {
             prefixes: zeros(plan.nodes.len()),
             sums: zeros(plan.nodes.len()),
             slopes: zeros(plan.powers.len()),
-            taylor: plan.taylor.memory(&[]),
+            taylor: plan.taylor.memory(isa, &[]),
         }
     }
 
     fn values<S: Scalar>(&self, memory: &mut SparseMemory<S>, x: &[S], p: &[S], values: &mut [S]) {
         let plan = &*self.plan;
         let (x, p, values) = (&x[..plan.variables], &p[..plan.terms], &mut values[..plan.rows.len()]);
-        memory.isa.run(Values { plan, memory, x, p, values });
+        let isa = memory.isa;
+        isa.run(Values { plan, memory, x, p, values });
     }
 
     fn jacobian<S: Scalar>(
@@ -133,7 +134,8 @@ impl Evaluate for SparseSystem {
         let rows = plan.rows.len();
         let (x, p, values) = (&x[..plan.variables], &p[..plan.terms], &mut values[..rows]);
         let jacobian = &mut jacobian[..rows * plan.variables];
-        memory.isa.run(Jacobian { plan, memory, x, p, values, jacobian });
+        let isa = memory.isa;
+        isa.run(Jacobian { plan, memory, x, p, values, jacobian });
     }
 
     fn taylor<S: Scalar>(&self, memory: &mut SparseMemory<S>, order: usize, x: &[S], p: &[S], out: &mut [S]) {
@@ -196,6 +198,7 @@ struct Values<'a, S> {
 
 impl<S: Scalar> Kernel for Values<'_, S> {
     type Output = ();
+    const WIDEST: Isa = S::WIDEST;
 
     #[inline(always)]
     fn run(self) {
@@ -221,6 +224,7 @@ struct Jacobian<'a, S> {
 
 impl<S: Scalar> Kernel for Jacobian<'_, S> {
     type Output = ();
+    const WIDEST: Isa = S::WIDEST;
 
     #[inline(always)]
     fn run(self) {

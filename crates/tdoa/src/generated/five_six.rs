@@ -7,7 +7,9 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 #![allow(unreachable_pub, unused_imports, clippy::all)]
 use hc::poly::evaluate::Evaluate;
-use hc::poly::program::generated::{Memory, Op, TaylorTape, code};
+use hc::poly::program::generated::{
+    Memory, Op, RegisterTape, Tables, TaylorTape, code, instruction, narrowest,
+};
 use hc::poly::scalar::Scalar;
 use hc::poly::simd::{Isa, Kernel};
 use std::borrow::Cow;
@@ -16,110 +18,387 @@ use std::borrow::Cow;
 pub struct System;
 /// Real part (high, low) and imaginary part (high, low).
 static CONSTANTS: [[f64; 4]; 0] = [];
-/// Instructions for Taylor coefficients.
-static TAYLOR: TaylorTape = TaylorTape {
-    parameters_only: Cow::Borrowed(
-        &[
-            code(Op::Sqr, 5, 30, [0, 0, 0, 0]),
-            code(Op::Sqr, 5, 31, [6, 6, 6, 6]),
-            code(Op::Sqr, 5, 33, [12, 12, 12, 12]),
-            code(Op::Sqr, 5, 37, [18, 18, 18, 18]),
-            code(Op::Sqr, 5, 45, [1, 1, 1, 1]),
-            code(Op::Sqr, 5, 46, [7, 7, 7, 7]),
-            code(Op::Sqr, 5, 48, [13, 13, 13, 13]),
-            code(Op::Sqr, 5, 52, [19, 19, 19, 19]),
-            code(Op::Sqr, 5, 60, [2, 2, 2, 2]),
-            code(Op::Sqr, 5, 61, [8, 8, 8, 8]),
-            code(Op::Sqr, 5, 63, [14, 14, 14, 14]),
-            code(Op::Sqr, 5, 67, [20, 20, 20, 20]),
-            code(Op::Sqr, 5, 75, [3, 3, 3, 3]),
-            code(Op::Sqr, 5, 76, [9, 9, 9, 9]),
-            code(Op::Sqr, 5, 78, [15, 15, 15, 15]),
-            code(Op::Sqr, 5, 82, [21, 21, 21, 21]),
-            code(Op::Sqr, 5, 90, [4, 4, 4, 4]),
-            code(Op::Sqr, 5, 91, [10, 10, 10, 10]),
-            code(Op::Sqr, 5, 93, [16, 16, 16, 16]),
-            code(Op::Sqr, 5, 97, [22, 22, 22, 22]),
-            code(Op::Sqr, 5, 105, [5, 5, 5, 5]),
-            code(Op::Sqr, 5, 106, [11, 11, 11, 11]),
-            code(Op::Sqr, 5, 108, [17, 17, 17, 17]),
-            code(Op::Sqr, 5, 112, [23, 23, 23, 23]),
-        ],
-    ),
-    variables_only: Cow::Borrowed(&[]),
-    mixed: Cow::Borrowed(
-        &[
-            code(Op::MulMulAdd, 1, 32, [30, 24, 31, 25]),
-            code(Op::Sub, 0, 34, [32, 33, 32, 32]),
-            code(Op::Add, 0, 35, [26, 34, 26, 26]),
-            code(Op::MulMulAdd, 1, 36, [30, 27, 31, 28]),
-            code(Op::Sub, 0, 38, [36, 37, 36, 36]),
-            code(Op::Add, 0, 39, [29, 38, 29, 29]),
-            code(Op::MulMulAdd, 4, 40, [0, 27, 6, 28]),
-            code(Op::Sub, 0, 41, [40, 18, 40, 40]),
-            code(Op::MulMulAdd, 4, 42, [0, 24, 6, 25]),
-            code(Op::Sub, 0, 43, [42, 12, 42, 42]),
-            code(Op::MulMulSub, 0, 44, [35, 41, 39, 43]),
-            code(Op::MulMulAdd, 1, 47, [45, 24, 46, 25]),
-            code(Op::Sub, 0, 49, [47, 48, 47, 47]),
-            code(Op::Add, 0, 50, [26, 49, 26, 26]),
-            code(Op::MulMulAdd, 1, 51, [45, 27, 46, 28]),
-            code(Op::Sub, 0, 53, [51, 52, 51, 51]),
-            code(Op::Add, 0, 54, [29, 53, 29, 29]),
-            code(Op::MulMulAdd, 4, 55, [1, 27, 7, 28]),
-            code(Op::Sub, 0, 56, [55, 19, 55, 55]),
-            code(Op::MulMulAdd, 4, 57, [1, 24, 7, 25]),
-            code(Op::Sub, 0, 58, [57, 13, 57, 57]),
-            code(Op::MulMulSub, 0, 59, [50, 56, 54, 58]),
-            code(Op::MulMulAdd, 1, 62, [60, 24, 61, 25]),
-            code(Op::Sub, 0, 64, [62, 63, 62, 62]),
-            code(Op::Add, 0, 65, [26, 64, 26, 26]),
-            code(Op::MulMulAdd, 1, 66, [60, 27, 61, 28]),
-            code(Op::Sub, 0, 68, [66, 67, 66, 66]),
-            code(Op::Add, 0, 69, [29, 68, 29, 29]),
-            code(Op::MulMulAdd, 4, 70, [2, 27, 8, 28]),
-            code(Op::Sub, 0, 71, [70, 20, 70, 70]),
-            code(Op::MulMulAdd, 4, 72, [2, 24, 8, 25]),
-            code(Op::Sub, 0, 73, [72, 14, 72, 72]),
-            code(Op::MulMulSub, 0, 74, [65, 71, 69, 73]),
-            code(Op::MulMulAdd, 1, 77, [75, 24, 76, 25]),
-            code(Op::Sub, 0, 79, [77, 78, 77, 77]),
-            code(Op::Add, 0, 80, [26, 79, 26, 26]),
-            code(Op::MulMulAdd, 1, 81, [75, 27, 76, 28]),
-            code(Op::Sub, 0, 83, [81, 82, 81, 81]),
-            code(Op::Add, 0, 84, [29, 83, 29, 29]),
-            code(Op::MulMulAdd, 4, 85, [3, 27, 9, 28]),
-            code(Op::Sub, 0, 86, [85, 21, 85, 85]),
-            code(Op::MulMulAdd, 4, 87, [3, 24, 9, 25]),
-            code(Op::Sub, 0, 88, [87, 15, 87, 87]),
-            code(Op::MulMulSub, 0, 89, [80, 86, 84, 88]),
-            code(Op::MulMulAdd, 1, 92, [90, 24, 91, 25]),
-            code(Op::Sub, 0, 94, [92, 93, 92, 92]),
-            code(Op::Add, 0, 95, [26, 94, 26, 26]),
-            code(Op::MulMulAdd, 1, 96, [90, 27, 91, 28]),
-            code(Op::Sub, 0, 98, [96, 97, 96, 96]),
-            code(Op::Add, 0, 99, [29, 98, 29, 29]),
-            code(Op::MulMulAdd, 4, 100, [4, 27, 10, 28]),
-            code(Op::Sub, 0, 101, [100, 22, 100, 100]),
-            code(Op::MulMulAdd, 4, 102, [4, 24, 10, 25]),
-            code(Op::Sub, 0, 103, [102, 16, 102, 102]),
-            code(Op::MulMulSub, 0, 104, [95, 101, 99, 103]),
-            code(Op::MulMulAdd, 1, 107, [105, 24, 106, 25]),
-            code(Op::Sub, 0, 109, [107, 108, 107, 107]),
-            code(Op::Add, 0, 110, [26, 109, 26, 26]),
-            code(Op::MulMulAdd, 1, 111, [105, 27, 106, 28]),
-            code(Op::Sub, 0, 113, [111, 112, 111, 111]),
-            code(Op::Add, 0, 114, [29, 113, 29, 29]),
-            code(Op::MulMulAdd, 4, 115, [5, 27, 11, 28]),
-            code(Op::Sub, 0, 116, [115, 23, 115, 115]),
-            code(Op::MulMulAdd, 4, 117, [5, 24, 11, 25]),
-            code(Op::Sub, 0, 118, [117, 17, 117, 117]),
-            code(Op::MulMulSub, 0, 119, [110, 116, 114, 118]),
-        ],
-    ),
-    outputs: Cow::Borrowed(&[44, 59, 74, 89, 104, 119]),
-    inputs: [0, 24, 6],
-    size: 120,
+/// The same instructions as tables, for numbers whose operations are long.
+static TABLES: Tables = Tables {
+    values: RegisterTape {
+        code: Cow::Borrowed(
+            &[
+                instruction(Op::Sqr, 30, [0, 0, 0, 0]),
+                instruction(Op::Sqr, 31, [6, 6, 6, 6]),
+                instruction(Op::MulMulAdd, 32, [24, 30, 25, 31]),
+                instruction(Op::Sqr, 33, [12, 12, 12, 12]),
+                instruction(Op::Sub, 33, [32, 33, 32, 32]),
+                instruction(Op::Add, 33, [26, 33, 26, 26]),
+                instruction(Op::MulMulAdd, 31, [27, 30, 28, 31]),
+                instruction(Op::Sqr, 30, [18, 18, 18, 18]),
+                instruction(Op::Sub, 30, [31, 30, 31, 31]),
+                instruction(Op::Add, 30, [29, 30, 29, 29]),
+                instruction(Op::MulMulAdd, 31, [0, 27, 6, 28]),
+                instruction(Op::Sub, 31, [31, 18, 31, 31]),
+                instruction(Op::MulMulAdd, 32, [0, 24, 6, 25]),
+                instruction(Op::Sub, 32, [32, 12, 32, 32]),
+                instruction(Op::MulMulSub, 32, [33, 31, 30, 32]),
+                instruction(Op::Sqr, 30, [1, 1, 1, 1]),
+                instruction(Op::Sqr, 31, [7, 7, 7, 7]),
+                instruction(Op::MulMulAdd, 33, [24, 30, 25, 31]),
+                instruction(Op::Sqr, 34, [13, 13, 13, 13]),
+                instruction(Op::Sub, 34, [33, 34, 33, 33]),
+                instruction(Op::Add, 34, [26, 34, 26, 26]),
+                instruction(Op::MulMulAdd, 31, [27, 30, 28, 31]),
+                instruction(Op::Sqr, 30, [19, 19, 19, 19]),
+                instruction(Op::Sub, 30, [31, 30, 31, 31]),
+                instruction(Op::Add, 30, [29, 30, 29, 29]),
+                instruction(Op::MulMulAdd, 31, [1, 27, 7, 28]),
+                instruction(Op::Sub, 31, [31, 19, 31, 31]),
+                instruction(Op::MulMulAdd, 33, [1, 24, 7, 25]),
+                instruction(Op::Sub, 33, [33, 13, 33, 33]),
+                instruction(Op::MulMulSub, 33, [34, 31, 30, 33]),
+                instruction(Op::Sqr, 30, [2, 2, 2, 2]),
+                instruction(Op::Sqr, 31, [8, 8, 8, 8]),
+                instruction(Op::MulMulAdd, 34, [24, 30, 25, 31]),
+                instruction(Op::Sqr, 35, [14, 14, 14, 14]),
+                instruction(Op::Sub, 35, [34, 35, 34, 34]),
+                instruction(Op::Add, 35, [26, 35, 26, 26]),
+                instruction(Op::MulMulAdd, 31, [27, 30, 28, 31]),
+                instruction(Op::Sqr, 30, [20, 20, 20, 20]),
+                instruction(Op::Sub, 30, [31, 30, 31, 31]),
+                instruction(Op::Add, 30, [29, 30, 29, 29]),
+                instruction(Op::MulMulAdd, 31, [2, 27, 8, 28]),
+                instruction(Op::Sub, 31, [31, 20, 31, 31]),
+                instruction(Op::MulMulAdd, 34, [2, 24, 8, 25]),
+                instruction(Op::Sub, 34, [34, 14, 34, 34]),
+                instruction(Op::MulMulSub, 34, [35, 31, 30, 34]),
+                instruction(Op::Sqr, 30, [3, 3, 3, 3]),
+                instruction(Op::Sqr, 31, [9, 9, 9, 9]),
+                instruction(Op::MulMulAdd, 35, [24, 30, 25, 31]),
+                instruction(Op::Sqr, 36, [15, 15, 15, 15]),
+                instruction(Op::Sub, 36, [35, 36, 35, 35]),
+                instruction(Op::Add, 36, [26, 36, 26, 26]),
+                instruction(Op::MulMulAdd, 31, [27, 30, 28, 31]),
+                instruction(Op::Sqr, 30, [21, 21, 21, 21]),
+                instruction(Op::Sub, 30, [31, 30, 31, 31]),
+                instruction(Op::Add, 30, [29, 30, 29, 29]),
+                instruction(Op::MulMulAdd, 31, [3, 27, 9, 28]),
+                instruction(Op::Sub, 31, [31, 21, 31, 31]),
+                instruction(Op::MulMulAdd, 35, [3, 24, 9, 25]),
+                instruction(Op::Sub, 35, [35, 15, 35, 35]),
+                instruction(Op::MulMulSub, 35, [36, 31, 30, 35]),
+                instruction(Op::Sqr, 30, [4, 4, 4, 4]),
+                instruction(Op::Sqr, 31, [10, 10, 10, 10]),
+                instruction(Op::MulMulAdd, 36, [24, 30, 25, 31]),
+                instruction(Op::Sqr, 37, [16, 16, 16, 16]),
+                instruction(Op::Sub, 37, [36, 37, 36, 36]),
+                instruction(Op::Add, 37, [26, 37, 26, 26]),
+                instruction(Op::MulMulAdd, 31, [27, 30, 28, 31]),
+                instruction(Op::Sqr, 30, [22, 22, 22, 22]),
+                instruction(Op::Sub, 30, [31, 30, 31, 31]),
+                instruction(Op::Add, 30, [29, 30, 29, 29]),
+                instruction(Op::MulMulAdd, 31, [4, 27, 10, 28]),
+                instruction(Op::Sub, 31, [31, 22, 31, 31]),
+                instruction(Op::MulMulAdd, 36, [4, 24, 10, 25]),
+                instruction(Op::Sub, 36, [36, 16, 36, 36]),
+                instruction(Op::MulMulSub, 36, [37, 31, 30, 36]),
+                instruction(Op::Sqr, 30, [5, 5, 5, 5]),
+                instruction(Op::Sqr, 31, [11, 11, 11, 11]),
+                instruction(Op::MulMulAdd, 37, [24, 30, 25, 31]),
+                instruction(Op::Sqr, 38, [17, 17, 17, 17]),
+                instruction(Op::Sub, 38, [37, 38, 37, 37]),
+                instruction(Op::Add, 38, [26, 38, 26, 26]),
+                instruction(Op::MulMulAdd, 31, [27, 30, 28, 31]),
+                instruction(Op::Sqr, 30, [23, 23, 23, 23]),
+                instruction(Op::Sub, 30, [31, 30, 31, 31]),
+                instruction(Op::Add, 30, [29, 30, 29, 29]),
+                instruction(Op::MulMulAdd, 31, [5, 27, 11, 28]),
+                instruction(Op::Sub, 31, [31, 23, 31, 31]),
+                instruction(Op::MulMulAdd, 37, [5, 24, 11, 25]),
+                instruction(Op::Sub, 37, [37, 17, 37, 37]),
+                instruction(Op::MulMulSub, 37, [38, 31, 30, 37]),
+            ],
+        ),
+        outputs: Cow::Borrowed(&[(0, 32), (1, 33), (2, 34), (3, 35), (4, 36), (5, 37)]),
+        zeros: Cow::Borrowed(&[]),
+        inputs: [0, 24, 6],
+        size: 39,
+    },
+    jacobian: RegisterTape {
+        code: Cow::Borrowed(
+            &[
+                instruction(Op::Sqr, 30, [0, 0, 0, 0]),
+                instruction(Op::Sqr, 31, [6, 6, 6, 6]),
+                instruction(Op::MulMulAdd, 32, [24, 30, 25, 31]),
+                instruction(Op::Sqr, 33, [12, 12, 12, 12]),
+                instruction(Op::Sub, 33, [32, 33, 32, 32]),
+                instruction(Op::Add, 33, [26, 33, 26, 26]),
+                instruction(Op::MulMulAdd, 32, [27, 30, 28, 31]),
+                instruction(Op::Sqr, 34, [18, 18, 18, 18]),
+                instruction(Op::Sub, 34, [32, 34, 32, 32]),
+                instruction(Op::Add, 34, [29, 34, 29, 29]),
+                instruction(Op::MulMulAdd, 32, [0, 27, 6, 28]),
+                instruction(Op::Sub, 32, [32, 18, 32, 32]),
+                instruction(Op::MulMulAdd, 35, [0, 24, 6, 25]),
+                instruction(Op::Sub, 36, [35, 12, 35, 35]),
+                instruction(Op::MulMulSub, 36, [33, 32, 34, 36]),
+                instruction(Op::MulMulSub, 37, [30, 32, 0, 34]),
+                instruction(Op::MulMulSub, 34, [31, 32, 6, 34]),
+                instruction(Op::Sub, 35, [12, 35, 12, 12]),
+                instruction(Op::MulMulAdd, 30, [30, 35, 0, 33]),
+                instruction(Op::MulMulAdd, 33, [31, 35, 6, 33]),
+                instruction(Op::Sqr, 31, [1, 1, 1, 1]),
+                instruction(Op::Sqr, 38, [7, 7, 7, 7]),
+                instruction(Op::MulMulAdd, 39, [24, 31, 25, 38]),
+                instruction(Op::Sqr, 40, [13, 13, 13, 13]),
+                instruction(Op::Sub, 40, [39, 40, 39, 39]),
+                instruction(Op::Add, 40, [26, 40, 26, 26]),
+                instruction(Op::MulMulAdd, 39, [27, 31, 28, 38]),
+                instruction(Op::Sqr, 41, [19, 19, 19, 19]),
+                instruction(Op::Sub, 41, [39, 41, 39, 39]),
+                instruction(Op::Add, 41, [29, 41, 29, 29]),
+                instruction(Op::MulMulAdd, 39, [1, 27, 7, 28]),
+                instruction(Op::Sub, 39, [39, 19, 39, 39]),
+                instruction(Op::MulMulAdd, 42, [1, 24, 7, 25]),
+                instruction(Op::Sub, 43, [42, 13, 42, 42]),
+                instruction(Op::MulMulSub, 43, [40, 39, 41, 43]),
+                instruction(Op::MulMulSub, 44, [31, 39, 1, 41]),
+                instruction(Op::MulMulSub, 41, [38, 39, 7, 41]),
+                instruction(Op::Sub, 42, [13, 42, 13, 13]),
+                instruction(Op::MulMulAdd, 31, [31, 42, 1, 40]),
+                instruction(Op::MulMulAdd, 40, [38, 42, 7, 40]),
+                instruction(Op::Sqr, 38, [2, 2, 2, 2]),
+                instruction(Op::Sqr, 45, [8, 8, 8, 8]),
+                instruction(Op::MulMulAdd, 46, [24, 38, 25, 45]),
+                instruction(Op::Sqr, 47, [14, 14, 14, 14]),
+                instruction(Op::Sub, 47, [46, 47, 46, 46]),
+                instruction(Op::Add, 47, [26, 47, 26, 26]),
+                instruction(Op::MulMulAdd, 46, [27, 38, 28, 45]),
+                instruction(Op::Sqr, 48, [20, 20, 20, 20]),
+                instruction(Op::Sub, 48, [46, 48, 46, 46]),
+                instruction(Op::Add, 48, [29, 48, 29, 29]),
+                instruction(Op::MulMulAdd, 46, [2, 27, 8, 28]),
+                instruction(Op::Sub, 46, [46, 20, 46, 46]),
+                instruction(Op::MulMulAdd, 49, [2, 24, 8, 25]),
+                instruction(Op::Sub, 50, [49, 14, 49, 49]),
+                instruction(Op::MulMulSub, 50, [47, 46, 48, 50]),
+                instruction(Op::MulMulSub, 51, [38, 46, 2, 48]),
+                instruction(Op::MulMulSub, 48, [45, 46, 8, 48]),
+                instruction(Op::Sub, 49, [14, 49, 14, 14]),
+                instruction(Op::MulMulAdd, 38, [38, 49, 2, 47]),
+                instruction(Op::MulMulAdd, 47, [45, 49, 8, 47]),
+                instruction(Op::Sqr, 45, [3, 3, 3, 3]),
+                instruction(Op::Sqr, 52, [9, 9, 9, 9]),
+                instruction(Op::MulMulAdd, 53, [24, 45, 25, 52]),
+                instruction(Op::Sqr, 54, [15, 15, 15, 15]),
+                instruction(Op::Sub, 54, [53, 54, 53, 53]),
+                instruction(Op::Add, 54, [26, 54, 26, 26]),
+                instruction(Op::MulMulAdd, 53, [27, 45, 28, 52]),
+                instruction(Op::Sqr, 55, [21, 21, 21, 21]),
+                instruction(Op::Sub, 55, [53, 55, 53, 53]),
+                instruction(Op::Add, 55, [29, 55, 29, 29]),
+                instruction(Op::MulMulAdd, 53, [3, 27, 9, 28]),
+                instruction(Op::Sub, 53, [53, 21, 53, 53]),
+                instruction(Op::MulMulAdd, 56, [3, 24, 9, 25]),
+                instruction(Op::Sub, 57, [56, 15, 56, 56]),
+                instruction(Op::MulMulSub, 57, [54, 53, 55, 57]),
+                instruction(Op::MulMulSub, 58, [45, 53, 3, 55]),
+                instruction(Op::MulMulSub, 55, [52, 53, 9, 55]),
+                instruction(Op::Sub, 56, [15, 56, 15, 15]),
+                instruction(Op::MulMulAdd, 45, [45, 56, 3, 54]),
+                instruction(Op::MulMulAdd, 54, [52, 56, 9, 54]),
+                instruction(Op::Sqr, 52, [4, 4, 4, 4]),
+                instruction(Op::Sqr, 59, [10, 10, 10, 10]),
+                instruction(Op::MulMulAdd, 60, [24, 52, 25, 59]),
+                instruction(Op::Sqr, 61, [16, 16, 16, 16]),
+                instruction(Op::Sub, 61, [60, 61, 60, 60]),
+                instruction(Op::Add, 61, [26, 61, 26, 26]),
+                instruction(Op::MulMulAdd, 60, [27, 52, 28, 59]),
+                instruction(Op::Sqr, 62, [22, 22, 22, 22]),
+                instruction(Op::Sub, 62, [60, 62, 60, 60]),
+                instruction(Op::Add, 62, [29, 62, 29, 29]),
+                instruction(Op::MulMulAdd, 60, [4, 27, 10, 28]),
+                instruction(Op::Sub, 60, [60, 22, 60, 60]),
+                instruction(Op::MulMulAdd, 63, [4, 24, 10, 25]),
+                instruction(Op::Sub, 64, [63, 16, 63, 63]),
+                instruction(Op::MulMulSub, 64, [61, 60, 62, 64]),
+                instruction(Op::MulMulSub, 65, [52, 60, 4, 62]),
+                instruction(Op::MulMulSub, 62, [59, 60, 10, 62]),
+                instruction(Op::Sub, 63, [16, 63, 16, 16]),
+                instruction(Op::MulMulAdd, 52, [52, 63, 4, 61]),
+                instruction(Op::MulMulAdd, 61, [59, 63, 10, 61]),
+                instruction(Op::Sqr, 59, [5, 5, 5, 5]),
+                instruction(Op::Sqr, 66, [11, 11, 11, 11]),
+                instruction(Op::MulMulAdd, 67, [24, 59, 25, 66]),
+                instruction(Op::Sqr, 68, [17, 17, 17, 17]),
+                instruction(Op::Sub, 68, [67, 68, 67, 67]),
+                instruction(Op::Add, 68, [26, 68, 26, 26]),
+                instruction(Op::MulMulAdd, 67, [27, 59, 28, 66]),
+                instruction(Op::Sqr, 69, [23, 23, 23, 23]),
+                instruction(Op::Sub, 69, [67, 69, 67, 67]),
+                instruction(Op::Add, 69, [29, 69, 29, 29]),
+                instruction(Op::MulMulAdd, 67, [5, 27, 11, 28]),
+                instruction(Op::Sub, 67, [67, 23, 67, 67]),
+                instruction(Op::MulMulAdd, 70, [5, 24, 11, 25]),
+                instruction(Op::Sub, 71, [70, 17, 70, 70]),
+                instruction(Op::MulMulSub, 71, [68, 67, 69, 71]),
+                instruction(Op::MulMulSub, 72, [59, 67, 5, 69]),
+                instruction(Op::MulMulSub, 69, [66, 67, 11, 69]),
+                instruction(Op::Sub, 70, [17, 70, 17, 17]),
+                instruction(Op::MulMulAdd, 59, [59, 70, 5, 68]),
+                instruction(Op::MulMulAdd, 68, [66, 70, 11, 68]),
+            ],
+        ),
+        outputs: Cow::Borrowed(
+            &[
+                (0, 36),
+                (6, 37),
+                (12, 34),
+                (18, 32),
+                (24, 30),
+                (30, 33),
+                (36, 35),
+                (1, 43),
+                (7, 44),
+                (13, 41),
+                (19, 39),
+                (25, 31),
+                (31, 40),
+                (37, 42),
+                (2, 50),
+                (8, 51),
+                (14, 48),
+                (20, 46),
+                (26, 38),
+                (32, 47),
+                (38, 49),
+                (3, 57),
+                (9, 58),
+                (15, 55),
+                (21, 53),
+                (27, 45),
+                (33, 54),
+                (39, 56),
+                (4, 64),
+                (10, 65),
+                (16, 62),
+                (22, 60),
+                (28, 52),
+                (34, 61),
+                (40, 63),
+                (5, 71),
+                (11, 72),
+                (17, 69),
+                (23, 67),
+                (29, 59),
+                (35, 68),
+                (41, 70),
+            ],
+        ),
+        zeros: Cow::Borrowed(&[]),
+        inputs: [0, 24, 6],
+        size: 73,
+    },
+    taylor: TaylorTape {
+        parameters_only: Cow::Borrowed(
+            &[
+                code(Op::Sqr, 5, 30, [0, 0, 0, 0]),
+                code(Op::Sqr, 5, 31, [6, 6, 6, 6]),
+                code(Op::Sqr, 5, 33, [12, 12, 12, 12]),
+                code(Op::Sqr, 5, 37, [18, 18, 18, 18]),
+                code(Op::Sqr, 5, 45, [1, 1, 1, 1]),
+                code(Op::Sqr, 5, 46, [7, 7, 7, 7]),
+                code(Op::Sqr, 5, 48, [13, 13, 13, 13]),
+                code(Op::Sqr, 5, 52, [19, 19, 19, 19]),
+                code(Op::Sqr, 5, 60, [2, 2, 2, 2]),
+                code(Op::Sqr, 5, 61, [8, 8, 8, 8]),
+                code(Op::Sqr, 5, 63, [14, 14, 14, 14]),
+                code(Op::Sqr, 5, 67, [20, 20, 20, 20]),
+                code(Op::Sqr, 5, 75, [3, 3, 3, 3]),
+                code(Op::Sqr, 5, 76, [9, 9, 9, 9]),
+                code(Op::Sqr, 5, 78, [15, 15, 15, 15]),
+                code(Op::Sqr, 5, 82, [21, 21, 21, 21]),
+                code(Op::Sqr, 5, 90, [4, 4, 4, 4]),
+                code(Op::Sqr, 5, 91, [10, 10, 10, 10]),
+                code(Op::Sqr, 5, 93, [16, 16, 16, 16]),
+                code(Op::Sqr, 5, 97, [22, 22, 22, 22]),
+                code(Op::Sqr, 5, 105, [5, 5, 5, 5]),
+                code(Op::Sqr, 5, 106, [11, 11, 11, 11]),
+                code(Op::Sqr, 5, 108, [17, 17, 17, 17]),
+                code(Op::Sqr, 5, 112, [23, 23, 23, 23]),
+            ],
+        ),
+        variables_only: Cow::Borrowed(&[]),
+        mixed: Cow::Borrowed(
+            &[
+                code(Op::MulMulAdd, 1, 32, [30, 24, 31, 25]),
+                code(Op::Sub, 0, 34, [32, 33, 32, 32]),
+                code(Op::Add, 0, 35, [26, 34, 26, 26]),
+                code(Op::MulMulAdd, 1, 36, [30, 27, 31, 28]),
+                code(Op::Sub, 0, 38, [36, 37, 36, 36]),
+                code(Op::Add, 0, 39, [29, 38, 29, 29]),
+                code(Op::MulMulAdd, 4, 40, [0, 27, 6, 28]),
+                code(Op::Sub, 0, 41, [40, 18, 40, 40]),
+                code(Op::MulMulAdd, 4, 42, [0, 24, 6, 25]),
+                code(Op::Sub, 0, 43, [42, 12, 42, 42]),
+                code(Op::MulMulSub, 0, 44, [35, 41, 39, 43]),
+                code(Op::MulMulAdd, 1, 47, [45, 24, 46, 25]),
+                code(Op::Sub, 0, 49, [47, 48, 47, 47]),
+                code(Op::Add, 0, 50, [26, 49, 26, 26]),
+                code(Op::MulMulAdd, 1, 51, [45, 27, 46, 28]),
+                code(Op::Sub, 0, 53, [51, 52, 51, 51]),
+                code(Op::Add, 0, 54, [29, 53, 29, 29]),
+                code(Op::MulMulAdd, 4, 55, [1, 27, 7, 28]),
+                code(Op::Sub, 0, 56, [55, 19, 55, 55]),
+                code(Op::MulMulAdd, 4, 57, [1, 24, 7, 25]),
+                code(Op::Sub, 0, 58, [57, 13, 57, 57]),
+                code(Op::MulMulSub, 0, 59, [50, 56, 54, 58]),
+                code(Op::MulMulAdd, 1, 62, [60, 24, 61, 25]),
+                code(Op::Sub, 0, 64, [62, 63, 62, 62]),
+                code(Op::Add, 0, 65, [26, 64, 26, 26]),
+                code(Op::MulMulAdd, 1, 66, [60, 27, 61, 28]),
+                code(Op::Sub, 0, 68, [66, 67, 66, 66]),
+                code(Op::Add, 0, 69, [29, 68, 29, 29]),
+                code(Op::MulMulAdd, 4, 70, [2, 27, 8, 28]),
+                code(Op::Sub, 0, 71, [70, 20, 70, 70]),
+                code(Op::MulMulAdd, 4, 72, [2, 24, 8, 25]),
+                code(Op::Sub, 0, 73, [72, 14, 72, 72]),
+                code(Op::MulMulSub, 0, 74, [65, 71, 69, 73]),
+                code(Op::MulMulAdd, 1, 77, [75, 24, 76, 25]),
+                code(Op::Sub, 0, 79, [77, 78, 77, 77]),
+                code(Op::Add, 0, 80, [26, 79, 26, 26]),
+                code(Op::MulMulAdd, 1, 81, [75, 27, 76, 28]),
+                code(Op::Sub, 0, 83, [81, 82, 81, 81]),
+                code(Op::Add, 0, 84, [29, 83, 29, 29]),
+                code(Op::MulMulAdd, 4, 85, [3, 27, 9, 28]),
+                code(Op::Sub, 0, 86, [85, 21, 85, 85]),
+                code(Op::MulMulAdd, 4, 87, [3, 24, 9, 25]),
+                code(Op::Sub, 0, 88, [87, 15, 87, 87]),
+                code(Op::MulMulSub, 0, 89, [80, 86, 84, 88]),
+                code(Op::MulMulAdd, 1, 92, [90, 24, 91, 25]),
+                code(Op::Sub, 0, 94, [92, 93, 92, 92]),
+                code(Op::Add, 0, 95, [26, 94, 26, 26]),
+                code(Op::MulMulAdd, 1, 96, [90, 27, 91, 28]),
+                code(Op::Sub, 0, 98, [96, 97, 96, 96]),
+                code(Op::Add, 0, 99, [29, 98, 29, 29]),
+                code(Op::MulMulAdd, 4, 100, [4, 27, 10, 28]),
+                code(Op::Sub, 0, 101, [100, 22, 100, 100]),
+                code(Op::MulMulAdd, 4, 102, [4, 24, 10, 25]),
+                code(Op::Sub, 0, 103, [102, 16, 102, 102]),
+                code(Op::MulMulSub, 0, 104, [95, 101, 99, 103]),
+                code(Op::MulMulAdd, 1, 107, [105, 24, 106, 25]),
+                code(Op::Sub, 0, 109, [107, 108, 107, 107]),
+                code(Op::Add, 0, 110, [26, 109, 26, 26]),
+                code(Op::MulMulAdd, 1, 111, [105, 27, 106, 28]),
+                code(Op::Sub, 0, 113, [111, 112, 111, 111]),
+                code(Op::Add, 0, 114, [29, 113, 29, 29]),
+                code(Op::MulMulAdd, 4, 115, [5, 27, 11, 28]),
+                code(Op::Sub, 0, 116, [115, 23, 115, 115]),
+                code(Op::MulMulAdd, 4, 117, [5, 24, 11, 25]),
+                code(Op::Sub, 0, 118, [117, 17, 117, 117]),
+                code(Op::MulMulSub, 0, 119, [110, 116, 114, 118]),
+            ],
+        ),
+        outputs: Cow::Borrowed(&[44, 59, 74, 89, 104, 119]),
+        inputs: [0, 24, 6],
+        size: 120,
+    },
 };
 impl Evaluate for System {
     type Memory<S: Scalar> = Memory<S>;
@@ -133,7 +412,7 @@ impl Evaluate for System {
         24
     }
     fn memory<S: Scalar>(&self, isa: Isa) -> Memory<S> {
-        Memory::new(isa, &CONSTANTS, 0, &TAYLOR)
+        Memory::new(isa, &CONSTANTS, 0, &TABLES)
     }
     fn values<S: Scalar>(
         &self,
@@ -143,13 +422,19 @@ impl Evaluate for System {
         values: &mut [S],
     ) {
         let (x, p, values) = (&x[..6], &p[..24], &mut values[..6]);
-        memory
-            .isa
-            .run(Values0 {
-                x: x.first_chunk().expect("as long as cut"),
-                p: p.first_chunk().expect("as long as cut"),
-                values: values.first_chunk_mut().expect("as long as cut"),
-            });
+        if const { S::STRAIGHT.is_some() } {
+            if memory.is_straight() {
+                memory
+                    .isa
+                    .run(Values0 {
+                        x: x.first_chunk().expect("as long as cut"),
+                        p: p.first_chunk().expect("as long as cut"),
+                        values: values.first_chunk_mut().expect("as long as cut"),
+                    });
+                return;
+            }
+        }
+        memory.interpret(&TABLES.values, x, p, values, &mut []);
     }
     fn jacobian<S: Scalar>(
         &self,
@@ -165,22 +450,28 @@ impl Evaluate for System {
             &mut values[..6],
             &mut jacobian[..36],
         );
-        memory
-            .isa
-            .run(Jacobian0 {
-                x: x.first_chunk().expect("as long as cut"),
-                p: p.first_chunk().expect("as long as cut"),
-                values: values.first_chunk_mut().expect("as long as cut"),
-                jacobian: jacobian.first_chunk_mut().expect("as long as cut"),
-            });
-        memory
-            .isa
-            .run(Jacobian1 {
-                x: x.first_chunk().expect("as long as cut"),
-                p: p.first_chunk().expect("as long as cut"),
-                values: values.first_chunk_mut().expect("as long as cut"),
-                jacobian: jacobian.first_chunk_mut().expect("as long as cut"),
-            });
+        if const { S::STRAIGHT.is_some() } {
+            if memory.is_straight() {
+                memory
+                    .isa
+                    .run(Jacobian0 {
+                        x: x.first_chunk().expect("as long as cut"),
+                        p: p.first_chunk().expect("as long as cut"),
+                        values: values.first_chunk_mut().expect("as long as cut"),
+                        jacobian: jacobian.first_chunk_mut().expect("as long as cut"),
+                    });
+                memory
+                    .isa
+                    .run(Jacobian1 {
+                        x: x.first_chunk().expect("as long as cut"),
+                        p: p.first_chunk().expect("as long as cut"),
+                        values: values.first_chunk_mut().expect("as long as cut"),
+                        jacobian: jacobian.first_chunk_mut().expect("as long as cut"),
+                    });
+                return;
+            }
+        }
+        memory.interpret(&TABLES.jacobian, x, p, values, jacobian);
     }
     fn taylor<S: Scalar>(
         &self,
@@ -190,7 +481,7 @@ impl Evaluate for System {
         p: &[S],
         out: &mut [S],
     ) {
-        memory.taylor(&TAYLOR, order, x, p, out);
+        memory.taylor(&TABLES.taylor, order, x, p, out);
     }
 }
 struct Values0<'a, S> {
@@ -200,6 +491,8 @@ struct Values0<'a, S> {
 }
 impl<S: Scalar> Kernel for Values0<'_, S> {
     type Output = ();
+    const WIDEST: Isa = S::WIDEST;
+    const NARROWEST: Isa = narrowest::<S>();
     #[inline(always)]
     #[allow(unused_variables)]
     fn run(self) {
@@ -304,6 +597,8 @@ struct Jacobian0<'a, S> {
 }
 impl<S: Scalar> Kernel for Jacobian0<'_, S> {
     type Output = ();
+    const WIDEST: Isa = S::WIDEST;
+    const NARROWEST: Isa = narrowest::<S>();
     #[inline(always)]
     #[allow(unused_variables)]
     fn run(self) {
@@ -384,6 +679,8 @@ struct Jacobian1<'a, S> {
 }
 impl<S: Scalar> Kernel for Jacobian1<'_, S> {
     type Output = ();
+    const WIDEST: Isa = S::WIDEST;
+    const NARROWEST: Isa = narrowest::<S>();
     #[inline(always)]
     #[allow(unused_variables)]
     fn run(self) {

@@ -220,6 +220,7 @@ struct Eliminate<'a> {
 
 impl Kernel for Eliminate<'_> {
     type Output = ();
+    const WIDEST: Isa = Isa::Avx512;
 
     #[inline(always)]
     fn run(self) {

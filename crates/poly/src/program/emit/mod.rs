@@ -2,8 +2,9 @@
 
 mod literal;
 mod straight;
-mod taylor;
+mod tables;
 
+use super::registers::allocate;
 use super::straight_line::Program;
 use super::taylor::TaylorTape;
 use crate::exact;
@@ -11,7 +12,7 @@ use literal::number;
 use proc_macro2::Literal;
 use quote::quote;
 use straight::{Straight, zero_fill};
-use taylor::taylor_table;
+use tables::{register_table, taylor_table};
 
 /// Options of [`emit`].
 #[derive(Clone, Debug)]
@@ -73,7 +74,11 @@ pub fn emit(program: &Program, options: &EmitOptions) -> Result<String, EmitErro
 
     let values = Straight { program, tape: &program.values, prefix: "Values", with_jacobian: false }.emit(most);
     let jacobian = Straight { program, tape: &program.jacobian, prefix: "Jacobian", with_jacobian: true }.emit(most);
-    let taylor = taylor_table(&TaylorTape::new(&program.values, program.layout()));
+    let layout = program.layout();
+    let taylor = taylor_table(&TaylorTape::new(&program.values, layout));
+    let value_table = register_table(&allocate(&program.values, layout, program.equations));
+    let slots = program.equations * (1 + program.variables);
+    let jacobian_table = register_table(&allocate(&program.jacobian, layout, slots));
 
     let (m, n, k) = (program.equations, program.variables, program.parameters);
     let constants = program.constants.iter().map(|c| {
@@ -87,7 +92,7 @@ pub fn emit(program: &Program, options: &EmitOptions) -> Result<String, EmitErro
     let module_doc = format!(" `F(x; p)`: {m} equations, {n} unknowns, {k} parameters, as straight-line code.");
     let type_doc = " The system; inputs and outputs are ordered as [`Evaluate`] says.";
     let constants_doc = " Real part (high, low) and imaginary part (high, low).";
-    let taylor_doc = " Instructions for Taylor coefficients.";
+    let tables_doc = " The same instructions as tables, for numbers whose operations are long.";
     let constant_count = program.constants.len();
     let [m, n, k, entries, live, constant_count] =
         [m, n, k, m * n, live, constant_count].map(Literal::usize_unsuffixed);
@@ -97,7 +102,7 @@ pub fn emit(program: &Program, options: &EmitOptions) -> Result<String, EmitErro
         #![allow(unreachable_pub, unused_imports, clippy::all)]
 
         use #path::evaluate::Evaluate;
-        use #path::program::generated::{Memory, Op, TaylorTape, code};
+        use #path::program::generated::{Memory, Op, RegisterTape, Tables, TaylorTape, code, instruction, narrowest};
         use #path::scalar::Scalar;
         use #path::simd::{Isa, Kernel};
         use std::borrow::Cow;
@@ -109,8 +114,12 @@ pub fn emit(program: &Program, options: &EmitOptions) -> Result<String, EmitErro
         #[doc = #constants_doc]
         static CONSTANTS: [[f64; 4]; #constant_count] = [#(#constants),*];
 
-        #[doc = #taylor_doc]
-        static TAYLOR: TaylorTape = #taylor;
+        #[doc = #tables_doc]
+        static TABLES: Tables = Tables {
+            values: #value_table,
+            jacobian: #jacobian_table,
+            taylor: #taylor,
+        };
 
         impl Evaluate for #name {
             type Memory<S: Scalar> = Memory<S>;
@@ -125,11 +134,17 @@ pub fn emit(program: &Program, options: &EmitOptions) -> Result<String, EmitErro
                 #k
             }
             fn memory<S: Scalar>(&self, isa: Isa) -> Memory<S> {
-                Memory::new(isa, &CONSTANTS, #live, &TAYLOR)
+                Memory::new(isa, &CONSTANTS, #live, &TABLES)
             }
             fn values<S: Scalar>(&self, memory: &mut Memory<S>, x: &[S], p: &[S], values: &mut [S]) {
                 let (x, p, values) = (&x[..#n], &p[..#k], &mut values[..#m]);
-                #run_values
+                if const { S::STRAIGHT.is_some() } {
+                    if memory.is_straight() {
+                        #run_values
+                        return;
+                    }
+                }
+                memory.interpret(&TABLES.values, x, p, values, &mut []);
             }
             fn jacobian<S: Scalar>(
                 &self,
@@ -140,11 +155,17 @@ pub fn emit(program: &Program, options: &EmitOptions) -> Result<String, EmitErro
                 jacobian: &mut [S],
             ) {
                 let (x, p, values, jacobian) = (&x[..#n], &p[..#k], &mut values[..#m], &mut jacobian[..#entries]);
-                #zeros
-                #run_jacobian
+                if const { S::STRAIGHT.is_some() } {
+                    if memory.is_straight() {
+                        #zeros
+                        #run_jacobian
+                        return;
+                    }
+                }
+                memory.interpret(&TABLES.jacobian, x, p, values, jacobian);
             }
             fn taylor<S: Scalar>(&self, memory: &mut Memory<S>, order: usize, x: &[S], p: &[S], out: &mut [S]) {
-                memory.taylor(&TAYLOR, order, x, p, out);
+                memory.taylor(&TABLES.taylor, order, x, p, out);
             }
         }
 

@@ -168,6 +168,8 @@ impl Straight<'_> {
 
             impl<S: Scalar> Kernel for #name<'_, S> {
                 type Output = ();
+                const WIDEST: Isa = S::WIDEST;
+                const NARROWEST: Isa = narrowest::<S>();
 
                 #[inline(always)]
                 #[allow(unused_variables)]
