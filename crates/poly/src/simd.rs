@@ -2,10 +2,9 @@
 //!
 //! A kernel is plain inlined code over [`Lanes8`](crate::Lanes8) or another number; [`Isa::run`]
 //! compiles it for the instruction sets that gain something and calls the version that the machine
-//! has. The compiler never fuses a
-//! product and a sum by itself, so all versions agree bit for bit; the instruction is enabled
-//! beside AVX2 only for `f64::mul_add` asked for by name (double-double), whose result is the same
-//! everywhere.
+//! has. The compiler never fuses a product and a sum by itself, so all versions agree bit for bit;
+//! the instruction is enabled beside AVX2 only for `f64::mul_add` asked for by name
+//! (double-double), whose result is the same everywhere.
 
 /// An instruction set that kernels are compiled for, narrower ones first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

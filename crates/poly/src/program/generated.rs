@@ -4,21 +4,10 @@ use crate::scalar::Scalar;
 use crate::simd::Isa;
 
 pub use super::instruction::Op;
+pub use super::tables::Tables;
 pub use super::tape::{Code, RegisterTape};
 pub use super::taylor::{TaylorCode, TaylorMemory, TaylorTape};
 pub use crate::scalar::narrowest;
-
-/// The instructions of a generated system as tables, beside its straight-line code.
-#[derive(Debug)]
-pub struct Tables {
-    /// For the values.
-    pub values: RegisterTape,
-    /// For values and Jacobian.
-    pub jacobian: RegisterTape,
-    /// For Taylor coefficients, which have no straight-line code: instructions do so much each that
-    /// finding them costs little.
-    pub taylor: TaylorTape,
-}
 
 /// Scratch space of generated code.
 #[derive(Clone, Debug)]

@@ -1,9 +1,8 @@
 //! Runs a program over any scalar.
 
-use super::registers::allocate;
 use super::straight_line::Program;
-use super::tape::RegisterTape;
-use super::taylor::{TaylorMemory, TaylorTape};
+use super::tables::Tables;
+use super::taylor::TaylorMemory;
 use crate::evaluate::Evaluate;
 use crate::scalar::Scalar;
 use crate::simd::Isa;
@@ -18,9 +17,7 @@ pub struct Interpreter {
 #[derive(Debug)]
 struct Compiled {
     program: Program,
-    values: RegisterTape,
-    jacobian: RegisterTape,
-    taylor: TaylorTape,
+    tables: Tables,
 }
 
 /// Scratch space of an [`Interpreter`].
@@ -36,11 +33,8 @@ pub struct InterpreterMemory<S> {
 impl Interpreter {
     /// Prepares a program to be run.
     pub fn new(program: Program) -> Interpreter {
-        let layout = program.layout();
-        let values = allocate(&program.values, layout, program.equations);
-        let jacobian = allocate(&program.jacobian, layout, program.equations * (1 + program.variables));
-        let taylor = TaylorTape::new(&program.values, layout);
-        Interpreter { compiled: Arc::new(Compiled { program, values, jacobian, taylor }) }
+        let tables = Tables::new(&program);
+        Interpreter { compiled: Arc::new(Compiled { program, tables }) }
     }
 
     /// The program that is run.
@@ -72,16 +66,16 @@ impl Evaluate for Interpreter {
         };
         InterpreterMemory {
             isa,
-            values: array(compiled.values.size),
-            jacobian: array(compiled.jacobian.size),
-            taylor: compiled.taylor.memory(isa, &constants),
+            values: array(compiled.tables.values.size),
+            jacobian: array(compiled.tables.jacobian.size),
+            taylor: compiled.tables.taylor.memory(isa, &constants),
         }
     }
 
     fn values<S: Scalar>(&self, memory: &mut InterpreterMemory<S>, x: &[S], p: &[S], values: &mut [S]) {
         let compiled = &*self.compiled;
         let values = &mut values[..compiled.program.equations];
-        compiled.values.run(memory.isa, &mut memory.values, x, p, values, &mut []);
+        compiled.tables.values.run(memory.isa, &mut memory.values, x, p, values, &mut []);
     }
 
     fn jacobian<S: Scalar>(
@@ -95,11 +89,11 @@ impl Evaluate for Interpreter {
         let compiled = &*self.compiled;
         let rows = compiled.program.equations;
         let (values, jacobian) = (&mut values[..rows], &mut jacobian[..rows * compiled.program.variables]);
-        compiled.jacobian.run(memory.isa, &mut memory.jacobian, x, p, values, jacobian);
+        compiled.tables.jacobian.run(memory.isa, &mut memory.jacobian, x, p, values, jacobian);
     }
 
     fn taylor<S: Scalar>(&self, memory: &mut InterpreterMemory<S>, order: usize, x: &[S], p: &[S], out: &mut [S]) {
         let compiled = &*self.compiled;
-        compiled.taylor.run(memory.isa, &mut memory.taylor, order, x, p, out);
+        compiled.tables.taylor.run(memory.isa, &mut memory.taylor, order, x, p, out);
     }
 }

@@ -18,6 +18,7 @@ mod registers;
 mod schedule;
 mod series;
 mod straight_line;
+mod tables;
 mod tape;
 mod taylor;
 #[cfg(test)]

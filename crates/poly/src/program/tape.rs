@@ -48,17 +48,15 @@ impl RegisterTape {
         array[constants + parameters..][..variables].clone_from_slice(&x[..variables]);
         isa.run(Instructions { code: &self.code, array });
         let rows = values.len();
+        let mut write = |slot: u32, value: S| match (slot as usize).checked_sub(rows) {
+            None => values[slot as usize] = value,
+            Some(entry) => jacobian[entry] = value,
+        };
         for &slot in &*self.zeros {
-            if let Some(entry) = (slot as usize).checked_sub(rows) {
-                jacobian[entry] = S::zero();
-            }
+            write(slot, S::zero());
         }
         for &(slot, place) in &*self.outputs {
-            let value = array[place as usize].clone();
-            match (slot as usize).checked_sub(rows) {
-                None => values[slot as usize] = value,
-                Some(entry) => jacobian[entry] = value,
-            }
+            write(slot, array[place as usize].clone());
         }
     }
 }

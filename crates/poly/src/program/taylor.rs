@@ -231,6 +231,7 @@ fn sort_factors(op: Op, args: [Operand; 4], factor: impl Fn(Operand) -> Factor) 
 }
 
 /// The instructions of a tape for one order, 1, 2 or 3.
+#[derive(Clone, Copy)]
 struct Pass<'a> {
     tape: &'a TaylorTape,
     order: usize,
@@ -268,7 +269,7 @@ impl Pass<'_> {
             for (to, from) in lane.iter_mut().zip(&*series) {
                 *to = [from[0].get(l), from[1].get(l), from[2].get(l), from[3].get(l)];
             }
-            Pass { ..self }.run_one(lane);
+            self.run_one(lane);
             for (to, from) in series.iter_mut().zip(&*lane) {
                 for (to, &from) in to.iter_mut().zip(from) {
                     to.set(l, from);

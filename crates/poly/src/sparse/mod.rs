@@ -118,8 +118,7 @@ impl Evaluate for SparseSystem {
     fn values<S: Scalar>(&self, memory: &mut SparseMemory<S>, x: &[S], p: &[S], values: &mut [S]) {
         let plan = &*self.plan;
         let (x, p, values) = (&x[..plan.variables], &p[..plan.terms], &mut values[..plan.rows.len()]);
-        let isa = memory.isa;
-        isa.run(Values { plan, memory, x, p, values });
+        memory.isa.run(Values { plan, memory, x, p, values });
     }
 
     fn jacobian<S: Scalar>(
@@ -134,8 +133,7 @@ impl Evaluate for SparseSystem {
         let rows = plan.rows.len();
         let (x, p, values) = (&x[..plan.variables], &p[..plan.terms], &mut values[..rows]);
         let jacobian = &mut jacobian[..rows * plan.variables];
-        let isa = memory.isa;
-        isa.run(Jacobian { plan, memory, x, p, values, jacobian });
+        memory.isa.run(Jacobian { plan, memory, x, p, values, jacobian });
     }
 
     fn taylor<S: Scalar>(&self, memory: &mut SparseMemory<S>, order: usize, x: &[S], p: &[S], out: &mut [S]) {

@@ -18,7 +18,7 @@ use std::borrow::Cow;
 pub struct System;
 /// Real part (high, low) and imaginary part (high, low).
 static CONSTANTS: [[f64; 4]; 0] = [];
-/// The same instructions as tables, for numbers whose operations are long.
+/// Instructions as tables: for Taylor coefficients, and for numbers whose operations are long.
 static TABLES: Tables = Tables {
     values: RegisterTape {
         code: Cow::Borrowed(

@@ -23,7 +23,7 @@ static CONSTANTS: [[f64; 4]; 4] = [
     [-2.0, 0.0, 0.0, 0.0],
     [4.0, 0.0, 0.0, 0.0],
 ];
-/// The same instructions as tables, for numbers whose operations are long.
+/// Instructions as tables: for Taylor coefficients, and for numbers whose operations are long.
 static TABLES: Tables = Tables {
     values: RegisterTape {
         code: Cow::Borrowed(

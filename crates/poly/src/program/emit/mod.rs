@@ -4,9 +4,8 @@ mod literal;
 mod straight;
 mod tables;
 
-use super::registers::allocate;
 use super::straight_line::Program;
-use super::taylor::TaylorTape;
+use super::tables::Tables;
 use crate::exact;
 use literal::number;
 use proc_macro2::Literal;
@@ -74,11 +73,9 @@ pub fn emit(program: &Program, options: &EmitOptions) -> Result<String, EmitErro
 
     let values = Straight { program, tape: &program.values, prefix: "Values", with_jacobian: false }.emit(most);
     let jacobian = Straight { program, tape: &program.jacobian, prefix: "Jacobian", with_jacobian: true }.emit(most);
-    let layout = program.layout();
-    let taylor = taylor_table(&TaylorTape::new(&program.values, layout));
-    let value_table = register_table(&allocate(&program.values, layout, program.equations));
-    let slots = program.equations * (1 + program.variables);
-    let jacobian_table = register_table(&allocate(&program.jacobian, layout, slots));
+    let tables = Tables::new(program);
+    let (value_table, jacobian_table) = (register_table(&tables.values), register_table(&tables.jacobian));
+    let taylor = taylor_table(&tables.taylor);
 
     let (m, n, k) = (program.equations, program.variables, program.parameters);
     let constants = program.constants.iter().map(|c| {
@@ -92,7 +89,7 @@ pub fn emit(program: &Program, options: &EmitOptions) -> Result<String, EmitErro
     let module_doc = format!(" `F(x; p)`: {m} equations, {n} unknowns, {k} parameters, as straight-line code.");
     let type_doc = " The system; inputs and outputs are ordered as [`Evaluate`] says.";
     let constants_doc = " Real part (high, low) and imaginary part (high, low).";
-    let tables_doc = " The same instructions as tables, for numbers whose operations are long.";
+    let tables_doc = " Instructions as tables: for Taylor coefficients, and for numbers whose operations are long.";
     let constant_count = program.constants.len();
     let [m, n, k, entries, live, constant_count] =
         [m, n, k, m * n, live, constant_count].map(Literal::usize_unsuffixed);
