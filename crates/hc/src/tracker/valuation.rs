@@ -7,6 +7,7 @@ use num_complex::Complex64;
 ///
 /// `v = t Re(x' / x)`; its drift is the larger of its own logarithmic derivative and of its
 /// distance to the valuation of `t x'`.
+#[inline]
 pub(super) fn valuation(t: f64, [x, x1, x2, x3]: [Complex64; 4]) -> (f64, f64) {
     let log_derivative = |x: Complex64, d: Complex64, dd: Complex64| {
         let size = x.norm_sqr();
