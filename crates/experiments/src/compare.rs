@@ -1,7 +1,7 @@
 //! `cargo xtask compare`: this project beside the peers that are installed, in one run.
 
 // The families of systems are those of the tests.
-#[path = "../../hc/tests/common/generators.rs"]
+#[path = "../../hc/tests/all/common/generators.rs"]
 mod generators;
 mod networks;
 mod plan;

@@ -1,6 +1,6 @@
 //! Mixed volumes of systems of the literature, on all cores.
 
-#[path = "../tests/common/generators.rs"]
+#[path = "../tests/all/common/generators.rs"]
 #[allow(dead_code)]
 mod generators;
 

@@ -6,7 +6,7 @@
 //!
 //!     cargo run --release -p hc --example steiner -- [SEED [real]]
 
-#[path = "../tests/common/conics.rs"]
+#[path = "../tests/all/common/conics.rs"]
 mod conics;
 
 use conics::{COUNTS, tangent_conics};

@@ -1,5 +1,4 @@
 //! Interrupts leave no half-written file.
-#![cfg(unix)]
 
 use std::process::Command;
 use std::time::Duration;

@@ -1,6 +1,5 @@
 //! The rooms of the house: no circle of imports between files, no file over 500 lines.
 
-#[path = "rooms/imports.rs"]
 mod imports;
 
 use imports::Imports;

@@ -1,13 +1,8 @@
 //! Families of systems by their generators, with the numbers of solutions known from theory and the
 //! literature.
 
-mod common;
-
-#[path = "common/generators.rs"]
-mod generators;
-
-use common::{multiplicities, options, real, solved};
-use generators::{cyclic, eco, katsura, noon, reimer, system};
+use crate::common::generators::{cyclic, eco, katsura, noon, reimer, system};
+use crate::common::{multiplicities, options, real, solved};
 use hc::Start;
 
 fn chandra(n: usize) -> String {

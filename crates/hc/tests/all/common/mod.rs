@@ -1,5 +1,8 @@
 //! What the tests of the front door share.
 
+pub(crate) mod conics;
+pub(crate) mod generators;
+
 use hc::poly::parse::phcpack;
 use hc::{Solutions, SolveError, SolveOptions, solve};
 use std::collections::BTreeMap;

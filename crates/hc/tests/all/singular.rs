@@ -3,9 +3,7 @@
 //! What is expected is known by hand: factors, intersection numbers, Chebyshev's polynomials, roots
 //! of unity.
 
-mod common;
-
-use common::{multiplicities, options, real, solve_text, solved};
+use crate::common::{multiplicities, options, real, solve_text, solved};
 use hc::Solutions;
 use hc::poly::Complex64;
 
@@ -92,9 +90,9 @@ fn a_condition_of_ten_to_the_twelve() {
     check("2\nx^2+y^2-2;\n(x^2+y^2-2)*3+1E-12*(x*y-1)*(x-3)+1E-12*(y-2);", 6, "6x1", 4, false);
 }
 
-#[path = "../examples/singular_families/families.rs"]
+#[path = "../../examples/singular_families/families.rs"]
 mod families;
-#[path = "../examples/singular_families/verdict.rs"]
+#[path = "../../examples/singular_families/verdict.rs"]
 mod verdict;
 
 /// The example `singular_families` takes more of each kind.

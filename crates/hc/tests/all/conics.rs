@@ -1,10 +1,7 @@
 //! Conics tangent to conics: Chasles' numbers by monodromy, from the front door, and certified. All
 //! 3264 of Steiner's problem are counted by the example `steiner`.
 
-#[path = "common/conics.rs"]
-mod conics;
-
-use conics::{COUNTS, tangent_conics};
+use crate::common::conics::{COUNTS, tangent_conics};
 use hc::certify::{CertifyOptions, certify};
 use hc::family::Stop;
 use hc::poly::{Complex64, ComplexInterval, System};

@@ -1,8 +1,6 @@
 //! The minimal solvers on networks of extreme scales, next to degenerate ones, and degenerate.
 
-mod common;
-
-use common::clean;
+use crate::common::clean;
 use tdoa::accuracy::position_error;
 use tdoa::minimal::{Nodes, SolveOptions, SolveWarning, Solver};
 use tdoa::{Candidate, MinimalSolution, Network, Pseudoranges};

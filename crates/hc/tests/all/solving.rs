@@ -1,8 +1,6 @@
 //! Systems of real origin with verified counts, solved from the front door.
 
-mod common;
-
-use common::{multiplicities, options, real, solved};
+use crate::common::{multiplicities, options, real, solved};
 use std::path::Path;
 
 /// The counts of `expected.csv`: distinct solutions, their multiplicities and real ones, as far as

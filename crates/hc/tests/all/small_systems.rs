@@ -1,9 +1,7 @@
 //! Small systems whose solutions are known by hand or from the tests of other codes, many of them
 //! traps.
 
-mod common;
-
-use common::{multiplicities, options, real, solve_text, solved};
+use crate::common::{multiplicities, options, real, solve_text, solved};
 use hc::poly::{Complex64, parse};
 use hc::start::MixedError;
 use hc::{Solution, Solutions, SolveError, SolveOptions, Start, solve};
@@ -97,7 +95,7 @@ fn only_the_torus_where_that_is_asked_for() {
     assert_eq!((found.solutions.len(), found.paths.tracked), (3, 3));
     let text = "3\nx1^3*s^15+x1*x2*s+x2^3+s^12;\nx1^2*s^9+x1*x2^2+x2*s^3;\nx1^2*x2*s^5+x1*s^8+x2^2;";
     assert_eq!(solved(text, &options).mixed_volume, Some(54));
-    assert_eq!(solved(text, &common::options(0)).mixed_volume, Some(92));
+    assert_eq!(solved(text, &crate::common::options(0)).mixed_volume, Some(92));
     // A Laurent system: x + 1/x = 5/2 and x y = 1.
     let found = solved("2\nx+x^(-1)-5/2;\nx*y-1;", &options);
     assert!(has(&found, &[2.0, 0.5], 1e-12) && has(&found, &[0.5, 2.0], 1e-12));

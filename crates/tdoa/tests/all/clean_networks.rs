@@ -1,9 +1,7 @@
 //! The minimal solvers on clean data: all roots are there and proved, the true network is among
 //! them, and no path is lost.
 
-mod common;
-
-use common::clean;
+use crate::common::clean;
 use tdoa::MinimalSolution;
 use tdoa::accuracy::{offset_error, position_error};
 use tdoa::minimal::{SolveOptions, Solver};

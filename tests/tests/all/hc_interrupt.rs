@@ -1,5 +1,4 @@
 //! What `hc` leaves when it is interrupted: a partial result that says so.
-#![cfg(unix)]
 
 use end_to_end::{program, root, run};
 use serde_json::{Value, json};

@@ -1,0 +1,23 @@
+//! The end-to-end tests, in one program: each program of tests links all libraries anew.
+
+mod guide;
+mod hc_certify;
+mod hc_families;
+#[cfg(unix)]
+mod hc_interrupt;
+mod hc_solve;
+mod one_build;
+mod outputs;
+mod rooms;
+mod tdoa_bad_input;
+mod tdoa_calibrate;
+mod tdoa_experiments;
+mod tdoa_faults;
+mod tdoa_input;
+#[cfg(unix)]
+mod tdoa_interrupt;
+mod tdoa_known;
+mod tdoa_mat;
+mod tdoa_real;
+mod tdoa_report;
+mod tdoa_solve;
