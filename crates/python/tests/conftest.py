@@ -12,20 +12,26 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 os.environ.setdefault("MPLBACKEND", "Agg")
 
 
-def built(name):
-    """The program of that name: the one that HC_PROGRAM or TDOA_PROGRAM names, else one built anew, as the wheel is."""
-    given = os.environ.get(f"{name.upper()}_PROGRAM")
-    if given:
-        return given
-    command = ["cargo", "build", "--quiet", "--locked", "--profile", "wheel", "-p", "hc-cli", "-p", "tdoa-cli"]
-    subprocess.run(command, cwd=ROOT, check=True)
-    target = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
-    return str(target / "wheel" / name)
+BUILD = ["cargo", "build", "--release", "--locked", "-p", "hc-cli", "-p", "tdoa-cli"]
+
+
+def built(names, capture):
+    """The programs of these names, built as the guide builds them, with what cargo says on the terminal."""
+    with capture.global_and_fixture_disabled():
+        print(f"\nNo HC_PROGRAM and TDOA_PROGRAM: {' '.join(BUILD)}", flush=True)
+        subprocess.run(BUILD, cwd=ROOT, check=True)
+    target = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", "target"))
+    return {name: str(ROOT / target / "release" / name) for name in names}
 
 
 @pytest.fixture(scope="session")
-def programs():
-    return {name: built(name) for name in ("hc", "tdoa")}
+def programs(request):
+    """The programs that HC_PROGRAM and TDOA_PROGRAM name; those that no variable names are built."""
+    given = {name: os.environ.get(f"{name.upper()}_PROGRAM") for name in ("hc", "tdoa")}
+    missing = [name for name, program in given.items() if not program]
+    if missing:
+        given |= built(missing, request.config.pluginmanager.getplugin("capturemanager"))
+    return given
 
 
 @pytest.fixture(scope="session")
