@@ -14,6 +14,7 @@ mod judge;
 mod monodromy;
 mod orbits;
 mod pair;
+mod reach;
 mod size;
 mod start_file;
 mod symmetry;

@@ -6,6 +6,7 @@
 //! test](crate::Family::trace_test), and the result says which.
 
 use super::fibre::{Fibre, FibreOptions};
+use super::reach::Reach;
 use super::size::natural_size;
 use super::symmetry::{ACCURATE, Symmetry};
 use super::track::track_fibre_watched;
@@ -25,8 +26,10 @@ pub struct MonodromyOptions {
     pub seed: u64,
     /// The known number of solutions, if any: reaching it ends the search. Default `None`.
     pub roots: Option<usize>,
-    /// Loops without a new solution after which the search ends, provided that they had at least 64
-    /// chances (loops times solutions) to bring one. Default 8.
+    /// Loops without a new solution after which the search ends, provided that they had at least 128
+    /// chances (loops times solutions) to bring one; twice as many where single parameters have to
+    /// move further than others until they matter, since loops have two sizes in turn then.
+    /// Default 8.
     pub patience: usize,
     /// Solutions at most; a fibre that exceeds it is given up. Default 100,000.
     pub max_solutions: usize,
@@ -134,7 +137,10 @@ pub(super) fn fill<E: Evaluate>(
         filling.fibre.representatives = Some(Vec::new());
         filling.add(start.solutions.chunks_exact(start.dimension.max(1)));
     }
-    let sizes: Vec<f64> = start.parameters.iter().map(|p| natural_size(p.norm())).collect();
+    // Loops have each of these sizes in turn.
+    let natural: Vec<f64> = start.parameters.iter().map(|p| natural_size(p.norm())).collect();
+    let mut sizes = vec![Reach::new(system, start).parameters, natural];
+    sizes.dedup();
     let (mut loops, mut idle, mut paths) = (0, 0, 0);
     let stop = loop {
         if monitor.is_cancelled() {
@@ -144,17 +150,19 @@ pub(super) fn fill<E: Evaluate>(
         if options.roots.is_some_and(|roots| known >= roots) {
             break Stop::RootsReached;
         }
-        if idle >= options.patience && idle * known >= 64 {
+        let turns = idle / sizes.len();
+        if turns >= options.patience && turns * known >= CHANCES {
             break Stop::NoProgress;
         }
         if known > options.max_solutions {
             break Stop::TooMany;
         }
         let mut random = Random::new(options.seed, Stream::Loop(loops as u64));
-        let scale = scale(idle, options.patience);
+        let scale = scale(turns, options.patience);
+        let sizes = &sizes[loops % sizes.len()];
         let corner = |z: Complex64, size: f64| z * size * scale;
         let corners =
-            [0, 1].map(|_| random.normals(sizes.len()).into_iter().zip(&sizes).map(|(z, &s)| corner(z, s)).collect());
+            [0, 1].map(|_| random.normals(sizes.len()).into_iter().zip(sizes).map(|(z, &s)| corner(z, s)).collect());
         paths += filling.go_round(&corners, &accept);
         loops += 1;
         idle = if filling.fibre.len() > known { 0 } else { idle + 1 };
@@ -162,17 +170,21 @@ pub(super) fn fill<E: Evaluate>(
     Monodromy { fibre: filling.fibre, stop, loops, paths }
 }
 
+/// Loops times solutions at least, before a search ends without a new one.
+const CHANCES: usize = 128;
 /// The ratio of one scale of loops to the next.
 const SCALE: f64 = 4.0;
-/// Scales above one, and as many below.
-const SCALES: usize = 8;
+/// Scales above one, and below: branch points may lie close together about zero.
+const LARGER: usize = 8;
+const SMALLER: usize = 12;
 
 /// The scale of the next loop: loops that keep to one scale may miss all branch points, so that of
 /// those after half the patience two are larger and one smaller in turn.
 fn scale(idle: usize, patience: usize) -> f64 {
     let Some(k) = idle.checked_sub(patience.div_ceil(2)) else { return 1.0 };
-    let steps = (k / 3 % SCALES + 1) as i32;
-    SCALE.powi(if k % 3 < 2 { steps } else { -steps })
+    let turn = k / 3;
+    let steps = if k % 3 < 2 { (turn % LARGER + 1) as i32 } else { -((turn % SMALLER + 1) as i32) };
+    SCALE.powi(steps)
 }
 
 /// A fibre that is being filled.

@@ -10,6 +10,7 @@
 
 use super::fibre::{Fibre, FibreOptions};
 use super::monodromy::{MonodromyOptions, fill};
+use super::reach::Reach;
 use super::size::natural_size;
 use super::symmetry::Symmetry;
 use super::track::{move_fibre_watched, track_fibre_watched};
@@ -23,6 +24,10 @@ use poly::{CompileError, ComplexDd, Evaluate, Scalar, System};
 /// Points that move off the straight by less than this share of their size move straight: what is
 /// left is rounding error of double-double.
 const STRAIGHT: f64 = 1e-20;
+
+/// Deviations below this pass. Those of whole fibres are rounding errors of double-double, some 1e-30;
+/// a missing point of another size than the others deviates by little more.
+const PASSED: f64 = 1e-18;
 
 /// What the trace test found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,7 +47,7 @@ pub struct TraceTest {
 impl TraceTest {
     /// Whether the test shows that a fibre of `len` points is whole.
     pub fn passed(&self, len: usize) -> bool {
-        self.result(len).is_some_and(|deviation| deviation < 1e-8)
+        self.result(len).is_some_and(|deviation| deviation < PASSED)
     }
 
     /// The deviation for a fibre of `len` points, if it means something: every path ended well, and
@@ -53,24 +58,71 @@ impl TraceTest {
 }
 
 /// The trace test of a fibre of `system`.
+///
+/// The line and the hypersurface move on the natural sizes of parameters and unknowns, unless the
+/// family looks simpler there than it is; where that shows nothing, as far as single parameters
+/// have to move until they matter.
 pub(super) fn trace_test(
     system: &System,
     fibre: &Fibre,
     options: &MonodromyOptions,
     monitor: &Monitor,
 ) -> Result<TraceTest, CompileError> {
-    let (n, m) = (system.variables().len(), system.parameters().len());
-    let failed = TraceTest { deviation: f64::INFINITY, fibre: 0, further: 0, complete: false };
-    let Some(enlarged) = enlarge(system) else { return Ok(failed) };
+    let Some(enlarged) = enlarge(system) else { return Ok(FAILED) };
     let enlarged = enlarged.compile()?;
+    let reach = Reach::new(&system.compile()?, fibre);
+    let natural = Sizes::natural(fibre);
+    let wide = Sizes { parameters: reach.parameters, unknowns: reach.unknowns };
+    let all = match (wide == natural, reach.hidden) {
+        (true, _) => vec![natural],
+        (false, false) => vec![natural, wide],
+        (false, true) => vec![wide],
+    };
+    let mut test = FAILED;
+    for sizes in all {
+        test = on_sizes(&enlarged, fibre, &sizes, options, monitor);
+        if test.passed(fibre.len()) {
+            break;
+        }
+    }
+    Ok(test)
+}
 
+/// Of a test that came to no result.
+const FAILED: TraceTest = TraceTest { deviation: f64::INFINITY, fibre: 0, further: 0, complete: false };
+
+/// Sizes on which the line and the hypersurface move.
+#[derive(PartialEq)]
+struct Sizes {
+    parameters: Vec<f64>,
+    unknowns: Vec<f64>,
+}
+
+impl Sizes {
+    /// Those of the parameters and of the largest solutions.
+    fn natural(fibre: &Fibre) -> Sizes {
+        let largest = |j: usize| fibre.iter().map(|x| x[j].norm()).fold(0.0, f64::max);
+        Sizes {
+            parameters: fibre.parameters.iter().map(|p| natural_size(p.norm())).collect(),
+            unknowns: (0..fibre.dimension).map(|j| natural_size(largest(j))).collect(),
+        }
+    }
+}
+
+/// The trace test with a line and a hypersurface of these sizes.
+fn on_sizes<E: Evaluate>(
+    enlarged: &E,
+    fibre: &Fibre,
+    sizes: &Sizes,
+    options: &MonodromyOptions,
+    monitor: &Monitor,
+) -> TraceTest {
+    let (n, m) = (fibre.dimension, fibre.parameters.len());
     // Parameters of the enlarged family: p, v, a, c, tau.
     let mut random = Random::new(options.seed, Stream::Trace);
     let mut parameters = fibre.parameters.clone();
-    let sizes = fibre.parameters.iter().map(|p| natural_size(p.norm()));
-    let largest = |j: usize| (0..fibre.len()).map(|k| fibre.solution(k)[j].norm()).fold(0.0, f64::max);
-    let shares = (0..n).map(|j| 1.0 / natural_size(largest(j)));
-    let scales = sizes.chain(shares).chain([1.0]);
+    let shares = sizes.unknowns.iter().map(|size| 1.0 / size);
+    let scales = sizes.parameters.iter().copied().chain(shares).chain([1.0]);
     parameters.extend(random.normals(m + n + 1).into_iter().zip(scales).map(|(z, scale)| z * scale));
     // Of so few digits that its multiples are at equal distances to the last bit.
     let tau = random.unit();
@@ -87,24 +139,24 @@ pub(super) fn trace_test(
     }
     let on_fibre = Fibre::new(at(0.0), n + 1, solutions);
     let careful = FibreOptions::default();
-    let moved = |fibre: &Fibre, factor: f64| move_fibre_watched(&enlarged, fibre, &at(factor), &careful, monitor);
-    let Some(start) = moved(&on_fibre, 1.0) else { return Ok(failed) };
+    let moved = |fibre: &Fibre, factor: f64| move_fibre_watched(enlarged, fibre, &at(factor), &careful, monitor);
+    let Some(start) = moved(&on_fibre, 1.0) else { return FAILED };
     let mut search = options.clone();
     search.roots = None;
-    let filled = fill(&enlarged, &start, |_, _| true, &Symmetry::default(), &search, monitor).fibre;
+    let filled = fill(enlarged, &start, |_, _| true, &Symmetry::default(), &search, monitor).fibre;
 
-    let (Some(second), Some(third)) = (moved(&filled, 2.0), moved(&filled, 3.0)) else { return Ok(failed) };
-    let deviation = deviation(&enlarged, &[&filled, &second, &third]);
+    let (Some(second), Some(third)) = (moved(&filled, 2.0), moved(&filled, 3.0)) else { return FAILED };
+    let deviation = deviation(enlarged, &[&filled, &second, &third]);
 
     // Back on lambda = 0: every point of the curve there must be one of the fibre.
-    let (ends, counts) = track_fibre_watched(&enlarged, &filled, &at(0.0), &careful, monitor);
+    let (ends, counts) = track_fibre_watched(enlarged, &filled, &at(0.0), &careful, monitor);
     let back = ends.iter().filter(|(r, x)| r.end == PathEnd::Success && x[n].norm() < 1e-8).count();
-    Ok(TraceTest {
+    TraceTest {
         deviation,
         fibre: back,
         further: filled.len() - back,
         complete: counts.failed == 0 && counts.finite == filled.len(),
-    })
+    }
 }
 
 /// `F(x; p + lambda v) = 0`, `(a x - c) lambda = tau`.

@@ -1,0 +1,17 @@
+//! Families whose parameters enter on scales from 1e-7 to 1e7.
+
+#[path = "../../examples/scaled_families/families.rs"]
+mod families;
+
+use families::{FAMILIES, Outcome};
+
+/// The example `scaled_families` takes more scales and seeds.
+#[test]
+fn a_fibre_is_whole_or_said_to_be_unsettled() {
+    for family in &FAMILIES {
+        for factor in ["1e-7", "1e-4", "1", "1e4", "1e7"] {
+            let outcome = family.outcome(factor, 0);
+            assert!(!matches!(outcome, Outcome::False(_)), "{} {factor} {outcome:?}", family.family(factor));
+        }
+    }
+}
