@@ -110,6 +110,11 @@ impl Given {
         }
     }
 
+    /// Whether all points at which these unknowns are zero are solutions, whatever the others.
+    pub(crate) fn vanish_where(&self, zero: &[bool]) -> bool {
+        self.equations.iter().flatten().all(|term| term.powers.iter().any(|&(j, _)| zero[j]))
+    }
+
     pub(crate) fn unknowns(&self) -> usize {
         self.unknowns
     }

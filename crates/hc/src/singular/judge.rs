@@ -6,7 +6,7 @@ use super::dual::{Count, count};
 use super::eliminate::{Elimination, Stop};
 use super::equations::{Given, Local, Precision};
 use super::number::Number;
-use super::sheet::on_sheet;
+use super::sheet::{leads_on_somewhere, on_sheet};
 use crate::distinct::relative_distance;
 use crate::random::{Random, Stream};
 use num_complex::Complex64;
@@ -66,11 +66,13 @@ pub(crate) enum Why {
 }
 
 /// Orders of the series that are tried.
-const ORDERS: [usize; 14] = [2, 3, 4, 6, 8, 11, 16, 23, 32, 45, 64, 90, 128, 180];
+const ORDERS: [usize; 16] = [2, 3, 4, 5, 6, 7, 8, 11, 16, 23, 32, 45, 64, 90, 128, 180];
 /// Logarithms to base 2 of the tolerances at which ranks are read off near a solution.
 const TOLERANCES: [f64; 7] = [-40.0, -30.0, -20.0, -13.0, -10.0, -6.5, -3.5];
-/// Functionals are counted up to this number at least, whatever the number of paths.
+/// Functionals are counted up to this number at least, whatever the number of paths, and up to the
+/// other where the point may be isolated with more of them.
 const FUNCTIONALS: usize = 12;
+const MANY_FUNCTIONALS: usize = 80;
 /// A regular solution is at most this far from the end of a path, relatively, or this many times
 /// its error.
 const NEAR: f64 = 1e-7;
@@ -81,8 +83,8 @@ const NEAR_SINGULAR: f64 = 1e-3;
 const NOT_ZERO: f64 = 1e-4;
 
 /// Judges a point near which `paths` paths end, with this relative error at most as far as is
-/// known.
-pub(crate) fn judge(given: &Given, point: &[Complex64], paths: usize, error: f64) -> Verdict {
+/// known; `most` may end at any one point.
+pub(crate) fn judge(given: &Given, point: &[Complex64], paths: usize, most: usize, error: f64) -> Verdict {
     if point.iter().any(|z| !z.is_finite()) {
         return Verdict::Unresolved(Why::NoSolution);
     }
@@ -97,9 +99,17 @@ pub(crate) fn judge(given: &Given, point: &[Complex64], paths: usize, error: f64
     if residual(given, point) > NOT_ZERO.max(1e3 * error).min(0.5) {
         return Verdict::NotASolution;
     }
+    if let Some(verdict) = on_axes(given, point, error) {
+        return verdict;
+    }
     let mut why = Why::NoSolution;
+    // Zeros of one precision may be small numbers of the next.
+    let mut before = None;
     for examine in [multiple::<ComplexDd>, multiple::<ComplexMulti<4>>, multiple::<ComplexMulti<8>>] {
-        match examine(given, point, paths) {
+        match examine(given, point, paths, most) {
+            Ok(Verdict::Isolated { multiplicity, .. }) if before != Some(multiplicity) => {
+                (before, why) = (Some(multiplicity), Why::Unclear);
+            }
             Ok(verdict) => return verdict,
             Err(reason) => why = reason,
         }
@@ -160,7 +170,7 @@ pub(crate) fn nearby(given: &Given, point: &[Complex64], wanted: usize) -> Nearb
             if nearby.component.is_none() {
                 let verdict = sheet(given, &start, 1, NEAR_SHEET_AT_MOST);
                 if let Some(Verdict::OnComponent { dimension, point }) =
-                    verdict.or_else(|| multiple::<ComplexDd>(given, &start, 1).ok())
+                    verdict.or_else(|| multiple::<ComplexDd>(given, &start, 1, wanted).ok())
                 {
                     let away = distance(&centre, &local.scaled(&point));
                     let solution = found.iter().map(|z| distance(&centre, z)).fold(f64::INFINITY, f64::min);
@@ -183,7 +193,7 @@ const MISSES: f64 = 1e-6;
 /// them all.
 pub(crate) fn solves(given: &Given, point: &[Complex64]) -> bool {
     let residual = residual(given, point);
-    residual <= SOLVES || residual < MISSES && matches!(judge(given, point, 1, 0.0), Verdict::Regular { .. })
+    residual <= SOLVES || residual < MISSES && matches!(judge(given, point, 1, 1, 0.0), Verdict::Regular { .. })
 }
 
 /// Relative corrections up to this size are due to rounding the point.
@@ -254,7 +264,7 @@ fn sheet(given: &Given, point: &[Complex64], paths: usize, error: f64) -> Option
 
 /// The verdict on a point that is no regular solution, to one precision; an error if that is not
 /// enough.
-fn multiple<S: Precision>(given: &Given, point: &[Complex64], paths: usize) -> Result<Verdict, Why> {
+fn multiple<S: Precision>(given: &Given, point: &[Complex64], paths: usize, most: usize) -> Result<Verdict, Why> {
     let local = given.near::<S>(point);
     let start = local.scaled(point);
     let limit = (2 * paths + 2).max(FUNCTIONALS);
@@ -269,7 +279,7 @@ fn multiple<S: Precision>(given: &Given, point: &[Complex64], paths: usize) -> R
             if found.profile.is_regular() || distance(&start, &found.point) > NEAR_SINGULAR.log2() {
                 continue;
             }
-            match structure(&local, &found, order, limit) {
+            match structure(&local, &found, order, limit, most) {
                 Some(Structure::Isolated(multiplicity)) => {
                     let (point, residual) = rounded(given, &local, &found.point);
                     return Ok(Verdict::Isolated { multiplicity, point, residual });
@@ -285,6 +295,28 @@ fn multiple<S: Precision>(given: &Given, point: &[Complex64], paths: usize) -> R
         }
     }
     Err(why)
+}
+
+/// The verdict on a point with zeros in place of small coordinates, where one of them may take any
+/// value, whatever the others are that are not zero.
+fn on_axes(given: &Given, point: &[Complex64], error: f64) -> Option<Verdict> {
+    let small = NEAR_SHEET_AT_MOST.max(NEAR_SHEET_ERRORS * error).min(NEAR_SINGULAR).log2();
+    let local = given.near::<ComplexDd>(point);
+    let start = local.scaled(point);
+    let mut zero: Vec<bool> = start.iter().map(|z| z.log2() < small).collect();
+    for j in 0..zero.len() {
+        // Freed for good where that can be done.
+        zero[j] = zero[j] && {
+            zero[j] = false;
+            !given.vanish_where(&zero)
+        };
+    }
+    let freed = |(z, zero): (&ComplexDd, &bool)| !zero && z.log2() < small;
+    if !start.iter().zip(&zero).any(freed) {
+        return None;
+    }
+    let kept = point.iter().zip(&zero).map(|(z, &zero)| if zero { Complex64::default() } else { *z });
+    Some(Verdict::OnComponent { dimension: zero.iter().filter(|z| !**z).count(), point: kept.collect() })
 }
 
 /// The verdict where zeros in place of small coordinates give a solution exactly: nothing needs to
@@ -318,7 +350,13 @@ enum Structure {
 
 /// The structure at a refined solution as far as series up to an order tell; `None` where ranks are
 /// not clear.
-fn structure<S: Number>(local: &Local<'_, S>, found: &Deflated<S>, order: usize, limit: usize) -> Option<Structure> {
+fn structure<S: Number>(
+    local: &Local<'_, S>,
+    found: &Deflated<S>,
+    order: usize,
+    limit: usize,
+    most: usize,
+) -> Option<Structure> {
     let (_, jacobian) = local.jacobian(&found.point);
     let pivots = Elimination::new(jacobian, found.point.len(), Stop::After(found.profile.ranks[0]));
     let Some(reduced) = Reduced::new(local, &found.point, &pivots, order) else {
@@ -333,21 +371,23 @@ fn structure<S: Number>(local: &Local<'_, S>, found: &Deflated<S>, order: usize,
         local.spend(order as f64 * (n * many).powi(2) * (0.5 * n + 1.0) * many / 3.0);
         functionals
     };
-    let functionals = counted(limit);
-    // Where deflation has determined the point, it may be isolated with more paths than were
-    // counted.
-    let functionals = match functionals {
-        Count::More if regular_after => match counted(4 * limit) {
-            Count::All(multiplicity) => Count::All(multiplicity),
-            _ => Count::More,
-        },
-        other => other,
-    };
+    let component = || Structure::Component(dimension(&reduced, found.profile.remaining.max(1)));
+    let mut functionals = counted(limit);
+    if matches!(functionals, Count::More) {
+        if leads_on_somewhere(local, found, order, limit) {
+            return Some(component());
+        }
+        // More paths may end at an isolated solution than do nearby.
+        let bound = most.saturating_add(1).clamp(limit, MANY_FUNCTIONALS.max(4 * limit));
+        functionals = if bound > limit { counted(bound) } else { functionals };
+        if matches!(functionals, Count::More) {
+            return Some(if bound > most { component() } else { Structure::Unfinished });
+        }
+    }
     Some(match functionals {
         Count::Unclear => return None,
         Count::All(multiplicity) if regular_after => Structure::Isolated(multiplicity),
-        Count::More => Structure::Component(dimension(&reduced, found.profile.remaining.max(1))),
-        Count::All(_) | Count::Unfinished => Structure::Unfinished,
+        Count::All(_) | Count::More | Count::Unfinished => Structure::Unfinished,
     })
 }
 

@@ -14,7 +14,7 @@ fn judged(text: &str, point: &[f64], paths: usize, error: f64) -> Verdict {
         .enumerate()
         .map(|(j, &x)| Complex64::new(x, 0.0) + Complex64::from_polar(0.7 * error, 1.0 + j as f64))
         .collect();
-    judge(&given, &point, paths, error)
+    judge(&given, &point, paths, paths, error)
 }
 
 fn isolated(text: &str, at: &[f64], paths: usize, error: f64) -> usize {
@@ -86,6 +86,10 @@ fn points_on_sets_of_positive_dimension() {
             let Verdict::OnComponent { dimension: found, .. } = verdict else { panic!("{text}: {verdict:?}") };
             assert_eq!(found, dimension, "{text} {error}");
         }
+        // The axis of x, doubled, and what else ends at the origin.
+        let verdict =
+            judged("3\nx^3*z^2+x*y*z+y^3+z^5;\nx^2*z^3+x*y^2+y*z^3;\nx^2*y*z+x*z^4+y^2;", &[0.0; 3], 28, error);
+        assert!(matches!(verdict, Verdict::OnComponent { dimension: 1, .. }), "{verdict:?}");
         // Where two planes meet, one of them with an embedded line: the point is no general one,
         // and the bound may be that of the line.
         let verdict = judged("3\nx^3*y;\nx*y^2;\nx*y*(x+y);", &[0.0, 0.0, 0.5], 1, error);

@@ -8,13 +8,16 @@ mod dual;
 mod eliminate;
 mod equations;
 mod judge;
+mod modular;
 mod number;
 mod series;
 mod sheet;
+mod simple;
 mod squarefree;
 mod univariate;
 
 pub(crate) use equations::Given;
 pub(crate) use judge::{Verdict, Why, is_moved, judge, nearby, residual, solves};
+pub(crate) use simple::all_simple;
 pub(crate) use squarefree::squarefree;
 pub(crate) use univariate::roots;

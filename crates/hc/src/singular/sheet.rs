@@ -38,10 +38,7 @@ pub(crate) fn on_sheet<S: Number>(
         if found.profile.remaining == 0 {
             return touched(local, &found.point, paths);
         }
-        // The distance that is reached, to the power of the multiplicity, must be visible.
-        let leads =
-            |&stride: &f64| paths as f64 * stride.log2() > 0.5 * UNSEEN && leads_on(local, found, order, stride);
-        STRIDES.iter().any(leads).then_some(found.profile.remaining)
+        leads_on_somewhere(local, found, order, paths).then_some(found.profile.remaining)
     };
     for rank in ranks(local, start) {
         let profile = Profile { ranks: vec![rank], remaining: start.len() - rank };
@@ -100,6 +97,19 @@ fn touched<S: Number>(local: &Local<'_, S>, point: &[S], paths: usize) -> Option
         })
     };
     (1..=DIMENSIONS.min(variables - 1)).find(|&d| DISTANCES.iter().all(|&away| is_beside(d, away)))
+}
+
+/// Whether solutions of the same ranks lead on from this one, which is isolated with at most that
+/// multiplicity, if it is.
+pub(crate) fn leads_on_somewhere<S: Number>(
+    local: &Local<'_, S>,
+    found: &Deflated<S>,
+    order: usize,
+    multiplicity: usize,
+) -> bool {
+    // The distance that is reached, to the power of the multiplicity, must be visible.
+    let is_visible = |stride: f64| multiplicity as f64 * stride.log2() > 0.5 * UNSEEN;
+    STRIDES.iter().any(|&stride| is_visible(stride) && leads_on(local, found, order, stride))
 }
 
 /// Whether the point can be moved by some strides, each to another solution of the same ranks.

@@ -3,8 +3,8 @@
 //! That there are no multiple roots is proven modulo a prime, in little time. Where there are, Yun's
 //! algorithm (1976) finds the factors by greatest common divisors of exact polynomials.
 
-use num_bigint::{BigInt, Sign};
-use num_complex::Complex;
+use super::modular;
+use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, Zero};
 use poly::{Exact, Monomial, Polynomial};
@@ -124,66 +124,11 @@ fn monic(a: Dense) -> Dense {
     }
 }
 
-/// A prime modulo which -1 is a square.
-const PRIME: u64 = 0xFFFF_FFFF_0000_0001;
-/// A square root of -1.
-const ROOT: u64 = 1 << 48;
-
-fn times(a: u64, b: u64) -> u64 {
-    (u128::from(a) * u128::from(b) % u128::from(PRIME)) as u64
-}
-
-fn difference(a: u64, b: u64) -> u64 {
-    if a >= b { a - b } else { a.wrapping_sub(b).wrapping_add(PRIME) }
-}
-
-fn inverse(a: u64) -> u64 {
-    let (mut power, mut base, mut exponent) = (1, a, PRIME - 2);
-    while exponent > 0 {
-        if exponent & 1 == 1 {
-            power = times(power, base);
-        }
-        base = times(base, base);
-        exponent >>= 1;
-    }
-    power
-}
-
 /// Whether a polynomial has no multiple roots even modulo the prime. Where the coefficients have an
 /// image there and the degree stays, a square factor has one too.
 fn is_squarefree(whole: &[Exact]) -> bool {
-    let integer = |n: &BigInt| {
-        let size = (n.magnitude() % PRIME).iter_u64_digits().next().unwrap_or(0);
-        if n.sign() == Sign::Minus { difference(0, size) } else { size }
-    };
-    let rational = |q: &BigRational| {
-        let below = integer(q.denom());
-        (below != 0).then(|| times(integer(q.numer()), inverse(below)))
-    };
-    let image = |c: &Complex<BigRational>| {
-        let imaginary = times(ROOT, rational(&c.im)?);
-        Some(difference(rational(&c.re)?, difference(0, imaginary)))
-    };
-    let Some(mut a) = whole.iter().map(image).collect::<Option<Vec<u64>>>() else { return false };
-    if a.last() == Some(&0) {
-        return false;
-    }
-    let mut b: Vec<u64> = a.iter().zip(0..).skip(1).map(|(&c, e)| times(c, e)).collect();
-    while let Some(&leading) = b.last() {
-        let factor = inverse(leading);
-        while a.len() >= b.len() {
-            let (place, Some(last)) = (a.len() - b.len(), a.pop()) else { break };
-            let factor = times(last, factor);
-            for (r, &c) in a[place..].iter_mut().zip(&b) {
-                *r = difference(*r, times(factor, c));
-            }
-        }
-        while a.last() == Some(&0) {
-            a.pop();
-        }
-        std::mem::swap(&mut a, &mut b);
-    }
-    a.len() == 1
+    let image = whole.iter().map(modular::image).collect::<Option<Vec<u64>>>();
+    image.is_some_and(|image| image.last() != Some(&0) && modular::is_squarefree(image))
 }
 
 #[cfg(test)]

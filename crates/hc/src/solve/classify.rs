@@ -10,7 +10,7 @@ use crate::monitor::Monitor;
 use crate::refine::Refined;
 use crate::singular::Given;
 use num_complex::Complex64;
-use poly::SparseSystem;
+use poly::{Exact, Polynomial, SparseSystem};
 
 /// Imaginary parts of regular solutions up to this share of the point count as zero.
 pub(super) const REAL: f64 = 1e-10;
@@ -66,6 +66,8 @@ impl Classified {
 /// A system that was tracked, and the equations as they were given, by which its ends are judged.
 pub(super) struct Tracked<'a> {
     pub(super) given: &'a Given,
+    /// The same equations as polynomials.
+    pub(super) polynomials: &'a [Polynomial<Exact>],
     /// As many equations as unknowns, their coefficients as parameters.
     pub(super) system: &'a SparseSystem,
     pub(super) target: &'a [Complex64],

@@ -43,6 +43,8 @@ impl Classified {
         let groups = groups(points, CLUSTER);
         let spare = self.lost;
         let judged = judged_groups(tracked, &ends, &groups, &self.solutions, spare);
+        let doubted = judged.iter().any(|(_, v)| matches!(v, Verdict::Isolated { .. } | Verdict::OnComponent { .. }));
+        let simple = doubted && singular::all_simple(tracked.polynomials);
         let mut multiple: Vec<Multiple> = Vec::new();
         let mut refiner = Refiner::new(tracked.system);
         for (group, verdict) in judged {
@@ -69,17 +71,16 @@ impl Classified {
                         self.solutions.push(solution(&point, 1, 1, residual, condition, is_real(&point, REAL)));
                     }
                 }
+                Verdict::OnComponent { .. } if simple => {
+                    self.unresolved(&ends[group[0]].point, paths, Why::Unclear);
+                }
                 Verdict::OnComponent { point, .. } => {
                     self.on_components += paths;
                     self.component_points.push(point);
                 }
                 Verdict::NotASolution if excess.overdetermined() => self.excess += paths,
                 Verdict::NotASolution => self.lost += paths,
-                Verdict::Unresolved(why) => {
-                    self.lost += paths;
-                    let value = ends[group[0]].point.clone();
-                    self.unresolved.push(Unresolved { value, paths, reason: why.to_string() });
-                }
+                Verdict::Unresolved(why) => self.unresolved(&ends[group[0]].point, paths, why),
             }
         }
         for found in multiple {
@@ -89,12 +90,24 @@ impl Classified {
             let surplus = if excess.overdetermined() { 0 } else { found.paths.saturating_sub(found.multiplicity) };
             self.lost += missing + surplus;
             let condition = refiner.judged(tracked.target, &found.point).condition;
-            let real = is_real(&found.point, REAL_SINGULAR);
-            self.solutions.push(Solution {
-                singular: true,
-                ..solution(&found.point, found.multiplicity, found.winding, found.residual, condition, real)
-            });
+            let one = |multiplicity: usize, winding: usize, real: f64| {
+                let real = is_real(&found.point, real);
+                solution(&found.point, multiplicity, winding, found.residual, condition, real)
+            };
+            if simple {
+                // As many solutions that are one point to all digits of a double.
+                let distinct = found.multiplicity.min(found.paths);
+                self.solutions.extend((0..distinct).map(|_| one(1, 1, REAL)));
+            } else {
+                let solution = one(found.multiplicity, found.winding, REAL_SINGULAR);
+                self.solutions.push(Solution { singular: true, ..solution });
+            }
         }
+    }
+
+    fn unresolved(&mut self, end: &[Complex64], paths: usize, why: Why) {
+        self.lost += paths;
+        self.unresolved.push(Unresolved { value: end.to_vec(), paths, reason: why.to_string() });
     }
 
     /// Replaces regular solutions by those of the given equations, where rounded coefficients move
@@ -114,7 +127,8 @@ impl Classified {
                 continue;
             }
             let point = std::mem::take(&mut solution.value);
-            let Verdict::Regular { point: exact, residual } = singular::judge(tracked.given, &point, 1, ROUNDED) else {
+            let Verdict::Regular { point: exact, residual } = singular::judge(tracked.given, &point, 1, 1, ROUNDED)
+            else {
                 doubtful.push(SingularEnd { point, winding: 1, error: ROUNDED });
                 continue;
             };
@@ -182,7 +196,8 @@ fn verdicts(
     known: &[Solution],
     spare: usize,
 ) -> Vec<(Vec<usize>, Verdict)> {
-    let verdict = |k: usize| singular::judge(tracked.given, &ends[k].point, group.len() + spare, ends[k].error);
+    let (paths, most) = (group.len() + spare, ends.len() + spare);
+    let verdict = |k: usize| singular::judge(tracked.given, &ends[k].point, paths, most, ends[k].error);
     // The most accurate of the ends stands for all.
     let Some(&best) = group.iter().min_by(|&&a, &&b| ends[a].error.total_cmp(&ends[b].error)) else {
         return Vec::new();
@@ -267,13 +282,8 @@ pub(super) fn univariate(
         let (zero, _) = part.univariate_degrees()?;
         let roots = singular::roots(&part)?.into_iter().chain((zero > 0).then(Complex64::default));
         for root in roots {
-            let point = match singular::judge(&part, &[root], 1, ACCURATE) {
-                Verdict::Regular { point, .. } => point,
-                _ => return None,
-            };
-            if found.iter().any(|s| relative_distance(&s.value, &point) <= SAME) {
-                return None;
-            }
+            // Several may be one double.
+            let point = [root];
             let condition = refiner.judged(tracked.target, &point).condition;
             let real = is_real(&point, if multiplicity > 1 { REAL_SINGULAR } else { REAL });
             let residual = singular::residual(tracked.given, &point);
@@ -284,6 +294,3 @@ pub(super) fn univariate(
     found.sort_by_key(|s| s.singular);
     (found.iter().map(|s| s.multiplicity).sum::<usize>() == degree).then_some(found)
 }
-
-/// The relative error of simple roots of polynomials in one unknown.
-const ACCURATE: f64 = 1e-12;

@@ -11,7 +11,7 @@ use crate::singular::Given;
 use crate::tracker::Trackers;
 use num_complex::Complex64;
 use num_traits::ToPrimitive;
-use poly::{Evaluate, Polynomial, SparseSystem, System};
+use poly::{Evaluate, Exact, Polynomial, SparseSystem, System};
 
 /// The isolated solutions of the member of `family` at the parameters `target`, from those at the
 /// parameters of `fibre`, all of which are tracked. `trackers` are of the family, compiled.
@@ -27,8 +27,9 @@ pub(crate) fn solve_member<E: Evaluate>(
     let route = Route { trackers, start: fibre, count: fibre.len(), target, excess: &excess, options, monitor };
     let ends = follow(route, false);
     let expanded = if !ends.singular.is_empty() { expanded(family, target) } else { None };
-    let tracked = expanded.as_ref().map(|(given, system, target)| Tracked {
+    let tracked = expanded.as_ref().map(|(polynomials, given, system, target)| Tracked {
         given,
+        polynomials,
         system,
         target,
         line: None,
@@ -46,13 +47,17 @@ pub(crate) fn solve_member<E: Evaluate>(
     }
 }
 
+type Expanded = (Vec<Polynomial<Exact>>, Given, SparseSystem, Vec<Complex64>);
+
 /// The polynomials of a member, and the same as supports and coefficients.
-fn expanded(family: &System, target: &[Complex64]) -> Option<(Given, SparseSystem, Vec<Complex64>)> {
+fn expanded(family: &System, target: &[Complex64]) -> Option<Expanded> {
     let polynomials = family.at(target).ok()?.expand(&Default::default()).ok()?;
     let unknowns = family.variables().len();
     let supports: Vec<Vec<Vec<i32>>> = polynomials.iter().map(Polynomial::support).collect();
     let terms = polynomials.iter().flat_map(|p| p.terms());
     let numbers = terms.map(|(_, c)| Some(Complex64::new(c.re.to_f64()?, c.im.to_f64()?)).filter(|z| z.is_finite()));
     let system = SparseSystem::new(unknowns, &supports).ok()?;
-    Some((Given::new(&polynomials, vec![0; unknowns]), system, numbers.collect::<Option<_>>()?))
+    let target = numbers.collect::<Option<_>>()?;
+    let given = Given::new(&polynomials, vec![0; unknowns]);
+    Some((polynomials, given, system, target))
 }

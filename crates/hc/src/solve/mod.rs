@@ -130,7 +130,8 @@ pub(crate) fn solve_polynomials(
             start_systems += 1;
             retracked += ends.retracked;
             let line = Line { supports: &from.equations.supports, target };
-            let tracked = Tracked { given: &given, system: &from.system, target, line: Some(line), exact, monitor };
+            let system = &from.system;
+            let tracked = Tracked { given: &given, polynomials, system, target, line: Some(line), exact, monitor };
             // Of a polynomial in one unknown there is a better way to all roots than other paths.
             let whole = univariate.is_none_or(|(_, degree)| ends.lost == 0 && ends.regular.len() == degree);
             let roots = (!whole && !monitor.is_cancelled())

@@ -90,6 +90,34 @@ fn a_condition_of_ten_to_the_twelve() {
     check("2\nx^2+y^2-2;\n(x^2+y^2-2)*3+1E-12*(x*y-1)*(x-3)+1E-12*(y-2);", 6, "6x1", 4, false);
 }
 
+/// With `x = 1 + y` and `s` the sum of all `y`: `y_i^2 = -s`, so that all are `r` or `-r`, `s = k r`
+/// and `r = -k` for odd `k`, or all are zero. Five unknowns have 16 such points and one of what is
+/// left of 32 paths.
+#[test]
+fn an_isolated_point_of_a_high_multiplicity() {
+    let equation = |i: usize| format!("x{i}^2+(x1+x2+x3+x4+x5)-2*x{i}-4;\n");
+    check(&format!("5\n{}", (1..=5).map(equation).collect::<String>()), 4, "16x1 1x16", 17, false);
+}
+
+/// Distances of 1e-9 at (13/3, 2/3).
+#[test]
+fn clusters_away_from_the_origin() {
+    let cluster = "2\n(1e9*(x+y-5)-1)*(1e9*(x+y-5)-2)*(1e9*(x+y-5)-4);\n(1e9*(x-2*y-3)-1)*(1e9*(x-2*y-3)-3);";
+    for seed in 0..6 {
+        let found = solve_text(cluster, &options(seed)).unwrap();
+        assert!(found.paths.failed > 0 || multiplicities(&found) == "6x1", "{seed}: {}", multiplicities(&found));
+    }
+}
+
+/// Mignotte's polynomial is irreducible (Eisenstein at 2) and has two roots near 1/1000, 4e-35 apart.
+#[test]
+fn roots_that_doubles_do_not_tell_apart() {
+    let mignotte = |x: &str| format!("{x}^21-2000000*{x}^2+4000*{x}-2");
+    check(&format!("1\n{};", mignotte("x")), 3, "21x1", 3, false);
+    check(&format!("2\n{};\ny-x^2+1;", mignotte("x")), 3, "21x1", 3, false);
+    check(&format!("2\n{};\nx-2*y-1;", mignotte("(x+y)")), 3, "21x1", 3, false);
+}
+
 #[path = "../../examples/singular_families/families.rs"]
 mod families;
 #[path = "../../examples/singular_families/verdict.rs"]

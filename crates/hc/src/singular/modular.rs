@@ -1,0 +1,152 @@
+//! Arithmetic modulo a prime, in which exact numbers have images: what holds there is proved in little
+//! time.
+
+use num_bigint::{BigInt, Sign};
+use num_rational::BigRational;
+use poly::Exact;
+
+/// A prime modulo which -1 is a square.
+pub(super) const PRIME: u64 = 0xFFFF_FFFF_0000_0001;
+/// A square root of -1.
+const ROOT: u64 = 1 << 48;
+
+pub(super) fn times(a: u64, b: u64) -> u64 {
+    (u128::from(a) * u128::from(b) % u128::from(PRIME)) as u64
+}
+
+pub(super) fn difference(a: u64, b: u64) -> u64 {
+    if a >= b { a - b } else { a.wrapping_sub(b).wrapping_add(PRIME) }
+}
+
+pub(super) fn inverse(a: u64) -> u64 {
+    let (mut power, mut base, mut exponent) = (1, a, PRIME - 2);
+    while exponent > 0 {
+        if exponent & 1 == 1 {
+            power = times(power, base);
+        }
+        base = times(base, base);
+        exponent >>= 1;
+    }
+    power
+}
+
+pub(super) fn sum(a: u64, b: u64) -> u64 {
+    difference(a, difference(0, b))
+}
+
+/// The image of an exact number; `None` where the prime divides a denominator.
+pub(super) fn image(c: &Exact) -> Option<u64> {
+    let integer = |n: &BigInt| {
+        let size = (n.magnitude() % PRIME).iter_u64_digits().next().unwrap_or(0);
+        if n.sign() == Sign::Minus { difference(0, size) } else { size }
+    };
+    let rational = |q: &BigRational| {
+        let below = integer(q.denom());
+        (below != 0).then(|| times(integer(q.numer()), inverse(below)))
+    };
+    Some(sum(rational(&c.re)?, times(ROOT, rational(&c.im)?)))
+}
+
+/// Whether a polynomial, its coefficients by ascending exponents and the last not zero, has no
+/// multiple roots.
+pub(super) fn is_squarefree(whole: Vec<u64>) -> bool {
+    let slope = whole.iter().zip(0..).skip(1).map(|(&c, e)| times(c, e)).collect();
+    euclid(whole, slope).0.len() == 1
+}
+
+/// The resultant of two polynomials of the same kind.
+pub(super) fn resultant(a: Vec<u64>, b: Vec<u64>) -> u64 {
+    euclid(a, b).1
+}
+
+/// A greatest common divisor, not zero, and the resultant, by Euclid's algorithm.
+fn euclid(mut a: Vec<u64>, mut b: Vec<u64>) -> (Vec<u64>, u64) {
+    trim(&mut b);
+    let mut resultant = 1;
+    while let Some(&leading) = b.last() {
+        let (before, degree) = (a.len() - 1, b.len() - 1);
+        let factor = inverse(leading);
+        while a.len() >= b.len() {
+            let (place, Some(last)) = (a.len() - b.len(), a.pop()) else { break };
+            let factor = times(last, factor);
+            for (r, &c) in a[place..].iter_mut().zip(&b) {
+                *r = difference(*r, times(factor, c));
+            }
+        }
+        trim(&mut a);
+        // res(a, b) = (-1)^(deg a deg b) lead(b)^(deg a - deg r) res(b, r), r the remainder; that of
+        // a constant is its power.
+        if degree > 0 {
+            let lost = before + 1 - a.len().max(1);
+            resultant = times(resultant, power(leading, lost));
+            if before * degree % 2 == 1 {
+                resultant = difference(0, resultant);
+            }
+        } else {
+            resultant = times(resultant, power(leading, before));
+        }
+        std::mem::swap(&mut a, &mut b);
+    }
+    if a.len() > 1 {
+        resultant = 0;
+    }
+    (a, resultant)
+}
+
+fn power(mut base: u64, mut exponent: usize) -> u64 {
+    let mut power = 1;
+    while exponent > 0 {
+        if exponent & 1 == 1 {
+            power = times(power, base);
+        }
+        base = times(base, base);
+        exponent >>= 1;
+    }
+    power
+}
+
+fn trim(a: &mut Vec<u64>) {
+    while a.last() == Some(&0) {
+        a.pop();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{PRIME, difference, resultant, times};
+    use proptest::prelude::{prop, prop_assert_eq, proptest};
+
+    fn with_roots(leading: u64, roots: &[u64]) -> Vec<u64> {
+        roots.iter().fold(vec![leading], |p, &root| {
+            let mut next = vec![0];
+            next.extend(&p);
+            for (n, &c) in next.iter_mut().zip(&p) {
+                *n = difference(*n, times(root, c));
+            }
+            next
+        })
+    }
+
+    proptest! {
+        /// The product of the differences of all roots.
+        #[test]
+        fn resultants_are_those_of_the_roots(
+            a in prop::collection::vec(0..PRIME, 0..6),
+            b in prop::collection::vec(0..PRIME, 1..6),
+            leading in (1..PRIME, 1..PRIME),
+        ) {
+            let mut want = 1;
+            for &x in &a {
+                for &y in &b {
+                    want = times(want, difference(x, y));
+                }
+            }
+            (0..b.len()).for_each(|_| want = times(want, leading.0));
+            (0..a.len()).for_each(|_| want = times(want, leading.1));
+            prop_assert_eq!(resultant(with_roots(leading.0, &a), with_roots(leading.1, &b)), want);
+            let mut shared = a;
+            shared.push(b[0]);
+            prop_assert_eq!(resultant(with_roots(leading.0, &shared), with_roots(leading.1, &b)), 0);
+        }
+    }
+}
