@@ -67,6 +67,9 @@ impl Stream {
     }
 }
 
+/// What the coordinates of short numbers are multiples of the reciprocal of.
+const SHORT: f64 = 16_777_216.0;
+
 /// A stream of generic complex numbers.
 pub struct Random(Pcg64);
 
@@ -87,6 +90,14 @@ impl Random {
     /// A point on the unit circle.
     pub fn unit(&mut self) -> Complex64 {
         Complex64::from_polar(1.0, std::f64::consts::TAU * self.0.random::<f64>())
+    }
+
+    /// A point near the unit circle whose coordinates have 24 digits at most: sums of several, and of
+    /// their multiples, are exact.
+    pub fn short_unit(&mut self) -> Complex64 {
+        let Complex64 { re, im } = self.unit();
+        let short = |x: f64| (x * SHORT).round() / SHORT;
+        Complex64::new(short(re), short(im))
     }
 
     /// Independent complex standard normal numbers.

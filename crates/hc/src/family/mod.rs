@@ -31,4 +31,5 @@ pub use monodromy::{Monodromy, MonodromyOptions, Stop};
 pub use start_file::{StartFile, StartFileError};
 pub use targets::Targets;
 pub use trace::TraceTest;
+pub(crate) use trace::{PASSED, deviation};
 pub use track::{FibreTracker, move_fibre, track_fibre};

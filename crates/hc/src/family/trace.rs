@@ -21,13 +21,13 @@ use crate::tracker::PathEnd;
 use num_complex::Complex64;
 use poly::{CompileError, ComplexDd, Evaluate, Scalar, System};
 
-/// Points that move off the straight by less than this share of their size move straight: what is
-/// left is rounding error of double-double.
-const STRAIGHT: f64 = 1e-20;
+/// A sum of points that moves off the straight by less than this share of their sizes moves straight:
+/// what is left is rounding error of double-double.
+const STRAIGHT: f64 = 1e-26;
 
 /// Deviations below this pass. Those of whole fibres are rounding errors of double-double, some 1e-30;
 /// a missing point of another size than the others deviates by little more.
-const PASSED: f64 = 1e-18;
+pub(crate) const PASSED: f64 = 1e-18;
 
 /// What the trace test found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -125,8 +125,7 @@ fn on_sizes<E: Evaluate>(
     let scales = sizes.parameters.iter().copied().chain(shares).chain([1.0]);
     parameters.extend(random.normals(m + n + 1).into_iter().zip(scales).map(|(z, scale)| z * scale));
     // Of so few digits that its multiples are at equal distances to the last bit.
-    let tau = random.unit();
-    let tau = Complex64::new(f64::from(tau.re as f32), f64::from(tau.im as f32));
+    let tau = random.short_unit();
     let at = |factor: f64| {
         let mut p = parameters.clone();
         p.push(tau * factor);
@@ -181,7 +180,7 @@ fn enlarge(system: &System) -> Option<System> {
 /// How far the sum of the points of three fibres at equal distances, in the same order, moves off
 /// the straight: the largest of the coordinates', each relative to what the single points move off
 /// it. That does not depend on the scale, nor on how far the points move.
-fn deviation<E: Evaluate>(system: &E, fibres: &[&Fibre; 3]) -> f64 {
+pub(crate) fn deviation<E: Evaluate>(system: &E, fibres: &[&Fibre; 3]) -> f64 {
     let n = fibres[0].dimension;
     let zero = ComplexDd::from(Complex64::default());
     let mut refiner = Refiner::new(system);
@@ -196,9 +195,11 @@ fn deviation<E: Evaluate>(system: &E, fibres: &[&Fibre; 3]) -> f64 {
             sizes[j] += Complex64::from(b[j]).norm();
         }
     }
+    // Of the largest coordinate: others may be zero but for its rounding errors.
+    let size = sizes.iter().copied().fold(0.0, f64::max);
     let relative = |j: usize| {
-        let least = (STRAIGHT * sizes[j]).max(f64::MIN_POSITIVE);
-        Complex64::from(whole[j]).norm() / single[j].max(least)
+        let off = Complex64::from(whole[j]).norm();
+        if off <= STRAIGHT * size { 0.0 } else { off / single[j] }
     };
     let largest = |a: f64, b: f64| if b.is_nan() { f64::INFINITY } else { a.max(b) };
     (0..n).map(relative).fold(0.0, largest)

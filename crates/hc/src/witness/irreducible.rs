@@ -3,7 +3,7 @@
 
 use super::slices::Slices;
 use crate::distinct::relative_distance;
-use crate::family::{Fibre, FibreOptions, MonodromyOptions, monodromy, move_fibre};
+use crate::family::{Fibre, FibreOptions, MonodromyOptions, PASSED, deviation, monodromy, move_fibre};
 use crate::random::{Random, Stream};
 use num_complex::Complex64;
 use poly::{Evaluate, Exact, Polynomial};
@@ -12,8 +12,6 @@ use poly::{Evaluate, Exact, Polynomial};
 const SAME: f64 = 1e-8;
 /// Searches with other loops, while the trace test says that points are missing.
 const SEARCHES: u64 = 4;
-/// Deviations below this pass the trace test.
-const PASSED: f64 = 1e-8;
 
 /// Witness points of one component, by their indices.
 pub(super) struct Orbit {
@@ -64,23 +62,16 @@ pub(super) fn orbits(
 }
 
 /// How far the sum of the points is from moving linearly while the hyperplanes move in parallel,
-/// relative to its motion: rounding error if the points are all of one or more components.
+/// relative to what the points bend: rounding error if they are all of one or more components.
 fn trace<E: Evaluate>(family: &E, fibre: &Fibre, unknowns: usize, seed: u64) -> Option<f64> {
     let mut random = Random::new(seed, Stream::Trace);
-    // The offsets move; slopes, as many as unknowns before each, stay.
-    let step = |k: usize| if k % (unknowns + 1) == unknowns { random.unit() } else { Complex64::new(0.0, 0.0) };
+    // The offsets move; slopes, as many as unknowns before each, stay. Steps and offsets have so few
+    // digits that sums are exact.
+    let step = |k: usize| if k % (unknowns + 1) == unknowns { random.short_unit() } else { Complex64::default() };
     let direction: Vec<Complex64> = (0..fibre.parameters.len()).map(step).collect();
     let at = |s: f64| fibre.parameters.iter().zip(&direction).map(|(b, v)| b + v * s).collect::<Vec<_>>();
     let options = FibreOptions::default();
     let second = move_fibre(family, fibre, &at(1.0), &options)?;
     let third = move_fibre(family, &second, &at(2.0), &options)?;
-    let sum = |fibre: &Fibre, j: usize| (0..fibre.len()).map(|k| fibre.solution(k)[j]).sum::<Complex64>();
-    // Of all coordinates together: some may be zero.
-    let all = [fibre, &second, &third];
-    let size = all.iter().flat_map(|fibre| &fibre.solutions).map(|z| z.norm()).fold(f64::MIN_POSITIVE, f64::max);
-    let deviation = |j: usize| {
-        let [a, b, c] = all.map(|fibre| sum(fibre, j));
-        (a - 2.0 * b + c).norm() / size
-    };
-    Some((0..fibre.dimension).map(deviation).fold(0.0, f64::max))
+    Some(deviation(family, &[fibre, &second, &third]))
 }

@@ -18,7 +18,7 @@ impl Slices {
     pub(super) fn new(unknowns: usize, dimension: usize, seed: u64) -> Slices {
         let mut random = Random::new(seed, Stream::Slice(dimension as u64));
         let slopes = (0..dimension).map(|_| (0..unknowns).map(|_| random.unit()).collect()).collect();
-        Slices { slopes, offsets: (0..dimension).map(|_| random.unit()).collect() }
+        Slices { slopes, offsets: (0..dimension).map(|_| random.short_unit()).collect() }
     }
 
     /// As polynomials, exactly.
