@@ -19,15 +19,7 @@ pub(super) fn difference(a: u64, b: u64) -> u64 {
 }
 
 pub(super) fn inverse(a: u64) -> u64 {
-    let (mut power, mut base, mut exponent) = (1, a, PRIME - 2);
-    while exponent > 0 {
-        if exponent & 1 == 1 {
-            power = times(power, base);
-        }
-        base = times(base, base);
-        exponent >>= 1;
-    }
-    power
+    power(a, PRIME - 2)
 }
 
 pub(super) fn sum(a: u64, b: u64) -> u64 {
@@ -78,12 +70,12 @@ fn euclid(mut a: Vec<u64>, mut b: Vec<u64>) -> (Vec<u64>, u64) {
         // a constant is its power.
         if degree > 0 {
             let lost = before + 1 - a.len().max(1);
-            resultant = times(resultant, power(leading, lost));
+            resultant = times(resultant, power(leading, lost as u64));
             if before * degree % 2 == 1 {
                 resultant = difference(0, resultant);
             }
         } else {
-            resultant = times(resultant, power(leading, before));
+            resultant = times(resultant, power(leading, before as u64));
         }
         std::mem::swap(&mut a, &mut b);
     }
@@ -93,7 +85,7 @@ fn euclid(mut a: Vec<u64>, mut b: Vec<u64>) -> (Vec<u64>, u64) {
     (a, resultant)
 }
 
-fn power(mut base: u64, mut exponent: usize) -> u64 {
+fn power(mut base: u64, mut exponent: u64) -> u64 {
     let mut power = 1;
     while exponent > 0 {
         if exponent & 1 == 1 {
