@@ -7,7 +7,6 @@
 
 use super::fibre::{Fibre, FibreOptions};
 use super::reach::Reach;
-use super::size::natural_size;
 use super::symmetry::{ACCURATE, Symmetry};
 use super::track::track_fibre_watched;
 use crate::distinct::{coincidences, relative_distance};
@@ -138,8 +137,8 @@ pub(super) fn fill<E: Evaluate>(
         filling.add(start.solutions.chunks_exact(start.dimension.max(1)));
     }
     // Loops have each of these sizes in turn.
-    let natural: Vec<f64> = start.parameters.iter().map(|p| natural_size(p.norm())).collect();
-    let mut sizes = vec![Reach::new(system, start).parameters, natural];
+    let Reach { natural, wide, .. } = Reach::new(system, start);
+    let mut sizes = vec![wide.parameters, natural.parameters];
     sizes.dedup();
     let (mut loops, mut idle, mut paths) = (0, 0, 0);
     let stop = loop {

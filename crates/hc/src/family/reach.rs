@@ -2,7 +2,7 @@
 //! family looks linear, loops meet no branch point, and the sum of any points moves straight.
 
 use super::fibre::Fibre;
-use super::size::natural_size;
+use super::size::{Sizes, largest, natural_size};
 use crate::random::{Random, Stream};
 use crate::refine::Refiner;
 use num_complex::Complex64;
@@ -10,10 +10,10 @@ use poly::{ComplexDd, Evaluate, Scalar};
 
 /// Ratio of one scale that is tried to the next, and of the first to the natural size.
 const SCALE: f64 = 64.0;
-/// Scales tried; doubles hold no sums of numbers further apart.
-const SCALES: i32 = 9;
 /// The square root of that ratio: between two scales.
 const MIDDLE: f64 = 8.0;
+/// Scales tried; doubles hold no sums of numbers further apart.
+const SCALES: i32 = 9;
 /// A coordinate has left its tangent where the second of two equal steps differs from the first by
 /// this share.
 const BENT: f64 = 0.1;
@@ -24,13 +24,14 @@ const POINTS: usize = 8;
 
 /// The sizes on which parameters and unknowns vary about the points of a fibre.
 pub(super) struct Reach {
-    /// Of each parameter: the [natural size](natural_size), or that times 8 and a power of 64, such
-    /// that half of the points are straight on an eighth of it, and not on eight times that.
-    pub(super) parameters: Vec<f64>,
-    /// Of each unknown: the natural size of the largest of the points and of what they move by.
-    pub(super) unknowns: Vec<f64>,
+    /// The sizes of parameters and points alone.
+    pub(super) natural: Sizes,
+    /// Of each parameter its natural size, or that times 8 and a power of 64, such that half of the
+    /// points are straight on an eighth of it, and not on eight times that. Of each unknown the
+    /// natural size of the largest of the points and of what they move by.
+    pub(super) wide: Sizes,
     /// Whether some coordinate of most points is straight even where all parameters move by their
-    /// natural sizes, and not on those here: the family looks simpler than it is there.
+    /// natural sizes, and not on the wide ones: the family looks simpler than it is there.
     pub(super) hidden: bool,
 }
 
@@ -39,10 +40,8 @@ impl Reach {
     pub(super) fn new<E: Evaluate>(system: &E, fibre: &Fibre) -> Reach {
         let mut walker = Walker { refiner: Refiner::new(system), parameters: &fibre.parameters };
         let points: Vec<&[Complex64]> = fibre.iter().step_by(fibre.len().div_ceil(POINTS).max(1)).collect();
-        let size = |j: usize| fibre.iter().map(|x| x[j].norm()).fold(0.0, f64::max);
-        let mut unknowns: Vec<f64> = (0..fibre.dimension).map(size).collect();
-        let natural: Vec<f64> = fibre.parameters.iter().map(|p| natural_size(p.norm())).collect();
-        let mut parameters = natural.clone();
+        let natural = Sizes::natural(fibre);
+        let (mut parameters, mut unknowns) = (natural.parameters.clone(), largest(fibre));
         for (k, size) in parameters.iter_mut().enumerate() {
             let mut scales: Vec<i32> = points.iter().filter_map(|x| walker.scale(k, *size, x)).collect();
             scales.sort_unstable();
@@ -58,19 +57,20 @@ impl Reach {
                 *size = MIDDLE * straight;
             }
         }
-        let hidden = parameters != natural && {
+        let hidden = parameters != natural.parameters && {
             let change = |sizes: &[f64]| -> Vec<Complex64> {
                 let random = Random::new(0, Stream::Trace).normals(sizes.len());
                 random.into_iter().zip(sizes).map(|(z, size)| z * (MIDDLE * size)).collect()
             };
-            let (near, far) = (change(&natural), change(&parameters));
+            let (near, far) = (change(&natural.parameters), change(&parameters));
             let mut hides = |x: &&[Complex64]| {
                 let (near, far) = (walker.straight(&near, x), walker.straight(&far, x));
                 near.iter().zip(&far).any(|(&near, &far)| near && !far)
             };
             2 * points.iter().filter(|x| hides(x)).count() > points.len()
         };
-        Reach { parameters, unknowns: unknowns.into_iter().map(natural_size).collect(), hidden }
+        let unknowns = unknowns.into_iter().map(natural_size).collect();
+        Reach { natural, wide: Sizes { parameters, unknowns }, hidden }
     }
 }
 
@@ -140,7 +140,7 @@ mod tests {
         let text = format!("name = \"f\"\nunknowns = [\"x\"]\nparameters = [\"a\"]\nequations = [\"{equation}\"]");
         let family: crate::Family = text.parse().unwrap();
         let fibre = Fibre::new(vec![p.into()], 1, vec![Complex64::new(x, 0.0)]);
-        Reach::new(family.program(), &fibre).parameters
+        Reach::new(family.program(), &fibre).wide.parameters
     }
 
     /// `x^3 - 12 x` turns at 16.

@@ -11,7 +11,7 @@
 use super::fibre::{Fibre, FibreOptions};
 use super::monodromy::{MonodromyOptions, fill};
 use super::reach::Reach;
-use super::size::natural_size;
+use super::size::Sizes;
 use super::symmetry::Symmetry;
 use super::track::{move_fibre_watched, track_fibre_watched};
 use crate::monitor::Monitor;
@@ -45,7 +45,8 @@ pub struct TraceTest {
 }
 
 impl TraceTest {
-    /// Whether the test shows that a fibre of `len` points is whole.
+    /// Whether the test shows that a fibre of `len` points is whole: it has a [result](Self::result),
+    /// which is below 1e-18.
     pub fn passed(&self, len: usize) -> bool {
         self.result(len).is_some_and(|deviation| deviation < PASSED)
     }
@@ -70,10 +71,8 @@ pub(super) fn trace_test(
 ) -> Result<TraceTest, CompileError> {
     let Some(enlarged) = enlarge(system) else { return Ok(FAILED) };
     let enlarged = enlarged.compile()?;
-    let reach = Reach::new(&system.compile()?, fibre);
-    let natural = Sizes::natural(fibre);
-    let wide = Sizes { parameters: reach.parameters, unknowns: reach.unknowns };
-    let all = match (wide == natural, reach.hidden) {
+    let Reach { natural, wide, hidden } = Reach::new(&system.compile()?, fibre);
+    let all = match (wide == natural, hidden) {
         (true, _) => vec![natural],
         (false, false) => vec![natural, wide],
         (false, true) => vec![wide],
@@ -90,24 +89,6 @@ pub(super) fn trace_test(
 
 /// Of a test that came to no result.
 const FAILED: TraceTest = TraceTest { deviation: f64::INFINITY, fibre: 0, further: 0, complete: false };
-
-/// Sizes on which the line and the hypersurface move.
-#[derive(PartialEq)]
-struct Sizes {
-    parameters: Vec<f64>,
-    unknowns: Vec<f64>,
-}
-
-impl Sizes {
-    /// Those of the parameters and of the largest solutions.
-    fn natural(fibre: &Fibre) -> Sizes {
-        let largest = |j: usize| fibre.iter().map(|x| x[j].norm()).fold(0.0, f64::max);
-        Sizes {
-            parameters: fibre.parameters.iter().map(|p| natural_size(p.norm())).collect(),
-            unknowns: (0..fibre.dimension).map(|j| natural_size(largest(j))).collect(),
-        }
-    }
-}
 
 /// The trace test with a line and a hypersurface of these sizes.
 fn on_sizes<E: Evaluate>(

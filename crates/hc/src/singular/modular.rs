@@ -10,18 +10,22 @@ pub(super) const PRIME: u64 = 0xFFFF_FFFF_0000_0001;
 /// A square root of -1.
 const ROOT: u64 = 1 << 48;
 
+/// The product.
 pub(super) fn times(a: u64, b: u64) -> u64 {
     (u128::from(a) * u128::from(b) % u128::from(PRIME)) as u64
 }
 
+/// The difference.
 pub(super) fn difference(a: u64, b: u64) -> u64 {
     if a >= b { a - b } else { a.wrapping_sub(b).wrapping_add(PRIME) }
 }
 
+/// The inverse of what is not zero.
 pub(super) fn inverse(a: u64) -> u64 {
     power(a, PRIME - 2)
 }
 
+/// The sum.
 pub(super) fn sum(a: u64, b: u64) -> u64 {
     difference(a, difference(0, b))
 }
@@ -97,7 +101,8 @@ fn power(mut base: u64, mut exponent: u64) -> u64 {
     power
 }
 
-fn trim(a: &mut Vec<u64>) {
+/// Drops leading coefficients that are zero.
+pub(super) fn trim(a: &mut Vec<u64>) {
     while a.last() == Some(&0) {
         a.pop();
     }

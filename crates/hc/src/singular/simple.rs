@@ -1,7 +1,7 @@
 //! Whether two polynomials in two unknowns have no multiple common roots, proved by their resultant
 //! modulo a prime.
 
-use super::modular::{difference, image, inverse, is_squarefree, resultant, sum, times};
+use super::modular::{difference, image, inverse, is_squarefree, resultant, sum, times, trim};
 use crate::random::{Random, Stream};
 use num_complex::Complex64;
 use poly::{Exact, Polynomial};
@@ -15,10 +15,9 @@ type Term = ([usize; 2], u64);
 /// Whether all common roots are isolated and simple; false tells nothing.
 ///
 /// After a random change `x = u - t y` of coordinates the resultant with respect to `y` has the
-/// coordinates `u` of all roots with their multiplicities as roots. Where it has no multiple root
-/// modulo the prime and as many as the degrees allow, or fewer because roots are at infinity, it has
-/// none; a multiple root would have to lose its degree modulo the prime, which for a random `t`
-/// happens once in some 1e16 times.
+/// coordinates `u` of all finite roots as roots, with the same multiplicities. If it had a multiple
+/// one, so would its image modulo the prime, unless the leading coefficient vanishes there: of all
+/// `t`, at most one in 1e13 does that.
 pub(crate) fn all_simple(polynomials: &[Polynomial<Exact>]) -> bool {
     let [f, g] = polynomials else { return false };
     let (Some(f), Some(g)) = (terms(f), terms(g)) else { return false };
@@ -28,9 +27,8 @@ pub(crate) fn all_simple(polynomials: &[Polynomial<Exact>]) -> bool {
     };
     let Complex64 { re, im } = Random::new(0, Stream::Combinations).unit();
     let t = (re.to_bits() ^ im.to_bits().rotate_left(32)) >> 1;
-    let places: Vec<u64> = (0..=roots as u64).collect();
-    let values: Vec<u64> = places.iter().map(|&u| resultant(line(&f, u, t), line(&g, u, t))).collect();
-    let whole = interpolated(&places, values);
+    let values = (0..=roots as u64).map(|u| resultant(line(&f, u, t), line(&g, u, t))).collect();
+    let whole = interpolated(values);
     whole.len() > 1 && is_squarefree(whole)
 }
 
@@ -57,19 +55,17 @@ fn line(terms: &[Term], u: u64, t: u64) -> Vec<u64> {
             whole[*b] = sum(whole[*b], *c);
         }
     }
-    while whole.last() == Some(&0) {
-        whole.pop();
-    }
+    trim(&mut whole);
     if whole.is_empty() { vec![0] } else { whole }
 }
 
-/// The polynomial with these values at these places, by ascending powers, by Newton's divided
+/// The polynomial with these values at 0, 1, 2 ..., by ascending powers, by Newton's divided
 /// differences.
-fn interpolated(places: &[u64], mut values: Vec<u64>) -> Vec<u64> {
-    let n = places.len();
+fn interpolated(mut values: Vec<u64>) -> Vec<u64> {
+    let n = values.len();
     for order in 1..n {
+        let below = inverse(order as u64);
         for k in (order..n).rev() {
-            let below = inverse(difference(places[k], places[k - order]));
             values[k] = times(difference(values[k], values[k - 1]), below);
         }
     }
@@ -78,13 +74,11 @@ fn interpolated(places: &[u64], mut values: Vec<u64>) -> Vec<u64> {
         // whole * (u - place) + value
         whole.insert(0, 0);
         for j in 1..whole.len() {
-            whole[j - 1] = difference(whole[j - 1], times(places[k], whole[j]));
+            whole[j - 1] = difference(whole[j - 1], times(k as u64, whole[j]));
         }
         whole[0] = sum(whole[0], values[k]);
     }
-    while whole.last() == Some(&0) {
-        whole.pop();
-    }
+    trim(&mut whole);
     whole
 }
 

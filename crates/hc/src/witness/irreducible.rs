@@ -75,3 +75,29 @@ fn trace<E: Evaluate>(family: &E, fibre: &Fibre, unknowns: usize, seed: u64) -> 
     let third = move_fibre(family, &second, &at(2.0), &options)?;
     Some(deviation(family, &[fibre, &second, &third]))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::SolveOptions;
+    use crate::monitor::Monitor;
+    use crate::solve::solve_polynomials;
+
+    /// A circle of radius 1e6, on the scale of which the hyperplane hardly moves.
+    #[test]
+    fn a_missing_point_of_a_large_circle_shows() {
+        let system: poly::System = "x^2 + y^2 - 1000000000000".parse().unwrap();
+        let given = system.expand(&Default::default()).unwrap();
+        let slices = Slices::new(2, 1, 0);
+        let sliced = [given.clone(), slices.polynomials(2)].concat();
+        let found = solve_polynomials(&sliced, system.variables(), &SolveOptions::new(), &Monitor::default()).unwrap();
+        let points: Vec<Vec<Complex64>> = found.solutions.into_iter().map(|s| s.value).collect();
+        assert_eq!(points.len(), 2);
+        let family = slices.family(&given, 2, 0).unwrap().compile().unwrap();
+        let deviation = |points: &[Vec<Complex64>]| {
+            trace(&family, &Fibre::new(slices.parameters(), 2, points.concat()), 2, 0).unwrap()
+        };
+        assert!(deviation(&points) < PASSED);
+        assert!(deviation(&points[..1]) > 0.1);
+    }
+}

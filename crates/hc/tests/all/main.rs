@@ -1,5 +1,5 @@
-//! Tests of `hc` through its public items, in one program: each program of tests links the library anew. Those that count what a process
-//! allocates are programs of their own.
+//! Tests of `hc` through its public items, in one program: each program of tests links the library
+//! anew. Those that count what a process allocates are programs of their own.
 
 mod certifying;
 mod common;

@@ -99,7 +99,7 @@ fn an_isolated_point_of_a_high_multiplicity() {
     check(&format!("5\n{}", (1..=5).map(equation).collect::<String>()), 4, "16x1 1x16", 17, false);
 }
 
-/// Distances of 1e-9 at (13/3, 2/3).
+/// Six points 1e-9 apart at (13/3, 2/3): all of them, or said not to be all.
 #[test]
 fn clusters_away_from_the_origin() {
     let cluster = "2\n(1e9*(x+y-5)-1)*(1e9*(x+y-5)-2)*(1e9*(x+y-5)-4);\n(1e9*(x-2*y-3)-1)*(1e9*(x-2*y-3)-3);";

@@ -1,4 +1,5 @@
-//! Tests of `poly` through its public items, in one program: each program of tests links the library anew.
+//! Tests of `poly` through its public items, in one program: each program of tests links the library
+//! anew.
 
 mod double_double;
 #[cfg(feature = "emit")]
