@@ -104,11 +104,44 @@ pub(crate) fn deflated<S: Number>(
 /// Iterates with the ranks of a profile, after a first correction of size `before`.
 pub(crate) fn settled<S: Number>(
     local: &Local<'_, S>,
+    point: Vec<S>,
+    order: usize,
+    profile: &Profile,
+    before: f64,
+) -> Option<Deflated<S>> {
+    let last = iterated(local, point, order, profile, before)?;
+    let clear = last.accepted >= CLEAR * S::BITS && last.rejected <= ZERO * S::BITS;
+    let solves = local.residual(&last.point) <= SOLVED * S::BITS;
+    (clear && solves).then_some(Deflated { point: last.point, profile: last.profile })
+}
+
+/// The point near `start` at which the equations of a deflation with a profile vanish: the centre of
+/// the solutions around it, where these are several. The profile is the one that pivots above
+/// `tolerance` show at the start, if it is `wanted` and determines all unknowns.
+pub(super) fn centred<S: Number>(
+    local: &Local<'_, S>,
+    start: &[S],
+    order: usize,
+    tolerance: f64,
+    wanted: impl FnOnce(&Profile) -> bool,
+) -> Option<(Vec<S>, Profile)> {
+    let first = step(local, start, order, Ranks::Tolerance(tolerance))?;
+    if first.profile.remaining > 0 || !wanted(&first.profile) {
+        return None;
+    }
+    let before = distance(start, &first.point);
+    let last = iterated(local, first.point, order, &first.profile, before)?;
+    Some((last.point, first.profile))
+}
+
+/// The last step of an iteration that converges as Newton's method does.
+fn iterated<S: Number>(
+    local: &Local<'_, S>,
     mut point: Vec<S>,
     order: usize,
     profile: &Profile,
     mut before: f64,
-) -> Option<Deflated<S>> {
+) -> Option<Step<S>> {
     let mut slow = 0;
     for _ in 0..ITERATIONS {
         let next = step(local, &point, order, Ranks::Known(profile))?;
@@ -121,10 +154,7 @@ pub(crate) fn settled<S: Number>(
         }
         before = correction;
         if correction <= CONVERGED * S::BITS {
-            let last = step(local, &point, order, Ranks::Known(profile))?;
-            let clear = last.accepted >= CLEAR * S::BITS && last.rejected <= ZERO * S::BITS;
-            let solves = local.residual(&last.point) <= SOLVED * S::BITS;
-            return (clear && solves).then_some(Deflated { point: last.point, profile: last.profile });
+            return step(local, &point, order, Ranks::Known(profile));
         }
     }
     None
@@ -157,20 +187,6 @@ pub(crate) fn moved<S: Number>(
     let factor = S::from_c64(Complex64::new(stride * (-size).exp2(), 0.0));
     let start = point.iter().zip(&direction).map(|(x, d)| S::mul_add(&factor, d, x)).collect();
     Some(settled(local, start, order, profile, f64::INFINITY)?.point)
-}
-
-/// Steps of Newton's method towards a solution, regular or not.
-const APPROACH: usize = 5;
-
-/// A point after some steps of Newton's method.
-pub(crate) fn approached<S: Number>(local: &Local<'_, S>, mut point: Vec<S>) -> Vec<S> {
-    for _ in 0..APPROACH {
-        match step(local, &point, 1, Ranks::Tolerance(f64::NEG_INFINITY)) {
-            Some(next) if next.profile.is_regular() => point = next.point,
-            _ => break,
-        }
-    }
-    point
 }
 
 /// The logarithm to base 2 of the largest difference of coordinates.
@@ -254,7 +270,7 @@ fn step<S: Number>(local: &Local<'_, S>, x: &[S], order: usize, ranks: Ranks<'_>
         let inner = levels.get(k + 1).map_or(&basis, |(basis, _)| basis);
         point = levels[k].1.iter().map(|series| inner.value(series, &point)).collect();
     }
-    let point = reduced.unknowns.iter().map(|series| reduced.basis.value(series, &point)).collect();
+    let point = reduced.at(&point);
     Some(Step { point, profile, accepted, rejected })
 }
 
@@ -268,6 +284,11 @@ pub(crate) struct Reduced<S> {
 }
 
 impl<S: Number> Reduced<S> {
+    /// The point at these values of the unknowns that are left.
+    pub(super) fn at(&self, left: &[S]) -> Vec<S> {
+        self.unknowns.iter().map(|series| self.basis.value(series, left)).collect()
+    }
+
     /// `None` if there are too many coefficients. `pivots` are those of the Jacobian at `x`.
     pub(crate) fn new(local: &Local<'_, S>, x: &[S], pivots: &Elimination<S>, order: usize) -> Option<Reduced<S>> {
         let free = pivots.free();

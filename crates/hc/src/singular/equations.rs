@@ -1,9 +1,12 @@
 //! The given equations, exact, and their values, derivatives and series near a point in numbers of
 //! any precision.
 
+use super::modular::image;
+use super::multiplicity::Modular;
 use super::number::{Number, largest};
 use super::series::Basis;
 use num_complex::Complex64;
+use num_traits::Zero;
 use poly::{ComplexDd, ComplexMulti, Exact, Polynomial};
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
@@ -37,8 +40,8 @@ struct Term {
     coefficient: Exact,
 }
 
-/// Coordinates below this share of the largest, or of one, may be zero in truth: ends at multiple
-/// solutions are not accurate.
+/// Coordinates below this share of the largest, or of one, may be zero in truth where nothing is
+/// known of their error: ends at multiple solutions are not accurate.
 const SMALL: f64 = 1e-2;
 
 /// A precision that the equations can be had in.
@@ -110,6 +113,34 @@ impl Given {
         }
     }
 
+    /// The highest degree of an equation.
+    pub(crate) fn degree(&self) -> u64 {
+        let degree = |t: &Term| t.powers.iter().map(|&(_, e)| u64::from(e)).sum();
+        self.equations.iter().flatten().map(degree).max().unwrap_or(0)
+    }
+
+    /// Logarithms to base 2 of the units of the unknowns.
+    pub(crate) fn scales(&self) -> &[i64] {
+        &self.scale
+    }
+
+    /// The equations modulo a prime, in the unknowns themselves; `None` if exponents are larger than
+    /// this or the prime divides a denominator.
+    pub(super) fn modular(&self, exponent: u32) -> Option<Vec<Modular>> {
+        let term = |t: &Term| {
+            let small = t.powers.iter().all(|&(_, e)| e <= exponent);
+            small.then(|| image(&t.coefficient).map(|c| (t.powers.clone(), c))).flatten()
+        };
+        self.equations.iter().map(|terms| terms.iter().map(term).collect()).collect()
+    }
+
+    /// Whether all equations are exactly zero at these values of the unknowns themselves.
+    pub(super) fn vanish_at(&self, point: &[Exact]) -> bool {
+        let power = |&(j, e): &(usize, u32)| num_traits::pow(point[j].clone(), e as usize);
+        let value = |t: &Term| t.powers.iter().map(power).fold(t.coefficient.clone(), |product, z| product * z);
+        self.equations.iter().all(|terms| terms.iter().map(value).fold(Exact::zero(), |s, z| s + z).is_zero())
+    }
+
     /// Whether all points at which these unknowns are zero are solutions, whatever the others.
     pub(crate) fn vanish_where(&self, zero: &[bool]) -> bool {
         self.equations.iter().flatten().all(|term| term.powers.iter().any(|&(j, _)| zero[j]))
@@ -123,6 +154,11 @@ impl Given {
     /// depend on the order of the points.
     pub(crate) fn spent(&self) -> u64 {
         self.spent.load(Ordering::Relaxed)
+    }
+
+    /// Notes as much work.
+    pub(crate) fn spend(&self, products: u64) {
+        self.spent.fetch_add(products, Ordering::Relaxed);
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -161,15 +197,22 @@ impl Given {
 
     /// The equations in unknowns of about unit size near a point.
     pub(crate) fn near<S: Precision>(&self, point: &[Complex64]) -> Local<'_, S> {
-        let units = units(point);
-        // By how much coordinates exceed their units, as logarithms to base 2.
-        let excess: Vec<f64> = point.iter().zip(&units).map(|(z, &u)| (z.norm().log2() - u as f64).max(0.0)).collect();
+        self.near_within(point, SMALL)
+    }
+
+    /// The same where coordinates below this share of the largest, or of one, may be zero in truth.
+    pub(crate) fn near_within<S: Precision>(&self, point: &[Complex64], small: f64) -> Local<'_, S> {
+        let units = units(point, small);
+        // By how much coordinates exceed their units, as logarithms to base 2. Half a unit is much in
+        // a high power; those that are much smaller than their unit may be zero.
+        let excess = |(z, &u): (&Complex64, &i64)| Some(z.norm().log2() - u as f64).filter(|&e| e > -0.75);
+        let excess: Vec<f64> = point.iter().zip(&units).map(|both| excess(both).unwrap_or(0.0)).collect();
         let mut coefficients = Vec::with_capacity(self.len());
         for (terms, numbers) in self.equations.iter().zip(self.coefficients::<S>()) {
             let shift =
                 |t: &Term| t.powers.iter().map(|&(j, e)| i64::from(e) * (units[j] + self.scale[j])).sum::<i64>();
             let shifts: Vec<i64> = terms.iter().map(shift).collect();
-            // Sizes of the terms at the point, coordinates counted as one at least.
+            // Sizes of the terms at the point, small coordinates counted as one.
             let excess = |t: &Term| t.powers.iter().map(|&(j, e)| f64::from(e) * excess[j]).sum::<f64>();
             let sizes = numbers.iter().zip(&shifts).zip(terms);
             let top = sizes.map(|((c, &s), t)| c.log2() + s as f64 + excess(t)).fold(f64::NEG_INFINITY, f64::max);
@@ -180,11 +223,11 @@ impl Given {
     }
 }
 
-/// Logarithms to base 2 of the units in which coordinates are about one: their sizes, or a tenth of
-/// the largest, or of one, where they are much smaller and may be zero.
-fn units(point: &[Complex64]) -> Vec<i64> {
+/// Logarithms to base 2 of the units in which coordinates are about one: their sizes, or ten times
+/// the share of the largest, or of one, below which they may be zero.
+fn units(point: &[Complex64], small: f64) -> Vec<i64> {
     let largest = point.iter().map(|z| z.norm()).fold(1.0, f64::max);
-    let unit = |z: &Complex64| if z.norm() > SMALL * largest { z.norm() } else { 0.1 * largest };
+    let unit = |z: &Complex64| if z.norm() > small * largest { z.norm() } else { 10.0 * small * largest };
     point.iter().map(|z| unit(z).log2().round() as i64).collect()
 }
 
@@ -210,7 +253,7 @@ impl<'a, S: Number> Local<'a, S> {
     /// Notes as much work, in products.
     pub(crate) fn spend(&self, products: f64) {
         let weight = (S::BITS / ComplexDd::BITS).powi(2);
-        self.given.spent.fetch_add((products * weight) as u64, Ordering::Relaxed);
+        self.given.spend((products * weight) as u64);
     }
 
     /// Numbers of factors in all terms.

@@ -1,16 +1,17 @@
 //! What the end of a path is: a regular solution, an isolated multiple one, a point on a set of
 //! positive dimension, or none.
 
-use super::deflate::{CLEAR, Deflated, Profile, Reduced, ZERO, approached, deflated, distance};
+use super::deflate::{CLEAR, Deflated, Profile, Reduced, ZERO, deflated, distance};
 use super::dual::{Count, count};
 use super::eliminate::{Elimination, Stop};
 use super::equations::{Given, Local, Precision};
 use super::number::Number;
+use super::rational::at_rational;
 use super::sheet::{leads_on_somewhere, on_sheet};
 use crate::distinct::relative_distance;
 use crate::random::{Random, Stream};
 use num_complex::Complex64;
-use poly::{ComplexDd, ComplexMulti, Scalar};
+use poly::{ComplexDd, ComplexMulti};
 
 /// What a point near which paths end is, by the given equations.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,6 +44,15 @@ pub(crate) enum Verdict {
     NotASolution,
     /// None of these can be told.
     Unresolved(Why),
+}
+
+/// How much is done to judge an end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Effort {
+    /// What tells nearly all ends, to 77 digits.
+    Little,
+    /// To 308 digits.
+    Much,
 }
 
 /// Why an end is not resolved.
@@ -82,22 +92,33 @@ const NEAR_SINGULAR: f64 = 1e-3;
 /// Relative values of equations from which a point is none of their solutions.
 const NOT_ZERO: f64 = 1e-4;
 
+/// Coordinates below this share of the largest may be zero in truth, whatever is said of their error.
+const SURELY_ZERO: f64 = 1e-5;
+
 /// Judges a point near which `paths` paths end, with this relative error at most as far as is
 /// known; `most` may end at any one point.
-pub(crate) fn judge(given: &Given, point: &[Complex64], paths: usize, most: usize, error: f64) -> Verdict {
+pub(crate) fn judge(
+    given: &Given,
+    point: &[Complex64],
+    paths: usize,
+    most: usize,
+    error: f64,
+    effort: Effort,
+) -> Verdict {
     if point.iter().any(|z| !z.is_finite()) {
         return Verdict::Unresolved(Why::NoSolution);
     }
     let error = if error.is_finite() { error.abs() } else { NEAR_SINGULAR };
+    if is_no_solution(given, point, error) {
+        return Verdict::NotASolution;
+    }
     let at_once = regular::<ComplexDd>(given, point, error)
+        .or_else(|| at_rational(given, point, error, most))
         .or_else(|| regular::<ComplexMulti<4>>(given, point, error))
         .or_else(|| sheet(given, point, paths, error))
         .or_else(|| regular::<ComplexMulti<8>>(given, point, error));
     if let Some(verdict) = at_once {
         return verdict;
-    }
-    if residual(given, point) > NOT_ZERO.max(1e3 * error).min(0.5) {
-        return Verdict::NotASolution;
     }
     if let Some(verdict) = on_axes(given, point, error) {
         return verdict;
@@ -105,7 +126,8 @@ pub(crate) fn judge(given: &Given, point: &[Complex64], paths: usize, most: usiz
     let mut why = Why::NoSolution;
     // Zeros of one precision may be small numbers of the next.
     let mut before = None;
-    for examine in [multiple::<ComplexDd>, multiple::<ComplexMulti<4>>, multiple::<ComplexMulti<8>>] {
+    let ways = [multiple::<ComplexDd>, multiple::<ComplexMulti<4>>, multiple::<ComplexMulti<8>>];
+    for examine in &ways[..if effort == Effort::Little { 2 } else { 3 }] {
         match examine(given, point, paths, most) {
             Ok(Verdict::Isolated { multiplicity, .. }) if before != Some(multiplicity) => {
                 (before, why) = (Some(multiplicity), Why::Unclear);
@@ -117,71 +139,19 @@ pub(crate) fn judge(given: &Given, point: &[Complex64], paths: usize, most: usiz
             break;
         }
     }
+    if effort == Effort::Little {
+        return Verdict::Unresolved(why);
+    }
     // What only very many digits tell.
     regular::<ComplexMulti<16>>(given, point, error).unwrap_or(Verdict::Unresolved(why))
 }
 
-/// Solutions near a point that is between them: the end of paths that were not told apart.
-#[derive(Debug, Default)]
-pub(crate) struct Nearby {
-    /// Regular ones.
-    pub(crate) regular: Vec<(Vec<Complex64>, f64)>,
-    /// A point on a set of positive dimension, with its dimension.
-    pub(crate) component: Option<(Vec<Complex64>, usize)>,
-}
-
-/// Logarithms to base 10 of distances from a point at which Newton's method starts, and how often.
-const DISTANCES: [i32; 7] = [-10, -9, -8, -7, -6, -5, -4];
-const STARTS: usize = 6;
-
-/// A component near a point, but further than this, is believed only beside a regular solution that
-/// is not nearer by much: the point is then between them.
-const NEAR_COMPONENT: f64 = 1e-7;
-/// Logarithm to base 2 of how much further.
-const FURTHER: f64 = 3.0;
-
-/// Searches the neighbourhood of a point for at most `wanted` regular solutions, and a component if
-/// they are fewer.
-pub(crate) fn nearby(given: &Given, point: &[Complex64], wanted: usize) -> Nearby {
-    let local = given.near::<ComplexMulti<4>>(point);
-    let centre = local.scaled(point);
-    let mut random = Random::new(0, Stream::Beside);
-    let mut found: Vec<Vec<ComplexMulti<4>>> = Vec::new();
-    let mut nearby = Nearby::default();
-    for power in DISTANCES {
-        let distance_to = f64::from(power) * 10f64.log2();
-        for _ in 0..STARTS {
-            let away =
-                |z: &ComplexMulti<4>| ComplexMulti::add(z, &ComplexMulti::from_c64(random.unit() * 10f64.powi(power)));
-            let start: Vec<ComplexMulti<4>> = centre.iter().map(away).collect();
-            let solution = deflated(&local, &start, 1, f64::NEG_INFINITY, &mut Vec::new());
-            if let Some(solution) = solution.filter(|s| s.profile.is_regular())
-                && distance(&centre, &solution.point) <= distance_to + 4.0
-                && found.iter().all(|known| distance(known, &solution.point) > -100.0)
-            {
-                nearby.regular.push(rounded(given, &local, &solution.point));
-                found.push(solution.point);
-            }
-            if found.len() >= wanted {
-                return nearby;
-            }
-            // Newton's method leads to a component too, along which it drifts.
-            let start: Vec<Complex64> = local.unscaled(&approached(&local, start)).iter().map(Number::to_c64).collect();
-            if nearby.component.is_none() {
-                let verdict = sheet(given, &start, 1, NEAR_SHEET_AT_MOST);
-                if let Some(Verdict::OnComponent { dimension, point }) =
-                    verdict.or_else(|| multiple::<ComplexDd>(given, &start, 1, wanted).ok())
-                {
-                    let away = distance(&centre, &local.scaled(&point));
-                    let solution = found.iter().map(|z| distance(&centre, z)).fold(f64::INFINITY, f64::min);
-                    if away <= NEAR_COMPONENT.log2() || away <= solution + FURTHER && solution.is_finite() {
-                        nearby.component = Some((point, dimension));
-                    }
-                }
-            }
-        }
-    }
-    nearby
+/// Whether equations are too large at the end of a path for a solution nearby.
+fn is_no_solution(given: &Given, point: &[Complex64], error: f64) -> bool {
+    // Relative changes of a point are as large in terms as their degrees.
+    let degree = given.degree() as f64;
+    let local = given.near_within::<ComplexDd>(point, (1e3 * error).clamp(SURELY_ZERO, NEAR_SINGULAR));
+    local.residual(&local.scaled(point)).exp2() > NOT_ZERO.max(1e3 * degree * error).min(0.5)
 }
 
 /// Relative values of equations up to which a regular solution of combinations of them surely
@@ -193,7 +163,8 @@ const MISSES: f64 = 1e-6;
 /// them all.
 pub(crate) fn solves(given: &Given, point: &[Complex64]) -> bool {
     let residual = residual(given, point);
-    residual <= SOLVES || residual < MISSES && matches!(judge(given, point, 1, 1, 0.0), Verdict::Regular { .. })
+    residual <= SOLVES
+        || residual < MISSES && matches!(judge(given, point, 1, 1, 0.0, Effort::Little), Verdict::Regular { .. })
 }
 
 /// Relative corrections up to this size are due to rounding the point.
@@ -415,7 +386,7 @@ fn dimension<S: Number>(reduced: &Reduced<S>, at_least: usize) -> usize {
 }
 
 /// A point as doubles, and the values of the equations there relative to their terms.
-fn rounded<S: Number>(given: &Given, local: &Local<'_, S>, point: &[S]) -> (Vec<Complex64>, f64) {
+pub(super) fn rounded<S: Number>(given: &Given, local: &Local<'_, S>, point: &[S]) -> (Vec<Complex64>, f64) {
     let point: Vec<Complex64> = local.unscaled(point).iter().map(Number::to_c64).collect();
     let residual = residual(given, &point);
     (point, residual)

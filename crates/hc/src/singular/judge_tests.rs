@@ -1,6 +1,6 @@
 //! Points whose local structure is known by hand.
 
-use super::{Verdict, judge};
+use super::{Effort, Verdict, judge};
 use crate::singular::equations::Given;
 use num_complex::Complex64;
 use poly::parse::phcpack;
@@ -14,7 +14,7 @@ fn judged(text: &str, point: &[f64], paths: usize, error: f64) -> Verdict {
         .enumerate()
         .map(|(j, &x)| Complex64::new(x, 0.0) + Complex64::from_polar(0.7 * error, 1.0 + j as f64))
         .collect();
-    judge(&given, &point, paths, paths, error)
+    judge(&given, &point, paths, paths, error, Effort::Much)
 }
 
 fn isolated(text: &str, at: &[f64], paths: usize, error: f64) -> usize {

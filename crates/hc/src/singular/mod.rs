@@ -3,21 +3,25 @@
 //! A point is judged by the given equations, with their exact coefficients, in numbers of 32 to 308
 //! digits: the fewest in which what is zero is clearly told from what is not.
 
+mod cluster;
 mod deflate;
 mod dual;
 mod eliminate;
 mod equations;
 mod judge;
 mod modular;
+mod multiplicity;
 mod number;
+mod rational;
 mod series;
 mod sheet;
 mod simple;
 mod squarefree;
 mod univariate;
 
+pub(crate) use cluster::{Found, Zoom};
 pub(crate) use equations::Given;
-pub(crate) use judge::{Verdict, Why, is_moved, judge, nearby, residual, solves};
+pub(crate) use judge::{Effort, Verdict, Why, is_moved, judge, residual, solves};
 pub(crate) use simple::all_simple;
 pub(crate) use squarefree::squarefree;
 pub(crate) use univariate::roots;

@@ -12,7 +12,12 @@ const ROOT: u64 = 1 << 48;
 
 /// The product.
 pub(super) fn times(a: u64, b: u64) -> u64 {
-    (u128::from(a) * u128::from(b) % u128::from(PRIME)) as u64
+    let product = u128::from(a) * u128::from(b);
+    let (low, high) = (product as u64, (product >> 64) as u64);
+    // 2^64 is 2^32 - 1, and 2^96 is -1.
+    let (top, middle) = (high >> 32, (high & 0xFFFF_FFFF) * 0xFFFF_FFFF);
+    let low = if low >= PRIME { low - PRIME } else { low };
+    sum(difference(low, top), middle)
 }
 
 /// The difference.
@@ -89,7 +94,8 @@ fn euclid(mut a: Vec<u64>, mut b: Vec<u64>) -> (Vec<u64>, u64) {
     (a, resultant)
 }
 
-fn power(mut base: u64, mut exponent: u64) -> u64 {
+/// A power.
+pub(super) fn power(mut base: u64, mut exponent: u64) -> u64 {
     let mut power = 1;
     while exponent > 0 {
         if exponent & 1 == 1 {
@@ -108,9 +114,66 @@ pub(super) fn trim(a: &mut Vec<u64>) {
     }
 }
 
+/// The row echelon form of a matrix that grows by rows: each has a one in a column in which all
+/// others have a zero.
+pub(super) struct Echelon {
+    width: usize,
+    /// The rows with their pivots' columns.
+    rows: Vec<(usize, Vec<u64>)>,
+}
+
+impl Echelon {
+    /// Without rows.
+    pub(super) fn new(width: usize) -> Echelon {
+        Echelon { width, rows: Vec::new() }
+    }
+
+    /// Adds a row of that width.
+    pub(super) fn add(&mut self, mut row: Vec<u64>) {
+        for (column, known) in &self.rows {
+            reduce(&mut row, *column, known);
+        }
+        let Some(column) = row.iter().position(|&c| c != 0) else { return };
+        let factor = inverse(row[column]);
+        row.iter_mut().filter(|c| **c != 0).for_each(|c| *c = times(*c, factor));
+        for (_, known) in &mut self.rows {
+            reduce(known, column, &row);
+        }
+        self.rows.push((column, row));
+    }
+
+    /// The columns without a pivot.
+    pub(super) fn free(&self) -> Vec<usize> {
+        let mut taken = vec![false; self.width];
+        self.rows.iter().for_each(|(column, _)| taken[*column] = true);
+        (0..self.width).filter(|&k| !taken[k]).collect()
+    }
+
+    /// The vector that all rows map to zero with a one in this column and zeros in the others
+    /// without a pivot.
+    pub(super) fn null_vector(&self, free: usize) -> Vec<u64> {
+        let mut vector = vec![0; self.width];
+        vector[free] = 1;
+        for (column, row) in &self.rows {
+            vector[*column] = difference(0, row[free]);
+        }
+        vector
+    }
+}
+
+/// Takes from a row as much of another, with a one in this column, as leaves a zero there.
+fn reduce(row: &mut [u64], column: usize, other: &[u64]) {
+    let factor = row[column];
+    if factor != 0 {
+        for (a, &b) in row.iter_mut().zip(other).filter(|(_, b)| **b != 0) {
+            *a = difference(*a, times(factor, b));
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{PRIME, difference, resultant, times};
+    use super::{Echelon, PRIME, difference, resultant, sum, times};
     use proptest::prelude::{prop, prop_assert_eq, proptest};
 
     fn with_roots(leading: u64, roots: &[u64]) -> Vec<u64> {
@@ -125,6 +188,30 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn products_are_those_of_integers(a in 0..PRIME, b in 0..PRIME) {
+            prop_assert_eq!(u128::from(times(a, b)), u128::from(a) * u128::from(b) % u128::from(PRIME));
+            let edge = [0, 1, PRIME - 1, 0xFFFF_FFFF, 1 << 32, b];
+            for c in edge {
+                prop_assert_eq!(u128::from(times(PRIME - 1, c)), u128::from(PRIME - 1) * u128::from(c) % u128::from(PRIME));
+            }
+        }
+
+        /// Rows are mapped to zero by as many vectors as the rank leaves.
+        #[test]
+        fn null_vectors_of_few_rows(rows in prop::collection::vec(prop::collection::vec(0..3u64, 5), 0..7)) {
+            let mut echelon = Echelon::new(5);
+            rows.iter().for_each(|row| echelon.add(row.clone()));
+            let free = echelon.free();
+            prop_assert_eq!(free.len() + echelon.rows.len(), 5);
+            for &k in &free {
+                let vector = echelon.null_vector(k);
+                for row in &rows {
+                    prop_assert_eq!(row.iter().zip(&vector).fold(0, |s, (&a, &b)| sum(s, times(a, b))), 0);
+                }
+            }
+        }
+
         /// The product of the differences of all roots.
         #[test]
         fn resultants_are_those_of_the_roots(

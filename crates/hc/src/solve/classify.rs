@@ -76,7 +76,13 @@ pub(super) struct Tracked<'a> {
     /// Whether the coefficients that were tracked are exactly those that were given.
     pub(super) exact: bool,
     pub(super) monitor: &'a Monitor,
+    /// How equations around ends that are not told apart are solved; not at all where they have been
+    /// zoomed often enough.
+    pub(super) zoomed: Option<&'a Zoomed<'a>>,
 }
+
+/// Solves as many polynomials as unknowns.
+pub(super) type Zoomed<'a> = dyn Fn(&[Polynomial<Exact>]) -> Option<Solutions> + Sync + 'a;
 
 /// Sorts ends into solutions. Without `tracked`, singular ends are lost.
 pub(super) fn classify(tracked: Option<&Tracked<'_>>, all: &Ends, excess: &Excess<'_>, coincidence: f64) -> Classified {

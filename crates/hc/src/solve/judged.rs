@@ -2,13 +2,14 @@
 //! were rounded.
 
 use super::classify::{Classified, REAL, Tracked};
+use super::cluster::{SAME, clustered, distributed};
 use super::excess::Excess;
 use super::paths::Ends;
 use super::record::SingularEnd;
 use super::solutions::{Solution, Unresolved, is_real};
 use crate::distinct::{CLUSTER, groups, relative_distance};
 use crate::refine::Refiner;
-use crate::singular::{self, Verdict, Why};
+use crate::singular::{self, Effort, Verdict, Why};
 use crate::threads::IntoParallelRefIterator;
 #[cfg(feature = "threads")]
 use crate::threads::ParallelIterator;
@@ -17,8 +18,6 @@ use poly::{Exact, Polynomial};
 
 /// Imaginary parts of singular solutions up to this share of the point count as zero.
 const REAL_SINGULAR: f64 = 1e-7;
-/// Relative distance below which two refined solutions are one.
-const SAME: f64 = 1e-12;
 
 /// A singular solution and the paths that end there.
 struct Multiple {
@@ -46,6 +45,7 @@ impl Classified {
         let doubted = judged.iter().any(|(_, v)| matches!(v, Verdict::Isolated { .. } | Verdict::OnComponent { .. }));
         let simple = doubted && singular::all_simple(tracked.polynomials);
         let mut multiple: Vec<Multiple> = Vec::new();
+        let mut further = 0;
         let mut refiner = Refiner::new(tracked.system);
         for (group, verdict) in judged {
             let paths = group.len();
@@ -65,24 +65,29 @@ impl Classified {
                 Verdict::Regular { point, residual } => {
                     // One path ends at a regular solution; any other has jumped.
                     let known = self.solutions.iter().any(|s| relative_distance(&s.value, &point) <= SAME);
-                    self.lost += paths - usize::from(!known);
+                    self.lost += paths.saturating_sub(usize::from(!known));
                     if !known {
+                        // A path that is counted as lost ends there.
+                        further += usize::from(paths == 0);
                         let condition = refiner.judged(tracked.target, &point).condition;
                         self.solutions.push(solution(&point, 1, 1, residual, condition, is_real(&point, REAL)));
                     }
                 }
-                Verdict::OnComponent { .. } if simple => {
-                    self.unresolved(&ends[group[0]].point, paths, Why::Unclear);
-                }
+                Verdict::OnComponent { point, .. } if simple => self.unresolved(&point, paths, Why::Unclear),
                 Verdict::OnComponent { point, .. } => {
                     self.on_components += paths;
                     self.component_points.push(point);
                 }
                 Verdict::NotASolution if excess.overdetermined() => self.excess += paths,
                 Verdict::NotASolution => self.lost += paths,
-                Verdict::Unresolved(why) => self.unresolved(&ends[group[0]].point, paths, why),
+                Verdict::Unresolved(why) => {
+                    if let Some(&end) = group.first() {
+                        self.unresolved(&ends[end].point, paths, why);
+                    }
+                }
             }
         }
+        self.lost = self.lost.saturating_sub(further);
         for found in multiple {
             // As many paths as the multiplicity, or more where equations were combined: else some
             // have gone astray.
@@ -127,7 +132,8 @@ impl Classified {
                 continue;
             }
             let point = std::mem::take(&mut solution.value);
-            let Verdict::Regular { point: exact, residual } = singular::judge(tracked.given, &point, 1, 1, ROUNDED)
+            let Verdict::Regular { point: exact, residual } =
+                singular::judge(tracked.given, &point, 1, 1, ROUNDED, Effort::Little)
             else {
                 doubtful.push(SingularEnd { point, winding: 1, error: ROUNDED });
                 continue;
@@ -197,38 +203,55 @@ fn verdicts(
     spare: usize,
 ) -> Vec<(Vec<usize>, Verdict)> {
     let (paths, most) = (group.len() + spare, ends.len() + spare);
-    let verdict = |k: usize| singular::judge(tracked.given, &ends[k].point, paths, most, ends[k].error);
+    let verdict =
+        |k: usize, effort: Effort| singular::judge(tracked.given, &ends[k].point, paths, most, ends[k].error, effort);
     // The most accurate of the ends stands for all.
     let Some(&best) = group.iter().min_by(|&&a, &&b| ends[a].error.total_cmp(&ends[b].error)) else {
         return Vec::new();
     };
-    let own = match verdict(best) {
-        whole @ (Verdict::Isolated { .. } | Verdict::OnComponent { .. }) => return vec![(group.to_vec(), whole)],
-        own => own,
-    };
-    let mut each: Vec<(Vec<usize>, Verdict)> =
-        group.iter().map(|&k| (vec![k], if k == best { own.clone() } else { verdict(k) })).collect();
-    if are_told_apart(&each, tracked.given.len() > tracked.given.unknowns()) {
-        return each;
+    // Combinations of equations have higher multiplicities.
+    let combined = tracked.given.len() > tracked.given.unknowns();
+    let own = verdict(best, Effort::Little);
+    match own {
+        Verdict::Isolated { multiplicity, .. } if combined || multiplicity >= group.len() => {
+            return vec![(group.to_vec(), own)];
+        }
+        Verdict::OnComponent { .. } => return vec![(group.to_vec(), own)],
+        Verdict::Regular { .. } | Verdict::NotASolution if group.len() == 1 => return vec![(group.to_vec(), own)],
+        _ => {}
     }
-    // Solutions so close to each other that the paths seemed to end between them, after turns in
-    // which they changed places.
-    let turns = group.iter().map(|&k| ends[k].winding).max().unwrap_or(1);
-    let mut nearby = singular::nearby(tracked.given, &ends[best].point, group.len().max(turns));
-    let taken = |point: &[Complex64]| known.iter().any(|s| relative_distance(&s.value, point) <= SAME);
-    nearby.regular.retain(|(point, _)| !taken(point));
-    let mut regular = nearby.regular.into_iter();
-    for (_, verdict) in &mut each {
-        match (regular.next(), &nearby.component) {
-            (Some((point, residual)), _) => *verdict = Verdict::Regular { point, residual },
-            (None, Some((point, dimension))) => {
-                *verdict = Verdict::OnComponent { dimension: *dimension, point: point.clone() }
-            }
-            (None, None) => {}
+    let is_apart = |&k: &usize| k == best || relative_distance(&ends[k].point, &ends[best].point) > ONE;
+    if group.iter().all(is_apart) && !matches!(own, Verdict::Isolated { .. }) {
+        let each = |&k: &usize| (vec![k], if k == best { own.clone() } else { verdict(k, Effort::Little) });
+        let each: Vec<(Vec<usize>, Verdict)> = group.iter().map(each).collect();
+        if are_told_apart(&each, combined) {
+            return each;
         }
     }
-    each
+    // Solutions so close to each other that the paths seemed to end between them.
+    let (mut all, left) = distributed(group, clustered(tracked, &ends[best].point, group.len(), most, known));
+    if left.is_empty() {
+        return all;
+    }
+    match if matches!(own, Verdict::Unresolved(_)) { verdict(best, Effort::Much) } else { own } {
+        whole @ (Verdict::Isolated { .. } | Verdict::OnComponent { .. }) => vec![(group.to_vec(), whole)],
+        regular @ Verdict::Regular { .. } if all.is_empty() => {
+            let others = group.iter().filter(|&&k| k != best).copied().collect();
+            vec![(vec![best], regular), (others, Verdict::Unresolved(Why::NoSolution))]
+        }
+        Verdict::Unresolved(why) => {
+            all.push((left, Verdict::Unresolved(why)));
+            all
+        }
+        _ => {
+            all.push((left, Verdict::Unresolved(Why::NoSolution)));
+            all
+        }
+    }
 }
+
+/// Relative distance up to which two ends are one point.
+const ONE: f64 = 1e-14;
 
 /// Whether every end has a verdict of its own.
 fn are_told_apart(each: &[(Vec<usize>, Verdict)], overdetermined: bool) -> bool {

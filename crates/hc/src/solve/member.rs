@@ -4,6 +4,7 @@ use super::classify::{Tracked, classify};
 use super::excess::Excess;
 use super::options::SolveOptions;
 use super::paths::{Route, follow};
+use super::polynomials::solve_polynomials;
 use super::solutions::{Member, Solutions};
 use crate::family::Fibre;
 use crate::monitor::Monitor;
@@ -27,6 +28,10 @@ pub(crate) fn solve_member<E: Evaluate>(
     let route = Route { trackers, start: fibre, count: fibre.len(), target, excess: &excess, options, monitor };
     let ends = follow(route, false);
     let expanded = if !ends.singular.is_empty() { expanded(family, target) } else { None };
+    let zoomed = |polynomials: &[Polynomial<Exact>]| {
+        let names: Vec<String> = (0..polynomials.first()?.variables()).map(|k| format!("x{k}")).collect();
+        solve_polynomials(polynomials, &names, &SolveOptions::new(), &Monitor::default()).ok()
+    };
     let tracked = expanded.as_ref().map(|(polynomials, given, system, target)| Tracked {
         given,
         polynomials,
@@ -35,6 +40,7 @@ pub(crate) fn solve_member<E: Evaluate>(
         line: None,
         exact: true,
         monitor,
+        zoomed: Some(&zoomed),
     });
     let found = classify(tracked.as_ref(), &ends, &excess, options.paths.coincidence);
     let interrupted = monitor.is_cancelled() && found.lost > 0;

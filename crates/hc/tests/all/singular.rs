@@ -99,14 +99,30 @@ fn an_isolated_point_of_a_high_multiplicity() {
     check(&format!("5\n{}", (1..=5).map(equation).collect::<String>()), 4, "16x1 1x16", 17, false);
 }
 
-/// Six points 1e-9 apart at (13/3, 2/3): all of them, or said not to be all.
+/// Six points 1e-9 apart at (13/3, 2/3), and twelve in a space of three dimensions.
 #[test]
 fn clusters_away_from_the_origin() {
-    let cluster = "2\n(1e9*(x+y-5)-1)*(1e9*(x+y-5)-2)*(1e9*(x+y-5)-4);\n(1e9*(x-2*y-3)-1)*(1e9*(x-2*y-3)-3);";
-    for seed in 0..6 {
-        let found = solve_text(cluster, &options(seed)).unwrap();
-        assert!(found.paths.failed > 0 || multiplicities(&found) == "6x1", "{seed}: {}", multiplicities(&found));
-    }
+    let factor = |line: &str, k: usize| format!("(1e9*({line})-{k})");
+    let [six, two, others] = [("x+y-5", [1, 2, 4]), ("x-2*y-3", [1, 3, 0]), ("x+y+z-1", [1, 2, 0])]
+        .map(|(line, at)| at.iter().filter(|&&k| k > 0).map(|&k| factor(line, k)).collect::<Vec<_>>().join("*"));
+    check(&format!("2\n{six};\n{two};"), 6, "6x1", 6, false);
+    check(&format!("3\n{six};\n{two};\n{others};"), 3, "12x1", 12, false);
+}
+
+/// Where nothing is zero, all `x_i^5` are the product of the unknowns: `x_i = w_i x` with fifth roots
+/// of unity and `x = w_2 w_3 w_4`, 5^3 simple solutions. Of Bezout's 4^4, 131 are left for the origin
+/// (Dayton & Zeng 2005).
+#[test]
+fn an_isolated_point_of_multiplicity_131() {
+    check("4\nx^4-y*z*w;\ny^4-x*z*w;\nz^4-x*y*w;\nw^4-x*y*z;", 2, "125x1 1x131", 2, false);
+}
+
+/// `x^60 y^3 = 2` and `y^30 = x^2 + 1`: `x^600 (x^2 + 1) = 2^10` and for each of its 602 `x` the
+/// three common `y` of `y^3 = 2 x^-60` and `y^30 = x^2 + 1`, simple and real for two of them. Other
+/// paths go to infinity, slowly.
+#[test]
+fn paths_that_seem_to_end() {
+    check("2\nx^60*y^3-2;\nx^2-y^30+1;", 1, "1806x1", 2, false);
 }
 
 /// Mignotte's polynomial is irreducible (Eisenstein at 2) and has two roots near 1/1000, 4e-35 apart.

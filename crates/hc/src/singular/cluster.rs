@@ -1,0 +1,173 @@
+//! Solutions that lie so close together that paths end between them: the equations there in
+//! coordinates in which they are apart.
+
+use super::deflate::{Profile, Reduced, centred, deflated, distance};
+use super::eliminate::{Elimination, Stop};
+use super::equations::{Given, Local};
+use super::judge::{Effort, Verdict, judge, rounded};
+use super::number::{Number, largest};
+use num_complex::Complex64;
+use num_rational::BigRational;
+use num_traits::Zero;
+use poly::{ComplexMulti, Exact, Monomial, Polynomial, Scalar};
+
+/// The numbers in which clusters are looked at: 154 digits, of which 77 tell solutions apart.
+type Digits = ComplexMulti<8>;
+
+/// Orders of the series that are tried, with logarithms to base 2 of the tolerances at which ranks
+/// are read off.
+const ORDERS: [usize; 6] = [2, 3, 4, 6, 8, 12];
+const TOLERANCES: [f64; 6] = [-40.0, -30.0, -20.0, -13.0, -10.0, -6.5];
+/// How many unknowns are left in these equations at most.
+const UNKNOWNS: usize = 5;
+/// A cluster is at most this far from the end of a path, a logarithm to base 2, and this wide.
+const NEAR: f64 = -10.0;
+const WIDEST: f64 = -7.0;
+/// Solutions in one unknown are sought by this many orders more than in several.
+const SINGLE: usize = 24;
+/// Terms that are smaller than this share of the largest (a logarithm to base 2) do not matter for
+/// starts of Newton's method.
+const SMALL: f64 = -90.0;
+/// Coefficients that are smaller are rounding errors.
+const NOISE: f64 = -400.0;
+/// Solutions nearer to each other (a logarithm to base 2) are the same.
+const SAME: f64 = -250.0;
+
+/// The equations near the centre of a cluster, without the unknowns that they determine at once, and
+/// in units of its size.
+pub(crate) struct Zoom<'a> {
+    given: &'a Given,
+    local: Local<'a, Digits>,
+    reduced: Reduced<Digits>,
+    /// The logarithm to base 2 of the size.
+    size: i64,
+    /// The equations in the unknowns that are left, cut off at an order.
+    pub(crate) polynomials: Vec<Polynomial<Exact>>,
+}
+
+/// What was found at the solutions of the equations of a [`Zoom`].
+pub(crate) struct Found {
+    pub(crate) verdict: Verdict,
+    /// A regular solution to all digits.
+    point: Option<Vec<Digits>>,
+}
+
+impl<'a> Zoom<'a> {
+    /// All ways to look at the cluster near a point, the simplest first: with each way to read off
+    /// which unknowns are determined.
+    pub(crate) fn all(given: &'a Given, point: &[Complex64]) -> impl Iterator<Item = Zoom<'a>> {
+        let mut tried: Vec<(Profile, usize)> = Vec::new();
+        let ways = ORDERS.into_iter().flat_map(|order| TOLERANCES.map(|tolerance| (order, tolerance)));
+        let point = point.to_vec();
+        ways.filter_map(move |(order, tolerance)| Zoom::new(given, &point, order, tolerance, &mut tried))
+    }
+
+    fn new(
+        given: &'a Given,
+        point: &[Complex64],
+        order: usize,
+        tolerance: f64,
+        tried: &mut Vec<(Profile, usize)>,
+    ) -> Option<Zoom<'a>> {
+        let local = given.near::<Digits>(point);
+        let start = local.scaled(point);
+        let (centre, profile) = centred(&local, &start, order, tolerance, |profile| {
+            let fresh = !profile.is_regular() && !tried.contains(&(profile.clone(), order));
+            tried.push((profile.clone(), order));
+            fresh
+        })?;
+        if distance(&start, &centre) > NEAR {
+            return None;
+        }
+        let (_, jacobian) = local.jacobian(&centre);
+        let pivots = Elimination::new(jacobian, centre.len(), Stop::After(profile.ranks[0]));
+        let left = centre.len() - pivots.rank();
+        let order = if left == 1 { order + SINGLE } else { order };
+        let reduced = (left <= UNKNOWNS).then(|| Reduced::new(&local, &centre, &pivots, order)).flatten()?;
+        let size = size(&reduced)?;
+        let polynomials: Vec<Polynomial<Exact>> =
+            reduced.equations.iter().map(|series| zoomed(&reduced, series, size)).collect::<Option<_>>()?;
+        (polynomials.len() >= left).then_some(Zoom { given, local, reduced, size, polynomials })
+    }
+
+    /// The number of unknowns that are left.
+    pub(crate) fn unknowns(&self) -> usize {
+        self.reduced.basis.variables()
+    }
+
+    /// Notes as much work, in products of complex double-doubles.
+    pub(crate) fn spend(&self, products: u64) {
+        self.given.spend(products);
+    }
+
+    /// Adds what the given equations have at a solution of those of the zoom at which `paths` paths
+    /// end, if it is not found already.
+    pub(crate) fn add(&self, found: &mut Vec<Found>, solution: &[Complex64], paths: usize, most: usize) {
+        let unit = |z: &Complex64| Digits::from_c64(*z).shifted(self.size);
+        let start = self.reduced.at(&solution.iter().map(unit).collect::<Vec<_>>());
+        let regular = deflated(&self.local, &start, 1, f64::NEG_INFINITY, &mut Vec::new())
+            .filter(|solution| solution.profile.is_regular())
+            .filter(|solution| distance(&start, &solution.point) <= self.size as f64 + 1.0);
+        if let Some(regular) = regular {
+            let known = |f: &Found| f.point.as_ref().is_some_and(|p| distance(p, &regular.point) <= SAME);
+            if !found.iter().any(known) {
+                let (point, residual) = rounded(self.given, &self.local, &regular.point);
+                found.push(Found { verdict: Verdict::Regular { point, residual }, point: Some(regular.point) });
+            }
+            return;
+        }
+        let point: Vec<Complex64> = self.local.unscaled(&start).iter().map(Number::to_c64).collect();
+        let verdict = judge(self.given, &point, paths, most, 0.0, Effort::Little);
+        if matches!(verdict, Verdict::Isolated { .. } | Verdict::OnComponent { .. }) {
+            found.push(Found { verdict, point: None });
+        }
+    }
+}
+
+/// The logarithm to base 2 of about how far the solutions around the centre are from it: where lower
+/// terms of some equation are as large as those that are largest further outside. `None` where there
+/// is no such place: the equations have a multiple solution, or no cluster.
+fn size(reduced: &Reduced<Digits>) -> Option<i64> {
+    let order = reduced.basis.order();
+    let mut size = f64::NEG_INFINITY;
+    for series in &reduced.equations {
+        let sizes: Vec<f64> = (0..=order)
+            .map(|k| {
+                let from = if k == 0 { 0 } else { reduced.basis.count(k - 1) };
+                Some(largest(&series[from..reduced.basis.count(k)])).filter(|&s| s > NOISE).unwrap_or(f64::NEG_INFINITY)
+            })
+            .collect();
+        let outside = |k: &usize| sizes[*k] + *k as f64 * WIDEST;
+        let leading = (0..=order).max_by(|a, b| outside(a).total_cmp(&outside(b)))?;
+        for k in 0..leading {
+            size = size.max((sizes[k] - sizes[leading]) / (leading - k) as f64);
+        }
+    }
+    (size.is_finite() && size <= WIDEST).then(|| size.round() as i64)
+}
+
+/// An equation in units of a size, without the terms that do not matter.
+fn zoomed(reduced: &Reduced<Digits>, series: &[Digits], size: i64) -> Option<Polynomial<Exact>> {
+    let exponents = reduced.basis.exponents();
+    let degree = |k: usize| exponents[k].iter().map(|&e| i64::from(e)).sum::<i64>();
+    let scaled: Vec<Digits> = series.iter().enumerate().map(|(k, c)| c.shifted(degree(k) * size)).collect();
+    let top = largest(&scaled);
+    let kept = scaled.iter().enumerate().filter(|(_, c)| c.log2() > top + SMALL);
+    let term = |(k, c): (usize, &Digits)| {
+        let monomial = Monomial::new(exponents[k].iter().map(|&e| i32::from(e)));
+        Some((monomial, exact(&c.shifted(-top.round() as i64))?))
+    };
+    let terms: Vec<(Monomial, Exact)> = top.is_finite().then(|| kept.map(term).collect()).flatten()?;
+    Some(Polynomial::from_terms(reduced.basis.variables(), terms)).filter(|p| p.terms().len() > 1)
+}
+
+/// The leading digits of a number of about unit size, exactly.
+fn exact(z: &Digits) -> Option<Exact> {
+    let (mut rest, mut sum) = (*z, Exact::zero());
+    for _ in 0..4 {
+        let part = rest.to_c64();
+        sum += Exact { re: BigRational::from_float(part.re)?, im: BigRational::from_float(part.im)? };
+        rest = Digits::sub(&rest, &Digits::from_c64(part));
+    }
+    Some(sum)
+}

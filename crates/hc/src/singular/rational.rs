@@ -1,0 +1,136 @@
+//! Ends at points with rational coordinates, judged exactly: whether they are solutions, regular or
+//! isolated, and with which multiplicity.
+
+use super::equations::Given;
+use super::judge::{Verdict, residual};
+use super::modular::{image, power, sum, times};
+use super::multiplicity::{Modular, multiplicity};
+use num_bigint::BigInt;
+use num_complex::Complex64;
+use num_rational::BigRational;
+use num_traits::ToPrimitive;
+use poly::Exact;
+
+/// Ends may be this many times their error from the rational point, and are surely no nearer than
+/// the least.
+const ERRORS: f64 = 10.0;
+const LEAST_ERROR: f64 = 1e-12;
+const LARGEST_ERROR: f64 = 1e-6;
+/// Denominators of coordinates at most, and their sizes.
+const DENOMINATOR: f64 = 1e4;
+const SIZE: f64 = 1e9;
+/// Exponents at most: powers of exact numbers are as long.
+const EXPONENT: u32 = 512;
+/// The verdict on a rational point near the end of a path, where that is a solution; `most` paths
+/// may end at any point.
+///
+/// The dual space of the local ring is computed modulo a prime. Modulo a prime it is at least as
+/// large, in every order, as it is with exact numbers. So if it is finite the solution is isolated,
+/// and its multiplicity is at most that: less only if the prime divides one of the minors that
+/// matter.
+pub(super) fn at_rational(given: &Given, point: &[Complex64], error: f64, most: usize) -> Option<Verdict> {
+    let tolerance = (ERRORS * error).clamp(LEAST_ERROR, LARGEST_ERROR);
+    let exact: Vec<Exact> =
+        point.iter().zip(given.scales()).map(|(z, &unit)| rational(*z, unit, tolerance)).collect::<Option<_>>()?;
+    let images: Vec<u64> = exact.iter().map(image).collect::<Option<_>>()?;
+    let equations = given.modular(EXPONENT)?;
+    let term = |(powers, c): &(Vec<(usize, u32)>, u64)| {
+        powers.iter().fold(*c, |product, &(j, e)| times(product, power(images[j], u64::from(e))))
+    };
+    let value = |terms: &Modular| terms.iter().map(term).fold(0, sum);
+    if equations.iter().any(|terms| value(terms) != 0) || !given.vanish_at(&exact) {
+        return None;
+    }
+    let multiplicity = multiplicity(&equations, &images, most)?;
+    let unscaled = |z: &Exact, unit: i64| {
+        let power = 2f64.powi(-unit as i32);
+        Some(Complex64::new(z.re.to_f64()? * power, z.im.to_f64()? * power)).filter(|z| z.is_finite())
+    };
+    let point: Vec<Complex64> =
+        exact.iter().zip(given.scales()).map(|(z, &unit)| unscaled(z, unit)).collect::<Option<_>>()?;
+    let residual = residual(given, &point);
+    Some(match multiplicity {
+        1 => Verdict::Regular { point, residual },
+        _ => Verdict::Isolated { multiplicity, point, residual },
+    })
+}
+
+/// The rational with the least denominator near a coordinate in units of `2^unit`.
+fn rational(z: Complex64, unit: i64, tolerance: f64) -> Option<Exact> {
+    let power = 2f64.powi(i32::try_from(unit).ok()?);
+    let (re, im) = (z.re * power, z.im * power);
+    let tolerance = tolerance * re.hypot(im).max(power);
+    Some(Exact { re: near(re, tolerance)?, im: near(im, tolerance)? })
+}
+
+/// The same of a real number, by its continued fraction.
+fn near(x: f64, tolerance: f64) -> Option<BigRational> {
+    if x.is_nan() || x.abs() > SIZE {
+        return None;
+    }
+    let (mut rest, mut last, mut this) = (x, (1.0, 0.0), (x.floor(), 1.0));
+    while (this.0 / this.1 - x).abs() > tolerance {
+        rest = 1.0 / (rest - rest.floor());
+        let next = |a: f64, b: f64| rest.floor() * a + b;
+        (last, this) = (this, (next(this.0, last.0), next(this.1, last.1)));
+        if this.1.is_nan() || this.1 > DENOMINATOR {
+            return None;
+        }
+    }
+    Some(BigRational::new(BigInt::from(this.0 as i64), BigInt::from(this.1 as i64)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{at_rational, near};
+    use crate::singular::{Given, Verdict};
+    use num_complex::Complex64;
+    use num_traits::ToPrimitive;
+    use proptest::prelude::{prop_assert_eq, proptest};
+
+    proptest! {
+        #[test]
+        fn fractions_are_found(a in -100_000i32..100_000, b in 1i32..1000, e in -1.0..1.0f64) {
+            let x = f64::from(a) / f64::from(b);
+            let found = near(x + 1e-8 * e, 1e-8).and_then(|q| q.to_f64());
+            prop_assert_eq!(found, Some(x));
+        }
+    }
+
+    fn verdict(text: &str, point: &[f64]) -> Option<Verdict> {
+        let system = poly::parse::phcpack(text).unwrap();
+        let given = Given::new(&system.expand(&Default::default()).unwrap(), vec![0; point.len()]);
+        let point: Vec<Complex64> = point.iter().map(|&x| Complex64::new(x, 0.0)).collect();
+        at_rational(&given, &point, 1e-9, 200)
+    }
+
+    fn is_isolated(found: Option<Verdict>, expected: usize) -> bool {
+        matches!(found, Some(Verdict::Isolated { multiplicity, .. }) if multiplicity == expected)
+    }
+
+    /// The first: Dayton & Zeng 2005, multiplicity 131. Quadrics without common points at infinity
+    /// of their leading forms: Bezout's number.
+    #[test]
+    fn multiplicities_at_rational_points() {
+        let dz1 = "4\na^4-b*c*d;\nb^4-a*c*d;\nc^4-a*b*d;\nd^4-a*b*c;";
+        assert!(is_isolated(verdict(dz1, &[0.0, 1e-10, 0.0, 0.0]), 131));
+        let quadrics = "5\na^2;\nb^2+a*b;\nc^2-3*a*c+b^2;\nd^2-a*b;\ne^2-c*d;";
+        assert!(is_isolated(verdict(quadrics, &[0.0; 5]), 32));
+        assert!(is_isolated(verdict("2\n(3*x-1)^3;\n(y-2)^2+(3*x-1);", &[1.0 / 3.0, 2.0]), 6));
+        let gaussian = "2\n(x-y*i)^3;\n(y-2)^2+(x-2*i);";
+        let system = poly::parse::phcpack(gaussian).unwrap();
+        let given = Given::new(&system.expand(&Default::default()).unwrap(), vec![0; 2]);
+        let found = at_rational(&given, &[Complex64::new(0.0, 2.0), Complex64::new(2.0, 0.0)], 1e-9, 20);
+        // With y = 2 + w and x = i y: w^2 + i w, simple.
+        assert!(is_isolated(found, 3));
+    }
+
+    #[test]
+    fn other_points() {
+        assert!(matches!(verdict("2\nx^2-1;\ny-2*x;", &[1.0, 2.0]), Some(Verdict::Regular { .. })));
+        // No solution, an irrational one, one on a line.
+        assert_eq!(verdict("2\nx^2-1;\ny-2*x;", &[1.0, 2.5]), None);
+        assert_eq!(verdict("2\nx^2-2;\ny-2*x;", &[2f64.sqrt(), 8f64.sqrt()]), None);
+        assert_eq!(verdict("2\nx*y;\nx*(y-1);", &[0.0, 0.5]), None);
+    }
+}

@@ -1,0 +1,165 @@
+//! From expanded polynomials to solutions: start systems one after the other, while paths are lost.
+
+use super::classify::{Classified, Tracked, Zoomed, classify};
+use super::conditioned::conditioned;
+use super::equations::Equations;
+use super::error::SolveError;
+use super::excess::Excess;
+use super::infinity::Line;
+use super::judged;
+use super::options::{SolveOptions, Start};
+use super::paths::{Route, are_hopeless, follow};
+use super::solutions::Solutions;
+use super::start::Starts;
+use crate::distinct::{CLUSTER, relative_distance};
+use crate::monitor::Monitor;
+use crate::singular::Given;
+use crate::start::MixedError;
+use crate::tracker::Trackers;
+use num_complex::Complex64;
+use poly::{Exact, Polynomial};
+use std::borrow::Cow;
+
+/// Clusters of solutions are looked at within clusters this often.
+const ZOOMS: usize = 3;
+
+/// The solutions of polynomials in unknowns of these names, which the result does not have.
+pub(crate) fn solve_polynomials(
+    polynomials: &[Polynomial<Exact>],
+    names: &[String],
+    options: &SolveOptions,
+    monitor: &Monitor,
+) -> Result<Solutions, SolveError> {
+    solve_zoomed(polynomials, names, options, monitor, 0)
+}
+
+/// The same for equations that are `zooms` times zoomed.
+fn solve_zoomed(
+    polynomials: &[Polynomial<Exact>],
+    names: &[String],
+    options: &SolveOptions,
+    monitor: &Monitor,
+    zooms: usize,
+) -> Result<Solutions, SolveError> {
+    // The equations around ends that are not told apart.
+    let zoomed = |polynomials: &[Polynomial<Exact>]| {
+        let names: Vec<String> = (0..polynomials.first()?.variables()).map(|k| format!("x{k}")).collect();
+        solve_zoomed(polynomials, &names, &SolveOptions::new(), &Monitor::default(), zooms + 1).ok()
+    };
+    let zoomed: Option<&Zoomed<'_>> = if zooms < ZOOMS { Some(&zoomed) } else { None };
+    let equations = Equations::new(polynomials, names)?;
+    let equations = match conditioned(polynomials) {
+        Cow::Borrowed(_) => equations,
+        Cow::Owned(rewritten) => Equations::new(&rewritten, names)?,
+    };
+    // A single equation has no condition number to tell, and combinations are rounded.
+    let exact = equations.exact && (2..=names.len()).contains(&polynomials.len());
+    let units = equations.units();
+    let given = Given::new(polynomials, units.clone());
+    let univariate = given.univariate_degrees().filter(|_| !options.torus_only);
+    let excess = Excess::new(&given, options.torus_only);
+    let nothing = Solutions { interrupted: true, ..Solutions::default() };
+    let mut starts = match Starts::new(equations, options, monitor) {
+        Err(SolveError::Mixed(MixedError::Cancelled)) => return Ok(nothing),
+        other => other?,
+    };
+    let mut retracked = 0;
+    let mut best = Best::default();
+    let mut start_systems = 0;
+    // First, on trial, those of one stage.
+    let mut direct = starts.direct(options);
+    loop {
+        let trial = direct.is_some();
+        let from = direct.as_mut().unwrap_or(&mut starts);
+        let start = match from.system(u64::from(start_systems), options, monitor) {
+            Err(SolveError::Mixed(MixedError::Cancelled)) => break,
+            other => other?,
+        };
+        let (count, target) = (from.paths, &from.target[..]);
+        let ends = {
+            // Their memory is given back before the ends are sorted.
+            let trackers = Trackers::new(&from.system);
+            let route = Route { trackers: &trackers, start: &start, count, target, excess: &excess, options, monitor };
+            follow(route, trial)
+        };
+        if !ends.abandoned {
+            start_systems += 1;
+            retracked += ends.retracked;
+            let line = Line { supports: &from.equations.supports, target };
+            let system = &from.system;
+            let tracked =
+                Tracked { given: &given, polynomials, system, target, line: Some(line), exact, monitor, zoomed };
+            // Of a polynomial in one unknown there is a better way to all roots than other paths.
+            let whole = univariate.is_none_or(|(_, degree)| ends.lost == 0 && ends.regular.len() == degree);
+            let roots = (!whole && !monitor.is_cancelled())
+                .then(|| judged::univariate(polynomials, &units, &tracked))
+                .flatten();
+            let found = match roots {
+                Some(roots) => Classified { solutions: roots, ..Classified::default() },
+                None => {
+                    let found = classify(Some(&tracked), &ends, &excess, options.paths.coincidence);
+                    // All paths end at roots, those that seem to go to infinity too.
+                    let astray = if univariate.is_some() { found.infinite } else { 0 };
+                    Classified { lost: found.lost + astray, infinite: found.infinite - astray, ..found }
+                }
+            };
+            let this = Best { start: Some(from.kind), tracked: from.paths, found };
+            best = if start_systems == 1 { this } else { best.joined(this) };
+            let hopeless = univariate.is_some() || are_hopeless(ends.lost, count);
+            let last = start_systems > options.restarts || hopeless;
+            if best.found.lost == 0 || last || monitor.is_cancelled() {
+                break;
+            }
+        }
+        direct = None;
+    }
+    let whole = start_systems > 0 && best.found.lost == 0;
+    let Best { start, tracked, found } = best;
+    let mut found = found.solutions(tracked, retracked);
+    for solution in &mut found.solutions {
+        starts.equations.unscale(&mut solution.value);
+    }
+    for point in &mut found.component_points {
+        starts.equations.unscale(point);
+    }
+    for end in &mut found.unresolved {
+        starts.equations.unscale(&mut end.value);
+    }
+    Ok(Solutions {
+        start: start.or(Some(starts.kind)),
+        mixed_volume: starts.numbers.mixed_volume,
+        bezout_number: starts.numbers.bezout,
+        multihomogeneous_number: starts.numbers.multihomogeneous,
+        start_systems,
+        // Nothing is missing if the last path had ended already.
+        interrupted: monitor.is_cancelled() && !whole,
+        ..found
+    })
+}
+
+/// What the start systems so far have given.
+#[derive(Default)]
+struct Best {
+    /// The one that lost fewest paths, the first of such.
+    start: Option<Start>,
+    tracked: usize,
+    /// What it has found, with the solutions that only others have.
+    found: Classified,
+}
+
+impl Best {
+    fn joined(self, new: Best) -> Best {
+        let (mut better, other) = if self.found.lost <= new.found.lost { (self, new) } else { (new, self) };
+        if better.found.lost == 0 {
+            return better;
+        }
+        let known: Vec<Vec<Complex64>> = better.found.solutions.iter().map(|s| s.value.clone()).collect();
+        let new = other.found.solutions.into_iter().filter(|s| !s.singular);
+        let new = new.filter(|s| known.iter().all(|x| relative_distance(x, &s.value) > CLUSTER));
+        let before = better.found.solutions.len();
+        better.found.solutions.extend(new);
+        // Each of them is the end of a path that was lost.
+        better.found.lost = better.found.lost.saturating_sub(better.found.solutions.len() - before);
+        better
+    }
+}
