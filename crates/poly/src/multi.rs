@@ -100,12 +100,13 @@ impl<const LIMBS: usize> Float<LIMBS> {
         Self::normalised(x < 0.0, exponent + 64, limbs, 0)
     }
 
-    /// The nearest double but for truncation; infinite or zero where that is out of range.
+    /// The nearest double, or the other one where two are nearly as near; infinite or zero where that is
+    /// out of range.
     pub fn to_f64(self) -> f64 {
         if !self.is_finite() {
             return f64::NAN;
         }
-        let fraction = (self.top() >> 11) as f64 * 2f64.powi(-53);
+        let fraction = self.top() as f64 * 2f64.powi(-64);
         let exponent = self.exponent.clamp(-2200, 2200) as i32;
         // In two steps, since the power alone may be out of range.
         let size = fraction * 2f64.powi(exponent / 2) * 2f64.powi(exponent - exponent / 2);
@@ -262,7 +263,7 @@ pub struct ComplexMulti<const LIMBS: usize> {
 }
 
 impl<const LIMBS: usize> ComplexMulti<LIMBS> {
-    /// The nearest complex double but for truncation.
+    /// The nearest complex double, as `to_f64` of its parts.
     pub fn to_c64(&self) -> Complex64 {
         Complex64::new(self.re.to_f64(), self.im.to_f64())
     }

@@ -69,6 +69,9 @@ impl<'a> Zoom<'a> {
         tolerance: f64,
         tried: &mut Vec<(Profile, usize)>,
     ) -> Option<Zoom<'a>> {
+        if given.is_exhausted() {
+            return None;
+        }
         let local = given.near::<Digits>(point);
         let start = local.scaled(point);
         let (centre, profile) = centred(&local, &start, order, tolerance, |profile| {
@@ -117,7 +120,8 @@ impl<'a> Zoom<'a> {
             return;
         }
         let point: Vec<Complex64> = self.local.unscaled(&start).iter().map(Number::to_c64).collect();
-        let verdict = judge(self.given, &point, paths, most, 0.0, Effort::Little);
+        // As accurate as the equations of the zoom are.
+        let verdict = judge(self.given, &point, paths, most, 2f64.powi(2 * self.size as i32), Effort::Little);
         if matches!(verdict, Verdict::Isolated { .. } | Verdict::OnComponent { .. }) {
             found.push(Found { verdict, point: None });
         }

@@ -15,6 +15,15 @@ use super::number::{Number, largest};
 use super::series::Basis;
 use num_complex::Complex64;
 
+/// Where the iteration ends.
+pub(crate) enum Ending<S> {
+    /// At a solution.
+    Solution(Deflated<S>),
+    /// At a point that is none, though it is determined: between several.
+    Between,
+    Nowhere,
+}
+
 /// How many unknowns each level of a deflation determines.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Profile {
@@ -81,6 +90,14 @@ struct Step<S> {
     rejected: f64,
 }
 
+impl<S: Number> Step<S> {
+    /// Whether the point solves the equations and what was taken as zero is clearly zero.
+    fn is_solution(&self, local: &Local<'_, S>) -> bool {
+        let clear = self.accepted >= CLEAR * S::BITS && self.rejected <= ZERO * S::BITS;
+        clear && local.residual(&self.point) <= SOLVED * S::BITS
+    }
+}
+
 /// Finds the solution near `start` with the profile that pivots above `tolerance` (a logarithm to
 /// base 2) show there, by series up to `order`; `None` if there is none to which the iteration
 /// converges as Newton's method does, or the profile was `tried` before.
@@ -91,14 +108,35 @@ pub(crate) fn deflated<S: Number>(
     tolerance: f64,
     tried: &mut Vec<Profile>,
 ) -> Option<Deflated<S>> {
-    let first = step(local, start, order, Ranks::Tolerance(tolerance))?;
+    match ending(local, start, order, tolerance, tried) {
+        Ending::Solution(found) => Some(found),
+        Ending::Between | Ending::Nowhere => None,
+    }
+}
+
+/// The same, with what else may be there.
+pub(crate) fn ending<S: Number>(
+    local: &Local<'_, S>,
+    start: &[S],
+    order: usize,
+    tolerance: f64,
+    tried: &mut Vec<Profile>,
+) -> Ending<S> {
+    let Some(first) = step(local, start, order, Ranks::Tolerance(tolerance)) else { return Ending::Nowhere };
     let profile = first.profile;
     if tried.contains(&profile) {
-        return None;
+        return Ending::Nowhere;
     }
     tried.push(profile.clone());
     let before = distance(start, &first.point);
-    settled(local, first.point, order, &profile, before)
+    match iterated(local, first.point, order, &profile, before) {
+        None => Ending::Nowhere,
+        Some(last) if last.is_solution(local) => {
+            Ending::Solution(Deflated { point: last.point, profile: last.profile })
+        }
+        Some(_) if profile.remaining > 0 => Ending::Nowhere,
+        Some(_) => Ending::Between,
+    }
 }
 
 /// Iterates with the ranks of a profile, after a first correction of size `before`.
@@ -110,9 +148,7 @@ pub(crate) fn settled<S: Number>(
     before: f64,
 ) -> Option<Deflated<S>> {
     let last = iterated(local, point, order, profile, before)?;
-    let clear = last.accepted >= CLEAR * S::BITS && last.rejected <= ZERO * S::BITS;
-    let solves = local.residual(&last.point) <= SOLVED * S::BITS;
-    (clear && solves).then_some(Deflated { point: last.point, profile: last.profile })
+    last.is_solution(local).then_some(Deflated { point: last.point, profile: last.profile })
 }
 
 /// The point near `start` at which the equations of a deflation with a profile vanish: the centre of
@@ -144,6 +180,9 @@ fn iterated<S: Number>(
 ) -> Option<Step<S>> {
     let mut slow = 0;
     for _ in 0..ITERATIONS {
+        if local.is_exhausted() {
+            return None;
+        }
         let next = step(local, &point, order, Ranks::Known(profile))?;
         let correction = distance(&point, &next.point);
         point = next.point;

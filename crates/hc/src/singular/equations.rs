@@ -9,14 +9,24 @@ use num_complex::Complex64;
 use num_traits::Zero;
 use poly::{ComplexDd, ComplexMulti, Exact, Polynomial};
 use std::collections::BTreeMap;
-use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
 
 /// Equations as they were given, prepared for evaluation to many digits.
 ///
 /// Where exponents are negative an equation is multiplied by a monomial; its solutions without zero
 /// coordinates stay.
+#[derive(Clone)]
 pub(crate) struct Given {
+    shared: Arc<Shared>,
+    /// Work done so far, in about as much as a product of complex double-doubles takes.
+    spent: Arc<AtomicU64>,
+    /// Work after which nothing more is done.
+    limit: u64,
+}
+
+/// What does not change with the work.
+struct Shared {
     unknowns: usize,
     /// Logarithms to base 2 of the units of the unknowns.
     scale: Vec<i64>,
@@ -28,8 +38,6 @@ pub(crate) struct Given {
     four: OnceLock<Vec<Vec<ComplexMulti<4>>>>,
     eight: OnceLock<Vec<Vec<ComplexMulti<8>>>>,
     sixteen: OnceLock<Vec<Vec<ComplexMulti<16>>>>,
-    /// Work done so far, in about as much as a product of complex double-doubles takes.
-    spent: AtomicU64,
 }
 
 struct Term {
@@ -52,22 +60,22 @@ pub(crate) trait Precision: Number {
 
 impl Precision for ComplexDd {
     fn kept(given: &Given) -> &OnceLock<Vec<Vec<Self>>> {
-        &given.double_double
+        &given.shared.double_double
     }
 }
 impl Precision for ComplexMulti<4> {
     fn kept(given: &Given) -> &OnceLock<Vec<Vec<Self>>> {
-        &given.four
+        &given.shared.four
     }
 }
 impl Precision for ComplexMulti<8> {
     fn kept(given: &Given) -> &OnceLock<Vec<Vec<Self>>> {
-        &given.eight
+        &given.shared.eight
     }
 }
 impl Precision for ComplexMulti<16> {
     fn kept(given: &Given) -> &OnceLock<Vec<Vec<Self>>> {
-        &given.sixteen
+        &given.shared.sixteen
     }
 }
 
@@ -100,7 +108,7 @@ impl Given {
             let place = |&(j, e): &(usize, u32)| exponents[j].partition_point(|&f| f < e);
             term.places = term.powers.iter().map(place).collect();
         }
-        Given {
+        let shared = Shared {
             unknowns,
             scale,
             equations,
@@ -109,19 +117,34 @@ impl Given {
             four: OnceLock::new(),
             eight: OnceLock::new(),
             sixteen: OnceLock::new(),
-            spent: AtomicU64::new(0),
-        }
+        };
+        Given { shared: Arc::new(shared), spent: Arc::default(), limit: u64::MAX }
+    }
+
+    /// The same equations, with work of their own of which there may be so much.
+    pub(crate) fn limited(&self, limit: u64) -> Given {
+        Given { shared: self.shared.clone(), spent: Arc::default(), limit }
+    }
+
+    /// Whether all the work is done that may be done.
+    pub(crate) fn is_exhausted(&self) -> bool {
+        self.spent() > self.limit
+    }
+
+    /// Numbers of factors in all terms.
+    pub(crate) fn factors(&self) -> usize {
+        self.shared.equations.iter().flatten().map(|t| t.powers.len() + 1).sum()
     }
 
     /// The highest degree of an equation.
     pub(crate) fn degree(&self) -> u64 {
         let degree = |t: &Term| t.powers.iter().map(|&(_, e)| u64::from(e)).sum();
-        self.equations.iter().flatten().map(degree).max().unwrap_or(0)
+        self.shared.equations.iter().flatten().map(degree).max().unwrap_or(0)
     }
 
     /// Logarithms to base 2 of the units of the unknowns.
     pub(crate) fn scales(&self) -> &[i64] {
-        &self.scale
+        &self.shared.scale
     }
 
     /// The equations modulo a prime, in the unknowns themselves; `None` if exponents are larger than
@@ -131,23 +154,23 @@ impl Given {
             let small = t.powers.iter().all(|&(_, e)| e <= exponent);
             small.then(|| image(&t.coefficient).map(|c| (t.powers.clone(), c))).flatten()
         };
-        self.equations.iter().map(|terms| terms.iter().map(term).collect()).collect()
+        self.shared.equations.iter().map(|terms| terms.iter().map(term).collect()).collect()
     }
 
     /// Whether all equations are exactly zero at these values of the unknowns themselves.
     pub(super) fn vanish_at(&self, point: &[Exact]) -> bool {
         let power = |&(j, e): &(usize, u32)| num_traits::pow(point[j].clone(), e as usize);
         let value = |t: &Term| t.powers.iter().map(power).fold(t.coefficient.clone(), |product, z| product * z);
-        self.equations.iter().all(|terms| terms.iter().map(value).fold(Exact::zero(), |s, z| s + z).is_zero())
+        self.shared.equations.iter().all(|terms| terms.iter().map(value).fold(Exact::zero(), |s, z| s + z).is_zero())
     }
 
     /// Whether all points at which these unknowns are zero are solutions, whatever the others.
     pub(crate) fn vanish_where(&self, zero: &[bool]) -> bool {
-        self.equations.iter().flatten().all(|term| term.powers.iter().any(|&(j, _)| zero[j]))
+        self.shared.equations.iter().flatten().all(|term| term.powers.iter().any(|&(j, _)| zero[j]))
     }
 
     pub(crate) fn unknowns(&self) -> usize {
-        self.unknowns
+        self.shared.unknowns
     }
 
     /// The work done so far at all points, in products of complex double-doubles. It does not
@@ -162,25 +185,25 @@ impl Given {
     }
 
     pub(crate) fn len(&self) -> usize {
-        self.equations.len()
+        self.shared.equations.len()
     }
 
     fn coefficients<S: Precision>(&self) -> &Vec<Vec<S>> {
         S::kept(self).get_or_init(|| {
             let numbers = |terms: &Vec<Term>| terms.iter().map(|t| S::from_exact(&t.coefficient)).collect();
-            self.equations.iter().map(numbers).collect()
+            self.shared.equations.iter().map(numbers).collect()
         })
     }
 
     /// The terms of a single equation in a single unknown, by ascending exponent; `None` for any
     /// other equations.
     pub(crate) fn univariate<S: Precision>(&self) -> Option<Vec<(u32, S)>> {
-        let [terms] = &self.equations[..] else { return None };
-        if self.unknowns != 1 {
+        let [terms] = &self.shared.equations[..] else { return None };
+        if self.shared.unknowns != 1 {
             return None;
         }
         let exponent = |t: &Term| t.powers.first().map_or(0, |&(_, e)| e);
-        let scaled = |c: &S, e: u32| c.shifted(i64::from(e) * self.scale[0]);
+        let scaled = |c: &S, e: u32| c.shifted(i64::from(e) * self.shared.scale[0]);
         let mut terms: Vec<(u32, S)> =
             terms.iter().map(exponent).zip(&self.coefficients::<S>()[0]).map(|(e, c)| (e, scaled(c, e))).collect();
         terms.sort_by_key(|&(e, _)| e);
@@ -190,9 +213,9 @@ impl Given {
     /// The multiplicity of zero and the number of all roots of a single equation in a single
     /// unknown, as often as they count; `None` for any other equations.
     pub(crate) fn univariate_degrees(&self) -> Option<(usize, usize)> {
-        let [terms] = &self.equations[..] else { return None };
+        let [terms] = &self.shared.equations[..] else { return None };
         let exponents = || terms.iter().map(|t| t.powers.first().map_or(0, |&(_, e)| e as usize));
-        Some((exponents().min()?, exponents().max()?)).filter(|_| self.unknowns == 1)
+        Some((exponents().min()?, exponents().max()?)).filter(|_| self.shared.unknowns == 1)
     }
 
     /// The equations in unknowns of about unit size near a point.
@@ -208,9 +231,9 @@ impl Given {
         let excess = |(z, &u): (&Complex64, &i64)| Some(z.norm().log2() - u as f64).filter(|&e| e > -0.75);
         let excess: Vec<f64> = point.iter().zip(&units).map(|both| excess(both).unwrap_or(0.0)).collect();
         let mut coefficients = Vec::with_capacity(self.len());
-        for (terms, numbers) in self.equations.iter().zip(self.coefficients::<S>()) {
+        for (terms, numbers) in self.shared.equations.iter().zip(self.coefficients::<S>()) {
             let shift =
-                |t: &Term| t.powers.iter().map(|&(j, e)| i64::from(e) * (units[j] + self.scale[j])).sum::<i64>();
+                |t: &Term| t.powers.iter().map(|&(j, e)| i64::from(e) * (units[j] + self.shared.scale[j])).sum::<i64>();
             let shifts: Vec<i64> = terms.iter().map(shift).collect();
             // Sizes of the terms at the point, small coordinates counted as one.
             let excess = |t: &Term| t.powers.iter().map(|&(j, e)| f64::from(e) * excess[j]).sum::<f64>();
@@ -250,15 +273,16 @@ impl<'a, S: Number> Local<'a, S> {
         self.given.len()
     }
 
-    /// Notes as much work, in products.
-    pub(crate) fn spend(&self, products: f64) {
-        let weight = (S::BITS / ComplexDd::BITS).powi(2);
-        self.given.spend((products * weight) as u64);
+    /// Whether all the work is done that may be done.
+    pub(super) fn is_exhausted(&self) -> bool {
+        self.given.is_exhausted()
     }
 
-    /// Numbers of factors in all terms.
-    fn factors(&self) -> usize {
-        self.given.equations.iter().flatten().map(|t| t.powers.len() + 1).sum()
+    /// Notes as much work, in products.
+    pub(crate) fn spend(&self, products: f64) {
+        // As measured, up to 308 digits.
+        let weight = (S::BITS / ComplexDd::BITS).powf(1.25);
+        self.given.spend((products * weight) as u64);
     }
 
     /// A point in units of these equations.
@@ -282,16 +306,16 @@ impl<'a, S: Number> Local<'a, S> {
             };
             exponents.iter().map(|&e| power(e)).collect()
         };
-        self.given.exponents.iter().zip(x).map(of).collect()
+        self.given.shared.exponents.iter().zip(x).map(of).collect()
     }
 
     /// Values of the equations, and their derivatives by rows.
     pub(crate) fn jacobian(&self, x: &[S]) -> (Vec<S>, Vec<Vec<S>>) {
-        self.spend(4.0 * self.factors() as f64);
+        self.spend(4.0 * self.given.factors() as f64);
         let powers = self.powers(x);
         let (mut values, mut rows) = (Vec::new(), Vec::new());
         let mut before: Vec<S> = Vec::new();
-        for (terms, coefficients) in self.given.equations.iter().zip(&self.coefficients) {
+        for (terms, coefficients) in self.given.shared.equations.iter().zip(&self.coefficients) {
             let (mut value, mut row) = (S::zero(), vec![S::zero(); x.len()]);
             for (term, c) in terms.iter().zip(coefficients) {
                 // Products of the powers before each, and then with those behind.
@@ -327,7 +351,7 @@ impl<'a, S: Number> Local<'a, S> {
         let value = |(terms, coefficients): (&Vec<Term>, &Vec<S>)| {
             terms.iter().zip(coefficients).map(product).fold(S::zero(), |sum, z| S::add(&sum, &z))
         };
-        self.given.equations.iter().zip(&self.coefficients).map(value).collect()
+        self.given.shared.equations.iter().zip(&self.coefficients).map(value).collect()
     }
 
     /// The largest value of an equation at a point, as a logarithm to base 2: about that of its
@@ -338,9 +362,9 @@ impl<'a, S: Number> Local<'a, S> {
 
     /// Equations with series for the unknowns, up to an order.
     pub(crate) fn series(&self, which: &[usize], basis: &Basis, x: &[Vec<S>], order: usize) -> Vec<Vec<S>> {
-        self.spend((self.factors() * basis.pairs(order)) as f64);
+        self.spend((self.given.factors() * basis.pairs(order)) as f64);
         let mut powers: Vec<BTreeMap<u32, Vec<S>>> = vec![BTreeMap::new(); x.len()];
-        for &(j, e) in which.iter().flat_map(|&i| &self.given.equations[i]).flat_map(|t| &t.powers) {
+        for &(j, e) in which.iter().flat_map(|&i| &self.given.shared.equations[i]).flat_map(|t| &t.powers) {
             powers[j].insert(e, Vec::new());
         }
         for (powers, x) in powers.iter_mut().zip(x) {
@@ -352,7 +376,7 @@ impl<'a, S: Number> Local<'a, S> {
         }
         let equation = |&i: &usize| {
             let mut sum = vec![S::zero(); basis.count(order)];
-            for (term, c) in self.given.equations[i].iter().zip(&self.coefficients[i]) {
+            for (term, c) in self.given.shared.equations[i].iter().zip(&self.coefficients[i]) {
                 let mut product: Option<Vec<S>> = None;
                 for (j, e) in &term.powers {
                     let power = &powers[*j][e];

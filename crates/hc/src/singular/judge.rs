@@ -1,7 +1,7 @@
 //! What the end of a path is: a regular solution, an isolated multiple one, a point on a set of
 //! positive dimension, or none.
 
-use super::deflate::{CLEAR, Deflated, Profile, Reduced, ZERO, deflated, distance};
+use super::deflate::{CLEAR, Deflated, Ending, Profile, Reduced, ZERO, deflated, distance, ending};
 use super::dual::{Count, count};
 use super::eliminate::{Elimination, Stop};
 use super::equations::{Given, Local, Precision};
@@ -128,7 +128,10 @@ pub(crate) fn judge(
     let mut before = None;
     let ways = [multiple::<ComplexDd>, multiple::<ComplexMulti<4>>, multiple::<ComplexMulti<8>>];
     for examine in &ways[..if effort == Effort::Little { 2 } else { 3 }] {
-        match examine(given, point, paths, most) {
+        if given.is_exhausted() {
+            return Verdict::Unresolved(Why::TooMuch);
+        }
+        match examine(given, point, paths, most, effort) {
             Ok(Verdict::Isolated { multiplicity, .. }) if before != Some(multiplicity) => {
                 (before, why) = (Some(multiplicity), Why::Unclear);
             }
@@ -139,7 +142,7 @@ pub(crate) fn judge(
             break;
         }
     }
-    if effort == Effort::Little {
+    if effort == Effort::Little || given.is_exhausted() {
         return Verdict::Unresolved(why);
     }
     // What only very many digits tell.
@@ -234,8 +237,14 @@ fn sheet(given: &Given, point: &[Complex64], paths: usize, error: f64) -> Option
 }
 
 /// The verdict on a point that is no regular solution, to one precision; an error if that is not
-/// enough.
-fn multiple<S: Precision>(given: &Given, point: &[Complex64], paths: usize, most: usize) -> Result<Verdict, Why> {
+/// enough, or with little effort where the point is between several solutions.
+fn multiple<S: Precision>(
+    given: &Given,
+    point: &[Complex64],
+    paths: usize,
+    most: usize,
+    effort: Effort,
+) -> Result<Verdict, Why> {
     let local = given.near::<S>(point);
     let start = local.scaled(point);
     let limit = (2 * paths + 2).max(FUNCTIONALS);
@@ -246,7 +255,14 @@ fn multiple<S: Precision>(given: &Given, point: &[Complex64], paths: usize, most
     for order in ORDERS.into_iter().take_while(|&order| order <= 2 * limit) {
         let mut tried: Vec<Profile> = Vec::new();
         for tolerance in TOLERANCES {
-            let Some(found) = deflated(&local, &start, order, tolerance, &mut tried) else { continue };
+            if given.is_exhausted() {
+                return Err(Why::TooMuch);
+            }
+            let found = match ending(&local, &start, order, tolerance, &mut tried) {
+                Ending::Solution(found) => found,
+                Ending::Between if effort == Effort::Little => return Err(Why::NoSolution),
+                Ending::Between | Ending::Nowhere => continue,
+            };
             if found.profile.is_regular() || distance(&start, &found.point) > NEAR_SINGULAR.log2() {
                 continue;
             }

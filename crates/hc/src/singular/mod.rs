@@ -22,6 +22,5 @@ mod univariate;
 pub(crate) use cluster::{Found, Zoom};
 pub(crate) use equations::Given;
 pub(crate) use judge::{Effort, Verdict, Why, is_moved, judge, residual, solves};
-pub(crate) use simple::all_simple;
-pub(crate) use squarefree::squarefree;
-pub(crate) use univariate::roots;
+pub(crate) use simple::{all_simple, finite_solutions};
+pub(crate) use univariate::roots_with_multiplicities;

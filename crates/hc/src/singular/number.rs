@@ -22,7 +22,7 @@ pub(crate) trait Number: Scalar + Copy {
     /// The complex conjugate.
     fn conjugate(&self) -> Self;
 
-    /// The nearest complex double, perhaps truncated.
+    /// The nearest complex double.
     fn to_c64(&self) -> Complex64;
 }
 

@@ -12,12 +12,15 @@ use num_traits::ToPrimitive;
 use poly::Exact;
 
 /// Ends may be this many times their error from the rational point, and are surely no nearer than
-/// the least.
+/// the least; coordinates have denominators up to the last.
 const ERRORS: f64 = 10.0;
 const LEAST_ERROR: f64 = 1e-12;
 const LARGEST_ERROR: f64 = 1e-6;
-/// Denominators of coordinates at most, and their sizes.
 const DENOMINATOR: f64 = 1e4;
+/// The same for solutions of high multiplicity, the ends at which are less accurate than they seem.
+const ROUGH_ERROR: f64 = 1e-3;
+const ROUGH_DENOMINATOR: f64 = 12.0;
+/// Sizes of coordinates at most.
 const SIZE: f64 = 1e9;
 /// Exponents at most: powers of exact numbers are as long.
 const EXPONENT: u32 = 512;
@@ -30,8 +33,15 @@ const EXPONENT: u32 = 512;
 /// matter.
 pub(super) fn at_rational(given: &Given, point: &[Complex64], error: f64, most: usize) -> Option<Verdict> {
     let tolerance = (ERRORS * error).clamp(LEAST_ERROR, LARGEST_ERROR);
-    let exact: Vec<Exact> =
-        point.iter().zip(given.scales()).map(|(z, &unit)| rational(*z, unit, tolerance)).collect::<Option<_>>()?;
+    let rough = || within(given, point, ROUGH_ERROR, ROUGH_DENOMINATOR, most);
+    within(given, point, tolerance, DENOMINATOR, most)
+        .or_else(|| rough().filter(|verdict| matches!(verdict, Verdict::Isolated { .. })))
+}
+
+/// The same for a rational point with such denominators at most that far.
+fn within(given: &Given, point: &[Complex64], tolerance: f64, denominator: f64, most: usize) -> Option<Verdict> {
+    let rational = |(z, &unit): (&Complex64, &i64)| rational(*z, unit, tolerance, denominator);
+    let exact: Vec<Exact> = point.iter().zip(given.scales()).map(rational).collect::<Option<_>>()?;
     let images: Vec<u64> = exact.iter().map(image).collect::<Option<_>>()?;
     let equations = given.modular(EXPONENT)?;
     let term = |(powers, c): &(Vec<(usize, u32)>, u64)| {
@@ -56,15 +66,15 @@ pub(super) fn at_rational(given: &Given, point: &[Complex64], error: f64, most: 
 }
 
 /// The rational with the least denominator near a coordinate in units of `2^unit`.
-fn rational(z: Complex64, unit: i64, tolerance: f64) -> Option<Exact> {
+fn rational(z: Complex64, unit: i64, tolerance: f64, denominator: f64) -> Option<Exact> {
     let power = 2f64.powi(i32::try_from(unit).ok()?);
     let (re, im) = (z.re * power, z.im * power);
     let tolerance = tolerance * re.hypot(im).max(power);
-    Some(Exact { re: near(re, tolerance)?, im: near(im, tolerance)? })
+    Some(Exact { re: near(re, tolerance, denominator)?, im: near(im, tolerance, denominator)? })
 }
 
 /// The same of a real number, by its continued fraction.
-fn near(x: f64, tolerance: f64) -> Option<BigRational> {
+fn near(x: f64, tolerance: f64, denominator: f64) -> Option<BigRational> {
     if x.is_nan() || x.abs() > SIZE {
         return None;
     }
@@ -73,7 +83,7 @@ fn near(x: f64, tolerance: f64) -> Option<BigRational> {
         rest = 1.0 / (rest - rest.floor());
         let next = |a: f64, b: f64| rest.floor() * a + b;
         (last, this) = (this, (next(this.0, last.0), next(this.1, last.1)));
-        if this.1.is_nan() || this.1 > DENOMINATOR {
+        if this.1.is_nan() || this.1 > denominator {
             return None;
         }
     }
@@ -92,7 +102,7 @@ mod tests {
         #[test]
         fn fractions_are_found(a in -100_000i32..100_000, b in 1i32..1000, e in -1.0..1.0f64) {
             let x = f64::from(a) / f64::from(b);
-            let found = near(x + 1e-8 * e, 1e-8).and_then(|q| q.to_f64());
+            let found = near(x + 1e-8 * e, 1e-8, 1e3).and_then(|q| q.to_f64());
             prop_assert_eq!(found, Some(x));
         }
     }

@@ -19,17 +19,24 @@ type Term = ([usize; 2], u64);
 /// one, so would its image modulo the prime, unless the leading coefficient vanishes there: of all
 /// `t`, at most one in 1e13 does that.
 pub(crate) fn all_simple(polynomials: &[Polynomial<Exact>]) -> bool {
-    let [f, g] = polynomials else { return false };
-    let (Some(f), Some(g)) = (terms(f), terms(g)) else { return false };
+    eliminated(polynomials).is_some_and(|whole| whole.len() > 1 && is_squarefree(whole))
+}
+
+/// The number of all common roots, as often as they count, if they are isolated: the degree of the
+/// same resultant.
+pub(crate) fn finite_solutions(polynomials: &[Polynomial<Exact>]) -> Option<usize> {
+    eliminated(polynomials)?.len().checked_sub(1)
+}
+
+/// The resultant of two polynomials of the coordinates `u`, by ascending powers; empty if it is zero.
+fn eliminated(polynomials: &[Polynomial<Exact>]) -> Option<Vec<u64>> {
+    let [f, g] = polynomials else { return None };
+    let (f, g) = (terms(f)?, terms(g)?);
     let degree = |terms: &[Term]| terms.iter().map(|([a, b], _)| a + b).max().unwrap_or(0);
-    let Some(roots) = degree(&f).checked_mul(degree(&g)).filter(|d| (1..=MAX_ROOTS).contains(d)) else {
-        return false;
-    };
+    let roots = degree(&f).checked_mul(degree(&g)).filter(|d| (1..=MAX_ROOTS).contains(d))?;
     let Complex64 { re, im } = Random::new(0, Stream::Combinations).unit();
     let t = (re.to_bits() ^ im.to_bits().rotate_left(32)) >> 1;
-    let values = (0..=roots as u64).map(|u| resultant(line(&f, u, t), line(&g, u, t))).collect();
-    let whole = interpolated(values);
-    whole.len() > 1 && is_squarefree(whole)
+    Some(interpolated((0..=roots as u64).map(|u| resultant(line(&f, u, t), line(&g, u, t))).collect()))
 }
 
 fn terms(polynomial: &Polynomial<Exact>) -> Option<Vec<Term>> {
@@ -84,8 +91,20 @@ fn interpolated(mut values: Vec<u64>) -> Vec<u64> {
 
 #[cfg(test)]
 mod tests {
-    use super::all_simple;
+    use super::{all_simple, finite_solutions};
     use poly::parse::phcpack;
+
+    #[test]
+    fn numbers_of_finite_solutions() {
+        let count = |text: &str| finite_solutions(&phcpack(text).unwrap().expand(&Default::default()).unwrap());
+        assert_eq!(count("2\nx^2+y^2-5;\nx*y-2;"), Some(4));
+        // Circles, parallel lines, a double point, a common line.
+        assert_eq!(count("2\nx^2+y^2-5;\nx^2+y^2-x;"), Some(2));
+        assert_eq!(count("2\nx+y-1;\nx+y-2;"), Some(0));
+        assert_eq!(count("2\n(x-y)^3;\n(x+y)^2;"), Some(6));
+        assert_eq!(count("2\n(x+y)*x;\n(x+y)*(y-2);"), None);
+        assert_eq!(count("3\nx-1;\ny-1;\nz-1;"), None);
+    }
 
     #[test]
     fn simple_and_multiple_roots() {

@@ -8,8 +8,9 @@
 
 use super::equations::{Given, Precision};
 use super::number::Number;
+use super::squarefree::squarefree;
 use num_complex::Complex64;
-use poly::ComplexMulti;
+use poly::{ComplexMulti, Exact, Polynomial};
 
 /// Polynomials of a higher degree are left to paths.
 const MAX_DEGREE: usize = 3000;
@@ -19,13 +20,30 @@ const ROUNDS: usize = 300;
 /// a logarithm to base 2.
 const SMALL: f64 = -50.0;
 
-/// All roots but zero to the digits of a double; `None` for more than one equation or unknown, a
+/// A root to 45 digits: the sum of these.
+pub(crate) type Root = [Complex64; 3];
+
+/// All roots of a polynomial in one unknown in units of `2^unit`, with their multiplicities: those of
+/// its square-free factors, which are simple; `None` if they are not all clear. Several may be one
+/// double.
+pub(crate) fn roots_with_multiplicities(polynomial: &Polynomial<Exact>, unit: i64) -> Option<Vec<(Root, usize)>> {
+    let mut all = Vec::new();
+    for (part, multiplicity) in squarefree(polynomial)? {
+        let part = Given::new(&[part], vec![unit]);
+        let (zero, _) = part.univariate_degrees()?;
+        let roots = roots(&part)?.into_iter().chain((zero > 0).then(Root::default));
+        all.extend(roots.map(|root| (root, multiplicity)));
+    }
+    Some(all)
+}
+
+/// All roots but zero; `None` for more than one equation or unknown, a
 /// degree too high, or if they cannot be told apart, as multiple ones.
-pub(crate) fn roots(given: &Given) -> Option<Vec<Complex64>> {
+fn roots(given: &Given) -> Option<Vec<Root>> {
     settled::<ComplexMulti<4>>(given).or_else(|| settled::<ComplexMulti<16>>(given))
 }
 
-fn settled<S: Precision>(given: &Given) -> Option<Vec<Complex64>> {
+fn settled<S: Precision>(given: &Given) -> Option<Vec<Root>> {
     let terms = given.univariate::<S>()?;
     let (lowest, highest) = (terms.first()?.0, terms.last()?.0);
     let degree = usize::try_from(highest - lowest).ok().filter(|&d| d <= MAX_DEGREE)?;
@@ -62,10 +80,19 @@ fn settled<S: Precision>(given: &Given) -> Option<Vec<Complex64>> {
             settled[k] = size < SMALL;
         }
         if settled.iter().all(|&s| s) {
-            return are_apart(&terms, &points).then(|| points.iter().map(Number::to_c64).collect());
+            return are_apart(&terms, &points).then(|| points.iter().map(parts).collect());
         }
     }
     None
+}
+
+fn parts<S: Number>(z: &S) -> Root {
+    let mut rest = *z;
+    [(); 3].map(|()| {
+        let part = rest.to_c64();
+        rest = S::sub(&rest, &S::from_c64(part));
+        part
+    })
 }
 
 /// Evaluation errors are at most this share of the sizes of all terms, as a logarithm to base 2
@@ -153,7 +180,8 @@ mod tests {
 
     fn found(text: &str) -> Option<Vec<Complex64>> {
         let system = phcpack(text).unwrap();
-        roots(&Given::new(&system.expand(&Default::default()).unwrap(), vec![0; system.variables().len()]))
+        let given = Given::new(&system.expand(&Default::default()).unwrap(), vec![0; system.variables().len()]);
+        Some(roots(&given)?.into_iter().map(|[root, ..]| root).collect())
     }
 
     /// Mignotte's polynomials `x^d - 2 (a x - 1)^2` have two roots at about `a^(-1 - d/2)` from each

@@ -14,6 +14,8 @@ use poly::{Exact, Polynomial, SparseSystem};
 
 /// Imaginary parts of regular solutions up to this share of the point count as zero.
 pub(super) const REAL: f64 = 1e-10;
+/// The same of singular ones.
+pub(super) const REAL_SINGULAR: f64 = 1e-7;
 
 /// What the ends of all paths amount to.
 #[derive(Debug, Default)]
@@ -66,6 +68,8 @@ impl Classified {
 /// A system that was tracked, and the equations as they were given, by which its ends are judged.
 pub(super) struct Tracked<'a> {
     pub(super) given: &'a Given,
+    /// The work that may be done for the ends.
+    pub(super) work: u64,
     /// The same equations as polynomials.
     pub(super) polynomials: &'a [Polynomial<Exact>],
     /// As many equations as unknowns, their coefficients as parameters.

@@ -3,12 +3,14 @@
 use super::classify::Tracked;
 use super::solutions::Solution;
 use crate::distinct::relative_distance;
-use crate::singular::{Found, Verdict, Zoom};
+use crate::singular::{self, Effort, Found, Given, Verdict, Zoom};
 use num_complex::Complex64;
 use poly::{Exact, Polynomial};
 
-/// Relative distance below which two refined solutions are one.
-pub(super) const SAME: f64 = 1e-12;
+/// Relative distance below which two refined solutions are one if no digits of them differ that are
+/// right: the first is that of regular ones from doubles, the second that of those of more digits.
+const NEAR: f64 = 1e-12;
+const EQUAL: f64 = 2e-15;
 
 /// Ways to look at a cluster at most.
 const WAYS: usize = 12;
@@ -17,12 +19,13 @@ const WAYS: usize = 12;
 const PATHS: u64 = 600;
 const WORK: u64 = 20;
 /// Solutions this many times further from the centre than the cluster is wide are none of it.
-const OUTSIDE: f64 = 64.0;
+const OUTSIDE: f64 = 4096.0;
 
 /// The solutions around the end of `paths` paths that are not among the `known` ones: all, or as
 /// many as are found. `most` may end at any one point.
 pub(super) fn clustered(
     tracked: &Tracked<'_>,
+    given: &Given,
     end: &[Complex64],
     paths: usize,
     most: usize,
@@ -30,7 +33,7 @@ pub(super) fn clustered(
 ) -> Vec<Verdict> {
     let Some(solve) = tracked.zoomed else { return Vec::new() };
     let mut best: Vec<Verdict> = Vec::new();
-    for zoom in Zoom::all(tracked.given, end).take(WAYS) {
+    for zoom in Zoom::all(given, end).take(WAYS) {
         let degree = |p: &Polynomial<Exact>| p.degree().and_then(|d| u64::try_from(d).ok()).unwrap_or(0);
         let bezout = zoom.polynomials.iter().take(zoom.unknowns()).map(degree).fold(1, u64::saturating_mul);
         if bezout > PATHS {
@@ -48,7 +51,7 @@ pub(super) fn clustered(
         }
         let mut found: Vec<Verdict> = found.into_iter().map(|f| f.verdict).collect();
         found.retain(|verdict| match verdict {
-            Verdict::Regular { point, .. } => known.iter().all(|s| relative_distance(&s.value, point) > SAME),
+            Verdict::Regular { point, .. } => !is_known(given, known, point),
             _ => true,
         });
         if multiplicity(&found) > multiplicity(&best) {
@@ -59,6 +62,23 @@ pub(super) fn clustered(
         }
     }
     best
+}
+
+/// Whether a regular solution, rounded from many digits, is among those that are known.
+pub(super) fn is_known(given: &Given, known: &[Solution], point: &[Complex64]) -> bool {
+    known.iter().filter(|s| !s.singular).any(|s| is_same(given, &s.value, point))
+}
+
+/// Whether two regular solutions are the same, the second rounded from many digits.
+pub(super) fn is_same(given: &Given, known: &[Complex64], point: &[Complex64]) -> bool {
+    let distance = relative_distance(known, point);
+    if distance <= EQUAL || distance > NEAR {
+        return distance <= EQUAL;
+    }
+    match singular::judge(given, known, 1, 1, NEAR, Effort::Little) {
+        Verdict::Regular { point: refined, .. } => relative_distance(&refined, point) <= EQUAL,
+        _ => true,
+    }
 }
 
 /// How many paths end at these solutions, at least.

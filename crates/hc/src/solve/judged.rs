@@ -1,9 +1,10 @@
 //! Ends that the tracker alone cannot tell: singular ones, and regular ones of coefficients that
 //! were rounded.
 
-use super::classify::{Classified, REAL, Tracked};
-use super::cluster::{SAME, clustered, distributed};
+use super::classify::{Classified, REAL, REAL_SINGULAR, Tracked};
+use super::cluster::{clustered, distributed, is_known, is_same};
 use super::excess::Excess;
+use super::graph;
 use super::paths::Ends;
 use super::record::SingularEnd;
 use super::solutions::{Solution, Unresolved, is_real};
@@ -15,9 +16,6 @@ use crate::threads::IntoParallelRefIterator;
 use crate::threads::ParallelIterator;
 use num_complex::Complex64;
 use poly::{Exact, Polynomial};
-
-/// Imaginary parts of singular solutions up to this share of the point count as zero.
-const REAL_SINGULAR: f64 = 1e-7;
 
 /// A singular solution and the paths that end there.
 struct Multiple {
@@ -54,7 +52,7 @@ impl Classified {
                 Verdict::Regular { point, .. } if excess.outside(&point) => self.excess += paths,
                 Verdict::Isolated { multiplicity, point, residual } => {
                     let winding = group.iter().map(|&k| ends[k].winding).max().unwrap_or(1);
-                    match multiple.iter_mut().find(|m| relative_distance(&m.point, &point) <= SAME) {
+                    match multiple.iter_mut().find(|m| relative_distance(&m.point, &point) <= ONE) {
                         Some(known) => {
                             known.paths += paths;
                             known.winding = known.winding.max(winding);
@@ -64,7 +62,7 @@ impl Classified {
                 }
                 Verdict::Regular { point, residual } => {
                     // One path ends at a regular solution; any other has jumped.
-                    let known = self.solutions.iter().any(|s| relative_distance(&s.value, &point) <= SAME);
+                    let known = is_known(tracked.given, &self.solutions, &point);
                     self.lost += paths.saturating_sub(usize::from(!known));
                     if !known {
                         // A path that is counted as lost ends there.
@@ -88,12 +86,13 @@ impl Classified {
             }
         }
         self.lost = self.lost.saturating_sub(further);
+        let mut missing = 0;
         for found in multiple {
-            // As many paths as the multiplicity, or more where equations were combined: else some
-            // have gone astray.
-            let missing = found.multiplicity.saturating_sub(found.paths);
+            // As many paths as the multiplicity, or more where equations were combined. Where they
+            // are fewer others are lost, else some have gone astray.
             let surplus = if excess.overdetermined() { 0 } else { found.paths.saturating_sub(found.multiplicity) };
-            self.lost += missing + surplus;
+            missing += found.multiplicity.saturating_sub(found.paths);
+            self.lost += surplus;
             let condition = refiner.judged(tracked.target, &found.point).condition;
             let one = |multiplicity: usize, winding: usize, real: f64| {
                 let real = is_real(&found.point, real);
@@ -108,6 +107,46 @@ impl Classified {
                 self.solutions.push(Solution { singular: true, ..solution });
             }
         }
+        // Lost paths end there, if they are as many at least.
+        self.lost = if missing <= self.lost { self.lost - missing } else { missing };
+        if self.lost == 0 {
+            self.unresolved.clear();
+        }
+    }
+
+    /// The same, with what other ways tell of all solutions where some paths are lost or some ends
+    /// are singular.
+    pub(super) fn checked(
+        mut self,
+        polynomials: &[Polynomial<Exact>],
+        units: &[i64],
+        tracked: &Tracked<'_>,
+    ) -> Classified {
+        let singular = self.on_components > 0 || self.solutions.iter().any(|s| s.singular);
+        if self.lost == 0 && !singular {
+            return self;
+        }
+        let graph = if self.lost > 0 { graph::solved(polynomials, units, tracked) } else { None };
+        if let Some(solutions) = graph {
+            return Classified {
+                solutions,
+                infinite: self.infinite,
+                directions: self.directions,
+                ..Classified::default()
+            };
+        }
+        if let Some(count) = singular::finite_solutions(polynomials) {
+            // There are no components. Paths that are not accounted for go to infinity, however they
+            // seem to end, or solutions are missing.
+            let found: usize = self.solutions.iter().map(|s| s.multiplicity).sum();
+            let unknown = self.lost + std::mem::take(&mut self.on_components);
+            self.component_points.clear();
+            self.lost = if found == count { 0 } else { unknown.max(found.abs_diff(count)) };
+        }
+        if self.lost == 0 {
+            self.unresolved.clear();
+        }
+        self
     }
 
     fn unresolved(&mut self, end: &[Complex64], paths: usize, why: Why) {
@@ -140,7 +179,7 @@ impl Classified {
             };
             solution.residual = residual;
             solution.real = is_real(&exact, REAL);
-            if kept.iter().any(|s| relative_distance(&s.value, &exact) <= SAME) {
+            if is_known(tracked.given, &kept, &exact) {
                 self.lost += 1;
             } else {
                 kept.push(Solution { value: exact, ..solution });
@@ -158,12 +197,14 @@ const ACCURATE_RESIDUAL: f64 = 1e-14;
 /// How far rounded coefficients may move a regular solution that is still told apart from others.
 const ROUNDED: f64 = 1e-4;
 
-/// Groups that are judged at a time, fewer in systems of more terms than that.
-const BATCH: usize = 64;
-const TERMS: usize = 256;
-/// Work that a solve takes for its singular ends, in products of complex double-doubles, but for
-/// the last batch: about half a minute of a processor.
-const WORK: u64 = 300_000_000;
+/// Groups that are judged at a time.
+const BATCH: usize = 16;
+/// One of several may take this share of the work that is left.
+const SHARE: usize = 4;
+/// Work that a solve takes for its ends at least, in products of complex double-doubles: about a
+/// second of a processor. And what it takes for each path and factor, about as much as tracking.
+const WORK: u64 = 200_000_000;
+const WORK_OF_FACTORS: u64 = 100;
 
 /// Verdicts on all groups of ends, until the work is done that one solve may take or it is
 /// cancelled.
@@ -175,42 +216,50 @@ fn judged_groups(
     spare: usize,
 ) -> Vec<(Vec<usize>, Verdict)> {
     let mut judged = Vec::new();
-    let size = BATCH / (1 + tracked.target.len() / TERMS).min(BATCH);
-    for batch in groups.chunks(size.max(1)) {
-        let stop = if tracked.monitor.is_cancelled() {
-            Some(Why::Interrupted)
-        } else {
-            (tracked.given.spent() > WORK).then_some(Why::TooMuch)
-        };
+    for batch in groups.chunks(BATCH) {
+        let left = tracked.work.saturating_sub(tracked.given.spent());
+        let stop =
+            if tracked.monitor.is_cancelled() { Some(Why::Interrupted) } else { (left == 0).then_some(Why::TooMuch) };
         if let Some(why) = stop {
             judged.extend(batch.iter().map(|group| (group.clone(), Verdict::Unresolved(why))));
             continue;
         }
-        let of = |group: &Vec<usize>| verdicts(tracked, ends, group, known, spare);
+        // Each has its own, so that it does not matter which is done first.
+        let of = |group: &Vec<usize>| {
+            let given = tracked.given.limited(left / groups.len().clamp(1, SHARE) as u64);
+            let verdicts = verdicts(tracked, &given, ends, group, known, spare);
+            tracked.given.spend(given.spent());
+            verdicts
+        };
         let verdicts: Vec<Vec<_>> = batch.par_iter().map(of).collect();
         judged.extend(verdicts.into_iter().flatten());
     }
     judged
 }
 
+/// The work that a solve may take for the ends of so many paths.
+pub(super) fn work(given: &singular::Given, paths: usize) -> u64 {
+    WORK.saturating_add(WORK_OF_FACTORS.saturating_mul(paths as u64).saturating_mul(given.factors() as u64))
+}
+
 /// Verdicts on ends that nearly coincide: on all at once, or on each where they are no multiple
 /// solution. `spare` paths more may end there; at the `known` solutions others do.
 fn verdicts(
     tracked: &Tracked<'_>,
+    given: &singular::Given,
     ends: &[&SingularEnd],
     group: &[usize],
     known: &[Solution],
     spare: usize,
 ) -> Vec<(Vec<usize>, Verdict)> {
     let (paths, most) = (group.len() + spare, ends.len() + spare);
-    let verdict =
-        |k: usize, effort: Effort| singular::judge(tracked.given, &ends[k].point, paths, most, ends[k].error, effort);
+    let verdict = |k: usize, effort: Effort| singular::judge(given, &ends[k].point, paths, most, ends[k].error, effort);
     // The most accurate of the ends stands for all.
     let Some(&best) = group.iter().min_by(|&&a, &&b| ends[a].error.total_cmp(&ends[b].error)) else {
         return Vec::new();
     };
     // Combinations of equations have higher multiplicities.
-    let combined = tracked.given.len() > tracked.given.unknowns();
+    let combined = given.len() > given.unknowns();
     let own = verdict(best, Effort::Little);
     match own {
         Verdict::Isolated { multiplicity, .. } if combined || multiplicity >= group.len() => {
@@ -224,12 +273,12 @@ fn verdicts(
     if group.iter().all(is_apart) && !matches!(own, Verdict::Isolated { .. }) {
         let each = |&k: &usize| (vec![k], if k == best { own.clone() } else { verdict(k, Effort::Little) });
         let each: Vec<(Vec<usize>, Verdict)> = group.iter().map(each).collect();
-        if are_told_apart(&each, combined) {
+        if are_told_apart(given, &each, combined) {
             return each;
         }
     }
     // Solutions so close to each other that the paths seemed to end between them.
-    let (mut all, left) = distributed(group, clustered(tracked, &ends[best].point, group.len(), most, known));
+    let (mut all, left) = distributed(group, clustered(tracked, given, &ends[best].point, group.len(), most, known));
     if left.is_empty() {
         return all;
     }
@@ -250,15 +299,15 @@ fn verdicts(
     }
 }
 
-/// Relative distance up to which two ends are one point.
-const ONE: f64 = 1e-14;
+/// Relative distance up to which two ends, or two multiple solutions, are one point.
+const ONE: f64 = 1e-13;
 
 /// Whether every end has a verdict of its own.
-fn are_told_apart(each: &[(Vec<usize>, Verdict)], overdetermined: bool) -> bool {
+fn are_told_apart(given: &singular::Given, each: &[(Vec<usize>, Verdict)], overdetermined: bool) -> bool {
     let mut regular: Vec<&[Complex64]> = Vec::new();
     each.iter().all(|(_, verdict)| match verdict {
         Verdict::Regular { point, .. } => {
-            let fresh = regular.iter().all(|known| relative_distance(known, point) > SAME);
+            let fresh = regular.iter().all(|known| !is_same(given, known, point));
             regular.push(point);
             fresh
         }
@@ -299,20 +348,14 @@ pub(super) fn univariate(
     let (_, degree) = tracked.given.univariate_degrees()?;
     let mut refiner = Refiner::new(tracked.system);
     let mut found: Vec<Solution> = Vec::new();
-    for (part, multiplicity) in singular::squarefree(polynomial)? {
-        // The roots of each part are simple.
-        let part = singular::Given::new(&[part], units.to_vec());
-        let (zero, _) = part.univariate_degrees()?;
-        let roots = singular::roots(&part)?.into_iter().chain((zero > 0).then(Complex64::default));
-        for root in roots {
-            // Several may be one double.
-            let point = [root];
-            let condition = refiner.judged(tracked.target, &point).condition;
-            let real = is_real(&point, if multiplicity > 1 { REAL_SINGULAR } else { REAL });
-            let residual = singular::residual(tracked.given, &point);
-            let solution = solution(&point, multiplicity, multiplicity, residual, condition, real);
-            found.push(Solution { singular: multiplicity > 1, ..solution });
-        }
+    for ([root, ..], multiplicity) in singular::roots_with_multiplicities(polynomial, *units.first()?)? {
+        // Several may be one double.
+        let point = [root];
+        let condition = refiner.judged(tracked.target, &point).condition;
+        let real = is_real(&point, if multiplicity > 1 { REAL_SINGULAR } else { REAL });
+        let residual = singular::residual(tracked.given, &point);
+        let solution = solution(&point, multiplicity, multiplicity, residual, condition, real);
+        found.push(Solution { singular: multiplicity > 1, ..solution });
     }
     found.sort_by_key(|s| s.singular);
     (found.iter().map(|s| s.multiplicity).sum::<usize>() == degree).then_some(found)

@@ -2,6 +2,7 @@
 
 use super::classify::{Tracked, classify};
 use super::excess::Excess;
+use super::judged::work;
 use super::options::SolveOptions;
 use super::paths::{Route, follow};
 use super::polynomials::solve_polynomials;
@@ -34,6 +35,7 @@ pub(crate) fn solve_member<E: Evaluate>(
     };
     let tracked = expanded.as_ref().map(|(polynomials, given, system, target)| Tracked {
         given,
+        work: work(given, fibre.len()),
         polynomials,
         system,
         target,

@@ -6,6 +6,7 @@ mod conditioned;
 mod equations;
 mod error;
 mod excess;
+mod graph;
 mod infinity;
 mod judged;
 mod member;

@@ -87,8 +87,9 @@ fn solve_zoomed(
             retracked += ends.retracked;
             let line = Line { supports: &from.equations.supports, target };
             let system = &from.system;
+            let work = judged::work(&given, count);
             let tracked =
-                Tracked { given: &given, polynomials, system, target, line: Some(line), exact, monitor, zoomed };
+                Tracked { given: &given, work, polynomials, system, target, line: Some(line), exact, monitor, zoomed };
             // Of a polynomial in one unknown there is a better way to all roots than other paths.
             let whole = univariate.is_none_or(|(_, degree)| ends.lost == 0 && ends.regular.len() == degree);
             let roots = (!whole && !monitor.is_cancelled())
@@ -103,6 +104,8 @@ fn solve_zoomed(
                     Classified { lost: found.lost + astray, infinite: found.infinite - astray, ..found }
                 }
             };
+            let all = !options.torus_only && options.known.is_none() && !monitor.is_cancelled();
+            let found = if all { found.checked(polynomials, &units, &tracked) } else { found };
             let this = Best { start: Some(from.kind), tracked: from.paths, found };
             best = if start_systems == 1 { this } else { best.joined(this) };
             let hopeless = univariate.is_some() || are_hopeless(ends.lost, count);
