@@ -5,6 +5,7 @@ use cli::{Failure, output};
 use hc::SolveOptions;
 use hc::witness::{Decomposition, decompose};
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -74,8 +75,13 @@ fn summary(found: &Decomposition, seconds: f64) -> String {
         }
         text += if component.irreducible { "\n" } else { ", perhaps several together\n" };
     }
+    let mut reasons: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
     for end in &found.unresolved {
-        text += &format!("unresolved: an end of {} paths: {}\n", end.paths, end.reason);
+        let (ends, paths) = reasons.entry(&end.reason).or_default();
+        (*ends, *paths) = (*ends + 1, *paths + end.paths);
+    }
+    for (reason, (ends, paths)) in reasons {
+        text += &format!("unresolved: {ends} ends of {paths} paths: {reason}\n");
     }
     text
 }

@@ -75,15 +75,34 @@ impl Equations {
         self.supports.len()
     }
 
-    /// As many equations as unknowns: those of highest degree, each with a random combination of
-    /// the others added, so that Bezout's number is the product of the highest degrees. They have
-    /// all solutions of these equations, and excess ones.
-    pub(super) fn squared(&self, seed: u64) -> Equations {
-        let mut order: Vec<usize> = (0..self.len()).collect();
-        let degree =
-            |i: usize| self.supports[i].iter().map(|p| p.iter().map(|&e| i64::from(e)).sum::<i64>()).max().unwrap_or(0);
-        order.sort_by_key(|&i| std::cmp::Reverse(degree(i)));
-        let (kept, others) = order.split_at(self.unknowns);
+    /// The degree of an equation; with negative exponents, the largest sum of exponents.
+    pub(super) fn degree(&self, equation: usize) -> i64 {
+        self.supports[equation].iter().map(|p| p.iter().map(|&e| i64::from(e)).sum::<i64>()).max().unwrap_or(0)
+    }
+
+    /// Those of degree one, if they are independent, and no more than unknowns; else none.
+    pub(super) fn linear(&self) -> Vec<usize> {
+        let is_linear = |i: &usize| self.supports[*i].iter().flatten().all(|&e| e >= 0) && self.degree(*i) <= 1;
+        let linear: Vec<usize> = (0..self.len()).filter(is_linear).collect();
+        let row = |&i: &usize| {
+            let mut row = vec![Complex64::new(0.0, 0.0); self.unknowns];
+            for (point, c) in self.supports[i].iter().zip(&self.coefficients[i]) {
+                if let Some(j) = point.iter().position(|&e| e == 1) {
+                    row[j] = *c;
+                }
+            }
+            row
+        };
+        if are_independent(linear.iter().map(row)) { linear } else { Vec::new() }
+    }
+
+    /// As many equations as unknowns: `fixed` ones as they are, and of the others those of highest
+    /// degree, each with a random combination of the rest added, so that Bezout's number is the
+    /// product of the highest degrees. They have all solutions of these equations, and excess ones.
+    pub(super) fn squared(&self, seed: u64, fixed: &[usize]) -> Equations {
+        let mut order: Vec<usize> = (0..self.len()).filter(|i| !fixed.contains(i)).collect();
+        order.sort_by_key(|&i| std::cmp::Reverse(self.degree(i)));
+        let (kept, others) = order.split_at(self.unknowns - fixed.len());
         let mut random = Random::new(seed, Stream::Combinations);
         let mut squared = Equations { supports: Vec::new(), coefficients: Vec::new(), ..self.clone() };
         for &i in kept {
@@ -98,7 +117,20 @@ impl Equations {
             squared.supports.push(sum.keys().map(|p| p.to_vec()).collect());
             squared.coefficients.push(sum.into_values().collect());
         }
+        for &i in fixed {
+            squared.supports.push(self.supports[i].clone());
+            squared.coefficients.push(self.coefficients[i].clone());
+        }
         squared
+    }
+
+    /// The same with so many unknowns more, which do not occur in them.
+    pub(super) fn widened(&self, further: usize) -> Equations {
+        let mut wide = self.clone();
+        wide.unknowns += further;
+        wide.supports.iter_mut().flatten().for_each(|point| point.resize(wide.unknowns, 0));
+        wide.scale.resize(wide.unknowns, 1.0);
+        wide
     }
 
     /// Whether some exponent is negative.
@@ -130,6 +162,30 @@ impl Equations {
         }
     }
 }
+
+/// Whether rows are clearly independent, by Gram and Schmidt's orthogonalisation.
+fn are_independent(rows: impl Iterator<Item = Vec<Complex64>>) -> bool {
+    let mut basis: Vec<Vec<Complex64>> = Vec::new();
+    for mut row in rows {
+        let size = |row: &[Complex64]| row.iter().map(|z| z.norm_sqr()).sum::<f64>().sqrt();
+        let before = size(&row);
+        for known in &basis {
+            let product: Complex64 = known.iter().zip(&row).map(|(a, b)| a.conj() * b).sum();
+            row.iter_mut().zip(known).for_each(|(z, a)| *z -= product * a);
+        }
+        let left = size(&row);
+        let clear = left > INDEPENDENT * before;
+        if !clear {
+            return false;
+        }
+        row.iter_mut().for_each(|z| *z /= left);
+        basis.push(row);
+    }
+    true
+}
+
+/// What is left of a row apart from those before it, at least.
+const INDEPENDENT: f64 = 1e-6;
 
 /// Whether a rational is a double exactly.
 fn is_double(q: &BigRational) -> bool {

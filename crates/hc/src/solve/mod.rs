@@ -15,6 +15,7 @@ mod paths;
 mod polynomials;
 mod prints;
 mod record;
+mod slack;
 mod solutions;
 mod start;
 mod warning;
@@ -22,7 +23,7 @@ mod warning;
 pub use error::SolveError;
 pub(crate) use member::solve_member;
 pub use options::{SolveOptions, Start};
-pub(crate) use polynomials::solve_polynomials;
+pub(crate) use polynomials::{solve_polynomials, solve_sliced};
 pub use solutions::{Direction, Solution, Solutions, Unresolved};
 pub use warning::Warning;
 

@@ -9,6 +9,7 @@ use super::infinity::Line;
 use super::judged;
 use super::options::{SolveOptions, Start};
 use super::paths::{Route, are_hopeless, follow};
+use super::slack;
 use super::solutions::Solutions;
 use super::start::Starts;
 use crate::distinct::{CLUSTER, relative_distance};
@@ -30,7 +31,18 @@ pub(crate) fn solve_polynomials(
     options: &SolveOptions,
     monitor: &Monitor,
 ) -> Result<Solutions, SolveError> {
-    solve_zoomed(polynomials, names, options, monitor, 0)
+    solve_zoomed(polynomials, names, options, monitor, 0, false)
+}
+
+/// [`solve_polynomials`] of equations that are too many, some of them general hyperplanes: linear ones
+/// are kept as they are, and the others may get further [unknowns](slack) instead of being combined.
+pub(crate) fn solve_sliced(
+    polynomials: &[Polynomial<Exact>],
+    names: &[String],
+    options: &SolveOptions,
+    monitor: &Monitor,
+) -> Result<Solutions, SolveError> {
+    solve_zoomed(polynomials, names, options, monitor, 0, true)
 }
 
 /// The same for equations that are `zooms` times zoomed.
@@ -40,11 +52,12 @@ fn solve_zoomed(
     options: &SolveOptions,
     monitor: &Monitor,
     zooms: usize,
+    sliced: bool,
 ) -> Result<Solutions, SolveError> {
     // The equations around ends that are not told apart.
     let zoomed = |polynomials: &[Polynomial<Exact>]| {
         let names: Vec<String> = (0..polynomials.first()?.variables()).map(|k| format!("x{k}")).collect();
-        solve_zoomed(polynomials, &names, &SolveOptions::new(), &Monitor::default(), zooms + 1).ok()
+        solve_zoomed(polynomials, &names, &SolveOptions::new(), &Monitor::default(), zooms + 1, false).ok()
     };
     let zoomed: Option<&Zoomed<'_>> = if zooms < ZOOMS { Some(&zoomed) } else { None };
     let equations = Equations::new(polynomials, names)?;
@@ -59,6 +72,16 @@ fn solve_zoomed(
     let univariate = given.univariate_degrees().filter(|_| !options.torus_only);
     let excess = Excess::new(&given, options.torus_only);
     let nothing = Solutions { interrupted: true, ..Solutions::default() };
+    let square = match sliced.then(|| slack::squared(&equations, options, monitor)) {
+        Some(Err(SolveError::Mixed(MixedError::Cancelled))) => return Ok(nothing),
+        Some(other) => other?,
+        None => None,
+    };
+    let (equations, slack, own) = match square {
+        Some(square) => (square.equations, square.slack, Some(square.options)),
+        None => (equations, None, None),
+    };
+    let options = own.as_ref().unwrap_or(options);
     let mut starts = match Starts::new(equations, options, monitor) {
         Err(SolveError::Mixed(MixedError::Cancelled)) => return Ok(nothing),
         other => other?,
@@ -76,8 +99,10 @@ fn solve_zoomed(
             other => other?,
         };
         let (count, target) = (from.paths, &from.target[..]);
-        let ends = {
+        let mut ends = {
             // Their memory is given back before the ends are sorted.
+            let own = sliced.then(|| slack::of_attempt(options, start_systems));
+            let options = own.as_ref().unwrap_or(options);
             let trackers = Trackers::new(&from.system);
             let route = Route { trackers: &trackers, start: &start, count, target, excess: &excess, options, monitor };
             follow(route, trial)
@@ -86,8 +111,13 @@ fn solve_zoomed(
             start_systems += 1;
             retracked += ends.retracked;
             let line = Line { supports: &from.equations.supports, target };
-            let system = &from.system;
             let work = judged::work(&given, count);
+            let (mut judged_by, mut beside) = ((&from.system, target), 0);
+            if let Some(slack) = &slack {
+                beside = slack.shorten(&mut ends);
+                judged_by = (&slack.combined.0, &slack.combined.1);
+            }
+            let (system, target) = judged_by;
             let tracked =
                 Tracked { given: &given, work, polynomials, system, target, line: Some(line), exact, monitor, zoomed };
             // Of a polynomial in one unknown there is a better way to all roots than other paths.
@@ -101,7 +131,8 @@ fn solve_zoomed(
                     let found = classify(Some(&tracked), &ends, &excess, options.paths.coincidence);
                     // All paths end at roots, those that seem to go to infinity too.
                     let astray = if univariate.is_some() { found.infinite } else { 0 };
-                    Classified { lost: found.lost + astray, infinite: found.infinite - astray, ..found }
+                    let (lost, infinite) = (found.lost + astray, found.infinite - astray);
+                    Classified { lost, infinite, excess: found.excess + beside, ..found }
                 }
             };
             let all = !options.torus_only && options.known.is_none() && !monitor.is_cancelled();

@@ -54,7 +54,7 @@ impl Numbers {
 impl Starts {
     pub(super) fn new(given: Equations, options: &SolveOptions, monitor: &Monitor) -> Result<Starts, SolveError> {
         let n = given.unknowns;
-        let mut equations = if given.len() > n { given.squared(options.seed) } else { given };
+        let mut equations = if given.len() > n { given.squared(options.seed, &[]) } else { given };
         let laurent = equations.is_laurent();
         if !options.torus_only && !laurent {
             for i in 0..n {

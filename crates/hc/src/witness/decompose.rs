@@ -3,7 +3,7 @@
 use super::irreducible::orbits;
 use super::slices::Slices;
 use crate::monitor::Monitor;
-use crate::solve::{Solution, SolveError, SolveOptions, Unresolved, solve_polynomials};
+use crate::solve::{Solution, SolveError, SolveOptions, Unresolved, solve_sliced};
 use num_complex::Complex64;
 use poly::{Exact, ExpandLimits, Polynomial, System};
 use serde::Serialize;
@@ -48,7 +48,9 @@ pub struct Decomposition {
 /// the isolated solutions.
 ///
 /// In each dimension the given equations and as many general hyperplanes are [solved](crate::solve)
-/// with these options. The same seed gives the same bits on any number of threads.
+/// with these options, but that they are too many: they are combined at random, or get further
+/// unknowns that vanish at the solutions (Sommese & Verschelde 2000), whichever makes less work. The
+/// same seed gives the same bits on any number of threads.
 ///
 /// ```
 /// // The twisted cubic.
@@ -74,7 +76,7 @@ pub fn decompose(system: &System, options: &SolveOptions, monitor: &Monitor) -> 
     for dimension in (lowest..names.len()).rev() {
         let slices = Slices::new(names.len(), dimension, options.seed);
         let sliced = [polynomials.clone(), slices.polynomials(names.len())].concat();
-        let found = solve_polynomials(&sliced, names, options, monitor)?;
+        let found = solve_sliced(&sliced, names, options, monitor)?;
         all.failed += found.paths.failed;
         all.partial |= found.interrupted;
         all.unresolved.extend(found.unresolved);

@@ -1,0 +1,135 @@
+//! Equations that are too many, made as many as unknowns while linear ones are kept.
+//!
+//! Random combinations `f_i + sum c_ij f_j` have few paths where degrees tell their number. Where
+//! supports do, unknowns `z_j` that vanish at the solutions take the place of the `f_j` (Sommese &
+//! Verschelde 2000, J. Complexity 16:572): with `f_j + z_j` these are the same combinations, `z`
+//! eliminated, but supports stay small, and with them the mixed volume.
+
+use super::equations::Equations;
+use super::error::SolveError;
+use super::options::SolveOptions;
+use super::paths::Ends;
+use crate::monitor::Monitor;
+use crate::random::{Random, Stream};
+use crate::start::{MixedError, Polyhedral, bezout_number, degrees};
+use num_complex::Complex64;
+use poly::SparseSystem;
+
+/// Of combinations as many paths as this for one with further unknowns are less work: they have one
+/// stage and fewer unknowns.
+const WORTH: u64 = 2;
+/// Steps at most of a path with further unknowns, and how often it is tracked again: those that need
+/// more do not with another start system.
+const STEPS: usize = 1_000;
+const RETRIES: u32 = 2;
+/// Start systems more for that.
+const RESTARTS: u32 = 4;
+/// Radius of the first circle of the endgame in every second attempt, at least.
+const RADIUS: f64 = 1e-4;
+
+/// Further unknowns, the last ones of the equations that are tracked.
+pub(super) struct Slack {
+    /// The number of unknowns that were given.
+    given: usize,
+    /// Combinations in the given unknowns alone, with their coefficients: by these the Jacobian at a
+    /// solution is judged.
+    pub(super) combined: (SparseSystem, Vec<Complex64>),
+}
+
+/// As many equations as unknowns, and how they are tracked.
+pub(super) struct Square {
+    pub(super) equations: Equations,
+    pub(super) slack: Option<Slack>,
+    pub(super) options: SolveOptions,
+}
+
+/// Makes equations that are more than their unknowns as many; `None` if they are not.
+pub(super) fn squared(
+    equations: &Equations,
+    options: &SolveOptions,
+    monitor: &Monitor,
+) -> Result<Option<Square>, SolveError> {
+    if equations.len() <= equations.unknowns {
+        return Ok(None);
+    }
+    let mut options = options.clone();
+    let linear = equations.linear();
+    let combined = equations.squared(options.seed, &linear);
+    let wide = widened(equations, &linear, options.seed);
+    let volume = match wide.as_ref().map(|wide| Polyhedral::new(&with_origin(wide), options.seed, 0, monitor)) {
+        Some(Ok(cells)) => Some(cells.mixed_volume),
+        Some(Err(MixedError::Cancelled)) => return Err(MixedError::Cancelled.into()),
+        Some(Err(_)) | None => None,
+    };
+    let bezout = degrees(&combined.supports).and_then(|degrees| bezout_number(&degrees));
+    let (Some(wide), Some(volume)) = (wide, volume) else {
+        return Ok(Some(Square { equations: combined, slack: None, options }));
+    };
+    if bezout.is_some_and(|bezout| bezout <= volume.saturating_mul(WORTH)) {
+        return Ok(Some(Square { equations: combined, slack: None, options }));
+    }
+    options.paths.tracker.max_steps = options.paths.tracker.max_steps.min(STEPS);
+    options.paths.retries = options.paths.retries.min(RETRIES);
+    options.restarts = options.restarts.max(RESTARTS);
+    let system = SparseSystem::new(combined.unknowns, &combined.supports)?;
+    let slack = Slack { given: equations.unknowns, combined: (system, combined.coefficients.concat()) };
+    Ok(Some(Square { equations: wide, slack: Some(slack), options }))
+}
+
+/// The options of an attempt: every second one has larger circles. On hyperplanes that are kept,
+/// coordinates that grow at different rates cancel: of those of paths to infinity too few digits are
+/// left on small circles, while ends that lie close together are told apart there only.
+pub(super) fn of_attempt(options: &SolveOptions, attempt: u32) -> SolveOptions {
+    let mut options = options.clone();
+    if attempt % 2 == 1 {
+        options.endgame.radius = options.endgame.radius.max(RADIUS);
+        options.endgame.start = options.endgame.start.max(10.0 * RADIUS);
+    }
+    options
+}
+
+/// The equations with further unknowns; `None` if too many of them are linear.
+fn widened(equations: &Equations, linear: &[usize], seed: u64) -> Option<Equations> {
+    let further = equations.len() - equations.unknowns;
+    let mut curved: Vec<usize> = (0..equations.len()).filter(|i| !linear.contains(i)).collect();
+    curved.sort_by_key(|&i| equations.degree(i));
+    if curved.len() < further {
+        return None;
+    }
+    let mut random = Random::new(seed, Stream::Combinations);
+    let mut wide = equations.widened(further);
+    // The first ones have one further unknown each, the others all of them.
+    for (place, i) in curved.into_iter().enumerate() {
+        for j in (0..further).filter(|&j| place >= further || place == j) {
+            let unknown = |k: usize| i32::from(k == equations.unknowns + j);
+            wide.supports[i].push((0..wide.unknowns).map(unknown).collect());
+            wide.coefficients[i].push(random.unit());
+        }
+    }
+    Some(wide)
+}
+
+/// The supports with the origin, as they are tracked.
+fn with_origin(equations: &Equations) -> Vec<Vec<Vec<i32>>> {
+    let mut with = equations.clone();
+    for i in 0..with.len() {
+        with.add_term(i, vec![0; equations.unknowns]);
+    }
+    with.supports
+}
+
+impl Slack {
+    /// Leaves the further unknowns out of all ends: those where they do not vanish solve the combined
+    /// equations alone. Takes out the regular ones among these; their number.
+    pub(super) fn shorten(&self, ends: &mut Ends) -> usize {
+        let before = ends.regular.len();
+        ends.regular.retain(|_, end| end.point[self.given..].iter().all(|z| z.norm() < VANISHES));
+        ends.regular.values_mut().for_each(|end| end.point.truncate(self.given));
+        ends.singular.values_mut().for_each(|end| end.point.truncate(self.given));
+        before - ends.regular.len()
+    }
+}
+
+/// A further unknown of a regular solution that is refined to the last digit is zero below this,
+/// unless it is so small by chance.
+const VANISHES: f64 = 1e-9;
