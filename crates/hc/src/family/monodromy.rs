@@ -111,10 +111,14 @@ pub struct Monodromy {
     pub paths: usize,
 }
 
-/// [`fill`] of a program without symmetries, all of whose solutions are wanted and that nobody
-/// watches.
-pub(crate) fn monodromy<E: Evaluate>(system: &E, start: &Fibre, options: &MonodromyOptions) -> Monodromy {
-    fill(system, start, |_, _| true, &Symmetry::default(), options, &Monitor::default())
+/// [`fill`] of a program without symmetries, all of whose solutions are wanted.
+pub(crate) fn monodromy<E: Evaluate>(
+    system: &E,
+    start: &Fibre,
+    options: &MonodromyOptions,
+    monitor: &Monitor,
+) -> Monodromy {
+    fill(system, start, |_, _| true, &Symmetry::default(), options, monitor)
 }
 
 /// Completes `start` (one or several solutions for generic parameters) by loops in parameter space;

@@ -83,7 +83,8 @@ pub fn decompose(system: &System, options: &SolveOptions, monitor: &Monitor) -> 
         if dimension == 0 {
             all.isolated = found.solutions;
         } else {
-            all.add(&polynomials, dimension, &slices, found.solutions, options.seed);
+            all.add(&polynomials, dimension, &slices, found.solutions, options.seed, monitor);
+            all.partial |= monitor.is_cancelled();
         }
         if all.partial {
             break;
@@ -101,6 +102,7 @@ impl Decomposition {
         slices: &Slices,
         solutions: Vec<Solution>,
         seed: u64,
+        monitor: &Monitor,
     ) {
         let mut by_multiplicity: BTreeMap<usize, Vec<Vec<Complex64>>> = BTreeMap::new();
         for solution in solutions {
@@ -115,7 +117,7 @@ impl Decomposition {
                 witness_points,
             };
             // Points of multiple components are singular: they are not tracked.
-            let orbits = if multiplicity == 1 { orbits(polynomials, slices, &points, seed) } else { None };
+            let orbits = if multiplicity == 1 { orbits(polynomials, slices, &points, seed, monitor) } else { None };
             let Some(orbits) = orbits else {
                 let single = points.len() == 1;
                 self.components.push(component(points, single));

@@ -3,7 +3,8 @@
 
 use super::slices::Slices;
 use crate::distinct::relative_distance;
-use crate::family::{Fibre, FibreOptions, MonodromyOptions, PASSED, deviation, monodromy, move_fibre};
+use crate::family::{Fibre, FibreOptions, MonodromyOptions, PASSED, deviation, monodromy, move_fibre_watched};
+use crate::monitor::Monitor;
 use crate::random::{Random, Stream};
 use num_complex::Complex64;
 use poly::{Evaluate, Exact, Polynomial};
@@ -12,6 +13,8 @@ use poly::{Evaluate, Exact, Polynomial};
 const SAME: f64 = 1e-8;
 /// Searches with other loops, while the trace test says that points are missing.
 const SEARCHES: u64 = 4;
+/// Directions in which hyperplanes are moved for a trace test, while paths are lost.
+const DIRECTIONS: u64 = 4;
 
 /// Witness points of one component, by their indices.
 pub(super) struct Orbit {
@@ -35,6 +38,7 @@ pub(super) fn orbits(
     slices: &Slices,
     points: &[Vec<Complex64>],
     seed: u64,
+    monitor: &Monitor,
 ) -> Option<Vec<Orbit>> {
     let unknowns = points.first()?.len();
     let family = slices.family(given, unknowns, seed)?.compile().ok()?;
@@ -45,9 +49,11 @@ pub(super) fn orbits(
         let mut deviation = None;
         for search in 0..SEARCHES {
             let options = MonodromyOptions::new().seed(seed.wrapping_add(search)).roots(left.len());
-            fibre = monodromy(&family, &fibre, &options).fibre;
-            deviation = trace(&family, &fibre, unknowns, seed);
-            if deviation.is_some_and(|d| d < PASSED) {
+            fibre = settled(monodromy(&family, &fibre, &options, monitor).fibre);
+            let of_direction =
+                |k| trace(&family, &fibre, unknowns, seed.wrapping_add(search * DIRECTIONS + k), monitor);
+            deviation = (0..DIRECTIONS).find_map(of_direction);
+            if deviation.is_some_and(|d| d < PASSED) || monitor.is_cancelled() {
                 break;
             }
         }
@@ -61,9 +67,22 @@ pub(super) fn orbits(
     Some(orbits)
 }
 
+/// Coordinates below this share of the largest are zero: Newton's method leaves ever smaller numbers in
+/// their place, and squares of these underflow.
+const NOTHING: f64 = 1e-40;
+
+/// A fibre with zeros for what is left of them.
+fn settled(mut fibre: Fibre) -> Fibre {
+    for point in fibre.solutions.chunks_exact_mut(fibre.dimension.max(1)) {
+        let largest = point.iter().map(|z| z.norm()).fold(0.0, f64::max);
+        point.iter_mut().filter(|z| z.norm() < NOTHING * largest).for_each(|z| *z = Complex64::default());
+    }
+    fibre
+}
+
 /// How far the sum of the points is from moving linearly while the hyperplanes move in parallel,
 /// relative to what the points bend: rounding error if they are all of one or more components.
-fn trace<E: Evaluate>(family: &E, fibre: &Fibre, unknowns: usize, seed: u64) -> Option<f64> {
+fn trace<E: Evaluate>(family: &E, fibre: &Fibre, unknowns: usize, seed: u64, monitor: &Monitor) -> Option<f64> {
     let mut random = Random::new(seed, Stream::Trace);
     // The offsets move; slopes, as many as unknowns before each, stay. Steps and offsets have so few
     // digits that sums are exact.
@@ -71,8 +90,9 @@ fn trace<E: Evaluate>(family: &E, fibre: &Fibre, unknowns: usize, seed: u64) -> 
     let direction: Vec<Complex64> = (0..fibre.parameters.len()).map(step).collect();
     let at = |s: f64| fibre.parameters.iter().zip(&direction).map(|(b, v)| b + v * s).collect::<Vec<_>>();
     let options = FibreOptions::default();
-    let second = move_fibre(family, fibre, &at(1.0), &options)?;
-    let third = move_fibre(family, &second, &at(2.0), &options)?;
+    let moved = |fibre: &Fibre, s: f64| move_fibre_watched(family, fibre, &at(s), &options, monitor).map(settled);
+    let second = moved(fibre, 1.0)?;
+    let third = moved(&second, 2.0)?;
     Some(deviation(family, &[fibre, &second, &third]))
 }
 
@@ -80,7 +100,6 @@ fn trace<E: Evaluate>(family: &E, fibre: &Fibre, unknowns: usize, seed: u64) -> 
 mod tests {
     use super::*;
     use crate::SolveOptions;
-    use crate::monitor::Monitor;
     use crate::solve::solve_polynomials;
 
     /// A circle of radius 1e6, on the scale of which the hyperplane hardly moves.
@@ -95,7 +114,7 @@ mod tests {
         assert_eq!(points.len(), 2);
         let family = slices.family(&given, 2, 0).unwrap().compile().unwrap();
         let deviation = |points: &[Vec<Complex64>]| {
-            trace(&family, &Fibre::new(slices.parameters(), 2, points.concat()), 2, 0).unwrap()
+            trace(&family, &Fibre::new(slices.parameters(), 2, points.concat()), 2, 0, &Monitor::default()).unwrap()
         };
         assert!(deviation(&points) < PASSED);
         assert!(deviation(&points[..1]) > 0.1);

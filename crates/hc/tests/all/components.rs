@@ -63,12 +63,17 @@ fn reduced_cyclic() {
     check(text, 3, &[], 16);
 }
 
-/// Adjacent minors of a 2 x 3 matrix (Diaconis, Eisenbud & Sturmfels 1998): the matrices of rank
-/// one, of degree 3, and those whose middle column is zero.
+/// Adjacent minors of a matrix of two rows (Diaconis, Eisenbud & Sturmfels 1998): a component for each
+/// set of columns, no two neighbours, that are zero, of the product of the numbers of columns between
+/// them.
 #[test]
 fn adjacent_minors() {
-    let found = decomposed("2 6\na*e-b*d;\nb*f-c*e;", 0);
-    let have: Vec<_> = found.components.iter().map(|c| (c.dimension, c.degree, c.multiplicity)).collect();
-    assert_eq!((have.iter().map(|c| c.1).sum::<usize>(), have.len(), found.failed), (4, 2, 0), "{have:?}");
-    assert!(found.components.iter().all(|c| c.irreducible && c.dimension == 4));
+    let of = |n: usize, degrees: &[usize], seeds: u64| {
+        let minors: Vec<String> = (1..n).map(|i| format!("a{}*b{i}-a{i}*b{};", i - 1, i - 1)).collect();
+        let components: Vec<_> = degrees.iter().map(|&degree| (n + 1, degree, 1)).collect();
+        check(&format!("{} {}\n{}", n - 1, 2 * n, minors.join("\n")), seeds, &components, 0);
+    };
+    of(3, &[3, 1], 1);
+    of(4, &[4, 2, 2], 1);
+    of(5, &[5, 4, 3, 3, 1], 4);
 }
