@@ -1,19 +1,15 @@
 //! Systems in which all unknowns but one are polynomials in others: a line, a parabola beside an
 //! equation in one unknown. They are one equation in one unknown in other words.
 
-use super::classify::{REAL, REAL_SINGULAR, Tracked};
-use super::solutions::{Solution, is_real};
-use crate::refine::Refiner;
+use super::classify::{Digits, Tracked, term};
+use super::solutions::Solution;
 use crate::singular;
-use num_complex::Complex64;
 use num_traits::One;
-use poly::{ComplexMulti, Exact, Monomial, Polynomial, Scalar};
+use poly::{Exact, Monomial, Polynomial, Scalar};
 
 /// Equations of a higher degree, or more terms, are not made.
 const DEGREE: i64 = 150;
 const TERMS: f64 = 2000.0;
-/// Numbers in which the other unknowns are computed.
-type Digits = ComplexMulti<4>;
 
 /// An equation in one unknown, and the others as polynomials in those behind them.
 struct Reduced {
@@ -26,40 +22,18 @@ struct Reduced {
 /// `units` are the logarithms to base 2 of the units of the unknowns.
 pub(super) fn solved(polynomials: &[Polynomial<Exact>], units: &[i64], tracked: &Tracked<'_>) -> Option<Vec<Solution>> {
     let Reduced { equation, unknown, others } = reduced(polynomials)?;
-    let degree = equation.degree()?;
-    let mut refiner = Refiner::new(tracked.system);
-    let mut found = Vec::new();
+    let mut points = Vec::new();
     for (root, multiplicity) in singular::roots_with_multiplicities(&equation, 0)? {
         let mut values = vec![Digits::zero(); units.len()];
         values[unknown] = root.iter().fold(Digits::zero(), |sum, &part| Digits::add(&sum, &Digits::from_c64(part)));
         for (j, polynomial) in others.iter().rev() {
-            values[*j] = value(polynomial, &values);
+            let terms = polynomial.terms().iter().map(|(monomial, c)| term(monomial, c, &values));
+            values[*j] = terms.fold(Digits::zero(), |sum, z| Digits::add(&sum, &z));
         }
-        let point: Vec<Complex64> = values.iter().zip(units).map(|(z, &u)| z.shifted(-u).to_c64()).collect();
-        found.push(Solution {
-            multiplicity,
-            winding_number: multiplicity,
-            singular: multiplicity > 1,
-            real: is_real(&point, if multiplicity > 1 { REAL_SINGULAR } else { REAL }),
-            residual: singular::residual(tracked.given, &point),
-            condition: refiner.judged(tracked.target, &point).condition,
-            certified: None,
-            value: point,
-        });
+        points.push((values, multiplicity));
     }
-    found.sort_by_key(|s| s.singular);
-    let count: usize = found.iter().map(|s| s.multiplicity).sum();
-    (i64::try_from(count) == Ok(degree)).then_some(found)
-}
-
-fn value(polynomial: &Polynomial<Exact>, values: &[Digits]) -> Digits {
-    let term =
-        |(monomial, c): &(Monomial, Exact)| {
-            monomial.exponents().iter().zip(values).fold(Digits::from_exact(c), |product, (&e, z)| {
-                (0..e).fold(product, |product, _| Digits::mul(&product, z))
-            })
-        };
-    polynomial.terms().iter().map(term).fold(Digits::zero(), |sum, z| Digits::add(&sum, &z))
+    let count: usize = points.iter().map(|(_, multiplicity)| multiplicity).sum();
+    (i64::try_from(count).ok() == equation.degree()).then(|| tracked.listed(points, units))
 }
 
 /// Replaces one unknown after the other by what an equation says of it, that of the lowest degree

@@ -6,6 +6,7 @@ use super::cluster::{clustered, distributed, is_known, is_same};
 use super::excess::Excess;
 use super::graph;
 use super::paths::Ends;
+use super::plane;
 use super::record::SingularEnd;
 use super::solutions::{Solution, Unresolved, is_real};
 use crate::distinct::{CLUSTER, groups, relative_distance};
@@ -114,26 +115,23 @@ impl Classified {
         }
     }
 
-    /// The same, with what other ways tell of all solutions where some paths are lost or some ends
-    /// are singular.
+    /// The same, with what other ways tell of all solutions where some of the `paths` are lost or some
+    /// ends are singular.
     pub(super) fn checked(
         mut self,
         polynomials: &[Polynomial<Exact>],
         units: &[i64],
         tracked: &Tracked<'_>,
+        paths: usize,
     ) -> Classified {
         let singular = self.on_components > 0 || self.solutions.iter().any(|s| s.singular);
         if self.lost == 0 && !singular {
             return self;
         }
-        let graph = if self.lost > 0 { graph::solved(polynomials, units, tracked) } else { None };
-        if let Some(solutions) = graph {
-            return Classified {
-                solutions,
-                infinite: self.infinite,
-                directions: self.directions,
-                ..Classified::default()
-            };
+        if self.lost > 0
+            && let Some(solutions) = graph::solved(polynomials, units, tracked)
+        {
+            return Classified::complete(solutions, paths);
         }
         if let Some(count) = singular::finite_solutions(polynomials) {
             // There are no components. Paths that are not accounted for go to infinity, however they
@@ -143,10 +141,21 @@ impl Classified {
             self.component_points.clear();
             self.lost = if found == count { 0 } else { unknown.max(found.abs_diff(count)) };
         }
+        if self.lost > 0
+            && let Some(solutions) = plane::solved(polynomials, units, tracked)
+        {
+            return Classified::complete(solutions, paths);
+        }
         if self.lost == 0 {
             self.unresolved.clear();
         }
         self
+    }
+
+    /// All solutions, whatever the paths are; those that end at none go to infinity.
+    fn complete(solutions: Vec<Solution>, paths: usize) -> Classified {
+        let ends: usize = solutions.iter().map(|s| s.multiplicity).sum();
+        Classified { solutions, infinite: paths.saturating_sub(ends), ..Classified::default() }
     }
 
     fn unresolved(&mut self, end: &[Complex64], paths: usize, why: Why) {

@@ -12,6 +12,7 @@ mod judged;
 mod member;
 mod options;
 mod paths;
+mod plane;
 mod polynomials;
 mod prints;
 mod record;

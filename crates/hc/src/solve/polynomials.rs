@@ -136,7 +136,7 @@ fn solve_zoomed(
                 }
             };
             let all = !options.torus_only && options.known.is_none() && !monitor.is_cancelled();
-            let found = if all { found.checked(polynomials, &units, &tracked) } else { found };
+            let found = if all { found.checked(polynomials, &units, &tracked, count) } else { found };
             let this = Best { start: Some(from.kind), tracked: from.paths, found };
             best = if start_systems == 1 { this } else { best.joined(this) };
             let hopeless = univariate.is_some() || are_hopeless(ends.lost, count);
