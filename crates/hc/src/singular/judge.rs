@@ -219,6 +219,12 @@ fn regular<S: Precision>(given: &Given, point: &[Complex64], error: f64) -> Opti
     Some(Verdict::Regular { point, residual })
 }
 
+/// A point on a set of positive dimension at the end of a path that seemed to lead to a regular
+/// solution nearby to which another one leads.
+pub(crate) fn beside(given: &Given, point: &[Complex64], paths: usize, error: f64) -> Option<Verdict> {
+    sheet(given, point, paths, error.max(NEAR_SHEET_AT_MOST / NEAR_SHEET_ERRORS))
+}
+
 /// A point on a set of positive dimension is at most this far from the end of a path, relatively,
 /// or as many times its error.
 const NEAR_SHEET: f64 = 1e-11;

@@ -21,6 +21,6 @@ mod univariate;
 
 pub(crate) use cluster::{Found, Zoom};
 pub(crate) use equations::Given;
-pub(crate) use judge::{Effort, Verdict, Why, is_moved, judge, residual, solves};
+pub(crate) use judge::{Effort, Verdict, Why, beside, is_moved, judge, residual, solves};
 pub(crate) use simple::{all_simple, finite_solutions};
-pub(crate) use univariate::{Root, roots_with_multiplicities};
+pub(crate) use univariate::roots_with_multiplicities;

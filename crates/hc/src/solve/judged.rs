@@ -4,9 +4,8 @@
 use super::classify::{Classified, REAL, REAL_SINGULAR, Tracked};
 use super::cluster::{clustered, distributed, is_known, is_same};
 use super::excess::Excess;
-use super::graph;
+use super::graph::Graph;
 use super::paths::Ends;
-use super::plane;
 use super::record::SingularEnd;
 use super::solutions::{Solution, Unresolved, is_real};
 use crate::distinct::{CLUSTER, groups, relative_distance};
@@ -128,23 +127,20 @@ impl Classified {
         if self.lost == 0 && !singular {
             return self;
         }
-        if self.lost > 0
-            && let Some(solutions) = graph::solved(polynomials, units, tracked)
-        {
-            return Classified::complete(solutions, paths);
-        }
-        if let Some(count) = singular::finite_solutions(polynomials) {
-            // There are no components. Paths that are not accounted for go to infinity, however they
-            // seem to end, or solutions are missing.
-            let found: usize = self.solutions.iter().map(|s| s.multiplicity).sum();
-            let unknown = self.lost + std::mem::take(&mut self.on_components);
-            self.component_points.clear();
-            self.lost = if found == count { 0 } else { unknown.max(found.abs_diff(count)) };
-        }
-        if self.lost > 0
-            && let Some(solutions) = plane::solved(polynomials, units, tracked)
-        {
-            return Classified::complete(solutions, paths);
+        if let Some(graph) = Graph::new(polynomials) {
+            if let Some(count) = graph.count() {
+                // There are no components. Paths that are not accounted for go to infinity, however
+                // they seem to end, or solutions are missing.
+                let found: usize = self.solutions.iter().map(|s| s.multiplicity).sum();
+                let unknown = self.lost + std::mem::take(&mut self.on_components);
+                self.component_points.clear();
+                self.lost = if found == count { 0 } else { unknown.max(found.abs_diff(count)) };
+            }
+            if self.lost > 0
+                && let Some(solutions) = graph.solutions(units, tracked)
+            {
+                return Classified::complete(solutions, paths);
+            }
         }
         if self.lost == 0 {
             self.unresolved.clear();
@@ -275,7 +271,13 @@ fn verdicts(
             return vec![(group.to_vec(), own)];
         }
         Verdict::OnComponent { .. } => return vec![(group.to_vec(), own)],
-        Verdict::Regular { .. } | Verdict::NotASolution if group.len() == 1 => return vec![(group.to_vec(), own)],
+        Verdict::Regular { ref point, .. } if group.len() == 1 => {
+            // Near a set of positive dimension Newton's method leads to a solution off it.
+            let beside = || singular::beside(given, &ends[best].point, paths, ends[best].error);
+            let other = if is_known(given, known, point) { beside() } else { None };
+            return vec![(group.to_vec(), other.unwrap_or(own))];
+        }
+        Verdict::NotASolution if group.len() == 1 => return vec![(group.to_vec(), own)],
         _ => {}
     }
     let is_apart = |&k: &usize| k == best || relative_distance(&ends[k].point, &ends[best].point) > ONE;

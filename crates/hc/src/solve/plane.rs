@@ -5,9 +5,8 @@
 //! solutions as its roots, with their multiplicities (van der Waerden, Modern Algebra, section 83).
 //! Two such changes give both coordinates.
 
-use super::classify::{Digits, Tracked};
-use super::solutions::Solution;
-use crate::singular::{self, Root};
+use super::classify::{Digits, term};
+use crate::singular;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, Zero, pow};
@@ -22,13 +21,23 @@ const CHANGES: [[i32; 2]; 3] = [[3, -5], [7, -4], [11, -9]];
 const SOLVES: f64 = -100.0;
 const CLEARER: f64 = 16.0;
 
-/// All solutions with their multiplicities, if they are few, isolated and clear. `units` are the
-/// logarithms to base 2 of the units of the unknowns.
-pub(super) fn solved(polynomials: &[Polynomial<Exact>], units: &[i64], tracked: &Tracked<'_>) -> Option<Vec<Solution>> {
+/// All roots of a polynomial in one unknown to many digits, with their multiplicities, if they are all
+/// clear.
+pub(super) fn roots(polynomial: &Polynomial<Exact>) -> Option<Vec<(Digits, usize)>> {
+    let found = singular::roots_with_multiplicities(polynomial, 0)?;
+    let count: usize = found.iter().map(|(_, multiplicity)| multiplicity).sum();
+    let digits = |(root, multiplicity): ([_; 3], usize)| {
+        (root.iter().fold(Digits::zero(), |sum, &part| Digits::add(&sum, &Digits::from_c64(part))), multiplicity)
+    };
+    (i64::try_from(count).ok() == polynomial.degree()).then(|| found.into_iter().map(digits).collect())
+}
+
+/// All common roots of two polynomials in two unknowns to many digits, with their multiplicities, if
+/// they are few, isolated and clear.
+pub(super) fn points(polynomials: &[Polynomial<Exact>]) -> Option<Vec<(Vec<Digits>, usize)>> {
     let [f, g] = polynomials else { return None };
     let equations = [integers(f)?, integers(g)?];
-    let points = CHANGES.iter().find_map(|changes| points(&equations, polynomials, changes))?;
-    Some(tracked.listed(points, units))
+    CHANGES.iter().find_map(|changes| changed(&equations, polynomials, changes))
 }
 
 /// The terms of a polynomial in two unknowns, times a common denominator; `None` if some are not real
@@ -48,36 +57,27 @@ fn integers(polynomial: &Polynomial<Exact>) -> Option<Vec<([usize; 2], BigInt)>>
 
 type Terms = Vec<([usize; 2], BigInt)>;
 
-/// The solutions, to many digits, with their multiplicities.
-fn points(
+/// The same by these changes of coordinates.
+fn changed(
     equations: &[Terms; 2],
     polynomials: &[Polynomial<Exact>],
     changes: &[i32; 2],
 ) -> Option<Vec<(Vec<Digits>, usize)>> {
-    let mut roots: Vec<Vec<(Root, usize)>> = Vec::new();
-    for &t in changes {
-        let whole = eliminated(equations, t)?;
-        let found = singular::roots_with_multiplicities(&whole, 0)?;
-        let count: usize = found.iter().map(|(_, multiplicity)| multiplicity).sum();
-        (i64::try_from(count).ok() == whole.degree()).then_some(())?;
-        roots.push(found);
-    }
+    let [first, second] = changes.map(|t| roots(&eliminated(equations, t)?));
+    let (first, second) = (first?, second?);
     let [t, s] = changes.map(f64::from);
-    let [first, second] = &roots[..] else { return None };
     let mut taken = vec![false; second.len()];
     let mut points = Vec::new();
     for (u, multiplicity) in first {
-        let u = digits(u);
         // The root of the other change that makes a solution of it.
         let mut ways: Vec<(f64, usize, Vec<Digits>)> = Vec::new();
         for (k, (v, other)) in second.iter().enumerate() {
-            let v = digits(v);
             let scaled = |z: &Digits, factor: f64| Digits::scale(z, factor);
             let below = Digits::from_c64((s - t).into());
-            let x = Digits::div(&Digits::sub(&scaled(&u, s), &scaled(&v, t)), &below);
-            let y = Digits::div(&Digits::sub(&v, &u), &below);
+            let x = Digits::div(&Digits::sub(&scaled(&u, s), &scaled(v, t)), &below);
+            let y = Digits::div(&Digits::sub(v, &u), &below);
             let point = vec![x, y];
-            if other == multiplicity {
+            if *other == multiplicity {
                 ways.push((left(polynomials, &point), k, point));
             }
         }
@@ -87,20 +87,15 @@ fn points(
         if size > SOLVES || next < size + CLEARER || std::mem::replace(&mut taken[k], true) {
             return None;
         }
-        points.push((point, *multiplicity));
+        points.push((point, multiplicity));
     }
     taken.iter().all(|&t| t).then_some(points)
-}
-
-fn digits(root: &Root) -> Digits {
-    root.iter().fold(Digits::zero(), |sum, &part| Digits::add(&sum, &Digits::from_c64(part)))
 }
 
 /// The largest value of an equation at a point relative to its terms, as a logarithm to base 2.
 fn left(polynomials: &[Polynomial<Exact>], point: &[Digits]) -> f64 {
     let of = |polynomial: &Polynomial<Exact>| {
-        let term = |(monomial, c): &(Monomial, Exact)| super::classify::term(monomial, c, point);
-        let terms: Vec<Digits> = polynomial.terms().iter().map(term).collect();
+        let terms: Vec<Digits> = polynomial.terms().iter().map(|(monomial, c)| term(monomial, c, point)).collect();
         let largest = terms.iter().map(|z| z.log2()).fold(f64::NEG_INFINITY, f64::max);
         let value = terms.iter().fold(Digits::zero(), |sum, z| Digits::add(&sum, z));
         if largest == f64::NEG_INFINITY { largest } else { value.log2() - largest }
@@ -246,8 +241,7 @@ mod tests {
     /// Real and imaginary parts of coordinates with multiplicities, sorted.
     fn found(text: &str) -> Option<Vec<(f64, f64, usize)>> {
         let polynomials = phcpack(text).unwrap().expand(&Default::default()).unwrap();
-        let equations = [integers(&polynomials[0])?, integers(&polynomials[1])?];
-        let points = points(&equations, &polynomials, &[3, -5])?;
+        let points = points(&polynomials)?;
         let mut all: Vec<_> = points.iter().map(|(p, m)| (p[0].to_c64().re, p[1].to_c64().re, *m)).collect();
         all.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
         Some(all)
