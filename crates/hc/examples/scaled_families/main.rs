@@ -1,4 +1,4 @@
-//! Twenty families of known counts whose parameters enter on scales from 1e-7 to 1e7: how often
+//! Twenty families of known counts whose parameters enter on scales from 1e-9 to 1e9: how often
 //! monodromy and the trace test find all solutions, and how often they say so of too few.
 //!
 //!     cargo run --release -p hc --example scaled_families
@@ -13,7 +13,7 @@ fn main() {
     let (mut whole, mut unsettled, mut wrong) = (0, 0, 0);
     for family in &FAMILIES {
         let mut line = String::new();
-        for power in -7..=7 {
+        for power in -9..=9 {
             let outcomes: Vec<Outcome> = (0..SEEDS).map(|seed| family.outcome(&format!("1e{power}"), seed)).collect();
             let good = outcomes.iter().filter(|o| **o == Outcome::Whole).count();
             let bad = outcomes.iter().filter(|o| matches!(o, Outcome::False(_))).count();

@@ -2,8 +2,8 @@
 
 use super::error::FamilyError;
 use super::fibre::Fibre;
-use super::monodromy::{Monodromy, MonodromyOptions, fill};
-use super::pair::find_pair;
+use super::monodromy::{Monodromy, MonodromyOptions, Stop, fill, joined};
+use super::pair::{TRIES, find_pair};
 use super::symmetry::{SAME, Symmetry};
 use super::trace::{TraceTest, trace_test};
 use crate::distinct::relative_distance;
@@ -15,6 +15,9 @@ use std::str::FromStr;
 /// Values of this size and below count as zero where a family demands that something does not
 /// vanish.
 const VANISHES: f64 = 1e-9;
+/// Other first pairs, and how often each is tried to be found.
+const PAIRS: u64 = 8;
+const FEW_TRIES: u64 = 20;
 
 /// A parameter family, compiled: its equations, what must not vanish at its solutions, and its
 /// symmetries.
@@ -159,7 +162,7 @@ impl Family {
     /// # Errors
     /// If no regular solution is found that the family accepts.
     pub fn find_pair(&self, seed: u64) -> Result<Fibre, FamilyError> {
-        find_pair(self.system(), |p, x| self.accepts(p, x), seed)?.ok_or(FamilyError::NoPair)
+        find_pair(self.system(), |p, x| self.accepts(p, x), seed, TRIES)?.ok_or(FamilyError::NoPair)
     }
 
     /// All solutions for some generic parameters: a first pair, and what loops in parameter space
@@ -174,7 +177,8 @@ impl Family {
     }
 
     /// All solutions for the parameters of `first`, which has one or several of them; a cancelled
-    /// monitor ends the search.
+    /// monitor ends the search. Where loops bring nothing new, solutions for other parameters are
+    /// tracked to these.
     ///
     /// # Errors
     /// If `first` is of another family, an option is out of range, or the stated symmetry is none.
@@ -188,7 +192,24 @@ impl Family {
         options.fibre.validate()?;
         self.check_symmetry(first)?;
         let options = MonodromyOptions { roots: options.roots.or(self.roots()), ..options.clone() };
-        Ok(fill(&self.program, first, |p, x| self.accepts(p, x), &self.symmetry, &options, monitor))
+        let accept = |p: &[Complex64], x: &[Complex64]| self.accepts(p, x);
+        let mut found = fill(&self.program, first, accept, &self.symmetry, &options, monitor);
+        while found.stop == Stop::NoProgress {
+            let others = self.other_pairs(options.seed)?;
+            let joined = joined(&self.program, &found.fibre, &others, accept, &self.symmetry, &options, monitor);
+            let Some(fibre) = joined else { break };
+            let (loops, paths) = (found.loops, found.paths + others.len());
+            found = fill(&self.program, &fibre, accept, &self.symmetry, &options, monitor);
+            (found.loops, found.paths) = (found.loops + loops, found.paths + paths);
+        }
+        Ok(found)
+    }
+
+    /// First pairs from other random points. On sheets that nearly part from each other loops of any
+    /// common size may keep to one, on which the trace test passes; pairs lie on all.
+    fn other_pairs(&self, seed: u64) -> Result<Vec<Fibre>, FamilyError> {
+        let pair = |k: u64| find_pair(self.system(), |p, x| self.accepts(p, x), seed.wrapping_add(k), FEW_TRIES);
+        Ok((1..=PAIRS).map(pair).collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
     }
 
     /// The trace test of a fibre: whether it is whole. It takes several times as long as finding

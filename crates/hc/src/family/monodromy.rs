@@ -121,6 +121,25 @@ pub(crate) fn monodromy<E: Evaluate>(
     fill(system, start, |_, _| true, &Symmetry::default(), options, monitor)
 }
 
+/// The fibre with the solutions to which others, for other parameters, lead; `None` if it has them all.
+pub(super) fn joined<E: Evaluate>(
+    system: &E,
+    fibre: &Fibre,
+    others: &[Fibre],
+    accept: impl Fn(&[Complex64], &[Complex64]) -> bool,
+    symmetry: &Symmetry,
+    options: &MonodromyOptions,
+    monitor: &Monitor,
+) -> Option<Fibre> {
+    let mut filling = Filling { system, symmetry, options, monitor, fibre: fibre.clone() };
+    for other in others {
+        let (ends, _) = track_fibre_watched(system, other, &fibre.parameters, &options.fibre, monitor);
+        let regular = ends.iter().filter(|(r, _)| r.end == PathEnd::Success);
+        filling.add_accepted(regular.map(|(_, x)| x), &accept);
+    }
+    (filling.fibre.len() > fibre.len()).then_some(filling.fibre)
+}
+
 /// Completes `start` (one or several solutions for generic parameters) by loops in parameter space;
 /// of a symmetric family one solution of each orbit goes round.
 ///
@@ -220,16 +239,25 @@ impl<E: Evaluate> Filling<'_, E> {
             remove(&mut solutions, n, &drop);
             moving = Fibre::new(corner.clone(), n, solutions);
         }
+        self.add_accepted(moving.solutions.chunks_exact(n.max(1)), accept);
+        paths
+    }
+
+    /// Adds points that are refined to solutions that are wanted and not known yet.
+    fn add_accepted<'x>(
+        &mut self,
+        points: impl Iterator<Item = &'x [Complex64]>,
+        accept: &impl Fn(&[Complex64], &[Complex64]) -> bool,
+    ) {
         let mut refiner = Refiner::new(self.system);
         let mut new = Vec::new();
-        for x in moving.solutions.chunks_exact(n.max(1)) {
+        for x in points {
             let refined = refiner.refine(&self.fibre.parameters, x);
             if refined.accuracy < ACCURATE && accept(&self.fibre.parameters, &refined.point) {
                 new.push(refined.point);
             }
         }
         self.add(new.iter().map(Vec::as_slice));
-        paths
     }
 
     /// Adds points that are not known yet, each with its orbit.

@@ -12,14 +12,14 @@ use poly::simd::Isa;
 use poly::{CompileError, Evaluate, System};
 
 /// Random points tried before the search is given up.
-const TRIES: u64 = 1000;
+pub(super) const TRIES: u64 = 1000;
 const MAX_ITERATIONS: usize = 60;
 
 /// Finds a regular solution of a square system for some generic parameters, deterministic for a
 /// seed.
 ///
-/// `accept` is asked about parameters and solution; `None` if no try led to a regular solution that
-/// it accepts.
+/// `accept` is asked about parameters and solution; `None` if none of the `tries` led to a regular
+/// solution that it accepts.
 ///
 /// # Errors
 /// If the formulas cannot be compiled.
@@ -27,6 +27,7 @@ pub(super) fn find_pair(
     system: &System,
     accept: impl Fn(&[Complex64], &[Complex64]) -> bool,
     seed: u64,
+    tries: u64,
 ) -> Result<Option<Fibre>, CompileError> {
     let (n, m) = (system.variables().len(), system.parameters().len());
     let compiled = system.compile()?;
@@ -39,7 +40,7 @@ pub(super) fn find_pair(
     let Ok(free) = free else { return Ok(None) };
     let free = free.compile()?;
     let mut refiner = Refiner::new(&compiled);
-    for k in 0..TRIES {
+    for k in 0..tries {
         let mut z = Random::new(seed, Stream::Member(k)).normals(n + m);
         if !gauss_newton(&free, &mut z) {
             continue;

@@ -20,3 +20,13 @@ fn a_fibre_is_whole_or_said_to_be_unsettled() {
     // Nearly always whole.
     assert!(100 * whole >= 95 * FAMILIES.len() * FACTORS.len(), "{whole}");
 }
+
+/// Six sheets of which one nearly parts from the others, at parameters of size one: branch points lie
+/// at 1e-9.
+#[test]
+fn sheets_that_nearly_part() {
+    let family = families::Scaled { unknowns: &["x"], equations: &["x^6 - S*a*x - 1"], count: 6 };
+    for seed in 0..5 {
+        assert_eq!(family.outcome("1e9", seed), Outcome::Whole, "{seed}");
+    }
+}
