@@ -204,8 +204,8 @@ impl Walker {
                 let all =
                     Loop { n, per_turn: self.per_turn, samples: &self.samples, noise: self.noise, blur: &self.blur };
                 let reading = all.read(CLEAR);
-                if reading == Reading::TooWide && self.vague.is_none() {
-                    self.vague = judged(all.read(VAGUE), winding);
+                if reading == Reading::TooWide {
+                    self.suppose(judged(all.read(VAGUE), winding));
                 }
                 match reading {
                     Reading::TooWide => self.shrink(options),
@@ -221,6 +221,20 @@ impl Walker {
         }
         self.samples.extend_from_slice(end);
         self.x.copy_from_slice(end);
+    }
+
+    /// Notes what a loop says that is not quite clear: of several the first, but that a path diverges
+    /// must be said by all.
+    fn suppose(&mut self, vague: Option<(Verdict, Vec<Complex64>)>) {
+        let diverges = |vague: &Option<(Verdict, Vec<Complex64>)>| match vague {
+            Some((Verdict::Infinite { winding, valuations }, _)) => Some((*winding, valuations.clone())),
+            _ => None,
+        };
+        if self.vague.is_none() && (self.shrunk == 0 || diverges(&vague).is_none()) {
+            self.vague = vague;
+        } else if diverges(&self.vague).is_some() && diverges(&self.vague) != diverges(&vague) {
+            self.vague = vague.filter(|(verdict, _)| matches!(verdict, Verdict::Finite { .. }));
+        }
     }
 
     /// Goes back to where the loop began and on to a smaller one.

@@ -124,17 +124,22 @@ impl Classified {
         paths: usize,
     ) -> Classified {
         let singular = self.on_components > 0 || self.solutions.iter().any(|s| s.singular);
+        let count = |found: &Classified| found.solutions.iter().map(|s| s.multiplicity).sum::<usize>();
         if self.lost == 0 && !singular {
-            return self;
+            // Paths may seem to go to infinity that do not.
+            let is_right = |all: usize| all == count(&self);
+            if self.infinite == 0 || singular::finite_solutions(polynomials).is_none_or(is_right) {
+                return self;
+            }
         }
         if let Some(graph) = Graph::new(polynomials) {
-            if let Some(count) = graph.count() {
+            if let Some(all) = graph.count() {
                 // There are no components. Paths that are not accounted for go to infinity, however
                 // they seem to end, or solutions are missing.
-                let found: usize = self.solutions.iter().map(|s| s.multiplicity).sum();
+                let found = count(&self);
                 let unknown = self.lost + std::mem::take(&mut self.on_components);
                 self.component_points.clear();
-                self.lost = if found == count { 0 } else { unknown.max(found.abs_diff(count)) };
+                self.lost = if found == all { 0 } else { unknown.max(found.abs_diff(all)) };
             }
             if self.lost > 0
                 && let Some(solutions) = graph.solutions(units, tracked)

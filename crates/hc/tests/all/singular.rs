@@ -109,6 +109,24 @@ fn clusters_away_from_the_origin() {
     check(&format!("3\n{six};\n{two};\n{others};"), 3, "12x1", 12, false);
 }
 
+/// Two pairs of lines 1e-10 apart: their crossings near (1, -3) lie where paths seem to go on to
+/// infinity, by the equations as doubles.
+#[test]
+fn clusters_that_seem_to_be_at_infinity() {
+    let pair = |line: &str, a: usize, b: usize| format!("(1E10*({line})-{a})*(1E10*({line})-{b})");
+    let (first, second) = (pair("-3*x-y", 1, 5), pair("3*x-4*y-15", 2, 4));
+    check(&format!("2\n{first}*(-6*x+2*y-2);\n{second}*(-6*x-4*y-5);"), 4, "9x1", 9, false);
+}
+
+/// Wilkinson's and Chebyshev's polynomials beside a parabola, and a point of multiplicity six.
+#[test]
+fn ends_that_doubles_do_not_reach() {
+    let factors: Vec<String> = (1..=17).map(|k| format!("(x-{k})")).collect();
+    check(&format!("2\n{};\ny+2*x^2+1;", factors.join("*")), 1, "17x1", 17, false);
+    let curve = "(x-y+1-5*(3*x-4*y+4)^2)";
+    check(&format!("2\n{curve};\n(3*x-4*y+4)^6+{curve}*(x+2*y-3);"), 2, "1x6", 1, false);
+}
+
 /// Where nothing is zero, all `x_i^5` are the product of the unknowns: `x_i = w_i x` with fifth roots
 /// of unity and `x = w_2 w_3 w_4`, 5^3 simple solutions. Of Bezout's 4^4, 131 are left for the origin
 /// (Dayton & Zeng 2005).
