@@ -5,6 +5,7 @@ use super::modular::image;
 use super::multiplicity::Modular;
 use super::number::{Number, largest};
 use super::series::Basis;
+use crate::monitor::Monitor;
 use num_complex::Complex64;
 use num_traits::Zero;
 use poly::{ComplexDd, ComplexMulti, Exact, Polynomial};
@@ -23,6 +24,8 @@ pub(crate) struct Given {
     spent: Arc<AtomicU64>,
     /// Work after which nothing more is done.
     limit: u64,
+    /// Nothing more is done once this is cancelled.
+    monitor: Monitor,
 }
 
 /// What does not change with the work.
@@ -118,17 +121,27 @@ impl Given {
             eight: OnceLock::new(),
             sixteen: OnceLock::new(),
         };
-        Given { shared: Arc::new(shared), spent: Arc::default(), limit: u64::MAX }
+        Given { shared: Arc::new(shared), spent: Arc::default(), limit: u64::MAX, monitor: Monitor::default() }
+    }
+
+    /// The same equations, about which nothing more is done once the monitor is cancelled.
+    pub(crate) fn heeding(self, monitor: &Monitor) -> Given {
+        Given { monitor: monitor.quiet(), ..self }
     }
 
     /// The same equations, with work of their own of which there may be so much.
     pub(crate) fn limited(&self, limit: u64) -> Given {
-        Given { shared: self.shared.clone(), spent: Arc::default(), limit }
+        Given { shared: self.shared.clone(), spent: Arc::default(), limit, monitor: self.monitor.clone() }
     }
 
-    /// Whether all the work is done that may be done.
+    /// Whether all the work is done that may be done, or it is cancelled.
     pub(crate) fn is_exhausted(&self) -> bool {
-        self.spent() > self.limit
+        self.spent() > self.limit || self.monitor.is_cancelled()
+    }
+
+    /// The work that may still be done.
+    pub(crate) fn left(&self) -> u64 {
+        self.limit.saturating_sub(self.spent())
     }
 
     /// Numbers of factors in all terms.

@@ -118,8 +118,8 @@ impl Tracked<'_> {
     }
 }
 
-/// Solves as many polynomials as unknowns.
-pub(super) type Zoomed<'a> = dyn Fn(&[Polynomial<Exact>]) -> Option<Solutions> + Sync + 'a;
+/// Solves as many polynomials as unknowns, as part of the work on the given equations.
+pub(super) type Zoomed<'a> = dyn Fn(&[Polynomial<Exact>], &Given) -> Option<Solutions> + Sync + 'a;
 
 /// Sorts ends into solutions. Without `tracked`, singular ends are lost.
 pub(super) fn classify(tracked: Option<&Tracked<'_>>, all: &Ends, excess: &Excess<'_>, coincidence: f64) -> Classified {

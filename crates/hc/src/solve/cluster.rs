@@ -40,7 +40,7 @@ pub(super) fn clustered(
             continue;
         }
         zoom.spend(bezout * zoom.polynomials.iter().map(|p| p.terms().len() as u64).sum::<u64>() * WORK);
-        let Some(solved) = solve(&zoom.polynomials) else { continue };
+        let Some(solved) = solve(&zoom.polynomials, given) else { continue };
         let mut found: Vec<Found> = Vec::new();
         let regular = solved.solutions.iter().map(|s| (&s.value, s.multiplicity));
         let components = solved.component_points.iter().map(|point| (point, 1));

@@ -5,7 +5,7 @@ use super::excess::Excess;
 use super::judged::work;
 use super::options::SolveOptions;
 use super::paths::{Route, follow};
-use super::polynomials::solve_polynomials;
+use super::polynomials::solve_around;
 use super::solutions::{Member, Solutions};
 use crate::family::Fibre;
 use crate::monitor::Monitor;
@@ -28,11 +28,8 @@ pub(crate) fn solve_member<E: Evaluate>(
     let excess = Excess::none();
     let route = Route { trackers, start: fibre, count: fibre.len(), target, excess: &excess, options, monitor };
     let ends = follow(route, false);
-    let expanded = if !ends.singular.is_empty() { expanded(family, target) } else { None };
-    let zoomed = |polynomials: &[Polynomial<Exact>]| {
-        let names: Vec<String> = (0..polynomials.first()?.variables()).map(|k| format!("x{k}")).collect();
-        solve_polynomials(polynomials, &names, &SolveOptions::new(), &Monitor::default()).ok()
-    };
+    let expanded = if !ends.singular.is_empty() { expanded(family, target, monitor) } else { None };
+    let zoomed = |polynomials: &[Polynomial<Exact>], around: &Given| solve_around(polynomials, around, 0, monitor);
     let tracked = expanded.as_ref().map(|(polynomials, given, system, target)| Tracked {
         given,
         work: work(given, fibre.len()),
@@ -58,7 +55,7 @@ pub(crate) fn solve_member<E: Evaluate>(
 type Expanded = (Vec<Polynomial<Exact>>, Given, SparseSystem, Vec<Complex64>);
 
 /// The polynomials of a member, and the same as supports and coefficients.
-fn expanded(family: &System, target: &[Complex64]) -> Option<Expanded> {
+fn expanded(family: &System, target: &[Complex64], monitor: &Monitor) -> Option<Expanded> {
     let polynomials = family.at(target).ok()?.expand(&Default::default()).ok()?;
     let unknowns = family.variables().len();
     let supports: Vec<Vec<Vec<i32>>> = polynomials.iter().map(Polynomial::support).collect();
@@ -66,6 +63,6 @@ fn expanded(family: &System, target: &[Complex64]) -> Option<Expanded> {
     let numbers = terms.map(|(_, c)| Some(Complex64::new(c.re.to_f64()?, c.im.to_f64()?)).filter(|z| z.is_finite()));
     let system = SparseSystem::new(unknowns, &supports).ok()?;
     let target = numbers.collect::<Option<_>>()?;
-    let given = Given::new(&polynomials, vec![0; unknowns]);
+    let given = Given::new(&polynomials, vec![0; unknowns]).heeding(monitor);
     Some((polynomials, given, system, target))
 }

@@ -31,7 +31,7 @@ pub(crate) fn solve_polynomials(
     options: &SolveOptions,
     monitor: &Monitor,
 ) -> Result<Solutions, SolveError> {
-    solve_zoomed(polynomials, names, options, monitor, 0, false)
+    solve_zoomed(polynomials, names, options, monitor, Zooms::default(), false)
 }
 
 /// [`solve_polynomials`] of equations that are too many, some of them general hyperplanes: linear ones
@@ -42,24 +42,43 @@ pub(crate) fn solve_sliced(
     options: &SolveOptions,
     monitor: &Monitor,
 ) -> Result<Solutions, SolveError> {
-    solve_zoomed(polynomials, names, options, monitor, 0, true)
+    solve_zoomed(polynomials, names, options, monitor, Zooms::default(), true)
 }
 
-/// The same for equations that are `zooms` times zoomed.
+/// [`solve_polynomials`] of equations around ends of others, whose work this is.
+pub(super) fn solve_around(
+    polynomials: &[Polynomial<Exact>],
+    around: &Given,
+    zooms: usize,
+    monitor: &Monitor,
+) -> Option<Solutions> {
+    let names: Vec<String> = (0..polynomials.first()?.variables()).map(|k| format!("x{k}")).collect();
+    let zooms = Zooms { depth: zooms, around: Some(around) };
+    // Cancelled with the rest, but no progress that is to be told.
+    let found = solve_zoomed(polynomials, &names, &SolveOptions::new(), &monitor.quiet(), zooms, false).ok()?;
+    (!found.interrupted).then_some(found)
+}
+
+/// How often equations are zoomed, and around ends of which ones.
+#[derive(Clone, Copy, Default)]
+struct Zooms<'a> {
+    depth: usize,
+    around: Option<&'a Given>,
+}
+
+/// The same for equations that are zoomed.
 fn solve_zoomed(
     polynomials: &[Polynomial<Exact>],
     names: &[String],
     options: &SolveOptions,
     monitor: &Monitor,
-    zooms: usize,
+    zooms: Zooms<'_>,
     sliced: bool,
 ) -> Result<Solutions, SolveError> {
     // The equations around ends that are not told apart.
-    let zoomed = |polynomials: &[Polynomial<Exact>]| {
-        let names: Vec<String> = (0..polynomials.first()?.variables()).map(|k| format!("x{k}")).collect();
-        solve_zoomed(polynomials, &names, &SolveOptions::new(), &Monitor::default(), zooms + 1, false).ok()
-    };
-    let zoomed: Option<&Zoomed<'_>> = if zooms < ZOOMS { Some(&zoomed) } else { None };
+    let zoomed =
+        |polynomials: &[Polynomial<Exact>], around: &Given| solve_around(polynomials, around, zooms.depth + 1, monitor);
+    let zoomed: Option<&Zoomed<'_>> = if zooms.depth < ZOOMS { Some(&zoomed) } else { None };
     let equations = Equations::new(polynomials, names)?;
     let equations = match conditioned(polynomials) {
         Cow::Borrowed(_) => equations,
@@ -68,7 +87,7 @@ fn solve_zoomed(
     // A single equation has no condition number to tell, and combinations are rounded.
     let exact = equations.exact && (2..=names.len()).contains(&polynomials.len());
     let units = equations.units();
-    let given = Given::new(polynomials, units.clone());
+    let given = Given::new(polynomials, units.clone()).heeding(monitor);
     let univariate = given.univariate_degrees().filter(|_| !options.torus_only);
     let excess = Excess::new(&given, options.torus_only);
     let nothing = Solutions { interrupted: true, ..Solutions::default() };
@@ -111,7 +130,7 @@ fn solve_zoomed(
             start_systems += 1;
             retracked += ends.retracked;
             let line = Line { supports: &from.equations.supports, target };
-            let work = judged::work(&given, count);
+            let work = judged::work(&given, count).min(zooms.around.map_or(u64::MAX, Given::left));
             let (mut judged_by, mut beside) = ((&from.system, target), 0);
             if let Some(slack) = &slack {
                 beside = slack.shorten(&mut ends);
@@ -146,6 +165,9 @@ fn solve_zoomed(
             }
         }
         direct = None;
+    }
+    if let Some(around) = zooms.around {
+        around.spend(given.spent());
     }
     let whole = start_systems > 0 && best.found.lost == 0;
     let Best { start, tracked, found } = best;
