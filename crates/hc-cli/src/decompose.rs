@@ -20,6 +20,9 @@ pub(crate) struct Arguments {
     /// Write the result as JSON to this file, `-` for standard output.
     #[arg(long, value_name = "OUT")]
     json: Option<PathBuf>,
+    /// Paths at most in all dimensions together; those that need more are not searched.
+    #[arg(long, value_name = "N", default_value_t = 1_000_000)]
+    max_paths: u64,
     /// Seed of the hyperplanes and of the generic coefficients.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -41,7 +44,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let begun = Instant::now();
     let system = input::system(&arguments.file)?;
     let monitor = watch::interruptible()?;
-    let options = SolveOptions::new().seed(arguments.seed);
+    let options = SolveOptions::new().seed(arguments.seed).max_paths(arguments.max_paths);
     let found = watch::watched(arguments.threads, &monitor, watch::stages, || decompose(&system, &options, &monitor))?;
     let found = found.map_err(|error| Failure::in_file(&arguments.file, error))?;
     let seconds = begun.elapsed().as_secs_f64();
@@ -53,7 +56,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::Interrupted);
     }
     if found.failed > 0 {
-        return Err(Failure::Undetermined(format!("{} paths or witness points are not accounted for", found.failed)));
+        return Err(Failure::Undetermined(format!(
+            "{} paths, witness points or dimensions are not accounted for",
+            found.failed
+        )));
     }
     if found.components.iter().any(|c| !c.irreducible) {
         return Err(Failure::Undetermined("some components are not shown to be irreducible".to_owned()));
@@ -74,6 +80,10 @@ fn summary(found: &Decomposition, seconds: f64) -> String {
             text += &format!(", multiplicity {}", component.multiplicity);
         }
         text += if component.irreducible { "\n" } else { ", perhaps several together\n" };
+    }
+    for dimension in &found.unsearched {
+        text +=
+            &format!("dimension {dimension} was not searched: that takes more paths than are left of --max-paths\n");
     }
     let mut reasons: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
     for end in &found.unresolved {

@@ -7,6 +7,7 @@ mod cluster;
 mod deflate;
 mod dual;
 mod eliminate;
+mod empty;
 mod equations;
 mod judge;
 mod modular;
@@ -20,6 +21,7 @@ mod squarefree;
 mod univariate;
 
 pub(crate) use cluster::{Found, Zoom};
+pub(crate) use empty::is_missed;
 pub(crate) use equations::Given;
 pub(crate) use judge::{Effort, Verdict, Why, beside, is_moved, judge, residual, solves};
 pub(crate) use simple::{all_simple, finite_solutions};

@@ -41,16 +41,16 @@ pub(super) fn multiplicity(equations: &[Modular], point: &[u64], most: usize) ->
 }
 
 /// The monomials in some variables up to an order, lower orders first.
-struct Monomials {
-    exponents: Vec<Vec<u16>>,
+pub(super) struct Monomials {
+    pub(super) exponents: Vec<Vec<u16>>,
     /// The number of monomials of each order or less.
-    counts: Vec<usize>,
+    pub(super) counts: Vec<usize>,
     /// `raised[k][i]`: the place of monomial `k`, of less than the highest order, times variable `i`.
-    raised: Vec<Vec<usize>>,
+    pub(super) raised: Vec<Vec<usize>>,
 }
 
 impl Monomials {
-    fn new(variables: usize, order: usize) -> Monomials {
+    pub(super) fn new(variables: usize, order: usize) -> Monomials {
         let mut all = Monomials { exponents: vec![vec![0; variables]], counts: vec![1], raised: Vec::new() };
         let mut places: HashMap<Vec<u16>, usize> = HashMap::new();
         for _ in 0..order {

@@ -22,6 +22,18 @@ fn check(text: &str, seeds: u64, components: &[(usize, usize, usize)], isolated:
     }
 }
 
+/// Dimensions that would take too many paths are counted, not passed over.
+#[test]
+fn few_paths() {
+    let system =
+        hc::poly::parse::phcpack("4\na+b+c+d;\na*b+b*c+c*d+d*a;\na*b*c+b*c*d+c*d*a+d*a*b;\na*b*c*d-1;").unwrap();
+    let found = decompose(&system, &SolveOptions::new().max_paths(3), &Monitor::default()).unwrap();
+    assert_eq!(
+        (&found.components[..], &found.unsearched[..], found.failed, found.partial),
+        (&[][..], &[1, 0][..], 2, false)
+    );
+}
+
 #[test]
 fn curves() {
     check("3\nx-x+y-x^2;\nz-x*y;\nx*z-y^2;", 3, &[(1, 3, 1)], 0);

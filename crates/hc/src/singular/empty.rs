@@ -1,0 +1,222 @@
+//! That general hyperplanes of some number meet no solution, by linear algebra modulo a prime.
+
+use super::equations::Given;
+use super::modular::{Echelon, PRIME, difference, inverse, sum, times, trim};
+use super::multiplicity::{Modular, Monomials};
+use crate::monitor::Monitor;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+/// Monomials at most: those up to a degree in the unknowns that the hyperplanes leave.
+const MONOMIALS: usize = 4_400;
+/// Products modulo the prime at most, some seconds.
+const WORK: u64 = 2_000_000_000;
+/// Exponents at most.
+const EXPONENT: u32 = 64;
+
+/// Whether it is shown that the equations have no solution on `dimension` general hyperplanes: then
+/// no solution set has that dimension or a higher one.
+///
+/// Multiples of the equations up to a degree are combined to the constant one, in as many unknowns
+/// fewer (Lazard 1983; with what falls in degree as further equations, Ding et al. 2008). It is done
+/// modulo a prime of 64 bits, with hyperplanes that are random there. What holds there holds for
+/// general hyperplanes unless the prime is one of the few that divide certain determinants: as with
+/// all that is random here, wrong with a probability that is nearly, not quite, zero.
+pub(crate) fn is_missed(given: &Given, dimension: usize, monitor: &Monitor) -> bool {
+    let Some(equations) = given.modular(EXPONENT) else { return false };
+    let Some(affine) = affine(&equations, given.unknowns(), dimension) else { return true };
+    let left = affine.first().map_or(0, |form| form.len() - 1);
+    let count = |degree: usize| (1..=degree).fold(1, |count, k| count * (left + k) / k);
+    let highest = (1..=EXPONENT as usize).take_while(|&degree| count(degree) <= MONOMIALS).last();
+    highest.is_some_and(|highest| Macaulay::new(&equations, &affine, highest, monitor).reaches_one().unwrap_or(false))
+}
+
+/// The unknowns as affine forms in those that linear equations and random hyperplanes leave: their
+/// coefficients, then the constant. `None` if these have no solution.
+fn affine(equations: &[Modular], unknowns: usize, dimension: usize) -> Option<Vec<Vec<u64>>> {
+    let mut rows = Echelon::new(unknowns + 1);
+    for terms in equations {
+        if terms.iter().all(|(powers, _)| powers.iter().map(|&(_, e)| e).sum::<u32>() <= 1) {
+            let mut row = vec![0; unknowns + 1];
+            for (powers, c) in terms {
+                let place = powers.first().map_or(unknowns, |&(j, _)| j);
+                row[place] = sum(row[place], *c);
+            }
+            rows.add(row);
+        }
+    }
+    let mut random = Pcg64::seed_from_u64(dimension as u64);
+    for _ in 0..dimension {
+        rows.add((0..=unknowns).map(|_| random.random_range(0..PRIME)).collect());
+    }
+    let free = rows.free();
+    let (&constant, free) = free.split_last()?;
+    if constant != unknowns {
+        return None;
+    }
+    let columns: Vec<Vec<u64>> = free.iter().chain([&constant]).map(|&k| rows.null_vector(k)).collect();
+    Some((0..unknowns).map(|j| columns.iter().map(|column| column[j]).collect()).collect())
+}
+
+/// Multiples of equations, reduced by each other.
+struct Macaulay<'a> {
+    monomials: Monomials,
+    monitor: &'a Monitor,
+    equations: Vec<Equation>,
+    /// By their highest monomials, which have the coefficient one and come last.
+    rows: Vec<Option<Vec<u64>>>,
+    /// Whether no equation was left out since its degree is too high.
+    is_whole: bool,
+    work: u64,
+}
+
+struct Equation {
+    /// Its coefficients, up to that of its highest monomial.
+    row: Vec<u64>,
+    degree: usize,
+    /// The degree of the multiples that are next.
+    next: usize,
+}
+
+impl<'a> Macaulay<'a> {
+    fn new(equations: &[Modular], affine: &[Vec<u64>], highest: usize, monitor: &'a Monitor) -> Macaulay<'a> {
+        let left = affine.first().map_or(0, |form| form.len() - 1);
+        let monomials = Monomials::new(left, highest);
+        let rows = vec![None; monomials.exponents.len()];
+        let mut all = Macaulay { monomials, monitor, equations: Vec::new(), rows, is_whole: true, work: 0 };
+        for terms in equations {
+            let degree = |(powers, _): &(Vec<(usize, u32)>, u64)| powers.iter().map(|&(_, e)| e as usize).sum();
+            if terms.iter().map(degree).max().unwrap_or(0) > highest {
+                all.is_whole = false;
+                continue;
+            }
+            let row = all.substituted(terms, affine);
+            if let Some(last) = row.len().checked_sub(1) {
+                let degree = all.degree(last);
+                all.equations.push(Equation { row, degree, next: degree });
+            }
+        }
+        all
+    }
+
+    /// An equation in the unknowns that are left.
+    fn substituted(&mut self, terms: &Modular, affine: &[Vec<u64>]) -> Vec<u64> {
+        let mut whole = vec![0; self.monomials.exponents.len()];
+        for (powers, c) in terms {
+            let (mut product, mut degree) = (vec![*c], 0);
+            for form in powers.iter().flat_map(|&(j, e)| std::iter::repeat_n(&affine[j], e as usize)) {
+                let Some((&constant, slopes)) = form.split_last() else { continue };
+                degree += 1;
+                let mut next: Vec<u64> = product.iter().map(|&c| times(c, constant)).collect();
+                next.resize(self.monomials.counts[degree], 0);
+                for (k, &c) in product.iter().enumerate() {
+                    for (&place, &slope) in self.monomials.raised[k].iter().zip(slopes) {
+                        next[place] = sum(next[place], times(c, slope));
+                    }
+                }
+                self.work += (form.len() * product.len()) as u64;
+                product = next;
+            }
+            whole.iter_mut().zip(&product).for_each(|(w, &c)| *w = sum(*w, c));
+        }
+        trim(&mut whole);
+        whole
+    }
+
+    fn degree(&self, place: usize) -> usize {
+        self.monomials.counts.partition_point(|&count| count <= place)
+    }
+
+    /// Whether combinations of multiples are one; `None` where that takes too much work.
+    fn reaches_one(mut self) -> Option<bool> {
+        for degree in 0..=self.monomials.counts.len() - 1 {
+            // Those of the least degree first.
+            while let Some(which) = (0..self.equations.len()).min_by_key(|&i| self.equations[i].next) {
+                let of = self.equations[which].next;
+                if of > degree {
+                    break;
+                }
+                self.equations[which].next += 1;
+                let by = of - self.equations[which].degree;
+                let first = if by == 0 { 0 } else { self.monomials.counts[by - 1] };
+                for factor in first..self.monomials.counts[by] {
+                    let Some(row) = self.reduced(self.multiple(which, factor))? else { continue };
+                    let place = row.len() - 1;
+                    if place == 0 {
+                        return Some(true);
+                    }
+                    // What falls in degree is an equation of its own, with multiples of less degree.
+                    let degree = self.degree(place);
+                    if degree < of {
+                        self.equations.push(Equation { row: row.clone(), degree, next: degree + 1 });
+                    }
+                    self.rows[place] = Some(row);
+                }
+            }
+            // Where all monomials of a degree are leading ones so are all that are higher, and one is not.
+            let first = if degree == 0 { 0 } else { self.monomials.counts[degree - 1] };
+            let full = self.rows[first..self.monomials.counts[degree]].iter().all(Option::is_some);
+            if full && self.is_whole && self.equations.iter().all(|e| e.degree <= degree) {
+                return Some(false);
+            }
+        }
+        Some(false)
+    }
+
+    /// An equation times a monomial.
+    fn multiple(&self, which: usize, factor: usize) -> Vec<u64> {
+        let (row, factor) = (&self.equations[which].row, &self.monomials.exponents[factor]);
+        let raised = |place: usize| {
+            let steps = factor.iter().enumerate().flat_map(|(i, &e)| std::iter::repeat_n(i, usize::from(e)));
+            steps.fold(place, |place, i| self.monomials.raised[place][i])
+        };
+        let mut multiple = vec![0; self.rows.len()];
+        row.iter().enumerate().filter(|(_, c)| **c != 0).for_each(|(k, &c)| multiple[raised(k)] = c);
+        multiple
+    }
+
+    /// A row with a highest monomial that none before has; `None` inside if nothing is left of it.
+    fn reduced(&mut self, mut row: Vec<u64>) -> Option<Option<Vec<u64>>> {
+        loop {
+            trim(&mut row);
+            let Some(&leading) = row.last() else { return Some(None) };
+            self.work += row.len() as u64;
+            let Some(known) = &self.rows[row.len() - 1] else {
+                let factor = inverse(leading);
+                row.iter_mut().for_each(|c| *c = times(*c, factor));
+                return Some(Some(row));
+            };
+            if self.work > WORK || self.monitor.is_cancelled() {
+                return None;
+            }
+            row.iter_mut().zip(known).for_each(|(c, &k)| *c = difference(*c, times(leading, k)));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn missed(text: &str, dimension: usize) -> bool {
+        let system: poly::System = text.parse().unwrap();
+        let given = Given::new(&system.expand(&Default::default()).unwrap(), vec![0; system.variables().len()]);
+        is_missed(&given, dimension, &Monitor::default())
+    }
+
+    #[test]
+    fn sets_of_each_dimension() {
+        // The twisted cubic, a plane with a point, nothing, and a line at infinity.
+        for (text, dimension) in [
+            ("y - x^2; z - x*y; x*z - y^2", 1),
+            ("x*(x - 1); x*(y - 2); x*(z - 3)", 2),
+            ("x*y - 1; x*y - 2; z - 1", -1),
+            ("x + y - 1; x + y - 2", -1),
+            ("(x - y)^2; (x - y)*(x + y - 1)", 1),
+        ] {
+            for d in 0..3 {
+                assert_eq!(missed(text, d), d as i32 > dimension, "{text} {d}");
+            }
+        }
+    }
+}
