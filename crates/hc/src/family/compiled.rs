@@ -16,7 +16,7 @@ use std::str::FromStr;
 /// vanish.
 const VANISHES: f64 = 1e-9;
 /// Other first pairs, and how often each is tried to be found.
-const PAIRS: u64 = 8;
+const PAIRS: u64 = 48;
 const FEW_TRIES: u64 = 20;
 
 /// A parameter family, compiled: its equations, what must not vanish at its solutions, and its

@@ -112,7 +112,7 @@ pub(crate) fn judge(
     if is_no_solution(given, point, error) {
         return Verdict::NotASolution;
     }
-    let at_once = regular::<ComplexDd>(given, point, error)
+    let at_once = regular_from(&given.near_within::<ComplexDd>(point, OWN_UNITS), given, point, error)
         .or_else(|| at_rational(given, point, error, most))
         .or_else(|| regular::<ComplexMulti<4>>(given, point, error))
         .or_else(|| sheet(given, point, paths, error))
@@ -209,13 +209,20 @@ fn newton<S: Number>(x: &[S], values: &[S], jacobian: Vec<Vec<S>>, smallest: f64
 
 /// The regular solution near a point, if there is one to one precision.
 fn regular<S: Precision>(given: &Given, point: &[Complex64], error: f64) -> Option<Verdict> {
-    let local = given.near::<S>(point);
+    regular_from(&given.near::<S>(point), given, point, error)
+}
+
+/// Coordinates of regular solutions have units of their own down to this share of the largest.
+const OWN_UNITS: f64 = 1e-14;
+
+/// The same by the equations near the point.
+fn regular_from<S: Precision>(local: &Local<'_, S>, given: &Given, point: &[Complex64], error: f64) -> Option<Verdict> {
     let start = local.scaled(point);
-    let found = deflated(&local, &start, 1, f64::NEG_INFINITY, &mut Vec::new())?;
+    let found = deflated(local, &start, 1, f64::NEG_INFINITY, &mut Vec::new())?;
     if !found.profile.is_regular() || distance(&start, &found.point) > NEAR.max(NEAR_ERRORS * error).log2() {
         return None;
     }
-    let (point, residual) = rounded(given, &local, &found.point);
+    let (point, residual) = rounded(given, local, &found.point);
     Some(Verdict::Regular { point, residual })
 }
 
