@@ -4,8 +4,9 @@
 use super::deflate::{Profile, Reduced, centred, deflated, distance};
 use super::eliminate::{Elimination, Stop};
 use super::equations::{Given, Local};
-use super::judge::{Effort, Verdict, judge, rounded};
+use super::judge::{judge, rounded};
 use super::number::{Number, largest};
+use super::verdict::{Effort, Verdict};
 use num_complex::Complex64;
 use num_rational::BigRational;
 use num_traits::Zero;

@@ -19,10 +19,12 @@ mod sheet;
 mod simple;
 mod squarefree;
 mod univariate;
+mod verdict;
 
 pub(crate) use cluster::{Found, Zoom};
 pub(crate) use empty::is_missed;
 pub(crate) use equations::Given;
-pub(crate) use judge::{Effort, Verdict, Why, beside, is_moved, judge, residual, solves};
+pub(crate) use judge::{beside, is_moved, judge, solves};
 pub(crate) use simple::{all_simple, finite_solutions};
 pub(crate) use univariate::roots_with_multiplicities;
+pub(crate) use verdict::{Effort, Verdict, Why, residual};

@@ -2,9 +2,9 @@
 //! isolated, and with which multiplicity.
 
 use super::equations::Given;
-use super::judge::{Verdict, residual};
 use super::modular::{image, power, sum, times};
 use super::multiplicity::{Modular, multiplicity};
+use super::verdict::{Verdict, residual};
 use num_bigint::BigInt;
 use num_complex::Complex64;
 use num_rational::BigRational;

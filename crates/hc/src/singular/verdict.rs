@@ -1,0 +1,73 @@
+//! What ends of paths are found to be.
+
+use super::equations::Given;
+use num_complex::Complex64;
+use poly::ComplexDd;
+
+/// What a point near which paths end is, by the given equations.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Verdict {
+    /// A solution at which the Jacobian has full rank, to all digits of a double.
+    Regular {
+        /// The solution.
+        point: Vec<Complex64>,
+        /// The largest value of an equation there, relative to the sizes of its terms.
+        residual: f64,
+    },
+    /// An isolated solution at which the Jacobian has not full rank.
+    Isolated {
+        /// The dimension of the local ring.
+        multiplicity: usize,
+        /// The solution.
+        point: Vec<Complex64>,
+        /// The largest value of an equation there, relative to the sizes of its terms.
+        residual: f64,
+    },
+    /// A point on a set of solutions of positive dimension.
+    OnComponent {
+        /// A lower bound of the local dimension: that of a reduced set, if the point is a general
+        /// one.
+        dimension: usize,
+        /// A solution on it near the end.
+        point: Vec<Complex64>,
+    },
+    /// The given equations have no solution nearby.
+    NotASolution,
+    /// None of these can be told.
+    Unresolved(Why),
+}
+
+/// How much is done to judge an end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Effort {
+    /// What tells nearly all ends, to 77 digits.
+    Little,
+    /// To 308 digits.
+    Much,
+}
+
+/// Why an end is not resolved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub(crate) enum Why {
+    /// No solution was found near the end, though the equations nearly vanish there.
+    #[error("the equations nearly vanish, but no solution was found nearby")]
+    NoSolution,
+    /// Numbers that are neither zero nor clearly different from zero.
+    #[error("ranks are not clear to 300 digits")]
+    Unclear,
+    /// The work that a solve may take for its ends is done.
+    #[error("too many ends need much work to be judged; this one was not looked at")]
+    TooMuch,
+    /// The work was cancelled.
+    #[error("interrupted")]
+    Interrupted,
+    /// The local structure needs more orders than are looked at.
+    #[error("the local structure is too large to tell whether the solution is isolated")]
+    TooLarge,
+}
+
+/// The largest value of an equation at a point, relative to the sizes of its terms.
+pub(crate) fn residual(given: &Given, point: &[Complex64]) -> f64 {
+    let near = given.near::<ComplexDd>(point);
+    near.residual(&near.scaled(point)).exp2()
+}
