@@ -100,6 +100,11 @@ impl Random {
         Complex64::new(short(re), short(im))
     }
 
+    /// An integer from zero up to, but not including, a bound.
+    pub(crate) fn below(&mut self, bound: u64) -> u64 {
+        self.0.random_range(0..bound)
+    }
+
     /// Independent complex standard normal numbers.
     pub fn normals(&mut self, len: usize) -> Vec<Complex64> {
         (0..len).map(|_| self.normal()).collect()

@@ -194,13 +194,14 @@ impl Family {
         let options = MonodromyOptions { roots: options.roots.or(self.roots()), ..options.clone() };
         let accept = |p: &[Complex64], x: &[Complex64]| self.accepts(p, x);
         let mut found = fill(&self.program, first, accept, &self.symmetry, &options, monitor);
-        while found.stop == Stop::NoProgress {
+        if found.stop == Stop::NoProgress {
             let others = self.other_pairs(options.seed)?;
             let joined = joined(&self.program, &found.fibre, &others, accept, &self.symmetry, &options, monitor);
-            let Some(fibre) = joined else { break };
-            let (loops, paths) = (found.loops, found.paths + others.len());
-            found = fill(&self.program, &fibre, accept, &self.symmetry, &options, monitor);
-            (found.loops, found.paths) = (found.loops + loops, found.paths + paths);
+            if let Some(fibre) = joined {
+                let (loops, paths) = (found.loops, found.paths + others.len());
+                found = fill(&self.program, &fibre, accept, &self.symmetry, &options, monitor);
+                (found.loops, found.paths) = (found.loops + loops, found.paths + paths);
+            }
         }
         Ok(found)
     }

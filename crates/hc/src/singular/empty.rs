@@ -4,8 +4,7 @@ use super::equations::Given;
 use super::modular::{Echelon, PRIME, difference, inverse, sum, times, trim};
 use super::multiplicity::{Modular, Monomials};
 use crate::monitor::Monitor;
-use rand::{RngExt, SeedableRng};
-use rand_pcg::Pcg64;
+use crate::random::{Random, Stream};
 
 /// Monomials at most: those up to a degree in the unknowns that the hyperplanes leave.
 const MONOMIALS: usize = 4_400;
@@ -46,9 +45,9 @@ fn affine(equations: &[Modular], unknowns: usize, dimension: usize) -> Option<Ve
             rows.add(row);
         }
     }
-    let mut random = Pcg64::seed_from_u64(dimension as u64);
+    let mut random = Random::new(0, Stream::Slice(dimension as u64));
     for _ in 0..dimension {
-        rows.add((0..=unknowns).map(|_| random.random_range(0..PRIME)).collect());
+        rows.add((0..=unknowns).map(|_| random.below(PRIME)).collect());
     }
     let free = rows.free();
     let (&constant, free) = free.split_last()?;

@@ -1,9 +1,8 @@
 //! Whether two polynomials in two unknowns have no multiple common roots, proved by their resultant
 //! modulo a prime.
 
-use super::modular::{difference, image, inverse, is_squarefree, resultant, sum, times, trim};
+use super::modular::{PRIME, difference, image, inverse, is_squarefree, resultant, sum, times, trim};
 use crate::random::{Random, Stream};
-use num_complex::Complex64;
 use poly::{Exact, Polynomial};
 
 /// Systems with more roots are not looked at.
@@ -34,8 +33,7 @@ fn eliminated(polynomials: &[Polynomial<Exact>]) -> Option<Vec<u64>> {
     let (f, g) = (terms(f)?, terms(g)?);
     let degree = |terms: &[Term]| terms.iter().map(|([a, b], _)| a + b).max().unwrap_or(0);
     let roots = degree(&f).checked_mul(degree(&g)).filter(|d| (1..=MAX_ROOTS).contains(d))?;
-    let Complex64 { re, im } = Random::new(0, Stream::Combinations).unit();
-    let t = (re.to_bits() ^ im.to_bits().rotate_left(32)) >> 1;
+    let t = Random::new(0, Stream::Combinations).below(PRIME);
     Some(interpolated((0..=roots as u64).map(|u| resultant(line(&f, u, t), line(&g, u, t))).collect()))
 }
 

@@ -7,10 +7,10 @@ use super::solutions::{Direction, Solution, Solutions, Unresolved, is_real};
 use crate::distinct::coincidences;
 use crate::family::PathCounts;
 use crate::monitor::Monitor;
-use crate::refine::{Refined, Refiner};
-use crate::singular::{self, Given};
+use crate::refine::Refined;
+use crate::singular::Given;
 use num_complex::Complex64;
-use poly::{ComplexMulti, Exact, Monomial, Polynomial, Scalar, SparseSystem};
+use poly::{Exact, Polynomial, SparseSystem};
 
 /// Imaginary parts of regular solutions up to this share of the point count as zero.
 pub(super) const REAL: f64 = 1e-10;
@@ -83,39 +83,6 @@ pub(super) struct Tracked<'a> {
     /// How equations around ends that are not told apart are solved; not at all where they have been
     /// zoomed often enough.
     pub(super) zoomed: Option<&'a Zoomed<'a>>,
-}
-
-/// Numbers of 77 digits, for solutions that paths do not tell.
-pub(super) type Digits = ComplexMulti<4>;
-
-/// The value of a term.
-pub(super) fn term(monomial: &Monomial, c: &Exact, point: &[Digits]) -> Digits {
-    let powers = monomial.exponents().iter().zip(point);
-    powers.fold(Digits::from_exact(c), |product, (&e, z)| (0..e).fold(product, |product, _| Digits::mul(&product, z)))
-}
-
-impl Tracked<'_> {
-    /// Points with multiplicities as solutions, in units of `2^units`, regular ones first.
-    pub(super) fn listed(&self, points: Vec<(Vec<Digits>, usize)>, units: &[i64]) -> Vec<Solution> {
-        let mut refiner = Refiner::new(self.system);
-        let mut solution = |(values, multiplicity): (Vec<Digits>, usize)| {
-            let value: Vec<Complex64> = values.iter().zip(units).map(|(z, &u)| z.shifted(-u).to_c64()).collect();
-            let singular = multiplicity > 1;
-            Solution {
-                multiplicity,
-                winding_number: multiplicity,
-                singular,
-                real: is_real(&value, if singular { REAL_SINGULAR } else { REAL }),
-                residual: singular::residual(self.given, &value),
-                condition: refiner.judged(self.target, &value).condition,
-                certified: None,
-                value,
-            }
-        };
-        let mut all: Vec<Solution> = points.into_iter().map(&mut solution).collect();
-        all.sort_by_key(|s| s.singular);
-        all
-    }
 }
 
 /// Solves as many polynomials as unknowns, as part of the work on the given equations.

@@ -1,10 +1,12 @@
 //! Unknowns that are polynomials in others: on a line, on a parabola. Without them a system may be one
 //! equation in one unknown, or two in two, which have other ways to all solutions than paths.
 
-use super::classify::{Digits, Tracked, term};
-use super::plane;
-use super::solutions::Solution;
+use super::classify::{REAL, REAL_SINGULAR, Tracked};
+use super::plane::{self, Digits, term};
+use super::solutions::{Solution, is_real};
+use crate::refine::Refiner;
 use crate::singular;
+use num_complex::Complex64;
 use num_traits::One;
 use poly::{Exact, Monomial, Polynomial, Scalar};
 
@@ -85,8 +87,31 @@ impl Graph {
             }
             (values, multiplicity)
         };
-        Some(tracked.listed(points.into_iter().map(whole).collect(), units))
+        Some(listed(points.into_iter().map(whole), units, tracked))
     }
+}
+
+/// Points with multiplicities as solutions, in units of `2^units`, regular ones first.
+fn listed(points: impl Iterator<Item = (Vec<Digits>, usize)>, units: &[i64], tracked: &Tracked<'_>) -> Vec<Solution> {
+    let mut refiner = Refiner::new(tracked.system);
+    let solution = |(values, multiplicity): (Vec<Digits>, usize)| {
+        // Several may be one double.
+        let value: Vec<Complex64> = values.iter().zip(units).map(|(z, &u)| z.shifted(-u).to_c64()).collect();
+        let singular = multiplicity > 1;
+        Solution {
+            multiplicity,
+            winding_number: multiplicity,
+            singular,
+            real: is_real(&value, if singular { REAL_SINGULAR } else { REAL }),
+            residual: singular::residual(tracked.given, &value),
+            condition: refiner.judged(tracked.target, &value).condition,
+            certified: None,
+            value,
+        }
+    };
+    let mut all: Vec<Solution> = points.map(solution).collect();
+    all.sort_by_key(|s| s.singular);
+    all
 }
 
 /// The unknown as a polynomial in the others, if the equation has it in one term and there alone.

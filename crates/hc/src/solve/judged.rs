@@ -100,8 +100,7 @@ impl Classified {
             };
             if simple {
                 // As many solutions that are one point to all digits of a double.
-                let distinct = found.multiplicity.min(found.paths);
-                self.solutions.extend((0..distinct).map(|_| one(1, 1, REAL)));
+                self.solutions.extend((0..found.multiplicity).map(|_| one(1, 1, REAL)));
             } else {
                 let solution = one(found.multiplicity, found.winding, REAL_SINGULAR);
                 self.solutions.push(Solution { singular: true, ..solution });
@@ -351,28 +350,4 @@ fn solution(
         condition,
         certified: None,
     }
-}
-
-/// All roots of a polynomial in one unknown, with their multiplicities; `None` if they are not all
-/// clear, or it is none. `units` are the logarithms to base 2 of the unit of the unknown.
-pub(super) fn univariate(
-    polynomials: &[Polynomial<Exact>],
-    units: &[i64],
-    tracked: &Tracked<'_>,
-) -> Option<Vec<Solution>> {
-    let [polynomial] = polynomials else { return None };
-    let (_, degree) = tracked.given.univariate_degrees()?;
-    let mut refiner = Refiner::new(tracked.system);
-    let mut found: Vec<Solution> = Vec::new();
-    for ([root, ..], multiplicity) in singular::roots_with_multiplicities(polynomial, *units.first()?)? {
-        // Several may be one double.
-        let point = [root];
-        let condition = refiner.judged(tracked.target, &point).condition;
-        let real = is_real(&point, if multiplicity > 1 { REAL_SINGULAR } else { REAL });
-        let residual = singular::residual(tracked.given, &point);
-        let solution = solution(&point, multiplicity, multiplicity, residual, condition, real);
-        found.push(Solution { singular: multiplicity > 1, ..solution });
-    }
-    found.sort_by_key(|s| s.singular);
-    (found.iter().map(|s| s.multiplicity).sum::<usize>() == degree).then_some(found)
 }

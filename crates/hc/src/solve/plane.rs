@@ -5,12 +5,11 @@
 //! solutions as its roots, with their multiplicities (van der Waerden, Modern Algebra, section 83).
 //! Two such changes give both coordinates.
 
-use super::classify::{Digits, term};
 use crate::singular;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, Zero, pow};
-use poly::{Exact, Monomial, Polynomial, Scalar};
+use poly::{ComplexMulti, Exact, Monomial, Polynomial, Scalar};
 
 /// Systems of more paths are left to these.
 const PATHS: usize = 150;
@@ -20,6 +19,15 @@ const CHANGES: [[i32; 2]; 3] = [[3, -5], [7, -4], [11, -9]];
 /// at any other pair of roots: logarithms to base 2.
 const SOLVES: f64 = -100.0;
 const CLEARER: f64 = 16.0;
+
+/// Numbers of 77 digits, for solutions that paths do not tell.
+pub(super) type Digits = ComplexMulti<4>;
+
+/// The value of a term.
+pub(super) fn term(monomial: &Monomial, c: &Exact, point: &[Digits]) -> Digits {
+    let powers = monomial.exponents().iter().zip(point);
+    powers.fold(Digits::from_exact(c), |product, (&e, z)| (0..e).fold(product, |product, _| Digits::mul(&product, z)))
+}
 
 /// All roots of a polynomial in one unknown to many digits, with their multiplicities, if they are all
 /// clear.
@@ -40,26 +48,24 @@ pub(super) fn points(polynomials: &[Polynomial<Exact>]) -> Option<Vec<(Vec<Digit
     CHANGES.iter().find_map(|changes| changed(&equations, polynomials, changes))
 }
 
-/// The terms of a polynomial in two unknowns, times a common denominator; `None` if some are not real
-/// or have negative exponents.
-fn integers(polynomial: &Polynomial<Exact>) -> Option<Vec<([usize; 2], BigInt)>> {
+/// A polynomial in two unknowns, times a common denominator; `None` if coefficients are not real or
+/// exponents negative.
+fn integers(polynomial: &Polynomial<Exact>) -> Option<Polynomial<BigInt>> {
     let denominator = polynomial.terms().iter().fold(BigInt::one(), |product, (_, c)| {
         let next = BigRational::new(product.clone(), c.re.denom().clone());
         product * next.denom()
     });
     let term = |(monomial, c): &(Monomial, Exact)| {
-        let [a, b] = *monomial.exponents() else { return None };
-        let exponents = [usize::try_from(a).ok()?, usize::try_from(b).ok()?];
-        c.im.is_zero().then(|| (exponents, (&c.re * &denominator).to_integer()))
+        let polynomial = c.im.is_zero() && monomial.exponents().iter().all(|&e| e >= 0);
+        polynomial.then(|| (monomial.clone(), (&c.re * &denominator).to_integer()))
     };
-    polynomial.terms().iter().map(term).collect()
+    let terms: Vec<(Monomial, BigInt)> = polynomial.terms().iter().map(term).collect::<Option<_>>()?;
+    (polynomial.variables() == 2).then(|| Polynomial::from_terms(2, terms))
 }
-
-type Terms = Vec<([usize; 2], BigInt)>;
 
 /// The same by these changes of coordinates.
 fn changed(
-    equations: &[Terms; 2],
+    equations: &[Polynomial<BigInt>; 2],
     polynomials: &[Polynomial<Exact>],
     changes: &[i32; 2],
 ) -> Option<Vec<(Vec<Digits>, usize)>> {
@@ -106,13 +112,16 @@ fn left(polynomials: &[Polynomial<Exact>], point: &[Digits]) -> f64 {
 
 /// The resultant with respect to `y` of the equations in `x = u - t y`; `None` where it is zero or too
 /// large, or the change of coordinates is not a general one.
-fn eliminated(equations: &[Terms; 2], t: i32) -> Option<Polynomial<Exact>> {
-    let degree = |terms: &Terms| terms.iter().map(|([a, b], _)| a + b).max().unwrap_or(0);
-    let [d, e] = [degree(&equations[0]), degree(&equations[1])];
+fn eliminated(equations: &[Polynomial<BigInt>; 2], t: i32) -> Option<Polynomial<Exact>> {
+    let degree = |equation: &Polynomial<BigInt>| usize::try_from(equation.degree()?).ok();
+    let [d, e] = [degree(&equations[0])?, degree(&equations[1])?];
     let paths = d.checked_mul(e).filter(|paths| (1..=PATHS).contains(paths))?;
+    let [u, y]: [Polynomial<BigInt>; 2] = [0, 1].map(|k| Polynomial::variable(2, k));
+    let x = &u - &y.scaled(&BigInt::from(t));
+    let [f, g] = [equations[0].substitute(0, &x)?, equations[1].substitute(0, &x)?];
     let mut values = Vec::with_capacity(paths + 1);
     for u in 0..=paths {
-        let [f, g] = [0, 1].map(|k| line(&equations[k], &BigInt::from(u), &BigInt::from(t)));
+        let [f, g] = [line(&f, u, d), line(&g, u, e)];
         if f.len() != d + 1 || g.len() != e + 1 {
             return None;
         }
@@ -137,19 +146,14 @@ fn eliminated(equations: &[Terms; 2], t: i32) -> Option<Polynomial<Exact>> {
     (!whole.is_empty()).then_some(whole)
 }
 
-/// An equation on the line `x = u - t y`, by ascending powers of `y`, the last not zero.
-fn line(terms: &Terms, u: &BigInt, t: &BigInt) -> Vec<BigInt> {
-    let degree = terms.iter().map(|([a, b], _)| a + b).max().unwrap_or(0);
-    let highest = terms.iter().map(|([a, _], _)| *a).max().unwrap_or(0);
+/// A polynomial of a degree in `u` and `y` at a value of `u`, by ascending powers of `y`, the last not
+/// zero.
+fn line(polynomial: &Polynomial<BigInt>, u: usize, degree: usize) -> Vec<BigInt> {
+    let powers: Vec<BigInt> = (0..=degree).map(|e| pow(BigInt::from(u), e)).collect();
     let mut whole = vec![BigInt::zero(); degree + 1];
-    // By Horner's rule in x.
-    for a in (0..=highest).rev() {
-        for k in (0..=degree).rev() {
-            let below = if k > 0 { t * &whole[k - 1] } else { BigInt::zero() };
-            whole[k] = u * &whole[k] - below;
-        }
-        for ([_, b], c) in terms.iter().filter(|([exponent, _], _)| *exponent == a) {
-            whole[*b] += c;
+    for (monomial, c) in polynomial.terms() {
+        if let [a, b] = *monomial.exponents() {
+            whole[b as usize] += c * &powers[a as usize];
         }
     }
     trimmed(whole)

@@ -5,6 +5,7 @@ use super::conditioned::conditioned;
 use super::equations::Equations;
 use super::error::SolveError;
 use super::excess::Excess;
+use super::graph::Graph;
 use super::infinity::Line;
 use super::judged;
 use super::options::{SolveOptions, Start};
@@ -131,27 +132,26 @@ fn solve_zoomed(
             retracked += ends.retracked;
             let line = Line { supports: &from.equations.supports, target };
             let work = judged::work(&given, count).min(zooms.around.map_or(u64::MAX, Given::left));
-            let (mut judged_by, mut beside) = ((&from.system, target), 0);
-            if let Some(slack) = &slack {
-                beside = slack.shorten(&mut ends);
-                judged_by = (&slack.combined.0, &slack.combined.1);
-            }
-            let (system, target) = judged_by;
+            let (system, target) = match &slack {
+                Some(slack) => {
+                    slack.shorten(&mut ends);
+                    (&slack.combined.0, &slack.combined.1[..])
+                }
+                None => (&from.system, target),
+            };
             let tracked =
                 Tracked { given: &given, work, polynomials, system, target, line: Some(line), exact, monitor, zoomed };
             // Of a polynomial in one unknown there is a better way to all roots than other paths.
             let whole = univariate.is_none_or(|(_, degree)| ends.lost == 0 && ends.regular.len() == degree);
-            let roots = (!whole && !monitor.is_cancelled())
-                .then(|| judged::univariate(polynomials, &units, &tracked))
-                .flatten();
+            let graph = if whole || monitor.is_cancelled() { None } else { Graph::new(polynomials) };
+            let roots = graph.and_then(|graph| graph.solutions(&units, &tracked));
             let found = match roots {
                 Some(roots) => Classified { solutions: roots, ..Classified::default() },
                 None => {
                     let found = classify(Some(&tracked), &ends, &excess, options.paths.coincidence);
                     // All paths end at roots, those that seem to go to infinity too.
                     let astray = if univariate.is_some() { found.infinite } else { 0 };
-                    let (lost, infinite) = (found.lost + astray, found.infinite - astray);
-                    Classified { lost, infinite, excess: found.excess + beside, ..found }
+                    Classified { lost: found.lost + astray, infinite: found.infinite - astray, ..found }
                 }
             };
             let all = !options.torus_only && options.known.is_none() && !monitor.is_cancelled();

@@ -119,17 +119,10 @@ fn with_origin(equations: &Equations) -> Vec<Vec<Vec<i32>>> {
 }
 
 impl Slack {
-    /// Leaves the further unknowns out of all ends: those where they do not vanish solve the combined
-    /// equations alone. Takes out the regular ones among these; their number.
-    pub(super) fn shorten(&self, ends: &mut Ends) -> usize {
-        let before = ends.regular.len();
-        ends.regular.retain(|_, end| end.point[self.given..].iter().all(|z| z.norm() < VANISHES));
+    /// Leaves the further unknowns out of all ends. Those where they do not vanish solve the combined
+    /// equations alone, as the given ones tell.
+    pub(super) fn shorten(&self, ends: &mut Ends) {
         ends.regular.values_mut().for_each(|end| end.point.truncate(self.given));
         ends.singular.values_mut().for_each(|end| end.point.truncate(self.given));
-        before - ends.regular.len()
     }
 }
-
-/// A further unknown of a regular solution that is refined to the last digit is zero below this,
-/// unless it is so small by chance.
-const VANISHES: f64 = 1e-9;
