@@ -23,6 +23,10 @@ pub enum Stream {
     Beside,
     /// Combinations of the equations of an overdetermined system.
     Combinations,
+    /// Conditions on the vectors of null spaces that are further unknowns.
+    Multipliers,
+    /// Hyperplanes through a point, by which it is seen on a component.
+    Through,
     /// Directions in which a solution is left, to see whether Newton's method comes back.
     Perturbation,
     /// Changes of the parameters, to see how far rounding them moves a solution.
@@ -59,6 +63,8 @@ impl Stream {
             Stream::Perturbation => 6,
             Stream::Combinations => 11,
             Stream::Beside => 13,
+            Stream::Multipliers => 8,
+            Stream::Through => 10,
             Stream::Trace => 0x7ACE,
             Stream::Target(k) => from(1000, k),
             Stream::Place(k) => from(2000, k),

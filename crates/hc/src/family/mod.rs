@@ -32,5 +32,5 @@ pub use start_file::{StartFile, StartFileError};
 pub use targets::Targets;
 pub use trace::TraceTest;
 pub(crate) use trace::{PASSED, deviation};
-pub(crate) use track::move_fibre_watched;
 pub use track::{FibreTracker, move_fibre, track_fibre};
+pub(crate) use track::{move_fibre_watched, track_fibre_watched};

@@ -126,7 +126,7 @@ fn on_sizes<E: Evaluate>(
     let filled = fill(enlarged, &start, |_, _| true, &Symmetry::default(), &search, monitor).fibre;
 
     let (Some(second), Some(third)) = (moved(&filled, 2.0), moved(&filled, 3.0)) else { return FAILED };
-    let deviation = deviation(enlarged, &[&filled, &second, &third]);
+    let deviation = deviation(enlarged, &[&filled, &second, &third], n + 1);
 
     // Back on lambda = 0: every point of the curve there must be one of the fibre.
     let (ends, counts) = track_fibre_watched(enlarged, &filled, &at(0.0), &careful, monitor);
@@ -158,11 +158,10 @@ fn enlarge(system: &System) -> Option<System> {
     .ok()
 }
 
-/// How far the sum of the points of three fibres at equal distances, in the same order, moves off
-/// the straight: the largest of the coordinates', each relative to what the single points move off
-/// it. That does not depend on the scale, nor on how far the points move.
-pub(crate) fn deviation<E: Evaluate>(system: &E, fibres: &[&Fibre; 3]) -> f64 {
-    let n = fibres[0].dimension;
+/// How far the sum of the points of three fibres at equal distances, in the same order, moves off the
+/// straight: the largest of the first `n` coordinates', each relative to what the single points move
+/// off it. That does not depend on the scale, nor on how far the points move.
+pub(crate) fn deviation<E: Evaluate>(system: &E, fibres: &[&Fibre; 3], n: usize) -> f64 {
     let zero = ComplexDd::from(Complex64::default());
     let mut refiner = Refiner::new(system);
     // In double-double: far points would drown the others.

@@ -51,10 +51,15 @@ pub(crate) fn judge(
     if is_no_solution(given, point, error) {
         return Verdict::NotASolution;
     }
-    let at_once = regular_from(&given.near_within::<ComplexDd>(point, OWN_UNITS), given, point, error)
-        .or_else(|| at_rational(given, point, error, most))
+    let regular_at_once = regular_from(&given.near_within::<ComplexDd>(point, OWN_UNITS), given, point, error);
+    let (on_component, isolated) = match regular_at_once.or_else(|| at_rational(given, point, error, most)) {
+        found @ Some(Verdict::OnComponent { .. }) => (found, None),
+        found => (None, found),
+    };
+    let at_once = isolated
         .or_else(|| regular::<ComplexMulti<4>>(given, point, error))
         .or_else(|| sheet(given, point, paths, error))
+        .or(on_component)
         .or_else(|| regular::<ComplexMulti<8>>(given, point, error));
     if let Some(verdict) = at_once {
         return verdict;

@@ -22,9 +22,11 @@ mod univariate;
 mod verdict;
 
 pub(crate) use cluster::{Found, Zoom};
+pub(crate) use eliminate::{Elimination, Stop};
 pub(crate) use empty::is_missed;
 pub(crate) use equations::Given;
 pub(crate) use judge::{beside, is_moved, judge, solves};
+pub(crate) use number::Number;
 pub(crate) use simple::{all_simple, finite_solutions};
 pub(crate) use univariate::roots_with_multiplicities;
 pub(crate) use verdict::{Effort, Verdict, Why, residual};

@@ -15,29 +15,48 @@ const MONOMIALS: f64 = 20_000.0;
 /// Unknowns of the linear equations for the functionals of an order at most.
 const WIDTH: usize = 3_000;
 
-/// The dimension of the local ring at a point, modulo the prime; `None` if it is larger than `most`
-/// or takes too much work.
+/// Times as many functionals as are expected at most are not looked at.
+const BEYOND: usize = 2;
+
+/// The dimension of the local ring at a point, modulo the prime.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Multiplicity {
+    Finite(usize),
+    /// By far more than was asked for, or more in all orders that are looked at.
+    More,
+    /// It would take too much work to tell.
+    Unknown,
+}
+
+/// Finds that dimension, and whether it is more than `most`.
 ///
 /// The dual space is found order by order as numerically (Dayton & Zeng 2005; Mourrain 1997).
-pub(super) fn multiplicity(equations: &[Modular], point: &[u64], most: usize) -> Option<usize> {
+pub(super) fn multiplicity(equations: &[Modular], point: &[u64], most: usize) -> Multiplicity {
     let count = |order: usize| (1..=order).map(|k| (point.len() + k) as f64 / k as f64).product::<f64>();
-    let highest = (1..=HIGH_ORDER).rev().find(|&order| count(order) <= MONOMIALS)?;
+    let Some(highest) = (1..=HIGH_ORDER).rev().find(|&order| count(order) <= MONOMIALS) else {
+        return Multiplicity::Unknown;
+    };
+    let mut more = false;
     for order in [LOW_ORDER.min(highest), highest] {
         let monomials = Monomials::new(point.len(), order);
         let equations: Vec<Vec<u64>> = equations.iter().map(|terms| monomials.expansion(terms, point)).collect();
         let mut dual = Dual::new(&monomials);
         for next in 1..=order {
             let before = dual.functionals.len();
-            if before > most || before * point.len() > WIDTH {
-                return None;
+            if before > most.saturating_mul(BEYOND) {
+                return Multiplicity::More;
+            }
+            if before * point.len() > WIDTH {
+                return if before > most { Multiplicity::More } else { Multiplicity::Unknown };
             }
             dual.grow(&equations, next);
             if dual.functionals.len() == before {
-                return Some(before);
+                return Multiplicity::Finite(before);
             }
+            more = before > most;
         }
     }
-    None
+    if more { Multiplicity::More } else { Multiplicity::Unknown }
 }
 
 /// The monomials in some variables up to an order, lower orders first.

@@ -2,8 +2,8 @@
 //! isolated, and with which multiplicity.
 
 use super::equations::Given;
-use super::modular::{image, power, sum, times};
-use super::multiplicity::{Modular, multiplicity};
+use super::modular::{difference, image, power, sum, times};
+use super::multiplicity::{Modular, Multiplicity, multiplicity};
 use super::verdict::{Verdict, residual};
 use num_bigint::BigInt;
 use num_complex::Complex64;
@@ -22,6 +22,10 @@ const ROUGH_ERROR: f64 = 1e-3;
 const ROUGH_DENOMINATOR: f64 = 12.0;
 /// Sizes of coordinates at most.
 const SIZE: f64 = 1e9;
+/// As few functionals are those of an isolated solution however few the paths are.
+const FEW: usize = 12;
+/// A primitive root of the prime.
+const GENERATOR: u64 = 7;
 /// Exponents at most: powers of exact numbers are as long.
 const EXPONENT: u32 = 512;
 /// The verdict on a rational point near the end of a path, where that is a solution; `most` paths
@@ -30,16 +34,25 @@ const EXPONENT: u32 = 512;
 /// The dual space of the local ring is computed modulo a prime. Modulo a prime it is at least as
 /// large, in every order, as it is with exact numbers. So if it is finite the solution is isolated,
 /// and its multiplicity is at most that: less only if the prime divides one of the minors that
-/// matter.
+/// matter. If it is larger than the number of paths, which is that of the solutions that an isolated one
+/// splits into, and grows on, the solution lies on a component, unless the prime divides such minors.
 pub(super) fn at_rational(given: &Given, point: &[Complex64], error: f64, most: usize) -> Option<Verdict> {
     let tolerance = (ERRORS * error).clamp(LEAST_ERROR, LARGEST_ERROR);
     let rough = || within(given, point, ROUGH_ERROR, ROUGH_DENOMINATOR, most);
-    within(given, point, tolerance, DENOMINATOR, most)
-        .or_else(|| rough().filter(|verdict| matches!(verdict, Verdict::Isolated { .. })))
+    match within(given, point, tolerance, DENOMINATOR, most) {
+        Some(verdict) => verdict,
+        None => rough()?.filter(|verdict| matches!(verdict, Verdict::Isolated { .. })),
+    }
 }
 
-/// The same for a rational point with such denominators at most that far.
-fn within(given: &Given, point: &[Complex64], tolerance: f64, denominator: f64, most: usize) -> Option<Verdict> {
+/// The same for a rational point with such denominators at most that far; `None` if none is a solution.
+fn within(
+    given: &Given,
+    point: &[Complex64],
+    tolerance: f64,
+    denominator: f64,
+    most: usize,
+) -> Option<Option<Verdict>> {
     let rational = |(z, &unit): (&Complex64, &i64)| rational(*z, unit, tolerance, denominator);
     let exact: Vec<Exact> = point.iter().zip(given.scales()).map(rational).collect::<Option<_>>()?;
     let images: Vec<u64> = exact.iter().map(image).collect::<Option<_>>()?;
@@ -51,7 +64,7 @@ fn within(given: &Given, point: &[Complex64], tolerance: f64, denominator: f64, 
     if equations.iter().any(|terms| value(terms) != 0) || !given.vanish_at(&exact) {
         return None;
     }
-    let multiplicity = multiplicity(&equations, &images, most)?;
+    let multiplicity = multiplicity(&equations, &images, most.max(FEW));
     let unscaled = |z: &Exact, unit: i64| {
         let power = 2f64.powi(-unit as i32);
         Some(Complex64::new(z.re.to_f64()? * power, z.im.to_f64()? * power)).filter(|z| z.is_finite())
@@ -60,9 +73,27 @@ fn within(given: &Given, point: &[Complex64], tolerance: f64, denominator: f64, 
         exact.iter().zip(given.scales()).map(|(z, &unit)| unscaled(z, unit)).collect::<Option<_>>()?;
     let residual = residual(given, &point);
     Some(match multiplicity {
-        1 => Verdict::Regular { point, residual },
-        _ => Verdict::Isolated { multiplicity, point, residual },
+        Multiplicity::Finite(1) => Some(Verdict::Regular { point, residual }),
+        Multiplicity::Finite(multiplicity) => Some(Verdict::Isolated { multiplicity, point, residual }),
+        Multiplicity::More => Some(Verdict::OnComponent { dimension: dimension(equations, &images, most), point }),
+        Multiplicity::Unknown => None,
     })
+}
+
+/// The local dimension at a point on a component, modulo the prime: the number of general hyperplanes
+/// through it in which it is isolated. Where that is not seen, one.
+fn dimension(mut equations: Vec<Modular>, point: &[u64], most: usize) -> usize {
+    for dimension in 1..point.len() {
+        // Coefficients without a pattern.
+        let coefficient = |j: usize| power(GENERATOR, ((dimension * point.len() + j) as u64).wrapping_pow(5));
+        let value = (0..point.len()).fold(0, |value, j| sum(value, times(coefficient(j), point[j])));
+        let terms = (0..point.len()).map(|j| (vec![(j, 1)], coefficient(j)));
+        equations.push(terms.chain([(Vec::new(), difference(0, value))]).collect());
+        if matches!(multiplicity(&equations, point, most.max(FEW)), Multiplicity::Finite(_)) {
+            return dimension;
+        }
+    }
+    1
 }
 
 /// The rational with the least denominator near a coordinate in units of `2^unit`.
@@ -107,11 +138,11 @@ mod tests {
         }
     }
 
-    fn verdict(text: &str, point: &[f64]) -> Option<Verdict> {
+    fn verdict(text: &str, point: &[f64], most: usize) -> Option<Verdict> {
         let system = poly::parse::phcpack(text).unwrap();
         let given = Given::new(&system.expand(&Default::default()).unwrap(), vec![0; point.len()]);
         let point: Vec<Complex64> = point.iter().map(|&x| Complex64::new(x, 0.0)).collect();
-        at_rational(&given, &point, 1e-9, 200)
+        at_rational(&given, &point, 1e-9, most)
     }
 
     fn is_isolated(found: Option<Verdict>, expected: usize) -> bool {
@@ -123,10 +154,10 @@ mod tests {
     #[test]
     fn multiplicities_at_rational_points() {
         let dz1 = "4\na^4-b*c*d;\nb^4-a*c*d;\nc^4-a*b*d;\nd^4-a*b*c;";
-        assert!(is_isolated(verdict(dz1, &[0.0, 1e-10, 0.0, 0.0]), 131));
+        assert!(is_isolated(verdict(dz1, &[0.0, 1e-10, 0.0, 0.0], 131), 131));
         let quadrics = "5\na^2;\nb^2+a*b;\nc^2-3*a*c+b^2;\nd^2-a*b;\ne^2-c*d;";
-        assert!(is_isolated(verdict(quadrics, &[0.0; 5]), 32));
-        assert!(is_isolated(verdict("2\n(3*x-1)^3;\n(y-2)^2+(3*x-1);", &[1.0 / 3.0, 2.0]), 6));
+        assert!(is_isolated(verdict(quadrics, &[0.0; 5], 32), 32));
+        assert!(is_isolated(verdict("2\n(3*x-1)^3;\n(y-2)^2+(3*x-1);", &[1.0 / 3.0, 2.0], 6), 6));
         let gaussian = "2\n(x-y*i)^3;\n(y-2)^2+(x-2*i);";
         let system = poly::parse::phcpack(gaussian).unwrap();
         let given = Given::new(&system.expand(&Default::default()).unwrap(), vec![0; 2]);
@@ -137,10 +168,14 @@ mod tests {
 
     #[test]
     fn other_points() {
-        assert!(matches!(verdict("2\nx^2-1;\ny-2*x;", &[1.0, 2.0]), Some(Verdict::Regular { .. })));
-        // No solution, an irrational one, one on a line.
-        assert_eq!(verdict("2\nx^2-1;\ny-2*x;", &[1.0, 2.5]), None);
-        assert_eq!(verdict("2\nx^2-2;\ny-2*x;", &[2f64.sqrt(), 8f64.sqrt()]), None);
-        assert_eq!(verdict("2\nx*y;\nx*(y-1);", &[0.0, 0.5]), None);
+        assert!(matches!(verdict("2\nx^2-1;\ny-2*x;", &[1.0, 2.0], 2), Some(Verdict::Regular { .. })));
+        // No solution, an irrational one, ones on lines.
+        assert_eq!(verdict("2\nx^2-1;\ny-2*x;", &[1.0, 2.5], 2), None);
+        assert_eq!(verdict("2\nx^2-2;\ny-2*x;", &[2f64.sqrt(), 8f64.sqrt()], 2), None);
+        let is_on = |text: &str, point: &[f64], expected: usize| matches!(verdict(text, point, 8), Some(Verdict::OnComponent { dimension, .. }) if dimension == expected);
+        assert!(is_on("2\nx*y;\nx*(y-1);", &[0.0, 0.5], 1));
+        // A plane and a double line, where they meet, and beside that.
+        assert!(is_on("3\nx*y^2;\nx*z;\nx*(x-y);", &[0.0; 3], 2));
+        assert!(is_on("2 3\nx*y^2;\nx*z;", &[3.0, 0.0, 0.0], 1));
     }
 }

@@ -1,6 +1,7 @@
 //! Decomposition into components, dimension by dimension.
 
 use super::irreducible::orbits;
+use super::set::WitnessSet;
 use super::slices::Slices;
 use crate::monitor::Monitor;
 use crate::singular::{Given, is_missed};
@@ -54,8 +55,10 @@ pub struct Decomposition {
 /// have nothing: wrong only if the prime divides certain determinants of the equations with random
 /// hyperplanes. In each other dimension the given equations and as many general hyperplanes are [solved](crate::solve)
 /// with these options, but that they are too many: they are combined at random, or get further
-/// unknowns that vanish at the solutions (Sommese & Verschelde 2000), whichever makes less work. The
-/// same seed gives the same bits on any number of threads.
+/// unknowns that vanish at the solutions (Sommese & Verschelde 2000), whichever makes less work. What
+/// ends of paths that cannot be judged are is asked of the components of higher dimensions: one of their
+/// witness points moves there with its hyperplanes. The same seed gives the same bits on any number of
+/// threads.
 ///
 /// The work is bounded: all dimensions together have [`max_paths`](SolveOptions::max_paths), paths
 /// that are tracked again counted, each path has a bounded number of steps, and its end a bounded
@@ -85,6 +88,7 @@ pub fn decompose(system: &System, options: &SolveOptions, monitor: &Monitor) -> 
     let mut all = Decomposition::default();
     let mut missed = true;
     let mut paths = options.max_paths;
+    let mut sets: Vec<WitnessSet> = Vec::new();
     for dimension in (lowest..names.len()).rev() {
         missed = missed && is_missed(&given, dimension, monitor);
         if missed {
@@ -104,11 +108,17 @@ pub fn decompose(system: &System, options: &SolveOptions, monitor: &Monitor) -> 
         paths = paths.saturating_sub(tracked as u64);
         all.failed += found.paths.failed;
         all.partial |= found.interrupted;
-        all.unresolved.extend(found.unresolved);
+        for end in found.unresolved {
+            if sets.iter().any(|set| set.contains(&end.value, options.seed, monitor)) {
+                all.failed = all.failed.saturating_sub(end.paths);
+            } else {
+                all.unresolved.push(end);
+            }
+        }
         if dimension == 0 {
             all.isolated = found.solutions;
         } else {
-            all.add(&polynomials, dimension, &slices, found.solutions, options.seed, monitor);
+            sets.extend(all.add((&polynomials, &given), &slices, found.solutions, options.seed, monitor));
             all.partial |= monitor.is_cancelled();
         }
         if all.partial {
@@ -119,40 +129,43 @@ pub fn decompose(system: &System, options: &SolveOptions, monitor: &Monitor) -> 
 }
 
 impl Decomposition {
-    /// Adds the components of a dimension, by their witness points.
+    /// Adds the components of as high a dimension as there are hyperplanes, by their witness points, and
+    /// returns what can be tracked of these.
     fn add(
         &mut self,
-        polynomials: &[Polynomial<Exact>],
-        dimension: usize,
+        (polynomials, given): (&[Polynomial<Exact>], &Given),
         slices: &Slices,
         solutions: Vec<Solution>,
         seed: u64,
         monitor: &Monitor,
-    ) {
+    ) -> Vec<WitnessSet> {
         let mut by_multiplicity: BTreeMap<usize, Vec<Vec<Complex64>>> = BTreeMap::new();
         for solution in solutions {
             by_multiplicity.entry(solution.multiplicity).or_default().push(solution.value);
         }
+        let mut all = Vec::new();
         for (multiplicity, points) in by_multiplicity {
-            let component = |witness_points: Vec<Vec<Complex64>>, irreducible: bool| Component {
-                dimension,
-                degree: witness_points.len(),
-                multiplicity,
-                irreducible,
-                witness_points,
+            let mut add = |which: Vec<usize>, irreducible: bool| {
+                let witness_points: Vec<Vec<Complex64>> = which.iter().map(|&k| points[k].clone()).collect();
+                let (dimension, degree) = (slices.dimension(), which.len());
+                self.components.push(Component { dimension, degree, multiplicity, irreducible, witness_points });
             };
-            // Points of multiple components are singular: they are not tracked.
-            let orbits = if multiplicity == 1 { orbits(polynomials, slices, &points, seed, monitor) } else { None };
-            let Some(orbits) = orbits else {
-                let single = points.len() == 1;
-                self.components.push(component(points, single));
-                continue;
-            };
-            for orbit in orbits {
-                self.failed += orbit.further;
-                let whole = orbit.is_whole();
-                self.components.push(component(orbit.points.iter().map(|&k| points[k].clone()).collect(), whole));
+            let sets = WitnessSet::all(polynomials, slices, &points, seed);
+            let mut left: Vec<usize> = (0..points.len()).collect();
+            for set in &sets {
+                left.retain(|k| !set.numbers.contains(k));
+                for orbit in orbits(set, given, seed, monitor) {
+                    self.failed += orbit.further;
+                    let whole = orbit.is_whole();
+                    add(orbit.points, whole);
+                }
             }
+            if !left.is_empty() {
+                let single = left.len() == 1;
+                add(left, single);
+            }
+            all.extend(sets);
         }
+        all
     }
 }

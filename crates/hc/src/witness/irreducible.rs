@@ -1,13 +1,14 @@
 //! Which witness points belong to one irreducible component: monodromy of the hyperplanes, and the
 //! trace test.
 
-use super::slices::Slices;
+use super::set::WitnessSet;
 use crate::distinct::relative_distance;
 use crate::family::{Fibre, FibreOptions, MonodromyOptions, PASSED, deviation, monodromy, move_fibre_watched};
 use crate::monitor::Monitor;
 use crate::random::{Random, Stream};
+use crate::singular::Given;
 use num_complex::Complex64;
-use poly::{Evaluate, Exact, Polynomial};
+use poly::{ComplexDd, Evaluate};
 
 /// Points whose relative distance is less are one.
 const SAME: f64 = 1e-8;
@@ -32,39 +33,43 @@ impl Orbit {
     }
 }
 
-/// Groups regular witness points by component; `None` if the family cannot be tracked.
-pub(super) fn orbits(
-    given: &[Polynomial<Exact>],
-    slices: &Slices,
-    points: &[Vec<Complex64>],
-    seed: u64,
-    monitor: &Monitor,
-) -> Option<Vec<Orbit>> {
-    let unknowns = points.first()?.len();
-    let family = slices.family(given, unknowns, seed)?.compile().ok()?;
-    let mut left: Vec<usize> = (0..points.len()).collect();
+/// Groups the points of a witness set by component.
+///
+/// Points are joined by loops until those that are joined pass the trace test: no part of a component
+/// does.
+pub(super) fn orbits(set: &WitnessSet, given: &Given, seed: u64, monitor: &Monitor) -> Vec<Orbit> {
+    let WitnessSet { family, fibre: all, numbers, unknowns, .. } = set;
+    let mut left: Vec<usize> = (0..all.len()).collect();
     let mut orbits = Vec::new();
     while let Some(&first) = left.first() {
-        let mut fibre = Fibre::new(slices.parameters(), unknowns, points[first].clone());
-        let mut deviation = None;
-        for search in 0..SEARCHES {
-            let options = MonodromyOptions::new().seed(seed.wrapping_add(search)).roots(left.len());
-            fibre = settled(monodromy(&family, &fibre, &options, monitor).fibre);
-            let of_direction =
-                |k| trace(&family, &fibre, unknowns, seed.wrapping_add(search * DIRECTIONS + k), monitor);
-            deviation = (0..DIRECTIONS).find_map(of_direction);
-            if deviation.is_some_and(|d| d < PASSED) || monitor.is_cancelled() {
+        let mut fibre = Fibre::new(all.parameters.clone(), all.dimension, all.solution(first).to_vec());
+        let (mut deviation, mut searches) = (None, 0);
+        // Traces and searches each have hyperplanes of their own.
+        for round in 0.. {
+            let seed = seed.wrapping_add(round * DIRECTIONS);
+            let of_direction = |k| trace(family, &fibre, *unknowns, seed.wrapping_add(k), monitor);
+            let found = (0..DIRECTIONS).find_map(of_direction);
+            deviation = found.as_ref().map(|trace| trace.deviation);
+            // A single point of a set that hardly bends seems to move straight.
+            let is_straight = |trace: &Trace| fibre.len() > 1 || trace.follows_a_plane(given, *unknowns);
+            if found.is_some_and(|trace| trace.deviation < PASSED && is_straight(&trace)) || monitor.is_cancelled() {
+                break;
+            }
+            let known = fibre.len();
+            let options = MonodromyOptions::new().seed(seed).roots(left.len().min(known + 1));
+            fibre = settled(monodromy(family, &fibre, &options, monitor).fibre);
+            searches += u64::from(fibre.len() == known);
+            if searches == SEARCHES || known >= left.len() {
                 break;
             }
         }
-        let found: Vec<&[Complex64]> = (0..fibre.len()).map(|k| fibre.solution(k)).collect();
-        let is_found = |k: &usize| found.iter().any(|x| relative_distance(x, &points[*k]) < SAME);
+        let is_found = |k: &usize| fibre.iter().any(|x| relative_distance(x, all.solution(*k)) < SAME);
         let (here, others): (Vec<usize>, Vec<usize>) = left.iter().copied().partition(|k| *k == first || is_found(k));
-        let further = found.len().saturating_sub(here.len());
-        orbits.push(Orbit { points: here, trace: deviation, further });
+        let further = fibre.len().saturating_sub(here.len());
+        orbits.push(Orbit { points: here.iter().map(|&k| numbers[k]).collect(), trace: deviation, further });
         left = others;
     }
-    Some(orbits)
+    orbits
 }
 
 /// Coordinates below this share of the largest are zero: Newton's method leaves ever smaller numbers in
@@ -80,9 +85,40 @@ fn settled(mut fibre: Fibre) -> Fibre {
     fibre
 }
 
-/// How far the sum of the points is from moving linearly while the hyperplanes move in parallel,
-/// relative to what the points bend: rounding error if they are all of one or more components.
-fn trace<E: Evaluate>(family: &E, fibre: &Fibre, unknowns: usize, seed: u64, monitor: &Monitor) -> Option<f64> {
+/// Points while the hyperplanes move in parallel.
+struct Trace {
+    /// How far their sum is from moving linearly, relative to what the points bend: rounding error if
+    /// they are all of one or more components. Only coordinates do so; multipliers are rational
+    /// functions of the hyperplanes.
+    deviation: f64,
+    /// The first of the points, before and after the first step.
+    first: [Vec<Complex64>; 2],
+}
+
+/// How far, in steps of a trace, a plane is followed.
+const FAR: [i32; 4] = [6, 18, 36, 54];
+/// Coordinates below this share of the largest there may be rounding errors, and residuals are less
+/// where the plane solves the equations.
+const SMALL: f64 = 1e-10;
+const SOLVED: f64 = 1e-4;
+
+impl Trace {
+    /// Whether the plane to which the first point keeps, by its first step, solves the equations as far
+    /// out as doubles tell.
+    fn follows_a_plane(&self, given: &Given, unknowns: usize) -> bool {
+        let [before, after] = &self.first;
+        FAR.iter().all(|&power| {
+            let far = 2f64.powi(power);
+            let point: Vec<Complex64> =
+                before.iter().zip(after).take(unknowns).map(|(a, b)| a + (b - a) * far).collect();
+            let local = given.near_within::<ComplexDd>(&point, SMALL);
+            local.residual(&local.scaled(&point)).exp2() < SOLVED
+        })
+    }
+}
+
+/// Moves the hyperplanes of a fibre in parallel; `None` if a path was lost.
+fn trace<E: Evaluate>(family: &E, fibre: &Fibre, unknowns: usize, seed: u64, monitor: &Monitor) -> Option<Trace> {
     let mut random = Random::new(seed, Stream::Trace);
     // The offsets move; slopes, as many as unknowns before each, stay. Steps and offsets have so few
     // digits that sums are exact.
@@ -93,7 +129,8 @@ fn trace<E: Evaluate>(family: &E, fibre: &Fibre, unknowns: usize, seed: u64, mon
     let moved = |fibre: &Fibre, s: f64| move_fibre_watched(family, fibre, &at(s), &options, monitor).map(settled);
     let second = moved(fibre, 1.0)?;
     let third = moved(&second, 2.0)?;
-    Some(deviation(family, &[fibre, &second, &third]))
+    let deviation = deviation(family, &[fibre, &second, &third], unknowns);
+    Some(Trace { deviation, first: [fibre, &second].map(|fibre| fibre.solution(0).to_vec()) })
 }
 
 #[cfg(test)]
@@ -101,6 +138,7 @@ mod tests {
     use super::*;
     use crate::SolveOptions;
     use crate::solve::solve_polynomials;
+    use crate::witness::slices::Slices;
 
     /// A circle of radius 1e6, on the scale of which the hyperplane hardly moves.
     #[test]
@@ -112,9 +150,11 @@ mod tests {
         let found = solve_polynomials(&sliced, system.variables(), &SolveOptions::new(), &Monitor::default()).unwrap();
         let points: Vec<Vec<Complex64>> = found.solutions.into_iter().map(|s| s.value).collect();
         assert_eq!(points.len(), 2);
-        let family = slices.family(&given, 2, 0).unwrap().compile().unwrap();
+        let [set] = &WitnessSet::all(&given, &slices, &points, 0)[..] else { panic!("one set") };
         let deviation = |points: &[Vec<Complex64>]| {
-            trace(&family, &Fibre::new(slices.parameters(), 2, points.concat()), 2, 0, &Monitor::default()).unwrap()
+            trace(&set.family, &Fibre::new(slices.parameters(), 2, points.concat()), 2, 0, &Monitor::default())
+                .unwrap()
+                .deviation
         };
         assert!(deviation(&points) < PASSED);
         assert!(deviation(&points[..1]) > 0.1);

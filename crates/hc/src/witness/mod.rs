@@ -8,7 +8,9 @@
 //! Engineering and Science, chapters 13 to 15).
 
 mod decompose;
+mod deflated;
 mod irreducible;
+mod set;
 mod slices;
 
 pub use decompose::{Component, Decomposition, decompose};

@@ -1,5 +1,6 @@
 //! General hyperplanes, and the family of systems in which they move.
 
+use super::deflated::Deflated;
 use crate::random::{Random, Stream};
 use num_complex::Complex64;
 use num_traits::Zero;
@@ -21,6 +22,20 @@ impl Slices {
         Slices { slopes, offsets: (0..dimension).map(|_| random.short_unit()).collect() }
     }
 
+    /// In general position through a point.
+    pub(super) fn through(point: &[Complex64], dimension: usize, seed: u64) -> Slices {
+        let mut random = Random::new(seed, Stream::Through);
+        let slopes: Vec<Vec<Complex64>> =
+            (0..dimension).map(|_| (0..point.len()).map(|_| random.unit()).collect()).collect();
+        let offsets = slopes.iter().map(|slopes| slopes.iter().zip(point).map(|(a, x)| a * x).sum()).collect();
+        Slices { slopes, offsets }
+    }
+
+    /// Their number.
+    pub(super) fn dimension(&self) -> usize {
+        self.slopes.len()
+    }
+
     /// As polynomials, exactly.
     pub(super) fn polynomials(&self, unknowns: usize) -> Vec<Polynomial<Exact>> {
         let exact = |z: Complex64| z.to_exact().unwrap_or_else(Exact::zero);
@@ -39,29 +54,32 @@ impl Slices {
         self.slopes.iter().zip(&self.offsets).flat_map::<Vec<Complex64>, _>(plane).collect()
     }
 
-    /// As many equations as unknowns: combinations of the given ones, and hyperplanes with slopes
-    /// and offsets as parameters. Offsets alone would have to move as far as branch points lie from
-    /// them. `None` if that makes no system.
-    pub(super) fn family(&self, given: &[Polynomial<Exact>], unknowns: usize, seed: u64) -> Option<System> {
-        let names: Vec<String> = (0..unknowns).map(|j| format!("x{j}")).collect();
+    /// As many equations as unknowns: the linear ones, combinations of the others, and hyperplanes with
+    /// slopes and offsets as parameters. Offsets alone would have to move as far as branch points lie
+    /// from them. `None` if that makes no system.
+    pub(super) fn family(&self, equations: &Deflated, seed: u64) -> Option<System> {
+        let names: Vec<String> = (0..equations.unknowns()).map(|j| format!("x{j}")).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        let system = System::from_polynomials(&names, given).ok()?;
-        let wanted = unknowns.checked_sub(self.slopes.len())?;
+        let curved = System::from_polynomials(&names, &equations.curved).ok()?;
+        let linear = System::from_polynomials(&names, &equations.linear).ok()?;
+        let wanted = names.len().checked_sub(self.dimension() + linear.len())?;
+        let given = self.slopes.first().map_or(0, Vec::len);
         let mut random = Random::new(seed, Stream::Combinations);
         System::build(|s| {
             let unknowns: Vec<_> = names.iter().map(|name| s.variable(name)).collect();
-            let planes: Vec<(Vec<_>, _)> = (0..self.slopes.len())
+            let planes: Vec<(Vec<_>, _)> = (0..self.dimension())
                 .map(|k| {
-                    let slopes = (0..unknowns.len()).map(|j| s.parameter(&format!("a{k}_{j}"))).collect();
+                    let slopes = (0..given).map(|j| s.parameter(&format!("a{k}_{j}"))).collect();
                     (slopes, s.parameter(&format!("b{k}")))
                 })
                 .collect();
-            let given = system.instantiate(s, &unknowns, &[]);
-            let mut equations = if given.len() == wanted {
-                given
+            let curved = curved.instantiate(s, &unknowns, &[]);
+            let mut equations = if curved.len() == wanted {
+                curved
             } else {
-                (0..wanted).map(|_| s.sum(given.iter().map(|&f| s.constant(random.unit()) * f))).collect()
+                (0..wanted).map(|_| s.sum(curved.iter().map(|&f| s.constant(random.unit()) * f))).collect()
             };
+            equations.extend(linear.instantiate(s, &unknowns, &[]));
             for (slopes, offset) in planes {
                 equations.push(s.sum(slopes.iter().zip(&unknowns).map(|(&a, &x)| a * x)) - offset);
             }

@@ -45,6 +45,16 @@ fn curves() {
     check("2\n(x-y)^2*(x+y-1);\n(x-y)^2*(x+2*y+2);", 3, &[(1, 1, 2)], 1);
 }
 
+/// Powers of ideals: of a circle, of several curves together, of the twisted cubic (the square of its
+/// ideal of two equations, of length three), and of a plane with two lines across it.
+#[test]
+fn multiple_components() {
+    check("1 2\n(x^2+y^2-1)^3;", 3, &[(1, 2, 3)], 0);
+    check("1 2\n(x^2+y^2-1)^2*(x-2*y)^2*(y-x^3);", 3, &[(1, 3, 1), (1, 2, 2), (1, 1, 2)], 0);
+    check("3\n(y-x^2)^2;\n(y-x^2)*(z-x*y);\n(z-x*y)^2;", 3, &[(1, 3, 3)], 0);
+    check("2 3\nz^2*(x^2+y^2-1);\nz^2*(x-y);", 3, &[(2, 1, 2), (1, 1, 1), (1, 1, 1)], 0);
+}
+
 /// The example of Sommese, Verschelde & Wampler 2001 (SIAM J. Numer. Anal. 38:2022): a sphere, a
 /// twisted cubic and three lines, and a point.
 #[test]

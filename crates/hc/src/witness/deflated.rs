@@ -1,0 +1,177 @@
+//! Equations of which the witness points of multiple components are regular solutions.
+//!
+//! On a component of multiplicity two or more the Jacobian has a larger null space than the tangents
+//! make: its vectors become further unknowns, the multipliers, on which as many linear conditions are
+//! laid as make them one vector at each point. The multiplicity of the component in the equations
+//! with multipliers is less; where it is not yet one, their Jacobian has multipliers in turn (Leykin,
+//! Verschelde & Zhao 2006, Theoretical Computer Science 359:111; of components, Sommese & Wampler
+//! 2005, section 13.3).
+
+use crate::random::{Random, Stream};
+use crate::singular::{Elimination, Given, Number, Stop};
+use num_complex::Complex64;
+use num_traits::Zero;
+use poly::{ComplexDd, Exact, Monomial, Polynomial, Scalar, ToExact};
+use std::collections::BTreeMap;
+
+/// How often multipliers are added at most; each time doubles the unknowns.
+const LEVELS: u64 = 3;
+/// Unknowns at most, multipliers included.
+const UNKNOWNS: usize = 100;
+/// The logarithm to base 2 of pivots of a Jacobian that count as zero: points are known to some 50 bits.
+const ZERO: f64 = -27.0;
+
+/// Equations, mostly with multipliers, and points that solve them.
+pub(super) struct Deflated {
+    /// The equations that are not linear.
+    pub(super) curved: Vec<Polynomial<Exact>>,
+    /// Those that are, in the multipliers alone.
+    pub(super) linear: Vec<Polynomial<Exact>>,
+    /// The points by their numbers; multipliers follow the given unknowns.
+    pub(super) points: BTreeMap<usize, Vec<Complex64>>,
+}
+
+impl Deflated {
+    /// The points as solutions of the given equations.
+    pub(super) fn new(given: &[Polynomial<Exact>], points: impl Iterator<Item = (usize, Vec<Complex64>)>) -> Deflated {
+        Deflated { curved: given.to_vec(), linear: Vec::new(), points: points.collect() }
+    }
+
+    /// The points on components of this dimension, by the equations of which they are regular
+    /// solutions. Left out are those that would need too many multipliers.
+    pub(super) fn regular(self, dimension: usize, seed: u64) -> Vec<Deflated> {
+        let mut regular = Vec::new();
+        let mut left = vec![self];
+        for level in 0..=LEVELS {
+            for equations in std::mem::take(&mut left) {
+                for (further, group) in equations.by_rank(dimension) {
+                    if further == 0 {
+                        regular.push(group);
+                    } else if level < LEVELS && 2 * group.unknowns() <= UNKNOWNS {
+                        left.push(group.with_multipliers(dimension, further, seed.wrapping_add(level)));
+                    }
+                }
+            }
+        }
+        regular
+    }
+
+    /// Number of unknowns.
+    pub(super) fn unknowns(&self) -> usize {
+        self.points.values().next().map_or(0, Vec::len)
+    }
+
+    /// All equations.
+    fn all(&self) -> Vec<Polynomial<Exact>> {
+        [&self.curved[..], &self.linear].concat()
+    }
+
+    /// The points by how much larger the null space of the Jacobian is than the dimension.
+    fn by_rank(self, dimension: usize) -> BTreeMap<usize, Deflated> {
+        let given = Given::new(&self.all(), vec![0; self.unknowns()]);
+        let mut groups: BTreeMap<usize, Deflated> = BTreeMap::new();
+        for (k, point) in self.points {
+            let further = (point.len() - null_space(&given, &point).1.rank()).saturating_sub(dimension);
+            let (curved, linear) = (&self.curved, &self.linear);
+            let empty = || Deflated { curved: curved.clone(), linear: linear.clone(), points: BTreeMap::new() };
+            groups.entry(further).or_insert_with(empty).points.insert(k, point);
+        }
+        groups
+    }
+
+    /// The equations with a vector of the null space of their Jacobian as further unknowns, where that
+    /// is larger than the dimension by `further`.
+    fn with_multipliers(self, dimension: usize, further: usize, seed: u64) -> Deflated {
+        let before = self.unknowns();
+        let mut random = Random::new(seed, Stream::Multipliers);
+        // Across as many general hyperplanes as the dimension, and of a certain size.
+        let forms: Vec<Vec<Complex64>> =
+            (0..dimension + further).map(|_| (0..before).map(|_| random.short_unit()).collect()).collect();
+        let side = |form: usize| if form < dimension { 0.0 } else { 1.0 };
+        let given = Given::new(&self.all(), vec![0; before]);
+        let extended = |(k, point): (usize, Vec<Complex64>)| {
+            let multipliers = multipliers(&given, &point, &forms, side)?;
+            Some((k, [point, multipliers].concat()))
+        };
+        let points = self.points.into_iter().filter_map(extended).collect();
+        let unchanged = |p: &Polynomial<Exact>| {
+            let terms = p.terms().iter().map(|(m, c)| (wider(m), c.clone()));
+            Polynomial::from_terms(2 * before, terms)
+        };
+        let with = |all: &[Polynomial<Exact>]| -> Vec<Polynomial<Exact>> {
+            all.iter().map(unchanged).chain(all.iter().map(tangent)).collect()
+        };
+        let condition = |(k, form): (usize, &Vec<Complex64>)| {
+            let unit = |j: usize| Monomial::new((0..2 * before).map(|i| i32::from(i == before + j)));
+            let exact = |z: Complex64| z.to_exact().unwrap_or_else(Exact::zero);
+            let terms = form.iter().enumerate().map(|(j, &a)| (unit(j), exact(a)));
+            let constant = (Monomial::one(2 * before), exact(Complex64::from(-side(k))));
+            Polynomial::from_terms(2 * before, terms.chain([constant]))
+        };
+        let mut linear = with(&self.linear);
+        linear.extend(forms.iter().enumerate().map(condition));
+        Deflated { curved: with(&self.curved), linear, points }
+    }
+}
+
+/// The point in units of the equations near it, and the Jacobian there after elimination.
+fn null_space(given: &Given, point: &[Complex64]) -> (Vec<f64>, Elimination<ComplexDd>) {
+    let local = given.near::<ComplexDd>(point);
+    let (_, jacobian) = local.jacobian(&local.scaled(point));
+    let units = local.unscaled(&vec![ComplexDd::one(); point.len()]);
+    (units.iter().map(|unit| unit.to_c64().re).collect(), Elimination::new(jacobian, point.len(), Stop::Below(ZERO)))
+}
+
+/// The vector of the null space at a point on which the forms have the values of `side`; `None` if
+/// there is none or more than one.
+fn multipliers(
+    given: &Given,
+    point: &[Complex64],
+    forms: &[Vec<Complex64>],
+    side: impl Fn(usize) -> f64,
+) -> Option<Vec<Complex64>> {
+    let (units, pivots) = null_space(given, point);
+    let vectors = pivots.null_space();
+    let vectors: Vec<Vec<ComplexDd>> = vectors
+        .into_iter()
+        .map(|vector| vector.into_iter().zip(&units).map(|(z, &unit)| ComplexDd::scale(&z, unit)).collect())
+        .collect();
+    let dot = |form: &[Complex64], vector: &[ComplexDd]| {
+        form.iter()
+            .zip(vector)
+            .fold(ComplexDd::zero(), |sum, (&a, z)| ComplexDd::mul_add(&ComplexDd::from_c64(a), z, &sum))
+    };
+    let matrix: Vec<Vec<ComplexDd>> = forms.iter().map(|f| vectors.iter().map(|v| dot(f, v)).collect()).collect();
+    let solver = Elimination::new(matrix, vectors.len(), Stop::Below(f64::NEG_INFINITY));
+    if vectors.len() != forms.len() || solver.rank() < forms.len() {
+        return None;
+    }
+    let sides: Vec<ComplexDd> = (0..forms.len()).map(|k| ComplexDd::from_c64(side(k).into())).collect();
+    let mut sum = vec![ComplexDd::zero(); point.len()];
+    for (&column, factor) in solver.columns.iter().zip(solver.solve(&sides)) {
+        for (sum, z) in sum.iter_mut().zip(&vectors[column]) {
+            *sum = ComplexDd::mul_add(&factor, z, sum);
+        }
+    }
+    Some(sum.iter().map(Number::to_c64).collect())
+}
+
+/// The same monomial among twice as many unknowns.
+fn wider(monomial: &Monomial) -> Monomial {
+    let exponents = monomial.exponents();
+    Monomial::new(exponents.iter().copied().chain(exponents.iter().map(|_| 0)))
+}
+
+/// The derivative of a polynomial in the direction of the multipliers.
+fn tangent(polynomial: &Polynomial<Exact>) -> Polynomial<Exact> {
+    let unknowns = polynomial.variables();
+    let along = |(j, slope): (usize, Polynomial<Exact>)| {
+        let times = move |m: &Monomial| {
+            let exponents = m.exponents().iter().copied();
+            Monomial::new(exponents.chain((0..unknowns).map(|k| i32::from(k == j))))
+        };
+        slope.terms().iter().map(|(m, c)| (times(m), c.clone())).collect::<Vec<_>>()
+    };
+    let slopes = (0..unknowns).map(|j| (j, polynomial.derivative(j)));
+    Polynomial::from_terms(2 * unknowns, slopes.flat_map(along))
+}

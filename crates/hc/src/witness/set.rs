@@ -1,0 +1,79 @@
+//! Witness points that can be tracked while their hyperplanes move.
+
+use super::deflated::Deflated;
+use super::slices::Slices;
+use crate::distinct::relative_distance;
+use crate::family::{Fibre, FibreOptions, track_fibre_watched};
+use crate::monitor::Monitor;
+use crate::refine::Refiner;
+use crate::tracker::PathEnd;
+use num_complex::Complex64;
+use poly::{Exact, Interpreter, Polynomial};
+
+/// Relative distance to which witness points move at most where they are refined.
+const NEAR: f64 = 1e-8;
+/// Relative distance from a witness point of hyperplanes through an end of paths at which that lies on
+/// the component: singular ends are known to as many digits.
+const ON: f64 = 1e-6;
+/// Steps of a path at most: those that need more do not end at regular points.
+const STEPS: usize = 500;
+
+/// Witness points of components of one dimension and one local structure, as regular solutions of a
+/// family of which the hyperplanes are the parameters.
+pub(super) struct WitnessSet {
+    pub(super) family: Interpreter,
+    /// The points, with multipliers behind their coordinates.
+    pub(super) fibre: Fibre,
+    /// Their numbers.
+    pub(super) numbers: Vec<usize>,
+    /// The number of coordinates.
+    pub(super) unknowns: usize,
+    dimension: usize,
+}
+
+impl WitnessSet {
+    /// All that can be tracked of some witness points, which have one multiplicity.
+    pub(super) fn all(
+        given: &[Polynomial<Exact>],
+        slices: &Slices,
+        points: &[Vec<Complex64>],
+        seed: u64,
+    ) -> Vec<WitnessSet> {
+        let Some(unknowns) = points.first().map(Vec::len) else { return Vec::new() };
+        let all = Deflated::new(given, points.iter().cloned().enumerate());
+        let sets = all.regular(slices.dimension(), seed).into_iter();
+        sets.filter_map(|equations| WitnessSet::new(&equations, slices, unknowns, seed)).collect()
+    }
+
+    /// The points of some equations that are regular where as many equations are made of these as there
+    /// are unknowns.
+    fn new(equations: &Deflated, slices: &Slices, unknowns: usize, seed: u64) -> Option<WitnessSet> {
+        let family = slices.family(equations, seed)?.compile().ok()?;
+        let parameters = slices.parameters();
+        let mut refiner = Refiner::new(&family);
+        let (mut numbers, mut solutions) = (Vec::new(), Vec::new());
+        for (&k, point) in &equations.points {
+            let refined = refiner.refine(&parameters, point);
+            let (before, after) = (&point[..unknowns], &refined.point[..unknowns]);
+            if refiner.is_regular(&parameters, &refined) && relative_distance(before, after) < NEAR {
+                numbers.push(k);
+                solutions.extend(refined.point);
+            }
+        }
+        let fibre = Fibre::new(parameters, equations.unknowns(), solutions);
+        let dimension = slices.dimension();
+        (!numbers.is_empty()).then_some(WitnessSet { family, fibre, numbers, unknowns, dimension })
+    }
+
+    /// Whether a point lies on one of the components, as far as its digits tell: the witness points are
+    /// tracked to general hyperplanes through it, where one of them arrives there (Sommese, Verschelde &
+    /// Wampler 2001, SIAM J. Numer. Anal. 38:2022).
+    pub(super) fn contains(&self, point: &[Complex64], seed: u64, monitor: &Monitor) -> bool {
+        let slices = Slices::through(point, self.dimension, seed);
+        let mut options = FibreOptions { retries: 0, ..FibreOptions::default() };
+        options.tracker.max_steps = STEPS;
+        let (ends, _) = track_fibre_watched(&self.family, &self.fibre, &slices.parameters(), &options, monitor);
+        ends.iter()
+            .any(|(result, end)| result.end == PathEnd::Success && relative_distance(&end[..self.unknowns], point) < ON)
+    }
+}
