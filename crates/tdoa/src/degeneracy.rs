@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::duplicates::{constant_difference, printed};
+use crate::duplicates::{constant_difference, copied_transmitters, printed};
 use crate::pseudoranges::Pseudoranges;
 
 /// The smallest configurations that determine a network: the minimal ones 6r/3s and 4r/5s, and
@@ -92,6 +92,19 @@ pub enum Degeneracy {
         /// The constant, with its unit.
         constant: String,
     },
+    /// Two transmitters whose measurements differ by a constant.
+    #[error(
+        "transmitters {first} and {second} measure the same up to a constant ({constant}): one is a copy of the other, which \
+         would count twice; remove one of them"
+    )]
+    IdenticalTransmitters {
+        /// Name of one.
+        first: String,
+        /// Name of the other.
+        second: String,
+        /// The constant, with its unit.
+        constant: String,
+    },
 }
 
 /// The part of the measurements that can be calibrated.
@@ -144,6 +157,13 @@ pub(crate) fn usable(measured: &Pseudoranges) -> Result<Usable, Degeneracy> {
         return Err(Degeneracy::IdenticalReceivers {
             first: measured.receiver_names()[a].clone(),
             second: measured.receiver_names()[b].clone(),
+            constant: crate::quantity::length(constant),
+        });
+    }
+    if let Some((a, b, constant)) = copied_transmitters(measured, &receivers, &transmitters) {
+        return Err(Degeneracy::IdenticalTransmitters {
+            first: measured.transmitter_names()[a].clone(),
+            second: measured.transmitter_names()[b].clone(),
             constant: crate::quantity::length(constant),
         });
     }
@@ -388,6 +408,10 @@ mod tests {
             values[i * 5 + 1] = values[i * 5] + 3.0;
             values[i * 5 + 2] = values[i * 5] - 1.0;
         }
+        let copied = usable(&Pseudoranges::new(5, 5, values.clone()).unwrap()).unwrap_err();
+        assert!(copied.to_string().contains("one is a copy of the other"), "{copied}");
+        // With gaps they are no copies, but as good as.
+        (values[1], values[7]) = (f64::NAN, f64::NAN);
         let error = usable(&Pseudoranges::new(5, 5, values).unwrap()).unwrap_err();
         assert!(matches!(error, Degeneracy::TooSmall { transmitters: 3, .. }), "{error}");
     }

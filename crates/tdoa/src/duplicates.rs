@@ -5,6 +5,8 @@
 //! printed with few digits; data that are solved exactly are taken at their word, as two nodes a
 //! micrometre apart are two nodes.
 
+use crate::pseudoranges::Pseudoranges;
+
 /// The constant by which the second of each pair exceeds the first, up to `tolerance`; `None` if it
 /// varies or there are fewer than three pairs.
 pub(crate) fn constant_difference(pairs: impl Iterator<Item = (f64, f64)>, tolerance: f64) -> Option<f64> {
@@ -36,9 +38,84 @@ pub(crate) fn rounding(largest: f64) -> f64 {
     64.0 * f64::EPSILON * largest
 }
 
+/// Copies that chance makes are expected less often than this.
+const BY_CHANCE: f64 = 1e-6;
+
+/// Two transmitters that the same receivers hear, with measurements that differ by a constant, and
+/// that constant: one is a copy of the other. Coarse numbers that agree by chance are none.
+pub(crate) fn copied_transmitters(
+    measured: &Pseudoranges,
+    receivers: &[usize],
+    transmitters: &[usize],
+) -> Option<(usize, usize, f64)> {
+    let column = |&j: &usize| {
+        let heard: Vec<usize> = receivers.iter().copied().filter(|&i| measured.get(i, j).is_some()).collect();
+        let values: Vec<f64> = heard.iter().filter_map(|&i| measured.get(i, j)).collect();
+        (heard, values, j)
+    };
+    let mut columns: Vec<(Vec<usize>, Vec<f64>, usize)> = transmitters.iter().map(column).collect();
+    columns.retain(|(heard, ..)| heard.len() >= 3);
+    let step = |values: &[f64]| values[1] - values[0];
+    columns.sort_by(|a, b| a.0.cmp(&b.0).then(step(&a.1).total_cmp(&step(&b.1))));
+    for (k, (heard, values, a)) in columns.iter().enumerate() {
+        let tolerance = printed(values.iter().copied().zip(values.iter().copied()));
+        let next = columns[k + 1..].iter().take_while(|(other, ..)| other == heard);
+        for (_, others, b) in next.take_while(|(_, others, _)| step(others) - step(values) <= tolerance) {
+            let pairs = values.iter().copied().zip(others.iter().copied());
+            let Some(constant) = constant_difference(pairs.clone(), printed(pairs)) else { continue };
+            let rivals = 0.5 * (transmitters.len() * transmitters.len()) as f64;
+            let chance = rivals * levels(measured, values).powi(1 - values.len() as i32);
+            if chance < BY_CHANCE {
+                return Some(if a < b { (*a, *b, constant) } else { (*b, *a, -constant) });
+            }
+        }
+    }
+    None
+}
+
+/// How many different numbers there are for some measurements, if all are multiples of one step;
+/// infinity if they are not.
+fn levels(measured: &Pseudoranges, values: &[f64]) -> f64 {
+    let mut all: Vec<f64> = measured.values().iter().copied().filter(|value| !value.is_nan()).collect();
+    all.sort_by(f64::total_cmp);
+    let range = all.last().zip(all.first()).map_or(0.0, |(most, least)| most - least);
+    let gaps = all.windows(2).map(|pair| pair[1] - pair[0]).filter(|gap| *gap > 1e-9 * range);
+    let step = gaps.fold(f64::INFINITY, f64::min);
+    let is_multiple = |value: &f64| (((value - all[0]) / step).round() - (value - all[0]) / step).abs() < 1e-3;
+    if !step.is_finite() || !all.iter().all(is_multiple) {
+        return f64::INFINITY;
+    }
+    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
+    1.0 + (high - low) / step
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{constant_difference, printed, rounding};
+    use super::{constant_difference, copied_transmitters, printed, rounding};
+    use crate::{SimulateOptions, simulate};
+
+    #[test]
+    fn copies_of_columns_are_told_from_coarse_ones() {
+        let options = SimulateOptions { receivers: 6, transmitters: 8, noise: 0.01, ..Default::default() };
+        let measured = simulate(&options).unwrap().pseudoranges;
+        let (rows, columns): (Vec<usize>, Vec<usize>) = ((0..6).collect(), (0..8).collect());
+        assert_eq!(copied_transmitters(&measured, &rows, &columns), None);
+        let copied = |resolution: f64| {
+            let mut values: Vec<f64> =
+                measured.values().iter().map(|f| (f / resolution).round() * resolution).collect();
+            for i in 0..6 {
+                values[8 * i + 5] = values[8 * i + 2] + 3.0;
+            }
+            let measured = crate::Pseudoranges::new(6, 8, values).unwrap();
+            copied_transmitters(&measured, &rows, &columns)
+        };
+        for resolution in [1e-12, 1e-6, 0.007, 0.01] {
+            let (a, b, constant) = copied(resolution).unwrap();
+            assert!((a, b) == (2, 5) && (constant - 3.0).abs() < 1e-6);
+        }
+        // Two events less than a metre apart are often the same in whole metres.
+        assert_eq!(copied(1.0), None);
+    }
 
     #[test]
     fn copies_are_told_from_neighbours() {

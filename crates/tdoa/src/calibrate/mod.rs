@@ -12,6 +12,7 @@ mod known;
 mod minimal;
 mod near;
 mod options;
+mod orientation;
 mod ranking;
 mod receiver_errors;
 mod report;

@@ -5,7 +5,8 @@ use super::calibration::{Alternative, Calibration};
 use super::deviation::{inlier_deviation, typical_deviation};
 use super::known::{Anchors, SpeedEstimate};
 use super::near::{BEYOND, Neighbour, widen};
-use super::options::CalibrateOptions;
+use super::options::{CalibrateOptions, ReceiverDelays};
+use super::orientation::looks_transposed;
 use super::receiver_errors::Fault;
 use super::same::{same_receivers, same_transmitters};
 use super::warnings::{doubtful_receivers, warn_of_nodes};
@@ -82,7 +83,17 @@ impl Solved<'_> {
         let planar = self.planar(best, estimated, redundancy, options, &mut warnings);
         let noise_known = ellipse_radius.is_some();
         let doubtful = doubtful_receivers(self.centred, &kept);
-        let determined = warn_of_nodes(self.centred, best, &kept, &uncertainty, noise_known, &mut warnings);
+        let transposed = self.seems_transposed(estimated, options);
+        if transposed {
+            warnings.insert(
+                0,
+                "the offsets that transmitters should have are in the rows of the table, where receivers should be, and the network does \
+                 not fit: transpose the table"
+                    .to_string(),
+            );
+        }
+        let determined =
+            warn_of_nodes(self.centred, best, &kept, &uncertainty, noise_known, &mut warnings) && !transposed;
 
         let (m, n) = (self.measured.receivers(), self.measured.transmitters());
         let (rows, columns) = (&self.usable.receivers, &self.usable.transmitters);
@@ -184,9 +195,9 @@ impl Solved<'_> {
                     "relative to the receivers of known position, which have no error, at the estimated propagation speed"
                 }
             }),
-            unique: alternatives.is_empty() && settled && self.left.is_empty(),
-            unique_receivers: receivers_agree && settled && self.left.is_empty(),
-            unique_transmitters: transmitters_agree && settled && self.left.is_empty(),
+            unique: alternatives.is_empty() && settled && self.left.is_empty() && !transposed,
+            unique_receivers: receivers_agree && settled && self.left.is_empty() && !transposed,
+            unique_transmitters: transmitters_agree && settled && self.left.is_empty() && !transposed,
             alternatives,
             planar,
             determined,
@@ -215,6 +226,15 @@ impl Solved<'_> {
             calibration.put_on(anchors, rows, is_held);
         }
         calibration
+    }
+
+    /// Whether rows have the offsets of transmitters, and the network that was found leaves residuals
+    /// beyond a hundredth of its size.
+    fn seems_transposed(&self, estimated: f64, options: &CalibrateOptions) -> bool {
+        let misfit = estimated * typical_deviation(self.centred);
+        options.receiver_delays != ReceiverDelays::All
+            && misfit > 0.01 * self.ranked[0].network.size()
+            && looks_transposed(&self.measured.select(&self.usable.receivers, &self.usable.transmitters))
     }
 
     fn planar(

@@ -70,6 +70,12 @@ impl Heading {
         forms.iter().filter_map(|form| name.strip_suffix(form)).any(|stem| names.contains(&stem))
     }
 
+    /// Whether this is one of some names with a number behind it, such as `mic1` and `Receiver 2`.
+    fn is_numbered(&self, names: &[&str]) -> bool {
+        let stem = self.name.trim_end_matches(|c: char| c.is_ascii_digit());
+        stem.len() < self.name.len() && names.contains(&stem.trim_end_matches('_'))
+    }
+
     /// Whether rows of a matrix begin with names below this.
     pub(super) fn heads_receivers(&self) -> bool {
         self.name.is_empty() || self.is(RECEIVER) || self.is(NODE)
@@ -133,7 +139,7 @@ pub(super) fn list_columns(
     let sigma = sigmas.first().copied();
     let wrong = |problem: String| ReadError::Unit { file: file.to_string(), line, problem };
     let is_time = times.contains(value);
-    check_unit(&cells[*value], headings[*value].unit, is_time, units).map_err(wrong)?;
+    check_unit("column", &cells[*value], headings[*value].unit, is_time, units).map_err(wrong)?;
     if let Some(k) = sigma
         && let (Some(unit), Some(other)) = (headings[k].unit, headings[*value].unit)
         && unit != other
@@ -146,8 +152,56 @@ pub(super) fn list_columns(
     Ok(Some(Columns { receiver: *receiver, transmitter: *transmitter, value: *value, sigma, count: cells.len() }))
 }
 
-/// What is wrong with reading a column headed so as numbers of these units.
-fn check_unit(cell: &str, unit: Option<&str>, is_time: bool, units: Option<Units>) -> Result<(), String> {
+/// Checks what the first line of a matrix, if it has one, and the names of its rows, if they have any,
+/// say of it: units in the corner or in all names, and which nodes are the rows.
+pub(super) fn check_matrix(
+    first: &[String],
+    has_corner: bool,
+    rows: &[String],
+    file: &str,
+    line: u64,
+    units: Option<Units>,
+) -> Result<(), ReadError> {
+    let wrong = |problem: String| ReadError::Unit { file: file.to_string(), line, problem };
+    let headings: Vec<Heading> = first.iter().map(|cell| Heading::new(cell)).collect();
+    let (corner, names) = headings.split_at(usize::from(has_corner && !headings.is_empty()));
+    let transposed = |what: &str, name: &str| ReadError::Line {
+        file: file.to_string(),
+        line,
+        problem: format!(
+            "{what} {name:?} says that receivers are the columns, but they must be the rows, and transmitters the columns; transpose \
+             the table, or rename it if it is right"
+        ),
+    };
+    if corner.iter().any(|heading| heading.is(TRANSMITTER)) {
+        return Err(transposed("the corner cell", &first[0]));
+    }
+    let all_numbered =
+        |headings: &[Heading], kind| !headings.is_empty() && headings.iter().all(|h| h.is_numbered(kind));
+    if all_numbered(names, RECEIVER) {
+        return Err(transposed("the name of a column", &first[corner.len()]));
+    }
+    let named: Vec<Heading> = rows.iter().map(|name| Heading::new(name)).collect();
+    if all_numbered(&named, TRANSMITTER) {
+        return Err(transposed("the name of a row", &rows[0]));
+    }
+    // A transmitter may be called almost anything, a corner tells what the table holds.
+    if let Some(heading) = headings.first() {
+        let is_time = heading.is(TIME);
+        if is_time || heading.is(LENGTH) || (has_corner && heading.unit.is_some()) {
+            check_unit("corner cell", &first[0], heading.unit, is_time, units).map_err(wrong)?;
+        }
+    }
+    // `clap_s` and `clap_m` may be names.
+    let of_all = names.first().and_then(|heading| heading.unit).filter(|unit| unit.len() > 1);
+    if of_all.is_some() && names.iter().all(|heading| heading.unit == of_all) {
+        check_unit("column", &first[corner.len()], of_all, false, units).map_err(wrong)?;
+    }
+    Ok(())
+}
+
+/// What is wrong with reading numbers under such a heading, that of a `what`, as of these units.
+fn check_unit(what: &str, cell: &str, unit: Option<&str>, is_time: bool, units: Option<Units>) -> Result<(), String> {
     let option = |unit: &str| match unit {
         "m" => "leave out --units".to_string(),
         "samples" => "give --units samples --rate HZ --speed V (metres a second; sound in air: 343)".to_string(),
@@ -156,16 +210,16 @@ fn check_unit(cell: &str, unit: Option<&str>, is_time: bool, units: Option<Units
     };
     match (unit, units) {
         (Some(unit), _) if unit == units.unwrap_or_default().name() => Ok(()),
-        (Some(unit), None) => Err(format!("the column {cell:?} is in {unit}; {}", option(unit))),
+        (Some(unit), None) => Err(format!("the {what} {cell:?} is in {unit}; {}", option(unit))),
         (Some(unit), Some(given)) => {
             let given = given.name();
             Err(format!(
-                "the column {cell:?} is in {unit}, but --units {given} is asked for; {}, or rename the column",
+                "the {what} {cell:?} is in {unit}, but --units {given} is asked for; {}, or rename the {what}",
                 option(unit)
             ))
         }
         (None, None) if is_time => Err(format!(
-            "the column {cell:?} holds times, and their unit is not said; give --units s --speed V (metres a second; sound in air: \
+            "the {what} {cell:?} holds times, and their unit is not said; give --units s --speed V (metres a second; sound in air: \
              343), or ms, us, or samples with --rate; --units m if they are multiplied by the speed already"
         )),
         (None, _) => Ok(()),
@@ -195,5 +249,7 @@ mod tests {
             assert!(Heading::new(cell).is(RECEIVER), "{cell}");
         }
         assert!(!Heading::new("s1").is(TRANSMITTER) && !Heading::new("mic1").is(RECEIVER));
+        assert!(["mic1", "Mic 2", "receiver_03"].iter().all(|cell| Heading::new(cell).is_numbered(RECEIVER)));
+        assert!(["mic", "r1", "1", "mica1"].iter().all(|cell| !Heading::new(cell).is_numbered(RECEIVER)));
     }
 }

@@ -2,7 +2,7 @@
 
 use super::cells::{Decimals, Record, number, records, shorten};
 use super::error::{ACCEPTED, ReadError};
-use super::heading::{Heading, list_columns};
+use super::heading::{Heading, check_matrix, list_columns};
 use super::list::list;
 use super::units::Units;
 use crate::pseudoranges::{MAX_CELLS, Pseudoranges};
@@ -21,9 +21,13 @@ pub(super) fn parse(text: &str, file: &str, units: Option<Units>) -> Result<Pseu
     let second = records.next().transpose()?;
     let shape = Shape::of(&first.cells, second.as_ref().map(|record| record.cells.as_slice()));
     let header = first.line;
-    let first = if shape.transmitters.is_some() { None } else { Some(Ok(first)) };
+    let has_corner = shape.corner;
+    let (above, first) = if shape.transmitters.is_some() { (first.cells, None) } else { (Vec::new(), Some(Ok(first))) };
     let rows = first.into_iter().chain(second.map(Ok)).chain(records);
-    matrix(rows, shape, header, file, factor)
+    let measured = matrix(rows, shape, header, file, factor)?;
+    let names = if measured.receivers_named() { measured.receiver_names() } else { &[] };
+    check_matrix(&above, has_corner, names, file, header, units)?;
+    Ok(measured)
 }
 
 /// A line without any number is a header; one with both numbers and text may be a row with a
@@ -38,6 +42,8 @@ struct Shape {
     transmitters: Option<Vec<String>>,
     /// Whether rows begin with names.
     named: bool,
+    /// Whether the first line has a cell above these.
+    corner: bool,
 }
 
 impl Shape {
@@ -51,7 +57,7 @@ impl Shape {
         let is_header = only_names(first) || (counts(first) && is_row_of_counted(first, second));
         if !is_header {
             let named = begins_with_name(first) && second.is_none_or(begins_with_name);
-            return Shape { transmitters: None, named };
+            return Shape { transmitters: None, named, corner: false };
         }
         let mut names = first.to_vec();
         // What follows a comma at the end of each line is no column.
@@ -64,7 +70,8 @@ impl Shape {
         let named = !corner || (names.len() > 1 && (heading.heads_receivers() || second.is_some_and(begins_with_name)));
         let skip = usize::from(named && corner);
         let numbered = |(k, name): (usize, &String)| if name.is_empty() { format!("s{}", k + 1) } else { name.clone() };
-        Shape { transmitters: Some(names[skip..].iter().enumerate().map(numbered).collect()), named }
+        let transmitters = names[skip..].iter().enumerate().map(numbered).collect();
+        Shape { transmitters: Some(transmitters), named, corner: named && corner }
     }
 }
 
@@ -90,7 +97,7 @@ fn matrix(
     file: &str,
     factor: f64,
 ) -> Result<Pseudoranges, ReadError> {
-    let Shape { transmitters, named } = shape;
+    let Shape { transmitters, named, .. } = shape;
     let skip = usize::from(named);
     let mut receivers: Vec<String> = Vec::new();
     let mut values = Vec::new();

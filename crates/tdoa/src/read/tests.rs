@@ -132,6 +132,51 @@ fn first_lines_that_are_not_understood() {
 }
 
 #[test]
+fn units_of_a_matrix_are_heeded() {
+    let text = "time_ms,a,b\nm,1.5,2.5\nn,3.5,4.5\n";
+    let read = |text: &str, units: Option<Units>| {
+        read_csv(text.as_bytes(), "f.csv", ReadOptions { units, variable: None }).map_err(|error| error.to_string())
+    };
+    let ms = Some(Units::Milliseconds { speed: 343.0 });
+    let error = read(text, None).unwrap_err();
+    assert!(error.contains("line 1") && error.contains("\"time_ms\" is in ms; give --units ms --speed"), "{error}");
+    assert!((read(text, ms).unwrap().values()[0] - 1.5e-3 * 343.0).abs() < 1e-12);
+    assert!(read(text, Some(Units::Seconds { speed: 343.0 })).unwrap_err().contains("but --units s is asked for"));
+    for (text, part) in [
+        ("time,a,b\nm,1.5,2.5\nn,3.5,4.5\n", "holds times, and their unit is not said"),
+        ("Mic (us),a,b\nm,1.5,2.5\nn,3.5,4.5\n", "is in us"),
+        ("mic,clap1 [ms],clap2 [ms]\nm,1.5,2.5\nn,3.5,4.5\n", "\"clap1 [ms]\" is in ms"),
+        // A column of numbers that was taken for a transmitter.
+        ("time_ms,a\n1,2.5\n2,4.5\n", "is in ms"),
+        ("range_km,a,b\nm,1.5,2.5\nn,3.5,4.5\n", "km are not read"),
+    ] {
+        let error = read(text, None).unwrap_err();
+        assert!(error.contains(part), "{part:?} is not in: {error}");
+    }
+    for text in ["range_m,a,b\nm,1,2\n", "mic,clap_s,knock_s\nm,1,2\n", "mic [m],a,b\nm,1,2\n"] {
+        read(text, None).unwrap_or_else(|error| panic!("{text:?}: {error}"));
+    }
+}
+
+#[test]
+fn tables_with_receivers_as_columns_are_refused() {
+    for text in [
+        "event,a,b\nx,1,2\ny,3,4\n",
+        "mic1,mic2\n1,2\n3,4\n",
+        ",Receiver 1,Receiver 2\nx,1,2\ny,3,4\n",
+        "clap,mic1,mic2\nx,1,2\ny,3,4\n",
+        "event1,1,2\nevent2,3,4\n",
+    ] {
+        let error = message(text);
+        assert!(error.contains("transpose the table"), "{text:?}: {error}");
+    }
+    // Counted names say nothing.
+    for text in ["mic,event1,event2\nmic1,1,2\nmic2,3,4\n", "r1,r2\n1,2\n3,4\n", "s1,1,2\ns2,3,4\n"] {
+        parse(text).unwrap_or_else(|error| panic!("{text:?}: {error}"));
+    }
+}
+
+#[test]
 fn lines_are_counted_as_an_editor_counts_them() {
     for end in ["\n", "\r\n"] {
         let text = ["# about", "", "  ", "1,2", "", "# more", "\"3\",4", "5,x"].join(end);
