@@ -93,6 +93,9 @@ pub(crate) fn calibrate<'py>(
             }
             Err(error) => return Err(Failure::input(error)),
         };
+        if speed.is_none() {
+            calibration.warnings.extend(tdoa::summary::doubt_of_units(&calibration));
+        }
         if let (Some(speed), Some(found)) = (speed, &mut calibration.speed) {
             found.metres_per_second = Some(speed * found.factor);
         }
@@ -136,4 +139,20 @@ pub(crate) fn calibration_html(json: &str) -> PyResult<String> {
 #[pyfunction]
 pub(crate) fn calibration_svg(json: &str) -> PyResult<String> {
     guarded(|| Ok(tdoa::picture::picture(&parsed(json)?)))
+}
+
+/// The words of the program on a calibration, from its JSON.
+#[pyfunction]
+pub(crate) fn calibration_summary(json: &str) -> PyResult<String> {
+    guarded(|| Ok(tdoa::summary::summary(&parsed(json)?)))
+}
+
+/// The standard deviation of the measurements in words, and by how much ellipses are to be drawn
+/// larger than they are, from the JSON.
+#[pyfunction]
+pub(crate) fn calibration_style(json: &str) -> PyResult<(String, f64)> {
+    guarded(|| {
+        let calibration = parsed(json)?;
+        Ok((tdoa::summary::deviation(&calibration), tdoa::picture::ellipse_magnification(&calibration)))
+    })
 }

@@ -18,7 +18,7 @@ mod work;
 #[pyo3::pymodule]
 mod _native {
     #[pymodule_export]
-    use crate::calibration::{calibrate, calibration_html, calibration_svg};
+    use crate::calibration::{calibrate, calibration_html, calibration_style, calibration_summary, calibration_svg};
     #[pymodule_export]
     use crate::certify::{certify, mixed_volume};
     #[pymodule_export]

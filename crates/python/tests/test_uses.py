@@ -96,6 +96,35 @@ def test_a_calibration_is_near_the_truth():
     assert np.allclose(residuals, found.residuals, atol=1e-9, equal_nan=True)
 
 
+def test_masked_arrays_are_gaps():
+    made = tdoa.simulate(8, 12, noise=0.01, seed=2)
+    hidden = np.zeros((8, 12), bool)
+    hidden[2, 5] = hidden[6, 0] = True
+    gaps = np.where(hidden, np.nan, made.pseudoranges)
+    masked = np.ma.array(np.where(hidden, 0.0, made.pseudoranges), mask=hidden)
+    assert tdoa.calibrate(masked).to_json() == tdoa.calibrate(gaps).to_json()
+    assert np.array_equal(tdoa.Pseudoranges(masked).values, gaps, equal_nan=True)
+
+
+def test_summaries_are_those_of_the_program(programs, tmp_path):
+    import subprocess
+
+    made = tdoa.simulate(8, 12, noise=0.01, seed=2)
+    # Metres, and seconds that nobody has said to be seconds: 3 cm across.
+    for k, table in enumerate((made.pseudoranges, made.pseudoranges / 343)):
+        path = tmp_path / f"{k}.csv"
+        path.write_text("\n".join(",".join(map(repr, row)) for row in table.tolist()) + "\n")
+        command = [programs["tdoa"], "calibrate", path]
+        printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+        shown = repr(tdoa.calibrate(table)).splitlines()
+        assert shown[0].startswith("8r/12s: 96 measurements") and shown[1].startswith("size: ")
+        assert all(line in printed for line in shown if "starts agree" not in line)
+        assert any("if the measurements are times" in line for line in shown) == (k == 1)
+    assert "if the measurements are times" not in repr(tdoa.calibrate(made.pseudoranges / 343, speed=343))
+    each = tdoa.calibrate(made.pseudoranges, sigma=np.full((8, 12), 0.01))
+    assert "each with its own standard deviation" in repr(each) and each.data["sigma_is_factor"]
+
+
 def test_bounds():
     square = np.array([[0.0, 0], [1, 0], [0, 1], [1, 1], [0.4, 0.3], [0.2, 0.9]])
     others = np.array([[0.5, 2.0], [3, 1], [-1, -1], [0.3, 0.6], [2, -2], [-2, 3], [1.5, 0.2], [0.1, -1.2]])

@@ -8,6 +8,7 @@ use tdoa::html::html;
 use tdoa::node_table::node_table;
 use tdoa::picture::picture;
 use tdoa::read::{read, read_distances};
+use tdoa::summary::doubt_of_units;
 use tdoa::{CalibrateError, CalibrateOptions, Calibration, Monitor, ReceiverDelays, calibrate_with};
 
 use crate::frame::Frame;
@@ -127,7 +128,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         ("--nodes", arguments.nodes.as_deref()),
     ])?;
     let input = arguments.input.options(arguments.estimate_speed)?;
-    let units = input.units.unwrap_or_default();
+    let (units, said) = (input.units.unwrap_or_default(), input.units.is_some());
     let measured = read(&arguments.file, input).map_err(Failure::unusable)?;
     let truth = Truth::read(arguments.truth.as_deref(), &arguments.file, &measured)?;
     if arguments.scale && truth.receivers.is_none() {
@@ -179,6 +180,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let mut unit = Unit::new(units).map(|unit| unit.stretched(calibration.speed.map_or(1.0, |speed| speed.factor)));
     calibration.warnings.extend(truth.warnings);
+    calibration.warnings.extend(doubt_of_units(&calibration).filter(|_| !said));
     if let Some(receivers) = &truth.receivers {
         calibration.compare_all(receivers, &truth.transmitters);
         if let Some(scale) = calibration.truth.as_ref().map(|found| found.scale).filter(|_| arguments.scale) {
@@ -202,7 +204,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(path) = &arguments.json {
         output::json(path, &Report::new(&calibration, unit))?;
     }
-    let context = Context { time: started.elapsed(), unit, has_sigmas: measured.has_sigmas() };
+    let context = Context { time: started.elapsed(), unit };
     output::summary(arguments.json.as_deref(), || summary::text(&calibration, &context))?;
     match calibration.distrust() {
         None => Ok(()),

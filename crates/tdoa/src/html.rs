@@ -6,6 +6,7 @@ use std::fmt::Write;
 use crate::calibrate::Calibration;
 use crate::picture::{escape, picture};
 use crate::quantity::{coordinate, decimals, length, number};
+use crate::summary::{deviation, uniqueness};
 
 /// Most measurements that the report lists; of more, the outliers and those of largest residual.
 const LISTED: usize = 20_000;
@@ -85,17 +86,11 @@ fn facts(calibration: &Calibration) -> String {
     let inliers = calibration.inliers.iter().flatten().filter(|&&inlier| inlier).count();
     let mut list = vec![
         ("Measurements", format!("{measured}, outliers among them: {}", measured - inliers)),
-        (
-            "Standard deviation",
-            match (calibration.sigma_estimated, calibration.redundancy) {
-                (true, 0) => "not known: there are as many measurements as unknowns".to_owned(),
-                (true, _) => format!("{}, estimated", length(calibration.sigma)),
-                (false, _) => format!("{} as given", number(calibration.sigma, 3)),
-            },
-        ),
+        ("Noise", deviation(calibration)),
         ("Residuals of inliers", format!("{} root mean square", length(calibration.residual_rms))),
         ("Size", calibration.extent().map_or_else(String::new, |size| format!("{} across", length(size)))),
         ("Redundancy", format!("{} measurements more than unknowns", calibration.redundancy)),
+        ("Uniqueness", uniqueness(calibration).to_string()),
         (
             "Other networks",
             match calibration.alternatives.len() {

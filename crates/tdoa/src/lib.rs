@@ -13,7 +13,7 @@
 //! * [`minimal`]: every network that explains a small complete matrix exactly, by homotopy
 //!   continuation.
 //! * [`Pseudoranges`]: the measurements, and [`read`] for files of them.
-//! * [`picture`] and [`html`]: a result to look at.
+//! * [`summary`], [`picture`] and [`html`]: a result to look at.
 //! * [`simulate()`] and [`accuracy`]: networks with a known truth, and how near to it an estimate
 //!   comes and can come.
 //!
@@ -71,6 +71,7 @@ pub mod read;
 mod refine;
 mod restart;
 pub mod simulate;
+pub mod summary;
 
 pub use calibrate::{
     Alternative, CalibrateError, CalibrateOptions, Calibration, Hypotheses, KnownDistance, ReceiverDelays,

@@ -6,7 +6,8 @@ mod histogram;
 
 use crate::calibrate::Calibration;
 use crate::plane::{centroid, distance, spread};
-use crate::quantity::length;
+use crate::quantity::{length, number};
+use crate::summary::deviation;
 pub use canvas::Canvas;
 pub(crate) use canvas::escape;
 use canvas::{Map, nice};
@@ -32,7 +33,8 @@ pub fn picture(calibration: &Calibration) -> String {
     canvas.text([20.0, 28.0], "start", 16.0, &title(calibration));
 
     outliers(&mut canvas, calibration, &map);
-    let radius = calibration.ellipse_radius.unwrap_or(0.0);
+    let magnified = magnification(calibration, &map);
+    let radius = magnified * calibration.ellipse_radius.unwrap_or(0.0);
     let blue = "#0072B2";
     let orange = "#D55E00";
     let nodes = calibration.transmitters.iter().zip(&calibration.transmitter_covariance);
@@ -75,12 +77,12 @@ pub fn picture(calibration: &Calibration) -> String {
     }
     scale_bar(&mut canvas, &map);
     histogram::draw(&mut canvas, calibration, [60.0, MAP_HEIGHT + 40.0], [480.0, 130.0]);
-    legend(&mut canvas, calibration, outside, [600.0, MAP_HEIGHT + 40.0]);
+    legend(&mut canvas, calibration, magnified, outside, [600.0, MAP_HEIGHT + 40.0]);
     canvas.finish()
 }
 
 fn title(calibration: &Calibration) -> String {
-    let mut title = format!("{}, standard deviation {}", calibration.configuration, length(calibration.sigma));
+    let mut title = format!("{}, {}", calibration.configuration, deviation(calibration));
     if let Some(truth) = &calibration.truth {
         title += &format!(", receivers {} from the truth (rms)", length(truth.receiver_rms));
     }
@@ -108,8 +110,7 @@ fn map_of(calibration: &Calibration) -> (Map, usize) {
 
 fn ellipse(canvas: &mut Canvas, map: &Map, at: [f64; 2], covariance: Option<[[f64; 2]; 2]>, radius: f64, colour: &str) {
     let Some([[xx, xy], [_, yy]]) = covariance else { return };
-    let root = (0.25 * (xx - yy).powi(2) + xy * xy).sqrt();
-    let axes = [0.5 * (xx + yy) + root, 0.5 * (xx + yy) - root].map(|v| radius * v.max(0.0).sqrt() * map.scale);
+    let axes = axes([[xx, xy], [xy, yy]]).map(|variance| radius * variance.sqrt() * map.scale);
     let angle = 0.5 * (2.0 * xy).atan2(xx - yy);
     // Beyond the picture it would be a wash of colour; below a pixel nothing is seen.
     if axes[0] < 2.0 * WIDTH && axes[0] > 0.5 {
@@ -143,16 +144,43 @@ fn scale_bar(canvas: &mut Canvas, map: &Map) {
     canvas.text([end + 8.0, y + 4.0], "start", 12.0, &length(metres));
 }
 
-fn legend(canvas: &mut Canvas, calibration: &Calibration, outside: usize, at: [f64; 2]) {
+/// By how much ellipses are drawn larger than they are, so that they stand out from the dots: 1 where
+/// half of them do, a round number otherwise.
+pub fn ellipse_magnification(calibration: &Calibration) -> f64 {
+    magnification(calibration, &map_of(calibration).0)
+}
+
+fn magnification(calibration: &Calibration, map: &Map) -> f64 {
+    let radius = calibration.ellipse_radius.unwrap_or(0.0);
+    let receivers = calibration.receivers.iter().zip(&calibration.receiver_covariance);
+    let nodes = receivers.chain(calibration.transmitters.iter().zip(&calibration.transmitter_covariance));
+    let shown = nodes.filter(|(position, _)| position.is_some_and(|p| map.shows(p)));
+    let mut axes: Vec<f64> =
+        shown.filter_map(|(_, covariance)| Some(radius * map.scale * axes((*covariance)?)[0].sqrt())).collect();
+    axes.sort_by(f64::total_cmp);
+    let (Some(middle), Some(large)) = (axes.get(axes.len() / 2), axes.get(axes.len() * 9 / 10)) else { return 1.0 };
+    // Twice the size of the triangles; the largest ones must not cover the picture.
+    let factor = (20.0 / middle).min(60.0 / large);
+    if *middle > 10.0 || !factor.is_finite() { 1.0 } else { nice(factor.max(1.0)) }
+}
+
+/// The variances along the axes of an ellipse, the larger one first.
+fn axes([[xx, xy], [_, yy]]: [[f64; 2]; 2]) -> [f64; 2] {
+    let root = (0.25 * (xx - yy).powi(2) + xy * xy).sqrt();
+    [0.5 * (xx + yy) + root, 0.5 * (xx + yy) - root].map(|variance| variance.max(0.0))
+}
+
+fn legend(canvas: &mut Canvas, calibration: &Calibration, magnified: f64, outside: usize, at: [f64; 2]) {
     let mut y = at[1];
     let mut row = |canvas: &mut Canvas, text: &str| {
         canvas.text([at[0] + 20.0, y + 4.0], "start", 12.0, text);
         y += 22.0;
         y - 22.0
     };
-    let h = row(canvas, "receiver, with 95 % ellipse");
+    let times = if magnified > 1.0 { format!(", {} times as large", number(magnified, 3)) } else { String::new() };
+    let h = row(canvas, &format!("receiver, with 95 % ellipse{times}"));
     canvas.triangle([at[0], h], 6.0, "#0072B2");
-    let h = row(canvas, "transmitter, with 95 % ellipse");
+    let h = row(canvas, &format!("transmitter, with 95 % ellipse{times}"));
     canvas.circle([at[0], h], 3.0, "#D55E00");
     let cells = || calibration.residuals.iter().flatten().zip(calibration.inliers.iter().flatten());
     let measured = cells().filter(|(residual, _)| residual.is_some()).count();
@@ -170,10 +198,14 @@ fn legend(canvas: &mut Canvas, calibration: &Calibration, outside: usize, at: [f
     if outside > 0 {
         row(canvas, &format!("{outside} transmitters lie outside the picture"));
     }
-    match calibration.alternatives.len() {
-        0 if calibration.unique => {}
-        0 => _ = row(canvas, "a better network may have been missed"),
-        others => _ = row(canvas, &format!("not unique: {others} alternatives")),
+    if !calibration.unique {
+        row(
+            canvas,
+            &match calibration.alternatives.len() {
+                0 => "not unique, see the warnings".to_string(),
+                others => format!("not unique: {others} alternatives"),
+            },
+        );
     }
 }
 
@@ -203,6 +235,23 @@ mod tests {
         assert_eq!(svg.matches("class=\"transmitter\"").count(), 13);
         assert_eq!(svg.matches("class=\"truth\"").count(), 9);
         assert!(!svg.contains("class=\"anchor\""));
+    }
+
+    #[test]
+    fn small_ellipses_are_magnified_by_a_stated_number() {
+        for (noise, least) in [(1e-4, 100.0), (0.01, 2.0), (0.5, 1.0)] {
+            let simulation = simulate(&SimulateOptions { noise, ..Default::default() }).unwrap();
+            let calibration = calibrate(&simulation.pseudoranges, &CalibrateOptions::default()).unwrap();
+            let (factor, svg) = (ellipse_magnification(&calibration), picture(&calibration));
+            assert!(factor >= least && (least > 1.0 || factor == 1.0), "{noise}: {factor}");
+            let stated = format!("receiver, with 95 % ellipse, {factor} times as large");
+            assert_eq!(svg.contains(&stated), factor > 1.0, "{noise}");
+            // Half of the ellipses are larger than the triangles of 6 pixels.
+            let radii = svg.split("rx=\"").skip(1).filter_map(|rest| rest.split('"').next()?.parse::<f64>().ok());
+            let mut radii: Vec<f64> = radii.collect();
+            radii.sort_by(f64::total_cmp);
+            assert!(radii[radii.len() / 2] > 6.0, "{noise}: {radii:?}");
+        }
     }
 
     #[test]

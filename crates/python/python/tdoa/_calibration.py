@@ -65,7 +65,8 @@ class Calibration:
     warnings : list of str
         What may be wrong, with names and a remedy.
     sigma : float
-        Standard deviation of the measurements: as given, or estimated.
+        Standard deviation of the measurements: as given, or estimated. A factor on those of single measurements, where these were
+        given.
     receiver_names, transmitter_names : list of str
         Names of the nodes.
     dimensions : int
@@ -173,21 +174,7 @@ class Calibration:
             file.write(page)
 
     def __repr__(self):
-        measured = int(np.isfinite(self.residuals).sum())
-        outliers = measured - int(self.inliers.sum())
-        if not self.data["sigma_estimated"]:
-            how = "given"
-        else:
-            how = "estimated" if self.data["redundancy"] else "not known: as many measurements as unknowns"
-        verdict = "unique" if self.unique else f"NOT UNIQUE, {len(self.alternatives)} alternatives"
-        if not self.trusted:
-            verdict += "; NOT TO BE TRUSTED"
-        lines = [
-            f"{self.data['configuration']}: {measured} measurements, {outliers} of them outliers, "
-            f"standard deviation {self.sigma:.3g} m ({how})",
-            f"{self.data['agreeing']} of {self.data['starts']} starts agree; {verdict}",
-        ]
-        return "\n".join(lines + [f"warning: {warning}" for warning in self.warnings])
+        return _native.calibration_summary(self._text).rstrip()
 
     def _repr_html_(self):
         import html

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hc import InputError
+from hc import InputError, _native
 
 # The colours of the report: receivers, transmitters, outliers.
 _BLUE, _ORANGE, _PINK = "#0072B2", "#D55E00", "#CC79A7"
@@ -31,7 +31,9 @@ def draw(calibration, ax, names):
     for i, j in lines[:_OUTLIERS]:
         ends = np.array([receivers[i], transmitters[j]])
         ax.plot(*ends.T, color=_PINK, linewidth=1, linestyle=(0, (5, 3)), zorder=1)
-    radius = calibration.data["ellipse_radius"] or 0.0
+    deviation, magnified = _native.calibration_style(calibration.to_json())
+    radius = magnified * (calibration.data["ellipse_radius"] or 0.0)
+    times = f", {magnified:g} times as large" if magnified > 1 else ""
 
     def ellipses(points, covariances, colour, shown):
         for point, covariance in zip(points[shown], covariances[shown]):
@@ -45,8 +47,8 @@ def draw(calibration, ax, names):
     seen = np.isfinite(receivers).all(axis=1)
     ellipses(transmitters, calibration.transmitter_covariance, _ORANGE, near)
     ellipses(receivers, calibration.covariance, _BLUE, seen)
-    ax.plot(*transmitters[near].T, "o", color=_ORANGE, markersize=4, label="transmitter, with 95 % ellipse", zorder=3)
-    ax.plot(*receivers[seen].T, "^", color=_BLUE, markersize=8, label="receiver, with 95 % ellipse", zorder=4)
+    ax.plot(*transmitters[near].T, "o", color=_ORANGE, markersize=4, label=f"transmitter, with 95 % ellipse{times}", zorder=3)
+    ax.plot(*receivers[seen].T, "^", color=_BLUE, markersize=8, label=f"receiver, with 95 % ellipse{times}", zorder=4)
     held = np.array(calibration.data["anchored"], dtype=bool) & seen
     if held.any():
         label = "receiver held at its known position"
@@ -60,7 +62,7 @@ def draw(calibration, ax, names):
             if shown.sum() <= _NAMED:
                 for k in np.flatnonzero(shown):
                     ax.annotate(texts[k], points[k], (5, 5), textcoords="offset points", color=colour, fontsize=8)
-    title = f"{calibration.data['configuration']}, standard deviation {calibration.sigma:.3g} m"
+    title = f"{calibration.data['configuration']}, {deviation}"
     ax.set_title(title if calibration.trusted else f"{title}, NOT TO BE TRUSTED")
     ax.set_aspect("equal", adjustable="datalim")
     ax.set_xlabel("x, m")

@@ -66,7 +66,11 @@ def real_matrix(name, values):
             array = array.reshape(np.shape(values))
         if array.dtype.kind not in "biuf":
             raise InputError(f"{name} must be real numbers, not {array.dtype}")
-        return array.astype(float, copy=False)
+        array = array.astype(float, copy=False)
+        if np.ma.is_masked(values):
+            # What is masked was not measured.
+            array = np.where(np.ma.getmaskarray(values), np.nan, array)
+        return array
     except InputError:
         raise
     except (TypeError, ValueError, OverflowError) as error:

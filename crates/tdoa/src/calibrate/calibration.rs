@@ -34,6 +34,9 @@ pub struct Calibration {
     pub sigma: f64,
     /// Whether `sigma` was estimated.
     pub sigma_estimated: bool,
+    /// Whether measurements carry their own deviations, and `sigma` is a factor on those.
+    #[serde(default)]
+    pub sigma_is_factor: bool,
     /// Root mean square of the inliers' residuals.
     pub residual_rms: f64,
     /// Inliers minus unknowns: what the estimate of `sigma` rests on.

@@ -178,6 +178,7 @@ impl Solved<'_> {
             residuals,
             sigma,
             sigma_estimated: self.known.is_none(),
+            sigma_is_factor: self.measured.has_sigmas(),
             residual_rms: rms(best),
             redundancy,
             ellipse_radius,

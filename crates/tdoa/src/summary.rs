@@ -1,0 +1,151 @@
+//! A calibration in words: what the program prints above its tables, and what Python shows.
+
+use std::time::Duration;
+
+use crate::calibrate::{Calibration, SpeedEstimate};
+use crate::quantity::{length, number};
+
+/// A smaller network makes one ask whether its measurements are times, metres.
+const SMALL: f64 = 0.2;
+
+/// What was found, a line for each thing; how long it took, if that is known.
+pub fn heading(calibration: &Calibration, time: Option<Duration>) -> String {
+    let measured = calibration.residuals.iter().flatten().flatten().count();
+    let inliers = calibration.inliers.iter().flatten().filter(|&&inlier| inlier).count();
+    let mut text = format!(
+        "{}: {measured} measurements, {} of them outliers, {}\n",
+        calibration.configuration,
+        measured - inliers,
+        deviation(calibration),
+    );
+    if let Some(extent) = calibration.extent() {
+        text += &format!("size: {} across (receivers)\n", length(extent));
+    }
+    let time = time.map_or_else(String::new, |time| format!(", {:.1} s", time.as_secs_f64()));
+    let (agreeing, starts) = (calibration.agreeing, calibration.starts);
+    text += &format!("{agreeing} of {starts} starts agree{time}; {}\n", uniqueness(calibration));
+    if let Some(why) = calibration.distrust() {
+        text += &format!("NOT TO BE TRUSTED: {why}, see the warnings\n");
+    }
+    if let Some(speed) = &calibration.speed {
+        text += &format!("{}\n", speed_line(speed));
+    }
+    let anchored = calibration.anchored.iter().filter(|&&held| held).count();
+    if anchored > 0 {
+        text += &format!("{anchored} receivers held at their known positions\n");
+    }
+    if let Some(truth) = &calibration.truth {
+        text += &format!(
+            "against the truth: {} receivers, {} root mean square, {} with scale {:.4}\n",
+            truth.receivers,
+            length(truth.receiver_rms),
+            length(truth.receiver_rms_scaled),
+            truth.scale,
+        );
+        if let Some(median) = truth.transmitter_median {
+            text += &format!("transmitters: median distance {}\n", length(median));
+        }
+    }
+    text
+}
+
+/// [`heading`] and the warnings.
+pub fn summary(calibration: &Calibration) -> String {
+    let warnings = calibration.warnings.iter().map(|warning| format!("warning: {warning}\n"));
+    heading(calibration, None) + &warnings.collect::<String>()
+}
+
+/// The standard deviation of the measurements, and where it comes from.
+pub fn deviation(calibration: &Calibration) -> String {
+    let sigma = calibration.sigma;
+    match (calibration.sigma_estimated, calibration.redundancy) {
+        (true, 0) => "as many as unknowns: their standard deviation is not known".to_string(),
+        (true, _) => format!("standard deviation {} (estimated)", length(sigma)),
+        (false, _) if !calibration.sigma_is_factor => format!("standard deviation {} (given)", length(sigma)),
+        (false, _) if sigma == 1.0 => "each with its own standard deviation (given)".to_string(),
+        (false, _) => format!("standard deviations {} times those of each (given)", number(sigma, 3)),
+    }
+}
+
+/// Whether the network is the only one, for receivers and transmitters.
+pub(crate) fn uniqueness(calibration: &Calibration) -> &'static str {
+    match (calibration.unique, calibration.unique_receivers, calibration.unique_transmitters) {
+        (true, ..) => "unique: no other places of receivers or transmitters were found that fit as well",
+        (_, true, false) => "the receivers are unique; SOME TRANSMITTERS MAY LIE ELSEWHERE, see the warnings",
+        (_, true, true) => "the receivers are unique, and most transmitters; A FEW MAY LIE ELSEWHERE, see the warnings",
+        (_, false, true) if !calibration.alternatives.is_empty() => {
+            "NOT UNIQUE: the transmitters fit in one way, RECEIVERS MAY LIE ELSEWHERE, see the warnings"
+        }
+        _ if !calibration.alternatives.is_empty() => {
+            "NOT UNIQUE: receivers and transmitters may lie elsewhere, OTHER NETWORKS FIT AS WELL, see the warnings"
+        }
+        _ if !calibration.receiver_errors.is_empty() => {
+            "NOT UNIQUE: A RECEIVER HAS ERRORS OF ITS OWN, see the warnings"
+        }
+        _ if calibration.distrust().is_some() => "NOT UNIQUE",
+        _ => "NOT UNIQUE: A BETTER NETWORK MAY HAVE BEEN MISSED, see the warnings",
+    }
+}
+
+/// What to say of a network so small that its measurements may be times, where nobody has said that
+/// they are lengths.
+pub fn doubt_of_units(calibration: &Calibration) -> Option<String> {
+    let extent = calibration.extent().filter(|&extent| extent < SMALL)?;
+    Some(format!(
+        "the network is {} across; if the measurements are times and not metres, give the propagation speed (343 m/s for sound in air: \
+         --units s --speed 343, in Python speed=343)",
+        length(extent)
+    ))
+}
+
+fn speed_line(speed: &SpeedEstimate) -> String {
+    let relative = speed.factor_std.map(|std| std / speed.factor);
+    let percent = relative
+        .map_or_else(String::new, |relative| format!(" (standard deviation {} %)", number(100.0 * relative, 2)));
+    let basis = format!(
+        "from {} distance{}, which fit to {}",
+        speed.distances,
+        if speed.distances == 1 { "" } else { "s" },
+        length(speed.residual)
+    );
+    match speed.metres_per_second {
+        Some(value) => format!("propagation speed {} m/s{percent}, {basis}", number(value, 6)),
+        None => format!("propagation speed {} times the assumed one{percent}, {basis}", number(speed.factor, 6)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{CalibrateOptions, Pseudoranges, SimulateOptions, calibrate, simulate};
+
+    #[test]
+    fn times_without_a_speed_are_doubted() {
+        let simulation = simulate(&SimulateOptions { noise: 0.01, ..Default::default() }).unwrap();
+        let values: Vec<f64> = simulation.pseudoranges.values().iter().map(|f| f / 343.0).collect();
+        let times = Pseudoranges::new(8, 12, values).unwrap();
+        let found = calibrate(&times, &CalibrateOptions::default()).unwrap();
+        let doubt = doubt_of_units(&found).unwrap();
+        // The room of 10 m is 29 mm across, its diagonal 41.
+        let size: f64 = doubt.split(' ').nth(3).unwrap().parse().unwrap();
+        assert!(
+            (15.0..=41.3).contains(&size) && doubt.contains(" mm across; if the measurements are times"),
+            "{doubt}"
+        );
+        let found = calibrate(&simulation.pseudoranges, &CalibrateOptions::default()).unwrap();
+        assert_eq!(doubt_of_units(&found), None);
+        let text = summary(&found);
+        assert!(text.contains("size: ") && text.contains("unique: no other places"), "{text}");
+    }
+
+    #[test]
+    fn deviations_of_each_measurement_are_no_metres() {
+        let simulation = simulate(&SimulateOptions { noise: 0.01, ..Default::default() }).unwrap();
+        let measured = simulation.pseudoranges.with_sigmas(vec![0.01; 96]).unwrap();
+        let found = calibrate(&measured, &CalibrateOptions::default()).unwrap();
+        assert!(found.sigma_is_factor && summary(&found).contains("each with its own standard deviation (given)"));
+        let options = CalibrateOptions { sigma: Some(2.0), ..Default::default() };
+        let text = summary(&calibrate(&measured, &options).unwrap());
+        assert!(text.contains("standard deviations 2 times those of each (given)"), "{text}");
+    }
+}
