@@ -24,6 +24,9 @@ pub enum Failure {
     /// Exit status 130: stopped from outside.
     #[error("interrupted")]
     Interrupted,
+    /// Exit status 130: stopped from outside; what is left is said.
+    #[error("interrupted; {0}")]
+    Stopped(String),
 }
 
 impl Failure {
@@ -46,6 +49,7 @@ pub fn finish(program: &str, result: Result<(), Failure>, interrupted: &str) -> 
         Err(Failure::Undetermined(message)) => (message, 1),
         Err(Failure::Unusable(message)) => (message, 2),
         Err(Failure::Interrupted) => (format!("interrupted; {interrupted}"), INTERRUPTED),
+        Err(error @ Failure::Stopped(_)) => (error.to_string(), INTERRUPTED),
     };
     eprintln!("{program}: {message}");
     ExitCode::from(status)

@@ -13,6 +13,7 @@ use tdoa::{CalibrateError, CalibrateOptions, Calibration, Monitor, ReceiverDelay
 
 use crate::frame::Frame;
 use crate::known::{Truth, anchors};
+use crate::partial;
 use crate::summary::{self, Context};
 use crate::units::Unit;
 use crate::{Failure, interrupt, output};
@@ -26,6 +27,8 @@ use crate::{Failure, interrupt, output};
 /// order, a .npy array, or a .mat file with the matrix z (or --variable) and, as truth, the
 /// positions rgt. Cells stand between commas, semicolons, tabs or blanks; with any but commas,
 /// numbers may have decimal commas.
+///
+/// Interrupted, it writes the best network so far as JSON marked "unfinished", with exit status 130.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The measurements.
@@ -172,7 +175,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         CalibrateError::Degenerate(_) | CalibrateError::NotFound(_) | CalibrateError::Delays { .. } => {
             Failure::Undetermined(format!("{}: {error}", arguments.file.display()))
         }
-        CalibrateError::Cancelled(_) => Failure::Interrupted,
+        CalibrateError::Cancelled(Some(best)) => partial::write(&best, &measured, arguments.json.as_deref()),
+        CalibrateError::Cancelled(None) => Failure::Interrupted,
         other => Failure::unusable(other),
     })?;
     if let (Some(speed), Some(found)) = (units.speed(), &mut calibration.speed) {
@@ -191,7 +195,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(frame) = frame {
         frame.apply(&mut calibration)?;
     }
-    interrupt::check()?;
     if let Some(path) = &arguments.svg {
         output::file(path, picture(&calibration).as_bytes())?;
     }

@@ -3,6 +3,7 @@
 mod calibrate;
 mod frame;
 mod known;
+mod partial;
 mod simulate;
 mod solve;
 mod summary;

@@ -55,12 +55,12 @@ pub(crate) fn copied_transmitters(
     };
     let mut columns: Vec<(Vec<usize>, Vec<f64>, usize)> = transmitters.iter().map(column).collect();
     columns.retain(|(heard, ..)| heard.len() >= 3);
-    let step = |values: &[f64]| values[1] - values[0];
-    columns.sort_by(|a, b| a.0.cmp(&b.0).then(step(&a.1).total_cmp(&step(&b.1))));
+    let lead = |values: &[f64]| values[1] - values[0];
+    columns.sort_by(|a, b| a.0.cmp(&b.0).then(lead(&a.1).total_cmp(&lead(&b.1))));
     for (k, (heard, values, a)) in columns.iter().enumerate() {
         let tolerance = printed(values.iter().copied().zip(values.iter().copied()));
         let next = columns[k + 1..].iter().take_while(|(other, ..)| other == heard);
-        for (_, others, b) in next.take_while(|(_, others, _)| step(others) - step(values) <= tolerance) {
+        for (_, others, b) in next.take_while(|(_, others, _)| lead(others) - lead(values) <= tolerance) {
             let pairs = values.iter().copied().zip(others.iter().copied());
             let Some(constant) = constant_difference(pairs.clone(), printed(pairs)) else { continue };
             let rivals = 0.5 * (transmitters.len() * transmitters.len()) as f64;
@@ -73,20 +73,23 @@ pub(crate) fn copied_transmitters(
     None
 }
 
-/// How many different numbers there are for some measurements, if all are multiples of one step;
-/// infinity if they are not.
+/// How many different numbers there are for some measurements; infinity if these are not multiples
+/// of one step.
 fn levels(measured: &Pseudoranges, values: &[f64]) -> f64 {
+    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
+    step(measured).map_or(f64::INFINITY, |step| 1.0 + (high - low) / step)
+}
+
+/// The step of which all differences between measurements are multiples, if there is one that is not
+/// smaller than a billionth of what they differ by.
+pub(crate) fn step(measured: &Pseudoranges) -> Option<f64> {
     let mut all: Vec<f64> = measured.values().iter().copied().filter(|value| !value.is_nan()).collect();
     all.sort_by(f64::total_cmp);
     let range = all.last().zip(all.first()).map_or(0.0, |(most, least)| most - least);
     let gaps = all.windows(2).map(|pair| pair[1] - pair[0]).filter(|gap| *gap > 1e-9 * range);
     let step = gaps.fold(f64::INFINITY, f64::min);
     let is_multiple = |value: &f64| (((value - all[0]) / step).round() - (value - all[0]) / step).abs() < 1e-3;
-    if !step.is_finite() || !all.iter().all(is_multiple) {
-        return f64::INFINITY;
-    }
-    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
-    1.0 + (high - low) / step
+    (step.is_finite() && all.iter().all(is_multiple)).then_some(step)
 }
 
 #[cfg(test)]

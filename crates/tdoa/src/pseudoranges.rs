@@ -259,7 +259,7 @@ impl Pseudoranges {
         Pseudoranges { values, ..self.clone() }
     }
 
-    /// This matrix with other values, as many as before, none larger and all missing that were.
+    /// This matrix with other values, as many as before, usable ones, and all missing that were.
     pub(crate) fn with_values(&self, values: Vec<f64>) -> Pseudoranges {
         Pseudoranges { values, ..self.clone() }
     }

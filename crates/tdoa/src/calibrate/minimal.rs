@@ -2,10 +2,14 @@
 
 use std::sync::Mutex;
 
+use hc::Monitor;
+use rand::RngExt;
 use rand::seq::SliceRandom;
 use rand_pcg::Pcg64Mcg;
 
 use super::hypotheses::{Hypotheses, generator};
+use crate::duplicates::step;
+use crate::median::median;
 use crate::minimal::subset::spread;
 use crate::minimal::{SolveOptions, Solver};
 use crate::pseudoranges::Pseudoranges;
@@ -18,6 +22,13 @@ const DRAWS: usize = 12;
 /// have them.
 const SHAPES: [(usize, usize); 3] = [(6, 3), (5, 4), (4, 5)];
 
+/// Measurements of one transmitter that differ by more than this many times what nine tenths of all
+/// do: no network of a usual shape has them.
+const FAR: f64 = 4.0;
+
+/// Measurements that are rounded to more than this share of what they differ by.
+const COARSE: f64 = 1e-3;
+
 /// Proposes every candidate of a minimal solver (6r/3s, 5r/4s or 4r/5s) on one random, spread-out,
 /// completely measured subset a call.
 pub struct MinimalHypotheses {
@@ -25,6 +36,7 @@ pub struct MinimalHypotheses {
     solvers: Mutex<Vec<Solver>>,
     /// Calls that are answered; later ones propose nothing.
     most: usize,
+    monitor: Monitor,
 }
 
 impl Default for MinimalHypotheses {
@@ -38,12 +50,18 @@ impl MinimalHypotheses {
     /// distances may be negative by a twentieth of the network's size.
     pub fn new() -> Self {
         let options = SolveOptions { near_real: 0.1, tolerance: 0.05, ..SolveOptions::default() };
-        MinimalHypotheses { options, solvers: Mutex::new(Vec::new()), most: usize::MAX }
+        MinimalHypotheses { options, solvers: Mutex::new(Vec::new()), most: usize::MAX, monitor: Monitor::default() }
     }
 
     /// A source that gives way after this many calls.
     pub fn at_most(calls: usize) -> Self {
         MinimalHypotheses { most: calls, ..MinimalHypotheses::new() }
+    }
+
+    /// This source, which proposes nothing more once the monitor is cancelled.
+    #[must_use]
+    pub fn heeding(self, monitor: &Monitor) -> Self {
+        MinimalHypotheses { monitor: monitor.quiet(), ..self }
     }
 
     /// Whether some solver's subsets fit into a matrix of this size.
@@ -54,6 +72,7 @@ impl MinimalHypotheses {
     /// The subset of one call: `m` receivers and `n` transmitters, `None` if no draw is complete.
     fn subset(measured: &Pseudoranges, (m, n): (usize, usize), rng: &mut Pcg64Mcg) -> Option<(Vec<usize>, Vec<usize>)> {
         let mut best: Option<(f64, Vec<usize>, Vec<usize>)> = None;
+        let most = FAR * usual_difference(measured);
         let mut transmitters: Vec<usize> = (0..measured.transmitters()).collect();
         for _ in 0..DRAWS {
             let chosen = transmitters.partial_shuffle(rng, n).0.to_vec();
@@ -64,6 +83,9 @@ impl MinimalHypotheses {
             }
             receivers.shuffle(rng);
             receivers.truncate(m);
+            if breaks_bounds(measured, &receivers, &chosen, most) {
+                continue;
+            }
             let apart = spread(measured, &receivers, &chosen);
             if best.as_ref().is_none_or(|(other, ..)| apart > *other) {
                 best = Some((apart, receivers, chosen));
@@ -71,6 +93,35 @@ impl MinimalHypotheses {
         }
         best.map(|(_, receivers, transmitters)| (receivers, transmitters))
     }
+}
+
+/// What nine tenths of the measurements differ by at most from the median of their transmitter's.
+fn usual_difference(measured: &Pseudoranges) -> f64 {
+    let mut sizes: Vec<f64> = Vec::new();
+    for j in 0..measured.transmitters() {
+        let heard: Vec<f64> = (0..measured.receivers()).filter_map(|i| measured.get(i, j)).collect();
+        let middle = median(heard.clone()).unwrap_or(0.0);
+        sizes.extend(heard.into_iter().map(|value| (value - middle).abs()));
+    }
+    sizes.sort_by(f64::total_cmp);
+    sizes.get(sizes.len() * 9 / 10).copied().unwrap_or(0.0)
+}
+
+/// Whether two receivers measured of one transmitter what differs by more than this, though by the
+/// triangle inequality it differs by their distance at most.
+fn breaks_bounds(measured: &Pseudoranges, receivers: &[usize], transmitters: &[usize], most: f64) -> bool {
+    transmitters.iter().any(|&j| {
+        let heard = || receivers.iter().filter_map(|&i| measured.get(i, j));
+        heard().fold(f64::NEG_INFINITY, f64::max) - heard().fold(f64::INFINITY, f64::min) > most
+    })
+}
+
+/// A part of measurements that were rounded coarsely, with what rounding may have taken away:
+/// rounded networks are symmetric by chance, and their solutions singular.
+fn dithered(measured: &Pseudoranges, part: Pseudoranges, rng: &mut Pcg64Mcg) -> Pseudoranges {
+    let Some(step) = step(measured).filter(|step| *step > COARSE * usual_difference(measured)) else { return part };
+    let values = part.values().iter().map(|value| value + step * (rng.random::<f64>() - 0.5)).collect();
+    part.with_values(values)
 }
 
 impl Hypotheses for MinimalHypotheses {
@@ -89,7 +140,8 @@ impl Hypotheses for MinimalHypotheses {
         };
         let spare = self.solvers.lock().unwrap_or_else(std::sync::PoisonError::into_inner).pop();
         let mut solver = spare.unwrap_or_default();
-        let solution = solver.solve(&measured.select(&receivers, &transmitters), &self.options);
+        let part = dithered(measured, measured.select(&receivers, &transmitters), &mut rng);
+        let solution = solver.solve_watched(&part, &self.options, &self.monitor);
         self.solvers.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push(solver);
         let Ok(solution) = solution else { return Vec::new() };
         let physical = solution.candidates.iter().filter(|candidate| candidate.physical);

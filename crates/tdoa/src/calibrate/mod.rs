@@ -8,6 +8,7 @@ mod deviation;
 mod finish;
 mod hold;
 mod hypotheses;
+mod impossible;
 mod known;
 mod minimal;
 mod near;
@@ -41,6 +42,7 @@ use crate::pseudoranges::Pseudoranges;
 use delays::{Cleared, Clearing, without_middle_delays};
 use hc::Monitor;
 use hold::{Free, Held};
+use impossible::without_impossible;
 use report::Solved;
 use submaps::{Layout, OVERLAP, hearing_is_local, lay_out};
 use whole::{Sought, search_whole};
@@ -78,7 +80,10 @@ pub fn calibrate_with(
 ) -> Result<Calibration, CalibrateError> {
     options.validate()?;
     known::validate(measured, options)?;
+    let (measured, impossible) = without_impossible(measured);
+    let measured = measured.as_ref();
     let mut usable = usable(measured)?;
+    usable.warnings.extend(impossible);
     let known = options.sigma.or(if measured.has_sigmas() { Some(1.0) } else { None });
     let local = if options.receiver_delays != ReceiverDelays::All {
         local_layout(measured, &mut usable, known, options, sources, monitor)?
@@ -138,7 +143,10 @@ fn local_layout(
         return Ok(None);
     }
     let mut layout = match sources.first() {
-        None => lay_out(&centred, known, options, monitor)?,
+        None => lay_out(&centred, known, options, monitor).map_err(|error| {
+            let (m, n) = (measured.receivers(), measured.transmitters());
+            error.placing(|best| best.among(m, &usable.receivers, n, &usable.transmitters))
+        })?,
         Some(source) => match Layout::proposed(&centred, *source, options.seed) {
             Some(layout) => layout,
             None => return Ok(None),

@@ -81,6 +81,7 @@ impl Search<'_> {
             let stopped = monitor.is_cancelled();
             // The refinements of a batch that was stopped have not ended.
             if !stopped || refined.is_empty() {
+                starts = batch.start + ended.iter().filter(|networks| !networks.is_empty()).count();
                 refined.extend(ended.into_iter().flatten());
             }
             if stopped {

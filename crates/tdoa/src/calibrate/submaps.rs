@@ -5,6 +5,7 @@ use super::deviation::{median_size, typical_deviation};
 use super::finish::finish;
 use super::hypotheses::Hypotheses;
 use super::options::{CalibrateError, CalibrateOptions, check};
+use super::unfinished::Unfinished;
 use super::whole::{Sought, search_whole};
 use crate::align::{Transform, align};
 use crate::degeneracy::usable;
@@ -110,8 +111,13 @@ pub(super) fn lay_out(
     let mut submaps: Vec<Submap> = Vec::new();
     let mut tried: Vec<Vec<usize>> = Vec::new();
     monitor.enter(Stage::Search, m as u64);
+    // Receivers alone, as far as they are laid together.
+    let leaving = |error: CalibrateError, submaps: &[Submap]| match submaps {
+        [] => error,
+        _ => error.leaving(&Unfinished::laid(largest(submaps, m), measured.transmitters(), submaps.len())),
+    };
     for centre in 0..m {
-        check(monitor)?;
+        check(monitor).map_err(|error| leaving(error, &submaps))?;
         let mut order: Vec<usize> = (0..m).filter(|&i| common[centre * m + i] >= COMMON).collect();
         // The receiver itself hears all that it hears.
         order.sort_by_key(|&i| std::cmp::Reverse(common[centre * m + i]));
@@ -121,7 +127,8 @@ pub(super) fn lay_out(
             continue;
         }
         tried.push(order.clone());
-        if let Some(submap) = solve(measured, &order, known, options, &monitor.quiet())? {
+        let found = solve(measured, &order, known, options, &monitor.quiet());
+        if let Some(submap) = found.map_err(|error| leaving(error, &submaps))? {
             submaps.push(submap);
         }
         monitor.reach(centre as u64 + 1, submaps.len() as u64);
@@ -286,11 +293,13 @@ impl Layout {
         let start = RefineOptions { scale: known.map(|sigma| sigma / to_deviation), ..refine };
         let mut refiner = Refiner::new(&observations, SEARCH_NU).heeding(monitor);
         let mut refined = refiner.refine(network, &start);
-        check(monitor)?;
+        let so_far = Unfinished::of(&refined.network, self.solved, 0);
+        check(monitor).map_err(|error| error.leaving(&so_far))?;
         refined.starts = self.support(&refined.network, receivers);
         let first = known.unwrap_or(refined.scale * to_deviation).max(refine.floor);
         let (ranked, deviation) =
-            finish(&observations, vec![refined], first, known.is_some(), refine.floor, options, monitor)?;
+            finish(&observations, vec![refined], first, known.is_some(), refine.floor, options, monitor)
+                .map_err(|error| error.leaving(&so_far))?;
         Ok(Sought { ranked, neighbours: Vec::new(), deviation, floor: refine.floor, starts: self.solved })
     }
 

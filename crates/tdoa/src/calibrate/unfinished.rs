@@ -31,6 +31,12 @@ impl Unfinished {
         }
     }
 
+    /// Receivers alone, from small networks laid together, beside so many transmitters.
+    pub(super) fn laid(receivers: Vec<Option<[f64; 2]>>, transmitters: usize, starts: usize) -> Unfinished {
+        let (nowhere, never) = (vec![None; transmitters], vec![None; transmitters]);
+        Unfinished { receivers, transmitters: nowhere, offsets: never, starts, agreeing: 0 }
+    }
+
     /// The same network among `m` receivers and `n` transmitters, of which its own are those at
     /// `rows` and `columns`.
     pub(super) fn among(self, m: usize, rows: &[usize], n: usize, columns: &[usize]) -> Unfinished {
@@ -92,8 +98,38 @@ mod tests {
                 assert!(error.abs() < 1e-6, "{i} {j} {error}");
             }
         }
+        // Stopped among its first starts, it has not counted more that agree than there are.
+        let monitor = Monitor::asking(|now| now.stage == Stage::Search);
+        if let Err(CalibrateError::Cancelled(Some(best))) = calibrate_with(&measured, &options, &[], &monitor) {
+            assert!(best.agreeing <= best.starts && best.starts <= 16, "{best:?}");
+        }
         // Nothing had been found.
         let monitor = Monitor::asking(|_| true);
         assert_eq!(calibrate_with(&measured, &options, &[], &monitor).unwrap_err(), CalibrateError::Cancelled(None));
+    }
+
+    #[test]
+    fn a_stopped_layout_leaves_the_receivers_laid_so_far() {
+        let made = simulate(&SimulateOptions {
+            receivers: 20,
+            transmitters: 60,
+            layout: crate::Layout::Chain { length: 400.0, width: 50.0 },
+            hearing: Some(8),
+            noise: 0.1,
+            ..SimulateOptions::default()
+        });
+        let made = made.unwrap();
+        let options = CalibrateOptions { sigma: Some(0.1), ..CalibrateOptions::default() };
+        let monitor = Monitor::asking(|now| now.stage == Stage::Search && now.counted >= 3);
+        let Err(CalibrateError::Cancelled(Some(best))) = calibrate_with(&made.pseudoranges, &options, &[], &monitor)
+        else {
+            panic!("it ended")
+        };
+        let pairs = best.receivers.iter().zip(&made.network.receivers).filter_map(|(p, q)| Some(((*p)?, *q)));
+        let (found, truth): (Vec<_>, Vec<_>) = pairs.unzip();
+        assert!(found.len() >= 10 && best.starts >= 3);
+        // Ten neighbours of a road of 400 m reach over 200 m: within a hundredth of that.
+        let error = crate::align::align(&found, &truth, false).unwrap().rms;
+        assert!(error < 2.0, "{error}");
     }
 }

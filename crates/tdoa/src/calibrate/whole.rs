@@ -58,7 +58,7 @@ pub(super) fn search_whole(
         ..SEARCH
     };
     let mut all: Vec<&dyn Hypotheses> = sources.to_vec();
-    let minimal = MinimalHypotheses::at_most(options.minimal_subsets);
+    let minimal = MinimalHypotheses::at_most(options.minimal_subsets).heeding(monitor);
     if options.restarts || all.is_empty() {
         all.insert(0, &restarts);
         if options.minimal_subsets > 0 && MinimalHypotheses::fit(small.receivers(), small.transmitters()) {
