@@ -103,6 +103,9 @@ fn cases() -> Vec<Case> {
         reduced(5, &[], 14 + 2),
         reduced(6, &[(1, 1), (1, 2), (1, 2)], 26),
         reduced(7, &[[(1, 1); 3].as_slice(), &[(1, 2); 4]].concat(), 132),
+        // With zeros: two runs of three, two of two and one of one, four of one. Without: curves of cyclic
+        // 8, of which four each become one.
+        reduced(8, &[&[(2, 5); 3][..], &[(2, 2); 5], &[(2, 1)], &[(1, 8); 2], &[(1, 1); 2]].concat(), 144),
     ];
     all.extend((2..=6).map(adjacent_minors));
     all.extend((2..=6).map(all_minors));

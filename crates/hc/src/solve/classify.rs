@@ -1,8 +1,8 @@
 //! From the ends of paths to solutions: multiplicities, and which singular ends are isolated.
 
+use super::ends::Ends;
 use super::excess::Excess;
 use super::infinity::Line;
-use super::paths::Ends;
 use super::solutions::{Direction, Solution, Solutions, Unresolved, is_real};
 use crate::distinct::coincidences;
 use crate::family::PathCounts;

@@ -1,6 +1,6 @@
 //! Directions in which paths to infinity may go.
 
-use super::paths::Ends;
+use super::ends::Ends;
 use num_complex::Complex64;
 use std::cmp::Ordering;
 

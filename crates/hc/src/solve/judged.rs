@@ -3,9 +3,9 @@
 
 use super::classify::{Classified, REAL, REAL_SINGULAR, Tracked};
 use super::cluster::{clustered, distributed, is_known, is_same};
+use super::ends::Ends;
 use super::excess::Excess;
 use super::graph::Graph;
-use super::paths::Ends;
 use super::record::SingularEnd;
 use super::solutions::{Solution, Unresolved, is_real};
 use crate::distinct::{CLUSTER, groups, relative_distance};

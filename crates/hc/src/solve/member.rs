@@ -52,6 +52,22 @@ pub(crate) fn solve_member<E: Evaluate>(
     }
 }
 
+/// The points at which the solutions of a fibre end at other parameters, singular ones among them.
+pub(crate) fn ends<E: Evaluate>(
+    family: &E,
+    fibre: &Fibre,
+    target: &[Complex64],
+    options: &SolveOptions,
+    monitor: &Monitor,
+) -> impl Iterator<Item = Vec<Complex64>> {
+    let (excess, trackers) = (Excess::none(), Trackers::new(family));
+    let route =
+        Route { trackers: &trackers, start: fibre, count: fibre.len(), target, excess: &excess, options, monitor };
+    let ends = follow(route, false);
+    let regular = ends.regular.into_values().map(|end| end.point);
+    regular.chain(ends.singular.into_values().map(|end| end.point))
+}
+
 type Expanded = (Vec<Polynomial<Exact>>, Given, SparseSystem, Vec<Complex64>);
 
 /// The polynomials of a member, and the same as supports and coefficients.

@@ -3,6 +3,7 @@
 mod classify;
 mod cluster;
 mod conditioned;
+mod ends;
 mod equations;
 mod error;
 mod excess;
@@ -22,7 +23,7 @@ mod start;
 mod warning;
 
 pub use error::SolveError;
-pub(crate) use member::solve_member;
+pub(crate) use member::{ends, solve_member};
 pub use options::{SolveOptions, Start};
 pub(crate) use polynomials::{solve_polynomials, solve_sliced};
 pub use solutions::{Direction, Solution, Solutions, Unresolved};

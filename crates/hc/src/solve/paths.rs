@@ -1,92 +1,27 @@
 //! The coefficient stage: every path from the generic to the given coefficients, to its end.
 
+use super::ends::{End, EndList, Ends};
 use super::excess::Excess;
 use super::prints::{Print, Prints};
 use super::record::{Record, RecordEnd, SingularEnd};
 use crate::SolveOptions;
 use crate::distinct::{CLUSTER, coincidences, groups, relative_distance};
-use crate::endgame::{Ending, Handed, Verdict, endgame};
+use crate::endgame::{EndgameOptions, Ending, Handed, Verdict, endgame};
 use crate::homotopy::Segment;
 use crate::monitor::{self, Monitor};
 use crate::refine::{Refined, Refiner};
 use crate::runner::{Flow, Policy, Room, Round, Work, run};
 use crate::start::Source;
-use crate::store::Records;
 use crate::threads::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use crate::tracker::{PathEnd, TrackerOptions, Trackers};
 use num_complex::Complex64;
 use poly::Evaluate;
 use std::collections::BTreeMap;
 
-/// How a path ends: four bytes, since there is one for each path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct End(u32);
-
-impl End {
-    /// Not known.
-    pub(super) const LOST: End = End(0);
-    /// At a regular solution.
-    pub(super) const REGULAR: End = End(1);
-    /// At a solution at which the Jacobian is singular.
-    pub(super) const SINGULAR: End = End(2);
-    /// Not sought any more, since all solutions are known ([`SolveOptions::known`]).
-    pub(super) const DROPPED: End = End(3);
-
-    /// At infinity, in the direction of this number.
-    fn infinite(direction: u32) -> End {
-        End(direction.saturating_add(4))
-    }
-
-    /// The number of the direction, if the path ends at infinity.
-    pub(super) fn direction(self) -> Option<usize> {
-        self.0.checked_sub(4).map(|direction| direction as usize)
-    }
-}
-
-/// The ends of all paths by their numbers.
-struct EndList {
-    count: usize,
-    records: Records,
-}
-
-impl EndList {
-    /// None known.
-    fn new(count: usize) -> Self {
-        EndList { count, records: Records::new(4) }
-    }
-
-    fn get(&mut self, path: usize) -> End {
-        End(self.records.get(path).iter().fold(0, |end, &byte| end << 8 | u32::from(byte)))
-    }
-
-    fn set(&mut self, path: usize, end: End) {
-        self.records.set(path, &end.0.to_be_bytes());
-    }
-}
-
 /// Whether so many paths of `count` are lost or in doubt after the first round that stricter steps
 /// or another start system would not help.
 pub(super) fn are_hopeless(lost: usize, count: usize) -> bool {
     lost >= HOPELESS && lost > count - count / 4
-}
-
-/// How all paths end. Of paths to infinity no points are kept.
-pub(super) struct Ends {
-    /// Paths whose end is not known.
-    pub(super) lost: usize,
-    /// Paths whose end is not sought any more.
-    pub(super) dropped: usize,
-    /// The regular ends by the numbers of their paths.
-    pub(super) regular: BTreeMap<usize, Refined>,
-    /// The singular ends likewise.
-    pub(super) singular: BTreeMap<usize, SingularEnd>,
-    /// Directions of paths to infinity, in order: valuations in units of the reciprocal winding
-    /// number, that number, and the number of paths.
-    pub(super) directions: Vec<(Vec<i64>, usize, usize)>,
-    /// Tracks that were run again.
-    pub(super) retracked: usize,
-    /// Whether they were given up on trial: the ends are then no result.
-    pub(super) abandoned: bool,
 }
 
 /// Relative distance below which two paths that have not yet ended are one: only paths that have
@@ -97,6 +32,10 @@ const CROSSED: f64 = 1e-11;
 const CHUNK: usize = 1 << 11;
 /// Paths that go through the endgame at a time: there each takes more memory than on its way.
 const PORTION: usize = 1 << 9;
+/// Where the endgame begins, if early.
+const EARLY: f64 = 1e-3;
+/// The relative error of a singular end to which the tracker came, though it is not sure of it.
+const REACHED: f64 = 1e-6;
 /// Fewer lost paths are never given up.
 const HOPELESS: usize = 32;
 /// Ends that one thread refines at a time, at least.
@@ -244,10 +183,19 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
         if round.level == 0 { first.clone() } else { first.stricter(round.level) }
     }
 
+    /// The settings of the endgame: from the second round again on it begins early in every second one,
+    /// for paths on which too few digits are left before.
+    fn endgame(&self, round: Round) -> EndgameOptions {
+        let options = self.route.options.endgame.clone();
+        let early = round.level > 0 && round.level.is_multiple_of(2);
+        let start = if early { options.start.max(EARLY) } else { options.start };
+        EndgameOptions { start, ..options }
+    }
+
     /// Tracks paths to regular ends, or to where the endgame begins. One record a path, in order;
     /// none once the work is cancelled.
     fn tracked(&self, numbers: &[usize], round: Round) -> Vec<Record> {
-        let Route { trackers, start, target, options, monitor, .. } = self.route;
+        let Route { trackers, start, target, monitor, .. } = self.route;
         if monitor.is_cancelled() {
             // Not even start solutions are made any more; there may be millions of paths to come.
             return Vec::new();
@@ -259,7 +207,7 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
         let reached = start.solutions(trackers, numbers, &settings, monitor);
         monitor.enter(monitor::Stage::Paths, self.round.all as u64);
         monitor.add(self.round.done as u64, self.round.regular as u64);
-        let tracker = TrackerOptions { endgame_start: 0.0, min_t: options.endgame.start, ..settings };
+        let tracker = TrackerOptions { endgame_start: 0.0, min_t: self.endgame(round).start, ..settings };
         let all: Vec<usize> = (0..reached.numbers.len()).collect();
         let paths = trackers.track(&self.segment, &reached.points, &all, &tracker, monitor);
         let ends: Vec<RecordEnd> = (0..paths.len())
@@ -298,11 +246,12 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
 
     /// Takes open paths through the endgame. One record a path, in order.
     fn ended(&self, open: &[Record], round: Round) -> Vec<Record> {
-        let Route { trackers, start, target, options, monitor, .. } = self.route;
+        let Route { trackers, start, target, monitor, .. } = self.route;
         let settings = self.settings(round);
         // Paths that seemed to reach the target, but not at a regular solution: once more up to
         // where the endgame begins.
-        let begin = options.endgame.start;
+        let options = self.endgame(round);
+        let begin = options.start;
         let near: Vec<Complex64> =
             self.segment.target().iter().zip(self.segment.direction()).map(|(p, d)| p + d * begin).collect();
         let tracker = TrackerOptions { endgame_start: 0.0, ..settings };
@@ -327,10 +276,10 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
         let mut records: Vec<Record> =
             open.iter().map(|record| Record { begun: record.begun.clone(), ..Record::lost(record.path) }).collect();
         let mut refiner = Refiner::new(trackers.system());
-        for ending in endgame(trackers, &self.segment, handed, self.route.count, &tracker, &options.endgame, monitor) {
+        for ending in endgame(trackers, &self.segment, handed, self.route.count, &tracker, &options, monitor) {
             let record = &mut records[ending.path];
             record.middle = (!ending.middle.is_empty()).then(|| Print::new(&ending.middle, !round.is_first()));
-            record.end = judged(&mut refiner, target, ending);
+            record.end = judged(&mut refiner, target, ending, !round.is_first());
         }
         records
     }
@@ -463,8 +412,9 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
     }
 }
 
-/// What the endgame tells of a path, its end refined where it is regular after all.
-fn judged<E: Evaluate>(refiner: &mut Refiner<'_, E>, target: &[Complex64], ending: Ending) -> RecordEnd {
+/// What the endgame tells of a path, its end refined where it is regular after all. One that comes to
+/// the target along the radius `again`, though it is singular there, ends on a component.
+fn judged<E: Evaluate>(refiner: &mut Refiner<'_, E>, target: &[Complex64], ending: Ending, again: bool) -> RecordEnd {
     if matches!(ending.verdict, Verdict::Reached | Verdict::Finite { winding: 1, .. }) {
         let refined = refiner.refine(target, &ending.point);
         let near = relative_distance(&refined.point, &ending.point) < CLUSTER;
@@ -475,6 +425,9 @@ fn judged<E: Evaluate>(refiner: &mut Refiner<'_, E>, target: &[Complex64], endin
     match ending.verdict {
         Verdict::Finite { winding, error } => RecordEnd::Singular(SingularEnd { point: ending.point, winding, error }),
         Verdict::Infinite { winding, valuations } => RecordEnd::Infinite { valuations, winding },
+        Verdict::Reached if again => {
+            RecordEnd::Singular(SingularEnd { point: ending.point, winding: 1, error: REACHED })
+        }
         Verdict::Reached | Verdict::Lost => RecordEnd::Lost,
     }
 }

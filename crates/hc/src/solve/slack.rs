@@ -5,10 +5,10 @@
 //! Verschelde 2000, J. Complexity 16:572): with `f_j + z_j` these are the same combinations, `z`
 //! eliminated, but supports stay small, and with them the mixed volume.
 
+use super::ends::Ends;
 use super::equations::Equations;
 use super::error::SolveError;
 use super::options::SolveOptions;
-use super::paths::Ends;
 use crate::monitor::Monitor;
 use crate::random::{Random, Stream};
 use crate::start::{MixedError, Polyhedral, bezout_number, degrees};

@@ -6,7 +6,8 @@ use crate::distinct::relative_distance;
 use crate::family::{Fibre, FibreOptions, track_fibre_watched};
 use crate::monitor::Monitor;
 use crate::refine::Refiner;
-use crate::tracker::PathEnd;
+use crate::solve::{SolveOptions, ends};
+use crate::tracker::{PathEnd, PathResult};
 use num_complex::Complex64;
 use poly::{Exact, Interpreter, Polynomial};
 
@@ -70,10 +71,24 @@ impl WitnessSet {
     /// Wampler 2001, SIAM J. Numer. Anal. 38:2022).
     pub(super) fn contains(&self, point: &[Complex64], seed: u64, monitor: &Monitor) -> bool {
         let slices = Slices::through(point, self.dimension, seed);
+        let target = slices.parameters();
+        let is_there = |end: &[Complex64]| relative_distance(&end[..self.unknowns], point) < ON;
         let mut options = FibreOptions { retries: 0, ..FibreOptions::default() };
         options.tracker.max_steps = STEPS;
-        let (ends, _) = track_fibre_watched(&self.family, &self.fibre, &slices.parameters(), &options, monitor);
-        ends.iter()
-            .any(|(result, end)| result.end == PathEnd::Success && relative_distance(&end[..self.unknowns], point) < ON)
+        let (found, _) = track_fibre_watched(&self.family, &self.fibre, &target, &options, monitor);
+        // Where components meet, the Jacobian is singular at the end of a path that comes straight there.
+        let arrives =
+            |result: &PathResult| matches!(result.end, PathEnd::Success | PathEnd::Singular) && result.t == 0.0;
+        if found.iter().any(|(result, end)| arrives(result) && is_there(end)) {
+            return true;
+        }
+        // Where a component meets itself, paths may come there in cycles.
+        let open = found.iter().filter(|(result, _)| !arrives(result)).map(|(result, _)| result.path);
+        let open: Vec<Complex64> = open.flat_map(|k| self.fibre.solution(k)).copied().collect();
+        let fibre = Fibre::new(self.fibre.parameters.clone(), self.fibre.dimension, open);
+        let mut options = SolveOptions::new();
+        options.paths.tracker.max_steps = STEPS;
+        options.paths.retries = 1;
+        ends(&self.family, &fibre, &target, &options, monitor).any(|end| is_there(&end))
     }
 }

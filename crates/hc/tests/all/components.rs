@@ -85,6 +85,27 @@ fn reduced_cyclic() {
     check(text, 3, &[], 16);
 }
 
+/// Cyclic 6 and 7 in ratios: a sixth of 156 solutions and a seventh of 924 (Backelin & Fröberg 1991), and
+/// sets with zeros, of which the first is none: three runs of one unknown between zeros, whose sum is zero
+/// (lines), and two runs of two (`a + b + c + d = ab + cd = 0`, conics). Of six places one pattern makes
+/// the former and two the latter, of seven places three and four. Multiplicities are not compared.
+#[test]
+fn reduced_cyclic_with_multiple_components() {
+    let product = |names: &[String], j: usize, length: usize| {
+        (0..length).map(|k| names[(j + k) % names.len()].as_str()).collect::<Vec<_>>().join("*")
+    };
+    for (n, degrees, isolated) in [(6, &[1, 2, 2][..], 26), (7, &[1, 1, 1, 2, 2, 2, 2], 132)] {
+        let names: Vec<String> = std::iter::once("1".to_owned()).chain((1..n).map(|k| format!("y{k}"))).collect();
+        let sum = |l: usize| (0..n).map(|j| product(&names, j, l)).collect::<Vec<_>>().join("+");
+        let text = format!("{}\n{};", n - 1, (1..n).map(sum).collect::<Vec<_>>().join(";\n"));
+        let found = decomposed(&text, 0);
+        let mut have: Vec<_> = found.components.iter().map(|c| c.degree).collect();
+        have.sort_unstable();
+        assert_eq!((&have[..], found.isolated.len(), found.failed), (degrees, isolated, 0), "{n}");
+        assert!(found.components.iter().all(|c| c.irreducible && c.dimension == 1), "{n}");
+    }
+}
+
 /// Adjacent minors of a matrix of two rows (Diaconis, Eisenbud & Sturmfels 1998): a component for each
 /// set of columns, no two neighbours, that are zero, of the product of the numbers of columns between
 /// them.
