@@ -276,18 +276,17 @@ impl Kept<'_> {
         let gone = |before: &[bool], now: &[bool], names: &[String]| -> Vec<String> {
             (0..now.len()).filter(|&k| before[k] && !now[k]).map(|k| names[k].clone()).collect()
         };
-        let mut rest = gone(&before.0, &self.receivers, self.measured.receiver_names());
-        rest.extend(gone(&before.1, &self.transmitters, self.measured.transmitter_names()));
-        Some(list(&rest))
+        let receivers = gone(&before.0, &self.receivers, self.measured.receiver_names());
+        let transmitters = gone(&before.1, &self.transmitters, self.measured.transmitter_names());
+        Some(nodes(&receivers, &transmitters))
     }
 
     fn names(&self, kept: bool) -> String {
         let pick = |flags: &[bool], names: &[String]| -> Vec<String> {
             (0..flags.len()).filter(|&k| flags[k] == kept).map(|k| names[k].clone()).collect()
         };
-        let mut all = pick(&self.receivers, self.measured.receiver_names());
-        all.extend(pick(&self.transmitters, self.measured.transmitter_names()));
-        list(&all)
+        let receivers = pick(&self.receivers, self.measured.receiver_names());
+        nodes(&receivers, &pick(&self.transmitters, self.measured.transmitter_names()))
     }
 }
 
@@ -297,6 +296,16 @@ pub(crate) fn list(names: &[String]) -> String {
         return names.join(", ");
     }
     format!("{} and {} more", names[..12].join(", "), names.len() - 12)
+}
+
+/// Names of both kinds of nodes, each kind by itself; empty if there are none.
+fn nodes(receivers: &[String], transmitters: &[String]) -> String {
+    let kinds = [("receiver", receivers), ("transmitter", transmitters)];
+    let named = kinds.iter().filter(|(_, names)| !names.is_empty()).map(|(kind, names)| {
+        let plural = if names.len() == 1 { "" } else { "s" };
+        format!("{kind}{plural} {}", list(names))
+    });
+    named.collect::<Vec<_>>().join(", and ")
 }
 
 /// Two receivers whose rows differ by a constant to rounding, over at least three common
@@ -386,7 +395,8 @@ mod tests {
         let values = (0..144).map(|k| if block(k) { full.values()[k] } else { f64::NAN }).collect();
         let found = usable(&Pseudoranges::new(12, 12, values).unwrap()).unwrap();
         assert_eq!((found.receivers.len(), found.transmitters.len()), (7, 7));
-        assert!(found.warnings[0].contains("r8"), "{:?}", found.warnings);
+        let without = "without receivers r8, r9, r10, r11, r12, and transmitters s8, s9, s10, s11, s12;";
+        assert!(found.warnings[0].contains(without), "{:?}", found.warnings);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use std::fmt::Write;
 use crate::calibrate::Calibration;
 use crate::picture::{escape, picture};
 use crate::quantity::{coordinate, decimals, length, number};
-use crate::summary::{deviation, uniqueness};
+use crate::summary::{agreement, deviation, uniqueness};
 
 /// Most measurements that the report lists; of more, the outliers and those of largest residual.
 const LISTED: usize = 20_000;
@@ -99,7 +99,7 @@ fn facts(calibration: &Calibration) -> String {
                 count => format!("{count} that explain the measurements about as well"),
             },
         ),
-        ("Search", format!("{} of {} starts agree", calibration.agreeing, calibration.starts)),
+        ("Search", agreement(calibration)),
     ];
     if let Some(speed) = &calibration.speed {
         let value = speed.metres_per_second.map_or_else(

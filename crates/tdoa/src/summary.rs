@@ -22,8 +22,7 @@ pub fn heading(calibration: &Calibration, time: Option<Duration>) -> String {
         text += &format!("size: {} across (receivers)\n", length(extent));
     }
     let time = time.map_or_else(String::new, |time| format!(", {:.1} s", time.as_secs_f64()));
-    let (agreeing, starts) = (calibration.agreeing, calibration.starts);
-    text += &format!("{agreeing} of {starts} starts agree{time}; {}\n", uniqueness(calibration));
+    text += &format!("{}{time}; {}\n", agreement(calibration), uniqueness(calibration));
     if let Some(why) = calibration.distrust() {
         text += &format!("NOT TO BE TRUSTED: {why}, see the warnings\n");
     }
@@ -67,6 +66,16 @@ pub fn deviation(calibration: &Calibration) -> String {
     }
 }
 
+/// How many starts agree.
+pub(crate) fn agreement(calibration: &Calibration) -> String {
+    let (agreeing, starts) = (calibration.agreeing, calibration.starts);
+    if calibration.laid_together {
+        format!("{agreeing} of {starts} small networks of neighbours fit")
+    } else {
+        format!("{agreeing} of {starts} starts agree")
+    }
+}
+
 /// Whether the network is the only one, for receivers and transmitters.
 pub(crate) fn uniqueness(calibration: &Calibration) -> &'static str {
     match (calibration.unique, calibration.unique_receivers, calibration.unique_transmitters) {
@@ -83,6 +92,7 @@ pub(crate) fn uniqueness(calibration: &Calibration) -> &'static str {
             "NOT UNIQUE: A RECEIVER HAS ERRORS OF ITS OWN, see the warnings"
         }
         _ if calibration.distrust().is_some() => "NOT UNIQUE",
+        _ if calibration.laid_together => "NOT UNIQUE: SOME RECEIVERS ARE TIED TO THE OTHERS WEAKLY, see the warnings",
         _ => "NOT UNIQUE: A BETTER NETWORK MAY HAVE BEEN MISSED, see the warnings",
     }
 }

@@ -18,7 +18,7 @@ pub struct Calibration {
     /// Names of the transmitters.
     pub transmitter_names: Vec<String>,
     /// Positions of the receivers; `None` also for a receiver most of whose measurements are
-    /// outliers. Unless another frame is asked for, the first receiver is the origin, the second
+    /// outliers, where those left may agree by chance. Unless another frame is asked for, the first receiver is the origin, the second
     /// lies on the positive x axis and the third above it.
     pub receivers: Vec<Option<[f64; 2]>>,
     /// Positions of the transmitters.
@@ -85,10 +85,13 @@ pub struct Calibration {
     pub warnings: Vec<String>,
     /// Seed of the search.
     pub seed: u64,
-    /// Starts of the search.
+    /// Starts of the search; small networks, if such were laid together.
     pub starts: usize,
-    /// Starts that ended in the best basin.
+    /// Starts that ended in the best basin; small networks that fit the whole.
     pub agreeing: usize,
+    /// Whether hearing is local, so that small networks of neighbours were laid together.
+    #[serde(default)]
+    pub laid_together: bool,
     /// Probability that a basin which catches one start in twenty would have been seen.
     pub confidence: f64,
     /// Comparison with the truth, if that was given.

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use crate::degeneracy::list;
 use crate::median::median;
 use crate::pseudoranges::Pseudoranges;
-use crate::quantity::length;
+use crate::quantity::number;
 
 /// By how much a cell may differ from the median of its column, as a multiple of what three quarters
 /// of all cells, and of those of its receiver, stay below. Differences are at most the distance of
@@ -44,7 +44,7 @@ pub(super) fn without_impossible(measured: &Pseudoranges) -> (Cow<'_, Pseudorang
     gone.sort_unstable();
     let name = |&k: &usize| {
         let (receiver, transmitter) = (&measured.receiver_names()[k / n], &measured.transmitter_names()[k % n]);
-        format!("{receiver}-{transmitter} ({})", length(measured.values()[k]))
+        format!("{receiver}-{transmitter} ({} m)", number(measured.values()[k], 12))
     };
     let names: Vec<String> = gone.iter().map(name).collect();
     let warning = format!(

@@ -100,13 +100,14 @@ pub fn calibrate_with(
     };
     let (m, n) = (measured.receivers(), measured.transmitters());
     let place = |best: Unfinished| best.shifted(&shifts).among(m, &usable.receivers, n, &usable.transmitters);
-    let Sought { ranked, neighbours, deviation, floor, starts } = found.map_err(|error| error.placing(place))?;
+    let Sought { ranked, neighbours, deviation, floor, starts, weak } = found.map_err(|error| error.placing(place))?;
     let so_far = place(Unfinished::of(&ranked[0].network, starts, ranked[0].starts));
     let clearing = Clearing { measured: &centred, known, floor, options, monitor };
     let Cleared { measured: centred, observations, ranked, deviation, taken, left } =
         clearing.clear(ranked, deviation).map_err(|error| error.leaving(&so_far))?;
     let free = Free { observations, centred: &centred, known, floor };
     let held = free.hold(ranked, deviation, &usable, options, monitor).map_err(|error| error.leaving(&so_far))?;
+    options::check(monitor).map_err(|error| error.leaving(&so_far))?;
     let Held { observations, ranked, deviation, anchors, speed, warnings } = held;
     let solved = Solved {
         measured,
@@ -121,6 +122,7 @@ pub fn calibrate_with(
         deviation,
         known,
         starts,
+        weak,
         anchors,
         speed,
         warnings,

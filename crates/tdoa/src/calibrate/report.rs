@@ -9,9 +9,10 @@ use super::options::{CalibrateOptions, ReceiverDelays};
 use super::orientation::looks_transposed;
 use super::receiver_errors::Fault;
 use super::same::{same_receivers, same_transmitters};
+use super::submaps::OVERLAP;
 use super::warnings::{doubtful_receivers, warn_of_nodes};
 use crate::align::{Transform, align, frame};
-use crate::degeneracy::Usable;
+use crate::degeneracy::{Usable, list};
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
@@ -37,6 +38,8 @@ pub(super) struct Solved<'a> {
     pub(super) deviation: f64,
     pub(super) known: Option<f64>,
     pub(super) starts: usize,
+    /// Where small networks were laid together, receivers whose place no overlap of them supports.
+    pub(super) weak: Option<Vec<usize>>,
     pub(super) anchors: Option<Anchors>,
     pub(super) speed: Option<SpeedEstimate>,
     /// Errors of receivers that were taken out of the measurements, and those that were left in.
@@ -82,7 +85,8 @@ impl Solved<'_> {
         }
         let planar = self.planar(best, estimated, redundancy, options, &mut warnings);
         let noise_known = ellipse_radius.is_some();
-        let doubtful = doubtful_receivers(self.centred, &kept);
+        let band = 2.0 * options.inlier_threshold * sigma * typical_deviation(self.centred);
+        let doubtful = doubtful_receivers(self.centred, &kept, band / best.size());
         let transposed = self.seems_transposed(estimated, options);
         if transposed {
             warnings.insert(
@@ -92,8 +96,8 @@ impl Solved<'_> {
                     .to_string(),
             );
         }
-        let determined =
-            warn_of_nodes(self.centred, best, &kept, &uncertainty, noise_known, &mut warnings) && !transposed;
+        let determined = warn_of_nodes(self.centred, best, &kept, &uncertainty, noise_known, &doubtful, &mut warnings)
+            && !transposed;
 
         let (m, n) = (self.measured.receivers(), self.measured.transmitters());
         let (rows, columns) = (&self.usable.receivers, &self.usable.transmitters);
@@ -156,8 +160,19 @@ impl Solved<'_> {
         }
         let agreeing = self.ranked[0].starts;
         self.warn_of_receivers(options, &mut warnings);
-        let settled = agreeing >= options.agreeing.min(options.max_starts).min(SETTLED);
-        if !settled {
+        let settled = match &self.weak {
+            Some(weak) => weak.is_empty(),
+            None => agreeing >= options.agreeing.min(options.max_starts).min(SETTLED),
+        };
+        if let Some(weak) = self.weak.as_ref().filter(|_| !settled) {
+            let names: Vec<String> = weak.iter().map(|&i| self.centred.receiver_names()[i].clone()).collect();
+            warnings.push(format!(
+                "{agreeing} of {} small networks of neighbours fit the whole, but none that overlaps with others places {}; measure \
+                 transmitters that these receivers and at least {OVERLAP} of their neighbours hear",
+                self.starts,
+                list(&names)
+            ));
+        } else if !settled {
             warnings.push(format!(
                 "only {} of {} starts of the search ended in this network, so that a better one may have been missed; give --sigma, \
                  remove measurements that are known to be wrong, or raise --max-starts",
@@ -206,6 +221,7 @@ impl Solved<'_> {
             warnings,
             seed: options.seed,
             starts: self.starts,
+            laid_together: self.weak.is_some(),
             agreeing,
             confidence: 1.0 - 0.95f64.powi(self.starts.min(100_000) as i32),
             truth: None,

@@ -247,23 +247,28 @@ impl Layout {
         Some(Layout { submaps: Vec::new(), positions, solved: 1, size: share * spread(placed.iter()) })
     }
 
-    /// Fewest submaps, over the receivers, that fit a network: how often each place was found on
-    /// its own.
-    fn support(&self, network: &Network, receivers: &[usize]) -> usize {
+    /// How many submaps fit a network of these receivers, and the places of receivers among them that
+    /// are in none of these, or only in such as share fewer than four receivers with others.
+    fn support(&self, network: &Network, receivers: &[usize]) -> (usize, Vec<usize>) {
         let mut placed = vec![None; self.positions.len()];
         for (&i, &p) in receivers.iter().zip(&network.receivers) {
             placed[i] = Some(p);
         }
-        let mut counts = vec![0; self.positions.len()];
+        let mut fitting: Vec<Vec<usize>> = Vec::new();
         for submap in &self.submaps {
             let Some((_, map)) = fit(submap, &placed) else { continue };
-            for (&i, &p) in submap.receivers.iter().zip(&submap.positions) {
-                if placed[i].is_some_and(|q| distance(map.apply(p), q) <= 3.0 * FIT * submap.size) {
-                    counts[i] += 1;
-                }
-            }
+            let near = |(&i, &p): (&usize, &[f64; 2])| {
+                let limit = 3.0 * FIT * submap.size;
+                placed[i].is_some_and(|q| distance(map.apply(p), q) <= limit).then_some(i)
+            };
+            fitting.push(submap.receivers.iter().zip(&submap.positions).filter_map(near).collect());
         }
-        receivers.iter().map(|&i| counts[i]).min().unwrap_or(0)
+        let mut counts = vec![0; self.positions.len()];
+        fitting.iter().flatten().for_each(|&i| counts[i] += 1);
+        let overlaps = |submap: &&Vec<usize>| submap.iter().filter(|&&i| counts[i] > 1).count() >= OVERLAP;
+        let sure: Vec<&Vec<usize>> = fitting.iter().filter(overlaps).collect();
+        let weak = (0..receivers.len()).filter(|&k| !sure.iter().any(|submap| submap.contains(&receivers[k])));
+        (fitting.len(), weak.collect())
     }
 
     /// The network of the placed receivers, refined as one. `measured` has these receivers alone,
@@ -295,12 +300,14 @@ impl Layout {
         let mut refined = refiner.refine(network, &start);
         let so_far = Unfinished::of(&refined.network, self.solved, 0);
         check(monitor).map_err(|error| error.leaving(&so_far))?;
-        refined.starts = self.support(&refined.network, receivers);
+        let (fitting, weak) = self.support(&refined.network, receivers);
+        refined.starts = fitting;
         let first = known.unwrap_or(refined.scale * to_deviation).max(refine.floor);
         let (ranked, deviation) =
             finish(&observations, vec![refined], first, known.is_some(), refine.floor, options, monitor)
                 .map_err(|error| error.leaving(&so_far))?;
-        Ok(Sought { ranked, neighbours: Vec::new(), deviation, floor: refine.floor, starts: self.solved })
+        let neighbours = Vec::new();
+        Ok(Sought { ranked, neighbours, deviation, floor: refine.floor, starts: self.solved, weak: Some(weak) })
     }
 
     /// Places receivers that no submap has from transmitters that five placed receivers or more

@@ -7,14 +7,51 @@ use crate::plane::{distance, flatness};
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::Covariance;
 
-/// Receivers most of whose measurements are outliers: the others' network says nothing of where
-/// they are.
-pub(super) fn doubtful_receivers(measured: &Pseudoranges, kept: &Observations) -> Vec<usize> {
-    let mostly_wrong = |i: &usize| {
-        let all = (0..measured.transmitters()).filter(|&j| measured.get(*i, j).is_some()).count();
-        2 * kept.of_receiver(*i).len() < all
+/// Receivers whose inliers may agree by chance are expected less often than this in a calibration.
+const BY_CHANCE: f64 = 0.01;
+
+/// Receivers most of whose measurements are outliers.
+fn mostly_wrong(measured: &Pseudoranges, kept: &Observations) -> Vec<usize> {
+    let is_mostly_wrong = |i: &usize| 2 * kept.of_receiver(*i).len() < count(measured, *i);
+    (0..measured.receivers()).filter(is_mostly_wrong).collect()
+}
+
+/// Number of measurements of a receiver.
+fn count(measured: &Pseudoranges, i: usize) -> usize {
+    (0..measured.transmitters()).filter(|&j| measured.get(i, j).is_some()).count()
+}
+
+/// Of the receivers most of whose measurements are outliers, those whose inliers may agree by chance:
+/// the others' network says nothing of where they are. `width` is the width of the band of an inlier
+/// as a share of the network's size.
+pub(super) fn doubtful_receivers(measured: &Pseudoranges, kept: &Observations, width: f64) -> Vec<usize> {
+    let by_chance = |i: &usize| {
+        measured.receivers() as f64 * agree_by_chance(count(measured, *i), kept.of_receiver(*i).len(), width)
+            > BY_CHANCE
     };
-    (0..measured.receivers()).filter(mostly_wrong).collect()
+    mostly_wrong(measured, kept).into_iter().filter(by_chance).collect()
+}
+
+/// How many of the places that two of `all` measurements give a receiver are expected to have
+/// `inliers` of them by chance, those two included, where one is an inlier by chance with probability
+/// `width`: two places for each pair, and the tail of a binomial distribution.
+fn agree_by_chance(all: usize, inliers: usize, width: f64) -> f64 {
+    let (others, least) = (all.saturating_sub(2), inliers.saturating_sub(2));
+    let p = width.clamp(0.0, 1.0);
+    let mut term = (1.0 - p).powi(others as i32);
+    let mut below = 0.0;
+    let mut tail = 0.0;
+    // Terms from one to the next by the ratio of binomial probabilities; where the first is zero, all agree.
+    for k in 0..=others {
+        if k < least {
+            below += term
+        } else {
+            tail += term
+        }
+        term *= (others - k) as f64 / (k + 1) as f64 * p / (1.0 - p).max(f64::MIN_POSITIVE);
+    }
+    let tail = if p == 1.0 || !(below + tail).is_finite() { 1.0 } else { tail };
+    (all * all.saturating_sub(1)) as f64 * tail
 }
 
 /// Warnings about the geometry: in line, in one place, poorly tied down. Returns whether most
@@ -25,6 +62,7 @@ pub(super) fn warn_of_nodes(
     kept: &Observations,
     uncertainty: &Covariance,
     noise_known: bool,
+    doubtful: &[usize],
     warnings: &mut Vec<String>,
 ) -> bool {
     let size = network.size();
@@ -74,7 +112,7 @@ pub(super) fn warn_of_nodes(
             ));
         }
     }
-    let doubtful: Vec<String> = (0..measured.transmitters())
+    let astray: Vec<String> = (0..measured.transmitters())
         .filter(|&j| {
             let all = (0..measured.receivers()).filter(|&i| measured.get(i, j).is_some()).count();
             let good = kept.of_transmitter(j).len();
@@ -82,15 +120,64 @@ pub(super) fn warn_of_nodes(
         })
         .map(|j| measured.transmitter_names()[j].clone())
         .collect();
-    if !doubtful.is_empty() {
-        warnings.push(format!("transmitters most of whose measurements are outliers: {}; check them", list(&doubtful)));
+    if !astray.is_empty() {
+        warnings.push(format!("transmitters most of whose measurements are outliers: {}; check them", list(&astray)));
     }
-    let doubtful: Vec<String> = doubtful_receivers(measured, kept).into_iter().map(|i| names[i].clone()).collect();
-    if !doubtful.is_empty() {
+    let (none, some): (Vec<usize>, Vec<usize>) =
+        mostly_wrong(measured, kept).into_iter().partition(|i| doubtful.contains(i));
+    let named = |all: &[usize]| list(&all.iter().map(|&i| names[i].clone()).collect::<Vec<_>>());
+    if !none.is_empty() {
         warnings.push(format!(
             "receivers most of whose measurements are outliers: {}; no position is given for them; check them",
-            list(&doubtful)
+            named(&none)
+        ));
+    }
+    if !some.is_empty() {
+        warnings.push(format!(
+            "receivers most of whose measurements are outliers: {}; those that are left agree on their positions; check them",
+            named(&some)
         ));
     }
     determined
+}
+
+#[cfg(test)]
+mod tests {
+    use super::agree_by_chance;
+    use crate::align::align;
+    use crate::{CalibrateOptions, SimulateOptions, calibrate, simulate};
+
+    #[test]
+    fn chance_is_that_of_a_binomial_distribution() {
+        // By hand: 2 places for each of 6 pairs, and both others, or one of them at least.
+        assert!((agree_by_chance(4, 4, 0.1) - 12.0 * 0.01).abs() < 1e-12);
+        assert!((agree_by_chance(4, 3, 0.1) - 12.0 * 0.19).abs() < 1e-12);
+        assert_eq!([agree_by_chance(4, 2, 0.1), agree_by_chance(3, 3, 1.0)], [12.0, 6.0]);
+        // Eight of twenty with a band of 7 cm in 10 m: beyond chance; five: not.
+        assert!(agree_by_chance(20, 8, 0.007) < 1e-6 && agree_by_chance(20, 4, 0.02) > 1.0);
+    }
+
+    #[test]
+    fn receivers_with_enough_good_measurements_keep_their_places() {
+        let mut mostly_wrong = 0;
+        for seed in 0..8 {
+            let options = SimulateOptions {
+                receivers: 20,
+                transmitters: 20,
+                noise: 0.01,
+                outliers: 0.3,
+                seed,
+                ..Default::default()
+            };
+            let simulation = simulate(&options).unwrap();
+            let found = calibrate(&simulation.pseudoranges, &CalibrateOptions::default()).unwrap();
+            let pairs = found.receivers.iter().zip(&simulation.network.receivers);
+            let (placed, truth): (Vec<_>, Vec<_>) = pairs.filter_map(|(p, q)| Some(((*p)?, *q))).unzip();
+            let error = align(&placed, &truth, false).unwrap().rms;
+            assert!(placed.len() == 20 && error < 0.03, "seed {seed}: {} {error}", placed.len());
+            let counts = (0..20).map(|i| found.counts_of_receiver(i));
+            mostly_wrong += counts.filter(|[all, outliers]| 2 * outliers > *all).count();
+        }
+        assert!(mostly_wrong > 0);
+    }
 }

@@ -28,8 +28,10 @@ pub(super) struct Sought {
     pub(super) floor: f64,
     /// Neighbours of the best network, where the search had all nodes.
     pub(super) neighbours: Vec<Neighbour>,
-    /// Starts of the search.
+    /// Starts of the search; small networks that were laid together.
     pub(super) starts: usize,
+    /// Where small networks were laid together, receivers whose place no overlap of them supports.
+    pub(super) weak: Option<Vec<usize>>,
 }
 
 /// Searches networks for these measurements, whose deviation may be known.
@@ -92,7 +94,7 @@ pub(super) fn search_whole(
         .map_err(|error| error.leaving(&so_far))?;
     let near = if complete_part { found.near } else { Vec::new() };
     let neighbours = neighbours(&observations, &ranked[0], near, deviation);
-    Ok(Sought { ranked, neighbours, deviation, floor: refine.floor, starts: found.starts })
+    Ok(Sought { ranked, neighbours, deviation, floor: refine.floor, starts: found.starts, weak: None })
 }
 
 /// The nodes that the search works on: where there are many, some of the better observed half,
