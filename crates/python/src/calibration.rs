@@ -8,7 +8,10 @@ use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::Serialize;
-use tdoa::{CalibrateError, CalibrateOptions, Calibration, KnownDistance, ReceiverDelays, Unfinished, calibrate_with};
+use tdoa::{
+    CalibrateError, CalibrateOptions, Calibration, KnownDistance, MeasuredPosition, ReceiverDelays, Unfinished,
+    calibrate_with,
+};
 
 /// Settings as Python gives them.
 #[derive(FromPyObject)]
@@ -16,6 +19,8 @@ use tdoa::{CalibrateError, CalibrateOptions, Calibration, KnownDistance, Receive
 pub(crate) struct Settings {
     sigma: Option<f64>,
     anchors: Vec<Option<[f64; 2]>>,
+    /// Receiver, x and y, standard deviation.
+    positions: Vec<(usize, [Option<f64>; 2], f64)>,
     distances: Vec<(usize, usize, f64)>,
     receiver_delays: String,
     estimate_speed: bool,
@@ -30,6 +35,8 @@ impl Settings {
         options.sigma = self.sigma;
         options.seed = self.seed;
         options.anchors = self.anchors;
+        let measured = |(receiver, position, sigma)| MeasuredPosition { receiver, position, sigma };
+        options.positions = self.positions.into_iter().map(measured).collect();
         options.estimate_speed = self.estimate_speed;
         let known = |(a, b, distance)| KnownDistance { receivers: [a, b], distance };
         options.distances = self.distances.into_iter().map(known).collect();

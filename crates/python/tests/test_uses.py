@@ -125,6 +125,25 @@ def test_summaries_are_those_of_the_program(programs, tmp_path):
     assert "each with its own standard deviation" in repr(each) and each.data["sigma_is_factor"]
 
 
+def test_anchors_have_standard_deviations():
+    made = tdoa.simulate(8, 14, noise=0.01, seed=6)
+    anchors = np.full((8, 2), np.nan)
+    anchors[[0, 2, 5]] = made.receivers[[0, 2, 5]]
+    anchors[2, 0] += 0.1
+    anchors[7, 1] = made.receivers[7, 1]
+    found = tdoa.calibrate(made.pseudoranges, anchors=anchors, anchor_sigma=[0, 0, 0.1, 0, 0, 0, 0, 0])
+    assert found.data["anchored"] == [k in (0, 5) for k in range(8)]
+    error = np.linalg.norm(found.receivers - made.receivers, axis=1)
+    # The position that is 10 cm off is mended.
+    assert error[2] < 0.08 and error.max() < 0.15
+    names = {f"r{k + 1}": made.receivers[k] for k in (0, 2, 5)}
+    by_name = tdoa.calibrate(made.pseudoranges, anchors=names, anchor_sigma={"r3": 0.1})
+    assert by_name.data["anchored"] == found.data["anchored"]
+    for arguments in (dict(anchor_sigma=0.1), dict(anchors=anchors, anchor_sigma=-1), dict(anchors=anchors, anchor_sigma="x")):
+        with pytest.raises(hc.InputError):
+            tdoa.calibrate(made.pseudoranges, **arguments)
+
+
 def test_bounds():
     square = np.array([[0.0, 0], [1, 0], [0, 1], [1, 1], [0.4, 0.3], [0.2, 0.9]])
     others = np.array([[0.5, 2.0], [3, 1], [-1, -1], [0.3, 0.6], [2, -2], [-2, 3], [1.5, 0.2], [0.1, -1.2]])

@@ -43,7 +43,8 @@ pub(crate) struct Arguments {
     #[arg(long)]
     scale: bool,
     /// Known positions of some receivers (columns name, x and y in any order, metres): they fix the
-    /// frame, and two or more are held there, which sharpens the rest.
+    /// frame, and two or more are held there, which sharpens the rest. With a column sigma they are
+    /// measurements with that standard deviation, exact where it is 0; x or y may be empty.
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["frame", "scale"])]
     anchors: Option<PathBuf>,
     /// What is done about receivers whose measurements are all too long or too short, as by a
@@ -141,9 +142,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut notes = truth.notes;
     let mut options = CalibrateOptions::default();
     if let Some(path) = &arguments.anchors {
-        let (positions, note) = anchors(path, &measured)?;
-        options.anchors = positions;
-        notes.extend(note);
+        let known = anchors(path, &measured)?;
+        (options.anchors, options.positions) = (known.exact, known.measured);
+        notes.extend(known.note);
     }
     if let Some(path) = &arguments.distances {
         options.distances = read_distances(path, measured.receiver_names()).map_err(Failure::unusable)?;

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use tdoa::Pseudoranges;
 use tdoa::quantity::length;
 use tdoa::read::{Nodes, is_mat, read_mat_nodes, read_mat_transmitters, read_nodes};
+use tdoa::{MeasuredPosition, Pseudoranges};
 
 use crate::Failure;
 
@@ -35,6 +35,9 @@ impl Truth {
         let mut truth = Truth::default();
         if let Some(path) = given {
             let nodes = read_nodes(path).map_err(Failure::unusable)?;
+            if let Some((name, ..)) = nodes.partial.first() {
+                return Err(Failure::in_file(path, format!("{name} has one coordinate alone; a truth needs both")));
+            }
             truth.receivers = Some(truth.place(path, &nodes, measured)?);
         } else if is_mat(file)
             && let Some(nodes) = read_mat_nodes(file).map_err(Failure::unusable)?
@@ -105,15 +108,27 @@ impl Truth {
     }
 }
 
-/// Known positions in the order of the receivers, and what is to be said of them. A name that no
-/// receiver has is more likely a mistake than meant.
-pub(crate) fn anchors(path: &Path, measured: &Pseudoranges) -> Result<(Positions, Option<String>), Failure> {
+/// Known positions of receivers, and what is to be said of them.
+pub(crate) struct Anchors {
+    /// Exact ones, in the order of the receivers.
+    pub(crate) exact: Positions,
+    /// Those with a standard deviation or with one coordinate alone.
+    pub(crate) measured: Vec<MeasuredPosition>,
+    pub(crate) note: Option<String>,
+}
+
+/// Known positions in a file. Where it has a column sigma, each has a standard deviation, 0 for an
+/// exact one. A name that no receiver has is more likely a mistake than meant.
+pub(crate) fn anchors(path: &Path, measured: &Pseudoranges) -> Result<Anchors, Failure> {
     let nodes = read_nodes(path).map_err(Failure::unusable)?;
     let receivers = measured.receiver_names();
     let Some(names) = &nodes.names else {
         return Err(Failure::in_file(path, "names no receivers; expected lines name,x,y"));
     };
-    let unknown = nodes.unknown(receivers);
+    let mut unknown = nodes.unknown(receivers);
+    unknown.extend(
+        nodes.partial.iter().map(|(name, ..)| name.as_str()).filter(|name| !receivers.iter().any(|r| r == name)),
+    );
     if !unknown.is_empty() {
         return Err(Failure::in_file(
             path,
@@ -132,8 +147,30 @@ pub(crate) fn anchors(path: &Path, measured: &Pseudoranges) -> Result<(Positions
             ),
         ));
     }
-    let find = |receiver: &String| names.iter().position(|name| name == receiver).map(|k| nodes.positions[k]);
-    Ok((receivers.iter().map(find).collect(), heights(path, &nodes)))
+    let find = |receiver: &String| names.iter().position(|name| name == receiver);
+    let sigma_of = |k: usize| nodes.sigmas.as_ref().map_or(0.0, |sigmas| sigmas[k]);
+    let has_sigmas = nodes.sigmas.is_some() || nodes.partial.iter().any(|(.., sigma)| !sigma.is_nan());
+    let mut found = Anchors { exact: vec![None; receivers.len()], measured: Vec::new(), note: heights(path, &nodes) };
+    for (i, receiver) in receivers.iter().enumerate() {
+        let whole = find(receiver).map(|k| (nodes.positions[k].map(Some), sigma_of(k)));
+        let partial = nodes.partial.iter().find(|(name, ..)| name == receiver);
+        // Without a column sigma all positions are exact.
+        let partial = partial.map(|&(_, position, sigma)| (position, if has_sigmas { sigma } else { 0.0 }));
+        let Some((position, sigma)) = whole.or(partial) else { continue };
+        if sigma.is_nan() || sigma < 0.0 {
+            return Err(Failure::in_file(
+                path,
+                format!(
+                    "the standard deviation of {receiver} is missing or negative; give one in metres, 0 for an exact position"
+                ),
+            ));
+        }
+        match position {
+            [Some(x), Some(y)] if sigma == 0.0 => found.exact[i] = Some([x, y]),
+            _ => found.measured.push(MeasuredPosition { receiver: i, position, sigma }),
+        }
+    }
+    Ok(found)
 }
 
 /// That heights are left out, where there are any.

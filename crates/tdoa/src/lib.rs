@@ -74,8 +74,8 @@ pub mod simulate;
 pub mod summary;
 
 pub use calibrate::{
-    Alternative, CalibrateError, CalibrateOptions, Calibration, Hypotheses, KnownDistance, ReceiverDelays,
-    ReceiverError, ReceiverErrorKind, SpeedEstimate, Truth, Unfinished, calibrate, calibrate_with,
+    Alternative, CalibrateError, CalibrateOptions, Calibration, Hypotheses, KnownDistance, MeasuredPosition,
+    ReceiverDelays, ReceiverError, ReceiverErrorKind, SpeedEstimate, Truth, Unfinished, calibrate, calibrate_with,
 };
 pub use hc::{Monitor, Progress};
 pub use minimal::{Candidate, MinimalSolution, PathCounts, RootCounts};

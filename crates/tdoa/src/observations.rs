@@ -25,6 +25,27 @@ impl Observation {
     }
 }
 
+/// A coordinate of a receiver that was measured by itself.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Pin {
+    pub(crate) receiver: usize,
+    /// 0 for x, 1 for y.
+    pub(crate) axis: usize,
+    /// Metres.
+    pub(crate) value: f64,
+    /// What makes the residual one of the size of those of the measurements: their deviation over
+    /// that of the coordinate.
+    pub(crate) precision: f64,
+}
+
+impl Pin {
+    /// Residual, comparable with those of the measurements.
+    #[inline]
+    pub(crate) fn residual(&self, network: &Network) -> f64 {
+        (self.value - network.receivers[self.receiver][self.axis]) * self.precision
+    }
+}
+
 /// All measured cells, transmitter by transmitter, and the same cells receiver by receiver.
 #[derive(Debug, Clone)]
 pub(crate) struct Observations {
@@ -35,6 +56,7 @@ pub(crate) struct Observations {
     rows: Vec<usize>,
     row_entries: Vec<usize>,
     held: Vec<bool>,
+    pins: Vec<Pin>,
     others: usize,
 }
 
@@ -71,6 +93,7 @@ impl Observations {
             rows,
             row_entries,
             held: vec![false; m],
+            pins: Vec::new(),
             others: 0,
         }
     }
@@ -83,12 +106,22 @@ impl Observations {
             entries.extend(self.of_transmitter(j).iter().filter(|o| keep(o)).copied());
             columns.push(entries.len());
         }
-        Observations::of(self.receivers, entries, columns).holding(&self.held).beside(self.others)
+        Observations::of(self.receivers, entries, columns).holding(&self.held).pinned(&self.pins).beside(self.others)
     }
 
     /// These measurements, with receivers that stay where they are.
     pub(crate) fn holding(self, held: &[bool]) -> Self {
         Observations { held: held.to_vec(), ..self }
+    }
+
+    /// These measurements, and coordinates of receivers.
+    pub(crate) fn pinned(self, pins: &[Pin]) -> Self {
+        Observations { pins: pins.to_vec(), ..self }
+    }
+
+    /// Coordinates of receivers that were measured by themselves.
+    pub(crate) fn pins(&self) -> &[Pin] {
+        &self.pins
     }
 
     /// These measurements, which have this many unknowns more than the nodes.
@@ -127,10 +160,12 @@ impl Observations {
     }
 
     /// Number of unknowns of the network: positions and offsets, up to a rigid motion of the plane
-    /// or without the receivers that are held. One held receiver leaves the rotation about it.
+    /// or without the receivers that are held and less the coordinates that were measured. One held
+    /// receiver leaves the rotation about it.
     pub(crate) fn unknowns(&self) -> usize {
         let held = self.held.iter().filter(|&&held| held).count();
-        (2 * self.receivers + 3 * self.transmitters).saturating_sub((2 * held).max(3)) + self.others
+        let known = (2 * held + self.pins.len()).max(3);
+        (2 * self.receivers + 3 * self.transmitters).saturating_sub(known) + self.others
     }
 }
 

@@ -54,6 +54,26 @@ fn anchors_fix_the_frame() {
 }
 
 #[test]
+fn anchors_have_standard_deviations() {
+    let (directory, file, truth) = recording();
+    let path = directory.path().join("measured.csv");
+    let write = |lines: &str| std::fs::write(&path, format!("name,x,y,sigma\n{lines}")).expect("written");
+    // Exact, 10 cm off with a deviation of 10 cm, exact, and one coordinate.
+    let at = |i: usize, off: f64, sigma: &str| format!("r{},{},{},{sigma}\n", i + 1, truth[i][0] + off, truth[i][1]);
+    write(&(at(1, 0.0, "0") + &at(4, 0.1, "0.1") + &at(6, 0.0, "0") + &format!("r9,,{},0.01\n", truth[8][1])));
+    let (found, message, status) = calibrate(&[text(&file), "--anchors", text(&path)]);
+    assert_eq!(status, Some(0), "{message}");
+    let found = found.expect("JSON");
+    assert_eq!(found["anchored"].to_string(), "[false,true,false,false,false,false,true,false,false]");
+    // Nearer to the truth than the position that was given.
+    assert!(worst(&found, &truth) < 0.08, "{}", worst(&found, &truth));
+    write(&(at(1, 0.0, "0.1") + &at(4, 0.0, "")));
+    let (_, message, status) = calibrate(&[text(&file), "--anchors", text(&path)]);
+    assert_eq!(status, Some(2), "{message}");
+    assert!(message.contains("the standard deviation of r5 is missing"), "{message}");
+}
+
+#[test]
 fn the_speed_of_sound_and_of_light() {
     let (directory, file, truth) = recording();
     let known = anchors(directory.path(), &truth, &[1, 4, 6, 8]);

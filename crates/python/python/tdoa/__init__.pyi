@@ -141,6 +141,7 @@ def calibrate(
     speed: float | None = None,
     dimensions: str | int = "auto",
     anchors: ArrayLike | Mapping[str, ArrayLike] | None = None,
+    anchor_sigma: ArrayLike | Mapping[str, float] | None = None,
     names: _Names | None = None,
     seed: int = 0,
     threads: int | None = None,

@@ -38,7 +38,35 @@ def _anchors(anchors, names, count):
         rows = real_matrix("anchors", anchors)
         if rows.shape != (count, 2):
             raise InputError(f"anchors must have shape ({count}, 2), NaN where unknown, or be a dict by name, not {rows.shape}")
-    return [None if np.isnan(row).all() else (float(row[0]), float(row[1])) for row in rows]
+    return rows
+
+
+def _known(rows, sigma, names, count):
+    """Exact positions in the order of the receivers, and measured ones: receiver, coordinates, standard deviation."""
+    sigmas = np.zeros(count)
+    if hasattr(sigma, "keys"):
+        names = names if names is not None else [f"r{i + 1}" for i in range(count)]
+        for name in sigma.keys():
+            if str(name) not in names:
+                raise InputError(f"no receiver is named {name}; they are {', '.join(names[:8])}")
+            sigmas[names.index(str(name))] = number("anchor_sigma", sigma[name])
+    elif sigma is not None:
+        try:
+            sigmas[:] = np.asarray(sigma, dtype=float)
+        except (TypeError, ValueError):
+            raise InputError(f"anchor_sigma must be a number, {count} numbers, or a dict by name, not {sigma!r}") from None
+    if len(rows) == 0:
+        if sigma is not None:
+            raise InputError("anchor_sigma needs anchors")
+        return [], []
+    exact, measured = [None] * count, []
+    for i, (row, sigma) in enumerate(zip(rows, sigmas)):
+        x, y = (None if np.isnan(value) else float(value) for value in row)
+        if sigma == 0 and x is not None and y is not None:
+            exact[i] = (x, y)
+        elif x is not None or y is not None:
+            measured.append((i, (x, y), float(sigma)))
+    return exact, measured
 
 
 def _position(name, given):
@@ -58,6 +86,7 @@ def calibrate(
     speed=None,
     dimensions="auto",
     anchors=None,
+    anchor_sigma=None,
     names=None,
     seed=0,
     threads=None,
@@ -82,7 +111,10 @@ def calibrate(
     dimensions : {"auto", 2}
         This version calibrates in the plane.
     anchors : array_like of shape (m, 2), or dict of name to (x, y), optional
-        Known positions of some receivers in metres, NaN where unknown: they fix the frame, and two or more are held there.
+        Known positions of some receivers in metres, NaN where unknown: they fix the frame, and two or more are held there. One
+        coordinate may be NaN, beside two receivers with both.
+    anchor_sigma : float, array_like of shape (m,), or dict of name to float, optional
+        Standard deviations of the anchors in metres, which are then measurements; 0, the default, for exact ones.
     names : list of str, or (list of str, list of str), or dict with receivers and transmitters, optional
         Names of the receivers, and of the transmitters. A DataFrame has its own.
     seed : int
@@ -126,9 +158,11 @@ def calibrate(
     _plane(dimensions)
     given, single = table(pseudoranges, names, sigma, speed)
     count = len(given["values"])
+    exact, measured = _known(_anchors(anchors, given["receivers"], count), anchor_sigma, given["receivers"], count)
     settings = {
         "sigma": single,
-        "anchors": _anchors(anchors, given["receivers"], count),
+        "anchors": exact,
+        "positions": measured,
         "distances": _distances(distances, given["receivers"], count),
         "receiver_delays": text("receiver_delays", receiver_delays),
         "estimate_speed": bool(estimate_speed),

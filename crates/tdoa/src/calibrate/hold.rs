@@ -56,17 +56,27 @@ impl Free<'_> {
         let uncertainty = covariance(&kept, best, sigma).filter(|_| sure);
         let joint = uncertainty.as_ref().map(|all| all.joint.as_slice());
         let speed = options.estimate_speed.then(|| super::known::speed(best, usable, joint, options)).transpose()?;
-        let held = anchors.as_mut().map_or(Vec::new(), |anchors| {
-            anchors.divide(speed.map_or(1.0, |speed| speed.factor));
-            anchors.held()
-        });
-        let Some(places) = anchors.as_ref().filter(|_| held.contains(&true)) else {
+        let metre = speed.map_or(1.0, |speed| speed.factor);
+        if let Some(anchors) = &mut anchors {
+            anchors.divide(metre);
+            let expected = uncertainty.as_ref().map(|all| anchors.expected(&all.receivers));
+            if let Some((i, off)) = expected.and_then(|expected| anchors.culprit(best, 4.0 * expected)) {
+                anchors.release(i);
+                warnings.push(format!(
+                    "the known position of {} is {} from where the measurements and the other known positions put it, and was not used; \
+                     check the position and the name",
+                    centred.receiver_names()[i],
+                    length(metre * off)
+                ));
+            }
+        }
+        let held = anchors.as_ref().map_or(Vec::new(), Anchors::held);
+        let Some(places) = anchors.as_ref().filter(|anchors| anchors.fix()) else {
             return Ok(Held { observations, ranked, deviation, anchors, speed, warnings });
         };
         let misfit: Vec<f64> = ranked.iter_mut().map(|refined| places.place(refined)).collect();
         let expected = uncertainty.as_ref().map(|all| places.expected(&all.receivers));
         if let Some(expected) = expected.filter(|expected| misfit.iter().all(|misfit| *misfit > 4.0 * expected)) {
-            let metre = speed.map_or(1.0, |speed| speed.factor);
             warnings.push(format!(
                 "the known positions are {} (root mean square) from where the measurements put these receivers, which \
                  would be expected to {}; check the positions and names, and the propagation speed (--estimate-speed)",
@@ -82,6 +92,7 @@ impl Free<'_> {
             );
         }
         let observations = observations.holding(&held);
+        let observations = observations.pinned(&places.pins(sigma));
         // Where few measurements were left over, the free network took up most of the noise.
         let first = known.unwrap_or_else(|| deviation.max(median_size(&observations, &ranked[0].network) / 0.6745));
         let (ranked, deviation) = finish(&observations, ranked, first, known.is_some(), floor, options, monitor)?;
@@ -91,7 +102,13 @@ impl Free<'_> {
 
 #[cfg(test)]
 mod tests {
-    use crate::{CalibrateOptions, Calibration, KnownDistance, SimulateOptions, Simulation, calibrate, simulate};
+    use crate::{
+        CalibrateOptions, Calibration, KnownDistance, MeasuredPosition, SimulateOptions, Simulation, calibrate,
+        simulate,
+    };
+    use rand::{RngExt, SeedableRng};
+    use rand_distr::StandardNormal;
+    use rand_pcg::Pcg64Mcg;
 
     const SIGMA: f64 = 0.01;
 
@@ -210,6 +227,63 @@ mod tests {
         assert!(!good.warnings.iter().any(|warning| warning.contains("known positions")), "{:?}", good.warnings);
         options.anchors[3].as_mut().unwrap()[0] += 1.0;
         let bad = calibrate(&simulation.pseudoranges, &options).unwrap();
-        assert!(bad.warnings.iter().any(|warning| warning.contains("known positions are")), "{:?}", bad.warnings);
+        let named =
+            |warning: &String| warning.contains("the known position of r4 is") && warning.contains("was not used");
+        assert!(bad.warnings.iter().any(named), "{:?}", bad.warnings);
+        // Without it the network is where it is.
+        let truth = simulation.network.receivers[3];
+        let at = bad.receivers[3].unwrap();
+        assert!(!bad.anchored[3] && (at[0] - truth[0]).hypot(at[1] - truth[1]) < 0.1, "{at:?} {truth:?}");
+    }
+
+    #[test]
+    fn measured_positions_have_their_errors() {
+        let (mut sum, mut count, mut of_known) = (0.0, 0.0, 0.0);
+        for seed in 0..60 {
+            let simulation = simulation(seed);
+            let mut rng = Pcg64Mcg::seed_from_u64(seed);
+            let mut noisy = |x: f64, sigma: f64| x + sigma * rng.sample::<f64, _>(StandardNormal);
+            let truth = &simulation.network.receivers;
+            // Four to 5 cm, one of them in x alone, and one to 5 mm.
+            let mut position = |receiver: usize, sigma: f64| {
+                let [x, y] = truth[receiver].map(|x| Some(noisy(x, sigma)));
+                MeasuredPosition { receiver, position: if receiver == 5 { [x, None] } else { [x, y] }, sigma }
+            };
+            let positions =
+                vec![position(0, 0.05), position(3, 0.05), position(5, 0.05), position(7, 0.05), position(8, 0.005)];
+            let options = CalibrateOptions { sigma: Some(SIGMA), positions, ..Default::default() };
+            let found = calibrate(&simulation.pseudoranges, &options).unwrap();
+            assert!(!found.anchored.contains(&true));
+            for (i, truth) in truth.iter().enumerate() {
+                let (at, covariance) = (found.receivers[i].unwrap(), found.receiver_covariance[i].unwrap());
+                let square = squared_error(at, *truth, covariance) / 2.0;
+                if i == 8 {
+                    of_known += square / 60.0;
+                    // Better known than by the position alone.
+                    assert!(covariance[0][0] < 1.1 * 0.005f64.powi(2), "{covariance:?}");
+                }
+                (sum, count) = (sum + square, count + 1.0);
+            }
+        }
+        // As for exact ones: three deviations of the mean of sixty networks.
+        assert!((sum / count - 1.0).abs() < 0.39 && (of_known - 1.0).abs() < 0.39, "{} {of_known}", sum / count);
+    }
+
+    #[test]
+    fn positions_that_make_no_frame_are_refused() {
+        let simulation = simulation(5);
+        let known = |receiver, position, sigma| MeasuredPosition { receiver, position, sigma };
+        let both = known(0, [Some(0.0), Some(0.0)], 0.1);
+        for (positions, part) in [
+            (vec![both, known(1, [Some(1.0), None], 0.1)], "both coordinates of two receivers"),
+            (vec![both, known(0, [Some(1.0), Some(2.0)], 0.1)], "is there twice"),
+            (vec![both, known(99, [Some(1.0), Some(2.0)], 0.1)], "receiver 100 of 9"),
+            (vec![both, known(1, [Some(1.0), Some(2.0)], -0.1)], "must not be negative"),
+            (vec![both, known(1, [Some(f64::NAN), Some(2.0)], 0.1)], "is not finite"),
+        ] {
+            let options = CalibrateOptions { positions, ..Default::default() };
+            let error = calibrate(&simulation.pseudoranges, &options).unwrap_err().to_string();
+            assert!(error.contains(part), "{part:?} is not in: {error}");
+        }
     }
 }

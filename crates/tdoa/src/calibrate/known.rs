@@ -3,10 +3,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::options::{CalibrateError, CalibrateOptions, KnownDistance};
-use crate::align::align;
+use super::options::{CalibrateError, CalibrateOptions, KnownDistance, MeasuredPosition};
+use crate::align::{Alignment, align};
 use crate::degeneracy::Usable;
 use crate::network::Network;
+use crate::observations::Pin;
 use crate::plane::{centroid, distance, flatness};
 use crate::pseudoranges::{MAX_MAGNITUDE, Pseudoranges};
 use crate::refine::Refined;
@@ -26,10 +27,19 @@ pub struct SpeedEstimate {
     pub distances: usize,
 }
 
+/// Standard deviation of a single coordinate that is said to be exact, as a share of the size of the
+/// known positions.
+const EXACT: f64 = 1e-6;
+
 /// Known positions among the usable receivers, about their centroid.
 pub(super) struct Anchors {
+    /// Those known in both coordinates, exactly or not.
     pub(super) positions: Vec<Option<[f64; 2]>>,
     pub(super) centre: [f64; 2],
+    /// Which are exact.
+    exact: Vec<bool>,
+    /// Those that are not, about the centroid.
+    measured: Vec<MeasuredPosition>,
 }
 
 /// Checks what is known against the size of the matrix.
@@ -43,6 +53,34 @@ pub(super) fn validate(measured: &Pseudoranges, options: &CalibrateOptions) -> R
     for (i, position) in options.anchors.iter().enumerate() {
         if position.is_some_and(|p| p.iter().any(|x| x.is_nan() || x.abs() > MAX_MAGNITUDE)) {
             return bad(format!("the position of {} is not finite or too large; give metres", name(i)));
+        }
+    }
+    for (k, measured) in options.positions.iter().enumerate() {
+        let MeasuredPosition { receiver, position, sigma } = *measured;
+        if receiver >= m || options.positions[..k].iter().any(|other| other.receiver == receiver) {
+            return bad(format!("a position of receiver {} of {m} makes no sense, or is there twice", receiver + 1));
+        }
+        if options.anchors.get(receiver).is_some_and(Option::is_some) {
+            return bad(format!("the position of {} is given both as exact and as measured; give one", name(receiver)));
+        }
+        let usable = |x: &f64| x.abs() <= MAX_MAGNITUDE;
+        if !position.iter().flatten().all(usable) || position.iter().all(Option::is_none) {
+            return bad(format!("the position of {} is not finite or too large; give metres", name(receiver)));
+        }
+        if !(0.0..=MAX_MAGNITUDE).contains(&sigma) {
+            return bad(format!(
+                "the standard deviation of the position of {} must not be negative, not {sigma}",
+                name(receiver)
+            ));
+        }
+    }
+    if !options.positions.is_empty() {
+        let whole = options.positions.iter().filter_map(|p| Some([p.position[0]?, p.position[1]?]));
+        let whole: Vec<[f64; 2]> = whole.chain(options.anchors.iter().flatten().copied()).collect();
+        if !whole.iter().any(|p| *p != whole[0]) {
+            return bad(
+                "both coordinates of two receivers in different places are needed; single coordinates come beside these".to_string()
+            );
         }
     }
     for known in &options.distances {
@@ -131,10 +169,23 @@ pub(super) fn speed(
 impl Anchors {
     /// The anchors among the usable receivers; `None` if none are asked for.
     pub(super) fn new(usable: &Usable, options: &CalibrateOptions) -> Result<Option<Anchors>, CalibrateError> {
-        if options.anchors.iter().all(Option::is_none) {
+        if options.anchors.iter().all(Option::is_none) && options.positions.is_empty() {
             return Ok(None);
         }
-        let mut positions: Vec<Option<[f64; 2]>> = usable.receivers.iter().map(|&i| options.anchors[i]).collect();
+        let exact = |i: &usize| options.anchors.get(*i).copied().flatten();
+        let place = |i: usize| usable.receivers.iter().position(|&other| other == i);
+        let mut measured: Vec<MeasuredPosition> = (options.positions.iter())
+            .filter_map(|known| Some(MeasuredPosition { receiver: place(known.receiver)?, ..*known }))
+            .collect();
+        let mut positions: Vec<Option<[f64; 2]>> = usable.receivers.iter().map(exact).collect();
+        let mut exact: Vec<bool> = positions.iter().map(Option::is_some).collect();
+        for known in &measured {
+            if let [Some(x), Some(y)] = known.position {
+                positions[known.receiver] = Some([x, y]);
+                exact[known.receiver] = known.sigma == 0.0;
+            }
+        }
+        measured.retain(|known| !exact[known.receiver]);
         if positions.iter().flatten().next().is_none() {
             return Err(CalibrateError::Known(
                 "too few measurements tie down the receivers of known position; measure more of them".to_string(),
@@ -144,7 +195,21 @@ impl Anchors {
         for p in positions.iter_mut().flatten() {
             *p = [p[0] - centre[0], p[1] - centre[1]];
         }
-        Ok(Some(Anchors { positions, centre }))
+        let size = positions.iter().flatten().map(|p| distance(*p, [0.0; 2])).fold(0.0, f64::max);
+        for known in &mut measured {
+            // What can be held are whole positions.
+            known.sigma = known.sigma.max(EXACT * size);
+            for (x, centre) in known.position.iter_mut().zip(centre) {
+                *x = x.map(|x| x - centre);
+            }
+        }
+        let anchors = Anchors { positions, centre, exact, measured };
+        if !options.positions.is_empty() && !anchors.fix() {
+            return Err(CalibrateError::Known(
+                "too few measurements tie down the receivers of known position; measure more of them".to_string(),
+            ));
+        }
+        Ok(Some(anchors))
     }
 
     /// Changes to units of which `factor` metres are one.
@@ -152,12 +217,71 @@ impl Anchors {
         for p in self.positions.iter_mut().flatten() {
             *p = [p[0] / factor, p[1] / factor];
         }
+        for known in &mut self.measured {
+            known.sigma /= factor;
+            known.position = known.position.map(|x| x.map(|x| x / factor));
+        }
     }
 
-    /// Which receivers are held: all anchors, if they are in two places at least.
+    /// Whether they are in two places at least.
+    pub(super) fn fix(&self) -> bool {
+        let mut all = self.positions.iter().flatten();
+        let first = all.next();
+        first.is_some_and(|p| all.any(|q| distance(*p, *q) > 0.0))
+    }
+
+    /// Which receivers are held: all exact anchors, if the known positions are in two places at
+    /// least.
     pub(super) fn held(&self) -> Vec<bool> {
-        let fix = self.positions.iter().flatten().any(|p| distance(*p, [0.0; 2]) > 0.0);
-        self.positions.iter().map(|p| fix && p.is_some()).collect()
+        let fix = self.fix();
+        self.exact.iter().map(|exact| fix && *exact).collect()
+    }
+
+    /// The coordinates that were measured, beside measurements of this deviation.
+    pub(super) fn pins(&self, deviation: f64) -> Vec<Pin> {
+        let pins = self.measured.iter().flat_map(|known| {
+            let precision = deviation / known.sigma;
+            let pin = move |axis: usize| {
+                Some(Pin { receiver: known.receiver, axis, value: known.position[axis]?, precision })
+            };
+            (0..2).filter_map(pin)
+        });
+        pins.collect()
+    }
+
+    /// Standard deviation of the known position of a receiver; zero if it is exact.
+    fn sigma(&self, i: usize) -> f64 {
+        self.measured.iter().find(|known| known.receiver == i).map_or(0.0, |known| known.sigma)
+    }
+
+    /// The one known position that the network and the others contradict, and by how much: without it
+    /// the others, three or more and not in one line, lie within `limit` (root mean square) of where the
+    /// network has these receivers, and it lies beyond.
+    pub(super) fn culprit(&self, network: &Network, limit: f64) -> Option<(usize, f64)> {
+        let known: Vec<(usize, [f64; 2])> =
+            self.positions.iter().enumerate().filter_map(|(i, p)| Some((i, (*p)?))).collect();
+        let rest = |left: Option<usize>| -> Option<Alignment> {
+            let pairs = known.iter().filter(|(i, _)| Some(*i) != left);
+            let (from, to): (Vec<_>, Vec<_>) = pairs.map(|&(i, p)| (network.receivers[i], p)).unzip();
+            if from.len() < 3 || flatness(&to) < 0.02 { None } else { align(&from, &to, false) }
+        };
+        if known.len() < 4 || rest(None).is_none_or(|all| all.rms <= limit) {
+            return None;
+        }
+        let mut found = known.iter().filter_map(|&(i, p)| {
+            let others = rest(Some(i)).filter(|others| others.rms <= limit)?;
+            let off = distance(others.transform.apply(network.receivers[i]), p);
+            (off > limit).then_some((i, off))
+        });
+        // Two suspects accuse each other.
+        found.next().filter(|_| found.next().is_none())
+    }
+
+    /// Forgets the known position of a receiver.
+    pub(super) fn release(&mut self, i: usize) {
+        self.positions[i] = None;
+        self.exact[i] = false;
+        self.measured.retain(|known| known.receiver != i);
     }
 
     /// Whether the network's mirror image fits the anchors as well: they lie in one line (by a
@@ -167,24 +291,24 @@ impl Anchors {
         flatness(&all) < 1e-3 || all.len() < 3
     }
 
-    /// Moves a network onto the anchors and puts them in their places; root mean square of the
+    /// Moves a network onto the anchors and puts exact ones in their places; root mean square of the
     /// distances that remain before.
     pub(super) fn place(&self, refined: &mut Refined) -> f64 {
         let pairs = refined.network.receivers.iter().zip(&self.positions);
         let (from, to): (Vec<_>, Vec<_>) = pairs.filter_map(|(r, p)| Some((*r, (*p)?))).unzip();
         let Some(alignment) = align(&from, &to, false) else { return 0.0 };
         refined.network = alignment.transform.apply_network(&refined.network);
-        for (receiver, position) in refined.network.receivers.iter_mut().zip(&self.positions) {
-            *receiver = position.unwrap_or(*receiver);
+        for (i, receiver) in refined.network.receivers.iter_mut().enumerate().filter(|(i, _)| self.exact[*i]) {
+            *receiver = self.positions[i].unwrap_or(*receiver);
         }
         alignment.rms
     }
 
     /// Root mean square distance by which the anchors would be missed by chance, from the
-    /// covariances of the receivers.
+    /// covariances of the receivers and their own deviations.
     pub(super) fn expected(&self, covariance: &[[[f64; 2]; 2]]) -> f64 {
-        let traces =
-            covariance.iter().zip(&self.positions).filter(|(_, p)| p.is_some()).map(|(c, _)| c[0][0] + c[1][1]);
+        let known = covariance.iter().zip(&self.positions).enumerate().filter(|(_, (_, p))| p.is_some());
+        let traces = known.map(|(i, (c, _))| c[0][0] + c[1][1] + 2.0 * self.sigma(i).powi(2));
         let (sum, count) = traces.fold((0.0, 0.0), |(sum, count), trace| (sum + trace, count + 1.0));
         (sum / f64::max(count, 1.0)).sqrt()
     }

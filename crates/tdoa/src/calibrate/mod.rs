@@ -30,7 +30,7 @@ pub use calibration::{Alternative, Calibration};
 pub use hypotheses::{Hypotheses, KnownReceivers, generator};
 pub use known::SpeedEstimate;
 pub use minimal::MinimalHypotheses;
-pub use options::{CalibrateError, CalibrateOptions, KnownDistance, ReceiverDelays};
+pub use options::{CalibrateError, CalibrateOptions, KnownDistance, MeasuredPosition, ReceiverDelays};
 pub use receiver_errors::{ReceiverError, ReceiverErrorKind};
 pub use same::SAME_NETWORK;
 pub use truth::Truth;

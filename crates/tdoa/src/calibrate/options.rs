@@ -64,6 +64,10 @@ pub struct CalibrateOptions {
     /// They fix the frame; if they are in two places at least, they are held there in the last
     /// refinement. Default empty: none are known.
     pub anchors: Vec<Option<[f64; 2]>>,
+    /// Positions of receivers that were measured by other means, with an error or in one coordinate
+    /// alone. Two receivers or more must have both coordinates, here or among the anchors. Default
+    /// empty.
+    pub positions: Vec<MeasuredPosition>,
     /// What is done about receivers whose measurements are all too long or too short. Default
     /// [`ReceiverDelays::None`]: a warning names those that show.
     pub receiver_delays: ReceiverDelays,
@@ -91,6 +95,7 @@ impl Default for CalibrateOptions {
             alternative_margin: 8.0,
             planar_limit: 0.04,
             anchors: Vec::new(),
+            positions: Vec::new(),
             receiver_delays: ReceiverDelays::None,
             distances: Vec::new(),
             estimate_speed: false,
@@ -105,6 +110,17 @@ pub struct KnownDistance {
     pub receivers: [usize; 2],
     /// Metres.
     pub distance: f64,
+}
+
+/// A position of a receiver that was measured by other means.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeasuredPosition {
+    /// Place of the receiver among the receivers.
+    pub receiver: usize,
+    /// x and y in metres, `None` where unknown.
+    pub position: [Option<f64>; 2],
+    /// Standard deviation of each coordinate, metres; zero if they are exact.
+    pub sigma: f64,
 }
 
 impl CalibrateOptions {

@@ -60,9 +60,11 @@ impl Solved<'_> {
             residual.is_some_and(|e| e.abs() <= options.inlier_threshold * deviation)
         };
         let held = self.observations.held();
-        let is_held = held.contains(&true);
-        let kept =
-            Observations::new(self.centred, |i, j| inlier(best, i, j)).holding(held).beside(self.observations.others());
+        let is_held = held.contains(&true) || !self.observations.pins().is_empty();
+        let kept = Observations::new(self.centred, |i, j| inlier(best, i, j))
+            .holding(held)
+            .pinned(self.observations.pins())
+            .beside(self.observations.others());
         let mut warnings = [self.usable.warnings.as_slice(), &self.warnings].concat();
         let redundancy = kept.len().saturating_sub(kept.unknowns());
         let ellipse_radius = radius_95(redundancy, self.known.is_some());
@@ -205,6 +207,9 @@ impl Solved<'_> {
             anchored: scatter(m, rows, held).into_iter().map(|held| held == Some(true)).collect(),
             speed: self.speed,
             gauge: Cow::Borrowed(match (is_held, self.speed.is_some()) {
+                _ if !self.observations.pins().is_empty() => {
+                    "relative to the frame of the known positions, with the errors that these have"
+                }
                 (false, _) => "inner constraint over the receivers: relative to their best rigid alignment",
                 (true, false) => "relative to the receivers of known position, which have no error",
                 (true, true) => {

@@ -86,6 +86,11 @@ impl Heading {
         self.is(RECEIVER) || self.is(NODE)
     }
 
+    /// Whether standard deviations stand below this.
+    pub(super) fn heads_sigmas(&self) -> bool {
+        self.is(SIGMA)
+    }
+
     /// Which coordinate stands below this, if one does: 0 for x, 1 for y, 2 for z.
     pub(super) fn coordinate(&self) -> Option<usize> {
         const NAMES: [&[&str]; 3] = [

@@ -25,6 +25,11 @@ pub struct Nodes {
     pub positions: Vec<[f64; 2]>,
     /// Heights in metres, if the file has a column z; NaN where that is empty.
     pub heights: Option<Vec<f64>>,
+    /// Standard deviations in metres, if the file has a column sigma; NaN where that is empty.
+    pub sigmas: Option<Vec<f64>>,
+    /// Named nodes of which one coordinate is known alone, with their standard deviations, NaN where
+    /// none is given.
+    pub partial: Vec<(String, [Option<f64>; 2], f64)>,
 }
 
 impl Nodes {
@@ -94,7 +99,7 @@ fn mat_nodes(found: &File<'_>, file: &str) -> Result<Option<Nodes>, ReadError> {
         file: file.to_string(),
         problem: "has a variable rgt with numbers that are not finite".to_string(),
     })?;
-    Ok(Some(Nodes { names: None, positions, heights: all.heights }))
+    Ok(Some(Nodes { positions, heights: all.heights, ..Nodes::default() }))
 }
 
 /// Reads the variable sgt of a .mat file, the true transmitters, one a column with x and y in its
@@ -141,6 +146,7 @@ struct Columns {
     y: usize,
     z: Option<usize>,
     kind: Option<usize>,
+    sigma: Option<usize>,
 }
 
 impl Columns {
@@ -149,8 +155,8 @@ impl Columns {
         let headings: Vec<Heading> = cells.iter().map(|cell| Heading::new(cell)).collect();
         let at = |k: usize| headings.iter().position(|heading| heading.coordinate() == Some(k));
         let (Some(x), Some(y)) = (at(0), at(1)) else { return Ok(None) };
-        let z = at(2);
-        for k in [Some(x), Some(y), z].into_iter().flatten() {
+        let (z, sigma) = (at(2), headings.iter().position(Heading::heads_sigmas));
+        for k in [Some(x), Some(y), z, sigma].into_iter().flatten() {
             if let Some(unit) = headings[k].unit.filter(|unit| *unit != "m") {
                 return Err(format!("the column {:?} is in {unit}; convert it to metres", cells[k]));
             }
@@ -158,13 +164,14 @@ impl Columns {
         let kind = headings.iter().position(|heading| heading.name == "kind");
         let headed = headings.iter().position(|heading| heading.heads_nodes());
         let name = headed.or_else(|| (0..x.min(y)).find(|k| Some(*k) != kind && Some(*k) != z));
-        Ok(Some(Columns { name, x, y, z, kind }))
+        Ok(Some(Columns { name, x, y, z, kind, sigma }))
     }
 
     /// The columns of a table whose first line is a node.
     fn unnamed(cells: &[String]) -> Result<Columns, String> {
         let is_number: Vec<bool> = cells.iter().map(|cell| number(cell).is_some()).collect();
-        let columns = |name: Option<usize>, x: usize, z: Option<usize>| Columns { name, x, y: x + 1, z, kind: None };
+        let columns =
+            |name: Option<usize>, x: usize, z: Option<usize>| Columns { name, x, y: x + 1, z, kind: None, sigma: None };
         match is_number.as_slice() {
             [true, true] => Ok(columns(None, 0, None)),
             [false, true, true] => Ok(columns(Some(0), 1, None)),
@@ -186,6 +193,7 @@ pub fn read_nodes_from(source: impl Read, file: &str) -> Result<Nodes, ReadError
     let text = text(source, file)?;
     let mut lines: HashMap<String, u64> = HashMap::new();
     let (mut names, mut positions, mut heights) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut sigmas, mut partial) = (Vec::new(), Vec::new());
     let mut columns: Option<Columns> = None;
     let mut decimals = Decimals::default();
     for record in records(&text, file) {
@@ -212,6 +220,19 @@ pub fn read_nodes_from(source: impl Read, file: &str) -> Result<Nodes, ReadError
             continue;
         }
         let mut read = |k: usize| coordinate(&record, k, &mut decimals).map_err(bad);
+        let mut optional = |k: usize| if cell(k).is_none_or(str::is_empty) { Ok(f64::NAN) } else { read(k) };
+        let sigma = place.sigma.map(&mut optional).transpose()?;
+        if let (Some(name), true, false) =
+            (place.name.and_then(cell), cell(place.x) == Some("") || cell(place.y) == Some(""), is_unlocated)
+        {
+            let position = [optional(place.x)?, optional(place.y)?].map(|x| Some(x).filter(|x| !x.is_nan()));
+            if let Some(earlier) = lines.insert(name.to_string(), record.line) {
+                return Err(bad(format!("receiver {name} is there twice, on line {earlier} too; keep one position")));
+            }
+            partial.push((name.to_string(), position, sigma.unwrap_or(f64::NAN)));
+            continue;
+        }
+        sigmas.extend(sigma);
         let position = [read(place.x)?, read(place.y)?];
         if let Some(z) = place.z {
             heights.push(if cell(z).is_none_or(str::is_empty) { f64::NAN } else { read(z)? });
@@ -224,7 +245,7 @@ pub fn read_nodes_from(source: impl Read, file: &str) -> Result<Nodes, ReadError
             names.push(name.clone());
         }
     }
-    if positions.is_empty() {
+    if positions.is_empty() && partial.is_empty() {
         let problem = format!("has no positions; {EXPECTED}");
         return Err(ReadError::Line { file: file.to_string(), line: 1, problem });
     }
@@ -232,6 +253,8 @@ pub fn read_nodes_from(source: impl Read, file: &str) -> Result<Nodes, ReadError
         names: if names.len() == positions.len() { Some(names) } else { None },
         positions,
         heights: if heights.is_empty() { None } else { Some(heights) },
+        sigmas: if sigmas.is_empty() { None } else { Some(sigmas) },
+        partial,
     })
 }
 
@@ -271,6 +294,17 @@ mod tests {
             assert_eq!((found.names, found.positions), (expected.clone(), vec![[1.0, 2.0], [3.0, 4.0]]), "{text}");
         }
         assert_eq!(nodes("1,2\n3,4\n").unwrap().names, None);
+    }
+
+    #[test]
+    fn deviations_and_single_coordinates_are_kept() {
+        let found = nodes("id,x,y,sigma\na,1,2,0.5\nb,3,4,0\nc,,6,0.1\nd,7,8,\n").unwrap();
+        assert_eq!(found.positions, [[1.0, 2.0], [3.0, 4.0], [7.0, 8.0]]);
+        let sigmas = found.sigmas.unwrap();
+        assert!(sigmas[..2] == [0.5, 0.0] && sigmas[2].is_nan());
+        assert_eq!(found.partial, [("c".to_string(), [None, Some(6.0)], 0.1)]);
+        assert!(nodes("id,x,y\na,1,\na,1,2\n").unwrap_err().contains("is there twice"));
+        assert!(nodes("id,x,y,std_mm\na,1,2,3\n").unwrap_err().contains("convert it to metres"));
     }
 
     #[test]

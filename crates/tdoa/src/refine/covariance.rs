@@ -5,7 +5,8 @@
 //! of smallest trace over the receivers, which is sigma^2 times the pseudo-inverse of the normal
 //! equations reduced to the receivers. It says how well the nodes lie relative to the receivers as
 //! a whole after the best rigid alignment of the receivers. Held receivers are the gauge
-//! themselves: they have no error, and the normal equations of the others are inverted.
+//! themselves: they have no error, and the normal equations of the others are inverted. So are
+//! measured coordinates, with their errors.
 
 use faer::Mat;
 use faer::Side;
@@ -59,7 +60,7 @@ pub(crate) fn covariance(observations: &Observations, network: &Network, sigma: 
         return None;
     }
     // Eigenvalues ascend; the three smallest belong to the rigid motions.
-    let rigid = if free.len() == size { 3 } else { 0 };
+    let rigid = if free.len() == size && observations.pins().is_empty() { 3 } else { 0 };
     let zero = (0..free.len()).filter(|&k| values[k] < RANK_TOLERANCE * largest).count().max(rigid);
     let mut inverse = Mat::<f64>::zeros(size, size);
     for k in zero..free.len() {

@@ -60,7 +60,7 @@ impl Normal {
     }
 
     /// Takes the derivatives at `network`; `residuals` are those of `observations.all()`, over
-    /// their deviations.
+    /// their deviations, and of its pins.
     pub(crate) fn linearise(&mut self, observations: &Observations, network: &Network, residuals: &[f64], loss: &Loss) {
         self.receiver_blocks.fill(([0.0; 3], [0.0; 2]));
         self.transmitter_blocks.fill(([0.0; 6], [0.0; 3]));
@@ -79,6 +79,12 @@ impl Normal {
             let (h, g) = &mut self.transmitter_blocks[o.transmitter];
             *h = [h[0] + xx, h[1] + xy, h[2] + yy, h[3] + w * u[0], h[4] + w * u[1], h[5] + w];
             *g = [g[0] + we * e * u[0], g[1] + we * e * u[1], g[2] + we * e];
+        }
+        for (pin, &e) in observations.pins().iter().zip(&residuals[observations.len()..]) {
+            let we = loss.weight(e) * pin.precision;
+            let (h, g) = &mut self.receiver_blocks[pin.receiver];
+            h[2 * pin.axis] += we * pin.precision;
+            g[pin.axis] += we * e;
         }
     }
 

@@ -74,8 +74,8 @@ impl<'a> Refiner<'a> {
             nu,
             share: (1.0 - observations.unknowns() as f64 / observations.len().max(1) as f64).max(0.02),
             normal: Normal::new(observations),
-            residuals: vec![0.0; observations.len()],
-            trial_residuals: vec![0.0; observations.len()],
+            residuals: vec![0.0; observations.len() + observations.pins().len()],
+            trial_residuals: vec![0.0; observations.len() + observations.pins().len()],
             trial: Network::default(),
             monitor: Monitor::default(),
         }
@@ -184,10 +184,15 @@ impl<'a> Refiner<'a> {
     }
 }
 
-/// Residuals over their deviations, in the order of the observations.
+/// Residuals over their deviations, in the order of the observations, then those of coordinates as
+/// far as there is room for them.
 pub(crate) fn residuals(observations: &Observations, network: &Network, out: &mut [f64]) {
-    for (o, e) in observations.all().iter().zip(out) {
+    let (cells, pins) = out.split_at_mut(observations.len());
+    for (o, e) in observations.all().iter().zip(cells) {
         *e = o.residual(network);
+    }
+    for (pin, e) in observations.pins().iter().zip(pins) {
+        *e = pin.residual(network);
     }
 }
 
