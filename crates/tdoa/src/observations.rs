@@ -109,6 +109,15 @@ impl Observations {
         Observations::of(self.receivers, entries, columns).holding(&self.held).pinned(&self.pins).beside(self.others)
     }
 
+    /// These measurements less a length each, metres.
+    pub(crate) fn less(&self, of: impl Fn(&Observation) -> f64) -> Self {
+        let mut all = self.clone();
+        for o in &mut all.entries {
+            o.value -= of(o);
+        }
+        all
+    }
+
     /// These measurements, with receivers that stay where they are.
     pub(crate) fn holding(self, held: &[bool]) -> Self {
         Observations { held: held.to_vec(), ..self }

@@ -9,6 +9,7 @@ use super::deviation::{inlier_deviation, spread_of_residuals};
 use super::finish::finish;
 use super::options::{CalibrateError, CalibrateOptions, ReceiverDelays, check};
 use super::receiver_errors::{Fault, ReceiverErrorKind, find};
+use super::refits::refits;
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
@@ -60,10 +61,10 @@ impl Clearing<'_> {
             left: Vec::new(),
         };
         match self.options.receiver_delays {
-            ReceiverDelays::None => now.left = self.look(&now),
+            ReceiverDelays::None => now.left = self.look(&now)?.0,
             ReceiverDelays::Auto => {
                 for _ in 0..ROUNDS {
-                    let found = self.look(&now);
+                    let (found, hidden) = self.look(&now)?;
                     let fresh = |f: &&Fault| !now.taken.iter().any(|t| t.receiver == f.receiver && t.kind == f.kind);
                     let fresh: Vec<Fault> = found.iter().filter(fresh).copied().collect();
                     if fresh.is_empty() {
@@ -71,6 +72,10 @@ impl Clearing<'_> {
                         break;
                     }
                     now.taken.extend(fresh);
+                    if let Some(network) = hidden {
+                        let first = Refined { network, ..now.ranked[0].clone() };
+                        now.ranked.insert(0, first);
+                    }
                     now = self.without(now)?;
                 }
             }
@@ -79,8 +84,21 @@ impl Clearing<'_> {
         Ok(now)
     }
 
-    fn look(&self, now: &Cleared) -> Vec<Fault> {
-        find(&now.observations, &now.ranked[0].network, now.deviation, self.options.inlier_threshold)
+    /// Errors that the best network shows, or the one that it hides if that tells more, with the
+    /// network that does not.
+    fn look(&self, now: &Cleared) -> Result<(Vec<Fault>, Option<Network>), CalibrateError> {
+        let (observations, limit) = (&now.observations, self.options.inlier_threshold);
+        let found = find(observations, &now.ranked[0].network, now.deviation, limit);
+        // What a move leaves looks like other errors too.
+        if found.first().is_some_and(|first| first.kind == ReceiverErrorKind::Move) {
+            return Ok((found, None));
+        }
+        let hidden = refits(observations, &now.ranked[0].network, now.deviation, limit, self.monitor)?;
+        let shown = found.first().map_or(0.0, |first| first.gain);
+        Ok(match hidden.filter(|hidden| hidden.fault.gain > shown) {
+            Some(hidden) => (vec![hidden.fault], Some(hidden.network)),
+            None => (found, None),
+        })
     }
 
     /// The networks again with the errors in `taken` estimated for the best of them.

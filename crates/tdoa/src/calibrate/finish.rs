@@ -10,7 +10,7 @@ use hc::Monitor;
 
 /// Scale of the Cauchy loss, in standard deviations, that is 95 % efficient on normal noise
 /// (Holland and Welsch 1977).
-const CAUCHY: f64 = 2.385;
+pub(super) const CAUCHY: f64 = 2.385;
 
 /// Refines all networks with the same fixed loss, which makes their objectives differences of
 /// log-likelihood, and puts the best first; where the deviation is known, the one of least

@@ -16,6 +16,7 @@ mod options;
 mod orientation;
 mod ranking;
 mod receiver_errors;
+mod refits;
 mod report;
 mod report_errors;
 mod same;

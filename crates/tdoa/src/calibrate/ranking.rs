@@ -17,7 +17,7 @@ use super::same::same;
 /// costs that hits one measurement in a thousand and is uniform over ten thousand standard
 /// deviations: ln(1e4/1e-3) less ln(2 pi)/2, about 15. Costs from 5 to 18 find the truth about as
 /// often; below 10, networks that leave one more measurement out would pass for alternatives.
-const OUTLIER_COST: f64 = 15.0;
+pub(super) const OUTLIER_COST: f64 = 15.0;
 
 /// Rounds of choosing inliers and fitting them.
 const ROUNDS: usize = 8;

@@ -31,6 +31,22 @@ pub(crate) struct Motion {
     pub(crate) transmitters: Vec<[f64; 3]>,
 }
 
+impl Motion {
+    /// A network moved by this share of it.
+    pub(crate) fn applied(&self, network: &Network, share: f64) -> Network {
+        let mut moved = network.clone();
+        for (p, by) in moved.receivers.iter_mut().flatten().zip(&self.receivers) {
+            *p += share * by;
+        }
+        for (j, by) in self.transmitters.iter().enumerate() {
+            moved.transmitters[j][0] += share * by[0];
+            moved.transmitters[j][1] += share * by[1];
+            moved.offsets[j] += share * by[2];
+        }
+        moved
+    }
+}
+
 impl<'a> Projection<'a> {
     /// `None` where the network cannot be linearised.
     pub(crate) fn new(observations: &'a Observations, network: &Network) -> Option<Self> {

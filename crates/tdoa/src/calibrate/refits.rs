@@ -1,0 +1,296 @@
+//! Errors of receivers that a network has bent itself to: each receiver is fitted once with a free
+//! error of its own, all its measurements back in.
+//!
+//! The score test of `receiver_errors` is linear. Where the best network has given up some of the
+//! measurements that tell of an error as outliers, the error is too far away for it. Here the others
+//! are refined without the receiver, the receiver is located from them together with the size of its
+//! error, and the whole is refitted; what counts is by how much the truncated cost falls.
+
+use super::deviation::inlier_deviation;
+use super::finish::CAUCHY;
+use super::options::{CalibrateError, check};
+use super::ranking::{OUTLIER_COST, refit, truncated_cost};
+use super::receiver_errors::{Fault, ReceiverErrorKind, SIDE, spread_of_receiver, tests, threshold};
+use crate::loss::Loss;
+use crate::multilateration::solve3;
+use crate::network::Network;
+use crate::observations::{Observation, Observations};
+use crate::plane::distance;
+use crate::refine::{Projection, RefineOptions, Refiner, SEARCH};
+use hc::Monitor;
+
+/// Jumps of one receiver that are tried.
+const JUMPS: usize = 24;
+
+/// Receivers that are tried; in larger networks those with most measurements given up.
+const TRIED: usize = 24;
+
+/// Steps of locating a receiver with its error, the first of which anneal.
+const STEPS: usize = 24;
+const ANNEAL: f64 = 0.7;
+
+/// Rounds of fitting network and error together.
+const ROUNDS: usize = 10;
+
+/// An error of a receiver and the network that goes with it.
+pub(super) struct Found {
+    pub(super) fault: Fault,
+    pub(super) network: Network,
+}
+
+/// Looks for the error that explains most. `None` where none explains more than chance would, or
+/// where no measurement was given up: then the score test has seen all that there is.
+pub(super) fn refits(
+    observations: &Observations,
+    best: &Network,
+    deviation: f64,
+    limit: f64,
+    monitor: &Monitor,
+) -> Result<Option<Found>, CalibrateError> {
+    let mut given_up = vec![0usize; observations.receivers];
+    for o in observations.all().iter().filter(|o| o.residual(best).abs() > limit * deviation) {
+        given_up[o.receiver] += 1;
+    }
+    let kept = observations.len() - given_up.iter().sum::<usize>();
+    if kept == observations.len() || kept < observations.unknowns() + 5 {
+        return Ok(None);
+    }
+    let (base, cost) = refit(observations, best, deviation);
+    let mut order: Vec<usize> = (0..observations.receivers).collect();
+    order.sort_by_key(|&i| std::cmp::Reverse(given_up[i]));
+    order.truncate(TRIED);
+    let mut found: Option<(f64, Found)> = None;
+    for receiver in order {
+        check(monitor)?;
+        let fitting = Fitting { observations, base: &base, cost, deviation, limit };
+        for next in fitting.receiver(receiver) {
+            let lead = next.fault.gain - threshold(tests(next.fault.kind, observations.receivers, kept));
+            if lead > 0.0 && found.as_ref().is_none_or(|(other, _)| lead > *other) {
+                found = Some((lead, next));
+            }
+        }
+    }
+    Ok(found.map(|(_, found)| found))
+}
+
+struct Fitting<'a> {
+    observations: &'a Observations,
+    /// The network of least squares without the error, and its truncated cost.
+    base: &'a Network,
+    cost: f64,
+    deviation: f64,
+    /// Measurements farther off than this many deviations are outliers.
+    limit: f64,
+}
+
+impl Fitting<'_> {
+    /// Fits of one receiver with an error of each kind, as far as they are worth a look.
+    fn receiver(&self, receiver: usize) -> Vec<Found> {
+        let others = self.observations.subset(|o| o.receiver != receiver);
+        let options = RefineOptions { scale: Some(CAUCHY * self.deviation), rounds: 0, steps: 30, ..SEARCH };
+        let bent = Refiner::new(&others, 1.0).refine(self.base.clone(), &options).network;
+        let (alone, cost) = refit(&others, &bent, self.deviation);
+        // No error can bring the cost below that of the others.
+        if !alone.is_finite() || self.cost - cost < threshold(tests(ReceiverErrorKind::Delay, others.receivers, 1)) {
+            return Vec::new();
+        }
+        let local = Local::new(self.observations, &alone, receiver, self.deviation);
+        let fault = |kind, from| Fault { receiver, kind, from, size: [0.0; 2], gain: 0.0 };
+        let starts = [
+            local.locate(fault(ReceiverErrorKind::Delay, 0)),
+            local.locate(fault(ReceiverErrorKind::Drift, 0)),
+            local.jump(),
+        ];
+        starts
+            .into_iter()
+            .flatten()
+            // The fit of all nodes may halve what locating one has left.
+            .filter(|located| self.cost - cost - 0.5 * located.cost > 0.0)
+            .filter_map(|located| {
+                let mut network = alone.clone();
+                network.receivers[receiver] = located.position;
+                self.joint(network, located.fault)
+            })
+            .collect()
+    }
+
+    /// Least squares of all nodes and the error over the inliers, from here; `None` where the error
+    /// cannot be told from a motion of the nodes.
+    fn joint(&self, network: Network, fault: Fault) -> Option<Found> {
+        let n = self.observations.transmitters;
+        let corrected = |size: f64| {
+            let of = |o: &Observation| {
+                if o.receiver == fault.receiver { size * fault.shape(o.transmitter, n) } else { 0.0 }
+            };
+            self.observations.less(of)
+        };
+        let reach = (2.0 * OUTLIER_COST).sqrt() * self.deviation;
+        let (mut network, mut size) = (network, fault.size[0]);
+        let mut observations = corrected(size);
+        let mut cost = truncated_cost(&observations, &network, self.deviation);
+        // The square of what one metre of the error adds to the residuals, motions taken off.
+        let mut square = 0.0;
+        for _ in 0..ROUNDS {
+            let inliers = observations.subset(|o| o.residual(&network).abs() <= reach);
+            let projection = Projection::new(&inliers, &network)?;
+            let residuals: Vec<f64> = inliers.all().iter().map(|o| o.residual(&network)).collect();
+            let part = |o: &Observation| {
+                if o.receiver == fault.receiver { o.precision * fault.shape(o.transmitter, n) } else { 0.0 }
+            };
+            let column: Vec<f64> = inliers.all().iter().map(part).collect();
+            let (rest, _) = projection.off(&column);
+            let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };
+            square = dot(&rest, &rest);
+            if square < 1e-6 * dot(&column, &column) || square.is_nan() {
+                return None;
+            }
+            let step = dot(&rest, &residuals) / square;
+            let left: Vec<f64> = residuals.iter().zip(&column).map(|(e, c)| e - step * c).collect();
+            let motion = projection.off(&left).1;
+            let mut share = 1.0;
+            let better = loop {
+                let moved = motion.applied(&network, -share);
+                let next = corrected(size + share * step);
+                let now = truncated_cost(&next, &moved, self.deviation);
+                if now < cost {
+                    break Some((moved, next, now));
+                }
+                share *= 0.4;
+                if share < 0.05 {
+                    break None;
+                }
+            };
+            let Some((moved, next, now)) = better else { break };
+            let gain = cost - now;
+            (network, observations, cost, size) = (moved, next, now, size + share * step);
+            if gain < 1e-3 {
+                break;
+            }
+        }
+        // Both costs with the deviation that is left with the error in the model.
+        let with_error = observations.beside(self.observations.others() + 1);
+        let deviation = inlier_deviation(&with_error, &network, self.deviation, self.limit).min(self.deviation);
+        let (before, after) =
+            (refit(self.observations, self.base, deviation).1, truncated_cost(&with_error, &network, deviation));
+        let kept = with_error.all().iter().filter(|o| o.residual(&network).abs() <= self.limit * deviation).count();
+        let redundancy = kept.saturating_sub(with_error.unknowns());
+        if redundancy < 4 {
+            return None;
+        }
+        // As in the score test: the tail of the distribution of Beta, and with the spread of the
+        // receiver's own residuals.
+        let tail = |fall: f64| 0.5 * redundancy as f64 * (2.0 * fall.max(0.0) / redundancy as f64).ln_1p();
+        let own = spread_of_receiver(&with_error, &network, fault.receiver).max(deviation);
+        let gain = tail(before - after).min(tail(0.5 * size * size * square / (own * own)));
+        Some(Found { fault: Fault { size: [size, 0.0], gain, ..fault }, network })
+    }
+}
+
+/// One receiver against all transmitters.
+struct Local {
+    /// Transmitter, its position, the distance measured, one over its deviation.
+    sights: Vec<(usize, [f64; 2], f64, f64)>,
+    receiver: usize,
+    start: [f64; 2],
+    transmitters: usize,
+    deviation: f64,
+}
+
+/// A receiver located with its error.
+struct Located {
+    position: [f64; 2],
+    fault: Fault,
+    /// Truncated cost of its measurements.
+    cost: f64,
+}
+
+impl Local {
+    fn new(observations: &Observations, network: &Network, receiver: usize, deviation: f64) -> Local {
+        let sight = |o: &Observation| {
+            let j = o.transmitter;
+            (j, network.transmitters[j], o.value - network.offsets[j], o.precision)
+        };
+        Local {
+            sights: observations.of_receiver(receiver).map(sight).collect(),
+            receiver,
+            start: network.receivers[receiver],
+            transmitters: observations.transmitters,
+            deviation,
+        }
+    }
+
+    /// The jump that fits best.
+    fn jump(&self) -> Option<Located> {
+        let last = self.sights.len().checked_sub(SIDE).filter(|&last| last > SIDE)?;
+        let tried = (last - SIDE + 1).min(JUMPS);
+        let at = |k: usize| SIDE + k * (last - SIDE) / tried.max(2).saturating_sub(1);
+        let located = (0..tried).filter_map(|k| self.locate(self.fault_at(at(k))));
+        let coarse = located.min_by(|a, b| a.cost.total_cmp(&b.cost))?;
+        if tried == last - SIDE + 1 {
+            return Some(coarse);
+        }
+        let place = self.sights.iter().position(|(j, ..)| *j == coarse.fault.from)?;
+        let around = (last - SIDE) / tried + 1;
+        let near = (place.saturating_sub(around).max(SIDE)..=(place + around).min(last))
+            .filter_map(|k| self.locate(self.fault_at(k)));
+        near.chain([coarse]).min_by(|a, b| a.cost.total_cmp(&b.cost))
+    }
+
+    fn fault_at(&self, k: usize) -> Fault {
+        Fault {
+            receiver: self.receiver,
+            kind: ReceiverErrorKind::Jump,
+            from: self.sights[k].0,
+            size: [0.0; 2],
+            gain: 0.0,
+        }
+    }
+
+    /// Position and size of the error together: reweighted least squares whose loss starts as wide as
+    /// the residuals.
+    fn locate(&self, mut fault: Fault) -> Option<Located> {
+        let shapes: Vec<f64> = self.sights.iter().map(|s| fault.shape(s.0, self.transmitters)).collect();
+        let residual = |k: usize, at: [f64; 2], size: f64| {
+            let (_, s, length, precision) = self.sights[k];
+            (length - size * shapes[k] - distance(at, s)) * precision
+        };
+        let (mut at, mut size) = (self.start, 0.0);
+        let mut sizes: Vec<f64> = (0..shapes.len()).map(|k| residual(k, at, size).abs()).collect();
+        sizes.sort_by(f64::total_cmp);
+        let least = CAUCHY * self.deviation;
+        let mut scale = sizes.get(sizes.len() * 7 / 10)?.max(least);
+        for _ in 0..STEPS {
+            let loss = Loss { nu: 1.0, scale };
+            let (mut h, mut g) = ([[0.0; 3]; 3], [0.0; 3]);
+            for (k, &shape) in shapes.iter().enumerate() {
+                let (_, s, _, precision) = self.sights[k];
+                let d = distance(at, s).max(1e-300);
+                let e = residual(k, at, size);
+                let w = loss.weight(e);
+                // Derivatives of the residual's opposite.
+                let c = [(at[0] - s[0]) / d * precision, (at[1] - s[1]) / d * precision, shape * precision];
+                for a in 0..3 {
+                    g[a] += w * e * c[a];
+                    for b in 0..3 {
+                        h[a][b] += w * c[a] * c[b];
+                    }
+                }
+            }
+            for (a, row) in h.iter_mut().enumerate() {
+                row[a] *= 1.0 + 1e-6;
+            }
+            let step = solve3(&h, &g)?;
+            at = [at[0] + step[0], at[1] + step[1]];
+            size += step[2];
+            let moved = step.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+            if scale == least && moved < 1e-3 * self.deviation {
+                break;
+            }
+            scale = (scale * ANNEAL).max(least);
+        }
+        let cost = |e: f64| (0.5 * (e / self.deviation).powi(2)).min(OUTLIER_COST);
+        let cost = (0..shapes.len()).map(|k| cost(residual(k, at, size))).sum();
+        fault.size = [size, 0.0];
+        (at[0].is_finite() && at[1].is_finite() && size.is_finite()).then_some(Located { position: at, fault, cost })
+    }
+}
