@@ -50,9 +50,9 @@ impl Case {
             }
             "clocks" => {
                 for sigma in [Some(NOISE), None] {
-                    for delays in [0.1, 1.0, 5.0] {
-                        let name = format!("10r/30s, clocks {delays} m apart, sigma {sigma:?}");
-                        let mut case = Case::new(name, 10, 30);
+                    for (transmitters, delays) in [(30, 0.1), (30, 1.0), (30, 5.0), (20, 2.0)] {
+                        let name = format!("10r/{transmitters}s, clocks {delays} m apart, sigma {sigma:?}");
+                        let mut case = Case::new(name, 10, transmitters);
                         case.simulate.delays = delays;
                         (case.calibrate.receiver_delays, case.calibrate.sigma) = (ReceiverDelays::All, sigma);
                         all.push(case);
@@ -142,10 +142,18 @@ impl Case {
                 .filter(|_| self.calibrate.receiver_delays != ReceiverDelays::All)
                 .map(|e| format!("{} {:?} {:.3} gain {:.1}", e.receiver, e.kind, e.size, e.gain))
                 .collect();
+            let simulation = self.simulation(trial.seed);
+            let costs = [
+                found.residuals.iter().flatten().flatten().copied().collect(),
+                simulation.network.residuals(&simulation.pseudoranges),
+            ]
+            .map(|residuals: Vec<f64>| residuals.iter().map(|e| (0.5 * (e / NOISE).powi(2)).min(15.0)).sum::<f64>());
             println!(
-                "    seed {}: error {:.4} m, bound {:.4} m, largest deviation {std:.2e}, sigma {:.4}, redundancy {}, {} of {} starts, unique {}, \
+                "    seed {}: cost {:.1}, unfitted truth {:.1}, error {:.4} m, bound {:.4} m, largest deviation {std:.2e}, sigma {:.4}, redundancy {}, {} of {} starts, unique {}, \
                  from the truth {:?}, {errors:?}",
                 trial.seed,
+                costs[0],
+                costs[1],
                 trial.receiver_rms.unwrap_or(f64::NAN),
                 trial.bound,
                 found.sigma,

@@ -62,8 +62,9 @@ pub struct Calibration {
     /// What the covariances are relative to.
     pub gauge: Cow<'static, str>,
     /// Whether no other network that was found explains the measurements about as well, more than
-    /// one or two starts of the search found this one, and no receiver shows an error of its own
-    /// that was left in.
+    /// one or two starts of the search found this one, its receivers are determined, none with a
+    /// deviation larger than the network, and no receiver shows an error of its own that was left
+    /// in.
     pub unique: bool,
     /// Whether that holds for the receivers: in other networks only transmitters lie elsewhere.
     pub unique_receivers: bool,

@@ -5,15 +5,18 @@ use faer::Mat;
 use faer::prelude::Solve;
 use hc::Monitor;
 
+use super::clocks::middle_delays;
 use super::deviation::{inlier_deviation, spread_of_residuals};
-use super::finish::finish;
+use super::finish::{CAUCHY, finish};
 use super::options::{CalibrateError, CalibrateOptions, ReceiverDelays, check};
+use super::ranking::truncated_cost;
 use super::receiver_errors::{Fault, ReceiverErrorKind, find};
 use super::refits::refits;
+use super::same::same;
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
-use crate::refine::{Motion, Projection, Refined};
+use crate::refine::{Motion, Projection, RefineOptions, Refined, Refiner, SEARCH};
 
 /// Rounds of looking for further errors once those found are taken out.
 const ROUNDS: usize = 6;
@@ -21,8 +24,14 @@ const ROUNDS: usize = 6;
 /// Steps of estimating the errors and refining the network in turns.
 const STEPS: usize = 12;
 
-/// Networks whose delays are estimated where all receivers have one.
-const CANDIDATES: usize = 6;
+/// Networks whose delays are estimated to the end where all receivers have one.
+const CANDIDATES: usize = 10;
+
+/// Deviations, in those that the residuals have, at which such a network is fitted by least squares.
+const RELAXED: [f64; 3] = [10.0, 3.0, 1.0];
+
+/// Steps of bringing a network and the delays of all receivers near their best fit.
+const COARSE: usize = 24;
 
 /// What the measurements are and how they are refined.
 pub(super) struct Clearing<'a> {
@@ -46,6 +55,9 @@ pub(super) struct Cleared {
     /// Errors that were found and left in.
     pub(super) left: Vec<Fault>,
 }
+
+/// Errors with their sizes, the network beside them, and the deviation that is left.
+type Estimated = (Vec<Fault>, Refined, f64);
 
 impl Clearing<'_> {
     /// Looks for errors of receivers in the best of some networks and takes them out as the options
@@ -128,15 +140,27 @@ impl Clearing<'_> {
         };
         // The mean of all delays cannot be told from the offsets.
         let unknown: Vec<Fault> = (1..receivers).map(|i| delay(i, middle[i] - middle[0])).collect();
+        // The search took the first receiver's too: what it says of offsets lacks that.
+        let networks = now.ranked.into_iter().map(|mut refined| {
+            refined.network.offsets.iter_mut().for_each(|offset| *offset += middle[0]);
+            refined
+        });
         let unknowns = now.observations.unknowns() + unknown.len();
         if now.observations.len() < unknowns {
             return Err(CalibrateError::Delays { measurements: now.observations.len(), unknowns, receivers });
         }
-        let mut all = Vec::new();
-        for candidate in now.ranked.into_iter().take(CANDIDATES) {
-            all.push(self.estimate(candidate, now.deviation, unknown.clone())?);
+        let mut near = Vec::new();
+        for candidate in networks {
+            near.push(self.approach(candidate, unknown.clone())?);
         }
-        all.sort_by(|a, b| a.1.objective.total_cmp(&b.1.objective));
+        self.rank_by_cost(&mut near);
+        let mut all = Vec::new();
+        for candidate in near.into_iter().take(CANDIDATES) {
+            let (faults, refined, deviation) = self.relaxed(candidate)?;
+            all.push(self.estimate(refined, deviation, faults)?);
+        }
+        self.rank_by_cost(&mut all);
+        let all = merged(all);
         let (mut taken, _, deviation) = all[0].clone();
         let mean = taken.iter().map(|fault| fault.size[0]).sum::<f64>() / receivers as f64;
         taken.insert(0, delay(0, 0.0));
@@ -151,14 +175,78 @@ impl Clearing<'_> {
                 *offset += mean;
             }
         }
-        Ok(Cleared {
-            measured,
-            observations,
-            ranked: super::same::distinct(ranked, CANDIDATES),
-            deviation,
-            taken,
-            left: Vec::new(),
-        })
+        Ok(Cleared { measured, observations, ranked, deviation, taken, left: Vec::new() })
+    }
+
+    /// Sizes of errors and a network brought near their best fit, with the deviation that is left:
+    /// the loss is as wide as the residuals, which are those of wrong sizes at first.
+    fn approach(&self, mut best: Refined, mut faults: Vec<Fault>) -> Result<Estimated, CalibrateError> {
+        let count = linear(&faults).count();
+        let least = self.known.unwrap_or(self.floor);
+        let mut deviation = least;
+        for _ in 0..COARSE {
+            check(self.monitor)?;
+            let observations = Observations::new(&self.corrected(&faults), |_, _| true).beside(count);
+            deviation = spread_of_residuals(&observations, &best.network).max(least);
+            let refine = RefineOptions { scale: Some(CAUCHY * deviation), steps: 8, rounds: 1, ..SEARCH };
+            let refined = Refiner::new(&observations, 1.0).heeding(self.monitor).refine(best.network, &refine);
+            best = Refined { starts: best.starts, ..refined };
+            let wide = inlier_deviation(&observations, &best.network, deviation, self.options.inlier_threshold);
+            let Some(steps) = self.step(&observations, &best.network, wide, &faults) else { break };
+            let mut largest = 0.0f64;
+            for (fault, step) in linear_mut(&mut faults).zip(steps) {
+                fault.size[0] += step;
+                largest = largest.max(step.abs());
+            }
+            if largest < 1e-2 * deviation {
+                break;
+            }
+        }
+        Ok((faults, best, deviation))
+    }
+
+    /// The same by least squares, at first over measurements that were given up too: a network may
+    /// have bent itself to a wrong delay. What it was, where that costs less.
+    fn relaxed(&self, near: Estimated) -> Result<Estimated, CalibrateError> {
+        let (mut faults, mut refined, deviation) = near.clone();
+        let count = linear(&faults).count();
+        for factor in RELAXED {
+            for _ in 0..STEPS {
+                check(self.monitor)?;
+                let observations = Observations::new(&self.corrected(&faults), |_, _| true).beside(count);
+                let wide = factor * deviation;
+                let reach = self.options.inlier_threshold * wide;
+                let inliers = observations.subset(|o| o.residual(&refined.network).abs() <= reach);
+                let refine = RefineOptions { scale: Some(wide), steps: 8, rounds: 0, ..SEARCH };
+                refined.network = Refiner::new(&inliers, f64::INFINITY).refine(refined.network, &refine).network;
+                let Some(steps) = self.step(&observations, &refined.network, wide, &faults) else { return Ok(near) };
+                let mut largest = 0.0f64;
+                for (fault, step) in linear_mut(&mut faults).zip(steps) {
+                    fault.size[0] += step;
+                    largest = largest.max(step.abs());
+                }
+                if largest < 1e-2 * deviation {
+                    break;
+                }
+            }
+        }
+        let cost = |faults: &[Fault], network: &Network| {
+            truncated_cost(&Observations::new(&self.corrected(faults), |_, _| true), network, deviation)
+        };
+        let better = cost(&faults, &refined.network) < cost(&near.0, &near.1.network);
+        Ok(if better { (faults, refined, deviation) } else { near })
+    }
+
+    /// Sorts networks, each with its errors, by the truncated cost with the smallest deviation that
+    /// one of them leaves: with deviations of their own the one that fits worst would look best.
+    fn rank_by_cost(&self, all: &mut [Estimated]) {
+        let least = all.iter().map(|(.., deviation)| *deviation).fold(f64::INFINITY, f64::min);
+        let deviation = self.known.unwrap_or(least).max(self.floor);
+        for (faults, refined, _) in all.iter_mut() {
+            let observations = Observations::new(&self.corrected(faults), |_, _| true);
+            refined.objective = truncated_cost(&observations, &refined.network, deviation);
+        }
+        all.sort_by(|a, b| a.1.objective.total_cmp(&b.1.objective));
     }
 
     /// Sizes of errors beside a network: steps of least squares for the errors with the network,
@@ -168,7 +256,7 @@ impl Clearing<'_> {
         mut best: Refined,
         mut deviation: f64,
         mut faults: Vec<Fault>,
-    ) -> Result<(Vec<Fault>, Refined, f64), CalibrateError> {
+    ) -> Result<Estimated, CalibrateError> {
         let count = linear(&faults).count();
         for step in 0..STEPS {
             check(self.monitor)?;
@@ -236,50 +324,17 @@ impl Clearing<'_> {
     }
 }
 
-/// A first guess of the delays of all receivers: a transmitter on the far side of one of two
-/// receivers makes their difference as large as one on the far side of the other makes it small, so
-/// that the middle of the differences is the delay between them. Zero in the mean.
-fn middle_delays(measured: &Pseudoranges) -> Vec<f64> {
-    let (m, n) = (measured.receivers(), measured.transmitters());
-    let mut delays = vec![0.0; m];
-    let mut between = vec![None; m * m];
-    for a in 0..m {
-        for b in a + 1..m {
-            let common = (0..n).filter_map(|j| Some(measured.get(a, j)? - measured.get(b, j)?));
-            let mut differences: Vec<f64> = common.collect();
-            if differences.len() < 3 {
-                continue;
-            }
-            differences.sort_by(f64::total_cmp);
-            // Gross errors sit at the ends.
-            let tenth = differences.len() / 10;
-            let middle = 0.5 * (differences[tenth] + differences[differences.len() - 1 - tenth]);
-            between[a * m + b] = Some(middle);
-            between[b * m + a] = Some(-middle);
+/// The first of each kind of network, with the starts of all of its kind: they were apart only for
+/// as long as the delays were wrong.
+fn merged(sorted: Vec<Estimated>) -> Vec<Estimated> {
+    let mut kept: Vec<Estimated> = Vec::new();
+    for next in sorted {
+        match kept.iter_mut().find(|k| same(&k.1.network, &next.1.network)) {
+            Some(first) => first.1.starts += next.1.starts,
+            None => kept.push(next),
         }
     }
-    // Least squares over all pairs, receiver by receiver.
-    for _ in 0..50 {
-        for a in 0..m {
-            let pairs = (0..m).filter_map(|b| Some(between[a * m + b]? + delays[b]));
-            let (sum, count) = pairs.fold((0.0, 0usize), |(sum, count), x| (sum + x, count + 1));
-            if count > 0 {
-                delays[a] = sum / count as f64;
-            }
-        }
-        let mean = delays.iter().sum::<f64>() / m as f64;
-        for delay in delays.iter_mut() {
-            *delay -= mean;
-        }
-    }
-    delays
-}
-
-/// The measurements without these guesses.
-pub(super) fn without_middle_delays(measured: &Pseudoranges) -> Pseudoranges {
-    let (delays, n) = (middle_delays(measured), measured.transmitters());
-    let values = measured.values().iter().enumerate().map(|(k, value)| value - delays[k / n]).collect();
-    measured.with_values(values)
+    kept
 }
 
 /// Errors that are unknowns beside the network; of a move measurements are left out instead.

@@ -2,6 +2,7 @@
 //! many starts, refine the best, say how sure the result is.
 
 mod calibration;
+mod clocks;
 mod compare;
 mod delays;
 mod deviation;
@@ -40,7 +41,8 @@ pub use unfinished::Unfinished;
 use crate::degeneracy::{LEAST_PER_TRANSMITTER, Usable, list, usable};
 use crate::median::median;
 use crate::pseudoranges::Pseudoranges;
-use delays::{Cleared, Clearing, without_middle_delays};
+use clocks::{on_a_grid, without_middle_delays};
+use delays::{Cleared, Clearing};
 use hc::Monitor;
 use hold::{Free, Held};
 use impossible::without_impossible;
@@ -91,12 +93,24 @@ pub fn calibrate_with(
     } else {
         None
     };
-    let (centred, shifts) = centre(&measured.select(&usable.receivers, &usable.transmitters));
     let delayed = options.receiver_delays == ReceiverDelays::All;
-    let sought = if delayed { without_middle_delays(&centred) } else { centred.clone() };
+    let selected = measured.select(&usable.receivers, &usable.transmitters);
+    let (centred, shifts) = if delayed {
+        // What is subtracted does not depend on the delays.
+        let (_, shifts) = centre(&without_middle_delays(&selected));
+        (selected.shifted(&shifts), shifts)
+    } else {
+        centre(&selected)
+    };
+    let sought = if delayed { on_a_grid(&without_middle_delays(&centred)) } else { centred.clone() };
     let noise = known.filter(|_| !delayed);
     let found = match &local {
         Some((layout, places)) => layout.refine(&sought, places, noise, options, monitor),
+        // What fits best before the delays are known says little.
+        None if delayed => {
+            let options = CalibrateOptions { alternative_margin: 1e9, ..options.clone() };
+            search_whole(&sought, noise, &options, sources, monitor)
+        }
         None => search_whole(&sought, noise, options, sources, monitor),
     };
     let (m, n) = (measured.receivers(), measured.transmitters());

@@ -411,6 +411,34 @@ mod tests {
     }
 
     #[test]
+    fn the_network_does_not_depend_on_how_far_clocks_are_apart() {
+        for seed in [3] {
+            let at = |delays: f64| {
+                let mut options =
+                    SimulateOptions { receivers: 10, transmitters: 30, delays, seed, ..Default::default() };
+                options.noise = SIGMA;
+                let simulation = simulate(&options).unwrap();
+                let options = CalibrateOptions {
+                    receiver_delays: ReceiverDelays::All,
+                    sigma: Some(SIGMA),
+                    seed,
+                    ..Default::default()
+                };
+                let found = calibrate(&simulation.pseudoranges, &options).unwrap();
+                let receivers: Vec<[f64; 2]> = found.receivers.iter().flatten().copied().collect();
+                (align(&receivers, &simulation.network.receivers, false).unwrap().rms, receivers, found.unique)
+            };
+            let (error, first, unique) = at(0.1);
+            assert!(unique && error < 5.0 * SIGMA, "seed {seed}: {error}");
+            for delays in [5.0, 1000.0] {
+                let (_, receivers, unique) = at(delays);
+                let apart = align(&receivers, &first, false).unwrap().rms;
+                assert!(unique && apart < 1e-3 * SIGMA, "seed {seed}, {delays}: {apart}");
+            }
+        }
+    }
+
+    #[test]
     fn receivers_without_a_common_clock_are_calibrated() {
         for seed in 0..3 {
             let (found, error) = run(None, 2.0, ReceiverDelays::All, seed);

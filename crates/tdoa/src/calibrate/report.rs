@@ -160,6 +160,8 @@ impl Solved<'_> {
                 if receivers_agree { ", with the same receivers and other transmitters" } else { "" },
             ));
         }
+        let size = best.size();
+        let placed = uncertainty.receivers.iter().all(|c| (c[0][0] + c[1][1]).max(0.0).sqrt() <= size);
         let agreeing = self.ranked[0].starts;
         self.warn_of_receivers(options, &mut warnings);
         let settled = match &self.weak {
@@ -181,6 +183,7 @@ impl Solved<'_> {
                 agreeing, self.starts
             ));
         }
+        let sure = settled && placed && determined && !transposed && self.left.is_empty();
         let located = |c: &Option<[[f64; 3]; 3]>| c.map(|c| [[c[0][0], c[0][1]], [c[1][0], c[1][1]]]);
         let transmitters: Vec<_> = uncertainty.transmitters.iter().map(located).collect();
         let offset_std: Vec<_> = uncertainty.transmitters.iter().map(|c| c.map(|c| c[2][2].max(0.0).sqrt())).collect();
@@ -216,9 +219,9 @@ impl Solved<'_> {
                     "relative to the receivers of known position, which have no error, at the estimated propagation speed"
                 }
             }),
-            unique: alternatives.is_empty() && settled && self.left.is_empty() && !transposed,
-            unique_receivers: receivers_agree && settled && self.left.is_empty() && !transposed,
-            unique_transmitters: transmitters_agree && settled && self.left.is_empty() && !transposed,
+            unique: alternatives.is_empty() && sure,
+            unique_receivers: receivers_agree && sure,
+            unique_transmitters: transmitters_agree && sure,
             alternatives,
             planar,
             determined,
