@@ -29,6 +29,10 @@ pub struct Sight {
     pub precision: f64,
 }
 
+/// Starts that are polished, and places of one node that are told.
+const MOST_STARTS: usize = 24;
+const MOST_PLACES: usize = 5;
+
 /// A node found by multilateration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Located {
@@ -66,6 +70,43 @@ pub fn receiver(sights: &[Sight], loss: &Loss) -> Option<Located> {
         }
     });
     best.polish(sights, false, loss)
+}
+
+/// Places of a transmitter that a few sights of at least three receivers agree on, each polished
+/// over all sights: the minima of the loss, cheapest first.
+pub(crate) fn transmitters(sights: &[Sight], loss: &Loss) -> Vec<Located> {
+    let mut starts = Vec::new();
+    for_subsets(sights.len(), 3, |s| {
+        let found = from_three(&sights[s[0]], &sights[s[1]], &sights[s[2]]).into_iter().flatten();
+        starts.extend(found.map(|(p, offset)| Located { position: p, offset, cost: cost(sights, p, offset, loss) }));
+    });
+    minima(sights, starts, true, loss)
+}
+
+/// As [`transmitters`], places of a receiver from sights of at least two transmitters.
+pub(crate) fn receivers(sights: &[Sight], loss: &Loss) -> Vec<Located> {
+    let mut starts = Vec::new();
+    for_subsets(sights.len(), 2, |s| {
+        let found = from_two(&sights[s[0]], &sights[s[1]]).into_iter().flatten();
+        starts.extend(found.map(|p| Located { position: p, offset: 0.0, cost: cost(sights, p, 0.0, loss) }));
+    });
+    minima(sights, starts, false, loss)
+}
+
+/// Different places that the cheapest starts lead to.
+fn minima(sights: &[Sight], mut starts: Vec<Located>, with_offset: bool, loss: &Loss) -> Vec<Located> {
+    starts.retain(|start| start.cost.is_finite());
+    starts.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    let mut kept: Vec<Located> = Vec::new();
+    for start in starts.into_iter().take(MOST_STARTS) {
+        let place = polish(sights, start, with_offset, loss);
+        if !kept.iter().any(|k| distance(k.position, place.position) < loss.scale) {
+            kept.push(place);
+        }
+    }
+    kept.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    kept.truncate(MOST_PLACES);
+    kept
 }
 
 /// Sum of the loss over the sights.

@@ -62,7 +62,7 @@ pub struct Calibration {
     /// What the covariances are relative to.
     pub gauge: Cow<'static, str>,
     /// Whether no other network that was found explains the measurements about as well, more than
-    /// one or two starts of the search found this one, its receivers are determined, none with a
+    /// one or two starts of the search found this one, the data fit, its receivers are determined, none with a
     /// deviation larger than the network, and no receiver shows an error of its own that was left
     /// in.
     pub unique: bool,

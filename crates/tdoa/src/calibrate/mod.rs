@@ -20,6 +20,7 @@ mod receiver_errors;
 mod refits;
 mod report;
 mod report_errors;
+mod rivals;
 mod same;
 mod search;
 mod submaps;

@@ -183,7 +183,7 @@ impl Solved<'_> {
                 agreeing, self.starts
             ));
         }
-        let sure = settled && placed && determined && !transposed && self.left.is_empty();
+        let sure = settled && planar && placed && determined && !transposed && self.left.is_empty();
         let located = |c: &Option<[[f64; 3]; 3]>| c.map(|c| [[c[0][0], c[0][1]], [c[1][0], c[1][1]]]);
         let transmitters: Vec<_> = uncertainty.transmitters.iter().map(located).collect();
         let offset_std: Vec<_> = uncertainty.transmitters.iter().map(|c| c.map(|c| c[2][2].max(0.0).sqrt())).collect();

@@ -6,6 +6,7 @@ use super::hypotheses::{Hypotheses, RandomRestarts};
 use super::minimal::MinimalHypotheses;
 use super::near::{Neighbour, neighbours};
 use super::options::{CalibrateError, CalibrateOptions, check};
+use super::rivals::with_rivals;
 use super::search::Search;
 use super::unfinished::Unfinished;
 use crate::degeneracy::{Usable, usable};
@@ -92,6 +93,11 @@ pub(super) fn search_whole(
     let first = known.unwrap_or(scale * to_deviation).max(refine.floor);
     let (ranked, deviation) = finish(&observations, whole, first, known.is_some(), refine.floor, options, monitor)
         .map_err(|error| error.leaving(&so_far))?;
+    let ranked = if complete_part {
+        with_rivals(&observations, ranked, deviation, options, monitor).map_err(|error| error.leaving(&so_far))?
+    } else {
+        ranked
+    };
     let near = if complete_part { found.near } else { Vec::new() };
     let neighbours = neighbours(&observations, &ranked[0], near, deviation);
     Ok(Sought { ranked, neighbours, deviation, floor: refine.floor, starts: found.starts, weak: None })

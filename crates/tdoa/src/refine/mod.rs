@@ -21,4 +21,4 @@ pub use extend::PartialNetwork;
 pub(crate) use extend::extend;
 pub(crate) use projection::{Motion, Projection};
 pub(crate) use refiner::{RefineOptions, Refined, Refiner, SEARCH, residuals};
-pub(crate) use reseed::place_transmitters;
+pub(crate) use reseed::{place_transmitters, places_of_receiver, places_of_transmitter};

@@ -53,6 +53,30 @@ pub(crate) fn reseed(observations: &Observations, network: &mut Network, loss: &
     moved
 }
 
+/// Places of a transmitter that all others leave it, whatever they cost.
+pub(crate) fn places_of_transmitter(
+    observations: &Observations,
+    network: &Network,
+    j: usize,
+    loss: &Loss,
+) -> Vec<Located> {
+    let mut sights = Vec::new();
+    sights_of_transmitter(observations, network, j, &mut sights);
+    multilateration::transmitters(&sights, loss)
+}
+
+/// Places of a receiver that all others leave it, whatever they cost.
+pub(crate) fn places_of_receiver(
+    observations: &Observations,
+    network: &Network,
+    i: usize,
+    loss: &Loss,
+) -> Vec<Located> {
+    let mut sights = Vec::new();
+    sights_of_receiver(observations, network, i, &mut sights);
+    multilateration::receivers(&sights, loss)
+}
+
 fn better(found: Option<Located>, now: f64) -> Option<Located> {
     found.filter(|f| f.cost < now - GAIN)
 }
