@@ -36,6 +36,9 @@ const PORTION: usize = 1 << 9;
 const EARLY: f64 = 1e-3;
 /// The relative error of a singular end to which the tracker came, though it is not sure of it.
 const REACHED: f64 = 1e-6;
+/// Relative distance to which refinement moves the end of a path at most: beside a component Newton's
+/// method leads away to regular solutions.
+const ARRIVED: f64 = 1e-5;
 /// Fewer lost paths are never given up.
 const HOPELESS: usize = 32;
 /// Ends that one thread refines at a time, at least.
@@ -220,7 +223,8 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
                     match result.end {
                         PathEnd::Success => {
                             let refined = refiner.refine(target, point);
-                            if refiner.is_regular(target, &refined) {
+                            let near = relative_distance(&refined.point, point) < ARRIVED;
+                            if near && refiner.is_regular(target, &refined) {
                                 RecordEnd::Regular(refined)
                             } else {
                                 // Once more up to where the endgame begins.
