@@ -18,8 +18,8 @@ pub struct Calibration {
     /// Names of the transmitters.
     pub transmitter_names: Vec<String>,
     /// Positions of the receivers; `None` also for a receiver most of whose measurements are
-    /// outliers, where those left may agree by chance. Unless another frame is asked for, the first receiver is the origin, the second
-    /// lies on the positive x axis and the third above it.
+    /// outliers, where those left may agree by chance. Unless another frame is asked for, the first
+    /// receiver is the origin, the second lies on the positive x axis and the third above it.
     pub receivers: Vec<Option<[f64; 2]>>,
     /// Positions of the transmitters.
     pub transmitters: Vec<Option<[f64; 2]>>,
@@ -62,9 +62,9 @@ pub struct Calibration {
     /// What the covariances are relative to.
     pub gauge: Cow<'static, str>,
     /// Whether no other network that was found explains the measurements about as well, more than
-    /// one or two starts of the search found this one, the data fit, its receivers are determined, none with a
-    /// deviation larger than the network, and no receiver shows an error of its own that was left
-    /// in.
+    /// one or two starts of the search found this one, the data fit, its receivers are determined,
+    /// none with a deviation larger than the network, and no receiver shows an error of its own that
+    /// was left in.
     pub unique: bool,
     /// Whether that holds for the receivers: in other networks only transmitters lie elsewhere.
     pub unique_receivers: bool,

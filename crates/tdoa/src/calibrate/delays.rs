@@ -132,11 +132,8 @@ impl Clearing<'_> {
         let receivers = self.measured.receivers();
         let middle = middle_delays(self.measured);
         let delay = |receiver: usize, size: f64| Fault {
-            receiver,
-            kind: ReceiverErrorKind::Delay,
-            from: 0,
             size: [size, 0.0],
-            gain: 0.0,
+            ..Fault::new(receiver, ReceiverErrorKind::Delay, 0)
         };
         // The mean of all delays cannot be told from the offsets.
         let unknown: Vec<Fault> = (1..receivers).map(|i| delay(i, middle[i] - middle[0])).collect();
@@ -193,12 +190,7 @@ impl Clearing<'_> {
             best = Refined { starts: best.starts, ..refined };
             let wide = inlier_deviation(&observations, &best.network, deviation, self.options.inlier_threshold);
             let Some(steps) = self.step(&observations, &best.network, wide, &faults) else { break };
-            let mut largest = 0.0f64;
-            for (fault, step) in linear_mut(&mut faults).zip(steps) {
-                fault.size[0] += step;
-                largest = largest.max(step.abs());
-            }
-            if largest < 1e-2 * deviation {
+            if moved(&mut faults, steps) < 1e-2 * deviation {
                 break;
             }
         }
@@ -220,12 +212,7 @@ impl Clearing<'_> {
                 let refine = RefineOptions { scale: Some(wide), steps: 8, rounds: 0, ..SEARCH };
                 refined.network = Refiner::new(&inliers, f64::INFINITY).refine(refined.network, &refine).network;
                 let Some(steps) = self.step(&observations, &refined.network, wide, &faults) else { return Ok(near) };
-                let mut largest = 0.0f64;
-                for (fault, step) in linear_mut(&mut faults).zip(steps) {
-                    fault.size[0] += step;
-                    largest = largest.max(step.abs());
-                }
-                if largest < 1e-2 * deviation {
+                if moved(&mut faults, steps) < 1e-2 * deviation {
                     break;
                 }
             }
@@ -275,12 +262,7 @@ impl Clearing<'_> {
             (best, deviation) = (ranked.swap_remove(0), next);
             let wide = inlier_deviation(&observations, &best.network, wide, self.options.inlier_threshold);
             let Some(steps) = self.step(&observations, &best.network, wide, &faults) else { break };
-            let mut largest = 0.0f64;
-            for (fault, step) in linear_mut(&mut faults).zip(steps) {
-                fault.size[0] += step;
-                largest = largest.max(step.abs());
-            }
-            if largest < 1e-3 * deviation {
+            if moved(&mut faults, steps) < 1e-3 * deviation {
                 break;
             }
         }
@@ -340,6 +322,16 @@ fn merged(sorted: Vec<Estimated>) -> Vec<Estimated> {
 /// Errors that are unknowns beside the network; of a move measurements are left out instead.
 fn linear(faults: &[Fault]) -> impl Iterator<Item = &Fault> {
     faults.iter().filter(|fault| fault.kind != ReceiverErrorKind::Move)
+}
+
+/// Changes the sizes of the errors that have one by these steps; the largest step.
+fn moved(faults: &mut [Fault], steps: Vec<f64>) -> f64 {
+    let mut largest = 0.0f64;
+    for (fault, step) in linear_mut(faults).zip(steps) {
+        fault.size[0] += step;
+        largest = largest.max(step.abs());
+    }
+    largest
 }
 
 fn linear_mut(faults: &mut [Fault]) -> impl Iterator<Item = &mut Fault> {

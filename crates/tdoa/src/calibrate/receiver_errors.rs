@@ -70,6 +70,11 @@ pub(super) struct Fault {
 }
 
 impl Fault {
+    /// One of no size yet.
+    pub(super) fn new(receiver: usize, kind: ReceiverErrorKind, from: usize) -> Fault {
+        Fault { receiver, kind, from, size: [0.0; 2], gain: 0.0 }
+    }
+
     pub(super) fn length(&self) -> f64 {
         if self.kind == ReceiverErrorKind::Move { self.size[0].hypot(self.size[1]) } else { self.size[0] }
     }
@@ -189,7 +194,7 @@ impl Test<'_> {
             if row.len() < 3 {
                 continue;
             }
-            let fault = |kind, from| Fault { receiver, kind, from, size: [0.0; 2], gain: 0.0 };
+            let fault = |kind, from| Fault::new(receiver, kind, from);
             let mut best = [(f64::NEG_INFINITY, 0); 2];
             for at in SIDE..(row.len() + 1).saturating_sub(SIDE) {
                 let from = self.kept.all()[row[at]].transmitter;

@@ -95,10 +95,9 @@ impl Fitting<'_> {
             return Vec::new();
         }
         let local = Local::new(self.observations, &alone, receiver, self.deviation);
-        let fault = |kind, from| Fault { receiver, kind, from, size: [0.0; 2], gain: 0.0 };
         let starts = [
-            local.locate(fault(ReceiverErrorKind::Delay, 0)),
-            local.locate(fault(ReceiverErrorKind::Drift, 0)),
+            local.locate(Fault::new(receiver, ReceiverErrorKind::Delay, 0)),
+            local.locate(Fault::new(receiver, ReceiverErrorKind::Drift, 0)),
             local.jump(),
         ];
         starts
@@ -237,13 +236,7 @@ impl Local {
     }
 
     fn fault_at(&self, k: usize) -> Fault {
-        Fault {
-            receiver: self.receiver,
-            kind: ReceiverErrorKind::Jump,
-            from: self.sights[k].0,
-            size: [0.0; 2],
-            gain: 0.0,
-        }
+        Fault::new(self.receiver, ReceiverErrorKind::Jump, self.sights[k].0)
     }
 
     /// Position and size of the error together: reweighted least squares whose loss starts as wide as
