@@ -49,10 +49,11 @@ pub(super) fn orbits(set: &WitnessSet, given: &Given, seed: u64, monitor: &Monit
             let seed = seed.wrapping_add(round * DIRECTIONS);
             let of_direction = |k| trace(family, &fibre, *unknowns, seed.wrapping_add(k), monitor);
             let found = (0..DIRECTIONS).find_map(of_direction);
-            deviation = found.as_ref().map(|trace| trace.deviation);
-            // A single point of a set that hardly bends seems to move straight.
-            let is_straight = |trace: &Trace| fibre.len() > 1 || trace.follows_a_plane(given, *unknowns);
-            if found.is_some_and(|trace| trace.deviation < PASSED && is_straight(&trace)) || monitor.is_cancelled() {
+            // A single point of a set that hardly bends seems to move straight: that tells nothing.
+            let tells =
+                |trace: &Trace| trace.deviation >= PASSED || fibre.len() > 1 || trace.follows_a_plane(given, *unknowns);
+            deviation = found.filter(tells).map(|trace| trace.deviation);
+            if deviation.is_some_and(|deviation| deviation < PASSED) || monitor.is_cancelled() {
                 break;
             }
             let known = fibre.len();
@@ -158,5 +159,25 @@ mod tests {
         };
         assert!(deviation(&points) < PASSED);
         assert!(deviation(&points[..1]) > 0.1);
+    }
+
+    /// A line is one component; one point of a parabola as flat as a line to all digits nearby is none.
+    #[test]
+    fn a_point_of_a_flat_curve_is_no_line() {
+        let whole = |text: &str, y: fn(Complex64) -> Complex64| {
+            let system: poly::System = text.parse().unwrap();
+            let given = system.expand(&Default::default()).unwrap();
+            let slices = Slices::new(2, 1, 0);
+            let [a, b, c] = slices.parameters()[..] else { panic!("one line") };
+            // On the line, as far as the parabola is flat there.
+            let x = c / (a + b * y(Complex64::from(1.0)));
+            let [set] = &WitnessSet::all(&given, &slices, &[vec![x, y(x)]], 0)[..] else { panic!("one set") };
+            let [orbit] = &orbits(set, &Given::new(&given, vec![0; 2]), 0, &Monitor::default())[..] else {
+                panic!("one orbit")
+            };
+            orbit.is_whole()
+        };
+        assert!(whole("2*x - y", |x| 2.0 * x));
+        assert!(!whole("x^2 - 10000000000000000000000000000*y", |x| x * x * 1e-28));
     }
 }
