@@ -11,7 +11,7 @@
 use faer::Mat;
 use faer::Side;
 
-use super::normal::{backward, forward};
+use super::normal::{Normal, backward, forward};
 use super::refiner::Refiner;
 use crate::loss::Loss;
 use crate::network::Network;
@@ -34,14 +34,25 @@ pub(crate) struct Covariance {
     pub(crate) loose: Vec<usize>,
 }
 
-/// The covariance at `network` of least squares over `observations` with deviation `sigma` (a
-/// factor on the deviations of the measurements where they have their own). `None` if the
-/// decomposition fails.
-pub(crate) fn covariance(observations: &Observations, network: &Network, sigma: f64) -> Option<Covariance> {
-    let m = observations.receivers;
+/// The normal equations reduced to the receivers, inverted.
+pub(super) struct Reduced<'a> {
+    refiner: Refiner<'a>,
+    /// Of all coordinates of the receivers, 2m x 2m.
+    inverse: Mat<f64>,
+    /// Eigenvectors of the normal equations of the free coordinates, by ascending eigenvalue.
+    modes: Mat<f64>,
+    /// Indices of the free coordinates.
+    free: Vec<usize>,
+    /// Eigenvalues that count as zero, and those of them that are rigid motions.
+    zero: usize,
+    rigid: usize,
+}
+
+/// `None` if the decomposition fails.
+pub(super) fn reduced<'a>(observations: &'a Observations, network: &Network, sigma: f64) -> Option<Reduced<'a>> {
     let mut refiner = Refiner::new(observations, f64::INFINITY);
     let normal = refiner.normal_at(network, &Loss { nu: f64::INFINITY, scale: 1.0 });
-    let size = 2 * m;
+    let size = 2 * observations.receivers;
     let lower = normal.schur();
     let free: Vec<usize> = (0..size).filter(|&k| !observations.held()[k / 2]).collect();
     let schur = Mat::from_fn(free.len(), free.len(), |a, b| {
@@ -62,15 +73,44 @@ pub(crate) fn covariance(observations: &Observations, network: &Network, sigma: 
     // Eigenvalues ascend; the three smallest belong to the rigid motions.
     let rigid = if free.len() == size && observations.pins().is_empty() { 3 } else { 0 };
     let zero = (0..free.len()).filter(|&k| values[k] < RANK_TOLERANCE * largest).count().max(rigid);
-    let mut inverse = Mat::<f64>::zeros(size, size);
-    for k in zero..free.len() {
-        let factor = sigma * sigma / values[k];
-        for a in 0..free.len() {
-            for b in 0..free.len() {
-                inverse[(free[a], free[b])] += factor * modes[(a, k)] * modes[(b, k)];
-            }
-        }
+    let mut scaled = modes.clone();
+    for (k, value) in values.iter().enumerate().skip(zero) {
+        scaled.col_as_slice_mut(k).iter_mut().for_each(|x| *x *= sigma * sigma / value);
     }
+    let mut column = vec![0.0; free.len()];
+    let mut inverse = Mat::<f64>::zeros(size, size);
+    for (b, &to) in free.iter().enumerate() {
+        column.fill(0.0);
+        for k in zero..free.len() {
+            let factor = modes[(b, k)];
+            column.iter_mut().zip(scaled.col_as_slice(k)).for_each(|(sum, x)| *sum += x * factor);
+        }
+        free.iter().zip(&column).for_each(|(&a, x)| inverse[(a, to)] = *x);
+    }
+    Some(Reduced { refiner, inverse, modes, free, zero, rigid })
+}
+
+impl Reduced<'_> {
+    /// The covariance of all coordinates of the receivers, 2m x 2m by rows.
+    pub(super) fn joint(&self) -> Vec<f64> {
+        let size = self.inverse.nrows();
+        (0..size * size).map(|k| self.inverse[(k / size, k % size)]).collect()
+    }
+
+    pub(super) fn normal(&self) -> &Normal {
+        self.refiner.normal()
+    }
+}
+
+/// The covariance at `network` of least squares over `observations` with deviation `sigma` (a
+/// factor on the deviations of the measurements where they have their own). `None` if the
+/// decomposition fails.
+pub(crate) fn covariance(observations: &Observations, network: &Network, sigma: f64) -> Option<Covariance> {
+    let m = observations.receivers;
+    let reduced = reduced(observations, network, sigma)?;
+    let (normal, joint) = (reduced.normal(), reduced.joint());
+    let Reduced { inverse, modes, free, zero, rigid, .. } = &reduced;
+    let zero = *zero;
     let receivers = (0..m).map(|i| [0, 1].map(|a| [0, 1].map(|b| inverse[(2 * i + a, 2 * i + b)]))).collect();
     let mut first = 0;
     let mut transmitters = Vec::with_capacity(observations.transmitters);
@@ -110,9 +150,8 @@ pub(crate) fn covariance(observations: &Observations, network: &Network, sigma: 
             sum
         }));
     }
-    let joint = (0..size * size).map(|k| inverse[(k / size, k % size)]).collect();
     let loose =
-        if rigid > 0 { loose(&modes.as_ref(), zero, network) } else { loose_beside_held(&modes.as_ref(), zero, &free) };
+        if *rigid > 0 { loose(&modes.as_ref(), zero, network) } else { loose_beside_held(&modes.as_ref(), zero, free) };
     Some(Covariance { receivers, joint, transmitters, loose })
 }
 

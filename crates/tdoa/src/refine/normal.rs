@@ -18,6 +18,9 @@ use crate::loss::Loss;
 use crate::network::Network;
 use crate::observations::Observations;
 
+/// A transmitter that at most one in this many receivers hear is eliminated from their blocks alone.
+const SPARSE: usize = 4;
+
 /// Buffers for one problem size; nothing is allocated after `new`.
 pub(crate) struct Normal {
     receivers: usize,
@@ -35,6 +38,9 @@ pub(crate) struct Normal {
     /// Three rows: what a transmitter couples to the receivers, in the frame in which its block is
     /// the identity.
     coupling: Vec<f64>,
+    /// The same for a transmitter that few receivers hear: coordinates in ascending order, and their
+    /// columns.
+    few: Vec<(usize, [f64; 3])>,
     isa: Isa,
     scratch: MemBuffer,
 }
@@ -54,6 +60,7 @@ impl Normal {
             receiver_steps: vec![0.0; 2 * m],
             transmitter_steps: vec![[0.0; 3]; n],
             coupling: vec![0.0; 6 * m],
+            few: Vec::with_capacity(2 * m / SPARSE),
             isa: Isa::detect(),
             scratch: MemBuffer::new(factor.or(solve)),
         }
@@ -137,10 +144,29 @@ impl Normal {
                 continue;
             };
             let z = forward(&inverse, *g);
+            let coupled = |(u, w): &([f64; 2], f64)| (forward(&inverse, [w * u[0], w * u[1], *w]), *u);
+            if SPARSE * column.len() <= self.receivers {
+                // Few receivers: their blocks alone.
+                self.few.clear();
+                for (o, ray) in column.iter().zip(rays) {
+                    let (y, u) = coupled(ray);
+                    let at = 2 * o.receiver;
+                    self.few.extend((0..2).map(|axis| (at + axis, y.map(|y| y * u[axis]))));
+                }
+                for (a, &(column, [p, q, r])) in self.few.iter().enumerate() {
+                    for (g, z) in [p, q, r].into_iter().zip(z) {
+                        self.receiver_steps[column] += g * z;
+                    }
+                    for &(row, [x, y, z]) in &self.few[a..] {
+                        self.schur[column * size + row] -= p * x + q * y + r * z;
+                    }
+                }
+                continue;
+            }
             let rows = &mut self.coupling;
             rows.fill(0.0);
-            for (o, (u, w)) in column.iter().zip(rays) {
-                let y = forward(&inverse, [w * u[0], w * u[1], *w]);
+            for (o, ray) in column.iter().zip(rays) {
+                let (y, u) = coupled(ray);
                 let at = 2 * o.receiver;
                 for (row, y) in rows.chunks_exact_mut(size).zip(y) {
                     row[at] = y * u[0];
@@ -280,6 +306,8 @@ pub(crate) fn backward(l: &[f64; 6], x: [f64; 3]) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::refine::Refiner;
+    use crate::simulate::{SimulateOptions, simulate};
 
     #[test]
     fn inverse_factor_inverts_the_block() {
@@ -296,5 +324,48 @@ mod tests {
             assert!((back[k] - x[k]).abs() < 1e-14);
         }
         assert!(inverse_factor(&[1.0, 2.0, 1.0, 0.0, 0.0, 1.0], 1.0, 0.0).is_none());
+    }
+
+    /// The Schur complement block by block, as the front of this module gives it.
+    #[test]
+    fn transmitters_that_few_or_many_hear_are_eliminated_as_defined() {
+        for hearing in [None, Some(6)] {
+            let options = SimulateOptions { receivers: 30, transmitters: 20, hearing, ..Default::default() };
+            let simulation = simulate(&options).unwrap();
+            let network = &simulation.network;
+            let observations = Observations::new(&simulation.pseudoranges, |_, _| true);
+            let mut refiner = Refiner::new(&observations, f64::INFINITY);
+            let normal = refiner.normal_at(network, &Loss { nu: f64::INFINITY, scale: 1.0 });
+            let size = 60;
+            let mut expected = vec![0.0; size * size];
+            for j in 0..observations.transmitters {
+                let factor = normal.inverse_factor(j).unwrap();
+                let rays: Vec<(usize, [f64; 2])> = (observations.of_transmitter(j).iter())
+                    .map(|o| {
+                        let (r, s) = (network.receivers[o.receiver], network.transmitters[j]);
+                        let d = network.distance(o.receiver, j);
+                        (2 * o.receiver, [(s[0] - r[0]) / d, (s[1] - r[1]) / d])
+                    })
+                    .collect();
+                for &(i, u) in &rays {
+                    for &(k, v) in &rays {
+                        let solved = backward(factor, forward(factor, [v[0], v[1], 1.0]));
+                        let own = if i == k { 1.0 } else { 0.0 };
+                        let between = own - (u[0] * solved[0] + u[1] * solved[1] + solved[2]);
+                        for (a, u) in u.iter().enumerate() {
+                            for (b, v) in v.iter().enumerate() {
+                                expected[(k + b) * size + i + a] += between * u * v;
+                            }
+                        }
+                    }
+                }
+            }
+            for column in 0..size {
+                for row in column..size {
+                    let at = column * size + row;
+                    assert!((normal.schur()[at] - expected[at]).abs() < 1e-10, "{hearing:?} {row} {column}");
+                }
+            }
+        }
     }
 }

@@ -1,10 +1,8 @@
 //! What a network can absorb of a change of its measurements, and what it cannot: the projection
 //! off the Jacobian of all nodes.
 
-use super::covariance::covariance;
+use super::covariance::reduced;
 use super::normal::{backward, forward};
-use super::refiner::Refiner;
-use crate::loss::Loss;
 use crate::network::Network;
 use crate::observations::{Observation, Observations};
 
@@ -50,9 +48,8 @@ impl Motion {
 impl<'a> Projection<'a> {
     /// `None` where the network cannot be linearised.
     pub(crate) fn new(observations: &'a Observations, network: &Network) -> Option<Self> {
-        let inverse = covariance(observations, network, 1.0)?.joint;
-        let mut refiner = Refiner::new(observations, f64::INFINITY);
-        let normal = refiner.normal_at(network, &Loss { nu: f64::INFINITY, scale: 1.0 });
+        let reduced = reduced(observations, network, 1.0)?;
+        let (inverse, normal) = (reduced.joint(), reduced.normal());
         let rays = normal.rays().iter().map(|(u, _)| *u).collect();
         let factors = (0..observations.transmitters).map(|j| normal.inverse_factor(j).copied()).collect();
         Some(Projection { observations, rays, factors, inverse })

@@ -182,6 +182,11 @@ impl<'a> Refiner<'a> {
         self.normal.reduce(self.observations, 0.0);
         &self.normal
     }
+
+    /// Those equations again.
+    pub(crate) fn normal(&self) -> &Normal {
+        &self.normal
+    }
 }
 
 /// Residuals over their deviations, in the order of the observations, then those of coordinates as
