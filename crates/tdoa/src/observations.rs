@@ -148,6 +148,11 @@ impl Observations {
         &self.held
     }
 
+    /// Whether nothing says where the network lies as a whole.
+    pub(crate) fn leave_rigid_motions(&self) -> bool {
+        self.pins.is_empty() && !self.held.contains(&true)
+    }
+
     /// All of them, transmitter by transmitter.
     pub(crate) fn all(&self) -> &[Observation] {
         &self.entries

@@ -18,7 +18,10 @@ use crate::network::Network;
 use crate::observations::Observations;
 
 /// Eigenvalues of the reduced normal equations below this share of the largest count as zero.
-const RANK_TOLERANCE: f64 = 1e-11;
+pub(super) const RANK_TOLERANCE: f64 = 1e-11;
+
+/// Columns of the covariance that are summed together.
+const TILE: usize = 16;
 
 /// Covariances of the nodes, metres squared.
 #[derive(Debug, Clone, Default)]
@@ -71,21 +74,27 @@ pub(super) fn reduced<'a>(observations: &'a Observations, network: &Network, sig
         return None;
     }
     // Eigenvalues ascend; the three smallest belong to the rigid motions.
-    let rigid = if free.len() == size && observations.pins().is_empty() { 3 } else { 0 };
+    let rigid = if observations.leave_rigid_motions() { 3 } else { 0 };
     let zero = (0..free.len()).filter(|&k| values[k] < RANK_TOLERANCE * largest).count().max(rigid);
     let mut scaled = modes.clone();
     for (k, value) in values.iter().enumerate().skip(zero) {
         scaled.col_as_slice_mut(k).iter_mut().for_each(|x| *x *= sigma * sigma / value);
     }
-    let mut column = vec![0.0; free.len()];
     let mut inverse = Mat::<f64>::zeros(size, size);
-    for (b, &to) in free.iter().enumerate() {
-        column.fill(0.0);
+    // A few columns at a time, which stay in the cache.
+    let mut columns = vec![0.0; TILE * free.len()];
+    for (tile, targets) in free.chunks(TILE).enumerate() {
+        columns.fill(0.0);
         for k in zero..free.len() {
-            let factor = modes[(b, k)];
-            column.iter_mut().zip(scaled.col_as_slice(k)).for_each(|(sum, x)| *sum += x * factor);
+            let scaled = scaled.col_as_slice(k);
+            for (l, column) in columns.chunks_exact_mut(free.len()).take(targets.len()).enumerate() {
+                let factor = modes[(tile * TILE + l, k)];
+                column.iter_mut().zip(scaled).for_each(|(sum, x)| *sum += x * factor);
+            }
         }
-        free.iter().zip(&column).for_each(|(&a, x)| inverse[(a, to)] = *x);
+        for (&to, column) in targets.iter().zip(columns.chunks_exact(free.len())) {
+            free.iter().zip(column).for_each(|(&a, x)| inverse[(a, to)] = *x);
+        }
     }
     Some(Reduced { refiner, inverse, modes, free, zero, rigid })
 }
@@ -155,20 +164,25 @@ pub(crate) fn covariance(observations: &Observations, network: &Network, sigma: 
     Some(Covariance { receivers, joint, transmitters, loose })
 }
 
+/// Coordinate `axis` of receiver `i` in the orthonormal rigid motions: two translations and the
+/// rotation about the centroid.
+pub(super) fn rigid_motion(network: &Network) -> impl Fn(usize, usize) -> [f64; 3] {
+    let centre = crate::plane::centroid(network.receivers.iter());
+    let root = (network.receivers.len() as f64).sqrt();
+    let spread = network.size().max(f64::MIN_POSITIVE) * root;
+    move |i: usize, axis: usize| {
+        let r = [network.receivers[i][0] - centre[0], network.receivers[i][1] - centre[1]];
+        if axis == 0 { [1.0 / root, 0.0, -r[1] / spread] } else { [0.0, 1.0 / root, r[0] / spread] }
+    }
+}
+
 /// Receivers that take part in the zero modes beyond the rigid motions.
 fn loose(modes: &faer::MatRef<'_, f64>, zero: usize, network: &Network) -> Vec<usize> {
     if zero <= 3 {
         return Vec::new();
     }
     let m = network.receivers.len();
-    let centre = crate::plane::centroid(network.receivers.iter());
-    let spread = network.size().max(f64::MIN_POSITIVE) * (m as f64).sqrt();
-    // Orthonormal rigid motions: two translations and the rotation about the centroid.
-    let rigid = |i: usize, axis: usize| -> [f64; 3] {
-        let root = (m as f64).sqrt();
-        let r = [network.receivers[i][0] - centre[0], network.receivers[i][1] - centre[1]];
-        if axis == 0 { [1.0 / root, 0.0, -r[1] / spread] } else { [0.0, 1.0 / root, r[0] / spread] }
-    };
+    let rigid = rigid_motion(network);
     let freedom = |i: usize| -> f64 {
         (0..2)
             .map(|axis| {

@@ -15,6 +15,7 @@ mod normal;
 mod projection;
 mod refiner;
 mod reseed;
+mod solver;
 
 pub(crate) use covariance::{Covariance, covariance};
 pub use extend::PartialNetwork;

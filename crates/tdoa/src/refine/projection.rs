@@ -1,8 +1,8 @@
 //! What a network can absorb of a change of its measurements, and what it cannot: the projection
 //! off the Jacobian of all nodes.
 
-use super::covariance::reduced;
 use super::normal::{backward, forward};
+use super::solver::Solver;
 use crate::network::Network;
 use crate::observations::{Observation, Observations};
 
@@ -15,9 +15,8 @@ pub(crate) struct Projection<'a> {
     /// Inverse Cholesky factors of the transmitters' normal equations; `None` where those are
     /// singular.
     factors: Vec<Option<[f64; 6]>>,
-    /// Inverse of the receivers' normal equations with the transmitters eliminated, 2m x 2m by
-    /// rows.
-    inverse: Vec<f64>,
+    /// The receivers' normal equations with the transmitters eliminated.
+    receivers: Solver,
 }
 
 /// A change of all nodes.
@@ -48,11 +47,12 @@ impl Motion {
 impl<'a> Projection<'a> {
     /// `None` where the network cannot be linearised.
     pub(crate) fn new(observations: &'a Observations, network: &Network) -> Option<Self> {
-        let reduced = reduced(observations, network, 1.0)?;
-        let (inverse, normal) = (reduced.joint(), reduced.normal());
-        let rays = normal.rays().iter().map(|(u, _)| *u).collect();
-        let factors = (0..observations.transmitters).map(|j| normal.inverse_factor(j).copied()).collect();
-        Some(Projection { observations, rays, factors, inverse })
+        let (receivers, (rays, factors)) = Solver::new(observations, network, |normal| {
+            let rays = normal.rays().iter().map(|(u, _)| *u).collect();
+            let factors = (0..observations.transmitters).map(|j| normal.inverse_factor(j).copied()).collect();
+            (rays, factors)
+        })?;
+        Some(Projection { observations, rays, factors, receivers })
     }
 
     /// The part of `values`, one for each measurement in units of its deviation, that no motion of
@@ -93,8 +93,10 @@ impl<'a> Projection<'a> {
             right[2 * o.receiver] += along * u[0];
             right[2 * o.receiver + 1] += along * u[1];
         }
-        let row = |a: usize| self.inverse[a * size..(a + 1) * size].iter().zip(&right).map(|(x, y)| x * y).sum();
-        let receivers: Vec<f64> = (0..size).map(row).collect();
+        for (i, _) in self.observations.held().iter().enumerate().filter(|(_, held)| **held) {
+            right[2 * i..2 * i + 2].fill(0.0);
+        }
+        let receivers = self.receivers.solve(&right);
         for (_, o, u) in self.linked() {
             let i = 2 * o.receiver;
             let along = o.precision * o.precision * (u[0] * receivers[i] + u[1] * receivers[i + 1]);

@@ -1,0 +1,114 @@
+//! The receivers' normal equations, transmitters eliminated, ready to be solved.
+
+use faer::prelude::Solve;
+use faer::{Mat, MatMut, Side, linalg::solvers::Llt};
+
+use super::covariance::{RANK_TOLERANCE, Reduced, reduced, rigid_motion};
+use super::normal::Normal;
+use super::refiner::Refiner;
+use crate::loss::Loss;
+use crate::network::Network;
+use crate::observations::Observations;
+
+/// Receivers from which on the equations are factored, not inverted: some fifty times less work.
+const MANY: usize = 200;
+
+/// Equations of all coordinates of the receivers, with the motion of least size where they leave one
+/// open.
+pub(super) enum Solver {
+    /// The inverse, 2m x 2m by rows.
+    Inverse(Vec<f64>),
+    /// The Cholesky factor, rigid motions made to cost something.
+    Factor(Llt<f64>),
+}
+
+impl Solver {
+    /// `None` where the network cannot be linearised; with the normal equations it comes from.
+    pub(super) fn new<T>(
+        observations: &Observations,
+        network: &Network,
+        use_normal: impl FnOnce(&Normal) -> T,
+    ) -> Option<(Solver, T)> {
+        if observations.receivers >= MANY {
+            let mut refiner = Refiner::new(observations, f64::INFINITY);
+            let normal = refiner.normal_at(network, &Loss { nu: f64::INFINITY, scale: 1.0 });
+            if let Some(factor) = factor(observations, network, normal) {
+                return Some((Solver::Factor(factor), use_normal(normal)));
+            }
+        }
+        let reduced: Reduced<'_> = reduced(observations, network, 1.0)?;
+        Some((Solver::Inverse(reduced.joint()), use_normal(reduced.normal())))
+    }
+
+    /// The solution for a right-hand side that no rigid motion changes; what belongs to held receivers
+    /// must be zero.
+    pub(super) fn solve(&self, right: &[f64]) -> Vec<f64> {
+        let size = right.len();
+        match self {
+            Solver::Inverse(inverse) => {
+                let row = |a: usize| inverse[a * size..(a + 1) * size].iter().zip(right).map(|(x, y)| x * y).sum();
+                (0..size).map(row).collect()
+            }
+            Solver::Factor(factor) => {
+                let mut solution = right.to_vec();
+                factor.solve_in_place(MatMut::from_column_major_slice_mut(&mut solution, size, 1));
+                solution
+            }
+        }
+    }
+}
+
+/// `None` where the equations leave more open than a rigid motion.
+fn factor(observations: &Observations, network: &Network, normal: &Normal) -> Option<Llt<f64>> {
+    let size = 2 * observations.receivers;
+    let lower = normal.schur();
+    let mut square = Mat::from_fn(size, size, |a, b| lower[a.min(b) * size + a.max(b)]);
+    if observations.leave_rigid_motions() {
+        let cost = (0..size).map(|k| square[(k, k)]).sum::<f64>() / size as f64;
+        let rigid = rigid_motion(network);
+        for b in 0..size {
+            let to = rigid(b / 2, b % 2);
+            for a in 0..size {
+                let from = rigid(a / 2, a % 2);
+                square[(a, b)] += cost * from.iter().zip(to).map(|(x, y)| x * y).sum::<f64>();
+            }
+        }
+    }
+    let factor = square.llt(Side::Lower).ok()?;
+    let pivots = (0..size).map(|k| factor.L()[(k, k)].powi(2));
+    let (least, largest) =
+        pivots.fold((f64::INFINITY, 0.0), |(least, most), x| (f64::min(least, x), f64::max(most, x)));
+    (least > RANK_TOLERANCE.sqrt() * largest).then_some(factor)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulate::{SimulateOptions, simulate};
+
+    #[test]
+    fn factor_and_inverse_give_the_same_motion() {
+        let options = SimulateOptions { receivers: 12, transmitters: 20, hearing: Some(8), ..Default::default() };
+        let simulation = simulate(&options).unwrap();
+        let network = &simulation.network;
+        for held in [vec![false; 12], (0..12).map(|i| i < 2).collect::<Vec<bool>>()] {
+            let observations = Observations::new(&simulation.pseudoranges, |_, _| true).holding(&held);
+            let (inverse, (right, factor)) = Solver::new(&observations, network, |normal| {
+                // What measurements that differ make of a right-hand side: rays of pairs.
+                let mut right = vec![0.0; 24];
+                let schur = normal.schur();
+                let any: Vec<f64> = (0..24).map(|k| (k as f64).sin()).collect();
+                for a in (0..24).filter(|a| !held[a / 2]) {
+                    right[a] = (0..24).filter(|b| !held[b / 2]).map(|b| schur[a.min(b) * 24 + a.max(b)] * any[b]).sum();
+                }
+                (right, factor(&observations, network, normal).unwrap())
+            })
+            .unwrap();
+            assert!(matches!(inverse, Solver::Inverse(_)));
+            let (x, y) = (inverse.solve(&right), Solver::Factor(factor).solve(&right));
+            for (x, y) in x.iter().zip(&y) {
+                assert!((x - y).abs() < 1e-8, "{x} {y}");
+            }
+        }
+    }
+}
