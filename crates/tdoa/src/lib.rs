@@ -75,7 +75,8 @@ pub mod summary;
 
 pub use calibrate::{
     Alternative, CalibrateError, CalibrateOptions, Calibration, Hypotheses, KnownDistance, MeasuredPosition,
-    ReceiverDelays, ReceiverError, ReceiverErrorKind, SpeedEstimate, Truth, Unfinished, calibrate, calibrate_with,
+    MovedPlace, ReceiverDelays, ReceiverError, ReceiverErrorKind, SpeedEstimate, Truth, Unfinished, calibrate,
+    calibrate_with,
 };
 pub use hc::{Monitor, Progress};
 pub use minimal::{Candidate, MinimalSolution, PathCounts, RootCounts};

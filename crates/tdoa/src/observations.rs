@@ -118,6 +118,22 @@ impl Observations {
         all
     }
 
+    /// With what a receiver measured from transmitter `from` on given to a further receiver, the last
+    /// one.
+    pub(crate) fn split(&self, receiver: usize, from: usize) -> Self {
+        let (mut columns, mut entries) = (vec![0], Vec::with_capacity(self.entries.len()));
+        for j in 0..self.transmitters {
+            let column = self.of_transmitter(j);
+            let is_later = |o: &&Observation| o.receiver == receiver && j >= from;
+            entries.extend(column.iter().filter(|o| !is_later(o)).copied());
+            let later = column.iter().filter(is_later);
+            entries.extend(later.map(|o| Observation { receiver: self.receivers, ..*o }));
+            columns.push(entries.len());
+        }
+        let held: Vec<bool> = self.held.iter().copied().chain([false]).collect();
+        Observations::of(self.receivers + 1, entries, columns).holding(&held).pinned(&self.pins).beside(self.others)
+    }
+
     /// These measurements, with receivers that stay where they are.
     pub(crate) fn holding(self, held: &[bool]) -> Self {
         Observations { held: held.to_vec(), ..self }
@@ -198,5 +214,16 @@ mod tests {
         let row: Vec<_> = observations.of_receiver(1).map(|o| (o.transmitter, o.value)).collect();
         assert_eq!(row, [(0, 3.0), (1, 4.0)]);
         assert_eq!(Observations::new(&f, |i, _| i != 2).len(), 3);
+    }
+
+    #[test]
+    fn a_split_receiver_is_two() {
+        let f = Pseudoranges::new(2, 3, vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]).unwrap();
+        let observations = Observations::new(&f, |_, _| true);
+        let split = observations.split(0, 1);
+        let row = |i: usize| -> Vec<_> { split.of_receiver(i).map(|o| (o.transmitter, o.value)).collect() };
+        assert_eq!((split.receivers, row(0), row(2)), (3, vec![(0, 1.0)], vec![(1, 2.0), (2, 3.0)]));
+        assert_eq!(split.len(), 6);
+        assert_eq!(split.unknowns(), observations.unknowns() + 2);
     }
 }

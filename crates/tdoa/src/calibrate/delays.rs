@@ -6,7 +6,7 @@ use faer::prelude::Solve;
 use hc::Monitor;
 
 use super::clocks::middle_delays;
-use super::deviation::{inlier_deviation, spread_of_residuals};
+use super::deviation::{inlier_deviation, spread_of_residuals, typical_deviation};
 use super::finish::{CAUCHY, finish};
 use super::options::{CalibrateError, CalibrateOptions, ReceiverDelays, check};
 use super::ranking::truncated_cost;
@@ -23,6 +23,11 @@ const ROUNDS: usize = 6;
 
 /// Steps of estimating the errors and refining the network in turns.
 const STEPS: usize = 12;
+
+/// An error below this many of its own deviations, or below this share of the deviation of a
+/// measurement, is none.
+const LEAST_DEVIATIONS: f64 = 3.0;
+const LEAST_SHARE: f64 = 0.2;
 
 /// Networks whose delays are estimated to the end where all receivers have one.
 const CANDIDATES: usize = 10;
@@ -75,9 +80,12 @@ impl Clearing<'_> {
         match self.options.receiver_delays {
             ReceiverDelays::None => now.left = self.look(&now)?.0,
             ReceiverDelays::Auto => {
+                // Errors that were none once others were taken out.
+                let mut none: Vec<Fault> = Vec::new();
                 for _ in 0..ROUNDS {
                     let (found, hidden) = self.look(&now)?;
-                    let fresh = |f: &&Fault| !now.taken.iter().any(|t| t.receiver == f.receiver && t.kind == f.kind);
+                    let known = |f: &Fault, t: &Fault| t.receiver == f.receiver && t.kind == f.kind;
+                    let fresh = |f: &&Fault| !now.taken.iter().chain(&none).any(|t| known(f, t));
                     let fresh: Vec<Fault> = found.iter().filter(fresh).copied().collect();
                     if fresh.is_empty() {
                         now.left = found;
@@ -89,6 +97,10 @@ impl Clearing<'_> {
                         now.ranked.insert(0, first);
                     }
                     now = self.without(now)?;
+                    while let Some(k) = self.negligible(&now) {
+                        none.push(now.taken.remove(k));
+                        now = self.without(now)?;
+                    }
                 }
             }
             ReceiverDelays::All => now = self.all(now)?,
@@ -96,21 +108,67 @@ impl Clearing<'_> {
         Ok(now)
     }
 
-    /// Errors that the best network shows, or the one that it hides if that tells more, with the
-    /// network that does not.
+    /// Errors that the best network shows, one of each receiver, or the one that it hides if that
+    /// tells more, with the network that does not.
     fn look(&self, now: &Cleared) -> Result<(Vec<Fault>, Option<Network>), CalibrateError> {
         let (observations, limit) = (&now.observations, self.options.inlier_threshold);
-        let found = find(observations, &now.ranked[0].network, now.deviation, limit);
-        // What a move leaves looks like other errors too.
-        if found.first().is_some_and(|first| first.kind == ReceiverErrorKind::Move) {
-            return Ok((found, None));
+        let (best, deviation) = (&now.ranked[0].network, now.deviation);
+        let mut unmoved = Vec::new();
+        loop {
+            let mut found = one_of_each(find(observations, best, deviation, limit, &unmoved));
+            found.retain(|fault| fault.length().abs() >= self.least_size(deviation));
+            let is_move = |fault: &Fault| fault.kind == ReceiverErrorKind::Move;
+            let doubted = found.iter().enumerate().filter(|(k, fault)| *k == 0 || is_move(fault));
+            let suspects: Vec<usize> = doubted.map(|(_, fault)| fault.receiver).collect();
+            let fitted = refits(observations, best, deviation, limit, &suspects, self.monitor)?;
+            let of = |receiver: usize| fitted.iter().find(|other| other.fault.receiver == receiver);
+            // What a move adds is not linear, and gross errors look like one: two places have to fit.
+            if let Some(refuted) = found.iter().find(|fault| is_move(fault) && of(fault.receiver).is_none()) {
+                unmoved.push(refuted.receiver);
+                continue;
+            }
+            let Some(hidden) = fitted.first() else { return Ok((found, None)) };
+            let Some(first) = found.first().copied() else {
+                return Ok((vec![hidden.fault], Some(hidden.network.clone())));
+            };
+            let unsure = is_move(&first) || of(first.receiver).is_some_and(|other| other.fault.kind != first.kind);
+            if hidden.fault.receiver != first.receiver && (unsure || hidden.fault.gain > first.gain) {
+                return Ok((vec![hidden.fault], Some(hidden.network.clone())));
+            }
+            let better = unsure || hidden.fault.gain > first.gain;
+            for fault in &mut found {
+                if let Some(other) = of(fault.receiver).filter(|other| other.fault.kind == ReceiverErrorKind::Move) {
+                    *fault = other.fault;
+                }
+            }
+            if better {
+                found[0] = hidden.fault;
+            }
+            return Ok((found, better.then(|| hidden.network.clone())));
         }
-        let hidden = refits(observations, &now.ranked[0].network, now.deviation, limit, self.monitor)?;
-        let shown = found.first().map_or(0.0, |first| first.gain);
-        Ok(match hidden.filter(|hidden| hidden.fault.gain > shown) {
-            Some(hidden) => (vec![hidden.fault], Some(hidden.network)),
-            None => (found, None),
-        })
+    }
+
+    /// Smaller errors of receivers are none.
+    fn least_size(&self, deviation: f64) -> f64 {
+        LEAST_SHARE * deviation * typical_deviation(self.measured)
+    }
+
+    /// The smallest of the errors taken out, in its own deviations, if it is none.
+    fn negligible(&self, now: &Cleared) -> Option<usize> {
+        let network = &now.ranked[0].network;
+        let kept =
+            now.observations.subset(|o| o.residual(network).abs() <= self.options.inlier_threshold * now.deviation);
+        let projection = Projection::new(&kept, network)?;
+        let columns = columns(&kept, &projection, &now.taken);
+        let inverse = gram(&columns)?.solve(&Mat::<f64>::identity(columns.len(), columns.len()));
+        let at = now.taken.iter().enumerate().filter(|(_, fault)| fault.kind != ReceiverErrorKind::Move);
+        let sizes = at.enumerate().map(|(a, (k, fault))| {
+            let size = fault.size[0].abs();
+            let own = size / (now.deviation * inverse[(a, a)].max(0.0).sqrt());
+            (k, own / LEAST_DEVIATIONS, size / self.least_size(now.deviation))
+        });
+        let least = sizes.min_by(|a, b| a.1.min(a.2).total_cmp(&b.1.min(b.2)))?;
+        (least.1.min(least.2) < 1.0).then_some(least.0)
     }
 
     /// The networks again with the errors in `taken` estimated for the best of them.
@@ -304,6 +362,18 @@ impl Clearing<'_> {
         }
         self.measured.with_values(values)
     }
+}
+
+/// The first error of each receiver: what remains beside it may be its own.
+fn one_of_each(mut found: Vec<Fault>) -> Vec<Fault> {
+    let mut seen = Vec::new();
+    found.retain(|fault| {
+        !seen.contains(&fault.receiver) && {
+            seen.push(fault.receiver);
+            true
+        }
+    });
+    found
 }
 
 /// The first of each kind of network, with the starts of all of its kind: they were apart only for

@@ -38,6 +38,17 @@ pub enum ReceiverErrorKind {
     Move,
 }
 
+/// Which place of a receiver that was moved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum MovedPlace {
+    /// The one before the move.
+    Before,
+    /// The one after it.
+    After,
+}
+
 /// An error of one receiver that its measurements show.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ReceiverError {
@@ -48,6 +59,11 @@ pub struct ReceiverError {
     /// Name of the first transmitter after a jump or a move, in the order of the table.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub from: Option<String>,
+    /// Which place of a receiver that was moved the result has for it: the one with more measurements.
+    /// `None` for other errors, and for a move that was not taken out: the result then has a place
+    /// between both, with a covariance that holds both.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub place: Option<MovedPlace>,
     /// How large it is, metres: the delay, the drift from the first transmitter to the last one,
     /// the jump, the distance of the move.
     pub size: f64,
@@ -91,8 +107,14 @@ impl Fault {
 }
 
 /// Errors of single receivers that the residuals at a network show, most telling first. `deviation`
-/// is that of the measurements.
-pub(super) fn find(observations: &Observations, network: &Network, deviation: f64, threshold: f64) -> Vec<Fault> {
+/// is that of the measurements; receivers in `unmoved` are known not to have been moved.
+pub(super) fn find(
+    observations: &Observations,
+    network: &Network,
+    deviation: f64,
+    threshold: f64,
+    unmoved: &[usize],
+) -> Vec<Fault> {
     // An error of one receiver makes residuals larger than the noise: the test takes the deviation
     // that they have.
     let wide = spread_of_residuals(observations, network).max(deviation);
@@ -108,7 +130,7 @@ pub(super) fn find(observations: &Observations, network: &Network, deviation: f6
     let Some(projection) = Projection::new(&kept, network) else { return Vec::new() };
     let residuals: Vec<f64> = kept.all().iter().map(|o| o.residual(network)).collect();
     let (rest, _) = projection.off(&residuals);
-    Test { kept: &kept, projection, rest, taken: Vec::new(), redundancy: redundancy as f64 }.run()
+    Test { kept: &kept, projection, rest, taken: Vec::new(), redundancy: redundancy as f64, unmoved }.run()
 }
 
 /// Spread of the residuals of each receiver about zero, from the smaller seven tenths of them.
@@ -145,6 +167,7 @@ struct Test<'a> {
     /// Orthonormal parts of the columns of these, that no motion makes.
     taken: Vec<Vec<f64>>,
     redundancy: f64,
+    unmoved: &'a [usize],
 }
 
 impl Test<'_> {
@@ -152,7 +175,10 @@ impl Test<'_> {
         let mut found: Vec<Fault> = Vec::new();
         let rows = self.rows();
         while found.len() < self.kept.receivers / 2 {
-            let known = |fault: &Fault| found.iter().any(|f| f.receiver == fault.receiver && f.kind == fault.kind);
+            let known = |fault: &Fault| {
+                found.iter().any(|f| f.receiver == fault.receiver && f.kind == fault.kind)
+                    || fault.kind == ReceiverErrorKind::Move && self.unmoved.contains(&fault.receiver)
+            };
             let candidates = self.candidates(&rows);
             // A candidate of each kind has as many rivals as that kind has tests.
             let least = |kind| threshold(tests(kind, self.kept.receivers, self.kept.len()));

@@ -1,5 +1,6 @@
 //! Errors of receivers that a network has bent itself to: each receiver is fitted once with a free
-//! error of its own, all its measurements back in.
+//! error of its own, all its measurements back in; so is a receiver that the score test names, since
+//! an error of one kind looks like one of another to it.
 //!
 //! The score test of `receiver_errors` is linear. Where the best network has given up some of the
 //! measurements that tell of an error as outliers, the error is too far away for it. Here the others
@@ -38,69 +39,84 @@ pub(super) struct Found {
     pub(super) network: Network,
 }
 
-/// Looks for the error that explains most. `None` where none explains more than chance would, or
-/// where no measurement was given up: then the score test has seen all that there is.
+impl Found {
+    /// How much more it explains than chance would.
+    fn lead(&self, observations: &Observations, kept: usize) -> f64 {
+        let tested = self.fault.gain - threshold(tests(self.fault.kind, observations.receivers, kept));
+        // A move has one more unknown than other errors (Schwarz 1978).
+        tested - if self.fault.kind == ReceiverErrorKind::Move { 0.5 * (kept as f64).ln() } else { 0.0 }
+    }
+}
+
+/// The error of each receiver that explains most, if more than chance would, most telling first.
+/// Receivers are those whose measurements were given up, and `suspects`: where nothing was given up,
+/// the score test has seen all other errors.
 pub(super) fn refits(
     observations: &Observations,
     best: &Network,
     deviation: f64,
     limit: f64,
+    suspects: &[usize],
     monitor: &Monitor,
-) -> Result<Option<Found>, CalibrateError> {
+) -> Result<Vec<Found>, CalibrateError> {
     let mut given_up = vec![0usize; observations.receivers];
     for o in observations.all().iter().filter(|o| o.residual(best).abs() > limit * deviation) {
         given_up[o.receiver] += 1;
     }
     let kept = observations.len() - given_up.iter().sum::<usize>();
-    if kept == observations.len() || kept < observations.unknowns() + 5 {
-        return Ok(None);
+    let tried = if kept == observations.len() { suspects.len() } else { TRIED };
+    if tried == 0 || kept < observations.unknowns() + 5 {
+        return Ok(Vec::new());
     }
     let (base, cost) = refit(observations, best, deviation);
     let mut order: Vec<usize> = (0..observations.receivers).collect();
-    order.sort_by_key(|&i| std::cmp::Reverse(given_up[i]));
-    order.truncate(TRIED);
-    let mut found: Option<(f64, Found)> = None;
+    order.sort_by_key(|&i| (!suspects.contains(&i), std::cmp::Reverse(given_up[i])));
+    order.truncate(tried);
+    let mut found: Vec<(f64, Found)> = Vec::new();
+    let fitting = Fitting { observations, base: &base, cost, deviation, limit };
     for receiver in order {
         check(monitor)?;
-        let fitting = Fitting { observations, base: &base, cost, deviation, limit };
-        for next in fitting.receiver(receiver) {
-            let lead = next.fault.gain - threshold(tests(next.fault.kind, observations.receivers, kept));
-            if lead > 0.0 && found.as_ref().is_none_or(|(other, _)| lead > *other) {
-                found = Some((lead, next));
-            }
-        }
+        // One gross error alone is no move.
+        let may_have_moved = given_up[receiver] > 1 || suspects.contains(&receiver);
+        let fits = fitting.receiver(receiver, may_have_moved, monitor)?;
+        let leads = fits.into_iter().map(|next| (next.lead(observations, kept), next));
+        found.extend(leads.filter(|(lead, _)| *lead > 0.0).max_by(|a, b| a.0.total_cmp(&b.0)));
     }
-    Ok(found.map(|(_, found)| found))
+    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    Ok(found.into_iter().map(|(_, found)| found).collect())
 }
 
-struct Fitting<'a> {
-    observations: &'a Observations,
+/// What errors are fitted to.
+pub(super) struct Fitting<'a> {
+    pub(super) observations: &'a Observations,
     /// The network of least squares without the error, and its truncated cost.
     base: &'a Network,
     cost: f64,
-    deviation: f64,
+    pub(super) deviation: f64,
     /// Measurements farther off than this many deviations are outliers.
-    limit: f64,
+    pub(super) limit: f64,
 }
 
 impl Fitting<'_> {
     /// Fits of one receiver with an error of each kind, as far as they are worth a look.
-    fn receiver(&self, receiver: usize) -> Vec<Found> {
+    fn receiver(&self, receiver: usize, may_have_moved: bool, monitor: &Monitor) -> Result<Vec<Found>, CalibrateError> {
         let others = self.observations.subset(|o| o.receiver != receiver);
         let options = RefineOptions { scale: Some(CAUCHY * self.deviation), rounds: 0, steps: 30, ..SEARCH };
-        let bent = Refiner::new(&others, 1.0).refine(self.base.clone(), &options).network;
+        let bent = Refiner::new(&others, 1.0).heeding(monitor).refine(self.base.clone(), &options).network;
         let (alone, cost) = refit(&others, &bent, self.deviation);
         // No error can bring the cost below that of the others.
         if !alone.is_finite() || self.cost - cost < threshold(tests(ReceiverErrorKind::Delay, others.receivers, 1)) {
-            return Vec::new();
+            return Ok(Vec::new());
         }
+        let moved = if may_have_moved { self.moved(receiver, &alone, monitor)? } else { None };
         let local = Local::new(self.observations, &alone, receiver, self.deviation);
         let starts = [
             local.locate(Fault::new(receiver, ReceiverErrorKind::Delay, 0)),
             local.locate(Fault::new(receiver, ReceiverErrorKind::Drift, 0)),
             local.jump(),
         ];
-        starts
+        check(monitor)?;
+        let fitted = starts
             .into_iter()
             .flatten()
             // The fit of all nodes may halve what locating one has left.
@@ -109,8 +125,8 @@ impl Fitting<'_> {
                 let mut network = alone.clone();
                 network.receivers[receiver] = located.position;
                 self.joint(network, located.fault)
-            })
-            .collect()
+            });
+        Ok(fitted.chain(moved).collect())
     }
 
     /// Least squares of all nodes and the error over the inliers, from here; `None` where the error
@@ -166,22 +182,34 @@ impl Fitting<'_> {
                 break;
             }
         }
-        // Both costs with the deviation that is left with the error in the model.
         let with_error = observations.beside(self.observations.others() + 1);
-        let deviation = inlier_deviation(&with_error, &network, self.deviation, self.limit).min(self.deviation);
-        let (before, after) =
-            (refit(self.observations, self.base, deviation).1, truncated_cost(&with_error, &network, deviation));
-        let kept = with_error.all().iter().filter(|o| o.residual(&network).abs() <= self.limit * deviation).count();
+        let gain = self.gain(&with_error, &network, &[fault.receiver], Some(size * size * square))?;
+        Some(Found { fault: Fault { size: [size, 0.0], gain, ..fault }, network })
+    }
+
+    /// By how much the measurements are more likely with an error: both costs with the deviation that
+    /// is left with the error in the model. `rows` are those of the receiver. As in the score test:
+    /// the tail of the distribution of Beta, and with the spread of the receiver's own residuals,
+    /// `None` where few measurements are left over.
+    pub(super) fn gain(
+        &self,
+        with_error: &Observations,
+        network: &Network,
+        rows: &[usize],
+        explained: Option<f64>,
+    ) -> Option<f64> {
+        let deviation = inlier_deviation(with_error, network, self.deviation, self.limit).min(self.deviation);
+        let before = refit(self.observations, self.base, deviation).1;
+        let fall = before - truncated_cost(with_error, network, deviation);
+        let kept = with_error.all().iter().filter(|o| o.residual(network).abs() <= self.limit * deviation).count();
         let redundancy = kept.saturating_sub(with_error.unknowns());
         if redundancy < 4 {
             return None;
         }
-        // As in the score test: the tail of the distribution of Beta, and with the spread of the
-        // receiver's own residuals.
         let tail = |fall: f64| 0.5 * redundancy as f64 * (2.0 * fall.max(0.0) / redundancy as f64).ln_1p();
-        let own = spread_of_receiver(&with_error, &network, fault.receiver).max(deviation);
-        let gain = tail(before - after).min(tail(0.5 * size * size * square / (own * own)));
-        Some(Found { fault: Fault { size: [size, 0.0], gain, ..fault }, network })
+        let own = rows.iter().map(|&i| spread_of_receiver(with_error, network, i)).fold(deviation, f64::max);
+        let explained = explained.unwrap_or(2.0 * fall * deviation * deviation);
+        Some(tail(fall).min(tail(0.5 * explained / (own * own))))
     }
 }
 

@@ -2,20 +2,38 @@
 
 use super::delays::{columns, gram};
 use super::options::{CalibrateOptions, ReceiverDelays};
-use super::receiver_errors::{Fault, ReceiverError, ReceiverErrorKind};
+use super::receiver_errors::{Fault, MovedPlace, ReceiverError, ReceiverErrorKind};
 use super::report::Solved;
 use crate::degeneracy::list;
 use crate::observations::Observations;
-use crate::refine::{Covariance, Projection, covariance};
+use crate::refine::{Covariance, Motion, Projection, covariance};
 use faer::Mat;
 use faer::prelude::Solve;
 
+/// Adds the product of two motions to a covariance, but for the single receivers.
+fn add(covariance: &mut Covariance, factor: f64, p: &Motion, q: &Motion) {
+    let size = p.receivers.len();
+    for x in 0..size {
+        for y in 0..size {
+            covariance.joint[x * size + y] += factor * p.receivers[x] * q.receivers[y];
+        }
+    }
+    for (covariance, (s, t)) in covariance.transmitters.iter_mut().zip(p.transmitters.iter().zip(&q.transmitters)) {
+        for (row, s) in covariance.iter_mut().flatten().zip(s) {
+            for (entry, t) in row.iter_mut().zip(t) {
+                *entry += factor * s * t;
+            }
+        }
+    }
+}
+
 impl Solved<'_> {
-    /// The covariance of all nodes, with what the uncertainty of errors that were taken out adds.
+    /// The covariance of all nodes, with what the uncertainty of errors that were taken out adds, and
+    /// how far errors that were left in may have moved them.
     pub(super) fn covariance(&self, kept: &Observations, sigma: f64) -> Covariance {
         let best = &self.ranked[0].network;
         let mut found = covariance(kept, best, sigma).unwrap_or_default();
-        if self.taken.is_empty() || found.receivers.is_empty() {
+        if self.taken.is_empty() && self.left.is_empty() || found.receivers.is_empty() {
             return found;
         }
         let Some(projection) = Projection::new(kept, best) else { return found };
@@ -26,24 +44,26 @@ impl Solved<'_> {
         // With sizes of covariance C = sigma^2 (products of the columns)^-1 and motions M that
         // absorb them, M C M^T is added.
         let inverse = gram.solve(&Mat::<f64>::identity(columns.len(), columns.len()));
-        let pairs = || (0..columns.len()).flat_map(|a| (0..columns.len()).map(move |b| (a, b)));
-        let size = 2 * kept.receivers;
-        for (a, b) in pairs() {
-            let factor = sigma * sigma * inverse[(a, b)];
-            let (p, q) = (&columns[a].1, &columns[b].1);
-            for x in 0..size {
-                for y in 0..size {
-                    found.joint[x * size + y] += factor * p.receivers[x] * q.receivers[y];
-                }
-            }
-            for (covariance, (s, t)) in found.transmitters.iter_mut().zip(p.transmitters.iter().zip(&q.transmitters)) {
-                for (row, s) in covariance.iter_mut().flatten().zip(s) {
-                    for (entry, t) in row.iter_mut().zip(t) {
-                        *entry += factor * s * t;
-                    }
+        let pairs = (0..columns.len()).flat_map(|a| (0..columns.len()).map(move |b| (a, b)));
+        for (a, b) in pairs {
+            add(&mut found, sigma * sigma * inverse[(a, b)], &columns[a].1, &columns[b].1);
+        }
+        for fault in self.left {
+            if fault.kind == ReceiverErrorKind::Move {
+                // Its place is somewhere between the two.
+                let mut motion = Motion {
+                    receivers: vec![0.0; 2 * kept.receivers],
+                    transmitters: vec![[0.0; 3]; kept.transmitters],
+                };
+                motion.receivers[2 * fault.receiver..2 * fault.receiver + 2].copy_from_slice(&fault.size);
+                add(&mut found, 1.0, &motion, &motion);
+            } else {
+                for (_, motion) in super::delays::columns(kept, &projection, &[*fault]) {
+                    add(&mut found, fault.size[0].powi(2), &motion, &motion);
                 }
             }
         }
+        let size = 2 * kept.receivers;
         for (i, receiver) in found.receivers.iter_mut().enumerate() {
             *receiver = [0, 1].map(|x| [0, 1].map(|y| found.joint[(2 * i + x) * size + 2 * i + y]));
         }
@@ -57,6 +77,7 @@ impl Solved<'_> {
                 receiver: self.centred.receiver_names()[fault.receiver].clone(),
                 kind: fault.kind,
                 from: later.then(|| self.centred.transmitter_names()[fault.from].clone()),
+                place: (taken_out && fault.kind == ReceiverErrorKind::Move).then(|| self.place_of(fault)),
                 size: fault.length(),
                 gain: fault.gain,
                 taken_out,
@@ -64,6 +85,13 @@ impl Solved<'_> {
         };
         let taken = self.taken.iter().map(|fault| named(fault, true));
         taken.chain(self.left.iter().map(|fault| named(fault, false))).collect()
+    }
+
+    /// Which place of a receiver that was moved is in the result: what it measured at the other one was
+    /// left out.
+    fn place_of(&self, fault: &Fault) -> MovedPlace {
+        let is_before = (0..fault.from).any(|j| self.centred.get(fault.receiver, j).is_some());
+        if is_before { MovedPlace::Before } else { MovedPlace::After }
     }
 
     /// Warnings that name the receivers, what is wrong with them, by how much, and what to do.
@@ -96,10 +124,17 @@ impl Solved<'_> {
                 ReceiverErrorKind::Move => format!("been moved by about {size:.3} m before transmitter {from}"),
             };
             let remedy = match (error.taken_out, error.kind) {
-                (true, ReceiverErrorKind::Move) => "only the longer part of its measurements was used".to_string(),
+                (true, ReceiverErrorKind::Move) => {
+                    let place = if error.place == Some(MovedPlace::After) { "after" } else { "before" };
+                    format!(
+                        "its position here is the one {place} the move, where more was measured; the rest was not used"
+                    )
+                }
                 (true, _) => "it was taken out".to_string(),
                 (false, ReceiverErrorKind::Move) => {
-                    format!("give it another name from {from} on, or use --receiver-delays auto")
+                    format!(
+                        "its position here is between both; give it another name from {from} on, or use --receiver-delays auto"
+                    )
                 }
                 (false, _) => "remove it from the measurements, or use --receiver-delays auto".to_string(),
             };

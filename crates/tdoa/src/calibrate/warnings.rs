@@ -8,7 +8,7 @@ use crate::pseudoranges::Pseudoranges;
 use crate::refine::Covariance;
 
 /// Receivers whose inliers may agree by chance are expected less often than this in a calibration.
-const BY_CHANCE: f64 = 0.01;
+pub(super) const BY_CHANCE: f64 = 0.01;
 
 /// Receivers most of whose measurements are outliers.
 fn mostly_wrong(measured: &Pseudoranges, kept: &Observations) -> Vec<usize> {
@@ -35,7 +35,7 @@ pub(super) fn doubtful_receivers(measured: &Pseudoranges, kept: &Observations, w
 /// How many of the places that two of `all` measurements give a receiver are expected to have
 /// `inliers` of them by chance, those two included, where one is an inlier by chance with probability
 /// `width`: two places for each pair, and the tail of a binomial distribution.
-fn agree_by_chance(all: usize, inliers: usize, width: f64) -> f64 {
+pub(super) fn agree_by_chance(all: usize, inliers: usize, width: f64) -> f64 {
     let (others, least) = (all.saturating_sub(2), inliers.saturating_sub(2));
     let p = width.clamp(0.0, 1.0);
     let mut term = (1.0 - p).powi(others as i32);
