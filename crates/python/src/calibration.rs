@@ -35,7 +35,7 @@ impl Settings {
         options.sigma = self.sigma;
         options.seed = self.seed;
         options.anchors = self.anchors;
-        let measured = |(receiver, position, sigma)| MeasuredPosition { receiver, position, sigma };
+        let measured = |(receiver, position, sigma)| MeasuredPosition { receiver, position, sigma: [sigma; 2] };
         options.positions = self.positions.into_iter().map(measured).collect();
         options.estimate_speed = self.estimate_speed;
         let known = |(a, b, distance)| KnownDistance { receivers: [a, b], distance };

@@ -43,8 +43,9 @@ pub(crate) struct Arguments {
     #[arg(long)]
     scale: bool,
     /// Known positions of some receivers (columns name, x and y in any order, metres): they fix the
-    /// frame, and two or more are held there, which sharpens the rest. With a column sigma they are
-    /// measurements with that standard deviation, exact where it is 0; x or y may be empty.
+    /// frame, and two or more are held there, which sharpens the rest. With a column sigma (or std_x
+    /// and std_y) they are measurements with that standard deviation, exact where it is 0; x or y
+    /// may be empty.
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["frame", "scale"])]
     anchors: Option<PathBuf>,
     /// What is done about receivers whose measurements are all too long or too short, as by a

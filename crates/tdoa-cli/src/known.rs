@@ -117,7 +117,7 @@ pub(crate) struct Anchors {
     pub(crate) note: Option<String>,
 }
 
-/// Known positions in a file. Where it has a column sigma, each has a standard deviation, 0 for an
+/// Known positions in a file. Where it has a column sigma, or std_x and std_y, each has standard deviations, 0 for an
 /// exact one. A name that no receiver has is more likely a mistake than meant.
 pub(crate) fn anchors(path: &Path, measured: &Pseudoranges) -> Result<Anchors, Failure> {
     let nodes = read_nodes(path).map_err(Failure::unusable)?;
@@ -148,16 +148,18 @@ pub(crate) fn anchors(path: &Path, measured: &Pseudoranges) -> Result<Anchors, F
         ));
     }
     let find = |receiver: &String| names.iter().position(|name| name == receiver);
-    let sigma_of = |k: usize| nodes.sigmas.as_ref().map_or(0.0, |sigmas| sigmas[k]);
-    let has_sigmas = nodes.sigmas.is_some() || nodes.partial.iter().any(|(.., sigma)| !sigma.is_nan());
+    let sigma_of = |k: usize| nodes.sigmas.as_ref().map_or([0.0; 2], |sigmas| sigmas[k]);
+    let has_sigmas =
+        nodes.sigmas.is_some() || nodes.partial.iter().any(|(.., sigma)| !sigma.iter().all(|x| x.is_nan()));
     let mut found = Anchors { exact: vec![None; receivers.len()], measured: Vec::new(), note: heights(path, &nodes) };
     for (i, receiver) in receivers.iter().enumerate() {
         let whole = find(receiver).map(|k| (nodes.positions[k].map(Some), sigma_of(k)));
         let partial = nodes.partial.iter().find(|(name, ..)| name == receiver);
         // Without a column sigma all positions are exact.
-        let partial = partial.map(|&(_, position, sigma)| (position, if has_sigmas { sigma } else { 0.0 }));
+        let partial = partial.map(|&(_, position, sigma)| (position, if has_sigmas { sigma } else { [0.0; 2] }));
         let Some((position, sigma)) = whole.or(partial) else { continue };
-        if sigma.is_nan() || sigma < 0.0 {
+        let is_missing = |k: usize| position[k].is_some() && (sigma[k].is_nan() || sigma[k] < 0.0);
+        if is_missing(0) || is_missing(1) {
             return Err(Failure::in_file(
                 path,
                 format!(
@@ -166,8 +168,12 @@ pub(crate) fn anchors(path: &Path, measured: &Pseudoranges) -> Result<Anchors, F
             ));
         }
         match position {
-            [Some(x), Some(y)] if sigma == 0.0 => found.exact[i] = Some([x, y]),
-            _ => found.measured.push(MeasuredPosition { receiver: i, position, sigma }),
+            [Some(x), Some(y)] if sigma == [0.0; 2] => found.exact[i] = Some([x, y]),
+            _ => {
+                // A coordinate that is not known has no deviation.
+                let sigma = [0, 1].map(|k| if position[k].is_some() { sigma[k] } else { 0.0 });
+                found.measured.push(MeasuredPosition { receiver: i, position, sigma });
+            }
         }
     }
     Ok(found)

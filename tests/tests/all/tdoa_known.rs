@@ -74,6 +74,44 @@ fn anchors_have_standard_deviations() {
 }
 
 #[test]
+fn a_node_table_gives_anchors_with_their_deviations() {
+    let (directory, file, truth) = recording();
+    let nodes = directory.path().join("nodes.csv");
+    let known = anchors(directory.path(), &truth, &[1, 4, 6, 8]);
+    let (_, message, status) = calibrate(&[text(&file), "--anchors", text(&known), "--nodes", text(&nodes)]);
+    assert_eq!(status, Some(0), "{message}");
+    let (found, message, status) = calibrate(&[text(&file), "--anchors", text(&nodes)]);
+    assert_eq!(status, Some(0), "{message}");
+    let found = found.expect("JSON");
+    // What was held has deviation 0 in the table and is held again; the others were measured.
+    assert_eq!(found["anchored"].to_string(), "[false,true,false,false,true,false,true,false,true]");
+    assert!(worst(&found, &truth) < 0.1, "{}", worst(&found, &truth));
+    // Along x to a micrometre, along y to a metre: one coordinate is kept, the other is that of the measurements.
+    let at = |i: usize, off: f64, std: &str| format!("r{},{},{},{std}\n", i + 1, truth[i][0], truth[i][1] + off);
+    let lines = at(1, 0.0, "0,0") + &at(4, 0.0, "0,0") + &at(6, 0.0, "0,0") + &at(8, 0.5, "1e-6,1");
+    std::fs::write(&nodes, format!("name,x,y,std_x,std_y\n{lines}")).expect("written");
+    let (found, message, status) = calibrate(&[text(&file), "--anchors", text(&nodes)]);
+    assert_eq!(status, Some(0), "{message}");
+    let found = found.expect("JSON");
+    let of = |k: usize| found["receivers"][8][k].as_f64().expect("coordinate") - truth[8][k];
+    assert!(of(0).abs() < 1e-4 && of(1).abs() < 0.1, "{} {}", of(0), of(1));
+}
+
+#[test]
+fn three_anchors_that_contradict_each_other_are_not_trusted() {
+    let (directory, file, mut truth) = recording();
+    truth[6][0] += 2.8;
+    let known = anchors(directory.path(), &truth, &[1, 4, 6]);
+    let (found, message, status) = calibrate(&[text(&file), "--anchors", text(&known)]);
+    assert_eq!(status, Some(1), "{message}");
+    assert!(message.contains("the known positions contradict the measurements"), "{message}");
+    let found = found.expect("JSON");
+    assert!(found["unique"] == false && found["anchors_agree"] == false);
+    let warnings = found["warnings"].to_string();
+    assert!(warnings.contains("one of the three may be wrong"), "{warnings}");
+}
+
+#[test]
 fn the_speed_of_sound_and_of_light() {
     let (directory, file, truth) = recording();
     let known = anchors(directory.path(), &truth, &[1, 4, 6, 8]);

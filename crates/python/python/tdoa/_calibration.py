@@ -132,8 +132,8 @@ class Calibration:
 
     @property
     def trusted(self):
-        """Whether the measurements fit a network in the plane and determine where most receivers are."""
-        return self.data["planar"] and self.data["determined"]
+        """Whether the measurements fit a network in the plane and the known positions, and determine where most receivers are."""
+        return self.data["planar"] and self.data["determined"] and self.data.get("anchors_agree", True)
 
     def plot(self, ax=None, *, names=True):
         """Draw the network as the report does: nodes with 95 % ellipses, outliers as lines.

@@ -63,8 +63,8 @@ pub struct Calibration {
     pub gauge: Cow<'static, str>,
     /// Whether no other network that was found explains the measurements about as well, more than
     /// one or two starts of the search found this one, the data fit, its receivers are determined,
-    /// none with a deviation larger than the network, and no receiver shows an error of its own that
-    /// was left in.
+    /// none with a deviation larger than the network, known positions do not contradict the
+    /// measurements, and no receiver shows an error of its own that was left in.
     pub unique: bool,
     /// Whether that holds for the receivers: in other networks only transmitters lie elsewhere.
     pub unique_receivers: bool,
@@ -78,6 +78,10 @@ pub struct Calibration {
     /// network's size; true where the noise is not known. A table with receivers as columns is one
     /// that does not.
     pub determined: bool,
+    /// Whether the known positions agree with the measurements, to the same share of the network's size
+    /// as the measurements have to with a plane; true where none are known.
+    #[serde(default = "agree")]
+    pub anchors_agree: bool,
     /// Errors of single receivers that the measurements show, most telling first, or delays of all
     /// receivers, relative to their mean.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -98,6 +102,11 @@ pub struct Calibration {
     /// Comparison with the truth, if that was given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub truth: Option<Truth>,
+}
+
+/// Results that were written before they said so.
+fn agree() -> bool {
+    true
 }
 
 /// Another network that explains the measurements.
@@ -122,6 +131,8 @@ impl Calibration {
             Some("the measurements do not fit a network in the plane")
         } else if !self.determined {
             Some("the measurements do not determine where most receivers are")
+        } else if !self.anchors_agree {
+            Some("the known positions contradict the measurements")
         } else {
             None
         }

@@ -28,6 +28,9 @@ pub(super) struct Held {
     pub(super) anchors: Option<Anchors>,
     pub(super) speed: Option<SpeedEstimate>,
     pub(super) warnings: Vec<String>,
+    /// How far the known positions are from where the measurements put these receivers, root mean
+    /// square, where that is no chance.
+    pub(super) contradiction: Option<f64>,
 }
 
 impl Free<'_> {
@@ -44,7 +47,7 @@ impl Free<'_> {
         let mut anchors = Anchors::new(usable, options)?;
         let mut warnings = Vec::new();
         if anchors.is_none() && !options.estimate_speed {
-            return Ok(Held { observations, ranked, deviation, anchors, speed: None, warnings });
+            return Ok(Held { observations, ranked, deviation, anchors, speed: None, warnings, contradiction: None });
         }
         let best = &ranked[0].network;
         let sigma = known.unwrap_or_else(|| inlier_deviation(&observations, best, deviation, options.inlier_threshold));
@@ -72,17 +75,26 @@ impl Free<'_> {
         }
         let held = anchors.as_ref().map_or(Vec::new(), Anchors::held);
         let Some(places) = anchors.as_ref().filter(|anchors| anchors.fix()) else {
-            return Ok(Held { observations, ranked, deviation, anchors, speed, warnings });
+            return Ok(Held { observations, ranked, deviation, anchors, speed, warnings, contradiction: None });
         };
         let misfit: Vec<f64> = ranked.iter_mut().map(|refined| places.place(refined)).collect();
         let expected = uncertainty.as_ref().map(|all| places.expected(&all.receivers));
+        let mut contradiction = None;
         if let Some(expected) = expected.filter(|expected| misfit.iter().all(|misfit| *misfit > 4.0 * expected)) {
+            let count = places.count();
+            let few = match count {
+                ..3 => "",
+                3 => " (one of the three may be wrong; which one can be told with a fourth)",
+                _ => " (more than one, or names exchanged)",
+            };
             warnings.push(format!(
-                "the known positions are {} (root mean square) from where the measurements put these receivers, which \
-                 would be expected to {}; check the positions and names, and the propagation speed (--estimate-speed)",
+                "the known positions contradict the distances that the measurements give between these receivers: they are {} (root mean \
+                 square) from where the measurements put them, which would be expected to {}{few}; check the positions and names, and the \
+                 propagation speed (--estimate-speed)",
                 length(metre * misfit[0]),
                 length(metre * expected)
             ));
+            contradiction = Some(misfit[0]);
         }
         if places.leave_mirror() {
             warnings.push(
@@ -96,7 +108,7 @@ impl Free<'_> {
         // Where few measurements were left over, the free network took up most of the noise.
         let first = known.unwrap_or_else(|| deviation.max(median_size(&observations, &ranked[0].network) / 0.6745));
         let (ranked, deviation) = finish(&observations, ranked, first, known.is_some(), floor, options, monitor)?;
-        Ok(Held { observations, ranked, deviation, anchors, speed, warnings })
+        Ok(Held { observations, ranked, deviation, anchors, speed, warnings, contradiction })
     }
 }
 
@@ -247,7 +259,11 @@ mod tests {
             // Four to 5 cm, one of them in x alone, and one to 5 mm.
             let mut position = |receiver: usize, sigma: f64| {
                 let [x, y] = truth[receiver].map(|x| Some(noisy(x, sigma)));
-                MeasuredPosition { receiver, position: if receiver == 5 { [x, None] } else { [x, y] }, sigma }
+                MeasuredPosition {
+                    receiver,
+                    position: if receiver == 5 { [x, None] } else { [x, y] },
+                    sigma: [sigma; 2],
+                }
             };
             let positions =
                 vec![position(0, 0.05), position(3, 0.05), position(5, 0.05), position(7, 0.05), position(8, 0.005)];
@@ -272,7 +288,7 @@ mod tests {
     #[test]
     fn positions_that_make_no_frame_are_refused() {
         let simulation = simulation(5);
-        let known = |receiver, position, sigma| MeasuredPosition { receiver, position, sigma };
+        let known = |receiver, position, sigma| MeasuredPosition { receiver, position, sigma: [sigma; 2] };
         let both = known(0, [Some(0.0), Some(0.0)], 0.1);
         for (positions, part) in [
             (vec![both, known(1, [Some(1.0), None], 0.1)], "both coordinates of two receivers"),

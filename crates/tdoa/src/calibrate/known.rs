@@ -67,9 +67,9 @@ pub(super) fn validate(measured: &Pseudoranges, options: &CalibrateOptions) -> R
         if !position.iter().flatten().all(usable) || position.iter().all(Option::is_none) {
             return bad(format!("the position of {} is not finite or too large; give metres", name(receiver)));
         }
-        if !(0.0..=MAX_MAGNITUDE).contains(&sigma) {
+        if let Some(wrong) = sigma.iter().find(|sigma| !(0.0..=MAX_MAGNITUDE).contains(*sigma)) {
             return bad(format!(
-                "the standard deviation of the position of {} must not be negative, not {sigma}",
+                "the standard deviation of the position of {} must not be negative, not {wrong}",
                 name(receiver)
             ));
         }
@@ -182,7 +182,7 @@ impl Anchors {
         for known in &measured {
             if let [Some(x), Some(y)] = known.position {
                 positions[known.receiver] = Some([x, y]);
-                exact[known.receiver] = known.sigma == 0.0;
+                exact[known.receiver] = known.sigma == [0.0; 2];
             }
         }
         measured.retain(|known| !exact[known.receiver]);
@@ -198,7 +198,7 @@ impl Anchors {
         let size = positions.iter().flatten().map(|p| distance(*p, [0.0; 2])).fold(0.0, f64::max);
         for known in &mut measured {
             // What can be held are whole positions.
-            known.sigma = known.sigma.max(EXACT * size);
+            known.sigma = known.sigma.map(|sigma| sigma.max(EXACT * size));
             for (x, centre) in known.position.iter_mut().zip(centre) {
                 *x = x.map(|x| x - centre);
             }
@@ -218,7 +218,7 @@ impl Anchors {
             *p = [p[0] / factor, p[1] / factor];
         }
         for known in &mut self.measured {
-            known.sigma /= factor;
+            known.sigma = known.sigma.map(|sigma| sigma / factor);
             known.position = known.position.map(|x| x.map(|x| x / factor));
         }
     }
@@ -228,6 +228,11 @@ impl Anchors {
         let mut all = self.positions.iter().flatten();
         let first = all.next();
         first.is_some_and(|p| all.any(|q| distance(*p, *q) > 0.0))
+    }
+
+    /// How many positions are known in both coordinates.
+    pub(super) fn count(&self) -> usize {
+        self.positions.iter().flatten().count()
     }
 
     /// Which receivers are held: all exact anchors, if the known positions are in two places at
@@ -240,18 +245,19 @@ impl Anchors {
     /// The coordinates that were measured, beside measurements of this deviation.
     pub(super) fn pins(&self, deviation: f64) -> Vec<Pin> {
         let pins = self.measured.iter().flat_map(|known| {
-            let precision = deviation / known.sigma;
             let pin = move |axis: usize| {
-                Some(Pin { receiver: known.receiver, axis, value: known.position[axis]?, precision })
+                let (value, precision) = (known.position[axis]?, deviation / known.sigma[axis]);
+                Some(Pin { receiver: known.receiver, axis, value, precision })
             };
             (0..2).filter_map(pin)
         });
         pins.collect()
     }
 
-    /// Standard deviation of the known position of a receiver; zero if it is exact.
-    fn sigma(&self, i: usize) -> f64 {
-        self.measured.iter().find(|known| known.receiver == i).map_or(0.0, |known| known.sigma)
+    /// Sum of the variances of the known coordinates of a receiver; zero if they are exact.
+    fn variance(&self, i: usize) -> f64 {
+        let known = self.measured.iter().find(|known| known.receiver == i);
+        known.map_or(0.0, |known| known.sigma.iter().map(|sigma| sigma * sigma).sum())
     }
 
     /// The one known position that the network and the others contradict, and by how much: without it
@@ -308,7 +314,7 @@ impl Anchors {
     /// covariances of the receivers and their own deviations.
     pub(super) fn expected(&self, covariance: &[[[f64; 2]; 2]]) -> f64 {
         let known = covariance.iter().zip(&self.positions).enumerate().filter(|(_, (_, p))| p.is_some());
-        let traces = known.map(|(i, (c, _))| c[0][0] + c[1][1] + 2.0 * self.sigma(i).powi(2));
+        let traces = known.map(|(i, (c, _))| c[0][0] + c[1][1] + self.variance(i));
         let (sum, count) = traces.fold((0.0, 0.0), |(sum, count), trace| (sum + trace, count + 1.0));
         (sum / f64::max(count, 1.0)).sqrt()
     }

@@ -125,7 +125,7 @@ pub fn calibrate_with(
     let free = Free { observations, centred: &centred, known, floor };
     let held = free.hold(ranked, deviation, &usable, options, monitor).map_err(|error| error.leaving(&so_far))?;
     options::check(monitor).map_err(|error| error.leaving(&so_far))?;
-    let Held { observations, ranked, deviation, anchors, speed, warnings } = held;
+    let Held { observations, ranked, deviation, anchors, speed, warnings, contradiction } = held;
     let solved = Solved {
         measured,
         neighbours: if taken.is_empty() && anchors.is_none() { neighbours } else { Vec::new() },
@@ -143,6 +143,7 @@ pub fn calibrate_with(
         anchors,
         speed,
         warnings,
+        contradiction,
     };
     Ok(solved.report(options))
 }

@@ -119,8 +119,8 @@ pub struct MeasuredPosition {
     pub receiver: usize,
     /// x and y in metres, `None` where unknown.
     pub position: [Option<f64>; 2],
-    /// Standard deviation of each coordinate, metres; zero if they are exact.
-    pub sigma: f64,
+    /// Standard deviations of x and y, metres; both zero if they are exact.
+    pub sigma: [f64; 2],
 }
 
 impl CalibrateOptions {

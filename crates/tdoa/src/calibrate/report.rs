@@ -47,6 +47,8 @@ pub(super) struct Solved<'a> {
     pub(super) left: &'a [Fault],
     /// Warnings of the steps before.
     pub(super) warnings: Vec<String>,
+    /// How far known positions are from where the measurements put them, where that is no chance.
+    pub(super) contradiction: Option<f64>,
 }
 
 impl Solved<'_> {
@@ -100,6 +102,7 @@ impl Solved<'_> {
         }
         let determined = warn_of_nodes(self.centred, best, &kept, &uncertainty, noise_known, &doubtful, &mut warnings)
             && !transposed;
+        let anchors_agree = self.contradiction.is_none_or(|off| off <= options.planar_limit * best.size());
 
         let (m, n) = (self.measured.receivers(), self.measured.transmitters());
         let (rows, columns) = (&self.usable.receivers, &self.usable.transmitters);
@@ -183,7 +186,7 @@ impl Solved<'_> {
                 agreeing, self.starts
             ));
         }
-        let sure = settled && planar && placed && determined && !transposed && self.left.is_empty();
+        let sure = settled && planar && placed && determined && self.contradiction.is_none() && self.left.is_empty();
         let located = |c: &Option<[[f64; 3]; 3]>| c.map(|c| [[c[0][0], c[0][1]], [c[1][0], c[1][1]]]);
         let transmitters: Vec<_> = uncertainty.transmitters.iter().map(located).collect();
         let offset_std: Vec<_> = uncertainty.transmitters.iter().map(|c| c.map(|c| c[2][2].max(0.0).sqrt())).collect();
@@ -225,6 +228,7 @@ impl Solved<'_> {
             alternatives,
             planar,
             determined,
+            anchors_agree,
             receiver_errors: self.receiver_errors(),
             warnings,
             seed: options.seed,

@@ -25,11 +25,12 @@ pub struct Nodes {
     pub positions: Vec<[f64; 2]>,
     /// Heights in metres, if the file has a column z; NaN where that is empty.
     pub heights: Option<Vec<f64>>,
-    /// Standard deviations in metres, if the file has a column sigma; NaN where that is empty.
-    pub sigmas: Option<Vec<f64>>,
+    /// Standard deviations of x and y in metres, if the file has a column sigma, or columns std_x and
+    /// std_y; NaN where these are empty.
+    pub sigmas: Option<Vec<[f64; 2]>>,
     /// Named nodes of which one coordinate is known alone, with their standard deviations, NaN where
     /// none is given.
-    pub partial: Vec<(String, [Option<f64>; 2], f64)>,
+    pub partial: Vec<(String, [Option<f64>; 2], [f64; 2])>,
 }
 
 impl Nodes {
@@ -146,7 +147,8 @@ struct Columns {
     y: usize,
     z: Option<usize>,
     kind: Option<usize>,
-    sigma: Option<usize>,
+    /// Those of the deviations of x and y, which may be one.
+    sigma: Option<[usize; 2]>,
 }
 
 impl Columns {
@@ -155,8 +157,27 @@ impl Columns {
         let headings: Vec<Heading> = cells.iter().map(|cell| Heading::new(cell)).collect();
         let at = |k: usize| headings.iter().position(|heading| heading.coordinate() == Some(k));
         let (Some(x), Some(y)) = (at(0), at(1)) else { return Ok(None) };
-        let (z, sigma) = (at(2), headings.iter().position(Heading::heads_sigmas));
-        for k in [Some(x), Some(y), z, sigma].into_iter().flatten() {
+        let z = at(2);
+        let both = headings.iter().position(Heading::heads_sigmas);
+        let each = [0, 1].map(|k| headings.iter().position(|heading| heading.coordinate_of_sigma() == Some(k)));
+        let sigma = match (both, each) {
+            (None, [None, None]) => None,
+            (Some(both), [None, None]) => Some([both; 2]),
+            (None, [Some(x), Some(y)]) => Some([x, y]),
+            (Some(k), [Some(other), _] | [_, Some(other)]) => {
+                return Err(format!(
+                    "the columns {:?} and {:?} are both standard deviations; remove one, or both to take the positions as exact",
+                    cells[k], cells[other]
+                ));
+            }
+            (None, [Some(only), None] | [None, Some(only)]) => {
+                return Err(format!(
+                    "the column {:?} is the standard deviation of one coordinate alone; give both std_x and std_y, or one column sigma",
+                    cells[only]
+                ));
+            }
+        };
+        for k in [Some(x), Some(y), z].into_iter().chain(sigma.iter().flatten().map(|k| Some(*k))).flatten() {
             if let Some(unit) = headings[k].unit.filter(|unit| *unit != "m") {
                 return Err(format!("the column {:?} is in {unit}; convert it to metres", cells[k]));
             }
@@ -221,7 +242,10 @@ pub fn read_nodes_from(source: impl Read, file: &str) -> Result<Nodes, ReadError
         }
         let mut read = |k: usize| coordinate(&record, k, &mut decimals).map_err(bad);
         let mut optional = |k: usize| if cell(k).is_none_or(str::is_empty) { Ok(f64::NAN) } else { read(k) };
-        let sigma = place.sigma.map(&mut optional).transpose()?;
+        let sigma = match place.sigma {
+            Some([x, y]) => Some([optional(x)?, optional(y)?]),
+            None => None,
+        };
         if let (Some(name), true, false) =
             (place.name.and_then(cell), cell(place.x) == Some("") || cell(place.y) == Some(""), is_unlocated)
         {
@@ -229,7 +253,7 @@ pub fn read_nodes_from(source: impl Read, file: &str) -> Result<Nodes, ReadError
             if let Some(earlier) = lines.insert(name.to_string(), record.line) {
                 return Err(bad(format!("receiver {name} is there twice, on line {earlier} too; keep one position")));
             }
-            partial.push((name.to_string(), position, sigma.unwrap_or(f64::NAN)));
+            partial.push((name.to_string(), position, sigma.unwrap_or([f64::NAN; 2])));
             continue;
         }
         sigmas.extend(sigma);
@@ -301,8 +325,12 @@ mod tests {
         let found = nodes("id,x,y,sigma\na,1,2,0.5\nb,3,4,0\nc,,6,0.1\nd,7,8,\n").unwrap();
         assert_eq!(found.positions, [[1.0, 2.0], [3.0, 4.0], [7.0, 8.0]]);
         let sigmas = found.sigmas.unwrap();
-        assert!(sigmas[..2] == [0.5, 0.0] && sigmas[2].is_nan());
-        assert_eq!(found.partial, [("c".to_string(), [None, Some(6.0)], 0.1)]);
+        assert!(sigmas[..2] == [[0.5; 2], [0.0; 2]] && sigmas[2][0].is_nan());
+        assert_eq!(found.partial, [("c".to_string(), [None, Some(6.0)], [0.1; 2])]);
+        let found = nodes("kind,name,x,y,std_x,std_y\nreceiver,a,1,2,0.5,0.25\n").unwrap();
+        assert_eq!(found.sigmas, Some(vec![[0.5, 0.25]]));
+        assert!(nodes("id,x,y,std_x\na,1,2,3\n").unwrap_err().contains("give both std_x and std_y"));
+        assert!(nodes("id,x,y,std_x,std_y,sigma\na,1,2,3,4,5\n").unwrap_err().contains("both standard deviations"));
         assert!(nodes("id,x,y\na,1,\na,1,2\n").unwrap_err().contains("is there twice"));
         assert!(nodes("id,x,y,std_mm\na,1,2,3\n").unwrap_err().contains("convert it to metres"));
     }
