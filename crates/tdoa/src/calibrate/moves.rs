@@ -2,7 +2,7 @@
 
 use super::options::{CalibrateError, check};
 use super::ranking::{OUTLIER_COST, refit};
-use super::receiver_errors::{Fault, ReceiverErrorKind, SIDE};
+use super::receiver_errors::{Fault, ReceiverErrorKind, SIDE, tests, threshold};
 use super::refits::{Fitting, Found};
 use super::warnings::{BY_CHANCE, agree_by_chance};
 use crate::loss::{Loss, SEARCH_NU};
@@ -89,6 +89,11 @@ impl Fitting<'_> {
             deviation: self.deviation,
         };
         let Some(split) = sights.best(monitor)? else { return Ok(None) };
+        // Two places have to cost less than one, before all nodes are fitted to them.
+        let least = 0.5 * threshold(tests(ReceiverErrorKind::Move, self.observations.receivers, sights.all.len()));
+        if sights.place(&sights.all).is_some_and(|(_, cost)| cost - split.cost < least) {
+            return Ok(None);
+        }
         let from = sights.transmitters[split.at];
         let observations = self.observations.split(receiver, from);
         let mut network = alone.clone();
