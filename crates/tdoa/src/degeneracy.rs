@@ -316,8 +316,9 @@ fn identical_receivers(
     transmitters: &[usize],
 ) -> Option<(usize, usize, f64)> {
     for (k, &a) in receivers.iter().enumerate() {
+        let heard: Vec<(usize, f64)> = transmitters.iter().filter_map(|&j| Some((j, measured.get(a, j)?))).collect();
         for &b in &receivers[k + 1..] {
-            let pairs = transmitters.iter().filter_map(|&j| Some((measured.get(a, j)?, measured.get(b, j)?)));
+            let pairs = heard.iter().filter_map(|&(j, value)| Some((value, measured.get(b, j)?)));
             if let Some(constant) = constant_difference(pairs.clone(), printed(pairs)) {
                 return Some((a, b, constant));
             }

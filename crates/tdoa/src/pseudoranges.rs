@@ -2,8 +2,8 @@
 
 use thiserror::Error;
 
-/// Largest number of cells (receivers times transmitters) of a matrix: 4 million, 32 MB of values.
-pub const MAX_CELLS: usize = 4_000_000;
+/// Largest number of cells (receivers times transmitters) of a matrix: 24 million, 192 MB of values.
+pub const MAX_CELLS: usize = 24_000_000;
 
 /// Largest magnitude of a value, in metres. Above it a double cannot resolve a tenth of a
 /// millimetre.

@@ -4,8 +4,8 @@ use thiserror::Error;
 
 use crate::pseudoranges::{MAX_CELLS, PseudorangeError};
 
-/// Largest file that is read: 256 MB, enough for [`MAX_CELLS`] cells of 64 characters.
-pub const MAX_BYTES: u64 = 64 * MAX_CELLS as u64;
+/// Largest file that is read: 512 MB, enough for [`MAX_CELLS`] cells of 20 characters.
+pub const MAX_BYTES: u64 = 512_000_000;
 
 /// What a first line may say, for messages.
 pub(super) const ACCEPTED: &str = "a list of measurements has the columns receiver (or mic, microphone, anchor, sensor, \
