@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::Serialize;
 use tdoa::{
-    CalibrateError, CalibrateOptions, Calibration, KnownDistance, MeasuredPosition, ReceiverDelays, Unfinished,
+    CalibrateError, CalibrateOptions, Calibration, Errors, KnownDistance, MeasuredPosition, ReceiverDelays, Unfinished,
     calibrate_with,
 };
 
@@ -23,6 +23,7 @@ pub(crate) struct Settings {
     positions: Vec<(usize, [Option<f64>; 2], f64)>,
     distances: Vec<(usize, usize, f64)>,
     receiver_delays: String,
+    errors: String,
     estimate_speed: bool,
     seed: u64,
     max_starts: Option<usize>,
@@ -50,6 +51,11 @@ impl Settings {
             other => {
                 return Err(Failure::Input(format!("receiver_delays must be none, auto or all, not {other:?}")));
             }
+        };
+        options.errors = match self.errors.as_str() {
+            "symmetric" => Errors::Symmetric,
+            "one-sided" => Errors::OneSided,
+            other => return Err(Failure::Input(format!("errors must be symmetric or one-sided, not {other:?}"))),
         };
         Ok(options)
     }

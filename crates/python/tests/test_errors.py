@@ -96,6 +96,8 @@ def test_memory_layouts_give_the_same_bits():
         (dict(anchors={"r1": (0,)}), "the anchor r1 must be x and y"),
         (dict(anchors=np.zeros((3, 2))), r"anchors must have shape \(8, 2\)"),
         (dict(receiver_delays="some"), "none, auto or all"),
+        (dict(errors="late"), "symmetric or one-sided"),
+        (dict(errors="one-sided", receiver_delays="auto"), "not both"),
         (dict(distances=[(1, 2)]), "triples"),
         (dict(distances=[("r1", "q", 1.0)]), "no receiver is named q"),
         (dict(estimate_speed=True), "known positions and distances"),

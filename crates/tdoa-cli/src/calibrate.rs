@@ -9,7 +9,7 @@ use tdoa::node_table::node_table;
 use tdoa::picture::picture;
 use tdoa::read::{read, read_distances};
 use tdoa::summary::doubt_of_units;
-use tdoa::{CalibrateError, CalibrateOptions, Calibration, Monitor, ReceiverDelays, calibrate_with};
+use tdoa::{CalibrateError, CalibrateOptions, Calibration, Errors, Monitor, ReceiverDelays, calibrate_with};
 
 use crate::frame::Frame;
 use crate::known::{Truth, anchors};
@@ -53,6 +53,10 @@ pub(crate) struct Arguments {
     /// moved receivers too), or estimated for all, as where clocks were started apart (all).
     #[arg(long, value_enum, default_value = "none")]
     receiver_delays: Delays,
+    /// How measurements are wrong that are wrong by more than noise: too long or too short alike
+    /// (symmetric), or nearly all too long, as where sound or radio comes by a detour (one-sided).
+    #[arg(long, value_enum, default_value = "symmetric")]
+    errors: Side,
     /// Known distances between some receivers (receiver,receiver,distance, metres), for
     /// --estimate-speed.
     #[arg(long, value_name = "FILE.csv", requires = "estimate_speed")]
@@ -106,6 +110,13 @@ enum Delays {
     All,
 }
 
+/// To which side measurements are wrong.
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum Side {
+    Symmetric,
+    OneSided,
+}
+
 /// The JSON form: offsets in the unit of the input too, where that is not the metre.
 #[derive(Serialize)]
 struct Report<'a> {
@@ -154,6 +165,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Delays::None => ReceiverDelays::None,
         Delays::Auto => ReceiverDelays::Auto,
         Delays::All => ReceiverDelays::All,
+    };
+    options.errors = match arguments.errors {
+        Side::Symmetric => Errors::Symmetric,
+        Side::OneSided => Errors::OneSided,
     };
     options.estimate_speed = arguments.estimate_speed;
     options.sigma = arguments.sigma;

@@ -74,7 +74,7 @@ pub mod simulate;
 pub mod summary;
 
 pub use calibrate::{
-    Alternative, CalibrateError, CalibrateOptions, Calibration, Hypotheses, KnownDistance, MeasuredPosition,
+    Alternative, CalibrateError, CalibrateOptions, Calibration, Errors, Hypotheses, KnownDistance, MeasuredPosition,
     MovedPlace, ReceiverDelays, ReceiverError, ReceiverErrorKind, SpeedEstimate, Truth, Unfinished, calibrate,
     calibrate_with,
 };

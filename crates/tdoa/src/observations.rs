@@ -134,6 +134,15 @@ impl Observations {
         Observations::of(self.receivers + 1, entries, columns).holding(&held).pinned(&self.pins).beside(self.others)
     }
 
+    /// These measurements, each with a share of its information.
+    pub(crate) fn trusted(&self, shares: &[f64]) -> Self {
+        let mut all = self.clone();
+        for (o, share) in all.entries.iter_mut().zip(shares) {
+            o.precision *= share.sqrt();
+        }
+        all
+    }
+
     /// These measurements, with receivers that stay where they are.
     pub(crate) fn holding(self, held: &[bool]) -> Self {
         Observations { held: held.to_vec(), ..self }

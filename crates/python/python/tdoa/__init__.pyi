@@ -147,6 +147,7 @@ def calibrate(
     threads: int | None = None,
     progress: _Progress = True,
     receiver_delays: str = "none",
+    errors: str = "symmetric",
     distances: Iterable[tuple[str | int, str | int, float]] | None = None,
     estimate_speed: bool = False,
     max_starts: int | None = None,

@@ -92,6 +92,7 @@ def calibrate(
     threads=None,
     progress=True,
     receiver_delays="none",
+    errors="symmetric",
     distances=None,
     estimate_speed=False,
     max_starts=None,
@@ -126,6 +127,9 @@ def calibrate(
     receiver_delays : {"none", "auto", "all"}
         What is done about receivers whose measurements are all too long or too short: told, estimated for those that show it, or
         estimated for all.
+    errors : {"symmetric", "one-sided"}
+        How measurements are wrong that are wrong by more than noise: too long or too short alike, or nearly all too long, as where
+        sound or radio comes by a detour. Not together with `receiver_delays`.
     distances : sequence of (receiver, receiver, metres), optional
         Known distances between receivers, by name or by index, for `estimate_speed`.
     estimate_speed : bool
@@ -165,6 +169,7 @@ def calibrate(
         "positions": measured,
         "distances": _distances(distances, given["receivers"], count),
         "receiver_delays": text("receiver_delays", receiver_delays),
+        "errors": text("errors", errors),
         "estimate_speed": bool(estimate_speed),
         "seed": seeded(seed),
         "max_starts": integer("max_starts", max_starts),

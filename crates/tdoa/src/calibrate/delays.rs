@@ -8,9 +8,10 @@ use hc::Monitor;
 use super::clocks::middle_delays;
 use super::deviation::{inlier_deviation, spread_of_residuals, typical_deviation};
 use super::finish::{CAUCHY, finish};
-use super::options::{CalibrateError, CalibrateOptions, ReceiverDelays, check};
+use super::one_sided::mixture_of;
+use super::options::{CalibrateError, CalibrateOptions, Errors, ReceiverDelays, check};
 use super::ranking::truncated_cost;
-use super::receiver_errors::{Fault, ReceiverErrorKind, find};
+use super::receiver_errors::{Fault, ReceiverErrorKind, find, find_one_sided};
 use super::refits::refits;
 use super::same::same;
 use crate::network::Network;
@@ -113,6 +114,10 @@ impl Clearing<'_> {
     fn look(&self, now: &Cleared) -> Result<(Vec<Fault>, Option<Network>), CalibrateError> {
         let (observations, limit) = (&now.observations, self.options.inlier_threshold);
         let (best, deviation) = (&now.ranked[0].network, now.deviation);
+        if self.options.errors == Errors::OneSided {
+            let mixture = mixture_of(observations, best, deviation);
+            return Ok((find_one_sided(observations, best, &mixture), None));
+        }
         let mut unmoved = Vec::new();
         loop {
             let mut found = one_of_each(find(observations, best, deviation, limit, &unmoved));

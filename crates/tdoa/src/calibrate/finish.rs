@@ -1,7 +1,8 @@
 //! The last refinement of the networks that the search found, and their order.
 
 use super::deviation::inlier_deviation;
-use super::options::{CalibrateError, CalibrateOptions, check};
+use super::one_sided::finish_one_sided;
+use super::options::{CalibrateError, CalibrateOptions, Errors, check};
 use super::ranking::rank;
 use super::same::distinct;
 use crate::observations::Observations;
@@ -26,6 +27,9 @@ pub(super) fn finish(
     options: &CalibrateOptions,
     monitor: &Monitor,
 ) -> Result<(Vec<Refined>, f64), CalibrateError> {
+    if options.errors == Errors::OneSided {
+        return finish_one_sided(observations, networks, first, known.then_some(first), floor, monitor);
+    }
     let mut refiner = Refiner::new(observations, 1.0).heeding(monitor);
     let mut deviation = first;
     let turns = if known { 1 } else { 4 };

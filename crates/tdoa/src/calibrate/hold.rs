@@ -1,9 +1,10 @@
 //! The last refinement with what is known beforehand: the propagation speed from known distances,
 //! then the receivers of known position held in their places.
 
-use super::deviation::{inlier_deviation, median_size};
+use super::deviation::median_size;
 use super::finish::finish;
 use super::known::{Anchors, SpeedEstimate};
+use super::one_sided::noise;
 use super::options::{CalibrateError, CalibrateOptions};
 use crate::degeneracy::Usable;
 use crate::observations::Observations;
@@ -50,7 +51,7 @@ impl Free<'_> {
             return Ok(Held { observations, ranked, deviation, anchors, speed: None, warnings, contradiction: None });
         }
         let best = &ranked[0].network;
-        let sigma = known.unwrap_or_else(|| inlier_deviation(&observations, best, deviation, options.inlier_threshold));
+        let sigma = known.unwrap_or_else(|| noise(&observations, best, deviation, options));
         let kept = Observations::new(centred, |i, j| {
             let residual = centred.get(i, j).map_or(0.0, |f| f - best.pseudorange(i, j));
             residual.abs() <= options.inlier_threshold * sigma * centred.sigma(i, j).unwrap_or(1.0)

@@ -21,6 +21,18 @@ pub enum ReceiverDelays {
     All,
 }
 
+/// How measurements are wrong that are wrong by more than noise.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Errors {
+    /// Too long or too short alike.
+    #[default]
+    Symmetric,
+    /// Nearly all too long, as where sound or radio comes by a detour. Not together with
+    /// [`CalibrateOptions::receiver_delays`].
+    OneSided,
+}
+
 /// How to calibrate. All fields have defaults; start from `CalibrateOptions::default()`.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -71,6 +83,8 @@ pub struct CalibrateOptions {
     /// What is done about receivers whose measurements are all too long or too short. Default
     /// [`ReceiverDelays::None`]: a warning names those that show.
     pub receiver_delays: ReceiverDelays,
+    /// How measurements are wrong that are wrong by more than noise. Default [`Errors::Symmetric`].
+    pub errors: Errors,
     /// Known distances between receivers, for `estimate_speed`. Default empty.
     pub distances: Vec<KnownDistance>,
     /// Whether the propagation speed with which the measurements became metres is a guess, to be
@@ -97,6 +111,7 @@ impl Default for CalibrateOptions {
             anchors: Vec::new(),
             positions: Vec::new(),
             receiver_delays: ReceiverDelays::None,
+            errors: Errors::Symmetric,
             distances: Vec::new(),
             estimate_speed: false,
         }
@@ -136,6 +151,9 @@ impl CalibrateOptions {
                 Err(CalibrateError::Option { name, range: "positive and finite", value })
             }
         };
+        if self.errors == Errors::OneSided && self.receiver_delays != ReceiverDelays::None {
+            return Err(CalibrateError::OneSidedDelays);
+        }
         if let Some(sigma) = self.sigma {
             positive("sigma", sigma)?;
         }
@@ -197,6 +215,12 @@ pub enum CalibrateError {
         /// Receivers.
         receivers: usize,
     },
+    /// Errors to one side, and errors of receivers that are to be estimated beside them.
+    #[error(
+        "errors to one side and delays of receivers cannot be estimated together: a receiver all of whose measurements are late looks like one \
+         with a delay; give --errors one-sided or --receiver-delays, not both"
+    )]
+    OneSidedDelays,
     /// Known positions or distances that cannot be used.
     #[error("known positions and distances: {0}")]
     Known(String),

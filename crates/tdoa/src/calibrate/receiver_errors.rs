@@ -8,6 +8,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::deviation::{inlier_deviation, spread_of_residuals};
+use super::mixture::Mixture;
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::refine::Projection;
@@ -131,6 +132,20 @@ pub(super) fn find(
     let residuals: Vec<f64> = kept.all().iter().map(|o| o.residual(network)).collect();
     let (rest, _) = projection.off(&residuals);
     Test { kept: &kept, projection, rest, taken: Vec::new(), redundancy: redundancy as f64, unmoved }.run()
+}
+
+/// The same where errors are one-sided. The test takes what each measurement says of its length (the
+/// scores of the mixture), in which late ones hardly count, in place of residuals.
+pub(super) fn find_one_sided(observations: &Observations, network: &Network, mixture: &Mixture) -> Vec<Fault> {
+    let redundancy = observations.len().saturating_sub(observations.unknowns());
+    if redundancy < 4 {
+        return Vec::new();
+    }
+    let Some(projection) = Projection::new(observations, network) else { return Vec::new() };
+    let step = mixture.deviation / mixture.information();
+    let scores: Vec<f64> = observations.all().iter().map(|o| step * mixture.score(o.residual(network))).collect();
+    let (rest, _) = projection.off(&scores);
+    Test { kept: observations, projection, rest, taken: Vec::new(), redundancy: redundancy as f64, unmoved: &[] }.run()
 }
 
 /// Spread of the residuals of each receiver about zero, from the smaller seven tenths of them.

@@ -5,7 +5,8 @@ use super::calibration::{Alternative, Calibration};
 use super::deviation::{inlier_deviation, typical_deviation};
 use super::known::{Anchors, SpeedEstimate};
 use super::near::{BEYOND, Neighbour, widen};
-use super::options::{CalibrateOptions, ReceiverDelays};
+use super::one_sided::{Information, LEAST_REDUNDANCY};
+use super::options::{CalibrateOptions, Errors, ReceiverDelays};
 use super::orientation::looks_transposed;
 use super::receiver_errors::Fault;
 use super::same::{same_receivers, same_transmitters};
@@ -54,7 +55,13 @@ pub(super) struct Solved<'a> {
 impl Solved<'_> {
     pub(super) fn report(&self, options: &CalibrateOptions) -> Calibration {
         let best = &self.ranked[0].network;
-        let estimated = inlier_deviation(self.observations, best, self.deviation, options.inlier_threshold);
+        let one_sided = (options.errors == Errors::OneSided)
+            .then(|| Information::new(self.observations, best, self.deviation, self.known));
+        let estimated = match &one_sided {
+            // Measurements that are late by little would count as noise.
+            Some(information) => information.mixture.deviation,
+            None => inlier_deviation(self.observations, best, self.deviation, options.inlier_threshold),
+        };
         let sigma = self.known.unwrap_or(estimated);
         let inlier = |network: &Network, i: usize, j: usize| -> bool {
             let residual = self.centred.get(i, j).map(|f| f - network.pseudorange(i, j));
@@ -71,8 +78,11 @@ impl Solved<'_> {
         let redundancy = kept.len().saturating_sub(kept.unknowns());
         let ellipse_radius = radius_95(redundancy, self.known.is_some());
         let mut uncertainty = match ellipse_radius {
-            // What the robust loss loses against least squares on normal noise is added.
-            Some(_) => self.covariance(&kept, sigma / EFFICIENCY.sqrt()),
+            Some(_) => match &one_sided {
+                Some(information) => self.covariance(&information.trusted, sigma),
+                // What the robust loss loses against least squares on normal noise is added.
+                None => self.covariance(&kept, sigma / EFFICIENCY.sqrt()),
+            },
             None => {
                 warnings.push(
                     "there are only as many measurements as unknowns, so the noise cannot be estimated and no uncertainty is \
@@ -186,7 +196,19 @@ impl Solved<'_> {
                 agreeing, self.starts
             ));
         }
-        let sure = settled && planar && placed && determined && self.contradiction.is_none() && self.left.is_empty();
+        let fits = one_sided.as_ref().is_none_or(|information| {
+            let given = self.known.is_none_or(|sigma| !too_large(estimated / sigma, redundancy));
+            given && information.fits(redundancy)
+        });
+        if let Some(information) = one_sided.as_ref().filter(|information| !information.fits(redundancy)) {
+            warnings.push(format!(
+                "which measurements are late cannot be told for sure: {:.0} % seem late or wrong, and {redundancy} of the others are left over \
+                 where {LEAST_REDUNDANCY} would do; measure more, or remove measurements that are known to be wrong",
+                100.0 * (information.mixture.share + information.mixture.gross)
+            ));
+        }
+        let sure =
+            settled && fits && planar && placed && determined && self.contradiction.is_none() && self.left.is_empty();
         let located = |c: &Option<[[f64; 3]; 3]>| c.map(|c| [[c[0][0], c[0][1]], [c[1][0], c[1][1]]]);
         let transmitters: Vec<_> = uncertainty.transmitters.iter().map(located).collect();
         let offset_std: Vec<_> = uncertainty.transmitters.iter().map(|c| c.map(|c| c[2][2].max(0.0).sqrt())).collect();
@@ -279,8 +301,7 @@ impl Solved<'_> {
         let misfit = metre * estimated * typical_deviation(self.centred);
         let size = metre * best.size();
         if let Some(sigma) = self.known
-            && estimated > TOO_LARGE * sigma
-            && exceeds_chance(estimated / sigma, redundancy)
+            && too_large(estimated / sigma, redundancy)
         {
             warnings.push(format!(
                 "the residuals are {:.1} times as large as the given standard deviation, and standard deviations of the nodes are too small by \
@@ -305,6 +326,10 @@ impl Solved<'_> {
 
 /// Residuals that are larger than the given deviation by less than this factor pass without a word.
 const TOO_LARGE: f64 = 1.5;
+
+fn too_large(ratio: f64, redundancy: usize) -> bool {
+    ratio > TOO_LARGE && exceeds_chance(ratio, redundancy)
+}
 
 /// Whether residuals of normal noise with `redundancy` left over are this many times as large as
 /// their deviation by a chance below one in a thousand: the square has the distribution of

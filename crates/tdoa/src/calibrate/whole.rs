@@ -5,7 +5,7 @@ use super::finish::finish;
 use super::hypotheses::{Hypotheses, RandomRestarts};
 use super::minimal::MinimalHypotheses;
 use super::near::{Neighbour, neighbours};
-use super::options::{CalibrateError, CalibrateOptions, check};
+use super::options::{CalibrateError, CalibrateOptions, Errors, check};
 use super::rivals::with_rivals;
 use super::search::Search;
 use super::unfinished::Unfinished;
@@ -93,10 +93,18 @@ pub(super) fn search_whole(
     let first = known.unwrap_or(scale * to_deviation).max(refine.floor);
     let (ranked, deviation) = finish(&observations, whole, first, known.is_some(), refine.floor, options, monitor)
         .map_err(|error| error.leaving(&so_far))?;
-    let ranked = if complete_part {
-        with_rivals(&observations, ranked, deviation, options, monitor).map_err(|error| error.leaving(&so_far))?
+    let (ranked, deviation) = if complete_part {
+        let found = ranked.len();
+        let ranked =
+            with_rivals(&observations, ranked, deviation, options, monitor).map_err(|error| error.leaving(&so_far))?;
+        if options.errors == Errors::OneSided && ranked.len() > found {
+            finish(&observations, ranked, deviation, known.is_some(), refine.floor, options, monitor)
+                .map_err(|error| error.leaving(&so_far))?
+        } else {
+            (ranked, deviation)
+        }
     } else {
-        ranked
+        (ranked, deviation)
     };
     let near = if complete_part { found.near } else { Vec::new() };
     let neighbours = neighbours(&observations, &ranked[0], near, deviation);

@@ -12,14 +12,18 @@
 mod covariance;
 mod extend;
 mod normal;
+mod predicted;
 mod projection;
 mod refiner;
 mod reseed;
 mod solver;
+mod weighing;
 
 pub(crate) use covariance::{Covariance, covariance};
 pub use extend::PartialNetwork;
 pub(crate) use extend::extend;
+pub(crate) use predicted::predicted_variances;
 pub(crate) use projection::{Motion, Projection};
 pub(crate) use refiner::{RefineOptions, Refined, Refiner, SEARCH, residuals};
 pub(crate) use reseed::{place_transmitters, places_of_receiver, places_of_transmitter};
+pub(crate) use weighing::{Cost, Weighing};

@@ -69,14 +69,30 @@ impl Normal {
     /// Takes the derivatives at `network`; `residuals` are those of `observations.all()`, over
     /// their deviations, and of its pins.
     pub(crate) fn linearise(&mut self, observations: &Observations, network: &Network, residuals: &[f64], loss: &Loss) {
+        self.linearise_by(observations, network, residuals, |_, e| (loss.weight(e), e), |e| (loss.weight(e), e));
+    }
+
+    /// As [`Normal::linearise`] for any loss: `terms`, of the place of a measurement and its
+    /// residual, and `pin_terms` give the weight and the residual that has, with that weight, the
+    /// derivative of the loss.
+    #[inline]
+    pub(crate) fn linearise_by(
+        &mut self,
+        observations: &Observations,
+        network: &Network,
+        residuals: &[f64],
+        terms: impl Fn(usize, f64) -> (f64, f64),
+        pin_terms: impl Fn(f64) -> (f64, f64),
+    ) {
         self.receiver_blocks.fill(([0.0; 3], [0.0; 2]));
         self.transmitter_blocks.fill(([0.0; 6], [0.0; 3]));
-        for ((o, ray), &e) in observations.all().iter().zip(&mut self.rays).zip(residuals) {
+        for (k, ((o, ray), &e)) in observations.all().iter().zip(&mut self.rays).zip(residuals).enumerate() {
             let (r, s) = (network.receivers[o.receiver], network.transmitters[o.transmitter]);
             let (dx, dy) = (s[0] - r[0], s[1] - r[1]);
             let d = (dx * dx + dy * dy).sqrt();
             let u = if d > 0.0 { [dx / d, dy / d] } else { [0.0; 2] };
-            let we = loss.weight(e) * o.precision;
+            let (weight, e) = terms(k, e);
+            let we = weight * o.precision;
             let w = we * o.precision;
             *ray = (u, w);
             let (h, g) = &mut self.receiver_blocks[o.receiver];
@@ -88,7 +104,8 @@ impl Normal {
             *g = [g[0] + we * e * u[0], g[1] + we * e * u[1], g[2] + we * e];
         }
         for (pin, &e) in observations.pins().iter().zip(&residuals[observations.len()..]) {
-            let we = loss.weight(e) * pin.precision;
+            let (weight, e) = pin_terms(e);
+            let we = weight * pin.precision;
             let (h, g) = &mut self.receiver_blocks[pin.receiver];
             h[2 * pin.axis] += we * pin.precision;
             g[pin.axis] += we * e;
@@ -109,6 +126,19 @@ impl Normal {
         llt::solve::solve_in_place(schur.as_ref(), rhs, Par::Seq, stack);
         self.substitute_back(observations);
         self.receiver_steps.iter().all(|x| x.is_finite())
+    }
+
+    /// Logarithm of the determinant of the equations of all nodes, as linearised last; of the rigid
+    /// motions, that of `damping` times the diagonal counts. `None` if they are singular.
+    pub(crate) fn log_determinant(&mut self, observations: &Observations, damping: f64) -> Option<f64> {
+        if !self.solve(observations, damping) {
+            return None;
+        }
+        let size = 2 * self.receivers;
+        let receivers: f64 = (0..size).map(|k| self.schur[k * size + k].ln()).sum();
+        let transmitters: f64 =
+            self.inverse_factors.iter().flatten().map(|inverse| (inverse[0] * inverse[2] * inverse[5]).ln()).sum();
+        Some(2.0 * (receivers - transmitters))
     }
 
     /// Forms the Schur complement (lower triangle) and its right-hand side. A transmitter whose
