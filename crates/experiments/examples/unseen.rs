@@ -8,7 +8,7 @@
 
 use experiments::trials::calibration::{Trial, judge, oracle};
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
-use tdoa::{CalibrateOptions, Calibration, ReceiverDelays, ReceiverFault, SimulateOptions, Simulation};
+use tdoa::{CalibrateOptions, Calibration, Errors, ReceiverDelays, ReceiverFault, SimulateOptions, Simulation};
 use tdoa::{calibrate, simulate};
 
 const NOISE: f64 = 0.01;
@@ -72,10 +72,14 @@ impl Case {
                 }
             }
             "detours" => {
-                for share in [0.1, 0.3, 0.5] {
-                    let mut case = Case::new(format!("12r/40s, {share} of the cells by detours"), 12, 40);
-                    (case.simulate.detours, case.simulate.detour_size) = (share, 0.5);
-                    all.push(case);
+                for (receivers, transmitters, share) in [(12, 40, 0.1), (12, 40, 0.3), (12, 40, 0.5), (8, 12, 0.3)] {
+                    for errors in [Errors::Symmetric, Errors::OneSided] {
+                        let name = format!("{receivers}r/{transmitters}s, {share} of the cells by detours, {errors:?}");
+                        let mut case = Case::new(name, receivers, transmitters);
+                        (case.simulate.detours, case.simulate.detour_size) = (share, 0.5);
+                        case.calibrate.errors = errors;
+                        all.push(case);
+                    }
                 }
             }
             _ => {
