@@ -117,8 +117,8 @@ pub(crate) struct Anchors {
     pub(crate) note: Option<String>,
 }
 
-/// Known positions in a file. Where it has a column sigma, or std_x and std_y, each has standard deviations, 0 for an
-/// exact one. A name that no receiver has is more likely a mistake than meant.
+/// Known positions in a file. Where it has a column sigma, or std_x and std_y, each has standard
+/// deviations, 0 for an exact one. A name that no receiver has is more likely a mistake than meant.
 pub(crate) fn anchors(path: &Path, measured: &Pseudoranges) -> Result<Anchors, Failure> {
     let nodes = read_nodes(path).map_err(Failure::unusable)?;
     let receivers = measured.receiver_names();

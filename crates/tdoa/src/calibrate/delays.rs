@@ -13,7 +13,7 @@ use super::options::{CalibrateError, CalibrateOptions, Errors, ReceiverDelays, c
 use super::ranking::truncated_cost;
 use super::receiver_errors::{Fault, ReceiverErrorKind, find, find_one_sided};
 use super::refits::refits;
-use super::same::same;
+use super::same::merged;
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
@@ -220,7 +220,8 @@ impl Clearing<'_> {
             all.push(self.estimate(refined, deviation, faults)?);
         }
         self.rank_by_cost(&mut all);
-        let all = merged(all);
+        // They were apart only for as long as the delays were wrong.
+        let all = merged(all, |(_, refined, _)| refined);
         let (mut taken, _, deviation) = all[0].clone();
         let mean = taken.iter().map(|fault| fault.size[0]).sum::<f64>() / receivers as f64;
         taken.insert(0, delay(0, 0.0));
@@ -379,19 +380,6 @@ fn one_of_each(mut found: Vec<Fault>) -> Vec<Fault> {
         }
     });
     found
-}
-
-/// The first of each kind of network, with the starts of all of its kind: they were apart only for
-/// as long as the delays were wrong.
-fn merged(sorted: Vec<Estimated>) -> Vec<Estimated> {
-    let mut kept: Vec<Estimated> = Vec::new();
-    for next in sorted {
-        match kept.iter_mut().find(|k| same(&k.1.network, &next.1.network)) {
-            Some(first) => first.1.starts += next.1.starts,
-            None => kept.push(next),
-        }
-    }
-    kept
 }
 
 /// Errors that are unknowns beside the network; of a move measurements are left out instead.

@@ -8,7 +8,7 @@ use super::deviation::{inlier_deviation, spread_of_residuals};
 use super::mixture::Mixture;
 use super::options::{CalibrateError, CalibrateOptions, Errors, check};
 use super::propagation::{Propagated, propagated};
-use super::same::same;
+use super::same::merged;
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::refine::{Cost, Refined, Weighing};
@@ -100,7 +100,9 @@ pub(super) fn finish_one_sided(
         }
     }
     ranked.sort_by(|a, b| a.objective.total_cmp(&b.objective));
-    let mut ranked = merged(ranked);
+    // They were apart only for as long as late measurements counted as noise.
+    let mut ranked = merged(ranked, |refined| refined);
+    ranked.truncate(MOST);
     let Some(best) = ranked.first() else { return Err(CalibrateError::NotFound(0)) };
     let mut deviation = best.scale;
     for (k, refined) in ranked.iter_mut().enumerate() {
@@ -208,20 +210,6 @@ impl Fitting<'_> {
         let volume = self.weighing.log_determinant(network, mixture).unwrap_or(f64::INFINITY);
         cells.sum::<f64>() + pins.sum::<f64>() + left * mixture.deviation.ln() + 0.5 * volume
     }
-}
-
-/// The first of each kind of network, with the starts of all of its kind: they were apart only for
-/// as long as late measurements counted as noise.
-fn merged(sorted: Vec<Refined>) -> Vec<Refined> {
-    let mut kept: Vec<Refined> = Vec::new();
-    for next in sorted {
-        match kept.iter_mut().find(|k| same(&k.network, &next.network)) {
-            Some(first) => first.starts += next.starts,
-            None => kept.push(next),
-        }
-    }
-    kept.truncate(MOST);
-    kept
 }
 
 /// What the measurements say of a network while it is not known which of them are late.

@@ -1,4 +1,5 @@
-//! Which measurements are late is judged by what the others say of them (expectation propagation).
+//! Which measurements are late is judged by what the others say of them (expectation
+//! propagation, Minka 2001).
 //!
 //! Where few measurements are left over, the network bends to each of them, and residuals of late
 //! ones look like noise. Here each measurement is replaced by a normal distribution (its site) that

@@ -39,14 +39,14 @@ impl Solved<'_> {
         let Some(projection) = Projection::new(kept, best) else { return found };
         // A delay for each receiver but one; that of the last one follows.
         let free = if self.taken.len() == kept.receivers { &self.taken[1..] } else { self.taken };
-        let columns = columns(kept, &projection, free);
-        let Some(gram) = gram(&columns) else { return Covariance::default() };
+        let taken = columns(kept, &projection, free);
+        let Some(gram) = gram(&taken) else { return Covariance::default() };
         // With sizes of covariance C = sigma^2 (products of the columns)^-1 and motions M that
         // absorb them, M C M^T is added.
-        let inverse = gram.solve(&Mat::<f64>::identity(columns.len(), columns.len()));
-        let pairs = (0..columns.len()).flat_map(|a| (0..columns.len()).map(move |b| (a, b)));
+        let inverse = gram.solve(&Mat::<f64>::identity(taken.len(), taken.len()));
+        let pairs = (0..taken.len()).flat_map(|a| (0..taken.len()).map(move |b| (a, b)));
         for (a, b) in pairs {
-            add(&mut found, sigma * sigma * inverse[(a, b)], &columns[a].1, &columns[b].1);
+            add(&mut found, sigma * sigma * inverse[(a, b)], &taken[a].1, &taken[b].1);
         }
         for fault in self.left {
             if fault.kind == ReceiverErrorKind::Move {
@@ -58,7 +58,7 @@ impl Solved<'_> {
                 motion.receivers[2 * fault.receiver..2 * fault.receiver + 2].copy_from_slice(&fault.size);
                 add(&mut found, 1.0, &motion, &motion);
             } else {
-                for (_, motion) in super::delays::columns(kept, &projection, &[*fault]) {
+                for (_, motion) in columns(kept, &projection, &[*fault]) {
                     add(&mut found, fault.size[0].powi(2), &motion, &motion);
                 }
             }

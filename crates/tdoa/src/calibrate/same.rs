@@ -26,6 +26,19 @@ pub(super) fn distinct(sorted: Vec<Refined>, most: usize) -> Vec<Refined> {
     kept
 }
 
+/// The first of each kind of network in a sorted list, with the starts of all of its kind.
+pub(super) fn merged<T>(sorted: Vec<T>, of: impl Fn(&mut T) -> &mut Refined) -> Vec<T> {
+    let mut kept: Vec<T> = Vec::new();
+    for mut next in sorted {
+        let this = of(&mut next);
+        match kept.iter_mut().map(&of).find(|first| same(&first.network, &this.network)) {
+            Some(first) => first.starts += this.starts,
+            None => kept.push(next),
+        }
+    }
+    kept
+}
+
 /// Whether two networks agree up to a rigid motion or reflection. Transmitters far outside count in
 /// proportion to their distance, since their range is hardly determined.
 pub(super) fn same(a: &Network, b: &Network) -> bool {

@@ -3,7 +3,7 @@
 use faer::prelude::Solve;
 use faer::{Mat, MatMut, Side, linalg::solvers::Llt};
 
-use super::covariance::{RANK_TOLERANCE, Reduced, reduced, rigid_motion};
+use super::covariance::{RANK_TOLERANCE, reduced, rigid_motion};
 use super::normal::Normal;
 use super::refiner::Refiner;
 use crate::loss::Loss;
@@ -36,7 +36,7 @@ impl Solver {
                 return Some((Solver::Factor(factor), use_normal(normal)));
             }
         }
-        let reduced: Reduced<'_> = reduced(observations, network, 1.0)?;
+        let reduced = reduced(observations, network, 1.0)?;
         Some((Solver::Inverse(reduced.joint()), use_normal(reduced.normal())))
     }
 
@@ -65,11 +65,10 @@ fn factor(observations: &Observations, network: &Network, normal: &Normal) -> Op
     let mut square = Mat::from_fn(size, size, |a, b| lower[a.min(b) * size + a.max(b)]);
     if observations.leave_rigid_motions() {
         let cost = (0..size).map(|k| square[(k, k)]).sum::<f64>() / size as f64;
-        let rigid = rigid_motion(network);
-        for b in 0..size {
-            let to = rigid(b / 2, b % 2);
-            for a in 0..size {
-                let from = rigid(a / 2, a % 2);
+        let of = rigid_motion(network);
+        let rigid: Vec<[f64; 3]> = (0..size).map(|k| of(k / 2, k % 2)).collect();
+        for (b, to) in rigid.iter().enumerate() {
+            for (a, from) in rigid.iter().enumerate() {
                 square[(a, b)] += cost * from.iter().zip(to).map(|(x, y)| x * y).sum::<f64>();
             }
         }
