@@ -1,6 +1,7 @@
 //! The program `hc`: solutions of polynomial systems by homotopy continuation.
 
 mod certify;
+mod checkpoint;
 mod codegen;
 mod decompose;
 mod family;

@@ -1,9 +1,9 @@
 //! `hc solve`.
 
 use crate::report::Report;
-use crate::{input, watch};
+use crate::{checkpoint, input, watch};
 use cli::{Failure, output};
-use hc::{SolveOptions, Start, solve_watched};
+use hc::{SolveError, SolveOptions, Start, solve_recorded, solve_watched};
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -14,7 +14,8 @@ use std::time::Instant;
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The system: plain text with one equation a line, PHCpack's format, or TOML.
-    file: PathBuf,
+    #[arg(required_unless_present = "status")]
+    file: Option<PathBuf>,
     /// Write the result as JSON to this file, `-` for standard output.
     #[arg(long, value_name = "OUT")]
     json: Option<PathBuf>,
@@ -42,6 +43,8 @@ pub(crate) struct Arguments {
     /// Leave out solutions with zero coordinates.
     #[arg(long)]
     torus_only: bool,
+    #[command(flatten)]
+    checkpoint: checkpoint::Recording,
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
@@ -64,9 +67,12 @@ impl From<StartChoice> for Start {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if let Some(directory) = arguments.checkpoint.status() {
+        return checkpoint::status(directory);
+    }
     output::check(&[("--json", arguments.json.as_deref())])?;
     let begun = Instant::now();
-    let file = &arguments.file;
+    let Some(file) = &arguments.file else { return Err(Failure::unusable("give the file of a system")) };
     let system = input::system(file)?;
     if arguments.certify && system.len() != system.variables().len() {
         let message = "only systems of as many equations as unknowns can be certified; leave out --certify";
@@ -80,9 +86,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         .max_paths(arguments.max_paths)
         .torus_only(arguments.torus_only)
         .certify(arguments.certify);
-    let found =
-        watch::watched(arguments.threads, &monitor, watch::stages, || solve_watched(&system, &options, &monitor))?;
-    let found = found.map_err(|error| Failure::in_file(file, error))?;
+    let checkpoint = arguments.checkpoint.open()?;
+    let found = watch::watched(arguments.threads, &monitor, watch::stages, || match &checkpoint {
+        Some(checkpoint) => solve_recorded(&system, &options, &monitor, checkpoint),
+        None => solve_watched(&system, &options, &monitor),
+    })?;
+    let found = found.map_err(|error| match error {
+        SolveError::Checkpoint(error) => Failure::unusable(error),
+        error => Failure::in_file(file, error),
+    })?;
     let seconds = begun.elapsed().as_secs_f64();
     output::summary(arguments.json.as_deref(), || format!("{found}{seconds:.3} s\n"))?;
     if let Some(out) = &arguments.json {
@@ -90,7 +102,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     // A list that may not be whole is not presented as a success.
     if found.interrupted {
-        return Err(Failure::Interrupted);
+        return Err(arguments.checkpoint.interrupted());
     }
     if found.paths.failed > 0 {
         return Err(Failure::Undetermined(format!("{} paths were lost", found.paths.failed)));

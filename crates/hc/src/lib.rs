@@ -17,7 +17,8 @@
 //! * [`certify`](mod@certify): proofs that solutions exist, are distinct, are real.
 //! * [`mixed_volume`](fn@mixed_volume): how many solutions a generic system with the same terms
 //!   has.
-//! * [`Monitor`]: how far any of these is, and a way to stop it.
+//! * [`Monitor`]: how far any of these is, and a way to stop it. [`checkpoint`]: long runs that go on
+//!   after they were killed.
 //!
 //! [`witness`] decomposes solution sets of positive dimension.
 //!
@@ -60,6 +61,7 @@
 //! ```
 
 pub mod certify;
+pub mod checkpoint;
 #[cfg(feature = "codegen")]
 pub mod codegen;
 pub mod distinct;
@@ -88,7 +90,8 @@ pub use monitor::{Monitor, Progress, Stage};
 pub use poly;
 pub use poly::System;
 pub use solve::{
-    Direction, Solution, Solutions, SolveError, SolveOptions, Start, Unresolved, Warning, solve, solve_watched,
+    Direction, Solution, Solutions, SolveError, SolveOptions, Start, Unresolved, Warning, solve, solve_recorded,
+    solve_watched,
 };
 pub use start::mixed_volume;
 pub use tracker::{OptionError, TrackerOptions};

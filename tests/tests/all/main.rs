@@ -2,6 +2,8 @@
 
 mod guide;
 mod hc_certify;
+#[cfg(unix)]
+mod hc_checkpoint;
 mod hc_families;
 #[cfg(unix)]
 mod hc_interrupt;

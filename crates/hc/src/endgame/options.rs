@@ -1,12 +1,13 @@
 //! Settings of the endgame.
 
 use crate::tracker::OptionError;
+use serde::Serialize;
 
 /// Each circle is at least that many times smaller than the one before.
 pub(super) const LEAST_SHRINK: f64 = 1.5;
 
 /// Settings of the endgame.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct EndgameOptions {
     /// A path whose `t` has fallen below this without reaching the target goes to the endgame.

@@ -1,6 +1,7 @@
 //! Why a system is not solved.
 
 use crate::certify::CertifyError;
+use crate::checkpoint::CheckpointError;
 use crate::start::MixedError;
 use crate::tracker::OptionError;
 use poly::{ExpandError, SupportError};
@@ -24,6 +25,9 @@ pub enum SolveError {
     /// A system with parameters.
     #[error("the system has parameters ({0}); give them values, or track a family")]
     Parameters(String),
+    /// No checkpoint of this run, or one that cannot be written.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
     /// What was found cannot be certified.
     #[error(transparent)]
     Certify(#[from] CertifyError),

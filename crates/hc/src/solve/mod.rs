@@ -29,8 +29,9 @@ pub(crate) use polynomials::{solve_polynomials, solve_sliced};
 pub use solutions::{Direction, Solution, Solutions, Unresolved};
 pub use warning::Warning;
 
+use crate::checkpoint::{Checkpoint, Hash, Job};
 use crate::monitor::Monitor;
-use poly::{ExpandLimits, System};
+use poly::{Exact, ExpandLimits, Polynomial, System};
 use solutions::Member;
 
 /// Finds the isolated solutions of a system of polynomials, at least as many as unknowns.
@@ -64,12 +65,39 @@ pub fn solve(system: &System, options: &SolveOptions) -> Result<Solutions, Solve
 /// # Errors
 /// As [`solve`].
 pub fn solve_watched(system: &System, options: &SolveOptions, monitor: &Monitor) -> Result<Solutions, SolveError> {
+    solve_anywhere(system, options, monitor, None)
+}
+
+/// [`solve_watched`], recorded in a [checkpoint](crate::checkpoint): batches of paths that it has are
+/// not tracked again. All options but [`max_paths`](SolveOptions::max_paths) and
+/// [`certify`](SolveOptions::certify) have to be those of the run that it is of.
+///
+/// # Errors
+/// As [`solve`]; if the checkpoint is of another run, or cannot be written.
+pub fn solve_recorded(
+    system: &System,
+    options: &SolveOptions,
+    monitor: &Monitor,
+    checkpoint: &Checkpoint,
+) -> Result<Solutions, SolveError> {
+    solve_anywhere(system, options, monitor, Some(checkpoint))
+}
+
+fn solve_anywhere(
+    system: &System,
+    options: &SolveOptions,
+    monitor: &Monitor,
+    checkpoint: Option<&Checkpoint>,
+) -> Result<Solutions, SolveError> {
     options.validate()?;
     if !system.parameters().is_empty() {
         return Err(SolveError::Parameters(system.parameters().join(", ")));
     }
     let polynomials = system.expand(&ExpandLimits::default())?;
-    let mut found = solve_polynomials(&polynomials, system.variables(), options, monitor)?;
+    if let Some(checkpoint) = checkpoint {
+        checkpoint.begin(job(&polynomials, system.variables(), options))?;
+    }
+    let mut found = solve_polynomials(&polynomials, system.variables(), options, monitor, checkpoint)?;
     found.variables = system.variables().to_vec();
     found.member = Member::new(system, &[]);
     if options.certify {
@@ -77,3 +105,15 @@ pub fn solve_watched(system: &System, options: &SolveOptions, monitor: &Monitor)
     }
     Ok(found)
 }
+
+/// What a checkpoint of this is of.
+fn job(polynomials: &[Polynomial<Exact>], variables: &[String], options: &SolveOptions) -> Job {
+    let names: Vec<&str> = variables.iter().map(String::as_str).collect();
+    let hash = Hash::of(polynomials.iter().map(|polynomial| polynomial.display(&names).to_string()));
+    let system = crate::checkpoint::System { unknowns: variables.to_vec(), equations: polynomials.len(), hash };
+    Job::new("solve", system, options)
+}
+
+#[cfg(all(test, feature = "threads"))]
+#[path = "recorded_tests.rs"]
+mod tests;

@@ -39,8 +39,8 @@ impl fmt::Display for Start {
     }
 }
 
-/// Settings of [`solve`](crate::solve), which checks them.
-#[derive(Clone, Debug)]
+/// Settings of [`solve`](crate::solve), which checks them. Serialized are those on which paths depend.
+#[derive(Clone, Debug, Serialize)]
 #[non_exhaustive]
 pub struct SolveOptions {
     /// Seed of everything random. Default 0.
@@ -54,6 +54,7 @@ pub struct SolveOptions {
     /// Default false.
     pub torus_only: bool,
     /// More paths than this are refused. Default 2^24.
+    #[serde(skip)]
     pub max_paths: u64,
     /// Settings of both stages. Default [`TrackerOptions::fast`]: paths that jump are found by
     /// their ends and tracked again.
@@ -70,6 +71,7 @@ pub struct SolveOptions {
     pub restarts: u32,
     /// Whether regular solutions are certified ([`Solutions::certify`](super::Solutions::certify)),
     /// which systems of as many equations as unknowns allow. Default false.
+    #[serde(skip)]
     pub certify: bool,
 }
 

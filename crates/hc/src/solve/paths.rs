@@ -5,6 +5,7 @@ use super::excess::Excess;
 use super::prints::{Print, Prints};
 use super::record::{Record, RecordEnd, SingularEnd};
 use crate::SolveOptions;
+use crate::checkpoint::{Part, Recordable, Recorded};
 use crate::distinct::{CLUSTER, coincidences, groups, relative_distance};
 use crate::endgame::{EndgameOptions, Ending, Handed, Verdict, endgame};
 use crate::homotopy::Segment;
@@ -60,6 +61,8 @@ pub(super) struct Route<'a, 'e, E: Evaluate, S> {
     pub(super) excess: &'a Excess<'a>,
     pub(super) options: &'a SolveOptions,
     pub(super) monitor: &'a Monitor,
+    /// Where batches of paths are recorded.
+    pub(super) record: Option<Part<'a>>,
 }
 
 /// Follows the paths of a route; those that share a start or a regular end, have crossed or are
@@ -68,12 +71,13 @@ pub(super) struct Route<'a, 'e, E: Evaluate, S> {
 /// On `trial` they are abandoned as soon as too many do not end at regular solutions: with another
 /// source that may be less work.
 pub(super) fn follow<E: Evaluate, S: Source<E>>(route: Route<'_, '_, E, S>, trial: bool) -> Ends {
-    let (count, options, monitor) = (route.count, route.options, route.monitor);
-    let mut stage = Stage::new(route, trial);
+    let (count, options, monitor, record) = (route.count, route.options, route.monitor, route.record);
+    let mut work = Recorded::new(Stage::new(route, trial), record, monitor);
     let first = if trial { TRIAL } else { CHUNK };
     let policy = Policy { retries: options.paths.retries, charts: 1, first, batch: CHUNK };
     let mut room = Room::default();
-    let outcome = run(&mut stage, count, &policy, &mut room, monitor);
+    let outcome = run(&mut work, count, &policy, &mut room, monitor);
+    let mut stage = work.into_inner();
     match outcome.flow {
         Flow::Abandoned => return stage.finish(outcome.retracked, true),
         Flow::Found => stage.drop_others(),
@@ -158,6 +162,18 @@ impl<E: Evaluate, S: Source<E>> Work for Stage<'_, '_, E, S> {
                 *which = jumped;
             }
         }
+    }
+}
+
+impl<E: Evaluate, S: Source<E>> Recordable for Stage<'_, '_, E, S> {
+    fn is_of(batch: &Vec<Record>, numbers: &[usize]) -> bool {
+        let mut paths: Vec<usize> = batch.iter().map(|record| record.path).collect();
+        paths.sort_unstable();
+        paths == numbers
+    }
+
+    fn solutions(&self) -> u64 {
+        (self.regular.len() + self.singular.len()) as u64
     }
 }
 

@@ -40,6 +40,7 @@ fn batches_are_absorbed_in_any_order() {
         excess: &excess,
         options: &options,
         monitor: &monitor,
+        record: None,
     };
 
     // Records of batches of some paths, through the text that another machine would send.

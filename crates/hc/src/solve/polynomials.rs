@@ -13,6 +13,7 @@ use super::paths::{Route, are_hopeless, follow};
 use super::slack;
 use super::solutions::Solutions;
 use super::start::Starts;
+use crate::checkpoint::{Checkpoint, Part};
 use crate::distinct::{CLUSTER, relative_distance};
 use crate::monitor::Monitor;
 use crate::singular::Given;
@@ -31,8 +32,9 @@ pub(crate) fn solve_polynomials(
     names: &[String],
     options: &SolveOptions,
     monitor: &Monitor,
+    checkpoint: Option<&Checkpoint>,
 ) -> Result<Solutions, SolveError> {
-    solve_zoomed(polynomials, names, options, monitor, Zooms::default(), false)
+    solve_zoomed(polynomials, names, options, monitor, Zooms::default(), false, checkpoint)
 }
 
 /// [`solve_polynomials`] of equations that are too many, some of them general hyperplanes: linear ones
@@ -43,7 +45,7 @@ pub(crate) fn solve_sliced(
     options: &SolveOptions,
     monitor: &Monitor,
 ) -> Result<Solutions, SolveError> {
-    solve_zoomed(polynomials, names, options, monitor, Zooms::default(), true)
+    solve_zoomed(polynomials, names, options, monitor, Zooms::default(), true, None)
 }
 
 /// [`solve_polynomials`] of equations around ends of others, whose work this is.
@@ -56,7 +58,7 @@ pub(super) fn solve_around(
     let names: Vec<String> = (0..polynomials.first()?.variables()).map(|k| format!("x{k}")).collect();
     let zooms = Zooms { depth: zooms, around: Some(around) };
     // Cancelled with the rest, but no progress that is to be told.
-    let found = solve_zoomed(polynomials, &names, &SolveOptions::new(), &monitor.quiet(), zooms, false).ok()?;
+    let found = solve_zoomed(polynomials, &names, &SolveOptions::new(), &monitor.quiet(), zooms, false, None).ok()?;
     (!found.interrupted).then_some(found)
 }
 
@@ -75,6 +77,7 @@ fn solve_zoomed(
     monitor: &Monitor,
     zooms: Zooms<'_>,
     sliced: bool,
+    checkpoint: Option<&Checkpoint>,
 ) -> Result<Solutions, SolveError> {
     // The equations around ends that are not told apart.
     let zoomed =
@@ -111,7 +114,7 @@ fn solve_zoomed(
     let mut start_systems = 0;
     // First, on trial, those of one stage.
     let mut direct = starts.direct(options);
-    loop {
+    for number in 0.. {
         let trial = direct.is_some();
         let from = direct.as_mut().unwrap_or(&mut starts);
         let start = match from.system(u64::from(start_systems), options, monitor) {
@@ -124,9 +127,13 @@ fn solve_zoomed(
             let own = sliced.then(|| slack::of_attempt(options, start_systems));
             let options = own.as_ref().unwrap_or(options);
             let trackers = Trackers::new(&from.system);
-            let route = Route { trackers: &trackers, start: &start, count, target, excess: &excess, options, monitor };
-            follow(route, trial)
+            let record = checkpoint.map(|checkpoint| Part { checkpoint, number });
+            let (trackers, start, excess) = (&trackers, &start, &excess);
+            follow(Route { trackers, start, count, target, excess, options, monitor, record }, trial)
         };
+        if let Some(error) = checkpoint.and_then(Checkpoint::failure) {
+            return Err(error.into());
+        }
         if !ends.abandoned {
             start_systems += 1;
             retracked += ends.retracked;

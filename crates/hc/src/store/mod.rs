@@ -7,5 +7,6 @@ mod place;
 mod records;
 mod sorter;
 
+pub(crate) use place::{read_at, write_at};
 pub(crate) use records::Records;
 pub(crate) use sorter::Sorter;

@@ -1,6 +1,7 @@
 //! Settings of the tracker, with presets.
 
 use poly::simd::Isa;
+use serde::Serialize;
 
 /// A setting outside its range.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -31,7 +32,7 @@ impl OptionError {
 /// Settings of the path tracker. Steps are bounded twice: by the radius of trust of the predictor
 /// (`beta_tau`) and by the bound under which Newton's method converges at once (`beta_omega`), see
 /// [`crate::tracker`].
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct TrackerOptions {
     /// Largest contraction `|dx_1| / |dx_0|` of Newton's method that is accepted (dimensionless).
@@ -61,6 +62,7 @@ pub struct TrackerOptions {
     pub extended_precision: bool,
     /// Instruction set of the lane kernels; `None` takes the widest of the machine. The result does
     /// not depend on it. Default `None`.
+    #[serde(skip)]
     pub isa: Option<Isa>,
 }
 

@@ -148,7 +148,8 @@ mod tests {
         let given = system.expand(&Default::default()).unwrap();
         let slices = Slices::new(2, 1, 0);
         let sliced = [given.clone(), slices.polynomials(2)].concat();
-        let found = solve_polynomials(&sliced, system.variables(), &SolveOptions::new(), &Monitor::default()).unwrap();
+        let (options, monitor) = (SolveOptions::new(), Monitor::default());
+        let found = solve_polynomials(&sliced, system.variables(), &options, &monitor, None).unwrap();
         let points: Vec<Vec<Complex64>> = found.solutions.into_iter().map(|s| s.value).collect();
         assert_eq!(points.len(), 2);
         let [set] = &WitnessSet::all(&given, &slices, &points, 0)[..] else { panic!("one set") };

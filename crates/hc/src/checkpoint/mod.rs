@@ -1,0 +1,54 @@
+//! Checkpoints: runs that go on after they were killed.
+//!
+//! A [`Checkpoint`] is a directory in which a run records what it has finished: the ends of paths,
+//! the solutions for targets, the loops of monodromy. Opened again with
+//! [`resume`](CheckpointOptions::resume), it lets the same run take what is recorded and compute
+//! only what is missing. The result is that of a run without interruption to the bit, on any number
+//! of threads.
+//!
+//! The directory has three files. `checkpoint.json` says what the checkpoint is of: the versions
+//! of records and of this crate, a hash of the system as it was read, and all options on which the
+//! result depends. Whatever differs when the run is resumed is [named](CheckpointError::Differs).
+//! `records.log` has the records, each with its length and a checksum, written as they come and
+//! brought to the disk every few [seconds](CheckpointOptions::interval). A record that was not
+//! written to its end, or is damaged, is cut off with those after it, and what they held is computed
+//! again. `lock` is locked while a run records there, and remains.
+//!
+//! Contents of records are written by serde in the format of postcard: numbers in as few bytes as
+//! they need, doubles to the bit, no names. That format is specified and will not change; bincode,
+//! the other choice, is not maintained any more.
+//!
+//! ```
+//! use hc::checkpoint::{Checkpoint, CheckpointOptions};
+//! use hc::{Monitor, SolveOptions, System, solve_recorded};
+//!
+//! # let folder = tempfile::tempdir()?;
+//! # let directory = folder.path().join("run");
+//! let system: System = "x^2 + y^2 - 5; x*y - 2".parse()?;
+//! let (options, monitor) = (SolveOptions::new().seed(1), Monitor::default());
+//! let checkpoint = Checkpoint::open(&directory, &CheckpointOptions::new())?;
+//! let found = solve_recorded(&system, &options, &monitor, &checkpoint)?;
+//! drop(checkpoint);
+//!
+//! let again = Checkpoint::open(&directory, &CheckpointOptions::new().resume(true))?;
+//! assert_eq!(solve_recorded(&system, &options, &monitor, &again)?, found);
+//! let status = hc::checkpoint::status(&directory)?;
+//! assert_eq!((status.done, status.total, status.running), (4, Some(4), true));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod error;
+mod header;
+mod keeper;
+mod log;
+mod note;
+mod recorded;
+mod status;
+
+pub use error::CheckpointError;
+pub(crate) use header::{Hash, Job, System};
+pub(crate) use keeper::Part;
+pub use keeper::{Checkpoint, CheckpointOptions};
+pub use note::Note;
+pub(crate) use recorded::{Recordable, Recorded};
+pub use status::{Status, status};

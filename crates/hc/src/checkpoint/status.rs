@@ -1,0 +1,83 @@
+//! How far a run is, from its checkpoint.
+
+use super::error::CheckpointError;
+use super::header::{FORMAT, Header};
+use super::keeper::{HEADER, Head, LOCK, LOG};
+use super::log::scan;
+use serde::Serialize;
+use std::fs::{File, TryLockError};
+use std::path::Path;
+
+/// How far a run is that records its work.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Status {
+    /// What is done: `solve`, `track` or `monodromy`.
+    pub what: String,
+    /// Whether a process records there now.
+    pub running: bool,
+    /// The part of the work, from 1: the start system of a solve. Zero before the first.
+    pub part: u32,
+    /// The round of this part, from 1: first all paths are tracked, then those in doubt again. Zero
+    /// before the first.
+    pub round: u32,
+    /// Paths, targets or loops of this round that are recorded.
+    pub done: u64,
+    /// How many there are; `None` where that is not known.
+    pub total: Option<u64>,
+    /// Solutions so far: paths of this part that have ended at one; solutions of all targets; known
+    /// solutions of the family.
+    pub solutions: u64,
+    /// Seconds of work until the last record, those of earlier processes included.
+    pub seconds: f64,
+    /// Records, and bytes of all of them.
+    pub records: u64,
+    /// Bytes of the log.
+    pub bytes: u64,
+}
+
+/// How far the run is that records its work in a directory, of which nothing is changed.
+///
+/// # Errors
+/// If the directory has no checkpoint, or it cannot be read.
+pub fn status(directory: impl AsRef<Path>) -> Result<Status, CheckpointError> {
+    let directory = directory.as_ref();
+    let running = is_locked(directory)?;
+    let (header, bytes) = Header::read(&directory.join(HEADER))?;
+    let path = directory.join(LOG);
+    let mut file = File::open(&path).map_err(|error| CheckpointError::io(&path, &error))?;
+    let (mut last, mut done, mut round): (Option<Head>, u64, u32) = (None, 0, 0);
+    let scan = scan(&path, &mut file, FORMAT, crc32fast::hash(&bytes), |_, record| {
+        let Some((head, _)) = Head::of(record) else { return false };
+        if !last.is_some_and(|last| last.key.is_of_round(head.key)) {
+            done = 0;
+            round = if last.is_some_and(|last| last.key.part() == head.key.part()) { round + 1 } else { 1 };
+        }
+        done += head.key.count;
+        last = Some(head);
+        true
+    })?;
+    Ok(Status {
+        what: header.job.what,
+        running,
+        part: last.map_or(0, |last| last.key.part() + 1),
+        round,
+        done,
+        total: last.map(|last| last.total).filter(|&total| total > 0),
+        solutions: last.map_or(0, |last| last.solutions),
+        seconds: last.map_or(0.0, |last| last.seconds),
+        records: scan.records,
+        bytes: scan.end,
+    })
+}
+
+/// Whether somebody holds the lock of a directory.
+fn is_locked(directory: &Path) -> Result<bool, CheckpointError> {
+    let path = directory.join(LOCK);
+    let file = File::open(&path).map_err(|error| CheckpointError::io(&path, &error))?;
+    match file.try_lock_shared() {
+        Ok(()) => Ok(false),
+        Err(TryLockError::WouldBlock) => Ok(true),
+        Err(TryLockError::Error(error)) => Err(CheckpointError::io(&path, &error)),
+    }
+}
