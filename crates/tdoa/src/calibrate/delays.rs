@@ -30,6 +30,10 @@ const STEPS: usize = 12;
 const LEAST_DEVIATIONS: f64 = 3.0;
 const LEAST_SHARE: f64 = 0.2;
 
+/// Where the size of an error by the linear test is off by more than this share, it is the fit that
+/// counts.
+const MISJUDGED: f64 = 0.2;
+
 /// Networks whose delays are estimated to the end where all receivers have one.
 const CANDIDATES: usize = 10;
 
@@ -140,7 +144,9 @@ impl Clearing<'_> {
             if hidden.fault.receiver != first.receiver && (unsure || hidden.fault.gain > first.gain) {
                 return Ok((vec![hidden.fault], Some(hidden.network.clone())));
             }
-            let better = unsure || hidden.fault.gain > first.gain;
+            // A size that the linear test has far too small is that of a network still bent.
+            let misjudged = (hidden.fault.length() - first.length()).abs() > MISJUDGED * hidden.fault.length().abs();
+            let better = unsure || misjudged || hidden.fault.gain > first.gain;
             for fault in &mut found {
                 if let Some(other) = of(fault.receiver).filter(|other| other.fault.kind == ReceiverErrorKind::Move) {
                     *fault = other.fault;

@@ -27,6 +27,7 @@ mod report_errors;
 mod rivals;
 mod same;
 mod search;
+mod significance;
 mod submaps;
 mod truth;
 mod unfinished;

@@ -2,8 +2,9 @@
 
 use super::options::{CalibrateError, check};
 use super::ranking::{OUTLIER_COST, refit};
-use super::receiver_errors::{Fault, ReceiverErrorKind, SIDE, tests, threshold};
+use super::receiver_errors::{Fault, ReceiverErrorKind, SIDE};
 use super::refits::{Fitting, Found};
+use super::significance::{least_surprise, tests};
 use super::warnings::{BY_CHANCE, agree_by_chance};
 use crate::loss::{Loss, SEARCH_NU};
 use crate::median::median;
@@ -90,7 +91,7 @@ impl Fitting<'_> {
         };
         let Some(split) = sights.best(monitor)? else { return Ok(None) };
         // Two places have to cost less than one, before all nodes are fitted to them.
-        let least = 0.5 * threshold(tests(ReceiverErrorKind::Move, self.observations.receivers, sights.all.len()));
+        let least = 0.5 * least_surprise(tests(ReceiverErrorKind::Move, self.observations.receivers, sights.all.len()));
         if sights.place(&sights.all).is_some_and(|(_, cost)| cost - split.cost < least) {
             return Ok(None);
         }
@@ -112,7 +113,7 @@ impl Fitting<'_> {
         if rows.iter().any(may_be_chance) {
             return Ok(None);
         }
-        let Some(gain) = self.gain(&observations, &network, &rows, None) else { return Ok(None) };
+        let Some((gain, freedom)) = self.gain(&observations, &network, &rows, None) else { return Ok(None) };
         let Some(after) = network.receivers.pop() else { return Ok(None) };
         let before = network.receivers[receiver];
         // The network that the longer part leaves.
@@ -121,7 +122,7 @@ impl Fitting<'_> {
         }
         let size = [after[0] - before[0], after[1] - before[1]];
         let fault = Fault { size, gain, ..Fault::new(receiver, ReceiverErrorKind::Move, from) };
-        Ok(Some(Found { fault, network }))
+        Ok(Some(Found { fault, network, freedom }))
     }
 }
 

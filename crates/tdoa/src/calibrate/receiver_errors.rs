@@ -9,12 +9,10 @@ use serde::{Deserialize, Serialize};
 
 use super::deviation::{inlier_deviation, spread_of_residuals};
 use super::mixture::Mixture;
+use super::significance::{least_surprise, surprise, tests};
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::refine::Projection;
-
-/// Probability of a false alarm in data with normal noise, at most.
-const FALSE_ALARM: f64 = 1e-3;
 
 /// Measurements before and after an event between which a jump or a move is looked for.
 pub(super) const SIDE: usize = 4;
@@ -161,19 +159,6 @@ pub(super) fn spread_of_receiver(observations: &Observations, network: &Network,
     sizes.get(sizes.len() * 7 / 10).map_or(0.0, |size| size / 1.0364)
 }
 
-/// How many errors of a kind are tested among these receivers and measurements.
-pub(super) fn tests(kind: ReceiverErrorKind, receivers: usize, measurements: usize) -> f64 {
-    match kind {
-        ReceiverErrorKind::Delay | ReceiverErrorKind::Drift => receivers as f64,
-        ReceiverErrorKind::Jump | ReceiverErrorKind::Move => measurements as f64,
-    }
-}
-
-/// Gain above which the best of so many tests of each of the four kinds is no chance.
-pub(super) fn threshold(tests: f64) -> f64 {
-    (tests * 4.0 / FALSE_ALARM).ln()
-}
-
 struct Test<'a> {
     kept: &'a Observations,
     projection: Projection<'a>,
@@ -196,10 +181,11 @@ impl Test<'_> {
             };
             let candidates = self.candidates(&rows);
             // A candidate of each kind has as many rivals as that kind has tests.
-            let least = |kind| threshold(tests(kind, self.kept.receivers, self.kept.len()));
+            let least = |kind| least_surprise(tests(kind, self.kept.receivers, self.kept.len()));
             let judged = candidates.into_iter().filter(|fault| !known(fault)).filter_map(|fault| {
                 let (gain, fault, columns) = self.judge(fault, &rows)?;
-                Some((gain - least(fault.kind), fault, columns))
+                let told = surprise(gain, self.redundancy - columns.len() as f64, fault.kind);
+                Some((told - least(fault.kind), fault, columns))
             });
             let Some((lead, fault, columns)) = judged.max_by(|a, b| a.0.total_cmp(&b.0)) else { break };
             if lead < 0.0 {
@@ -423,7 +409,7 @@ mod tests {
     fn a_network_that_has_bent_itself_to_an_error_is_seen_through() {
         // Thirty deviations, part of which the network takes up while it gives up other measurements
         // of the receiver as outliers.
-        for (seed, outliers) in [(5007, 0.0), (5002, 0.05), (5012, 0.05)] {
+        for (seed, outliers) in [(5007, 0.0), (5002, 0.05), (5012, 0.05), (40072, 0.0), (40098, 0.0)] {
             let fault = Some(ReceiverFault::Delay(0.3));
             let options = SimulateOptions {
                 receivers: 8,
@@ -449,7 +435,7 @@ mod tests {
 
     #[test]
     fn clean_networks_have_no_errors() {
-        // One false alarm in a thousand networks at most.
+        // Five false alarms in a thousand networks at most.
         for seed in 0..12 {
             let (found, _) = run(None, 0.0, ReceiverDelays::None, 100 + seed);
             assert!(found.receiver_errors.is_empty(), "seed {seed}: {:?}", found.receiver_errors);

@@ -11,7 +11,8 @@ use super::deviation::inlier_deviation;
 use super::finish::CAUCHY;
 use super::options::{CalibrateError, check};
 use super::ranking::{OUTLIER_COST, refit, truncated_cost};
-use super::receiver_errors::{Fault, ReceiverErrorKind, SIDE, spread_of_receiver, tests, threshold};
+use super::receiver_errors::{Fault, ReceiverErrorKind, SIDE, spread_of_receiver};
+use super::significance::{least_gain, least_surprise, surprise, tests};
 use crate::loss::Loss;
 use crate::multilateration::solve3;
 use crate::network::Network;
@@ -33,16 +34,23 @@ const ANNEAL: f64 = 0.7;
 /// Rounds of fitting network and error together.
 const ROUNDS: usize = 10;
 
+/// Deviations, in those of the measurements, at which network and error are fitted once more where
+/// measurements were given up.
+const RELAXED: [f64; 3] = [10.0, 3.0, 1.0];
+
 /// An error of a receiver and the network that goes with it.
 pub(super) struct Found {
     pub(super) fault: Fault,
     pub(super) network: Network,
+    /// Measurements left over.
+    pub(super) freedom: f64,
 }
 
 impl Found {
     /// How much more it explains than chance would.
     fn lead(&self, observations: &Observations, kept: usize) -> f64 {
-        let tested = self.fault.gain - threshold(tests(self.fault.kind, observations.receivers, kept));
+        let told = surprise(self.fault.gain, self.freedom, self.fault.kind);
+        let tested = told - least_surprise(tests(self.fault.kind, observations.receivers, kept));
         // A move has one more unknown than other errors (Schwarz 1978).
         tested - if self.fault.kind == ReceiverErrorKind::Move { 0.5 * (kept as f64).ln() } else { 0.0 }
     }
@@ -97,6 +105,18 @@ pub(super) struct Fitting<'a> {
     pub(super) limit: f64,
 }
 
+/// A network and an error on the way to their best fit.
+#[derive(Clone)]
+struct Joint {
+    /// The measurements without the error.
+    observations: Observations,
+    network: Network,
+    fault: Fault,
+    /// The square of what one metre of the error adds to the residuals, motions taken off.
+    square: f64,
+    cost: f64,
+}
+
 impl Fitting<'_> {
     /// Fits of one receiver with an error of each kind, as far as they are worth a look.
     fn receiver(&self, receiver: usize, may_have_moved: bool, monitor: &Monitor) -> Result<Vec<Found>, CalibrateError> {
@@ -105,7 +125,7 @@ impl Fitting<'_> {
         let bent = Refiner::new(&others, 1.0).heeding(monitor).refine(self.base.clone(), &options).network;
         let (alone, cost) = refit(&others, &bent, self.deviation);
         // No error can bring the cost below that of the others.
-        if !alone.is_finite() || self.cost - cost < threshold(tests(ReceiverErrorKind::Delay, others.receivers, 1)) {
+        if !alone.is_finite() || self.cost - cost < least_gain(tests(ReceiverErrorKind::Delay, others.receivers, 1)) {
             return Ok(Vec::new());
         }
         let moved = if may_have_moved { self.moved(receiver, &alone, monitor)? } else { None };
@@ -132,72 +152,104 @@ impl Fitting<'_> {
     /// Least squares of all nodes and the error over the inliers, from here; `None` where the error
     /// cannot be told from a motion of the nodes.
     fn joint(&self, network: Network, fault: Fault) -> Option<Found> {
+        let start = Joint { observations: self.corrected(&fault), network, fault, square: 0.0, cost: f64::INFINITY };
+        let mut fitted = self.descend(start, 1.0)?;
+        // A network that is still bent gives up measurements that the error would explain.
+        let (least, most) = (self.reach(), RELAXED[0] * self.reach());
+        let is_near = |o: &Observation| (least..most).contains(&o.residual(&fitted.network).abs());
+        if fitted.observations.all().iter().any(is_near) {
+            let relaxed = RELAXED.iter().try_fold(fitted.clone(), |now, &factor| self.descend(now, factor));
+            fitted = relaxed.filter(|relaxed| self.is_better(relaxed, &fitted)).unwrap_or(fitted);
+        }
+        let Joint { observations, network, fault, square, .. } = fitted;
+        let with_error = observations.beside(self.observations.others() + 1);
+        let size = fault.size[0];
+        let (gain, freedom) = self.gain(&with_error, &network, &[fault.receiver], Some(size * size * square))?;
+        Some(Found { fault: Fault { gain, ..fault }, network, freedom })
+    }
+
+    /// Whether a fit costs less than another, with the smaller of the deviations that they leave: with
+    /// that of a bent network, measurements given up look cheap.
+    fn is_better(&self, fit: &Joint, other: &Joint) -> bool {
+        let left = |fit: &Joint| inlier_deviation(&fit.observations, &fit.network, self.deviation, self.limit);
+        let deviation = left(fit).min(left(other)).min(self.deviation);
+        let cost = |fit: &Joint| truncated_cost(&fit.observations, &fit.network, deviation);
+        cost(fit) < cost(other)
+    }
+
+    /// The measurements without an error.
+    fn corrected(&self, fault: &Fault) -> Observations {
         let n = self.observations.transmitters;
-        let corrected = |size: f64| {
-            let of = |o: &Observation| {
-                if o.receiver == fault.receiver { size * fault.shape(o.transmitter, n) } else { 0.0 }
-            };
-            self.observations.less(of)
+        let of = |o: &Observation| {
+            if o.receiver == fault.receiver { fault.size[0] * fault.shape(o.transmitter, n) } else { 0.0 }
         };
-        let reach = (2.0 * OUTLIER_COST).sqrt() * self.deviation;
-        let (mut network, mut size) = (network, fault.size[0]);
-        let mut observations = corrected(size);
-        let mut cost = truncated_cost(&observations, &network, self.deviation);
-        // The square of what one metre of the error adds to the residuals, motions taken off.
-        let mut square = 0.0;
+        self.observations.less(of)
+    }
+
+    /// Measurements farther off cost as much as outliers.
+    fn reach(&self) -> f64 {
+        (2.0 * OUTLIER_COST).sqrt() * self.deviation
+    }
+
+    /// Lowers the truncated cost with so many times the deviation.
+    fn descend(&self, from: Joint, factor: f64) -> Option<Joint> {
+        let n = self.observations.transmitters;
+        let (reach, deviation) = (factor * self.reach(), factor * self.deviation);
+        let mut now = from;
+        now.cost = truncated_cost(&now.observations, &now.network, deviation);
         for _ in 0..ROUNDS {
-            let inliers = observations.subset(|o| o.residual(&network).abs() <= reach);
-            let projection = Projection::new(&inliers, &network)?;
-            let residuals: Vec<f64> = inliers.all().iter().map(|o| o.residual(&network)).collect();
+            let fault = now.fault;
+            let inliers = now.observations.subset(|o| o.residual(&now.network).abs() <= reach);
+            let projection = Projection::new(&inliers, &now.network)?;
+            let residuals: Vec<f64> = inliers.all().iter().map(|o| o.residual(&now.network)).collect();
             let part = |o: &Observation| {
                 if o.receiver == fault.receiver { o.precision * fault.shape(o.transmitter, n) } else { 0.0 }
             };
             let column: Vec<f64> = inliers.all().iter().map(part).collect();
             let (rest, _) = projection.off(&column);
             let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };
-            square = dot(&rest, &rest);
-            if square < 1e-6 * dot(&column, &column) || square.is_nan() {
+            now.square = dot(&rest, &rest);
+            if now.square < 1e-6 * dot(&column, &column) || now.square.is_nan() {
                 return None;
             }
-            let step = dot(&rest, &residuals) / square;
+            let step = dot(&rest, &residuals) / now.square;
             let left: Vec<f64> = residuals.iter().zip(&column).map(|(e, c)| e - step * c).collect();
             let motion = projection.off(&left).1;
             let mut share = 1.0;
             let better = loop {
-                let moved = motion.applied(&network, -share);
-                let next = corrected(size + share * step);
-                let now = truncated_cost(&next, &moved, self.deviation);
-                if now < cost {
-                    break Some((moved, next, now));
+                let network = motion.applied(&now.network, -share);
+                let fault = Fault { size: [fault.size[0] + share * step, 0.0], ..fault };
+                let observations = self.corrected(&fault);
+                let cost = truncated_cost(&observations, &network, deviation);
+                if cost < now.cost {
+                    break Some(Joint { observations, network, fault, cost, ..now });
                 }
                 share *= 0.4;
                 if share < 0.05 {
                     break None;
                 }
             };
-            let Some((moved, next, now)) = better else { break };
-            let gain = cost - now;
-            (network, observations, cost, size) = (moved, next, now, size + share * step);
+            let Some(better) = better else { break };
+            let gain = now.cost - better.cost;
+            now = better;
             if gain < 1e-3 {
                 break;
             }
         }
-        let with_error = observations.beside(self.observations.others() + 1);
-        let gain = self.gain(&with_error, &network, &[fault.receiver], Some(size * size * square))?;
-        Some(Found { fault: Fault { size: [size, 0.0], gain, ..fault }, network })
+        Some(now)
     }
 
     /// By how much the measurements are more likely with an error: both costs with the deviation that
     /// is left with the error in the model. `rows` are those of the receiver. As in the score test:
     /// the tail of the distribution of Beta, and with the spread of the receiver's own residuals,
-    /// `None` where few measurements are left over.
+    /// `None` where few measurements are left over, otherwise with their number.
     pub(super) fn gain(
         &self,
         with_error: &Observations,
         network: &Network,
         rows: &[usize],
         explained: Option<f64>,
-    ) -> Option<f64> {
+    ) -> Option<(f64, f64)> {
         let deviation = inlier_deviation(with_error, network, self.deviation, self.limit).min(self.deviation);
         let before = refit(self.observations, self.base, deviation).1;
         let fall = before - truncated_cost(with_error, network, deviation);
@@ -209,7 +261,7 @@ impl Fitting<'_> {
         let tail = |fall: f64| 0.5 * redundancy as f64 * (2.0 * fall.max(0.0) / redundancy as f64).ln_1p();
         let own = rows.iter().map(|&i| spread_of_receiver(with_error, network, i)).fold(deviation, f64::max);
         let explained = explained.unwrap_or(2.0 * fall * deviation * deviation);
-        Some(tail(fall).min(tail(0.5 * explained / (own * own))))
+        Some((tail(fall).min(tail(0.5 * explained / (own * own))), redundancy as f64))
     }
 }
 
