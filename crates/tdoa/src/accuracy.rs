@@ -6,6 +6,7 @@ use crate::observations::Observations;
 use crate::plane::spread;
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::covariance;
+use hc::Monitor;
 
 /// The Cramer-Rao bound of a network's receivers: the root mean square over them of the smallest
 /// standard deviation that any unbiased estimate can have, metres, after the best rigid alignment.
@@ -19,7 +20,11 @@ use crate::refine::covariance;
 pub fn cramer_rao(measured: &Pseudoranges, outliers: &[bool], truth: &Network, noise: f64) -> f64 {
     let n = measured.transmitters();
     let observations = Observations::new(measured, |i, j| !outliers[i * n + j]);
-    let Some(found) = covariance(&observations, truth, noise).filter(|found| found.loose.is_empty()) else {
+    let Some(found) = covariance(&observations, truth, noise, &Monitor::default())
+        .ok()
+        .flatten()
+        .filter(|found| found.loose.is_empty())
+    else {
         return f64::INFINITY;
     };
     let trace: f64 = found.receivers.iter().map(|c| c[0][0] + c[1][1]).sum();

@@ -267,6 +267,16 @@ fn polish(sights: &[Sight], start: Located, with_offset: bool, loss: &Loss) -> L
     best
 }
 
+/// Solves the symmetric system with the matrix xx, xy, yy; `None` if it is singular.
+pub(crate) fn solve2(h: [f64; 3], g: [f64; 2]) -> Option<[f64; 2]> {
+    let det = h[0] * h[2] - h[1] * h[1];
+    if det > 1e-12 * h[0] * h[2] {
+        Some([(h[2] * g[0] - h[1] * g[1]) / det, (h[0] * g[1] - h[1] * g[0]) / det])
+    } else {
+        None
+    }
+}
+
 /// Solves a symmetric positive definite 3x3 system; `None` if it is singular.
 pub(crate) fn solve3(h: &[[f64; 3]; 3], g: &[f64; 3]) -> Option<[f64; 3]> {
     let cross =

@@ -17,7 +17,7 @@ use super::same::merged;
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
-use crate::refine::{Motion, Projection, RefineOptions, Refined, Refiner, SEARCH};
+use crate::refine::{Cancelled, Motion, Projection, RefineOptions, Refined, Refiner, SEARCH, dot};
 
 /// Rounds of looking for further errors once those found are taken out.
 const ROUNDS: usize = 6;
@@ -102,7 +102,7 @@ impl Clearing<'_> {
                         now.ranked.insert(0, first);
                     }
                     now = self.without(now)?;
-                    while let Some(k) = self.negligible(&now) {
+                    while let Some(k) = self.negligible(&now)? {
                         none.push(now.taken.remove(k));
                         now = self.without(now)?;
                     }
@@ -120,11 +120,11 @@ impl Clearing<'_> {
         let (best, deviation) = (&now.ranked[0].network, now.deviation);
         if self.options.errors == Errors::OneSided {
             let mixture = mixture_of(observations, best, deviation);
-            return Ok((find_one_sided(observations, best, &mixture), None));
+            return Ok((find_one_sided(observations, best, &mixture, self.monitor)?, None));
         }
         let mut unmoved = Vec::new();
         loop {
-            let mut found = one_of_each(find(observations, best, deviation, limit, &unmoved));
+            let mut found = one_of_each(find(observations, best, deviation, limit, &unmoved, self.monitor)?);
             found.retain(|fault| fault.length().abs() >= self.least_size(deviation));
             let is_move = |fault: &Fault| fault.kind == ReceiverErrorKind::Move;
             let doubted = found.iter().enumerate().filter(|(k, fault)| *k == 0 || is_move(fault));
@@ -165,21 +165,22 @@ impl Clearing<'_> {
     }
 
     /// The smallest of the errors taken out, in its own deviations, if it is none.
-    fn negligible(&self, now: &Cleared) -> Option<usize> {
+    fn negligible(&self, now: &Cleared) -> Result<Option<usize>, CalibrateError> {
         let network = &now.ranked[0].network;
         let kept =
             now.observations.subset(|o| o.residual(network).abs() <= self.options.inlier_threshold * now.deviation);
-        let projection = Projection::new(&kept, network)?;
-        let columns = columns(&kept, &projection, &now.taken);
-        let inverse = gram(&columns)?.solve(&Mat::<f64>::identity(columns.len(), columns.len()));
+        let Some(projection) = Projection::new(&kept, network, self.monitor)? else { return Ok(None) };
+        let columns = columns(&kept, &projection, &now.taken, self.monitor)?;
+        let Some(gram) = gram(&columns, self.monitor)? else { return Ok(None) };
+        let inverse = gram.solve(&Mat::<f64>::identity(columns.len(), columns.len()));
         let at = now.taken.iter().enumerate().filter(|(_, fault)| fault.kind != ReceiverErrorKind::Move);
         let sizes = at.enumerate().map(|(a, (k, fault))| {
             let size = fault.size[0].abs();
             let own = size / (now.deviation * inverse[(a, a)].max(0.0).sqrt());
             (k, own / LEAST_DEVIATIONS, size / self.least_size(now.deviation))
         });
-        let least = sizes.min_by(|a, b| a.1.min(a.2).total_cmp(&b.1.min(b.2)))?;
-        (least.1.min(least.2) < 1.0).then_some(least.0)
+        let least = sizes.min_by(|a, b| a.1.min(a.2).total_cmp(&b.1.min(b.2)));
+        Ok(least.filter(|least| least.1.min(least.2) < 1.0).map(|least| least.0))
     }
 
     /// The networks again with the errors in `taken` estimated for the best of them.
@@ -259,7 +260,7 @@ impl Clearing<'_> {
             let refined = Refiner::new(&observations, 1.0).heeding(self.monitor).refine(best.network, &refine);
             best = Refined { starts: best.starts, ..refined };
             let wide = inlier_deviation(&observations, &best.network, deviation, self.options.inlier_threshold);
-            let Some(steps) = self.step(&observations, &best.network, wide, &faults) else { break };
+            let Some(steps) = self.step(&observations, &best.network, wide, &faults)? else { break };
             if moved(&mut faults, steps) < 1e-2 * deviation {
                 break;
             }
@@ -280,8 +281,9 @@ impl Clearing<'_> {
                 let reach = self.options.inlier_threshold * wide;
                 let inliers = observations.subset(|o| o.residual(&refined.network).abs() <= reach);
                 let refine = RefineOptions { scale: Some(wide), steps: 8, rounds: 0, ..SEARCH };
-                refined.network = Refiner::new(&inliers, f64::INFINITY).refine(refined.network, &refine).network;
-                let Some(steps) = self.step(&observations, &refined.network, wide, &faults) else { return Ok(near) };
+                let mut refiner = Refiner::new(&inliers, f64::INFINITY).heeding(self.monitor);
+                refined.network = refiner.refine(refined.network, &refine).network;
+                let Some(steps) = self.step(&observations, &refined.network, wide, &faults)? else { return Ok(near) };
                 if moved(&mut faults, steps) < 1e-2 * deviation {
                     break;
                 }
@@ -331,7 +333,7 @@ impl Clearing<'_> {
             )?;
             (best, deviation) = (ranked.swap_remove(0), next);
             let wide = inlier_deviation(&observations, &best.network, wide, self.options.inlier_threshold);
-            let Some(steps) = self.step(&observations, &best.network, wide, &faults) else { break };
+            let Some(steps) = self.step(&observations, &best.network, wide, &faults)? else { break };
             if moved(&mut faults, steps) < 1e-3 * deviation {
                 break;
             }
@@ -341,16 +343,22 @@ impl Clearing<'_> {
 
     /// The change of the sizes by least squares over the inliers, network and sizes together;
     /// `None` if it is not determined.
-    fn step(&self, observations: &Observations, network: &Network, wide: f64, faults: &[Fault]) -> Option<Vec<f64>> {
+    fn step(
+        &self,
+        observations: &Observations,
+        network: &Network,
+        wide: f64,
+        faults: &[Fault],
+    ) -> Result<Option<Vec<f64>>, CalibrateError> {
         let kept = observations.subset(|o| o.residual(network).abs() <= self.options.inlier_threshold * wide);
-        let projection = Projection::new(&kept, network)?;
+        let Some(projection) = Projection::new(&kept, network, self.monitor)? else { return Ok(None) };
         let residuals: Vec<f64> = kept.all().iter().map(|o| o.residual(network)).collect();
-        let columns = columns(&kept, &projection, faults);
-        let gram = gram(&columns)?;
+        let columns = columns(&kept, &projection, faults, self.monitor)?;
+        let Some(gram) = gram(&columns, self.monitor)? else { return Ok(None) };
         let right = Mat::from_fn(columns.len(), 1, |a, _| dot(&columns[a].0, &residuals));
         let solved = gram.solve(&right);
         let steps: Vec<f64> = (0..columns.len()).map(|a| solved[(a, 0)]).collect();
-        steps.iter().all(|x| x.is_finite()).then_some(steps)
+        Ok(Some(steps).filter(|steps| steps.iter().all(|x| x.is_finite())))
     }
 
     /// The measurements without these errors: the shorter part of a receiver that was moved is
@@ -409,7 +417,12 @@ fn linear_mut(faults: &mut [Fault]) -> impl Iterator<Item = &mut Fault> {
 
 /// What errors of size 1 add to the residuals, less what motions of the nodes make of it, with
 /// those motions.
-pub(super) fn columns(kept: &Observations, projection: &Projection<'_>, faults: &[Fault]) -> Vec<(Vec<f64>, Motion)> {
+pub(super) fn columns(
+    kept: &Observations,
+    projection: &Projection<'_>,
+    faults: &[Fault],
+    monitor: &Monitor,
+) -> Result<Vec<(Vec<f64>, Motion)>, Cancelled> {
     let n = kept.transmitters;
     let column = |fault: &Fault| -> Vec<f64> {
         let part = |o: &crate::observations::Observation| {
@@ -417,16 +430,25 @@ pub(super) fn columns(kept: &Observations, projection: &Projection<'_>, faults: 
         };
         kept.all().iter().map(part).collect()
     };
-    linear(faults).map(|fault| projection.off(&column(fault))).collect()
+    let off = |fault| {
+        crate::refine::check(monitor)?;
+        Ok(projection.off(&column(fault)))
+    };
+    linear(faults).map(off).collect()
 }
 
 /// Products of the columns; `None` where two of them, or one and the network, cannot be told apart.
-pub(super) fn gram(columns: &[(Vec<f64>, Motion)]) -> Option<faer::linalg::solvers::Llt<f64>> {
+pub(super) fn gram(
+    columns: &[(Vec<f64>, Motion)],
+    monitor: &Monitor,
+) -> Result<Option<faer::linalg::solvers::Llt<f64>>, Cancelled> {
     let size = columns.len();
-    let products = Mat::from_fn(size, size, |a, b| dot(&columns[a].0, &columns[b].0));
-    products.llt(faer::Side::Lower).ok()
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
+    let mut products = Mat::zeros(size, size);
+    for b in 0..size {
+        crate::refine::check(monitor)?;
+        for a in 0..size {
+            products[(a, b)] = dot(&columns[a].0, &columns[b].0);
+        }
+    }
+    Ok(products.llt(faer::Side::Lower).ok())
 }

@@ -54,7 +54,7 @@ pub(super) fn finish(
         check(monitor)?;
         networks.sort_by(|a, b| a.objective.total_cmp(&b.objective));
         if known {
-            networks = rank(observations, networks, deviation, options.alternative_margin);
+            networks = rank(observations, networks, deviation, options.alternative_margin, monitor)?;
         }
         if !known && turn + 1 < turns {
             deviation = inlier_deviation(observations, &networks[0].network, deviation, options.inlier_threshold);

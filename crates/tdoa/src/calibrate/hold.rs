@@ -57,7 +57,7 @@ impl Free<'_> {
             residual.abs() <= options.inlier_threshold * sigma * centred.sigma(i, j).unwrap_or(1.0)
         });
         let sure = known.is_some() || kept.len() > kept.unknowns();
-        let uncertainty = covariance(&kept, best, sigma).filter(|_| sure);
+        let uncertainty = covariance(&kept, best, sigma, monitor)?.filter(|_| sure);
         let joint = uncertainty.as_ref().map(|all| all.joint.as_slice());
         let speed = options.estimate_speed.then(|| super::known::speed(best, usable, joint, options)).transpose()?;
         let metre = speed.map_or(1.0, |speed| speed.factor);

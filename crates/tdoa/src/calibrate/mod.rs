@@ -90,8 +90,10 @@ pub fn calibrate_with(
     options.validate()?;
     known::validate(measured, options)?;
     let (measured, impossible) = without_impossible(measured);
+    options::check(monitor)?;
     let measured = measured.as_ref();
     let mut usable = usable(measured)?;
+    options::check(monitor)?;
     usable.warnings.extend(impossible);
     let known = options.sigma.or(if measured.has_sigmas() { Some(1.0) } else { None });
     let local = if options.receiver_delays != ReceiverDelays::All {
@@ -149,7 +151,7 @@ pub fn calibrate_with(
         warnings,
         contradiction,
     };
-    Ok(solved.report(options))
+    solved.report(options, monitor).map_err(|error| error.leaving(&so_far))
 }
 
 /// Where hearing is local: the layout of the usable receivers by submaps, and which of them it
@@ -166,17 +168,17 @@ fn local_layout(
     if !hearing_is_local(&centred) {
         return Ok(None);
     }
+    let (m, n) = (measured.receivers(), measured.transmitters());
+    let place = |best: Unfinished| best.among(m, &usable.receivers, n, &usable.transmitters);
     let mut layout = match sources.first() {
-        None => lay_out(&centred, known, options, monitor).map_err(|error| {
-            let (m, n) = (measured.receivers(), measured.transmitters());
-            error.placing(|best| best.among(m, &usable.receivers, n, &usable.transmitters))
-        })?,
+        None => lay_out(&centred, known, options, monitor).map_err(|error| error.placing(place))?,
         Some(source) => match Layout::proposed(&centred, *source, options.seed) {
             Some(layout) => layout,
             None => return Ok(None),
         },
     };
-    layout.place_strays(&centred);
+    let placed = layout.place_strays(&centred, monitor);
+    placed.map_err(|error| error.leaving(&layout.unfinished(&centred)).placing(place))?;
     let places: Vec<usize> = (0..centred.receivers()).filter(|&i| layout.positions[i].is_some()).collect();
     let heard = |&j: &usize| places.iter().filter(|&&i| centred.get(i, j).is_some()).count() >= LEAST_PER_TRANSMITTER;
     let columns: Vec<usize> = (0..centred.transmitters()).filter(heard).collect();

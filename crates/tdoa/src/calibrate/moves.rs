@@ -71,12 +71,7 @@ impl Sights {
 impl Fitting<'_> {
     /// The move of a receiver that fits best, as two receivers beside the network of all others.
     /// `None` where one of its places may be chance.
-    pub(super) fn moved(
-        &self,
-        receiver: usize,
-        alone: &Network,
-        monitor: &Monitor,
-    ) -> Result<Option<Found>, CalibrateError> {
+    pub(super) fn moved(&self, receiver: usize, alone: &Network) -> Result<Option<Found>, CalibrateError> {
         let own: Vec<_> = self.observations.of_receiver(receiver).collect();
         let sights = Sights {
             transmitters: own.iter().map(|o| o.transmitter).collect(),
@@ -89,7 +84,7 @@ impl Fitting<'_> {
                 .collect(),
             deviation: self.deviation,
         };
-        let Some(split) = sights.best(monitor)? else { return Ok(None) };
+        let Some(split) = sights.best(self.monitor)? else { return Ok(None) };
         // Two places have to cost less than one, before all nodes are fitted to them.
         let least = 0.5 * least_surprise(tests(ReceiverErrorKind::Move, self.observations.receivers, sights.all.len()));
         if sights.place(&sights.all).is_some_and(|(_, cost)| cost - split.cost < least) {
@@ -100,7 +95,7 @@ impl Fitting<'_> {
         let mut network = alone.clone();
         network.receivers[receiver] = split.places[0];
         network.receivers.push(split.places[1]);
-        let (mut network, _) = refit(&observations, &network, self.deviation);
+        let (mut network, _) = refit(&observations, &network, self.deviation, self.monitor)?;
         let rows = [receiver, observations.receivers - 1];
         let unit = median(own.iter().map(|o| 1.0 / o.precision).collect()).unwrap_or(1.0);
         let width = 2.0 * self.limit * self.deviation * unit / network.size().max(f64::MIN_POSITIVE);
@@ -113,7 +108,7 @@ impl Fitting<'_> {
         if rows.iter().any(may_be_chance) {
             return Ok(None);
         }
-        let Some((gain, freedom)) = self.gain(&observations, &network, &rows, None) else { return Ok(None) };
+        let Some((gain, freedom)) = self.gain(&observations, &network, &rows, None)? else { return Ok(None) };
         let Some(after) = network.receivers.pop() else { return Ok(None) };
         let before = network.receivers[receiver];
         // The network that the longer part leaves.

@@ -5,7 +5,8 @@ use super::ranking::refit;
 use crate::align::align;
 use crate::network::Network;
 use crate::observations::Observations;
-use crate::refine::{Covariance, Refined};
+use crate::refine::{Cancelled, Covariance, Refined};
+use hc::Monitor;
 
 /// Networks that differ by less than this share of their size, root mean square, ended in one
 /// minimum.
@@ -53,14 +54,15 @@ pub(super) fn neighbours(
     best: &Refined,
     near: Vec<Network>,
     deviation: f64,
-) -> Vec<Neighbour> {
+    monitor: &Monitor,
+) -> Result<Vec<Neighbour>, Cancelled> {
     if near.is_empty() {
-        return Vec::new();
+        return Ok(Vec::new());
     }
-    let (centre, least) = refit(observations, &best.network, deviation);
+    let (centre, least) = refit(observations, &best.network, deviation, monitor)?;
     let mut found: Vec<Neighbour> = Vec::new();
     for network in near {
-        let (network, cost) = refit(observations, &network, deviation);
+        let (network, cost) = refit(observations, &network, deviation, monitor)?;
         let Some(alignment) = align(&network.receivers, &centre.receivers, false) else { continue };
         let network = alignment.transform.apply_network(&network);
         let shifts = network.receivers.iter().zip(&centre.receivers).map(|(p, q)| [p[0] - q[0], p[1] - q[1]]).collect();
@@ -71,7 +73,7 @@ pub(super) fn neighbours(
             found.push(Neighbour { network, loss: (cost - least).max(0.0), shifts });
         }
     }
-    found
+    Ok(found)
 }
 
 impl Neighbour {

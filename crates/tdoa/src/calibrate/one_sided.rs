@@ -84,7 +84,7 @@ pub(super) fn finish_one_sided(
     monitor: &Monitor,
 ) -> Result<(Vec<Refined>, f64), CalibrateError> {
     let least = known.unwrap_or(floor).max(floor);
-    let mut fitting = Fitting { observations, weighing: Weighing::new(observations), least, known, monitor };
+    let mut fitting = Fitting { observations, weighing: Weighing::new(observations, monitor), least, known, monitor };
     let mut ranked: Vec<Refined> = Vec::new();
     // The widest is the same for all, so that gross errors have one density.
     let wide = networks.iter().map(|refined| spread_of_residuals(observations, &refined.network));
@@ -94,7 +94,7 @@ pub(super) fn finish_one_sided(
         for (k, (network, mixture)) in fits.into_iter().enumerate() {
             // The first is there where no other is.
             if network.is_finite() && (k == 0 || fitting.determined(&mixture)) {
-                let objective = fitting.objective(&network, &mixture);
+                let objective = fitting.objective(&network, &mixture)?;
                 ranked.push(Refined { network, scale: mixture.deviation, objective, starts: refined.starts });
             }
         }
@@ -144,14 +144,14 @@ impl Fitting<'_> {
             mixture.deviation = (NARROWING * mixture.deviation).max(end);
             for _ in 0..NARROW_TURNS {
                 check(self.monitor)?;
-                network = self.weighing.descend(network, STEPS, &mixture);
+                network = self.weighing.descend(network, STEPS, &mixture)?;
                 let next = mixture.updated(self.weighing.residuals(), self.observations.unknowns(), self.least);
                 mixture = Mixture { deviation: mixture.deviation, ..next };
             }
             if !self.determined(&mixture) {
                 break;
             }
-            let objective = self.objective(&network, &mixture);
+            let objective = self.objective(&network, &mixture)?;
             if narrow.as_ref().is_none_or(|(_, least)| objective < *least) {
                 narrow = Some(((network.clone(), mixture), objective));
             }
@@ -166,7 +166,7 @@ impl Fitting<'_> {
     fn settled(&mut self, (mut network, mut mixture): Fit) -> Result<Fit, CalibrateError> {
         for turn in 0..TURNS {
             check(self.monitor)?;
-            network = self.weighing.descend(network, STEPS, &mixture);
+            network = self.weighing.descend(network, STEPS, &mixture)?;
             let next = mixture.updated(self.weighing.residuals(), self.observations.unknowns(), self.least);
             let calm = (next.deviation - mixture.deviation).abs() < 1e-4 * mixture.deviation;
             mixture = next;
@@ -174,7 +174,7 @@ impl Fitting<'_> {
                 break;
             }
         }
-        Ok((self.weighing.descend(network, LAST, &mixture), mixture))
+        Ok((self.weighing.descend(network, LAST, &mixture)?, mixture))
     }
 
     /// Whether enough measurements are on time to determine a network and its deviation: any network
@@ -194,21 +194,21 @@ impl Fitting<'_> {
                 propagated(self.observations, &free.network, free.mixture, self.known, least, true, self.monitor)?;
             found = known.or(found);
         }
-        Ok(found.filter(|found| {
-            let farther = self.objective(&found.network, &found.mixture) - self.objective(network, &found.mixture);
-            farther <= self.observations.unknowns() as f64 && self.determined(&found.mixture)
-        }))
+        let Some(found) = found else { return Ok(None) };
+        let farther = self.objective(&found.network, &found.mixture)? - self.objective(network, &found.mixture)?;
+        let is_near = farther <= self.observations.unknowns() as f64 && self.determined(&found.mixture);
+        Ok(is_near.then_some(found))
     }
 
     /// Negative log-likelihood of the measurements with the unknowns integrated out (Laplace's
     /// approximation), but for what all fits have in common.
-    fn objective(&mut self, network: &Network, mixture: &Mixture) -> f64 {
+    fn objective(&mut self, network: &Network, mixture: &Mixture) -> Result<f64, CalibrateError> {
         let observations = self.observations;
         let pins = observations.pins().iter().map(|pin| 0.5 * (pin.residual(network) / mixture.deviation).powi(2));
         let cells = observations.all().iter().map(|o| mixture.cost(o.residual(network)));
         let left = observations.len().saturating_sub(observations.unknowns()) as f64;
-        let volume = self.weighing.log_determinant(network, mixture).unwrap_or(f64::INFINITY);
-        cells.sum::<f64>() + pins.sum::<f64>() + left * mixture.deviation.ln() + 0.5 * volume
+        let volume = self.weighing.log_determinant(network, mixture)?.unwrap_or(f64::INFINITY);
+        Ok(cells.sum::<f64>() + pins.sum::<f64>() + left * mixture.deviation.ln() + 0.5 * volume)
     }
 }
 
@@ -222,17 +222,19 @@ pub(super) struct Information {
 
 impl Information {
     /// At a network with measurements of about this deviation, which may be known.
-    pub(super) fn new(observations: &Observations, network: &Network, first: f64, known: Option<f64>) -> Information {
+    pub(super) fn new(
+        observations: &Observations,
+        network: &Network,
+        first: f64,
+        known: Option<f64>,
+        monitor: &Monitor,
+    ) -> Result<Information, CalibrateError> {
         let mixture = mixture_of(observations, network, first);
-        let at = |known: Option<f64>| {
-            let least = LEAST_LEFT * first;
-            propagated(observations, network, mixture, known, least, false, &Monitor::default()).ok().flatten()
-        };
-        let shares = match at(known) {
+        let shares = match propagated(observations, network, mixture, known, LEAST_LEFT * first, false, monitor)? {
             Some(found) => found.weights,
             None => observations.all().iter().map(|o| mixture.on_time(o.residual(network))).collect(),
         };
-        Information { trusted: observations.trusted(&shares), mixture }
+        Ok(Information { trusted: observations.trusted(&shares), mixture })
     }
 
     /// Whether most measurements are on time, and enough of them to say so.

@@ -2,6 +2,7 @@
 
 use super::unfinished::Unfinished;
 use crate::degeneracy::Degeneracy;
+use crate::refine::Cancelled;
 use hc::Monitor;
 use thiserror::Error;
 
@@ -177,7 +178,13 @@ impl CalibrateOptions {
 
 /// Ends the calibration if it has been cancelled.
 pub(super) fn check(monitor: &Monitor) -> Result<(), CalibrateError> {
-    if monitor.is_cancelled() { Err(CalibrateError::Cancelled(None)) } else { Ok(()) }
+    Ok(crate::refine::check(monitor)?)
+}
+
+impl From<Cancelled> for CalibrateError {
+    fn from(_: Cancelled) -> Self {
+        CalibrateError::Cancelled(None)
+    }
 }
 
 /// Why there is no calibration.

@@ -43,7 +43,7 @@ pub(super) fn propagated(
     moves: bool,
     monitor: &Monitor,
 ) -> Result<Option<Propagated>, CalibrateError> {
-    let mut weighing = Weighing::new(observations);
+    let mut weighing = Weighing::new(observations, monitor);
     let (mut network, mut mixture) = (network.clone(), mixture);
     mixture.deviation = known.unwrap_or(mixture.deviation);
     let mut sites: Vec<(f64, f64)> = (observations.all().iter())
@@ -57,10 +57,10 @@ pub(super) fn propagated(
         check(monitor)?;
         let weights: Vec<f64> = sites.iter().map(|site| site.0).collect();
         let trusted = observations.trusted(&weights);
-        let Some(variances) = predicted_variances(&trusted, &network) else { return Ok(None) };
+        let Some(variances) = predicted_variances(&trusted, &network, monitor)? else { return Ok(None) };
         if moves {
             let targets: Vec<f64> = sites.iter().map(|site| site.1).collect();
-            let Some(next) = weighing.step(&network, &weights, &targets).filter(Network::is_finite) else {
+            let Some(next) = weighing.step(&network, &weights, &targets)?.filter(Network::is_finite) else {
                 return Ok(None);
             };
             network = next;

@@ -9,7 +9,8 @@
 
 use crate::network::Network;
 use crate::observations::Observations;
-use crate::refine::{RefineOptions, Refined, Refiner, SEARCH};
+use crate::refine::{Cancelled, RefineOptions, Refined, Refiner, SEARCH, check};
+use hc::Monitor;
 
 use super::same::same;
 
@@ -37,18 +38,19 @@ pub(super) fn rank(
     mut networks: Vec<Refined>,
     deviation: f64,
     margin: f64,
-) -> Vec<Refined> {
+    monitor: &Monitor,
+) -> Result<Vec<Refined>, Cancelled> {
     let mut least = f64::INFINITY;
     for refined in &mut networks {
         refined.objective = truncated_cost(observations, &refined.network, deviation);
         least = least.min(refined.objective);
     }
     if networks.len() < 2 {
-        return networks;
+        return Ok(networks);
     }
     let mut kept: Vec<(Network, Refined)> = Vec::new();
     for mut refined in networks.into_iter().filter(|refined| refined.objective <= least + 4.0 * margin) {
-        let (network, cost) = refit(observations, &refined.network, deviation);
+        let (network, cost) = refit(observations, &refined.network, deviation, monitor)?;
         refined.objective = cost;
         match kept.iter_mut().find(|(other, _)| same(other, &network)) {
             Some((_, first)) => first.starts = first.starts.max(refined.starts),
@@ -57,18 +59,24 @@ pub(super) fn rank(
     }
     let mut ranked: Vec<Refined> = kept.into_iter().map(|(_, refined)| refined).collect();
     ranked.sort_by(|a, b| a.objective.total_cmp(&b.objective));
-    ranked
+    Ok(ranked)
 }
 
 /// The network of least truncated cost near a given one, with that cost: least squares over the
 /// inliers until they stay the same.
-pub(super) fn refit(observations: &Observations, network: &Network, deviation: f64) -> (Network, f64) {
+pub(super) fn refit(
+    observations: &Observations,
+    network: &Network,
+    deviation: f64,
+    monitor: &Monitor,
+) -> Result<(Network, f64), Cancelled> {
     let limit = (2.0 * OUTLIER_COST).sqrt() * deviation;
     let options = RefineOptions { scale: Some(deviation), steps: 20, rounds: 0, tolerance: 1e-9, ..SEARCH };
     let mut best = (network.clone(), truncated_cost(observations, network, deviation));
     for _ in 0..ROUNDS {
         let inliers = observations.subset(|o| o.residual(&best.0).abs() <= limit);
-        let fitted = Refiner::new(&inliers, f64::INFINITY).refine(best.0.clone(), &options).network;
+        let fitted = Refiner::new(&inliers, f64::INFINITY).heeding(monitor).refine(best.0.clone(), &options).network;
+        check(monitor)?;
         let cost = truncated_cost(observations, &fitted, deviation);
         // Each round lowers the cost or leaves the inliers as they are.
         let gain = best.1 - cost;
@@ -79,7 +87,7 @@ pub(super) fn refit(observations: &Observations, network: &Network, deviation: f
             break;
         }
     }
-    best
+    Ok(best)
 }
 
 #[cfg(test)]
@@ -89,6 +97,7 @@ mod tests {
     use crate::pseudoranges::Pseudoranges;
     use crate::refine::Refined;
     use crate::simulate::{SimulateOptions, simulate};
+    use hc::Monitor;
 
     const SIGMA: f64 = 0.01;
 
@@ -118,7 +127,7 @@ mod tests {
         for seed in 0..20 {
             let (pseudoranges, truth) = measured(seed);
             let observations = Observations::new(&pseudoranges, |_, _| true);
-            let (network, cost) = refit(&observations, &truth, SIGMA);
+            let (network, cost) = refit(&observations, &truth, SIGMA, &Monitor::default()).unwrap();
             assert!(cost <= truncated_cost(&observations, &truth, SIGMA));
             // 79 measurements less 16 + 30 - 3 unknowns: half of chi-squared with 36 degrees of
             // freedom, 99.9 % of which is below 68.
@@ -137,7 +146,8 @@ mod tests {
         // noise, and no refit of these reaches back.
         wrong.transmitters[3] = [60.0, -40.0];
         let refined = |network| Refined { network, scale: SIGMA, objective: 0.0, starts: 1 };
-        let ranked = rank(&observations, vec![refined(wrong), refined(truth.clone())], SIGMA, 8.0);
+        let networks = vec![refined(wrong), refined(truth.clone())];
+        let ranked = rank(&observations, networks, SIGMA, 8.0, &Monitor::default()).unwrap();
         assert_eq!((ranked.len(), &ranked[0].network), (1, &truth), "the wrong one is no alternative");
     }
 }

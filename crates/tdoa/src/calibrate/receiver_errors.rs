@@ -10,9 +10,11 @@ use serde::{Deserialize, Serialize};
 use super::deviation::{inlier_deviation, spread_of_residuals};
 use super::mixture::Mixture;
 use super::significance::{least_surprise, surprise, tests};
+use crate::multilateration::solve2;
 use crate::network::Network;
 use crate::observations::Observations;
-use crate::refine::Projection;
+use crate::refine::{Cancelled, Projection, check, dot};
+use hc::Monitor;
 
 /// Measurements before and after an event between which a jump or a move is looked for.
 pub(super) const SIDE: usize = 4;
@@ -113,42 +115,48 @@ pub(super) fn find(
     deviation: f64,
     threshold: f64,
     unmoved: &[usize],
-) -> Vec<Fault> {
+    monitor: &Monitor,
+) -> Result<Vec<Fault>, Cancelled> {
     // An error of one receiver makes residuals larger than the noise: the test takes the deviation
     // that they have.
     let wide = spread_of_residuals(observations, network).max(deviation);
     let wide = inlier_deviation(observations, network, wide, threshold);
     // What the robust loss has given up of a receiver is what tells of its error: all cells near
     // its own spread take part.
-    let reach = reaches(observations, network);
+    let reach: Vec<f64> = (0..observations.receivers).map(|i| spread_of_receiver(observations, network, i)).collect();
     let kept = observations.subset(|o| o.residual(network).abs() <= threshold * wide.max(reach[o.receiver]));
-    let redundancy = kept.len().saturating_sub(kept.unknowns());
-    if redundancy < 4 {
-        return Vec::new();
-    }
-    let Some(projection) = Projection::new(&kept, network) else { return Vec::new() };
     let residuals: Vec<f64> = kept.all().iter().map(|o| o.residual(network)).collect();
-    let (rest, _) = projection.off(&residuals);
-    Test { kept: &kept, projection, rest, taken: Vec::new(), redundancy: redundancy as f64, unmoved }.run()
+    told(&kept, network, &residuals, unmoved, monitor)
 }
 
 /// The same where errors are one-sided. The test takes what each measurement says of its length (the
 /// scores of the mixture), in which late ones hardly count, in place of residuals.
-pub(super) fn find_one_sided(observations: &Observations, network: &Network, mixture: &Mixture) -> Vec<Fault> {
-    let redundancy = observations.len().saturating_sub(observations.unknowns());
-    if redundancy < 4 {
-        return Vec::new();
-    }
-    let Some(projection) = Projection::new(observations, network) else { return Vec::new() };
+pub(super) fn find_one_sided(
+    observations: &Observations,
+    network: &Network,
+    mixture: &Mixture,
+    monitor: &Monitor,
+) -> Result<Vec<Fault>, Cancelled> {
     let step = mixture.deviation / mixture.information();
     let scores: Vec<f64> = observations.all().iter().map(|o| step * mixture.score(o.residual(network))).collect();
-    let (rest, _) = projection.off(&scores);
-    Test { kept: observations, projection, rest, taken: Vec::new(), redundancy: redundancy as f64, unmoved: &[] }.run()
+    told(observations, network, &scores, &[], monitor)
 }
 
-/// Spread of the residuals of each receiver about zero, from the smaller seven tenths of them.
-fn reaches(observations: &Observations, network: &Network) -> Vec<f64> {
-    (0..observations.receivers).map(|i| spread_of_receiver(observations, network, i)).collect()
+/// Errors that values tell of, one for each measurement.
+fn told(
+    kept: &Observations,
+    network: &Network,
+    values: &[f64],
+    unmoved: &[usize],
+    monitor: &Monitor,
+) -> Result<Vec<Fault>, Cancelled> {
+    let redundancy = kept.len().saturating_sub(kept.unknowns());
+    if redundancy < 4 {
+        return Ok(Vec::new());
+    }
+    let Some(projection) = Projection::new(kept, network, monitor)? else { return Ok(Vec::new()) };
+    let (rest, _) = projection.off(values);
+    Test { kept, projection, rest, taken: Vec::new(), redundancy: redundancy as f64, unmoved, monitor }.run()
 }
 
 /// Spread of the residuals of one receiver about zero, from the smaller seven tenths of them.
@@ -168,10 +176,11 @@ struct Test<'a> {
     taken: Vec<Vec<f64>>,
     redundancy: f64,
     unmoved: &'a [usize],
+    monitor: &'a Monitor,
 }
 
 impl Test<'_> {
-    fn run(mut self) -> Vec<Fault> {
+    fn run(mut self) -> Result<Vec<Fault>, Cancelled> {
         let mut found: Vec<Fault> = Vec::new();
         let rows = self.rows();
         while found.len() < self.kept.receivers / 2 {
@@ -179,15 +188,18 @@ impl Test<'_> {
                 found.iter().any(|f| f.receiver == fault.receiver && f.kind == fault.kind)
                     || fault.kind == ReceiverErrorKind::Move && self.unmoved.contains(&fault.receiver)
             };
-            let candidates = self.candidates(&rows);
+            let candidates = self.candidates(&rows)?;
             // A candidate of each kind has as many rivals as that kind has tests.
             let least = |kind| least_surprise(tests(kind, self.kept.receivers, self.kept.len()));
-            let judged = candidates.into_iter().filter(|fault| !known(fault)).filter_map(|fault| {
-                let (gain, fault, columns) = self.judge(fault, &rows)?;
+            let mut judged = Vec::new();
+            for fault in candidates.into_iter().filter(|fault| !known(fault)) {
+                check(self.monitor)?;
+                let Some((gain, fault, columns)) = self.judge(fault, &rows) else { continue };
                 let told = surprise(gain, self.redundancy - columns.len() as f64, fault.kind);
-                Some((told - least(fault.kind), fault, columns))
-            });
-            let Some((lead, fault, columns)) = judged.max_by(|a, b| a.0.total_cmp(&b.0)) else { break };
+                judged.push((told - least(fault.kind), fault, columns));
+            }
+            let best = judged.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
+            let Some((lead, fault, columns)) = best else { break };
             if lead < 0.0 {
                 break;
             }
@@ -202,7 +214,7 @@ impl Test<'_> {
             }
             self.redundancy -= 1.0;
         }
-        found
+        Ok(found)
     }
 
     /// Places of the measurements of each receiver, in the order of the transmitters.
@@ -215,7 +227,7 @@ impl Test<'_> {
     }
 
     /// The most promising error of each kind and receiver, by the residuals alone.
-    fn candidates(&self, rows: &[Vec<usize>]) -> Vec<Fault> {
+    fn candidates(&self, rows: &[Vec<usize>]) -> Result<Vec<Fault>, Cancelled> {
         let mut all: Vec<(f64, Fault)> = Vec::new();
         for (receiver, row) in rows.iter().enumerate() {
             if row.len() < 3 {
@@ -224,6 +236,7 @@ impl Test<'_> {
             let fault = |kind, from| Fault::new(receiver, kind, from);
             let mut best = [(f64::NEG_INFINITY, 0); 2];
             for at in SIDE..(row.len() + 1).saturating_sub(SIDE) {
+                check(self.monitor)?;
                 let from = self.kept.all()[row[at]].transmitter;
                 for (best, power) in best.iter_mut().zip([0, 1]) {
                     let score = self.score(&row[..at], power) + self.score(&row[at..], power);
@@ -244,7 +257,7 @@ impl Test<'_> {
         // The sort is stable: the kinds of one receiver stay together.
         all.sort_by(|a, b| b.0.total_cmp(&a.0));
         all.truncate(4 * PROJECTED);
-        all.into_iter().map(|(_, fault)| fault).collect()
+        Ok(all.into_iter().map(|(_, fault)| fault).collect())
     }
 
     /// How much of the squares of the residuals in some cells of a receiver one length explains, or
@@ -330,20 +343,6 @@ impl Test<'_> {
             *x -= part * y;
         }
         self.taken.push(column);
-    }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
-}
-
-/// Solves the symmetric system with the matrix xx, xy, yy; `None` if it is singular.
-fn solve2(h: [f64; 3], g: [f64; 2]) -> Option<[f64; 2]> {
-    let det = h[0] * h[2] - h[1] * h[1];
-    if det > 1e-12 * h[0] * h[2] {
-        Some([(h[2] * g[0] - h[1] * g[1]) / det, (h[0] * g[1] - h[1] * g[0]) / det])
-    } else {
-        None
     }
 }
 

@@ -18,7 +18,7 @@ use crate::multilateration::solve3;
 use crate::network::Network;
 use crate::observations::{Observation, Observations};
 use crate::plane::distance;
-use crate::refine::{Projection, RefineOptions, Refiner, SEARCH};
+use crate::refine::{Projection, RefineOptions, Refiner, SEARCH, dot};
 use hc::Monitor;
 
 /// Jumps of one receiver that are tried.
@@ -76,17 +76,17 @@ pub(super) fn refits(
     if tried == 0 || kept < observations.unknowns() + 5 {
         return Ok(Vec::new());
     }
-    let (base, cost) = refit(observations, best, deviation);
+    let (base, cost) = refit(observations, best, deviation, monitor)?;
     let mut order: Vec<usize> = (0..observations.receivers).collect();
     order.sort_by_key(|&i| (!suspects.contains(&i), std::cmp::Reverse(given_up[i])));
     order.truncate(tried);
     let mut found: Vec<(f64, Found)> = Vec::new();
-    let fitting = Fitting { observations, base: &base, cost, deviation, limit };
+    let fitting = Fitting { observations, base: &base, cost, deviation, limit, monitor };
     for receiver in order {
         check(monitor)?;
         // One gross error alone is no move.
         let may_have_moved = given_up[receiver] > 1 || suspects.contains(&receiver);
-        let fits = fitting.receiver(receiver, may_have_moved, monitor)?;
+        let fits = fitting.receiver(receiver, may_have_moved)?;
         let leads = fits.into_iter().map(|next| (next.lead(observations, kept), next));
         found.extend(leads.filter(|(lead, _)| *lead > 0.0).max_by(|a, b| a.0.total_cmp(&b.0)));
     }
@@ -103,6 +103,7 @@ pub(super) struct Fitting<'a> {
     pub(super) deviation: f64,
     /// Measurements farther off than this many deviations are outliers.
     pub(super) limit: f64,
+    pub(super) monitor: &'a Monitor,
 }
 
 /// A network and an error on the way to their best fit.
@@ -119,53 +120,60 @@ struct Joint {
 
 impl Fitting<'_> {
     /// Fits of one receiver with an error of each kind, as far as they are worth a look.
-    fn receiver(&self, receiver: usize, may_have_moved: bool, monitor: &Monitor) -> Result<Vec<Found>, CalibrateError> {
+    fn receiver(&self, receiver: usize, may_have_moved: bool) -> Result<Vec<Found>, CalibrateError> {
         let others = self.observations.subset(|o| o.receiver != receiver);
         let options = RefineOptions { scale: Some(CAUCHY * self.deviation), rounds: 0, steps: 30, ..SEARCH };
-        let bent = Refiner::new(&others, 1.0).heeding(monitor).refine(self.base.clone(), &options).network;
-        let (alone, cost) = refit(&others, &bent, self.deviation);
+        let bent = Refiner::new(&others, 1.0).heeding(self.monitor).refine(self.base.clone(), &options).network;
+        let (alone, cost) = refit(&others, &bent, self.deviation, self.monitor)?;
         // No error can bring the cost below that of the others.
         if !alone.is_finite() || self.cost - cost < least_gain(tests(ReceiverErrorKind::Delay, others.receivers, 1)) {
             return Ok(Vec::new());
         }
-        let moved = if may_have_moved { self.moved(receiver, &alone, monitor)? } else { None };
+        let moved = if may_have_moved { self.moved(receiver, &alone)? } else { None };
         let local = Local::new(self.observations, &alone, receiver, self.deviation);
         let starts = [
             local.locate(Fault::new(receiver, ReceiverErrorKind::Delay, 0)),
             local.locate(Fault::new(receiver, ReceiverErrorKind::Drift, 0)),
             local.jump(),
         ];
-        check(monitor)?;
+        check(self.monitor)?;
         let fitted = starts
             .into_iter()
             .flatten()
             // The fit of all nodes may halve what locating one has left.
             .filter(|located| self.cost - cost - 0.5 * located.cost > 0.0)
-            .filter_map(|located| {
+            .map(|located| {
                 let mut network = alone.clone();
                 network.receivers[receiver] = located.position;
                 self.joint(network, located.fault)
             });
-        Ok(fitted.chain(moved).collect())
+        let fitted: Vec<Option<Found>> = fitted.collect::<Result<_, CalibrateError>>()?;
+        Ok(fitted.into_iter().flatten().chain(moved).collect())
     }
 
     /// Least squares of all nodes and the error over the inliers, from here; `None` where the error
     /// cannot be told from a motion of the nodes.
-    fn joint(&self, network: Network, fault: Fault) -> Option<Found> {
+    fn joint(&self, network: Network, fault: Fault) -> Result<Option<Found>, CalibrateError> {
         let start = Joint { observations: self.corrected(&fault), network, fault, square: 0.0, cost: f64::INFINITY };
-        let mut fitted = self.descend(start, 1.0)?;
+        let Some(mut fitted) = self.descend(start, 1.0)? else { return Ok(None) };
         // A network that is still bent gives up measurements that the error would explain.
         let (least, most) = (self.reach(), RELAXED[0] * self.reach());
         let is_near = |o: &Observation| (least..most).contains(&o.residual(&fitted.network).abs());
         if fitted.observations.all().iter().any(is_near) {
-            let relaxed = RELAXED.iter().try_fold(fitted.clone(), |now, &factor| self.descend(now, factor));
+            let mut relaxed = Some(fitted.clone());
+            for factor in RELAXED {
+                relaxed = match relaxed {
+                    Some(now) => self.descend(now, factor)?,
+                    None => None,
+                };
+            }
             fitted = relaxed.filter(|relaxed| self.is_better(relaxed, &fitted)).unwrap_or(fitted);
         }
         let Joint { observations, network, fault, square, .. } = fitted;
         let with_error = observations.beside(self.observations.others() + 1);
         let size = fault.size[0];
-        let (gain, freedom) = self.gain(&with_error, &network, &[fault.receiver], Some(size * size * square))?;
-        Some(Found { fault: Fault { gain, ..fault }, network, freedom })
+        let gain = self.gain(&with_error, &network, &[fault.receiver], Some(size * size * square))?;
+        Ok(gain.map(|(gain, freedom)| Found { fault: Fault { gain, ..fault }, network, freedom }))
     }
 
     /// Whether a fit costs less than another, with the smaller of the deviations that they leave: with
@@ -192,7 +200,7 @@ impl Fitting<'_> {
     }
 
     /// Lowers the truncated cost with so many times the deviation.
-    fn descend(&self, from: Joint, factor: f64) -> Option<Joint> {
+    fn descend(&self, from: Joint, factor: f64) -> Result<Option<Joint>, CalibrateError> {
         let n = self.observations.transmitters;
         let (reach, deviation) = (factor * self.reach(), factor * self.deviation);
         let mut now = from;
@@ -200,17 +208,16 @@ impl Fitting<'_> {
         for _ in 0..ROUNDS {
             let fault = now.fault;
             let inliers = now.observations.subset(|o| o.residual(&now.network).abs() <= reach);
-            let projection = Projection::new(&inliers, &now.network)?;
+            let Some(projection) = Projection::new(&inliers, &now.network, self.monitor)? else { return Ok(None) };
             let residuals: Vec<f64> = inliers.all().iter().map(|o| o.residual(&now.network)).collect();
             let part = |o: &Observation| {
                 if o.receiver == fault.receiver { o.precision * fault.shape(o.transmitter, n) } else { 0.0 }
             };
             let column: Vec<f64> = inliers.all().iter().map(part).collect();
             let (rest, _) = projection.off(&column);
-            let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };
             now.square = dot(&rest, &rest);
             if now.square < 1e-6 * dot(&column, &column) || now.square.is_nan() {
-                return None;
+                return Ok(None);
             }
             let step = dot(&rest, &residuals) / now.square;
             let left: Vec<f64> = residuals.iter().zip(&column).map(|(e, c)| e - step * c).collect();
@@ -236,7 +243,7 @@ impl Fitting<'_> {
                 break;
             }
         }
-        Some(now)
+        Ok(Some(now))
     }
 
     /// By how much the measurements are more likely with an error: both costs with the deviation that
@@ -249,19 +256,19 @@ impl Fitting<'_> {
         network: &Network,
         rows: &[usize],
         explained: Option<f64>,
-    ) -> Option<(f64, f64)> {
+    ) -> Result<Option<(f64, f64)>, CalibrateError> {
         let deviation = inlier_deviation(with_error, network, self.deviation, self.limit).min(self.deviation);
-        let before = refit(self.observations, self.base, deviation).1;
+        let before = refit(self.observations, self.base, deviation, self.monitor)?.1;
         let fall = before - truncated_cost(with_error, network, deviation);
         let kept = with_error.all().iter().filter(|o| o.residual(network).abs() <= self.limit * deviation).count();
         let redundancy = kept.saturating_sub(with_error.unknowns());
         if redundancy < 4 {
-            return None;
+            return Ok(None);
         }
         let tail = |fall: f64| 0.5 * redundancy as f64 * (2.0 * fall.max(0.0) / redundancy as f64).ln_1p();
         let own = rows.iter().map(|&i| spread_of_receiver(with_error, network, i)).fold(deviation, f64::max);
         let explained = explained.unwrap_or(2.0 * fall * deviation * deviation);
-        Some((tail(fall).min(tail(0.5 * explained / (own * own))), redundancy as f64))
+        Ok(Some((tail(fall).min(tail(0.5 * explained / (own * own))), redundancy as f64)))
     }
 }
 

@@ -6,7 +6,7 @@ use super::deviation::{inlier_deviation, typical_deviation};
 use super::known::{Anchors, SpeedEstimate};
 use super::near::{BEYOND, Neighbour, widen};
 use super::one_sided::{Information, LEAST_REDUNDANCY};
-use super::options::{CalibrateOptions, Errors, ReceiverDelays};
+use super::options::{CalibrateError, CalibrateOptions, Errors, ReceiverDelays};
 use super::orientation::looks_transposed;
 use super::receiver_errors::Fault;
 use super::same::{same_receivers, same_transmitters};
@@ -19,6 +19,7 @@ use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
 use crate::quantity::length;
 use crate::refine::{Covariance, Refined};
+use hc::Monitor;
 use std::borrow::Cow;
 
 /// Starts that must end in the best network before it is called unique: one or two may have found
@@ -53,10 +54,13 @@ pub(super) struct Solved<'a> {
 }
 
 impl Solved<'_> {
-    pub(super) fn report(&self, options: &CalibrateOptions) -> Calibration {
+    /// # Errors
+    /// Cancelled.
+    pub(super) fn report(&self, options: &CalibrateOptions, monitor: &Monitor) -> Result<Calibration, CalibrateError> {
         let best = &self.ranked[0].network;
         let one_sided = (options.errors == Errors::OneSided)
-            .then(|| Information::new(self.observations, best, self.deviation, self.known));
+            .then(|| Information::new(self.observations, best, self.deviation, self.known, monitor))
+            .transpose()?;
         let estimated = match &one_sided {
             // Measurements that are late by little would count as noise.
             Some(information) => information.mixture.deviation,
@@ -79,9 +83,9 @@ impl Solved<'_> {
         let ellipse_radius = radius_95(redundancy, self.known.is_some());
         let mut uncertainty = match ellipse_radius {
             Some(_) => match &one_sided {
-                Some(information) => self.covariance(&information.trusted, sigma),
+                Some(information) => self.covariance(&information.trusted, sigma, monitor)?,
                 // What the robust loss loses against least squares on normal noise is added.
-                None => self.covariance(&kept, sigma / EFFICIENCY.sqrt()),
+                None => self.covariance(&kept, sigma / EFFICIENCY.sqrt(), monitor)?,
             },
             None => {
                 warnings.push(
@@ -276,7 +280,7 @@ impl Solved<'_> {
         if let Some(anchors) = &self.anchors {
             calibration.put_on(anchors, rows, is_held);
         }
-        calibration
+        Ok(calibration)
     }
 
     /// Whether rows have the offsets of transmitters, and the network that was found leaves residuals

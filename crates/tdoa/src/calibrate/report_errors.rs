@@ -6,9 +6,10 @@ use super::receiver_errors::{Fault, MovedPlace, ReceiverError, ReceiverErrorKind
 use super::report::Solved;
 use crate::degeneracy::list;
 use crate::observations::Observations;
-use crate::refine::{Covariance, Motion, Projection, covariance};
+use crate::refine::{Cancelled, Covariance, Motion, Projection, check, covariance};
 use faer::Mat;
 use faer::prelude::Solve;
+use hc::Monitor;
 
 /// Adds the product of two motions to a covariance, but for the single receivers.
 fn add(covariance: &mut Covariance, factor: f64, p: &Motion, q: &Motion) {
@@ -30,22 +31,28 @@ fn add(covariance: &mut Covariance, factor: f64, p: &Motion, q: &Motion) {
 impl Solved<'_> {
     /// The covariance of all nodes, with what the uncertainty of errors that were taken out adds, and
     /// how far errors that were left in may have moved them.
-    pub(super) fn covariance(&self, kept: &Observations, sigma: f64) -> Covariance {
+    pub(super) fn covariance(
+        &self,
+        kept: &Observations,
+        sigma: f64,
+        monitor: &Monitor,
+    ) -> Result<Covariance, Cancelled> {
         let best = &self.ranked[0].network;
-        let mut found = covariance(kept, best, sigma).unwrap_or_default();
+        let mut found = covariance(kept, best, sigma, monitor)?.unwrap_or_default();
         if self.taken.is_empty() && self.left.is_empty() || found.receivers.is_empty() {
-            return found;
+            return Ok(found);
         }
-        let Some(projection) = Projection::new(kept, best) else { return found };
+        let Some(projection) = Projection::new(kept, best, monitor)? else { return Ok(found) };
         // A delay for each receiver but one; that of the last one follows.
         let free = if self.taken.len() == kept.receivers { &self.taken[1..] } else { self.taken };
-        let taken = columns(kept, &projection, free);
-        let Some(gram) = gram(&taken) else { return Covariance::default() };
+        let taken = columns(kept, &projection, free, monitor)?;
+        let Some(gram) = gram(&taken, monitor)? else { return Ok(Covariance::default()) };
         // With sizes of covariance C = sigma^2 (products of the columns)^-1 and motions M that
         // absorb them, M C M^T is added.
         let inverse = gram.solve(&Mat::<f64>::identity(taken.len(), taken.len()));
         let pairs = (0..taken.len()).flat_map(|a| (0..taken.len()).map(move |b| (a, b)));
         for (a, b) in pairs {
+            check(monitor)?;
             add(&mut found, sigma * sigma * inverse[(a, b)], &taken[a].1, &taken[b].1);
         }
         for fault in self.left {
@@ -58,7 +65,7 @@ impl Solved<'_> {
                 motion.receivers[2 * fault.receiver..2 * fault.receiver + 2].copy_from_slice(&fault.size);
                 add(&mut found, 1.0, &motion, &motion);
             } else {
-                for (_, motion) in columns(kept, &projection, &[*fault]) {
+                for (_, motion) in columns(kept, &projection, &[*fault], monitor)? {
                     add(&mut found, fault.size[0].powi(2), &motion, &motion);
                 }
             }
@@ -67,7 +74,7 @@ impl Solved<'_> {
         for (i, receiver) in found.receivers.iter_mut().enumerate() {
             *receiver = [0, 1].map(|x| [0, 1].map(|y| found.joint[(2 * i + x) * size + 2 * i + y]));
         }
-        found
+        Ok(found)
     }
 
     pub(super) fn receiver_errors(&self) -> Vec<ReceiverError> {

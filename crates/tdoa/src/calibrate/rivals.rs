@@ -34,7 +34,7 @@ pub(super) fn with_rivals(
     monitor: &Monitor,
 ) -> Result<Vec<Refined>, CalibrateError> {
     let limit = options.inlier_threshold * deviation;
-    let (best, cost) = refit(observations, &ranked[0].network, deviation);
+    let (best, cost) = refit(observations, &ranked[0].network, deviation, monitor)?;
     let suspected = observations.all().iter().filter(|o| o.residual(&best).abs() > limit).count();
     let left_over = (observations.len() - suspected).saturating_sub(observations.unknowns());
     if suspected == 0 || left_over > MOST_LEFT_OVER || !cost.is_finite() {
@@ -45,7 +45,7 @@ pub(super) fn with_rivals(
     for i in (0..observations.receivers).filter(|&i| !observations.held()[i]) {
         check(monitor)?;
         // What its measurements have bent the others to is undone first.
-        let others = refit(&observations.subset(|o| o.receiver != i), &best, deviation).0;
+        let others = refit(&observations.subset(|o| o.receiver != i), &best, deviation, monitor)?.0;
         for place in places_of_receiver(observations, &others, i, &loss) {
             let mut network = others.clone();
             network.receivers[i] = place.position;
@@ -54,21 +54,22 @@ pub(super) fn with_rivals(
     }
     for j in 0..observations.transmitters {
         check(monitor)?;
-        let others = refit(&observations.subset(|o| o.transmitter != j), &best, deviation).0;
+        let others = refit(&observations.subset(|o| o.transmitter != j), &best, deviation, monitor)?.0;
         for place in places_of_transmitter(observations, &others, j, &loss) {
             let mut network = others.clone();
             (network.transmitters[j], network.offsets[j]) = (place.position, place.offset);
             starts.push(network);
         }
     }
-    let carried = |network: Network| {
+    let carried = |network: Network| -> Result<(Network, f64), CalibrateError> {
         let mut now = (network, f64::INFINITY);
         for factor in ANNEALED {
-            now = refit(observations, &now.0, factor * deviation);
+            now = refit(observations, &now.0, factor * deviation, monitor)?;
         }
-        now
+        Ok(now)
     };
-    let mut found: Vec<(Network, f64)> = starts.into_iter().filter(Network::is_finite).map(carried).collect();
+    let carried = starts.into_iter().filter(Network::is_finite).map(carried);
+    let mut found: Vec<(Network, f64)> = carried.collect::<Result<_, CalibrateError>>()?;
     found.retain(|(network, new)| *new <= cost + options.alternative_margin && network.is_finite());
     found.sort_by(|a, b| a.1.total_cmp(&b.1));
     // Costs are put on the scale of the last refinement's objectives.

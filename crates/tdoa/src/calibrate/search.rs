@@ -68,7 +68,7 @@ impl Search<'_> {
             let batch = BATCH.min(options.max_starts - starts);
             let refiner = || Refiner::new(self.observations, SEARCH_NU).heeding(monitor);
             let start = |refiner: &mut Refiner<'_>, index| {
-                if monitor.is_cancelled() { Vec::new() } else { self.start(refiner, index, options.seed) }
+                if monitor.is_cancelled() { Vec::new() } else { self.start(refiner, index, options.seed, monitor) }
             };
             let batch = starts..starts + batch;
             #[cfg(feature = "threads")]
@@ -112,7 +112,7 @@ impl Search<'_> {
         }
     }
 
-    fn start(&self, refiner: &mut Refiner<'_>, index: usize, seed: u64) -> Vec<Refined> {
+    fn start(&self, refiner: &mut Refiner<'_>, index: usize, seed: u64, monitor: &Monitor) -> Vec<Refined> {
         let source = self.sources[index % self.sources.len()];
         let mut proposals = source.propose(self.measured, index / self.sources.len(), seed);
         if proposals.is_empty() && self.sources.len() > 1 {
@@ -122,7 +122,7 @@ impl Search<'_> {
         }
         let mut ranked: Vec<(f64, Network)> = proposals
             .iter()
-            .filter_map(|part| extend(self.observations, part, &self.wide))
+            .filter_map(|part| extend(self.observations, part, &self.wide, monitor).ok().flatten())
             .filter(|network| network.is_finite())
             .map(|network| (self.rank(&network), network))
             .collect();

@@ -201,17 +201,23 @@ fn grow(submaps: &[Submap], first: usize, receivers: usize, used: &mut [bool]) -
         placed[i] = Some(p);
     }
     used[first] = true;
+    // How submaps fit, which changes for those that have one of the receivers placed last.
+    let mut fits: Vec<Option<(usize, Transform)>> = vec![None; submaps.len()];
+    let mut fresh = submaps[first].receivers.clone();
     loop {
-        let fits = (0..submaps.len()).filter(|&k| !used[k]).filter_map(|k| {
-            let (count, map) = fit(&submaps[k], &placed)?;
-            Some((count, usize::MAX - k, map))
-        });
-        let Some((_, k, map)) = fits.max_by_key(|(count, k, _)| (*count, *k)) else { return placed };
-        let submap = &submaps[usize::MAX - k];
-        used[usize::MAX - k] = true;
-        for (&i, &p) in submap.receivers.iter().zip(&submap.positions) {
+        for (k, submap) in submaps.iter().enumerate().filter(|&(k, _)| !used[k]) {
+            if submap.receivers.iter().any(|i| fresh.contains(i)) {
+                fits[k] = fit(submap, &placed);
+            }
+        }
+        let all = (0..submaps.len()).filter(|&k| !used[k]).filter_map(|k| Some((k, fits[k]?)));
+        let Some((k, (_, map))) = all.max_by_key(|(k, (count, _))| (*count, usize::MAX - k)) else { return placed };
+        used[k] = true;
+        fresh.clear();
+        for (&i, &p) in submaps[k].receivers.iter().zip(&submaps[k].positions) {
             if placed[i].is_none() {
                 placed[i] = Some(map.apply(p));
+                fresh.push(i);
             }
         }
     }
@@ -245,6 +251,11 @@ impl Layout {
         // As much as ten neighbours would take of it.
         let share = (RECEIVERS as f64 / placed.len() as f64).sqrt();
         Some(Layout { submaps: Vec::new(), positions, solved: 1, size: share * spread(placed.iter()) })
+    }
+
+    /// The receivers alone.
+    pub(super) fn unfinished(&self, measured: &Pseudoranges) -> Unfinished {
+        Unfinished::laid(self.positions.clone(), measured.transmitters(), self.solved)
     }
 
     /// How many submaps fit a network of these receivers, and the places of receivers among them that
@@ -290,7 +301,10 @@ impl Layout {
         let mut part = PartialNetwork::unknown(measured.receivers(), measured.transmitters());
         part.receivers = receivers.iter().map(|&i| self.positions[i]).collect();
         let wide = Loss { nu: SEARCH_NU, scale: FIT * size };
-        let network = extend(&observations, &part, &wide).ok_or(CalibrateError::NotFound(self.solved))?;
+        let laid = || Unfinished::laid(part.receivers.clone(), measured.transmitters(), self.solved);
+        let network = extend(&observations, &part, &wide, monitor)
+            .map_err(|error| CalibrateError::from(error).leaving(&laid()))?
+            .ok_or(CalibrateError::NotFound(self.solved))?;
         // Submaps that were laid one beside the other bend a little as a whole.
         let bent = median_size(&observations, &network).max(FIT * size);
         let refine = RefineOptions { anneal_from: Some(bent), steps: 60, floor: 1e-9 * size, ..SEARCH };
@@ -312,12 +326,16 @@ impl Layout {
 
     /// Places receivers that no submap has from transmitters that five placed receivers or more
     /// have located.
-    pub(super) fn place_strays(&mut self, measured: &Pseudoranges) {
+    ///
+    /// # Errors
+    /// Cancelled; no further receiver is then placed.
+    pub(super) fn place_strays(&mut self, measured: &Pseudoranges, monitor: &Monitor) -> Result<(), CalibrateError> {
         let size = self.size / typical_deviation(measured);
         let loss = Loss { nu: SEARCH_NU, scale: FIT * size };
         let precision = |i: usize, j: usize| measured.sigma(i, j).map_or(1.0, |sigma| 1.0 / sigma);
         let located: Vec<Option<multilateration::Located>> = (0..measured.transmitters())
             .map(|j| {
+                check(monitor)?;
                 let sight = |i: usize| {
                     Some(Sight {
                         position: self.positions[i]?,
@@ -326,9 +344,9 @@ impl Layout {
                     })
                 };
                 let sights: Vec<Sight> = (0..measured.receivers()).filter_map(sight).collect();
-                (sights.len() >= HEARD).then(|| multilateration::transmitter(&sights, &loss)).flatten()
+                Ok((sights.len() >= HEARD).then(|| multilateration::transmitter(&sights, &loss)).flatten())
             })
-            .collect();
+            .collect::<Result<_, CalibrateError>>()?;
         for i in 0..measured.receivers() {
             if self.positions[i].is_some() {
                 continue;
@@ -344,6 +362,7 @@ impl Layout {
                 self.positions[i] = multilateration::receiver(&sights, &loss).map(|found| found.position);
             }
         }
+        Ok(())
     }
 }
 

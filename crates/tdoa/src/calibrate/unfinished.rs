@@ -68,8 +68,9 @@ fn scatter<T: Clone>(length: usize, at: &[usize], values: Vec<Option<T>>) -> Vec
 #[cfg(test)]
 mod tests {
     use crate::calibrate::{CalibrateError, CalibrateOptions, calibrate_with};
-    use crate::{SimulateOptions, simulate};
+    use crate::{Errors, ReceiverDelays, ReceiverFault, SimulateOptions, simulate};
     use hc::{Monitor, Stage};
+    use std::sync::atomic::{AtomicU64, Ordering};
 
     /// A search that is stopped after its first starts leaves the network, every node in its place.
     #[test]
@@ -131,5 +132,53 @@ mod tests {
         // Ten neighbours of a road of 400 m reach over 200 m: within a hundredth of that.
         let error = crate::align::align(&found, &truth, false).unwrap().rms;
         assert!(error < 2.0, "{error}");
+    }
+
+    /// Whenever a calibration is stopped it says so, whatever it is doing.
+    #[test]
+    fn no_part_of_a_calibration_takes_a_stop_for_a_result() {
+        /// Moments of each calibration.
+        const MOMENTS: u64 = 6;
+        let moved = SimulateOptions { fault: Some(ReceiverFault::Move(0.3)), ..SimulateOptions::default() };
+        let late = SimulateOptions { detours: 0.3, detour_size: 0.5, ..SimulateOptions::default() };
+        for (made, errors, receiver_delays) in [
+            (SimulateOptions { outliers: 0.1, ..SimulateOptions::default() }, Errors::Symmetric, ReceiverDelays::None),
+            (moved, Errors::Symmetric, ReceiverDelays::Auto),
+            (SimulateOptions::default(), Errors::Symmetric, ReceiverDelays::All),
+            (late, Errors::OneSided, ReceiverDelays::None),
+        ] {
+            let made = SimulateOptions { receivers: 7, transmitters: 10, noise: 0.01, seed: 3, ..made };
+            let made = simulate(&made).unwrap();
+            let options = CalibrateOptions {
+                errors,
+                receiver_delays,
+                max_starts: 32,
+                min_starts: 16,
+                agreeing: 4,
+                minimal_subsets: 0,
+                ..CalibrateOptions::default()
+            };
+            // Says no until it has been asked so often.
+            let run = |most: u64| {
+                let asked: &'static AtomicU64 = Box::leak(Box::default());
+                let monitor = Monitor::asking(move |_| asked.fetch_add(1, Ordering::Relaxed) >= most);
+                let ended = calibrate_with(&made.pseudoranges, &options, &[], &monitor);
+                (ended, asked.load(Ordering::Relaxed))
+            };
+            let (whole, asked) = run(u64::MAX);
+            assert!(whole.is_ok());
+            for k in 0..MOMENTS {
+                let (ended, _) = run(asked * k / MOMENTS);
+                let Err(CalibrateError::Cancelled(best)) = ended else { panic!("{errors:?} {receiver_delays:?} {k}") };
+                assert!(best.is_some() || 2 * k < MOMENTS);
+                let placed = best.iter().flat_map(|best| best.receivers.iter().chain(&best.transmitters));
+                assert!(placed.flatten().flatten().all(|x| x.is_finite()));
+            }
+            // The last questions of all are asked by what reports.
+            for k in 1..3 {
+                let (ended, _) = run(asked - k);
+                assert!(matches!(ended, Err(CalibrateError::Cancelled(Some(_)))), "{errors:?} {receiver_delays:?} {k}");
+            }
+        }
     }
 }

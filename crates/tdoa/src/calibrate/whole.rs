@@ -84,9 +84,11 @@ pub(super) fn search_whole(
     let best = found.networks[0].objective;
     let close = found.networks.into_iter().filter(|r| r.objective <= best + 4.0 * options.alternative_margin);
     let complete_part = part.receivers.len() == m && part.transmitters.len() == n;
-    let whole: Vec<Refined> =
-        if complete_part { close.collect() } else { complete(&observations, &part, close.take(4), &refine, monitor) };
-    check(monitor).map_err(|error| error.leaving(&so_far))?;
+    let whole: Vec<Refined> = if complete_part {
+        close.collect()
+    } else {
+        complete(&observations, &part, close.take(4), &refine, monitor).map_err(|error| error.leaving(&so_far))?
+    };
     let Some(scale) = whole.iter().min_by(|a, b| a.objective.total_cmp(&b.objective)).map(|r| r.scale) else {
         return Err(CalibrateError::NotFound(found.starts));
     };
@@ -107,7 +109,8 @@ pub(super) fn search_whole(
         (ranked, deviation)
     };
     let near = if complete_part { found.near } else { Vec::new() };
-    let neighbours = neighbours(&observations, &ranked[0], near, deviation);
+    let neighbours = neighbours(&observations, &ranked[0], near, deviation, monitor)
+        .map_err(|error| CalibrateError::from(error).leaving(&so_far))?;
     Ok(Sought { ranked, neighbours, deviation, floor: refine.floor, starts: found.starts, weak: None })
 }
 
@@ -147,16 +150,20 @@ fn complete(
     networks: impl Iterator<Item = Refined>,
     refine: &RefineOptions,
     monitor: &Monitor,
-) -> Vec<Refined> {
+) -> Result<Vec<Refined>, CalibrateError> {
     let mut refiner = Refiner::new(observations, SEARCH_NU).heeding(monitor);
     let refine = RefineOptions { anneal_from: None, ..*refine };
-    networks
-        .filter_map(|refined| {
-            let mut known = PartialNetwork::unknown(observations.receivers, observations.transmitters);
-            known.place(&refined.network, &part.receivers, &part.transmitters);
-            let network = extend(observations, &known, &Loss { nu: SEARCH_NU, scale: refined.scale })?;
-            Some(Refined { starts: refined.starts, ..refiner.refine(network, &refine) })
-        })
-        .filter(|refined| refined.objective.is_finite() && refined.network.is_finite())
-        .collect()
+    let mut all = Vec::new();
+    for refined in networks {
+        let mut known = PartialNetwork::unknown(observations.receivers, observations.transmitters);
+        known.place(&refined.network, &part.receivers, &part.transmitters);
+        let loss = Loss { nu: SEARCH_NU, scale: refined.scale };
+        let Some(network) = extend(observations, &known, &loss, monitor)? else { continue };
+        let next = Refined { starts: refined.starts, ..refiner.refine(network, &refine) };
+        check(monitor)?;
+        if next.objective.is_finite() && next.network.is_finite() {
+            all.push(next);
+        }
+    }
+    Ok(all)
 }

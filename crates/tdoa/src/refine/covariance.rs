@@ -11,17 +11,22 @@
 use faer::Mat;
 use faer::Side;
 
+use super::cancel::{Cancelled, apart, check};
 use super::normal::{Normal, backward, forward};
 use super::refiner::Refiner;
 use crate::loss::Loss;
 use crate::network::Network;
 use crate::observations::Observations;
+use hc::Monitor;
 
 /// Eigenvalues of the reduced normal equations below this share of the largest count as zero.
 pub(super) const RANK_TOLERANCE: f64 = 1e-11;
 
 /// Columns of the covariance that are summed together.
 const TILE: usize = 16;
+
+/// Coordinates of receivers from which on the decomposition of their equations takes some time.
+const LONG: usize = 200;
 
 /// Covariances of the nodes, metres squared.
 #[derive(Debug, Clone, Default)]
@@ -52,9 +57,14 @@ pub(super) struct Reduced<'a> {
 }
 
 /// `None` if the decomposition fails.
-pub(super) fn reduced<'a>(observations: &'a Observations, network: &Network, sigma: f64) -> Option<Reduced<'a>> {
-    let mut refiner = Refiner::new(observations, f64::INFINITY);
-    let normal = refiner.normal_at(network, &Loss { nu: f64::INFINITY, scale: 1.0 });
+pub(super) fn reduced<'a>(
+    observations: &'a Observations,
+    network: &Network,
+    sigma: f64,
+    monitor: &Monitor,
+) -> Result<Option<Reduced<'a>>, Cancelled> {
+    let mut refiner = Refiner::new(observations, f64::INFINITY).heeding(monitor);
+    let normal = refiner.normal_at(network, &Loss { nu: f64::INFINITY, scale: 1.0 })?;
     let size = 2 * observations.receivers;
     let lower = normal.schur();
     let free: Vec<usize> = (0..size).filter(|&k| !observations.held()[k / 2]).collect();
@@ -66,12 +76,13 @@ pub(super) fn reduced<'a>(observations: &'a Observations, network: &Network, sig
     let (values, modes) = if free.is_empty() {
         (Vec::new(), Mat::zeros(0, 0))
     } else {
-        let eigen = schur.self_adjoint_eigen(Side::Lower).ok()?;
+        let decomposed = apart(monitor, free.len() >= LONG, move || schur.self_adjoint_eigen(Side::Lower))?;
+        let Ok(eigen) = decomposed else { return Ok(None) };
         ((0..free.len()).map(|k| eigen.S()[k]).collect::<Vec<f64>>(), eigen.U().to_owned())
     };
     let largest = values.last().copied().unwrap_or(1.0);
     if !(largest.is_finite() && largest > 0.0) {
-        return None;
+        return Ok(None);
     }
     // Eigenvalues ascend; the three smallest belong to the rigid motions.
     let rigid = if observations.leave_rigid_motions() { 3 } else { 0 };
@@ -84,6 +95,7 @@ pub(super) fn reduced<'a>(observations: &'a Observations, network: &Network, sig
     // A few columns at a time, which stay in the cache.
     let mut columns = vec![0.0; TILE * free.len()];
     for (tile, targets) in free.chunks(TILE).enumerate() {
+        check(monitor)?;
         columns.fill(0.0);
         for k in zero..free.len() {
             let scaled = scaled.col_as_slice(k);
@@ -96,7 +108,7 @@ pub(super) fn reduced<'a>(observations: &'a Observations, network: &Network, sig
             free.iter().zip(column).for_each(|(&a, x)| inverse[(a, to)] = *x);
         }
     }
-    Some(Reduced { refiner, inverse, modes, free, zero, rigid })
+    Ok(Some(Reduced { refiner, inverse, modes, free, zero, rigid }))
 }
 
 impl Reduced<'_> {
@@ -114,9 +126,14 @@ impl Reduced<'_> {
 /// The covariance at `network` of least squares over `observations` with deviation `sigma` (a
 /// factor on the deviations of the measurements where they have their own). `None` if the
 /// decomposition fails.
-pub(crate) fn covariance(observations: &Observations, network: &Network, sigma: f64) -> Option<Covariance> {
+pub(crate) fn covariance(
+    observations: &Observations,
+    network: &Network,
+    sigma: f64,
+    monitor: &Monitor,
+) -> Result<Option<Covariance>, Cancelled> {
     let m = observations.receivers;
-    let reduced = reduced(observations, network, sigma)?;
+    let Some(reduced) = reduced(observations, network, sigma, monitor)? else { return Ok(None) };
     let (normal, joint) = (reduced.normal(), reduced.joint());
     let Reduced { inverse, modes, free, zero, rigid, .. } = &reduced;
     let zero = *zero;
@@ -124,6 +141,7 @@ pub(crate) fn covariance(observations: &Observations, network: &Network, sigma: 
     let mut first = 0;
     let mut transmitters = Vec::with_capacity(observations.transmitters);
     for j in 0..observations.transmitters {
+        check(monitor)?;
         let column = observations.of_transmitter(j);
         let rays = &normal.rays()[first..first + column.len()];
         first += column.len();
@@ -161,7 +179,7 @@ pub(crate) fn covariance(observations: &Observations, network: &Network, sigma: 
     }
     let loose =
         if *rigid > 0 { loose(&modes.as_ref(), zero, network) } else { loose_beside_held(&modes.as_ref(), zero, free) };
-    Some(Covariance { receivers, joint, transmitters, loose })
+    Ok(Some(Covariance { receivers, joint, transmitters, loose }))
 }
 
 /// Coordinate `axis` of receiver `i` in the orthonormal rigid motions: two translations and the
@@ -210,7 +228,7 @@ mod tests {
         let simulation = simulate(&SimulateOptions::default()).unwrap();
         let held = vec![true; simulation.pseudoranges.receivers()];
         let observations = Observations::new(&simulation.pseudoranges, |_, _| true).holding(&held);
-        let found = covariance(&observations, &simulation.network, 0.1).unwrap();
+        let found = covariance(&observations, &simulation.network, 0.1, &Monitor::default()).unwrap().unwrap();
         assert!(found.loose.is_empty() && found.receivers.iter().flatten().flatten().all(|&c| c == 0.0));
         assert!(found.transmitters.iter().all(|c| c.is_some_and(|c| c[0][0] > 0.0 && c[1][1] > 0.0)));
     }
@@ -250,7 +268,7 @@ mod tests {
         use faer::linalg::solvers::DenseSolveCore;
         let expected = bordered.partial_piv_lu().inverse();
         let sigma = 0.02;
-        let found = covariance(&observations, network, sigma).unwrap();
+        let found = covariance(&observations, network, sigma, &Monitor::default()).unwrap().unwrap();
         assert!(found.loose.is_empty());
         for a in 0..2 {
             for b in 0..2 {

@@ -1,10 +1,12 @@
 //! From a part of a network to all of it: nodes are located one after the other from those that are
 //! already there.
 
+use super::cancel::{Cancelled, check};
 use crate::loss::Loss;
 use crate::multilateration::{self, Sight};
 use crate::network::Network;
 use crate::observations::{Observation, Observations};
+use hc::Monitor;
 
 /// A network of which some nodes are known.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -35,24 +37,30 @@ impl PartialNetwork {
 /// Locates all unknown nodes, best observed ones first: transmitters from at least four known
 /// receivers, receivers from at least three known transmitters, and with one less of them when
 /// nothing else is left. `None` if some node cannot be located at all.
-pub(crate) fn extend(observations: &Observations, part: &PartialNetwork, loss: &Loss) -> Option<Network> {
+pub(crate) fn extend(
+    observations: &Observations,
+    part: &PartialNetwork,
+    loss: &Loss,
+    monitor: &Monitor,
+) -> Result<Option<Network>, Cancelled> {
     let mut part = part.clone();
     let mut sights = Vec::new();
     for spare in [1, 0] {
         loop {
-            let transmitters = locate_transmitters(observations, &mut part, 3 + spare, loss, &mut sights);
-            let receivers = locate_receivers(observations, &mut part, 2 + spare, loss, &mut sights);
+            let transmitters = locate_transmitters(observations, &mut part, 3 + spare, loss, &mut sights, monitor)?;
+            let receivers = locate_receivers(observations, &mut part, 2 + spare, loss, &mut sights, monitor)?;
             if transmitters + receivers == 0 {
                 break;
             }
         }
     }
-    let located: Vec<_> = part.transmitters.into_iter().collect::<Option<_>>()?;
-    Some(Network {
-        receivers: part.receivers.into_iter().collect::<Option<_>>()?,
+    let located: Option<Vec<_>> = part.transmitters.into_iter().collect();
+    let receivers: Option<Vec<_>> = part.receivers.into_iter().collect();
+    Ok(located.zip(receivers).map(|(located, receivers)| Network {
+        receivers,
         transmitters: located.iter().map(|t| t.0).collect(),
         offsets: located.iter().map(|t| t.1).collect(),
-    })
+    }))
 }
 
 fn locate_transmitters(
@@ -61,12 +69,14 @@ fn locate_transmitters(
     least: usize,
     loss: &Loss,
     sights: &mut Vec<Sight>,
-) -> usize {
+    monitor: &Monitor,
+) -> Result<usize, Cancelled> {
     let mut found = 0;
     for j in 0..observations.transmitters {
         if part.transmitters[j].is_some() {
             continue;
         }
+        check(monitor)?;
         let sight = |o: &Observation| {
             let position = part.receivers[o.receiver]?;
             Some(Sight { position, length: o.value, precision: o.precision })
@@ -80,7 +90,7 @@ fn locate_transmitters(
             found += 1;
         }
     }
-    found
+    Ok(found)
 }
 
 fn locate_receivers(
@@ -89,12 +99,14 @@ fn locate_receivers(
     least: usize,
     loss: &Loss,
     sights: &mut Vec<Sight>,
-) -> usize {
+    monitor: &Monitor,
+) -> Result<usize, Cancelled> {
     let mut found = 0;
     for i in 0..observations.receivers {
         if part.receivers[i].is_some() {
             continue;
         }
+        check(monitor)?;
         let sight = |o: &Observation| {
             let (position, offset) = part.transmitters[o.transmitter]?;
             Some(Sight { position, length: o.value - offset, precision: o.precision })
@@ -108,7 +120,7 @@ fn locate_receivers(
             found += 1;
         }
     }
-    found
+    Ok(found)
 }
 
 #[cfg(test)]
@@ -133,7 +145,8 @@ mod tests {
             let mut part = PartialNetwork::unknown(9, 8);
             part.place(&small, &[0, 1, 2, 3, 4, 5], &[0, 1, 2]);
             let observations = Observations::new(&simulation.pseudoranges, |_, _| true);
-            let found = extend(&observations, &part, &Loss { nu: 2.0, scale: 1e-3 }).unwrap();
+            let found =
+                extend(&observations, &part, &Loss { nu: 2.0, scale: 1e-3 }, &Monitor::default()).unwrap().unwrap();
             let nodes = |n: &Network| [n.receivers.clone(), n.transmitters.clone()].concat();
             // A node seen by as few as determine it may be its mirror image: most, not all, must be
             // right.
@@ -148,6 +161,7 @@ mod tests {
     fn nothing_grows_from_nothing() {
         let simulation = simulate(&SimulateOptions::default()).unwrap();
         let observations = Observations::new(&simulation.pseudoranges, |_, _| true);
-        assert!(extend(&observations, &PartialNetwork::unknown(8, 12), &Loss { nu: 2.0, scale: 1.0 }).is_none());
+        let (none, loss) = (PartialNetwork::unknown(8, 12), Loss { nu: 2.0, scale: 1.0 });
+        assert_eq!(extend(&observations, &none, &loss, &Monitor::default()), Ok(None));
     }
 }

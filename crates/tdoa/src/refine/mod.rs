@@ -9,6 +9,7 @@
 //! afar: the scale starts large and shrinks with every step (annealing), and nodes that are stuck
 //! are multilaterated anew from all others (`reseed`).
 
+mod cancel;
 mod covariance;
 mod extend;
 mod normal;
@@ -19,11 +20,12 @@ mod reseed;
 mod solver;
 mod weighing;
 
+pub(crate) use cancel::{Cancelled, check};
 pub(crate) use covariance::{Covariance, covariance};
 pub use extend::PartialNetwork;
 pub(crate) use extend::extend;
 pub(crate) use predicted::predicted_variances;
-pub(crate) use projection::{Motion, Projection};
+pub(crate) use projection::{Motion, Projection, dot};
 pub(crate) use refiner::{RefineOptions, Refined, Refiner, SEARCH, residuals};
 pub(crate) use reseed::{place_transmitters, places_of_receiver, places_of_transmitter};
 pub(crate) use weighing::{Cost, Weighing};

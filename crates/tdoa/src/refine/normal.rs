@@ -7,13 +7,15 @@
 //! it subtracts w_i w_k (g_i^T C_j^-1 g_k) u_i u_k^T from block (i, k): with C_j = L L^T the
 //! product B^T B of the columns w_i (L^-1 g_i) u_i^T.
 
-use faer::MatMut;
 use faer::Par;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt;
 use faer::prelude::default;
+use faer::{MatMut, MatRef};
+use hc::Monitor;
 use hc::poly::simd::{Isa, Kernel};
 
+use super::cancel::{Cancelled, apart, check};
 use crate::loss::Loss;
 use crate::network::Network;
 use crate::observations::Observations;
@@ -21,7 +23,14 @@ use crate::observations::Observations;
 /// A transmitter that at most one in this many receivers hear is eliminated from their blocks alone.
 const SPARSE: usize = 4;
 
-/// Buffers for one problem size; nothing is allocated after `new`.
+/// Coordinates of receivers from which on factoring their equations takes some time.
+const LONG: usize = 1000;
+
+/// Transmitters that are eliminated between two looks at the monitor, and how many receivers hear one
+/// that is looked at by itself.
+const LOOK: usize = 64;
+
+/// Buffers for one problem size; nothing is allocated after `new`, but for very many receivers.
 pub(crate) struct Normal {
     receivers: usize,
     /// Per observation: unit vector and weight.
@@ -114,36 +123,69 @@ impl Normal {
 
     /// Solves for a step with this damping (a factor on the diagonal); false if the equations are
     /// singular.
-    pub(crate) fn solve(&mut self, observations: &Observations, damping: f64) -> bool {
-        self.reduce(observations, damping);
-        let size = 2 * self.receivers;
-        let stack = MemStack::new(&mut self.scratch);
-        let mut schur = MatMut::from_column_major_slice_mut(&mut self.schur, size, size);
-        if llt::factor::cholesky_in_place(schur.as_mut(), default(), Par::Seq, stack, default()).is_err() {
-            return false;
+    pub(crate) fn solve(
+        &mut self,
+        observations: &Observations,
+        damping: f64,
+        monitor: &Monitor,
+    ) -> Result<bool, Cancelled> {
+        self.reduce(observations, damping, monitor)?;
+        if !self.factor(monitor)? {
+            return Ok(false);
         }
+        let size = 2 * self.receivers;
+        let schur = MatRef::from_column_major_slice(&self.schur, size, size);
         let rhs = MatMut::from_column_major_slice_mut(&mut self.receiver_steps, size, 1);
-        llt::solve::solve_in_place(schur.as_ref(), rhs, Par::Seq, stack);
+        llt::solve::solve_in_place(schur, rhs, Par::Seq, MemStack::new(&mut self.scratch));
         self.substitute_back(observations);
-        self.receiver_steps.iter().all(|x| x.is_finite())
+        Ok(self.receiver_steps.iter().all(|x| x.is_finite()))
+    }
+
+    /// Replaces the Schur complement by its Cholesky factor; false if there is none.
+    fn factor(&mut self, monitor: &Monitor) -> Result<bool, Cancelled> {
+        let size = 2 * self.receivers;
+        if size < LONG {
+            return Ok(cholesky(&mut self.schur, size, &mut self.scratch));
+        }
+        let mut schur = std::mem::take(&mut self.schur);
+        let factored = apart(monitor, true, move || {
+            let mut scratch = MemBuffer::new(llt::factor::cholesky_in_place_scratch::<f64>(size, Par::Seq, default()));
+            (cholesky(&mut schur, size, &mut scratch), schur)
+        });
+        let (is_definite, schur) = match factored {
+            Ok((is_definite, schur)) => (Ok(is_definite), schur),
+            Err(cancelled) => (Err(cancelled), vec![0.0; size * size]),
+        };
+        self.schur = schur;
+        is_definite
     }
 
     /// Logarithm of the determinant of the equations of all nodes, as linearised last; of the rigid
     /// motions, that of `damping` times the diagonal counts. `None` if they are singular.
-    pub(crate) fn log_determinant(&mut self, observations: &Observations, damping: f64) -> Option<f64> {
-        if !self.solve(observations, damping) {
-            return None;
+    pub(crate) fn log_determinant(
+        &mut self,
+        observations: &Observations,
+        damping: f64,
+        monitor: &Monitor,
+    ) -> Result<Option<f64>, Cancelled> {
+        if !self.solve(observations, damping, monitor)? {
+            return Ok(None);
         }
         let size = 2 * self.receivers;
         let receivers: f64 = (0..size).map(|k| self.schur[k * size + k].ln()).sum();
         let transmitters: f64 =
             self.inverse_factors.iter().flatten().map(|inverse| (inverse[0] * inverse[2] * inverse[5]).ln()).sum();
-        Some(2.0 * (receivers - transmitters))
+        Ok(Some(2.0 * (receivers - transmitters)))
     }
 
     /// Forms the Schur complement (lower triangle) and its right-hand side. A transmitter whose
     /// block is singular takes no part: it stays where it is and its measurements hold nothing.
-    pub(crate) fn reduce(&mut self, observations: &Observations, damping: f64) {
+    pub(crate) fn reduce(
+        &mut self,
+        observations: &Observations,
+        damping: f64,
+        monitor: &Monitor,
+    ) -> Result<(), Cancelled> {
         let size = 2 * self.receivers;
         let grow = 1.0 + damping;
         // A node without usable measurements keeps a regular block and does not move.
@@ -160,6 +202,9 @@ impl Normal {
         let mut first = 0;
         for j in 0..observations.transmitters {
             let column = observations.of_transmitter(j);
+            if j % LOOK == 0 || column.len() >= LOOK {
+                check(monitor)?;
+            }
             let rays = &self.rays[first..first + column.len()];
             first += column.len();
             let (h, g) = &self.transmitter_blocks[j];
@@ -211,6 +256,7 @@ impl Normal {
             self.isa.run(Eliminate { schur: &mut self.schur, rows });
         }
         self.hold(observations.held());
+        Ok(())
     }
 
     /// Makes the equations of held receivers say that they do not move.
@@ -271,6 +317,13 @@ impl Normal {
     pub(crate) fn rays(&self) -> &[([f64; 2], f64)] {
         &self.rays
     }
+}
+
+/// Replaces a column-major matrix, of which the lower triangle counts, by its Cholesky factor; false
+/// if it is not positive definite.
+fn cholesky(matrix: &mut [f64], size: usize, scratch: &mut MemBuffer) -> bool {
+    let matrix = MatMut::from_column_major_slice_mut(matrix, size, size);
+    llt::factor::cholesky_in_place(matrix, default(), Par::Seq, MemStack::new(scratch), default()).is_ok()
 }
 
 /// Subtracts `B^T B` from the lower triangle of a column-major matrix; `B` has three rows, one
@@ -365,7 +418,7 @@ mod tests {
             let network = &simulation.network;
             let observations = Observations::new(&simulation.pseudoranges, |_, _| true);
             let mut refiner = Refiner::new(&observations, f64::INFINITY);
-            let normal = refiner.normal_at(network, &Loss { nu: f64::INFINITY, scale: 1.0 });
+            let normal = refiner.normal_at(network, &Loss { nu: f64::INFINITY, scale: 1.0 }).unwrap();
             let size = 60;
             let mut expected = vec![0.0; size * size];
             for j in 0..observations.transmitters {

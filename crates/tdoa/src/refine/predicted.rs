@@ -1,19 +1,26 @@
 //! How well a network predicts its own measurements.
 
+use super::cancel::{Cancelled, check};
 use super::covariance::reduced;
 use super::normal::{backward, forward};
 use crate::network::Network;
 use crate::observations::Observations;
+use hc::Monitor;
 
 /// Variance of the length that the network predicts for each measurement, for measurements of
 /// deviation 1; `None` for those of transmitters that nothing ties down, and altogether where the
 /// network cannot be linearised.
-pub(crate) fn predicted_variances(observations: &Observations, network: &Network) -> Option<Vec<Option<f64>>> {
-    let reduced = reduced(observations, network, 1.0)?;
+pub(crate) fn predicted_variances(
+    observations: &Observations,
+    network: &Network,
+    monitor: &Monitor,
+) -> Result<Option<Vec<Option<f64>>>, Cancelled> {
+    let Some(reduced) = reduced(observations, network, 1.0, monitor)? else { return Ok(None) };
     let (normal, joint) = (reduced.normal(), reduced.joint());
     let size = 2 * observations.receivers;
     let mut all = Vec::with_capacity(observations.len());
     for j in 0..observations.transmitters {
+        check(monitor)?;
         let column = observations.of_transmitter(j);
         let rays = &normal.rays()[all.len()..all.len() + column.len()];
         let Some(factor) = normal.inverse_factor(j) else {
@@ -42,7 +49,7 @@ pub(crate) fn predicted_variances(observations: &Observations, network: &Network
             all.push(Some(dot(g(k), solved(g(k))) + between(k, k) - 2.0 * dot(g(k), mixed[k]) + moved));
         }
     }
-    Some(all)
+    Ok(Some(all))
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
@@ -55,14 +62,15 @@ mod tests {
     use crate::observations::Observations;
     use crate::refine::Projection;
     use crate::simulate::{SimulateOptions, simulate};
+    use hc::Monitor;
 
     #[test]
     fn the_network_takes_the_variance_of_a_prediction_of_a_change_of_one_measurement() {
         let options = SimulateOptions { receivers: 6, transmitters: 7, missing: 0.1, ..Default::default() };
         let simulation = simulate(&options).unwrap();
         let observations = Observations::new(&simulation.pseudoranges, |_, _| true);
-        let projection = Projection::new(&observations, &simulation.network).unwrap();
-        let variances = predicted_variances(&observations, &simulation.network).unwrap();
+        let projection = Projection::new(&observations, &simulation.network, &Monitor::default()).unwrap().unwrap();
+        let variances = predicted_variances(&observations, &simulation.network, &Monitor::default()).unwrap().unwrap();
         for (k, variance) in variances.into_iter().enumerate() {
             let mut one = vec![0.0; observations.len()];
             one[k] = 1.0;

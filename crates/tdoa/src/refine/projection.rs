@@ -1,10 +1,12 @@
 //! What a network can absorb of a change of its measurements, and what it cannot: the projection
 //! off the Jacobian of all nodes.
 
+use super::cancel::Cancelled;
 use super::normal::{backward, forward};
 use super::solver::Solver;
 use crate::network::Network;
 use crate::observations::{Observation, Observations};
+use hc::Monitor;
 
 /// The Jacobian of the residuals at a network, in the frame in which all measurements have
 /// deviation 1, ready for least squares.
@@ -46,13 +48,17 @@ impl Motion {
 
 impl<'a> Projection<'a> {
     /// `None` where the network cannot be linearised.
-    pub(crate) fn new(observations: &'a Observations, network: &Network) -> Option<Self> {
-        let (receivers, (rays, factors)) = Solver::new(observations, network, |normal| {
+    pub(crate) fn new(
+        observations: &'a Observations,
+        network: &Network,
+        monitor: &Monitor,
+    ) -> Result<Option<Self>, Cancelled> {
+        let solver = Solver::new(observations, network, monitor, |normal| {
             let rays = normal.rays().iter().map(|(u, _)| *u).collect();
             let factors = (0..observations.transmitters).map(|j| normal.inverse_factor(j).copied()).collect();
             (rays, factors)
         })?;
-        Some(Projection { observations, rays, factors, receivers })
+        Ok(solver.map(|(receivers, (rays, factors))| Projection { observations, rays, factors, receivers }))
     }
 
     /// The part of `values`, one for each measurement in units of its deviation, that no motion of
@@ -118,11 +124,17 @@ impl<'a> Projection<'a> {
     }
 }
 
+/// Product of two lists of values, one for each measurement.
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
 #[cfg(test)]
 mod tests {
     use super::Projection;
     use crate::observations::Observations;
     use crate::simulate::{SimulateOptions, simulate};
+    use hc::Monitor;
 
     #[test]
     fn what_a_motion_makes_is_absorbed_and_nothing_else() {
@@ -130,7 +142,7 @@ mod tests {
         let simulation = simulate(&options).unwrap();
         let network = &simulation.network;
         let observations = Observations::new(&simulation.pseudoranges, |_, _| true);
-        let projection = Projection::new(&observations, network).unwrap();
+        let projection = Projection::new(&observations, network, &Monitor::default()).unwrap().unwrap();
         // A small motion of one node of each kind, by differences.
         let step = 1e-6;
         let mut moved = network.clone();

@@ -1,5 +1,6 @@
 //! Levenberg-Marquardt steps with annealing of the scale, in rounds of reseeding.
 
+use super::cancel::Cancelled;
 use super::normal::Normal;
 use super::reseed::reseed;
 use crate::loss::Loss;
@@ -81,7 +82,7 @@ impl<'a> Refiner<'a> {
         }
     }
 
-    /// A refiner that stops before its next step once the monitor is cancelled; what it then
+    /// A refiner that stops within its next step once the monitor is cancelled; what it then
     /// returns is not converged.
     pub(crate) fn heeding(self, monitor: &Monitor) -> Self {
         Refiner { monitor: monitor.clone(), ..self }
@@ -97,7 +98,7 @@ impl<'a> Refiner<'a> {
             }
             let mut network = best.network.clone();
             let loss = Loss { nu: self.nu, scale: best.scale };
-            if reseed(self.observations, &mut network, &loss) == 0 {
+            if reseed(self.observations, &mut network, &loss, &self.monitor).unwrap_or(0) == 0 {
                 break;
             }
             let next = self.minimise(network, &again);
@@ -135,7 +136,8 @@ impl<'a> Refiner<'a> {
             self.normal.linearise(observations, &network, &self.residuals, &loss);
             let mut improved = false;
             while damping < 1e8 {
-                if self.normal.solve(observations, damping) {
+                let Ok(solved) = self.normal.solve(observations, damping, &self.monitor) else { break };
+                if solved {
                     self.normal.step(&network, &mut self.trial);
                     residuals(observations, &self.trial, &mut self.trial_residuals);
                     let next = loss.total(self.trial_residuals.iter().copied());
@@ -176,11 +178,11 @@ impl<'a> Refiner<'a> {
     }
 
     /// The normal equations at `network`, undamped, with the weights of `loss`.
-    pub(crate) fn normal_at(&mut self, network: &Network, loss: &Loss) -> &Normal {
+    pub(crate) fn normal_at(&mut self, network: &Network, loss: &Loss) -> Result<&Normal, Cancelled> {
         residuals(self.observations, network, &mut self.residuals);
         self.normal.linearise(self.observations, network, &self.residuals, loss);
-        self.normal.reduce(self.observations, 0.0);
-        &self.normal
+        self.normal.reduce(self.observations, 0.0, &self.monitor)?;
+        Ok(&self.normal)
     }
 
     /// Those equations again.

@@ -1,10 +1,12 @@
 //! Single nodes located anew from all others: a joint minimisation cannot carry a node across a
 //! ridge of its own cost, multilateration can.
 
+use super::cancel::{Cancelled, check};
 use crate::loss::Loss;
 use crate::multilateration::{self, Located, Sight};
 use crate::network::Network;
 use crate::observations::{Observation, Observations};
+use hc::Monitor;
 
 /// A node moves only if the cost of its measurements falls by more than this (units of
 /// log-likelihood).
@@ -30,11 +32,17 @@ pub(crate) fn place_transmitters(observations: &Observations, network: &mut Netw
 
 /// Locates every transmitter, then every receiver that is not held, from all other nodes and moves
 /// those whose measurements then fit better. Returns how many moved.
-pub(crate) fn reseed(observations: &Observations, network: &mut Network, loss: &Loss) -> usize {
+pub(crate) fn reseed(
+    observations: &Observations,
+    network: &mut Network,
+    loss: &Loss,
+    monitor: &Monitor,
+) -> Result<usize, Cancelled> {
     let mut sights = Vec::new();
     let mut moved = 0;
     for j in 0..observations.transmitters {
         sights_of_transmitter(observations, network, j, &mut sights);
+        check(monitor)?;
         let now = multilateration::cost(&sights, network.transmitters[j], network.offsets[j], loss);
         if let Some(found) = better(multilateration::transmitter(&sights, loss), now) {
             network.transmitters[j] = found.position;
@@ -44,13 +52,14 @@ pub(crate) fn reseed(observations: &Observations, network: &mut Network, loss: &
     }
     for i in (0..observations.receivers).filter(|&i| !observations.held()[i]) {
         sights_of_receiver(observations, network, i, &mut sights);
+        check(monitor)?;
         let now = multilateration::cost(&sights, network.receivers[i], 0.0, loss);
         if let Some(found) = better(multilateration::receiver(&sights, loss), now) {
             network.receivers[i] = found.position;
             moved += 1;
         }
     }
-    moved
+    Ok(moved)
 }
 
 /// Places of a transmitter that all others leave it, whatever they cost.

@@ -3,12 +3,14 @@
 use faer::prelude::Solve;
 use faer::{Mat, MatMut, Side, linalg::solvers::Llt};
 
+use super::cancel::{Cancelled, apart};
 use super::covariance::{RANK_TOLERANCE, reduced, rigid_motion};
 use super::normal::Normal;
 use super::refiner::Refiner;
 use crate::loss::Loss;
 use crate::network::Network;
 use crate::observations::Observations;
+use hc::Monitor;
 
 /// Receivers from which on the equations are factored, not inverted: some fifty times less work.
 const MANY: usize = 200;
@@ -27,17 +29,18 @@ impl Solver {
     pub(super) fn new<T>(
         observations: &Observations,
         network: &Network,
+        monitor: &Monitor,
         use_normal: impl FnOnce(&Normal) -> T,
-    ) -> Option<(Solver, T)> {
+    ) -> Result<Option<(Solver, T)>, Cancelled> {
         if observations.receivers >= MANY {
-            let mut refiner = Refiner::new(observations, f64::INFINITY);
-            let normal = refiner.normal_at(network, &Loss { nu: f64::INFINITY, scale: 1.0 });
-            if let Some(factor) = factor(observations, network, normal) {
-                return Some((Solver::Factor(factor), use_normal(normal)));
+            let mut refiner = Refiner::new(observations, f64::INFINITY).heeding(monitor);
+            let normal = refiner.normal_at(network, &Loss { nu: f64::INFINITY, scale: 1.0 })?;
+            if let Some(factor) = factor(observations, network, normal, monitor)? {
+                return Ok(Some((Solver::Factor(factor), use_normal(normal))));
             }
         }
-        let reduced = reduced(observations, network, 1.0)?;
-        Some((Solver::Inverse(reduced.joint()), use_normal(reduced.normal())))
+        let Some(reduced) = reduced(observations, network, 1.0, monitor)? else { return Ok(None) };
+        Ok(Some((Solver::Inverse(reduced.joint()), use_normal(reduced.normal()))))
     }
 
     /// The solution for a right-hand side that no rigid motion changes; what belongs to held receivers
@@ -59,7 +62,12 @@ impl Solver {
 }
 
 /// `None` where the equations leave more open than a rigid motion.
-fn factor(observations: &Observations, network: &Network, normal: &Normal) -> Option<Llt<f64>> {
+fn factor(
+    observations: &Observations,
+    network: &Network,
+    normal: &Normal,
+    monitor: &Monitor,
+) -> Result<Option<Llt<f64>>, Cancelled> {
     let size = 2 * observations.receivers;
     let lower = normal.schur();
     let mut square = Mat::from_fn(size, size, |a, b| lower[a.min(b) * size + a.max(b)]);
@@ -73,11 +81,11 @@ fn factor(observations: &Observations, network: &Network, normal: &Normal) -> Op
             }
         }
     }
-    let factor = square.llt(Side::Lower).ok()?;
+    let Ok(factor) = apart(monitor, true, move || square.llt(Side::Lower))? else { return Ok(None) };
     let pivots = (0..size).map(|k| factor.L()[(k, k)].powi(2));
     let (least, largest) =
         pivots.fold((f64::INFINITY, 0.0), |(least, most), x| (f64::min(least, x), f64::max(most, x)));
-    (least > RANK_TOLERANCE.sqrt() * largest).then_some(factor)
+    Ok((least > RANK_TOLERANCE.sqrt() * largest).then_some(factor))
 }
 
 #[cfg(test)]
@@ -92,7 +100,7 @@ mod tests {
         let network = &simulation.network;
         for held in [vec![false; 12], (0..12).map(|i| i < 2).collect::<Vec<bool>>()] {
             let observations = Observations::new(&simulation.pseudoranges, |_, _| true).holding(&held);
-            let (inverse, (right, factor)) = Solver::new(&observations, network, |normal| {
+            let (inverse, (right, factor)) = Solver::new(&observations, network, &Monitor::default(), |normal| {
                 // What measurements that differ make of a right-hand side: rays of pairs.
                 let mut right = vec![0.0; 24];
                 let schur = normal.schur();
@@ -100,8 +108,9 @@ mod tests {
                 for a in (0..24).filter(|a| !held[a / 2]) {
                     right[a] = (0..24).filter(|b| !held[b / 2]).map(|b| schur[a.min(b) * 24 + a.max(b)] * any[b]).sum();
                 }
-                (right, factor(&observations, network, normal).unwrap())
+                (right, factor(&observations, network, normal, &Monitor::default()).unwrap().unwrap())
             })
+            .unwrap()
             .unwrap();
             assert!(matches!(inverse, Solver::Inverse(_)));
             let (x, y) = (inverse.solve(&right), Solver::Factor(factor).solve(&right));

@@ -1,9 +1,11 @@
 //! Levenberg-Marquardt steps for any cost of single residuals.
 
+use super::cancel::{Cancelled, check};
 use super::normal::Normal;
 use super::refiner::residuals;
 use crate::network::Network;
 use crate::observations::Observations;
+use hc::Monitor;
 
 /// Damping that makes the determinant of a free network finite.
 const GAUGE: f64 = 1e-9;
@@ -26,10 +28,12 @@ pub(crate) struct Weighing<'a> {
     residuals: Vec<f64>,
     trial_residuals: Vec<f64>,
     trial: Network,
+    monitor: &'a Monitor,
 }
 
 impl<'a> Weighing<'a> {
-    pub(crate) fn new(observations: &'a Observations) -> Self {
+    /// Fails in all it does once the monitor is cancelled.
+    pub(crate) fn new(observations: &'a Observations, monitor: &'a Monitor) -> Self {
         let count = observations.len() + observations.pins().len();
         Weighing {
             observations,
@@ -37,12 +41,18 @@ impl<'a> Weighing<'a> {
             residuals: vec![0.0; count],
             trial_residuals: vec![0.0; count],
             trial: Network::default(),
+            monitor,
         }
     }
 
     /// At most so many steps down the sum of the costs, from a network that is complete and finite.
     /// The residuals of the measurements where it ends are left in [`Weighing::residuals`].
-    pub(crate) fn descend(&mut self, mut network: Network, steps: usize, cost: &impl Cost) -> Network {
+    pub(crate) fn descend(
+        &mut self,
+        mut network: Network,
+        steps: usize,
+        cost: &impl Cost,
+    ) -> Result<Network, Cancelled> {
         let observations = self.observations;
         let precision = 1.0 / (cost.deviation() * cost.deviation());
         let total = |residuals: &[f64]| -> f64 {
@@ -54,11 +64,12 @@ impl<'a> Weighing<'a> {
         let mut now = total(&self.residuals);
         let mut damping = 1e-3;
         for _ in 0..steps {
+            check(self.monitor)?;
             let terms = |_, e| cost.terms(e);
             self.normal.linearise_by(observations, &network, &self.residuals, terms, |e| (precision, e));
             let before = now;
             while damping < 1e8 {
-                if self.normal.solve(observations, damping) {
+                if self.normal.solve(observations, damping, self.monitor)? {
                     self.normal.step(&network, &mut self.trial);
                     residuals(observations, &self.trial, &mut self.trial_residuals);
                     let next = total(&self.trial_residuals);
@@ -77,26 +88,31 @@ impl<'a> Weighing<'a> {
                 break;
             }
         }
-        network
+        Ok(network)
     }
 
     /// One step of least squares with a weight for each measurement and what its residual should be;
     /// `None` where it is not determined.
-    pub(crate) fn step(&mut self, network: &Network, weights: &[f64], targets: &[f64]) -> Option<Network> {
+    pub(crate) fn step(
+        &mut self,
+        network: &Network,
+        weights: &[f64],
+        targets: &[f64],
+    ) -> Result<Option<Network>, Cancelled> {
         let observations = self.observations;
         residuals(observations, network, &mut self.residuals);
         let terms = |k: usize, e: f64| (weights[k], e - targets[k]);
         self.normal.linearise_by(observations, network, &self.residuals, terms, |e| (1.0, e));
         self.trial.clone_from(network);
-        self.normal.solve(observations, GAUGE).then(|| {
+        Ok(self.normal.solve(observations, GAUGE, self.monitor)?.then(|| {
             self.normal.step(network, &mut self.trial);
             self.trial.clone()
-        })
+        }))
     }
 
     /// Logarithm of the determinant of the normal equations at a network, in units of the deviation;
     /// `None` where they are singular.
-    pub(crate) fn log_determinant(&mut self, network: &Network, cost: &impl Cost) -> Option<f64> {
+    pub(crate) fn log_determinant(&mut self, network: &Network, cost: &impl Cost) -> Result<Option<f64>, Cancelled> {
         let observations = self.observations;
         residuals(observations, network, &mut self.residuals);
         let square = cost.deviation() * cost.deviation();
@@ -105,7 +121,7 @@ impl<'a> Weighing<'a> {
             (square * weight, target)
         };
         self.normal.linearise_by(observations, network, &self.residuals, terms, |e| (1.0, e));
-        self.normal.log_determinant(observations, GAUGE)
+        self.normal.log_determinant(observations, GAUGE, self.monitor)
     }
 
     /// Residuals of the measurements where the last descent ended.
