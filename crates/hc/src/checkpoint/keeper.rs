@@ -71,7 +71,7 @@ impl CheckpointOptions {
     }
 }
 
-/// A directory in which one run records what it has finished; see the [module](self).
+/// A directory in which one run records what it has finished; see the [module](crate::checkpoint).
 #[derive(Clone)]
 pub struct Checkpoint {
     directory: Arc<Path>,

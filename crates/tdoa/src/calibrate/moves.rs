@@ -2,9 +2,9 @@
 
 use super::options::{CalibrateError, check};
 use super::ranking::{OUTLIER_COST, refit};
-use super::receiver_errors::{Fault, ReceiverErrorKind, SIDE};
+use super::receiver_errors::{Fault, ReceiverErrorKind, SIDE, tests};
 use super::refits::{Fitting, Found};
-use super::significance::{least_surprise, tests};
+use super::significance::least_surprise;
 use super::warnings::{BY_CHANCE, agree_by_chance};
 use crate::loss::{Loss, SEARCH_NU};
 use crate::median::median;

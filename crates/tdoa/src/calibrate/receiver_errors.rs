@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::deviation::{inlier_deviation, spread_of_residuals};
 use super::mixture::Mixture;
-use super::significance::{least_surprise, surprise, tests};
+use super::significance::{least_surprise, surprise};
 use crate::multilateration::solve2;
 use crate::network::Network;
 use crate::observations::Observations;
@@ -167,6 +167,14 @@ pub(super) fn spread_of_receiver(observations: &Observations, network: &Network,
     sizes.get(sizes.len() * 7 / 10).map_or(0.0, |size| size / 1.0364)
 }
 
+/// How many errors of a kind are tested among these receivers and measurements.
+pub(super) fn tests(kind: ReceiverErrorKind, receivers: usize, measurements: usize) -> f64 {
+    match kind {
+        ReceiverErrorKind::Delay | ReceiverErrorKind::Drift => receivers as f64,
+        ReceiverErrorKind::Jump | ReceiverErrorKind::Move => measurements as f64,
+    }
+}
+
 struct Test<'a> {
     kept: &'a Observations,
     projection: Projection<'a>,
@@ -195,7 +203,7 @@ impl Test<'_> {
             for fault in candidates.into_iter().filter(|fault| !known(fault)) {
                 check(self.monitor)?;
                 let Some((gain, fault, columns)) = self.judge(fault, &rows) else { continue };
-                let told = surprise(gain, self.redundancy - columns.len() as f64, fault.kind);
+                let told = surprise(gain, self.redundancy - columns.len() as f64, columns.len());
                 judged.push((told - least(fault.kind), fault, columns));
             }
             let best = judged.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));

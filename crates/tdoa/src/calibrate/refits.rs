@@ -11,8 +11,8 @@ use super::deviation::inlier_deviation;
 use super::finish::CAUCHY;
 use super::options::{CalibrateError, check};
 use super::ranking::{OUTLIER_COST, refit, truncated_cost};
-use super::receiver_errors::{Fault, ReceiverErrorKind, SIDE, spread_of_receiver};
-use super::significance::{least_gain, least_surprise, surprise, tests};
+use super::receiver_errors::{Fault, ReceiverErrorKind, SIDE, spread_of_receiver, tests};
+use super::significance::{least_gain, least_surprise, surprise};
 use crate::loss::Loss;
 use crate::multilateration::solve3;
 use crate::network::Network;
@@ -49,10 +49,11 @@ pub(super) struct Found {
 impl Found {
     /// How much more it explains than chance would.
     fn lead(&self, observations: &Observations, kept: usize) -> f64 {
-        let told = surprise(self.fault.gain, self.freedom, self.fault.kind);
+        let is_move = self.fault.kind == ReceiverErrorKind::Move;
+        let told = surprise(self.fault.gain, self.freedom, if is_move { 2 } else { 1 });
         let tested = told - least_surprise(tests(self.fault.kind, observations.receivers, kept));
         // A move has one more unknown than other errors (Schwarz 1978).
-        tested - if self.fault.kind == ReceiverErrorKind::Move { 0.5 * (kept as f64).ln() } else { 0.0 }
+        tested - if is_move { 0.5 * (kept as f64).ln() } else { 0.0 }
     }
 }
 

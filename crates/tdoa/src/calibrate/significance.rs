@@ -1,17 +1,7 @@
 //! How improbable it is that noise alone looks as much like an error of a receiver.
 
-use super::receiver_errors::ReceiverErrorKind;
-
 /// Probability of a false alarm in data with normal noise, at most.
 const FALSE_ALARM: f64 = 5e-3;
-
-/// How many errors of a kind are tested among these receivers and measurements.
-pub(super) fn tests(kind: ReceiverErrorKind, receivers: usize, measurements: usize) -> f64 {
-    match kind {
-        ReceiverErrorKind::Delay | ReceiverErrorKind::Drift => receivers as f64,
-        ReceiverErrorKind::Jump | ReceiverErrorKind::Move => measurements as f64,
-    }
-}
 
 /// Surprise above which the best of so many tests of each of the four kinds is no chance.
 pub(super) fn least_surprise(tests: f64) -> f64 {
@@ -25,16 +15,17 @@ pub(super) fn least_gain(tests: f64) -> f64 {
     least - 0.5 * (4.0 * least).ln()
 }
 
-/// Logarithm of one over the probability that normal noise makes an error of this kind gain as much
-/// or more, at least. `freedom` is the number of measurements left over beside the error.
+/// Logarithm of one over the probability that normal noise makes an error gain as much or more, at
+/// least. The error has so many columns, one or two; `freedom` is the number of measurements left over
+/// beside it.
 ///
 /// The share x that q columns explain of the squares of the residuals follows the distribution of
-/// Beta(q/2, f/2), and the gain is -f/2 ln(1 - x). With two columns, of a move, the probability is
+/// Beta(q/2, f/2), and the gain is -f/2 ln(1 - x). With two columns the probability is
 /// (1 - x)^(f/2). With one it is at most (1 - x)^a / (a B(a, 1/2) sqrt(x)) for a = f/2, from
 /// (1 - t)^(-1/2) <= x^(-1/2) under the integral, and a B(a, 1/2) >= sqrt(pi (a + 1/4)) (Watson
 /// 1959, A note on gamma functions).
-pub(super) fn surprise(gain: f64, freedom: f64, kind: ReceiverErrorKind) -> f64 {
-    if kind == ReceiverErrorKind::Move {
+pub(super) fn surprise(gain: f64, freedom: f64, columns: usize) -> f64 {
+    if columns > 1 {
         return gain;
     }
     let a = 0.5 * freedom;
@@ -45,7 +36,7 @@ pub(super) fn surprise(gain: f64, freedom: f64, kind: ReceiverErrorKind) -> f64 
 
 #[cfg(test)]
 mod tests {
-    use super::{ReceiverErrorKind, surprise};
+    use super::surprise;
 
     /// Probability that Student's t with `f` degrees of freedom is at least `t` in size, by the
     /// finite series for even f (Abramowitz and Stegun 26.7.4).
@@ -66,7 +57,7 @@ mod tests {
             for t in [2.5, 3.5, 5.0] {
                 // x = t^2 / (t^2 + f).
                 let gain = 0.5 * f64::from(f) * (t * t / f64::from(f)).ln_1p();
-                let probability = (-surprise(gain, f64::from(f), ReceiverErrorKind::Delay)).exp();
+                let probability = (-surprise(gain, f64::from(f), 1)).exp();
                 let exact = student(t, f);
                 // A bound from above that is no more than 40 % off where the test decides.
                 assert!(probability >= exact * (1.0 - 1e-9), "{f} {t}: {probability} {exact}");
