@@ -1,4 +1,4 @@
-//! What `hc solve`, `hc track` and `hc monodromy` share: checkpoints.
+//! Checkpoints of long runs: their options, and how far a run is.
 
 use cli::{Failure, output};
 use hc::checkpoint::{Checkpoint, CheckpointOptions};

@@ -108,16 +108,16 @@ struct Run {
     failing: bool,
 }
 
-/// What a record is of. Of one run no two records have the same.
+/// Which batch a record holds. Of one run no two records have the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) struct Key {
-    /// The part of the work: a start system, a search.
+    /// The part of the work: a start system.
     part: u32,
     level: u32,
     chart: u32,
-    /// The number of the first path, target or loop.
+    /// The number of the first path.
     first: u64,
-    /// How many there are; none in the record with which a round begins.
+    /// How many paths; none in the record with which a round begins.
     pub(super) count: u64,
 }
 
@@ -136,7 +136,7 @@ impl Key {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Head {
     pub(super) key: Key,
-    /// How many there are in the whole round; zero where that is not known.
+    /// Paths of the whole round.
     pub(super) total: u64,
     /// Solutions so far.
     pub(super) solutions: u64,
@@ -222,7 +222,7 @@ impl fmt::Debug for Checkpoint {
     }
 }
 
-/// A part of the work of a run: a start system, say.
+/// A part of the work of a run: the paths of one start system.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Part<'a> {
     pub(crate) checkpoint: &'a Checkpoint,

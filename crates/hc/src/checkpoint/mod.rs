@@ -1,7 +1,7 @@
 //! Checkpoints: runs that go on after they were killed.
 //!
-//! A [`Checkpoint`] is a directory in which a run records what it has finished: the ends of paths,
-//! the solutions for targets, the loops of monodromy. Opened again with
+//! A [`Checkpoint`] is a directory in which a run records what it has finished: batches of paths,
+//! with their ends, of [`solve_recorded`](crate::solve_recorded). Opened again with
 //! [`resume`](CheckpointOptions::resume), it lets the same run take what is recorded and compute
 //! only what is missing. The result is that of a run without interruption to the bit, on any number
 //! of threads.

@@ -12,7 +12,7 @@ use std::path::Path;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Status {
-    /// What is done: `solve`, `track` or `monodromy`.
+    /// What is done: `solve`.
     pub what: String,
     /// Whether a process records there now.
     pub running: bool,
@@ -21,16 +21,15 @@ pub struct Status {
     /// The round of this part, from 1: first all paths are tracked, then those in doubt again. Zero
     /// before the first.
     pub round: u32,
-    /// Paths, targets or loops of this round that are recorded.
+    /// Paths of this round that are recorded.
     pub done: u64,
     /// How many there are; `None` where that is not known.
     pub total: Option<u64>,
-    /// Solutions so far: paths of this part that have ended at one; solutions of all targets; known
-    /// solutions of the family.
+    /// Paths of this part that have ended at a solution so far.
     pub solutions: u64,
     /// Seconds of work until the last record, those of earlier processes included.
     pub seconds: f64,
-    /// Records, and bytes of all of them.
+    /// Records that are whole.
     pub records: u64,
     /// Bytes of the log.
     pub bytes: u64,
