@@ -18,7 +18,7 @@
 //! * [`mixed_volume`](fn@mixed_volume): how many solutions a generic system with the same terms
 //!   has.
 //! * [`Monitor`]: how far any of these is, and a way to stop it. [`checkpoint`]: long runs that go on
-//!   after they were killed.
+//!   after they were killed. [`ranks`]: work over several machines.
 //!
 //! [`witness`] decomposes solution sets of positive dimension.
 //!
@@ -73,6 +73,7 @@ mod linalg;
 mod mixed;
 mod monitor;
 pub mod random;
+pub mod ranks;
 pub mod refine;
 mod runner;
 mod singular;
@@ -90,8 +91,8 @@ pub use monitor::{Monitor, Progress, Stage};
 pub use poly;
 pub use poly::System;
 pub use solve::{
-    Direction, Solution, Solutions, SolveError, SolveOptions, Start, Unresolved, Warning, solve, solve_recorded,
-    solve_watched,
+    Direction, Solution, Solutions, SolveError, SolveOptions, Start, Unresolved, Warning, solve, solve_on_ranks,
+    solve_recorded, solve_watched,
 };
 pub use start::mixed_volume;
 pub use tracker::{OptionError, TrackerOptions};

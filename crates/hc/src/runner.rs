@@ -47,6 +47,9 @@ pub(crate) trait Work {
     /// Called before a round of `count` paths.
     fn begin(&mut self, _round: Round, _count: usize) {}
 
+    /// Told before a batch which paths of the round come after it, as long as it goes on.
+    fn ahead(&self, _numbers: &[usize]) {}
+
     /// Tracks the paths with these numbers to their ends: a function of the arguments alone, or
     /// where a round goes on from broken ends, of these too.
     fn batch(&self, memory: &mut Self::Memory, numbers: &[usize], round: Round, batch: &mut Self::Batch);
@@ -140,7 +143,8 @@ fn pass<W: Work>(work: &mut W, round: Round, policy: &Policy, room: &mut Room<W:
     work.begin(round, which.len());
     let (mut done, mut size) = (0, if round.is_first() { policy.first } else { policy.batch });
     while done < which.len() {
-        let numbers = &which[done..which.len().min(done + size.max(1))];
+        let (numbers, ahead) = which[done..].split_at(size.clamp(1, which.len() - done));
+        work.ahead(ahead);
         work.batch(memory, numbers, round, batch);
         let mut flow = work.absorb(batch, round);
         if flow == Flow::On {

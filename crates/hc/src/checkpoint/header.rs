@@ -30,6 +30,13 @@ impl Job {
         };
         Job { what: what.to_owned(), system, options }
     }
+
+    /// Tells jobs apart, and versions of this crate.
+    pub(crate) fn fingerprint(&self) -> String {
+        let text = serde_json::to_string(&Header::new(self.clone())).unwrap_or_default();
+        let Hash(hash) = Hash::of([text]);
+        hash
+    }
 }
 
 /// A system in short.

@@ -14,6 +14,11 @@ pub(crate) trait Recordable: Work<Batch: Serialize + DeserializeOwned> {
 
     /// Paths that have ended at solutions so far.
     fn solutions(&self) -> u64;
+
+    /// Whether batches are not whole any more.
+    fn is_broken(&self) -> bool {
+        false
+    }
 }
 
 /// Work with its batches taken from a checkpoint, or recorded there; as it is without one.
@@ -53,6 +58,10 @@ impl<W: Recordable> Work for Recorded<'_, W> {
         self.work.begin(round, count);
     }
 
+    fn ahead(&self, numbers: &[usize]) {
+        self.work.ahead(numbers);
+    }
+
     fn batch(&self, memory: &mut W::Memory, numbers: &[usize], round: Round, batch: &mut W::Batch) {
         if let (Some(part), Some(&first)) = (self.part, numbers.first()) {
             let key = part.key(round, first, numbers.len());
@@ -74,7 +83,7 @@ impl<W: Recordable> Work for Recorded<'_, W> {
         let Some(part) = self.part else { return flow };
         // What was cancelled half way is no batch.
         if let Some(key) = self.new.take()
-            && !self.monitor.is_cancelled()
+            && !(self.monitor.is_cancelled() || self.work.is_broken())
         {
             part.record(key, self.total, self.work.solutions(), batch);
         }

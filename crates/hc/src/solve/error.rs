@@ -2,6 +2,7 @@
 
 use crate::certify::CertifyError;
 use crate::checkpoint::CheckpointError;
+use crate::ranks::RanksError;
 use crate::start::MixedError;
 use crate::tracker::OptionError;
 use poly::{ExpandError, SupportError};
@@ -28,6 +29,9 @@ pub enum SolveError {
     /// No checkpoint of this run, or one that cannot be written.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
+    /// Other processes cannot take part as they should.
+    #[error(transparent)]
+    Ranks(#[from] RanksError),
     /// What was found cannot be certified.
     #[error(transparent)]
     Certify(#[from] CertifyError),

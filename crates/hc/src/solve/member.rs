@@ -27,7 +27,8 @@ pub(crate) fn solve_member<E: Evaluate>(
 ) -> Solutions {
     let excess = Excess::none();
     let count = fibre.len();
-    let route = Route { trackers, start: fibre, count, target, excess: &excess, options, monitor, record: None };
+    let route =
+        Route { trackers, start: fibre, count, target, excess: &excess, options, monitor, record: None, lead: None };
     let ends = follow(route, false);
     let expanded = if !ends.singular.is_empty() { expanded(family, target, monitor) } else { None };
     let zoomed = |polynomials: &[Polynomial<Exact>], around: &Given| solve_around(polynomials, around, 0, monitor);
@@ -63,7 +64,8 @@ pub(crate) fn ends<E: Evaluate>(
 ) -> impl Iterator<Item = Vec<Complex64>> {
     let (excess, trackers) = (Excess::none(), Trackers::new(family));
     let (trackers, count) = (&trackers, fibre.len());
-    let route = Route { trackers, start: fibre, count, target, excess: &excess, options, monitor, record: None };
+    let route =
+        Route { trackers, start: fibre, count, target, excess: &excess, options, monitor, record: None, lead: None };
     let ends = follow(route, false);
     let regular = ends.regular.into_values().map(|end| end.point);
     regular.chain(ends.singular.into_values().map(|end| end.point))

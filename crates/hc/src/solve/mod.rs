@@ -15,6 +15,7 @@ mod options;
 mod paths;
 mod plane;
 mod polynomials;
+mod portions;
 mod prints;
 mod record;
 mod slack;
@@ -25,12 +26,13 @@ mod warning;
 pub use error::SolveError;
 pub(crate) use member::{ends, solve_member};
 pub use options::{SolveOptions, Start};
-pub(crate) use polynomials::{solve_polynomials, solve_sliced};
+pub(crate) use polynomials::{Place, solve_polynomials, solve_sliced};
 pub use solutions::{Direction, Solution, Solutions, Unresolved};
 pub use warning::Warning;
 
 use crate::checkpoint::{Checkpoint, Hash, Job};
 use crate::monitor::Monitor;
+use crate::ranks::{Lead, Ranks, Worker};
 use poly::{Exact, ExpandLimits, Polynomial, System};
 use solutions::Member;
 
@@ -83,21 +85,65 @@ pub fn solve_recorded(
     solve_anywhere(system, options, monitor, Some(checkpoint))
 }
 
+/// [`solve_watched`], or with a checkpoint [`solve_recorded`], by several [ranks](crate::ranks) that are
+/// all given the same system and options. Rank 0 alone heeds the monitor, has the checkpoint, and is
+/// given the solutions, those that [`solve`] finds to the bit; the others are given `None` when they
+/// are not needed any more. Preparations and what follows the paths are not divided.
+///
+/// # Errors
+/// As [`solve_recorded`]; on rank 0 if another rank fails or has another job.
+pub fn solve_on_ranks(
+    system: &System,
+    options: &SolveOptions,
+    monitor: &Monitor,
+    checkpoint: Option<&Checkpoint>,
+    ranks: &Ranks<'_>,
+) -> Result<Option<Solutions>, SolveError> {
+    let polynomials = expanded(system, options);
+    let job = polynomials.as_ref().map(|polynomials| job(polynomials, system.variables(), options).fingerprint());
+    let fingerprint = job.unwrap_or_default();
+    if ranks.is_lead() {
+        return Lead::at(ranks, &fingerprint, |lead| {
+            let place = Place { checkpoint, lead: Some(lead), worker: None };
+            solve_expanded(system, &polynomials?, options, monitor, place).map(Some)
+        });
+    }
+    Worker::at(ranks, &fingerprint, |worker| {
+        let place = Place { worker: Some(worker), ..Place::default() };
+        solve_polynomials(&polynomials?, system.variables(), options, worker.monitor(), place).map(|_| None)
+    })
+}
+
 fn solve_anywhere(
     system: &System,
     options: &SolveOptions,
     monitor: &Monitor,
     checkpoint: Option<&Checkpoint>,
 ) -> Result<Solutions, SolveError> {
+    let place = Place { checkpoint, ..Place::default() };
+    solve_expanded(system, &expanded(system, options)?, options, monitor, place)
+}
+
+/// The polynomials of a system that can be solved with these options.
+fn expanded(system: &System, options: &SolveOptions) -> Result<Vec<Polynomial<Exact>>, SolveError> {
     options.validate()?;
     if !system.parameters().is_empty() {
         return Err(SolveError::Parameters(system.parameters().join(", ")));
     }
-    let polynomials = system.expand(&ExpandLimits::default())?;
-    if let Some(checkpoint) = checkpoint {
-        checkpoint.begin(job(&polynomials, system.variables(), options))?;
+    Ok(system.expand(&ExpandLimits::default())?)
+}
+
+fn solve_expanded(
+    system: &System,
+    polynomials: &[Polynomial<Exact>],
+    options: &SolveOptions,
+    monitor: &Monitor,
+    place: Place<'_>,
+) -> Result<Solutions, SolveError> {
+    if let Some(checkpoint) = place.checkpoint {
+        checkpoint.begin(job(polynomials, system.variables(), options))?;
     }
-    let mut found = solve_polynomials(&polynomials, system.variables(), options, monitor, checkpoint)?;
+    let mut found = solve_polynomials(polynomials, system.variables(), options, monitor, place)?;
     found.variables = system.variables().to_vec();
     found.member = Member::new(system, &[]);
     if options.certify {
@@ -106,7 +152,7 @@ fn solve_anywhere(
     Ok(found)
 }
 
-/// What a checkpoint of this is of.
+/// What a checkpoint of this is of, and all ranks do.
 fn job(polynomials: &[Polynomial<Exact>], variables: &[String], options: &SolveOptions) -> Job {
     let names: Vec<&str> = variables.iter().map(String::as_str).collect();
     let hash = Hash::of(polynomials.iter().map(|polynomial| polynomial.display(&names).to_string()));
@@ -117,3 +163,6 @@ fn job(polynomials: &[Polynomial<Exact>], variables: &[String], options: &SolveO
 #[cfg(all(test, feature = "threads"))]
 #[path = "recorded_tests.rs"]
 mod tests;
+
+#[cfg(all(test, feature = "threads"))]
+mod ranks_tests;

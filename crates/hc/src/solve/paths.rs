@@ -10,6 +10,7 @@ use crate::distinct::{CLUSTER, coincidences, groups, relative_distance};
 use crate::endgame::{EndgameOptions, Ending, Handed, Verdict, endgame};
 use crate::homotopy::Segment;
 use crate::monitor::{self, Monitor};
+use crate::ranks::{Lead, Shared};
 use crate::refine::{Refined, Refiner};
 use crate::runner::{Flow, Policy, Room, Round, Work, run};
 use crate::start::Source;
@@ -17,6 +18,7 @@ use crate::threads::{IndexedParallelIterator, IntoParallelIterator, ParallelIter
 use crate::tracker::{PathEnd, TrackerOptions, Trackers};
 use num_complex::Complex64;
 use poly::Evaluate;
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 
 /// Whether so many paths of `count` are lost or in doubt after the first round that stricter steps
@@ -63,6 +65,8 @@ pub(super) struct Route<'a, 'e, E: Evaluate, S> {
     pub(super) monitor: &'a Monitor,
     /// Where batches of paths are recorded.
     pub(super) record: Option<Part<'a>>,
+    /// Who hands out paths to other ranks.
+    pub(super) lead: Option<&'a Lead<'a>>,
 }
 
 /// Follows the paths of a route; those that share a start or a regular end, have crossed or are
@@ -71,13 +75,13 @@ pub(super) struct Route<'a, 'e, E: Evaluate, S> {
 /// On `trial` they are abandoned as soon as too many do not end at regular solutions: with another
 /// source that may be less work.
 pub(super) fn follow<E: Evaluate, S: Source<E>>(route: Route<'_, '_, E, S>, trial: bool) -> Ends {
-    let (count, options, monitor, record) = (route.count, route.options, route.monitor, route.record);
-    let mut work = Recorded::new(Stage::new(route, trial), record, monitor);
+    let Route { count, options, monitor, record, lead, .. } = route;
+    let mut work = Recorded::new(Shared::new(Stage::new(route, trial), lead, monitor), record, monitor);
     let first = if trial { TRIAL } else { CHUNK };
     let policy = Policy { retries: options.paths.retries, charts: 1, first, batch: CHUNK };
     let mut room = Room::default();
     let outcome = run(&mut work, count, &policy, &mut room, monitor);
-    let mut stage = work.into_inner();
+    let mut stage = work.into_inner().into_inner();
     match outcome.flow {
         Flow::Abandoned => return stage.finish(outcome.retracked, true),
         Flow::Found => stage.drop_others(),
@@ -86,8 +90,8 @@ pub(super) fn follow<E: Evaluate, S: Source<E>>(route: Route<'_, '_, E, S>, tria
     stage.finish(outcome.retracked, false)
 }
 
-struct Stage<'a, 'e, E: Evaluate, S> {
-    route: Route<'a, 'e, E, S>,
+pub(super) struct Stage<'a, 'e, E: Evaluate, S> {
+    pub(super) route: Route<'a, 'e, E, S>,
     segment: Segment,
     trial: bool,
     ends: EndList,
@@ -99,16 +103,18 @@ struct Stage<'a, 'e, E: Evaluate, S> {
     starts: Prints,
     /// Where the paths that needed the endgame were at a common radius.
     middles: Prints,
-    round: Pass,
+    pub(super) round: Pass,
+    /// Of the open paths of the batch those that have been through the endgame already.
+    pub(super) closed: RefCell<BTreeMap<usize, Record>>,
 }
 
 /// How far a round is.
 #[derive(Default)]
-struct Pass {
+pub(super) struct Pass {
     /// Paths of the round, those that have been tracked, and those of them with a regular end.
-    all: usize,
-    done: usize,
-    regular: usize,
+    pub(super) all: usize,
+    pub(super) done: usize,
+    pub(super) regular: usize,
 }
 
 impl<E: Evaluate, S: Source<E>> Work for Stage<'_, '_, E, S> {
@@ -120,7 +126,7 @@ impl<E: Evaluate, S: Source<E>> Work for Stage<'_, '_, E, S> {
     }
 
     fn batch(&self, (): &mut (), numbers: &[usize], round: Round, batch: &mut Vec<Record>) {
-        *batch = self.tracked(numbers, round);
+        *batch = self.tracked(numbers, round, self.route.monitor);
     }
 
     fn absorb(&mut self, batch: &mut Vec<Record>, _: Round) -> Flow {
@@ -132,12 +138,16 @@ impl<E: Evaluate, S: Source<E>> Work for Stage<'_, '_, E, S> {
     }
 
     fn close(&mut self, (): &mut (), batch: &mut Vec<Record>, round: Round) -> Flow {
-        let open: Vec<Record> = batch.extract_if(.., |record| record.is_open()).collect();
+        let mut closed = self.closed.take();
+        let mut ended = Vec::new();
+        let open = batch.extract_if(.., |record| record.is_open());
+        let open: Vec<Record> = open.filter(|r| closed.remove(&r.path).map(|r| ended.push(r)).is_none()).collect();
         for portion in open.chunks(PORTION) {
-            for record in self.ended(portion, round) {
-                self.take(&record);
-                batch.push(record);
-            }
+            ended.extend(self.ended(portion, round, self.route.monitor));
+        }
+        for record in ended {
+            self.take(&record);
+            batch.push(record);
         }
         self.round.regular += batch.iter().filter(|record| self.regular.contains_key(&record.path)).count();
         if self.is_whole() {
@@ -179,7 +189,7 @@ impl<E: Evaluate, S: Source<E>> Recordable for Stage<'_, '_, E, S> {
 
 impl<'a, 'e, E: Evaluate, S: Source<E>> Stage<'a, 'e, E, S> {
     /// Before anything is tracked.
-    fn new(route: Route<'a, 'e, E, S>, trial: bool) -> Self {
+    pub(super) fn new(route: Route<'a, 'e, E, S>, trial: bool) -> Self {
         let count = route.count;
         Stage {
             segment: Segment::new(route.start.parameters(), route.target),
@@ -192,6 +202,7 @@ impl<'a, 'e, E: Evaluate, S: Source<E>> Stage<'a, 'e, E, S> {
             starts: Prints::new(count),
             middles: Prints::new(count),
             round: Pass::default(),
+            closed: RefCell::default(),
         }
     }
 }
@@ -213,8 +224,8 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
 
     /// Tracks paths to regular ends, or to where the endgame begins. One record a path, in order;
     /// none once the work is cancelled.
-    fn tracked(&self, numbers: &[usize], round: Round) -> Vec<Record> {
-        let Route { trackers, start, target, monitor, .. } = self.route;
+    pub(super) fn tracked(&self, numbers: &[usize], round: Round, monitor: &Monitor) -> Vec<Record> {
+        let Route { trackers, start, target, .. } = self.route;
         if monitor.is_cancelled() {
             // Not even start solutions are made any more; there may be millions of paths to come.
             return Vec::new();
@@ -265,8 +276,8 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
     }
 
     /// Takes open paths through the endgame. One record a path, in order.
-    fn ended(&self, open: &[Record], round: Round) -> Vec<Record> {
-        let Route { trackers, start, target, monitor, .. } = self.route;
+    pub(super) fn ended(&self, open: &[Record], round: Round, monitor: &Monitor) -> Vec<Record> {
+        let Route { trackers, start, target, .. } = self.route;
         let settings = self.settings(round);
         // Paths that seemed to reach the target, but not at a regular solution: once more up to
         // where the endgame begins.

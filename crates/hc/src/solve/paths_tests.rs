@@ -41,6 +41,7 @@ fn batches_are_absorbed_in_any_order() {
         options: &options,
         monitor: &monitor,
         record: None,
+        lead: None,
     };
 
     // Records of batches of some paths, through the text that another machine would send.
@@ -50,7 +51,7 @@ fn batches_are_absorbed_in_any_order() {
             let mut records = Vec::new();
             stage.batch(&mut (), numbers, Round::FIRST, &mut records);
             let open: Vec<Record> = records.extract_if(.., |record| record.is_open()).collect();
-            records.extend(stage.ended(&open, Round::FIRST));
+            records.extend(stage.ended(&open, Round::FIRST, &monitor));
             let text = serde_json::to_string(&records).unwrap();
             let back: Vec<Record> = serde_json::from_str(&text).unwrap();
             assert_eq!(back, records);

@@ -10,12 +10,14 @@ use super::infinity::Line;
 use super::judged;
 use super::options::{SolveOptions, Start};
 use super::paths::{Route, are_hopeless, follow};
+use super::portions::{Announced, serve};
 use super::slack;
 use super::solutions::Solutions;
 use super::start::Starts;
 use crate::checkpoint::{Checkpoint, Part};
 use crate::distinct::{CLUSTER, relative_distance};
 use crate::monitor::Monitor;
+use crate::ranks::{Lead, Worker};
 use crate::singular::Given;
 use crate::start::MixedError;
 use crate::tracker::Trackers;
@@ -26,15 +28,26 @@ use std::borrow::Cow;
 /// Clusters of solutions are looked at within clusters this often.
 const ZOOMS: usize = 3;
 
+/// Where a solve takes place.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Place<'a> {
+    /// Where it is recorded.
+    pub(crate) checkpoint: Option<&'a Checkpoint>,
+    /// Among other ranks, of which this is the first.
+    pub(crate) lead: Option<&'a Lead<'a>>,
+    /// Among other ranks, of which this is not the first: there are no solutions here.
+    pub(crate) worker: Option<&'a Worker<'a>>,
+}
+
 /// The solutions of polynomials in unknowns of these names, which the result does not have.
 pub(crate) fn solve_polynomials(
     polynomials: &[Polynomial<Exact>],
     names: &[String],
     options: &SolveOptions,
     monitor: &Monitor,
-    checkpoint: Option<&Checkpoint>,
+    place: Place<'_>,
 ) -> Result<Solutions, SolveError> {
-    solve_zoomed(polynomials, names, options, monitor, Zooms::default(), false, checkpoint)
+    solve_zoomed(polynomials, names, options, monitor, Zooms::default(), false, place)
 }
 
 /// [`solve_polynomials`] of equations that are too many, some of them general hyperplanes: linear ones
@@ -45,7 +58,7 @@ pub(crate) fn solve_sliced(
     options: &SolveOptions,
     monitor: &Monitor,
 ) -> Result<Solutions, SolveError> {
-    solve_zoomed(polynomials, names, options, monitor, Zooms::default(), true, None)
+    solve_zoomed(polynomials, names, options, monitor, Zooms::default(), true, Place::default())
 }
 
 /// [`solve_polynomials`] of equations around ends of others, whose work this is.
@@ -58,7 +71,9 @@ pub(super) fn solve_around(
     let names: Vec<String> = (0..polynomials.first()?.variables()).map(|k| format!("x{k}")).collect();
     let zooms = Zooms { depth: zooms, around: Some(around) };
     // Cancelled with the rest, but no progress that is to be told.
-    let found = solve_zoomed(polynomials, &names, &SolveOptions::new(), &monitor.quiet(), zooms, false, None).ok()?;
+    let found =
+        solve_zoomed(polynomials, &names, &SolveOptions::new(), &monitor.quiet(), zooms, false, Place::default())
+            .ok()?;
     (!found.interrupted).then_some(found)
 }
 
@@ -77,7 +92,7 @@ fn solve_zoomed(
     monitor: &Monitor,
     zooms: Zooms<'_>,
     sliced: bool,
-    checkpoint: Option<&Checkpoint>,
+    place: Place<'_>,
 ) -> Result<Solutions, SolveError> {
     // The equations around ends that are not told apart.
     let zoomed =
@@ -114,9 +129,31 @@ fn solve_zoomed(
     let mut start_systems = 0;
     // First, on trial, those of one stage.
     let mut direct = starts.direct(options);
+    let Place { checkpoint, lead, worker } = place;
+    if let Some(worker) = worker {
+        while let Some(task) = worker.next::<Announced>()? {
+            let monitor = &task.monitor;
+            let from = direct.as_mut().filter(|_| task.content.trial).unwrap_or(&mut starts);
+            let start = match from.system(task.content.attempt, options, monitor) {
+                Err(SolveError::Mixed(MixedError::Cancelled)) => continue,
+                other => other?,
+            };
+            let (count, target, trackers) = (from.paths, &from.target[..], &Trackers::new(&from.system));
+            let (start, excess) = (&start, &excess);
+            serve(
+                worker,
+                &task,
+                Route { trackers, start, count, target, excess, options, monitor, record: None, lead },
+            )?;
+        }
+        return Ok(nothing);
+    }
     for number in 0.. {
         let trial = direct.is_some();
         let from = direct.as_mut().unwrap_or(&mut starts);
+        if let Some(lead) = lead {
+            lead.begin_part(&Announced { trial, attempt: u64::from(start_systems) });
+        }
         let start = match from.system(u64::from(start_systems), options, monitor) {
             Err(SolveError::Mixed(MixedError::Cancelled)) => break,
             other => other?,
@@ -129,9 +166,12 @@ fn solve_zoomed(
             let trackers = Trackers::new(&from.system);
             let record = checkpoint.map(|checkpoint| Part { checkpoint, number });
             let (trackers, start, excess) = (&trackers, &start, &excess);
-            follow(Route { trackers, start, count, target, excess, options, monitor, record }, trial)
+            follow(Route { trackers, start, count, target, excess, options, monitor, record, lead }, trial)
         };
         if let Some(error) = checkpoint.and_then(Checkpoint::failure) {
+            return Err(error.into());
+        }
+        if let Some(error) = lead.and_then(Lead::failure) {
             return Err(error.into());
         }
         if !ends.abandoned {

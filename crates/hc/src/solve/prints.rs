@@ -22,6 +22,11 @@ impl Print {
         let size = point.iter().map(|z| z.re.abs() + z.im.abs()).sum();
         Print { key: projection(point), size, point: keep.then(|| point.to_vec()) }
     }
+
+    /// The point, if it is kept.
+    pub(super) fn point(&self) -> Option<&[Complex64]> {
+        self.point.as_deref()
+    }
 }
 
 /// A projection and roughly the size of a point for every path, twelve bytes; the points themselves

@@ -49,6 +49,23 @@ pub(crate) enum RecordEnd {
     },
 }
 
+/// How far a path gets in one go: up to the endgame, and if it needs that through it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Tracked {
+    pub(super) record: Record,
+    /// After the endgame.
+    pub(super) ended: Option<Record>,
+}
+
+impl Tracked {
+    /// Whether it can be of the path with this number, in so many unknowns.
+    pub(super) fn is_of(&self, path: usize, unknowns: usize) -> bool {
+        let fits = |record: &Record| record.path == path && record.fits(unknowns);
+        let ended = self.ended.as_ref().is_none_or(|record| fits(record) && !record.is_open());
+        fits(&self.record) && ended && (self.ended.is_none() || self.record.is_open())
+    }
+}
+
 /// The end of a path at a solution at which the Jacobian is singular.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct SingularEnd {
@@ -62,6 +79,21 @@ impl Record {
     /// Of a path of which nothing is known.
     pub(crate) fn lost(path: usize) -> Record {
         Record { path, begun: None, middle: None, end: RecordEnd::Lost }
+    }
+
+    /// Whether all points have so many coordinates.
+    fn fits(&self, unknowns: usize) -> bool {
+        let fits = |point: &[Complex64]| point.len() == unknowns;
+        let prints = self.begun.iter().chain(&self.middle);
+        prints.filter_map(Print::point).all(fits)
+            && match &self.end {
+                RecordEnd::Lost => true,
+                RecordEnd::Regular(end) => fits(&end.point),
+                RecordEnd::Open { point, .. } => fits(point),
+                RecordEnd::Undecided { start } => fits(start),
+                RecordEnd::Singular(end) => fits(&end.point) && end.winding > 0,
+                RecordEnd::Infinite { valuations, winding } => valuations.len() == unknowns && *winding > 0,
+            }
     }
 
     /// Whether the path has not ended yet.

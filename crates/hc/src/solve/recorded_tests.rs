@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 
 /// `2^n` regular solutions.
-fn quadrics(n: usize) -> System {
+pub(super) fn quadrics(n: usize) -> System {
     let next = |i: usize, k: usize| (i + k) % n;
     let equation =
         |i: usize| format!("x{i}^2 - {}*x{}*x{} + 3*x{} + {}\n", i + 2, next(i, 1), next(i, 2), next(i, 3), i + 1);

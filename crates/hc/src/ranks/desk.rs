@@ -1,0 +1,184 @@
+//! Which paths are to be tracked, and who has them.
+
+use super::message::Portion;
+use crate::runner::Round;
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::time::{Duration, Instant};
+
+/// Portions that another rank has at a time: one that it tracks, and the next.
+const DEPTH: usize = 2;
+/// Paths of a portion for each thread of who tracks it: at least so that its lanes are full for most
+/// of the time, and at most so that all end together.
+const LEAST: usize = 32;
+const MOST: usize = 256;
+
+/// The paths of a round that are not tracked yet, and those that some rank has.
+#[derive(Debug)]
+pub(super) struct Desk {
+    patience: Duration,
+    round: Round,
+    /// Paths that nobody has, ascending.
+    fresh: VecDeque<usize>,
+    /// The last one that was offered.
+    last: Option<usize>,
+    /// The number of the next portion.
+    next: u64,
+    /// Portions that somebody has, by their numbers.
+    out: BTreeMap<u64, Out>,
+    seats: Vec<Seat>,
+}
+
+/// A portion that a rank has.
+#[derive(Debug)]
+struct Out {
+    paths: Vec<usize>,
+    rank: usize,
+    since: Instant,
+}
+
+/// A rank.
+#[derive(Clone, Debug, Default)]
+struct Seat {
+    /// Its threads; zero while it is not ready.
+    threads: usize,
+    /// Portions that it has not answered.
+    held: BTreeSet<u64>,
+}
+
+impl Desk {
+    /// For so many ranks, of which the first has so many threads.
+    pub(super) fn new(ranks: usize, threads: usize, patience: Duration) -> Desk {
+        let mut seats = vec![Seat::default(); ranks.max(1)];
+        seats[0].threads = threads.max(1);
+        let (fresh, out) = (VecDeque::new(), BTreeMap::new());
+        Desk { patience, round: Round::FIRST, fresh, last: None, next: 0, out, seats }
+    }
+
+    /// Begins another part, for which the others have to become ready.
+    pub(super) fn begin_part(&mut self) {
+        self.begin_round(Round::FIRST);
+        self.seats[1..].fill(Seat::default());
+    }
+
+    /// Begins a round. What was not answered is not wanted any more.
+    pub(super) fn begin_round(&mut self, round: Round) {
+        self.fresh.clear();
+        self.out.clear();
+        (self.round, self.last) = (round, None);
+    }
+
+    /// Notes that a rank can work, on so many threads.
+    pub(super) fn ready(&mut self, rank: usize, threads: usize) {
+        if let Some(seat) = self.seats.get_mut(rank) {
+            seat.threads = threads.clamp(1, 1 << 16);
+        }
+    }
+
+    /// All threads of ranks that are ready.
+    pub(super) fn threads(&self) -> usize {
+        self.seats.iter().map(|seat| seat.threads).sum()
+    }
+
+    /// How many paths are worth knowing of at a time, so that nobody waits for the next batch.
+    pub(super) fn horizon(&self) -> usize {
+        2 * MOST * self.threads()
+    }
+
+    /// Adds paths, ascending, but for those that were offered before.
+    pub(super) fn offer(&mut self, paths: &[usize]) {
+        let new = self.last.map_or(0, |last| paths.partition_point(|&path| path <= last));
+        self.fresh.extend(&paths[new..]);
+        self.last = self.last.max(paths.last().copied());
+    }
+
+    /// A portion for a rank: one that another has had for too long, or the next.
+    pub(super) fn take(&mut self, rank: usize, now: Instant) -> Option<Portion> {
+        let all = self.threads();
+        let seat = self.seats.get_mut(rank).filter(|seat| seat.threads > 0)?;
+        if rank > 0 && seat.held.len() >= DEPTH {
+            return None;
+        }
+        let late = |(_, out): &(&u64, &mut Out)| {
+            out.rank != 0 && out.rank != rank && now.saturating_duration_since(out.since) >= self.patience
+        };
+        let (number, paths) = match self.out.iter_mut().find(late) {
+            Some((&number, out)) => {
+                (out.rank, out.since) = (rank, now);
+                (number, out.paths.clone())
+            }
+            None if self.fresh.is_empty() => return None,
+            None => {
+                let share = self.fresh.len().saturating_mul(seat.threads) / (2 * all);
+                let size = share.clamp(LEAST * seat.threads, MOST * seat.threads).min(self.fresh.len());
+                let paths: Vec<usize> = self.fresh.drain(..size).collect();
+                let number = self.next;
+                self.next += 1;
+                self.out.insert(number, Out { paths: paths.clone(), rank, since: now });
+                (number, paths)
+            }
+        };
+        if rank > 0 {
+            seat.held.insert(number);
+        }
+        let Round { level, chart } = self.round;
+        Some(Portion { number, level, chart, paths })
+    }
+
+    /// Notes the answer of a rank: the paths of the portion, if it is the first answer and wanted.
+    pub(super) fn answer(&mut self, rank: usize, number: u64) -> Option<Vec<usize>> {
+        self.seats.get_mut(rank)?.held.remove(&number);
+        self.out.remove(&number).map(|out| out.paths)
+    }
+
+    /// When a portion is to be handed out again, if no answer comes.
+    pub(super) fn due(&self) -> Option<Instant> {
+        let others = self.out.values().filter(|out| out.rank != 0);
+        others.filter_map(|out| out.since.checked_add(self.patience)).min()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_path_is_handed_out_once_and_again_when_it_is_late() {
+        let (now, patience) = (Instant::now(), Duration::from_secs(10));
+        let mut desk = Desk::new(3, 1, patience);
+        desk.begin_part();
+        desk.begin_round(Round { level: 2, chart: 0 });
+        let paths: Vec<usize> = (0..1000).map(|k| 3 * k).collect();
+        desk.offer(&paths[..600]);
+        // Nothing for ranks that are not ready.
+        assert_eq!(desk.take(1, now), None);
+        desk.ready(1, 2);
+        desk.ready(2, 1);
+        assert_eq!(desk.take(7, now), None);
+        // The same again, and more.
+        desk.offer(&paths[200..]);
+        let held = [desk.take(1, now).unwrap(), desk.take(1, now).unwrap()];
+        assert_eq!(desk.take(1, now), None);
+        assert_eq!((held[0].level, held[0].paths.len()), (2, 250));
+        let mut seen: Vec<usize> = held[1].paths.clone();
+        seen.extend(&held[0].paths);
+        while let Some(portion) = desk.take(0, now) {
+            assert_eq!(desk.answer(0, portion.number).as_ref(), Some(&portion.paths));
+            seen.extend(portion.paths);
+        }
+        seen.sort_unstable();
+        assert_eq!(seen, paths);
+        // An answer in time, and one that does not come.
+        assert_eq!(desk.due(), Some(now + patience));
+        assert_eq!(desk.answer(1, held[0].number).as_ref(), Some(&held[0].paths));
+        let late = now + patience;
+        assert_eq!(desk.take(1, late), None);
+        let again = desk.take(2, late).unwrap();
+        assert_eq!(again, held[1]);
+        assert_eq!(desk.take(0, late), None);
+        assert_eq!(desk.take(0, late + patience).as_ref(), Some(&again));
+        // The first answer counts.
+        assert_eq!(desk.answer(1, again.number), Some(again.paths));
+        assert_eq!(desk.answer(2, again.number), None);
+        assert_eq!((desk.answer(9, 0), desk.due()), (None, None));
+    }
+}

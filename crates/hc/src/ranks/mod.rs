@@ -1,0 +1,51 @@
+//! Work over several processes, which MPI calls ranks.
+//!
+//! All ranks run the same program on the same input and make the same start systems, which follow
+//! from the seed. [`solve_on_ranks`](crate::solve_on_ranks) lets rank 0 do what
+//! [`solve_watched`](crate::solve_watched) does, but it hands out paths to whoever asks, in portions,
+//! tracks some itself, and puts the ends together in the order of their numbers. The result has the
+//! same bits on any number of ranks and threads, whatever arrives first: the end of a path depends on
+//! nothing but its number and the round.
+//!
+//! What carries the messages is an [`Exchange`]. [`Local`] is one between threads; the program `hc`
+//! has one over MPI, behind its feature `mpi`.
+//!
+//! ```
+//! use hc::ranks::{Local, Ranks, RanksOptions};
+//! use hc::{Monitor, SolveOptions, System, solve, solve_on_ranks};
+//!
+//! let system: System = "x^2 + y^2 - 5; x*y - 2".parse()?;
+//! let options = SolveOptions::new().seed(1);
+//! let found = std::thread::scope(|scope| {
+//!     let each = |exchange: Local| {
+//!         let (system, options) = (&system, &options);
+//!         scope.spawn(move || {
+//!             let ranks = Ranks::new(&exchange, &RanksOptions::new());
+//!             let found = solve_on_ranks(system, options, &Monitor::default(), None, &ranks);
+//!             ranks.finish(None);
+//!             found
+//!         })
+//!     };
+//!     let all: Vec<_> = Local::ranks(2).into_iter().map(each).collect();
+//!     all.into_iter().map(|rank| rank.join().unwrap()).collect::<Result<Vec<_>, _>>()
+//! })?;
+//! // Rank 0 has the result.
+//! assert_eq!(found, [Some(solve(&system, &options)?), None]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod desk;
+mod error;
+mod exchange;
+mod lead;
+mod message;
+mod run;
+mod shared;
+mod worker;
+
+pub use error::RanksError;
+pub use exchange::{Exchange, ExchangeError, Local};
+pub(crate) use lead::Lead;
+pub use run::{Ranks, RanksOptions};
+pub(crate) use shared::{Shareable, Shared};
+pub(crate) use worker::{Task, Worker};
