@@ -9,12 +9,15 @@ mod input;
 mod mixed_volume;
 mod monodromy;
 mod points;
+mod ranks;
 mod report;
 mod solve;
 mod track;
 mod watch;
 
 use clap::{Parser, Subcommand};
+use cli::Failure;
+use hc::ranks::{Exchange, Ranks, RanksOptions};
 use std::process::ExitCode;
 
 /// Homotopy continuation: all isolated solutions of polynomial systems and of parameter families.
@@ -39,19 +42,55 @@ enum Command {
     Track(track::Arguments),
 }
 
+/// Does what was asked for, as one of several ranks if there are others.
+fn execute(command: &Command, ranks: Option<&Ranks<'_>>) -> Result<(), Failure> {
+    match command {
+        Command::Solve(arguments) => solve::run(arguments, ranks),
+        _ if ranks.is_some() => {
+            Err(Failure::unusable("only `hc solve` runs on several ranks; start this without mpirun"))
+        }
+        Command::Certify(arguments) => certify::run(arguments),
+        Command::Codegen(arguments) => codegen::run(arguments),
+        Command::Decompose(arguments) => decompose::run(arguments),
+        Command::MixedVolume(arguments) => mixed_volume::run(arguments),
+        Command::Monodromy(arguments) => monodromy::run(arguments),
+        Command::Track(arguments) => track::run(arguments),
+    }
+}
+
 /// Runs the program with the arguments of the process; its exit status.
 pub fn main() -> ExitCode {
-    // clap ends the program itself, with status 2, if the arguments are wrong.
-    let result = match Arguments::parse().command {
-        Command::Certify(arguments) => certify::run(&arguments),
-        Command::Codegen(arguments) => codegen::run(&arguments),
-        Command::Decompose(arguments) => decompose::run(&arguments),
-        Command::MixedVolume(arguments) => mixed_volume::run(&arguments),
-        Command::Monodromy(arguments) => monodromy::run(&arguments),
-        Command::Solve(arguments) => solve::run(&arguments),
-        Command::Track(arguments) => track::run(&arguments),
+    ranks::with(run)
+}
+
+/// Runs the program, as one of the ranks between which `exchange` carries messages.
+fn run(exchange: Option<&dyn Exchange>) -> ExitCode {
+    let is_lead = exchange.is_none_or(|exchange| exchange.rank() == 0);
+    let command = match Arguments::try_parse() {
+        Ok(arguments) => arguments.command,
+        Err(error) => {
+            if is_lead {
+                // Nobody is there to be told that the words cannot be printed.
+                let _ = error.print();
+            }
+            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
+        }
     };
-    cli::finish("hc", result, "the result is partial")
+    let options = match &command {
+        Command::Solve(arguments) => arguments.ranks(),
+        _ => RanksOptions::new(),
+    };
+    let ranks = exchange.map(|exchange| Ranks::new(exchange, &options));
+    let result = execute(&command, ranks.as_ref());
+    if !is_lead {
+        // Rank 0 says what there is to be said.
+        let failure = result.err().map(|error| error.to_string());
+        ranks.inspect(|ranks| ranks.finish(failure.as_deref()));
+        return ExitCode::SUCCESS;
+    }
+    let status = cli::finish("hc", result, "the result is partial");
+    ranks.inspect(|ranks| ranks.finish(None));
+    status
 }
 
 #[cfg(test)]

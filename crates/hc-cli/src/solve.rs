@@ -1,9 +1,10 @@
 //! `hc solve`.
 
 use crate::report::Report;
-use crate::{checkpoint, input, watch};
+use crate::{checkpoint, input, ranks, watch};
 use cli::{Failure, output};
-use hc::{SolveError, SolveOptions, Start, solve_recorded, solve_watched};
+use hc::ranks::{Ranks, RanksOptions};
+use hc::{SolveError, SolveOptions, Start, solve_on_ranks, solve_recorded, solve_watched};
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -45,6 +46,15 @@ pub(crate) struct Arguments {
     torus_only: bool,
     #[command(flatten)]
     checkpoint: checkpoint::Recording,
+    #[command(flatten)]
+    ranks: ranks::Sharing,
+}
+
+impl Arguments {
+    /// The settings for several ranks.
+    pub(crate) fn ranks(&self) -> RanksOptions {
+        self.ranks.options()
+    }
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
@@ -66,11 +76,15 @@ impl From<StartChoice> for Start {
     }
 }
 
-pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+/// Solves, with the other ranks if there are any; rank 0 alone prints, and writes files.
+pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<(), Failure> {
+    let is_lead = ranks.is_none_or(Ranks::is_lead);
     if let Some(directory) = arguments.checkpoint.status() {
-        return checkpoint::status(directory);
+        return if is_lead { checkpoint::status(directory) } else { Ok(()) };
     }
-    output::check(&[("--json", arguments.json.as_deref())])?;
+    if is_lead {
+        output::check(&[("--json", arguments.json.as_deref())])?;
+    }
     let begun = Instant::now();
     let Some(file) = &arguments.file else { return Err(Failure::unusable("give the file of a system")) };
     let system = input::system(file)?;
@@ -86,15 +100,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         .max_paths(arguments.max_paths)
         .torus_only(arguments.torus_only)
         .certify(arguments.certify);
-    let checkpoint = arguments.checkpoint.open()?;
-    let found = watch::watched(arguments.threads, &monitor, watch::stages, || match &checkpoint {
-        Some(checkpoint) => solve_recorded(&system, &options, &monitor, checkpoint),
-        None => solve_watched(&system, &options, &monitor),
+    let checkpoint = if is_lead { arguments.checkpoint.open()? } else { None };
+    let found = watch::watched(arguments.threads, &monitor, watch::stages, || match (ranks, &checkpoint) {
+        (Some(ranks), checkpoint) => solve_on_ranks(&system, &options, &monitor, checkpoint.as_ref(), ranks),
+        (None, Some(checkpoint)) => solve_recorded(&system, &options, &monitor, checkpoint).map(Some),
+        (None, None) => solve_watched(&system, &options, &monitor).map(Some),
     })?;
     let found = found.map_err(|error| match error {
         SolveError::Checkpoint(error) => Failure::unusable(error),
+        SolveError::Ranks(error) => Failure::unusable(error),
         error => Failure::in_file(file, error),
     })?;
+    // Rank 0 has the solutions.
+    let Some(found) = found else { return Ok(()) };
     let seconds = begun.elapsed().as_secs_f64();
     output::summary(arguments.json.as_deref(), || format!("{found}{seconds:.3} s\n"))?;
     if let Some(out) = &arguments.json {

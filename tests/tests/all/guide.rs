@@ -17,6 +17,9 @@ const NOT_RUN: &[&str] = &[
     "cargo deny check",
     // Takes minutes, and builds what the tests have built.
     "cargo build --profile dist -p tdoa-cli -p hc-cli",
+    // Need Open MPI.
+    "cargo build --release -p hc-cli --features mpi",
+    "cargo test -p end-to-end --features mpi --test all hc_mpi",
     // Written into the repository; `--check` is run instead.
     "cargo xtask codegen",
     "cargo xtask experiments --page",

@@ -7,6 +7,8 @@ mod hc_checkpoint;
 mod hc_families;
 #[cfg(unix)]
 mod hc_interrupt;
+#[cfg(unix)]
+mod hc_mpi;
 mod hc_solve;
 mod one_build;
 mod outputs;

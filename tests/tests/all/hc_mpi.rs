@@ -1,0 +1,192 @@
+//! `mpirun hc solve`: the same bytes on any number of ranks, and an end of all of them.
+
+use end_to_end::{program, run};
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+const SYSTEMS: [(&str, &str, &[&str]); 5] = [
+    ("cyclic6", CYCLIC6, &["--seed", "1"]),
+    // Multiple solutions and paths that are tracked again.
+    ("multiple", "x*(x - y)*(x + y - 1)^2 - 1e-9\n(y - 1)^2*(y + x)*(x - 2)\n", &["--seed", "1"]),
+    ("infinity", "x*y*z - 1\nx^2*y + z - 2\nx^2 + y^2*z - 3*x\n", &["--start", "total-degree"]),
+    (
+        "eigenvalues",
+        "x*t - 2*x - y\ny*t - x - 3*y\nx + y - 1\n",
+        &["--start", "multihomogeneous", "--groups", "x,y;t", "--certify"],
+    ),
+    ("excess", "x^2 + y^2 - 5\nx*y - 2\nx^3 - 4*x + y - 1\nx^2*y - 2*x\n", &["--torus-only"]),
+];
+
+const CYCLIC6: &str = "a + b + c + d + e + f
+a*b + b*c + c*d + d*e + e*f + f*a
+a*b*c + b*c*d + c*d*e + d*e*f + e*f*a + f*a*b
+a*b*c*d + b*c*d*e + c*d*e*f + d*e*f*a + e*f*a*b + f*a*b*c
+a*b*c*d*e + b*c*d*e*f + c*d*e*f*a + d*e*f*a*b + e*f*a*b*c + f*a*b*c*d
+a*b*c*d*e*f - 1
+";
+
+/// A system of `2^n` regular solutions.
+fn quadrics(n: usize) -> String {
+    let next = |i: usize, k: usize| (i + k) % n;
+    let equation =
+        |i: usize| format!("x{i}^2 - {}*x{}*x{} + 3*x{} + {}\n", i + 2, next(i, 1), next(i, 2), next(i, 3), i + 1);
+    (0..n).map(equation).collect()
+}
+
+fn written(folder: &Path, name: &str, content: &str) -> String {
+    let path = folder.join(name);
+    std::fs::write(&path, content).expect("written");
+    text(&path)
+}
+
+fn text(path: &Path) -> String {
+    path.to_str().expect("UTF-8 path").to_owned()
+}
+
+/// `hc` on so many ranks, of which there may be more than processors.
+fn on_ranks(count: usize, arguments: &[&str]) -> Command {
+    let mut command = Command::new("mpirun");
+    command.args(["-q", "--oversubscribe", "--allow-run-as-root", "--bind-to", "none"]);
+    // What a container may forbid, and what would be said about it.
+    command.args(["--mca", "btl_vader_single_copy_mechanism", "none", "--mca", "btl_base_warn_component_unused", "0"]);
+    command.args(["-n", &count.to_string()]).arg(program("hc")).args(arguments);
+    command
+}
+
+/// Standard output without the line that says how long it took.
+fn untimed(output: &Output) -> String {
+    let text = String::from_utf8(output.stdout.clone()).expect("text");
+    let lines: Vec<&str> = text.lines().filter(|line| !line.trim_start().starts_with("\"seconds\":")).collect();
+    assert_eq!(lines.len() + 1, text.lines().count(), "{}", said(output));
+    lines.join("\n")
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// The process of a rank: that with this rank among the children of mpirun.
+fn process(mpirun: &Child, rank: usize) -> Option<u32> {
+    let children = format!("/proc/{0}/task/{0}/children", mpirun.id());
+    let children = std::fs::read_to_string(children).ok()?;
+    let own = format!("OMPI_COMM_WORLD_RANK={rank}");
+    children.split_whitespace().filter_map(|id| id.parse().ok()).find(|id: &u32| {
+        let environment = std::fs::read(format!("/proc/{id}/environ")).unwrap_or_default();
+        environment.split(|&byte| byte == 0).any(|variable| variable == own.as_bytes())
+    })
+}
+
+/// Waits until something is there, two minutes at most.
+fn waited<T>(mut there: impl FnMut() -> Option<T>) -> T {
+    let begun = Instant::now();
+    loop {
+        if let Some(found) = there() {
+            return found;
+        }
+        assert!(begun.elapsed() < Duration::from_secs(120), "nothing came");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
+fn signal(name: &str, process: u32) {
+    let killed = Command::new("kill").args([name, &process.to_string()]).status().expect("kill runs");
+    assert!(killed.success());
+}
+
+#[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs Open MPI: cargo test -p end-to-end --features mpi")]
+fn any_number_of_ranks_prints_the_same_bytes() {
+    let folder = tempfile::tempdir().expect("directory");
+    let large = quadrics(11);
+    let large = ("quadrics", &large[..], &["--start", "total-degree"][..]);
+    for (name, system, options) in SYSTEMS.into_iter().chain([large]) {
+        let file = written(folder.path(), name, system);
+        let arguments = [&["solve", &file, "--json", "-"], options].concat();
+        let alone = run("hc", &[&arguments[..], &["--threads", "2"]].concat());
+        let expected = untimed(&alone);
+        for (count, threads) in [(1, "2"), (2, "1"), (4, "1"), (2, "2")] {
+            let output = on_ranks(count, &[&arguments[..], &["--threads", threads]].concat());
+            let output = { output }.output().expect("mpirun runs");
+            assert_eq!(untimed(&output), expected, "{name} on {count} ranks: {}", said(&output));
+            assert_eq!(output.status.code(), alone.status.code(), "{name}: {}", said(&output));
+        }
+    }
+}
+
+#[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs Open MPI: cargo test -p end-to-end --features mpi")]
+fn errors_are_said_once_and_end_all_ranks() {
+    let folder = tempfile::tempdir().expect("directory");
+    let system = written(folder.path(), "system.txt", "x^2 - 2\n");
+    let open = written(folder.path(), "open.txt", "x^2 + y - 2\n");
+    let missing = text(&folder.path().join("missing.txt"));
+    for (arguments, words) in [
+        (&["solve", &missing][..], "missing.txt"),
+        (&["solve", &open], "1 equations in 2 unknowns"),
+        (&["solve", &system, "--max-paths", "1"], "more than the 1 allowed"),
+        (&["solve", &system, "--seed", "none"], "invalid value 'none'"),
+        (&["solve", &system, "--rank-timeout", "0"], "--rank-timeout"),
+        (&["mixed-volume", &system], "only `hc solve` runs on several ranks"),
+    ] {
+        let output = on_ranks(3, arguments).output().expect("mpirun runs");
+        assert_eq!(output.status.code(), Some(2), "{words}: {}", said(&output));
+        assert_eq!(said(&output).matches(words).count(), 1, "{words}: {}", said(&output));
+        assert!(output.stdout.is_empty());
+    }
+    let help = on_ranks(3, &["solve", "--help"]).output().expect("mpirun runs");
+    let help = String::from_utf8_lossy(&help.stdout).into_owned();
+    assert_eq!(help.matches("--rank-timeout").count(), 1, "{help}");
+    // Some commands are as ever on one rank.
+    let output = on_ranks(1, &["mixed-volume", &system]).output().expect("mpirun runs");
+    assert!(output.status.success(), "{}", said(&output));
+}
+
+#[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs Open MPI: cargo test -p end-to-end --features mpi")]
+fn an_interrupt_of_rank_0_ends_all_with_what_there_is() {
+    let folder = tempfile::tempdir().expect("directory");
+    let system = written(folder.path(), "system.txt", &quadrics(18));
+    for name in ["-INT", "-TERM"] {
+        let mut command = on_ranks(3, &["solve", &system, "--start", "total-degree", "--json", "-", "--threads", "1"]);
+        let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("mpirun runs");
+        let first = waited(|| process(&child, 0));
+        end_to_end::wait_for_handler(first);
+        std::thread::sleep(Duration::from_millis(500));
+        let begun = Instant::now();
+        signal(name, first);
+        let output = child.wait_with_output().expect("mpirun ends");
+        assert!(begun.elapsed() < Duration::from_secs(60));
+        assert_eq!(output.status.code(), Some(130), "{}", said(&output));
+        assert!(said(&output).contains("interrupted; the result is partial"), "{}", said(&output));
+        let result: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        assert_eq!(result["partial"], true);
+    }
+}
+
+#[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs Open MPI: cargo test -p end-to-end --features mpi")]
+fn a_rank_that_dies_ends_all_and_the_checkpoint_goes_on() {
+    let folder = tempfile::tempdir().expect("directory");
+    let system = written(folder.path(), "system.txt", &quadrics(13));
+    let directory = text(&folder.path().join("run"));
+    let arguments = ["solve", &system, "--start", "total-degree", "--json", "-"];
+    let expected = untimed(&run("hc", &[&arguments[..], &["--threads", "2"]].concat()));
+    let recorded = [&arguments[..], &["--checkpoint", &directory, "--resume", "--threads", "1"]].concat();
+    let done = || {
+        let output = run("hc", &["solve", "--status", &directory]);
+        let status: Option<serde_json::Value> = serde_json::from_slice(&output.stdout).ok();
+        status.and_then(|status| status["done"].as_u64())
+    };
+    for (rank, paths) in [(1, 2048), (0, 4096)] {
+        let mut command = on_ranks(2, &recorded);
+        let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("mpirun runs");
+        let victim = waited(|| process(&child, rank));
+        waited(|| done().filter(|&done| done >= paths));
+        signal("-KILL", victim);
+        assert!(!child.wait().expect("mpirun ends").success());
+    }
+    let output = on_ranks(4, &recorded).output().expect("mpirun runs");
+    assert_eq!(untimed(&output), expected, "{}", said(&output));
+    assert!(said(&output).contains(&format!("{directory}: goes on after ")), "{}", said(&output));
+}
