@@ -5,7 +5,7 @@ use crate::network::Network;
 use crate::observations::Observations;
 use crate::plane::spread;
 use crate::pseudoranges::Pseudoranges;
-use crate::refine::covariance;
+use crate::refine::{Projection, covariance, dot};
 use hc::Monitor;
 
 /// The Cramer-Rao bound of a network's receivers: the root mean square over them of the smallest
@@ -18,9 +18,46 @@ use hc::Monitor;
 /// # Panics
 /// If network, measurements and outliers differ in size.
 pub fn cramer_rao(measured: &Pseudoranges, outliers: &[bool], truth: &Network, noise: f64) -> f64 {
+    bound(&without(measured, outliers), truth, noise)
+}
+
+/// [`cramer_rao`] where a delay in all measurements of one receiver is unknown too.
+///
+/// # Panics
+/// If network, measurements and outliers differ in size.
+pub fn cramer_rao_with_delay(
+    measured: &Pseudoranges,
+    outliers: &[bool],
+    truth: &Network,
+    noise: f64,
+    receiver: usize,
+) -> f64 {
+    let observations = without(measured, outliers);
+    let plain = bound(&observations, truth, noise);
+    let Some(projection) = Projection::new(&observations, truth, &Monitor::default()).ok().flatten() else {
+        return f64::INFINITY;
+    };
+    let part = |receives: bool, precision: f64| if receives { precision } else { 0.0 };
+    let column: Vec<f64> = observations.all().iter().map(|o| part(o.receiver == receiver, o.precision)).collect();
+    // What no motion makes of it tells its size; the motion that does moves the receivers with the
+    // size's variance.
+    let (rest, motion) = projection.off(&column);
+    let (left, all) = (dot(&rest, &rest), dot(&column, &column));
+    if left < 1e-9 * all {
+        return f64::INFINITY;
+    }
+    let added = noise * noise / left * dot(&motion.receivers, &motion.receivers) / truth.receivers.len() as f64;
+    (plain * plain + added).sqrt()
+}
+
+/// The measurements that are no outliers.
+fn without(measured: &Pseudoranges, outliers: &[bool]) -> Observations {
     let n = measured.transmitters();
-    let observations = Observations::new(measured, |i, j| !outliers[i * n + j]);
-    let Some(found) = covariance(&observations, truth, noise, &Monitor::default())
+    Observations::new(measured, |i, j| !outliers[i * n + j])
+}
+
+fn bound(observations: &Observations, truth: &Network, noise: f64) -> f64 {
+    let Some(found) = covariance(observations, truth, noise, &Monitor::default())
         .ok()
         .flatten()
         .filter(|found| found.loose.is_empty())
@@ -53,7 +90,7 @@ pub fn offset_error(found: &Network, truth: &Network) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{cramer_rao, offset_error, position_error};
+    use super::{cramer_rao, cramer_rao_with_delay, offset_error, position_error};
     use crate::simulate::{SimulateOptions, simulate};
 
     #[test]
@@ -71,6 +108,24 @@ mod tests {
         // A receiver that hears nothing may be anywhere.
         fewer[..12].fill(true);
         assert_eq!(bound(&fewer, 0.01), f64::INFINITY);
+    }
+
+    #[test]
+    fn an_unknown_delay_costs_certainty() {
+        let options = SimulateOptions { receivers: 8, transmitters: 12, seed: 3, ..SimulateOptions::default() };
+        let simulation = simulate(&options).unwrap();
+        let (measured, truth) = (&simulation.pseudoranges, &simulation.network);
+        let mut outliers = vec![false; 96];
+        let plain = cramer_rao(measured, &outliers, truth, 0.01);
+        for receiver in 0..8 {
+            let with = cramer_rao_with_delay(measured, &outliers, truth, 0.01, receiver);
+            assert!(with > plain && with.is_finite());
+            assert!((cramer_rao_with_delay(measured, &outliers, truth, 0.02, receiver) / with - 2.0).abs() < 1e-9);
+        }
+        // Two measurements place a receiver, of which nothing is left over for a delay.
+        outliers[..10].fill(true);
+        assert!(cramer_rao(measured, &outliers, truth, 0.01).is_finite());
+        assert_eq!(cramer_rao_with_delay(measured, &outliers, truth, 0.01, 0), f64::INFINITY);
     }
 
     #[test]

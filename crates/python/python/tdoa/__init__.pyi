@@ -64,6 +64,7 @@ class Alternative:
     offsets: _Floats
     residual: float
     log_likelihood_loss: float
+    receiver_error: dict[str, Any] | None
     def __init__(self, data: dict[str, Any]) -> None: ...
 
 class Calibration:

@@ -21,7 +21,11 @@ class Alternative:
     residual : float
         Root mean square of the residuals of its own inliers, metres.
     log_likelihood_loss : float
-        By how much the measurements are less likely than under the best network, natural logarithm.
+        By how much the measurements are less likely than under the best network, natural logarithm; with a receiver's error, by how
+        much less they tell of it than of one that is taken out.
+    receiver_error : dict or None
+        An error of a receiver without which the measurements fit this network, as in ``data["receiver_errors"]``: they hint at it,
+        too weakly for the result to have it.
     """
 
     def __init__(self, data):
@@ -30,6 +34,7 @@ class Alternative:
         self.offsets = _rows(data["offsets"], ())
         self.residual = data["residual"]
         self.log_likelihood_loss = data["log_likelihood_loss"]
+        self.receiver_error = data.get("receiver_error")
 
     def __repr__(self):
         return f"alternative, {self.log_likelihood_loss:.2f} less likely (natural logarithm)"

@@ -120,8 +120,13 @@ pub struct Alternative {
     pub offsets: Vec<Option<f64>>,
     /// Root mean square of the residuals of its own inliers.
     pub residual: f64,
-    /// By how much the measurements are less likely than under the best network, natural logarithm.
+    /// By how much the measurements are less likely than under the best network, natural logarithm; with
+    /// a receiver's error, by how much less they tell of it than of one that is taken out.
     pub log_likelihood_loss: f64,
+    /// An error of a receiver without which the measurements fit this network: they hint at it, too
+    /// weakly for the result to have it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub receiver_error: Option<ReceiverError>,
 }
 
 impl Calibration {

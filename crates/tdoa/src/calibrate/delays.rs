@@ -8,12 +8,13 @@ use hc::Monitor;
 use super::clocks::middle_delays;
 use super::deviation::{inlier_deviation, spread_of_residuals, typical_deviation};
 use super::finish::{CAUCHY, finish};
-use super::one_sided::mixture_of;
-use super::options::{CalibrateError, CalibrateOptions, Errors, ReceiverDelays, check};
+use super::near::Neighbour;
+use super::options::{CalibrateError, CalibrateOptions, ReceiverDelays, check};
 use super::ranking::truncated_cost;
-use super::receiver_errors::{Fault, ReceiverErrorKind, find, find_one_sided};
-use super::refits::refits;
+use super::receiver_errors::{Fault, ReceiverErrorKind};
+use super::refits::Found;
 use super::same::merged;
+use super::shown::{Shown, look};
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
@@ -29,10 +30,6 @@ const STEPS: usize = 12;
 /// measurement, is none.
 const LEAST_DEVIATIONS: f64 = 3.0;
 const LEAST_SHARE: f64 = 0.2;
-
-/// Where the size of an error by the linear test is off by more than this share, it is the fit that
-/// counts.
-const MISJUDGED: f64 = 0.2;
 
 /// Networks whose delays are estimated to the end where all receivers have one.
 const CANDIDATES: usize = 10;
@@ -64,6 +61,8 @@ pub(super) struct Cleared {
     pub(super) taken: Vec<Fault>,
     /// Errors that were found and left in.
     pub(super) left: Vec<Fault>,
+    /// Networks with an error that is worth a doubt.
+    pub(super) doubted: Vec<Neighbour>,
 }
 
 /// Errors with their sizes, the network beside them, and the deviation that is left.
@@ -81,23 +80,30 @@ impl Clearing<'_> {
             deviation,
             taken: Vec::new(),
             left: Vec::new(),
+            doubted: Vec::new(),
         };
         match self.options.receiver_delays {
-            ReceiverDelays::None => now.left = self.look(&now)?.0,
+            ReceiverDelays::None => {
+                let Shown { found, doubted, .. } = self.look(&now)?;
+                (now.left, now.doubted) = (found, now.doubts(doubted));
+            }
             ReceiverDelays::Auto => {
                 // Errors that were none once others were taken out.
                 let mut none: Vec<Fault> = Vec::new();
+                let mut rivals = Vec::new();
                 for _ in 0..ROUNDS {
-                    let (found, hidden) = self.look(&now)?;
+                    let shown = self.look(&now)?;
                     let known = |f: &Fault, t: &Fault| t.receiver == f.receiver && t.kind == f.kind;
                     let fresh = |f: &&Fault| !now.taken.iter().chain(&none).any(|t| known(f, t));
-                    let fresh: Vec<Fault> = found.iter().filter(fresh).copied().collect();
+                    let fresh: Vec<Fault> = shown.found.iter().filter(fresh).copied().collect();
                     if fresh.is_empty() {
-                        now.left = found;
+                        now.doubted = now.doubts(shown.doubted.into_iter().chain(rivals));
+                        now.left = shown.found;
                         break;
                     }
                     now.taken.extend(fresh);
-                    if let Some(network) = hidden {
+                    rivals = shown.rivals;
+                    if let Some(network) = shown.hidden {
                         let first = Refined { network, ..now.ranked[0].clone() };
                         now.ranked.insert(0, first);
                     }
@@ -113,50 +119,10 @@ impl Clearing<'_> {
         Ok(now)
     }
 
-    /// Errors that the best network shows, one of each receiver, or the one that it hides if that
-    /// tells more, with the network that does not.
-    fn look(&self, now: &Cleared) -> Result<(Vec<Fault>, Option<Network>), CalibrateError> {
-        let (observations, limit) = (&now.observations, self.options.inlier_threshold);
-        let (best, deviation) = (&now.ranked[0].network, now.deviation);
-        if self.options.errors == Errors::OneSided {
-            let mixture = mixture_of(observations, best, deviation);
-            return Ok((find_one_sided(observations, best, &mixture, self.monitor)?, None));
-        }
-        let mut unmoved = Vec::new();
-        loop {
-            let mut found = one_of_each(find(observations, best, deviation, limit, &unmoved, self.monitor)?);
-            found.retain(|fault| fault.length().abs() >= self.least_size(deviation));
-            let is_move = |fault: &Fault| fault.kind == ReceiverErrorKind::Move;
-            let doubted = found.iter().enumerate().filter(|(k, fault)| *k == 0 || is_move(fault));
-            let suspects: Vec<usize> = doubted.map(|(_, fault)| fault.receiver).collect();
-            let fitted = refits(observations, best, deviation, limit, &suspects, self.monitor)?;
-            let of = |receiver: usize| fitted.iter().find(|other| other.fault.receiver == receiver);
-            // What a move adds is not linear, and gross errors look like one: two places have to fit.
-            if let Some(refuted) = found.iter().find(|fault| is_move(fault) && of(fault.receiver).is_none()) {
-                unmoved.push(refuted.receiver);
-                continue;
-            }
-            let Some(hidden) = fitted.first() else { return Ok((found, None)) };
-            let Some(first) = found.first().copied() else {
-                return Ok((vec![hidden.fault], Some(hidden.network.clone())));
-            };
-            let unsure = is_move(&first) || of(first.receiver).is_some_and(|other| other.fault.kind != first.kind);
-            if hidden.fault.receiver != first.receiver && (unsure || hidden.fault.gain > first.gain) {
-                return Ok((vec![hidden.fault], Some(hidden.network.clone())));
-            }
-            // A size that the linear test has far too small is that of a network still bent.
-            let misjudged = (hidden.fault.length() - first.length()).abs() > MISJUDGED * hidden.fault.length().abs();
-            let better = unsure || misjudged || hidden.fault.gain > first.gain;
-            for fault in &mut found {
-                if let Some(other) = of(fault.receiver).filter(|other| other.fault.kind == ReceiverErrorKind::Move) {
-                    *fault = other.fault;
-                }
-            }
-            if better {
-                found[0] = hidden.fault;
-            }
-            return Ok((found, better.then(|| hidden.network.clone())));
-        }
+    /// Errors that the best network shows.
+    fn look(&self, now: &Cleared) -> Result<Shown, CalibrateError> {
+        let (best, least) = (&now.ranked[0].network, self.least_size(now.deviation));
+        look(&now.observations, best, now.deviation, least, self.options, self.monitor)
     }
 
     /// Smaller errors of receivers are none.
@@ -243,7 +209,7 @@ impl Clearing<'_> {
                 *offset += mean;
             }
         }
-        Ok(Cleared { measured, observations, ranked, deviation, taken, left: Vec::new() })
+        Ok(Cleared { measured, observations, ranked, deviation, taken, left: Vec::new(), doubted: Vec::new() })
     }
 
     /// Sizes of errors and a network brought near their best fit, with the deviation that is left:
@@ -361,39 +327,39 @@ impl Clearing<'_> {
         Ok(Some(steps).filter(|steps| steps.iter().all(|x| x.is_finite())))
     }
 
-    /// The measurements without these errors: the shorter part of a receiver that was moved is
-    /// missing.
     fn corrected(&self, faults: &[Fault]) -> Pseudoranges {
-        let (m, n) = (self.measured.receivers(), self.measured.transmitters());
-        let mut values = self.measured.values().to_vec();
-        debug_assert_eq!(values.len(), m * n);
-        for fault in faults {
-            let row = &mut values[fault.receiver * n..(fault.receiver + 1) * n];
-            if fault.kind == ReceiverErrorKind::Move {
-                let count = |part: &[f64]| part.iter().filter(|value| !value.is_nan()).count();
-                let (before, after) = row.split_at_mut(fault.from);
-                let shorter = if count(before) < count(after) { before } else { after };
-                shorter.fill(f64::NAN);
-            } else {
-                for (j, value) in row.iter_mut().enumerate() {
-                    *value -= fault.size[0] * fault.shape(j, n);
-                }
-            }
-        }
-        self.measured.with_values(values)
+        without_errors(self.measured, faults)
     }
 }
 
-/// The first error of each receiver: what remains beside it may be its own.
-fn one_of_each(mut found: Vec<Fault>) -> Vec<Fault> {
-    let mut seen = Vec::new();
-    found.retain(|fault| {
-        !seen.contains(&fault.receiver) && {
-            seen.push(fault.receiver);
-            true
+impl Cleared {
+    /// Errors that are worth a doubt, as neighbours of the best network.
+    pub(super) fn doubts(&self, doubted: impl IntoIterator<Item = Found>) -> Vec<Neighbour> {
+        let is_new = |f: &Found| !self.taken.iter().any(|t| t.receiver == f.fault.receiver && t.kind == f.fault.kind);
+        let of = |f: Found| Neighbour::new(&f.network, -f.lead, Some(f.fault), &self.ranked[0].network);
+        doubted.into_iter().filter(is_new).filter_map(of).collect()
+    }
+}
+
+/// The measurements without these errors: the shorter part of a receiver that was moved is missing.
+pub(super) fn without_errors(measured: &Pseudoranges, faults: &[Fault]) -> Pseudoranges {
+    let (m, n) = (measured.receivers(), measured.transmitters());
+    let mut values = measured.values().to_vec();
+    debug_assert_eq!(values.len(), m * n);
+    for fault in faults {
+        let row = &mut values[fault.receiver * n..(fault.receiver + 1) * n];
+        if fault.kind == ReceiverErrorKind::Move {
+            let count = |part: &[f64]| part.iter().filter(|value| !value.is_nan()).count();
+            let (before, after) = row.split_at_mut(fault.from);
+            let shorter = if count(before) < count(after) { before } else { after };
+            shorter.fill(f64::NAN);
+        } else {
+            for (j, value) in row.iter_mut().enumerate() {
+                *value -= fault.size[0] * fault.shape(j, n);
+            }
         }
-    });
-    found
+    }
+    measured.with_values(values)
 }
 
 /// Errors that are unknowns beside the network; of a move measurements are left out instead.

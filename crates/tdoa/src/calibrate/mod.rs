@@ -27,6 +27,7 @@ mod report_errors;
 mod rivals;
 mod same;
 mod search;
+mod shown;
 mod significance;
 mod submaps;
 mod truth;
@@ -126,7 +127,7 @@ pub fn calibrate_with(
     let Sought { ranked, neighbours, deviation, floor, starts, weak } = found.map_err(|error| error.placing(place))?;
     let so_far = place(Unfinished::of(&ranked[0].network, starts, ranked[0].starts));
     let clearing = Clearing { measured: &centred, known, floor, options, monitor };
-    let Cleared { measured: centred, observations, ranked, deviation, taken, left } =
+    let Cleared { measured: centred, observations, ranked, deviation, taken, left, doubted } =
         clearing.clear(ranked, deviation).map_err(|error| error.leaving(&so_far))?;
     let free = Free { observations, centred: &centred, known, floor };
     let held = free.hold(ranked, deviation, &usable, options, monitor).map_err(|error| error.leaving(&so_far))?;
@@ -134,7 +135,11 @@ pub fn calibrate_with(
     let Held { observations, ranked, deviation, anchors, speed, warnings, contradiction } = held;
     let solved = Solved {
         measured,
-        neighbours: if taken.is_empty() && anchors.is_none() { neighbours } else { Vec::new() },
+        neighbours: match (&anchors, taken.is_empty()) {
+            (Some(_), _) => Vec::new(),
+            (None, true) => neighbours.into_iter().chain(doubted).collect(),
+            (None, false) => doubted,
+        },
         taken: &taken,
         left: &left,
         usable: &usable,

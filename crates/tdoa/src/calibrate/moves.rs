@@ -117,7 +117,7 @@ impl Fitting<'_> {
         }
         let size = [after[0] - before[0], after[1] - before[1]];
         let fault = Fault { size, gain, ..Fault::new(receiver, ReceiverErrorKind::Move, from) };
-        Ok(Some(Found { fault, network, freedom }))
+        Ok(Some(Found { fault, network, freedom, lead: 0.0 }))
     }
 }
 

@@ -2,6 +2,7 @@
 //! another, too far for ellipses about one alone.
 
 use super::ranking::refit;
+use super::receiver_errors::Fault;
 use crate::align::align;
 use crate::network::Network;
 use crate::observations::Observations;
@@ -26,9 +27,11 @@ const LIKELY: f64 = 0.02;
 /// A neighbour of the best network.
 pub(super) struct Neighbour {
     pub(super) network: Network,
-    /// By how much the measurements are less likely than under the best network, natural logarithm;
-    /// not negative.
+    /// By how much the measurements are less likely than under the best network, natural logarithm; where
+    /// it has an error, by how much less they tell of that than they had to. Not negative.
     pub(super) loss: f64,
+    /// An error of a receiver that the measurements have under it.
+    pub(super) error: Option<Fault>,
     /// Where its receivers lie from those of the best network.
     shifts: Vec<[f64; 2]>,
 }
@@ -63,26 +66,39 @@ pub(super) fn neighbours(
     let mut found: Vec<Neighbour> = Vec::new();
     for network in near {
         let (network, cost) = refit(observations, &network, deviation, monitor)?;
-        let Some(alignment) = align(&network.receivers, &centre.receivers, false) else { continue };
-        let network = alignment.transform.apply_network(&network);
-        let shifts = network.receivers.iter().zip(&centre.receivers).map(|(p, q)| [p[0] - q[0], p[1] - q[1]]).collect();
+        let Some(next) = Neighbour::new(&network, (cost - least).max(0.0), None, &centre) else { continue };
         let limit = ONE_MINIMUM * centre.size();
         let known =
-            |k: &Neighbour| align(&network.receivers, &k.network.receivers, false).is_none_or(|a| a.rms <= limit);
-        if alignment.rms > limit && !found.iter().any(known) {
-            found.push(Neighbour { network, loss: (cost - least).max(0.0), shifts });
+            |k: &Neighbour| align(&next.network.receivers, &k.network.receivers, false).is_none_or(|a| a.rms <= limit);
+        if next.rms() > limit && !found.iter().any(known) {
+            found.push(next);
         }
     }
     Ok(found)
 }
 
 impl Neighbour {
+    /// A network as a neighbour of this one; `None` where receivers coincide.
+    pub(super) fn new(network: &Network, loss: f64, error: Option<Fault>, centre: &Network) -> Option<Neighbour> {
+        let network = align(&network.receivers, &centre.receivers, false)?.transform.apply_network(network);
+        let shifts = network.receivers.iter().zip(&centre.receivers).map(|(p, q)| [p[0] - q[0], p[1] - q[1]]).collect();
+        Some(Neighbour { network, loss, error, shifts })
+    }
+
+    /// How far its receivers lie from those of the best network, root mean square.
+    pub(super) fn rms(&self) -> f64 {
+        (self.square() / self.shifts.len() as f64).sqrt()
+    }
+
+    fn square(&self) -> f64 {
+        self.shifts.iter().map(|s| s[0] * s[0] + s[1] * s[1]).sum()
+    }
+
     /// How far its receivers lie from those of the best network, in standard deviations, root mean
     /// square.
     pub(super) fn distance(&self, uncertainty: &Covariance) -> f64 {
-        let square: f64 = self.shifts.iter().map(|s| s[0] * s[0] + s[1] * s[1]).sum();
         let variance: f64 = uncertainty.receivers.iter().map(|c| c[0][0] + c[1][1]).sum();
-        (square / variance).sqrt()
+        (self.square() / variance).sqrt()
     }
 }
 
@@ -116,7 +132,7 @@ mod tests {
     fn the_ellipse_reaches_a_neighbour_that_is_as_likely() {
         let mut uncertainty = Covariance { receivers: vec![[[1.0, 0.0], [0.0, 1.0]]; 2], ..Default::default() };
         let shifts = vec![[3.0, 0.0], [0.0, 0.0]];
-        let neighbour = |loss| Neighbour { network: Default::default(), loss, shifts: shifts.clone() };
+        let neighbour = |loss| Neighbour { network: Default::default(), loss, error: None, shifts: shifts.clone() };
         // Half of the mixture lies 3 to the side: its variance about the best is 1 + 9/2, and 9/6
         // more for a radius of sqrt 6.
         widen(&mut uncertainty, &[neighbour(0.0)], 6f64.sqrt());

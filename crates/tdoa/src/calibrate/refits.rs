@@ -12,7 +12,7 @@ use super::finish::CAUCHY;
 use super::options::{CalibrateError, check};
 use super::ranking::{OUTLIER_COST, refit, truncated_cost};
 use super::receiver_errors::{Fault, ReceiverErrorKind, SIDE, spread_of_receiver, tests};
-use super::significance::{least_gain, least_surprise, surprise};
+use super::significance::{doubt, least_gain, least_surprise, surprise};
 use crate::loss::Loss;
 use crate::multilateration::solve3;
 use crate::network::Network;
@@ -44,28 +44,30 @@ pub(super) struct Found {
     pub(super) network: Network,
     /// Measurements left over.
     pub(super) freedom: f64,
+    /// How much more it explains than chance would; of a doubt not positive.
+    pub(super) lead: f64,
 }
 
 impl Found {
-    /// How much more it explains than chance would.
-    fn lead(&self, observations: &Observations, kept: usize) -> f64 {
+    fn leading(self, observations: &Observations, kept: usize) -> Found {
         let is_move = self.fault.kind == ReceiverErrorKind::Move;
         let told = surprise(self.fault.gain, self.freedom, if is_move { 2 } else { 1 });
         let tested = told - least_surprise(tests(self.fault.kind, observations.receivers, kept));
         // A move has one more unknown than other errors (Schwarz 1978).
-        tested - if is_move { 0.5 * (kept as f64).ln() } else { 0.0 }
+        Found { lead: tested - if is_move { 0.5 * (kept as f64).ln() } else { 0.0 }, ..self }
     }
 }
 
-/// The error of each receiver that explains most, if more than chance would, most telling first.
+/// The error of each receiver that explains most, if more than chance would, most telling first; then
+/// those that are worth a doubt.
 /// Receivers are those whose measurements were given up, and `suspects`: where nothing was given up,
-/// the score test has seen all other errors.
+/// the score test has seen all other errors. Those of `suspects` are fitted from the best network too.
 pub(super) fn refits(
     observations: &Observations,
     best: &Network,
     deviation: f64,
     limit: f64,
-    suspects: &[usize],
+    suspects: &[Fault],
     monitor: &Monitor,
 ) -> Result<Vec<Found>, CalibrateError> {
     let mut given_up = vec![0usize; observations.receivers];
@@ -79,20 +81,24 @@ pub(super) fn refits(
     }
     let (base, cost) = refit(observations, best, deviation, monitor)?;
     let mut order: Vec<usize> = (0..observations.receivers).collect();
-    order.sort_by_key(|&i| (!suspects.contains(&i), std::cmp::Reverse(given_up[i])));
+    let of = |i: usize| suspects.iter().filter(move |suspect| suspect.receiver == i);
+    order.sort_by_key(|&i| (of(i).count() == 0, std::cmp::Reverse(given_up[i])));
     order.truncate(tried);
-    let mut found: Vec<(f64, Found)> = Vec::new();
+    let mut found: Vec<Found> = Vec::new();
     let fitting = Fitting { observations, base: &base, cost, deviation, limit, monitor };
     for receiver in order {
         check(monitor)?;
         // One gross error alone is no move.
-        let may_have_moved = given_up[receiver] > 1 || suspects.contains(&receiver);
-        let fits = fitting.receiver(receiver, may_have_moved)?;
-        let leads = fits.into_iter().map(|next| (next.lead(observations, kept), next));
-        found.extend(leads.filter(|(lead, _)| *lead > 0.0).max_by(|a, b| a.0.total_cmp(&b.0)));
+        let may_have_moved = given_up[receiver] > 1 || of(receiver).count() > 0;
+        let mut fits = fitting.receiver(receiver, may_have_moved)?;
+        for suspect in of(receiver).filter(|suspect| suspect.kind != ReceiverErrorKind::Move) {
+            fits.extend(fitting.joint(base.clone(), Fault { size: [0.0; 2], ..*suspect })?);
+        }
+        let fits = fits.into_iter().map(|next| next.leading(observations, kept));
+        found.extend(fits.filter(|next| next.lead > -doubt()).max_by(|a, b| a.lead.total_cmp(&b.lead)));
     }
-    found.sort_by(|a, b| b.0.total_cmp(&a.0));
-    Ok(found.into_iter().map(|(_, found)| found).collect())
+    found.sort_by(|a, b| b.lead.total_cmp(&a.lead));
+    Ok(found)
 }
 
 /// What errors are fitted to.
@@ -127,7 +133,8 @@ impl Fitting<'_> {
         let bent = Refiner::new(&others, 1.0).heeding(self.monitor).refine(self.base.clone(), &options).network;
         let (alone, cost) = refit(&others, &bent, self.deviation, self.monitor)?;
         // No error can bring the cost below that of the others.
-        if !alone.is_finite() || self.cost - cost < least_gain(tests(ReceiverErrorKind::Delay, others.receivers, 1)) {
+        let least = least_gain(tests(ReceiverErrorKind::Delay, others.receivers, 1)) - doubt();
+        if !alone.is_finite() || self.cost - cost < least {
             return Ok(Vec::new());
         }
         let moved = if may_have_moved { self.moved(receiver, &alone)? } else { None };
@@ -174,7 +181,7 @@ impl Fitting<'_> {
         let with_error = observations.beside(self.observations.others() + 1);
         let size = fault.size[0];
         let gain = self.gain(&with_error, &network, &[fault.receiver], Some(size * size * square))?;
-        Ok(gain.map(|(gain, freedom)| Found { fault: Fault { gain, ..fault }, network, freedom }))
+        Ok(gain.map(|(gain, freedom)| Found { fault: Fault { gain, ..fault }, network, freedom, lead: 0.0 }))
     }
 
     /// Whether a fit costs less than another, with the smaller of the deviations that they leave: with

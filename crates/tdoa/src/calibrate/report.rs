@@ -2,6 +2,7 @@
 //! warnings.
 
 use super::calibration::{Alternative, Calibration};
+use super::delays::without_errors;
 use super::deviation::{inlier_deviation, typical_deviation};
 use super::known::{Anchors, SpeedEstimate};
 use super::near::{BEYOND, Neighbour, widen};
@@ -67,14 +68,14 @@ impl Solved<'_> {
             None => inlier_deviation(self.observations, best, self.deviation, options.inlier_threshold),
         };
         let sigma = self.known.unwrap_or(estimated);
-        let inlier = |network: &Network, i: usize, j: usize| -> bool {
-            let residual = self.centred.get(i, j).map(|f| f - network.pseudorange(i, j));
+        let inlier = |measured: &Pseudoranges, network: &Network, i: usize, j: usize| -> bool {
+            let residual = measured.get(i, j).map(|f| f - network.pseudorange(i, j));
             let deviation = sigma * self.centred.sigma(i, j).unwrap_or(1.0);
             residual.is_some_and(|e| e.abs() <= options.inlier_threshold * deviation)
         };
         let held = self.observations.held();
         let is_held = held.contains(&true) || !self.observations.pins().is_empty();
-        let kept = Observations::new(self.centred, |i, j| inlier(best, i, j))
+        let kept = Observations::new(self.centred, |i, j| inlier(self.centred, best, i, j))
             .holding(held)
             .pinned(self.observations.pins())
             .beside(self.observations.others());
@@ -130,26 +131,27 @@ impl Solved<'_> {
         let mut residuals = vec![vec![None; n]; m];
         for (a, &i) in rows.iter().enumerate() {
             for (b, &j) in columns.iter().enumerate() {
-                inliers[i][j] = inlier(best, a, b);
+                inliers[i][j] = inlier(self.centred, best, a, b);
                 residuals[i][j] = self.centred.get(a, b).map(|f| f - best.pseudorange(a, b));
             }
         }
-        let rms = |network: &Network| -> f64 {
+        let rms = |measured: &Pseudoranges, network: &Network| -> f64 {
             let cells = (0..rows.len()).flat_map(|a| (0..columns.len()).map(move |b| (a, b)));
             let squares: Vec<f64> = cells
-                .filter(|&(a, b)| inlier(network, a, b))
-                .filter_map(|(a, b)| self.centred.get(a, b).map(|f| (f - network.pseudorange(a, b)).powi(2)))
+                .filter(|&(a, b)| inlier(measured, network, a, b))
+                .filter_map(|(a, b)| measured.get(a, b).map(|f| (f - network.pseudorange(a, b)).powi(2)))
                 .collect();
             (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
         };
-        let others = self.ranked[1..].iter().map(|other| (&other.network, other.objective - self.ranked[0].objective));
-        let mut others: Vec<(&Network, f64)> =
-            others.chain(apart.iter().map(|other| (&other.network, other.loss))).collect();
-        others.retain(|(_, loss)| *loss <= options.alternative_margin);
+        let best_cost = self.ranked[0].objective;
+        let others = self.ranked[1..].iter().map(|other| (&other.network, other.objective - best_cost, None));
+        let mut others: Vec<(&Network, f64, Option<&Fault>)> =
+            others.chain(apart.iter().map(|other| (&other.network, other.loss, other.error.as_ref()))).collect();
+        others.retain(|(_, loss, _)| *loss <= options.alternative_margin);
         others.sort_by(|a, b| a.1.total_cmp(&b.1));
         let alternatives: Vec<Alternative> = others
             .iter()
-            .filter_map(|&(other, loss)| {
+            .filter_map(|&(other, loss, error)| {
                 let network = if is_held {
                     other.clone()
                 } else {
@@ -159,21 +161,28 @@ impl Solved<'_> {
                     receivers: spread_rows(&network.receivers),
                     transmitters: spread_columns(&network.transmitters),
                     offsets: offsets(&network),
-                    residual: rms(&network),
+                    residual: match error {
+                        Some(error) => rms(&without_errors(self.centred, &[*error]), &network),
+                        None => rms(self.centred, &network),
+                    },
                     log_likelihood_loss: loss,
+                    receiver_error: error.map(|error| self.receiver_error(error, true)),
                 })
             })
             .collect();
         let near = apart.iter().any(|other| other.loss <= options.alternative_margin);
-        let receivers_agree = !near && others.iter().all(|(other, _)| same_receivers(other, best));
-        let transmitters_agree = others.iter().all(|(other, _)| same_transmitters(other, best));
-        if !alternatives.is_empty() {
+        let receivers_agree = !near && others.iter().all(|(other, ..)| same_receivers(other, best));
+        let transmitters_agree = !near && others.iter().all(|(other, ..)| same_transmitters(other, best));
+        for (other, error) in apart.iter().filter_map(|other| Some((other, other.error.as_ref()?))) {
+            warnings.push(self.doubt(error, other.rms()));
+        }
+        let plain = alternatives.iter().filter(|other| other.receiver_error.is_none()).count();
+        if plain > 0 {
             warnings.push(format!(
-                "{} other network{} explain{} the measurements about as well (see alternatives){}; add receivers or transmitters, \
+                "{plain} other network{} explain{} the measurements about as well (see alternatives){}; add receivers or transmitters, \
                  or give --sigma if the noise is known",
-                alternatives.len(),
-                if alternatives.len() == 1 { "" } else { "s" },
-                if alternatives.len() == 1 { "s" } else { "" },
+                if plain == 1 { "" } else { "s" },
+                if plain == 1 { "s" } else { "" },
                 if receivers_agree { ", with the same receivers and other transmitters" } else { "" },
             ));
         }
@@ -228,7 +237,7 @@ impl Solved<'_> {
             sigma,
             sigma_estimated: self.known.is_none(),
             sigma_is_factor: self.measured.has_sigmas(),
-            residual_rms: rms(best),
+            residual_rms: rms(self.centred, best),
             redundancy,
             ellipse_radius,
             receiver_std: Vec::new(),

@@ -6,6 +6,7 @@ use super::receiver_errors::{Fault, MovedPlace, ReceiverError, ReceiverErrorKind
 use super::report::Solved;
 use crate::degeneracy::list;
 use crate::observations::Observations;
+use crate::quantity::length;
 use crate::refine::{Cancelled, Covariance, Motion, Projection, check, covariance};
 use faer::Mat;
 use faer::prelude::Solve;
@@ -25,6 +26,20 @@ fn add(covariance: &mut Covariance, factor: f64, p: &Motion, q: &Motion) {
                 *entry += factor * s * t;
             }
         }
+    }
+}
+
+/// What a receiver has, in words after "has".
+fn what_is_wrong(error: &ReceiverError, metre: f64) -> String {
+    let size = metre * error.size;
+    let from = error.from.as_deref().unwrap_or_default();
+    match error.kind {
+        ReceiverErrorKind::Delay => format!("a delay of {size:.3} m in all its measurements"),
+        ReceiverErrorKind::Drift => {
+            format!("a clock that drifts by {size:.3} m from the first transmitter to the last")
+        }
+        ReceiverErrorKind::Jump => format!("a clock that jumps by {size:.3} m at transmitter {from}"),
+        ReceiverErrorKind::Move => format!("been moved by about {size:.3} m before transmitter {from}"),
     }
 }
 
@@ -78,20 +93,39 @@ impl Solved<'_> {
     }
 
     pub(super) fn receiver_errors(&self) -> Vec<ReceiverError> {
-        let named = |fault: &Fault, taken_out: bool| {
-            let later = matches!(fault.kind, ReceiverErrorKind::Jump | ReceiverErrorKind::Move);
-            ReceiverError {
-                receiver: self.centred.receiver_names()[fault.receiver].clone(),
-                kind: fault.kind,
-                from: later.then(|| self.centred.transmitter_names()[fault.from].clone()),
-                place: (taken_out && fault.kind == ReceiverErrorKind::Move).then(|| self.place_of(fault)),
-                size: fault.length(),
-                gain: fault.gain,
-                taken_out,
-            }
-        };
-        let taken = self.taken.iter().map(|fault| named(fault, true));
-        taken.chain(self.left.iter().map(|fault| named(fault, false))).collect()
+        let taken = self.taken.iter().map(|fault| self.receiver_error(fault, true));
+        taken.chain(self.left.iter().map(|fault| self.receiver_error(fault, false))).collect()
+    }
+
+    pub(super) fn receiver_error(&self, fault: &Fault, taken_out: bool) -> ReceiverError {
+        let later = matches!(fault.kind, ReceiverErrorKind::Jump | ReceiverErrorKind::Move);
+        ReceiverError {
+            receiver: self.centred.receiver_names()[fault.receiver].clone(),
+            kind: fault.kind,
+            from: later.then(|| self.centred.transmitter_names()[fault.from].clone()),
+            place: (taken_out && fault.kind == ReceiverErrorKind::Move).then(|| self.place_of(fault)),
+            size: fault.length(),
+            gain: fault.gain,
+            taken_out,
+        }
+    }
+
+    /// What to do about an error that is worth a doubt, with which receivers lie this far elsewhere.
+    pub(super) fn doubt(&self, fault: &Fault, apart: f64) -> String {
+        let error = self.receiver_error(fault, true);
+        let metre = self.metre();
+        format!(
+            "receiver {} may have {}, which these measurements cannot tell for sure; without it the receivers lie {} elsewhere (see \
+             alternatives); check that receiver, or measure more transmitters",
+            error.receiver,
+            what_is_wrong(&error, metre),
+            length(metre * apart)
+        )
+    }
+
+    /// Metres of one metre before the propagation speed was estimated.
+    fn metre(&self) -> f64 {
+        self.speed.map_or(1.0, |speed| speed.factor)
     }
 
     /// Which place of a receiver that was moved is in the result: what it measured at the other one was
@@ -104,7 +138,7 @@ impl Solved<'_> {
     /// Warnings that name the receivers, what is wrong with them, by how much, and what to do.
     pub(super) fn warn_of_receivers(&self, options: &CalibrateOptions, warnings: &mut Vec<String>) {
         let all = options.receiver_delays == ReceiverDelays::All;
-        let metre = self.speed.map_or(1.0, |speed| speed.factor);
+        let metre = self.metre();
         let delays = |f: &&Fault| f.kind == ReceiverErrorKind::Delay;
         if self.left.iter().filter(delays).count() > 4 {
             let names: Vec<String> =
@@ -120,16 +154,9 @@ impl Solved<'_> {
             return;
         }
         for error in self.receiver_errors() {
-            let (name, size) = (&error.receiver, metre * error.size);
+            let name = &error.receiver;
             let from = error.from.as_deref().unwrap_or_default();
-            let what = match error.kind {
-                ReceiverErrorKind::Delay => format!("a delay of {size:.3} m in all its measurements"),
-                ReceiverErrorKind::Drift => {
-                    format!("a clock that drifts by {size:.3} m from the first transmitter to the last")
-                }
-                ReceiverErrorKind::Jump => format!("a clock that jumps by {size:.3} m at transmitter {from}"),
-                ReceiverErrorKind::Move => format!("been moved by about {size:.3} m before transmitter {from}"),
-            };
+            let what = what_is_wrong(&error, metre);
             let remedy = match (error.taken_out, error.kind) {
                 (true, ReceiverErrorKind::Move) => {
                     let place = if error.place == Some(MovedPlace::After) { "after" } else { "before" };

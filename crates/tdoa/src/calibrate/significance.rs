@@ -3,9 +3,17 @@
 /// Probability of a false alarm in data with normal noise, at most.
 const FALSE_ALARM: f64 = 5e-3;
 
+/// The same for errors that are no more than doubts.
+const FALSE_DOUBT: f64 = 0.1;
+
 /// Surprise above which the best of so many tests of each of the four kinds is no chance.
 pub(super) fn least_surprise(tests: f64) -> f64 {
     (tests * 4.0 / FALSE_ALARM).ln()
+}
+
+/// By how much less surprise is worth a doubt.
+pub(super) fn doubt() -> f64 {
+    (FALSE_DOUBT / FALSE_ALARM).ln()
 }
 
 /// A gain below which no error of one size has that surprise: the gain it has is below it by less
