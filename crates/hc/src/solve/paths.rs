@@ -142,12 +142,15 @@ impl<E: Evaluate, S: Source<E>> Work for Stage<'_, '_, E, S> {
         let mut ended = Vec::new();
         let open = batch.extract_if(.., |record| record.is_open());
         let open: Vec<Record> = open.filter(|r| closed.remove(&r.path).map(|r| ended.push(r)).is_none()).collect();
-        for portion in open.chunks(PORTION) {
-            ended.extend(self.ended(portion, round, self.route.monitor));
-        }
         for record in ended {
             self.take(&record);
             batch.push(record);
+        }
+        for portion in open.chunks(PORTION) {
+            for record in self.ended(portion, round, self.route.monitor) {
+                self.take(&record);
+                batch.push(record);
+            }
         }
         self.round.regular += batch.iter().filter(|record| self.regular.contains_key(&record.path)).count();
         if self.is_whole() {
