@@ -10,7 +10,7 @@ pub(crate) struct Recording {
     /// Record what is finished in this directory, so that the run can go on after it was killed.
     #[arg(long, value_name = "DIR")]
     checkpoint: Option<PathBuf>,
-    /// Go on with what the directory of --checkpoint has, of the same system and options (but
+    /// Go on with what the directory of --checkpoint has, of the same input and options (but
     /// --threads); start from the beginning where it has nothing. The result is that of a run
     /// without interruption.
     #[arg(long, requires = "checkpoint")]
@@ -28,6 +28,11 @@ impl Recording {
     /// The directory whose status is asked for.
     pub(crate) fn status(&self) -> Option<&Path> {
         self.status.as_deref()
+    }
+
+    /// A file that is needed unless the status is asked for.
+    pub(crate) fn needed<'a>(file: &'a Option<PathBuf>, what: &str) -> Result<&'a Path, Failure> {
+        file.as_deref().ok_or_else(|| Failure::Unusable(format!("give the file of {what}")))
     }
 
     /// The checkpoint that was asked for, if any. What there is to be said about it is said on

@@ -3,12 +3,20 @@
 use crate::input;
 use cli::Failure;
 use hc::family::StartFile;
-use hc::{Family, Fibre};
+use hc::{Family, FamilyError, Fibre};
 use std::path::Path;
 
 /// Reads a family.
 pub(crate) fn read(path: &Path) -> Result<Family, Failure> {
     input::text(path)?.parse().map_err(|e| Failure::in_file(path, e))
+}
+
+/// Why the work on a family of this file failed.
+pub(crate) fn failure(file: &Path, error: FamilyError) -> Failure {
+    match error {
+        FamilyError::Checkpoint(error) => Failure::unusable(error),
+        error => Failure::in_file(file, error),
+    }
 }
 
 /// Reads a stored fibre, or a first pair, of a family.

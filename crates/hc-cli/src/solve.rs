@@ -1,7 +1,8 @@
 //! `hc solve`.
 
+use crate::checkpoint::{self, Recording};
 use crate::report::Report;
-use crate::{checkpoint, input, ranks, watch};
+use crate::{input, ranks, watch};
 use cli::{Failure, output};
 use hc::ranks::{Ranks, RanksOptions};
 use hc::{SolveError, SolveOptions, Start, solve_on_ranks, solve_recorded, solve_watched};
@@ -45,7 +46,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     torus_only: bool,
     #[command(flatten)]
-    checkpoint: checkpoint::Recording,
+    checkpoint: Recording,
     #[command(flatten)]
     ranks: ranks::Sharing,
 }
@@ -86,7 +87,7 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
         output::check(&[("--json", arguments.json.as_deref())])?;
     }
     let begun = Instant::now();
-    let Some(file) = &arguments.file else { return Err(Failure::unusable("give the file of a system")) };
+    let file = Recording::needed(&arguments.file, "a system")?;
     let system = input::system(file)?;
     if arguments.certify && system.len() != system.variables().len() {
         let message = "only systems of as many equations as unknowns can be certified; leave out --certify";

@@ -1,5 +1,6 @@
 //! `hc track`.
 
+use crate::checkpoint::{self, Recording};
 use crate::input::{self, Number};
 use crate::report::Report;
 use crate::{family, watch};
@@ -8,7 +9,7 @@ use hc::{Solutions, SolveOptions};
 use num_complex::Complex64;
 use serde::Deserialize;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
@@ -22,13 +23,14 @@ const LISTED: usize = 10;
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The family (TOML).
-    family: PathBuf,
+    #[arg(required_unless_present = "status")]
+    family: Option<PathBuf>,
     /// Its fibre, as `hc monodromy` writes it.
-    #[arg(long)]
-    start: PathBuf,
+    #[arg(long, required_unless_present = "status")]
+    start: Option<PathBuf>,
     /// JSON {"parameters": [number or [re, im], ...]}, or a list of such.
-    #[arg(long)]
-    target: PathBuf,
+    #[arg(long, required_unless_present = "status")]
+    target: Option<PathBuf>,
     /// Prove that the solutions exist and are distinct, by interval arithmetic, for the parameters
     /// as they are in double precision. Exit status 1 if some regular one is not certified.
     #[arg(long)]
@@ -42,6 +44,8 @@ pub(crate) struct Arguments {
     /// File for the solutions (JSON); - for standard output instead of the summary.
     #[arg(long)]
     json: Option<PathBuf>,
+    #[command(flatten)]
+    checkpoint: Recording,
 }
 
 #[derive(Deserialize)]
@@ -57,11 +61,16 @@ struct Target {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if let Some(directory) = arguments.checkpoint.status() {
+        return checkpoint::status(directory);
+    }
     output::check(&[("--json", arguments.json.as_deref())])?;
     let begun = Instant::now();
-    let family = family::read(&arguments.family)?;
-    let fibre = family::fibre(&family, &arguments.start)?;
-    let (targets, single) = targets(arguments, fibre.parameters.len())?;
+    let file = Recording::needed(&arguments.family, "a family")?;
+    let family = family::read(file)?;
+    let fibre = family::fibre(&family, Recording::needed(&arguments.start, "its fibre")?)?;
+    let target = Recording::needed(&arguments.target, "targets")?;
+    let (targets, single) = targets(target, fibre.parameters.len())?;
     let monitor = watch::interruptible()?;
     let done = AtomicU64::new(0);
     let count = targets.len() as u64;
@@ -69,14 +78,20 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let (position, length, words) = watch::stages(p);
         if count == 1 { (position, length, words) } else { (done.load(Ordering::Relaxed), count, "targets".to_owned()) }
     };
-    let options = SolveOptions::new().certify(arguments.certify);
+    let options = SolveOptions::new().seed(arguments.seed).certify(arguments.certify);
+    let checkpoint = arguments.checkpoint.open()?;
     let solved = watch::watched(arguments.threads, &monitor, describe, || {
-        family.track(&fibre, &targets).options(&options).watched(&monitor).transform(|_, found| {
+        let all = family.track(&fibre, &targets).options(&options).watched(&monitor);
+        let all = match &checkpoint {
+            Some(checkpoint) => all.recorded(checkpoint),
+            None => all,
+        };
+        all.transform(|_, found| {
             done.fetch_add(1, Ordering::Relaxed);
             (found, begun.elapsed().as_secs_f64())
         })
     })?;
-    let solved: Vec<(Solutions, f64)> = solved.map_err(|error| Failure::in_file(&arguments.family, error))?;
+    let solved: Vec<(Solutions, f64)> = solved.map_err(|error| family::failure(file, error))?;
     let reports: Vec<Report<'_>> =
         solved.iter().map(|(found, seconds)| Report::new(found, arguments.seed, *seconds)).collect();
     if let Some(path) = &arguments.json {
@@ -87,7 +102,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     output::summary(arguments.json.as_deref(), || summary(&solved, begun.elapsed().as_secs_f64()))?;
     if solved.len() < targets.len() || solved.iter().any(|(found, _)| found.interrupted) {
-        return Err(Failure::Interrupted);
+        return Err(arguments.checkpoint.interrupted());
     }
     let failed: usize = solved.iter().map(|(found, _)| found.paths.failed).sum();
     if failed > 0 {
@@ -101,8 +116,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// The targets, and whether the file is a single one rather than a list.
-fn targets(arguments: &Arguments, parameters: usize) -> Result<(Vec<Vec<Complex64>>, bool), Failure> {
-    let file = &arguments.target;
+fn targets(file: &Path, parameters: usize) -> Result<(Vec<Vec<Complex64>>, bool), Failure> {
     let targets: Targets = serde_json::from_str(&input::text(file)?).map_err(|e| {
         Failure::in_file(file, format!("{e}; expected {{\"parameters\": [number or [re, im], ...]}} or a list of such"))
     })?;

@@ -1,7 +1,8 @@
-//! `hc solve --checkpoint`: runs that are killed and go on.
+//! `hc solve`, `track` and so on with `--checkpoint`: runs that are killed and go on.
 
-use end_to_end::{program, run};
-use serde_json::Value;
+use end_to_end::{program, root, run};
+use hc::random::{Random, Stream};
+use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
@@ -26,12 +27,11 @@ fn solve<'a>(system: &'a str, threads: &'a str, more: &[&'a str]) -> Vec<&'a str
     first.iter().chain(more).copied().collect()
 }
 
-/// Standard output without the line that says how long it took.
+/// Standard output without the lines that say how long it took.
 fn untimed(output: &Output) -> String {
     assert!(output.status.success(), "{}", said(output));
     let text = String::from_utf8(output.stdout.clone()).expect("text");
     let lines: Vec<&str> = text.lines().filter(|line| !line.trim_start().starts_with("\"seconds\":")).collect();
-    assert_eq!(lines.len() + 1, text.lines().count());
     lines.join("\n")
 }
 
@@ -60,33 +60,72 @@ fn wait_for(child: &mut Child, directory: &str, paths: u64) {
     }
 }
 
-#[test]
-fn killed_at_any_moment_it_goes_on_to_the_same_bytes() {
-    let folder = tempfile::tempdir().expect("directory");
-    let directory = text(&folder.path().join("run"));
-    // Four batches of 2,048 paths.
-    let system = quadrics(folder.path(), 13);
-    let expected = untimed(&run("hc", &solve(&system, "2", &[])));
-    // Twice killed once it has recorded more, and once soon after it has begun.
-    for (threads, paths) in [("2", 2048), ("1", 4096), ("2", 0)] {
-        let mut child = spawned(&solve(&system, threads, &["--checkpoint", &directory, "--resume"]));
-        wait_for(&mut child, &directory, paths);
-        if paths > 0 {
-            let status = status(&directory).expect("a status");
-            assert_eq!((&status["what"], &status["total"]), (&"solve".into(), &8192.into()));
-            assert!(status["solutions"].as_u64() <= status["done"].as_u64(), "{status}");
+/// Kills what these arguments do twice once it has recorded so much more, and once soon after it has
+/// begun; it goes on to the same standard output, on another number of threads. Returns the status
+/// then.
+fn kills(folder: &Path, arguments: &[&str], moments: [u64; 2]) -> Value {
+    let directory = text(&folder.join("run"));
+    let with = |threads: &str, more: &[&str]| {
+        let all = [arguments, &["--threads", threads], more].concat();
+        all.into_iter().map(str::to_owned).collect::<Vec<String>>()
+    };
+    let resume = ["--checkpoint", &directory, "--resume"];
+    fn refs(arguments: &[String]) -> Vec<&str> {
+        arguments.iter().map(String::as_str).collect()
+    }
+    let expected = untimed(&run("hc", &refs(&with("2", &[]))));
+    for (threads, done) in [("2", moments[0]), ("1", moments[1]), ("2", 0)] {
+        let mut child = spawned(&refs(&with(threads, &resume)));
+        wait_for(&mut child, &directory, done);
+        if done > 0 {
+            assert_eq!(status(&directory).expect("a status")["what"], arguments[0]);
         }
         child.kill().expect("killed");
         child.wait().expect("a child");
         assert_eq!(status(&directory).expect("a status")["running"], false);
     }
     let before = status(&directory).expect("a status")["done"].as_u64();
-    assert!(before >= Some(2048), "{before:?}");
-    let resumed = run("hc", &solve(&system, "1", &["--checkpoint", &directory, "--resume"]));
+    assert!(before >= Some(moments[0]), "{before:?}");
+    let resumed = run("hc", &refs(&with("1", &resume)));
     assert_eq!(untimed(&resumed), expected);
     assert!(said(&resumed).contains(&format!("{directory}: goes on after ")), "{}", said(&resumed));
-    let after = status(&directory).expect("a status");
-    assert_eq!((&after["done"], &after["solutions"]), (&8192.into(), &8192.into()));
+    status(&directory).expect("a status")
+}
+
+#[test]
+fn a_solve_that_is_killed_at_any_moment_goes_on_to_the_same_bytes() {
+    let folder = tempfile::tempdir().expect("directory");
+    // Four batches of 2,048 paths.
+    let system = quadrics(folder.path(), 13);
+    let arguments = ["solve", &system, "--start", "total-degree", "--seed", "1", "--json", "-"];
+    let after = kills(folder.path(), &arguments, [2048, 4096]);
+    assert_eq!((&after["done"], &after["total"], &after["solutions"]), (&8192.into(), &8192.into(), &8192.into()));
+}
+
+/// The family of five points in two cameras, its fibre of 20 solutions, and a file of targets.
+fn five_points(folder: &Path, targets: usize) -> [String; 3] {
+    let family = text(&root().join("examples/families/five_point.toml"));
+    let path = folder.join(format!("targets{targets}.json"));
+    let target = |k| Random::new(1, Stream::Target(k)).normals(20).iter().map(|z| z.re).collect::<Vec<f64>>();
+    let list: Vec<Value> = (0..targets as u64).map(|k| json!({ "parameters": target(k) })).collect();
+    std::fs::write(&path, serde_json::to_string(&list).expect("JSON")).expect("written");
+    [family.clone(), family.replace(".toml", ".start.json"), text(&path)]
+}
+
+#[test]
+fn targets_that_are_killed_at_any_moment_go_on_to_the_same_bytes() {
+    let folder = tempfile::tempdir().expect("directory");
+    // Four blocks of 256.
+    let [family, start, targets] = five_points(folder.path(), 1000);
+    let arguments = ["track", &family, "--start", &start, "--target", &targets, "--json", "-"];
+    let after = kills(folder.path(), &arguments, [256, 512]);
+    assert_eq!((&after["done"], &after["total"], &after["solutions"]), (&1000.into(), &1000.into(), &20000.into()));
+    // What is recorded can be certified.
+    let directory = text(&folder.path().join("run"));
+    let certified = run("hc", &[&arguments[..], &["--certify", "--checkpoint", &directory, "--resume"]].concat());
+    let reports: Value = serde_json::from_slice(&certified.stdout).expect("JSON");
+    let solutions = reports.as_array().expect("a list").iter().flat_map(|report| report["solutions"].as_array());
+    assert!(solutions.flatten().all(|solution| solution["certified"].is_boolean()));
 }
 
 #[test]
@@ -185,6 +224,54 @@ fn what_is_no_checkpoint_of_this_run_is_refused_with_the_reason() {
     std::fs::remove_file(&header).expect("removed");
     refused(&solve(&system, "1", &resume), "is not of a checkpoint");
     assert_eq!(std::fs::read(&log).expect("kept"), b"somebody's notes");
+}
+
+#[test]
+fn targets_of_another_run_are_refused_with_the_difference() {
+    let folder = tempfile::tempdir().expect("directory");
+    let [family, start, targets] = five_points(folder.path(), 3);
+    let directory = text(&folder.path().join("run"));
+    let track = |family: &str, start: &str, targets: &str, more: &[&str]| {
+        let arguments = ["track", family, "--start", start, "--target", targets, "--checkpoint", &directory];
+        run("hc", &[&arguments[..], more].concat())
+    };
+    let made = track(&family, &start, &targets, &[]);
+    assert!(made.status.success(), "{}", said(&made));
+    // Another formula, one solution less, another number.
+    let changed = |file: &str, name: &str, change: &dyn Fn(&str) -> String| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, change(&std::fs::read_to_string(file).expect("text"))).expect("written");
+        text(&path)
+    };
+    let in_json = |json: &str, change: &dyn Fn(&mut Value)| {
+        let mut value: Value = serde_json::from_str(json).expect("JSON");
+        change(&mut value);
+        value.to_string()
+    };
+    let other_family = changed(&family, "family.toml", &|text| text.replacen("\"a11*(", "\"2*a11*(", 1));
+    let one_less = |value: &mut Value| drop(value["solutions"].as_array_mut().expect("a list").pop());
+    let other_start = changed(&start, "start.json", &|text| in_json(text, &one_less));
+    let other_number = |value: &mut Value| value[1]["parameters"][2] = 0.25.into();
+    let other_targets = changed(&targets, "targets.json", &|text| in_json(text, &other_number));
+    let resume: &[&str] = &["--resume"];
+    for (output, words) in [
+        (track(&other_family, &start, &targets, resume), "the checkpoint is of system hash "),
+        (track(&family, &other_start, &targets, resume), "is of start count 20, this run has start count 19"),
+        (track(&family, &start, &other_targets, resume), "the checkpoint is of targets hash "),
+        (
+            track(&family, &start, &five_points(folder.path(), 4)[2], resume),
+            "is of targets count 3, this run has targets count 4",
+        ),
+        (track(&family, &start, &targets, &["--seed", "2", "--resume"]), "is of seed 0, this run has seed 2"),
+        (track(&family, &start, &targets, &[]), "already; resume that, or give another directory (--resume)"),
+    ] {
+        assert_eq!(output.status.code(), Some(2), "{words}: {}", said(&output));
+        assert!(said(&output).contains(words), "{words}: {}", said(&output));
+    }
+    let solve = run("hc", &["solve", &quadrics(folder.path(), 3), "--checkpoint", &directory, "--resume"]);
+    assert!(said(&solve).contains("the checkpoint is of what track, this run has what solve"), "{}", said(&solve));
+    let resumed = track(&family, &start, &targets, resume);
+    assert!(resumed.status.success(), "{}", said(&resumed));
 }
 
 /// Files that may not grow beyond some blocks are a full disk.

@@ -111,7 +111,7 @@ struct Run {
 /// Which batch a record holds. Of one run no two records have the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) struct Key {
-    /// The part of the work: a start system.
+    /// The part of the work: a start system, or all targets.
     part: u32,
     level: u32,
     chart: u32,
@@ -222,7 +222,7 @@ impl fmt::Debug for Checkpoint {
     }
 }
 
-/// A part of the work of a run: the paths of one start system.
+/// A part of the work of a run: the paths of one start system, or all targets of a family.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Part<'a> {
     pub(crate) checkpoint: &'a Checkpoint,

@@ -12,7 +12,7 @@ use std::path::Path;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Status {
-    /// What is done: `solve`.
+    /// What is done: `solve` or `track`.
     pub what: String,
     /// Whether a process records there now.
     pub running: bool,
@@ -21,11 +21,11 @@ pub struct Status {
     /// The round of this part, from 1: first all paths are tracked, then those in doubt again. Zero
     /// before the first.
     pub round: u32,
-    /// Paths of this round that are recorded.
+    /// Paths of this round that are recorded; targets.
     pub done: u64,
     /// How many there are; `None` where that is not known.
     pub total: Option<u64>,
-    /// Paths of this part that have ended at a solution so far.
+    /// Paths of this part that have ended at a solution so far; solutions of all targets.
     pub solutions: u64,
     /// Seconds of work until the last record, those of earlier processes included.
     pub seconds: f64,

@@ -1,5 +1,6 @@
 //! Why a family cannot be used.
 
+use crate::checkpoint::CheckpointError;
 use crate::tracker::OptionError;
 use poly::{CompileError, ParseError};
 
@@ -16,6 +17,9 @@ pub enum FamilyError {
     /// A setting outside its range.
     #[error(transparent)]
     Option(#[from] OptionError),
+    /// No checkpoint of this run, or one that cannot be written.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
     /// Not as many equations as unknowns, or none.
     #[error("{equations} equations in {unknowns} unknowns; as many equations as unknowns are needed, and at least one")]
     NotSquare {

@@ -2,7 +2,7 @@
 
 use crate::tracker::{OptionError, TrackerOptions};
 use num_complex::Complex64;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The solutions of a family for one parameter point.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -93,7 +93,7 @@ impl FibreOptions {
 }
 
 /// How paths ended; `tracked` is the sum of the next four.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PathCounts {
     /// Paths tracked, one a start solution.
     pub tracked: usize,

@@ -10,6 +10,7 @@ mod compiled;
 mod detour;
 mod error;
 mod fibre;
+mod job;
 mod judge;
 mod monodromy;
 mod orbits;
@@ -34,3 +35,7 @@ pub use trace::TraceTest;
 pub(crate) use trace::{PASSED, deviation};
 pub use track::{FibreTracker, move_fibre, track_fibre};
 pub(crate) use track::{move_fibre_watched, track_fibre_watched};
+
+#[cfg(all(test, feature = "threads"))]
+#[path = "recorded_tests.rs"]
+mod tests;

@@ -3,20 +3,27 @@
 use super::compiled::Family;
 use super::detour::{DETOURS, corner};
 use super::error::FamilyError;
-use super::fibre::Fibre;
+use super::fibre::{Fibre, FibreOptions};
+use super::job::{Points, job};
 use super::orbits::Orbits;
 use super::track::move_fibre_watched;
+use crate::checkpoint::{Checkpoint, Job, Part, Recordable, Recorded};
+use crate::endgame::EndgameOptions;
 use crate::monitor::Monitor;
+use crate::runner::{Flow, Policy, Room, Round, Work, run};
 use crate::solve::{Solutions, SolveOptions, solve_member};
 // One thread needs no trait for `map`.
 #[cfg_attr(not(feature = "threads"), allow(unused_imports))]
 use crate::threads::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use crate::tracker::Trackers;
 use num_complex::Complex64;
+use serde::Serialize;
 
 /// Targets that are tracked before it is asked whether enough are done: the answer depends on no
 /// number of threads.
 const BLOCK: usize = 256;
+/// Solutions of a fibre times targets of a block that is recorded, at most, unless a target has more.
+const RECORDED: usize = 1 << 13;
 
 /// Says of the result for a target whether enough is done.
 type Enough<'a> = dyn FnMut(usize, &Solutions) -> bool + Send + 'a;
@@ -39,6 +46,7 @@ pub struct Targets<'a> {
     how: How<'a>,
     targets: Vec<Vec<Complex64>>,
     enough: Option<Box<Enough<'a>>>,
+    checkpoint: Option<Checkpoint>,
 }
 
 /// How each target is tracked.
@@ -53,7 +61,8 @@ struct How<'a> {
 impl<'a> Targets<'a> {
     pub(super) fn new(family: &'a Family, fibre: &'a Fibre, targets: Vec<Vec<Complex64>>) -> Targets<'a> {
         let (options, monitor) = (SolveOptions::default(), Monitor::default());
-        Targets { how: How { family, fibre, options, only_real: false, monitor }, targets, enough: None }
+        let how = How { family, fibre, options, only_real: false, monitor };
+        Targets { how, targets, enough: None, checkpoint: None }
     }
 
     /// Settings. Start systems have no meaning here. Default [`SolveOptions::default`].
@@ -77,12 +86,20 @@ impl<'a> Targets<'a> {
         Targets { enough: Some(Box::new(enough)), ..self }
     }
 
+    /// Records the work in a [checkpoint](crate::checkpoint): targets that it has are not tracked
+    /// again. The family, the fibre, the targets and all options but
+    /// [`certify`](SolveOptions::certify) and [`only_real`](Self::only_real) have to be those of the
+    /// run that it is of.
+    pub fn recorded(self, checkpoint: &Checkpoint) -> Self {
+        Targets { checkpoint: Some(checkpoint.clone()), ..self }
+    }
+
     /// Tracks, and returns a result for each target, in order; fewer if the work was cancelled or
     /// stopped early.
     ///
     /// # Errors
-    /// If the fibre or a target does not fit the family, a symmetry of the family is none, or an
-    /// option is out of range.
+    /// If the fibre or a target does not fit the family, a symmetry of the family is none, an option
+    /// is out of range, or the checkpoint is of another run or cannot be written.
     pub fn run(self) -> Result<Vec<Solutions>, FamilyError> {
         self.transform(|_, solutions| solutions)
     }
@@ -93,7 +110,7 @@ impl<'a> Targets<'a> {
     /// # Errors
     /// Those of [`run`](Self::run).
     pub fn transform<T: Send>(self, transform: impl Fn(usize, Solutions) -> T + Sync) -> Result<Vec<T>, FamilyError> {
-        let Targets { how, targets, mut enough } = self;
+        let Targets { how, targets, enough, checkpoint } = self;
         how.family.check(how.fibre)?;
         how.options.validate()?;
         let parameters = how.fibre.parameters.len();
@@ -102,28 +119,104 @@ impl<'a> Targets<'a> {
             return Err(FamilyError::Target { target: k + 1, parameters });
         }
         let orbits = Orbits::of(how.family, how.fibre)?;
-        let trackers = Trackers::new(&how.family.program);
-        let mut results = Vec::with_capacity(targets.len());
-        let numbers: Vec<usize> = (0..targets.len()).collect();
-        for block in numbers.chunks(BLOCK) {
-            let solved: Vec<Option<Solutions>> =
-                block.par_iter().map(|&k| how.solve(&trackers, orbits.as_ref(), &targets[k])).collect();
-            // What is done before the first that was not begun.
-            let mut done: Vec<(usize, Solutions)> =
-                block.iter().copied().zip(solved.into_iter().map_while(|found| found)).collect();
-            let whole = done.len() == block.len();
-            let last = enough.as_mut().and_then(|enough| done.iter().position(|(k, found)| enough(*k, found)));
-            done.truncate(last.map_or(done.len(), |last| last + 1));
-            results.extend(done.into_par_iter().map(|(k, found)| transform(k, found)).collect::<Vec<T>>());
-            if last.is_some() || !whole {
-                break;
-            }
+        if let Some(checkpoint) = &checkpoint {
+            checkpoint.begin(how.job(&targets))?;
         }
-        Ok(results)
+        let (trackers, count) = (Trackers::new(&how.family.program), targets.len());
+        let (monitor, orbits) = (&how.monitor, orbits.as_ref());
+        let results = Vec::with_capacity(count);
+        let each = Each { how: &how, trackers, orbits, targets: &targets, enough, transform, results, solutions: 0 };
+        let block = match &checkpoint {
+            Some(_) => (RECORDED / how.fibre.len().max(1)).clamp(1, BLOCK),
+            None => BLOCK,
+        };
+        let policy = Policy { retries: 0, charts: 1, first: block, batch: block };
+        let part = checkpoint.as_ref().map(|checkpoint| Part { checkpoint, number: 0 });
+        let mut work = Recorded::new(each, part, monitor);
+        run(&mut work, count, &policy, &mut Room::default(), monitor);
+        match checkpoint.as_ref().and_then(Checkpoint::failure) {
+            Some(error) => Err(error.into()),
+            None => Ok(work.into_inner().results),
+        }
     }
 }
 
+/// Every target, each solved for itself.
+struct Each<'r, 'a, T, F> {
+    how: &'r How<'a>,
+    trackers: Trackers<'r, poly::Interpreter>,
+    orbits: Option<&'r Orbits>,
+    targets: &'r [Vec<Complex64>],
+    enough: Option<Box<Enough<'a>>>,
+    transform: F,
+    results: Vec<T>,
+    /// Solutions of all targets so far.
+    solutions: u64,
+}
+
+impl<T: Send, F: Fn(usize, Solutions) -> T + Sync> Work for Each<'_, '_, T, F> {
+    type Batch = Vec<(usize, Solutions)>;
+    type Memory = ();
+
+    fn batch(&self, (): &mut (), numbers: &[usize], _: Round, batch: &mut Self::Batch) {
+        let Each { how, trackers, orbits, targets, .. } = self;
+        let solve = |&k: &usize| Some((k, how.solve(trackers, *orbits, &targets[k])?));
+        let solved: Vec<Option<(usize, Solutions)>> = numbers.par_iter().map(solve).collect();
+        // What is done before the first that was not begun.
+        *batch = solved.into_iter().map_while(|found| found).collect();
+    }
+
+    fn absorb(&mut self, batch: &mut Self::Batch, _: Round) -> Flow {
+        self.solutions += batch.iter().map(|(_, found)| found.len() as u64).sum::<u64>();
+        let (how, targets) = (self.how, self.targets);
+        let finished = |(k, found): &(usize, Solutions)| (*k, how.finished(found.clone(), &targets[*k]));
+        let mut done: Vec<(usize, Solutions)> = batch.par_iter().map(finished).collect();
+        let last = self.enough.as_mut().and_then(|enough| done.iter().position(|(k, found)| enough(*k, found)));
+        done.truncate(last.map_or(done.len(), |last| last + 1));
+        let transform = &self.transform;
+        self.results.extend(done.into_par_iter().map(|(k, found)| transform(k, found)).collect::<Vec<T>>());
+        match last {
+            Some(_) => Flow::Found,
+            None if self.how.monitor.is_cancelled() => Flow::Abandoned,
+            None => Flow::On,
+        }
+    }
+
+    fn doubtful(&mut self, (): &mut (), which: &mut Vec<usize>) {
+        which.clear();
+    }
+}
+
+impl<T: Send, F: Fn(usize, Solutions) -> T + Sync> Recordable for Each<'_, '_, T, F> {
+    fn is_of(batch: &Self::Batch, numbers: &[usize]) -> bool {
+        batch.iter().map(|(k, _)| k).eq(numbers)
+    }
+
+    fn solutions(&self) -> u64 {
+        self.solutions
+    }
+}
+
+/// What results depend on.
+#[derive(Serialize)]
+struct Settings<'a> {
+    seed: u64,
+    paths: &'a FibreOptions,
+    endgame: &'a EndgameOptions,
+    known: Option<usize>,
+    start: Points,
+    targets: Points,
+}
+
 impl How<'_> {
+    /// What a checkpoint of this is of.
+    fn job(&self, targets: &[Vec<Complex64>]) -> Job {
+        let SolveOptions { seed, paths, endgame, known, .. } = &self.options;
+        let start = Points::of_fibre(self.fibre);
+        let targets = Points::new(targets.iter().map(Vec::as_slice));
+        job("track", self.family, &Settings { seed: *seed, paths, endgame, known: *known, start, targets })
+    }
+
     /// The solutions for a target from a fibre, or where paths are lost, from one on a detour: more
     /// steps come last.
     fn from(&self, trackers: &Trackers<'_, poly::Interpreter>, fibre: &Fibre, target: &[Complex64]) -> Solutions {
@@ -175,7 +268,12 @@ impl How<'_> {
             found.solutions = orbits.expand(&self.family.symmetry, target, same, &found)?;
             Some(found)
         });
-        let mut found = expanded.unwrap_or_else(|| from(self.fibre));
+        Some(expanded.unwrap_or_else(|| from(self.fibre)))
+    }
+
+    /// What was asked for of the solutions for a target.
+    fn finished(&self, found: Solutions, target: &[Complex64]) -> Solutions {
+        let mut found = found.of_member(self.family.system(), target);
         if self.options.certify && found.certify().is_err() {
             // The family compiles and is square, which is all that can be wrong; nothing is proved
             // if not.
@@ -186,6 +284,6 @@ impl How<'_> {
         if self.only_real {
             found.solutions.retain(|s| s.real);
         }
-        Some(found)
+        found
     }
 }

@@ -16,7 +16,8 @@ use num_traits::ToPrimitive;
 use poly::{Evaluate, Exact, Polynomial, SparseSystem, System};
 
 /// The isolated solutions of the member of `family` at the parameters `target`, from those at the
-/// parameters of `fibre`, all of which are tracked. `trackers` are of the family, compiled.
+/// parameters of `fibre`, all of which are tracked. `trackers` are of the family, compiled. The result
+/// is not yet noted to be [of it](Solutions::of_member).
 pub(crate) fn solve_member<E: Evaluate>(
     family: &System,
     trackers: &Trackers<'_, E>,
@@ -45,12 +46,13 @@ pub(crate) fn solve_member<E: Evaluate>(
     });
     let found = classify(tracked.as_ref(), &ends, &excess, options.paths.coincidence);
     let interrupted = monitor.is_cancelled() && found.lost > 0;
-    Solutions {
-        variables: family.variables().to_vec(),
-        member: Member::new(family, target),
-        start_systems: 1,
-        interrupted,
-        ..found.solutions(fibre.len(), ends.retracked)
+    Solutions { start_systems: 1, interrupted, ..found.solutions(fibre.len(), ends.retracked) }
+}
+
+impl Solutions {
+    /// Notes that they are of the member of `family` at these parameters, which is not serialized.
+    pub(crate) fn of_member(self, family: &System, target: &[Complex64]) -> Solutions {
+        Solutions { variables: family.variables().to_vec(), member: Member::new(family, target), ..self }
     }
 }
 

@@ -3,11 +3,11 @@
 use crate::endgame::EndgameOptions;
 use crate::family::FibreOptions;
 use crate::tracker::{OptionError, TrackerOptions};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// Which start system is used.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Start {

@@ -1,10 +1,10 @@
 //! Solves that go on from a checkpoint.
 
-use crate::checkpoint::{Checkpoint, CheckpointError, CheckpointOptions, Note, status};
-use crate::{Monitor, Progress, Solutions, SolveError, SolveOptions, Stage, Start, System, solve, solve_recorded};
-use std::path::Path;
+use crate::checkpoint::support::{goes_on_from_every_record, resumed};
+use crate::checkpoint::{Checkpoint, CheckpointError, CheckpointOptions, status};
+use crate::{Monitor, Progress, SolveError, SolveOptions, Stage, Start, System, solve, solve_recorded};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex};
 
 /// `2^n` regular solutions.
 pub(super) fn quadrics(n: usize) -> System {
@@ -26,32 +26,6 @@ fn counted() -> (Monitor, Arc<AtomicU64>) {
     (Monitor::calling(told), most)
 }
 
-fn resumed(
-    system: &System,
-    options: &SolveOptions,
-    directory: &Path,
-    threads: usize,
-) -> Result<(Solutions, Vec<Note>), SolveError> {
-    let checkpoint = Checkpoint::open(directory, &CheckpointOptions::new().resume(true))?;
-    let notes = Arc::new(Mutex::new(Vec::new()));
-    let told = Arc::clone(&notes);
-    checkpoint.tell(move |note| told.lock().unwrap().push(note.clone()));
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    let found = pool.install(|| solve_recorded(system, options, &Monitor::default(), &checkpoint))?;
-    let notes = notes.lock().unwrap().clone();
-    Ok((found, notes))
-}
-
-/// Ends of the records of a log: 16 bytes, then each with 8 before it, of which the first four are
-/// its length.
-fn ends(log: &[u8]) -> Vec<usize> {
-    let mut ends = vec![16];
-    while let Some(length) = log.get(ends[ends.len() - 1]..).and_then(|rest| rest.first_chunk::<4>()) {
-        ends.push(ends[ends.len() - 1] + 8 + u32::from_le_bytes(*length) as usize);
-    }
-    ends
-}
-
 /// Wherever the log ends, the solutions are the same, on any number of threads.
 #[test]
 fn solves_go_on_from_every_record_to_the_same_bits() {
@@ -71,22 +45,8 @@ fn solves_go_on_from_every_record_to_the_same_bits() {
         assert_eq!(again, Err(SolveError::Checkpoint(CheckpointError::Used(directory.clone()))));
         drop(checkpoint);
 
-        let log = directory.join("records.log");
-        let whole = std::fs::read(&log).unwrap();
-        let ends = ends(&whole);
-        assert_eq!(ends.last(), Some(&whole.len()));
-        assert!(ends.len() >= 3, "{}", ends.len());
-        for (k, &end) in ends.iter().enumerate() {
-            for (extra, threads) in [(0, 1), (11, 2)] {
-                std::fs::write(&log, &whole[..(end + extra).min(whole.len())]).unwrap();
-                let (found, notes) = resumed(&system, &options, &directory, threads).unwrap();
-                assert_eq!(found, expected, "{k} records, {extra} bytes");
-                let torn = end + extra < whole.len() && extra > 0;
-                assert_eq!(notes.contains(&Note::Torn { dropped: 11 }), torn, "{notes:?}");
-                let resumes = |note: &Note| matches!(note, Note::Resumed { records, .. } if *records == k);
-                assert!(notes.iter().any(resumes), "{notes:?}");
-            }
-        }
+        let work = |checkpoint: &Checkpoint| solve_recorded(&system, &options, &Monitor::default(), checkpoint);
+        assert!(goes_on_from_every_record(&directory, &expected, work) >= 2);
         // Nothing is tracked any more.
         let checkpoint = Checkpoint::open(&directory, &CheckpointOptions::new().resume(true)).unwrap();
         let (monitor, tracked) = counted();
@@ -105,8 +65,11 @@ fn other_runs_are_refused_with_the_difference() {
     };
     let found = record().unwrap();
     assert!(matches!(record(), Err(SolveError::Checkpoint(CheckpointError::Taken(_)))));
+    let again = |system: &System, options: &SolveOptions| {
+        resumed(folder.path(), 1, |checkpoint| solve_recorded(system, options, &Monitor::default(), checkpoint))
+    };
     let differs = |system: &System, options: &SolveOptions| {
-        let error = resumed(system, options, folder.path(), 1).unwrap_err();
+        let error = again(system, options).unwrap_err();
         let SolveError::Checkpoint(CheckpointError::Differs { name, recorded, own, .. }) = error else {
             panic!("{error}")
         };
@@ -121,8 +84,8 @@ fn other_runs_are_refused_with_the_difference() {
     let other: System = quadrics(3).to_string().replacen('3', "3.5", 1).parse().unwrap();
     assert_eq!(differs(&other, &options).0, "system hash");
     // What changes no path may change.
-    let (again, _) = resumed(&system, &options.max_paths(1 << 20).certify(true), folder.path(), 1).unwrap();
-    assert_eq!((again.len(), again.uncertified()), (found.len(), 0));
+    let (certified, _) = again(&system, &options.max_paths(1 << 20).certify(true)).unwrap();
+    assert_eq!((certified.len(), certified.uncertified()), (found.len(), 0));
 }
 
 #[test]

@@ -6,7 +6,7 @@ use crate::certify::{Certificates, CertifyError, CertifyOptions, Reality, certif
 use crate::family::PathCounts;
 use num_complex::Complex64;
 use poly::{ComplexInterval, System};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
@@ -15,7 +15,7 @@ use std::sync::Arc;
 const LISTED: usize = 20;
 
 /// An isolated solution.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Solution {
     /// The coordinates, in the order of the unknowns.
@@ -40,7 +40,7 @@ pub struct Solution {
 }
 
 /// A direction in which paths go to infinity.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Direction {
     /// Unknown `j` is of order `t^(valuations[j] / denominator)` as `t` falls to zero.
@@ -70,8 +70,8 @@ impl PartialEq for Member {
 }
 
 /// What [`solve`](crate::solve) has found: the distinct isolated solutions, and what became of the
-/// paths.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+/// paths. Serialized without the names of the unknowns and the system.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Solutions {
     /// Names of the unknowns, in the order of the coordinates.
@@ -118,7 +118,7 @@ pub struct Solutions {
 }
 
 /// An end of paths of which it is not known what it is.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Unresolved {
     /// The coordinates, in the order of the unknowns.
