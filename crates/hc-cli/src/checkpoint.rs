@@ -10,9 +10,9 @@ pub(crate) struct Recording {
     /// Record what is finished in this directory, so that the run can go on after it was killed.
     #[arg(long, value_name = "DIR")]
     checkpoint: Option<PathBuf>,
-    /// Go on with what the directory of --checkpoint has, of the same input and options (but
-    /// --threads); start from the beginning where it has nothing. The result is that of a run
-    /// without interruption.
+    /// Go on with what the directory of --checkpoint has, of the same input and options
+    /// (--threads may be another); start from the beginning where it has nothing. The result is that
+    /// of a run without interruption.
     #[arg(long, requires = "checkpoint")]
     resume: bool,
     /// End with exit status 2 when the checkpoint cannot be written (a full disk); otherwise this is

@@ -1,8 +1,9 @@
 //! `hc monodromy`.
 
+use crate::checkpoint::{self, Recording};
 use crate::{family, watch};
 use cli::{Failure, output};
-use hc::family::{StartFile, Stop};
+use hc::family::Stop;
 use hc::{FamilyError, MonodromyOptions};
 use std::path::PathBuf;
 
@@ -13,7 +14,8 @@ use std::path::PathBuf;
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The family (TOML).
-    family: PathBuf,
+    #[arg(required_unless_present = "status")]
+    family: Option<PathBuf>,
     /// A first pair (JSON with "parameters" and one entry in "solutions"); found by Newton's method
     /// if not given.
     #[arg(long)]
@@ -29,13 +31,19 @@ pub(crate) struct Arguments {
     #[arg(long)]
     threads: Option<usize>,
     /// File for the fibre (JSON); - for standard output.
-    #[arg(long)]
-    output: PathBuf,
+    #[arg(long, required_unless_present = "status")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    checkpoint: Recording,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    output::check(&[("--output", Some(&arguments.output))])?;
-    let path = &arguments.family;
+    if let Some(directory) = arguments.checkpoint.status() {
+        return checkpoint::status(directory);
+    }
+    let output = Recording::needed(&arguments.output, "the fibre (--output)")?;
+    output::check(&[("--output", Some(output))])?;
+    let path = Recording::needed(&arguments.family, "a family")?;
     let family = family::read(path)?;
     let start = match &arguments.seed_pair {
         Some(path) => family::fibre(&family, path)?,
@@ -44,40 +52,30 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             error => Failure::in_file(path, error),
         })?,
     };
-    let options = MonodromyOptions::new().seed(arguments.seed);
+    let options = MonodromyOptions::new().seed(arguments.seed).trace_test(!arguments.no_trace);
     let monitor = watch::interruptible()?;
-    let found = watch::watched(arguments.threads, &monitor, watch::stages, || {
-        let found = family.complete(&start, &options, &monitor)?;
-        let wanted = !arguments.no_trace && !matches!(found.stop, Stop::RootsReached | Stop::Cancelled);
-        let test = wanted.then(|| family.trace_test(&found.fibre, &options, &monitor)).transpose()?;
-        Ok((found, test))
+    let checkpoint = arguments.checkpoint.open()?;
+    let found = watch::watched(arguments.threads, &monitor, watch::stages, || match &checkpoint {
+        Some(checkpoint) => family.complete_recorded(&start, &options, &monitor, checkpoint),
+        None => family.complete(&start, &options, &monitor),
     })?;
-    let (found, test) = found.map_err(|error: FamilyError| Failure::in_file(path, error))?;
-    // What an interrupted test says is no deviation.
-    let test = test.filter(|_| !monitor.is_cancelled());
-    let count = found.fibre.len();
-    let deviation = test.and_then(|test| test.result(count));
-    let stopped = match found.stop {
-        Stop::RootsReached => "roots reached",
-        _ if monitor.is_cancelled() => "interrupted",
-        _ if test.is_some_and(|test| test.passed(count)) => "trace",
-        _ => "no progress",
-    };
-    let text = StartFile::new(&found.fibre, deviation, stopped).to_json();
-    output::text(&arguments.output, &text)?;
-    let trace = match (test, deviation) {
+    let found = found.map_err(|error| family::failure(path, error))?;
+    let (count, file) = (found.fibre.len(), found.start_file());
+    output::text(output, &file.to_json())?;
+    let trace = match (found.trace, file.trace_test) {
         (_, Some(deviation)) => format!(", trace test {deviation:.1e}"),
         (Some(_), None) => ", trace test without a result (paths were lost, or led to other solutions)".to_owned(),
         (None, None) => String::new(),
     };
+    let stopped = &file.stopped;
     eprintln!(
         "{}: {count} solutions after {} loops and {} paths; stopped: {stopped}{trace}",
         family.name(),
         found.loops,
         found.paths
     );
-    if stopped == "interrupted" {
-        return Err(Failure::Interrupted);
+    if found.stop == Stop::Cancelled {
+        return Err(arguments.checkpoint.interrupted());
     }
     match family.roots() {
         Some(roots) if roots != count => {

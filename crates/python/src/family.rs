@@ -3,7 +3,7 @@
 use crate::arrays::{array, rows};
 use crate::errors::{Failure, guarded};
 use crate::work::{Done, How, run, whole};
-use hc::family::{StartFile, Stop};
+use hc::family::StartFile;
 use hc::{FamilyError, MonodromyOptions, Solutions, SolveOptions};
 use num_complex::Complex64;
 use numpy::PyReadonlyArrayDyn;
@@ -91,29 +91,20 @@ impl Family {
             let mut options = MonodromyOptions::new().seed(seed);
             options.roots = roots;
             options.patience = patience.unwrap_or(options.patience);
+            options.trace_test = trace;
             let Done { result: found, stopped, .. } = run(py, &how, move |monitor| {
                 let first = match &first {
                     Some(first) => hc::Fibre::clone(first),
                     None => family.find_pair(seed)?,
                 };
-                let found = family.complete(&first, &options, monitor)?;
-                let wanted = trace && !matches!(found.stop, Stop::RootsReached | Stop::Cancelled);
-                let test = wanted.then(|| family.trace_test(&found.fibre, &options, monitor)).transpose()?;
-                Ok((found, test.filter(|_| !monitor.is_cancelled()), monitor.is_cancelled()))
+                family.complete(&first, &options, monitor)
             })?;
-            let (found, test, cancelled) = found.map_err(|error: FamilyError| match error {
+            let found = found.map_err(|error: FamilyError| match error {
                 FamilyError::NoPair => Failure::undetermined(error),
                 error => Failure::input(error),
             })?;
-            let why = match found.stop {
-                Stop::RootsReached => "roots reached",
-                _ if cancelled => "interrupted",
-                _ if test.as_ref().is_some_and(|test| test.passed(found.fibre.len())) => "trace",
-                _ => "no progress",
-            };
-            let file = StartFile::new(&found.fibre, test.and_then(|test| test.result(found.fibre.len())), why);
             let result = PyDict::new(py);
-            result.set_item("json", file.to_json())?;
+            result.set_item("json", found.start_file().to_json())?;
             result.set_item("loops", found.loops)?;
             result.set_item("paths", found.paths)?;
             whole(py, result.into_any(), stopped)

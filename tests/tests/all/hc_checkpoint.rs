@@ -49,44 +49,38 @@ fn spawned(arguments: &[&str]) -> Child {
     command.args(arguments).stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("the program starts")
 }
 
-/// Waits until a run has recorded so many paths, or has ended.
-fn wait_for(child: &mut Child, directory: &str, paths: u64) {
+/// Waits until a run has so many records, or has ended.
+fn wait_for(child: &mut Child, directory: &str, records: u64) {
     let begun = Instant::now();
     while child.try_wait().expect("a child").is_none() && begun.elapsed() < Duration::from_secs(120) {
-        if status(directory).is_some_and(|status| status["done"].as_u64() >= Some(paths)) {
+        if status(directory).is_some_and(|status| status["records"].as_u64() >= Some(records)) {
             return;
         }
         std::thread::sleep(Duration::from_millis(10));
     }
 }
 
-/// Kills what these arguments do twice once it has recorded so much more, and once soon after it has
-/// begun; it goes on to the same standard output, on another number of threads. Returns the status
-/// then.
-fn kills(folder: &Path, arguments: &[&str], moments: [u64; 2]) -> Value {
+/// Kills what these arguments do once it has so many records, then so many, then soon after it has
+/// begun; it goes on to the same standard output, on other numbers of threads. Returns the status of
+/// the end.
+fn killed(folder: &Path, arguments: &[&str], moments: [u64; 2]) -> Value {
     let directory = text(&folder.join("run"));
-    let with = |threads: &str, more: &[&str]| {
-        let all = [arguments, &["--threads", threads], more].concat();
-        all.into_iter().map(str::to_owned).collect::<Vec<String>>()
-    };
     let resume = ["--checkpoint", &directory, "--resume"];
-    fn refs(arguments: &[String]) -> Vec<&str> {
-        arguments.iter().map(String::as_str).collect()
-    }
-    let expected = untimed(&run("hc", &refs(&with("2", &[]))));
-    for (threads, done) in [("2", moments[0]), ("1", moments[1]), ("2", 0)] {
-        let mut child = spawned(&refs(&with(threads, &resume)));
-        wait_for(&mut child, &directory, done);
-        if done > 0 {
-            assert_eq!(status(&directory).expect("a status")["what"], arguments[0]);
+    let expected = untimed(&run("hc", &[arguments, &["--threads", "2"]].concat()));
+    for (threads, records) in [("2", moments[0]), ("1", moments[1]), ("2", 0)] {
+        let mut child = spawned(&[arguments, &["--threads", threads], &resume].concat());
+        wait_for(&mut child, &directory, records);
+        if records > 0 {
+            let status = status(&directory).expect("a status");
+            assert_eq!((&status["what"], &status["running"]), (&arguments[0].into(), &true.into()), "{status}");
         }
         child.kill().expect("killed");
         child.wait().expect("a child");
         assert_eq!(status(&directory).expect("a status")["running"], false);
     }
-    let before = status(&directory).expect("a status")["done"].as_u64();
-    assert!(before >= Some(moments[0]), "{before:?}");
-    let resumed = run("hc", &refs(&with("1", &resume)));
+    let before = status(&directory).expect("a status")["records"].as_u64();
+    assert!(before >= Some(moments[1]), "{before:?}");
+    let resumed = run("hc", &[arguments, &["--threads", "1"], &resume].concat());
     assert_eq!(untimed(&resumed), expected);
     assert!(said(&resumed).contains(&format!("{directory}: goes on after ")), "{}", said(&resumed));
     status(&directory).expect("a status")
@@ -98,7 +92,7 @@ fn a_solve_that_is_killed_at_any_moment_goes_on_to_the_same_bytes() {
     // Four batches of 2,048 paths.
     let system = quadrics(folder.path(), 13);
     let arguments = ["solve", &system, "--start", "total-degree", "--seed", "1", "--json", "-"];
-    let after = kills(folder.path(), &arguments, [2048, 4096]);
+    let after = killed(folder.path(), &arguments, [2, 3]);
     assert_eq!((&after["done"], &after["total"], &after["solutions"]), (&8192.into(), &8192.into(), &8192.into()));
 }
 
@@ -118,7 +112,7 @@ fn targets_that_are_killed_at_any_moment_go_on_to_the_same_bytes() {
     // Four blocks of 256.
     let [family, start, targets] = five_points(folder.path(), 1000);
     let arguments = ["track", &family, "--start", &start, "--target", &targets, "--json", "-"];
-    let after = kills(folder.path(), &arguments, [256, 512]);
+    let after = killed(folder.path(), &arguments, [2, 3]);
     assert_eq!((&after["done"], &after["total"], &after["solutions"]), (&1000.into(), &1000.into(), &20000.into()));
     // What is recorded can be certified.
     let directory = text(&folder.path().join("run"));
@@ -224,6 +218,47 @@ fn what_is_no_checkpoint_of_this_run_is_refused_with_the_reason() {
     std::fs::remove_file(&header).expect("removed");
     refused(&solve(&system, "1", &resume), "is not of a checkpoint");
     assert_eq!(std::fs::read(&log).expect("kept"), b"somebody's notes");
+}
+
+/// Loops, and the trace test after them.
+#[test]
+fn monodromy_that_is_killed_at_any_moment_goes_on_to_the_same_bytes() {
+    let folder = tempfile::tempdir().expect("directory");
+    // As many solutions as a solve has paths; their number is not stated.
+    let [family, directory] = ["family.toml", "run"].map(|name| folder.path().join(name));
+    let equations: Vec<String> = std::fs::read_to_string(quadrics(folder.path(), 7))
+        .expect("a system")
+        .lines()
+        .enumerate()
+        .map(|(i, equation)| format!("\"{equation} + a{i} + b{i}*x{i}*x{}\"", (i + 3) % 7))
+        .collect();
+    let names = |of: &str| (0..7).map(|i| format!("\"{of}{i}\"")).collect::<Vec<_>>().join(", ");
+    let content = format!(
+        "name = \"\"\nunknowns = [{}]\nparameters = [{}, {}]\nequations = [{}]\n",
+        names("x"),
+        names("a"),
+        names("b"),
+        equations.join(", ")
+    );
+    std::fs::write(&family, content).expect("written");
+    let family = text(&family);
+    let after = killed(folder.path(), &["monodromy", &family, "--seed", "1", "--output", "-"], [20, 60]);
+    // The search and three parts of the trace test, the last of three pieces.
+    assert_eq!((&after["part"], &after["done"]), (&5.into(), &3.into()));
+    let directory = text(&directory);
+    let resume = |more: &[&str]| {
+        let arguments = ["monodromy", &family, "--output", "-", "--checkpoint", &directory, "--resume"];
+        run("hc", &[&arguments[..], more].concat())
+    };
+    // Without the trace test the loops are the same.
+    let untested = resume(&["--seed", "1", "--no-trace"]);
+    let untested: Value = serde_json::from_slice(&untested.stdout).expect("JSON");
+    assert_eq!((untested["solutions"].as_array().map(Vec::len), &untested["trace_test"]), (Some(128), &Value::Null));
+    let other = resume(&["--seed", "2"]);
+    assert_eq!(other.status.code(), Some(2));
+    assert!(said(&other).contains("is of seed 1, this run has seed 2"), "{}", said(&other));
+    let status = run("hc", &["monodromy", "--status", &directory]);
+    assert!(status.status.success(), "{}", said(&status));
 }
 
 #[test]

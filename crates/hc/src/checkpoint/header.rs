@@ -14,7 +14,7 @@ pub(super) const FORMAT: u32 = 1;
 /// What a run computes, in so far as its result depends on it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Job {
-    /// What is done: `solve` or `track`.
+    /// What is done: `solve`, `track` or `monodromy`.
     pub(crate) what: String,
     /// The system, in short.
     pub(crate) system: System,

@@ -111,13 +111,13 @@ struct Run {
 /// Which batch a record holds. Of one run no two records have the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) struct Key {
-    /// The part of the work: a start system, or all targets.
+    /// The part of the work: a start system, all targets, a search.
     part: u32,
     level: u32,
     chart: u32,
-    /// The number of the first path.
+    /// The number of the first path, target or loop.
     first: u64,
-    /// How many paths; none in the record with which a round begins.
+    /// How many; none in the record with which a round begins, and in those of steps.
     pub(super) count: u64,
 }
 
@@ -222,7 +222,7 @@ impl fmt::Debug for Checkpoint {
     }
 }
 
-/// A part of the work of a run: the paths of one start system, or all targets of a family.
+/// A part of the work of a run: the paths of one start system, all targets of a family, a search.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Part<'a> {
     pub(crate) checkpoint: &'a Checkpoint,

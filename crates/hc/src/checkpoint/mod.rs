@@ -1,15 +1,17 @@
 //! Checkpoints: runs that go on after they were killed.
 //!
-//! A [`Checkpoint`] is a directory in which a run records what it has finished: batches of paths,
-//! with their ends, of [`solve_recorded`](crate::solve_recorded), or targets of a family, with their
-//! solutions, of [`Targets::recorded`](crate::family::Targets::recorded). Opened again with
+//! A [`Checkpoint`] is a directory in which a run records what it has finished: batches of paths with
+//! their ends ([`solve_recorded`](crate::solve_recorded)), targets of a family with their solutions
+//! ([`Targets::recorded`](crate::family::Targets::recorded)), loops of monodromy with what they bring
+//! ([`Family::complete_recorded`](crate::Family::complete_recorded)). Opened again with
 //! [`resume`](CheckpointOptions::resume), it lets the same run take what is recorded and compute
 //! only what is missing. The result is that of a run without interruption to the bit, on any number
 //! of threads.
 //!
 //! The directory has three files. `checkpoint.json` says what the checkpoint is of: the versions
-//! of records and of this crate, hashes of the system as it was read and of other input, and all options on
-//! which the result depends. Whatever differs when the run is resumed is [named](CheckpointError::Differs).
+//! of records and of this crate, hashes of the system as it was read and of other input, and all
+//! options on which the result depends. Whatever differs when the run is resumed is
+//! [named](CheckpointError::Differs).
 //! `records.log` has the records, each with its length and a checksum, written as they come and
 //! brought to the disk every few [seconds](CheckpointOptions::interval). A record that was not
 //! written to its end, or is damaged, is cut off with those after it, and what they held is computed
@@ -43,6 +45,7 @@ mod header;
 mod keeper;
 mod log;
 mod note;
+mod pieces;
 mod recorded;
 mod status;
 #[cfg(all(test, feature = "threads"))]
@@ -53,5 +56,6 @@ pub(crate) use header::{Hash, Job, System};
 pub(crate) use keeper::Part;
 pub use keeper::{Checkpoint, CheckpointOptions};
 pub use note::Note;
+pub(crate) use pieces::{Piece, Pieces};
 pub(crate) use recorded::{Recordable, Recorded};
 pub use status::{Status, status};

@@ -12,20 +12,23 @@ use std::path::Path;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Status {
-    /// What is done: `solve` or `track`.
+    /// What is done: `solve`, `track` or `monodromy`.
     pub what: String,
     /// Whether a process records there now.
     pub running: bool,
-    /// The part of the work, from 1: the start system of a solve. Zero before the first.
+    /// The part of the work, from 1: the start system of a solve; of monodromy 1 is the search, 2 its
+    /// second half with solutions for other parameters, from 3 on comes the trace test. Zero before the
+    /// first.
     pub part: u32,
-    /// The round of this part, from 1: first all paths are tracked, then those in doubt again. Zero
-    /// before the first.
+    /// The round of this part, from 1: first all paths of a solve are tracked, then those in doubt
+    /// again. Zero before the first.
     pub round: u32,
-    /// Paths of this round that are recorded; targets.
+    /// Paths of this round that are recorded; targets; loops of this part, or steps of the trace test.
     pub done: u64,
     /// How many there are; `None` where that is not known.
     pub total: Option<u64>,
-    /// Paths of this part that have ended at a solution so far; solutions of all targets.
+    /// Paths of this part that have ended at a solution so far; solutions of all targets, or of the
+    /// fibre.
     pub solutions: u64,
     /// Seconds of work until the last record, those of earlier processes included.
     pub seconds: f64,

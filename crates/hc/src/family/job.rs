@@ -1,11 +1,10 @@
 //! What a checkpoint of a family is of.
 
-use super::compiled::Family;
 use super::fibre::Fibre;
 use crate::checkpoint::{Hash, Job, System};
 use crate::random::{Random, Stream};
 use num_complex::Complex64;
-use poly::{Evaluate, Isa};
+use poly::{Evaluate, Interpreter, Isa};
 use serde::Serialize;
 
 /// Many points in short.
@@ -28,20 +27,18 @@ impl Points {
     }
 }
 
-/// Work on a family, and settings on which its result depends.
-pub(super) fn job(what: &str, family: &Family, settings: &impl Serialize) -> Job {
-    let given = &family.given;
+/// Work on a family, whose equations are this program, and settings on which its result depends.
+pub(super) fn job(what: &str, given: &poly::Family, program: &Interpreter, settings: &impl Serialize) -> Job {
     let systems = [&given.system, &given.nonzero].into_iter().chain(&given.symmetry);
     let mut parts: Vec<Vec<u8>> = systems.map(|system| system.to_string().into_bytes()).collect();
-    parts.push(bytes(&somewhere(family)));
+    parts.push(bytes(&somewhere(program)));
     let unknowns = given.system.variables().to_vec();
     let system = System { unknowns, equations: given.system.len(), hash: Hash::of(parts) };
     Job::new(what, system, settings)
 }
 
 /// The values of the equations somewhere: very long formulas are not shown in full.
-fn somewhere(family: &Family) -> Vec<Complex64> {
-    let program = &family.program;
+fn somewhere(program: &Interpreter) -> Vec<Complex64> {
     let mut random = Random::new(0, Stream::Member(0));
     let (x, p) = (random.normals(program.variables()), random.normals(program.parameters()));
     let mut values = vec![Complex64::default(); program.equations()];

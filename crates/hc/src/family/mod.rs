@@ -21,6 +21,7 @@ mod start_file;
 mod symmetry;
 mod targets;
 mod trace;
+mod trace_result;
 mod track;
 
 pub use charts::{Charts, OneChart};
@@ -31,8 +32,9 @@ pub(crate) use monodromy::monodromy;
 pub use monodromy::{Monodromy, MonodromyOptions, Stop};
 pub use start_file::{StartFile, StartFileError};
 pub use targets::Targets;
-pub use trace::TraceTest;
-pub(crate) use trace::{PASSED, deviation};
+pub(crate) use trace::deviation;
+pub(crate) use trace_result::PASSED;
+pub use trace_result::TraceTest;
 pub use track::{FibreTracker, move_fibre, track_fibre};
 pub(crate) use track::{move_fibre_watched, track_fibre_watched};
 

@@ -7,8 +7,11 @@
 
 use super::fibre::{Fibre, FibreOptions};
 use super::reach::Reach;
+use super::start_file::StartFile;
 use super::symmetry::{ACCURATE, Symmetry};
+use super::trace_result::TraceTest;
 use super::track::track_fibre_watched;
+use crate::checkpoint::{Piece, Pieces};
 use crate::distinct::{coincidences, relative_distance};
 use crate::monitor::{Monitor, Stage};
 use crate::random::{Random, Stream};
@@ -16,9 +19,11 @@ use crate::refine::Refiner;
 use crate::tracker::PathEnd;
 use num_complex::Complex64;
 use poly::Evaluate;
+use serde::{Deserialize, Serialize};
 
-/// Settings of [`Family::monodromy`](crate::Family::monodromy).
-#[derive(Clone, Debug, PartialEq)]
+/// Settings of [`Family::monodromy`](crate::Family::monodromy). Serialized are those on which loops
+/// depend.
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct MonodromyOptions {
     /// Seed of the loops. Default 0.
@@ -35,6 +40,10 @@ pub struct MonodromyOptions {
     /// Settings for the paths. By default difficult paths are given up early (2,000 steps, one
     /// retry): what they would have found, easier paths of later loops find.
     pub fibre: FibreOptions,
+    /// Whether the [trace test](crate::Family::trace_test) comes last, unless the known number of
+    /// solutions is reached. Default false.
+    #[serde(skip)]
+    pub trace_test: bool,
 }
 
 impl MonodromyOptions {
@@ -72,6 +81,12 @@ impl MonodromyOptions {
     pub fn fibre(self, fibre: FibreOptions) -> Self {
         MonodromyOptions { fibre, ..self }
     }
+
+    /// Sets [`trace_test`](Self::trace_test).
+    #[must_use]
+    pub fn trace_test(self, trace_test: bool) -> Self {
+        MonodromyOptions { trace_test, ..self }
+    }
 }
 
 impl Default for MonodromyOptions {
@@ -79,7 +94,7 @@ impl Default for MonodromyOptions {
         let mut fibre = FibreOptions::default();
         fibre.tracker.max_steps = 2_000;
         fibre.retries = 1;
-        MonodromyOptions { seed: 0, roots: None, patience: 8, max_solutions: 100_000, fibre }
+        MonodromyOptions { seed: 0, roots: None, patience: 8, max_solutions: 100_000, fibre, trace_test: false }
     }
 }
 
@@ -98,7 +113,7 @@ pub enum Stop {
 }
 
 /// What monodromy found.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Monodromy {
     /// The fibre, refined.
@@ -109,6 +124,22 @@ pub struct Monodromy {
     pub loops: usize,
     /// Paths tracked.
     pub paths: usize,
+    /// What the trace test found, if it was asked for and came to its end.
+    pub trace: Option<TraceTest>,
+}
+
+impl Monodromy {
+    /// Its file form.
+    pub fn start_file(&self) -> StartFile {
+        let count = self.fibre.len();
+        let stopped = match self.stop {
+            Stop::RootsReached => "roots reached",
+            Stop::Cancelled => "interrupted",
+            _ if self.trace.is_some_and(|test| test.passed(count)) => "trace",
+            Stop::NoProgress | Stop::TooMany => "no progress",
+        };
+        StartFile::new(&self.fibre, self.trace.and_then(|test| test.result(count)), stopped)
+    }
 }
 
 /// [`fill`] of a program without symmetries, all of whose solutions are wanted.
@@ -118,7 +149,7 @@ pub(crate) fn monodromy<E: Evaluate>(
     options: &MonodromyOptions,
     monitor: &Monitor,
 ) -> Monodromy {
-    fill(system, start, |_, _| true, &Symmetry::default(), options, monitor)
+    fill(system, start, |_, _| true, &Symmetry::default(), options, Pieces::new(None, monitor))
 }
 
 /// The fibre with the solutions to which others, for other parameters, lead; `None` if it has them all.
@@ -131,7 +162,8 @@ pub(super) fn joined<E: Evaluate>(
     options: &MonodromyOptions,
     monitor: &Monitor,
 ) -> Option<Fibre> {
-    let mut filling = Filling { system, symmetry, options, monitor, fibre: fibre.clone() };
+    let pieces = Pieces::new(None, monitor);
+    let mut filling = Filling { system, symmetry, options, pieces, fibre: fibre.clone() };
     for other in others {
         let (ends, _) = track_fibre_watched(system, other, &fibre.parameters, &options.fibre, monitor);
         let regular = ends.iter().filter(|(r, _)| r.end == PathEnd::Success);
@@ -144,16 +176,16 @@ pub(super) fn joined<E: Evaluate>(
 /// of a symmetric family one solution of each orbit goes round.
 ///
 /// `accept` is asked about every new solution; solutions that it refuses (degenerate ones) are
-/// dropped.
+/// dropped. Each loop is a piece.
 pub(super) fn fill<E: Evaluate>(
     system: &E,
     start: &Fibre,
     accept: impl Fn(&[Complex64], &[Complex64]) -> bool,
     symmetry: &Symmetry,
     options: &MonodromyOptions,
-    monitor: &Monitor,
+    pieces: Pieces<'_>,
 ) -> Monodromy {
-    let mut filling = Filling { system, symmetry, options, monitor, fibre: start.clone() };
+    let mut filling = Filling { system, symmetry, options, pieces, fibre: start.clone() };
     if !symmetry.is_trivial() {
         filling.fibre.solutions.clear();
         filling.fibre.representatives = Some(Vec::new());
@@ -165,7 +197,7 @@ pub(super) fn fill<E: Evaluate>(
     sizes.dedup();
     let (mut loops, mut idle, mut paths) = (0, 0, 0);
     let stop = loop {
-        if monitor.is_cancelled() {
+        if pieces.are_stopped() {
             break Stop::Cancelled;
         }
         let known = filling.fibre.len();
@@ -185,12 +217,15 @@ pub(super) fn fill<E: Evaluate>(
         let corner = |z: Complex64, size: f64| z * size * scale;
         let corners =
             [0, 1].map(|_| random.normals(sizes.len()).into_iter().zip(sizes).map(|(z, &s)| corner(z, s)).collect());
-        paths += filling.go_round(&corners, &accept);
+        paths += filling.go_round(loops, &corners, &accept);
         loops += 1;
         idle = if filling.fibre.len() > known { 0 } else { idle + 1 };
     };
-    Monodromy { fibre: filling.fibre, stop, loops, paths }
+    Monodromy { fibre: filling.fibre, stop, loops, paths, trace: None }
 }
+
+/// Of loops with more paths every side is recorded.
+const LONG: usize = 1 << 12;
 
 /// Loops times solutions at least, before a search ends without a new one.
 const CHANCES: usize = 128;
@@ -214,33 +249,89 @@ struct Filling<'a, E> {
     system: &'a E,
     symmetry: &'a Symmetry,
     options: &'a MonodromyOptions,
-    monitor: &'a Monitor,
+    pieces: Pieces<'a>,
     fibre: Fibre,
 }
 
+/// What a loop has added to a fibre.
+#[derive(Serialize, Deserialize)]
+struct Added {
+    solutions: Vec<Complex64>,
+    representatives: Option<Vec<usize>>,
+}
+
 impl<E: Evaluate> Filling<'_, E> {
-    /// Tracks the fibre round one triangle and adds what is new. Returns the number of paths.
+    /// Tracks the fibre round one triangle and adds what is new, or what is recorded of that. Returns
+    /// the number of paths.
     fn go_round(
         &mut self,
+        number: usize,
         corners: &[Vec<Complex64>; 2],
         accept: &impl Fn(&[Complex64], &[Complex64]) -> bool,
     ) -> usize {
+        let (n, known) = (self.fibre.dimension.max(1), self.fibre.len());
+        let represented = self.fibre.representatives.as_ref().map(Vec::len);
+        let paths = 3 * represented.unwrap_or(known);
+        self.pieces.monitor.enter(Stage::Loop, paths as u64);
+        let fits = |added: &Added| {
+            let len = known + added.solutions.len() / n;
+            let are_there = |which: &Vec<usize>| which.iter().all(|&k| k < len);
+            added.solutions.len().is_multiple_of(n)
+                && added.representatives.is_some() == represented.is_some()
+                && added.representatives.as_ref().is_none_or(are_there)
+        };
+        if let Some(added) = self.pieces.take(Piece::Whole(number), fits) {
+            self.fibre.solutions.extend(added.solutions);
+            if let (Some(all), Some(more)) = (&mut self.fibre.representatives, added.representatives) {
+                all.extend(more);
+            }
+            return paths;
+        }
+        let back = self.carried(number, corners);
+        self.add_accepted(back.chunks_exact(n), accept);
+        let new = |all: &Vec<usize>| all[represented.unwrap_or(0)..].to_vec();
+        let representatives = self.fibre.representatives.as_ref().map(new);
+        let added = Added { solutions: self.fibre.solutions[known * n..].to_vec(), representatives };
+        self.pieces.record(Piece::Whole(number), self.fibre.len(), &added);
+        paths
+    }
+
+    /// Where the solutions come back to, that came round.
+    fn carried(&self, number: usize, corners: &[Vec<Complex64>; 2]) -> Vec<Complex64> {
         let n = self.fibre.dimension;
         let mut moving = self.fibre.tracked();
-        let paths = 3 * moving.len();
-        self.monitor.enter(Stage::Loop, paths as u64);
-        for corner in [&corners[0], &corners[1], &self.fibre.parameters] {
-            let (ends, _) = track_fibre_watched(self.system, &moving, corner, &self.options.fibre, self.monitor);
-            // Paths that share an end have been counted as failed; whichever is true is found by a
-            // later loop.
-            let regular = ends.iter().filter(|(r, _)| r.end == PathEnd::Success);
-            let mut solutions: Vec<Complex64> = regular.flat_map(|(_, x)| x.iter().copied()).collect();
-            let drop = repeated(&solutions, n, 0, self.options.fibre.coincidence);
-            remove(&mut solutions, n, &drop);
+        let is_long = moving.len() > LONG;
+        for (side, corner) in [&corners[0], &corners[1], &self.fibre.parameters].into_iter().enumerate() {
+            let step = Piece::Step(2 * number + side);
+            let fits = |solutions: &Vec<Complex64>| solutions.len().is_multiple_of(n.max(1));
+            // What the last one brings is recorded with the loop.
+            let is_recorded = is_long && side < corners.len();
+            let solutions = match is_recorded.then(|| self.pieces.take(step, fits)).flatten() {
+                Some(solutions) => solutions,
+                None => {
+                    let solutions = self.moved(&moving, corner);
+                    if is_recorded {
+                        self.pieces.record(step, self.fibre.len(), &solutions);
+                    }
+                    solutions
+                }
+            };
             moving = Fibre::new(corner.clone(), n, solutions);
         }
-        self.add_accepted(moving.solutions.chunks_exact(n.max(1)), accept);
-        paths
+        moving.solutions
+    }
+
+    /// Where solutions are for other parameters: those of paths that end well.
+    fn moved(&self, fibre: &Fibre, target: &[Complex64]) -> Vec<Complex64> {
+        let (options, monitor) = (&self.options.fibre, self.pieces.monitor);
+        let (ends, _) = track_fibre_watched(self.system, fibre, target, options, monitor);
+        // Paths that share an end have been counted as failed; whichever is true is found by a
+        // later loop.
+        let regular = ends.iter().filter(|(r, _)| r.end == PathEnd::Success);
+        let mut solutions: Vec<Complex64> = regular.flat_map(|(_, x)| x.iter().copied()).collect();
+        let drop = repeated(&solutions, fibre.dimension, 0, options.coincidence);
+        remove(&mut solutions, fibre.dimension, &drop);
+        solutions
     }
 
     /// Adds points that are refined to solutions that are wanted and not known yet.

@@ -1,9 +1,10 @@
 //! Work on families that goes on from a checkpoint.
 
-use super::{Family, FamilyError, Fibre, MonodromyOptions};
+use super::{Family, FamilyError, Fibre, MonodromyOptions, Stop};
 use crate::checkpoint::support::{goes_on_from_every_record, resumed};
 use crate::checkpoint::{Checkpoint, CheckpointError, CheckpointOptions, status};
-use crate::{Solutions, SolveOptions};
+use crate::{Monitor, Solutions, SolveOptions};
+use num_complex::Complex64;
 
 /// Four solutions in two orbits; for `a = 0` two of them are at infinity.
 fn conics(more: &str) -> Family {
@@ -106,4 +107,75 @@ fn targets_of_other_runs_are_refused_with_the_difference() {
         assert_eq!(differs(&conics(more), &fibre, &targets, &options).0, "system hash");
     }
     assert_eq!(resumed(folder.path(), 1, |c| tracked(&family, &fibre, &targets, &options, c)).unwrap().0.len(), 3);
+}
+
+fn family(unknowns: &str, parameters: &str, equations: &str) -> Family {
+    let text =
+        format!("name = \"\"\nunknowns = [{unknowns}]\nparameters = [{parameters}]\nequations = [{equations}]\n");
+    text.parse().unwrap()
+}
+
+/// Loops, solutions for other parameters where these bring nothing new, and the trace test.
+#[test]
+fn searches_go_on_from_every_record_to_the_same_bits() {
+    let folder = tempfile::tempdir().unwrap();
+    // A root of its own beside two that change places; orbits.
+    let apart = family("\"x\"", "\"a\", \"b\"", "\"(x^2 - a)*(x - b)\"");
+    for (name, family, count) in [("apart", apart, 3), ("orbits", conics("symmetry = [[\"-x\", \"-y\"]]"), 4)] {
+        let options = MonodromyOptions::new().seed(1).trace_test(true);
+        let first = family.find_pair(1).unwrap();
+        let directory = folder.path().join(name);
+        let expected = family.complete(&first, &options, &Monitor::default()).unwrap();
+        assert_eq!((expected.fibre.len(), expected.stop), (count, Stop::NoProgress));
+        let test = family.trace_test(&expected.fibre, &options, &Monitor::default()).unwrap();
+        assert!(test.passed(count) && expected.trace == Some(test), "{test:?}");
+        assert_eq!(expected.start_file().stopped, "trace");
+        let work =
+            |checkpoint: &Checkpoint| family.complete_recorded(&first, &options, &Monitor::default(), checkpoint);
+        let checkpoint = Checkpoint::open(&directory, &CheckpointOptions::new()).unwrap();
+        assert_eq!(work(&checkpoint).unwrap(), expected);
+        drop(checkpoint);
+        let now = status(&directory).unwrap();
+        // The search, with others if need be, and three parts of the trace test.
+        assert_eq!((now.what.as_str(), now.part, now.round, now.done, now.total), ("monodromy", 5, 1, 3, None));
+        assert_eq!(now.solutions, (count + test.further) as u64);
+        assert!(goes_on_from_every_record(&directory, &expected, work) > expected.loops);
+        // Neither the trace test nor threads are of the search.
+        let untested = options.clone().trace_test(false);
+        let search =
+            |checkpoint: &Checkpoint| family.complete_recorded(&first, &untested, &Monitor::default(), checkpoint);
+        let (found, _) = resumed(&directory, 2, search).unwrap();
+        assert_eq!((found.fibre, found.trace), (expected.fibre, None));
+        for (options, differs) in [(options.clone().seed(2), "seed"), (options.clone().patience(9), "patience")] {
+            let work =
+                |checkpoint: &Checkpoint| family.complete_recorded(&first, &options, &Monitor::default(), checkpoint);
+            let error = resumed(&directory, 1, work).unwrap_err();
+            let FamilyError::Checkpoint(CheckpointError::Differs { name, .. }) = error else { panic!("{error}") };
+            assert_eq!(name, differs);
+        }
+    }
+}
+
+/// All but some of the pairs of 65th roots of two numbers.
+#[test]
+fn sides_of_long_loops_are_recorded() {
+    let family = family("\"x\", \"y\"", "\"a\", \"b\"", "\"x^65 - a\", \"y^65 - b\"");
+    let root = |k: usize| Complex64::from_polar(1.0, std::f64::consts::TAU * k as f64 / 65.0);
+    let solutions = (10..65 * 65).flat_map(|k| [root(k / 65), root(k % 65)]).collect();
+    let first = Fibre::new(vec![Complex64::new(1.0, 0.0); 2], 2, solutions);
+    let options = MonodromyOptions::new().roots(65 * 65);
+    let expected = family.complete(&first, &options, &Monitor::default()).unwrap();
+    assert_eq!((expected.fibre.len(), expected.stop), (4225, Stop::RootsReached));
+    let folder = tempfile::tempdir().unwrap();
+    let work = |checkpoint: &Checkpoint| family.complete_recorded(&first, &options, &Monitor::default(), checkpoint);
+    let checkpoint = Checkpoint::open(folder.path(), &CheckpointOptions::new()).unwrap();
+    assert_eq!(work(&checkpoint).unwrap(), expected);
+    drop(checkpoint);
+    // Of each loop two sides and the end.
+    assert_eq!(goes_on_from_every_record(folder.path(), &expected, work), 3 * expected.loops);
+    let now = status(folder.path()).unwrap();
+    assert_eq!((now.done, now.solutions), (expected.loops as u64, 4225));
+    // Two complex numbers a solution and side.
+    let bytes = now.bytes / (2 * expected.loops as u64);
+    assert!(bytes < 4225 * 32 + 1000, "{bytes}");
 }

@@ -214,7 +214,8 @@ impl How<'_> {
         let SolveOptions { seed, paths, endgame, known, .. } = &self.options;
         let start = Points::of_fibre(self.fibre);
         let targets = Points::new(targets.iter().map(Vec::as_slice));
-        job("track", self.family, &Settings { seed: *seed, paths, endgame, known: *known, start, targets })
+        let settings = Settings { seed: *seed, paths, endgame, known: *known, start, targets };
+        job("track", &self.family.given, &self.family.program, &settings)
     }
 
     /// The solutions for a target from a fibre, or where paths are lost, from one on a detour: more

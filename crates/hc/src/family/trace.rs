@@ -13,8 +13,9 @@ use super::monodromy::{MonodromyOptions, fill};
 use super::reach::Reach;
 use super::size::Sizes;
 use super::symmetry::Symmetry;
+use super::trace_result::TraceTest;
 use super::track::{move_fibre_watched, track_fibre_watched};
-use crate::monitor::Monitor;
+use crate::checkpoint::{Piece, Pieces};
 use crate::random::{Random, Stream};
 use crate::refine::Refiner;
 use crate::tracker::PathEnd;
@@ -25,49 +26,16 @@ use poly::{CompileError, ComplexDd, Evaluate, Scalar, System};
 /// what is left is rounding error of double-double.
 const STRAIGHT: f64 = 1e-26;
 
-/// Deviations below this pass. Those of whole fibres are rounding errors of double-double, some 1e-30;
-/// a missing point of another size than the others deviates by little more.
-pub(crate) const PASSED: f64 = 1e-18;
-
-/// What the trace test found.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct TraceTest {
-    /// Deviation of the sum of the points from linear motion, relative to those of the single
-    /// points; rounding error if the fibre is whole, of the order of one if a point is missing.
-    pub deviation: f64,
-    /// Points of the fibre that were counted where the further points had been added.
-    pub fibre: usize,
-    /// Further points.
-    pub further: usize,
-    /// Whether every path of the test ended well, without which the deviation means nothing.
-    pub complete: bool,
-}
-
-impl TraceTest {
-    /// Whether the test shows that a fibre of `len` points is whole: it has a [result](Self::result),
-    /// which is below 1e-18.
-    pub fn passed(&self, len: usize) -> bool {
-        self.result(len).is_some_and(|deviation| deviation < PASSED)
-    }
-
-    /// The deviation for a fibre of `len` points, if it means something: every path ended well, and
-    /// these points and no others were found on the fibre.
-    pub fn result(&self, len: usize) -> Option<f64> {
-        (self.complete && self.fibre == len && self.deviation.is_finite()).then_some(self.deviation)
-    }
-}
-
 /// The trace test of a fibre of `system`.
 ///
 /// The line and the hypersurface move on the natural sizes of parameters and unknowns, unless the
 /// family looks simpler there than it is; where that shows nothing, as far as single parameters
-/// have to move until they matter.
+/// have to move until they matter. Each of these has three parts of pieces.
 pub(super) fn trace_test(
     system: &System,
     fibre: &Fibre,
     options: &MonodromyOptions,
-    monitor: &Monitor,
+    pieces: Pieces<'_>,
 ) -> Result<TraceTest, CompileError> {
     let Some(enlarged) = enlarge(system) else { return Ok(FAILED) };
     let enlarged = enlarged.compile()?;
@@ -78,8 +46,8 @@ pub(super) fn trace_test(
         (false, true) => vec![wide],
     };
     let mut test = FAILED;
-    for sizes in all {
-        test = on_sizes(&enlarged, fibre, &sizes, options, monitor);
+    for (sizes, part) in all.iter().zip((0..).step_by(3)) {
+        test = on_sizes(&enlarged, fibre, sizes, options, pieces.part(part));
         if test.passed(fibre.len()) {
             break;
         }
@@ -96,8 +64,12 @@ fn on_sizes<E: Evaluate>(
     fibre: &Fibre,
     sizes: &Sizes,
     options: &MonodromyOptions,
-    monitor: &Monitor,
+    pieces: Pieces<'_>,
 ) -> TraceTest {
+    let (monitor, result) = (pieces.monitor, Piece::Whole(2));
+    if let Some(test) = pieces.part(2).take(result, |_| true) {
+        return test;
+    }
     let (n, m) = (fibre.dimension, fibre.parameters.len());
     // Parameters of the enlarged family: p, v, a, c, tau.
     let mut random = Random::new(options.seed, Stream::Trace);
@@ -119,24 +91,37 @@ fn on_sizes<E: Evaluate>(
     }
     let on_fibre = Fibre::new(at(0.0), n + 1, solutions);
     let careful = FibreOptions::default();
-    let moved = |fibre: &Fibre, factor: f64| move_fibre_watched(enlarged, fibre, &at(factor), &careful, monitor);
-    let Some(start) = moved(&on_fibre, 1.0) else { return FAILED };
+    let moved = |pieces: Pieces<'_>, number: usize, fibre: &Fibre, factor: f64| {
+        let is_of = |solutions: &Option<Vec<Complex64>>| {
+            solutions.as_ref().is_none_or(|all| all.len() == fibre.solutions.len())
+        };
+        let recorded = pieces.take(Piece::Whole(number), is_of);
+        let solutions = recorded.unwrap_or_else(|| {
+            let moved =
+                move_fibre_watched(enlarged, fibre, &at(factor), &careful, monitor).map(|moved| moved.solutions);
+            pieces.record(Piece::Whole(number), fibre.len(), &moved);
+            moved
+        });
+        Some(Fibre::new(at(factor), n + 1, solutions?))
+    };
+    let Some(start) = moved(pieces, 0, &on_fibre, 1.0) else { return FAILED };
     let mut search = options.clone();
     search.roots = None;
-    let filled = fill(enlarged, &start, |_, _| true, &Symmetry::default(), &search, monitor).fibre;
+    let filled = fill(enlarged, &start, |_, _| true, &Symmetry::default(), &search, pieces.part(1)).fibre;
 
-    let (Some(second), Some(third)) = (moved(&filled, 2.0), moved(&filled, 3.0)) else { return FAILED };
+    let ends = pieces.part(2);
+    let (Some(second), Some(third)) = (moved(ends, 0, &filled, 2.0), moved(ends, 1, &filled, 3.0)) else {
+        return FAILED;
+    };
     let deviation = deviation(enlarged, &[&filled, &second, &third], n + 1);
 
     // Back on lambda = 0: every point of the curve there must be one of the fibre.
-    let (ends, counts) = track_fibre_watched(enlarged, &filled, &at(0.0), &careful, monitor);
-    let back = ends.iter().filter(|(r, x)| r.end == PathEnd::Success && x[n].norm() < 1e-8).count();
-    TraceTest {
-        deviation,
-        fibre: back,
-        further: filled.len() - back,
-        complete: counts.failed == 0 && counts.finite == filled.len(),
-    }
+    let (paths, counts) = track_fibre_watched(enlarged, &filled, &at(0.0), &careful, monitor);
+    let back = paths.iter().filter(|(r, x)| r.end == PathEnd::Success && x[n].norm() < 1e-8).count();
+    let complete = counts.failed == 0 && counts.finite == filled.len();
+    let test = TraceTest { deviation, fibre: back, further: filled.len() - back, complete };
+    ends.record(result, filled.len(), &test);
+    test
 }
 
 /// `F(x; p + lambda v) = 0`, `(a x - c) lambda = tau`.
