@@ -15,6 +15,7 @@ pub(crate) fn read(path: &Path) -> Result<Family, Failure> {
 pub(crate) fn failure(file: &Path, error: FamilyError) -> Failure {
     match error {
         FamilyError::Checkpoint(error) => Failure::unusable(error),
+        FamilyError::Ranks(error) => Failure::unusable(error),
         error => Failure::in_file(file, error),
     }
 }

@@ -46,15 +46,15 @@ enum Command {
 fn execute(command: &Command, ranks: Option<&Ranks<'_>>) -> Result<(), Failure> {
     match command {
         Command::Solve(arguments) => solve::run(arguments, ranks),
+        Command::Track(arguments) => track::run(arguments, ranks),
         _ if ranks.is_some() => {
-            Err(Failure::unusable("only `hc solve` runs on several ranks; start this without mpirun"))
+            Err(Failure::unusable("only `hc solve` and `hc track` run on several ranks; start this without mpirun"))
         }
         Command::Certify(arguments) => certify::run(arguments),
         Command::Codegen(arguments) => codegen::run(arguments),
         Command::Decompose(arguments) => decompose::run(arguments),
         Command::MixedVolume(arguments) => mixed_volume::run(arguments),
         Command::Monodromy(arguments) => monodromy::run(arguments),
-        Command::Track(arguments) => track::run(arguments),
     }
 }
 
@@ -78,6 +78,7 @@ fn run(exchange: Option<&dyn Exchange>) -> ExitCode {
     };
     let options = match &command {
         Command::Solve(arguments) => arguments.ranks(),
+        Command::Track(arguments) => arguments.ranks(),
         _ => RanksOptions::new(),
     };
     let ranks = exchange.map(|exchange| Ranks::new(exchange, &options));

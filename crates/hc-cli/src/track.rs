@@ -3,8 +3,9 @@
 use crate::checkpoint::{self, Recording};
 use crate::input::{self, Number};
 use crate::report::Report;
-use crate::{family, watch};
+use crate::{family, ranks, watch};
 use cli::{Failure, output};
+use hc::ranks::{Ranks, RanksOptions};
 use hc::{Solutions, SolveOptions};
 use num_complex::Complex64;
 use serde::Deserialize;
@@ -46,6 +47,15 @@ pub(crate) struct Arguments {
     json: Option<PathBuf>,
     #[command(flatten)]
     checkpoint: Recording,
+    #[command(flatten)]
+    ranks: ranks::Sharing,
+}
+
+impl Arguments {
+    /// The settings for several ranks.
+    pub(crate) fn ranks(&self) -> RanksOptions {
+        self.ranks.options()
+    }
 }
 
 #[derive(Deserialize)]
@@ -60,11 +70,15 @@ struct Target {
     parameters: Vec<Number>,
 }
 
-pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+/// Tracks, with the other ranks if there are any; rank 0 alone prints, and writes files.
+pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<(), Failure> {
+    let is_lead = ranks.is_none_or(Ranks::is_lead);
     if let Some(directory) = arguments.checkpoint.status() {
-        return checkpoint::status(directory);
+        return if is_lead { checkpoint::status(directory) } else { Ok(()) };
     }
-    output::check(&[("--json", arguments.json.as_deref())])?;
+    if is_lead {
+        output::check(&[("--json", arguments.json.as_deref())])?;
+    }
     let begun = Instant::now();
     let file = Recording::needed(&arguments.family, "a family")?;
     let family = family::read(file)?;
@@ -79,11 +93,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         if count == 1 { (position, length, words) } else { (done.load(Ordering::Relaxed), count, "targets".to_owned()) }
     };
     let options = SolveOptions::new().seed(arguments.seed).certify(arguments.certify);
-    let checkpoint = arguments.checkpoint.open()?;
+    let checkpoint = if is_lead { arguments.checkpoint.open()? } else { None };
     let solved = watch::watched(arguments.threads, &monitor, describe, || {
         let all = family.track(&fibre, &targets).options(&options).watched(&monitor);
         let all = match &checkpoint {
             Some(checkpoint) => all.recorded(checkpoint),
+            None => all,
+        };
+        let all = match ranks {
+            Some(ranks) => all.on_ranks(ranks),
             None => all,
         };
         all.transform(|_, found| {
@@ -92,6 +110,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         })
     })?;
     let solved: Vec<(Solutions, f64)> = solved.map_err(|error| family::failure(file, error))?;
+    if !is_lead {
+        return Ok(());
+    }
     let reports: Vec<Report<'_>> =
         solved.iter().map(|(found, seconds)| Report::new(found, arguments.seed, *seconds)).collect();
     if let Some(path) = &arguments.json {

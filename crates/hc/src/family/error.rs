@@ -1,6 +1,7 @@
 //! Why a family cannot be used.
 
 use crate::checkpoint::CheckpointError;
+use crate::ranks::RanksError;
 use crate::tracker::OptionError;
 use poly::{CompileError, ParseError};
 
@@ -20,6 +21,9 @@ pub enum FamilyError {
     /// No checkpoint of this run, or one that cannot be written.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
+    /// Other processes cannot take part as they should.
+    #[error(transparent)]
+    Ranks(#[from] RanksError),
     /// Not as many equations as unknowns, or none.
     #[error("{equations} equations in {unknowns} unknowns; as many equations as unknowns are needed, and at least one")]
     NotSquare {

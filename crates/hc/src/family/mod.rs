@@ -41,3 +41,6 @@ pub(crate) use track::{move_fibre_watched, track_fibre_watched};
 #[cfg(all(test, feature = "threads"))]
 #[path = "recorded_tests.rs"]
 mod tests;
+
+#[cfg(all(test, feature = "threads"))]
+mod ranks_tests;

@@ -7,18 +7,18 @@ use crate::{Monitor, Solutions, SolveOptions};
 use num_complex::Complex64;
 
 /// Four solutions in two orbits; for `a = 0` two of them are at infinity.
-fn conics(more: &str) -> Family {
+pub(super) fn conics(more: &str) -> Family {
     let text = "name = \"conics\"\nunknowns = [\"x\", \"y\"]\nparameters = [\"a\", \"b\", \"c\"]\n\
                 equations = [\"a*x^2 + y^2 - b\", \"x*y - c\"]\n";
     format!("{text}{more}").parse().unwrap()
 }
 
-fn fibre(family: &Family) -> Fibre {
+pub(super) fn fibre(family: &Family) -> Fibre {
     family.monodromy(&MonodromyOptions::new().roots(4)).unwrap().fibre
 }
 
 /// Hyperbolas that cross a circle, touch it, and meet two lines.
-fn targets(count: usize) -> Vec<[f64; 3]> {
+pub(super) fn targets(count: usize) -> Vec<[f64; 3]> {
     let target = |k: usize| match k % 100 {
         7 => [1.0, 2.0, 1.0],
         8 => [0.0, 4.0, 3.0],

@@ -10,6 +10,7 @@ use super::track::move_fibre_watched;
 use crate::checkpoint::{Checkpoint, Job, Part, Recordable, Recorded};
 use crate::endgame::EndgameOptions;
 use crate::monitor::Monitor;
+use crate::ranks::{Lead, Ranks, Shareable, Shared, Worker};
 use crate::runner::{Flow, Policy, Room, Round, Work, run};
 use crate::solve::{Solutions, SolveOptions, solve_member};
 // One thread needs no trait for `map`.
@@ -47,6 +48,7 @@ pub struct Targets<'a> {
     targets: Vec<Vec<Complex64>>,
     enough: Option<Box<Enough<'a>>>,
     checkpoint: Option<Checkpoint>,
+    ranks: Option<&'a Ranks<'a>>,
 }
 
 /// How each target is tracked.
@@ -62,7 +64,7 @@ impl<'a> Targets<'a> {
     pub(super) fn new(family: &'a Family, fibre: &'a Fibre, targets: Vec<Vec<Complex64>>) -> Targets<'a> {
         let (options, monitor) = (SolveOptions::default(), Monitor::default());
         let how = How { family, fibre, options, only_real: false, monitor };
-        Targets { how, targets, enough: None, checkpoint: None }
+        Targets { how, targets, enough: None, checkpoint: None, ranks: None }
     }
 
     /// Settings. Start systems have no meaning here. Default [`SolveOptions::default`].
@@ -94,12 +96,19 @@ impl<'a> Targets<'a> {
         Targets { checkpoint: Some(checkpoint.clone()), ..self }
     }
 
+    /// Lets several [ranks](crate::ranks) take part, which are all given the same family, fibre, targets
+    /// and options. Rank 0 alone heeds the monitor, has the checkpoint, and is given results, the same
+    /// to the bit as without others; the others are given none when they are not needed any more.
+    pub fn on_ranks(self, ranks: &'a Ranks<'a>) -> Self {
+        Targets { ranks: Some(ranks), ..self }
+    }
+
     /// Tracks, and returns a result for each target, in order; fewer if the work was cancelled or
     /// stopped early.
     ///
     /// # Errors
     /// If the fibre or a target does not fit the family, a symmetry of the family is none, an option
-    /// is out of range, or the checkpoint is of another run or cannot be written.
+    /// is out of range, the checkpoint is of another run or cannot be written, or another rank fails.
     pub fn run(self) -> Result<Vec<Solutions>, FamilyError> {
         self.transform(|_, solutions| solutions)
     }
@@ -110,17 +119,41 @@ impl<'a> Targets<'a> {
     /// # Errors
     /// Those of [`run`](Self::run).
     pub fn transform<T: Send>(self, transform: impl Fn(usize, Solutions) -> T + Sync) -> Result<Vec<T>, FamilyError> {
-        let Targets { how, targets, enough, checkpoint } = self;
+        let Some(ranks) = self.ranks else { return self.led(None, transform) };
+        let valid = self.validate();
+        let fingerprint = if valid.is_ok() { self.how.job(&self.targets).fingerprint() } else { String::new() };
+        if ranks.is_lead() {
+            return Lead::at(ranks, &fingerprint, |lead| self.led(Some(lead), transform));
+        }
+        Worker::at(ranks, &fingerprint, |worker| self.serve(worker)).map(|()| Vec::new())
+    }
+
+    fn validate(&self) -> Result<(), FamilyError> {
+        let Targets { how, targets, .. } = self;
         how.family.check(how.fibre)?;
         how.options.validate()?;
         let parameters = how.fibre.parameters.len();
         let unusable = |target: &Vec<Complex64>| target.len() != parameters || target.iter().any(|z| !z.is_finite());
-        if let Some(k) = targets.iter().position(unusable) {
-            return Err(FamilyError::Target { target: k + 1, parameters });
+        match targets.iter().position(unusable) {
+            Some(k) => Err(FamilyError::Target { target: k + 1, parameters }),
+            None => Ok(()),
         }
+    }
+
+    /// The work at rank 0, or without others.
+    fn led<T: Send>(
+        self,
+        lead: Option<&Lead<'_>>,
+        transform: impl Fn(usize, Solutions) -> T + Sync,
+    ) -> Result<Vec<T>, FamilyError> {
+        self.validate()?;
+        let Targets { how, targets, enough, checkpoint, .. } = self;
         let orbits = Orbits::of(how.family, how.fibre)?;
         if let Some(checkpoint) = &checkpoint {
             checkpoint.begin(how.job(&targets))?;
+        }
+        if let Some(lead) = lead {
+            lead.begin_part(&(), how.fibre.len());
         }
         let (trackers, count) = (Trackers::new(&how.family.program), targets.len());
         let (monitor, orbits) = (&how.monitor, orbits.as_ref());
@@ -132,12 +165,28 @@ impl<'a> Targets<'a> {
         };
         let policy = Policy { retries: 0, charts: 1, first: block, batch: block };
         let part = checkpoint.as_ref().map(|checkpoint| Part { checkpoint, number: 0 });
-        let mut work = Recorded::new(each, part, monitor);
+        let mut work = Recorded::new(Shared::new(each, lead, monitor), part, monitor);
         run(&mut work, count, &policy, &mut Room::default(), monitor);
-        match checkpoint.as_ref().and_then(Checkpoint::failure) {
-            Some(error) => Err(error.into()),
-            None => Ok(work.into_inner().results),
+        if let Some(error) = checkpoint.as_ref().and_then(Checkpoint::failure) {
+            return Err(error.into());
         }
+        match lead.and_then(Lead::failure) {
+            Some(error) => Err(error.into()),
+            None => Ok(work.into_inner().into_inner().results),
+        }
+    }
+
+    /// The work at another rank than the first.
+    fn serve(mut self, worker: &Worker<'_>) -> Result<(), FamilyError> {
+        self.validate()?;
+        let orbits = Orbits::of(self.how.family, self.how.fibre)?;
+        let trackers = Trackers::new(&self.how.family.program);
+        while let Some(task) = worker.next::<()>()? {
+            self.how.monitor = task.monitor.clone();
+            let (how, targets) = (&self.how, &self.targets);
+            worker.serve(&task, |numbers, _| how.solved(&trackers, orbits.as_ref(), targets, numbers))?;
+        }
+        Ok(())
     }
 }
 
@@ -159,11 +208,7 @@ impl<T: Send, F: Fn(usize, Solutions) -> T + Sync> Work for Each<'_, '_, T, F> {
     type Memory = ();
 
     fn batch(&self, (): &mut (), numbers: &[usize], _: Round, batch: &mut Self::Batch) {
-        let Each { how, trackers, orbits, targets, .. } = self;
-        let solve = |&k: &usize| Some((k, how.solve(trackers, *orbits, &targets[k])?));
-        let solved: Vec<Option<(usize, Solutions)>> = numbers.par_iter().map(solve).collect();
-        // What is done before the first that was not begun.
-        *batch = solved.into_iter().map_while(|found| found).collect();
+        *batch = self.ends(numbers, Round::FIRST);
     }
 
     fn absorb(&mut self, batch: &mut Self::Batch, _: Round) -> Flow {
@@ -194,6 +239,22 @@ impl<T: Send, F: Fn(usize, Solutions) -> T + Sync> Recordable for Each<'_, '_, T
 
     fn solutions(&self) -> u64 {
         self.solutions
+    }
+}
+
+impl<T: Send, F: Fn(usize, Solutions) -> T + Sync> Shareable for Each<'_, '_, T, F> {
+    type End = (usize, Solutions);
+
+    fn ends(&self, numbers: &[usize], _: Round) -> Vec<Self::End> {
+        self.how.solved(&self.trackers, self.orbits, self.targets, numbers)
+    }
+
+    fn is_end(&self, (target, found): &Self::End, number: usize) -> bool {
+        *target == number && found.fits(self.how.fibre.dimension)
+    }
+
+    fn gather(&self, ends: Vec<Self::End>, batch: &mut Self::Batch) {
+        *batch = ends;
     }
 }
 
@@ -270,6 +331,19 @@ impl How<'_> {
             Some(found)
         });
         Some(expanded.unwrap_or_else(|| from(self.fibre)))
+    }
+
+    /// The solutions for some of the targets, with their numbers, up to the first that was not begun.
+    fn solved(
+        &self,
+        trackers: &Trackers<'_, poly::Interpreter>,
+        orbits: Option<&Orbits>,
+        targets: &[Vec<Complex64>],
+        numbers: &[usize],
+    ) -> Vec<(usize, Solutions)> {
+        let solve = |&k: &usize| Some((k, self.solve(trackers, orbits, &targets[k])?));
+        let solved: Vec<Option<(usize, Solutions)>> = numbers.par_iter().map(solve).collect();
+        solved.into_iter().map_while(|found| found).collect()
     }
 
     /// What was asked for of the solutions for a target.

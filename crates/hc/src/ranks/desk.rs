@@ -17,6 +17,8 @@ const MOST: usize = 256;
 pub(super) struct Desk {
     patience: Duration,
     round: Round,
+    /// Least and largest portion for each thread.
+    sizes: [usize; 2],
     /// Paths that nobody has, ascending.
     fresh: VecDeque<usize>,
     /// The last one that was offered.
@@ -51,11 +53,13 @@ impl Desk {
         let mut seats = vec![Seat::default(); ranks.max(1)];
         seats[0].threads = threads.max(1);
         let (fresh, out) = (VecDeque::new(), BTreeMap::new());
-        Desk { patience, round: Round::FIRST, fresh, last: None, next: 0, out, seats }
+        Desk { patience, round: Round::FIRST, sizes: [LEAST, MOST], fresh, last: None, next: 0, out, seats }
     }
 
-    /// Begins another part, for which the others have to become ready.
-    pub(super) fn begin_part(&mut self) {
+    /// Begins another part, for which the others have to become ready. Each of its numbers stands for
+    /// so many paths.
+    pub(super) fn begin_part(&mut self, weight: usize) {
+        self.sizes = [LEAST, MOST].map(|size| (size / weight.max(1)).max(1));
         self.begin_round(Round::FIRST);
         self.seats[1..].fill(Seat::default());
     }
@@ -81,7 +85,7 @@ impl Desk {
 
     /// How many paths are worth knowing of at a time, so that nobody waits for the next batch.
     pub(super) fn horizon(&self) -> usize {
-        2 * MOST * self.threads()
+        2 * self.sizes[1] * self.threads()
     }
 
     /// Adds paths, ascending, but for those that were offered before.
@@ -109,7 +113,8 @@ impl Desk {
             None if self.fresh.is_empty() => return None,
             None => {
                 let share = self.fresh.len().saturating_mul(seat.threads) / (2 * all);
-                let size = share.clamp(LEAST * seat.threads, MOST * seat.threads).min(self.fresh.len());
+                let [least, most] = self.sizes.map(|size| size * seat.threads);
+                let size = share.clamp(least, most).min(self.fresh.len());
                 let paths: Vec<usize> = self.fresh.drain(..size).collect();
                 let number = self.next;
                 self.next += 1;
@@ -145,7 +150,7 @@ mod tests {
     fn every_path_is_handed_out_once_and_again_when_it_is_late() {
         let (now, patience) = (Instant::now(), Duration::from_secs(10));
         let mut desk = Desk::new(3, 1, patience);
-        desk.begin_part();
+        desk.begin_part(1);
         desk.begin_round(Round { level: 2, chart: 0 });
         let paths: Vec<usize> = (0..1000).map(|k| 3 * k).collect();
         desk.offer(&paths[..600]);
@@ -180,5 +185,11 @@ mod tests {
         assert_eq!(desk.answer(1, again.number), Some(again.paths));
         assert_eq!(desk.answer(2, again.number), None);
         assert_eq!((desk.answer(9, 0), desk.due()), (None, None));
+        // Heavy ones are handed out one by one, as many as there are threads.
+        desk.begin_part(1000);
+        desk.ready(1, 2);
+        desk.offer(&paths);
+        let sizes = [0, 1].map(|rank| desk.take(rank, now).map(|portion| portion.paths.len()));
+        assert_eq!((sizes, desk.horizon()), ([Some(1), Some(2)], 6));
     }
 }

@@ -56,14 +56,15 @@ impl<'a> Lead<'a> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Begins a part of the job, which this describes to the others.
-    pub(crate) fn begin_part(&self, content: &impl Serialize) {
+    /// Begins a part of the job, which this describes to the others; each of its numbers stands for so
+    /// many paths.
+    pub(crate) fn begin_part(&self, content: &impl Serialize, weight: usize) {
         let Ok(content) = postcard::to_stdvec(content) else { return };
         let part = {
             let mut state = self.state();
             state.parts += 1;
             state.arrived.clear();
-            state.desk.begin_part();
+            state.desk.begin_part(weight);
             state.parts
         };
         self.ranks.to_all(&Order::Begin { job: self.job, part, content });

@@ -5,7 +5,8 @@
 //! [`solve_watched`](crate::solve_watched) does, but it hands out paths to whoever asks, in portions,
 //! tracks some itself, and puts the ends together in the order of their numbers. The result has the
 //! same bits on any number of ranks and threads, whatever arrives first: the end of a path depends on
-//! nothing but its number and the round.
+//! nothing but its number and the round. [`Targets::on_ranks`](crate::family::Targets::on_ranks) does
+//! this for the targets of a family.
 //!
 //! What carries the messages is an [`Exchange`]. [`Local`] is one between threads; the program `hc`
 //! has one over MPI, behind its feature `mpi`.
@@ -41,6 +42,8 @@ mod lead;
 mod message;
 mod run;
 mod shared;
+#[cfg(all(test, feature = "threads"))]
+pub(crate) mod support;
 mod worker;
 
 pub use error::RanksError;

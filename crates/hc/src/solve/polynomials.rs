@@ -152,7 +152,7 @@ fn solve_zoomed(
         let trial = direct.is_some();
         let from = direct.as_mut().unwrap_or(&mut starts);
         if let Some(lead) = lead {
-            lead.begin_part(&Announced { trial, attempt: u64::from(start_systems) });
+            lead.begin_part(&Announced { trial, attempt: u64::from(start_systems) }, 1);
         }
         let start = match from.system(u64::from(start_systems), options, monitor) {
             Err(SolveError::Mixed(MixedError::Cancelled)) => break,

@@ -2,10 +2,11 @@
 
 use super::tests::quadrics;
 use crate::checkpoint::{Checkpoint, CheckpointOptions, status};
-use crate::ranks::{Exchange, ExchangeError, Local, Ranks, RanksError, RanksOptions};
+use crate::ranks::support::{Faulty, PATIENCE, on};
+use crate::ranks::{Exchange, ExchangeError, Local, Ranks, RanksError};
 use crate::{Monitor, Solutions, SolveError, SolveOptions, Stage, Start, System, solve, solve_on_ranks};
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 /// Cyclic n-roots: sums of products of k neighbours are zero, the product of all is one.
@@ -31,79 +32,6 @@ fn cases() -> Vec<(&'static str, System, SolveOptions)> {
         ("one unknown", of("(x^2 - 2)^3*(x - 1)^4*(x^3 + x + 1)"), options.clone().seed(4)),
         ("infinity", of("x*y*z - 1\nx^2*y + z - 2\nx^2 + y^2*z - 3*x"), options.start(Start::TotalDegree)),
     ]
-}
-
-/// An exchange of rank 0 that loses the first answers, and lets others overtake each other.
-struct Faulty {
-    local: Local,
-    lost: AtomicUsize,
-    answers: Arc<AtomicUsize>,
-    held: Mutex<Vec<(Instant, usize, Vec<u8>)>>,
-}
-
-impl Faulty {
-    fn new(local: Local, lost: usize) -> Faulty {
-        Faulty { local, lost: AtomicUsize::new(lost), answers: Arc::default(), held: Mutex::default() }
-    }
-}
-
-impl Exchange for Faulty {
-    fn count(&self) -> usize {
-        self.local.count()
-    }
-
-    fn rank(&self) -> usize {
-        self.local.rank()
-    }
-
-    fn send(&self, to: usize, message: Vec<u8>) -> Result<(), ExchangeError> {
-        self.local.send(to, message)
-    }
-
-    fn receive(&self, wait: Duration) -> Result<Option<(usize, Vec<u8>)>, ExchangeError> {
-        let mut held = self.held.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(k) = held.iter().position(|(due, ..)| *due <= Instant::now()) {
-            let (_, rank, message) = held.swap_remove(k);
-            return Ok(Some((rank, message)));
-        }
-        let received = self.local.receive(wait.min(Duration::from_millis(2)))?;
-        let Some((rank, message)) = received else { return Ok(None) };
-        // Answers are of the second kind of reports.
-        if self.rank() > 0 || message.get(1) != Some(&1) {
-            return Ok(Some((rank, message)));
-        }
-        self.answers.fetch_add(1, Ordering::Relaxed);
-        if self.lost.load(Ordering::Relaxed) > 0 {
-            self.lost.fetch_sub(1, Ordering::Relaxed);
-        } else {
-            let delay = Duration::from_millis(40 >> (held.len() % 4));
-            held.push((Instant::now() + delay, rank, message));
-        }
-        Ok(None)
-    }
-}
-
-type Found = Result<Option<Solutions>, SolveError>;
-
-/// Long enough that nothing is late.
-const PATIENCE: Duration = Duration::from_secs(600);
-
-/// Runs ranks, of one and two threads in turn.
-fn on<X: Exchange>(exchanges: &[X], patience: Duration, each: impl Fn(&Ranks<'_>) -> Found + Sync) -> Vec<Found> {
-    std::thread::scope(|scope| {
-        let rank = |exchange| {
-            let each = &each;
-            move || {
-                let ranks = Ranks::new(exchange, &RanksOptions::new().patience(patience));
-                let pool = rayon::ThreadPoolBuilder::new().num_threads(1 + exchange.rank() % 2).build().unwrap();
-                let found = pool.install(|| each(&ranks));
-                ranks.finish(None);
-                found
-            }
-        };
-        let threads: Vec<_> = exchanges.iter().map(|exchange| scope.spawn(rank(exchange))).collect();
-        threads.into_iter().map(|thread| thread.join().unwrap()).collect()
-    })
 }
 
 /// Runs that solve alike, of which rank 0 has the solutions.
@@ -136,7 +64,7 @@ fn late_and_lost_answers_change_nothing() {
         let exchanges: Vec<Faulty> = Local::ranks(3).into_iter().map(|local| Faulty::new(local, 2)).collect();
         // Small systems are done before others are ready; with large ones rank 0 waits for some answers.
         let enough = if expected.paths.tracked < 2048 { 0 } else { 4 };
-        let (answers, begun) = (Arc::clone(&exchanges[0].answers), Instant::now());
+        let (answers, begun) = (Arc::clone(exchanges[0].answers()), Instant::now());
         let monitor = Monitor::asking(move |progress| {
             let few = || progress.stage == Stage::Paths && answers.load(Ordering::Relaxed) < enough;
             while few() && begun.elapsed() < Duration::from_secs(120) {
@@ -148,7 +76,7 @@ fn late_and_lost_answers_change_nothing() {
             solve_on_ranks(&system, &options, &monitor, None, ranks)
         });
         assert_eq!(found, [Ok(Some(expected)), Ok(None), Ok(None)], "{name}");
-        assert!(exchanges[0].answers.load(Ordering::Relaxed) >= enough, "{name}");
+        assert!(exchanges[0].answers().load(Ordering::Relaxed) >= enough, "{name}");
     }
 }
 

@@ -135,6 +135,12 @@ impl Solutions {
         self.solutions.len()
     }
 
+    /// Whether all points have so many coordinates.
+    pub(crate) fn fits(&self, unknowns: usize) -> bool {
+        let values = self.solutions.iter().map(|s| &s.value).chain(self.unresolved.iter().map(|end| &end.value));
+        values.chain(&self.component_points).all(|value| value.len() == unknowns)
+    }
+
     /// Whether no isolated solution was found.
     pub fn is_empty(&self) -> bool {
         self.solutions.is_empty()
