@@ -1,5 +1,6 @@
 //! The measurement matrix.
 
+use std::sync::Arc;
 use thiserror::Error;
 
 /// Largest number of cells (receivers times transmitters) of a matrix: 24 million, 192 MB of values.
@@ -95,8 +96,9 @@ pub enum PseudorangeError {
 pub struct Pseudoranges {
     receivers: usize,
     transmitters: usize,
-    values: Vec<f64>,
-    sigmas: Option<Vec<f64>>,
+    // Shared by copies: in a large network they are nearly all of the memory.
+    values: Arc<Vec<f64>>,
+    sigmas: Option<Arc<Vec<f64>>>,
     receiver_names: Vec<String>,
     transmitter_names: Vec<String>,
     /// Whether the receivers' names were given, not counted.
@@ -121,7 +123,7 @@ impl Pseudoranges {
         let matrix = Pseudoranges {
             receivers,
             transmitters,
-            values,
+            values: Arc::new(values),
             sigmas: None,
             receiver_names: (1..=receivers).map(|i| format!("r{i}")).collect(),
             transmitter_names: (1..=transmitters).map(|j| format!("s{j}")).collect(),
@@ -186,7 +188,7 @@ impl Pseudoranges {
                 value: sigmas[k],
             });
         }
-        self.sigmas = Some(sigmas);
+        self.sigmas = Some(Arc::new(sigmas));
         Ok(self)
     }
 
@@ -256,12 +258,12 @@ impl Pseudoranges {
     pub(crate) fn shifted(&self, shifts: &[f64]) -> Pseudoranges {
         let n = self.transmitters;
         let values = self.values.iter().enumerate().map(|(k, value)| value - shifts[k % n]).collect();
-        Pseudoranges { values, ..self.clone() }
+        self.with_values(values)
     }
 
     /// This matrix with other values, as many as before, usable ones, and all missing that were.
     pub(crate) fn with_values(&self, values: Vec<f64>) -> Pseudoranges {
-        Pseudoranges { values, ..self.clone() }
+        Pseudoranges { values: Arc::new(values), ..self.clone() }
     }
 
     /// The matrix of these receivers and transmitters, in this order, with their names and standard
@@ -270,18 +272,21 @@ impl Pseudoranges {
     /// # Panics
     /// If an index is out of range.
     pub fn select(&self, receivers: &[usize], transmitters: &[usize]) -> Pseudoranges {
-        let pick = |all: &[f64]| -> Vec<f64> {
-            receivers
+        if receivers.iter().copied().eq(0..self.receivers) && transmitters.iter().copied().eq(0..self.transmitters) {
+            return self.clone();
+        }
+        let pick = |all: &[f64]| -> Arc<Vec<f64>> {
+            let picked = receivers
                 .iter()
                 .flat_map(|&i| transmitters.iter().map(move |&j| (i, j)))
-                .map(|(i, j)| all[i * self.transmitters + j])
-                .collect()
+                .map(|(i, j)| all[i * self.transmitters + j]);
+            Arc::new(picked.collect())
         };
         Pseudoranges {
             receivers: receivers.len(),
             transmitters: transmitters.len(),
             values: pick(&self.values),
-            sigmas: self.sigmas.as_deref().map(pick),
+            sigmas: self.sigmas.as_deref().map(|sigmas| pick(sigmas)),
             receiver_names: receivers.iter().map(|&i| self.receiver_names[i].clone()).collect(),
             transmitter_names: transmitters.iter().map(|&j| self.transmitter_names[j].clone()).collect(),
             receivers_named: self.receivers_named,
