@@ -8,7 +8,7 @@ use hc::Monitor;
 use super::clocks::middle_delays;
 use super::deviation::{inlier_deviation, spread_of_residuals, typical_deviation};
 use super::finish::{CAUCHY, finish};
-use super::near::Neighbour;
+use super::near::{Neighbour, Reason};
 use super::options::{CalibrateError, CalibrateOptions, ReceiverDelays, check};
 use super::ranking::truncated_cost;
 use super::receiver_errors::{Fault, ReceiverErrorKind};
@@ -336,7 +336,7 @@ impl Cleared {
     /// Errors that are worth a doubt, as neighbours of the best network.
     pub(super) fn doubts(&self, doubted: impl IntoIterator<Item = Found>) -> Vec<Neighbour> {
         let is_new = |f: &Found| !self.taken.iter().any(|t| t.receiver == f.fault.receiver && t.kind == f.fault.kind);
-        let of = |f: Found| Neighbour::new(&f.network, -f.lead, Some(f.fault), &self.ranked[0].network);
+        let of = |f: Found| Neighbour::new(&f.network, -f.lead, Reason::Error(f.fault), &self.ranked[0].network);
         doubted.into_iter().filter(is_new).filter_map(of).collect()
     }
 }

@@ -11,6 +11,7 @@ mod hold;
 mod hypotheses;
 mod impossible;
 mod known;
+mod late;
 mod minimal;
 mod mixture;
 mod moves;
@@ -53,6 +54,7 @@ use delays::{Cleared, Clearing};
 use hc::Monitor;
 use hold::{Free, Held};
 use impossible::without_impossible;
+use late::Symmetric;
 use report::Solved;
 use submaps::{Layout, OVERLAP, hearing_is_local, lay_out};
 use whole::{Sought, search_whole};
@@ -133,13 +135,21 @@ pub fn calibrate_with(
     let held = free.hold(ranked, deviation, &usable, options, monitor).map_err(|error| error.leaving(&so_far))?;
     options::check(monitor).map_err(|error| error.leaving(&so_far))?;
     let Held { observations, ranked, deviation, anchors, speed, warnings, contradiction } = held;
+    let neighbours = if anchors.is_some() {
+        Vec::new()
+    } else {
+        let (best, limit) = (&ranked[0], options.inlier_threshold);
+        let symmetric = Symmetric { observations: &observations, best, deviation, known, floor, limit };
+        let late = match (options.errors, options.receiver_delays) {
+            (Errors::OneSided, _) | (_, ReceiverDelays::All) => None,
+            _ => symmetric.under_one_sided(monitor).map_err(|error| error.leaving(&so_far))?,
+        };
+        let near = neighbours.into_iter().filter(|_| taken.is_empty());
+        near.chain(doubted).chain(late).collect()
+    };
     let solved = Solved {
         measured,
-        neighbours: match (&anchors, taken.is_empty()) {
-            (Some(_), _) => Vec::new(),
-            (None, true) => neighbours.into_iter().chain(doubted).collect(),
-            (None, false) => doubted,
-        },
+        neighbours,
         taken: &taken,
         left: &left,
         usable: &usable,

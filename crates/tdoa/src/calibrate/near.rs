@@ -24,14 +24,26 @@ pub(super) const BEYOND: f64 = 4.0;
 /// Less likely neighbours, relative to the best network, are left out.
 const LIKELY: f64 = 0.02;
 
+/// Why a network is a neighbour of the best one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Reason {
+    /// The search ended there too.
+    Found,
+    /// An error of a receiver, without which the measurements fit it.
+    Error(Fault),
+    /// So many of all outliers are late: it is the one of one-sided errors.
+    Late { late: usize, all: usize },
+}
+
 /// A neighbour of the best network.
 pub(super) struct Neighbour {
     pub(super) network: Network,
     /// By how much the measurements are less likely than under the best network, natural logarithm; where
-    /// it has an error, by how much less they tell of that than they had to. Not negative.
+    /// it is without an error, by how much less they tell of that than they had to. Not negative.
     pub(super) loss: f64,
-    /// An error of a receiver that the measurements have under it.
-    pub(super) error: Option<Fault>,
+    pub(super) reason: Reason,
+    /// Deviation of the measurements as a share of that under the best network, at most 1.
+    pub(super) narrow: f64,
     /// Where its receivers lie from those of the best network.
     shifts: Vec<[f64; 2]>,
 }
@@ -66,7 +78,7 @@ pub(super) fn neighbours(
     let mut found: Vec<Neighbour> = Vec::new();
     for network in near {
         let (network, cost) = refit(observations, &network, deviation, monitor)?;
-        let Some(next) = Neighbour::new(&network, (cost - least).max(0.0), None, &centre) else { continue };
+        let Some(next) = Neighbour::new(&network, (cost - least).max(0.0), Reason::Found, &centre) else { continue };
         let limit = ONE_MINIMUM * centre.size();
         let known =
             |k: &Neighbour| align(&next.network.receivers, &k.network.receivers, false).is_none_or(|a| a.rms <= limit);
@@ -79,10 +91,15 @@ pub(super) fn neighbours(
 
 impl Neighbour {
     /// A network as a neighbour of this one; `None` where receivers coincide.
-    pub(super) fn new(network: &Network, loss: f64, error: Option<Fault>, centre: &Network) -> Option<Neighbour> {
+    pub(super) fn new(network: &Network, loss: f64, reason: Reason, centre: &Network) -> Option<Neighbour> {
         let network = align(&network.receivers, &centre.receivers, false)?.transform.apply_network(network);
         let shifts = network.receivers.iter().zip(&centre.receivers).map(|(p, q)| [p[0] - q[0], p[1] - q[1]]).collect();
-        Some(Neighbour { network, loss, error, shifts })
+        Some(Neighbour { network, loss, reason, narrow: 1.0, shifts })
+    }
+
+    /// This one with a deviation of so many of that under the best network.
+    pub(super) fn narrowed(self, share: f64) -> Neighbour {
+        Neighbour { narrow: share.min(1.0), ..self }
     }
 
     /// How far its receivers lie from those of the best network, root mean square.
@@ -94,11 +111,11 @@ impl Neighbour {
         self.shifts.iter().map(|s| s[0] * s[0] + s[1] * s[1]).sum()
     }
 
-    /// How far its receivers lie from those of the best network, in standard deviations, root mean
-    /// square.
+    /// How far its receivers lie from those of the best network, in the smaller of both standard
+    /// deviations, root mean square.
     pub(super) fn distance(&self, uncertainty: &Covariance) -> f64 {
         let variance: f64 = uncertainty.receivers.iter().map(|c| c[0][0] + c[1][1]).sum();
-        (self.square() / variance).sqrt()
+        (self.square() / variance).sqrt() / self.narrow
     }
 }
 
@@ -125,14 +142,20 @@ pub(super) fn widen(uncertainty: &mut Covariance, neighbours: &[Neighbour], radi
 
 #[cfg(test)]
 mod tests {
-    use super::{Neighbour, widen};
+    use super::{Neighbour, Reason, widen};
     use crate::refine::Covariance;
 
     #[test]
     fn the_ellipse_reaches_a_neighbour_that_is_as_likely() {
         let mut uncertainty = Covariance { receivers: vec![[[1.0, 0.0], [0.0, 1.0]]; 2], ..Default::default() };
         let shifts = vec![[3.0, 0.0], [0.0, 0.0]];
-        let neighbour = |loss| Neighbour { network: Default::default(), loss, error: None, shifts: shifts.clone() };
+        let neighbour = |loss| Neighbour {
+            network: Default::default(),
+            loss,
+            reason: Reason::Found,
+            narrow: 1.0,
+            shifts: shifts.clone(),
+        };
         // Half of the mixture lies 3 to the side: its variance about the best is 1 + 9/2, and 9/6
         // more for a radius of sqrt 6.
         widen(&mut uncertainty, &[neighbour(0.0)], 6f64.sqrt());

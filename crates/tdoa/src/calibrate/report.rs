@@ -5,7 +5,7 @@ use super::calibration::{Alternative, Calibration};
 use super::delays::without_errors;
 use super::deviation::{inlier_deviation, typical_deviation};
 use super::known::{Anchors, SpeedEstimate};
-use super::near::{BEYOND, Neighbour, widen};
+use super::near::{BEYOND, Neighbour, Reason, widen};
 use super::one_sided::{Information, LEAST_REDUNDANCY};
 use super::options::{CalibrateError, CalibrateOptions, Errors, ReceiverDelays};
 use super::orientation::looks_transposed;
@@ -99,7 +99,8 @@ impl Solved<'_> {
         };
         let mut apart: Vec<&Neighbour> = Vec::new();
         if let Some(radius) = ellipse_radius {
-            apart.extend(self.neighbours.iter().filter(|n| n.distance(&uncertainty) >= BEYOND));
+            let likely = self.neighbours.iter().filter(|n| n.loss <= options.alternative_margin);
+            apart.extend(likely.filter(|n| n.distance(&uncertainty) >= BEYOND));
             widen(&mut uncertainty, &self.neighbours, radius);
         }
         let planar = self.planar(best, estimated, redundancy, options, &mut warnings);
@@ -144,14 +145,15 @@ impl Solved<'_> {
             (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
         };
         let best_cost = self.ranked[0].objective;
-        let others = self.ranked[1..].iter().map(|other| (&other.network, other.objective - best_cost, None));
-        let mut others: Vec<(&Network, f64, Option<&Fault>)> =
-            others.chain(apart.iter().map(|other| (&other.network, other.loss, other.error.as_ref()))).collect();
+        let others = self.ranked[1..].iter().map(|other| (&other.network, other.objective - best_cost, Reason::Found));
+        let mut others: Vec<(&Network, f64, Reason)> =
+            others.chain(apart.iter().map(|other| (&other.network, other.loss, other.reason))).collect();
         others.retain(|(_, loss, _)| *loss <= options.alternative_margin);
         others.sort_by(|a, b| a.1.total_cmp(&b.1));
         let alternatives: Vec<Alternative> = others
             .iter()
-            .filter_map(|&(other, loss, error)| {
+            .filter_map(|&(other, loss, reason)| {
+                let error = if let Reason::Error(fault) = reason { Some(fault) } else { None };
                 let network = if is_held {
                     other.clone()
                 } else {
@@ -162,21 +164,18 @@ impl Solved<'_> {
                     transmitters: spread_columns(&network.transmitters),
                     offsets: offsets(&network),
                     residual: match error {
-                        Some(error) => rms(&without_errors(self.centred, &[*error]), &network),
+                        Some(error) => rms(&without_errors(self.centred, &[error]), &network),
                         None => rms(self.centred, &network),
                     },
                     log_likelihood_loss: loss,
-                    receiver_error: error.map(|error| self.receiver_error(error, true)),
+                    receiver_error: error.map(|error| self.receiver_error(&error, true)),
                 })
             })
             .collect();
-        let near = apart.iter().any(|other| other.loss <= options.alternative_margin);
-        let receivers_agree = !near && others.iter().all(|(other, ..)| same_receivers(other, best));
-        let transmitters_agree = !near && others.iter().all(|(other, ..)| same_transmitters(other, best));
-        for (other, error) in apart.iter().filter_map(|other| Some((other, other.error.as_ref()?))) {
-            warnings.push(self.doubt(error, other.rms()));
-        }
-        let plain = alternatives.iter().filter(|other| other.receiver_error.is_none()).count();
+        let receivers_agree = apart.is_empty() && others.iter().all(|(other, ..)| same_receivers(other, best));
+        let transmitters_agree = apart.is_empty() && others.iter().all(|(other, ..)| same_transmitters(other, best));
+        warnings.extend(apart.iter().filter_map(|other| self.doubt(other)));
+        let plain = others.iter().filter(|(.., reason)| *reason == Reason::Found).count();
         if plain > 0 {
             warnings.push(format!(
                 "{plain} other network{} explain{} the measurements about as well (see alternatives){}; add receivers or transmitters, \

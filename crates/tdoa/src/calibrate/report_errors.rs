@@ -1,6 +1,7 @@
 //! What the report says of errors of single receivers, and what estimating them costs in certainty.
 
 use super::delays::{columns, gram};
+use super::near::{Neighbour, Reason};
 use super::options::{CalibrateOptions, ReceiverDelays};
 use super::receiver_errors::{Fault, MovedPlace, ReceiverError, ReceiverErrorKind};
 use super::report::Solved;
@@ -110,17 +111,26 @@ impl Solved<'_> {
         }
     }
 
-    /// What to do about an error that is worth a doubt, with which receivers lie this far elsewhere.
-    pub(super) fn doubt(&self, fault: &Fault, apart: f64) -> String {
-        let error = self.receiver_error(fault, true);
-        let metre = self.metre();
-        format!(
-            "receiver {} may have {}, which these measurements cannot tell for sure; without it the receivers lie {} elsewhere (see \
+    /// What to do about a neighbour that the search has not ended in.
+    pub(super) fn doubt(&self, other: &Neighbour) -> Option<String> {
+        let apart = length(self.metre() * other.rms());
+        let fault = match other.reason {
+            Reason::Found => return None,
+            Reason::Late { late, all } => {
+                return Some(format!(
+                    "{late} of {all} measurements that do not fit are late; if errors are late ones, by detours, the receivers lie {apart} \
+                     elsewhere (see alternatives): use --errors one-sided"
+                ));
+            }
+            Reason::Error(fault) => fault,
+        };
+        let error = self.receiver_error(&fault, true);
+        Some(format!(
+            "receiver {} may have {}, which these measurements cannot tell for sure; without it the receivers lie {apart} elsewhere (see \
              alternatives); check that receiver, or measure more transmitters",
             error.receiver,
-            what_is_wrong(&error, metre),
-            length(metre * apart)
-        )
+            what_is_wrong(&error, self.metre()),
+        ))
     }
 
     /// Metres of one metre before the propagation speed was estimated.

@@ -1,0 +1,96 @@
+//! Measurements that do not fit and are nearly all late: whether the network would be another one if
+//! errors were one-sided.
+
+use super::near::{Neighbour, Reason};
+use super::one_sided::finish_one_sided;
+use super::options::CalibrateError;
+use crate::network::Network;
+use crate::observations::Observations;
+use crate::refine::Refined;
+use hc::Monitor;
+
+/// Probability that gross errors of either sign are late as often, at most: three of three.
+const CHANCE: f64 = 1.0 / 8.0;
+
+/// Measurements left over, above which gross errors of one sign do not bend a network.
+const MOST_LEFT_OVER: usize = 100;
+
+/// What the best network is compared with.
+pub(super) struct Symmetric<'a> {
+    pub(super) observations: &'a Observations,
+    pub(super) best: &'a Refined,
+    pub(super) deviation: f64,
+    pub(super) known: Option<f64>,
+    pub(super) floor: f64,
+    /// Measurements farther off than this many deviations are outliers.
+    pub(super) limit: f64,
+}
+
+impl Symmetric<'_> {
+    /// The network that one-sided errors lead to from the best one, if outliers are nearly all late.
+    pub(super) fn under_one_sided(&self, monitor: &Monitor) -> Result<Option<Neighbour>, CalibrateError> {
+        let (late, all) = self.late();
+        let left_over = (self.observations.len() - all).saturating_sub(self.observations.unknowns());
+        if left_over > MOST_LEFT_OVER || as_often(late, all) > CHANCE {
+            return Ok(None);
+        }
+        let networks = vec![self.best.clone()];
+        let (ranked, deviation) =
+            finish_one_sided(self.observations, networks, self.deviation, self.known, self.floor, monitor)?;
+        let of = |network: &Network| Neighbour::new(network, 0.0, Reason::Late { late, all }, &self.best.network);
+        let share = deviation / self.deviation;
+        Ok(ranked.first().and_then(|refined| of(&refined.network)).map(|neighbour| neighbour.narrowed(share)))
+    }
+
+    /// Late outliers, and outliers.
+    fn late(&self) -> (usize, usize) {
+        let residuals = self.observations.all().iter().map(|o| o.residual(&self.best.network));
+        let outliers = residuals.filter(|e| e.abs() > self.limit * self.deviation);
+        outliers.fold((0, 0), |(late, all), e| (late + usize::from(e > 0.0), all + 1))
+    }
+}
+
+/// Probability that of so many signs at least so many are positive, where both are as likely.
+fn as_often(positive: usize, all: usize) -> f64 {
+    let (mut term, mut tail) = (0.5f64.powi(all as i32), 0.0);
+    // From all of them down: the number of subsets from one size to the next.
+    for negative in 0..=all - positive {
+        tail += term;
+        term *= (all - negative) as f64 / (negative + 1) as f64;
+    }
+    tail
+}
+
+#[cfg(test)]
+mod tests {
+    use super::as_often;
+    use crate::{CalibrateOptions, SimulateOptions, calibrate, simulate};
+
+    #[test]
+    fn signs_are_those_of_a_fair_coin() {
+        assert_eq!(as_often(5, 5), 1.0 / 32.0);
+        // 1 + 10 + 45 of 1024.
+        assert_eq!(as_often(8, 10), 56.0 / 1024.0);
+        assert_eq!([as_often(0, 0), as_often(0, 7)], [1.0, 1.0]);
+    }
+
+    #[test]
+    fn late_measurements_that_have_bent_a_network_are_told() {
+        // A third of 96 measurements late; as noise of either sign they bend the network.
+        for seed in [20007, 20041] {
+            let options = SimulateOptions {
+                receivers: 8,
+                transmitters: 12,
+                noise: 0.01,
+                detours: 0.3,
+                detour_size: 0.5,
+                seed,
+                ..Default::default()
+            };
+            let simulation = simulate(&options).unwrap();
+            let found = calibrate(&simulation.pseudoranges, &CalibrateOptions { seed, ..Default::default() }).unwrap();
+            assert!(!found.unique && !found.alternatives.is_empty(), "seed {seed}");
+            assert!(found.warnings.iter().any(|warning| warning.contains("--errors one-sided")), "seed {seed}");
+        }
+    }
+}
