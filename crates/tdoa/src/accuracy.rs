@@ -6,6 +6,8 @@ use crate::observations::Observations;
 use crate::plane::spread;
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::{Projection, covariance, dot};
+use faer::linalg::solvers::Solve;
+use faer::{Mat, Side};
 use hc::Monitor;
 
 /// The Cramer-Rao bound of a network's receivers: the root mean square over them of the smallest
@@ -21,33 +23,43 @@ pub fn cramer_rao(measured: &Pseudoranges, outliers: &[bool], truth: &Network, n
     bound(&without(measured, outliers), truth, noise)
 }
 
-/// [`cramer_rao`] where a delay in all measurements of one receiver is unknown too.
+/// [`cramer_rao`] where delays in all measurements of these receivers are unknown too, at least one
+/// receiver left out.
 ///
 /// # Panics
 /// If network, measurements and outliers differ in size.
-pub fn cramer_rao_with_delay(
+pub fn cramer_rao_with_delays(
     measured: &Pseudoranges,
     outliers: &[bool],
     truth: &Network,
     noise: f64,
-    receiver: usize,
+    receivers: &[usize],
 ) -> f64 {
     let observations = without(measured, outliers);
     let plain = bound(&observations, truth, noise);
     let Some(projection) = Projection::new(&observations, truth, &Monitor::default()).ok().flatten() else {
         return f64::INFINITY;
     };
-    let part = |receives: bool, precision: f64| if receives { precision } else { 0.0 };
-    let column: Vec<f64> = observations.all().iter().map(|o| part(o.receiver == receiver, o.precision)).collect();
-    // What no motion makes of it tells its size; the motion that does moves the receivers with the
-    // size's variance.
-    let (rest, motion) = projection.off(&column);
-    let (left, all) = (dot(&rest, &rest), dot(&column, &column));
-    if left < 1e-9 * all {
+    // What no motion makes of the columns tells the delays; motions that do move the receivers with
+    // these.
+    let column = |receiver: usize| -> Vec<f64> {
+        let part = |receives: bool, precision: f64| if receives { precision } else { 0.0 };
+        observations.all().iter().map(|o| part(o.receiver == receiver, o.precision)).collect()
+    };
+    let columns: Vec<_> = receivers.iter().map(|&receiver| column(receiver)).collect();
+    let parts: Vec<_> = columns.iter().map(|column| projection.off(column)).collect();
+    let size = receivers.len();
+    let products = Mat::from_fn(size, size, |a, b| dot(&parts[a].0, &parts[b].0));
+    let Ok(factor) = products.llt(Side::Lower) else { return f64::INFINITY };
+    // The square of what is left of a column beside the others is one over the diagonal of the inverse.
+    let inverse = factor.solve(&Mat::<f64>::identity(size, size));
+    let is_told = |a: usize| 1e-9 * inverse[(a, a)] * dot(&columns[a], &columns[a]) < 1.0;
+    if !(0..size).all(is_told) {
         return f64::INFINITY;
     }
-    let added = noise * noise / left * dot(&motion.receivers, &motion.receivers) / truth.receivers.len() as f64;
-    (plain * plain + added).sqrt()
+    let pairs = (0..size).flat_map(|a| (0..size).map(move |b| (a, b)));
+    let added: f64 = pairs.map(|(a, b)| inverse[(a, b)] * dot(&parts[a].1.receivers, &parts[b].1.receivers)).sum();
+    (plain * plain + noise * noise * added / truth.receivers.len() as f64).sqrt()
 }
 
 /// The measurements that are no outliers.
@@ -90,7 +102,7 @@ pub fn offset_error(found: &Network, truth: &Network) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{cramer_rao, cramer_rao_with_delay, offset_error, position_error};
+    use super::{cramer_rao, cramer_rao_with_delays, offset_error, position_error};
     use crate::simulate::{SimulateOptions, simulate};
 
     #[test]
@@ -118,14 +130,22 @@ mod tests {
         let mut outliers = vec![false; 96];
         let plain = cramer_rao(measured, &outliers, truth, 0.01);
         for receiver in 0..8 {
-            let with = cramer_rao_with_delay(measured, &outliers, truth, 0.01, receiver);
-            assert!(with > plain && with.is_finite());
-            assert!((cramer_rao_with_delay(measured, &outliers, truth, 0.02, receiver) / with - 2.0).abs() < 1e-9);
+            let with =
+                |noise: f64, receivers: &[usize]| cramer_rao_with_delays(measured, &outliers, truth, noise, receivers);
+            let one = with(0.01, &[receiver]);
+            assert!(one > plain && one.is_finite());
+            assert!((with(0.02, &[receiver]) / one - 2.0).abs() < 1e-9);
+            let two = with(0.01, &[receiver, (receiver + 3) % 8]);
+            assert!(two > one && (with(0.01, &[(receiver + 3) % 8, receiver]) / two - 1.0).abs() < 1e-9);
         }
+        // Delays of all receivers are told relative to one of them, whichever that is.
+        let but = |one: usize| -> Vec<usize> { (0..8).filter(|&i| i != one).collect() };
+        let all = [0, 5].map(|one| cramer_rao_with_delays(measured, &outliers, truth, 0.01, &but(one)));
+        assert!((all[0] / all[1] - 1.0).abs() < 1e-6, "{all:?}");
         // Two measurements place a receiver, of which nothing is left over for a delay.
         outliers[..10].fill(true);
         assert!(cramer_rao(measured, &outliers, truth, 0.01).is_finite());
-        assert_eq!(cramer_rao_with_delay(measured, &outliers, truth, 0.01, 0), f64::INFINITY);
+        assert_eq!(cramer_rao_with_delays(measured, &outliers, truth, 0.01, &[0]), f64::INFINITY);
     }
 
     #[test]

@@ -37,6 +37,9 @@ const CANDIDATES: usize = 10;
 /// Deviations, in those that the residuals have, at which such a network is fitted by least squares.
 const RELAXED: [f64; 3] = [10.0, 3.0, 1.0];
 
+/// The same where measurements are still given up.
+const WIDER: [f64; 5] = [100.0, 30.0, 10.0, 3.0, 1.0];
+
 /// Steps of bringing a network and the delays of all receivers near their best fit.
 const COARSE: usize = 24;
 
@@ -192,6 +195,10 @@ impl Clearing<'_> {
             let (faults, refined, deviation) = self.relaxed(candidate)?;
             all.push(self.estimate(refined, deviation, faults)?);
         }
+        // One that has run away fits what few measurements it has left.
+        if all.iter().any(|estimated| self.is_left_over(estimated)) {
+            all.retain(|estimated| self.is_left_over(estimated));
+        }
         self.rank_by_cost(&mut all);
         // They were apart only for as long as the delays were wrong.
         let all = merged(all, |(_, refined, _)| refined);
@@ -237,9 +244,33 @@ impl Clearing<'_> {
     /// The same by least squares, at first over measurements that were given up too: a network may
     /// have bent itself to a wrong delay. What it was, where that costs less.
     fn relaxed(&self, near: Estimated) -> Result<Estimated, CalibrateError> {
-        let (mut faults, mut refined, deviation) = near.clone();
+        let deviation = near.2;
+        let cost = |(faults, refined, _): &Estimated| {
+            let observations = Observations::new(&self.corrected(faults), |_, _| true);
+            truncated_cost(&observations, &refined.network, deviation)
+        };
+        let gives_up = |(faults, refined, _): &Estimated| {
+            let reach = self.options.inlier_threshold * deviation;
+            let observations = Observations::new(&self.corrected(faults), |_, _| true);
+            observations.all().iter().any(|o| o.residual(&refined.network).abs() > reach)
+        };
+        let mut best = near.clone();
+        for factors in [&RELAXED[..], &WIDER[..]] {
+            let next = self.narrowed(near.clone(), factors)?.filter(|next| cost(next) < cost(&best));
+            best = next.unwrap_or(best);
+            if !gives_up(&best) {
+                break;
+            }
+        }
+        Ok(best)
+    }
+
+    /// Least squares over the inliers of so many deviations one after the other; `None` where the
+    /// errors are not determined.
+    fn narrowed(&self, from: Estimated, factors: &[f64]) -> Result<Option<Estimated>, CalibrateError> {
+        let (mut faults, mut refined, deviation) = from;
         let count = linear(&faults).count();
-        for factor in RELAXED {
+        for factor in factors {
             for _ in 0..STEPS {
                 check(self.monitor)?;
                 let observations = Observations::new(&self.corrected(&faults), |_, _| true).beside(count);
@@ -249,17 +280,21 @@ impl Clearing<'_> {
                 let refine = RefineOptions { scale: Some(wide), steps: 8, rounds: 0, ..SEARCH };
                 let mut refiner = Refiner::new(&inliers, f64::INFINITY).heeding(self.monitor);
                 refined.network = refiner.refine(refined.network, &refine).network;
-                let Some(steps) = self.step(&observations, &refined.network, wide, &faults)? else { return Ok(near) };
+                let Some(steps) = self.step(&observations, &refined.network, wide, &faults)? else { return Ok(None) };
                 if moved(&mut faults, steps) < 1e-2 * deviation {
                     break;
                 }
             }
         }
-        let cost = |faults: &[Fault], network: &Network| {
-            truncated_cost(&Observations::new(&self.corrected(faults), |_, _| true), network, deviation)
-        };
-        let better = cost(&faults, &refined.network) < cost(&near.0, &near.1.network);
-        Ok(if better { (faults, refined, deviation) } else { near })
+        Ok(Some((faults, refined, deviation)))
+    }
+
+    /// Whether a network has more inliers than unknowns.
+    fn is_left_over(&self, (faults, refined, deviation): &Estimated) -> bool {
+        let observations = Observations::new(&self.corrected(faults), |_, _| true).beside(linear(faults).count());
+        let reach = self.options.inlier_threshold * deviation;
+        let inliers = observations.all().iter().filter(|o| o.residual(&refined.network).abs() <= reach).count();
+        refined.network.is_finite() && inliers > observations.unknowns()
     }
 
     /// Sorts networks, each with its errors, by the truncated cost with the smallest deviation that

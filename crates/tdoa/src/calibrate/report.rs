@@ -208,10 +208,8 @@ impl Solved<'_> {
                 agreeing, self.starts
             ));
         }
-        let fits = one_sided.as_ref().is_none_or(|information| {
-            let given = self.known.is_none_or(|sigma| !too_large(estimated / sigma, redundancy));
-            given && information.fits(redundancy)
-        });
+        let as_given = self.known.is_none_or(|sigma| !too_large(estimated / sigma, redundancy));
+        let fits = as_given && one_sided.as_ref().is_none_or(|information| information.fits(redundancy));
         if let Some(information) = one_sided.as_ref().filter(|information| !information.fits(redundancy)) {
             warnings.push(format!(
                 "which measurements are late cannot be told for sure: {:.0} % seem late or wrong, and {redundancy} of the others are left over \
