@@ -117,7 +117,8 @@ impl Solved<'_> {
             );
         }
         let determined = warn_of_nodes(self.centred, best, &kept, &uncertainty, noise_known, &doubtful, &mut warnings)
-            && !transposed;
+            && !transposed
+            && 2 * doubtful.len() < best.receivers.len();
         let anchors_agree = self.contradiction.is_none_or(|off| off <= options.planar_limit * best.size());
 
         let (m, n) = (self.measured.receivers(), self.measured.transmitters());
