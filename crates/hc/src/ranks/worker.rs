@@ -11,7 +11,11 @@ use serde::de::DeserializeOwned;
 use std::cell::RefCell;
 use std::fmt::Display;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::time::Duration;
+
+/// How long a rank waits to hear why rank 0 takes no message any more.
+const PARTING: Duration = Duration::from_secs(2);
 
 /// A rank but the first while it works at a job.
 pub(crate) struct Worker<'a> {
@@ -91,6 +95,18 @@ impl Worker<'_> {
         Ok(Some(Task { number, content, monitor }))
     }
 
+    /// Sends rank 0 a report; false where that is gone because the job is over: it needed no more.
+    fn tell(&self, report: &Report) -> Result<bool, RanksError> {
+        let Err(error) = self.ranks.send(0, report) else { return Ok(true) };
+        loop {
+            match self.heard.recv_timeout(PARTING) {
+                Ok(heard) => drop(heard?),
+                Err(RecvTimeoutError::Disconnected) => return Ok(false),
+                Err(RecvTimeoutError::Timeout) => return Err(error),
+            }
+        }
+    }
+
     /// Tracks the portions of a part that rank 0 sends, until it needs no more.
     pub(crate) fn serve<T, A: Serialize>(
         &self,
@@ -99,7 +115,10 @@ impl Worker<'_> {
     ) -> Result<(), RanksError> {
         let (job, part) = (self.job, task.number);
         let fingerprint = self.fingerprint.to_owned();
-        self.ranks.send(0, &Report::Ready { job, part, threads: current_num_threads(), fingerprint })?;
+        let ready = Report::Ready { job, part, threads: current_num_threads(), fingerprint };
+        if !self.tell(&ready)? {
+            return Ok(());
+        }
         while let Ok(heard) = self.heard.recv() {
             match heard? {
                 Heard::Begun(next) => {
@@ -111,7 +130,9 @@ impl Worker<'_> {
                     // What was cancelled half way is no answer.
                     if !task.monitor.is_cancelled() {
                         let content = postcard::to_stdvec(&answer).unwrap_or_default();
-                        self.ranks.send(0, &Report::Done { job, part, number: portion.number, content })?;
+                        if !self.tell(&Report::Done { job, part, number: portion.number, content })? {
+                            return Ok(());
+                        }
                     }
                 }
                 Heard::Portion(..) => {}

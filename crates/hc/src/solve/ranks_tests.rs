@@ -3,7 +3,7 @@
 use super::tests::quadrics;
 use crate::checkpoint::{Checkpoint, CheckpointOptions, status};
 use crate::ranks::support::{Faulty, PATIENCE, on};
-use crate::ranks::{Exchange, ExchangeError, Local, Ranks, RanksError};
+use crate::ranks::{Exchange, ExchangeError, Local, Ranks, RanksError, RanksOptions};
 use crate::{Monitor, Solutions, SolveError, SolveOptions, Stage, Start, System, solve, solve_on_ranks};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -210,4 +210,21 @@ fn answers_about_other_paths_are_refused() {
     let found = on(&exchanges, PATIENCE, |ranks| solve_on_ranks(&system, &options, &Monitor::default(), None, ranks));
     let Err(SolveError::Ranks(RanksError::Message { rank: 1, reason })) = &found[0] else { panic!("{found:?}") };
     assert!(!reason.is_empty());
+}
+
+#[test]
+fn a_rank_that_comes_when_all_is_done_has_nothing_to_do() {
+    let system: System = "x^2 + y^2 - 5; x*y - 2".parse().unwrap();
+    let options = SolveOptions::new().seed(1);
+    let job = |local: &Local| {
+        let ranks = Ranks::new(local, &RanksOptions::new());
+        let found = solve_on_ranks(&system, &options, &Monitor::default(), None, &ranks);
+        ranks.finish(None);
+        found
+    };
+    let mut all = Local::ranks(2);
+    let late = all.pop().unwrap();
+    // Rank 0 is gone before the other has begun.
+    assert_eq!(job(&all.pop().unwrap()), solve(&system, &options).map(Some));
+    assert_eq!(job(&late), Ok(None));
 }
