@@ -77,8 +77,8 @@ fn run(exchange: Option<&dyn Exchange>) -> ExitCode {
         }
     };
     let options = match &command {
-        Command::Solve(arguments) => arguments.ranks(),
-        Command::Track(arguments) => arguments.ranks(),
+        Command::Solve(arguments) => arguments.ranks.options(),
+        Command::Track(arguments) => arguments.ranks.options(),
         _ => RanksOptions::new(),
     };
     let ranks = exchange.map(|exchange| Ranks::new(exchange, &options));

@@ -4,7 +4,7 @@ use crate::checkpoint::{self, Recording};
 use crate::report::Report;
 use crate::{input, ranks, watch};
 use cli::{Failure, output};
-use hc::ranks::{Ranks, RanksOptions};
+use hc::ranks::Ranks;
 use hc::{SolveError, SolveOptions, Start, solve_on_ranks, solve_recorded, solve_watched};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -48,14 +48,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     checkpoint: Recording,
     #[command(flatten)]
-    ranks: ranks::Sharing,
-}
-
-impl Arguments {
-    /// The settings for several ranks.
-    pub(crate) fn ranks(&self) -> RanksOptions {
-        self.ranks.options()
-    }
+    pub(crate) ranks: ranks::Sharing,
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]

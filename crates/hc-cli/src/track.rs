@@ -5,7 +5,7 @@ use crate::input::{self, Number};
 use crate::report::Report;
 use crate::{family, ranks, watch};
 use cli::{Failure, output};
-use hc::ranks::{Ranks, RanksOptions};
+use hc::ranks::Ranks;
 use hc::{Solutions, SolveOptions};
 use num_complex::Complex64;
 use serde::Deserialize;
@@ -48,14 +48,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     checkpoint: Recording,
     #[command(flatten)]
-    ranks: ranks::Sharing,
-}
-
-impl Arguments {
-    /// The settings for several ranks.
-    pub(crate) fn ranks(&self) -> RanksOptions {
-        self.ranks.options()
-    }
+    pub(crate) ranks: ranks::Sharing,
 }
 
 #[derive(Deserialize)]

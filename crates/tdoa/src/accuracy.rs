@@ -5,9 +5,9 @@ use crate::network::Network;
 use crate::observations::Observations;
 use crate::plane::spread;
 use crate::pseudoranges::Pseudoranges;
-use crate::refine::{Projection, covariance, dot};
+use crate::refine::{Projection, covariance, dot, gram};
+use faer::Mat;
 use faer::linalg::solvers::Solve;
-use faer::{Mat, Side};
 use hc::Monitor;
 
 /// The Cramer-Rao bound of a network's receivers: the root mean square over them of the smallest
@@ -23,8 +23,12 @@ pub fn cramer_rao(measured: &Pseudoranges, outliers: &[bool], truth: &Network, n
     bound(&without(measured, outliers), truth, noise)
 }
 
-/// [`cramer_rao`] where delays in all measurements of these receivers are unknown too, at least one
-/// receiver left out.
+/// [`cramer_rao`] where delays in all measurements of these receivers are unknown too, metres.
+///
+/// `receivers` are rows of the matrix, each once. Delays of all of them cannot be told from the
+/// offsets, so that at least one has to be left out; the bound is infinite where delays are not
+/// determined. Unknowns that are of no interest are eliminated from the Fisher information (Kay 1993,
+/// Fundamentals of Statistical Signal Processing: Estimation Theory, chapter 3).
 ///
 /// # Panics
 /// If network, measurements and outliers differ in size.
@@ -49,8 +53,7 @@ pub fn cramer_rao_with_delays(
     let columns: Vec<_> = receivers.iter().map(|&receiver| column(receiver)).collect();
     let parts: Vec<_> = columns.iter().map(|column| projection.off(column)).collect();
     let size = receivers.len();
-    let products = Mat::from_fn(size, size, |a, b| dot(&parts[a].0, &parts[b].0));
-    let Ok(factor) = products.llt(Side::Lower) else { return f64::INFINITY };
+    let Some(factor) = gram(&parts, &Monitor::default()).ok().flatten() else { return f64::INFINITY };
     // The square of what is left of a column beside the others is one over the diagonal of the inverse.
     let inverse = factor.solve(&Mat::<f64>::identity(size, size));
     let is_told = |a: usize| 1e-9 * inverse[(a, a)] * dot(&columns[a], &columns[a]) < 1.0;

@@ -22,7 +22,8 @@ class Alternative:
         Root mean square of the residuals of its own inliers, metres.
     log_likelihood_loss : float
         By how much the measurements are less likely than under the best network, natural logarithm; with a receiver's error, by how
-        much less they tell of it than of one that is taken out.
+        much less they tell of it than of one that is taken out; 0 for the network of one-sided errors, which has a likelihood of its
+        own.
     receiver_error : dict or None
         An error of a receiver without which the measurements fit this network, as in ``data["receiver_errors"]``: they hint at it,
         too weakly for the result to have it.

@@ -121,7 +121,8 @@ pub struct Alternative {
     /// Root mean square of the residuals of its own inliers.
     pub residual: f64,
     /// By how much the measurements are less likely than under the best network, natural logarithm; with
-    /// a receiver's error, by how much less they tell of it than of one that is taken out.
+    /// a receiver's error, by how much less they tell of it than of one that is taken out. 0 for the
+    /// network of one-sided errors, which has a likelihood of its own.
     pub log_likelihood_loss: f64,
     /// An error of a receiver without which the measurements fit this network: they hint at it, too
     /// weakly for the result to have it.

@@ -18,7 +18,7 @@ use super::shown::{Shown, look};
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
-use crate::refine::{Cancelled, Motion, Projection, RefineOptions, Refined, Refiner, SEARCH, dot};
+use crate::refine::{Cancelled, Motion, Projection, RefineOptions, Refined, Refiner, SEARCH, dot, gram};
 
 /// Rounds of looking for further errors once those found are taken out.
 const ROUNDS: usize = 6;
@@ -196,9 +196,8 @@ impl Clearing<'_> {
             all.push(self.estimate(refined, deviation, faults)?);
         }
         // One that has run away fits what few measurements it has left.
-        if all.iter().any(|estimated| self.is_left_over(estimated)) {
-            all.retain(|estimated| self.is_left_over(estimated));
-        }
+        let (sound, lost): (Vec<_>, Vec<_>) = all.into_iter().partition(|estimated| self.is_left_over(estimated));
+        let mut all = if sound.is_empty() { lost } else { sound };
         self.rank_by_cost(&mut all);
         // They were apart only for as long as the delays were wrong.
         let all = merged(all, |(_, refined, _)| refined);
@@ -436,20 +435,4 @@ pub(super) fn columns(
         Ok(projection.off(&column(fault)))
     };
     linear(faults).map(off).collect()
-}
-
-/// Products of the columns; `None` where two of them, or one and the network, cannot be told apart.
-pub(super) fn gram(
-    columns: &[(Vec<f64>, Motion)],
-    monitor: &Monitor,
-) -> Result<Option<faer::linalg::solvers::Llt<f64>>, Cancelled> {
-    let size = columns.len();
-    let mut products = Mat::zeros(size, size);
-    for b in 0..size {
-        crate::refine::check(monitor)?;
-        for a in 0..size {
-            products[(a, b)] = dot(&columns[a].0, &columns[b].0);
-        }
-    }
-    Ok(products.llt(faer::Side::Lower).ok())
 }

@@ -365,6 +365,7 @@ impl Test<'_> {
 mod tests {
     use super::ReceiverErrorKind;
     use crate::align::align;
+    use crate::calibrate::shown::tests::late;
     use crate::{CalibrateOptions, Calibration, ReceiverDelays, ReceiverFault, SimulateOptions, calibrate, simulate};
 
     const SIGMA: f64 = 0.01;
@@ -424,17 +425,7 @@ mod tests {
         // Thirty deviations, part of which the network takes up while it gives up other measurements
         // of the receiver as outliers.
         for (seed, outliers) in [(5007, 0.0), (5002, 0.05), (5012, 0.05), (40072, 0.0), (40098, 0.0)] {
-            let fault = Some(ReceiverFault::Delay(0.3));
-            let options = SimulateOptions {
-                receivers: 8,
-                transmitters: 20,
-                noise: SIGMA,
-                fault,
-                outliers,
-                seed,
-                ..Default::default()
-            };
-            let simulation = simulate(&options).unwrap();
+            let simulation = late(outliers, seed);
             for handling in [ReceiverDelays::None, ReceiverDelays::Auto] {
                 let options = CalibrateOptions { receiver_delays: handling, seed, ..Default::default() };
                 let found = calibrate(&simulation.pseudoranges, &options).unwrap();

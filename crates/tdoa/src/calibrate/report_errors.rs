@@ -1,6 +1,6 @@
 //! What the report says of errors of single receivers, and what estimating them costs in certainty.
 
-use super::delays::{columns, gram};
+use super::delays::columns;
 use super::near::{Neighbour, Reason};
 use super::options::{CalibrateOptions, ReceiverDelays};
 use super::receiver_errors::{Fault, MovedPlace, ReceiverError, ReceiverErrorKind};
@@ -8,7 +8,7 @@ use super::report::Solved;
 use crate::degeneracy::list;
 use crate::observations::Observations;
 use crate::quantity::length;
-use crate::refine::{Cancelled, Covariance, Motion, Projection, check, covariance};
+use crate::refine::{Cancelled, Covariance, Motion, Projection, check, covariance, gram};
 use faer::Mat;
 use faer::prelude::Solve;
 use hc::Monitor;

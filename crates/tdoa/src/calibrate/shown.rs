@@ -1,5 +1,5 @@
-//! What a network shows of errors of receivers: those that are taken out, and those that it can only
-//! be doubted for.
+//! What a network shows of errors of receivers: those that are taken out, and those that it only
+//! hints at.
 
 use super::one_sided::mixture_of;
 use super::options::{CalibrateError, CalibrateOptions, Errors};
@@ -114,15 +114,15 @@ fn one_of_each(mut found: Vec<Fault>) -> Vec<Fault> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use crate::align::align;
-    use crate::{CalibrateOptions, Calibration, ReceiverDelays, ReceiverErrorKind, ReceiverFault, SimulateOptions};
-    use crate::{Simulation, calibrate, simulate};
+    use crate::{CalibrateOptions, ReceiverDelays, ReceiverErrorKind, ReceiverFault, SimulateOptions, Simulation};
+    use crate::{calibrate, simulate};
 
     const SIGMA: f64 = 0.01;
 
-    /// 8r/20s with the first receiver 0.3 m late, and its calibration.
-    fn late(outliers: f64, seed: u64) -> (Simulation, Calibration) {
+    /// 8r/20s with the first receiver 0.3 m late.
+    pub(in crate::calibrate) fn late(outliers: f64, seed: u64) -> Simulation {
         let fault = Some(ReceiverFault::Delay(0.3));
         let options = SimulateOptions {
             receivers: 8,
@@ -133,16 +133,15 @@ mod tests {
             seed,
             ..Default::default()
         };
-        let simulation = simulate(&options).unwrap();
-        let options = CalibrateOptions { receiver_delays: ReceiverDelays::Auto, seed, ..Default::default() };
-        let found = calibrate(&simulation.pseudoranges, &options).unwrap();
-        (simulation, found)
+        simulate(&options).unwrap()
     }
 
     #[test]
     fn an_error_that_is_hardly_told_leaves_a_network_without_it() {
         for (seed, outliers) in [(40012, 0.0), (40097, 0.0), (40080, 0.05), (40050, 0.05)] {
-            let (simulation, found) = late(outliers, seed);
+            let simulation = late(outliers, seed);
+            let options = CalibrateOptions { receiver_delays: ReceiverDelays::Auto, seed, ..Default::default() };
+            let found = calibrate(&simulation.pseudoranges, &options).unwrap();
             assert!(!found.unique && !found.unique_receivers, "seed {seed}");
             let errors = found.alternatives.iter().filter_map(|other| Some((other, other.receiver_error.as_ref()?)));
             let of_the_first = errors.filter(|(_, error)| error.receiver == "r1").collect::<Vec<_>>();

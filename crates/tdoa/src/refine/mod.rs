@@ -25,7 +25,7 @@ pub(crate) use covariance::{Covariance, covariance};
 pub use extend::PartialNetwork;
 pub(crate) use extend::extend;
 pub(crate) use predicted::predicted_variances;
-pub(crate) use projection::{Motion, Projection, dot};
+pub(crate) use projection::{Motion, Projection, dot, gram};
 pub(crate) use refiner::{RefineOptions, Refined, Refiner, SEARCH, residuals};
 pub(crate) use reseed::{place_transmitters, places_of_receiver, places_of_transmitter};
 pub(crate) use weighing::{Cost, Weighing};

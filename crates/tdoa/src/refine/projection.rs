@@ -1,11 +1,13 @@
 //! What a network can absorb of a change of its measurements, and what it cannot: the projection
 //! off the Jacobian of all nodes.
 
-use super::cancel::Cancelled;
+use super::cancel::{Cancelled, check};
 use super::normal::{backward, forward};
 use super::solver::Solver;
 use crate::network::Network;
 use crate::observations::{Observation, Observations};
+use faer::linalg::solvers::Llt;
+use faer::{Mat, Side};
 use hc::Monitor;
 
 /// The Jacobian of the residuals at a network, in the frame in which all measurements have
@@ -127,6 +129,20 @@ impl<'a> Projection<'a> {
 /// Product of two lists of values, one for each measurement.
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+/// Products of columns from which motions were taken [off](Projection::off), decomposed; `None` where
+/// two of them, or one and the network, cannot be told apart.
+pub(crate) fn gram(columns: &[(Vec<f64>, Motion)], monitor: &Monitor) -> Result<Option<Llt<f64>>, Cancelled> {
+    let size = columns.len();
+    let mut products = Mat::zeros(size, size);
+    for b in 0..size {
+        check(monitor)?;
+        for a in 0..size {
+            products[(a, b)] = dot(&columns[a].0, &columns[b].0);
+        }
+    }
+    Ok(products.llt(Side::Lower).ok())
 }
 
 #[cfg(test)]
