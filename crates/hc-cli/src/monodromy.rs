@@ -1,9 +1,10 @@
 //! `hc monodromy`.
 
 use crate::checkpoint::{self, Recording};
-use crate::{family, watch};
+use crate::{family, ranks, watch};
 use cli::{Failure, output};
 use hc::family::Stop;
+use hc::ranks::Ranks;
 use hc::{FamilyError, MonodromyOptions};
 use std::path::PathBuf;
 
@@ -35,14 +36,20 @@ pub(crate) struct Arguments {
     output: Option<PathBuf>,
     #[command(flatten)]
     checkpoint: Recording,
+    #[command(flatten)]
+    pub(crate) ranks: ranks::Sharing,
 }
 
-pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+/// Searches, with the other ranks if there are any; rank 0 alone prints, and writes files.
+pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<(), Failure> {
+    let is_lead = ranks.is_none_or(Ranks::is_lead);
     if let Some(directory) = arguments.checkpoint.status() {
-        return checkpoint::status(directory);
+        return if is_lead { checkpoint::status(directory) } else { Ok(()) };
     }
     let output = Recording::needed(&arguments.output, "the fibre (--output)")?;
-    output::check(&[("--output", Some(output))])?;
+    if is_lead {
+        output::check(&[("--output", Some(output))])?;
+    }
     let path = Recording::needed(&arguments.family, "a family")?;
     let family = family::read(path)?;
     let start = match &arguments.seed_pair {
@@ -54,12 +61,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let options = MonodromyOptions::new().seed(arguments.seed).trace_test(!arguments.no_trace);
     let monitor = watch::interruptible()?;
-    let checkpoint = arguments.checkpoint.open()?;
-    let found = watch::watched(arguments.threads, &monitor, watch::stages, || match &checkpoint {
-        Some(checkpoint) => family.complete_recorded(&start, &options, &monitor, checkpoint),
-        None => family.complete(&start, &options, &monitor),
+    let checkpoint = if is_lead { arguments.checkpoint.open()? } else { None };
+    let found = watch::watched(arguments.threads, &monitor, watch::stages, || match (ranks, &checkpoint) {
+        (Some(ranks), checkpoint) => family.complete_on_ranks(&start, &options, &monitor, checkpoint.as_ref(), ranks),
+        (None, Some(checkpoint)) => family.complete_recorded(&start, &options, &monitor, checkpoint).map(Some),
+        (None, None) => family.complete(&start, &options, &monitor).map(Some),
     })?;
-    let found = found.map_err(|error| family::failure(path, error))?;
+    // Rank 0 has the fibre.
+    let Some(found) = found.map_err(|error| family::failure(path, error))? else { return Ok(()) };
     let (count, file) = (found.fibre.len(), found.start_file());
     output::text(output, &file.to_json())?;
     let trace = match (found.trace, file.trace_test) {

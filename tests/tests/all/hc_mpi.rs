@@ -1,4 +1,4 @@
-//! `mpirun hc solve`: the same bytes on any number of ranks, and an end of all of them.
+//! `mpirun hc`: the same bytes on any number of ranks, and an end of all of them.
 
 use end_to_end::{program, run};
 use std::path::Path;
@@ -151,6 +151,60 @@ fn targets_of_families_have_the_same_bytes_on_any_number_of_ranks() {
     }
 }
 
+/// Two curves of degree 8 in a plane: 64 points by Bezout's theorem, none of them at infinity.
+const CURVES: &str = "name = \"curves\"\nunknowns = [\"x\", \"y\"]\nparameters = [\"a\", \"b\", \"c\", \"d\"]\n\
+    equations = [\"x^8 + a*x*y - b\", \"y^8 + c*x*y - d\"]\n";
+
+#[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs Open MPI: cargo test -p end-to-end --features mpi")]
+fn fibres_have_the_same_bytes_on_any_number_of_ranks() {
+    let folder = tempfile::tempdir().expect("directory");
+    let curves = written(folder.path(), "curves.toml", CURVES);
+    let cameras = text(&end_to_end::root().join("examples/families/p3p.toml"));
+    for (family, count, stopped) in [(&curves, 64, "trace"), (&cameras, 8, "roots reached")] {
+        let arguments = ["monodromy", family, "--seed", "1", "--output", "-", "--threads"];
+        let alone = run("hc", &[&arguments[..], &["8"]].concat());
+        assert!(alone.status.success(), "{}", said(&alone));
+        let start: serde_json::Value = serde_json::from_slice(&alone.stdout).expect("JSON");
+        assert_eq!(start["solutions"].as_array().map(Vec::len), Some(count));
+        assert_eq!(start["stopped"], stopped);
+        for (count, threads) in [(1, "1"), (2, "1"), (4, "1"), (2, "8")] {
+            let output = on_ranks(count, &[&arguments[..], &[threads]].concat()).output().expect("mpirun runs");
+            assert!(output.stdout == alone.stdout, "{family} on {count} ranks: {}", said(&output));
+            assert!(said(&output).contains(said(&alone).trim()), "{}", said(&output));
+            assert!(output.status.success());
+        }
+    }
+}
+
+#[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs Open MPI: cargo test -p end-to-end --features mpi")]
+fn a_search_whose_rank_dies_goes_on_from_its_checkpoint() {
+    let folder = tempfile::tempdir().expect("directory");
+    let curves = written(folder.path(), "curves.toml", CURVES);
+    let directory = text(&folder.path().join("run"));
+    let arguments = ["monodromy", &curves, "--seed", "1", "--output", "-"];
+    let expected = run("hc", &[&arguments[..], &["--threads", "2"]].concat());
+    let recorded =
+        [&arguments[..], &["--checkpoint", &directory, "--resume", "--rank-timeout", "60", "--threads", "1"]].concat();
+    let records = || {
+        let output = run("hc", &["monodromy", "--status", &directory]);
+        let status: Option<serde_json::Value> = serde_json::from_slice(&output.stdout).ok();
+        status.and_then(|status| status["records"].as_u64())
+    };
+    for (rank, loops) in [(1, 4), (0, 8)] {
+        let mut command = on_ranks(2, &recorded);
+        let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("mpirun runs");
+        let victim = waited(|| process(&child, rank));
+        waited(|| records().filter(|&records| records >= loops));
+        signal("-KILL", victim);
+        assert!(!child.wait().expect("mpirun ends").success());
+    }
+    let output = on_ranks(4, &recorded).output().expect("mpirun runs");
+    assert!(output.stdout == expected.stdout, "{}", said(&output));
+    assert!(said(&output).contains(&format!("{directory}: goes on after ")), "{}", said(&output));
+}
+
 #[test]
 #[cfg_attr(not(feature = "mpi"), ignore = "needs Open MPI: cargo test -p end-to-end --features mpi")]
 fn errors_are_said_once_and_end_all_ranks() {
@@ -164,7 +218,7 @@ fn errors_are_said_once_and_end_all_ranks() {
         (&["solve", &system, "--max-paths", "1"], "more than the 1 allowed"),
         (&["solve", &system, "--seed", "none"], "invalid value 'none'"),
         (&["solve", &system, "--rank-timeout", "0"], "--rank-timeout"),
-        (&["mixed-volume", &system], "only `hc solve` and `hc track` run on several ranks"),
+        (&["mixed-volume", &system], "only `hc solve`, `hc track` and `hc monodromy` run on several ranks"),
     ] {
         let output = on_ranks(3, arguments).output().expect("mpirun runs");
         assert_eq!(output.status.code(), Some(2), "{words}: {}", said(&output));

@@ -2,6 +2,7 @@
 
 use super::keeper::{Checkpoint, Key, Part};
 use crate::monitor::Monitor;
+use crate::ranks::Lead;
 use crate::runner::Round;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -13,6 +14,8 @@ use serde::de::DeserializeOwned;
 #[derive(Clone, Copy)]
 pub(crate) struct Pieces<'a> {
     pub(crate) monitor: &'a Monitor,
+    /// Who hands out paths to other ranks.
+    pub(crate) lead: Option<&'a Lead<'a>>,
     checkpoint: Option<&'a Checkpoint>,
     part: u32,
 }
@@ -27,8 +30,13 @@ pub(crate) enum Piece {
 }
 
 impl<'a> Pieces<'a> {
-    pub(crate) fn new(checkpoint: Option<&'a Checkpoint>, monitor: &'a Monitor) -> Self {
-        Pieces { monitor, checkpoint, part: 0 }
+    pub(crate) fn new(checkpoint: Option<&'a Checkpoint>, monitor: &'a Monitor, lead: Option<&'a Lead<'a>>) -> Self {
+        Pieces { monitor, lead, checkpoint, part: 0 }
+    }
+
+    /// Pieces that nobody records, of this rank alone.
+    pub(crate) fn alone(monitor: &'a Monitor) -> Self {
+        Pieces::new(None, monitor, None)
     }
 
     /// The part that is so many after this.
@@ -36,9 +44,15 @@ impl<'a> Pieces<'a> {
         Pieces { part: self.part + after, ..self }
     }
 
-    /// Whether the work is to stop: it was cancelled, or a record is required that cannot be written.
+    /// Whether the work is to stop: it was cancelled, a record is required that cannot be written, or
+    /// another rank fails.
     pub(crate) fn are_stopped(self) -> bool {
-        self.monitor.is_cancelled() || self.checkpoint.is_some_and(|checkpoint| checkpoint.failure().is_some())
+        self.is_broken() || self.checkpoint.is_some_and(|checkpoint| checkpoint.failure().is_some())
+    }
+
+    /// Whether what is tracked is not whole any more.
+    fn is_broken(self) -> bool {
+        self.monitor.is_cancelled() || self.lead.is_some_and(|lead| lead.failure().is_some())
     }
 
     /// What is recorded of a piece; `None` if nothing is, or nothing that `fits`.
@@ -47,10 +61,10 @@ impl<'a> Pieces<'a> {
         part.take(key, fits)
     }
 
-    /// Records a piece with the number of solutions so far. What was cancelled half way is none.
+    /// Records a piece with the number of solutions so far. What ended half way is none.
     pub(crate) fn record<T: Serialize>(self, piece: Piece, solutions: usize, content: &T) {
         if let Some((part, key)) = self.place(piece)
-            && !self.monitor.is_cancelled()
+            && !self.is_broken()
         {
             part.record(key, 0, solutions as u64, content);
         }

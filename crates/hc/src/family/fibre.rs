@@ -63,7 +63,7 @@ impl Fibre {
 }
 
 /// Settings for tracking whole fibres.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct FibreOptions {
     /// Settings of the tracker in the first pass.

@@ -7,6 +7,7 @@
 
 mod charts;
 mod compiled;
+mod complete;
 mod detour;
 mod error;
 mod fibre;
@@ -16,6 +17,7 @@ mod monodromy;
 mod orbits;
 mod pair;
 mod reach;
+mod sides;
 mod size;
 mod start_file;
 mod symmetry;
@@ -23,6 +25,7 @@ mod targets;
 mod trace;
 mod trace_result;
 mod track;
+mod tracking;
 
 pub use charts::{Charts, OneChart};
 pub use compiled::Family;

@@ -7,10 +7,10 @@
 
 use super::fibre::{Fibre, FibreOptions};
 use super::reach::Reach;
+use super::sides::{Searched, Which};
 use super::start_file::StartFile;
 use super::symmetry::{ACCURATE, Symmetry};
 use super::trace_result::TraceTest;
-use super::track::track_fibre_watched;
 use crate::checkpoint::{Piece, Pieces};
 use crate::distinct::{coincidences, relative_distance};
 use crate::monitor::{Monitor, Stage};
@@ -149,12 +149,13 @@ pub(crate) fn monodromy<E: Evaluate>(
     options: &MonodromyOptions,
     monitor: &Monitor,
 ) -> Monodromy {
-    fill(system, start, |_, _| true, &Symmetry::default(), options, Pieces::new(None, monitor))
+    let searched = Searched { system, which: Which::Given };
+    fill(searched, start, |_, _| true, &Symmetry::default(), options, Pieces::alone(monitor))
 }
 
 /// The fibre with the solutions to which others, for other parameters, lead; `None` if it has them all.
 pub(super) fn joined<E: Evaluate>(
-    system: &E,
+    searched: Searched<'_, E>,
     fibre: &Fibre,
     others: &[Fibre],
     accept: impl Fn(&[Complex64], &[Complex64]) -> bool,
@@ -162,10 +163,10 @@ pub(super) fn joined<E: Evaluate>(
     options: &MonodromyOptions,
     monitor: &Monitor,
 ) -> Option<Fibre> {
-    let pieces = Pieces::new(None, monitor);
-    let mut filling = Filling { system, symmetry, options, pieces, fibre: fibre.clone() };
+    let pieces = Pieces::alone(monitor);
+    let mut filling = Filling { searched, symmetry, options, pieces, fibre: fibre.clone() };
     for other in others {
-        let (ends, _) = track_fibre_watched(system, other, &fibre.parameters, &options.fibre, monitor);
+        let (ends, _) = searched.track(other, &fibre.parameters, &options.fibre, pieces);
         let regular = ends.iter().filter(|(r, _)| r.end == PathEnd::Success);
         filling.add_accepted(regular.map(|(_, x)| x), &accept);
     }
@@ -178,21 +179,21 @@ pub(super) fn joined<E: Evaluate>(
 /// `accept` is asked about every new solution; solutions that it refuses (degenerate ones) are
 /// dropped. Each loop is a piece.
 pub(super) fn fill<E: Evaluate>(
-    system: &E,
+    searched: Searched<'_, E>,
     start: &Fibre,
     accept: impl Fn(&[Complex64], &[Complex64]) -> bool,
     symmetry: &Symmetry,
     options: &MonodromyOptions,
     pieces: Pieces<'_>,
 ) -> Monodromy {
-    let mut filling = Filling { system, symmetry, options, pieces, fibre: start.clone() };
+    let mut filling = Filling { searched, symmetry, options, pieces, fibre: start.clone() };
     if !symmetry.is_trivial() {
         filling.fibre.solutions.clear();
         filling.fibre.representatives = Some(Vec::new());
         filling.add(start.solutions.chunks_exact(start.dimension.max(1)));
     }
     // Loops have each of these sizes in turn.
-    let Reach { natural, wide, .. } = Reach::new(system, start);
+    let Reach { natural, wide, .. } = Reach::new(searched.system, start);
     let mut sizes = vec![wide.parameters, natural.parameters];
     sizes.dedup();
     let (mut loops, mut idle, mut paths) = (0, 0, 0);
@@ -246,7 +247,7 @@ fn scale(idle: usize, patience: usize) -> f64 {
 
 /// A fibre that is being filled.
 struct Filling<'a, E> {
-    system: &'a E,
+    searched: Searched<'a, E>,
     symmetry: &'a Symmetry,
     options: &'a MonodromyOptions,
     pieces: Pieces<'a>,
@@ -323,8 +324,8 @@ impl<E: Evaluate> Filling<'_, E> {
 
     /// Where solutions are for other parameters: those of paths that end well.
     fn moved(&self, fibre: &Fibre, target: &[Complex64]) -> Vec<Complex64> {
-        let (options, monitor) = (&self.options.fibre, self.pieces.monitor);
-        let (ends, _) = track_fibre_watched(self.system, fibre, target, options, monitor);
+        let options = &self.options.fibre;
+        let (ends, _) = self.searched.track(fibre, target, options, self.pieces);
         // Paths that share an end have been counted as failed; whichever is true is found by a
         // later loop.
         let regular = ends.iter().filter(|(r, _)| r.end == PathEnd::Success);
@@ -340,7 +341,7 @@ impl<E: Evaluate> Filling<'_, E> {
         points: impl Iterator<Item = &'x [Complex64]>,
         accept: &impl Fn(&[Complex64], &[Complex64]) -> bool,
     ) {
-        let mut refiner = Refiner::new(self.system);
+        let mut refiner = Refiner::new(self.searched.system);
         let mut new = Vec::new();
         for x in points {
             let refined = refiner.refine(&self.fibre.parameters, x);
@@ -355,7 +356,7 @@ impl<E: Evaluate> Filling<'_, E> {
     fn add<'x>(&mut self, points: impl Iterator<Item = &'x [Complex64]>) {
         let (n, known, tolerance) = (self.fibre.dimension, self.fibre.len(), self.options.fibre.coincidence);
         let mut first = Vec::new();
-        let mut refiner = Refiner::new(self.system);
+        let mut refiner = Refiner::new(self.searched.system);
         for x in points {
             if self.symmetry.is_trivial() {
                 self.fibre.solutions.extend_from_slice(x);

@@ -1,10 +1,10 @@
-//! Targets tracked by several ranks.
+//! Targets tracked, and fibres filled, by several ranks.
 
-use super::tests::{conics, fibre, targets};
-use super::{Family, FamilyError};
-use crate::checkpoint::{Checkpoint, CheckpointOptions};
+use super::tests::{conics, fibre, pairs_of_roots, targets};
+use super::{Family, FamilyError, Monodromy, MonodromyOptions, Stop};
+use crate::checkpoint::{Checkpoint, CheckpointOptions, status};
 use crate::ranks::support::{Faulty, PATIENCE, on};
-use crate::ranks::{Local, RanksError};
+use crate::ranks::{Exchange, Local, Ranks, RanksError};
 use crate::{Monitor, SolveOptions, Stage};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -70,4 +70,98 @@ fn ranks_with_other_targets_are_refused() {
     // A target that does not fit is refused by all.
     let found = on(&Local::ranks(2), PATIENCE, |ranks| family.track(&fibre, &[[1.0, 2.0]]).on_ranks(ranks).run());
     assert!(found.iter().all(|found| *found == Err(FamilyError::Target { target: 1, parameters: 3 })), "{found:?}");
+}
+
+/// Two curves of degree 8 in a plane: 64 points by Bezout's theorem, none of them at infinity.
+fn curves(more: &str) -> Family {
+    let text = "name = \"curves\"\nunknowns = [\"x\", \"y\"]\nparameters = [\"a\", \"b\", \"c\", \"d\"]\n\
+                equations = [\"x^8 + a*x*y - b\", \"y^8 + c*x*y - d\"]\n";
+    format!("{text}{more}").parse().unwrap()
+}
+
+/// A search by these ranks, of which rank 0 has what it found.
+fn searched<X: Exchange>(
+    exchanges: &[X],
+    patience: Duration,
+    family: &Family,
+    options: &MonodromyOptions,
+    monitor: &Monitor,
+) -> Monodromy {
+    let first = family.find_pair(1).unwrap();
+    let mut found =
+        on(exchanges, patience, |ranks| family.complete_on_ranks(&first, options, monitor, None, ranks)).into_iter();
+    let found_first = found.next().unwrap().unwrap().unwrap();
+    assert!(found.all(|other| other == Ok(None)));
+    found_first
+}
+
+#[test]
+fn any_number_of_ranks_fills_a_fibre_to_the_same_bits() {
+    for (more, orbits) in [("", None), ("symmetry = [[\"-x\", \"-y\"]]", Some(32))] {
+        let family = curves(more);
+        let options = MonodromyOptions::new().seed(1).trace_test(true);
+        let expected = family.complete(&family.find_pair(1).unwrap(), &options, &Monitor::default()).unwrap();
+        assert_eq!((expected.fibre.len(), expected.stop), (64, Stop::NoProgress));
+        assert_eq!(expected.fibre.representatives.as_ref().map(Vec::len), orbits);
+        assert!(expected.trace.is_some_and(|test| test.passed(64)), "{:?}", expected.trace);
+        for count in [1, 2, 4] {
+            let found = searched(&Local::ranks(count), PATIENCE, &family, &options, &Monitor::default());
+            assert_eq!(found, expected, "{count} ranks");
+        }
+        // Answers that are lost, late and out of order; rank 0 waits for the first.
+        let exchanges: Vec<Faulty> = Local::ranks(3).into_iter().map(|local| Faulty::new(local, 2)).collect();
+        let (answers, begun) = (Arc::clone(exchanges[0].answers()), Instant::now());
+        let monitor = Monitor::asking(move |progress| {
+            // Three sides of paths enough for all.
+            let waits = || progress.total >= 3 * 64 && answers.load(Ordering::Relaxed) == 0;
+            while waits() && begun.elapsed() < Duration::from_secs(120) {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            false
+        });
+        let found = searched(&exchanges, Duration::from_millis(150), &family, &options, &monitor);
+        assert_eq!(found, expected);
+        assert!(exchanges[0].answers().load(Ordering::Relaxed) >= 1);
+    }
+}
+
+#[test]
+fn checkpoints_of_searches_by_several_ranks_serve_any_number() {
+    let (family, first) = pairs_of_roots();
+    let options = MonodromyOptions::new().roots(65 * 65);
+    let expected = family.complete(&first, &options, &Monitor::default()).unwrap();
+    assert_eq!((expected.fibre.len(), expected.stop), (4225, Stop::RootsReached));
+    let folder = tempfile::tempdir().unwrap();
+    let run = |count: usize, monitor: &Monitor| {
+        let found = on(&Local::ranks(count), PATIENCE, |ranks| {
+            let open = || Checkpoint::open(folder.path(), &CheckpointOptions::new().resume(true));
+            let checkpoint = if ranks.is_lead() { Some(open()?) } else { None };
+            family.complete_on_ranks(&first, &options, monitor, checkpoint.as_ref(), ranks)
+        });
+        assert!(found[1..].iter().all(|other| *other == Ok(None)));
+        found[0].clone().unwrap().unwrap()
+    };
+    // Cancelled on the second side of the first loop.
+    let cancelled = run(3, &Monitor::asking(|progress| progress.done >= 5000));
+    assert_eq!((cancelled.stop, cancelled.fibre), (Stop::Cancelled, first.clone()));
+    assert_eq!(status(folder.path()).unwrap().records, 1);
+    assert_eq!(run(2, &Monitor::default()), expected);
+    assert_eq!(run(1, &Monitor::default()), expected);
+}
+
+#[test]
+fn ranks_with_another_search_are_refused() {
+    let (family, first) = pairs_of_roots();
+    let search = |ranks: &Ranks<'_>, options: &MonodromyOptions| {
+        family.complete_on_ranks(&first, options, &Monitor::default(), None, ranks)
+    };
+    let options = MonodromyOptions::new().roots(65 * 65);
+    let found =
+        on(&Local::ranks(2), PATIENCE, |ranks| search(ranks, &options.clone().seed(u64::from(!ranks.is_lead()))));
+    assert_eq!(found, [Err(FamilyError::Ranks(RanksError::Differs { rank: 1 })), Ok(None)]);
+    // What is no search is refused by all.
+    let mut wrong = options.clone();
+    wrong.fibre.coincidence = -1.0;
+    let found = on(&Local::ranks(2), PATIENCE, |ranks| search(ranks, &wrong));
+    assert!(found.iter().all(|found| matches!(found, Err(FamilyError::Option(_)))), "{found:?}");
 }

@@ -156,13 +156,17 @@ fn searches_go_on_from_every_record_to_the_same_bits() {
     }
 }
 
-/// All but some of the pairs of 65th roots of two numbers.
-#[test]
-fn sides_of_long_loops_are_recorded() {
+/// The pairs of 65th roots of two numbers, and all but some of them.
+pub(super) fn pairs_of_roots() -> (Family, Fibre) {
     let family = family("\"x\", \"y\"", "\"a\", \"b\"", "\"x^65 - a\", \"y^65 - b\"");
     let root = |k: usize| Complex64::from_polar(1.0, std::f64::consts::TAU * k as f64 / 65.0);
     let solutions = (10..65 * 65).flat_map(|k| [root(k / 65), root(k % 65)]).collect();
-    let first = Fibre::new(vec![Complex64::new(1.0, 0.0); 2], 2, solutions);
+    (family, Fibre::new(vec![Complex64::new(1.0, 0.0); 2], 2, solutions))
+}
+
+#[test]
+fn sides_of_long_loops_are_recorded() {
+    let (family, first) = pairs_of_roots();
     let options = MonodromyOptions::new().roots(65 * 65);
     let expected = family.complete(&first, &options, &Monitor::default()).unwrap();
     assert_eq!((expected.fibre.len(), expected.stop), (4225, Stop::RootsReached));

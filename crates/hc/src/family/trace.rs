@@ -11,16 +11,16 @@
 use super::fibre::{Fibre, FibreOptions};
 use super::monodromy::{MonodromyOptions, fill};
 use super::reach::Reach;
+use super::sides::{Searched, Which};
 use super::size::Sizes;
 use super::symmetry::Symmetry;
 use super::trace_result::TraceTest;
-use super::track::{move_fibre_watched, track_fibre_watched};
 use crate::checkpoint::{Piece, Pieces};
 use crate::random::{Random, Stream};
 use crate::refine::Refiner;
 use crate::tracker::PathEnd;
 use num_complex::Complex64;
-use poly::{CompileError, ComplexDd, Evaluate, Scalar, System};
+use poly::{CompileError, ComplexDd, Evaluate, Interpreter, Scalar, System};
 
 /// A sum of points that moves off the straight by less than this share of their sizes moves straight:
 /// what is left is rounding error of double-double.
@@ -37,8 +37,8 @@ pub(super) fn trace_test(
     options: &MonodromyOptions,
     pieces: Pieces<'_>,
 ) -> Result<TraceTest, CompileError> {
-    let Some(enlarged) = enlarge(system) else { return Ok(FAILED) };
-    let enlarged = enlarged.compile()?;
+    let Some(enlarged) = enlarge(system)? else { return Ok(FAILED) };
+    let searched = Searched { system: &enlarged, which: Which::Enlarged };
     let Reach { natural, wide, hidden } = Reach::new(&system.compile()?, fibre);
     let all = match (wide == natural, hidden) {
         (true, _) => vec![natural],
@@ -47,7 +47,7 @@ pub(super) fn trace_test(
     };
     let mut test = FAILED;
     for (sizes, part) in all.iter().zip((0..).step_by(3)) {
-        test = on_sizes(&enlarged, fibre, sizes, options, pieces.part(part));
+        test = on_sizes(searched, fibre, sizes, options, pieces.part(part));
         if test.passed(fibre.len()) {
             break;
         }
@@ -60,13 +60,13 @@ const FAILED: TraceTest = TraceTest { deviation: f64::INFINITY, fibre: 0, furthe
 
 /// The trace test with a line and a hypersurface of these sizes.
 fn on_sizes<E: Evaluate>(
-    enlarged: &E,
+    enlarged: Searched<'_, E>,
     fibre: &Fibre,
     sizes: &Sizes,
     options: &MonodromyOptions,
     pieces: Pieces<'_>,
 ) -> TraceTest {
-    let (monitor, result) = (pieces.monitor, Piece::Whole(2));
+    let result = Piece::Whole(2);
     if let Some(test) = pieces.part(2).take(result, |_| true) {
         return test;
     }
@@ -97,8 +97,7 @@ fn on_sizes<E: Evaluate>(
         };
         let recorded = pieces.take(Piece::Whole(number), is_of);
         let solutions = recorded.unwrap_or_else(|| {
-            let moved =
-                move_fibre_watched(enlarged, fibre, &at(factor), &careful, monitor).map(|moved| moved.solutions);
+            let moved = enlarged.moved(fibre, &at(factor), &careful, pieces).map(|moved| moved.solutions);
             pieces.record(Piece::Whole(number), fibre.len(), &moved);
             moved
         });
@@ -113,10 +112,10 @@ fn on_sizes<E: Evaluate>(
     let (Some(second), Some(third)) = (moved(ends, 0, &filled, 2.0), moved(ends, 1, &filled, 3.0)) else {
         return FAILED;
     };
-    let deviation = deviation(enlarged, &[&filled, &second, &third], n + 1);
+    let deviation = deviation(enlarged.system, &[&filled, &second, &third], n + 1);
 
     // Back on lambda = 0: every point of the curve there must be one of the fibre.
-    let (paths, counts) = track_fibre_watched(enlarged, &filled, &at(0.0), &careful, monitor);
+    let (paths, counts) = enlarged.track(&filled, &at(0.0), &careful, pieces);
     let back = paths.iter().filter(|(r, x)| r.end == PathEnd::Success && x[n].norm() < 1e-8).count();
     let complete = counts.failed == 0 && counts.finite == filled.len();
     let test = TraceTest { deviation, fibre: back, further: filled.len() - back, complete };
@@ -124,9 +123,9 @@ fn on_sizes<E: Evaluate>(
     test
 }
 
-/// `F(x; p + lambda v) = 0`, `(a x - c) lambda = tau`.
-fn enlarge(system: &System) -> Option<System> {
-    System::build(|s| {
+/// `F(x; p + lambda v) = 0`, `(a x - c) lambda = tau`; `None` where that is no system.
+pub(super) fn enlarge(system: &System) -> Result<Option<Interpreter>, CompileError> {
+    let enlarged = System::build(|s| {
         // Names cannot clash: those of the system are not used.
         let unknowns: Vec<_> = (0..system.variables().len()).map(|j| s.variable(&format!("x{j}"))).collect();
         let lambda = s.variable("lambda");
@@ -139,8 +138,8 @@ fn enlarge(system: &System) -> Option<System> {
         let plane = s.sum(a.iter().zip(&unknowns).map(|(&a, &x)| a * x)) - c;
         equations.push(plane * lambda - tau);
         equations
-    })
-    .ok()
+    });
+    enlarged.ok().map(|enlarged| enlarged.compile()).transpose()
 }
 
 /// How far the sum of the points of three fibres at equal distances, in the same order, moves off the

@@ -34,7 +34,7 @@ impl Portion {
 /// From rank 0.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) enum Order {
-    /// A part of a job begins: a start system, which is described by the content.
+    /// A part of a job begins: a start system or a fibre, which is described by the content.
     Begin { job: u64, part: u32, content: Vec<u8> },
     /// Paths are to be tracked.
     Track { job: u64, part: u32, portion: Portion },

@@ -1,7 +1,7 @@
 //! Settings of the tracker, with presets.
 
 use poly::simd::Isa;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A setting outside its range.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -32,7 +32,7 @@ impl OptionError {
 /// Settings of the path tracker. Steps are bounded twice: by the radius of trust of the predictor
 /// (`beta_tau`) and by the bound under which Newton's method converges at once (`beta_omega`), see
 /// [`crate::tracker`].
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct TrackerOptions {
     /// Largest contraction `|dx_1| / |dx_0|` of Newton's method that is accepted (dimensionless).

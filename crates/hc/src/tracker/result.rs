@@ -1,9 +1,10 @@
 //! How paths ended.
 
 use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
 
 /// Why a path ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum PathEnd {
     /// A regular solution of the target system.
@@ -32,7 +33,7 @@ impl PathEnd {
 }
 
 /// The record of one path.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PathResult {
     /// Index of the start solution.
     pub path: usize,

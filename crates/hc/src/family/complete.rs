@@ -1,0 +1,204 @@
+//! All solutions for some parameters: the search, what comes after it, and who takes part.
+
+use super::compiled::Family;
+use super::error::FamilyError;
+use super::fibre::Fibre;
+use super::job::{Points, job};
+use super::monodromy::{Monodromy, MonodromyOptions, Stop, fill, joined};
+use super::pair::find_pair;
+use super::sides::{Searched, Side, Which};
+use super::trace::{enlarge, trace_test};
+use super::trace_result::TraceTest;
+use crate::checkpoint::{Checkpoint, Job, Pieces};
+use crate::monitor::Monitor;
+use crate::ranks::{Lead, Ranks, Worker};
+use num_complex::Complex64;
+use serde::Serialize;
+
+/// Other first pairs, and how often each is tried to be found.
+const PAIRS: u64 = 48;
+const FEW_TRIES: u64 = 20;
+/// The parts of the pieces of [`Family::complete`]: the search goes on in the second with solutions
+/// for other parameters.
+const AGAIN: u32 = 1;
+const TRACE: u32 = 2;
+
+impl Family {
+    /// All solutions for some generic parameters: a first pair, and what loops in parameter space
+    /// make of it. The number of roots that the family states ends the search, unless the options
+    /// have one.
+    ///
+    /// # Errors
+    /// If no first solution is found.
+    pub fn monodromy(&self, options: &MonodromyOptions) -> Result<Monodromy, FamilyError> {
+        let first = self.find_pair(options.seed)?;
+        self.complete(&first, options, &Monitor::default())
+    }
+
+    /// All solutions for the parameters of `first`, which has one or several of them; a cancelled
+    /// monitor ends the search. Where loops bring nothing new, solutions for other parameters are
+    /// tracked to these.
+    ///
+    /// # Errors
+    /// If `first` is of another family, an option is out of range, the stated symmetry is none, or the
+    /// enlarged family of the [trace test](Self::trace_test), if asked for, does not compile.
+    pub fn complete(
+        &self,
+        first: &Fibre,
+        options: &MonodromyOptions,
+        monitor: &Monitor,
+    ) -> Result<Monodromy, FamilyError> {
+        self.complete_anywhere(first, options, monitor, None, None)
+    }
+
+    /// [`complete`](Self::complete), recorded in a [checkpoint](crate::checkpoint): loops that it has
+    /// are not gone again, nor steps of the trace test. The family, `first` and all options but
+    /// [`trace_test`](MonodromyOptions::trace_test) have to be those of the run that it is of.
+    ///
+    /// # Errors
+    /// As [`complete`](Self::complete); if the checkpoint is of another run, or cannot be written.
+    pub fn complete_recorded(
+        &self,
+        first: &Fibre,
+        options: &MonodromyOptions,
+        monitor: &Monitor,
+        checkpoint: &Checkpoint,
+    ) -> Result<Monodromy, FamilyError> {
+        self.complete_anywhere(first, options, monitor, Some(checkpoint), None)
+    }
+
+    /// [`complete`](Self::complete), or with a checkpoint [`complete_recorded`](Self::complete_recorded),
+    /// by several [ranks](crate::ranks) that are all given the same family, `first` and options. Rank 0
+    /// alone heeds the monitor, has the checkpoint, and is given what [`complete`](Self::complete) finds,
+    /// to the bit; the others are given `None` when they are not needed any more. Paths are divided, of
+    /// loops and of the trace test; what is made of their ends is not.
+    ///
+    /// # Errors
+    /// As [`complete_recorded`](Self::complete_recorded); on rank 0 if another rank fails or has another
+    /// job.
+    pub fn complete_on_ranks(
+        &self,
+        first: &Fibre,
+        options: &MonodromyOptions,
+        monitor: &Monitor,
+        checkpoint: Option<&Checkpoint>,
+        ranks: &Ranks<'_>,
+    ) -> Result<Option<Monodromy>, FamilyError> {
+        let fingerprint = self.search_job(first, &self.stated(options)).fingerprint();
+        if ranks.is_lead() {
+            return Lead::at(ranks, &fingerprint, |lead| {
+                self.complete_anywhere(first, options, monitor, checkpoint, Some(lead)).map(Some)
+            });
+        }
+        Worker::at(ranks, &fingerprint, |worker| {
+            self.check_search(first, options)?;
+            self.serve(worker).map(|()| None)
+        })
+    }
+
+    fn complete_anywhere(
+        &self,
+        first: &Fibre,
+        options: &MonodromyOptions,
+        monitor: &Monitor,
+        checkpoint: Option<&Checkpoint>,
+        lead: Option<&Lead<'_>>,
+    ) -> Result<Monodromy, FamilyError> {
+        self.check_search(first, options)?;
+        let options = self.stated(options);
+        if let Some(checkpoint) = checkpoint {
+            checkpoint.begin(self.search_job(first, &options))?;
+        }
+        let pieces = Pieces::new(checkpoint, monitor, lead);
+        let searched = Searched { system: &self.program, which: Which::Given };
+        let accept = |p: &[Complex64], x: &[Complex64]| self.accepts(p, x);
+        let mut found = fill(searched, first, accept, &self.symmetry, &options, pieces);
+        if found.stop == Stop::NoProgress {
+            let others = self.other_pairs(options.seed)?;
+            let joined = joined(searched, &found.fibre, &others, accept, &self.symmetry, &options, monitor);
+            if let Some(fibre) = joined {
+                let (loops, paths) = (found.loops, found.paths + others.len());
+                found = fill(searched, &fibre, accept, &self.symmetry, &options, pieces.part(AGAIN));
+                (found.loops, found.paths) = (found.loops + loops, found.paths + paths);
+            }
+        }
+        if options.trace_test && !matches!(found.stop, Stop::RootsReached | Stop::Cancelled) {
+            let test = trace_test(self.system(), &found.fibre, &options, pieces.part(TRACE))?;
+            // What an interrupted test says is no deviation.
+            if monitor.is_cancelled() { found.stop = Stop::Cancelled } else { found.trace = Some(test) }
+        }
+        if let Some(error) = checkpoint.and_then(Checkpoint::failure) {
+            return Err(error.into());
+        }
+        match lead.and_then(Lead::failure) {
+            Some(error) => Err(error.into()),
+            None => Ok(found),
+        }
+    }
+
+    /// Tracks paths for rank 0 as long as it needs any.
+    fn serve(&self, worker: &Worker<'_>) -> Result<(), FamilyError> {
+        let mut enlarged = None;
+        while let Some(task) = worker.next::<Side<'_>>()? {
+            match task.content.which {
+                Which::Given => Searched { system: &self.program, which: Which::Given }.serve(worker, &task)?,
+                Which::Enlarged => {
+                    if enlarged.is_none() {
+                        enlarged = enlarge(self.system())?;
+                    }
+                    if let Some(system) = &enlarged {
+                        Searched { system, which: Which::Enlarged }.serve(worker, &task)?;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn check_search(&self, first: &Fibre, options: &MonodromyOptions) -> Result<(), FamilyError> {
+        self.check(first)?;
+        options.fibre.validate()?;
+        self.check_symmetry(first)
+    }
+
+    /// The options, with the number of roots that the family states unless they have one.
+    fn stated(&self, options: &MonodromyOptions) -> MonodromyOptions {
+        MonodromyOptions { roots: options.roots.or(self.roots()), ..options.clone() }
+    }
+
+    /// What a checkpoint of a search is of, and all ranks do.
+    fn search_job(&self, first: &Fibre, options: &MonodromyOptions) -> Job {
+        let settings = Settings { options, start: Points::of_fibre(first) };
+        job("monodromy", &self.given, &self.program, &settings)
+    }
+
+    /// First pairs from other random points. On sheets that nearly part from each other loops of any
+    /// common size may keep to one, on which the trace test passes; pairs lie on all.
+    fn other_pairs(&self, seed: u64) -> Result<Vec<Fibre>, FamilyError> {
+        let pair = |k: u64| find_pair(self.system(), |p, x| self.accepts(p, x), seed.wrapping_add(k), FEW_TRIES);
+        Ok((1..=PAIRS).map(pair).collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
+    }
+
+    /// The trace test of a fibre: whether it is whole. It takes several times as long as finding
+    /// the fibre; `patience` of the options counts for the further points that it needs.
+    ///
+    /// # Errors
+    /// If the fibre is of another family, or the enlarged family of the test does not compile.
+    pub fn trace_test(
+        &self,
+        fibre: &Fibre,
+        options: &MonodromyOptions,
+        monitor: &Monitor,
+    ) -> Result<TraceTest, FamilyError> {
+        self.check(fibre)?;
+        Ok(trace_test(self.system(), fibre, options, Pieces::alone(monitor))?)
+    }
+}
+
+/// What a search for solutions depends on.
+#[derive(Serialize)]
+struct Settings<'a> {
+    #[serde(flatten)]
+    options: &'a MonodromyOptions,
+    start: Points,
+}

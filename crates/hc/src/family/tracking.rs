@@ -1,0 +1,349 @@
+//! One pass over paths of a fibre: tracked, judged, and kept in the place of earlier passes.
+
+use super::charts::{Charts, OneChart, Rests};
+use super::fibre::{Fibre, FibreOptions};
+use super::judge::{doubtful, ends_regularly, settle};
+use crate::distinct::Coincidences;
+use crate::homotopy::{ParameterPath, Segment};
+use crate::monitor::Monitor;
+use crate::ranks::{RanksError, Shareable, Task, Worker};
+use crate::refine::{Refined, Refiner};
+use crate::runner::{Flow, Round, Work};
+use crate::tracker::{PathEnd, PathResult, PathSet, Tracker, TrackerOptions, Trackers};
+use num_complex::Complex64;
+use poly::{Evaluate, Lanes8};
+use std::cell::Cell;
+
+/// Accuracy to which the end of a path that is carried back from another chart must be known.
+const CARRIED: f64 = 1e-8;
+
+/// More lost paths than this tell of a degenerate member of the family rather than of bad luck.
+const BAD_LUCK: usize = 4;
+
+/// In several charts: of so many lost paths a level of more than [`LONG`] steps in all brings back
+/// one at least, or there is no other level; of fewer it may bring back none.
+const WORTHWHILE: usize = 8;
+const LONG: usize = 100_000;
+
+/// Where paths are tracked.
+pub(super) enum Lanes<'a, E: Evaluate> {
+    /// In the lanes of one tracker.
+    One(Box<Tracker<'a, E, Lanes8>>),
+    /// On all threads.
+    Threads(Trackers<'a, E>),
+}
+
+/// What a batch needs besides its arguments.
+pub(super) struct Scratch<'a, E: Evaluate> {
+    lanes: Lanes<'a, E>,
+    refiner: Refiner<'a, E>,
+    refined: Refined,
+    coincidences: Coincidences,
+    from: Vec<f64>,
+    carried: Vec<Complex64>,
+    back: Vec<Complex64>,
+    segment: Segment,
+    ends: [Vec<Complex64>; 2],
+    paths: PathSet,
+    which: Vec<usize>,
+}
+
+impl<'a, E: Evaluate> Scratch<'a, E> {
+    /// For so many paths of a fibre.
+    pub(super) fn new(system: &'a E, lanes: Lanes<'a, E>, fibre: &Fibre, paths: usize) -> Self {
+        let dimension = fibre.dimension;
+        Scratch {
+            lanes,
+            refiner: Refiner::new(system),
+            refined: Refined { point: Vec::with_capacity(dimension), ..Refined::default() },
+            coincidences: Coincidences::with_capacity(paths),
+            from: Vec::with_capacity(paths),
+            carried: Vec::with_capacity(paths * dimension),
+            back: Vec::with_capacity(dimension),
+            segment: Segment::new(&fibre.parameters, &fibre.parameters),
+            ends: ends(fibre),
+            paths: PathSet::with_capacity(dimension, paths),
+            which: Vec::with_capacity(paths),
+        }
+    }
+}
+
+/// Room for the ends of the way in a chart.
+pub(super) fn ends(fibre: &Fibre) -> [Vec<Complex64>; 2] {
+    [0, 1].map(|_| Vec::with_capacity(fibre.parameters.len()))
+}
+
+impl<E: Evaluate> Lanes<'_, E> {
+    /// Tracks the paths with these numbers into `starts` and appends them to `out`.
+    fn track<P: ParameterPath>(
+        &mut self,
+        path: &P,
+        starts: &[Complex64],
+        which: &[usize],
+        options: &TrackerOptions,
+        monitor: &Monitor,
+        out: &mut PathSet,
+    ) {
+        match self {
+            Lanes::One(tracker) => {
+                tracker.set_options(options);
+                tracker.set_monitor(monitor);
+                tracker.track(path, starts, which.iter().copied(), out);
+            }
+            Lanes::Threads(trackers) => *out = trackers.track(path, starts, which, options, monitor),
+        }
+    }
+}
+
+/// The paths of a fibre to a target.
+pub(super) struct Tracking<'r, C, U> {
+    pub(super) charts: &'r C,
+    pub(super) fibre: &'r Fibre,
+    /// The way from there to the target in chart 0.
+    pub(super) segment: &'r Segment,
+    pub(super) target: &'r [Complex64],
+    pub(super) options: &'r FibreOptions,
+    pub(super) monitor: &'r Monitor,
+    /// The ends so far.
+    pub(super) paths: &'r mut PathSet,
+    pub(super) enough: U,
+    /// Steps of all paths before the last level.
+    pub(super) steps: usize,
+}
+
+/// They with the system that they are of.
+pub(super) struct Over<'r, 'a, E: Evaluate, C, U> {
+    tracking: Tracking<'r, C, U>,
+    system: &'a E,
+    /// Of a batch of several ranks: the paths that the monitor has been told of.
+    told: Cell<usize>,
+}
+
+impl<'r, 'a, E: Evaluate, C, U> Over<'r, 'a, E, C, U> {
+    pub(super) fn new(tracking: Tracking<'r, C, U>, system: &'a E) -> Self {
+        Over { tracking, system, told: Cell::new(0) }
+    }
+}
+
+impl<'a, E, C, U> Work for Over<'_, 'a, E, C, U>
+where
+    E: Evaluate,
+    C: Charts,
+    U: FnMut(&PathSet) -> bool,
+{
+    type Batch = PathSet;
+    type Memory = Scratch<'a, E>;
+
+    fn begin(&mut self, _: Round, _: usize) {
+        self.told.set(0);
+    }
+
+    fn batch(&self, scratch: &mut Scratch<'a, E>, numbers: &[usize], round: Round, batch: &mut PathSet) {
+        self.tracking.pass(scratch, numbers, round, self.tracking.monitor, batch);
+    }
+
+    fn absorb(&mut self, batch: &mut PathSet, round: Round) -> Flow {
+        let Tracking { paths, enough, .. } = &mut self.tracking;
+        if round.is_first() {
+            let found = enough(batch);
+            paths.append(batch);
+            return if found { Flow::Found } else { Flow::On };
+        }
+        for (result, point) in batch.iter() {
+            let k = result.path;
+            let old = paths.results()[k];
+            let work = PathResult {
+                accepted: old.accepted + result.accepted,
+                rejected: old.rejected + result.rejected,
+                jacobians: old.jacobians + result.jacobians,
+                ..if is_better::<C>(result) { *result } else { old }
+            };
+            if is_better::<C>(result) {
+                paths.replace(k, work, point);
+            } else {
+                paths.replace_record(k, work);
+            }
+        }
+        Flow::On
+    }
+
+    fn doubtful(&mut self, scratch: &mut Scratch<'a, E>, which: &mut Vec<usize>) {
+        let Tracking { paths, options, .. } = &mut self.tracking;
+        paths.sort();
+        doubtful(paths, options.coincidence, &mut scratch.coincidences, which);
+    }
+
+    fn is_hopeless(&mut self, level: u32, before: usize, after: usize) -> bool {
+        let tracking = &mut self.tracking;
+        let steps: usize = tracking.paths.results().iter().map(|r| r.accepted + r.rejected).sum();
+        let spent = steps.saturating_sub(std::mem::replace(&mut tracking.steps, steps));
+        C::COUNT > 1 && level > 0 && after > BAD_LUCK && after > before - before / WORTHWHILE && spent > LONG
+    }
+}
+
+/// In one chart: in several, rounds go on from where paths broke off.
+impl<E, C, U> Shareable for Over<'_, '_, E, C, U>
+where
+    E: Evaluate,
+    C: Charts,
+    U: FnMut(&PathSet) -> bool,
+{
+    type End = (PathResult, Vec<Complex64>);
+
+    fn ends(&self, numbers: &[usize], round: Round) -> Vec<Self::End> {
+        let fibre = self.tracking.fibre;
+        let lanes = Lanes::Threads(Trackers::new(self.system));
+        let mut scratch = Scratch::new(self.system, lanes, fibre, numbers.len());
+        let mut batch = PathSet::with_capacity(fibre.dimension, numbers.len());
+        // The progress of a batch is told as a whole.
+        self.tracking.pass(&mut scratch, numbers, round, &self.tracking.monitor.quiet(), &mut batch);
+        batch.sort();
+        batch.iter().map(|(result, point)| (*result, point.to_vec())).collect()
+    }
+
+    fn is_end(&self, (result, point): &Self::End, number: usize) -> bool {
+        result.path == number && point.len() == self.tracking.fibre.dimension
+    }
+
+    fn gather(&self, ends: Vec<Self::End>, batch: &mut PathSet) {
+        batch.clear(self.tracking.fibre.dimension);
+        for (result, point) in ends {
+            batch.push(result, point);
+        }
+    }
+
+    fn reached(&self, paths: usize) {
+        let before = self.told.replace(paths);
+        self.tracking.monitor.add(paths.saturating_sub(before) as u64, 0);
+    }
+}
+
+/// Tracks paths of a fibre for rank 0 as long as it sends any.
+///
+/// # Panics
+/// If the system is not square, or the fibre or the target does not fit it.
+pub(super) fn serve_fibre<E: Evaluate, T>(
+    worker: &Worker<'_>,
+    task: &Task<T>,
+    system: &E,
+    fibre: &Fibre,
+    target: &[Complex64],
+    options: &FibreOptions,
+) -> Result<(), RanksError> {
+    let tracking = Tracking {
+        charts: &OneChart,
+        fibre,
+        segment: &Segment::new(&fibre.parameters, target),
+        target,
+        options,
+        monitor: &task.monitor,
+        paths: &mut PathSet::new(fibre.dimension),
+        enough: |_: &PathSet| false,
+        steps: 0,
+    };
+    let over = Over::new(tracking, system);
+    worker.serve(task, |numbers, round| over.ends(numbers, round))
+}
+
+/// Whether a path that was tracked again has come farther than before. Where paths go to infinity
+/// in one of several charts, they may end in the others.
+fn is_better<C: Charts>(result: &PathResult) -> bool {
+    match result.end {
+        PathEnd::Success => true,
+        PathEnd::AtInfinity => C::COUNT == 1,
+        _ => C::COUNT > 1 && is_broken_off(result),
+    }
+}
+
+/// Whether a path ended on the way, at a point from which it may go on in another chart.
+fn is_broken_off(result: &PathResult) -> bool {
+    matches!(result.end, PathEnd::MaxSteps | PathEnd::StepTooSmall | PathEnd::AccuracyLimit) && result.t > 0.0
+}
+
+/// The steps of a level; in several charts so many more that a path gets farther with shorter ones.
+fn stricter<C: Charts>(settings: &TrackerOptions, level: u32) -> TrackerOptions {
+    if level == 0 {
+        return settings.clone();
+    }
+    let stricter = settings.stricter(level);
+    if C::COUNT == 1 {
+        return stricter;
+    }
+    TrackerOptions { max_steps: settings.max_steps.saturating_mul(1 << (2 * level).min(20)), ..stricter }
+}
+
+impl<C: Charts, U> Tracking<'_, C, U> {
+    /// Tracks the paths with these numbers in a round.
+    fn pass<E: Evaluate>(
+        &self,
+        scratch: &mut Scratch<'_, E>,
+        numbers: &[usize],
+        round: Round,
+        monitor: &Monitor,
+        batch: &mut PathSet,
+    ) {
+        batch.clear(self.fibre.dimension);
+        if round.is_first() {
+            let Scratch { lanes, refiner, .. } = scratch;
+            lanes.track(self.segment, &self.fibre.solutions, numbers, &self.options.tracker, monitor, batch);
+            settle(refiner, self.target, batch);
+        } else {
+            self.again(scratch, numbers, round, monitor, batch);
+        }
+    }
+
+    /// Tracks paths again in a chart, from the start or, if they go on, from where they broke off.
+    fn again<E: Evaluate>(
+        &self,
+        scratch: &mut Scratch<'_, E>,
+        numbers: &[usize],
+        Round { level, chart }: Round,
+        monitor: &Monitor,
+        batch: &mut PathSet,
+    ) {
+        let Scratch { lanes, refiner, refined, from, carried, back, segment, ends, paths, which, .. } = scratch;
+        for (end, p) in ends.iter_mut().zip([&self.fibre.parameters[..], self.target]) {
+            end.clear();
+            self.charts.parameters(chart, p, end);
+        }
+        segment.join(&ends[0], &ends[1]);
+        let goes_on = chart > 0 && level.is_multiple_of(2);
+        from.clear();
+        carried.clear();
+        for &k in numbers {
+            // What has become of a path is not known to a rank that begins it anew.
+            let broken = goes_on.then(|| &self.paths.results()[k]).filter(|result| is_broken_off(result));
+            from.push(broken.map_or(1.0, |result| result.t));
+            let point = if broken.is_some() { self.paths.point(k) } else { self.fibre.solution(k) };
+            self.charts.enter(chart, point, carried);
+        }
+        which.clear();
+        which.extend(0..numbers.len());
+        paths.clear(self.fibre.dimension);
+        let rests = Rests { segment, from };
+        lanes.track(&rests, carried, which, &stricter::<C>(&self.options.tracker, level), monitor, paths);
+        if chart == 0 {
+            settle(refiner, self.target, paths);
+        }
+        for (result, point) in paths.iter() {
+            let mut record = PathResult { path: numbers[result.path], t: result.t * from[result.path], ..*result };
+            back.clear();
+            self.charts.leave(chart, point, back);
+            if chart > 0 && result.end == PathEnd::Success {
+                let regular = ends_regularly(refiner, segment.target(), result, point);
+                if regular {
+                    refiner.refine_into(self.target, back, refined);
+                }
+                if regular && refined.accuracy < CARRIED {
+                    back.copy_from_slice(&refined.point);
+                } else {
+                    record.end = PathEnd::Singular;
+                }
+            }
+            if back.iter().any(|z| !z.is_finite()) {
+                record.end = PathEnd::Singular;
+            }
+            batch.push(record, back.iter().copied());
+        }
+    }
+}
