@@ -47,15 +47,15 @@ fn execute(command: &Command, ranks: Option<&Ranks<'_>>) -> Result<(), Failure> 
     match command {
         Command::Solve(arguments) => solve::run(arguments, ranks),
         Command::Track(arguments) => track::run(arguments, ranks),
+        Command::MixedVolume(arguments) => mixed_volume::run(arguments, ranks),
         Command::Monodromy(arguments) => monodromy::run(arguments, ranks),
         _ if ranks.is_some() => {
-            let those = "only `hc solve`, `hc track` and `hc monodromy` run on several ranks";
+            let those = "only `hc solve`, `track`, `monodromy` and `mixed-volume` run on several ranks";
             Err(Failure::Unusable(format!("{those}; start this without mpirun")))
         }
         Command::Certify(arguments) => certify::run(arguments),
         Command::Codegen(arguments) => codegen::run(arguments),
         Command::Decompose(arguments) => decompose::run(arguments),
-        Command::MixedVolume(arguments) => mixed_volume::run(arguments),
     }
 }
 
@@ -80,6 +80,7 @@ fn run(exchange: Option<&dyn Exchange>) -> ExitCode {
     let options = match &command {
         Command::Solve(arguments) => arguments.ranks.options(),
         Command::Track(arguments) => arguments.ranks.options(),
+        Command::MixedVolume(arguments) => arguments.ranks.options(),
         Command::Monodromy(arguments) => arguments.ranks.options(),
         _ => RanksOptions::new(),
     };

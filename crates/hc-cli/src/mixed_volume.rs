@@ -1,9 +1,10 @@
 //! `hc mixed-volume`.
 
-use crate::{input, watch};
+use crate::{input, ranks, watch};
 use cli::{Failure, output};
 use hc::poly::Polynomial;
-use hc::start::{MixedError, mixed_volume_watched};
+use hc::ranks::Ranks;
+use hc::start::{MixedError, mixed_volume_on_ranks, mixed_volume_watched};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -26,6 +27,8 @@ pub(crate) struct Arguments {
     /// Accepted everywhere; mixed volumes draw no random numbers.
     #[arg(long, default_value_t = 0)]
     seed: u64,
+    #[command(flatten)]
+    pub(crate) ranks: ranks::Sharing,
 }
 
 #[derive(Serialize)]
@@ -38,23 +41,30 @@ struct Output {
     partial: bool,
 }
 
-pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    output::check(&[("--json", arguments.json.as_deref())])?;
+/// Searches, with the other ranks if there are any; rank 0 alone prints, and writes files.
+pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<(), Failure> {
+    if ranks.is_none_or(Ranks::is_lead) {
+        output::check(&[("--json", arguments.json.as_deref())])?;
+    }
     let system = input::system(&arguments.file)?;
     let polynomials = system.expand(&Default::default()).map_err(|error| Failure::in_file(&arguments.file, error))?;
     let supports: Vec<Vec<Vec<i32>>> = polynomials.iter().map(Polynomial::support).collect();
     let unknowns = system.variables().len();
     let start = Instant::now();
     let monitor = watch::interruptible()?;
-    let found = watch::watched(arguments.threads, &monitor, watch::stages, || {
-        mixed_volume_watched(unknowns, &supports, &monitor)
+    let found = watch::watched(arguments.threads, &monitor, watch::stages, || match ranks {
+        Some(ranks) => mixed_volume_on_ranks(unknowns, &supports, &monitor, ranks),
+        None => mixed_volume_watched(unknowns, &supports, &monitor).map(Some),
     })?;
     let (mixed_volume, cells, partial) = match found {
-        Ok(found) => (found.volume, found.cells as u64, false),
+        Ok(Some(found)) => (found.volume, found.cells as u64, false),
+        // Rank 0 has the volume.
+        Ok(None) => return Ok(()),
         Err(MixedError::Cancelled) => {
             let so_far = monitor.progress();
             (so_far.counted, so_far.done, true)
         }
+        Err(MixedError::Ranks(error)) => return Err(Failure::unusable(error)),
         Err(error) => return Err(Failure::in_file(&arguments.file, error)),
     };
     let seconds = start.elapsed().as_secs_f64();

@@ -205,6 +205,32 @@ fn a_search_whose_rank_dies_goes_on_from_its_checkpoint() {
     assert!(said(&output).contains(&format!("{directory}: goes on after ")), "{}", said(&output));
 }
 
+/// Cyclic n-roots: sums of products of k neighbours are zero, the product of all is one.
+fn cyclic(n: usize) -> String {
+    let product = |i: usize, k: usize| (i..i + k).map(|j| format!("x{}", j % n)).collect::<Vec<_>>().join("*");
+    let sum = |k: usize| (0..n).map(|i| product(i, k)).collect::<Vec<_>>().join(" + ") + "\n";
+    (1..n).map(sum).chain([product(0, n) + " - 1\n"]).collect()
+}
+
+#[test]
+#[cfg_attr(not(feature = "mpi"), ignore = "needs Open MPI: cargo test -p end-to-end --features mpi")]
+fn mixed_volumes_are_the_same_on_any_number_of_ranks() {
+    let folder = tempfile::tempdir().expect("directory");
+    // Counts from the literature (Li & Li 2001).
+    for (n, expected) in [(6, 156), (11, 184_756)] {
+        let file = written(folder.path(), &format!("cyclic{n}.txt"), &cyclic(n));
+        let arguments = ["mixed-volume", &file, "--json", "-", "--threads"];
+        let alone = run("hc", &[&arguments[..], &["8"]].concat());
+        let found: serde_json::Value = serde_json::from_slice(&alone.stdout).expect("JSON");
+        assert_eq!(found["mixed_volume"], expected);
+        for (count, threads) in [(1, "1"), (2, "1"), (4, "1"), (2, "8")] {
+            let output = on_ranks(count, &[&arguments[..], &[threads]].concat()).output().expect("mpirun runs");
+            assert_eq!(untimed(&output), untimed(&alone), "cyclic {n} on {count} ranks: {}", said(&output));
+            assert!(output.status.success(), "{}", said(&output));
+        }
+    }
+}
+
 #[test]
 #[cfg_attr(not(feature = "mpi"), ignore = "needs Open MPI: cargo test -p end-to-end --features mpi")]
 fn errors_are_said_once_and_end_all_ranks() {
@@ -218,7 +244,7 @@ fn errors_are_said_once_and_end_all_ranks() {
         (&["solve", &system, "--max-paths", "1"], "more than the 1 allowed"),
         (&["solve", &system, "--seed", "none"], "invalid value 'none'"),
         (&["solve", &system, "--rank-timeout", "0"], "--rank-timeout"),
-        (&["mixed-volume", &system], "only `hc solve`, `hc track` and `hc monodromy` run on several ranks"),
+        (&["decompose", &system], "only `hc solve`, `track`, `monodromy` and `mixed-volume` run on several ranks"),
     ] {
         let output = on_ranks(3, arguments).output().expect("mpirun runs");
         assert_eq!(output.status.code(), Some(2), "{words}: {}", said(&output));
@@ -229,7 +255,7 @@ fn errors_are_said_once_and_end_all_ranks() {
     let help = String::from_utf8_lossy(&help.stdout).into_owned();
     assert_eq!(help.matches("--rank-timeout").count(), 1, "{help}");
     // Some commands are as ever on one rank.
-    let output = on_ranks(1, &["mixed-volume", &system]).output().expect("mpirun runs");
+    let output = on_ranks(1, &["decompose", &system]).output().expect("mpirun runs");
     assert!(output.status.success(), "{}", said(&output));
 }
 
@@ -238,8 +264,11 @@ fn errors_are_said_once_and_end_all_ranks() {
 fn an_interrupt_of_rank_0_ends_all_with_what_there_is() {
     let folder = tempfile::tempdir().expect("directory");
     let system = written(folder.path(), "system.txt", &quadrics(18));
-    for name in ["-INT", "-TERM"] {
-        let mut command = on_ranks(3, &["solve", &system, "--start", "total-degree", "--json", "-", "--threads", "1"]);
+    let solve = &["solve", &system, "--start", "total-degree", "--json", "-", "--threads", "1"][..];
+    let cyclic = written(folder.path(), "cyclic.txt", &cyclic(14));
+    let volume = &["mixed-volume", &cyclic, "--json", "-", "--threads", "1"][..];
+    for (name, arguments) in [("-INT", solve), ("-TERM", solve), ("-INT", volume)] {
+        let mut command = on_ranks(3, arguments);
         let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("mpirun runs");
         let first = waited(|| process(&child, 0));
         end_to_end::wait_for_handler(first);
@@ -252,6 +281,8 @@ fn an_interrupt_of_rank_0_ends_all_with_what_there_is() {
         assert!(said(&output).contains("interrupted; the result is partial"), "{}", said(&output));
         let result: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
         assert_eq!(result["partial"], true);
+        // Of 8,795,976.
+        assert!(result["mixed_volume"].as_u64().is_none_or(|volume| volume < 8_795_976), "{result}");
     }
 }
 

@@ -59,22 +59,36 @@ pub fn mixed_volume_watched(
     monitor: &Monitor,
 ) -> Result<MixedVolume, MixedError> {
     monitor.enter(Stage::MixedCells, 0);
-    let (mut volume, mut cells) = (0u128, 0);
-    if let Some(ordered) = Ordered::new(unknowns, supports)? {
-        let space = Space::new(ordered.supports, None, monitor);
-        for part in search(&space, || Total { volume: 0, cells: 0, monitor })? {
-            volume = volume.checked_add(part.volume).ok_or(MixedError::TooLarge)?;
-            cells += part.cells;
-        }
-    }
+    let Some(ordered) = Ordered::new(unknowns, supports)? else { return Ok(MixedVolume { volume: 0, cells: 0 }) };
+    let space = Space::new(ordered.supports, None, monitor);
+    let (volume, cells) = total(search(&space, || Total::new(monitor))?)?;
     let volume = u64::try_from(volume).map_err(|_| MixedError::TooLarge)?;
     Ok(MixedVolume { volume, cells })
 }
 
-struct Total<'a> {
+/// The volume and number of cells.
+pub(super) struct Total<'a> {
     volume: u128,
     cells: usize,
     monitor: &'a Monitor,
+}
+
+impl<'a> Total<'a> {
+    /// Of no cells yet; the monitor is told of each.
+    pub(super) fn new(monitor: &'a Monitor) -> Self {
+        Total { volume: 0, cells: 0, monitor }
+    }
+}
+
+/// The volume and number of all cells.
+///
+/// # Errors
+/// If the volume is too large.
+pub(super) fn total(parts: Vec<Total<'_>>) -> Result<(u128, usize), MixedError> {
+    parts.into_iter().try_fold((0u128, 0), |(volume, cells), part| {
+        let volume = volume.checked_add(part.volume).ok_or(MixedError::TooLarge)?;
+        Ok((volume, cells + part.cells))
+    })
 }
 
 impl Sink for Total<'_> {
@@ -173,15 +187,15 @@ impl<K: Keep> Sink for Cells<'_, K> {
 
 /// Supports as the search takes them: those of low degree first, which keeps the numbers of cells
 /// small, each moved so that the least exponent of each unknown is zero.
-struct Ordered {
-    supports: Vec<Vec<Vec<i64>>>,
+pub(super) struct Ordered {
+    pub(super) supports: Vec<Vec<Vec<i64>>>,
     /// The given number of each.
     order: Vec<usize>,
 }
 
 impl Ordered {
     /// `None` if a support is a single point, which has no edge.
-    fn new(unknowns: usize, supports: &[Vec<Vec<i32>>]) -> Result<Option<Ordered>, MixedError> {
+    pub(super) fn new(unknowns: usize, supports: &[Vec<Vec<i32>>]) -> Result<Option<Ordered>, MixedError> {
         if supports.len() != unknowns || unknowns == 0 {
             return Err(MixedError::NotSquare { supports: supports.len(), unknowns });
         }

@@ -1,5 +1,7 @@
 //! Why there are no mixed cells.
 
+use crate::ranks::RanksError;
+
 /// Integers have grown beyond the limit of their type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Overflow;
@@ -42,6 +44,9 @@ pub enum MixedError {
     /// Mixed cells that had been written to a temporary file could not be read back.
     #[error("mixed cells cannot be read back from a temporary file; look at the folder for such files (TMPDIR)")]
     Storage,
+    /// Other processes cannot take part as they should.
+    #[error(transparent)]
+    Ranks(#[from] RanksError),
     /// The work was cancelled by its [`Monitor`](crate::monitor::Monitor).
     #[error("cancelled before all mixed cells were found")]
     Cancelled,

@@ -12,6 +12,7 @@ use super::space::{AnyCell, Size, Space};
 use super::walk::{Scratch, Step};
 use crate::threads::{self, Scope};
 use poly::simd::{Isa, Kernel};
+use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -42,7 +43,8 @@ enum Pending {
 }
 
 /// A subtree.
-struct Task {
+#[derive(Clone)]
+pub(super) struct Task {
     stage: usize,
     pending: Pending,
     cell: AnyCell,
@@ -50,12 +52,41 @@ struct Task {
 
 /// Cells that a task visits before it hands over what is left: about a millisecond.
 const BUDGET: usize = 1 << 12;
+/// The same where the tree is divided, so that subtrees are of its upper part.
+const SMALL_BUDGET: usize = 1 << 5;
+
+impl Task {
+    /// The whole tree.
+    fn whole(space: &Space) -> Result<Task, Overflow> {
+        let cell =
+            Cell::<i64>::of_simplices(space.supports.len()).and_then(|cell| space.smallest(&cell)).ok_or(Overflow)?;
+        Ok(Task { stage: 0, pending: Pending::Enter, cell })
+    }
+
+    /// Visits so many cells. Returns the subtrees that are left.
+    fn run<S: Sink>(self, isa: Isa, space: &Space, budget: usize, sink: &mut S) -> Result<Vec<Task>, Overflow> {
+        let Task { stage, pending, cell } = self;
+        match cell {
+            AnyCell::Small(cell) => Subtree::run(isa, space, stage, cell, sink, (pending, budget)),
+            AnyCell::Medium(cell) => Subtree::run(isa, space, stage, cell, sink, (pending, budget)),
+            AnyCell::Large(cell) => Subtree::run(isa, space, stage, cell, sink, (pending, budget)),
+        }
+    }
+}
 
 /// Finds all cells. Which sink takes which cell, and in what order, depends on the threads.
 ///
 /// # Errors
 /// If integers exceed all sizes, or the search has been cancelled before its end.
 pub(super) fn search<S: Sink>(space: &Space, sink: impl Fn() -> S + Sync) -> Result<Vec<S>, MixedError> {
+    search_in(space, Task::whole(space)?, sink)
+}
+
+/// [`search`] in a subtree.
+///
+/// # Errors
+/// Those of [`search`].
+pub(super) fn search_in<S: Sink>(space: &Space, task: Task, sink: impl Fn() -> S + Sync) -> Result<Vec<S>, MixedError> {
     let state = State {
         space,
         sink,
@@ -64,10 +95,7 @@ pub(super) fn search<S: Sink>(space: &Space, sink: impl Fn() -> S + Sync) -> Res
         overflow: AtomicBool::new(false),
         cancelled: AtomicBool::new(false),
     };
-    let start =
-        Cell::<i64>::of_simplices(space.supports.len()).and_then(|cell| space.smallest(&cell)).ok_or(Overflow)?;
-    let first = Task { stage: 0, pending: Pending::Enter, cell: start };
-    threads::scope(|scope| state.run(scope, first));
+    threads::scope(|scope| state.run(scope, task));
     if state.overflow.into_inner() {
         return Err(MixedError::TooLarge);
     }
@@ -75,6 +103,25 @@ pub(super) fn search<S: Sink>(space: &Space, sink: impl Fn() -> S + Sync) -> Res
         return Err(MixedError::Cancelled);
     }
     Ok(state.sinks.into_inner().unwrap_or_else(PoisonError::into_inner))
+}
+
+/// Divides the tree into at least so many subtrees, unless it is smaller; cells that are found on the way
+/// go to the sink. It is divided alike wherever this is done.
+///
+/// # Errors
+/// Those of [`search`].
+pub(super) fn divided<S: Sink>(space: &Space, least: usize, sink: &mut S) -> Result<Vec<Task>, MixedError> {
+    let isa = Isa::detect();
+    let mut tasks = VecDeque::from([Task::whole(space)?]);
+    while tasks.len() < least
+        && let Some(task) = tasks.pop_front()
+    {
+        if space.monitor.is_cancelled() {
+            return Err(MixedError::Cancelled);
+        }
+        tasks.extend(task.run(isa, space, SMALL_BUDGET, sink)?);
+    }
+    Ok(tasks.into())
 }
 
 struct State<'a, S, F> {
@@ -103,12 +150,7 @@ impl<S: Sink, F: Fn() -> S + Sync> State<'_, S, F> {
         }
         let idle = self.idle().pop();
         let mut sink = idle.unwrap_or_else(&self.sink);
-        let Task { stage, pending, cell } = task;
-        let handed = match cell {
-            AnyCell::Small(cell) => Subtree::run(self.isa, self.space, stage, pending, cell, &mut sink),
-            AnyCell::Medium(cell) => Subtree::run(self.isa, self.space, stage, pending, cell, &mut sink),
-            AnyCell::Large(cell) => Subtree::run(self.isa, self.space, stage, pending, cell, &mut sink),
-        };
+        let handed = task.run(self.isa, self.space, BUDGET, &mut sink);
         self.idle().push(sink);
         match handed {
             Ok(tasks) => tasks.into_iter().for_each(|task| scope.spawn(move |scope| self.run(scope, task))),
@@ -136,14 +178,15 @@ impl<'a, T: Size> Subtree<'a, T> {
         isa: Isa,
         space: &'a Space,
         stage: usize,
-        pending: Pending,
         cell: Cell<T>,
         sink: &'a mut dyn Take<T>,
+        (pending, budget): (Pending, usize),
     ) -> Result<Vec<Task>, Overflow> {
         let points = T::points(space).ok_or(Overflow)?;
         let scratch = Scratch::new(points);
         let (stack, spare, handed) = (Vec::new(), Vec::new(), Vec::new());
-        isa.run(Search { tree: Subtree { space, points, stage, cell, sink, scratch, stack, spare, handed }, pending })
+        let tree = Subtree { space, points, stage, cell, sink, scratch, stack, spare, handed };
+        isa.run(Search { tree, pending, budget })
     }
 
     /// Hands the current cell over to a task in larger integers.
@@ -238,6 +281,7 @@ impl<'a, T: Size> Subtree<'a, T> {
 struct Search<'a, T> {
     tree: Subtree<'a, T>,
     pending: Pending,
+    budget: usize,
 }
 
 impl<T: Size> Kernel for Search<'_, T> {
@@ -259,7 +303,7 @@ impl<T: Size> Kernel for Search<'_, T> {
                 done
             }
         };
-        let mut budget = BUDGET;
+        let mut budget = self.budget;
         while more && budget > 0 {
             more = tree.step()?;
             budget -= 1;

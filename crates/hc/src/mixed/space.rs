@@ -50,6 +50,7 @@ impl Space {
 }
 
 /// A cell in any size of integers.
+#[derive(Clone)]
 pub(super) enum AnyCell {
     Small(Cell<i32>),
     Medium(Cell<i64>),

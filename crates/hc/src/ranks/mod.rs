@@ -7,7 +7,8 @@
 //! same bits on any number of ranks and threads, whatever arrives first: the end of a path depends on
 //! nothing but its number and the round. [`Targets::on_ranks`](crate::family::Targets::on_ranks) does
 //! this for the targets of a family, [`Family::complete_on_ranks`](crate::Family::complete_on_ranks) for
-//! the loops of monodromy.
+//! the loops of monodromy, [`mixed_volume_on_ranks`](crate::start::mixed_volume_on_ranks) for the subtrees
+//! of the search for mixed cells.
 //!
 //! What carries the messages is an [`Exchange`]. [`Local`] is one between threads; the program `hc`
 //! has one over MPI, behind its feature `mpi`.
