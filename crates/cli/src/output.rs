@@ -14,14 +14,19 @@ use crate::writing::Writing;
 /// # Errors
 /// If the file cannot be written: the message says what to check.
 pub fn write(path: &Path, content: &[u8]) -> Result<(), Failure> {
+    write_by(path, |file| file.write_all(content))
+}
+
+/// Writes a file piece by piece, as [`write()`] does.
+fn write_by(path: &Path, content: impl FnOnce(&mut std::fs::File) -> std::io::Result<()>) -> Result<(), Failure> {
     let _writing = Writing::begin();
     let failed = |error: std::io::Error| unwritable(path, &error);
     // Devices such as /dev/null are written to, not replaced.
     if is_special(path) {
-        return std::fs::write(path, content).map_err(failed);
+        return std::fs::File::create(path).and_then(|mut file| content(&mut file)).map_err(failed);
     }
     let mut file = temporary(path)?;
-    file.write_all(content).and_then(|()| file.as_file().sync_all()).map_err(failed)?;
+    content(file.as_file_mut()).and_then(|()| file.as_file().sync_all()).map_err(failed)?;
     file.persist(path).map_err(|error| failed(error.error))?;
     Ok(())
 }
@@ -104,10 +109,20 @@ pub fn text(path: &Path, text: &str) -> Result<(), Failure> {
 /// # Errors
 /// Those of [`write()`] and [`print()`].
 pub fn json(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
-    let _writing = Writing::begin();
-    let mut json = serde_json::to_string_pretty(value).map_err(Failure::unusable)?;
-    json.push('\n');
-    text(path, &json)
+    if is_standard_output(path) {
+        return print_by(|out| write_json(out, value));
+    }
+    write_by(path, |file| write_json(file, value))?;
+    eprintln!("wrote {}", path.display());
+    Ok(())
+}
+
+/// Piece by piece: the matrices of a large network would fill the memory as text.
+fn write_json(to: impl Write, value: &impl Serialize) -> std::io::Result<()> {
+    let mut to = std::io::BufWriter::new(to);
+    serde_json::to_writer_pretty(&mut to, value)?;
+    to.write_all(b"\n")?;
+    to.flush()
 }
 
 /// Prints a summary, unless the JSON is asked for on standard output instead.
@@ -123,9 +138,14 @@ pub fn summary(json: Option<&Path>, text: impl FnOnce() -> String) -> Result<(),
 /// # Errors
 /// If standard output cannot be written for another reason.
 pub fn print(text: &str) -> Result<(), Failure> {
+    print_by(|out| out.write_all(text.as_bytes()))
+}
+
+/// Prints piece by piece.
+fn print_by(content: impl FnOnce(&mut std::io::StdoutLock<'_>) -> std::io::Result<()>) -> Result<(), Failure> {
     let _writing = Writing::begin();
     let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    match content(&mut out).and_then(|()| out.flush()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
             Err(Failure::Unusable(format!("standard output cannot be written ({error})")))
         }

@@ -183,7 +183,7 @@ impl Case {
             .collect();
         let simulation = self.simulation(trial.seed);
         let costs = [
-            found.residuals.iter().flatten().flatten().copied().collect(),
+            found.residuals.values().iter().map(|residual| residual.length).collect(),
             simulation.network.residuals(&simulation.pseudoranges),
         ]
         .map(|residuals: Vec<f64>| residuals.iter().map(|e| (0.5 * (e / NOISE).powi(2)).min(15.0)).sum::<f64>());

@@ -80,7 +80,7 @@ pub(crate) fn read<'py>(
         let (m, n) = (measured.receivers(), measured.transmitters());
         let sigma = |k: usize| measured.sigma(k / n, k % n).unwrap_or(f64::NAN);
         let found = PyDict::new(py);
-        found.set_item("values", array(py, measured.values().to_vec(), &[m, n])?)?;
+        found.set_item("values", array(py, measured.dense(), &[m, n])?)?;
         let sigmas = measured.has_sigmas().then(|| array(py, (0..m * n).map(sigma).collect(), &[m, n])).transpose()?;
         found.set_item("sigmas", sigmas)?;
         found.set_item("receiver_names", measured.receivers_named().then(|| measured.receiver_names()))?;

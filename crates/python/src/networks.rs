@@ -169,7 +169,7 @@ pub(crate) fn simulate(py: Python<'_>, wanted: Wanted) -> PyResult<Bound<'_, PyD
         let (m, n) = (options.receivers, options.transmitters);
         let result = PyDict::new(py);
         let flat = |points: &[[f64; 2]]| points.iter().flatten().copied().collect();
-        result.set_item("pseudoranges", array(py, made.pseudoranges.values().to_vec(), &[m, n])?)?;
+        result.set_item("pseudoranges", array(py, made.pseudoranges.dense(), &[m, n])?)?;
         result.set_item("receivers", array(py, flat(&made.network.receivers), &[m, 2])?)?;
         result.set_item("transmitters", array(py, flat(&made.network.transmitters), &[n, 2])?)?;
         result.set_item("offsets", array(py, made.network.offsets, &[n])?)?;

@@ -140,7 +140,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         "{} with {} of {} cells measured, written to {}\n",
         measured.configuration(),
         measured.observed(),
-        measured.values().len(),
+        measured.receivers() * measured.transmitters(),
         directory.display()
     );
     if !outliers.is_empty() {

@@ -61,17 +61,12 @@ pub(crate) fn text(calibration: &Calibration, context: &Context) -> String {
 }
 
 fn outliers(calibration: &Calibration) -> Vec<String> {
-    let mut all = Vec::new();
-    for (i, (residuals, inliers)) in calibration.residuals.iter().zip(&calibration.inliers).enumerate() {
-        for (j, (residual, inlier)) in residuals.iter().zip(inliers).enumerate() {
-            if let Some(residual) = residual.filter(|_| !inlier) {
-                let (receiver, transmitter) = (&calibration.receiver_names[i], &calibration.transmitter_names[j]);
-                let sign = if residual > 0.0 { "+" } else { "" };
-                all.push(format!("{receiver}-{transmitter} ({sign}{})", length(residual)));
-            }
-        }
-    }
-    all
+    let name = |(i, j, residual): (usize, usize, f64)| {
+        let (receiver, transmitter) = (&calibration.receiver_names[i], &calibration.transmitter_names[j]);
+        let sign = if residual > 0.0 { "+" } else { "" };
+        format!("{receiver}-{transmitter} ({sign}{})", length(residual))
+    };
+    calibration.residuals.outliers().map(name).collect()
 }
 
 /// A node, without the end of its line.

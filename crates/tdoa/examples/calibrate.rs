@@ -24,8 +24,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for warning in &network.warnings {
         println!("warning: {warning}");
     }
-    let found = network.inliers.iter().flatten().zip(network.residuals.iter().flatten());
-    let called = found.filter(|(inlier, residual)| residual.is_some() && !**inlier).count();
+    let called = network.residuals.outliers().count();
     println!("{called} measurements called outliers, {} are", simulation.outliers.iter().filter(|&&o| o).count());
 
     if let Some(file) = std::env::args_os().nth(1) {

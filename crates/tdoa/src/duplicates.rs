@@ -83,7 +83,7 @@ fn levels(measured: &Pseudoranges, values: &[f64]) -> f64 {
 /// The step of which all differences between measurements are multiples, if there is one that is not
 /// smaller than a billionth of what they differ by.
 pub(crate) fn step(measured: &Pseudoranges) -> Option<f64> {
-    let mut all: Vec<f64> = measured.values().iter().copied().filter(|value| !value.is_nan()).collect();
+    let mut all: Vec<f64> = measured.cells().values().to_vec();
     all.sort_by(f64::total_cmp);
     let range = all.last().zip(all.first()).map_or(0.0, |(most, least)| most - least);
     let gaps = all.windows(2).map(|pair| pair[1] - pair[0]).filter(|gap| *gap > 1e-9 * range);
@@ -104,8 +104,7 @@ mod tests {
         let (rows, columns): (Vec<usize>, Vec<usize>) = ((0..6).collect(), (0..8).collect());
         assert_eq!(copied_transmitters(&measured, &rows, &columns), None);
         let copied = |resolution: f64| {
-            let mut values: Vec<f64> =
-                measured.values().iter().map(|f| (f / resolution).round() * resolution).collect();
+            let mut values: Vec<f64> = measured.dense().iter().map(|f| (f / resolution).round() * resolution).collect();
             for i in 0..6 {
                 values[8 * i + 5] = values[8 * i + 2] + 3.0;
             }

@@ -82,10 +82,9 @@ pub fn html(calibration: &Calibration) -> String {
 
 /// What the summary says, as a list of terms and values.
 fn facts(calibration: &Calibration) -> String {
-    let measured = calibration.residuals.iter().flatten().flatten().count();
-    let inliers = calibration.inliers.iter().flatten().filter(|&&inlier| inlier).count();
+    let (measured, outliers) = (calibration.residuals.len(), calibration.residuals.outliers().count());
     let mut list = vec![
-        ("Measurements", format!("{measured}, outliers among them: {}", measured - inliers)),
+        ("Measurements", format!("{measured}, outliers among them: {outliers}")),
         ("Noise", deviation(calibration)),
         ("Residuals of inliers", format!("{} root mean square", length(calibration.residual_rms))),
         ("Size", calibration.extent().map_or_else(String::new, |size| format!("{} across", length(size)))),
@@ -187,12 +186,8 @@ fn transmitters(calibration: &Calibration) -> Vec<Vec<String>> {
 
 /// One row a measurement in the order of the matrix, and how many were left out.
 fn measurements(calibration: &Calibration) -> (Vec<Vec<String>>, usize) {
-    let mut all: Vec<(usize, usize, f64, bool)> = Vec::new();
-    for (i, (residuals, inliers)) in calibration.residuals.iter().zip(&calibration.inliers).enumerate() {
-        for (j, (residual, inlier)) in residuals.iter().zip(inliers).enumerate() {
-            all.extend(residual.map(|e| (i, j, e, !inlier)));
-        }
-    }
+    let mut all: Vec<(usize, usize, f64, bool)> =
+        calibration.residuals.iter().map(|(i, j, residual)| (i, j, residual.length, !residual.inlier)).collect();
     let left_out = all.len().saturating_sub(LISTED);
     if left_out > 0 {
         all.sort_by(|a, b| b.3.cmp(&a.3).then(b.2.abs().total_cmp(&a.2.abs())));
@@ -247,11 +242,10 @@ mod tests {
     fn lists_everything_and_escapes_it() {
         let calibration = calibration();
         let page = html(&calibration);
-        let measured = calibration.residuals.iter().flatten().flatten().count();
-        let inliers = calibration.inliers.iter().flatten().filter(|&&inlier| inlier).count();
+        let (measured, outliers) = (calibration.residuals.len(), calibration.residuals.outliers().count());
         // A heading and its rows for each of the three tables.
         assert_eq!(page.matches("<tr").count(), 3 + 8 + 12 + measured);
-        assert_eq!(page.matches("<tr class=\"outlier\"").count(), measured - inliers);
+        assert_eq!(page.matches("<tr class=\"outlier\"").count(), outliers);
         assert!(page.contains("<td class=\"text\">r&lt;b&gt;7&amp;&quot;</td>"));
         assert!(!page.contains("<b>") && page.matches("<script").count() == 1);
         // Nothing is fetched: the only address is the name of SVG.

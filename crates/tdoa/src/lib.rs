@@ -28,12 +28,12 @@
 //! let mut options = SimulateOptions::default();
 //! options.noise = 0.01;
 //! let simulation = simulate(&options)?;
-//! let mut table = simulation.pseudoranges.values().to_vec();
+//! let mut table = simulation.pseudoranges.dense();
 //! table[17] += 3.0;
 //! let measured = Pseudoranges::new(8, 12, table)?;
 //!
 //! let network = calibrate(&measured, &CalibrateOptions::default())?;
-//! assert!(network.unique && !network.inliers[1][5]);
+//! assert!(network.unique && !network.is_inlier(1, 5));
 //! for (name, position) in network.receiver_names.iter().zip(&network.receivers) {
 //!     println!("{name}: {position:?}");
 //! }
@@ -48,6 +48,7 @@
 pub mod accuracy;
 pub mod align;
 pub mod calibrate;
+mod cells;
 pub mod degeneracy;
 mod duplicates;
 mod generated;
@@ -75,9 +76,10 @@ pub mod summary;
 
 pub use calibrate::{
     Alternative, CalibrateError, CalibrateOptions, Calibration, Errors, Hypotheses, KnownDistance, MeasuredPosition,
-    MovedPlace, ReceiverDelays, ReceiverError, ReceiverErrorKind, SpeedEstimate, Truth, Unfinished, calibrate,
-    calibrate_with,
+    MovedPlace, ReceiverDelays, ReceiverError, ReceiverErrorKind, Residual, Residuals, SpeedEstimate, Truth,
+    Unfinished, calibrate, calibrate_with,
 };
+pub use cells::Cells;
 pub use hc::{Monitor, Progress};
 pub use minimal::{Candidate, MinimalSolution, PathCounts, RootCounts};
 pub use network::Network;

@@ -41,12 +41,12 @@ impl Network {
     /// If the network and the measurements differ in size.
     pub fn residuals(&self, measured: &Pseudoranges) -> Vec<f64> {
         self.check_size(measured);
-        self.each_residual(measured).collect()
-    }
-
-    fn each_residual(&self, measured: &Pseudoranges) -> impl Iterator<Item = f64> {
         let n = self.transmitters.len();
-        measured.values().iter().enumerate().map(move |(k, f)| f - self.pseudorange(k / n, k % n))
+        let mut all = vec![f64::NAN; self.receivers.len() * n];
+        for (i, j, f) in measured.cells().iter() {
+            all[i * n + j] = f - self.pseudorange(i, j);
+        }
+        all
     }
 
     /// Root mean square of the unsquared residuals over the measured cells, in metres; 0 if nothing
@@ -56,14 +56,9 @@ impl Network {
     /// If the network and the measurements differ in size.
     pub fn rms(&self, measured: &Pseudoranges) -> f64 {
         self.check_size(measured);
-        let (mut sum, mut count) = (0.0, 0usize);
-        for residual in self.each_residual(measured) {
-            if !residual.is_nan() {
-                sum += residual * residual;
-                count += 1;
-            }
-        }
-        if count == 0 { 0.0 } else { (sum / count as f64).sqrt() }
+        let squares = measured.cells().iter().map(|(i, j, f)| (f - self.pseudorange(i, j)).powi(2));
+        let sum: f64 = squares.sum();
+        if measured.observed() == 0 { 0.0 } else { (sum / measured.observed() as f64).sqrt() }
     }
 
     /// Whether every measured f_ij - o_j, which is a distance, is at least `-tolerance` (metres).
@@ -73,12 +68,7 @@ impl Network {
     /// If the network and the measurements differ in size.
     pub fn is_physical(&self, measured: &Pseudoranges, tolerance: f64) -> bool {
         self.check_size(measured);
-        let n = self.transmitters.len();
-        // A missing cell is NaN and passes.
-        measured.values().iter().enumerate().all(|(k, f)| {
-            let distance = f - self.offsets[k % n];
-            distance.is_nan() || distance >= -tolerance
-        })
+        measured.cells().iter().all(|(_, j, f)| f - self.offsets[j] >= -tolerance)
     }
 
     /// Whether every number of the network is finite.

@@ -63,19 +63,16 @@ pub(crate) struct Observations {
 impl Observations {
     /// The measured cells for which `keep(receiver, transmitter)` holds.
     pub(crate) fn new(measured: &Pseudoranges, keep: impl Fn(usize, usize) -> bool) -> Self {
-        let (m, n) = (measured.receivers(), measured.transmitters());
-        let mut entries = Vec::with_capacity(measured.observed());
-        let mut columns = vec![0];
-        for j in 0..n {
-            for i in 0..m {
-                if let Some(value) = measured.get(i, j).filter(|_| keep(i, j)) {
-                    let precision = measured.sigma(i, j).map_or(1.0, |sigma| 1.0 / sigma);
-                    entries.push(Observation { receiver: i, transmitter: j, value, precision });
-                }
-            }
-            columns.push(entries.len());
-        }
-        Observations::of(m, entries, columns)
+        let observe = |(i, j, value): (usize, usize, &f64)| {
+            let precision = measured.sigma(i, j).map_or(1.0, |sigma| 1.0 / sigma);
+            keep(i, j).then_some(Observation { receiver: i, transmitter: j, value: *value, precision })
+        };
+        let mut entries: Vec<Observation> = measured.cells().iter().filter_map(observe).collect();
+        // Stable: those of a transmitter stay in the order of the receivers.
+        entries.sort_by_key(|o| o.transmitter);
+        let first = |j: usize| entries.partition_point(|o| o.transmitter < j);
+        let columns = (0..=measured.transmitters()).map(first).collect();
+        Observations::of(measured.receivers(), entries, columns)
     }
 
     /// Measurements in the order of the transmitters, of which `columns` holds the first of each

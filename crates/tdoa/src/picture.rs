@@ -120,16 +120,13 @@ fn ellipse(canvas: &mut Canvas, map: &Map, at: [f64; 2], covariance: Option<[[f6
 
 fn outliers(canvas: &mut Canvas, calibration: &Calibration, map: &Map) {
     let mut drawn = 0;
-    for (i, (residuals, inliers)) in calibration.residuals.iter().zip(&calibration.inliers).enumerate() {
-        for (j, (residual, inlier)) in residuals.iter().zip(inliers).enumerate() {
-            let ends = (calibration.receivers[i], calibration.transmitters[j]);
-            if let (Some(r), Some(s), true) = (ends.0, ends.1, residual.is_some() && !inlier)
-                && map.shows(s)
-                && drawn < OUTLIERS
-            {
-                canvas.line(map.to(r), map.to(s), "#CC79A7", 1.0, "5 3");
-                drawn += 1;
-            }
+    for (i, j, _) in calibration.residuals.outliers() {
+        if let (Some(r), Some(s)) = (calibration.receivers[i], calibration.transmitters[j])
+            && map.shows(s)
+            && drawn < OUTLIERS
+        {
+            canvas.line(map.to(r), map.to(s), "#CC79A7", 1.0, "5 3");
+            drawn += 1;
         }
     }
 }
@@ -182,9 +179,7 @@ fn legend(canvas: &mut Canvas, calibration: &Calibration, magnified: f64, outsid
     canvas.triangle([at[0], h], 6.0, "#0072B2");
     let h = row(canvas, &format!("transmitter, with 95 % ellipse{times}"));
     canvas.circle([at[0], h], 3.0, "#D55E00");
-    let cells = || calibration.residuals.iter().flatten().zip(calibration.inliers.iter().flatten());
-    let measured = cells().filter(|(residual, _)| residual.is_some()).count();
-    let outlying = cells().filter(|(residual, inlier)| residual.is_some() && !**inlier).count();
+    let (measured, outlying) = (calibration.residuals.len(), calibration.residuals.outliers().count());
     let h = row(canvas, &format!("outliers: {outlying} of {measured} measurements"));
     canvas.line([at[0] - 10.0, h], [at[0] + 12.0, h], "#CC79A7", 1.0, "5 3");
     if calibration.truth.is_some() {

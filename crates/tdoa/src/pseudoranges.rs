@@ -1,9 +1,10 @@
 //! The measurement matrix.
 
-use std::sync::Arc;
+use crate::cells::Cells;
 use thiserror::Error;
 
-/// Largest number of cells (receivers times transmitters) of a matrix: 24 million, 192 MB of values.
+/// Largest number of cells (receivers times transmitters) of a matrix: 24 million. Memory goes by
+/// those that were measured.
 pub const MAX_CELLS: usize = 24_000_000;
 
 /// Largest magnitude of a value, in metres. Above it a double cannot resolve a tenth of a
@@ -71,6 +72,24 @@ pub enum PseudorangeError {
         /// The value.
         value: f64,
     },
+    /// A cell beyond the last receiver or transmitter.
+    #[error("receiver {receiver}, transmitter {transmitter}: there are only {configuration}")]
+    Outside {
+        /// Number of the receiver, from 1.
+        receiver: usize,
+        /// Number of the transmitter, from 1.
+        transmitter: usize,
+        /// The size of the matrix, such as `6r/3s`.
+        configuration: String,
+    },
+    /// Two values for one cell.
+    #[error("receiver {receiver}, transmitter {transmitter} is there twice; keep one measurement of each pair")]
+    Twice {
+        /// Number of the receiver, from 1.
+        receiver: usize,
+        /// Number of the transmitter, from 1.
+        transmitter: usize,
+    },
     /// Two receivers, or two transmitters, with the same name.
     #[error("two {kind}s are named {name:?}; names must differ")]
     DuplicateName {
@@ -94,11 +113,9 @@ pub enum PseudorangeError {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Pseudoranges {
-    receivers: usize,
-    transmitters: usize,
-    // Shared by copies: in a large network they are nearly all of the memory.
-    values: Arc<Vec<f64>>,
-    sigmas: Option<Arc<Vec<f64>>>,
+    cells: Cells<f64>,
+    /// Of the same cells.
+    sigmas: Option<Cells<f64>>,
     receiver_names: Vec<String>,
     transmitter_names: Vec<String>,
     /// Whether the receivers' names were given, not counted.
@@ -112,36 +129,61 @@ impl Pseudoranges {
     /// # Errors
     /// An empty or too large matrix, a wrong number of values, an infinite or huge value.
     pub fn new(receivers: usize, transmitters: usize, values: Vec<f64>) -> Result<Self, PseudorangeError> {
-        if receivers == 0 || transmitters == 0 {
-            return Err(PseudorangeError::Empty { receivers, transmitters });
-        }
-        let cells = receivers
-            .checked_mul(transmitters)
-            .filter(|&cells| cells <= MAX_CELLS)
-            .ok_or(PseudorangeError::TooLarge { receivers, transmitters })?;
-        check_count("values", "cell", cells, values.len())?;
-        let matrix = Pseudoranges {
-            receivers,
-            transmitters,
-            values: Arc::new(values),
-            sigmas: None,
-            receiver_names: (1..=receivers).map(|i| format!("r{i}")).collect(),
-            transmitter_names: (1..=transmitters).map(|j| format!("s{j}")).collect(),
-            receivers_named: false,
-        };
-        matrix.check_values()?;
-        Ok(matrix)
+        check_count("values", "cell", check_size(receivers, transmitters)?, values.len())?;
+        let cells = values.iter().enumerate().filter(|(_, value)| !value.is_nan());
+        let cells = cells.map(|(k, value)| (k / transmitters, k % transmitters, *value));
+        Self::of(Cells::new(receivers, transmitters, cells))
     }
 
-    fn check_values(&self) -> Result<(), PseudorangeError> {
-        match self.values.iter().position(|v| v.is_infinite() || v.abs() > MAX_MAGNITUDE) {
-            None => Ok(()),
-            Some(k) => Err(PseudorangeError::Unusable {
-                receiver: self.receiver_names[k / self.transmitters].clone(),
-                transmitter: self.transmitter_names[k % self.transmitters].clone(),
-                value: self.values[k],
-            }),
+    /// A matrix of which these cells were measured: receiver, transmitter (both from 0) and value in
+    /// metres, in any order; one that is NaN is missing. Memory is proportional to their number.
+    ///
+    /// # Errors
+    /// An empty or too large matrix, a cell outside or given twice, an infinite or huge value.
+    pub fn from_cells(
+        receivers: usize,
+        transmitters: usize,
+        cells: impl IntoIterator<Item = (usize, usize, f64)>,
+    ) -> Result<Self, PseudorangeError> {
+        check_size(receivers, transmitters)?;
+        let mut all: Vec<(usize, usize, f64)> = Vec::new();
+        for (i, j, value) in cells {
+            if i >= receivers || j >= transmitters {
+                let configuration = configuration(receivers, transmitters);
+                return Err(PseudorangeError::Outside {
+                    receiver: i.saturating_add(1),
+                    transmitter: j.saturating_add(1),
+                    configuration,
+                });
+            }
+            if !value.is_nan() {
+                all.push((i, j, value));
+            }
         }
+        all.sort_unstable_by_key(|cell| (cell.0, cell.1));
+        if let Some(pair) = all.windows(2).find(|pair| (pair[0].0, pair[0].1) == (pair[1].0, pair[1].1)) {
+            return Err(PseudorangeError::Twice { receiver: pair[0].0 + 1, transmitter: pair[0].1 + 1 });
+        }
+        Self::of(Cells::new(receivers, transmitters, all))
+    }
+
+    fn of(cells: Cells<f64>) -> Result<Self, PseudorangeError> {
+        let matrix = Pseudoranges {
+            receiver_names: (1..=cells.rows()).map(|i| format!("r{i}")).collect(),
+            transmitter_names: (1..=cells.columns()).map(|j| format!("s{j}")).collect(),
+            receivers_named: false,
+            sigmas: None,
+            cells,
+        };
+        let unusable = matrix.cells.iter().find(|(.., v)| v.is_infinite() || v.abs() > MAX_MAGNITUDE);
+        if let Some((i, j, &value)) = unusable {
+            return Err(PseudorangeError::Unusable {
+                receiver: matrix.receiver_names[i].clone(),
+                transmitter: matrix.transmitter_names[j].clone(),
+                value,
+            });
+        }
+        Ok(matrix)
     }
 
     /// The matrix with these names of receivers and transmitters.
@@ -157,7 +199,7 @@ impl Pseudoranges {
     /// # Errors
     /// A wrong number of names, or a name given twice.
     pub fn with_receiver_names(mut self, names: Vec<String>) -> Result<Self, PseudorangeError> {
-        check_names("receiver", self.receivers, &names)?;
+        check_names("receiver", self.receivers(), &names)?;
         self.receiver_names = names;
         self.receivers_named = true;
         Ok(self)
@@ -168,7 +210,7 @@ impl Pseudoranges {
     /// # Errors
     /// A wrong number of names, or a name given twice.
     pub fn with_transmitter_names(mut self, names: Vec<String>) -> Result<Self, PseudorangeError> {
-        check_names("transmitter", self.transmitters, &names)?;
+        check_names("transmitter", self.transmitters(), &names)?;
         self.transmitter_names = names;
         Ok(self)
     }
@@ -178,44 +220,49 @@ impl Pseudoranges {
     ///
     /// # Errors
     /// A wrong number of them, or one that is not positive and finite.
-    pub fn with_sigmas(mut self, sigmas: Vec<f64>) -> Result<Self, PseudorangeError> {
-        check_count("standard deviations", "cell", self.values.len(), sigmas.len())?;
-        let good = |k: usize| self.values[k].is_nan() || (sigmas[k].is_finite() && sigmas[k] > 0.0);
-        if let Some(k) = (0..sigmas.len()).find(|&k| !good(k)) {
+    pub fn with_sigmas(self, sigmas: Vec<f64>) -> Result<Self, PseudorangeError> {
+        let n = self.transmitters();
+        check_count("standard deviations", "cell", self.receivers() * n, sigmas.len())?;
+        self.with_sigma_of(|i, j| sigmas[i * n + j])
+    }
+
+    /// This matrix with a standard deviation (metres) for each measured cell, by receiver and
+    /// transmitter.
+    ///
+    /// # Errors
+    /// One that is not positive and finite.
+    pub fn with_sigma_of(mut self, sigma: impl Fn(usize, usize) -> f64) -> Result<Self, PseudorangeError> {
+        let sigmas = self.cells.map(|i, j, _| sigma(i, j));
+        if let Some((i, j, &value)) = sigmas.iter().find(|(.., sigma)| !(sigma.is_finite() && **sigma > 0.0)) {
             return Err(PseudorangeError::Sigma {
-                receiver: self.receiver_names[k / self.transmitters].clone(),
-                transmitter: self.transmitter_names[k % self.transmitters].clone(),
-                value: sigmas[k],
+                receiver: self.receiver_names[i].clone(),
+                transmitter: self.transmitter_names[j].clone(),
+                value,
             });
         }
-        self.sigmas = Some(Arc::new(sigmas));
+        self.sigmas = Some(sigmas);
         Ok(self)
     }
 
     /// Number of receivers (rows).
     pub fn receivers(&self) -> usize {
-        self.receivers
+        self.cells.rows()
     }
 
     /// Number of transmitters (columns).
     pub fn transmitters(&self) -> usize {
-        self.transmitters
+        self.cells.columns()
     }
 
     /// The pseudorange of receiver `i` and transmitter `j` in metres, `None` where it is missing or
     /// out of range.
     pub fn get(&self, i: usize, j: usize) -> Option<f64> {
-        if i >= self.receivers || j >= self.transmitters {
-            return None;
-        }
-        let value = self.values[i * self.transmitters + j];
-        if value.is_nan() { None } else { Some(value) }
+        self.cells.get(i, j).copied()
     }
 
     /// The standard deviation (metres) given for a cell, `None` where there is none.
     pub fn sigma(&self, i: usize, j: usize) -> Option<f64> {
-        self.get(i, j)?;
-        self.sigmas.as_ref().map(|sigmas| sigmas[i * self.transmitters + j])
+        self.sigmas.as_ref()?.get(i, j).copied()
     }
 
     /// Whether the cells carry their own standard deviations.
@@ -223,14 +270,24 @@ impl Pseudoranges {
         self.sigmas.is_some()
     }
 
-    /// The values row by row, NaN where missing.
-    pub fn values(&self) -> &[f64] {
-        &self.values
+    /// The measured cells.
+    pub fn cells(&self) -> &Cells<f64> {
+        &self.cells
+    }
+
+    /// All values row by row, NaN where missing: a copy of receivers times transmitters numbers.
+    pub fn dense(&self) -> Vec<f64> {
+        let n = self.transmitters();
+        let mut all = vec![f64::NAN; self.receivers() * n];
+        for (i, j, value) in self.cells.iter() {
+            all[i * n + j] = *value;
+        }
+        all
     }
 
     /// Number of measured cells.
     pub fn observed(&self) -> usize {
-        self.values.iter().filter(|v| !v.is_nan()).count()
+        self.cells.len()
     }
 
     /// Names of the receivers.
@@ -250,20 +307,19 @@ impl Pseudoranges {
 
     /// The size as the literature writes it, such as `6r/3s`.
     pub fn configuration(&self) -> String {
-        format!("{}r/{}s", self.receivers, self.transmitters)
+        configuration(self.receivers(), self.transmitters())
     }
 
-    /// This matrix with a number subtracted from each column, as if the transmitters' clocks were
-    /// set differently.
-    pub(crate) fn shifted(&self, shifts: &[f64]) -> Pseudoranges {
-        let n = self.transmitters;
-        let values = self.values.iter().enumerate().map(|(k, value)| value - shifts[k % n]).collect();
-        self.with_values(values)
+    /// This matrix with other values in the same cells, usable ones, by receiver, transmitter and value.
+    pub(crate) fn map(&self, value: impl FnMut(usize, usize, &f64) -> f64) -> Pseudoranges {
+        Pseudoranges { cells: self.cells.map(value), ..self.clone() }
     }
 
-    /// This matrix with other values, as many as before, usable ones, and all missing that were.
-    pub(crate) fn with_values(&self, values: Vec<f64>) -> Pseudoranges {
-        Pseudoranges { values: Arc::new(values), ..self.clone() }
+    /// This matrix without the cells for which `keep` does not hold, by receiver, transmitter and value.
+    pub(crate) fn filter(&self, mut keep: impl FnMut(usize, usize, f64) -> bool) -> Pseudoranges {
+        let cells = self.cells.filter(|i, j, value| keep(i, j, *value));
+        let sigmas = self.sigmas.as_ref().map(|sigmas| sigmas.filter(|i, j, _| cells.get(i, j).is_some()));
+        Pseudoranges { cells, sigmas, ..self.clone() }
     }
 
     /// The matrix of these receivers and transmitters, in this order, with their names and standard
@@ -272,26 +328,31 @@ impl Pseudoranges {
     /// # Panics
     /// If an index is out of range.
     pub fn select(&self, receivers: &[usize], transmitters: &[usize]) -> Pseudoranges {
-        if receivers.iter().copied().eq(0..self.receivers) && transmitters.iter().copied().eq(0..self.transmitters) {
+        let (m, n) = (self.receivers(), self.transmitters());
+        if receivers.iter().copied().eq(0..m) && transmitters.iter().copied().eq(0..n) {
             return self.clone();
         }
-        let pick = |all: &[f64]| -> Arc<Vec<f64>> {
-            let picked = receivers
-                .iter()
-                .flat_map(|&i| transmitters.iter().map(move |&j| (i, j)))
-                .map(|(i, j)| all[i * self.transmitters + j]);
-            Arc::new(picked.collect())
-        };
         Pseudoranges {
-            receivers: receivers.len(),
-            transmitters: transmitters.len(),
-            values: pick(&self.values),
-            sigmas: self.sigmas.as_deref().map(|sigmas| pick(sigmas)),
             receiver_names: receivers.iter().map(|&i| self.receiver_names[i].clone()).collect(),
             transmitter_names: transmitters.iter().map(|&j| self.transmitter_names[j].clone()).collect(),
             receivers_named: self.receivers_named,
+            cells: self.cells.select(receivers, transmitters),
+            sigmas: self.sigmas.as_ref().map(|sigmas| sigmas.select(receivers, transmitters)),
         }
     }
+}
+
+fn configuration(receivers: usize, transmitters: usize) -> String {
+    format!("{receivers}r/{transmitters}s")
+}
+
+/// The number of cells of a matrix.
+fn check_size(receivers: usize, transmitters: usize) -> Result<usize, PseudorangeError> {
+    if receivers == 0 || transmitters == 0 {
+        return Err(PseudorangeError::Empty { receivers, transmitters });
+    }
+    let cells = receivers.checked_mul(transmitters).filter(|&cells| cells <= MAX_CELLS);
+    cells.ok_or(PseudorangeError::TooLarge { receivers, transmitters })
 }
 
 fn check_count(what: &'static str, per: &'static str, expected: usize, found: usize) -> Result<(), PseudorangeError> {
@@ -334,6 +395,10 @@ mod tests {
         }
         let f = Pseudoranges::new(1, 2, vec![0.0, 1.0]).unwrap();
         assert!(matches!(f.clone().with_sigmas(vec![1.0, 0.0]), Err(PseudorangeError::Sigma { .. })));
+        let twice = Pseudoranges::from_cells(2, 2, [(1, 0, 1.0), (0, 1, 2.0), (1, 0, f64::NAN), (1, 0, 3.0)]);
+        assert_eq!(twice.unwrap_err(), PseudorangeError::Twice { receiver: 2, transmitter: 1 });
+        let outside = Pseudoranges::from_cells(2, 2, [(0, 2, 1.0)]).unwrap_err();
+        assert_eq!(outside.to_string(), "receiver 1, transmitter 3: there are only 2r/2s");
         let twice = f.with_names(vec!["a".into()], vec!["b".into(), "b".into()]);
         assert!(matches!(twice, Err(PseudorangeError::DuplicateName { kind: "transmitter", .. })));
     }

@@ -366,9 +366,9 @@ mod tests {
     fn same_seed_same_network() {
         let mut options = SimulateOptions { noise: 0.1, layout: Layout::Normal, ..Default::default() };
         let first = simulate(&options).unwrap();
-        assert_eq!(first.pseudoranges.values(), simulate(&options).unwrap().pseudoranges.values());
+        assert_eq!(first.pseudoranges.dense(), simulate(&options).unwrap().pseudoranges.dense());
         options.seed = 1;
-        assert_ne!(first.pseudoranges.values(), simulate(&options).unwrap().pseudoranges.values());
+        assert_ne!(first.pseudoranges.dense(), simulate(&options).unwrap().pseudoranges.dense());
     }
 
     #[test]

@@ -10,12 +10,10 @@ const SMALL: f64 = 0.2;
 
 /// What was found, a line for each thing; how long it took, if that is known.
 pub fn heading(calibration: &Calibration, time: Option<Duration>) -> String {
-    let measured = calibration.residuals.iter().flatten().flatten().count();
-    let inliers = calibration.inliers.iter().flatten().filter(|&&inlier| inlier).count();
+    let (measured, outliers) = (calibration.residuals.len(), calibration.residuals.outliers().count());
     let mut text = format!(
-        "{}: {measured} measurements, {} of them outliers, {}\n",
+        "{}: {measured} measurements, {outliers} of them outliers, {}\n",
         calibration.configuration,
-        measured - inliers,
         deviation(calibration),
     );
     if let Some(extent) = calibration.extent() {
@@ -132,7 +130,7 @@ mod tests {
     #[test]
     fn times_without_a_speed_are_doubted() {
         let simulation = simulate(&SimulateOptions { noise: 0.01, ..Default::default() }).unwrap();
-        let values: Vec<f64> = simulation.pseudoranges.values().iter().map(|f| f / 343.0).collect();
+        let values: Vec<f64> = simulation.pseudoranges.dense().iter().map(|f| f / 343.0).collect();
         let times = Pseudoranges::new(8, 12, values).unwrap();
         let found = calibrate(&times, &CalibrateOptions::default()).unwrap();
         let doubt = doubt_of_units(&found).unwrap();

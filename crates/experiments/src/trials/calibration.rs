@@ -172,7 +172,7 @@ pub fn damage(
 ) -> Result<Pseudoranges, PseudorangeError> {
     let mut rng = Pcg64Mcg::seed_from_u64(seed);
     let (m, n) = (measured.receivers(), measured.transmitters());
-    let mut values = measured.values().to_vec();
+    let mut values = measured.dense();
     let ranges: Vec<(f64, f64)> = (0..n)
         .map(|j| {
             let column = (0..m).filter_map(|i| measured.get(i, j));

@@ -2,6 +2,7 @@
 
 use super::known::{Anchors, SpeedEstimate};
 use super::receiver_errors::ReceiverError;
+use super::residuals::{Residual, Residuals};
 use super::truth::Truth;
 use crate::align::{Transform, align};
 use crate::plane::distance;
@@ -25,10 +26,9 @@ pub struct Calibration {
     pub transmitters: Vec<Option<[f64; 2]>>,
     /// Offsets of the transmitters.
     pub offsets: Vec<Option<f64>>,
-    /// Which measurements agree with the network; false where there is none.
-    pub inliers: Vec<Vec<bool>>,
-    /// Residuals f_ij - o_j - |r_i - s_j|, where measured.
-    pub residuals: Vec<Vec<Option<f64>>>,
+    /// The residuals of the measurements, and which of these agree with the network.
+    #[serde(flatten)]
+    pub residuals: Residuals,
     /// Standard deviation of the measurements: as given, or estimated from the inliers. A factor on
     /// the deviations that measurements carry, if they do.
     pub sigma: f64,
@@ -104,6 +104,10 @@ pub struct Calibration {
     pub truth: Option<Truth>,
 }
 
+fn counts<'a>(residuals: impl Iterator<Item = &'a Residual>) -> [usize; 2] {
+    residuals.fold([0, 0], |[all, outliers], residual| [all + 1, outliers + usize::from(!residual.inlier)])
+}
+
 /// Results that were written before they said so.
 fn agree() -> bool {
     true
@@ -154,17 +158,17 @@ impl Calibration {
 
     /// Measurements of a receiver, and how many of them are outliers.
     pub fn counts_of_receiver(&self, i: usize) -> [usize; 2] {
-        self.counts((0..self.transmitter_names.len()).map(|j| (i, j)))
+        counts(self.residuals.row(i).map(|(_, residual)| residual))
     }
 
     /// Measurements of a transmitter, and how many of them are outliers.
     pub fn counts_of_transmitter(&self, j: usize) -> [usize; 2] {
-        self.counts((0..self.receiver_names.len()).map(|i| (i, j)))
+        counts((0..self.receiver_names.len()).filter_map(|i| self.residuals.get(i, j)))
     }
 
-    fn counts(&self, cells: impl Iterator<Item = (usize, usize)>) -> [usize; 2] {
-        let measured = cells.filter(|&(i, j)| self.residuals[i][j].is_some());
-        measured.fold([0, 0], |[all, outliers], (i, j)| [all + 1, outliers + usize::from(!self.inliers[i][j])])
+    /// Whether receiver `i` measured transmitter `j`, and agrees with the network.
+    pub fn is_inlier(&self, i: usize, j: usize) -> bool {
+        self.residuals.get(i, j).is_some_and(|residual| residual.inlier)
     }
 
     /// Moves the whole result into another frame.
@@ -193,7 +197,7 @@ impl Calibration {
         let map = Transform { rotation: [[1.0, 0.0], [0.0, 1.0]], scale: factor, translation: [0.0; 2] };
         self.transform(&map);
         let lengths = self.offsets.iter_mut().chain(&mut self.offset_std);
-        let lengths = lengths.chain(self.residuals.iter_mut().flatten());
+        self.residuals.0.for_each(|residual| residual.length *= factor);
         for x in lengths.chain(self.alternatives.iter_mut().flat_map(|a| &mut a.offsets)).flatten() {
             *x *= factor;
         }

@@ -43,18 +43,17 @@ pub(super) fn middle_delays(measured: &Pseudoranges) -> Vec<f64> {
 
 /// The measurements without these guesses.
 pub(super) fn without_middle_delays(measured: &Pseudoranges) -> Pseudoranges {
-    let (delays, n) = (middle_delays(measured), measured.transmitters());
-    let values = measured.values().iter().enumerate().map(|(k, value)| value - delays[k / n]).collect();
-    measured.with_values(values)
+    let delays = middle_delays(measured);
+    measured.map(|i, _, value| value - delays[i])
 }
 
 /// The measurements on a grid far finer than any noise: a search is chaotic, so that mere rounding
 /// would make it depend on the size of the delays.
 pub(super) fn on_a_grid(measured: &Pseudoranges) -> Pseudoranges {
-    let largest = measured.values().iter().filter(|value| value.is_finite()).fold(0.0f64, |a, b| a.max(b.abs()));
+    let largest = measured.cells().values().iter().fold(0.0f64, |a, b| a.max(b.abs()));
     let step = (largest.log2().floor() - 30.0).exp2();
     if !step.is_normal() {
         return measured.clone();
     }
-    measured.with_values(measured.values().iter().map(|value| (value / step).round() * step).collect())
+    measured.map(|_, _, value| (value / step).round() * step)
 }

@@ -377,23 +377,22 @@ impl Cleared {
 
 /// The measurements without these errors: the shorter part of a receiver that was moved is missing.
 pub(super) fn without_errors(measured: &Pseudoranges, faults: &[Fault]) -> Pseudoranges {
-    let (m, n) = (measured.receivers(), measured.transmitters());
-    let mut values = measured.values().to_vec();
-    debug_assert_eq!(values.len(), m * n);
+    let n = measured.transmitters();
+    let mut kept = measured.clone();
+    let mut shifts: Vec<Vec<&Fault>> = vec![Vec::new(); measured.receivers()];
     for fault in faults {
-        let row = &mut values[fault.receiver * n..(fault.receiver + 1) * n];
         if fault.kind == ReceiverErrorKind::Move {
-            let count = |part: &[f64]| part.iter().filter(|value| !value.is_nan()).count();
-            let (before, after) = row.split_at_mut(fault.from);
-            let shorter = if count(before) < count(after) { before } else { after };
-            shorter.fill(f64::NAN);
+            let (before, all) = (
+                kept.cells().row(fault.receiver).filter(|(j, _)| *j < fault.from).count(),
+                kept.cells().row(fault.receiver).count(),
+            );
+            let before_is_shorter = before < all - before;
+            kept = kept.filter(|i, j, _| i != fault.receiver || (j < fault.from) != before_is_shorter);
         } else {
-            for (j, value) in row.iter_mut().enumerate() {
-                *value -= fault.size[0] * fault.shape(j, n);
-            }
+            shifts[fault.receiver].push(fault);
         }
     }
-    measured.with_values(values)
+    kept.map(|i, j, value| shifts[i].iter().fold(*value, |value, fault| value - fault.size[0] * fault.shape(j, n)))
 }
 
 /// Errors that are unknowns beside the network; of a move measurements are left out instead.

@@ -192,7 +192,7 @@ mod tests {
             let simulation = simulation(seed);
             let all = &simulation.network.receivers;
             // As if the speed had been taken 4 % too low.
-            let measured = simulation.pseudoranges.values().iter().map(|f| f / 1.04).collect();
+            let measured = simulation.pseudoranges.dense().iter().map(|f| f / 1.04).collect();
             let measured = crate::Pseudoranges::new(9, 12, measured).unwrap();
             let known = |a: usize, b: usize| {
                 let distance = (all[a][0] - all[b][0]).hypot(all[a][1] - all[b][1]);

@@ -18,33 +18,29 @@ const FAR: f64 = 50.0;
 /// cells of a column hold the one number that stands for nothing, the others look impossible, and
 /// cells that hold the number are the ones that go.
 pub(super) fn without_impossible(measured: &Pseudoranges) -> (Cow<'_, Pseudoranges>, Option<String>) {
-    let mut values = measured.values().to_vec();
-    let n = measured.transmitters();
-    let mut gone: Vec<usize> = Vec::new();
+    let mut kept = Cow::Borrowed(measured);
+    let mut gone: Vec<Cell> = Vec::new();
     // Numbers that are impossible in two places stand for nothing in all.
     for _ in 0..2 {
-        let found = far(&values, n);
-        let repeated = |k: &&usize| found.iter().filter(|&&other| values[other] == values[**k]).count() > 1;
-        let sentinels: Vec<f64> = found.iter().filter(repeated).map(|&k| values[k]).collect();
-        let all: Vec<usize> = match sentinels.as_slice() {
-            [] => found,
-            _ => (0..values.len()).filter(|k| found.contains(k) || sentinels.contains(&values[*k])).collect(),
-        };
-        if all.is_empty() {
+        let found = far(&kept);
+        let repeated = |cell: &&Cell| found.iter().filter(|other| other.2 == cell.2).count() > 1;
+        let sentinels: Vec<f64> = found.iter().filter(repeated).map(|cell| cell.2).collect();
+        let is_found = |i, j| found.binary_search_by_key(&(i, j), |cell| (cell.0, cell.1)).is_ok();
+        let is_gone = |i, j, value: f64| is_found(i, j) || sentinels.contains(&value);
+        let before = gone.len();
+        gone.extend(kept.cells().iter().map(|(i, j, f)| (i, j, *f)).filter(|&(i, j, f)| is_gone(i, j, f)));
+        if gone.len() == before {
             break;
         }
-        for &k in &all {
-            values[k] = f64::NAN;
-        }
-        gone.extend(all);
+        kept = Cow::Owned(kept.filter(|i, j, f| !is_gone(i, j, f)));
     }
     if gone.is_empty() {
-        return (Cow::Borrowed(measured), None);
+        return (kept, None);
     }
-    gone.sort_unstable();
-    let name = |&k: &usize| {
-        let (receiver, transmitter) = (&measured.receiver_names()[k / n], &measured.transmitter_names()[k % n]);
-        format!("{receiver}-{transmitter} ({} m)", number(measured.values()[k], 12))
+    gone.sort_unstable_by_key(|cell| (cell.0, cell.1));
+    let name = |&(i, j, value): &Cell| {
+        let (receiver, transmitter) = (&measured.receiver_names()[i], &measured.transmitter_names()[j]);
+        format!("{receiver}-{transmitter} ({} m)", number(value, 12))
     };
     let names: Vec<String> = gone.iter().map(name).collect();
     let warning = format!(
@@ -52,30 +48,36 @@ pub(super) fn without_impossible(measured: &Pseudoranges) -> (Cow<'_, Pseudorang
          cells empty where nothing was measured",
         list(&names)
     );
-    (Cow::Owned(measured.with_values(values)), Some(warning))
+    (kept, Some(warning))
 }
 
-/// Cells that are far from the median of their column, by place.
-fn far(values: &[f64], n: usize) -> Vec<usize> {
-    let m = values.len() / n;
-    let column = |j: usize| (0..m).map(move |i| i * n + j).filter(|&k| !values[k].is_nan());
-    let middle: Vec<f64> = (0..n).map(|j| median(column(j).map(|k| values[k]).collect()).unwrap_or(0.0)).collect();
-    let size = |k: usize| (values[k] - middle[k % n]).abs();
-    let usual = |cells: &mut dyn Iterator<Item = usize>| -> f64 {
-        let mut sizes: Vec<f64> = cells.filter(|&k| !values[k].is_nan()).map(size).collect();
+/// Receiver, transmitter and value.
+type Cell = (usize, usize, f64);
+
+/// Cells that are far from the median of their column, in the order of the matrix.
+fn far(measured: &Pseudoranges) -> Vec<Cell> {
+    let mut columns: Vec<Vec<Cell>> = vec![Vec::new(); measured.transmitters()];
+    for (i, j, f) in measured.cells().iter() {
+        columns[j].push((i, j, *f));
+    }
+    let values = |column: &Vec<Cell>| median(column.iter().map(|cell| cell.2).collect()).unwrap_or(0.0);
+    let middle: Vec<f64> = columns.iter().map(values).collect();
+    let sizes = measured.cells().map(|_, j, f| (f - middle[j]).abs());
+    let usual = |mut sizes: Vec<f64>| -> f64 {
         sizes.sort_by(f64::total_cmp);
         sizes.get(sizes.len() * 3 / 4).copied().unwrap_or(0.0)
     };
-    let of_all = usual(&mut (0..values.len()));
-    let of_row: Vec<f64> = (0..m).map(|i| usual(&mut (i * n..(i + 1) * n))).collect();
-    let is_far = |k: usize| of_all > 0.0 && size(k) > FAR * of_all.max(of_row[k / n]);
+    let of_all = usual(sizes.values().to_vec());
+    let of_row: Vec<f64> =
+        (0..measured.receivers()).map(|i| usual(sizes.row(i).map(|(_, size)| *size).collect())).collect();
+    let is_far = |&(i, j, f): &Cell| of_all > 0.0 && (f - middle[j]).abs() > FAR * of_all.max(of_row[i]);
     let mut found = Vec::new();
-    for j in 0..n {
-        let (outside, inside): (Vec<usize>, Vec<usize>) = column(j).partition(|&k| is_far(k));
-        let one_number = inside.len() > 1 && inside.iter().all(|&k| values[k] == values[inside[0]]);
+    for column in columns {
+        let (outside, inside): (Vec<Cell>, Vec<Cell>) = column.into_iter().partition(is_far);
+        let one_number = inside.len() > 1 && inside.iter().all(|cell| cell.2 == inside[0].2);
         found.extend(if one_number && !outside.is_empty() { inside } else { outside });
     }
-    found.sort_unstable();
+    found.sort_unstable_by_key(|cell| (cell.0, cell.1));
     found
 }
 
@@ -88,13 +90,13 @@ mod tests {
     fn sentinels_go_and_nothing_else() {
         let made = simulate(&SimulateOptions { noise: 0.01, ..Default::default() }).unwrap();
         for sentinel in [9999.0, -9999.0, 65535.0, -2147483648.0] {
-            let mut values = made.pseudoranges.values().to_vec();
+            let mut values = made.pseudoranges.dense();
             // Two cells, and most of a column: 12 columns.
             let places = [5, 12 + 3, 7, 12 + 7, 24 + 7, 36 + 7, 48 + 7];
             places.iter().for_each(|&k| values[k] = sentinel);
             let measured = Pseudoranges::new(8, 12, values.clone()).unwrap();
             let (kept, warning) = without_impossible(&measured);
-            let missing: Vec<usize> = (0..96).filter(|&k| kept.values()[k].is_nan()).collect();
+            let missing: Vec<usize> = (0..96).filter(|&k| kept.get(k / 12, k % 12).is_none()).collect();
             let mut places = places.to_vec();
             places.sort_unstable();
             assert_eq!(missing, places, "{sentinel}");

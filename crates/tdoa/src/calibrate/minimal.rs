@@ -120,8 +120,7 @@ fn breaks_bounds(measured: &Pseudoranges, receivers: &[usize], transmitters: &[u
 /// rounded networks are symmetric by chance, and their solutions singular.
 fn dithered(measured: &Pseudoranges, part: Pseudoranges, rng: &mut Pcg64Mcg) -> Pseudoranges {
     let Some(step) = step(measured).filter(|step| *step > COARSE * usual_difference(measured)) else { return part };
-    let values = part.values().iter().map(|value| value + step * (rng.random::<f64>() - 0.5)).collect();
-    part.with_values(values)
+    part.map(|_, _, value| value + step * (rng.random::<f64>() - 0.5))
 }
 
 impl Hypotheses for MinimalHypotheses {

@@ -25,6 +25,7 @@ mod receiver_errors;
 mod refits;
 mod report;
 mod report_errors;
+mod residuals;
 mod rivals;
 mod same;
 mod search;
@@ -42,6 +43,7 @@ pub use known::SpeedEstimate;
 pub use minimal::MinimalHypotheses;
 pub use options::{CalibrateError, CalibrateOptions, Errors, KnownDistance, MeasuredPosition, ReceiverDelays};
 pub use receiver_errors::{MovedPlace, ReceiverError, ReceiverErrorKind};
+pub use residuals::{Residual, Residuals};
 pub use same::SAME_NETWORK;
 pub use truth::Truth;
 pub use unfinished::Unfinished;
@@ -109,7 +111,7 @@ pub fn calibrate_with(
     let (centred, shifts) = if delayed {
         // What is subtracted does not depend on the delays.
         let (_, shifts) = centre(&without_middle_delays(&selected));
-        (selected.shifted(&shifts), shifts)
+        (shifted(&selected, &shifts), shifts)
     } else {
         centre(&selected)
     };
@@ -217,5 +219,11 @@ fn centre(measured: &Pseudoranges) -> (Pseudoranges, Vec<f64>) {
     let shifts: Vec<f64> = (0..measured.transmitters())
         .map(|j| median((0..measured.receivers()).filter_map(|i| measured.get(i, j)).collect()).unwrap_or(0.0))
         .collect();
-    (measured.shifted(&shifts), shifts)
+    (shifted(measured, &shifts), shifts)
+}
+
+/// The measurements with a number subtracted from each column, as if the transmitters' clocks were set
+/// differently.
+fn shifted(measured: &Pseudoranges, shifts: &[f64]) -> Pseudoranges {
+    measured.map(|_, j, value| value - shifts[j])
 }

@@ -140,7 +140,7 @@ mod tests {
     /// With a clock of the first receiver that jumps half-way.
     fn jumping(receivers: usize, size: f64, seed: u64) -> Simulation {
         let mut simulation = simulation(receivers, None, 0.0, seed);
-        let mut values = simulation.pseudoranges.values().to_vec();
+        let mut values = simulation.pseudoranges.dense();
         values[10..20].iter_mut().for_each(|value| *value += size);
         simulation.pseudoranges = Pseudoranges::new(receivers, 20, values).unwrap();
         simulation

@@ -104,7 +104,7 @@ mod tests {
     fn measured(seed: u64) -> (Pseudoranges, crate::Network) {
         let options = SimulateOptions { receivers: 8, transmitters: 10, noise: SIGMA, seed, ..Default::default() };
         let simulation = simulate(&options).unwrap();
-        let mut values = simulation.pseudoranges.values().to_vec();
+        let mut values = simulation.pseudoranges.dense();
         values[17] += 360.0 * SIGMA;
         (Pseudoranges::new(8, 10, values).unwrap(), simulation.network)
     }

@@ -10,10 +10,12 @@ use super::one_sided::{Information, LEAST_REDUNDANCY};
 use super::options::{CalibrateError, CalibrateOptions, Errors, ReceiverDelays};
 use super::orientation::looks_transposed;
 use super::receiver_errors::Fault;
+use super::residuals::{Residual, Residuals};
 use super::same::{same_receivers, same_transmitters};
 use super::submaps::OVERLAP;
 use super::warnings::{doubtful_receivers, warn_of_nodes};
 use crate::align::{Transform, align, frame};
+use crate::cells::Cells;
 use crate::degeneracy::{Usable, list};
 use crate::network::Network;
 use crate::observations::Observations;
@@ -129,20 +131,14 @@ impl Solved<'_> {
             let moved: Vec<f64> = network.offsets.iter().zip(self.shifts).map(|(o, shift)| o + shift).collect();
             scatter(n, columns, &moved)
         };
-        let mut inliers = vec![vec![false; n]; m];
-        let mut residuals = vec![vec![None; n]; m];
-        for (a, &i) in rows.iter().enumerate() {
-            for (b, &j) in columns.iter().enumerate() {
-                inliers[i][j] = inlier(self.centred, best, a, b);
-                residuals[i][j] = self.centred.get(a, b).map(|f| f - best.pseudorange(a, b));
-            }
-        }
+        let residual = |(a, b, f): (usize, usize, &f64)| {
+            let length = f - best.pseudorange(a, b);
+            (rows[a], columns[b], Residual { length, inlier: inlier(self.centred, best, a, b) })
+        };
+        let residuals = Cells::new(m, n, self.centred.cells().iter().map(residual));
         let rms = |measured: &Pseudoranges, network: &Network| -> f64 {
-            let cells = (0..rows.len()).flat_map(|a| (0..columns.len()).map(move |b| (a, b)));
-            let squares: Vec<f64> = cells
-                .filter(|&(a, b)| inlier(measured, network, a, b))
-                .filter_map(|(a, b)| measured.get(a, b).map(|f| (f - network.pseudorange(a, b)).powi(2)))
-                .collect();
+            let cells = measured.cells().iter().filter(|&(a, b, _)| inlier(measured, network, a, b));
+            let squares: Vec<f64> = cells.map(|(a, b, f)| (f - network.pseudorange(a, b)).powi(2)).collect();
             (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
         };
         let best_cost = self.ranked[0].objective;
@@ -230,8 +226,7 @@ impl Solved<'_> {
             receivers: spread_rows(&best.receivers),
             transmitters: spread_columns(&best.transmitters),
             offsets: offsets(best),
-            inliers,
-            residuals,
+            residuals: Residuals(residuals),
             sigma,
             sigma_estimated: self.known.is_none(),
             sigma_is_factor: self.measured.has_sigmas(),

@@ -408,11 +408,11 @@ mod tests {
         let measured = &simulation.pseudoranges;
         let n = measured.transmitters();
         let side = |j: usize| simulation.network.transmitters[j][0] < 240.0;
-        let values = measured.values().iter().enumerate();
-        let values = values.map(|(k, &value)| if side(k % n) == (k / n < 12) { value } else { f64::NAN }).collect();
+        let values = measured.dense().into_iter().enumerate();
+        let values = values.map(|(k, value)| if side(k % n) == (k / n < 12) { value } else { f64::NAN }).collect();
         let mut cut = Pseudoranges::new(20, n, values).unwrap();
         // Two common transmitters leave each part free to turn about the other.
-        let mut joined = cut.values().to_vec();
+        let mut joined = cut.dense();
         for j in (0..n).filter(|&j| (simulation.network.transmitters[j][0] - 240.0).abs() < 20.0).take(2) {
             for i in 9..15 {
                 joined[i * n + j] = simulation.network.pseudorange(i, j);

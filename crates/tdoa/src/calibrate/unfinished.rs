@@ -77,7 +77,7 @@ mod tests {
     fn a_stopped_search_leaves_its_best_network() {
         let made = simulate(&SimulateOptions { seed: 3, ..SimulateOptions::default() }).unwrap();
         // The node that nobody hears is left out of the search.
-        let mut values = made.pseudoranges.values().to_vec();
+        let mut values = made.pseudoranges.dense();
         let (m, n) = (made.pseudoranges.receivers(), made.pseudoranges.transmitters());
         for i in 0..m {
             values[i * n + 2] = f64::NAN;

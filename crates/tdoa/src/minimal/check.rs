@@ -29,8 +29,9 @@ pub(super) fn check(measured: &Pseudoranges) -> Result<(), SolveError> {
             }
         }
     }
-    let f = |i: usize, j: usize| measured.values()[i * n + j];
-    let largest = measured.values().iter().fold(0.0f64, |a, v| a.max(v.abs()));
+    let values = measured.cells().values();
+    let f = |i: usize, j: usize| values[i * n + j];
+    let largest = values.iter().fold(0.0f64, |a, v| a.max(v.abs()));
     let tolerance = rounding(largest);
     for i in 0..m {
         for k in i + 1..m {

@@ -25,7 +25,7 @@ impl Normalised {
 
     /// [`new`](Self::new) with the memory of an earlier matrix.
     pub(crate) fn take(&mut self, measured: &Pseudoranges) {
-        let (f, n) = (measured.values(), measured.transmitters());
+        let (f, n) = (measured.cells().values(), measured.transmitters());
         self.first.clear();
         self.first.extend_from_slice(&f[..n]);
         self.matrix.clear();

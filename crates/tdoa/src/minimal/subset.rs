@@ -64,8 +64,7 @@ fn combinations(count: usize, size: usize) -> Vec<Vec<usize>> {
 /// The smallest difference between two rows (their common offset apart) or two columns: a bound
 /// from below on how near two of the nodes are.
 pub(crate) fn spread(measured: &Pseudoranges, receivers: &[usize], transmitters: &[usize]) -> f64 {
-    let n = measured.transmitters();
-    let f = |i: usize, j: usize| measured.values()[receivers[i] * n + transmitters[j]];
+    let f = |i: usize, j: usize| measured.get(receivers[i], transmitters[j]).unwrap_or(f64::NAN);
     let (m, n) = (receivers.len(), transmitters.len());
     let mut least = f64::INFINITY;
     for a in 0..m {

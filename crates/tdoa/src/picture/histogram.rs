@@ -9,13 +9,12 @@ const BINS: usize = 32;
 /// Bars of the residuals in metres over plus and minus about four standard deviations; what lies
 /// beyond is counted at the ends.
 pub(super) fn draw(canvas: &mut Canvas, calibration: &Calibration, corner: [f64; 2], size: [f64; 2]) {
-    let residuals: Vec<f64> = calibration.residuals.iter().flatten().flatten().copied().collect();
     // Measurements with their own deviations make sigma a factor, so the spread of the inliers sets
     // the scale.
     let reach = 4.0 * calibration.residual_rms.max(1e-12);
     let mut bins = [0usize; BINS];
     let (mut below, mut above) = (0, 0);
-    for e in &residuals {
+    for e in calibration.residuals.values().iter().map(|residual| residual.length) {
         let at = ((e / reach + 1.0) * 0.5 * BINS as f64).floor();
         if at < 0.0 {
             below += 1;
@@ -40,7 +39,7 @@ pub(super) fn draw(canvas: &mut Canvas, calibration: &Calibration, corner: [f64;
         canvas.line([x, base], [x, base + 5.0], "#222", 1.0, "");
         canvas.text([x, base + 19.0], "middle", 11.0, &number(k as f64 * step, 4));
     }
-    let label = format!("residuals in metres ({} measurements)", residuals.len());
+    let label = format!("residuals in metres ({} measurements)", calibration.residuals.len());
     canvas.text([corner[0] + 0.5 * size[0], base + 38.0], "middle", 12.0, &label);
     canvas.text([corner[0], corner[1] - 8.0], "start", 11.0, &format!("{most} in the highest bar"));
     if below > 0 {

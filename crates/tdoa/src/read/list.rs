@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::cells::{Decimals, Record, shorten};
 use super::error::ReadError;
 use super::heading::Columns;
-use crate::pseudoranges::{MAX_CELLS, PseudorangeError, Pseudoranges};
+use crate::pseudoranges::{MAX_CELLS, Pseudoranges};
 
 /// Reads the lines below the first.
 pub(super) fn list(
@@ -68,17 +68,13 @@ pub(super) fn list(
     }
     let (m, n) = (receivers.names.len(), transmitters.names.len());
     let wrap = |source| ReadError::Matrix { file: file.to_string(), source };
-    if m.checked_mul(n).is_none_or(|cells| cells > MAX_CELLS) {
-        return Err(wrap(PseudorangeError::TooLarge { receivers: m, transmitters: n }));
-    }
-    let (mut values, mut sigmas) = (vec![f64::NAN; m * n], vec![f64::NAN; m * n]);
-    for ((i, j), entry) in entries {
-        values[i * n + j] = entry.value;
-        sigmas[i * n + j] = entry.sigma;
-    }
-    let measured = Pseudoranges::new(m, n, values).map_err(wrap)?;
+    let cells = entries.iter().map(|(&(i, j), entry)| (i, j, entry.value));
+    let measured = Pseudoranges::from_cells(m, n, cells).map_err(wrap)?;
     let measured = measured.with_names(receivers.names, transmitters.names).map_err(wrap)?;
-    if columns.sigma.is_some() { measured.with_sigmas(sigmas).map_err(wrap) } else { Ok(measured) }
+    if columns.sigma.is_none() {
+        return Ok(measured);
+    }
+    measured.with_sigma_of(|i, j| entries.get(&(i, j)).map_or(f64::NAN, |entry| entry.sigma)).map_err(wrap)
 }
 
 /// A measurement, its standard deviation and where it stands.

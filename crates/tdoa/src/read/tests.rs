@@ -87,12 +87,12 @@ fn spellings_of_one_matrix() {
         (",a,b,\nm,1.5,2.5,\nn,3.5,4.5,\n,,,\n", true),
     ] {
         let f = parse(text).unwrap_or_else(|error| panic!("{text:?}: {error}"));
-        assert_eq!(f.values(), [1.5, 2.5, 3.5, 4.5], "{text:?}");
+        assert_eq!(f.dense(), [1.5, 2.5, 3.5, 4.5], "{text:?}");
         assert_eq!(f.receivers_named(), named, "{text:?}");
     }
     for order in [u16::to_le_bytes, u16::to_be_bytes] {
         let wide: Vec<u8> = format!("\u{feff}{bare}").encode_utf16().flat_map(order).collect();
-        assert_eq!(read_csv(&wide[..], "f", Units::Metres).unwrap().values(), [1.5, 2.5, 3.5, 4.5]);
+        assert_eq!(read_csv(&wide[..], "f", Units::Metres).unwrap().dense(), [1.5, 2.5, 3.5, 4.5]);
         let cut = read_csv(&wide[..wide.len() - 1], "f", Units::Metres);
         assert!(matches!(cut, Err(ReadError::NotText { line: 2, .. })));
     }
@@ -107,7 +107,7 @@ fn spellings_of_one_list() {
         "anchor_id\ttag_id\trange\tquality\nm\ta\t1.5\t0\nm\tb\t2.5\t0\nn\ta\t3.5\t0\nn\tb\t4.5\t0\n",
     ] {
         let f = parse(text).unwrap_or_else(|error| panic!("{text:?}: {error}"));
-        assert_eq!(f.values(), [1.5, 2.5, 3.5, 4.5], "{text:?}");
+        assert_eq!(f.dense(), [1.5, 2.5, 3.5, 4.5], "{text:?}");
         assert_eq!(
             (f.receiver_names(), f.transmitter_names()),
             (&["m", "n"].map(String::from)[..], &["a", "b"].map(String::from)[..])
@@ -140,7 +140,7 @@ fn units_of_a_matrix_are_heeded() {
     let ms = Some(Units::Milliseconds { speed: 343.0 });
     let error = read(text, None).unwrap_err();
     assert!(error.contains("line 1") && error.contains("\"time_ms\" is in ms; give --units ms --speed"), "{error}");
-    assert!((read(text, ms).unwrap().values()[0] - 1.5e-3 * 343.0).abs() < 1e-12);
+    assert!((read(text, ms).unwrap().dense()[0] - 1.5e-3 * 343.0).abs() < 1e-12);
     assert!(read(text, Some(Units::Seconds { speed: 343.0 })).unwrap_err().contains("but --units s is asked for"));
     for (text, part) in [
         ("time,a,b\nm,1.5,2.5\nn,3.5,4.5\n", "holds times, and their unit is not said"),

@@ -39,7 +39,7 @@ pub(crate) fn extend(
 /// The network of all nodes from that of a part; `None` where a node cannot be determined.
 fn spread_out(measured: &Pseudoranges, part: &Subset, known: &Network, squares: &mut LeastSquares) -> Option<Network> {
     let (m, n) = (measured.receivers(), measured.transmitters());
-    let f = |i: usize, j: usize| measured.values()[i * n + j];
+    let f = |i: usize, j: usize| measured.get(i, j).unwrap_or(f64::NAN);
     let mut network =
         Network { receivers: vec![[f64::NAN; 2]; m], transmitters: vec![[f64::NAN; 2]; n], offsets: vec![f64::NAN; n] };
     for (k, &i) in part.receivers.iter().enumerate() {
