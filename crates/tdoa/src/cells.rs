@@ -9,7 +9,7 @@ struct Pattern {
     columns: usize,
     /// Where each row begins in the list of all cells, and where the last one ends.
     starts: Vec<usize>,
-    /// The columns of the cells, row by row in ascending order; empty if no cell is missing.
+    /// The columns of the cells, row by row in ascending order; empty if no cell is missing, or all are.
     places: Vec<u32>,
 }
 
@@ -146,7 +146,7 @@ impl<T: Clone> Cells<T> {
         Cells::new(rows.len(), columns.len(), cells)
     }
 
-    /// Changes each value, by row and column.
+    /// Changes each value.
     pub(crate) fn for_each(&mut self, mut change: impl FnMut(&mut T)) {
         Arc::make_mut(&mut self.values).iter_mut().for_each(&mut change);
     }

@@ -111,7 +111,7 @@ pub(super) struct Tracking<'r, C, U> {
     pub(super) steps: usize,
 }
 
-/// They with the system that they are of.
+/// Paths of a fibre to a target, with their system.
 pub(super) struct Over<'r, 'a, E: Evaluate, C, U> {
     tracking: Tracking<'r, C, U>,
     system: &'a E,

@@ -382,11 +382,9 @@ pub(super) fn without_errors(measured: &Pseudoranges, faults: &[Fault]) -> Pseud
     let mut shifts: Vec<Vec<&Fault>> = vec![Vec::new(); measured.receivers()];
     for fault in faults {
         if fault.kind == ReceiverErrorKind::Move {
-            let (before, all) = (
-                kept.cells().row(fault.receiver).filter(|(j, _)| *j < fault.from).count(),
-                kept.cells().row(fault.receiver).count(),
-            );
-            let before_is_shorter = before < all - before;
+            let (before, after): (Vec<usize>, Vec<usize>) =
+                kept.cells().row(fault.receiver).map(|(j, _)| j).partition(|j| *j < fault.from);
+            let before_is_shorter = before.len() < after.len();
             kept = kept.filter(|i, j, _| i != fault.receiver || (j < fault.from) != before_is_shorter);
         } else {
             shifts[fault.receiver].push(fault);

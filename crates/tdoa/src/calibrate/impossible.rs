@@ -60,8 +60,8 @@ fn far(measured: &Pseudoranges) -> Vec<Cell> {
     for (i, j, f) in measured.cells().iter() {
         columns[j].push((i, j, *f));
     }
-    let values = |column: &Vec<Cell>| median(column.iter().map(|cell| cell.2).collect()).unwrap_or(0.0);
-    let middle: Vec<f64> = columns.iter().map(values).collect();
+    let middle_of = |column: &Vec<Cell>| median(column.iter().map(|cell| cell.2).collect()).unwrap_or(0.0);
+    let middle: Vec<f64> = columns.iter().map(middle_of).collect();
     let sizes = measured.cells().map(|_, j, f| (f - middle[j]).abs());
     let usual = |mut sizes: Vec<f64>| -> f64 {
         sizes.sort_by(f64::total_cmp);

@@ -18,7 +18,7 @@ fn mostly_wrong(measured: &Pseudoranges, kept: &Observations) -> Vec<usize> {
 
 /// Number of measurements of a receiver.
 fn count(measured: &Pseudoranges, i: usize) -> usize {
-    (0..measured.transmitters()).filter(|&j| measured.get(i, j).is_some()).count()
+    measured.cells().row(i).count()
 }
 
 /// Of the receivers most of whose measurements are outliers, those whose inliers may agree by chance:

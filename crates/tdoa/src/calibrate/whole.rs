@@ -129,7 +129,7 @@ fn search_part(measured: &Pseudoranges, options: &CalibrateOptions) -> Usable {
         better.sort_unstable();
         (0..most).map(|k| better[k * better.len() / most]).collect()
     };
-    let receivers = pick(m, options.search_receivers, &|i| (0..n).filter(|&j| measured.get(i, j).is_some()).count());
+    let receivers = pick(m, options.search_receivers, &|i| measured.cells().row(i).count());
     let heard = |j: usize| receivers.iter().filter(|&&i| measured.get(i, j).is_some()).count();
     let transmitters = pick(n, options.search_transmitters, &heard);
     // A part that cannot be solved on its own is no help.
