@@ -1,22 +1,26 @@
 //! `tdoa experiment`.
 
+mod book;
 mod calibrate;
 mod chart;
 mod checks;
 mod clean;
 mod common;
 mod conditions;
+mod crew;
 mod damaged;
 mod growth;
 mod hard;
 mod noise;
 mod routes;
-mod rows;
 mod speed;
 mod statistics;
+mod table;
 mod table2;
 
 use cli::Failure;
+use hc::ranks::Ranks;
+use mpirun::Sharing;
 
 /// Repeats an experiment and writes its numbers as CSV and its figures as SVG.
 ///
@@ -26,6 +30,8 @@ use cli::Failure;
 pub struct Arguments {
     #[command(subcommand)]
     kind: Kind,
+    #[command(flatten)]
+    ranks: Sharing,
 }
 
 #[derive(clap::Subcommand)]
@@ -50,25 +56,50 @@ enum Kind {
     Damaged(damaged::Arguments),
 }
 
-/// Runs the experiment that the arguments name.
+impl Arguments {
+    /// Which experiments several ranks can do.
+    pub const SHARED: &str = "only `tdoa experiment calibrate`, `clean`, `conditions`, `coverage`, `damaged`, `noise`, `routes` and \
+                              `table2` run on several ranks";
+
+    /// Options of work over several ranks, where the experiment has them.
+    pub fn sharing(&self) -> Option<&Sharing> {
+        match &self.kind {
+            // One after the other, to take times, or done soon.
+            Kind::Speed(_) | Kind::Growth(_) | Kind::Hard(_) | Kind::Proofs(_) | Kind::Hurry(_) | Kind::Charts(_) => {
+                None
+            }
+            Kind::Table2(_)
+            | Kind::Clean(_)
+            | Kind::Noise(_)
+            | Kind::Routes(_)
+            | Kind::Calibrate(_)
+            | Kind::Coverage(_)
+            | Kind::Conditions(_)
+            | Kind::Damaged(_) => Some(&self.ranks),
+        }
+    }
+}
+
+/// Runs the experiment that the arguments name, with the other ranks if there are any: rank 0 alone
+/// prints, and writes files.
 ///
 /// # Errors
 /// Unusable arguments, an experiment that fails, or an interrupt: rows of a table so far are kept.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<(), Failure> {
     match &arguments.kind {
-        Kind::Table2(arguments) => table2::run(arguments),
-        Kind::Clean(arguments) => clean::run(arguments),
-        Kind::Noise(arguments) => noise::run(arguments),
+        Kind::Table2(arguments) => table2::run(arguments, ranks),
+        Kind::Clean(arguments) => clean::run(arguments, ranks),
+        Kind::Noise(arguments) => noise::run(arguments, ranks),
         Kind::Hard(arguments) => hard::run(arguments),
         Kind::Speed(arguments) => speed::run(arguments),
         Kind::Proofs(arguments) => checks::proofs(arguments),
-        Kind::Routes(arguments) => routes::run(arguments),
+        Kind::Routes(arguments) => routes::run(arguments, ranks),
         Kind::Hurry(arguments) => checks::hurry(arguments),
         Kind::Charts(arguments) => checks::charts(arguments),
-        Kind::Calibrate(arguments) => calibrate::run(arguments),
-        Kind::Coverage(arguments) => calibrate::run_coverage(arguments),
-        Kind::Conditions(arguments) => conditions::run(arguments),
+        Kind::Calibrate(arguments) => calibrate::run(arguments, ranks),
+        Kind::Coverage(arguments) => calibrate::run_coverage(arguments, ranks),
+        Kind::Conditions(arguments) => conditions::run(arguments, ranks),
         Kind::Growth(arguments) => growth::run(arguments),
-        Kind::Damaged(arguments) => damaged::run(arguments),
+        Kind::Damaged(arguments) => damaged::run(arguments, ranks),
     }
 }

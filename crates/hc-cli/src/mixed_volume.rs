@@ -1,6 +1,6 @@
 //! `hc mixed-volume`.
 
-use crate::{input, ranks, watch};
+use crate::{input, watch};
 use cli::{Failure, output};
 use hc::poly::Polynomial;
 use hc::ranks::Ranks;
@@ -28,7 +28,7 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = 0)]
     seed: u64,
     #[command(flatten)]
-    pub(crate) ranks: ranks::Sharing,
+    pub(crate) ranks: mpirun::Sharing,
 }
 
 #[derive(Serialize)]

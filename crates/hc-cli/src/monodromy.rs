@@ -1,7 +1,7 @@
 //! `hc monodromy`.
 
 use crate::checkpoint::{self, Recording};
-use crate::{family, ranks, watch};
+use crate::{family, watch};
 use cli::{Failure, output};
 use hc::family::Stop;
 use hc::ranks::Ranks;
@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     checkpoint: Recording,
     #[command(flatten)]
-    pub(crate) ranks: ranks::Sharing,
+    pub(crate) ranks: mpirun::Sharing,
 }
 
 /// Searches, with the other ranks if there are any; rank 0 alone prints, and writes files.

@@ -2,7 +2,7 @@
 
 use crate::checkpoint::{self, Recording};
 use crate::report::Report;
-use crate::{input, ranks, watch};
+use crate::{input, watch};
 use cli::{Failure, output};
 use hc::ranks::Ranks;
 use hc::{SolveError, SolveOptions, Start, solve_on_ranks, solve_recorded, solve_watched};
@@ -48,7 +48,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     checkpoint: Recording,
     #[command(flatten)]
-    pub(crate) ranks: ranks::Sharing,
+    pub(crate) ranks: mpirun::Sharing,
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]

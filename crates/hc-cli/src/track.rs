@@ -3,7 +3,7 @@
 use crate::checkpoint::{self, Recording};
 use crate::input::{self, Number};
 use crate::report::Report;
-use crate::{family, ranks, watch};
+use crate::{family, watch};
 use cli::{Failure, output};
 use hc::ranks::Ranks;
 use hc::{Solutions, SolveOptions};
@@ -48,7 +48,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     checkpoint: Recording,
     #[command(flatten)]
-    pub(crate) ranks: ranks::Sharing,
+    pub(crate) ranks: mpirun::Sharing,
 }
 
 #[derive(Deserialize)]

@@ -13,6 +13,8 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use cli::{Failure, interrupt, on_threads, output};
+use hc::ranks::Ranks;
+use mpirun::{Program, Sharing};
 
 /// Calibrates sensor networks in the plane from arrival times alone.
 ///
@@ -34,23 +36,44 @@ enum Command {
     Solve(solve::Arguments),
 }
 
+impl Program for Arguments {
+    const NAME: &'static str = "tdoa";
+    #[cfg(feature = "experiments")]
+    const SHARED: &'static str = experiments::command::Arguments::SHARED;
+    #[cfg(not(feature = "experiments"))]
+    const SHARED: &'static str = "no command of this build runs on several ranks";
+
+    fn sharing(&self) -> Option<&Sharing> {
+        match &self.command {
+            #[cfg(feature = "experiments")]
+            Command::Experiment(arguments) => arguments.sharing(),
+            Command::Calibrate(_) | Command::Simulate(_) | Command::Solve(_) => None,
+        }
+    }
+
+    #[cfg_attr(not(feature = "experiments"), allow(unused_variables))]
+    fn execute(&self, ranks: Option<&Ranks<'_>>) -> Result<(), Failure> {
+        match &self.command {
+            Command::Calibrate(arguments) => calibrate::run(arguments),
+            #[cfg(feature = "experiments")]
+            Command::Experiment(arguments) => experiments::command::run(arguments, ranks),
+            Command::Simulate(arguments) => simulate::run(arguments),
+            Command::Solve(arguments) => solve::run(arguments),
+        }
+    }
+
+    fn left(&self) -> &'static str {
+        match &self.command {
+            #[cfg(feature = "experiments")]
+            Command::Experiment(_) => "the rows so far are kept, and the same command goes on from there",
+            _ => "nothing was written",
+        }
+    }
+}
+
 /// Runs the program with the arguments of the process; its exit status.
 pub fn main() -> ExitCode {
-    // clap ends the program itself, with status 2, if the arguments are wrong.
-    let command = Arguments::parse().command;
-    let left = match &command {
-        #[cfg(feature = "experiments")]
-        Command::Experiment(_) => "the rows so far are kept, and the same command goes on from there",
-        _ => "nothing was written",
-    };
-    let result = match command {
-        Command::Calibrate(arguments) => calibrate::run(&arguments),
-        #[cfg(feature = "experiments")]
-        Command::Experiment(arguments) => experiments::command::run(&arguments),
-        Command::Simulate(arguments) => simulate::run(&arguments),
-        Command::Solve(arguments) => solve::run(&arguments),
-    };
-    cli::finish("tdoa", result, left)
+    mpirun::main::<Arguments>()
 }
 
 #[cfg(test)]

@@ -19,7 +19,7 @@ const NOT_RUN: &[&str] = &[
     "cargo build --profile dist -p tdoa-cli -p hc-cli",
     // Need Open MPI.
     "cargo build --release -p hc-cli --features mpi",
-    "cargo test -p end-to-end --features mpi --test all hc_mpi",
+    "cargo test -p end-to-end --features mpi --test all mpi",
     // Written into the repository; `--check` is run instead.
     "cargo xtask codegen",
     "cargo xtask experiments --page",

@@ -1,8 +1,8 @@
 //! `mpirun hc`: the same bytes on any number of ranks, and an end of all of them.
 
-use end_to_end::{program, run};
-use std::path::Path;
-use std::process::{Child, Command, Output, Stdio};
+use crate::mpi::{on_ranks, process, said, signal, text, waited, written};
+use end_to_end::run;
+use std::process::{Output, Stdio};
 use std::time::{Duration, Instant};
 
 const SYSTEMS: [(&str, &str, &[&str]); 5] = [
@@ -34,64 +34,12 @@ fn quadrics(n: usize) -> String {
     (0..n).map(equation).collect()
 }
 
-fn written(folder: &Path, name: &str, content: &str) -> String {
-    let path = folder.join(name);
-    std::fs::write(&path, content).expect("written");
-    text(&path)
-}
-
-fn text(path: &Path) -> String {
-    path.to_str().expect("UTF-8 path").to_owned()
-}
-
-/// `hc` on so many ranks, of which there may be more than processors.
-fn on_ranks(count: usize, arguments: &[&str]) -> Command {
-    let mut command = Command::new("mpirun");
-    command.args(["-q", "--oversubscribe", "--allow-run-as-root", "--bind-to", "none"]);
-    // What a container may forbid, and what would be said about it.
-    command.args(["--mca", "btl_vader_single_copy_mechanism", "none", "--mca", "btl_base_warn_component_unused", "0"]);
-    command.args(["-n", &count.to_string()]).arg(program("hc")).args(arguments);
-    command
-}
-
 /// Standard output without the lines that say how long it took.
 fn untimed(output: &Output) -> String {
     let text = String::from_utf8(output.stdout.clone()).expect("text");
     let lines: Vec<&str> = text.lines().filter(|line| !line.trim_start().starts_with("\"seconds\":")).collect();
     assert!(lines.len() < text.lines().count(), "{}", said(output));
     lines.join("\n")
-}
-
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
-/// The process of a rank: that with this rank among the children of mpirun.
-fn process(mpirun: &Child, rank: usize) -> Option<u32> {
-    let children = format!("/proc/{0}/task/{0}/children", mpirun.id());
-    let children = std::fs::read_to_string(children).ok()?;
-    let own = format!("OMPI_COMM_WORLD_RANK={rank}");
-    children.split_whitespace().filter_map(|id| id.parse().ok()).find(|id: &u32| {
-        let environment = std::fs::read(format!("/proc/{id}/environ")).unwrap_or_default();
-        environment.split(|&byte| byte == 0).any(|variable| variable == own.as_bytes())
-    })
-}
-
-/// Waits until something is there, two minutes at most.
-fn waited<T>(mut there: impl FnMut() -> Option<T>) -> T {
-    let begun = Instant::now();
-    loop {
-        if let Some(found) = there() {
-            return found;
-        }
-        assert!(begun.elapsed() < Duration::from_secs(120), "nothing came");
-        std::thread::sleep(Duration::from_millis(10));
-    }
-}
-
-fn signal(name: &str, process: u32) {
-    let killed = Command::new("kill").args([name, &process.to_string()]).status().expect("kill runs");
-    assert!(killed.success());
 }
 
 #[test]
@@ -106,7 +54,7 @@ fn any_number_of_ranks_prints_the_same_bytes() {
         let alone = run("hc", &[&arguments[..], &["--threads", "2"]].concat());
         let expected = untimed(&alone);
         for (count, threads) in [(1, "2"), (2, "1"), (4, "1"), (2, "2")] {
-            let output = on_ranks(count, &[&arguments[..], &["--threads", threads]].concat());
+            let output = on_ranks("hc", count, &[&arguments[..], &["--threads", threads]].concat());
             let output = { output }.output().expect("mpirun runs");
             assert_eq!(untimed(&output), expected, "{name} on {count} ranks: {}", said(&output));
             assert_eq!(output.status.code(), alone.status.code(), "{name}: {}", said(&output));
@@ -144,7 +92,7 @@ fn targets_of_families_have_the_same_bytes_on_any_number_of_ranks() {
         let alone = run("hc", &[&arguments[..], &["2"]].concat());
         assert!(alone.status.success(), "{name}: {}", said(&alone));
         for (count, threads) in [(1, "2"), (2, "1"), (4, "1")] {
-            let output = on_ranks(count, &[&arguments[..], &[threads]].concat()).output().expect("mpirun runs");
+            let output = on_ranks("hc", count, &[&arguments[..], &[threads]].concat()).output().expect("mpirun runs");
             assert_eq!(untimed(&output), untimed(&alone), "{name} on {count} ranks: {}", said(&output));
             assert!(output.status.success(), "{name}: {}", said(&output));
         }
@@ -169,7 +117,7 @@ fn fibres_have_the_same_bytes_on_any_number_of_ranks() {
         assert_eq!(start["solutions"].as_array().map(Vec::len), Some(count));
         assert_eq!(start["stopped"], stopped);
         for (count, threads) in [(1, "1"), (2, "1"), (4, "1"), (2, "8")] {
-            let output = on_ranks(count, &[&arguments[..], &[threads]].concat()).output().expect("mpirun runs");
+            let output = on_ranks("hc", count, &[&arguments[..], &[threads]].concat()).output().expect("mpirun runs");
             assert!(output.stdout == alone.stdout, "{family} on {count} ranks: {}", said(&output));
             assert!(said(&output).contains(said(&alone).trim()), "{}", said(&output));
             assert!(output.status.success());
@@ -193,14 +141,14 @@ fn a_search_whose_rank_dies_goes_on_from_its_checkpoint() {
         status.and_then(|status| status["records"].as_u64())
     };
     for (rank, loops) in [(1, 4), (0, 8)] {
-        let mut command = on_ranks(2, &recorded);
+        let mut command = on_ranks("hc", 2, &recorded);
         let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("mpirun runs");
         let victim = waited(|| process(&child, rank));
         waited(|| records().filter(|&records| records >= loops));
         signal("-KILL", victim);
         assert!(!child.wait().expect("mpirun ends").success());
     }
-    let output = on_ranks(4, &recorded).output().expect("mpirun runs");
+    let output = on_ranks("hc", 4, &recorded).output().expect("mpirun runs");
     assert!(output.stdout == expected.stdout, "{}", said(&output));
     assert!(said(&output).contains(&format!("{directory}: goes on after ")), "{}", said(&output));
 }
@@ -224,7 +172,7 @@ fn mixed_volumes_are_the_same_on_any_number_of_ranks() {
         let found: serde_json::Value = serde_json::from_slice(&alone.stdout).expect("JSON");
         assert_eq!(found["mixed_volume"], expected);
         for (count, threads) in [(1, "1"), (2, "1"), (4, "1"), (2, "8")] {
-            let output = on_ranks(count, &[&arguments[..], &[threads]].concat()).output().expect("mpirun runs");
+            let output = on_ranks("hc", count, &[&arguments[..], &[threads]].concat()).output().expect("mpirun runs");
             assert_eq!(untimed(&output), untimed(&alone), "cyclic {n} on {count} ranks: {}", said(&output));
             assert!(output.status.success(), "{}", said(&output));
         }
@@ -246,16 +194,16 @@ fn errors_are_said_once_and_end_all_ranks() {
         (&["solve", &system, "--rank-timeout", "0"], "--rank-timeout"),
         (&["decompose", &system], "only `hc solve`, `track`, `monodromy` and `mixed-volume` run on several ranks"),
     ] {
-        let output = on_ranks(3, arguments).output().expect("mpirun runs");
+        let output = on_ranks("hc", 3, arguments).output().expect("mpirun runs");
         assert_eq!(output.status.code(), Some(2), "{words}: {}", said(&output));
         assert_eq!(said(&output).matches(words).count(), 1, "{words}: {}", said(&output));
         assert!(output.stdout.is_empty());
     }
-    let help = on_ranks(3, &["solve", "--help"]).output().expect("mpirun runs");
+    let help = on_ranks("hc", 3, &["solve", "--help"]).output().expect("mpirun runs");
     let help = String::from_utf8_lossy(&help.stdout).into_owned();
     assert_eq!(help.matches("--rank-timeout").count(), 1, "{help}");
     // Some commands are as ever on one rank.
-    let output = on_ranks(1, &["decompose", &system]).output().expect("mpirun runs");
+    let output = on_ranks("hc", 1, &["decompose", &system]).output().expect("mpirun runs");
     assert!(output.status.success(), "{}", said(&output));
 }
 
@@ -268,7 +216,7 @@ fn an_interrupt_of_rank_0_ends_all_with_what_there_is() {
     let cyclic = written(folder.path(), "cyclic.txt", &cyclic(14));
     let volume = &["mixed-volume", &cyclic, "--json", "-", "--threads", "1"][..];
     for (name, arguments) in [("-INT", solve), ("-TERM", solve), ("-INT", volume)] {
-        let mut command = on_ranks(3, arguments);
+        let mut command = on_ranks("hc", 3, arguments);
         let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("mpirun runs");
         let first = waited(|| process(&child, 0));
         end_to_end::wait_for_handler(first);
@@ -300,15 +248,29 @@ fn a_rank_that_dies_ends_all_and_the_checkpoint_goes_on() {
         let status: Option<serde_json::Value> = serde_json::from_slice(&output.stdout).ok();
         status.and_then(|status| status["done"].as_u64())
     };
-    for (rank, paths) in [(1, 2048), (0, 4096)] {
-        let mut command = on_ranks(2, &recorded);
+    // Ten moments up to three quarters of the paths, and a little later; rank 0, another one, or all.
+    let mut random = 1u64;
+    let mut draw = |below: u64| {
+        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (random >> 33) % below
+    };
+    let mut moments: Vec<[u64; 3]> = (0..10).map(|_| [draw(6144), draw(30), draw(3)]).collect();
+    moments.sort_unstable();
+    for [paths, milliseconds, which] in moments {
+        let mut command = on_ranks("hc", 2, &recorded);
         let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("mpirun runs");
-        let victim = waited(|| process(&child, rank));
-        waited(|| done().filter(|&done| done >= paths));
-        signal("-KILL", victim);
-        assert!(!child.wait().expect("mpirun ends").success());
+        let ranks = [0, 1].map(|rank| waited(|| process(&child, rank)));
+        waited(|| done().or(Some(0)).filter(|&done| done >= paths));
+        std::thread::sleep(Duration::from_millis(milliseconds));
+        if which == 2 {
+            signal("-KILL", child.id());
+            ranks.into_iter().for_each(|rank| signal("-KILL", rank));
+        } else {
+            signal("-KILL", ranks[which as usize]);
+        }
+        assert!(!child.wait().expect("mpirun ends").success(), "killed at {paths} paths");
     }
-    let output = on_ranks(4, &recorded).output().expect("mpirun runs");
+    let output = on_ranks("hc", 4, &recorded).output().expect("mpirun runs");
     assert_eq!(untimed(&output), expected, "{}", said(&output));
     assert!(said(&output).contains(&format!("{directory}: goes on after ")), "{}", said(&output));
 }

@@ -10,6 +10,8 @@ mod hc_interrupt;
 #[cfg(unix)]
 mod hc_mpi;
 mod hc_solve;
+#[cfg(unix)]
+mod mpi;
 mod one_build;
 mod outputs;
 mod rooms;
@@ -22,6 +24,8 @@ mod tdoa_input;
 mod tdoa_interrupt;
 mod tdoa_known;
 mod tdoa_mat;
+#[cfg(unix)]
+mod tdoa_mpi;
 mod tdoa_real;
 mod tdoa_report;
 mod tdoa_solve;

@@ -6,11 +6,13 @@ use tdoa::Monitor;
 use tdoa::calibrate::{MinimalHypotheses, calibrate_with};
 use tdoa::{CalibrateOptions, SimulateOptions, Simulation, simulate};
 
+use super::book::Rows;
 use super::common::{Common, Size, thread_seconds};
-use super::rows::{Rows, resume};
 use super::statistics::{mean, short};
+use super::table::Table;
 use crate::quantile::{median, quantile};
 use cli::{Failure, output};
+use hc::ranks::Ranks;
 
 /// Where the search gets its starts from.
 #[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
@@ -143,19 +145,15 @@ impl Case {
     }
 }
 
-/// Runs networks of every case and gives the rows, case by case.
-fn trials(common: &Common, cases: &[Case], instances: u64) -> Result<Rows, Failure> {
+/// Runs networks of every case and gives the rows, case by case, to rank 0.
+fn trials(common: &Common, cases: &[Case], instances: u64, ranks: Option<&Ranks<'_>>) -> Result<Option<Rows>, Failure> {
     if instances == 0 {
         return Err(Failure::Unusable("--instances must be at least 1".into()));
     }
     let all: Vec<(Case, u64)> =
         cases.iter().flat_map(|&case| common.seeds(instances).map(move |seed| (case, seed))).collect();
     let keys: Vec<String> = all.iter().map(|(case, seed)| format!("{},{seed}", case.key())).collect();
-    resume(
-        &common.file("trials.csv")?,
-        HEADER,
-        &keys,
-        common.threads,
+    Table::new(common, "trials.csv", HEADER, &keys, ranks).resume(
         || (),
         |(), k| {
             let (case, seed) = all[k];
@@ -179,7 +177,7 @@ fn trials(common: &Common, cases: &[Case], instances: u64) -> Result<Rows, Failu
     )
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(super) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<(), Failure> {
     let mut cases = Vec::new();
     let kinds = arguments.configuration.len() * arguments.noise.len() * arguments.outliers.len();
     if !matches!(arguments.starts.len(), 0 | 1) && arguments.starts.len() != kinds {
@@ -200,11 +198,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     let common = &arguments.common;
-    let rows = trials(common, &cases, arguments.instances)?;
+    let Some(rows) = trials(common, &cases, arguments.instances, ranks)? else { return Ok(()) };
     report(common, &rows, &cases, arguments.instances as usize)
 }
 
-pub(super) fn run_coverage(arguments: &CoverageArguments) -> Result<(), Failure> {
+pub(super) fn run_coverage(arguments: &CoverageArguments, ranks: Option<&Ranks<'_>>) -> Result<(), Failure> {
     let case = |&size: &Size| Case {
         method: Method::Portfolio,
         starts: None,
@@ -215,7 +213,7 @@ pub(super) fn run_coverage(arguments: &CoverageArguments) -> Result<(), Failure>
         known_sigma: arguments.known_sigma,
     };
     let cases: Vec<Case> = arguments.configuration.iter().map(case).collect();
-    let rows = trials(&arguments.common, &cases, arguments.instances)?;
+    let Some(rows) = trials(&arguments.common, &cases, arguments.instances, ranks)? else { return Ok(()) };
     report(&arguments.common, &rows, &cases, arguments.instances as usize)
 }
 

@@ -5,12 +5,14 @@ use std::fmt::Write;
 use crate::trials::clean::clean_trial;
 use tdoa::minimal::{SolveOptions, Solver};
 
+use super::book::Rows;
 use super::chart::{Labels, Series, histogram};
 use super::common::{Common, Size, normal, thread_seconds};
-use super::rows::{Rows, resume};
 use super::statistics::{decades, moments, short};
+use super::table::Table;
 use crate::quantile::quantile;
 use cli::{Failure, output};
+use hc::ranks::Ranks;
 
 /// Solves clean random networks (positions and offsets standard normal) and counts roots, lost
 /// paths and errors (the upper row of the paper's figure 1).
@@ -29,10 +31,11 @@ pub(super) struct Arguments {
 const HEADER: &str = "configuration,seed,tracked,finite,at_infinity,failed,retracked,complex,real,positive_definite,physical,found,\
                       position_error,offset_error,steps,rejected,jacobians,milliseconds";
 
-pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(super) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<(), Failure> {
     let common = &arguments.common;
     let (trials, keys) = common.trials(&arguments.configuration, arguments.instances);
-    let rows = resume(&common.file("trials.csv")?, HEADER, &keys, common.threads, Solver::new, |solver, k| {
+    let table = Table::new(common, "trials.csv", HEADER, &keys, ranks);
+    let rows = table.resume(Solver::new, |solver, k| {
         let (size, seed) = trials[k];
         let simulation = normal(size, 0.0, seed)?;
         let started = thread_seconds();
@@ -58,6 +61,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             t.jacobians
         ))
     })?;
+    let Some(rows) = rows else { return Ok(()) };
     let mut summary = String::from(
         "configuration,instances,paths,paths_lost,at_infinity,retracked,found,position_median,position_90,position_99,offset_median,\
          offset_90,offset_99,steps_a_path,real_min,real_max,real_mean,real_sd,physical_min,physical_max,physical_mean,physical_sd,\

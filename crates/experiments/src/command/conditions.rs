@@ -5,10 +5,12 @@ use crate::quantile::median;
 use crate::trials::calibration::{Trial, judge, oracle};
 use tdoa::{CalibrateOptions, Layout, ReceiverDelays, ReceiverFault, SimulateOptions, calibrate, simulate};
 
+use super::book::Rows;
 use super::common::{Common, thread_seconds};
-use super::rows::{Rows, resume};
 use super::statistics::short;
+use super::table::Table;
 use cli::{Failure, output};
+use hc::ranks::Ranks;
 
 /// Calibrates networks that nobody hears whole, with gross errors in few measurements, and with
 /// receivers that have errors of their own.
@@ -134,7 +136,7 @@ impl Condition {
 const HEADER: &str = "condition,seed,success,oracle,among_alternatives,unique,warned,receiver_rms,oracle_rms,bound,covered,ellipses,\
                       processor_seconds";
 
-pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(super) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<(), Failure> {
     if arguments.instances == 0 {
         return Err(Failure::Unusable("--instances must be at least 1".into()));
     }
@@ -148,8 +150,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         .collect();
     let key = |condition: &Condition| condition.name.replace(',', ";");
     let keys: Vec<String> = cells.iter().map(|(condition, seed)| format!("{},{seed}", key(condition))).collect();
-    let path = common.file("trials.csv")?;
-    let rows = resume(&path, HEADER, &keys, common.threads, || (), |(), k| cells[k].0.row(cells[k].1))?;
+    let table = Table::new(common, "trials.csv", HEADER, &keys, ranks);
+    let rows = table.resume(|| (), |(), k| cells[k].0.row(cells[k].1))?;
+    let Some(rows) = rows else { return Ok(()) };
     report(common, &rows, &conditions, arguments.instances as usize)
 }
 

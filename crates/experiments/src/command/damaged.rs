@@ -9,10 +9,11 @@ use tdoa::read::{Units, read, read_nodes};
 use tdoa::{CalibrateError, CalibrateOptions, Calibration, Pseudoranges, calibrate};
 
 use super::common::Common;
-use super::rows::resume;
 use super::statistics::{mean, short};
+use super::table::Table;
 use crate::quantile::{median, quantile};
 use cli::{Failure, output};
+use hc::ranks::Ranks;
 
 /// Calibrates recordings with ground truth as they are and damaged at random, beside the same
 /// refinement started at the truth.
@@ -51,7 +52,7 @@ const CANDIDATES: &str = "recording,triple,candidates,nearest";
 /// A candidate is near the truth if its receivers are within this share of the network's size.
 const NEAR: f64 = 0.25;
 
-pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(super) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<(), Failure> {
     let common = &arguments.common;
     let recordings = arguments.recordings.iter().map(|folder| open(folder)).collect::<Result<Vec<_>, _>>()?;
     let kinds = [(0.0, 0.0), (arguments.missing, arguments.outliers)];
@@ -62,11 +63,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     let keys: Vec<String> = trials.iter().map(|(r, (m, o), seed)| format!("{},{m},{o},{seed}", r.name)).collect();
-    let rows = resume(
-        &common.file("trials.csv")?,
-        HEADER,
-        &keys,
-        common.threads,
+    let table = Table::new(common, "trials.csv", HEADER, &keys, ranks);
+    let rows = table.resume(
         || (),
         |(), k| {
             let (recording, (missing, outliers), seed) = trials[k];
@@ -76,10 +74,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let all: Vec<(&Recording, u64)> =
         recordings.iter().flat_map(|r| common.seeds(arguments.triples).map(move |triple| (r, triple))).collect();
     let keys: Vec<String> = all.iter().map(|(r, triple)| format!("{},{triple}", r.name)).collect();
-    let path = common.file("candidates.csv")?;
-    let candidates = resume(&path, CANDIDATES, &keys, common.threads, MinimalHypotheses::new, |source, k| {
-        Ok(nearest(source, all[k].0, all[k].1))
-    })?;
+    let table = Table::new(common, "candidates.csv", CANDIDATES, &keys, ranks);
+    let candidates = table.resume(MinimalHypotheses::new, |source, k| Ok(nearest(source, all[k].0, all[k].1)))?;
+    let (Some(rows), Some(candidates)) = (rows, candidates) else { return Ok(()) };
 
     let mut summary = String::from(
         "recording,missing,outliers,runs,within_1.1_of_oracle,receiver_rms_median,oracle_rms_median,ratio_median,ratio_max,\

@@ -6,7 +6,7 @@ use crate::trials::calibration::{Trial, trial};
 use tdoa::{CalibrateOptions, SimulateOptions, simulate};
 
 use super::common::{Common, Size};
-use super::rows::resume;
+use super::table::Table;
 use cli::{Failure, output};
 
 /// Calibrates larger and larger networks with gaps and outliers, one after the other, and takes
@@ -32,12 +32,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let common = &arguments.common;
     let key = |size: &Size| format!("{size},{},{},{}", arguments.missing, arguments.outliers, common.seed);
     let keys: Vec<String> = arguments.configuration.iter().map(key).collect();
-    let path = common.file("trials.csv")?;
     // One after the other: each network has all threads, and memory is that of the largest so far.
     for last in 0..keys.len() {
-        resume(&path, HEADER, &keys[..=last], Some(1), || (), |(), k| one(arguments, k))?;
+        let table = Table::new(common, "trials.csv", HEADER, &keys[..=last], None).one_by_one();
+        table.resume(|| (), |(), k| one(arguments, k))?;
     }
-    let table = std::fs::read_to_string(&path).map_err(Failure::unusable)?;
+    let table = std::fs::read_to_string(common.file("trials.csv")?).map_err(Failure::unusable)?;
     common.write("summary.csv", &table)?;
     output::print(&table)
 }

@@ -5,10 +5,11 @@ use tdoa::minimal::Solver;
 
 use super::chart::{Labels, Series, curves};
 use super::common::{Common, Size, normal};
-use super::rows::resume;
 use super::statistics::short;
+use super::table::Table;
 use crate::quantile::{median, quantile};
 use cli::{Failure, output};
+use hc::ranks::Ranks;
 
 /// Solves noisy random networks and sets the errors against the noise, without and with refinement
 /// (the lower row of the paper's figure 1).
@@ -32,7 +33,7 @@ const HEADER: &str = "configuration,noise,seed,position_raw,offset_raw,position_
 /// The measured errors.
 const ERRORS: [&str; 4] = ["position_raw", "position_refined", "offset_raw", "offset_refined"];
 
-pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(super) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<(), Failure> {
     let common = &arguments.common;
     let mut trials: Vec<(Size, f64, u64)> = Vec::new();
     for &size in &arguments.configuration {
@@ -41,12 +42,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     let keys: Vec<String> = trials.iter().map(|(size, noise, seed)| format!("{size},{noise:e},{seed}")).collect();
-    let rows = resume(&common.file("trials.csv")?, HEADER, &keys, common.threads, Solver::new, |solver, k| {
+    let table = Table::new(common, "trials.csv", HEADER, &keys, ranks);
+    let rows = table.resume(Solver::new, |solver, k| {
         let (size, noise, seed) = trials[k];
         let trial = noise_trial(solver, &normal(size, noise, seed)?, noise).map_err(Failure::unusable)?;
         let ([a, b], [c, d]) = (trial.raw, trial.refined);
         Ok(format!("{a:.3e},{b:.3e},{c:.3e},{d:.3e}"))
     })?;
+    let Some(rows) = rows else { return Ok(()) };
     let mut summary = String::from("configuration,noise,instances,without_candidate");
     for error in ERRORS {
         summary += &format!(",{error}_median,{error}_90");

@@ -6,9 +6,10 @@ use crate::trials::checks::route_trial;
 use tdoa::minimal::Solver;
 
 use super::common::{Common, Size, normal, thread_seconds};
-use super::rows::resume;
 use super::statistics::short;
+use super::table::Table;
 use cli::{Failure, output};
+use hc::ranks::Ranks;
 
 /// Compares all real networks from the stored start of the minimal solvers with those from a
 /// polyhedral start system, which is computed for each network as in the paper; where that leaves
@@ -28,10 +29,11 @@ pub(super) struct Arguments {
 const HEADER: &str =
     "configuration,seed,roots_stored,roots_polyhedral,real_stored,real_polyhedral,paths,retracked,agree,seconds";
 
-pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(super) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<(), Failure> {
     let common = &arguments.common;
     let (trials, keys) = common.trials(&arguments.configuration, arguments.instances);
-    let rows = resume(&common.file("trials.csv")?, HEADER, &keys, common.threads, Solver::new, |solver, k| {
+    let table = Table::new(common, "trials.csv", HEADER, &keys, ranks);
+    let rows = table.resume(Solver::new, |solver, k| {
         let (size, seed) = trials[k];
         let simulation = normal(size, 0.0, seed)?;
         let started = thread_seconds();
@@ -48,6 +50,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             thread_seconds() - started
         ))
     })?;
+    let Some(rows) = rows else { return Ok(()) };
     let mut summary = String::from(
         "configuration,instances,agree,roots_stored,roots_polyhedral,at_data,seconds_mean,seconds_max,seeds_that_differ\n",
     );

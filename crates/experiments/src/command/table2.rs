@@ -4,11 +4,13 @@ use std::fmt::Write;
 
 use tdoa::minimal::{SolveOptions, Solver};
 
+use super::book::Rows;
 use super::chart::{Labels, Series, histogram};
 use super::common::{Common, Size, normal};
-use super::rows::{Rows, resume};
 use super::statistics::{moments, short};
+use super::table::Table;
 use cli::{Failure, output};
+use hc::ranks::Ranks;
 
 /// Counts the solutions of clean random 6r/3s networks (the paper's Table 2): real, with positive
 /// definite H, physical.
@@ -27,17 +29,19 @@ const HEADER: &str = "seed,complex,real,positive_definite,physical,failed";
 const KINDS: [(&str, &str); 3] =
     [("real", "real"), ("positive_definite", "real with H > 0"), ("physical", "physical: all f - o >= 0")];
 
-pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(super) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<(), Failure> {
     let common = &arguments.common;
     let size = Size { receivers: 6, transmitters: 3 };
     let seeds = common.seeds(arguments.instances);
     let keys: Vec<String> = seeds.clone().map(|seed| seed.to_string()).collect();
-    let rows = resume(&common.file("trials.csv")?, HEADER, &keys, common.threads, Solver::new, |solver, k| {
+    let table = Table::new(common, "trials.csv", HEADER, &keys, ranks);
+    let rows = table.resume(Solver::new, |solver, k| {
         let simulation = normal(size, 0.0, seeds.start + k as u64)?;
         let solution = solver.solve(&simulation.pseudoranges, &SolveOptions::default()).map_err(Failure::unusable)?;
         let c = solution.counts;
         Ok(format!("{},{},{},{},{}", c.complex, c.real, c.positive_definite, c.physical, solution.paths.failed))
     })?;
+    let Some(rows) = rows else { return Ok(()) };
     let count = keys.len();
     if count == 0 {
         return Err(Failure::Unusable("--instances must be at least 1".into()));

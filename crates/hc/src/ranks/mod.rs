@@ -8,7 +8,7 @@
 //! nothing but its number and the round. [`Targets::on_ranks`](crate::family::Targets::on_ranks) does
 //! this for the targets of a family, [`Family::complete_on_ranks`](crate::Family::complete_on_ranks) for
 //! the loops of monodromy, [`mixed_volume_on_ranks`](crate::start::mixed_volume_on_ranks) for the subtrees
-//! of the search for mixed cells.
+//! of the search for mixed cells. [`compute_on_ranks`] is for any other work in numbered items.
 //!
 //! What carries the messages is an [`Exchange`]. [`Local`] is one between threads; the program `hc`
 //! has one over MPI, behind its feature `mpi`.
@@ -40,6 +40,7 @@
 mod desk;
 mod error;
 mod exchange;
+mod items;
 mod lead;
 mod message;
 mod run;
@@ -50,6 +51,7 @@ mod worker;
 
 pub use error::RanksError;
 pub use exchange::{Exchange, ExchangeError, Local};
+pub use items::compute_on_ranks;
 pub(crate) use lead::Lead;
 pub use run::{Ranks, RanksOptions};
 pub(crate) use shared::{Shareable, Shared};

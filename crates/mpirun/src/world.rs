@@ -30,8 +30,8 @@ const PANICKED: i32 = 101;
 const WORK: i32 = 1;
 const LAST: i32 = 2;
 
-/// Runs the program, with what carries messages to other ranks if there are any.
-pub(crate) fn with(work: impl FnOnce(Option<&dyn Exchange>) -> ExitCode + Send) -> ExitCode {
+/// Runs the program of this name, with what carries messages to other ranks if there are any.
+pub(crate) fn with(name: &str, work: impl FnOnce(Option<&dyn Exchange>) -> ExitCode + Send) -> ExitCode {
     if !LAUNCHERS.iter().any(|name| std::env::var_os(name).is_some()) {
         return work(None);
     }
@@ -42,7 +42,7 @@ pub(crate) fn with(work: impl FnOnce(Option<&dyn Exchange>) -> ExitCode + Send) 
     let [rank, count] = [world.rank(), world.size()].map(|number| usize::try_from(number).unwrap_or(0));
     if threading < Threading::Funneled {
         if rank == 0 {
-            eprintln!("hc: this MPI lets no program have threads; use another one");
+            eprintln!("{name}: this MPI lets no program have threads; use another one");
         }
         return ExitCode::from(2);
     }

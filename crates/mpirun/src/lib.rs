@@ -1,0 +1,14 @@
+//! A program as one of several processes, called ranks, which MPI starts (feature `mpi`).
+//!
+//! [`main`] runs a program with its arguments, alone or as one of the ranks; [`Sharing`] holds the
+//! options of work over several.
+
+#[cfg(feature = "mpi")]
+mod carrier;
+mod program;
+mod sharing;
+#[cfg(feature = "mpi")]
+mod world;
+
+pub use program::{Program, main};
+pub use sharing::Sharing;

@@ -1,0 +1,70 @@
+//! A program from its arguments to its exit status.
+
+use clap::Parser;
+use cli::Failure;
+use hc::ranks::{Exchange, Ranks};
+use std::process::ExitCode;
+
+use crate::Sharing;
+
+/// A program that several ranks can run together: its arguments, and what it does with them.
+pub trait Program: Parser {
+    /// Name of the program, before its messages.
+    const NAME: &'static str;
+
+    /// Options of work over several ranks, where the command has them.
+    fn sharing(&self) -> Option<&Sharing>;
+
+    /// Does what was asked for, as one of several ranks if there are others. Rank 0 alone prints, and
+    /// writes files.
+    ///
+    /// # Errors
+    /// Why it could not be done.
+    fn execute(&self, ranks: Option<&Ranks<'_>>) -> Result<(), Failure>;
+
+    /// Which commands several ranks can do, as a sentence; the others are refused with it.
+    const SHARED: &'static str;
+
+    /// What an interrupt leaves.
+    fn left(&self) -> &'static str;
+}
+
+/// Runs a program with the arguments of the process; its exit status.
+pub fn main<P: Program>() -> ExitCode {
+    #[cfg(feature = "mpi")]
+    return crate::world::with(P::NAME, run::<P>);
+    // This build knows of no other processes.
+    #[cfg(not(feature = "mpi"))]
+    run::<P>(None)
+}
+
+/// Runs a program, as one of the ranks between which `exchange` carries messages.
+fn run<P: Program>(exchange: Option<&dyn Exchange>) -> ExitCode {
+    let is_lead = exchange.is_none_or(|exchange| exchange.rank() == 0);
+    let program = match P::try_parse() {
+        Ok(program) => program,
+        Err(error) => {
+            if is_lead {
+                // Nobody is there to be told that the words cannot be printed.
+                let _ = error.print();
+            }
+            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
+        }
+    };
+    let options = program.sharing().map(Sharing::options);
+    let ranks = exchange.map(|exchange| Ranks::new(exchange, &options.clone().unwrap_or_default()));
+    let result = if ranks.is_some() && options.is_none() {
+        Err(Failure::Unusable(format!("{}; start this without mpirun", P::SHARED)))
+    } else {
+        program.execute(ranks.as_ref())
+    };
+    if !is_lead {
+        // Rank 0 says what there is to be said.
+        let failure = result.err().map(|error| error.to_string());
+        ranks.inspect(|ranks| ranks.finish(failure.as_deref()));
+        return ExitCode::SUCCESS;
+    }
+    let status = cli::finish(P::NAME, result, program.left());
+    ranks.inspect(|ranks| ranks.finish(None));
+    status
+}
