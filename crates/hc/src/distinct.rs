@@ -56,6 +56,32 @@ pub(crate) fn groups<'a>(
     all
 }
 
+/// Points among which one looks for those that coincide with another.
+pub(crate) struct Known<'a> {
+    points: Vec<&'a [Complex64]>,
+    /// In the order of the keys.
+    keyed: Vec<Keyed>,
+}
+
+impl<'a> Known<'a> {
+    pub(crate) fn new(points: impl Iterator<Item = &'a [Complex64]>) -> Known<'a> {
+        let points: Vec<&[Complex64]> = points.collect();
+        let mut keyed: Vec<Keyed> = points.iter().enumerate().map(|(index, x)| Keyed::new(x, index)).collect();
+        keyed.sort_unstable_by(Keyed::order);
+        Known { points, keyed }
+    }
+
+    /// Whether one of them has at most this [`relative_distance`] from a point.
+    pub(crate) fn has(&self, x: &[Complex64], tolerance: f64) -> bool {
+        let own = Keyed::new(x, 0);
+        // As in `Coincidences::find`; a point that coincides is nearly of this size.
+        let reach = 4.0 * tolerance * own.size;
+        let first = self.keyed.partition_point(|known| known.key < own.key - reach);
+        let near = self.keyed[first..].iter().take_while(|known| known.key <= own.key + reach);
+        near.into_iter().any(|known| relative_distance(self.points[known.index], x) <= tolerance)
+    }
+}
+
 /// The memory of a search for coinciding points.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Coincidences {
@@ -72,6 +98,16 @@ struct Keyed {
     index: usize,
 }
 
+impl Keyed {
+    fn new(x: &[Complex64], index: usize) -> Keyed {
+        Keyed { key: projection(x), size: x.iter().map(|z| z.re.abs() + z.im.abs()).sum(), index }
+    }
+
+    fn order(&self, other: &Keyed) -> std::cmp::Ordering {
+        self.key.total_cmp(&other.key).then(self.index.cmp(&other.index))
+    }
+}
+
 impl Coincidences {
     /// With room for so many points.
     pub(crate) fn with_capacity(points: usize) -> Self {
@@ -86,11 +122,8 @@ impl Coincidences {
         tolerance: f64,
     ) {
         self.keyed.clear();
-        self.keyed.extend(indices.into_iter().map(|index| {
-            let x = point(index);
-            Keyed { key: projection(x), size: x.iter().map(|z| z.re.abs() + z.im.abs()).sum(), index }
-        }));
-        self.keyed.sort_unstable_by(|a, b| a.key.total_cmp(&b.key).then(a.index.cmp(&b.index)));
+        self.keyed.extend(indices.into_iter().map(|index| Keyed::new(point(index), index)));
+        self.keyed.sort_unstable_by(Keyed::order);
         self.parent.clear();
         self.parent.extend(0..self.keyed.len());
         for (i, a) in self.keyed.iter().enumerate() {
@@ -149,8 +182,32 @@ pub(crate) fn projection(x: &[Complex64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::coincidences;
+    use super::{Known, coincidences, relative_distance};
     use num_complex::Complex64;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn those_with_a_neighbour_are_the_ones_that_a_look_at_all_finds(
+            known in proptest::collection::vec((-3i8..3, -3i8..3, -9i8..9), 0..40),
+            size in prop_oneof![Just(1e-9), Just(1.0), Just(1e9)],
+            tolerance in prop_oneof![Just(1e-6), Just(1e-2), Just(0.5)],
+        ) {
+            // Points of a coarse grid, moved by a few thirds of the tolerance.
+            let point = |(a, b, moved): &(i8, i8, i8)| {
+                let [a, b, moved] = [*a, *b, *moved].map(f64::from);
+                let at = 1.0 + moved * tolerance / 3.0;
+                [Complex64::new(a, b) * at * size, Complex64::new(b, 1.0 - a) * at * size * 1e-3]
+            };
+            let points: Vec<[Complex64; 2]> = known.iter().map(point).collect();
+            let (known, others) = points.split_at(points.len() / 2);
+            let sorted = Known::new(known.iter().map(|x| &x[..]));
+            for x in others {
+                let expected = known.iter().any(|y| relative_distance(y, x) <= tolerance);
+                prop_assert_eq!(sorted.has(x, tolerance), expected);
+            }
+        }
+    }
 
     #[test]
     fn finds_pairs_and_chains_only() {

@@ -12,9 +12,27 @@ const DEPTH: usize = 2;
 const LEAST: usize = 32;
 const MOST: usize = 256;
 
-/// The paths of a round that are not tracked yet, and those that some rank has.
+/// The paths of a round that are not tracked yet, and those that some rank has: how rank 0 divides
+/// work between ranks.
+///
+/// Whoever has room takes a portion: half of its share of what is known of, but 32 to 256 paths for
+/// each of its threads. Another rank than the first may have two at a time. The desk has no clock; it is
+/// told the time.
+///
+/// ```
+/// use hc::ranks::Desk;
+/// use std::time::{Duration, Instant};
+///
+/// let mut desk = Desk::new(2, 1, Duration::from_secs(600));
+/// desk.begin_part(1);
+/// desk.ready(1, 4);
+/// desk.offer(&(0..10_000).collect::<Vec<_>>());
+/// let portion = desk.take(1, Instant::now()).unwrap();
+/// assert_eq!(portion.paths.len(), 4 * 256);
+/// assert_eq!(desk.answer(1, portion.number), Some(portion.paths));
+/// ```
 #[derive(Debug)]
-pub(super) struct Desk {
+pub struct Desk {
     patience: Duration,
     round: Round,
     /// Least and largest portion for each thread.
@@ -48,8 +66,9 @@ struct Seat {
 }
 
 impl Desk {
-    /// For so many ranks, of which the first has so many threads.
-    pub(super) fn new(ranks: usize, threads: usize, patience: Duration) -> Desk {
+    /// For so many ranks, of which the first has so many threads. What a rank has not answered for as
+    /// long as `patience` is given to another one too.
+    pub fn new(ranks: usize, threads: usize, patience: Duration) -> Desk {
         let mut seats = vec![Seat::default(); ranks.max(1)];
         seats[0].threads = threads.max(1);
         let (fresh, out) = (VecDeque::new(), BTreeMap::new());
@@ -58,7 +77,7 @@ impl Desk {
 
     /// Begins another part, for which the others have to become ready. Each of its numbers stands for
     /// so many paths.
-    pub(super) fn begin_part(&mut self, weight: usize) {
+    pub fn begin_part(&mut self, weight: usize) {
         self.sizes = [LEAST, MOST].map(|size| (size / weight.max(1)).max(1));
         self.begin_round(Round::FIRST);
         self.seats[1..].fill(Seat::default());
@@ -72,31 +91,31 @@ impl Desk {
     }
 
     /// Notes that a rank can work, on so many threads.
-    pub(super) fn ready(&mut self, rank: usize, threads: usize) {
+    pub fn ready(&mut self, rank: usize, threads: usize) {
         if let Some(seat) = self.seats.get_mut(rank) {
             seat.threads = threads.clamp(1, 1 << 16);
         }
     }
 
     /// All threads of ranks that are ready.
-    pub(super) fn threads(&self) -> usize {
+    pub fn threads(&self) -> usize {
         self.seats.iter().map(|seat| seat.threads).sum()
     }
 
     /// How many paths are worth knowing of at a time, so that nobody waits for the next batch.
-    pub(super) fn horizon(&self) -> usize {
+    pub fn horizon(&self) -> usize {
         2 * self.sizes[1] * self.threads()
     }
 
     /// Adds paths, ascending, but for those that were offered before.
-    pub(super) fn offer(&mut self, paths: &[usize]) {
+    pub fn offer(&mut self, paths: &[usize]) {
         let new = self.last.map_or(0, |last| paths.partition_point(|&path| path <= last));
         self.fresh.extend(&paths[new..]);
         self.last = self.last.max(paths.last().copied());
     }
 
     /// A portion for a rank: one that another has had for too long, or the next.
-    pub(super) fn take(&mut self, rank: usize, now: Instant) -> Option<Portion> {
+    pub fn take(&mut self, rank: usize, now: Instant) -> Option<Portion> {
         let all = self.threads();
         let seat = self.seats.get_mut(rank).filter(|seat| seat.threads > 0)?;
         if rank > 0 && seat.held.len() >= DEPTH {
@@ -130,13 +149,13 @@ impl Desk {
     }
 
     /// Notes the answer of a rank: the paths of the portion, if it is the first answer and wanted.
-    pub(super) fn answer(&mut self, rank: usize, number: u64) -> Option<Vec<usize>> {
+    pub fn answer(&mut self, rank: usize, number: u64) -> Option<Vec<usize>> {
         self.seats.get_mut(rank)?.held.remove(&number);
         self.out.remove(&number).map(|out| out.paths)
     }
 
     /// When a portion is to be handed out again, if no answer comes.
-    pub(super) fn due(&self) -> Option<Instant> {
+    pub fn due(&self) -> Option<Instant> {
         let others = self.out.values().filter(|out| out.rank != 0);
         others.filter_map(|out| out.since.checked_add(self.patience)).min()
     }

@@ -3,7 +3,7 @@
 use super::desk::Desk;
 use super::error::RanksError;
 use super::message::{Order, Portion, Report, decoded};
-use super::run::{Ranks, TICK};
+use super::run::{Answered, Ranks, TICK};
 use crate::runner::Round;
 use crate::threads::current_num_threads;
 use serde::Serialize;
@@ -169,8 +169,9 @@ impl<'a> Lead<'a> {
                 state.desk.ready(rank, threads);
                 self.feed(&mut state, rank);
             }
-            Report::Done { job, part, number, content } if (job, part) == (self.job, state.parts) => {
+            Report::Done { job, part, number, seconds, content } if (job, part) == (self.job, state.parts) => {
                 if let Some(paths) = state.desk.answer(rank, number) {
+                    self.ranks.note(Answered { rank, paths: paths.len(), seconds, bytes: content.len() });
                     state.arrived.push(Arrived { rank, paths, content });
                     self.changed.notify_all();
                 }

@@ -10,19 +10,20 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 /// The version of messages, their first byte; another one whenever they change.
-const VERSION: u8 = 1;
+const VERSION: u8 = 2;
 /// Longer messages are refused.
 pub(super) const LONGEST: usize = 1 << 30;
 
-/// Paths that a rank is to track.
+/// Paths that a rank is to track, or other items that it is to compute.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Portion {
+#[non_exhaustive]
+pub struct Portion {
     /// Its number in the part.
-    pub(super) number: u64,
+    pub number: u64,
     pub(super) level: u32,
     pub(super) chart: usize,
     /// The numbers of the paths, ascending.
-    pub(super) paths: Vec<usize>,
+    pub paths: Vec<usize>,
 }
 
 impl Portion {
@@ -49,8 +50,8 @@ pub(super) enum Order {
 pub(super) enum Report {
     /// A part can be worked at, on so many threads. The rank has the job with this fingerprint.
     Ready { job: u64, part: u32, threads: usize, fingerprint: String },
-    /// What has become of the paths of a portion.
-    Done { job: u64, part: u32, number: u64, content: Vec<u8> },
+    /// What has become of the paths of a portion, and the seconds that they took.
+    Done { job: u64, part: u32, number: u64, seconds: f64, content: Vec<u8> },
     /// The rank cannot work.
     Failed { job: u64, message: String },
 }
@@ -99,7 +100,7 @@ mod tests {
             refused(&bytes[..end]);
         }
         assert_eq!(refused(&[&bytes[..], &[0]].concat()), "1 bytes too many");
-        assert_eq!(refused(&[&[9], &bytes[1..]].concat()), "version 9 instead of 1");
+        assert_eq!(refused(&[&[9], &bytes[1..]].concat()), "version 9 instead of 2");
         // A list that claims to be longer than anything.
         let long = [&[VERSION, 0, 1, 1][..], &[0xff; 9], &[1]].concat();
         refused(&long);

@@ -49,10 +49,12 @@ mod shared;
 pub(crate) mod support;
 mod worker;
 
+pub use desk::Desk;
 pub use error::RanksError;
 pub use exchange::{Exchange, ExchangeError, Local};
 pub use items::compute_on_ranks;
 pub(crate) use lead::Lead;
-pub use run::{Ranks, RanksOptions};
+pub use message::Portion;
+pub use run::{Answered, Ranks, RanksOptions};
 pub(crate) use shared::{Shareable, Shared};
 pub(crate) use worker::{Task, Worker};

@@ -5,6 +5,7 @@ use super::exchange::{Exchange, ExchangeError};
 use super::message::{Order, Report, decoded, encoded};
 use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 /// How long one waits for a message before looking whether the work has ended.
@@ -46,6 +47,21 @@ pub struct Ranks<'a> {
     jobs: AtomicU64,
     /// Whether rank 0 has said that there are no more jobs.
     pub(super) ended: AtomicBool,
+    answered: Mutex<Vec<Answered>>,
+}
+
+/// A portion of paths, or other items, that another rank has sent back to rank 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Answered {
+    /// That rank.
+    pub rank: usize,
+    /// Number of paths.
+    pub paths: usize,
+    /// Seconds that the rank took for them, on all its threads.
+    pub seconds: f64,
+    /// Length of what it has sent, without a head of a few bytes.
+    pub bytes: usize,
 }
 
 impl fmt::Debug for Ranks<'_> {
@@ -57,12 +73,28 @@ impl fmt::Debug for Ranks<'_> {
 impl<'a> Ranks<'a> {
     /// Those between which `exchange` carries messages.
     pub fn new(exchange: &'a dyn Exchange, options: &RanksOptions) -> Ranks<'a> {
-        Ranks { exchange, options: options.clone(), jobs: AtomicU64::new(0), ended: AtomicBool::new(false) }
+        Ranks {
+            exchange,
+            options: options.clone(),
+            jobs: AtomicU64::new(0),
+            ended: AtomicBool::new(false),
+            answered: Mutex::default(),
+        }
     }
 
     /// Whether this is rank 0, which has the results.
     pub fn is_lead(&self) -> bool {
         self.exchange.rank() == 0
+    }
+
+    /// What other ranks have sent back to this one, which is rank 0, in the order of its arrival: how
+    /// the work was divided, and what a [`Desk`](super::Desk) of more ranks is to be simulated from.
+    pub fn answered(&self) -> Vec<Answered> {
+        self.answered.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    pub(super) fn note(&self, answered: Answered) {
+        self.answered.lock().unwrap_or_else(PoisonError::into_inner).push(answered);
     }
 
     /// Ends the run: rank 0 lets the others go, which wait for this. `failure` says why this rank can

@@ -12,7 +12,7 @@ use std::cell::RefCell;
 use std::fmt::Display;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// How long a rank waits to hear why rank 0 takes no message any more.
 const PARTING: Duration = Duration::from_secs(2);
@@ -126,11 +126,14 @@ impl Worker<'_> {
                     return Ok(());
                 }
                 Heard::Portion(of, portion) if of == part => {
+                    let begun = Instant::now();
                     let answer = track(&portion.paths, portion.round());
+                    let seconds = begun.elapsed().as_secs_f64();
                     // What was cancelled half way is no answer.
                     if !task.monitor.is_cancelled() {
                         let content = postcard::to_stdvec(&answer).unwrap_or_default();
-                        if !self.tell(&Report::Done { job, part, number: portion.number, content })? {
+                        let number = portion.number;
+                        if !self.tell(&Report::Done { job, part, number, seconds, content })? {
                             return Ok(());
                         }
                     }

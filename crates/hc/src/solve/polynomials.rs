@@ -15,13 +15,12 @@ use super::slack;
 use super::solutions::Solutions;
 use super::start::Starts;
 use crate::checkpoint::{Checkpoint, Part};
-use crate::distinct::{CLUSTER, relative_distance};
+use crate::distinct::{CLUSTER, Known};
 use crate::monitor::Monitor;
 use crate::ranks::{Lead, Worker};
 use crate::singular::Given;
 use crate::start::MixedError;
 use crate::tracker::Trackers;
-use num_complex::Complex64;
 use poly::{Exact, Polynomial};
 use std::borrow::Cow;
 
@@ -256,9 +255,9 @@ impl Best {
         if better.found.lost == 0 {
             return better;
         }
-        let known: Vec<Vec<Complex64>> = better.found.solutions.iter().map(|s| s.value.clone()).collect();
-        let new = other.found.solutions.into_iter().filter(|s| !s.singular);
-        let new = new.filter(|s| known.iter().all(|x| relative_distance(x, &s.value) > CLUSTER));
+        let known = Known::new(better.found.solutions.iter().map(|s| &s.value[..]));
+        let mut new = other.found.solutions;
+        new.retain(|s| !s.singular && !known.has(&s.value, CLUSTER));
         let before = better.found.solutions.len();
         better.found.solutions.extend(new);
         // Each of them is the end of a path that was lost.
