@@ -45,7 +45,11 @@ pub struct Desk {
     next: u64,
     /// Portions that somebody has, by their numbers.
     out: BTreeMap<u64, Out>,
+    /// No portion that another rank than the first has was handed out before this.
+    oldest: Option<Instant>,
     seats: Vec<Seat>,
+    /// All threads of ranks that are ready.
+    threads: usize,
 }
 
 /// A portion that a rank has.
@@ -71,8 +75,18 @@ impl Desk {
     pub fn new(ranks: usize, threads: usize, patience: Duration) -> Desk {
         let mut seats = vec![Seat::default(); ranks.max(1)];
         seats[0].threads = threads.max(1);
-        let (fresh, out) = (VecDeque::new(), BTreeMap::new());
-        Desk { patience, round: Round::FIRST, sizes: [LEAST, MOST], fresh, last: None, next: 0, out, seats }
+        Desk {
+            patience,
+            round: Round::FIRST,
+            sizes: [LEAST, MOST],
+            fresh: VecDeque::new(),
+            last: None,
+            next: 0,
+            out: BTreeMap::new(),
+            oldest: None,
+            threads: seats[0].threads,
+            seats,
+        }
     }
 
     /// Begins another part, for which the others have to become ready. Each of its numbers stands for
@@ -81,25 +95,28 @@ impl Desk {
         self.sizes = [LEAST, MOST].map(|size| (size / weight.max(1)).max(1));
         self.begin_round(Round::FIRST);
         self.seats[1..].fill(Seat::default());
+        self.threads = self.seats[0].threads;
     }
 
     /// Begins a round. What was not answered is not wanted any more.
     pub(super) fn begin_round(&mut self, round: Round) {
         self.fresh.clear();
         self.out.clear();
-        (self.round, self.last) = (round, None);
+        (self.round, self.last, self.oldest) = (round, None, None);
     }
 
     /// Notes that a rank can work, on so many threads.
     pub fn ready(&mut self, rank: usize, threads: usize) {
         if let Some(seat) = self.seats.get_mut(rank) {
-            seat.threads = threads.clamp(1, 1 << 16);
+            let threads = threads.clamp(1, 1 << 16);
+            self.threads = self.threads - seat.threads + threads;
+            seat.threads = threads;
         }
     }
 
     /// All threads of ranks that are ready.
     pub fn threads(&self) -> usize {
-        self.seats.iter().map(|seat| seat.threads).sum()
+        self.threads
     }
 
     /// How many paths are worth knowing of at a time, so that nobody waits for the next batch.
@@ -116,15 +133,20 @@ impl Desk {
 
     /// A portion for a rank: one that another has had for too long, or the next.
     pub fn take(&mut self, rank: usize, now: Instant) -> Option<Portion> {
-        let all = self.threads();
+        let all = self.threads;
         let seat = self.seats.get_mut(rank).filter(|seat| seat.threads > 0)?;
         if rank > 0 && seat.held.len() >= DEPTH {
             return None;
         }
-        let late = |(_, out): &(&u64, &mut Out)| {
-            out.rank != 0 && out.rank != rank && now.saturating_duration_since(out.since) >= self.patience
-        };
-        let (number, paths) = match self.out.iter_mut().find(late) {
+        // Of thousands of portions one looks for late ones only when there may be some.
+        let is_late = |since: Instant| now.saturating_duration_since(since) >= self.patience;
+        let mut late = None;
+        if self.oldest.is_some_and(is_late) {
+            let of_others = self.out.values().filter(|out| out.rank != 0);
+            self.oldest = of_others.map(|out| out.since).min();
+            late = self.out.iter_mut().find(|(_, out)| out.rank != 0 && out.rank != rank && is_late(out.since));
+        }
+        let (number, paths) = match late {
             Some((&number, out)) => {
                 (out.rank, out.since) = (rank, now);
                 (number, out.paths.clone())
@@ -138,6 +160,9 @@ impl Desk {
                 let number = self.next;
                 self.next += 1;
                 self.out.insert(number, Out { paths: paths.clone(), rank, since: now });
+                if rank > 0 {
+                    self.oldest.get_or_insert(now);
+                }
                 (number, paths)
             }
         };
