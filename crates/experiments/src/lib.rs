@@ -16,6 +16,8 @@ mod quantile;
 #[cfg(feature = "records")]
 pub mod results;
 #[cfg(feature = "trials")]
+pub mod scale;
+#[cfg(feature = "trials")]
 pub mod trials;
 #[cfg(feature = "records")]
 pub mod workspace;

@@ -17,8 +17,10 @@ const NOT_RUN: &[&str] = &[
     "cargo deny check",
     // Takes minutes, and builds what the tests have built.
     "cargo build --profile dist -p tdoa-cli -p hc-cli",
+    // Minutes, of a system that the reader has.
+    "hc solve cyclic11.txt --checkpoint run --resume --json solutions.json",
     // Need Open MPI.
-    "cargo build --release -p hc-cli --features mpi",
+    "cargo build --release -p hc-cli -p tdoa-cli --features mpi",
     "cargo test -p end-to-end --features mpi --test all mpi",
     // Written into the repository; `--check` is run instead.
     "cargo xtask codegen",
@@ -91,6 +93,7 @@ fn no_page_is_left_out() {
     // The page of Python is tested by crates/python/tests/test_guide.py.
     let tested = [
         "calibrate-a-network.md",
+        "cluster.md",
         "polynomial-system.md",
         "minimal-problem.md",
         "tracker.md",
@@ -142,6 +145,39 @@ fn solving_a_polynomial_system() {
             let (re, im) = (z[0].as_f64().expect("number"), z[1].as_f64().expect("number"));
             assert!((re.abs() - 0.8f64.sqrt()).abs() < 1e-12 && im.abs() < 1e-12);
         }
+    }
+}
+
+/// The job script of the page runs as Slurm would run it, with a launcher that starts one rank.
+#[test]
+#[cfg(unix)]
+fn a_job_on_a_cluster() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+
+    let folder = tempfile::tempdir().expect("folder");
+    let text = std::fs::read_to_string(root().join("docs/guide/cluster.md")).expect("page");
+    let script = text.split("```bash\n").nth(1).and_then(|rest| rest.split("```").next()).expect("the script");
+    let programs = folder.path().join("bin");
+    std::fs::create_dir(&programs).expect("folder");
+    for name in ["hc", "tdoa"] {
+        symlink(program(name), programs.join(name)).expect("link");
+    }
+    // The words from the program on.
+    let launcher = "#!/bin/sh\nwhile [ $# -gt 0 ] && [ \"$1\" != hc ]; do shift; done\nexec \"$@\"\n";
+    std::fs::write(programs.join("mpirun"), launcher).expect("written");
+    std::fs::set_permissions(programs.join("mpirun"), PermissionsExt::from_mode(0o755)).expect("executable");
+    std::fs::write(folder.path().join("job.sh"), script).expect("written");
+    std::fs::write(folder.path().join("system.txt"), "x^2 + y^2 - 5\nx*y - 2\n").expect("written");
+    let path = format!("{}:{}", programs.display(), std::env::var("PATH").unwrap_or_default());
+    // Started again it goes on, with nothing left to do.
+    for _ in 0..2 {
+        let mut job = Command::new("bash");
+        job.arg("job.sh").current_dir(&folder).env("PATH", &path).env("SLURM_CPUS_PER_TASK", "2");
+        let output = job.output().expect("bash runs");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let text = std::fs::read_to_string(folder.path().join("solutions.json")).expect("JSON");
+        let found: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        assert_eq!(found["solutions"].as_array().map(Vec::len), Some(4));
     }
 }
 

@@ -119,7 +119,7 @@ impl Desk {
         self.threads
     }
 
-    /// How many paths are worth knowing of at a time, so that nobody waits for the next batch.
+    /// How many paths beyond the next batch are worth knowing of, so that nobody waits for its end.
     pub fn horizon(&self) -> usize {
         2 * self.sizes[1] * self.threads()
     }

@@ -81,7 +81,7 @@ impl<'a> Lead<'a> {
     pub(super) fn offer(&self, paths: &[usize], next: &[usize]) {
         let mut state = self.state();
         state.desk.offer(paths);
-        let known = state.desk.horizon().saturating_sub(paths.len()).min(next.len());
+        let known = state.desk.horizon().min(next.len());
         state.desk.offer(&next[..known]);
         for rank in 1..self.ranks.exchange.count() {
             self.feed(&mut state, rank);
