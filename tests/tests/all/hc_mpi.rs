@@ -1,6 +1,6 @@
 //! `mpirun hc`: the same bytes on any number of ranks, and an end of all of them.
 
-use crate::mpi::{on_ranks, process, said, signal, text, waited, written};
+use crate::mpi::{on_ranks, process, said, signal, succeeds, text, waited, written};
 use end_to_end::run;
 use std::process::{Output, Stdio};
 use std::time::{Duration, Instant};
@@ -142,11 +142,11 @@ fn a_search_whose_rank_dies_goes_on_from_its_checkpoint() {
     };
     for (rank, loops) in [(1, 4), (0, 8)] {
         let mut command = on_ranks("hc", 2, &recorded);
-        let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("mpirun runs");
+        let child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("mpirun runs");
         let victim = waited(|| process(&child, rank));
         waited(|| records().filter(|&records| records >= loops));
         signal("-KILL", victim);
-        assert!(!child.wait().expect("mpirun ends").success());
+        assert!(!succeeds(child));
     }
     let output = on_ranks("hc", 4, &recorded).output().expect("mpirun runs");
     assert!(output.stdout == expected.stdout, "{}", said(&output));
@@ -258,8 +258,10 @@ fn a_rank_that_dies_ends_all_and_the_checkpoint_goes_on() {
     moments.sort_unstable();
     for [paths, milliseconds, which] in moments {
         let mut command = on_ranks("hc", 2, &recorded);
-        let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("mpirun runs");
+        let child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("mpirun runs");
         let ranks = [0, 1].map(|rank| waited(|| process(&child, rank)));
+        // MPI has begun.
+        ranks.into_iter().for_each(end_to_end::wait_for_handler);
         waited(|| done().or(Some(0)).filter(|&done| done >= paths));
         std::thread::sleep(Duration::from_millis(milliseconds));
         if which == 2 {
@@ -268,7 +270,7 @@ fn a_rank_that_dies_ends_all_and_the_checkpoint_goes_on() {
         } else {
             signal("-KILL", ranks[which as usize]);
         }
-        assert!(!child.wait().expect("mpirun ends").success(), "killed at {paths} paths");
+        assert!(!succeeds(child), "killed at {paths} paths");
     }
     let output = on_ranks("hc", 4, &recorded).output().expect("mpirun runs");
     assert_eq!(untimed(&output), expected, "{}", said(&output));

@@ -56,3 +56,17 @@ pub(crate) fn signal(name: &str, process: u32) {
     let killed = Command::new("kill").args([name, &process.to_string()]).status().expect("kill runs");
     assert!(killed.success());
 }
+
+/// Waits for the end of mpirun; whether it was a success. After a rank was killed Open MPI 4.1 waits for
+/// itself for ever now and then (in `pmix_rte_finalize`, all ranks are gone), and is killed too.
+pub(crate) fn succeeds(mut mpirun: Child) -> bool {
+    let begun = Instant::now();
+    while begun.elapsed() < Duration::from_secs(20) {
+        if let Some(status) = mpirun.try_wait().expect("mpirun can be waited for") {
+            return status.success();
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    mpirun.kill().expect("mpirun can be killed");
+    mpirun.wait().expect("mpirun ends").success()
+}

@@ -1,6 +1,6 @@
 //! `mpirun tdoa experiment`: the same tables on any number of ranks, also after some of them died.
 
-use crate::mpi::{on_ranks, process, said, signal, text, waited};
+use crate::mpi::{on_ranks, process, said, signal, succeeds, text, waited};
 use end_to_end::run;
 use std::path::Path;
 use std::process::Stdio;
@@ -59,11 +59,11 @@ fn an_experiment_whose_rank_dies_goes_on_where_it_was() {
     let words = [&words[..], &[&output]].concat();
     let rows = || std::fs::read_to_string(killed.join("trials.csv")).map_or(0, |table| table.lines().count());
     for (rank, least) in [(1, 300), (0, 900)] {
-        let mut child = on_ranks("tdoa", 2, &words).stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("runs");
+        let child = on_ranks("tdoa", 2, &words).stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("runs");
         let victim = waited(|| process(&child, rank));
         waited(|| Some(rows()).filter(|&rows| rows >= least));
         signal("-KILL", victim);
-        assert!(!child.wait().expect("mpirun ends").success());
+        assert!(!succeeds(child));
         assert!(rows() < 3000, "there was something left to do");
     }
     let output = on_ranks("tdoa", 4, &words).output().expect("mpirun runs");
