@@ -64,6 +64,7 @@ pub(crate) struct Known<'a> {
 }
 
 impl<'a> Known<'a> {
+    /// Those points, sorted by their projections.
     pub(crate) fn new(points: impl Iterator<Item = &'a [Complex64]>) -> Known<'a> {
         let points: Vec<&[Complex64]> = points.collect();
         let mut keyed: Vec<Keyed> = points.iter().enumerate().map(|(index, x)| Keyed::new(x, index)).collect();
@@ -77,8 +78,8 @@ impl<'a> Known<'a> {
         // As in `Coincidences::find`; a point that coincides is nearly of this size.
         let reach = 4.0 * tolerance * own.size;
         let first = self.keyed.partition_point(|known| known.key < own.key - reach);
-        let near = self.keyed[first..].iter().take_while(|known| known.key <= own.key + reach);
-        near.into_iter().any(|known| relative_distance(self.points[known.index], x) <= tolerance)
+        let mut near = self.keyed[first..].iter().take_while(|known| known.key <= own.key + reach);
+        near.any(|known| relative_distance(self.points[known.index], x) <= tolerance)
     }
 }
 

@@ -1,16 +1,17 @@
 //! A program from its arguments to its exit status.
 
+use crate::Sharing;
 use clap::Parser;
 use cli::Failure;
 use hc::ranks::{Exchange, Ranks};
 use std::process::ExitCode;
 
-use crate::Sharing;
-
 /// A program that several ranks can run together: its arguments, and what it does with them.
 pub trait Program: Parser {
     /// Name of the program, before its messages.
     const NAME: &'static str;
+    /// Which commands several ranks can do, as a sentence; the others are refused with it.
+    const SHARED: &'static str;
 
     /// Options of work over several ranks, where the command has them.
     fn sharing(&self) -> Option<&Sharing>;
@@ -21,9 +22,6 @@ pub trait Program: Parser {
     /// # Errors
     /// Why it could not be done.
     fn execute(&self, ranks: Option<&Ranks<'_>>) -> Result<(), Failure>;
-
-    /// Which commands several ranks can do, as a sentence; the others are refused with it.
-    const SHARED: &'static str;
 
     /// What an interrupt leaves.
     fn left(&self) -> &'static str;

@@ -89,8 +89,8 @@ fn led<T: DeserializeOwned>(
         *left = left.saturating_sub(items.len());
         numbers.into_iter().zip(items).try_for_each(|(number, item)| absorb(number, item))
     };
+    lead.offer(numbers, &[]);
     while left > 0 && !monitor.is_cancelled() {
-        lead.offer(numbers, &[]);
         for arrived in lead.arrived() {
             let (rank, expected) = (arrived.rank, arrived.paths.len());
             let refused = |reason: String| RanksError::Message { rank, reason };
@@ -173,6 +173,25 @@ mod tests {
             assert_eq!(found[0], (expected.clone(), Ok(())), "{count} ranks");
             assert!(found[1..].iter().all(|end| *end == (BTreeMap::new(), Ok(()))));
         }
+    }
+
+    #[test]
+    fn rank_0_knows_what_others_have_sent_back() {
+        let numbers: Vec<usize> = (0..300).collect();
+        let exchanges: Vec<Faulty> = Local::ranks(2).into_iter().map(|local| Faulty::new(local, 0)).collect();
+        let answers = exchanges[0].answers().clone();
+        let wait = || {
+            while answers.load(Ordering::Relaxed) == 0 {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+        };
+        let answered = on(&exchanges, PATIENCE, |ranks| {
+            let _ = texts("texts", &numbers, usize::MAX, wait, ranks);
+            ranks.answered()
+        });
+        assert!(!answered[0].is_empty() && answered[1].is_empty());
+        assert!(answered[0].iter().all(|answered| answered.rank == 1 && answered.bytes > answered.paths));
+        assert!(answered[0].iter().map(|answered| answered.paths).sum::<usize>() <= numbers.len());
     }
 
     #[test]

@@ -10,8 +10,8 @@
 //! the loops of monodromy, [`mixed_volume_on_ranks`](crate::start::mixed_volume_on_ranks) for the subtrees
 //! of the search for mixed cells. [`compute_on_ranks`] is for any other work in numbered items.
 //!
-//! What carries the messages is an [`Exchange`]. [`Local`] is one between threads; the program `hc`
-//! has one over MPI, behind its feature `mpi`.
+//! What carries the messages is an [`Exchange`]. [`Local`] is one between threads; the programs
+//! `hc` and `tdoa` have one over MPI, behind their feature `mpi`.
 //!
 //! ```
 //! use hc::ranks::{Local, Ranks, RanksOptions};
