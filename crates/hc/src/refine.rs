@@ -379,3 +379,10 @@ fn sizes(x: &[Complex64], squares: &mut Vec<[f64; 1]>) {
     squares.clear();
     squares.extend(x.iter().map(|z| [if z.norm_sqr() > 1e-24 * unit { z.norm_sqr() } else { 1e-8 * unit }]));
 }
+
+/// The size by which refinement measures a coordinate of absolute value `norm`, `largest` that of the
+/// largest coordinate.
+pub(crate) fn size(norm: f64, largest: f64) -> f64 {
+    let unit = if largest > 0.0 { largest.min(1.0) } else { 1.0 };
+    if norm > 1e-12 * unit { norm } else { 1e-4 * unit }
+}

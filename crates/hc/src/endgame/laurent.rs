@@ -6,6 +6,7 @@
 //! aliasing, whose error falls with the number of samples a turn as `(r / R)^samples`, `R` the
 //! distance to the next singularity (Morgan, Sommese & Wampler 1991).
 
+use crate::refine;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -80,8 +81,7 @@ impl Loop<'_> {
         let (mut limit, mut valuations, mut error) = (Vec::with_capacity(n), Vec::with_capacity(n), self.noise);
         for j in 0..n {
             let size = size(j);
-            // The tracker's errors are relative to weights with this floor.
-            let noise = self.noise * size.max(1e-4 * largest);
+            let noise = self.noise * refine::size(size, largest);
             let blur = self.blur[j];
             if blur > BLURRED * size.max(1e-4 * largest) {
                 return Reading::TooDeep;

@@ -65,6 +65,7 @@ pub(crate) fn endgame<'a, E: Evaluate>(
         // Legs end at points like any others.
         endgame_start: 0.0,
         min_t: 0.0,
+        least_share: 0.0,
         ..tracker.clone()
     };
     let max_steps = tracker.max_steps / (1 + segment.target().len() / HEAVY);

@@ -4,7 +4,7 @@ use super::ending::{Ending, Handed, Verdict};
 use super::laurent::{CLEAR, Loop, Reading, VAGUE};
 use super::legs::Leg;
 use super::options::{EndgameOptions, LEAST_SHRINK};
-use crate::distinct::relative_distance;
+use crate::refine;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -197,15 +197,15 @@ impl Walker {
         let count = self.samples.len() / n;
         let first = &self.samples[..n];
         if count.is_multiple_of(self.per_turn) {
-            let distance = relative_distance(first, end);
-            let spread = self.samples.chunks(n).map(|x| relative_distance(first, x)).fold(0.0, f64::max);
+            let distance = distance(first, end);
+            let spread = self.samples.chunks(n).map(|x| self::distance(first, x)).fold(0.0, f64::max);
             if distance <= CLOSED.max(100.0 * self.noise).max(1e-7 * spread) {
                 let winding = count / self.per_turn;
                 let all =
                     Loop { n, per_turn: self.per_turn, samples: &self.samples, noise: self.noise, blur: &self.blur };
                 let reading = all.read(CLEAR);
                 if reading == Reading::TooWide {
-                    self.suppose(judged(all.read(VAGUE), winding));
+                    self.suppose(judged(all.read(VAGUE), winding).map(reduced));
                 }
                 match reading {
                     Reading::TooWide => self.shrink(options),
@@ -247,8 +247,12 @@ impl Walker {
         self.turns = self.turns.saturating_mul(2).min(self.max_turns).max(1);
         // Circles that never shrink would never end.
         let shrink = options.shrink.max(LEAST_SHRINK);
+        // Where a deeper circle was too deep already: one halfway there.
+        let halfway = (self.radius * self.deepest).sqrt();
         if self.radius / shrink > self.deepest {
             self.radius /= shrink;
+        } else if self.deepest > options.min_radius && self.radius > 2.0 * halfway {
+            self.radius = halfway;
         } else if self.per_turn < MAX_SAMPLES_WIDE {
             // No smaller circle will do: once more with more samples, which may also stand a
             // singularity not far outside.
@@ -291,10 +295,30 @@ fn judged(reading: Reading, winding: usize) -> Option<(Verdict, Vec<Complex64>)>
     }
 }
 
+/// A direction to infinity in lowest terms. Branch points within a loop, which is not clear then, can
+/// join cycles that go the same way, and only the winding number of one of them is of interest.
+fn reduced((verdict, limit): (Verdict, Vec<Complex64>)) -> (Verdict, Vec<Complex64>) {
+    let Verdict::Infinite { winding, valuations } = verdict else { return (verdict, limit) };
+    let common = valuations.iter().fold(winding as u64, |divisor, v| gcd(v.unsigned_abs(), divisor)).max(1);
+    let valuations = valuations.into_iter().map(|v| v / common as i64).collect();
+    (Verdict::Infinite { winding: winding / common as usize, valuations }, limit)
+}
+
+fn gcd(a: u64, b: u64) -> u64 {
+    if b == 0 { a } else { gcd(b, a % b) }
+}
+
+/// Relative distance of two points of a path, each coordinate measured by its own size: cycles may
+/// differ in the small ones alone.
+fn distance(a: &[Complex64], b: &[Complex64]) -> f64 {
+    let largest = a.iter().chain(b).map(|z| z.norm()).fold(0.0, f64::max);
+    a.iter().zip(b).map(|(a, b)| (a - b).norm() / refine::size(a.norm().max(b.norm()), largest)).fold(0.0, f64::max)
+}
+
 /// The largest valuation in size, from points `ds` apart in logarithmic time; coordinates that may
 /// be rounding error are left out.
 fn steepest(from: &[Complex64], to: &[Complex64], ds: f64) -> f64 {
-    let floor = |x: &[Complex64]| 1e-12 * x.iter().map(|z| z.norm()).fold(0.0, f64::max);
+    let floor = |x: &[Complex64]| 1e-12 * x.iter().map(|z| z.norm()).fold(0.0, f64::max).min(1.0);
     let (a, b) = (floor(from), floor(to));
     let clear = from.iter().zip(to).filter(|(x, y)| x.norm() > a && y.norm() > b);
     clear.map(|(x, y)| ((y.norm() / x.norm()).ln() / ds).abs()).fold(0.0, f64::max)
@@ -308,4 +332,30 @@ fn samples_for(steepest: f64) -> usize {
         samples *= 2;
     }
     samples
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Verdict, distance, reduced};
+    use num_complex::Complex64;
+
+    #[test]
+    fn directions_in_lowest_terms() {
+        let lowest = |winding, valuations: &[i64]| {
+            let (verdict, _) = reduced((Verdict::Infinite { winding, valuations: valuations.to_vec() }, Vec::new()));
+            verdict
+        };
+        let infinite = |winding, valuations: &[i64]| Verdict::Infinite { winding, valuations: valuations.to_vec() };
+        assert_eq!(lowest(12, &[2, 0, -2]), infinite(6, &[1, 0, -1]));
+        assert_eq!(lowest(2, &[-2, 3]), infinite(2, &[-2, 3]));
+        assert_eq!(lowest(1, &[-4, 2]), infinite(1, &[-4, 2]));
+    }
+
+    #[test]
+    fn small_coordinates_count() {
+        let z = |re| Complex64::new(re, 0.0);
+        assert_eq!(distance(&[z(1e6), z(1e-9)], &[z(1e6), z(-1e-9)]), 2.0);
+        // One below a share of 1e-12 counts as zero.
+        assert!(distance(&[z(1.0), z(1e-13)], &[z(1.0), z(-1e-13)]) < 1e-8);
+    }
 }

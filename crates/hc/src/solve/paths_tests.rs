@@ -88,3 +88,33 @@ fn batches_are_absorbed_in_any_order() {
     assert!(single.iter().flatten().all(|record| !matches!(record.end, RecordEnd::Lost)));
     assert!(whole.0.len() < CHUNK);
 }
+
+/// `x = 1 / t` and `y = t^(3/2)`: one cycle of two paths. Where the endgame begins, `y` is so much smaller
+/// than `x` that `y` and `-y` are one number on the scale of `x`.
+#[test]
+fn small_coordinates_tell_the_winding_number() {
+    let family =
+        "name = \"cusp\"\nunknowns = [\"x\", \"y\"]\nparameters = [\"p\"]\nequations = [\"x*p - 1\", \"y^2 - p^3\"]";
+    let family: Family = family.parse().unwrap();
+    let one = Complex64::from(1.0);
+    // From p = i, so that the path meets no singularity of the parameter but the last.
+    let (p, y) = (Complex64::i(), Complex64::from_polar(1.0, 0.75 * std::f64::consts::PI));
+    let fibre = Fibre::new(vec![p], 2, vec![one / p, y, one / p, -y]);
+    let target = [Complex64::from(0.0)];
+    let (excess, options, monitor) = (Excess::none(), SolveOptions::default(), Monitor::default());
+    let trackers = crate::tracker::Trackers::new(family.program());
+    let route = Route {
+        trackers: &trackers,
+        start: &fibre,
+        count: 2,
+        target: &target,
+        excess: &excess,
+        options: &options,
+        monitor: &monitor,
+        record: None,
+        lead: None,
+    };
+    let ends = super::follow(route, false);
+    assert_eq!(ends.lost, 0);
+    assert_eq!(ends.directions, [(vec![-2, 3], 2, 2)]);
+}

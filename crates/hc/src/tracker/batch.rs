@@ -233,6 +233,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         self.isa.run(Weigh {
             x: &self.predicted,
             fresh,
+            least_share_sqr: self.bounds.least_share_sqr,
             weights_sqr: &mut self.weights_sqr,
             inverse: &mut self.inverse_weights_sqr,
         });

@@ -8,9 +8,7 @@ use crate::homotopy::ParameterPath;
 use poly::Lane;
 use poly::simd::{Isa, Kernel};
 
-/// Weights never fall below 1e-4 of the largest coordinate: the square of that.
-const RELATIVE_FLOOR_SQR: f64 = 1e-8;
-/// Nor below 1e-6: the square of that.
+/// Weights never fall below 1e-6: the square of that.
 const ABSOLUTE_FLOOR_SQR: f64 = 1e-12;
 /// Parts of a path below this share of the region in which Newton's method converges do not bound
 /// the step by their radius alone.
@@ -150,6 +148,8 @@ fn reach_sqr(size_sqr: f64) -> f64 {
 pub(crate) struct Weigh<'a, S: Lane> {
     pub(crate) x: &'a [S],
     pub(crate) fresh: u8,
+    /// Weights never fall below this share of the largest coordinate: the square of that.
+    pub(crate) least_share_sqr: f64,
     pub(crate) weights_sqr: &'a mut [S::Real],
     pub(crate) inverse: &'a mut [S::Real],
 }
@@ -175,7 +175,7 @@ impl<S: Lane> Kernel for Weigh<'_, S> {
                 let size = size.as_ref()[l];
                 let w = &mut self.weights_sqr[j].as_mut()[l];
                 let mean = if self.fresh >> l & 1 == 1 { size } else { 0.5 * (*w + size) };
-                let floor = (RELATIVE_FLOOR_SQR * largest.as_ref()[l]).max(ABSOLUTE_FLOOR_SQR);
+                let floor = (self.least_share_sqr * largest.as_ref()[l]).max(ABSOLUTE_FLOOR_SQR);
                 let next = mean.max(floor);
                 // A point that is not finite keeps the old weights.
                 *w = if next < f64::INFINITY { next } else { *w };

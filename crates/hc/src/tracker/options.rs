@@ -57,6 +57,12 @@ pub struct TrackerOptions {
     pub min_t: f64,
     /// From this `t` on valuations are watched for divergence. Default 0.1.
     pub endgame_start: f64,
+    /// Corrections are measured relative to the size of their coordinate; coordinates below this share
+    /// of the largest, or below 1e-6, count as that large. Default 1e-4. The endgame takes zero, since
+    /// near the target a path may have coordinates of very different sizes, and others like it may
+    /// differ from it in the small ones alone.
+    #[serde(default = "least_share")]
+    pub least_share: f64,
     /// Whether residuals may be computed in double-double where double precision ends. Default
     /// true.
     pub extended_precision: bool,
@@ -64,6 +70,11 @@ pub struct TrackerOptions {
     /// not depend on it. Default `None`.
     #[serde(skip)]
     pub isa: Option<Isa>,
+}
+
+/// The default of [`TrackerOptions::least_share`].
+fn least_share() -> f64 {
+    1e-4
 }
 
 impl Default for TrackerOptions {
@@ -77,6 +88,7 @@ impl Default for TrackerOptions {
             max_steps: 10_000,
             min_t: 1e-14,
             endgame_start: 0.1,
+            least_share: least_share(),
             extended_precision: true,
             isa: None,
         }
@@ -117,7 +129,8 @@ impl TrackerOptions {
         ])?;
         OptionError::at_least("max_steps", self.max_steps as f64, 1.0, "at least 1")?;
         OptionError::at_least("min_t", self.min_t, 0.0, "zero or more")?;
-        OptionError::at_least("endgame_start", self.endgame_start, 0.0, "zero or more")
+        OptionError::at_least("endgame_start", self.endgame_start, 0.0, "zero or more")?;
+        OptionError::at_least("least_share", self.least_share, 0.0, "zero or more")
     }
 
     /// Shorter steps than these, for paths that are tracked again: `level` 1 is about half as long,

@@ -59,10 +59,12 @@ pub(crate) struct Bounds {
     reach_half: f64,
     /// `omega mu` above which double precision is left.
     leave_double: f64,
-    /// `omega mu` (of double precision) below which it is taken up again.
+    /// `omega mu` (of double precision, `omega` at least 1) below which it is taken up again.
     enter_double: f64,
     /// `omega mu` above which even extended precision ends.
     limit: f64,
+    /// Square of the option.
+    pub(crate) least_share_sqr: f64,
 }
 
 impl Bounds {
@@ -77,6 +79,7 @@ impl Bounds {
             leave_double: a.powi(5) * h_a,
             enter_double: a.powi(7) * h_a,
             limit: a.powi(3) * h_a,
+            least_share_sqr: options.least_share * options.least_share,
             options: options.clone(),
         }
     }
@@ -120,6 +123,8 @@ pub(crate) struct Progress {
     theta_bound: f64,
     /// Newton iterations of this step.
     iterations: usize,
+    /// Whether the closing correction after the first of them said that it takes more.
+    resumed: bool,
 }
 
 impl Progress {
@@ -151,6 +156,7 @@ impl Progress {
             omega_now: INITIAL_OMEGA,
             theta_bound: 0.0,
             iterations: 0,
+            resumed: false,
         }
     }
 
@@ -167,10 +173,11 @@ impl Progress {
         self.noise = self.rounding();
     }
 
-    /// Back to double precision, rounding errors included.
-    fn narrow(&mut self) {
+    /// Back to double precision, rounding errors included: corrections of size `double` have just been
+    /// seen to be nothing else.
+    fn narrow(&mut self, double: f64) {
         (self.extended, self.wide, self.kept) = (false, false, false);
-        self.noise = self.noise.max(self.rounding());
+        self.noise = self.noise.max(double).max(self.rounding());
     }
 
     /// Relative size of what is less than the rounding error of a point.
@@ -228,6 +235,7 @@ impl Progress {
             self.theta_bound = bounds.options.contraction;
             self.omega_now = self.omega;
             self.iterations = 0;
+            self.resumed = false;
         }
     }
 
@@ -254,7 +262,7 @@ impl Progress {
             }
         } else if norm > NOISE_MARGIN * self.noise {
             let theta = norm / self.last;
-            if i == 1 {
+            if i == 1 && !self.resumed {
                 self.omega_now = 2.0 * norm / (self.last * self.last);
             }
             if theta > self.theta_bound {
@@ -290,9 +298,7 @@ impl Progress {
         }
         let matters = self.omega_now.max(1.0) * norm > 0.01 * bounds.leave_double && norm > NOISE_MARGIN * self.noise;
         if matters && norm > UNFINISHED * self.last && self.iterations + 1 < MAX_ITERATIONS {
-            self.last = norm;
-            self.theta_bound = bounds.options.contraction;
-            self.stage = Stage::Iterating;
+            self.resume(norm, bounds);
             return;
         }
         if self.omega_now == self.omega && self.first == self.last {
@@ -311,7 +317,14 @@ impl Progress {
             // that.
             self.noise = norm.max(self.rounding());
         } else {
+            // Newton's method converges more slowly than was thought, or has not converged yet; where it
+            // cannot be for rounding errors the latter.
             omega = norm / (self.last * self.last);
+            let unfinished = norm > UNFINISHED * self.last || omega * norm > bounds.leave_double;
+            if self.wide && unfinished && self.iterations + 1 < MAX_ITERATIONS {
+                self.resume(norm, bounds);
+                return;
+            }
         }
         let noise = omega * norm;
         if noise > bounds.leave_double && !self.extended && bounds.options.extended_precision {
@@ -330,14 +343,26 @@ impl Progress {
             return;
         }
         if let Some(double) = double
-            && omega * double < bounds.enter_double
+            && omega.max(1.0) * double < bounds.enter_double
         {
-            self.narrow();
+            self.narrow(double);
         }
         self.omega_before = self.omega;
         self.omega = omega;
         self.mu = norm.max(self.rounding());
         self.stage = Stage::Accepted;
+    }
+
+    /// Goes on with Newton's method after a closing correction of size `norm`.
+    fn resume(&mut self, norm: f64, bounds: &Bounds) {
+        if self.iterations == 1 {
+            // The next correction tells nothing of omega: it follows one with an old Jacobian.
+            self.omega_now = 2.0 * norm / (self.last * self.last);
+            self.resumed = true;
+        }
+        self.last = norm;
+        self.theta_bound = bounds.options.contraction;
+        self.stage = Stage::Iterating;
     }
 
     /// Takes the accepted step; `distance` is that of the corrected from the predicted point.
@@ -456,8 +481,55 @@ impl Progress {
 
 #[cfg(test)]
 mod tests {
-    use super::{Bounds, h};
+    use super::{Bounds, Progress, Stage, h};
     use crate::tracker::TrackerOptions;
+
+    /// On its way, with residuals in double-double.
+    fn under_way(omega: f64, bounds: &Bounds) -> Progress {
+        let mut progress = Progress { fresh: false, extended: true, omega, ..Progress::start(0) };
+        progress.begin_correction(bounds);
+        progress
+    }
+
+    /// With `omega = 2.5e5` corrections of 1.1e-6 and 1.6e-7 are what quadratic convergence gives, though
+    /// the omega of the step before let expect that the first would do.
+    #[test]
+    fn a_large_closing_correction_is_followed_by_more() {
+        let bounds = Bounds::new(&TrackerOptions::fast());
+        for closing in [1.6e-7, 5e-8] {
+            let mut progress = under_way(5.0, &bounds);
+            progress.wide = true;
+            progress.judge(1.12e-6, &bounds);
+            assert_eq!(progress.stage, Stage::Converged);
+            progress.judge_closing(closing, None, &bounds);
+            assert_eq!(progress.stage, Stage::Iterating, "{closing}");
+            for share in [0.05, 1e-3] {
+                if progress.stage == Stage::Iterating {
+                    progress.judge(share * closing, &bounds);
+                }
+            }
+            progress.judge_closing(1e-16, None, &bounds);
+            assert_eq!(progress.stage, Stage::Accepted, "{closing}");
+            let omega = 2.0 * closing / (1.12e-6 * 1.12e-6);
+            assert!((progress.omega / omega - 1.0).abs() < 1e-12, "{}", progress.omega);
+        }
+    }
+
+    /// Back in double precision, corrections as large as those that double-double has shown to be nothing
+    /// are no reason for shorter steps.
+    #[test]
+    fn rounding_errors_seen_in_double_double_are_remembered() {
+        let bounds = Bounds::new(&TrackerOptions { corrector_tolerance: 1e-5, ..TrackerOptions::fast() });
+        let mut progress = under_way(300.0, &bounds);
+        progress.judge(1e-9, &bounds);
+        progress.judge_closing(1e-15, Some(1e-8), &bounds);
+        assert!(progress.stage == Stage::Accepted && !progress.extended);
+        progress.omega = 300.0;
+        progress.begin_correction(&bounds);
+        progress.judge(5e-8, &bounds);
+        progress.judge(4e-8, &bounds);
+        assert_eq!(progress.stage, Stage::Converged);
+    }
 
     #[test]
     fn constants_of_the_paper() {
