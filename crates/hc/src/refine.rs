@@ -375,14 +375,18 @@ fn weights(x: &[Complex64], squares: &mut Vec<[f64; 1]>) {
 /// count as zero, which is measured on the scale of 1e-4 of that.
 fn sizes(x: &[Complex64], squares: &mut Vec<[f64; 1]>) {
     let largest = x.iter().map(|z| z.norm_sqr()).fold(0.0, f64::max);
-    let unit = if largest > 0.0 { largest.min(1.0) } else { 1.0 };
     squares.clear();
-    squares.extend(x.iter().map(|z| [if z.norm_sqr() > 1e-24 * unit { z.norm_sqr() } else { 1e-8 * unit }]));
+    squares.extend(x.iter().map(|z| [measured(z.norm_sqr(), largest, 1e-24, 1e-8)]));
 }
 
 /// The size by which refinement measures a coordinate of absolute value `norm`, `largest` that of the
-/// largest coordinate.
+/// largest coordinate: the root of what [`sizes`] gives.
 pub(crate) fn size(norm: f64, largest: f64) -> f64 {
+    measured(norm, largest, 1e-12, 1e-4)
+}
+
+/// `size`, or `scale` where it is below `zero`, both in units of the largest or of one if that is less.
+fn measured(size: f64, largest: f64, zero: f64, scale: f64) -> f64 {
     let unit = if largest > 0.0 { largest.min(1.0) } else { 1.0 };
-    if norm > 1e-12 * unit { norm } else { 1e-4 * unit }
+    if size > zero * unit { size } else { scale * unit }
 }

@@ -18,7 +18,7 @@ pub(crate) enum Verdict {
     /// At infinity: coordinate `j` is of order `t^(valuations[j] / winding)`, one of them being
     /// negative.
     Infinite {
-        /// Winding number.
+        /// Winding number; where no loop was clear, the least with which the valuations are whole.
         winding: usize,
         /// The direction: valuations times the winding number.
         valuations: Vec<i64>,

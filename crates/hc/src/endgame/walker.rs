@@ -197,9 +197,9 @@ impl Walker {
         let count = self.samples.len() / n;
         let first = &self.samples[..n];
         if count.is_multiple_of(self.per_turn) {
-            let distance = distance(first, end);
-            let spread = self.samples.chunks(n).map(|x| self::distance(first, x)).fold(0.0, f64::max);
-            if distance <= CLOSED.max(100.0 * self.noise).max(1e-7 * spread) {
+            let gap = distance(first, end);
+            let spread = self.samples.chunks(n).map(|x| distance(first, x)).fold(0.0, f64::max);
+            if gap <= CLOSED.max(100.0 * self.noise).max(1e-7 * spread) {
                 let winding = count / self.per_turn;
                 let all =
                     Loop { n, per_turn: self.per_turn, samples: &self.samples, noise: self.noise, blur: &self.blur };

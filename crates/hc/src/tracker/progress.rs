@@ -317,8 +317,8 @@ impl Progress {
             // that.
             self.noise = norm.max(self.rounding());
         } else {
-            // Newton's method converges more slowly than was thought, or has not converged yet; where it
-            // cannot be for rounding errors the latter.
+            // Newton's method converges more slowly than was thought. With a point in double-double it is
+            // not for rounding errors of the point: it has not converged yet.
             omega = norm / (self.last * self.last);
             let unfinished = norm > UNFINISHED * self.last || omega * norm > bounds.leave_double;
             if self.wide && unfinished && self.iterations + 1 < MAX_ITERATIONS {
