@@ -5,6 +5,7 @@ use crate::display;
 use crate::exact::{self, ToExact};
 use crate::expression::{Expr, Expressions};
 use crate::graph::Id;
+use crate::parse::{begins_name, continues_name};
 use crate::polynomial::{Polynomial, Ring};
 use std::collections::HashSet;
 
@@ -154,10 +155,7 @@ impl System {
 /// Whether the parsers would read this as one name.
 pub(crate) fn is_name(name: &str) -> bool {
     let mut chars = name.chars();
-    chars.next().is_some_and(|c| c.is_alphabetic() || c == '_')
-        && chars.all(|c| c.is_alphanumeric() || c == '_')
-        && name != "i"
-        && name != "I"
+    chars.next().is_some_and(begins_name) && chars.all(continues_name) && name != "i" && name != "I"
 }
 
 impl std::fmt::Display for System {

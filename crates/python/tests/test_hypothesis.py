@@ -43,7 +43,7 @@ def test_tables(m, n, data):
         check(tdoa.solve, table)
 
 
-ALPHABET = st.text(alphabet="xyzi0123456789.+-*/^()=;:,# \n\"[]eE", max_size=30)
+ALPHABET = st.text(alphabet="xyzi0123456789.+-*/^²⁻·−()=;:,# \n\"[]eE", max_size=30)
 
 
 @settings(max_examples=4000, **MANY)

@@ -16,8 +16,8 @@ impl FromStr for System {
     /// them. An equation ends at the end of its line, or at `;`; in parentheses it runs on. `#`
     /// begins a comment. Names are unknowns, in order of first appearance, unless a line
     /// `variables: x y z` before the equations gives them and their order. A line `parameters: a b`
-    /// makes these names parameters. `i` and `I` are the imaginary unit, powers are written `^` or
-    /// `**`, decimals are exact, and a product needs its `*`.
+    /// makes these names parameters. `i` and `I` are the imaginary unit. Powers are written `x^2`,
+    /// `x**2` or `x²`; decimals are exact. A product needs its sign: `*`, `·` or `×`.
     ///
     /// **PHCpack's format** begins with the number of equations: a text whose first line is a whole
     /// number, or two, is read by [`phcpack`].

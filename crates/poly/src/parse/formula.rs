@@ -120,12 +120,20 @@ impl<'a> FormulaParser<'a> {
     fn power(&mut self, tokens: &mut Tokens<'_>) -> Result<Id, ParseError> {
         let place = tokens.offset();
         let base = self.atom(tokens)?;
-        if *tokens.current() != Token::Power {
-            return Ok(base);
-        }
-        tokens.advance()?;
-        let exponent = exponent(tokens)?;
-        if *tokens.current() == Token::Power {
+        let exponent = match *tokens.current() {
+            Token::Power => {
+                tokens.advance()?;
+                exponent(tokens)?
+            }
+            Token::Superscript(exponent) => {
+                let bounded = i32::try_from(exponent).ok().filter(|k| k.abs_diff(0) < i32::MAX.unsigned_abs());
+                let exponent = bounded.ok_or_else(|| tokens.error("an exponent beyond 2^31"))?;
+                tokens.advance()?;
+                exponent
+            }
+            _ => return Ok(base),
+        };
+        if matches!(tokens.current(), Token::Power | Token::Superscript(_)) {
             return Err(tokens.error("a power of a power needs parentheses"));
         }
         if exponent < 0 && self.arena.graph.is_zero(base) {

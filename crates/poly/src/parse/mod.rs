@@ -14,3 +14,4 @@ mod token;
 pub use error::ParseError;
 pub use family::{Family, family};
 pub use phcpack::phcpack;
+pub(crate) use token::{begins_name, continues_name};

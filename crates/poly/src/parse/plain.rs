@@ -150,6 +150,14 @@ mod tests {
     }
 
     #[test]
+    fn reads_signs_as_they_are_printed() {
+        let printed = "x₁² + 2·x₁×y³ \u{2212} (x₁ \u{2013} y)⁻² = y¹⁰∙3⋅y; x₁⁺² - 2³*y⁰";
+        let typed = "x₁^2 + 2*x₁*y^3 - (x₁ - y)^-2 = y^10*3*y; x₁^2 - 2^3*y^0";
+        assert_eq!(plain(printed).unwrap().to_string(), plain(typed).unwrap().to_string());
+        assert_eq!(plain(printed).unwrap().variables(), ["x₁", "y"]);
+    }
+
+    #[test]
     fn says_what_is_wrong_and_where() {
         for (text, line, column, word) in [
             ("", 1, 1, "no equations"),
@@ -169,6 +177,14 @@ mod tests {
             ("variables: x\nvariables: y\nx", 2, 1, "second"),
             ("x\nvariables: x", 2, 1, "before the first equation"),
             ("x\ny ? 2", 2, 3, "unexpected character"),
+            ("x²³ - x^2²", 1, 10, "power of a power"),
+            ("x²^3", 1, 3, "power of a power"),
+            ("xⁿ - 1", 1, 2, "no whole number"),
+            ("x²⁻³", 1, 2, "no whole number"),
+            ("x⁻", 1, 2, "no whole number"),
+            ("x⁹⁹⁹⁹⁹⁹⁹⁹⁹⁹⁹⁹⁹⁹⁹⁹⁹⁹⁹⁹⁹", 1, 2, "2^31"),
+            ("² - x", 1, 1, "expected a number"),
+            ("x½ - 1", 1, 2, "unexpected character"),
         ] {
             let error = plain(text).unwrap_err();
             assert_eq!((error.line, error.column), (line, column), "{text:?}: {error}");

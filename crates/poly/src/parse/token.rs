@@ -21,6 +21,8 @@ pub(super) enum Token<'t> {
     Times,
     Over,
     Power,
+    /// An exponent in superscript digits, as in `x²`; too large ones are the largest number.
+    Superscript(i64),
     Open,
     Close,
     Semicolon,
@@ -43,6 +45,7 @@ impl Token<'_> {
             Token::Times => "`*`".to_owned(),
             Token::Over => "`/`".to_owned(),
             Token::Power => "`^`".to_owned(),
+            Token::Superscript(exponent) => format!("the superscript {exponent}"),
             Token::Open => "`(`".to_owned(),
             Token::Close => "`)`".to_owned(),
             Token::Semicolon => "`;`".to_owned(),
@@ -120,6 +123,9 @@ impl<'t> Tokens<'t> {
             '-' => (Token::Minus, 1),
             '*' if trimmed[1..].starts_with('*') => (Token::Power, 2),
             '*' => (Token::Times, 1),
+            // As editors and printed papers have them: minus sign and en dash, middle dot, bullet and dot operator.
+            '\u{2212}' | '\u{2013}' => (Token::Minus, first.len_utf8()),
+            '×' | '\u{b7}' | '\u{2219}' | '\u{22c5}' => (Token::Times, first.len_utf8()),
             '/' => (Token::Over, 1),
             '^' => (Token::Power, 1),
             '(' => (Token::Open, 1),
@@ -133,10 +139,11 @@ impl<'t> Tokens<'t> {
                 let (value, length) = self.number(trimmed)?;
                 (Token::Number(value), length)
             }
-            c if c.is_alphabetic() || c == '_' => {
-                let length = trimmed.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(trimmed.len());
+            c if begins_name(c) => {
+                let length = trimmed.find(|c: char| !continues_name(c)).unwrap_or(trimmed.len());
                 (Token::Name(&trimmed[..length]), length)
             }
+            c if is_superscript(c) => self.superscript(trimmed)?,
             c => return Err(self.error(format!("unexpected character {c:?}"))),
         };
         match token {
@@ -167,6 +174,20 @@ impl<'t> Tokens<'t> {
     /// Whether the token after the current one is a colon.
     pub(super) fn colon_follows(&self) -> bool {
         self.skip_space().starts_with(':')
+    }
+
+    /// An exponent in superscript, with or without a sign, and its length in bytes.
+    fn superscript(&self, text: &str) -> Result<(Token<'t>, usize), ParseError> {
+        let length = text.find(|c: char| !is_superscript(c)).unwrap_or(text.len());
+        let plain: Option<String> = text[..length].chars().map(of_superscript).collect();
+        let digits = plain.as_deref().map(|plain| plain.strip_prefix(['+', '-']).unwrap_or(plain));
+        match (plain.as_deref(), digits) {
+            (Some(plain), Some(digits)) if !digits.is_empty() && digits.bytes().all(|b| b.is_ascii_digit()) => {
+                let most = if plain.starts_with('-') { i64::MIN } else { i64::MAX };
+                Ok((Token::Superscript(plain.parse().unwrap_or(most)), length))
+            }
+            _ => Err(self.error(format!("the superscript `{}` is no whole number; write `^`", &text[..length]))),
+        }
     }
 
     /// An unsigned decimal number, kept exactly, and its length in bytes.
@@ -204,4 +225,32 @@ impl<'t> Tokens<'t> {
         let value = if scale < 0 { BigRational::new(digits, power) } else { BigRational::from_integer(digits * power) };
         Ok((Complex::new(value, BigRational::zero()), end))
     }
+}
+
+/// Superscript digits in their order.
+const SUPERSCRIPTS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+
+/// Whether a character stands raised, as in an exponent.
+fn is_superscript(c: char) -> bool {
+    SUPERSCRIPTS.contains(&c) || matches!(c, 'ⁱ' | 'ⁿ' | '⁺'..='⁾')
+}
+
+/// The character of a whole number that a superscript stands for.
+fn of_superscript(c: char) -> Option<char> {
+    match c {
+        '⁺' => Some('+'),
+        '⁻' => Some('-'),
+        _ => SUPERSCRIPTS.iter().zip('0'..).find(|&(&superscript, _)| superscript == c).map(|(_, digit)| digit),
+    }
+}
+
+/// Whether a name can begin with this character.
+pub(crate) fn begins_name(c: char) -> bool {
+    (c.is_alphabetic() || c == '_') && !is_superscript(c)
+}
+
+/// Whether a name can go on with this character: letters, digits, subscripts; no exponents and no fractions like `½`.
+pub(crate) fn continues_name(c: char) -> bool {
+    let fraction = matches!(c, '¼'..='¾' | '\u{2150}'..='\u{215f}' | '\u{2189}');
+    (c.is_alphanumeric() || c == '_') && !is_superscript(c) && !fraction
 }
