@@ -10,6 +10,7 @@ mod hc_interrupt;
 #[cfg(unix)]
 mod hc_mpi;
 mod hc_solve;
+mod links;
 #[cfg(unix)]
 mod mpi;
 mod one_build;
