@@ -1,8 +1,8 @@
 //! Complex balls: a midpoint of about 32 digits and a radius that bounds its error.
 //!
-//! Midpoints follow the double-double algorithms of [`Dd`], whose proven relative error
-//! bounds (Joldes, Muller, Popescu, ACM TOMS 44, 2017: 3u^2 for sums, 5u^2 for products, u = 2^-53)
-//! go into the radius, which is rounded up. [`ComplexInterval`] is faster and better for wide sets;
+//! Midpoints follow the double-double algorithms of [`Dd`]. Their proven relative error bounds
+//! (Joldes, Muller, Popescu, ACM TOMS 44, 2017: 3u^2 for sums, 5u^2 for products, u = 2^-53) go
+//! into the radius, which is rounded up. [`ComplexInterval`] is faster, and better for wide sets;
 //! balls are for residuals at one point.
 
 use crate::dd::{ComplexDd, Dd};
@@ -39,7 +39,7 @@ fn up_product(a: f64, b: f64) -> f64 {
     if a == 0.0 || b == 0.0 { product } else { product.next_up() }
 }
 
-/// An upper bound of the absolute value.
+/// An upper bound on the absolute value.
 #[inline(always)]
 fn size(a: Dd) -> f64 {
     up_sum(a.high.abs(), a.low.abs())
@@ -49,7 +49,7 @@ impl Ball {
     /// The ball of all numbers.
     pub const ALL: Ball = Ball { mid: Dd { high: 0.0, low: 0.0 }, radius: f64::INFINITY };
 
-    /// The ball of this midpoint and radius; all numbers if one of them is not finite.
+    /// The ball with this midpoint and radius; all numbers if one of the two is not finite.
     #[inline(always)]
     pub fn new(mid: Dd, radius: f64) -> Ball {
         if mid.high.is_finite() && mid.low.is_finite() && radius < f64::INFINITY {
@@ -59,7 +59,7 @@ impl Ball {
         }
     }
 
-    /// The ball that holds one double alone.
+    /// The ball that contains only one double.
     pub fn point(x: f64) -> Ball {
         Ball::new(Dd::new(x), 0.0)
     }
@@ -82,13 +82,13 @@ impl Ball {
         Interval::point(self.mid.high).plus(rest)
     }
 
-    /// An upper bound of the absolute value.
+    /// An upper bound on the absolute value.
     #[inline(always)]
     pub fn magnitude(self) -> f64 {
         up_sum(size(self.mid), self.radius)
     }
 
-    /// A result with the rounding error of its midpoint.
+    /// A result, with the rounding error of its midpoint added to the radius.
     #[inline(always)]
     fn rounded(mid: Dd, radius: f64) -> Ball {
         Ball::new(mid, up_sum(radius, up_sum(up_product(size(mid), ERROR), UNDERFLOW)))
@@ -147,7 +147,7 @@ pub struct ComplexBall {
 }
 
 impl ComplexBall {
-    /// The ball that holds one double-double number alone.
+    /// The ball that contains only one double-double number.
     pub fn point(z: &ComplexDd) -> ComplexBall {
         // The sum of two doubles is exact; the bounds hold where the low part is below half an ulp.
         let normal = |a: Dd| Dd::new(a.high).plus(Dd::new(a.low));

@@ -1,8 +1,8 @@
 //! Double-double numbers: about 32 digits from pairs of doubles.
 //!
-//! Error-free sums after Knuth and products by `f64::mul_add`; the algorithms for pairs are those
+//! Sums are error-free after Knuth, products by `f64::mul_add`. The algorithms for pairs are those
 //! analysed in Joldes, Muller, Popescu, *Tight and rigorous error bounds for basic building blocks
-//! of double-word arithmetic* (ACM TOMS 44, 2017), whose numbers are given below.
+//! of double-word arithmetic* (ACM TOMS 44, 2017). The comments below give their numbers there.
 
 use crate::scalar::Scalar;
 use crate::simd::Isa;
@@ -112,7 +112,7 @@ impl ComplexDd {
         Complex64::new(self.re.high, self.im.high)
     }
 
-    /// The difference to [`high`](ComplexDd::high), as a complex double.
+    /// The difference from [`high`](ComplexDd::high), as a complex double.
     #[inline(always)]
     pub fn low(&self) -> Complex64 {
         Complex64::new(self.re.low, self.im.low)

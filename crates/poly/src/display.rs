@@ -25,7 +25,7 @@ enum Task {
     Exponent(i32),
 }
 
-/// Writes one formula; iterative, so that depth is no concern.
+/// Writes one formula; iterative, so that deep formulas do not exhaust the stack.
 pub(crate) fn write_node(f: &mut Formatter<'_>, arena: &Arena, root: Id) -> Result {
     let graph = &arena.graph;
     let mut tasks = vec![Task::Node(root, SUM)];

@@ -7,9 +7,9 @@ use crate::simd::Isa;
 /// parameters.
 ///
 /// The interpreter of straight-line programs, the kernel for sparse polynomial systems and
-/// generated code implement it. The tracker needs nothing else of a system. No method but
-/// [`memory`](Evaluate::memory) allocates. Slices that are shorter than stated are a caller's error
-/// and panic.
+/// generated code implement it. The tracker needs nothing else from a system. No method except
+/// [`memory`](Evaluate::memory) allocates. A slice that is shorter than stated is the caller's
+/// error and panics.
 pub trait Evaluate: Send + Sync {
     /// Scratch space for one evaluation at a time.
     type Memory<S: Scalar>: Send;
@@ -32,15 +32,15 @@ pub trait Evaluate: Send + Sync {
     /// Every entry is written, structural zeros too.
     fn jacobian<S: Scalar>(&self, memory: &mut Self::Memory<S>, x: &[S], p: &[S], values: &mut [S], jacobian: &mut [S]);
 
-    /// The Taylor coefficient of `F(x(t); p(t))` of an order, 1, 2 or 3.
+    /// The Taylor coefficient of `F(x(t); p(t))` of order 1, 2 or 3.
     ///
-    /// `x` holds the path's coefficients of orders `0 .. order`: that of order `k` for unknown `j`
-    /// is `x[k * variables() + j]`. The coefficient of the order asked for is taken as zero, so
-    /// that `-J^{-1}` times the result is that coefficient. `p` holds the parameters' coefficients
-    /// of orders `0 ..= order` in the same layout. If it holds those of orders 0 and 1 alone, the
-    /// parameters move on a straight line, which costs less.
+    /// `x` holds the path's coefficients of orders `0 .. order`: the coefficient of order `k` for
+    /// unknown `j` is `x[k * variables() + j]`. The unknowns' coefficient of the requested order is
+    /// taken as zero, so that `-J^{-1}` times the result is that coefficient. `p` holds the
+    /// parameters' coefficients of orders `0 ..= order` in the same layout. If `p` holds only
+    /// orders 0 and 1, the parameters move on a straight line, which costs less.
     ///
-    /// Orders must be asked for in turn at one point: 1, then 2, then 3. Each call may use what the
-    /// one before left in `memory`, and expects the coefficients that were given before.
+    /// Orders must be requested in turn at one point: 1, then 2, then 3. Each call may use what the
+    /// call before left in `memory`, and expects the coefficients that were given before.
     fn taylor<S: Scalar>(&self, memory: &mut Self::Memory<S>, order: usize, x: &[S], p: &[S], out: &mut [S]);
 }

@@ -92,7 +92,7 @@ pub(crate) fn is_real(z: &Exact) -> bool {
     z.im.is_zero()
 }
 
-/// An integer power; zero to a negative power is the caller's to exclude.
+/// An integer power; the caller must exclude zero to a negative power.
 pub(crate) fn pow(z: &Exact, k: i32) -> Exact {
     if !is_real(z) {
         return z.powi(k);

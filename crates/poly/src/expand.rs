@@ -11,7 +11,7 @@ use num_traits::One;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct ExpandLimits {
-    /// Most terms of any polynomial on the way. Default 200,000.
+    /// Most terms of any polynomial, intermediate ones included. Default 200,000.
     pub terms: usize,
     /// Most steps for the whole system. A step multiplies two machine words or makes four
     /// exponents, in about a microsecond. Default 5,000,000.
@@ -26,7 +26,7 @@ impl Default for ExpandLimits {
     }
 }
 
-/// Why a formula is not multiplied out.
+/// Why a formula cannot be multiplied out.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExpandError {
@@ -59,7 +59,8 @@ pub enum ExpandError {
 impl System {
     /// The equations as polynomials in the unknowns, followed by the parameters.
     ///
-    /// Divisions by constants and single terms are allowed. Those by terms give negative exponents.
+    /// Divisions by constants and by single terms are allowed; a division by a term gives negative
+    /// exponents.
     ///
     /// ```
     /// let system = poly::parse::phcpack("1\n (x + y)^2/2 - 1/x;")?;

@@ -1,4 +1,4 @@
-//! Formulas that own what they are made of.
+//! Formulas that own their parts.
 
 use crate::arena::Arena;
 use crate::display;
@@ -16,8 +16,8 @@ use std::sync::Arc;
 /// A formula in named symbols: it owns its parts, is cheap to clone, and can be sent to other
 /// threads.
 ///
-/// A symbol is an unknown or a parameter only in the [`System`] that the formula becomes an
-/// equation of. Within [`System::build`], [`Expr`](crate::Expr) needs fewer clones.
+/// A symbol becomes an unknown or a parameter only in the [`System`] that uses the formula as an
+/// equation. Within [`System::build`], [`Expr`](crate::Expr) needs fewer clones.
 ///
 /// ```
 /// use poly::{Formula, System};
@@ -49,13 +49,13 @@ enum Kind {
 }
 
 impl Formula {
-    /// The symbol of this name. A name that the parsers would not read is an error once a system is
-    /// made.
+    /// The symbol of this name. A name that the parsers would not read becomes an error when a
+    /// system is made.
     pub fn symbol(name: &str) -> Formula {
         Formula::leaf(Kind::Symbol(name.to_owned()))
     }
 
-    /// A number, taken exactly. One that is not finite is an error once a system is made.
+    /// A number, taken exactly. A number that is not finite becomes an error when a system is made.
     pub fn constant(value: impl ToExact) -> Formula {
         Formula::leaf(Kind::Constant(value.to_exact()))
     }
@@ -155,8 +155,8 @@ impl Built {
     }
 }
 
-/// The node of a formula in an arena; `lowered` holds what was lowered before, by address.
-/// Iterative, so that depth is no concern.
+/// The node of a formula in an arena; `lowered` holds the formulas that were lowered before, by
+/// address. Iterative, so that deep formulas do not exhaust the stack.
 fn lower<E>(
     arena: &mut Arena,
     lowered: &mut HashMap<*const Node, Id>,
@@ -210,8 +210,8 @@ fn free<const N: usize>(formulas: [&Formula; N]) -> (Arena, [Id; N]) {
 }
 
 impl Drop for Node {
-    /// Parts that nothing else holds are dropped one by one: a long formula would exhaust the stack
-    /// otherwise.
+    /// Drops parts that nothing else holds one by one: a long formula would otherwise exhaust the
+    /// stack.
     fn drop(&mut self) {
         let mut pending = std::mem::take(&mut self.operands);
         while let Some(formula) = pending.pop() {
@@ -232,8 +232,8 @@ impl PartialEq for Formula {
 }
 
 impl Display for Formula {
-    /// The formula as text that parses to a formula with the same values. More than 100,000 symbols
-    /// are cut short by `...`.
+    /// The formula as text that parses to a formula with the same values. A formula of more than
+    /// 100,000 symbols is cut short by `...`.
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let (arena, [root]) = free([self]);
         if arena.non_finite {

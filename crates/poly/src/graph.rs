@@ -319,8 +319,8 @@ impl Graph {
         uses
     }
 
-    /// The terms of a sum from first to last, each with whether it is subtracted. Inner sums are
-    /// terms themselves but where they are `part` of the outer one.
+    /// The terms of a sum from first to last, each with whether it is subtracted. An inner sum is a
+    /// term itself, unless it is `part` of the outer sum.
     pub(crate) fn terms_of_sum(&self, sum: Id, part: impl Fn(Id) -> bool) -> Vec<(Id, bool)> {
         let mut terms = Vec::new();
         let mut stack = vec![(sum, false)];

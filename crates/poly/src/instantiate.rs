@@ -8,7 +8,7 @@ use num_traits::Zero;
 
 impl System {
     /// The system with numbers, taken exactly, in place of its parameters: a member of the family
-    /// that it stands for.
+    /// that the system describes.
     ///
     /// ```
     /// let family = poly::System::build(|s| vec![s.variable("x") * s.variable("x") - s.parameter("a")])?;
@@ -23,7 +23,7 @@ impl System {
     /// If a parameter is not finite.
     ///
     /// # Panics
-    /// If there are not as many values as parameters.
+    /// If the number of values differs from the number of parameters.
     pub fn at<T: ToExact>(&self, parameters: &[T]) -> Result<System, SystemError> {
         System::build(|s| {
             let unknowns: Vec<_> = self.variables().iter().map(|name| s.variable(name)).collect();
@@ -33,7 +33,7 @@ impl System {
     }
 
     /// The equations as formulas in `arena`, with `unknowns[j]` in place of unknown `j` and
-    /// `parameters[i]` in place of parameter `i`. A system becomes a part of another one this way.
+    /// `parameters[i]` in place of parameter `i`. This makes a system a part of another system.
     ///
     /// ```
     /// use poly::System;
@@ -48,7 +48,7 @@ impl System {
     /// ```
     ///
     /// # Panics
-    /// If there is not one formula for every unknown and parameter.
+    /// If there is not one formula for each unknown and each parameter.
     pub fn instantiate<'a>(
         &self,
         arena: &'a Expressions,

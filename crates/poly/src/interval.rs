@@ -1,13 +1,13 @@
 //! Complex intervals: rectangles that contain every exact result.
 //!
-//! Each bound is computed in round-to-nearest and then moved one double outward, which contains the
-//! exact value because rounding errs by less than one step (Rump, *Verification methods*, Acta
+//! Each bound is computed in round-to-nearest and then moved one double outward. It contains the
+//! exact value, because rounding errs by less than one step (Rump, *Verification methods*, Acta
 //! Numerica 19, 2010, section 4).
 
 use crate::scalar::Scalar;
 use num_complex::Complex64;
 
-/// A closed real interval. Bounds may be infinite; none is "not a number".
+/// A closed real interval. Bounds may be infinite, but are never "not a number".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
     /// Lower bound.
@@ -20,7 +20,7 @@ impl Interval {
     /// The whole line: nothing is known.
     pub const ALL: Interval = Interval { low: f64::NEG_INFINITY, high: f64::INFINITY };
 
-    /// The interval that holds one number alone; the whole line if the number is not finite.
+    /// The interval that contains only one number; the whole line if the number is not finite.
     #[inline(always)]
     pub fn point(x: f64) -> Interval {
         if x.is_finite() { Interval { low: x, high: x } } else { Interval::ALL }
@@ -54,7 +54,7 @@ impl Interval {
         self.low < other.low && other.high < self.high
     }
 
-    /// Whether the two have a number in common.
+    /// Whether the two intervals have a number in common.
     pub fn meets(self, other: Interval) -> bool {
         self.low <= other.high && other.low <= self.high
     }
@@ -130,12 +130,12 @@ pub struct ComplexInterval {
 }
 
 impl ComplexInterval {
-    /// The rectangle that holds one number alone; the whole plane if the number is not finite.
+    /// The rectangle that contains only one number; the whole plane if the number is not finite.
     pub fn point(z: Complex64) -> ComplexInterval {
         ComplexInterval { re: Interval::point(z.re), im: Interval::point(z.im) }
     }
 
-    /// The square about a number whose half-width is `radius`, rounded outward.
+    /// The square around a number with half-width `radius`, rounded outward.
     pub fn around(z: Complex64, radius: f64) -> ComplexInterval {
         let r = Interval::new(-radius, radius);
         ComplexInterval { re: Interval::point(z.re).plus(r), im: Interval::point(z.im).plus(r) }
@@ -151,7 +151,7 @@ impl ComplexInterval {
         self.re.contains_in_interior(other.re) && self.im.contains_in_interior(other.im)
     }
 
-    /// Whether the two have a number in common.
+    /// Whether the two rectangles have a number in common.
     pub fn meets(&self, other: &ComplexInterval) -> bool {
         self.re.meets(other.re) && self.im.meets(other.im)
     }
@@ -166,7 +166,7 @@ impl ComplexInterval {
         self.re.radius().max(self.im.radius())
     }
 
-    /// An upper bound of the modulus.
+    /// An upper bound on the modulus.
     pub fn magnitude(&self) -> f64 {
         let (a, b) = (self.re.magnitude(), self.im.magnitude());
         ((a * a).next_up() + (b * b).next_up()).next_up().sqrt().next_up()

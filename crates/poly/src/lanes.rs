@@ -4,11 +4,11 @@ use crate::scalar::{Lane, Scalar};
 use crate::simd::Isa;
 use num_complex::Complex64;
 
-/// Eight independent complex numbers, one a path.
+/// Eight independent complex numbers, one for each path.
 ///
 /// Each lane computes bit for bit what `Complex64` computes as a [`Scalar`]. Loops over lanes are
-/// plain Rust: inside [`Isa::run`](crate::simd::Isa::run) the compiler makes one or two vector
-/// instructions of each.
+/// plain Rust: inside [`Isa::run`](crate::simd::Isa::run) the compiler turns each loop into one or
+/// two vector instructions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
 pub struct Lanes8 {
@@ -18,7 +18,7 @@ pub struct Lanes8 {
     pub im: [f64; 8],
 }
 
-/// Eight real numbers, one a lane.
+/// Eight real numbers, one for each lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
 pub struct Reals8(pub [f64; 8]);

@@ -43,7 +43,7 @@ impl Monomial {
         Some(Monomial { exponents })
     }
 
-    /// Exponents to be changed in place.
+    /// The exponents, to be changed in place.
     pub(crate) fn exponents_mut(&mut self) -> &mut SmallVec<[i32; 8]> {
         &mut self.exponents
     }

@@ -1,10 +1,10 @@
 //! Floating-point numbers of a fixed number of machine words: more digits than double-double,
-//! without an allocation each.
+//! without allocation.
 //!
-//! Sums keep one guard word and all operations truncate, so that each is off by at most a few units
-//! in the last of `64 * LIMBS` binary digits. Exponents have 64 bits and do not overflow in
-//! practice; what would overflow is not a number. At 256 digits a product and a sum take about a
-//! tenth of the time of libraries whose precision is chosen at run time.
+//! Sums keep one guard word, and all operations truncate. The error of each operation is therefore
+//! at most a few units in the last of `64 * LIMBS` binary digits. Exponents have 64 bits and do not
+//! overflow in practice; a result that would overflow is not a number. At 256 digits a product and
+//! a sum take about a tenth of the time of libraries whose precision is chosen at run time.
 
 use crate::exact::Exact;
 use crate::scalar::Scalar;
@@ -17,10 +17,10 @@ use std::cmp::Ordering;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Float<const LIMBS: usize> {
     negative: bool,
-    /// The number is its digits, read as a fraction in [1/2, 1), times two to this power;
-    /// [`NOT_A_NUMBER`] says what it says.
+    /// The number is its digits, read as a fraction in [1/2, 1), times two to this power. The
+    /// exponent [`NOT_A_NUMBER`] marks what is not a number.
     exponent: i64,
-    /// Lowest word first; the top bit is set unless the number is zero or none.
+    /// Lowest word first. The top bit is set unless this is zero or not a number.
     limbs: [u64; LIMBS],
 }
 
@@ -47,7 +47,7 @@ impl<const LIMBS: usize> Float<LIMBS> {
         self.limbs.last().copied().unwrap_or(0)
     }
 
-    /// With digits whose top bit may not be set, followed by a guard word.
+    /// The number with these digits, whose top bit may not be set, followed by a guard word.
     fn normalised(negative: bool, exponent: i64, mut limbs: [u64; LIMBS], mut guard: u64) -> Self {
         let Some(leading) = limbs.iter().rev().position(|&l| l != 0) else {
             if guard == 0 {
@@ -87,7 +87,7 @@ impl<const LIMBS: usize> Float<LIMBS> {
         }
     }
 
-    /// A double as it is; infinities are not numbers.
+    /// A double, exactly; infinities become "not a number".
     pub fn from_f64(x: f64) -> Self {
         if !x.is_finite() {
             return Self::NAN;
@@ -100,8 +100,8 @@ impl<const LIMBS: usize> Float<LIMBS> {
         Self::normalised(x < 0.0, exponent + 64, limbs, 0)
     }
 
-    /// The nearest double, or the other one where two are nearly as near; infinite or zero where that is
-    /// out of range.
+    /// The nearest double, or its neighbour where both are nearly as near; infinite or zero where
+    /// the number is out of range.
     pub fn to_f64(self) -> f64 {
         if !self.is_finite() {
             return f64::NAN;
@@ -113,7 +113,7 @@ impl<const LIMBS: usize> Float<LIMBS> {
         if self.negative { -size } else { size }
     }
 
-    /// The logarithm of the absolute value to base 2: negative infinity for zero.
+    /// The logarithm of the absolute value to base 2; negative infinity for zero.
     pub fn log2(&self) -> f64 {
         if !self.is_finite() {
             return f64::NAN;
@@ -135,7 +135,7 @@ impl<const LIMBS: usize> Float<LIMBS> {
         Self::normalised(k.sign() == Sign::Minus, 64 * digits.len() as i64, limbs, guard)
     }
 
-    /// The number nearest to a rational but for a few units in the last digit.
+    /// The number nearest to a rational, except for a few units in the last digit.
     pub fn from_rational(q: &BigRational) -> Self {
         Self::from_integer(q.numer()).times(&Self::from_integer(q.denom()).reciprocal())
     }
@@ -222,7 +222,8 @@ impl<const LIMBS: usize> Float<LIMBS> {
         Self::normalised(self.negative != b.negative, self.exponent + b.exponent, high, low[LIMBS - 1])
     }
 
-    /// `1 / self` by Newton's method from the reciprocal of the leading digits; zero has none.
+    /// `1 / self` by Newton's method from the reciprocal of the leading digits; not a number for
+    /// zero.
     pub fn reciprocal(&self) -> Self {
         if !self.is_finite() || self.is_zero() {
             return Self::NAN;
@@ -263,13 +264,13 @@ pub struct ComplexMulti<const LIMBS: usize> {
 }
 
 impl<const LIMBS: usize> ComplexMulti<LIMBS> {
-    /// The nearest complex double, as `to_f64` of its parts.
+    /// The nearest complex double, by `to_f64` of both parts.
     pub fn to_c64(&self) -> Complex64 {
         Complex64::new(self.re.to_f64(), self.im.to_f64())
     }
 
-    /// The logarithm of the larger part's size to base 2: negative infinity for zero, not a number
-    /// for what is none.
+    /// The logarithm of the larger part's size to base 2: negative infinity for zero, and not a
+    /// number if a part is not a number.
     pub fn log2(&self) -> f64 {
         let (re, im) = (self.re.log2(), self.im.log2());
         if re.is_nan() || im.is_nan() { f64::NAN } else { re.max(im) }

@@ -7,17 +7,17 @@ use num_traits::{One, Zero};
 
 /// A complex number with rational parts; `None` after a division by zero.
 ///
-/// Programs that run over it give exact values.
+/// Programs over this type give exact values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rational(pub Option<Exact>);
 
 impl Rational {
-    /// The scalar of an exact number.
+    /// The scalar with this exact value.
     pub fn new(value: Exact) -> Rational {
         Rational(Some(value))
     }
 
-    /// The scalar of an integer.
+    /// The scalar with this integer value.
     pub fn integer(k: i64) -> Rational {
         Rational(Some(exact::from_i64(k)))
     }

@@ -1,24 +1,26 @@
-//! The numbers that straight-line programs run over.
+//! The numbers over which straight-line programs run.
 
 use crate::exact::{self, Exact};
 use crate::simd::Isa;
 use num_complex::Complex64;
 
-/// A complex-number type that a straight-line program can run over.
+/// A complex-number type over which a straight-line program can run.
 ///
 /// Operations take their operands by reference and are inlined, so that wide types
-/// ([`Lanes8`](crate::Lanes8)) stay in vector registers. Fused forms are fused in writing alone:
-/// `mul_add` rounds the product, then the sum. So all instruction sets give the same bits.
+/// ([`Lanes8`](crate::Lanes8)) stay in vector registers. Fused operations are fused only in
+/// notation: `mul_add` rounds the product, then the sum. All instruction sets therefore give the
+/// same bits.
 pub trait Scalar: Clone + Send + Sync + std::fmt::Debug + 'static {
-    /// The widest instruction set that gains anything: kernels over these numbers are compiled for
-    /// it and the narrower ones. Default: the portable one, right for numbers with one lane.
+    /// The widest instruction set that is of use: kernels over these numbers are compiled for it
+    /// and for the narrower ones. Default: the portable set, which is right for numbers with one
+    /// lane.
     const WIDEST: Isa = Isa::Portable;
     /// The narrowest instruction set for which generated systems have straight-line code over these
-    /// numbers; on narrower ones, or everywhere by default, they are interpreted. That is right for
+    /// numbers. On narrower sets, or everywhere by default, they are interpreted. That is right for
     /// long operations, beside which interpretation costs nothing.
     const STRAIGHT: Option<Isa> = None;
-    /// Whether the kernels for Taylor coefficients over these numbers are compiled in this crate,
-    /// once, and called from others. They are by far the largest of all kernels.
+    /// Whether this crate compiles the kernels for Taylor coefficients over these numbers, once, so
+    /// that other crates call them. These are by far the largest of all kernels.
     #[doc(hidden)]
     const TAYLOR_COMPILED: bool = false;
 
@@ -37,8 +39,8 @@ pub trait Scalar: Clone + Send + Sync + std::fmt::Debug + 'static {
         Self::from_c64(Complex64::new(re[0], im[0]))
     }
 
-    /// The number of the type that is nearest to an exact constant, to 32 digits; types with more
-    /// digits override it.
+    /// The number of this type that is nearest to an exact constant, to 32 digits. Types with more
+    /// digits override this method.
     fn from_exact(z: &Exact) -> Self {
         Self::from_parts(exact::to_parts(&z.re), exact::to_parts(&z.im))
     }
@@ -115,7 +117,7 @@ pub trait Scalar: Clone + Send + Sync + std::fmt::Debug + 'static {
     }
 }
 
-/// The narrowest instruction set that straight-line code over these numbers is compiled for.
+/// The narrowest instruction set for which straight-line code over these numbers is compiled.
 pub const fn narrowest<S: Scalar>() -> Isa {
     match S::STRAIGHT {
         Some(isa) => isa,
@@ -123,20 +125,20 @@ pub const fn narrowest<S: Scalar>() -> Isa {
     }
 }
 
-/// A [`Scalar`] of double precision with one lane or several, one a path.
+/// A [`Scalar`] of double precision with one lane or several, one lane for each path.
 ///
-/// Lanes never mix: lane `l` of a result depends on lane `l` of the operands alone. It is bit for
-/// bit what the type with one lane computes. The tracker is written once, over this trait.
+/// Lanes never mix: lane `l` of a result depends only on lane `l` of the operands. Each lane is bit
+/// for bit what the type with one lane computes. The tracker is written once, over this trait.
 pub trait Lane: Scalar + Copy {
     /// Number of lanes.
     const LANES: usize;
-    /// One real number a lane.
+    /// One real number for each lane.
     type Real: Copy + Send + Sync + std::fmt::Debug + AsRef<[f64]> + AsMut<[f64]> + 'static;
     /// A real number, in every lane.
     fn real(r: f64) -> Self::Real;
     /// `a * b` lane by lane.
     fn real_mul(a: &Self::Real, b: &Self::Real) -> Self::Real;
-    /// The larger of `a` and `b` lane by lane; `b` where either is not a number.
+    /// The larger of `a` and `b`, lane by lane; `b` where either is not a number.
     fn real_max(a: &Self::Real, b: &Self::Real) -> Self::Real;
     /// `b` where `a < limit`, `c` elsewhere, lane by lane.
     fn real_where_less(a: &Self::Real, limit: &Self::Real, b: &Self::Real, c: &Self::Real) -> Self::Real;

@@ -1,20 +1,20 @@
 //! The instruction set of lane kernels, chosen at run time.
 //!
-//! A kernel is plain inlined code over [`Lanes8`](crate::Lanes8) or another number; [`Isa::run`]
-//! compiles it for the instruction sets that gain something and calls the version that the machine
-//! has. The compiler never fuses a product and a sum by itself, so all versions agree bit for bit;
-//! the instruction is enabled beside AVX2 only for `f64::mul_add` asked for by name
-//! (double-double), whose result is the same everywhere.
+//! A kernel is plain inlined code over [`Lanes8`](crate::Lanes8) or another number. [`Isa::run`]
+//! compiles the kernel for the instruction sets that are of use, and calls the version for the
+//! machine. The compiler never fuses a product and a sum by itself, so that all versions agree bit
+//! for bit. The fused instruction is enabled along with AVX2 only for explicit calls of
+//! `f64::mul_add` (double-double), whose result is the same everywhere.
 
-/// An instruction set that kernels are compiled for, narrower ones first.
+/// An instruction set for which kernels are compiled, narrower ones first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Isa {
     /// The set that every machine of the target has (SSE2 on x86-64).
     Portable,
-    /// AVX2 with FMA, four doubles a register.
+    /// AVX2 with FMA, four doubles per register.
     Avx2,
-    /// AVX-512 (F, VL, DQ), eight doubles a register.
+    /// AVX-512 (F, VL, DQ), eight doubles per register.
     Avx512,
 }
 
@@ -22,9 +22,9 @@ pub enum Isa {
 pub trait Kernel {
     /// What the kernel returns.
     type Output;
-    /// The widest instruction set that it is compiled for.
+    /// The widest instruction set for which the kernel is compiled.
     const WIDEST: Isa;
-    /// The narrowest one; it must not be run on a narrower one. Default: the portable one.
+    /// The narrowest one; the kernel must not run on a narrower one. Default: the portable one.
     const NARROWEST: Isa = Isa::Portable;
     /// Does the work.
     fn run(self) -> Self::Output;
@@ -64,18 +64,18 @@ impl Isa {
         }
     }
 
-    /// The widest instruction set of this machine that is no wider than this one.
+    /// The widest instruction set of this machine that is not wider than this one.
     #[inline]
     pub fn within_machine(self) -> Isa {
         let sets = [Isa::Avx512, Isa::Avx2];
         sets.into_iter().find(|&isa| isa <= self && isa.available()).unwrap_or(Isa::Portable)
     }
 
-    /// Runs a kernel, compiled for the widest instruction set that is no wider than this one and
-    /// [`Kernel::WIDEST`] and that the machine has.
+    /// Runs a kernel, compiled for the widest instruction set of this machine that is not wider
+    /// than this one or [`Kernel::WIDEST`].
     ///
     /// # Panics
-    /// If that one is narrower than [`Kernel::NARROWEST`].
+    /// If that set is narrower than [`Kernel::NARROWEST`].
     #[inline]
     pub fn run<K: Kernel>(self, kernel: K) -> K::Output {
         // Constants first: a version that is never called is not compiled.
@@ -97,8 +97,8 @@ impl Isa {
     }
 }
 
-/// Keeps the compiler from vectorising a loop across its turns, with gathers and scatters, instead
-/// of across lanes. Costs nothing.
+/// Keeps the compiler from vectorising a loop over its iterations, with gathers and scatters,
+/// instead of over lanes. Costs nothing.
 #[inline(always)]
 pub fn across_lanes() {
     #[cfg(target_arch = "x86_64")]

@@ -38,7 +38,7 @@ pub enum SystemError {
         "`{0}` cannot be a name: names are letters, digits and underscores, do not begin with a digit, and `i` and `I` mean the imaginary unit"
     )]
     Name(String),
-    /// A name of two things.
+    /// A name that is used for two things.
     #[error("the name `{0}` stands for two things; rename one of them")]
     Duplicate(String),
     /// A constant that is infinite or not a number.
@@ -74,13 +74,13 @@ impl System {
         System::from_arena(expressions.into_arena(), equations)
     }
 
-    /// The system of some polynomials, with names for its unknowns.
+    /// The system of these polynomials, with names for its unknowns.
     ///
     /// # Errors
     /// If a name is used twice or could not be parsed back, or if a coefficient is not finite.
     ///
     /// # Panics
-    /// If a polynomial is not in as many unknowns as there are names.
+    /// If the number of unknowns of a polynomial differs from the number of names.
     pub fn from_polynomials<R: Ring + ToExact>(
         names: &[&str],
         polynomials: &[Polynomial<R>],
@@ -159,9 +159,9 @@ pub(crate) fn is_name(name: &str) -> bool {
 }
 
 impl std::fmt::Display for System {
-    /// The system in plain text, which parses to a system with the same values: a line of unknowns,
-    /// a line of parameters where there are some, and one equation a line, each ended by `;`. A
-    /// formula of more than 100,000 symbols is cut short by `...`.
+    /// The system in plain text, which parses to a system with the same values: a line with the
+    /// unknowns, a line with the parameters if there are some, and one equation per line, each
+    /// ended by `;`. A formula of more than 100,000 symbols is cut short by `...`.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         for (word, names) in [("variables", self.variables()), ("parameters", self.parameters())] {
             if !names.is_empty() {

@@ -36,8 +36,8 @@ impl<R: Ring> Polynomial<R> {
         Polynomial { variables: self.variables, terms }
     }
 
-    /// The product, unless it has more than `limit` terms on the way or an exponent leaves the
-    /// range of 32 bits.
+    /// The product; `None` if it has more than `limit` terms at some point or an exponent leaves
+    /// the range of 32 bits.
     pub(crate) fn checked_mul(&self, other: &Polynomial<R>, limit: usize) -> Option<Polynomial<R>> {
         assert_eq!(self.variables, other.variables, "polynomials in equally many unknowns");
         let mut sum = Terms::default();

@@ -14,7 +14,7 @@ struct Named<'a, R> {
 }
 
 impl<R: Ring + ToExact> Polynomial<R> {
-    /// The polynomial as text, in descending order of terms; the parsers read it back exactly.
+    /// The polynomial as text, with terms in descending order; the parsers read it back exactly.
     ///
     /// # Panics
     /// If there are fewer names than unknowns.

@@ -1,4 +1,4 @@
-//! Sparse multivariate polynomials over any commutative ring, with negative exponents where wanted.
+//! Sparse multivariate polynomials over any commutative ring; exponents may be negative.
 
 mod arithmetic;
 mod display;

@@ -1,4 +1,4 @@
-//! The polynomial itself: its terms, and what needs no other polynomial.
+//! The polynomial itself: its terms, and operations that need no other polynomial.
 
 use super::ring::Ring;
 use crate::monomial::Monomial;
@@ -12,7 +12,7 @@ pub(crate) type Terms<R> = HashMap<Monomial, R, BuildHasherDefault<std::hash::De
 ///
 /// Terms are in descending order (total degree, then lexicographic) and have no zero coefficients,
 /// so that equal polynomials compare equal. Operations on polynomials in different numbers of
-/// unknowns panic, and so do exponents that leave the range of 32 bits.
+/// unknowns panic; so do exponents that leave the range of 32 bits.
 ///
 /// ```
 /// use poly::Polynomial;
@@ -39,7 +39,7 @@ impl<R: Ring> Polynomial<R> {
         Polynomial::term(Monomial::one(variables), value)
     }
 
-    /// The polynomial that is one unknown.
+    /// The polynomial that consists of one unknown.
     ///
     /// # Panics
     /// If there is no unknown of this index.
@@ -48,17 +48,17 @@ impl<R: Ring> Polynomial<R> {
         Polynomial::term(Monomial::new((0..variables).map(|j| i32::from(j == index))), R::one())
     }
 
-    /// The polynomial of one term.
+    /// The polynomial with one term.
     pub fn term(monomial: Monomial, coefficient: R) -> Polynomial<R> {
         let variables = monomial.exponents().len();
         let terms = if coefficient.is_zero() { Vec::new() } else { vec![(monomial, coefficient)] };
         Polynomial { variables, terms }
     }
 
-    /// A sum of terms in any order; those of equal monomials are added up.
+    /// A sum of terms in any order; terms with equal monomials are added up.
     ///
     /// # Panics
-    /// If a monomial has another number of exponents.
+    /// If a monomial does not have one exponent for each unknown.
     pub fn from_terms(variables: usize, terms: impl IntoIterator<Item = (Monomial, R)>) -> Polynomial<R> {
         let mut sum = Terms::default();
         for (monomial, coefficient) in terms {
@@ -113,7 +113,7 @@ impl<R: Ring> Polynomial<R> {
         self.terms.iter().map(|(monomial, _)| group_degree(monomial, group)).max().unwrap_or(0)
     }
 
-    /// Exponent vectors, one row a term, in the order of [`terms`](Polynomial::terms).
+    /// Exponent vectors, one row per term, in the order of [`terms`](Polynomial::terms).
     pub fn support(&self) -> Vec<Vec<i32>> {
         self.terms.iter().map(|(monomial, _)| monomial.exponents().to_vec()).collect()
     }
@@ -147,7 +147,7 @@ pub(super) fn group_degree(monomial: &Monomial, group: &[usize]) -> i64 {
     group.iter().map(|&j| i64::from(monomial.exponents()[j])).sum()
 }
 
-/// Adds a term and returns what its monomial has now.
+/// Adds a term and returns the new coefficient of its monomial.
 pub(crate) fn accumulate<R: Ring>(sum: &mut Terms<R>, monomial: Monomial, coefficient: R) -> &R {
     match sum.entry(monomial) {
         std::collections::hash_map::Entry::Vacant(slot) => slot.insert(coefficient),

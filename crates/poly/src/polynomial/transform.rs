@@ -9,7 +9,7 @@ impl<R: Ring> Polynomial<R> {
     /// negative exponent somewhere.
     ///
     /// # Panics
-    /// If `value` is in another number of unknowns.
+    /// If `value` has a different number of unknowns.
     pub fn substitute(&self, index: usize, value: &Polynomial<R>) -> Option<Polynomial<R>> {
         assert_eq!(self.variables(), value.variables(), "polynomials in equally many unknowns");
         // Terms by their power of the unknown, highest first, for Horner's rule.
@@ -34,9 +34,9 @@ impl<R: Ring> Polynomial<R> {
         Some(if last > 0 { &sum * &value.pow(last) } else { sum })
     }
 
-    /// The homogeneous polynomial with one more unknown for each group, in the order of the groups
-    /// after the old ones, such that every term has the same degree in each group and its new
-    /// unknown.
+    /// The homogeneous polynomial with one new unknown for each group, in the order of the groups
+    /// after the old unknowns. In each group together with its new unknown, every term has the same
+    /// degree.
     ///
     /// # Panics
     /// If a degree leaves the range of 32 bits.

@@ -5,10 +5,10 @@ use crate::graph::{Graph, Id, Node};
 use num_traits::{One, Zero};
 use std::collections::HashMap;
 
-/// Formulas of equal value, in which the terms of every sum that repeats one are collected by their
+/// Formulas of equal value. Each sum that repeats a term has its terms collected by their
 /// coefficients.
 ///
-/// Parts of a sum that something else uses as well count as one term, so that nothing is computed
+/// A part of a sum that something else uses too counts as one term, so that nothing is computed
 /// twice.
 pub(super) fn collect(graph: &Graph, roots: &[Id]) -> (Graph, Vec<Id>) {
     let part = parts_of_sums(graph, roots);

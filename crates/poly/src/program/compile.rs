@@ -18,7 +18,7 @@ const NODE_LIMIT: usize = 20_000_000;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CompileError {
-    /// A formula divides by zero whatever the unknowns are.
+    /// A formula divides by zero for all values of the unknowns.
     #[error("equation {equation} divides by the constant zero")]
     DivisionByZero {
         /// The equation, from 1.
@@ -29,7 +29,7 @@ pub enum CompileError {
         "the Jacobian needs more than {limit} operations; split the system or write its formulas with more in common"
     )]
     TooLarge {
-        /// Most operations that are tried.
+        /// Largest number of operations that is tried.
         limit: usize,
     },
 }
@@ -79,8 +79,8 @@ impl System {
     }
 }
 
-/// Lowers values and derivatives together; row by row, so that what a row shares is live only
-/// there.
+/// Lowers values and derivatives together, row by row, so that a row's shared subformulas are live
+/// only in that row.
 fn lower_jacobian(
     graph: &Graph,
     roots: &[Id],

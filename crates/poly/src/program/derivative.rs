@@ -2,7 +2,7 @@
 
 use crate::graph::{Graph, Id, Node};
 
-/// For each node whether some unknown occurs in it.
+/// For each node, whether some unknown occurs in it.
 fn depends_on_variables(graph: &Graph) -> Vec<bool> {
     let mut depends = vec![false; graph.len()];
     for id in 0..graph.len() {
@@ -15,7 +15,7 @@ fn depends_on_variables(graph: &Graph) -> Vec<bool> {
 /// Structurally nonzero derivatives of the roots: `(root, variable, formula)`.
 pub(crate) type Entries = Vec<(usize, u32, Id)>;
 
-/// One sweep a root, from the root down.
+/// One sweep per root, from the root down.
 pub(crate) fn reverse(graph: &mut Graph, roots: &[Id]) -> Entries {
     let depends = depends_on_variables(graph);
     let mut entries = Entries::new();
@@ -84,7 +84,7 @@ fn power_slope(graph: &mut Graph, a: Id, k: i32) -> Id {
     graph.mul(factor, power)
 }
 
-/// One sweep an unknown, from the unknown up.
+/// One sweep per unknown, from the unknown up.
 pub(crate) fn forward(graph: &mut Graph, roots: &[Id], variables: usize) -> Entries {
     let depends = depends_on_variables(graph);
     let count = graph.len();

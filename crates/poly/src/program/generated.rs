@@ -1,4 +1,4 @@
-//! The support that code written by `poly::program::emit` (feature `emit`) needs.
+//! Support for code written by `poly::program::emit` (feature `emit`).
 
 use crate::scalar::Scalar;
 use crate::simd::Isa;
@@ -12,14 +12,14 @@ pub use crate::scalar::narrowest;
 /// Scratch space of generated code.
 #[derive(Clone, Debug)]
 pub struct Memory<S> {
-    /// The instruction set that kernels run on.
+    /// The instruction set on which kernels run.
     pub isa: Isa,
-    /// Values that one function hands to the next.
+    /// Values that one function passes to the next.
     pub live: Vec<S>,
     straight: bool,
-    /// Inputs and registers, where instructions are interpreted.
+    /// Inputs and registers, if instructions are interpreted.
     array: Vec<S>,
-    /// Taylor coefficients that stay between orders.
+    /// Taylor coefficients that are kept between orders.
     taylor: TaylorMemory<S>,
 }
 
@@ -37,24 +37,24 @@ impl<S: Scalar> Memory<S> {
         Memory { isa, live: Vec::new(), straight: false, array, taylor }
     }
 
-    /// Whether straight-line code is run.
+    /// Whether to run straight-line code.
     #[inline]
     pub fn is_straight(&self) -> bool {
         self.straight
     }
 
-    /// Runs a table for values, or values and Jacobian, instead.
+    /// Runs a table for values, or for values and Jacobian, in place of straight-line code.
     ///
     /// # Panics
-    /// If [`is_straight`](Memory::is_straight), or a slice is too short.
+    /// If [`is_straight`](Memory::is_straight) holds, or a slice is too short.
     pub fn interpret(&mut self, tape: &RegisterTape, x: &[S], p: &[S], values: &mut [S], jacobian: &mut [S]) {
         tape.run(self.isa, &mut self.array, x, p, values, jacobian);
     }
 
-    /// Taylor coefficients, as [`Evaluate::taylor`](crate::Evaluate::taylor) says.
+    /// Taylor coefficients, as specified by [`Evaluate::taylor`](crate::Evaluate::taylor).
     ///
     /// # Panics
-    /// If the order is not 1, 2 or 3 or a slice is too short.
+    /// If the order is not 1, 2 or 3, or a slice is too short.
     pub fn taylor(&mut self, tape: &TaylorTape, order: usize, x: &[S], p: &[S], out: &mut [S]) {
         tape.run(self.isa, &mut self.taylor, order, x, p, out);
     }

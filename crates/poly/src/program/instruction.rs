@@ -1,6 +1,6 @@
 //! Instructions of straight-line programs.
 
-/// Where an operand comes from.
+/// The origin of an operand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) enum Operand {
     Constant(u32),
@@ -68,7 +68,7 @@ impl Instruction {
         Instruction { op, args: all }
     }
 
-    /// The operands that are used.
+    /// The operands that the operation uses.
     pub(crate) fn operands(&self) -> &[Operand] {
         &self.args[..self.op.arity()]
     }
@@ -78,12 +78,12 @@ impl Instruction {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Tape {
     pub(crate) instructions: Vec<Instruction>,
-    /// What is written where: slot of the output and its value; slots that are not listed are zero.
+    /// What is written to which slot of the output; slots that are not listed are zero.
     pub(crate) outputs: Vec<(u32, Operand)>,
 }
 
 impl Tape {
-    /// Those of the first `slots` output slots that no instruction writes.
+    /// Those of the first `slots` output slots that no instruction writes to.
     pub(crate) fn zeros(&self, slots: usize) -> Vec<u32> {
         let mut written = vec![false; slots];
         for &(slot, _) in &self.outputs {

@@ -8,7 +8,7 @@ use crate::scalar::Scalar;
 use crate::simd::Isa;
 use std::sync::Arc;
 
-/// A compiled system, ready to be evaluated; cheap to clone and to share between threads.
+/// A compiled system, ready to be evaluated. It is cheap to clone and to share between threads.
 #[derive(Clone, Debug)]
 pub struct Interpreter {
     compiled: Arc<Compiled>,
@@ -31,13 +31,13 @@ pub struct InterpreterMemory<S> {
 }
 
 impl Interpreter {
-    /// Prepares a program to be run.
+    /// Prepares a program for running.
     pub fn new(program: Program) -> Interpreter {
         let tables = Tables::new(&program);
         Interpreter { compiled: Arc::new(Compiled { program, tables }) }
     }
 
-    /// The program that is run.
+    /// The program that this interpreter runs.
     pub fn program(&self) -> &Program {
         &self.compiled.program
     }

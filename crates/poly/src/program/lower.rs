@@ -9,7 +9,7 @@ use crate::graph::{Graph, Id, Node};
 use num_traits::One;
 use std::collections::HashMap;
 
-/// Instructions in dependency order, equal ones once, and the constants that they use.
+/// Instructions in dependency order, without duplicates, and the constants that they use.
 #[derive(Default)]
 pub(crate) struct Builder {
     pub(crate) instructions: Vec<Instruction>,
@@ -19,7 +19,7 @@ pub(crate) struct Builder {
 }
 
 impl Builder {
-    /// Begins with constants that other instructions use already.
+    /// A builder that begins with constants that other instructions use already.
     pub(crate) fn with_constants(constants: Vec<Exact>) -> Builder {
         let constant_index = constants.iter().cloned().zip(0u32..).collect();
         Builder { constants, constant_index, ..Builder::default() }

@@ -1,9 +1,9 @@
-//! Register allocation: results share registers as soon as their last use is past.
+//! Register allocation: a register becomes free after the last use of its result.
 
 use super::instruction::{Operand, Tape};
 use super::tape::{Code, RegisterTape};
 
-/// How inputs lie in the array.
+/// The layout of inputs in the array.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Layout {
     pub(crate) constants: usize,
@@ -12,13 +12,13 @@ pub(crate) struct Layout {
 }
 
 impl Layout {
-    /// Where the first register lies.
+    /// Place of the first register.
     pub(crate) fn inputs(self) -> usize {
         self.constants + self.parameters + self.variables
     }
 }
 
-/// Where a result lies: for results the given table, for inputs their fixed place.
+/// The place of a result, from the given table, or of an input, which is fixed.
 pub(crate) fn place(operand: Operand, layout: Layout, temporary: impl Fn(u32) -> u32) -> u32 {
     match operand {
         Operand::Constant(k) => k,

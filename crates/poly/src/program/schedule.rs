@@ -124,7 +124,7 @@ fn renumber(operand: Operand, position: &[u32]) -> Operand {
     }
 }
 
-/// Registers that each value needs, were the program a tree (Sethi and Ullman 1970).
+/// Registers that each value would need if the program were a tree (Sethi and Ullman 1970).
 fn weights(instructions: &[Instruction]) -> Vec<u32> {
     let mut weight: Vec<u32> = Vec::with_capacity(instructions.len());
     for instruction in instructions {

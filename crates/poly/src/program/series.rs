@@ -1,12 +1,13 @@
 //! Taylor arithmetic on coefficients that stay in memory.
 //!
 //! Every operand and every result keeps its coefficients of orders 0 to 3. Each step computes
-//! coefficients `FROM ..= TO` of result `t` from those of its operands and relies on the result's
-//! coefficients below `FROM`. `TO` is the order asked for, at which the unknowns' coefficients are
-//! zero, and what is linear in parameters on a straight line has none beyond order 1: products with
-//! either leave out what vanishes. Coefficient 2 of a product is computed twice, without and with
-//! that of the unknowns; in between, the place of coefficient 3 keeps the part `a_1 b_1` that does
-//! not change. Formulas: Griewank and Walther, *Evaluating Derivatives*, chapter 13.
+//! coefficients `FROM ..= TO` of result `t` from those of its operands, and relies on the result's
+//! coefficients below `FROM`. `TO` is the requested order. At this order the unknowns' coefficients
+//! are zero. A factor that is linear in parameters on a straight line has no coefficients beyond
+//! order 1. Products with either leave out the terms that vanish. Coefficient 2 of a product is
+//! computed twice, without and with coefficient 2 of the unknowns. In between, the place of
+//! coefficient 3 keeps the part `a_1 b_1`, which does not change. Formulas: Griewank and Walther,
+//! *Evaluating Derivatives*, chapter 13.
 
 use super::instruction::Op;
 use crate::scalar::Scalar;
@@ -57,8 +58,8 @@ fn combine_products<S: Scalar, const MINUS: bool>(a: &S, b: &S, c: &S, d: &S) ->
     if MINUS { S::mul_mul_sub(a, b, c, d) } else { S::mul_mul_add(a, b, c, d) }
 }
 
-/// What is left of a kind of product below the order asked for, where unknowns have coefficients
-/// like anything else.
+/// What remains of a kind of product below the requested order, where the unknowns have
+/// coefficients like everything else.
 #[inline(always)]
 const fn kind_at(kind: u8, top: bool) -> u8 {
     match kind {
@@ -158,7 +159,7 @@ macro_rules! each {
 }
 
 /// An operation of [`Op`] on series that multiplies no two of them; `TO` is `FROM` or the next
-/// order. Products are left, and said so by `false`.
+/// order. Products are not done; `false` says so.
 #[inline(always)]
 pub(crate) fn step_sum<S: Scalar, const FROM: usize, const TO: usize>(
     m: &mut [Series<S>],
@@ -185,8 +186,8 @@ pub(crate) fn step_sum<S: Scalar, const FROM: usize, const TO: usize>(
     true
 }
 
-/// A product of [`Op`] of series; `TO` is `FROM` or the next order. Everything else is done by
-/// [`step_sum`].
+/// A product of series by [`Op`]; `TO` is `FROM` or the next order. [`step_sum`] does everything
+/// else.
 #[inline(always)]
 pub(crate) fn step_product<S: Scalar, const FROM: usize, const TO: usize, const KIND: u8>(
     m: &mut [Series<S>],

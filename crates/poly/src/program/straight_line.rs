@@ -1,4 +1,4 @@
-//! The straight-line program: what is run and written as source.
+//! The straight-line program, which is run or written as source.
 
 use super::instruction::Tape;
 use super::registers::Layout;

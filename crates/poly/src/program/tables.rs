@@ -12,8 +12,8 @@ pub struct Tables {
     pub values: RegisterTape,
     /// For values and Jacobian.
     pub jacobian: RegisterTape,
-    /// For Taylor coefficients, which have no straight-line code: instructions do so much each that
-    /// finding them costs little.
+    /// For Taylor coefficients. These have no straight-line code: each instruction does so much
+    /// work that looking it up costs little.
     pub taylor: TaylorTape,
 }
 

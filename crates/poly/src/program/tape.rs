@@ -1,4 +1,4 @@
-//! A tape whose results have places, ready to run over any scalar.
+//! A tape whose results have fixed places, ready to run over any scalar.
 
 use super::instruction::Op;
 use crate::scalar::Scalar;
@@ -21,8 +21,8 @@ pub struct Code {
 pub struct RegisterTape {
     /// Instructions in order of execution.
     pub code: Cow<'static, [Code]>,
-    /// Slot of the output and the place that holds it at the end. Slots are values, then entries of
-    /// the Jacobian.
+    /// Slot of the output, and the place that holds it at the end. Slots are values, followed by
+    /// entries of the Jacobian.
     pub outputs: Cow<'static, [(u32, u32)]>,
     /// Slots that are zero whatever the input.
     pub zeros: Cow<'static, [u32]>,
@@ -33,7 +33,7 @@ pub struct RegisterTape {
 }
 
 impl RegisterTape {
-    /// Runs the tape in an array of its size or more that holds the constants.
+    /// Runs the tape in an array that has at least its size and holds the constants.
     pub(super) fn run<S: Scalar>(
         &self,
         isa: Isa,

@@ -1,9 +1,10 @@
 //! Taylor coefficients along a path, one order at a time over resident memory.
 //!
 //! Every operand and every result keeps four coefficients. A call for order `k` first corrects
-//! coefficient `k - 1` of each value (its unknowns' coefficient `k - 1` has been found since the
-//! last call), then computes coefficient `k`, in one pass. Where the parameters move on a straight
-//! line, products with what is linear in them leave out its coefficients beyond order 1.
+//! coefficient `k - 1` of each value, because the unknowns' coefficient `k - 1` was found since the
+//! last call. It then computes coefficient `k`, in the same pass. Where the parameters move on a
+//! straight line, factors that are linear in them have no coefficients beyond order 1, and products
+//! leave these out.
 
 use super::instruction::{Op, Operand, Tape};
 use super::registers::{Layout, place};
@@ -22,9 +23,9 @@ use std::borrow::Cow;
 pub struct TaylorCode {
     /// The operation.
     pub op: Op,
-    /// What the factors of its products are: 0 anything, 1 anything and an unknown, 2 both
-    /// unknowns, 3 anything and something linear in parameters, 4 something linear in parameters
-    /// and an unknown, 5 both linear in parameters.
+    /// The factors of its products: 0 anything, 1 anything and an unknown, 2 two unknowns, 3
+    /// anything and something linear in parameters, 4 something linear in parameters and an
+    /// unknown, 5 two factors that are linear in parameters.
     pub kind: u8,
     /// Place of the result.
     pub target: u32,
@@ -35,13 +36,13 @@ pub struct TaylorCode {
 /// A program for Taylor coefficients: instructions in three groups, each in order of execution.
 #[derive(Clone, Debug)]
 pub struct TaylorTape {
-    /// Free of unknowns: coefficient `k - 1` was final at order `k - 1` already.
+    /// Instructions free of unknowns: coefficient `k - 1` was final at order `k - 1` already.
     pub parameters_only: Cow<'static, [TaylorCode]>,
-    /// Free of parameters: coefficient 1 is zero as long as the unknowns' is.
+    /// Instructions free of parameters: coefficient 1 is zero as long as that of the unknowns is.
     pub variables_only: Cow<'static, [TaylorCode]>,
-    /// With both.
+    /// Instructions with both.
     pub mixed: Cow<'static, [TaylorCode]>,
-    /// Place of the series of each output.
+    /// Place of each output's series.
     pub outputs: Cow<'static, [u32]>,
     /// Number of constants, parameters and unknowns.
     pub inputs: [usize; 3],
@@ -49,11 +50,11 @@ pub struct TaylorTape {
     pub size: usize,
 }
 
-/// Coefficients that stay between orders.
+/// Coefficients that are kept between orders.
 #[derive(Clone, Debug)]
 pub struct TaylorMemory<S> {
     series: Vec<Series<S>>,
-    /// Those of one lane, where lanes are run one by one.
+    /// The coefficients of one lane, where lanes are run one by one.
     lane: Vec<Series<Complex64>>,
     /// Orders at which the parameters' coefficients are not known to be zero.
     bent: [bool; WIDTH],
@@ -169,7 +170,7 @@ impl TaylorTape {
     }
 }
 
-/// What is known of a factor when the program is made.
+/// What is known about a factor when the program is made.
 #[derive(Clone, Copy, PartialEq)]
 enum Factor {
     Anything,
@@ -188,13 +189,13 @@ impl Factor {
         }
     }
 
-    /// What is true of both.
+    /// What holds for both factors.
     fn join(self, other: Factor) -> Factor {
         if self == other { self } else { Factor::Anything }
     }
 }
 
-/// The kind of a product, where there is one for the factors in this order.
+/// The kind of a product with the factors in this order, if there is one.
 fn kind(a: Factor, b: Factor) -> Option<u8> {
     match (a, b) {
         (Factor::Anything, Factor::Anything) => Some(GENERAL),
@@ -207,10 +208,10 @@ fn kind(a: Factor, b: Factor) -> Option<u8> {
     }
 }
 
-/// Kinds, the ones that leave out most first.
+/// Kinds, ordered by how much they leave out, most first.
 const BEST_FIRST: [u8; 6] = [LINEARS, LINEAR_BY_UNKNOWN, UNKNOWNS, BY_LINEAR, BY_UNKNOWN, GENERAL];
 
-/// The order of factors that leaves out most, and its kind, which holds for both products of an
+/// The order of the factors that leaves out most, and its kind, which holds for both products of an
 /// instruction.
 fn sort_factors(op: Op, args: [Operand; 4], factor: impl Fn(Operand) -> Factor) -> ([Operand; 4], u8) {
     let [a, b, c, d] = args;
@@ -258,8 +259,8 @@ impl Pass<'_> {
         self.run(Isa::Portable, series);
     }
 
-    /// The pass for eight paths, compiled here; one lane after the other, to the same bits, where
-    /// there is no code for lanes.
+    /// The pass for eight paths, compiled here. Where there is no code for lanes, it runs one lane
+    /// after the other, to the same bits.
     #[inline(never)]
     fn run_eight(self, isa: Isa, series: &mut Vec<Series<Lanes8>>, lane: &mut Vec<Series<Complex64>>) {
         if Lanes8::is_straight(isa) {
@@ -335,7 +336,7 @@ impl<const K: usize, const STRAIGHT: bool, S: Scalar> Kernel for Later<'_, K, ST
     }
 }
 
-/// Runs instructions; `FREE` says that they are free of unknowns, so that fewer kinds occur.
+/// Runs instructions. `FREE` says that they are free of unknowns, so that fewer kinds occur.
 #[inline(always)]
 fn sweep<S: Scalar, const FROM: usize, const TO: usize, const STRAIGHT: bool, const FREE: bool>(
     series: &mut [Series<S>],

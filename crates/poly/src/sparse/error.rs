@@ -1,4 +1,4 @@
-//! Why supports do not make a system.
+//! Errors in supports.
 
 /// Why supports do not make a system.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -24,7 +24,7 @@ pub enum SupportError {
         /// The term, from 1.
         term: usize,
     },
-    /// An exponent that is the least 32-bit integer, which has no opposite.
+    /// An exponent that is the least 32-bit integer, whose negative does not fit.
     #[error("term {term} of equation {equation} has an exponent of -2^31")]
     Exponent {
         /// The equation, from 1.

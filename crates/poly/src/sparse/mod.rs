@@ -1,8 +1,8 @@
 //! Systems given by supports, with the coefficients as parameters: the kernel of polyhedral stages.
 //!
-//! Monomials of an equation are kept as a tree of shared prefixes whose edges are powers of
-//! unknowns. One sweep from the leaves to the root gives the value by Horner's rule and, kept apart
-//! by edge, the derivatives by those powers: the trick of Speelpenning for the gradient of a
+//! The monomials of an equation are kept as a tree of shared prefixes whose edges are powers of
+//! unknowns. One sweep from the leaves to the root gives the value by Horner's rule. It also gives,
+//! kept apart by edge, the derivatives by those powers: Speelpenning's trick for the gradient of a
 //! product, extended from chains to trees.
 
 mod error;

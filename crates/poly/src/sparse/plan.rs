@@ -1,4 +1,4 @@
-//! What the kernel does, worked out once: the table of powers, the tree of prefixes, and each row's
+//! The kernel's work, planned once: the table of powers, the tree of prefixes, and each row's
 //! sweep.
 
 use super::error::SupportError;
@@ -49,7 +49,7 @@ pub(super) struct Slope {
     pub(super) power: u32,
     pub(super) unknown: u32,
     pub(super) exponent: i32,
-    /// Where `x^(e-1)` is; of no meaning for `e = 1`.
+    /// Where `x^(e-1)` is; meaningless for `e = 1`.
     pub(super) lower: u32,
     /// Whether it is the first power of its unknown in the row.
     pub(super) first: bool,

@@ -19,13 +19,13 @@ use tables::{register_table, taylor_table};
 pub struct EmitOptions {
     /// Name of the unit struct that implements [`Evaluate`](crate::Evaluate). Default `"System"`.
     pub type_name: String,
-    /// Path by which the source reaches this crate, such as `hc::poly`. Default `"poly"`.
+    /// Path by which the source refers to this crate, such as `hc::poly`. Default `"poly"`.
     pub crate_path: String,
     /// Name of what the program was made from, for the header. Default empty.
     pub source: String,
-    /// Most operations in one function. Compile time grows faster than linearly above a few
-    /// thousand; already above a hundred or two the compiler may give up turning lanes into vector
-    /// instructions, which costs a factor of up to ten. Default 100.
+    /// Largest number of operations in one function. Compile time grows faster than linearly above
+    /// a few thousand. Above one or two hundred, the compiler may already stop turning lanes into
+    /// vector instructions, which costs a factor of up to ten. Default 100.
     pub operations_per_function: usize,
 }
 
@@ -40,30 +40,30 @@ impl Default for EmitOptions {
     }
 }
 
-/// Why source cannot be written.
+/// Why the source cannot be written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EmitError {
-    /// A name of a type that is no Rust identifier.
+    /// A type name that is not a Rust identifier.
     #[error("`{0}` cannot name a Rust type")]
     TypeName(String),
-    /// A path to this crate that is no Rust path.
+    /// A path to this crate that is not a Rust path.
     #[error("`{0}` is not a Rust path")]
     CratePath(String),
-    /// Source that is not Rust: a fault of this module.
+    /// Source that is not valid Rust: a fault of this module.
     #[error("the source does not parse: {0}")]
     Syntax(String),
 }
 
 /// Writes a program as a Rust module: a unit struct that implements [`Evaluate`](crate::Evaluate).
 ///
-/// Program and options determine the bytes. The module needs nothing but this crate, reached by
-/// [`EmitOptions::crate_path`]. Its results agree bit for bit with those of the
-/// [`Interpreter`](super::Interpreter) over types of double precision, and over double-double, as
+/// Program and options determine the bytes. The module needs only this crate, at
+/// [`EmitOptions::crate_path`]. Over types of double precision its results agree bit for bit with
+/// those of the [`Interpreter`](super::Interpreter). Over double-double they agree too, because
 /// constants are written to about 32 digits.
 ///
 /// # Errors
-/// If an option is not what Rust admits as a name or a path.
+/// If an option is not a valid Rust name or path.
 pub fn emit(program: &Program, options: &EmitOptions) -> Result<String, EmitError> {
     let name: syn::Ident =
         syn::parse_str(&options.type_name).map_err(|_| EmitError::TypeName(options.type_name.clone()))?;
