@@ -39,8 +39,7 @@ impl FromStr for System {
     /// If the text does not parse, has no equations, or is a family with factors that must not
     /// vanish, which a system cannot hold.
     fn from_str(text: &str) -> Result<System, ParseError> {
-        // The mark with which some editors begin a file.
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let text = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
         if begins_with_count(text) {
             return phcpack(text);
         }
@@ -54,8 +53,11 @@ impl FromStr for System {
     }
 }
 
+/// The mark with which some editors begin a file.
+pub(super) const BYTE_ORDER_MARK: char = '\u{feff}';
+
 /// Whether the text begins with a count: a whole number after which no formula can go on.
-fn begins_with_count(text: &str) -> bool {
+pub(super) fn begins_with_count(text: &str) -> bool {
     let text = text.trim_start();
     let rest = text.trim_start_matches(|c: char| c.is_ascii_digit());
     if rest.len() == text.len() || !rest.chars().next().is_none_or(char::is_whitespace) {
@@ -67,7 +69,7 @@ fn begins_with_count(text: &str) -> bool {
 
 /// Where the first line is that begins a list of equations or unknowns in TOML. No formula has a
 /// `[`.
-fn list_of_toml(text: &str) -> Option<usize> {
+pub(super) fn list_of_toml(text: &str) -> Option<usize> {
     let mut offset = 0;
     for line in text.split_inclusive('\n') {
         let key = line.trim_start();

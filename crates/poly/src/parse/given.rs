@@ -1,9 +1,12 @@
 //! Systems and families from formulas that a program gives one by one.
 
+use super::detect::{BYTE_ORDER_MARK, begins_with_count, list_of_toml};
 use super::equations::equations;
 use super::error::ParseError;
 use super::family::Family;
 use super::formula::{Names, Role, whole_formula};
+use super::phcpack::phcpack_in;
+use super::plain::plain_in;
 use crate::arena::Arena;
 use crate::formula::Formula;
 use crate::system::System;
@@ -60,6 +63,31 @@ impl System {
         let none: &[&str] = &[];
         let (arena, names) = declared(unknowns, none)?;
         equations(arena, names, "equation", formulas)
+    }
+
+    /// A system from text in one of the formats of [`from_str`](System#impl-FromStr-for-System), in
+    /// these unknowns.
+    ///
+    /// ```
+    /// let system = poly::System::from_text_in(&["y", "x"], "2\n x^2 + y^2 - 5;\n x*y - 2;")?;
+    /// assert_eq!(system.variables(), ["y", "x"]);
+    /// # Ok::<(), poly::ParseError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If the text does not parse, declares its unknowns itself or has a name that is not among
+    /// these, or if an unknown is given twice or cannot be a name.
+    pub fn from_text_in<N: AsRef<str>>(unknowns: &[N], text: &str) -> Result<System, ParseError> {
+        let none: &[&str] = &[];
+        let (arena, names) = declared(unknowns, none)?;
+        let text = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
+        if begins_with_count(text) {
+            return phcpack_in(text, arena, names);
+        }
+        match list_of_toml(text) {
+            None => plain_in(text, arena, names),
+            Some(list) => Err(ParseError::at(text, list, "this text declares its unknowns; do not give them again")),
+        }
     }
 }
 
@@ -167,6 +195,20 @@ mod tests {
         let family = Family::from_formulas(&["x"], &["a"], &["x = a"]).unwrap();
         let error = family.with_nonzero(&["a", "b"]).unwrap_err();
         assert_eq!(error.within.as_deref(), Some("nonzero factor 2"));
+    }
+
+    #[test]
+    fn texts_of_every_format_take_unknowns() {
+        for text in ["2 2\nx^2 - y;\nx - 3;\n", "x^2 = y\nx = 3", "x^2 - y; x - 3;"] {
+            let system = System::from_text_in(&["y", "x"], text).unwrap();
+            assert_eq!((system.variables(), system.len()), (["y".to_owned(), "x".to_owned()].as_slice(), 2), "{text}");
+            let error = System::from_text_in(&["y", "z"], text).unwrap_err();
+            assert!(error.message.contains("`x` is neither"), "{error}");
+        }
+        for (text, word) in [("variables: x\nx - 1", "twice"), ("unknowns = ['x']\nequations = ['x - 1']", "again")] {
+            let error = System::from_text_in(&["x"], text).unwrap_err();
+            assert!(error.message.contains(word), "{error}");
+        }
     }
 
     #[test]

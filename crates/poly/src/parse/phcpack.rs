@@ -22,9 +22,12 @@ use crate::system::System;
 /// # Errors
 /// If the count is missing or does not fit, or if a polynomial does not parse.
 pub fn phcpack(text: &str) -> Result<System, ParseError> {
+    phcpack_in(text, Arena::default(), Names::default())
+}
+
+/// The same, in an arena with some names declared.
+pub(super) fn phcpack_in(text: &str, mut arena: Arena, mut names: Names) -> Result<System, ParseError> {
     let (count, unknowns, body) = header(text)?;
-    let mut arena = Arena::default();
-    let mut names = Names::default();
     let mut equations = Vec::new();
     let mut position = body;
     for k in 0..count {

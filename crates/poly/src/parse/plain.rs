@@ -9,7 +9,12 @@ use crate::system::System;
 
 /// Reads a system in plain text: see [`System::from_str`](System#impl-FromStr-for-System).
 pub(super) fn plain(text: &str) -> Result<System, ParseError> {
-    let mut reader = Reader::new(text)?;
+    plain_in(text, Arena::default(), Names::default())
+}
+
+/// The same, in an arena with some names declared.
+pub(super) fn plain_in(text: &str, arena: Arena, names: Names) -> Result<System, ParseError> {
+    let mut reader = Reader::new(text, arena, names)?;
     while *reader.tokens.current() != Token::End {
         reader.statement()?;
     }
@@ -33,11 +38,11 @@ struct Reader<'t> {
 }
 
 impl<'t> Reader<'t> {
-    fn new(text: &'t str) -> Result<Reader<'t>, ParseError> {
+    fn new(text: &'t str, arena: Arena, names: Names) -> Result<Reader<'t>, ParseError> {
         Ok(Reader {
             tokens: Tokens::with_lines(text)?,
-            arena: Arena::default(),
-            names: Names::default(),
+            arena,
+            names,
             equations: Vec::new(),
             unknowns_declared: false,
             parameters_declared: false,
