@@ -18,6 +18,7 @@ use std::path::Path;
 
 pub use distances::{read_distances, read_distances_from};
 pub use error::{MAX_BYTES, ReadError};
+pub use heading::heads_list;
 pub use nodes::{Nodes, read_mat_nodes, read_mat_transmitters, read_nodes, read_nodes_from};
 pub use source::is_mat;
 pub use units::{ReadOptions, Units};
@@ -40,13 +41,18 @@ use source::{has_extension, open, text};
 /// # Errors
 /// With file, line, column and the names of the nodes, and what to do.
 pub fn read(path: &Path, options: impl Into<ReadOptions>) -> Result<Pseudoranges, ReadError> {
-    let file = path.display().to_string();
     let options = options.into();
-    if options.variable.is_some() && !is_mat(path) {
-        let problem = "has no variables; --variable is for .mat files".to_string();
-        return Err(ReadError::Variable { file, problem });
-    }
-    let source = open(path, &file)?;
+    check_variable(path, &options)?;
+    read_from(open(path, &path.display().to_string())?, path, options)
+}
+
+/// Reads an open source as [`read`] reads a file of this name.
+///
+/// # Errors
+/// Those of [`read`].
+pub fn read_from(source: impl Read, name: &Path, options: impl Into<ReadOptions>) -> Result<Pseudoranges, ReadError> {
+    let (file, path, options) = (name.display().to_string(), name, options.into());
+    check_variable(path, &options)?;
     if has_extension(path, "npy") {
         read_npy(source, &file, options)
     } else if is_mat(path) {
@@ -54,6 +60,15 @@ pub fn read(path: &Path, options: impl Into<ReadOptions>) -> Result<Pseudoranges
     } else {
         read_csv(source, &file, options)
     }
+}
+
+/// Refuses a variable of a file that has none.
+fn check_variable(path: &Path, options: &ReadOptions) -> Result<(), ReadError> {
+    if options.variable.is_none() || is_mat(path) {
+        return Ok(());
+    }
+    let problem = "has no variables; --variable is for .mat files".to_string();
+    Err(ReadError::Variable { file: path.display().to_string(), problem })
 }
 
 /// Reads CSV as [`read`] does; `file` names the source in errors.

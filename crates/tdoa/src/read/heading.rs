@@ -121,6 +121,38 @@ pub(super) struct Columns {
     pub(super) count: usize,
 }
 
+/// Columns by what their headings say that they hold.
+struct Roles {
+    receivers: Vec<usize>,
+    transmitters: Vec<usize>,
+    /// Measurements of either kind.
+    values: Vec<usize>,
+    times: Vec<usize>,
+    sigmas: Vec<usize>,
+}
+
+impl Roles {
+    fn of(headings: &[Heading]) -> Roles {
+        let under = |names| -> Vec<usize> { (0..headings.len()).filter(|&k| headings[k].is(names)).collect() };
+        let times = under(TIME);
+        Roles {
+            receivers: under(RECEIVER),
+            transmitters: under(TRANSMITTER),
+            values: [under(LENGTH), times.clone()].concat(),
+            times,
+            sigmas: under(SIGMA),
+        }
+    }
+}
+
+/// Whether a table with these headings is a list of one measurement a line, as [`read`](super::read) takes it: two of
+/// receiver, transmitter and value are there, so that the third is asked for.
+pub fn heads_list<S: AsRef<str>>(headings: &[S]) -> bool {
+    let headings: Vec<Heading> = headings.iter().map(|cell| Heading::new(cell.as_ref())).collect();
+    let Roles { receivers, transmitters, values, .. } = Roles::of(&headings);
+    [receivers, transmitters, values].iter().filter(|found| !found.is_empty()).count() >= 2
+}
+
 /// The columns of a list; `None` if the first line is not that of a list.
 pub(super) fn list_columns(
     cells: &[String],
@@ -129,13 +161,10 @@ pub(super) fn list_columns(
     units: Option<Units>,
 ) -> Result<Option<Columns>, ReadError> {
     let headings: Vec<Heading> = cells.iter().map(|cell| Heading::new(cell)).collect();
-    let roles = [RECEIVER, TRANSMITTER, LENGTH, TIME, SIGMA];
-    let found = roles.map(|names| -> Vec<usize> { (0..cells.len()).filter(|&k| headings[k].is(names)).collect() });
-    let [receivers, transmitters, lengths, times, sigmas] = found;
-    let values = [lengths, times.clone()].concat();
+    let Roles { receivers, transmitters, values, times, sigmas } = Roles::of(&headings);
     let bad = |problem: String| ReadError::Heading { file: file.to_string(), line, problem };
     let needed = [("receiver", &receivers), ("transmitter", &transmitters), ("value", &values)];
-    if needed.iter().filter(|(_, found)| !found.is_empty()).count() < 2 {
+    if !heads_list(cells) {
         return Ok(None);
     }
     for (role, found) in needed.iter().chain(&[("sigma", &sigmas)]) {
