@@ -1,7 +1,7 @@
 //! A family as Rust source: its equations as straight-line code, and its stored solutions.
 //!
 //! The program `hc codegen` and build scripts use this module; it needs the feature `codegen`. The
-//! module that is written depends on this crate alone.
+//! generated module depends only on this crate.
 
 use crate::distinct::{coincidences, relative_distance};
 use crate::family::{Family, FamilyError, StartFile, StartFileError};
@@ -10,18 +10,18 @@ use poly::program::{EmitError, EmitOptions, emit};
 use std::fmt::Write;
 use thiserror::Error;
 
-/// Relative change by refinement from which on a stored solution is no solution.
+/// If refinement changes a stored solution by this relative amount or more, it is not a solution.
 const MOVED: f64 = 1e-12;
-/// Condition from which on a stored solution is singular.
+/// Condition number from which on a stored solution counts as singular.
 const SINGULAR: f64 = 1e12;
-/// Relative distance below which two stored solutions are one.
+/// Relative distance below which two stored solutions are the same.
 const SAME: f64 = 1e-8;
 
 /// Why no source is written.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum CodegenError {
-    /// The stored solutions are those of another family.
+    /// The stored solutions belong to another family.
     #[error(transparent)]
     Family(#[from] FamilyError),
     /// The start file cannot be used.
@@ -30,12 +30,12 @@ pub enum CodegenError {
     /// The program cannot be written as Rust.
     #[error(transparent)]
     Emit(#[from] EmitError),
-    /// Not as many solutions as the family states.
+    /// The number of solutions differs from the number that the family states.
     #[error("{found} solutions, but the family states {stated}; compute the start file anew or correct `roots`")]
     Count {
-        /// Stored solutions.
+        /// Number of stored solutions.
         found: usize,
-        /// Solutions that the family states.
+        /// Number of solutions that the family states.
         stated: usize,
     },
     /// A stored solution does not solve the equations.
@@ -43,7 +43,7 @@ pub enum CodegenError {
     Inaccurate {
         /// The solution, from 1.
         index: usize,
-        /// Its relative distance from the solution that Newton's method finds from it.
+        /// Its relative distance from the solution to which Newton's method converges.
         distance: f64,
     },
     /// A stored solution is singular.
@@ -54,13 +54,13 @@ pub enum CodegenError {
         /// Condition number of its Jacobian.
         condition: f64,
     },
-    /// A factor that must not vanish does, at a stored solution.
+    /// A factor that must not vanish vanishes at a stored solution.
     #[error("solution {index} is degenerate: a factor of `nonzero` vanishes; compute the start file anew")]
     Degenerate {
         /// The solution, from 1.
         index: usize,
     },
-    /// Stored solutions that are one.
+    /// Stored solutions that are the same.
     #[error("solutions {solutions:?} coincide; compute the start file anew")]
     Coincident {
         /// The solutions, from 1.
@@ -71,11 +71,11 @@ pub enum CodegenError {
 /// Writes a family and its solutions for a generic parameter point as a Rust module.
 ///
 /// The module has a unit struct `System` that implements [`Evaluate`](poly::Evaluate), and a
-/// function `fibre()` that gives the stored solutions as a [`Fibre`](crate::Fibre). Its header
-/// names the `source`. The arguments alone determine the bytes.
+/// function `fibre()` that returns the stored solutions as a [`Fibre`](crate::Fibre). Its header
+/// names the `source`. Only the arguments determine the bytes.
 ///
-/// The stored solutions are checked first: they solve the equations, are regular, distinct and not
-/// degenerate, and are as many as the family states.
+/// The stored solutions are checked first: they must solve the equations, be regular, distinct and
+/// not degenerate, and be as many as the family states.
 ///
 /// ```
 /// use hc::{Family, codegen, family::StartFile};
@@ -87,7 +87,7 @@ pub enum CodegenError {
 /// ```
 ///
 /// # Errors
-/// If the stored solutions do not pass.
+/// If the stored solutions fail a check.
 pub fn generate(family: &Family, start: &StartFile, source: &str) -> Result<String, CodegenError> {
     verify(family, start)?;
     let mut options = EmitOptions::default();

@@ -11,8 +11,8 @@ const FLOOR: f64 = 1e-4;
 /// Relative distance below which two singular ends are one point.
 pub(crate) const CLUSTER: f64 = 1e-6;
 
-/// Relative distance of two points: `max_j |a_j - b_j| / w_j`, `w_j` the size of the component, at
-/// least 1e-4 of the largest.
+/// Relative distance of two points: `max_j |a_j - b_j| / w_j`, where `w_j` is the size of the
+/// component, at least 1e-4 of the largest.
 pub fn relative_distance(a: &[Complex64], b: &[Complex64]) -> f64 {
     let largest = a.iter().chain(b).map(|z| z.norm()).fold(0.0, f64::max);
     if largest == 0.0 {

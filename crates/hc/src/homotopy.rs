@@ -1,7 +1,7 @@
 //! Homotopies `H(x, t) = F(x; p(t))`: a system and a path in its parameters, from `t = 1` (start)
 //! to `t = 0` (target).
 //!
-//! Every homotopy of this crate has that form: the straight line, the parameter, coefficient and
+//! Every homotopy of this crate has this form: the straight line, the parameter, coefficient and
 //! toric homotopies differ only in their [`ParameterPath`].
 
 use num_complex::Complex64;
@@ -13,24 +13,24 @@ pub trait ParameterPath: Send + Sync {
     /// Number of parameters `m`.
     fn parameters(&self) -> usize;
 
-    /// Taylor coefficients of orders 0 to 3 at `t` (one `t` a lane): `p[k * m + i]` is coefficient
-    /// `k` of parameter `i`.
+    /// Taylor coefficients of orders 0 to 3 at `t` (one `t` per lane): `p[k * m + i]` is
+    /// coefficient `k` of parameter `i`.
     ///
     /// `paths` holds the index of the path in each lane, for homotopies that differ from path to
-    /// path; in lanes without a path it is that of some other lane. Called inside a kernel:
-    /// implementations are `#[inline(always)]`.
+    /// path. A lane without a path has the index of some other lane. This is called inside a
+    /// kernel: implementations are `#[inline(always)]`.
     fn coefficients<S: Lane>(&self, paths: &[usize], t: &S::Real, p: &mut [S]);
 
     /// Replaces the parameters at `t` of one path, rounded to double precision, by their values in
     /// double-double.
     ///
     /// A point with a Jacobian of condition `c` moves by `c` times the rounding error of the
-    /// parameters, which spoils the predictor's idea of the path long before Newton's method fails.
-    /// By default they stay rounded.
+    /// parameters. This spoils the predictor's picture of the path long before Newton's method
+    /// fails. By default the parameters stay rounded.
     fn extend(&self, _path: usize, _t: f64, _p: &mut [ComplexDd]) {}
 
-    /// Whether coefficients of orders 2 and 3 are zero everywhere, which makes Taylor coefficients
-    /// cheaper.
+    /// Whether coefficients of orders 2 and 3 are zero everywhere. Taylor coefficients then cost
+    /// less.
     fn is_straight(&self) -> bool {
         false
     }
@@ -54,7 +54,7 @@ impl Segment {
         segment
     }
 
-    /// [`new`](Self::new) with the memory of an earlier segment.
+    /// [`new`](Self::new), with the memory of an earlier segment.
     ///
     /// # Panics
     /// If the lengths differ.
@@ -76,7 +76,7 @@ impl Segment {
         &self.direction
     }
 
-    /// Writes the parameters at `t`, real or complex, in double-double into `p`, one entry a
+    /// Writes the parameters at `t`, real or complex, in double-double into `p`, one entry per
     /// parameter.
     pub fn extended(&self, t: &ComplexDd, p: &mut [ComplexDd]) {
         Isa::detect().run(Extended { segment: self, t, p });

@@ -1,4 +1,4 @@
-//! What is proved of one point, or why nothing is, and how far proofs may reach.
+//! What is proved about one point, or why nothing is proved, and how far proofs may reach.
 
 use num_complex::Complex64;
 use poly::ComplexInterval;
@@ -7,9 +7,9 @@ use poly::ComplexInterval;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct CertifyOptions {
-    /// How far a point may be from the solution that it stands for, as a share of the size of each
-    /// coordinate, which counts as at least 1e-4 of the largest coordinate or of one. Newton's
-    /// method must contract from the point in any case. Default 1e-3.
+    /// How far a point may be from the solution that it represents, as a share of the size of each
+    /// coordinate. The size counts as at least 1e-4 of the largest coordinate or of one. In any
+    /// case, Newton's method must contract from the point. Default 1e-3.
     pub reach: f64,
     /// Largest box that is tried, as a share of the weights of the unknowns. Default 2^-8.
     pub largest_box: f64,
@@ -21,14 +21,14 @@ impl Default for CertifyOptions {
     }
 }
 
-/// What is known of the imaginary parts of a solution.
+/// What is known about the imaginary parts of a solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reality {
     /// Proved real in every coordinate.
     Real,
     /// Proved not real in some coordinate.
     NotReal,
-    /// Neither.
+    /// Neither is proved.
     Undecided,
 }
 
@@ -36,9 +36,9 @@ pub enum Reality {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Certificate {
-    /// The middle of the box, the solution to double precision.
+    /// The middle of the box: the solution to double precision.
     pub value: Vec<Complex64>,
-    /// A rectangle a coordinate; their product contains exactly one solution.
+    /// One rectangle per coordinate; their product contains exactly one solution.
     pub enclosure: Vec<ComplexInterval>,
     /// Whether the solution is real.
     pub reality: Reality,
@@ -57,7 +57,7 @@ pub enum Obstacle {
     /// Newton's method leaves the neighbourhood of the point.
     #[error("Newton's method leads away from the point: it is no approximate solution")]
     Away,
-    /// No box about the point passes the test.
+    /// No box around the point passes the test.
     #[error("no box about the point contracts: the solution is singular or nearly so, or there is none")]
     NoContraction,
 }

@@ -1,16 +1,16 @@
-//! The test of Krawczyk at one point, in interval arithmetic of either precision.
+//! Krawczyk's test at one point, in interval arithmetic of either precision.
 
 use super::proof::{Proof, shifted, symmetric};
 use num_complex::Complex64;
 use poly::Interval;
 use poly::{ComplexBall, ComplexDd, ComplexInterval, Evaluate, Interpreter, Isa, Scalar};
 
-/// Boxes that are tried, each smaller by [`SHRINK`] at least.
+/// Boxes that are tried, each smaller than the one before by at least [`SHRINK`].
 const BOXES: usize = 16;
 const SHRINK: f64 = 1.0 / 64.0;
-/// How often a proved box is made smaller, while that halves it at least.
+/// How often a proved box is made smaller, as long as this at least halves it.
 const TIGHTER: usize = 6;
-/// Proved boxes that many times wider than the least are tried to be made smaller.
+/// Proved boxes that are this many times wider than the least are made smaller if possible.
 const WIDE: f64 = 16.0;
 /// A box is at least this many times the correction, so that the correction fits well inside.
 const ROOM: f64 = 4.0;
@@ -185,8 +185,8 @@ impl<'a, S: Enclosure> Krawczyk<'a, S> {
         (image.iter().map(S::interval).collect(), norm)
     }
 
-    /// The image of a box that contains the solution contains it too: as small as that makes it.
-    /// Boxes are extended to the centre, from where differences are taken.
+    /// The image of a box that contains the solution contains it too; the box is made as small as
+    /// that allows. Boxes are extended to the centre, from which differences are taken.
     fn tighten(
         &mut self,
         centre: &[ComplexDd],
@@ -216,7 +216,7 @@ impl<'a, S: Enclosure> Krawczyk<'a, S> {
     }
 }
 
-/// Squares about zero with these half-widths.
+/// Squares around zero with these half-widths.
 fn squares(half: &[f64]) -> Vec<ComplexInterval> {
     half.iter().map(|&r| ComplexInterval { re: symmetric(r), im: symmetric(r) }).collect()
 }
@@ -237,7 +237,7 @@ fn with_zero(a: &ComplexInterval) -> ComplexInterval {
     ComplexInterval { re: part(a.re), im: part(a.im) }
 }
 
-/// What both contain; both contain the solution, so there is something.
+/// The intersection of two sets; both contain the solution, so it is not empty.
 fn intersection(a: &ComplexInterval, b: &ComplexInterval) -> ComplexInterval {
     let both = |a: Interval, b: Interval| Interval { low: a.low.max(b.low), high: a.high.min(b.high) };
     ComplexInterval { re: both(a.re, b.re), im: both(a.im, b.im) }

@@ -1,11 +1,11 @@
-//! Proofs that solutions exist: the test of Krawczyk in complex interval arithmetic.
+//! Proofs that solutions exist: Krawczyk's test in complex interval arithmetic.
 //!
-//! [`certify`] takes a system and approximate solutions. For each that passes it returns a box of
-//! complex rectangles in which the system has **exactly one** solution, a regular one, says whether
-//! that solution is proved real, and which of the points stand for the same solution. What is
-//! proved is about the system *as it is written*: decimal coefficients and fractions are exact
-//! numbers, enclosed by intervals wherever they are no doubles, and parameters are the intervals
-//! that are given. All arithmetic is rounded outward; nothing rests on a tolerance.
+//! [`certify`] takes a system and approximate solutions. For each point that passes, it returns a
+//! box of complex rectangles in which the system has **exactly one** solution, a regular one. It
+//! also says whether that solution is proved real, and which of the points represent the same
+//! solution. The proof is about the system *as it is written*. Decimal coefficients and fractions
+//! are exact numbers, enclosed by intervals wherever they are not doubles; parameters are the
+//! intervals that are given. All arithmetic is rounded outward; nothing rests on a tolerance.
 //!
 //! ```
 //! use hc::certify::{CertifyOptions, Reality, certify};
@@ -23,28 +23,28 @@
 //!
 //! # The proof
 //! Let `c` be the refined point (double-double), `C` an approximate inverse of the Jacobian and `D`
-//! a box about zero. With
+//! a box around zero. With
 //!
 //! `K = -C F(c) + (I - C J(c + D)) D`
 //!
 //! `g(x) = x - C F(x)` maps `c + D` into `c + K`, because `F(x) - F(y) = A (x - y)` for a matrix
 //! `A` in the interval matrix `J(c + D)` (rectangles are convex). If `K` lies in the interior of
-//! `D`, Brouwer's theorem gives a fixed point of `g`; if also the norm of `I - C J(c + D)`, with
-//! moduli of entries and coordinates weighted by the box, is below one, then `C` is regular, so
-//! that fixed points are solutions, and `g` contracts, so that there is only one. (Krawczyk 1969,
-//! Moore 1977, Rump 1983; for polynomial systems Breiding, Rose, Timme, *Certifying zeros of
-//! polynomial systems using interval arithmetic*, arXiv:2011.05000.) Then `c + K` contains the
-//! solution, and repetition makes it small. `F(c)` is evaluated over balls of 32 digits
-//! ([`poly::ComplexBall`]), so that ill-conditioned solutions do not fail by rounding.
+//! `D`, Brouwer's theorem gives a fixed point of `g`. Suppose also that the norm of `I - C J(c +
+//! D)` is below one, with moduli of entries and coordinates weighted by the box. Then `C` is
+//! regular, so that fixed points are solutions, and `g` contracts, so that there is only one.
+//! (Krawczyk 1969, Moore 1977, Rump 1983; for polynomial systems Breiding, Rose, Timme, *Certifying
+//! zeros of polynomial systems using interval arithmetic*, arXiv:2011.05000.) In that case `c + K`
+//! contains the solution, and repetition makes it small. `F(c)` is evaluated over balls of 32
+//! digits ([`poly::ComplexBall`]), so that rounding does not make ill-conditioned solutions fail.
 //!
-//! * **Real**: for a system with real coefficients the conjugate of a solution is one; if the
-//!   conjugate of the small box lies in the large one, both are the same. **Not real**: the
-//!   imaginary part of some coordinate is not zero in the small box.
+//! * **Real**: for a system with real coefficients the conjugate of a solution is a solution. If
+//!   the conjugate of the small box lies in the large one, both solutions are the same. **Not
+//!   real**: the imaginary part of some coordinate is not zero in the small box.
 //! * **The same solution**: the small box of one point lies in the large box of another.
 //!   **Different solutions**: the small boxes are disjoint.
 //!
-//! Weights of unknowns and rows come from the system, `|C| |J| |x|`, so badly scaled systems need
-//! no scaling beforehand.
+//! Weights of unknowns and rows come from the system, `|C| |J| |x|`; badly scaled systems therefore
+//! need no scaling beforehand.
 
 mod certificate;
 mod krawczyk;

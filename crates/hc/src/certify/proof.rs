@@ -1,10 +1,11 @@
-//! What is proved of one point.
+//! What is proved about one point.
 
 use super::certificate::{Certificate, Reality};
 use poly::Interval;
 use poly::{ComplexBall, ComplexDd, ComplexInterval, Scalar};
 
-/// A proved solution: exactly one in `centre + large box`, and that one in `centre + small`.
+/// A proved solution: there is exactly one in `centre + large box`, and it lies in `centre +
+/// small`.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Proof {
     pub(super) centre: Vec<ComplexDd>,
@@ -15,8 +16,8 @@ pub(super) struct Proof {
 }
 
 impl Proof {
-    /// Whether the published box, whose bounds are doubles, lies in the large one, so that no other
-    /// solution is in it.
+    /// Whether the published box, whose bounds are doubles, lies in the large box, so that it
+    /// contains no other solution.
     pub(super) fn is_publishable(&self) -> bool {
         self.centre.iter().zip(&self.small).zip(&self.large).all(|((c, small), &large)| {
             let published = shifted(c, small);
@@ -27,7 +28,7 @@ impl Proof {
         })
     }
 
-    /// What is published of it; `real` says that conjugates of solutions are solutions.
+    /// The published certificate; `real` says that conjugates of solutions are solutions.
     pub(super) fn certificate(&self, real: bool) -> Certificate {
         let enclosure: Vec<ComplexInterval> = self.centre.iter().zip(&self.small).map(|(c, d)| shifted(c, d)).collect();
         let reality = if enclosure.iter().any(|z| !z.im.contains(0.0)) {
@@ -60,7 +61,8 @@ impl Proof {
         })
     }
 
-    /// Whether the solution of `other`, in its small box, lies in the large box and so is the same.
+    /// Whether the solution of `other`, in its small box, lies in the large box of this proof and
+    /// is therefore the same.
     pub(super) fn holds(&self, other: &Proof) -> bool {
         let large = self.large.iter().map(|&r| symmetric(r));
         large.zip(self.relative(other)).all(|(l, z)| l.contains_in_interior(z.re) && l.contains_in_interior(z.im))

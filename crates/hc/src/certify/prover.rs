@@ -9,14 +9,14 @@ use crate::linalg::Lu;
 use num_complex::Complex64;
 use poly::{ComplexBall, ComplexDd, ComplexInterval, Evaluate, Interpreter, Isa, Scalar};
 
-/// Newton steps at most: from two digits, each step about doubles them, later ones add what the
-/// inverse is good for.
+/// Newton steps at most. From two digits on each step about doubles them; later steps gain as much
+/// as the inverse is good for.
 const NEWTON_STEPS: usize = 12;
-/// The second correction is at most this share of the first: near a double root it would be one
+/// The second correction is at most this share of the first; near a double root it would be one
 /// half.
 const CONTRACTION: f64 = 0.25;
-/// First corrections so small, relative to the weights, are rounding errors, and nothing follows
-/// from the second.
+/// First corrections this small, relative to the weights, are rounding errors; the second
+/// correction then means nothing.
 const ROUNDING: f64 = 1e-12;
 /// What is carried over from other unknowns stays below one part in this many of a box.
 const LEVEL: f64 = 16.0;
@@ -116,7 +116,7 @@ impl<'a> Prover<'a> {
         Err(first.unwrap_or(Obstacle::NoContraction))
     }
 
-    /// A proof with weights of the unknowns that `scale` makes of those that the system gives.
+    /// A proof with weights of the unknowns that `scale` makes from those of the system.
     fn attempt(&mut self, point: &[Complex64], scale: fn(Vec<f64>) -> Vec<f64>) -> Result<Proof, Obstacle> {
         let precise_point: Vec<ComplexDd> = point.iter().map(|&z| z.into()).collect();
         self.invert(&precise_point)?;
@@ -166,8 +166,8 @@ impl<'a> Prover<'a> {
         Ok(centre)
     }
 
-    /// The Jacobian at a point and its approximate inverse, by way of a matrix with rows and
-    /// columns of equal size.
+    /// The Jacobian at a point and its approximate inverse, through a matrix with rows and columns
+    /// of equal size.
     fn invert(&mut self, x: &[ComplexDd]) -> Result<(), Obstacle> {
         let n = self.n;
         let Prover { target, parameters, plain, values, plain_jacobian, jacobian, lu, inverse, .. } = self;
@@ -202,8 +202,8 @@ impl<'a> Prover<'a> {
         if inverse.iter().all(|z| z.high().is_finite()) { Ok(()) } else { Err(Obstacle::Singular) }
     }
 
-    /// `|C| |J| |x|`: what relative changes of the terms do to each unknown. Unknowns that it
-    /// leaves at zero, as at the origin, count as of size one.
+    /// `|C| |J| |x|`: the effect of relative changes of the terms on each unknown. Unknowns for
+    /// which this is zero, as at the origin, count as of size one.
     fn weights(&self, x: &[Complex64]) -> Vec<f64> {
         let n = self.n;
         let (jacobian, inverse) =
@@ -220,8 +220,8 @@ impl<'a> Prover<'a> {
         weights.iter().zip(unit).map(|(&w, u)| if w > 0.0 { w } else { u }).collect()
     }
 
-    /// Weights raised to where the errors of the inverse, `|I - C J|` and the rounding of that,
-    /// carry those of other unknowns.
+    /// Weights, raised so far that they cover what the errors of the inverse, `|I - C J|` and the
+    /// rounding of that, carry over from other unknowns.
     fn levelled(&self, mut weights: Vec<f64>) -> Vec<f64> {
         let n = self.n;
         let error = |i: usize, j: usize| {
@@ -249,14 +249,14 @@ impl<'a> Prover<'a> {
     }
 }
 
-/// Whether no coordinate differs by more than a share of its size, which counts as at least 1e-4 of
-/// the largest coordinate or of one.
+/// Whether no coordinate differs by more than a share of its size. The size counts as at least 1e-4
+/// of the largest coordinate or of one.
 fn within(point: &[Complex64], solution: &[Complex64], share: f64) -> bool {
     let floor = 1e-4 * solution.iter().map(|z| z.norm()).fold(1.0, f64::max);
     point.iter().zip(solution).all(|(a, b)| (a - b).norm() <= share * b.norm().max(floor))
 }
 
-/// The largest of all for each.
+/// The largest of all weights, for each unknown.
 fn level(weights: Vec<f64>) -> Vec<f64> {
     let largest = weights.iter().copied().fold(0.0, f64::max);
     vec![largest; weights.len()]

@@ -12,16 +12,16 @@ pub enum CheckpointError {
     Io {
         /// The file or directory.
         path: PathBuf,
-        /// What the system says.
+        /// The message of the operating system.
         message: String,
     },
-    /// Another process records there.
+    /// Another process records in the directory.
     #[error("{}: another run records its work there; wait for its end, or give another directory", .0.display())]
     InUse(PathBuf),
-    /// The directory has the checkpoint of an earlier run, which was not asked to go on.
+    /// The directory has the checkpoint of an earlier run, but resuming was not requested.
     #[error("{}: has the checkpoint of an earlier run already; resume that, or give another directory", .0.display())]
     Taken(PathBuf),
-    /// A file that no checkpoint has.
+    /// A file that does not belong to a checkpoint.
     #[error("{}: is not of a checkpoint ({reason}); give another directory", path.display())]
     Foreign {
         /// The file.
@@ -34,7 +34,7 @@ pub enum CheckpointError {
     Differs {
         /// The directory of the checkpoint.
         directory: PathBuf,
-        /// What is different: version, system or the name of an option.
+        /// What differs: version, system or the name of an option.
         name: String,
         /// Its value in the checkpoint.
         recorded: String,

@@ -1,4 +1,4 @@
-//! What a checkpoint is of: a small file in JSON, for readers too.
+//! The description of a checkpoint: a small JSON file, which people can read too.
 
 use super::error::CheckpointError;
 use serde::{Deserialize, Serialize};
@@ -8,17 +8,17 @@ use std::fs::File;
 use std::io;
 use std::path::Path;
 
-/// The version of records; another one whenever what is recorded, or its order, changes.
+/// The version of records; it changes whenever the records or their order change.
 pub(super) const FORMAT: u32 = 1;
 
-/// What a run computes, in so far as its result depends on it.
+/// What a run computes, as far as its result depends on it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Job {
     /// What is done: `solve`, `track` or `monodromy`.
     pub(crate) what: String,
     /// The system, in short.
     pub(crate) system: System,
-    /// Settings by their names, and hashes of what is long.
+    /// Settings by their names, and hashes of long input.
     pub(crate) options: Map<String, Value>,
 }
 
@@ -47,7 +47,7 @@ pub(crate) struct System {
     pub(crate) hash: Hash,
 }
 
-/// A hash that tells things apart which differ by accident: FNV-1a of 64 bits, in hexadecimal.
+/// A hash that separates inputs which differ by accident: FNV-1a of 64 bits, in hexadecimal.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Hash(String);
 
@@ -64,7 +64,7 @@ impl Hash {
     }
 }
 
-/// The header: what the checkpoint is of, and what wrote it.
+/// The header: what the checkpoint describes, and which program wrote it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Header {
     pub(super) format: u32,
@@ -100,7 +100,7 @@ impl Header {
     /// Reads a header.
     ///
     /// # Errors
-    /// If the file cannot be read or is no header.
+    /// If the file cannot be read or is not a header.
     pub(super) fn read(path: &Path) -> Result<(Header, Vec<u8>), CheckpointError> {
         let bytes = std::fs::read(path).map_err(|error| CheckpointError::io(path, &error))?;
         let foreign = |reason: String| CheckpointError::Foreign { path: path.to_owned(), reason };
@@ -119,8 +119,8 @@ impl Header {
         Ok((header, bytes))
     }
 
-    /// Where this header, of the checkpoint in a directory, differs from that of the run: `None` if
-    /// nowhere.
+    /// The difference between this header, of the checkpoint in a directory, and the header of the
+    /// run; `None` if there is none.
     pub(super) fn difference(&self, directory: &Path, run: &Header) -> Option<CheckpointError> {
         let [recorded, own] = [self, run].map(|header| serde_json::to_value(header).unwrap_or_default());
         let (name, recorded, own) = difference(&recorded, &own, "")?;
@@ -128,8 +128,8 @@ impl Header {
     }
 }
 
-/// The first difference between two values: its name, and what either has there. What a run does
-/// and by which version comes before the system, and that before the settings.
+/// The first difference between two values: its name, and both values. The kind of run and the
+/// version come before the system, and the system before the settings.
 fn difference(a: &Value, b: &Value, name: &str) -> Option<(String, String, String)> {
     let (Value::Object(a), Value::Object(b)) = (a, b) else {
         return (a != b).then(|| (name.to_owned(), shown(a), shown(b)));

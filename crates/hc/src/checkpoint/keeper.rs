@@ -1,4 +1,4 @@
-//! The checkpoint of a run: what is recorded, and what can be taken from there.
+//! The checkpoint of a run: what is recorded, and what can be read back.
 
 use super::error::CheckpointError;
 use super::header::{FORMAT, Header, Job};
@@ -19,24 +19,24 @@ pub(super) const HEADER: &str = "checkpoint.json";
 pub(super) const LOG: &str = "records.log";
 pub(super) const LOCK: &str = "lock";
 
-/// Bringing records to the disk takes at most one part in as many of the time.
+/// Flushing records to disk takes at most one part in this many of the time.
 const SHARE: u32 = 100;
-/// A lock that is held this long is held by a run, not by somebody who looks at the status.
+/// A lock that is held this long belongs to a run, not to a process that looks at the status.
 const PATIENCE: Duration = Duration::from_millis(500);
 
 /// Settings of a checkpoint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct CheckpointOptions {
-    /// Whether to go on with the checkpoint that the directory has; without one the work starts
-    /// from the beginning. Otherwise such a directory is refused. Default false.
+    /// Whether to continue with the checkpoint in the directory; if there is none, the work starts
+    /// from the beginning. If false, a directory with a checkpoint is refused. Default false.
     pub resume: bool,
-    /// Whether the run ends where a record cannot be written, rather than going on without. Default
-    /// false.
+    /// Whether the run ends if a record cannot be written; otherwise it goes on without the record.
+    /// Default false.
     pub required: bool,
-    /// After how long records are brought to the disk, at most a hundredth of the time. A process
-    /// that is killed loses nothing that was written, a machine without power what was written since.
-    /// Default 5 s.
+    /// Interval after which records are flushed to disk; flushing takes at most a hundredth of the
+    /// time. If the process is killed, nothing that was written is lost. If the machine loses
+    /// power, the records since the last flush are lost. Default 5 s.
     pub interval: Duration,
 }
 
@@ -78,7 +78,7 @@ pub struct Checkpoint {
     keeper: Arc<Mutex<Keeper>>,
 }
 
-/// Told of notes.
+/// A callback for notes.
 type Told = dyn Fn(&Note) + Send + Sync;
 
 struct Keeper {
@@ -86,12 +86,12 @@ struct Keeper {
     /// Locked as long as it is open.
     _lock: File,
     told: Option<Arc<Told>>,
-    /// Notes before there is somebody to be told of them.
+    /// Notes that came before there was a callback.
     notes: Vec<Note>,
-    /// The header that is there, with its bytes.
+    /// The header in the directory, with its bytes.
     header: Option<(Header, Vec<u8>)>,
     run: Option<Run>,
-    /// Why the run is to end.
+    /// Why the run must end.
     failure: Option<CheckpointError>,
 }
 
@@ -100,7 +100,7 @@ struct Run {
     log: Log,
     places: BTreeMap<Key, Place>,
     begun: Instant,
-    /// Seconds of work that are recorded.
+    /// Seconds of work in the records.
     before: f64,
     synced: Instant,
     pause: Duration,
@@ -108,7 +108,7 @@ struct Run {
     failing: bool,
 }
 
-/// Which batch a record holds. Of one run no two records have the same.
+/// Which batch a record holds. No two records of one run have the same key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) struct Key {
     /// The part of the work: a start system, all targets, a search.
@@ -117,12 +117,12 @@ pub(crate) struct Key {
     chart: u32,
     /// The number of the first path, target or loop.
     first: u64,
-    /// How many; none in the record with which a round begins, and in those of steps.
+    /// How many. Zero in the record at the beginning of a round, and in records of steps.
     pub(super) count: u64,
 }
 
 impl Key {
-    /// Whether two records are of the same round.
+    /// Whether two records belong to the same round.
     pub(super) fn is_of_round(self, other: Key) -> bool {
         (self.part, self.level, self.chart) == (other.part, other.level, other.chart)
     }
@@ -132,7 +132,7 @@ impl Key {
     }
 }
 
-/// What a record begins with.
+/// The head of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Head {
     pub(super) key: Key,
@@ -152,11 +152,11 @@ impl Head {
 }
 
 impl Checkpoint {
-    /// Opens a directory, which is made if it is not there, and locks it.
+    /// Opens a directory and locks it; a missing directory is made.
     ///
     /// # Errors
-    /// If it cannot be written, another process records there, it has a checkpoint and is not to be
-    /// resumed, or a file that is none.
+    /// If the directory cannot be written, if another process records in it, if it has a checkpoint
+    /// that is not to be resumed, or if it has a file that does not belong to a checkpoint.
     pub fn open(directory: impl AsRef<Path>, options: &CheckpointOptions) -> Result<Checkpoint, CheckpointError> {
         let directory = directory.as_ref();
         std::fs::create_dir_all(directory).map_err(|error| CheckpointError::io(directory, &error))?;
@@ -178,8 +178,8 @@ impl Checkpoint {
         &self.directory
     }
 
-    /// Lets somebody hear what is to be said: what of the records could be used, what cannot be
-    /// written. Called from any thread of the run, and at once with what was to be said before.
+    /// Sets a callback for notes: which records could be used, and what cannot be written. It is
+    /// called from any thread of the run. Earlier notes are passed to it at once.
     pub fn tell(&self, told: impl Fn(&Note) + Send + Sync + 'static) {
         let mut keeper = self.keeper();
         std::mem::take(&mut keeper.notes).iter().for_each(&told);
@@ -190,10 +190,11 @@ impl Checkpoint {
         self.keeper.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Begins the run of a job, or goes on with it.
+    /// Begins the run of a job, or continues it.
     ///
     /// # Errors
-    /// If the checkpoint is of another job, has served one already, or cannot be read or written.
+    /// If the checkpoint belongs to another job, has served a job already, or cannot be read or
+    /// written.
     pub(crate) fn begin(&self, job: Job) -> Result<(), CheckpointError> {
         let mut keeper = self.keeper();
         if keeper.run.is_some() || keeper.failure.is_some() {
@@ -210,7 +211,7 @@ impl Checkpoint {
         Ok(())
     }
 
-    /// Why the run is to end: a record could not be written that is required.
+    /// Why the run must end: a required record could not be written.
     pub(crate) fn failure(&self) -> Option<CheckpointError> {
         self.keeper().failure.clone()
     }
@@ -235,7 +236,7 @@ impl Part<'_> {
         Key { part: self.number, level, chart: chart as u32, first: first as u64, count: count as u64 }
     }
 
-    /// What is recorded of this; `None` if nothing is, or nothing that `fits`.
+    /// The recorded content for this key; `None` if nothing is recorded, or nothing that `fits`.
     pub(crate) fn take<T: DeserializeOwned>(self, key: Key, fits: impl FnOnce(&T) -> bool) -> Option<T> {
         let mut keeper = self.checkpoint.keeper();
         let run = keeper.run.as_mut()?;
@@ -250,8 +251,8 @@ impl Part<'_> {
         found
     }
 
-    /// Records this, unless it is recorded already. `total` is the number of paths of the round,
-    /// `solutions` are those so far.
+    /// Records this content, unless it is recorded already. `total` is the number of paths of the
+    /// round, `solutions` the number of solutions so far.
     pub(crate) fn record<T: Serialize>(self, key: Key, total: u64, solutions: u64, content: &T) {
         let Some(content) = self.checkpoint.encoded(key, total, solutions, content) else { return };
         self.checkpoint.keeper().write(key, &content);
@@ -259,7 +260,7 @@ impl Part<'_> {
 }
 
 impl Checkpoint {
-    /// A record in bytes; `None` if there is one already.
+    /// A record in bytes; `None` if it exists already.
     fn encoded<T: Serialize>(&self, key: Key, total: u64, solutions: u64, content: &T) -> Option<Vec<u8>> {
         let seconds = {
             let keeper = self.keeper();
@@ -338,7 +339,7 @@ impl Run {
         Ok(Run { log, places, begun: now, before, synced: now, pause: Duration::ZERO, failing: false })
     }
 
-    /// Brings what is written to the disk, if that is due.
+    /// Flushes what is written to disk, if that is due.
     fn sync(&mut self, interval: Duration) -> std::io::Result<()> {
         let begun = Instant::now();
         if begun.duration_since(self.synced) < interval.max(self.pause) {

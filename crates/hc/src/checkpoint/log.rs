@@ -1,9 +1,9 @@
-//! A log of records, which only grows: each has its length and a checksum before it.
+//! A log of records, which only grows; a length and a checksum precede each record.
 //!
-//! The file begins with eight bytes that no other file has, the version of the format and the
-//! checksum of the header that it belongs to (little-endian, 4 bytes each). A record is its length,
-//! the CRC-32 of its number in the log (8 bytes), its length and its bytes, and these. With its
-//! number in the checksum a record cannot stand in the place of another.
+//! The file begins with eight bytes that identify it, the version of the format, and the checksum
+//! of the header to which it belongs (little-endian, 4 bytes each). A record consists of its
+//! length, a CRC-32, and its bytes. The CRC-32 covers the record's number in the log (8 bytes), its
+//! length and its bytes. Because of the number, a record cannot take the place of another.
 
 use super::error::CheckpointError;
 use super::note::Note;
@@ -12,8 +12,8 @@ use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// The first bytes of a log; the end of a line is there twice so that files which were taken for
-/// text are told.
+/// The first bytes of a log. They have two kinds of line ends, so that files which were converted
+/// as text are detected.
 const MAGIC: [u8; 8] = *b"hclog\r\n\x1a";
 /// Bytes before the first record.
 const PREAMBLE: u64 = 16;
@@ -33,16 +33,16 @@ pub(super) struct Place {
 pub(super) struct Log {
     path: PathBuf,
     file: File,
-    /// Bytes of the records that are whole, the preamble among them, and their number.
+    /// Bytes of the complete records, including the preamble, and the number of these records.
     end: u64,
     records: u64,
 }
 
 impl Log {
-    /// A new one for the header with this checksum, in the place of one that no header belongs to.
+    /// A new log for the header with this checksum. It replaces a log that belongs to no header.
     ///
     /// # Errors
-    /// If the file cannot be written, or is of something else.
+    /// If the file cannot be written, or is something else.
     pub(super) fn create(path: &Path, version: u32, header: u32) -> Result<Log, CheckpointError> {
         let failed = |error: io::Error| CheckpointError::io(path, &error);
         let mut file =
@@ -58,11 +58,11 @@ impl Log {
         Ok(Log { path: path.to_owned(), file, end: PREAMBLE, records: 0 })
     }
 
-    /// Opens one to be gone on with: shows its records to `seen`, which says whether it can read
-    /// them, and cuts off what comes after those that are whole.
+    /// Opens a log to continue it. Shows its records to `seen`, which says whether it can read
+    /// them, and cuts off everything after the complete records.
     ///
     /// # Errors
-    /// If the file cannot be read or written, or is not the log of this header.
+    /// If the file cannot be read or written, or is not the log for this header.
     pub(super) fn resume(
         path: &Path,
         version: u32,
@@ -105,7 +105,7 @@ impl Log {
         self.file.sync_data()
     }
 
-    /// The content of a record; `None` if it cannot be read as it was written.
+    /// The content of a record; `None` if it no longer reads as it was written.
     pub(super) fn read(&mut self, place: Place) -> Option<Vec<u8>> {
         let mut before = [0; BEFORE as usize];
         let mut content = vec![0; place.length as usize];
@@ -125,20 +125,20 @@ impl Place {
     }
 }
 
-/// What a log has.
+/// The contents of a log.
 pub(super) struct Scan {
-    /// Bytes up to the end of the last record that is whole.
+    /// Bytes up to the end of the last complete record.
     pub(super) end: u64,
     pub(super) records: u64,
     /// What is wrong with the bytes after it.
     pub(super) note: Option<Note>,
 }
 
-/// Shows the records of a log to `seen`, up to the first that is not whole or that `seen` cannot
-/// read. Of a log that is being written, all before the last.
+/// Shows the records of a log to `seen`, up to the first record that is incomplete or that `seen`
+/// cannot read. In a log that is being written, these are all records before the last.
 ///
 /// # Errors
-/// If the file cannot be read, or is not the log of the header with this checksum.
+/// If the file cannot be read, or is not the log for the header with this checksum.
 pub(super) fn scan(
     path: &Path,
     file: &mut File,

@@ -1,25 +1,24 @@
-//! Checkpoints: runs that go on after they were killed.
+//! Checkpoints: runs that continue after they were killed.
 //!
-//! A [`Checkpoint`] is a directory in which a run records what it has finished: batches of paths with
+//! A [`Checkpoint`] is a directory in which a run records its finished work: batches of paths with
 //! their ends ([`solve_recorded`](crate::solve_recorded)), targets of a family with their solutions
-//! ([`Targets::recorded`](crate::family::Targets::recorded)), loops of monodromy with what they bring
-//! ([`Family::complete_recorded`](crate::Family::complete_recorded)). Opened again with
-//! [`resume`](CheckpointOptions::resume), it lets the same run take what is recorded and compute
-//! only what is missing. The result is that of a run without interruption to the bit, on any number
-//! of threads.
+//! ([`Targets::recorded`](crate::family::Targets::recorded)), loops of monodromy with the solutions
+//! that they find ([`Family::complete_recorded`](crate::Family::complete_recorded)). If it is
+//! opened again with [`resume`](CheckpointOptions::resume), the same run reads what is recorded and
+//! computes only what is missing. The result is the same to the bit as that of a run without
+//! interruption, on any number of threads.
 //!
-//! The directory has three files. `checkpoint.json` says what the checkpoint is of: the versions
-//! of records and of this crate, hashes of the system as it was read and of other input, and all
-//! options on which the result depends. Whatever differs when the run is resumed is
-//! [named](CheckpointError::Differs).
-//! `records.log` has the records, each with its length and a checksum, written as they come and
-//! brought to the disk every few [seconds](CheckpointOptions::interval). A record that was not
-//! written to its end, or is damaged, is cut off with those after it, and what they held is computed
-//! again. `lock` is locked while a run records there, and remains.
+//! The directory has three files. `checkpoint.json` describes the run: the versions of records and
+//! of this crate, hashes of the system as it was read and of other input, and all options on which
+//! the result depends. Any difference when the run is resumed is [named](CheckpointError::Differs).
+//! `records.log` has the records, each with its length and a checksum. They are written as they
+//! come and flushed to disk every few [seconds](CheckpointOptions::interval). A record that is
+//! incomplete or damaged is cut off together with all records after it, and their content is
+//! computed again. `lock` is locked while a run records in the directory, and remains afterwards.
 //!
-//! Contents of records are written by serde in the format of postcard: numbers in as few bytes as
-//! they need, doubles to the bit, no names. That format is specified and will not change; bincode,
-//! the other choice, is not maintained any more.
+//! Serde writes the contents of records in the postcard format: numbers in as few bytes as they
+//! need, doubles to the bit, no names. That format is specified and will not change; the
+//! alternative, bincode, is no longer maintained.
 //!
 //! ```
 //! use hc::checkpoint::{Checkpoint, CheckpointOptions};

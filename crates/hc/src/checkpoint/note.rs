@@ -1,37 +1,38 @@
-//! What whoever started a run should hear about its checkpoint.
+//! Messages about a checkpoint for whoever started the run.
 
 use std::fmt;
 
-/// What is said about a checkpoint while the work goes on.
+/// A message about a checkpoint while the work goes on.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Note {
     /// There is nothing to resume: the work starts from the beginning.
     Nothing,
-    /// The work goes on after what is recorded.
+    /// The work continues after the recorded part.
     Resumed {
-        /// Records that are whole.
+        /// Number of complete records.
         records: usize,
-        /// Seconds of work until the last of them.
+        /// Seconds of work up to the last of them.
         seconds: f64,
     },
-    /// The log ends in the middle of a record: the process ended while it was written, or its length
-    /// is damaged. What it held is computed again.
+    /// The log ends in the middle of a record: the process ended while it wrote the record, or the
+    /// record's length is damaged. Its content is computed again.
     Torn {
-        /// Bytes from there on, which are cut off.
+        /// Number of bytes from there on, which are cut off.
         dropped: u64,
     },
-    /// A record does not have its checksum. It and those after it are cut off; what they held is
-    /// computed again.
+    /// A record does not match its checksum. This record and all after it are cut off; their
+    /// content is computed again.
     Damaged {
-        /// Where it begins in the log, in bytes.
+        /// Offset of the record in the log, in bytes.
         at: u64,
-        /// Bytes that are cut off.
+        /// Number of bytes that are cut off.
         dropped: u64,
     },
-    /// Records that are whole but of other paths than those that are due; they are computed again.
+    /// Records that are complete, but for other paths than those that are due; these paths are
+    /// computed again.
     Unfit,
-    /// A record cannot be written; the work goes on, and writing is tried again with the next.
+    /// A record cannot be written. The work goes on, and the next record is tried again.
     Unwritten(String),
     /// Records can be written again.
     WrittenAgain,

@@ -1,4 +1,4 @@
-//! Work that is recorded in pieces, each whole.
+//! Work that is recorded in pieces, each complete in itself.
 
 use super::keeper::{Checkpoint, Key, Part};
 use crate::monitor::Monitor;
@@ -7,8 +7,8 @@ use crate::runner::Round;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// A part of some work whose pieces are taken from a checkpoint, or recorded there; as it is without
-/// one.
+/// A part of some work whose pieces are read from a checkpoint, or recorded in it. Without a
+/// checkpoint the work is unchanged.
 ///
 /// A piece is a function of its number and of the pieces before it.
 #[derive(Clone, Copy)]
@@ -34,34 +34,35 @@ impl<'a> Pieces<'a> {
         Pieces { monitor, lead, checkpoint, part: 0 }
     }
 
-    /// Pieces that nobody records, of this rank alone.
+    /// Pieces that nobody records, computed by this rank alone.
     pub(crate) fn alone(monitor: &'a Monitor) -> Self {
         Pieces::new(None, monitor, None)
     }
 
-    /// The part that is so many after this.
+    /// The part that comes this many parts later.
     pub(crate) fn part(self, after: u32) -> Self {
         Pieces { part: self.part + after, ..self }
     }
 
-    /// Whether the work is to stop: it was cancelled, a record is required that cannot be written, or
+    /// Whether the work must stop: it was cancelled, a required record cannot be written, or
     /// another rank fails.
     pub(crate) fn are_stopped(self) -> bool {
         self.is_broken() || self.checkpoint.is_some_and(|checkpoint| checkpoint.failure().is_some())
     }
 
-    /// Whether what is tracked is not whole any more.
+    /// Whether tracked results are no longer complete.
     fn is_broken(self) -> bool {
         self.monitor.is_cancelled() || self.lead.is_some_and(|lead| lead.failure().is_some())
     }
 
-    /// What is recorded of a piece; `None` if nothing is, or nothing that `fits`.
+    /// The recorded content of a piece; `None` if nothing is recorded, or nothing that `fits`.
     pub(crate) fn take<T: DeserializeOwned>(self, piece: Piece, fits: impl FnOnce(&T) -> bool) -> Option<T> {
         let (part, key) = self.place(piece)?;
         part.take(key, fits)
     }
 
-    /// Records a piece with the number of solutions so far. What ended half way is none.
+    /// Records a piece with the number of solutions so far. A piece that ended half-way is not
+    /// recorded.
     pub(crate) fn record<T: Serialize>(self, piece: Piece, solutions: usize, content: &T) {
         if let Some((part, key)) = self.place(piece)
             && !self.is_broken()

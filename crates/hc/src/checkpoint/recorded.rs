@@ -1,4 +1,4 @@
-//! Work of the runner that is recorded, batch by batch.
+//! Work of the runner, recorded batch by batch.
 
 use super::keeper::{Key, Part};
 use crate::monitor::Monitor;
@@ -7,32 +7,33 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::cell::Cell;
 
-/// Work whose batches can be recorded once they are closed, and absorbed from there.
+/// Work whose closed batches can be recorded, and absorbed from a record.
 pub(crate) trait Recordable: Work<Batch: Serialize + DeserializeOwned> {
-    /// Whether a batch is of the paths with these numbers.
+    /// Whether a batch has the paths with these numbers.
     fn is_of(batch: &Self::Batch, numbers: &[usize]) -> bool;
 
     /// Paths that have ended at solutions so far.
     fn solutions(&self) -> u64;
 
-    /// Whether batches are not whole any more.
+    /// Whether batches are no longer complete.
     fn is_broken(&self) -> bool {
         false
     }
 }
 
-/// Work with its batches taken from a checkpoint, or recorded there; as it is without one.
+/// Work whose batches are read from a checkpoint, or recorded in it. Without a checkpoint the work
+/// is unchanged.
 ///
-/// A batch is a function of the numbers of its paths, its round, and what was absorbed before. The
-/// first two are its key in the log, the last is the same whenever all batches before are: so what
-/// is recorded can be absorbed in the place of what would be computed.
+/// A batch is a function of the numbers of its paths, of its round, and of what was absorbed
+/// before. The first two are its key in the log. The last is the same whenever all batches before
+/// are the same. A recorded batch can therefore be absorbed in place of a computed one.
 pub(crate) struct Recorded<'a, W> {
     work: W,
     part: Option<Part<'a>>,
     monitor: &'a Monitor,
     /// Paths of this round.
     total: u64,
-    /// What to record the batch that was tracked last as.
+    /// The key under which to record the batch that was tracked last.
     new: Cell<Option<Key>>,
 }
 

@@ -1,4 +1,4 @@
-//! How far a run is, from its checkpoint.
+//! The progress of a run, from its checkpoint.
 
 use super::error::CheckpointError;
 use super::header::{FORMAT, Header};
@@ -8,40 +8,41 @@ use serde::Serialize;
 use std::fs::{File, TryLockError};
 use std::path::Path;
 
-/// How far a run is that records its work.
+/// The progress of a run that records its work.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Status {
-    /// What is done: `solve`, `track` or `monodromy`.
+    /// The kind of work: `solve`, `track` or `monodromy`.
     pub what: String,
-    /// Whether a process records there now.
+    /// Whether a process records in the directory now.
     pub running: bool,
-    /// The part of the work, from 1: the start system of a solve; of monodromy 1 is the search, 2 its
-    /// second half with solutions for other parameters, from 3 on comes the trace test. Zero before the
-    /// first.
+    /// The part of the work, from 1. For a solve this is the start system. For monodromy 1 is the
+    /// search, 2 its second half with solutions for other parameters, and from 3 on comes the trace
+    /// test. Zero before the first part.
     pub part: u32,
-    /// The round of this part, from 1: first all paths of a solve are tracked, then those in doubt
-    /// again. Zero before the first.
+    /// The round of this part, from 1: a solve first tracks all paths, then doubtful paths again.
+    /// Zero before the first round.
     pub round: u32,
-    /// Paths of this round that are recorded; targets; loops of this part, or steps of the trace test.
+    /// Recorded paths of this round; or targets; or loops of this part, or steps of the trace test.
     pub done: u64,
-    /// How many there are; `None` where that is not known.
+    /// The total of these; `None` where it is not known.
     pub total: Option<u64>,
-    /// Paths of this part that have ended at a solution so far; solutions of all targets, or of the
-    /// fibre.
+    /// Paths of this part that have ended at a solution so far; or solutions of all targets, or of
+    /// the fibre.
     pub solutions: u64,
-    /// Seconds of work until the last record, those of earlier processes included.
+    /// Seconds of work up to the last record, including those of earlier processes.
     pub seconds: f64,
-    /// Records that are whole.
+    /// Number of complete records.
     pub records: u64,
     /// Bytes of the log.
     pub bytes: u64,
 }
 
-/// How far the run is that records its work in a directory, of which nothing is changed.
+/// The progress of the run that records its work in a directory. Nothing in the directory is
+/// changed.
 ///
 /// # Errors
-/// If the directory has no checkpoint, or it cannot be read.
+/// If the directory has no checkpoint, or the checkpoint cannot be read.
 pub fn status(directory: impl AsRef<Path>) -> Result<Status, CheckpointError> {
     let directory = directory.as_ref();
     let running = is_locked(directory)?;

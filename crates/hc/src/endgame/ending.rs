@@ -6,7 +6,7 @@ use num_complex::Complex64;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub(crate) enum Verdict {
-    /// At a point; after `winding` turns round zero the path comes back to itself.
+    /// At a point; after `winding` turns round zero the path returns to its beginning.
     Finite {
         /// Winding number.
         winding: usize,
@@ -15,15 +15,15 @@ pub(crate) enum Verdict {
     },
     /// At a point to which the path could be tracked like a regular one.
     Reached,
-    /// At infinity: coordinate `j` is of order `t^(valuations[j] / winding)`, one of them being
-    /// negative.
+    /// At infinity: coordinate `j` is of order `t^(valuations[j] / winding)`, and at least one
+    /// valuation is negative.
     Infinite {
-        /// Winding number; where no loop was clear, the least with which the valuations are whole.
+        /// Winding number; if no loop was clear, the least for which the valuations are integers.
         winding: usize,
         /// The direction: valuations times the winding number.
         valuations: Vec<i64>,
     },
-    /// Not known: the path could not be tracked, or no loop closed and showed a decaying series.
+    /// Unknown: the path could not be tracked, or no loop closed and showed a decaying series.
     Lost,
 }
 

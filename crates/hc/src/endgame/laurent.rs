@@ -1,10 +1,10 @@
-//! What the samples of a closed loop tell: Laurent coefficients by the discrete Fourier transform.
+//! Reading a closed loop: Laurent coefficients by the discrete Fourier transform of the samples.
 //!
-//! Near `t = 0` a path is a convergent series in `t^(1/m)`, with finitely many negative powers
-//! where it diverges; `m` is its winding number. On a loop of `m` turns round the circle `|t| = r`
-//! its coefficients, times powers of `r`, are the Fourier coefficients of the samples up to
-//! aliasing, whose error falls with the number of samples a turn as `(r / R)^samples`, `R` the
-//! distance to the next singularity (Morgan, Sommese & Wampler 1991).
+//! Near `t = 0` a path is a convergent series in `t^(1/m)`, where `m` is its winding number; if the
+//! path diverges, the series has finitely many negative powers. On a loop of `m` turns round the
+//! circle `|t| = r`, its coefficients times powers of `r` are the Fourier coefficients of the
+//! samples, up to aliasing. The aliasing error falls with the number of samples per turn as `(r /
+//! R)^samples`, where `R` is the distance to the next singularity (Morgan, Sommese & Wampler 1991).
 
 use crate::refine;
 use num_complex::Complex64;
@@ -21,23 +21,23 @@ pub(super) struct Loop<'a> {
     pub(super) samples: &'a [Complex64],
     /// Relative error of the samples.
     pub(super) noise: f64,
-    /// How far each coordinate moves if the coefficients are rounded. That makes up singularities
-    /// deep inside the loop, which must not count.
+    /// How far each coordinate moves if the coefficients are rounded. Rounding creates
+    /// singularities deep inside the loop, which must not count.
     pub(super) blur: &'a [f64],
 }
 
-/// What a loop says of the end of its path.
+/// What a loop says about the end of its path.
 #[derive(Debug, PartialEq)]
 pub(super) enum Reading {
     /// The path ends at `limit`, known up to about `error` (relative to the path's size on the
     /// loop); coordinates that vanish within it are exactly zero.
     Finite { limit: Vec<Complex64>, error: f64 },
-    /// It diverges: coordinate `j` is of order `t^(valuations[j] / m)`.
+    /// The path diverges: coordinate `j` is of order `t^(valuations[j] / m)`.
     Infinite { valuations: Vec<i64> },
-    /// The loop is too wide: singularities other than that at zero are not far outside, or there
-    /// are some within.
+    /// The loop is too wide: singularities other than zero lie not far outside the loop, or inside
+    /// it.
     TooWide,
-    /// So near to zero rounded coefficients have ends of their own.
+    /// The loop is so near to zero that systems with rounded coefficients have different ends.
     TooDeep,
 }
 
@@ -55,14 +55,15 @@ pub(super) struct View {
 
 /// A loop that leaves no doubt; aliasing is below 1e-13.
 pub(super) const CLEAR: View = View { tail: 1e-5, zero: 1e-9, largest: f64::INFINITY };
-/// For paths of which no loop is clear, since there are singularities so near to zero that double
-/// precision cannot go inside.
+/// For paths without a clear loop, because singularities lie so near to zero that double precision
+/// cannot go inside.
 pub(super) const VAGUE: View = View { tail: 1e-2, zero: 1e-5, largest: 0.35 };
 /// A loop on which rounded coefficients move a coordinate by this share of its size says nothing.
 const BLURRED: f64 = 1e-4;
-/// The worst rounding of all coefficients does this much more than a random one.
+/// The worst rounding of all coefficients moves a coordinate this many times as far as a random
+/// one.
 const MARGIN: f64 = 256.0;
-/// The lowest power of a diverging coordinate must reach this share of it; a singularity within the
+/// The lowest power of a diverging coordinate must reach this share of it. A singularity inside the
 /// loop, unlike a pole at zero, leaves coefficients that fade towards the lower powers.
 const DOMINANT: f64 = 1e-2;
 

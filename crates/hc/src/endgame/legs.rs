@@ -5,8 +5,8 @@ use crate::homotopy::{ParameterPath, Segment};
 use num_complex::Complex64;
 use poly::{ComplexDd, Lane};
 
-/// The way that a path goes in one piece, in the parameters `target + t direction` of a segment;
-/// the tracker's own time `u` goes from 1 to 0 on it.
+/// The way of a path in one piece, in the parameters `target + t direction` of a segment. On it the
+/// tracker's own time `u` goes from 1 to 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Leg {
     /// Straight in logarithmic time, from the first value of `s` to the second.
@@ -36,7 +36,7 @@ impl Leg {
     }
 }
 
-/// One leg a path.
+/// One leg per path.
 pub(super) struct Legs<'a> {
     pub(super) segment: &'a Segment,
     pub(super) legs: Vec<Leg>,

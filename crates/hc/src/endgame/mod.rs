@@ -1,16 +1,16 @@
-//! The end of paths that do not run into a regular solution.
+//! The end of paths that do not end at a regular solution.
 //!
-//! Near `t = 0` such a path is a Puiseux series in `t`, or it is not known yet that it is none. It
-//! is tracked in logarithmic time `s = -ln t`, in which steps need not shrink, to a small circle
-//! round `t = 0`, and round the circle until it closes (Cauchy's endgame: Morgan, Sommese & Wampler
-//! 1991): the number of turns is the winding number, the Laurent coefficients tell whether the path
-//! is finite or diverges, with valuations that are exact fractions, and the mean of the samples is
-//! the end, far more accurate than any point near it. Where the coefficients do not decay, the
-//! circle was too wide and a smaller one follows; once it is plain that singularities lie close to
-//! zero the regular tracker tries too.
+//! Near `t = 0` such a path is a Puiseux series in `t`, as far as is known yet. The endgame is
+//! Cauchy's (Morgan, Sommese & Wampler 1991). It tracks the path in logarithmic time `s = -ln t`,
+//! in which steps need not shrink, to a small circle round `t = 0`, and round the circle until the
+//! path closes. The number of turns is the winding number. The Laurent coefficients tell whether
+//! the path is finite or diverges, with valuations that are exact fractions. The mean of the
+//! samples is the end, far more accurate than any point near it. Where the coefficients do not
+//! decay, the circle was too wide, and a smaller one follows. Once singularities clearly lie close
+//! to zero, the regular tracker tries too.
 //!
-//! All paths take their legs together, in lanes and on all threads; the result does not depend on
-//! how they are spread.
+//! All paths take their legs together, in lanes and on all threads. The result does not depend on
+//! how the paths are distributed.
 
 mod ending;
 mod laurent;

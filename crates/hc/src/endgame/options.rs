@@ -10,17 +10,17 @@ pub(super) const LEAST_SHRINK: f64 = 1.5;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct EndgameOptions {
-    /// A path whose `t` has fallen below this without reaching the target goes to the endgame.
-    /// Default 1e-5.
+    /// A path whose `t` has fallen below this value without reaching the target goes to the
+    /// endgame. Default 1e-5.
     pub start: f64,
     /// Radius of the first loop. Default 1e-6.
     pub radius: f64,
-    /// By what a radius is divided when the loop was too wide, at least 1.5. Default 30.
+    /// Divisor of the radius when the loop was too wide, at least 1.5. Default 30.
     pub shrink: f64,
     /// Paths that are undecided below this radius are lost. Default 1e-13.
     pub min_radius: f64,
-    /// Turns after which the first loop is given up as too wide; each smaller loop may take twice
-    /// as many. Default 16.
+    /// Turns after which the first loop is given up as too wide. Each smaller loop may take twice
+    /// as many as the one before. Default 16.
     pub turns: usize,
 }
 
@@ -34,7 +34,7 @@ impl EndgameOptions {
     /// Checks the numbers.
     ///
     /// # Errors
-    /// The first that is outside its range.
+    /// The first setting that is outside its range.
     pub fn validate(&self) -> Result<(), OptionError> {
         OptionError::positive(&[
             ("endgame.start", self.start),

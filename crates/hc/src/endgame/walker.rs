@@ -1,4 +1,4 @@
-//! One path in its endgame: which leg comes next, and when it is over.
+//! One path in its endgame: which leg comes next, and when the endgame is over.
 
 use super::ending::{Ending, Handed, Verdict};
 use super::laurent::{CLEAR, Loop, Reading, VAGUE};

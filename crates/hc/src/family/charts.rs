@@ -4,8 +4,8 @@ use crate::homotopy::{ParameterPath, Segment};
 use num_complex::Complex64;
 use poly::{ComplexDd, Lane, Scalar};
 
-/// Forms of one problem in one family, for instance with its points in another order: a path that
-/// is hard in one chart may be easy in the next. Chart 0 is the family as it stands.
+/// Forms of one problem in one family, for instance with its points in another order. A path that
+/// is hard in one chart may be easy in the next. Chart 0 is the family itself.
 pub trait Charts {
     /// Number of charts, at least 1.
     const COUNT: usize;
@@ -20,7 +20,7 @@ pub trait Charts {
     fn leave(&self, chart: usize, x: &[Complex64], out: &mut Vec<Complex64>);
 }
 
-/// The family as it stands, and nothing else.
+/// The family itself, and no other chart.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct OneChart;
 

@@ -13,8 +13,8 @@ use std::str::FromStr;
 /// vanish.
 const VANISHES: f64 = 1e-9;
 
-/// A parameter family, compiled: its equations, what must not vanish at its solutions, and its
-/// symmetries.
+/// A compiled parameter family: its equations, the factors that must not vanish at its solutions,
+/// and its symmetries.
 ///
 /// ```
 /// use hc::{Family, MonodromyOptions};
@@ -60,7 +60,7 @@ impl Family {
         Ok(Family { given: family, program, nonzero, symmetry })
     }
 
-    /// A family of equations in these unknowns and parameters; [`poly::Family`] can have more.
+    /// A family of equations in these unknowns and parameters. A [`poly::Family`] can state more.
     ///
     /// # Errors
     /// If an equation does not parse, or as for [`new`](Self::new).
@@ -72,7 +72,7 @@ impl Family {
         Family::new(poly::Family::from_formulas(unknowns, parameters, formulas)?)
     }
 
-    /// Its name.
+    /// The family's name.
     pub fn name(&self) -> &str {
         &self.given.name
     }
@@ -82,12 +82,12 @@ impl Family {
         &self.given.system
     }
 
-    /// The number of solutions for generic parameters, where the family states it.
+    /// The number of solutions for generic parameters, if the family states it.
     pub fn roots(&self) -> Option<usize> {
         self.given.roots
     }
 
-    /// The maps of the unknowns, one formula an unknown, that take solutions to solutions.
+    /// The maps of the unknowns that take solutions to solutions, with one formula per unknown.
     pub fn symmetry(&self) -> &[System] {
         &self.given.symmetry
     }
@@ -98,7 +98,7 @@ impl Family {
     }
 
     /// Whether none of the factors that the family declares nonzero vanishes at the solution `x`
-    /// (one entry an unknown) for the parameters `p` (one entry a parameter).
+    /// (one entry per unknown) for the parameters `p` (one entry per parameter).
     pub fn accepts(&self, p: &[Complex64], x: &[Complex64]) -> bool {
         let mut memory = self.nonzero.memory(Isa::Portable);
         let mut values = vec![Complex64::new(0.0, 0.0); self.nonzero.equations()];
@@ -109,7 +109,7 @@ impl Family {
     /// Checks that a fibre has the family's numbers of parameters and unknowns.
     ///
     /// # Errors
-    /// If it has not.
+    /// If it does not.
     pub fn check(&self, fibre: &Fibre) -> Result<(), FamilyError> {
         let (parameters, unknowns) = (self.program.parameters(), self.program.variables());
         let (found_parameters, found_unknowns) = (fibre.parameters.len(), fibre.dimension);
@@ -129,8 +129,8 @@ impl Family {
         }
     }
 
-    /// The fibre with one solution of each orbit noted as representative, where the family has
-    /// symmetries: these alone are then tracked.
+    /// The fibre with one solution of each orbit marked as representative, if the family has
+    /// symmetries. Only the representatives are then tracked.
     #[must_use]
     pub fn folded(&self, fibre: Fibre) -> Fibre {
         if self.symmetry.is_trivial() || fibre.representatives.is_some() {
@@ -151,7 +151,7 @@ impl Family {
         Fibre { representatives: Some(representatives), ..fibre }
     }
 
-    /// A first solution, for some generic parameters; the same for the same seed.
+    /// A first solution, for some generic parameters. The same seed gives the same solution.
     ///
     /// # Errors
     /// If no regular solution is found that the family accepts.

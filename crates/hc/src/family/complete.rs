@@ -1,4 +1,4 @@
-//! All solutions for some parameters: the search, what comes after it, and who takes part.
+//! All solutions for some parameters: the search, the steps after it, and the ranks that take part.
 
 use super::compiled::Family;
 use super::error::FamilyError;
@@ -24,9 +24,9 @@ const AGAIN: u32 = 1;
 const TRACE: u32 = 2;
 
 impl Family {
-    /// All solutions for some generic parameters: a first pair, and what loops in parameter space
-    /// make of it. The number of roots that the family states ends the search, unless the options
-    /// have one.
+    /// All solutions for some generic parameters: a first pair, and the solutions that loops in
+    /// parameter space find from it. The number of roots that the family states ends the search,
+    /// unless the options have a number.
     ///
     /// # Errors
     /// If no first solution is found.
@@ -35,13 +35,13 @@ impl Family {
         self.complete(&first, options, &Monitor::default())
     }
 
-    /// All solutions for the parameters of `first`, which has one or several of them; a cancelled
+    /// All solutions for the parameters of `first`, which has one or several of them. A cancelled
     /// monitor ends the search. Where loops bring nothing new, solutions for other parameters are
-    /// tracked to these.
+    /// tracked to these parameters.
     ///
     /// # Errors
-    /// If `first` is of another family, an option is out of range, the stated symmetry is none, or the
-    /// enlarged family of the [trace test](Self::trace_test), if asked for, does not compile.
+    /// If `first` belongs to another family, an option is out of range, a stated symmetry is not
+    /// one, or the enlarged family of a requested [trace test](Self::trace_test) does not compile.
     pub fn complete(
         &self,
         first: &Fibre,
@@ -51,12 +51,14 @@ impl Family {
         self.complete_anywhere(first, options, monitor, None, None)
     }
 
-    /// [`complete`](Self::complete), recorded in a [checkpoint](crate::checkpoint): loops that it has
-    /// are not gone again, nor steps of the trace test. The family, `first` and all options but
-    /// [`trace_test`](MonodromyOptions::trace_test) have to be those of the run that it is of.
+    /// [`complete`](Self::complete), recorded in a [checkpoint](crate::checkpoint). Loops and steps
+    /// of the trace test that the checkpoint has are not repeated. The family, `first` and all
+    /// options except [`trace_test`](MonodromyOptions::trace_test) must be those of the run that
+    /// the checkpoint belongs to.
     ///
     /// # Errors
-    /// As [`complete`](Self::complete); if the checkpoint is of another run, or cannot be written.
+    /// As for [`complete`](Self::complete); also if the checkpoint belongs to another run, or
+    /// cannot be written.
     pub fn complete_recorded(
         &self,
         first: &Fibre,
@@ -67,15 +69,16 @@ impl Family {
         self.complete_anywhere(first, options, monitor, Some(checkpoint), None)
     }
 
-    /// [`complete`](Self::complete), or with a checkpoint [`complete_recorded`](Self::complete_recorded),
-    /// by several [ranks](crate::ranks) that are all given the same family, `first` and options. Rank 0
-    /// alone heeds the monitor, has the checkpoint, and is given what [`complete`](Self::complete) finds,
-    /// to the bit; the others are given `None` when they are not needed any more. Paths are divided, of
-    /// loops and of the trace test; what is made of their ends is not.
+    /// [`complete`](Self::complete), or with a checkpoint
+    /// [`complete_recorded`](Self::complete_recorded), on several [ranks](crate::ranks) that all
+    /// get the same family, `first` and options. Only rank 0 heeds the monitor and has the
+    /// checkpoint, and only rank 0 gets what [`complete`](Self::complete) finds, to the bit. The
+    /// other ranks get `None` when they are no longer needed. The paths of loops and of the trace
+    /// test are divided; the work on their ends is not.
     ///
     /// # Errors
-    /// As [`complete_recorded`](Self::complete_recorded); on rank 0 if another rank fails or has another
-    /// job.
+    /// As for [`complete_recorded`](Self::complete_recorded); on rank 0 also if another rank fails
+    /// or has another job.
     pub fn complete_on_ranks(
         &self,
         first: &Fibre,
@@ -179,11 +182,11 @@ impl Family {
         Ok((1..=PAIRS).map(pair).collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
     }
 
-    /// The trace test of a fibre: whether it is whole. It takes several times as long as finding
-    /// the fibre; `patience` of the options counts for the further points that it needs.
+    /// The trace test of a fibre: whether the fibre is whole. It takes several times as long as
+    /// finding the fibre. The option `patience` applies to the further points that the test needs.
     ///
     /// # Errors
-    /// If the fibre is of another family, or the enlarged family of the test does not compile.
+    /// If the fibre belongs to another family, or the enlarged family of the test does not compile.
     pub fn trace_test(
         &self,
         fibre: &Fibre,

@@ -1,7 +1,7 @@
-//! Detours: fibres of other parameters, from which the way to a target is another one.
+//! Detours: fibres of other parameters, from which a path reaches the target on another way.
 //!
-//! A path that struggles passes close to a branch point. From another fibre all paths keep their
-//! distance to that point, in as few steps as usual.
+//! A path that struggles passes close to a branch point. Paths from another fibre keep their
+//! distance from that point, and take as few steps as usual.
 
 use super::fibre::Fibre;
 use crate::random::{Random, Stream};

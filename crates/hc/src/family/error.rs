@@ -9,7 +9,7 @@ use poly::{CompileError, ParseError};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FamilyError {
-    /// The text is no family.
+    /// The text is not a family.
     #[error(transparent)]
     Parse(#[from] ParseError),
     /// The formulas do not compile.
@@ -18,13 +18,13 @@ pub enum FamilyError {
     /// A setting outside its range.
     #[error(transparent)]
     Option(#[from] OptionError),
-    /// No checkpoint of this run, or one that cannot be written.
+    /// The checkpoint does not belong to this run, or cannot be written.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
-    /// Other processes cannot take part as they should.
+    /// Other processes cannot take part.
     #[error(transparent)]
     Ranks(#[from] RanksError),
-    /// Not as many equations as unknowns, or none.
+    /// The number of equations differs from the number of unknowns, or is zero.
     #[error("{equations} equations in {unknowns} unknowns; as many equations as unknowns are needed, and at least one")]
     NotSquare {
         /// Number of equations.
@@ -32,17 +32,17 @@ pub enum FamilyError {
         /// Number of unknowns.
         unknowns: usize,
     },
-    /// A symmetry with another number of formulas than there are unknowns.
+    /// A symmetry whose number of formulas differs from the number of unknowns.
     #[error("symmetry {map} has {found} formulas; it needs one for each of the {unknowns} unknowns")]
     Symmetry {
         /// The map, from 1.
         map: usize,
-        /// Its formulas.
+        /// Number of its formulas.
         found: usize,
-        /// Unknowns of the family.
+        /// Number of unknowns of the family.
         unknowns: usize,
     },
-    /// A map that takes a solution to a point that is none.
+    /// A map that takes a solution to a point that is not a solution.
     #[error(
         "symmetry {map} takes a solution to a point that is none; correct `symmetry` in the family, or leave it out"
     )]
@@ -56,13 +56,13 @@ pub enum FamilyError {
          {unknowns} unknowns"
     )]
     Misfit {
-        /// Parameters of the fibre.
+        /// Number of parameters of the fibre.
         found_parameters: usize,
-        /// Coordinates of its solutions.
+        /// Number of coordinates of its solutions.
         found_unknowns: usize,
-        /// Parameters of the family.
+        /// Number of parameters of the family.
         parameters: usize,
-        /// Unknowns of the family.
+        /// Number of unknowns of the family.
         unknowns: usize,
     },
     /// A target that does not fit.
@@ -70,10 +70,10 @@ pub enum FamilyError {
     Target {
         /// The target, from 1.
         target: usize,
-        /// Parameters of the family.
+        /// Number of parameters of the family.
         parameters: usize,
     },
-    /// No first solution.
+    /// No first solution was found.
     #[error("no regular solution was found for any parameters; give a pair of parameters and solution")]
     NoPair,
 }

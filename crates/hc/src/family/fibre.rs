@@ -13,8 +13,9 @@ pub struct Fibre {
     pub dimension: usize,
     /// The solutions, `n` coordinates each, one after the other.
     pub solutions: Vec<Complex64>,
-    /// Numbers of the solutions that stand for the others, one of each orbit, where the family is
-    /// known to be [symmetric](crate::Family::symmetry); `None` where each stands for itself.
+    /// Numbers of the solutions that represent the others, one for each orbit, if the family is
+    /// known to be [symmetric](crate::Family::symmetry). `None` if each solution represents only
+    /// itself.
     pub representatives: Option<Vec<usize>>,
 }
 
@@ -24,7 +25,7 @@ impl Fibre {
         Fibre { parameters, dimension, solutions, representatives: None }
     }
 
-    /// The fibre of pairs `[re, im]`, as generated modules store them: the parameters, and the
+    /// The fibre from pairs `[re, im]`, as generated modules store them: the parameters, and the
     /// solutions one after the other.
     pub fn from_pairs(parameters: &[[f64; 2]], dimension: usize, solutions: &[[f64; 2]]) -> Fibre {
         let numbers = |pairs: &[[f64; 2]]| pairs.iter().map(|&[re, im]| Complex64::new(re, im)).collect();
@@ -44,7 +45,7 @@ impl Fibre {
     /// The `k`-th solution.
     ///
     /// # Panics
-    /// If there are not so many.
+    /// If there are not that many solutions.
     pub fn solution(&self, k: usize) -> &[Complex64] {
         &self.solutions[k * self.dimension..(k + 1) * self.dimension]
     }
@@ -71,7 +72,7 @@ pub struct FibreOptions {
     /// How often jumped and failed paths are tracked again, each time with steps half as long.
     /// Default 4.
     pub retries: u32,
-    /// Relative distance below which two endpoints are one point. Default 1e-8.
+    /// Relative distance below which two endpoints are the same point. Default 1e-8.
     pub coincidence: f64,
 }
 
@@ -85,7 +86,7 @@ impl FibreOptions {
     /// Checks the numbers.
     ///
     /// # Errors
-    /// The first that is outside its range.
+    /// The first setting that is outside its range.
     pub fn validate(&self) -> Result<(), OptionError> {
         self.tracker.validate()?;
         OptionError::positive(&[("coincidence", self.coincidence)])
@@ -95,17 +96,17 @@ impl FibreOptions {
 /// How paths ended; `tracked` is the sum of the next four.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PathCounts {
-    /// Paths tracked, one a start solution.
+    /// Paths tracked, one for each start solution.
     pub tracked: usize,
     /// Paths that ended at a regular solution of their own.
     pub finite: usize,
     /// Paths that are shown to diverge.
     pub at_infinity: usize,
-    /// Paths that ended otherwise, those included that still share their end with another.
+    /// Paths that ended otherwise, including those that still share their end with another.
     pub failed: usize,
-    /// Paths left where they were once all solutions were known
+    /// Paths that were left once all solutions were known
     /// ([`SolveOptions::known`](crate::SolveOptions::known)).
     pub dropped: usize,
-    /// How many tracks were run a second time or more often.
+    /// How often a path was tracked again.
     pub retracked: usize,
 }

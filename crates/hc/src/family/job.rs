@@ -1,4 +1,4 @@
-//! What a checkpoint of a family is of.
+//! What the checkpoint of a family describes.
 
 use super::fibre::Fibre;
 use crate::checkpoint::{Hash, Job, System};

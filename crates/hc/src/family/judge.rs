@@ -1,4 +1,4 @@
-//! Which ends of tracked paths are regular solutions, and which are in doubt.
+//! Which ends of tracked paths are regular solutions, and which are doubtful.
 
 use crate::distinct::Coincidences;
 use crate::refine::Refiner;
@@ -6,8 +6,8 @@ use crate::tracker::{PathEnd, PathResult, PathSet};
 use num_complex::Complex64;
 use poly::Evaluate;
 
-/// Ends that are known to fewer digits than this are refined before they are compared: the error
-/// that is left is the square of the last correction, times the Lipschitz constant of Newton's
+/// Ends that are known to fewer digits than this are refined before they are compared. The
+/// remaining error is the square of the last correction, times the Lipschitz constant of Newton's
 /// method.
 const VAGUE: f64 = 1e-7;
 /// After that the last correction must be below this.
@@ -16,13 +16,13 @@ const SETTLED: f64 = 1e-10;
 /// Coordinates below this share of the largest, squared, are zero or suspicious.
 const VANISHED_SQR: f64 = 1e-32;
 
-/// Whether a path with this record has come to a regular solution `x` (one entry an unknown) for
-/// the parameters `target` (one entry a parameter).
+/// Whether a path with this record has reached a regular solution `x` (one entry per unknown) for
+/// the parameters `target` (one entry per parameter).
 ///
-/// A system may have components of singular solutions besides its fibre, and Newton's method
-/// converges to them too, slowly, which does not show where coordinates vanish. Ends with such
-/// coordinates or a singular Jacobian have to attract it from some distance, if need be in
-/// double-double.
+/// A system may have components of singular solutions besides its fibre. Newton's method converges
+/// to them too, slowly, and this does not show where coordinates vanish. Newton's method must
+/// therefore return to an end with such coordinates, or with a singular Jacobian, from some
+/// distance, if need be in double-double.
 pub(super) fn ends_regularly<E: Evaluate>(
     refiner: &mut Refiner<'_, E>,
     target: &[Complex64],
@@ -35,9 +35,9 @@ pub(super) fn ends_regularly<E: Evaluate>(
     result.end == PathEnd::Success && (plain() || attracts())
 }
 
-/// Refines the regular ends that the tracker leaves vague, so that those which coincide are seen
-/// to; where Newton's method does not settle, or the end is no regular solution, the path becomes
-/// [`PathEnd::Singular`].
+/// Refines the regular ends that the tracker leaves vague, so that coinciding ends can be
+/// recognised. Where Newton's method does not settle, or the end is not a regular solution, the
+/// path becomes [`PathEnd::Singular`].
 pub(super) fn settle<E: Evaluate>(refiner: &mut Refiner<'_, E>, target: &[Complex64], paths: &mut PathSet) {
     let mut refined = std::mem::take(&mut refiner.spare);
     for k in 0..paths.len() {
@@ -56,8 +56,8 @@ pub(super) fn settle<E: Evaluate>(refiner: &mut Refiner<'_, E>, target: &[Comple
     refiner.spare = refined;
 }
 
-/// Writes to `which` the paths that failed or share a regular end with another, by index of their
-/// start solutions: what has to be tracked again.
+/// Writes to `which` the paths that failed or share a regular end with another path, by the index
+/// of their start solutions. These have to be tracked again.
 ///
 /// `paths` must hold the paths `0 .. len` in order.
 pub(super) fn doubtful(paths: &PathSet, tolerance: f64, memory: &mut Coincidences, which: &mut Vec<usize>) {

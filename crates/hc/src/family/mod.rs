@@ -1,9 +1,9 @@
 //! Parameter families: from all solutions for one generic parameter point to all solutions for any
 //! other.
 //!
-//! [`Family`] is the front door. Below it, for programs of one's own ([`poly::Evaluate`]), such as
-//! generated ones: [`track_fibre`] and [`move_fibre`], and [`FibreTracker`] with its memory and
-//! [`Charts`].
+//! [`Family`] is the entry point. Below it are [`track_fibre`], [`move_fibre`], and
+//! [`FibreTracker`] with its memory and [`Charts`]; they take your own programs
+//! ([`poly::Evaluate`]), such as generated ones.
 
 mod charts;
 mod compiled;

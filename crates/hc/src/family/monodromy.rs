@@ -1,9 +1,10 @@
-//! Filling a fibre: all solutions of a family for one generic parameter point, from a single one.
+//! Filling a fibre: all solutions of a family for one generic parameter point, from a single
+//! solution.
 //!
-//! Parameters go round random triangles; solutions come back as other solutions of the same
-//! irreducible component (Duff, Hill, Jensen, Lee, Leykin, Sommars 2018, arXiv:1609.08722). That a
-//! fibre is whole is never guessed: it is told by a known count or by the [trace
-//! test](crate::Family::trace_test), and the result says which.
+//! Parameters go round random triangles, and solutions return as other solutions of the same
+//! irreducible component (Duff, Hill, Jensen, Lee, Leykin, Sommars 2018, arXiv:1609.08722). Whether
+//! a fibre is whole is never guessed: a known count or the [trace test](crate::Family::trace_test)
+//! shows it, and the result says which.
 
 use super::fibre::{Fibre, FibreOptions};
 use super::reach::Reach;
@@ -21,24 +22,24 @@ use num_complex::Complex64;
 use poly::Evaluate;
 use serde::{Deserialize, Serialize};
 
-/// Settings of [`Family::monodromy`](crate::Family::monodromy). Serialized are those on which loops
-/// depend.
+/// Settings of [`Family::monodromy`](crate::Family::monodromy). The serialized settings are those
+/// on which loops depend.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct MonodromyOptions {
     /// Seed of the loops. Default 0.
     pub seed: u64,
-    /// The known number of solutions, if any: reaching it ends the search. Default `None`.
+    /// The known number of solutions, if any; reaching it ends the search. Default `None`.
     pub roots: Option<usize>,
-    /// Loops without a new solution after which the search ends, provided that they had at least 128
-    /// chances (loops times solutions) to bring one; twice as many where single parameters have to
-    /// move further than others until they matter, since loops have two sizes in turn then.
-    /// Default 8.
+    /// Loops without a new solution after which the search ends, provided that they had at least
+    /// 128 chances (loops times solutions) to bring one. Where single parameters have to move
+    /// further than others before they have an effect, it is twice as many, because loops then have
+    /// two sizes in turn. Default 8.
     pub patience: usize,
-    /// Solutions at most; a fibre that exceeds it is given up. Default 100,000.
+    /// Largest number of solutions; the search gives up a fibre that exceeds it. Default 100,000.
     pub max_solutions: usize,
     /// Settings for the paths. By default difficult paths are given up early (2,000 steps, one
-    /// retry): what they would have found, easier paths of later loops find.
+    /// retry), because easier paths of later loops find the same solutions.
     pub fibre: FibreOptions,
     /// Whether the [trace test](crate::Family::trace_test) comes last, unless the known number of
     /// solutions is reached. Default false.
@@ -104,7 +105,7 @@ impl Default for MonodromyOptions {
 pub enum Stop {
     /// The known number of solutions was reached.
     RootsReached,
-    /// The last loops brought nothing new. Not a proof: see the trace test.
+    /// The last loops brought nothing new. This is no proof: see the trace test.
     NoProgress,
     /// More solutions than allowed.
     TooMany,
@@ -120,16 +121,16 @@ pub struct Monodromy {
     pub fibre: Fibre,
     /// Why the search ended.
     pub stop: Stop,
-    /// Loops gone.
+    /// Number of loops.
     pub loops: usize,
-    /// Paths tracked.
+    /// Number of paths tracked.
     pub paths: usize,
-    /// What the trace test found, if it was asked for and came to its end.
+    /// What the trace test found, if it was requested and completed.
     pub trace: Option<TraceTest>,
 }
 
 impl Monodromy {
-    /// Its file form.
+    /// The fibre in its file form.
     pub fn start_file(&self) -> StartFile {
         let count = self.fibre.len();
         let stopped = match self.stop {

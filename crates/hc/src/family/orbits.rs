@@ -1,4 +1,5 @@
-//! Targets of a symmetric family: one solution of each orbit is tracked, the others are its images.
+//! Targets of a symmetric family: one solution of each orbit is tracked, and the others are its
+//! images.
 
 use super::compiled::Family;
 use super::error::FamilyError;

@@ -1,7 +1,7 @@
 //! A first solution of a family: one pair of parameters and unknowns.
 //!
-//! Newton's method in unknowns and parameters together, from a random complex point: the equations
-//! are underdetermined, so the correction of least length is taken (Gauss-Newton).
+//! Newton's method runs in unknowns and parameters together, from a random complex point. The
+//! equations are underdetermined, so the correction of least length is taken (Gauss-Newton).
 
 use super::fibre::Fibre;
 use crate::linalg::Lu;

@@ -1,5 +1,5 @@
-//! How far the parameters have to move until the solutions leave their tangents: on a smaller scale a
-//! family looks linear, loops meet no branch point, and the sum of any points moves straight.
+//! How far the parameters have to move until the solutions leave their tangents. On a smaller scale
+//! a family looks linear: loops meet no branch point, and the sum of any points moves straight.
 
 use super::fibre::Fibre;
 use super::size::{Sizes, largest, natural_size};

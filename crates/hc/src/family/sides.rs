@@ -1,4 +1,5 @@
-//! The fibres that a search tracks from parameters to parameters, by all ranks or this one alone.
+//! The fibres that a search tracks from parameters to parameters, on all ranks or on this one
+//! alone.
 
 use super::fibre::{Fibre, FibreOptions, PathCounts};
 use super::track::{moved, track_fibre_led};

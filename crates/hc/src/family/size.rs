@@ -1,4 +1,4 @@
-//! Sizes of parameters and unknowns, on which random numbers beside them are drawn.
+//! Sizes of parameters and unknowns, which set the scale of the random numbers drawn for them.
 
 use super::fibre::Fibre;
 

@@ -11,12 +11,12 @@ pub struct StartFile {
     pub parameters: Vec<[f64; 2]>,
     /// The solutions, one list of `[re, im]` each, in the order of the family's unknowns.
     pub solutions: Vec<Vec<[f64; 2]>>,
-    /// Deviation found by the [trace test](crate::Family::trace_test), if it was run: rounding
-    /// error shows that the fibre is whole.
+    /// Deviation found by the [trace test](crate::Family::trace_test), if it was run. A deviation
+    /// of the size of rounding error shows that the fibre is whole.
     #[serde(default)]
     pub trace_test: Option<f64>,
-    /// Why the search ended: `roots reached`, `trace`, `no progress` or `interrupted`; empty where
-    /// nobody says.
+    /// Why the search ended: `roots reached`, `trace`, `no progress` or `interrupted`; empty if not
+    /// stated.
     #[serde(default)]
     pub stopped: String,
 }
@@ -33,7 +33,7 @@ pub enum StartFileError {
     /// A number is infinite or not a number.
     #[error("{place} holds a number that is not finite; write the start file anew")]
     NotFinite {
-        /// Where.
+        /// The place of the number.
         place: String,
     },
     /// The solutions do not all have the same number of coordinates.
@@ -41,9 +41,9 @@ pub enum StartFileError {
     Ragged {
         /// The solution, counted from 1.
         index: usize,
-        /// Coordinates of the first solution.
+        /// Number of coordinates of the first solution.
         expected: usize,
-        /// Coordinates of this one.
+        /// Number of coordinates of this solution.
         found: usize,
     },
 }
@@ -68,7 +68,7 @@ impl StartFile {
         serde_json::from_str(text).map_err(|e| StartFileError::Format(e.to_string()))
     }
 
-    /// The JSON form, one solution a line, ended by a newline.
+    /// The JSON form, one solution per line, ended by a newline.
     pub fn to_json(&self) -> String {
         let list = |pairs: &[[f64; 2]]| {
             let items: Vec<String> = pairs.iter().map(|[re, im]| format!("[{re:?}, {im:?}]")).collect();
@@ -87,7 +87,7 @@ impl StartFile {
     /// The fibre itself.
     ///
     /// # Errors
-    /// If a number is not finite or solutions differ in length.
+    /// If a number is not finite or the solutions differ in length.
     pub fn fibre(&self) -> Result<Fibre, StartFileError> {
         let number = |[re, im]: [f64; 2], place: &dyn Fn() -> String| {
             let finite = re.is_finite() && im.is_finite();

@@ -30,8 +30,8 @@ const RECORDED: usize = 1 << 13;
 type Enough<'a> = dyn FnMut(usize, &Solutions) -> bool + Send + 'a;
 
 impl Family {
-    /// The solutions for many parameter points, from those of a fibre: see [`Targets`] for what can
-    /// be asked for, [`Targets::run`] for the result.
+    /// The solutions for many parameter points, from those of a fibre. [`Targets`] has the options,
+    /// and [`Targets::run`] gives the result.
     pub fn track<'a, T, Z>(&'a self, fibre: &'a Fibre, targets: &[T]) -> Targets<'a>
     where
         T: AsRef<[Z]>,
@@ -67,54 +67,56 @@ impl<'a> Targets<'a> {
         Targets { how, targets, enough: None, checkpoint: None, ranks: None }
     }
 
-    /// Settings. Start systems have no meaning here. Default [`SolveOptions::default`].
+    /// Settings. Start systems are not used here. Default [`SolveOptions::default`].
     pub fn options(self, options: &SolveOptions) -> Self {
         Targets { how: How { options: options.clone(), ..self.how }, ..self }
     }
 
-    /// Leaves only the real solutions in each result; counts are of all paths. Default false.
+    /// Keeps only the real solutions in each result; counts cover all paths. Default false.
     pub fn only_real(self, only_real: bool) -> Self {
         Targets { how: How { only_real, ..self.how }, ..self }
     }
 
-    /// Lets somebody watch, and stop, the work.
+    /// Lets this monitor watch and stop the work.
     pub fn watched(self, monitor: &Monitor) -> Self {
         Targets { how: How { monitor: monitor.clone(), ..self.how }, ..self }
     }
 
-    /// Stops after the first target, in their order, of which `enough` says so; it is called with
+    /// Stops after the first target, in their order, for which `enough` returns true. `enough` gets
     /// the number of the target, from 0, and its result.
     pub fn until(self, enough: impl FnMut(usize, &Solutions) -> bool + Send + 'a) -> Self {
         Targets { enough: Some(Box::new(enough)), ..self }
     }
 
-    /// Records the work in a [checkpoint](crate::checkpoint): targets that it has are not tracked
-    /// again. The family, the fibre, the targets and all options but
-    /// [`certify`](SolveOptions::certify) and [`only_real`](Self::only_real) have to be those of the
-    /// run that it is of.
+    /// Records the work in a [checkpoint](crate::checkpoint). Targets that the checkpoint has are
+    /// not tracked again. The family, the fibre, the targets and all options except
+    /// [`certify`](SolveOptions::certify) and [`only_real`](Self::only_real) must be those of the
+    /// run that the checkpoint belongs to.
     pub fn recorded(self, checkpoint: &Checkpoint) -> Self {
         Targets { checkpoint: Some(checkpoint.clone()), ..self }
     }
 
-    /// Lets several [ranks](crate::ranks) take part, which are all given the same family, fibre, targets
-    /// and options. Rank 0 alone heeds the monitor, has the checkpoint, and is given results, the same
-    /// to the bit as without others; the others are given none when they are not needed any more.
+    /// Lets several [ranks](crate::ranks) take part, which all get the same family, fibre, targets
+    /// and options. Only rank 0 heeds the monitor, has the checkpoint, and gets results, the same
+    /// to the bit as without other ranks. The other ranks get no results; they return when they are
+    /// no longer needed.
     pub fn on_ranks(self, ranks: &'a Ranks<'a>) -> Self {
         Targets { ranks: Some(ranks), ..self }
     }
 
-    /// Tracks, and returns a result for each target, in order; fewer if the work was cancelled or
-    /// stopped early.
+    /// Tracks, and returns a result for each target, in order; fewer results if the work was
+    /// cancelled or stopped early.
     ///
     /// # Errors
-    /// If the fibre or a target does not fit the family, a symmetry of the family is none, an option
-    /// is out of range, the checkpoint is of another run or cannot be written, or another rank fails.
+    /// If the fibre or a target does not fit the family, a stated symmetry of the family is not
+    /// one, an option is out of range, the checkpoint belongs to another run or cannot be written,
+    /// or another rank fails.
     pub fn run(self) -> Result<Vec<Solutions>, FamilyError> {
         self.transform(|_, solutions| solutions)
     }
 
-    /// [`run`](Self::run), with what `transform` makes of each result: it is called on many threads
-    /// with the number of the target, from 0, and its solutions.
+    /// [`run`](Self::run), with the value that `transform` returns for each result. `transform` is
+    /// called on many threads with the number of the target, from 0, and its solutions.
     ///
     /// # Errors
     /// Those of [`run`](Self::run).

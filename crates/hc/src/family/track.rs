@@ -15,12 +15,12 @@ use poly::Evaluate;
 /// Tracks all solutions of a fibre to the parameters `target`, on the threads of the current rayon
 /// pool.
 ///
-/// Regular endpoints that coincide prove that a path has jumped: all paths that share an end, and
-/// all that failed, are tracked again with stricter steps. What is still not whole afterwards is
-/// counted as failed.
+/// Regular endpoints that coincide prove that a path has jumped. All paths that share an end, and
+/// all that failed, are tracked again with stricter steps. Paths that are still in doubt afterwards
+/// count as failed.
 ///
 /// # Panics
-/// If the system is not square or `target` or the fibre do not fit it.
+/// If the system is not square, or `target` or the fibre does not fit it.
 pub fn track_fibre<E: Evaluate>(
     system: &E,
     fibre: &Fibre,
@@ -56,8 +56,8 @@ pub(super) fn track_fibre_led<E: Evaluate>(
     (tracker.paths, counts)
 }
 
-/// The whole fibre at other parameters, every solution refined to the last digit; `None` if a path
-/// was lost.
+/// The whole fibre at other parameters, with every solution refined to the last digit; `None` if a
+/// path was lost.
 ///
 /// # Panics
 /// If the system is not square, or the fibre or the target does not fit it.
@@ -94,10 +94,11 @@ pub(super) fn moved<E: Evaluate>(
     (counts.finite == fibre.len()).then(|| Fibre::new(target.to_vec(), fibre.dimension, solutions.collect()))
 }
 
-/// Tracks fibres of one family again and again, on one thread; keeps its memory from call to call.
+/// Tracks fibres of one family again and again, on one thread. It keeps its memory from call to
+/// call.
 ///
-/// In several [`Charts`] a lost path goes on in the next chart from where it broke off, and at
-/// stricter levels starts again in all of them.
+/// In several [`Charts`], a lost path continues in the next chart from where it broke off. At
+/// stricter levels it starts again in all charts.
 pub struct FibreTracker<'a, E: Evaluate, C: Charts = OneChart> {
     system: &'a E,
     charts: C,
@@ -134,7 +135,7 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
         }
     }
 
-    /// Replaces who may stop the work to come. Nobody at first.
+    /// Sets the monitor that may stop later work. The default monitor stops nothing.
     pub fn set_monitor(&mut self, monitor: &Monitor) {
         self.monitor.clone_from(monitor);
     }
@@ -149,18 +150,18 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
         self.paths = paths;
     }
 
-    /// Tracks all solutions of a fibre to the parameters `target`, until each is accounted for or
-    /// everything has been tried; see [`paths`](Self::paths) for their ends.
+    /// Tracks all solutions of a fibre to the parameters `target`, until each path is accounted for
+    /// or everything has been tried. [`paths`](Self::paths) has their ends.
     ///
     /// # Panics
-    /// If `target` or the fibre do not fit the system.
+    /// If `target` or the fibre does not fit the system.
     pub fn track(&mut self, fibre: &Fibre, target: &[Complex64], options: &FibreOptions) -> PathCounts {
         self.track_until(fibre, target, options, fibre.len(), |_| false).0
     }
 
-    /// [`track`](Self::track) in portions of `size` paths in the first pass, which `enough` is
-    /// shown: once it says so, the rest of the paths is left. Returns also whether it did; the
-    /// counts are then of the paths so far.
+    /// [`track`](Self::track) in portions of `size` paths in the first pass. `enough` sees each
+    /// portion; once it returns true, the remaining paths are left. The result also says whether
+    /// `enough` returned true; the counts then cover the paths so far.
     ///
     /// # Panics
     /// Those of [`track`](Self::track).
@@ -210,7 +211,7 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
         (PathCounts { retracked: outcome.retracked, ..self.counts(failed) }, found)
     }
 
-    /// How the paths of the last call have ended, of which `failed` are lost.
+    /// How the paths of the last call ended, `failed` of which are lost.
     pub fn counts(&self, failed: usize) -> PathCounts {
         let (tracked, at_infinity) = (self.paths.len(), self.paths.count(PathEnd::AtInfinity));
         let finite = tracked.saturating_sub(at_infinity + failed);

@@ -1,4 +1,5 @@
-//! One pass over paths of a fibre: tracked, judged, and kept in the place of earlier passes.
+//! One pass over paths of a fibre: they are tracked and judged, and replace the results of earlier
+//! passes.
 
 use super::charts::{Charts, OneChart, Rests};
 use super::fibre::{Fibre, FibreOptions};
