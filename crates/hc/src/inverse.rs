@@ -1,4 +1,4 @@
-//! Inverses of small matrices in double-double, by way of matrices with rows and columns of equal
+//! Inverses of small matrices in double-double, through matrices with rows and columns of equal
 //! size.
 
 use poly::{ComplexDd, Scalar};

@@ -9,28 +9,28 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! * [`solve`]: all isolated solutions of a [`System`], with multiplicities and what lies at
-//!   infinity. [`Solutions`] print themselves, and [certify](Solutions::certify) themselves.
+//! * [`solve`]: all isolated solutions of a [`System`], with multiplicities and with what lies at
+//!   infinity. [`Solutions`] can print and [certify](Solutions::certify) themselves.
 //! * [`Family`]: a system with parameters. [`Family::monodromy`] finds all solutions for one
-//!   parameter point, [`Family::track`] those for thousands of others, [`Family::trace_test`]
-//!   whether any is missing.
-//! * [`certify`](mod@certify): proofs that solutions exist, are distinct, are real.
-//! * [`mixed_volume`](fn@mixed_volume): how many solutions a generic system with the same terms
-//!   has.
-//! * [`Monitor`]: how far any of these is, and a way to stop it. [`checkpoint`]: long runs that go on
-//!   after they were killed. [`ranks`]: work over several machines.
+//!   parameter point, [`Family::track`] finds those for thousands of other points, and
+//!   [`Family::trace_test`] tells whether a solution is missing.
+//! * [`certify`](mod@certify): proofs that solutions exist, are distinct, and are real.
+//! * [`mixed_volume`](fn@mixed_volume): the number of solutions of a generic system with the same
+//!   terms.
+//! * [`Monitor`]: the progress of any of these, and a way to stop it. [`checkpoint`]: long runs
+//!   that continue after they were killed. [`ranks`]: work on several machines.
 //!
 //! [`witness`] decomposes solution sets of positive dimension.
 //!
-//! The path tracker is in [`tracker`]; its homotopies, a system and a path in its parameters, are
-//! in [`homotopy`]. [`family`] has what is below [`Family`], for programs of one's own, [`start`]
-//! mixed cells, and [`refine`], [`distinct`] and [`random`] what is used everywhere. With the
-//! feature of its name, `codegen` writes a family and its solutions as Rust source.
+//! The path tracker is in [`tracker`]. Its homotopies, each a system and a path in its parameters,
+//! are in [`homotopy`]. [`family`] has the layer below [`Family`], for your own programs; [`start`]
+//! has mixed cells; [`refine`], [`distinct`] and [`random`] are used everywhere. With the feature
+//! of the same name, `codegen` writes a family and its solutions as Rust source.
 //!
 //! The feature `threads`, on by default, runs paths, mixed cells and proofs on all threads of
-//! rayon; results are the same without.
+//! rayon. Results are the same without it.
 //!
-//! Systems come from the crate [`poly`], which is re-exported: everything that implements
+//! Systems come from the crate [`poly`], which is re-exported. Everything that implements
 //! [`poly::Evaluate`] can be tracked.
 //!
 //! ```

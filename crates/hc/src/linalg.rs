@@ -1,10 +1,10 @@
 //! LU factorisation of small complex matrices, one or several at once.
 //!
-//! Threshold pivoting is done lane by lane with implicitly scaled rows (Skeel 1979): rows are
-//! measured by `|a_ik| / max_j |a_ij| w_j`, `w` the weights of the unknowns, and the row on the
-//! diagonal stays where it measures at least [`THRESHOLD`] of the largest. Lanes therefore never
-//! influence each other, a lane gives bit for bit what the one-lane factorisation gives, and rows
-//! are moved only where it matters, which is what costs time in lanes.
+//! Threshold pivoting is done lane by lane with implicitly scaled rows (Skeel 1979). The measure of
+//! a row is `|a_ik| / max_j |a_ij| w_j`, where `w` are the weights of the unknowns. The row on the
+//! diagonal stays if its measure is at least [`THRESHOLD`] of the largest. Lanes therefore never
+//! influence each other, and a lane gives bit for bit what the one-lane factorisation gives. Rows
+//! are moved only where it matters, because moving them costs time in lanes.
 
 use num_complex::Complex64;
 use poly::Lane;

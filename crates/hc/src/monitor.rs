@@ -1,10 +1,10 @@
-//! Watching work, and stopping it: how far it is, asked from another thread or told to a callback.
+//! Watching and stopping work: its progress, read from another thread or passed to a callback.
 
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering};
 
-/// What is being done.
+/// The stage of the work.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Stage {
@@ -17,9 +17,9 @@ pub enum Stage {
     Start,
     /// Paths are tracked to the target.
     Paths,
-    /// Paths are taken through the endgame.
+    /// Paths go through the endgame.
     Endgame,
-    /// A fibre is taken round a loop, three sides a path.
+    /// A fibre goes round a loop, three sides per path.
     Loop,
     /// A search goes from start to start.
     Search,
@@ -29,18 +29,18 @@ pub enum Stage {
 const STAGES: [Stage; 7] =
     [Stage::Preparing, Stage::MixedCells, Stage::Start, Stage::Paths, Stage::Endgame, Stage::Loop, Stage::Search];
 
-/// How far the work is.
+/// The progress of the work.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Progress {
-    /// What is being done.
+    /// The stage of the work.
     pub stage: Stage,
-    /// Paths of this stage that have ended; mixed cells found.
+    /// Paths of this stage that have ended, or mixed cells found.
     pub done: u64,
-    /// Paths of this stage; zero where their number is not known.
+    /// Paths of this stage; zero if their number is not known.
     pub total: u64,
-    /// Mixed cells: their volume so far. Paths: those that have ended at regular points. A search:
-    /// the starts that agree on the best result so far.
+    /// For mixed cells, their volume so far. For paths, the number that have ended at regular
+    /// points. For a search, the starts that agree on the best result so far.
     pub counted: u64,
 }
 
@@ -80,7 +80,7 @@ struct Shared {
     counted: AtomicU64,
 }
 
-/// A handle on running work; clones share it. The default one is watched by nobody and costs
+/// A handle on running work; clones share it. Nobody watches the default handle, and it costs
 /// nothing.
 ///
 /// ```
@@ -119,20 +119,20 @@ impl Monitor {
         Monitor::of(Shared::default())
     }
 
-    /// A handle that somebody watches, on work that is to stop too once this flag is true: one that
-    /// a handler of signals sets.
+    /// A handle that somebody watches. The work stops also when this flag is true, for instance
+    /// because a signal handler sets it.
     pub fn heeding(flag: &'static AtomicBool) -> Monitor {
         Monitor::of(Shared { flag: Some(flag), ..Shared::default() })
     }
 
-    /// A handle on work that calls `callback` with its progress, often and from any of its threads;
-    /// the callback may hold a clone of another handle that heeds it, but not of this one.
+    /// A handle on work that calls `callback` with its progress, often and from any of its threads.
+    /// The callback may hold a clone of another handle that heeds it, but not of this one.
     pub fn calling(callback: impl Fn(Progress) + Send + Sync + 'static) -> Monitor {
         Monitor::of(Shared { callback: Some(Box::new(callback)), ..Shared::default() })
     }
 
-    /// A handle on work that stops once `question` answers true. It is asked with the progress, very
-    /// often and from any of its threads: it should look at the time first.
+    /// A handle on work that stops once `question` returns true. It is called with the progress,
+    /// very often and from any of the threads. It should therefore look at the time first.
     pub fn asking(question: impl Fn(Progress) -> bool + Send + Sync + 'static) -> Monitor {
         Monitor::of(Shared { question: Some(Box::new(question)), ..Shared::default() })
     }
@@ -141,14 +141,15 @@ impl Monitor {
         Monitor { shared: Some(Arc::new(shared)), quiet: false }
     }
 
-    /// A handle that stops with this one but does not change the progress: for parts of the work.
+    /// A handle that stops together with this one but does not change the progress: for parts of
+    /// the work.
     #[must_use]
     pub fn quiet(&self) -> Monitor {
         Monitor { quiet: true, ..self.clone() }
     }
 
-    /// Asks the work to stop soon. What is finished by then is returned, marked as partial. Without
-    /// effect on the default handle.
+    /// Asks the work to stop soon. What is finished by then is returned, marked as partial. This
+    /// has no effect on the default handle.
     pub fn cancel(&self) {
         if let Some(shared) = &self.shared {
             shared.cancelled.store(true, Ordering::Relaxed);
@@ -165,7 +166,7 @@ impl Monitor {
         set(&shared.cancelled) || shared.flag.is_some_and(set)
     }
 
-    /// How far the work is. The numbers may be of slightly different instants.
+    /// The progress of the work. The numbers may belong to slightly different instants.
     pub fn progress(&self) -> Progress {
         let Some(shared) = &self.shared else { return Progress::default() };
         let number = usize::from(shared.stage.load(Ordering::Relaxed));
@@ -175,7 +176,7 @@ impl Monitor {
         Progress { stage, done, total, counted }
     }
 
-    /// Begins a stage of `total` paths, or of starts. For work that is to be watched.
+    /// Begins a stage of `total` paths, or of starts. Work that is to be watched calls this.
     pub fn enter(&self, stage: Stage, total: u64) {
         if let Some(shared) = self.told() {
             shared.done.store(0, Ordering::Relaxed);
@@ -186,7 +187,7 @@ impl Monitor {
         }
     }
 
-    /// Adds to what is done and counted. For work that is to be watched.
+    /// Adds to the numbers done and counted. Work that is to be watched calls this.
     pub fn add(&self, done: u64, counted: u64) {
         if let Some(shared) = self.told() {
             shared.done.fetch_add(done, Ordering::Relaxed);
@@ -195,7 +196,7 @@ impl Monitor {
         }
     }
 
-    /// Sets what is done and counted. For work that is to be watched.
+    /// Sets the numbers done and counted. Work that is to be watched calls this.
     pub fn reach(&self, done: u64, counted: u64) {
         if let Some(shared) = self.told() {
             shared.done.store(done, Ordering::Relaxed);

@@ -1,11 +1,11 @@
-//! Random numbers: every stream is named by a seed and a purpose, never by a thread.
+//! Random numbers: every stream has a seed and a purpose, and does not depend on threads.
 
 use num_complex::Complex64;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-/// What random numbers are drawn for: streams of one seed for different purposes, or attempts,
-/// share no numbers.
+/// The purpose of random numbers. Streams of one seed for different purposes, or attempts, share no
+/// numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Stream {
@@ -17,17 +17,17 @@ pub enum Stream {
     TotalDegree(u64),
     /// Linear forms of a multihomogeneous start system, by attempt.
     Multihomogeneous(u64),
-    /// Hyperplanes by which points on components are told, by attempt.
+    /// Hyperplanes that tell points on components from others, by attempt.
     Slice(u64),
-    /// Points beside one whose neighbourhood is searched.
+    /// Points beside a point whose neighbourhood is searched.
     Beside,
     /// Combinations of the equations of an overdetermined system.
     Combinations,
-    /// Conditions on the vectors of null spaces that are further unknowns.
+    /// Conditions on the null vectors that serve as further unknowns.
     Multipliers,
-    /// Hyperplanes through a point, by which it is seen on a component.
+    /// Hyperplanes through a point, which show that it lies on a component.
     Through,
-    /// Directions in which a solution is left, to see whether Newton's method comes back.
+    /// Directions in which a solution is left, to see whether Newton's method returns.
     Perturbation,
     /// Changes of the parameters, to see how far rounding them moves a solution.
     Rounding,
@@ -35,13 +35,13 @@ pub enum Stream {
     Trace,
     /// The parameters of a loop of monodromy, by number.
     Loop(u64),
-    /// A real target by which the place of a stored fibre is judged, by number.
+    /// A real target that serves to judge the place of a stored fibre, by number.
     Target(u64),
     /// A place that is tried for a stored fibre, by number.
     Place(u64),
     /// A point of parameters through which a detour leads, by number.
     Detour(u64),
-    /// Anything else, by a number of the caller's.
+    /// Any other purpose, by a number that the caller chooses.
     Other(u64),
 }
 
@@ -98,8 +98,8 @@ impl Random {
         Complex64::from_polar(1.0, std::f64::consts::TAU * self.0.random::<f64>())
     }
 
-    /// A point near the unit circle whose coordinates have 24 digits at most: sums of several, and of
-    /// their multiples, are exact.
+    /// A point near the unit circle whose coordinates have at most 24 digits: sums of several such
+    /// points, and of their multiples, are exact.
     pub fn short_unit(&mut self) -> Complex64 {
         let Complex64 { re, im } = self.unit();
         let short = |x: f64| (x * SHORT).round() / SHORT;

@@ -1,5 +1,4 @@
-//! Newton's method with residuals in double-double: a solution to the last bit that double
-//! precision can hold.
+//! Newton's method with residuals in double-double: a solution to the last bit of double precision.
 
 use crate::inverse;
 use crate::linalg::{Estimate, Lu};
@@ -9,27 +8,27 @@ use poly::simd::Isa;
 use poly::{ComplexDd, Evaluate, Scalar};
 use serde::{Deserialize, Serialize};
 
-/// What refinement tells of a solution.
+/// What refinement tells about a solution.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Refined {
     /// The refined point.
     pub point: Vec<Complex64>,
     /// Relative size of the last correction, about the relative error of the point.
     pub accuracy: f64,
-    /// Whether the point is plainly a regular solution: corrections shrank by a factor of a
-    /// thousand at once or were tiny from the first, the last was tiny, the condition is good, and
-    /// no row of the Jacobian is so small that it may be rounding error. Regular solutions may be
-    /// less plain.
+    /// Whether the point is clearly a regular solution: corrections shrank by a factor of a
+    /// thousand at once or were tiny from the first, the last correction was tiny, the condition is
+    /// good, and no row of the Jacobian is so small that it may be rounding error. A regular
+    /// solution may be less clear than that.
     pub plain: bool,
     /// Largest residual, each relative to its row of the Jacobian times the sizes of the
     /// coordinates.
     pub residual: f64,
-    /// Condition number of the Jacobian, rows scaled to equal size, unknowns measured by their own
-    /// size; infinite if singular.
+    /// Condition number of the Jacobian, with rows scaled to equal size and unknowns measured by
+    /// their own size; infinite if the Jacobian is singular.
     pub condition: f64,
 }
 
-/// Refines solutions of `F(x; p) = 0`; keeps its memory from call to call.
+/// Refines solutions of `F(x; p) = 0`. It keeps its memory from call to call.
 pub struct Refiner<'a, E: Evaluate> {
     system: &'a E,
     memory: E::Memory<Complex64>,
@@ -81,7 +80,7 @@ const BLUR_STEP: f64 = 1e-6;
 const EXTENSIONS: usize = 4;
 
 impl<'a, E: Evaluate> Refiner<'a, E> {
-    /// For a square system.
+    /// A refiner for a square system.
     pub fn new(system: &'a E) -> Self {
         let n = system.variables();
         let zero = Complex64::new(0.0, 0.0);
@@ -112,7 +111,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         refined
     }
 
-    /// [`refine`](Self::refine) with the memory of an earlier result.
+    /// [`refine`](Self::refine), with the memory of an earlier result.
     pub fn refine_into(&mut self, p: &[Complex64], point: &[Complex64], refined: &mut Refined) {
         let exact = self.exact(p);
         refined.point.clear();
@@ -133,9 +132,10 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         exact
     }
 
-    /// Refines in place, for parameters in double-double; returns the relative size of the last
-    /// correction, and how far rounding the parameters to double precision would move the point:
-    /// absolute, to first order, for random roundings, and infinite where the Jacobian is singular.
+    /// Refines in place, for parameters in double-double. Returns the relative size of the last
+    /// correction, and how far rounding the parameters to double precision would move the point.
+    /// This distance is absolute, to first order, for random roundings, and infinite where the
+    /// Jacobian is singular.
     pub fn polish_and_blur(&mut self, p: &[ComplexDd], x: &mut [Complex64]) -> (f64, Vec<f64>) {
         let (accuracy, steady) = self.polish(p, x);
         (accuracy, self.blur(p, x, steady && accuracy <= NEAR))
@@ -182,15 +182,15 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         (accuracy, steady)
     }
 
-    /// Whether a refined point is a regular solution: [`plainly`](Refined::plain), or by the test
-    /// of [`contracts`](Self::contracts).
+    /// Whether a refined point is a regular solution: either [clearly](Refined::plain), or by the
+    /// test of [`contracts`](Self::contracts).
     pub fn is_regular(&mut self, p: &[Complex64], refined: &Refined) -> bool {
         refined.plain || self.contracts(p, &refined.point)
     }
 
-    /// Whether Newton's method comes back to the solution `x` from a point 1e-8 or 1e-6 away
-    /// (relative): it does not where the Jacobian is singular. Either is enough, since the first
-    /// may drown in rounding errors and the second meet other solutions.
+    /// Whether Newton's method returns to the solution `x` from a point 1e-8 or 1e-6 away
+    /// (relative). It does not where the Jacobian is singular. One of the two is enough, because
+    /// the first may drown in rounding errors, and the second may meet other solutions.
     pub fn contracts(&mut self, p: &[Complex64], x: &[Complex64]) -> bool {
         let exact = self.exact(p);
         let contracts = PERTURBATIONS.iter().any(|&perturbation| self.comes_back(&exact, x, perturbation));
@@ -218,10 +218,10 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
     }
 
     /// The test of [`contracts`](Self::contracts) with points and Jacobians in double-double, from
-    /// a point 1e-14 or 1e-12 away: it tells regular solutions whose Jacobians are singular as far
-    /// as doubles can tell, as where nodes of a network nearly coincide. The parameters are taken
-    /// as exact: two solutions into which rounding them has split a singular one are regular. Slow,
-    /// and allocates.
+    /// a point 1e-14 or 1e-12 away. It recognises regular solutions whose Jacobians are singular as
+    /// far as doubles can tell, for instance where nodes of a network nearly coincide. The
+    /// parameters are taken as exact: if rounding them has split a singular solution into two,
+    /// these count as regular. Slow, and allocates.
     pub fn contracts_precisely(&mut self, p: &[Complex64], x: &[Complex64]) -> bool {
         let exact = self.exact(p);
         let mut centre: Vec<ComplexDd> = x.iter().map(|&z| z.into()).collect();
@@ -283,7 +283,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         blur
     }
 
-    /// Residual and condition of a point as it is.
+    /// Residual and condition of a point, without refining it.
     pub fn judged(&mut self, p: &[Complex64], x: &[Complex64]) -> Refined {
         let (residual, condition, _) = self.judge(p, x, false);
         Refined { point: x.to_vec(), accuracy: f64::INFINITY, plain: false, residual, condition }
@@ -309,8 +309,8 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         self.lu.solve(&mut self.values);
     }
 
-    /// A refined point to about 30 digits, for sums in which large coordinates cancel: corrections
-    /// of the point in double-double with the Jacobian at its double part.
+    /// A refined point to about 30 digits, for sums in which large coordinates cancel. The point is
+    /// corrected in double-double with the Jacobian at its double part.
     pub fn extend(&mut self, p: &[Complex64], point: &[Complex64]) -> Vec<ComplexDd> {
         let n = self.system.variables();
         let precise_p: Vec<ComplexDd> = p.iter().map(|&z| z.into()).collect();

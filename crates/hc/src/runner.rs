@@ -1,23 +1,25 @@
-//! The path runner: rounds of tracking, first of all paths, then of those whose ends are in doubt.
+//! The path runner: rounds of tracking, first of all paths, then of the paths whose ends are
+//! doubtful.
 //!
-//! [`run`] is the one loop of the crate that tracks paths, looks at their ends, and tracks doubtful
-//! ones again. What is tracked, how ends are judged and which ends are in doubt is the business of
-//! a [`Work`]: its batches are functions of numbers of paths and a round, and their records are
-//! absorbed in any order.
+//! [`run`] is the one loop of the crate that tracks paths, judges their ends, and tracks doubtful
+//! paths again. A [`Work`] says what is tracked, how ends are judged and which ends are doubtful.
+//! Its batches are functions of the numbers of paths and a round. Their records are absorbed in any
+//! order.
 
 use crate::monitor::Monitor;
 
 /// One pass over some of the paths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Round {
-    /// How strict the steps are: 0 as the settings say, each further level about half as long.
+    /// How strict the steps are: at level 0 as the settings say, at each further level about half
+    /// as long.
     pub(crate) level: u32,
     /// The chart in which paths are tracked.
     pub(crate) chart: usize,
 }
 
 impl Round {
-    /// The first: all paths, as the settings say.
+    /// The first round: all paths, as the settings say.
     pub(crate) const FIRST: Round = Round { level: 0, chart: 0 };
 
     /// Whether paths are tracked for the first time.
@@ -29,11 +31,11 @@ impl Round {
 /// Whether a run goes on after a batch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Flow {
-    /// It does.
+    /// The run goes on.
     On,
-    /// No: what was sought is found.
+    /// The run ends: what was sought is found.
     Found,
-    /// No: it leads nowhere.
+    /// The run ends: it leads nowhere.
     Abandoned,
 }
 
@@ -47,26 +49,26 @@ pub(crate) trait Work {
     /// Called before a round of `count` paths.
     fn begin(&mut self, _round: Round, _count: usize) {}
 
-    /// Told before a batch which paths of the round come after it, as long as it goes on.
+    /// Called before a batch with the paths of the round that come after it, if the run goes on.
     fn ahead(&self, _numbers: &[usize]) {}
 
-    /// Tracks the paths with these numbers to their ends: a function of the arguments alone, or
-    /// where a round goes on from broken ends, of these too.
+    /// Tracks the paths with these numbers to their ends. The result depends only on the arguments;
+    /// if a round continues from broken ends, it also depends on those ends.
     fn batch(&self, memory: &mut Self::Memory, numbers: &[usize], round: Round, batch: &mut Self::Batch);
 
-    /// Takes the records in; the order of batches does not matter.
+    /// Absorbs the records; the order of batches does not matter.
     fn absorb(&mut self, batch: &mut Self::Batch, round: Round) -> Flow;
 
-    /// Finishes what `absorb` left open of a batch, such as endgames.
+    /// Finishes what `absorb` left open in a batch, such as endgames.
     fn close(&mut self, _memory: &mut Self::Memory, _batch: &mut Self::Batch, _round: Round) -> Flow {
         Flow::On
     }
 
-    /// Writes the numbers of the paths whose ends are in doubt to `which`, ascending.
+    /// Writes the numbers of the paths whose ends are doubtful to `which`, in ascending order.
     fn doubtful(&mut self, memory: &mut Self::Memory, which: &mut Vec<usize>);
 
-    /// Whether another level is not worth its while after one that left `after` of `before` paths
-    /// in doubt.
+    /// Whether another level is not worthwhile after a level that left `after` of `before` paths
+    /// doubtful.
     fn is_hopeless(&mut self, _level: u32, _before: usize, _after: usize) -> bool {
         false
     }
@@ -79,31 +81,32 @@ pub(crate) struct Policy {
     pub(crate) retries: u32,
     /// Number of charts.
     pub(crate) charts: usize,
-    /// Paths of the first batch, at least 1.
+    /// Number of paths in the first batch, at least 1.
     pub(crate) first: usize,
-    /// Paths of a batch, at least 1.
+    /// Number of paths in a batch, at least 1.
     pub(crate) batch: usize,
 }
 
 /// How a run went.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Outcome {
-    /// Tracks that were run a second time or more often.
+    /// How often a path was tracked again.
     pub(crate) retracked: usize,
-    /// Why it ended, if not because nothing was in doubt any more or everything had been tried.
+    /// Why the run ended, unless nothing was doubtful any more or everything had been tried.
     pub(crate) flow: Flow,
 }
 
-/// The memory of a run, which may serve again.
+/// The memory of a run, which may be used again.
 #[derive(Debug, Default)]
 pub(crate) struct Room<M, B> {
     pub(crate) memory: M,
     pub(crate) batch: B,
-    /// Paths that are tracked, then those in doubt: what a run leaves here is in doubt to the end.
+    /// Paths that are tracked, then those that are doubtful. The paths that a run leaves here stay
+    /// doubtful.
     pub(crate) which: Vec<usize>,
 }
 
-/// Tracks the paths `0 .. count`, and again those in doubt, until none is or the policy ends.
+/// Tracks the paths `0 .. count`, and doubtful paths again, until none is left or the policy ends.
 pub(crate) fn run<W: Work>(
     work: &mut W,
     count: usize,
@@ -137,7 +140,7 @@ pub(crate) fn run<W: Work>(
     Outcome { retracked, flow }
 }
 
-/// One round over `room.which`, which then holds the paths in doubt.
+/// One round over `room.which`, which afterwards holds the doubtful paths.
 fn pass<W: Work>(work: &mut W, round: Round, policy: &Policy, room: &mut Room<W::Memory, W::Batch>) -> Flow {
     let Room { memory, batch, which } = room;
     work.begin(round, which.len());

@@ -1,7 +1,7 @@
-//! Work on all threads of rayon, or on the one there is: what the crate uses of rayon, and its
-//! stand-in without the feature `threads`.
+//! Work on all threads of rayon, or on the only one there is: the functions of rayon that the crate
+//! uses, and their replacement without the feature `threads`.
 //!
-//! Results are the same either way, as they do not depend on the number of threads.
+//! Results are the same either way, because they do not depend on the number of threads.
 
 #[cfg(feature = "threads")]
 pub(crate) use rayon::{

@@ -15,12 +15,12 @@ pub struct MixedCell {
     pub edges: Vec<[usize; 2]>,
     /// Volume `V`.
     pub volume: u64,
-    /// `V` times the inner normal `g`: `<g, a> + lift(a)` is least over each support just on its
-    /// edge.
+    /// `V` times the inner normal `g`: over each support, `<g, a> + lift(a)` is least exactly on
+    /// the edge.
     pub normal: Vec<i128>,
 }
 
-/// A mixed volume and how it was found.
+/// A mixed volume, and how it was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MixedVolume {
     /// The mixed volume.
@@ -29,9 +29,9 @@ pub struct MixedVolume {
     pub cells: usize,
 }
 
-/// The mixed volume of `n` supports in `n` unknowns: by Bernstein's theorem the number of solutions
-/// with all coordinates nonzero of a system with generic coefficients. Runs on the threads of the
-/// current rayon pool.
+/// The mixed volume of `n` supports in `n` unknowns. By Bernstein's theorem it is the number of
+/// solutions with all coordinates nonzero of a system with generic coefficients. Runs on the
+/// threads of the current rayon pool.
 ///
 /// ```
 /// use hc::mixed_volume;
@@ -42,14 +42,14 @@ pub struct MixedVolume {
 /// ```
 ///
 /// # Errors
-/// If the supports are not as many as the unknowns, an exponent vector has another length, or
-/// volumes exceed 64 bits.
+/// If the number of supports differs from the number of unknowns, an exponent vector has another
+/// length, or volumes exceed 64 bits.
 pub fn mixed_volume(unknowns: usize, supports: &[Vec<Vec<i32>>]) -> Result<MixedVolume, MixedError> {
     mixed_volume_watched(unknowns, supports, &Monitor::default())
 }
 
-/// [`mixed_volume`], watched: [`Progress`](crate::monitor::Progress) has the cells found so far and
-/// their volume, a lower bound.
+/// [`mixed_volume`], watched: [`Progress`](crate::monitor::Progress) has the number of cells found
+/// so far and their volume, which is a lower bound.
 ///
 /// # Errors
 /// Those of [`mixed_volume`], and [`MixedError::Cancelled`] after [`Monitor::cancel`].
@@ -101,15 +101,17 @@ impl Sink for Total<'_> {
     }
 }
 
-/// The mixed cells of the regular subdivision of a lifting (one value a point), in the order of
+/// The mixed cells of the regular subdivision of a lifting (one value per point), in the order of
 /// their edges.
 ///
 /// The lifting is perturbed symbolically, so that all cells are fine and their volumes add up to
-/// the mixed volume; where it was not generic, the least value over a support is taken at further
+/// the mixed volume. If the lifting was not generic, the least value over a support is also taken
+/// at points outside the edge.
 /// points besides those of the edge.
 ///
 /// # Errors
-/// If the numbers of supports, exponents, points and values do not fit, or volumes exceed 64 bits.
+/// If the numbers of supports, exponents, points and values do not match, or volumes exceed 64
+/// bits.
 pub fn mixed_cells(
     unknowns: usize,
     supports: &[Vec<Vec<i32>>],

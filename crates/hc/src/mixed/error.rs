@@ -10,7 +10,7 @@ pub(super) struct Overflow;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MixedError {
-    /// Not as many supports as unknowns.
+    /// The number of supports differs from the number of unknowns.
     #[error("{supports} supports in {unknowns} unknowns; as many supports as unknowns are needed")]
     NotSquare {
         /// Number of supports.
@@ -33,9 +33,9 @@ pub enum MixedError {
     Lifting {
         /// The support, from 1.
         support: usize,
-        /// Its points.
+        /// Number of its points.
         points: usize,
-        /// Its values.
+        /// Number of its values.
         values: usize,
     },
     /// Volumes beyond 64 bits, or determinants beyond 126.
@@ -44,7 +44,7 @@ pub enum MixedError {
     /// Mixed cells that had been written to a temporary file could not be read back.
     #[error("mixed cells cannot be read back from a temporary file; look at the folder for such files (TMPDIR)")]
     Storage,
-    /// Other processes cannot take part as they should.
+    /// Other processes cannot take part.
     #[error(transparent)]
     Ranks(#[from] RanksError),
     /// The work was cancelled by its [`Monitor`](crate::monitor::Monitor).

@@ -1,5 +1,5 @@
 //! Mixed cells and mixed volumes, found by tropical homotopy continuation (Jensen 2016,
-//! arXiv:1601.02818) with one support brought in after the other.
+//! arXiv:1601.02818). One support is brought in after the other.
 
 mod cell;
 mod cells;

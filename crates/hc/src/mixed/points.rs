@@ -1,8 +1,8 @@
 //! The points of all supports, for inner products with many duals.
 //!
 //! Stage `k` of a search has the supports `A_0 .. A_{k-1}`, then `d_k Delta` together with `A_k`,
-//! then standard simplices `Delta`. Points of a configuration are numbered: those of a support in
-//! their order, corners of a simplex (the origin and the unit vectors) before them.
+//! then standard simplices `Delta`. Points of a configuration are numbered: first the corners of a
+//! simplex (the origin and the unit vectors), then the points of a support in their order.
 
 use super::integer::Integer;
 

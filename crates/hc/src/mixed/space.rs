@@ -1,4 +1,5 @@
-//! Where cells are searched: the supports in three sizes of integers, and cells in any of them.
+//! The space in which cells are sought: the supports in three sizes of integers, and cells in any
+//! of these sizes.
 
 use super::cell::Cell;
 use super::integer::Integer;

@@ -1,4 +1,4 @@
-//! Mixed volumes by several ranks, each of which searches some subtrees.
+//! Mixed volumes on several ranks, each of which searches some subtrees.
 
 use super::cells::{MixedVolume, Ordered, Total, total};
 use super::error::MixedError;
@@ -20,14 +20,14 @@ const BATCH: usize = 1 << 6;
 /// A subtree counts for so many paths where portions are made.
 const WEIGHT: usize = 1 << 5;
 
-/// [`mixed_volume_watched`](super::mixed_volume_watched) by several [ranks](crate::ranks) that are all
-/// given the same supports. Every rank divides the search into the same subtrees; rank 0 hands them out,
-/// and adds up what is found. It alone heeds the monitor, and is given the mixed volume; the others are
-/// given `None` when they are not needed any more.
+/// [`mixed_volume_watched`](super::mixed_volume_watched) on several [ranks](crate::ranks) that all
+/// get the same supports. Every rank divides the search into the same subtrees. Rank 0 hands them
+/// out, and adds up what is found. Only rank 0 heeds the monitor and gets the mixed volume; the
+/// other ranks get `None` when they are no longer needed.
 ///
 /// # Errors
-/// Those of [`mixed_volume_watched`](super::mixed_volume_watched); on rank 0 if another rank fails or has
-/// other supports.
+/// Those of [`mixed_volume_watched`](super::mixed_volume_watched); on rank 0 also if another rank
+/// fails or has other supports.
 pub fn mixed_volume_on_ranks(
     unknowns: usize,
     supports: &[Vec<Vec<i32>>],

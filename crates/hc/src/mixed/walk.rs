@@ -2,9 +2,9 @@
 //! of visited cells.
 //!
 //! The lifting is perturbed symbolically: the first point of the first configuration is lifted by
-//! an infinitesimal, the next one by one infinitely smaller, and so on. On the way from there in
-//! the direction `tau` a cell ends where the first of its inequalities
-//! `sum_j t_j (tau(a_j) - tau(b_j)) + V (tau(b_c) - tau(g)) >= 0` fails, one for every point `g`
+//! an infinitesimal, the next point by an infinitely smaller one, and so on. A cell has one
+//! inequality `sum_j t_j (tau(a_j) - tau(b_j)) + V (tau(b_c) - tau(g)) >= 0` for every point `g`.
+//! On the way from there in the direction `tau`, the cell ends where the first of these fails
 //! (Jensen 2016, sections 3 to 5).
 
 use super::cell::Cell;

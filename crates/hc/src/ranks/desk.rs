@@ -1,4 +1,4 @@
-//! Which paths are to be tracked, and who has them.
+//! Which paths remain to be tracked, and which rank has them.
 
 use super::message::Portion;
 use crate::runner::Round;
@@ -12,11 +12,12 @@ const DEPTH: usize = 2;
 const LEAST: usize = 32;
 const MOST: usize = 256;
 
-/// The paths of a round that are not tracked yet, and those that some rank has: how rank 0 divides
-/// work between ranks.
+/// The paths of a round that are not tracked yet, and those that some rank has. Rank 0 divides the
+/// work between ranks with it.
 ///
-/// Whoever has room takes a portion: half of its share of what is known of, but 32 to 256 paths for
-/// each of its threads. Another rank than the first may have two at a time. The desk has no clock; it is
+/// A rank with room takes a portion: half of its share of the known paths, but 32 to 256 paths for
+/// each of its threads. Ranks other than the first may have two portions at a time. The desk has no
+/// clock; the caller passes the time.
 /// told the time.
 ///
 /// ```
@@ -70,8 +71,8 @@ struct Seat {
 }
 
 impl Desk {
-    /// For so many ranks, of which the first has so many threads. What a rank has not answered for as
-    /// long as `patience` is given to another one too.
+    /// A desk for this many ranks, the first of which has this many threads. A portion that a rank
+    /// has not answered for as long as `patience` is given to another rank too.
     pub fn new(ranks: usize, threads: usize, patience: Duration) -> Desk {
         let mut seats = vec![Seat::default(); ranks.max(1)];
         seats[0].threads = threads.max(1);
@@ -89,8 +90,8 @@ impl Desk {
         }
     }
 
-    /// Begins another part, for which the others have to become ready. Each of its numbers stands for
-    /// so many paths.
+    /// Begins another part, for which the other ranks have to become ready. Each of its numbers
+    /// stands for `weight` paths.
     pub fn begin_part(&mut self, weight: usize) {
         self.sizes = [LEAST, MOST].map(|size| (size / weight.max(1)).max(1));
         self.begin_round(Round::FIRST);
@@ -105,7 +106,7 @@ impl Desk {
         (self.round, self.last, self.oldest) = (round, None, None);
     }
 
-    /// Notes that a rank can work, on so many threads.
+    /// Notes that a rank is ready to work, on this many threads.
     pub fn ready(&mut self, rank: usize, threads: usize) {
         if let Some(seat) = self.seats.get_mut(rank) {
             let threads = threads.clamp(1, 1 << 16);
@@ -114,24 +115,25 @@ impl Desk {
         }
     }
 
-    /// All threads of ranks that are ready.
+    /// Number of threads of all ranks that are ready.
     pub fn threads(&self) -> usize {
         self.threads
     }
 
-    /// How many paths beyond the next batch are worth knowing of, so that nobody waits for its end.
+    /// How many paths beyond the next batch should be known, so that no rank waits for the end of
+    /// the batch.
     pub fn horizon(&self) -> usize {
         2 * self.sizes[1] * self.threads()
     }
 
-    /// Adds paths, ascending, but for those that were offered before.
+    /// Adds paths, in ascending order, except those that were offered before.
     pub fn offer(&mut self, paths: &[usize]) {
         let new = self.last.map_or(0, |last| paths.partition_point(|&path| path <= last));
         self.fresh.extend(&paths[new..]);
         self.last = self.last.max(paths.last().copied());
     }
 
-    /// A portion for a rank: one that another has had for too long, or the next.
+    /// A portion for a rank: one that another rank has had for too long, or the next one.
     pub fn take(&mut self, rank: usize, now: Instant) -> Option<Portion> {
         let all = self.threads;
         let seat = self.seats.get_mut(rank).filter(|seat| seat.threads > 0)?;
@@ -173,13 +175,14 @@ impl Desk {
         Some(Portion { number, level, chart, paths })
     }
 
-    /// Notes the answer of a rank: the paths of the portion, if it is the first answer and wanted.
+    /// Notes the answer of a rank. Returns the paths of the portion if this is the first answer and
+    /// it is wanted.
     pub fn answer(&mut self, rank: usize, number: u64) -> Option<Vec<usize>> {
         self.seats.get_mut(rank)?.held.remove(&number);
         self.out.remove(&number).map(|out| out.paths)
     }
 
-    /// When a portion is to be handed out again, if no answer comes.
+    /// When a portion must be handed out again if no answer comes.
     pub fn due(&self) -> Option<Instant> {
         let others = self.out.values().filter(|out| out.rank != 0);
         others.filter_map(|out| out.since.checked_add(self.patience)).min()

@@ -12,7 +12,7 @@ pub enum RanksError {
     /// A message that cannot be read.
     #[error("rank {rank} has sent a message that cannot be read ({reason}); run the same program on all ranks")]
     Message {
-        /// The rank that has sent it.
+        /// The rank that sent it.
         rank: usize,
         /// What is wrong with it.
         reason: String,

@@ -1,35 +1,35 @@
-//! What carries messages between ranks.
+//! The transport of messages between ranks.
 
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-/// What carries messages between the processes (or threads) of one run, which are numbered: MPI, or
-/// [channels](Local) within a process.
+/// The transport of messages between the processes (or threads) of one run, which are numbered:
+/// MPI, or [channels](Local) within a process.
 ///
 /// Messages from one rank to another arrive whole and in the order in which they were sent.
 pub trait Exchange: Sync {
     /// The number of ranks, at least 1.
     fn count(&self) -> usize;
 
-    /// The number of this one, from 0.
+    /// The number of this rank, from 0.
     fn rank(&self) -> usize;
 
     /// Sends a message, without waiting until it is received.
     ///
     /// # Errors
-    /// If there is no such rank, or nothing can be sent any more.
+    /// If there is no such rank, or nothing more can be sent.
     fn send(&self, to: usize, message: Vec<u8>) -> Result<(), ExchangeError>;
 
-    /// The next message from any rank, with its number; `None` if there is none after this time. Called
-    /// from one thread at a time.
+    /// The next message from any rank, with the number of that rank; `None` if none comes within
+    /// this time. Called from one thread at a time.
     ///
     /// # Errors
-    /// If nothing can be received any more.
+    /// If nothing more can be received.
     fn receive(&self, wait: Duration) -> Result<Option<(usize, Vec<u8>)>, ExchangeError>;
 }
 
-/// Why messages are not carried any more.
+/// Why messages are no longer carried.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct ExchangeError(
@@ -37,7 +37,7 @@ pub struct ExchangeError(
     pub String,
 );
 
-/// Ranks in one process, one of its threads each.
+/// Ranks in one process, each on a thread of its own.
 #[derive(Debug)]
 pub struct Local {
     rank: usize,
@@ -46,7 +46,7 @@ pub struct Local {
 }
 
 impl Local {
-    /// This many of them.
+    /// This many ranks.
     pub fn ranks(count: usize) -> Vec<Local> {
         let (others, own): (Vec<_>, Vec<_>) = (0..count).map(|_| channel()).unzip();
         let local = |(rank, own)| Local { rank, others: others.clone(), own: Mutex::new(own) };

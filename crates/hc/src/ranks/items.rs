@@ -14,14 +14,14 @@ use std::ops::ControlFlow;
 /// of its threads.
 const WEIGHT: usize = 1 << 5;
 
-/// Computes items on all ranks: those with the `numbers` of rank 0, ascending, which may be other
-/// than those of the other ranks.
+/// Computes items on all ranks: the items with the `numbers` of rank 0, in ascending order. Other
+/// ranks may have other numbers.
 ///
-/// `job` says what is computed, and is the same on all ranks. `compute` gives the items with some
-/// numbers, in their order, on the threads of the pool that this is called in; fewer once its monitor
-/// is cancelled. An item depends on its number alone. Rank 0 passes each to `absorb` as it comes, in
-/// any order, until that breaks or `monitor` is cancelled. The others return when they are not needed
-/// any more; they never call `absorb`.
+/// `job` describes the computation, and is the same on all ranks. `compute` returns the items with
+/// some numbers, in their order, and works on the threads of the pool in which it is called; it
+/// returns fewer items once its monitor is cancelled. An item depends only on its number. Rank 0
+/// passes each item to `absorb` as it comes, in any order, until `absorb` breaks or `monitor` is
+/// cancelled. The other ranks return when they are no longer needed; they never call `absorb`.
 ///
 /// ```
 /// use hc::Monitor;
@@ -51,8 +51,8 @@ const WEIGHT: usize = 1 << 5;
 /// ```
 ///
 /// # Errors
-/// On rank 0 if another rank fails, does another job or sends what cannot be read; on the others if
-/// there is no word from rank 0. What was absorbed before stays.
+/// On rank 0 if another rank fails, does another job or sends an unreadable message; on the other
+/// ranks if rank 0 is silent. Items that were absorbed before remain.
 pub fn compute_on_ranks<T: Serialize + DeserializeOwned>(
     job: &str,
     numbers: &[usize],

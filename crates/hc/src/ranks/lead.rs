@@ -1,4 +1,4 @@
-//! Rank 0: hands out portions, and takes in what comes back.
+//! Rank 0: it hands out portions, and receives the results.
 
 use super::desk::Desk;
 use super::error::RanksError;

@@ -1,7 +1,7 @@
 //! Messages between rank 0 and the others.
 //!
-//! Their contents are written by serde in the format of postcard, as records of
-//! [checkpoints](crate::checkpoint) are. A message that is too long, of another version or not whole
+//! Serde writes their contents in the postcard format, as for the records of
+//! [checkpoints](crate::checkpoint). A message that is too long, incomplete or of another version
 //! is refused.
 
 use super::error::RanksError;
@@ -14,7 +14,7 @@ const VERSION: u8 = 2;
 /// Longer messages are refused.
 pub(super) const LONGEST: usize = 1 << 30;
 
-/// Paths that a rank is to track, or other items that it is to compute.
+/// Paths for a rank to track, or other items for it to compute.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Portion {
@@ -22,7 +22,7 @@ pub struct Portion {
     pub number: u64,
     pub(super) level: u32,
     pub(super) chart: usize,
-    /// The numbers of the paths, ascending.
+    /// The numbers of the paths, in ascending order.
     pub paths: Vec<usize>,
 }
 

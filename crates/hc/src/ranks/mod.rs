@@ -1,16 +1,17 @@
-//! Work over several processes, which MPI calls ranks.
+//! Work on several processes, which MPI calls ranks.
 //!
 //! All ranks run the same program on the same input and make the same start systems, which follow
-//! from the seed. [`solve_on_ranks`](crate::solve_on_ranks) lets rank 0 do what
-//! [`solve_watched`](crate::solve_watched) does, but it hands out paths to whoever asks, in portions,
-//! tracks some itself, and puts the ends together in the order of their numbers. The result has the
-//! same bits on any number of ranks and threads, whatever arrives first: the end of a path depends on
-//! nothing but its number and the round. [`Targets::on_ranks`](crate::family::Targets::on_ranks) does
-//! this for the targets of a family, [`Family::complete_on_ranks`](crate::Family::complete_on_ranks) for
-//! the loops of monodromy, [`mixed_volume_on_ranks`](crate::start::mixed_volume_on_ranks) for the subtrees
-//! of the search for mixed cells. [`compute_on_ranks`] is for any other work in numbered items.
+//! from the seed. With [`solve_on_ranks`](crate::solve_on_ranks), rank 0 does the same as in
+//! [`solve_watched`](crate::solve_watched). But it hands out paths in portions to the ranks that
+//! ask, tracks some itself, and puts the ends together in the order of their numbers. The result
+//! has the same bits on any number of ranks and threads, in whatever order the ends arrive: the end
+//! of a path depends only on its number and the round.
+//! [`Targets::on_ranks`](crate::family::Targets::on_ranks) does this for the targets of a family,
+//! [`Family::complete_on_ranks`](crate::Family::complete_on_ranks) for the loops of monodromy, and
+//! [`mixed_volume_on_ranks`](crate::start::mixed_volume_on_ranks) for the subtrees of the search
+//! for mixed cells. [`compute_on_ranks`] is for any other work in numbered items.
 //!
-//! What carries the messages is an [`Exchange`]. [`Local`] is one between threads; the programs
+//! An [`Exchange`] carries the messages. [`Local`] is an exchange between threads. The programs
 //! `hc` and `tdoa` have one over MPI, behind their feature `mpi`.
 //!
 //! ```

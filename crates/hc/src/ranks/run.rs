@@ -11,12 +11,12 @@ use std::time::Duration;
 /// How long one waits for a message before looking whether the work has ended.
 pub(super) const TICK: Duration = Duration::from_millis(20);
 
-/// Settings of work over ranks.
+/// Settings of work on ranks.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct RanksOptions {
-    /// After how long paths that a rank has not sent back are given to another; the first answer
-    /// counts. Default 600 s.
+    /// Time after which paths that a rank has not sent back are given to another rank; the first
+    /// answer counts. Default 600 s.
     pub patience: Duration,
 }
 
@@ -39,7 +39,7 @@ impl RanksOptions {
     }
 }
 
-/// The ranks of a run, from the view of one of them. They do the same jobs one after the other.
+/// The ranks of a run, as one of them sees them. They do the same jobs one after the other.
 pub struct Ranks<'a> {
     pub(super) exchange: &'a dyn Exchange,
     pub(super) options: RanksOptions,
@@ -60,7 +60,7 @@ pub struct Answered {
     pub paths: usize,
     /// Seconds that the rank took for them, on all its threads.
     pub seconds: f64,
-    /// Length of what it has sent, without a head of a few bytes.
+    /// Length of the answer, without a head of a few bytes.
     pub bytes: usize,
 }
 
@@ -71,7 +71,7 @@ impl fmt::Debug for Ranks<'_> {
 }
 
 impl<'a> Ranks<'a> {
-    /// Those between which `exchange` carries messages.
+    /// The ranks between which `exchange` carries messages.
     pub fn new(exchange: &'a dyn Exchange, options: &RanksOptions) -> Ranks<'a> {
         Ranks {
             exchange,
@@ -87,9 +87,9 @@ impl<'a> Ranks<'a> {
         self.exchange.rank() == 0
     }
 
-    /// What other ranks have sent back to this one, which is rank 0, in the order of its arrival: how
-    /// the work was divided, and what a [`Desk`](super::Desk) of more ranks is to be simulated from. Each
-    /// takes 32 bytes of memory.
+    /// The portions that other ranks have sent back to this rank, rank 0, in the order of arrival.
+    /// They show how the work was divided, and a [`Desk`](super::Desk) of more ranks can be
+    /// simulated from them. Each takes 32 bytes of memory.
     pub fn answered(&self) -> Vec<Answered> {
         self.answered.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
@@ -98,8 +98,8 @@ impl<'a> Ranks<'a> {
         self.answered.lock().unwrap_or_else(PoisonError::into_inner).push(answered);
     }
 
-    /// Ends the run: rank 0 lets the others go, which wait for this. `failure` says why this rank can
-    /// do no more, if so; rank 0 then fails too, if it needs this one.
+    /// Ends the run: rank 0 releases the other ranks, which wait for this. `failure` says why this
+    /// rank can do no more, if so; rank 0 then fails too, if it needs this rank.
     pub fn finish(&self, failure: Option<&str>) {
         if self.is_lead() {
             self.to_all(&Order::End);

@@ -1,4 +1,4 @@
-//! Work of the runner that other ranks take part in.
+//! Work of the runner in which other ranks take part.
 
 use super::error::RanksError;
 use super::lead::{Arrived, Lead};

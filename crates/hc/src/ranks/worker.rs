@@ -1,4 +1,4 @@
-//! All other ranks: they make start systems, and track the portions that they are given.
+//! All other ranks: they make start systems, and track the portions that they get.
 
 use super::error::RanksError;
 use super::message::{Order, Portion, Report, decoded};

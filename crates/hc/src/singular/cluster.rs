@@ -1,5 +1,5 @@
-//! Solutions that lie so close together that paths end between them: the equations there in
-//! coordinates in which they are apart.
+//! Solutions that lie so close together that paths end between them: the equations near them, in
+//! coordinates in which the solutions are apart.
 
 use super::deflate::{Profile, Reduced, centred, deflated, distance};
 use super::eliminate::{Elimination, Stop};

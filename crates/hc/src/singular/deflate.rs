@@ -1,13 +1,13 @@
 //! Newton's method for singular solutions: deflation by elimination.
 //!
-//! At a point near a solution, pivots of the Jacobian that are clearly not zero tell which unknowns
-//! the equations determine as power series in the others. What is left are equations in the few
-//! others (Lyapunov and Schmidt's reduction) whose linear part vanishes at the solution. Hence
-//! their derivatives vanish there too, and take their place: a system of less multiplicity (the
-//! deflation of Leykin, Verschelde & Zhao 2006, with minors in place of new unknowns as in
-//! Hauenstein, Mourrain & Szanto 2017). This ends with a system that determines all unknowns, on
-//! which Newton's method doubles digits, or with one that is zero to the order at hand: the
-//! solution lies on a set of positive dimension.
+//! Pivots of the Jacobian that are clearly not zero at a point near a solution tell which unknowns
+//! the equations determine as power series in the other unknowns. What remains are equations in
+//! these few unknowns (Lyapunov and Schmidt's reduction), whose linear part vanishes at the
+//! solution. Their derivatives therefore vanish there too, and take their place. This gives a
+//! system of smaller multiplicity (the deflation of Leykin, Verschelde & Zhao 2006, with minors in
+//! place of new unknowns as in Hauenstein, Mourrain & Szanto 2017). The process may end with a
+//! system that determines all unknowns, on which Newton's method doubles digits. Or it ends with a
+//! system that is zero to the order at hand: the solution then lies on a set of positive dimension.
 
 use super::eliminate::{Elimination, Stop};
 use super::equations::Local;

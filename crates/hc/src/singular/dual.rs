@@ -1,12 +1,12 @@
 //! The dual space of the local ring at a solution: the differential functionals that vanish on all
 //! multiples of the equations.
 //!
-//! Their number is the multiplicity (Dayton & Zeng 2005). They are found order by order: the
-//! derivatives of a functional, in the sense of lowered exponents, are functionals of a lower
-//! order, so that each is a combination of integrals of known ones (Mourrain 1997; the closedness
-//! subspace of Zeng 2009). If an order adds none, all are found and the solution is isolated; if
-//! there are more than paths can end at an isolated solution, it is not isolated (Bates,
-//! Hauenstein, Peterson & Sommese 2009).
+//! The number of these functionals is the multiplicity (Dayton & Zeng 2005). They are found order
+//! by order. The derivatives of a functional, in the sense of lowered exponents, are functionals of
+//! a lower order; each functional is therefore a combination of integrals of known ones (Mourrain
+//! 1997; the closedness subspace of Zeng 2009). If an order adds none, all are found, and the
+//! solution is isolated. If there are more functionals than paths that can end at an isolated
+//! solution, it is not isolated (Bates, Hauenstein, Peterson & Sommese 2009).
 
 use super::deflate::{CLEAR, ZERO};
 use super::eliminate::{Elimination, Stop};

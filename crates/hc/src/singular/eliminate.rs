@@ -1,5 +1,5 @@
 //! Gaussian elimination with complete pivoting: ranks, solutions and null spaces of small matrices
-//! of many digits.
+//! in many digits.
 
 use super::number::Number;
 

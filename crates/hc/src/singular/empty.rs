@@ -1,4 +1,4 @@
-//! That general hyperplanes of some number meet no solution, by linear algebra modulo a prime.
+//! Shows, by linear algebra modulo a prime, that a number of general hyperplanes meet no solution.
 
 use super::equations::Given;
 use super::modular::{Echelon, PRIME, difference, inverse, sum, times, trim};

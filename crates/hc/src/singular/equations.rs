@@ -1,5 +1,5 @@
-//! The given equations, exact, and their values, derivatives and series near a point in numbers of
-//! any precision.
+//! The given equations with exact coefficients, and their values, derivatives and series near a
+//! point in numbers of any precision.
 
 use super::modular::image;
 use super::multiplicity::Modular;

@@ -1,5 +1,5 @@
-//! What the end of a path is: a regular solution, an isolated multiple one, a point on a set of
-//! positive dimension, or none.
+//! What the end of a path is: a regular solution, an isolated multiple solution, a point on a set
+//! of positive dimension, or no solution.
 
 use super::deflate::{CLEAR, Deflated, Ending, Profile, Reduced, ZERO, deflated, distance, ending};
 use super::dual::{Count, count};
@@ -18,24 +18,24 @@ use poly::{ComplexDd, ComplexMulti};
 const ORDERS: [usize; 16] = [2, 3, 4, 5, 6, 7, 8, 11, 16, 23, 32, 45, 64, 90, 128, 180];
 /// Logarithms to base 2 of the tolerances at which ranks are read off near a solution.
 const TOLERANCES: [f64; 7] = [-40.0, -30.0, -20.0, -13.0, -10.0, -6.5, -3.5];
-/// Functionals are counted up to this number at least, whatever the number of paths, and up to the
-/// other where the point may be isolated with more of them.
+/// Functionals are counted up to at least this number, whatever the number of paths, and up to the
+/// second number where the point may be isolated with more functionals.
 const FUNCTIONALS: usize = 12;
 const MANY_FUNCTIONALS: usize = 80;
 /// A regular solution is at most this far from the end of a path, relatively, or this many times
-/// its error.
+/// the error of the end.
 const NEAR: f64 = 1e-7;
 const NEAR_ERRORS: f64 = 1e2;
 /// The same for singular ones, whose ends are less accurate.
 const NEAR_SINGULAR: f64 = 1e-3;
-/// Relative values of equations from which a point is none of their solutions.
+/// Relative values of equations from which on a point does not solve them.
 const NOT_ZERO: f64 = 1e-4;
 
-/// Coordinates below this share of the largest may be zero in truth, whatever is said of their error.
+/// Coordinates below this share of the largest may really be zero, whatever their stated error.
 const SURELY_ZERO: f64 = 1e-5;
 
-/// Judges a point near which `paths` paths end, with this relative error at most as far as is
-/// known; `most` may end at any one point.
+/// Judges a point near which `paths` paths end. The relative error of the point is at most this, as
+/// far as is known. At most `most` paths may end at any one point.
 pub(crate) fn judge(
     given: &Given,
     point: &[Complex64],
@@ -170,14 +170,14 @@ fn regular_from<S: Precision>(local: &Local<'_, S>, given: &Given, point: &[Comp
     Some(Verdict::Regular { point, residual })
 }
 
-/// A point on a set of positive dimension at the end of a path that seemed to lead to a regular
-/// solution nearby to which another one leads.
+/// A point on a set of positive dimension at the end of a path. The path seemed to lead to a
+/// regular solution nearby, but another path leads to that solution.
 pub(crate) fn beside(given: &Given, point: &[Complex64], paths: usize, error: f64) -> Option<Verdict> {
     sheet(given, point, paths, error.max(NEAR_SHEET_AT_MOST / NEAR_SHEET_ERRORS))
 }
 
 /// A point on a set of positive dimension is at most this far from the end of a path, relatively,
-/// or as many times its error.
+/// or this many times the error of the end.
 const NEAR_SHEET: f64 = 1e-11;
 const NEAR_SHEET_AT_MOST: f64 = 1e-8;
 const NEAR_SHEET_ERRORS: f64 = 10.0;
@@ -193,8 +193,8 @@ fn sheet(given: &Given, point: &[Complex64], paths: usize, error: f64) -> Option
     Some(Verdict::OnComponent { dimension, point: rounded(given, &local, &point).0 })
 }
 
-/// The verdict on a point that is no regular solution, to one precision; an error if that is not
-/// enough, or with little effort where the point is between several solutions.
+/// The verdict on a point that is not a regular solution, in one precision. An error if the
+/// precision is not enough, or, with little effort, if the point lies between several solutions.
 fn multiple<S: Precision>(
     given: &Given,
     point: &[Complex64],
@@ -241,8 +241,8 @@ fn multiple<S: Precision>(
     Err(why)
 }
 
-/// The verdict on a point with zeros in place of small coordinates, where one of them may take any
-/// value, whatever the others are that are not zero.
+/// The verdict on a point with zeros in place of small coordinates, if one of them may take any
+/// value whatever the nonzero coordinates are.
 fn on_axes(given: &Given, point: &[Complex64], error: f64) -> Option<Verdict> {
     let small = NEAR_SHEET_AT_MOST.max(NEAR_SHEET_ERRORS * error).min(NEAR_SINGULAR).log2();
     let local = given.near::<ComplexDd>(point);
@@ -263,8 +263,8 @@ fn on_axes(given: &Given, point: &[Complex64], error: f64) -> Option<Verdict> {
     Some(Verdict::OnComponent { dimension: zero.iter().filter(|z| !**z).count(), point: kept.collect() })
 }
 
-/// The verdict where zeros in place of small coordinates give a solution exactly: nothing needs to
-/// be refined there.
+/// The verdict if zeros in place of small coordinates give an exact solution; nothing needs to be
+/// refined there.
 fn at_zeros<S: Number>(local: &Local<'_, S>, start: &[S], limit: usize) -> Option<Verdict> {
     let snapped: Vec<S> = start.iter().map(|z| if z.log2() < NEAR_SINGULAR.log2() { S::zero() } else { *z }).collect();
     let (values, jacobian) = local.jacobian(&snapped);
@@ -292,7 +292,7 @@ enum Structure {
     Unfinished,
 }
 
-/// The structure at a refined solution as far as series up to an order tell; `None` where ranks are
+/// The structure at a refined solution, as far as series up to an order tell; `None` if ranks are
 /// not clear.
 fn structure<S: Number>(
     local: &Local<'_, S>,
@@ -335,8 +335,8 @@ fn structure<S: Number>(
     })
 }
 
-/// The local dimension, at least that of the points of the same structure: the number of general
-/// hyperplanes in which the solution is isolated. Where that is not seen, the lower bound.
+/// The local dimension, at least that of the points with the same structure: the number of general
+/// hyperplanes in which the solution is isolated. If this cannot be seen, the lower bound.
 fn dimension<S: Number>(reduced: &Reduced<S>, at_least: usize) -> usize {
     let variables = reduced.basis.variables();
     let mut random = Random::new(0, Stream::Slice(0));

@@ -1,7 +1,8 @@
-//! The local structure of solutions: isolated or not, multiplicity, digits by deflation.
+//! The local structure of solutions: whether they are isolated, their multiplicity, and their
+//! digits by deflation.
 //!
 //! A point is judged by the given equations, with their exact coefficients, in numbers of 32 to 308
-//! digits: the fewest in which what is zero is clearly told from what is not.
+//! digits. The precision is the lowest in which zeros are clearly separated from other numbers.
 
 mod cluster;
 mod deflate;

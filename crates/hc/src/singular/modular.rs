@@ -1,4 +1,4 @@
-//! Arithmetic modulo a prime, in which exact numbers have images: what holds there is proved in little
+//! Arithmetic modulo a prime, in which exact numbers have images. It proves statements in little
 //! time.
 
 use num_bigint::{BigInt, Sign};

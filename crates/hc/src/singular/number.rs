@@ -1,4 +1,4 @@
-//! Complex numbers, mostly of more digits than doubles, as far as the local algebra needs them.
+//! Complex numbers, mostly with more digits than doubles, as far as the local algebra needs them.
 
 use num_complex::Complex64;
 use poly::Dd;

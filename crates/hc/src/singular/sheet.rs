@@ -1,5 +1,5 @@
-//! Points on sets of positive dimension, told in little time: such a point can be moved along the
-//! set.
+//! Points on sets of positive dimension, recognised in little time: such a point can be moved along
+//! the set.
 
 use super::deflate::{CLEAR, Deflated, Profile, deflated, distance, moved, settled};
 use super::eliminate::{Elimination, Stop};

@@ -1,7 +1,8 @@
 //! A polynomial in one unknown as a product of powers of others without multiple roots, exactly.
 //!
-//! That there are no multiple roots is proven modulo a prime, in little time. Where there are, Yun's
-//! algorithm (1976) finds the factors by greatest common divisors of exact polynomials.
+//! Arithmetic modulo a prime proves in little time that there are no multiple roots. Where there
+//! are multiple roots, Yun's algorithm (1976) finds the factors by greatest common divisors of
+//! exact polynomials.
 
 use super::modular;
 use num_bigint::BigInt;

@@ -2,9 +2,9 @@
 //! Ehrlich and Aberth.
 //!
 //! Starting points lie on the circles that the Newton polygon of the coefficients gives (Bini
-//! 1996). Unlike paths, the iteration can take all the digits it needs where roots depend on the
-//! last ones of the coefficients. In the end each root has a disc of its own (Smith 1970): none is
-//! missed, and roots that are one double are told apart.
+//! 1996). Roots may depend on the last digits of the coefficients; unlike paths, the iteration can
+//! take all the digits that it then needs. In the end each root has a disc of its own (Smith 1970):
+//! no root is missed, and roots that round to the same double are separated.
 
 use super::equations::{Given, Precision};
 use super::number::Number;

@@ -1,4 +1,4 @@
-//! What ends of paths are found to be.
+//! Verdicts on the ends of paths.
 
 use super::equations::Given;
 use num_complex::Complex64;

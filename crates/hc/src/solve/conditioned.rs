@@ -1,4 +1,4 @@
-//! Equations that nearly depend on each other, written so that they do not.
+//! Nearly dependent equations, rewritten as equations that are not.
 
 use num_complex::Complex64;
 use num_traits::{ToPrimitive, Zero};

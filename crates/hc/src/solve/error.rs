@@ -20,22 +20,22 @@ pub enum SolveError {
     /// Exponents out of range.
     #[error(transparent)]
     Support(#[from] SupportError),
-    /// Formulas that are no polynomials, or too large when multiplied out.
+    /// Formulas that are not polynomials, or too large when multiplied out.
     #[error(transparent)]
     Expand(#[from] ExpandError),
     /// A system with parameters.
     #[error("the system has parameters ({0}); give them values, or track a family")]
     Parameters(String),
-    /// No checkpoint of this run, or one that cannot be written.
+    /// The checkpoint does not belong to this run, or cannot be written.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
-    /// Other processes cannot take part as they should.
+    /// Other processes cannot take part.
     #[error(transparent)]
     Ranks(#[from] RanksError),
-    /// What was found cannot be certified.
+    /// The solutions cannot be certified.
     #[error(transparent)]
     Certify(#[from] CertifyError),
-    /// An equation in another number of unknowns than the first.
+    /// An equation whose number of unknowns differs from that of the first.
     #[error("equation {0} has other unknowns than the first; write all in the same unknowns")]
     Mismatched(usize),
     /// Fewer equations than unknowns, or no unknowns.
@@ -61,8 +61,8 @@ pub enum SolveError {
         "equation {0} has a coefficient beyond the range of double precision; divide it by its largest coefficient"
     )]
     Coefficient(usize),
-    /// An equation of very many terms whose coefficients differ so much that doubles cannot tell its
-    /// solutions, as the power of a sum, multiplied out.
+    /// An equation with very many terms whose coefficients differ so much that doubles cannot
+    /// determine its solutions, such as the power of a sum, multiplied out.
     #[error(
         "equation {equation} has {terms} terms with coefficients over {decades} decades, too many for double \
         precision; give powers of sums a new unknown: instead of (x + y + 1)^100 - 1 write z^100 - 1 and z - (x + y + 1)"
@@ -75,13 +75,13 @@ pub enum SolveError {
         /// Decimal logarithm of the quotient of its largest and smallest coefficient.
         decades: usize,
     },
-    /// Another start system than the polyhedral one was asked for, but some exponents are negative.
+    /// A start system other than the polyhedral one was requested, but some exponents are negative.
     #[error("this start system needs exponents that are not negative; take the polyhedral one")]
     NegativeExponents,
     /// Groups that are not a partition of the unknowns.
     #[error("every one of the {0} unknowns must stand in just one group")]
     Groups(usize),
-    /// A multihomogeneous start system of too many terms or groups.
+    /// A multihomogeneous start system with too many terms or groups.
     #[error("the multihomogeneous start system of these groups is too large; take fewer groups, or the polyhedral one")]
     StartTooLarge,
     /// More paths than allowed.

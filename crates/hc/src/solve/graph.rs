@@ -1,5 +1,6 @@
-//! Unknowns that are polynomials in others: on a line, on a parabola. Without them a system may be one
-//! equation in one unknown, or two in two, which have other ways to all solutions than paths.
+//! Unknowns that are polynomials in other unknowns, as on a line or a parabola. Without them a
+//! system may be one equation in one unknown, or two in two. For these there are other ways to all
+//! solutions than paths.
 
 use super::classify::{REAL, REAL_SINGULAR, Tracked};
 use super::plane::{self, Digits, term};

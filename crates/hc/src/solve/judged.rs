@@ -1,4 +1,4 @@
-//! Ends that the tracker alone cannot tell: singular ones, and regular ones of coefficients that
+//! Ends that the tracker alone cannot judge: singular ends, and regular ends for coefficients that
 //! were rounded.
 
 use super::classify::{Classified, REAL, REAL_SINGULAR, Tracked};

@@ -36,13 +36,14 @@ use crate::ranks::{Lead, Ranks, Worker};
 use poly::{Exact, ExpandLimits, Polynomial, System};
 use solutions::Member;
 
-/// Finds the isolated solutions of a system of polynomials, at least as many as unknowns.
+/// Finds the isolated solutions of a system with at least as many polynomials as unknowns.
 ///
-/// From the solutions of a start system (polyhedral: Huber & Sturmfels 1995, with the origin added
-/// to supports for zero coordinates, Li & Wang 1996; or one of fewer stages, [`Start`]) paths lead
-/// along a straight line in the coefficients to all isolated solutions. Ends that are not regular
-/// go through the endgame. More equations than unknowns are combined at random, and the excess
-/// solutions are left out again. The same seed gives the same bits on any number of threads.
+/// From the solutions of a start system, paths lead along a straight line in the coefficients to
+/// all isolated solutions. The start system is polyhedral (Huber & Sturmfels 1995, with the origin
+/// added to supports for zero coordinates, Li & Wang 1996) or one with fewer stages ([`Start`]).
+/// Ends that are not regular go through the endgame. More equations than unknowns are combined at
+/// random, and excess solutions are removed again. The same seed gives the same bits on any number
+/// of threads.
 ///
 /// ```
 /// let system = hc::poly::parse::phcpack("2\nx*(x - y);\n(y - 1)^2*(y + x);")?;
@@ -55,13 +56,13 @@ use solutions::Member;
 /// ```
 ///
 /// # Errors
-/// If there are too few equations or too many paths, an equation without unknowns, or a number or
-/// an option out of range.
+/// If there are too few equations or too many paths, an equation has no unknowns, or a number or an
+/// option is out of range.
 pub fn solve(system: &System, options: &SolveOptions) -> Result<Solutions, SolveError> {
     solve_watched(system, options, &Monitor::default())
 }
 
-/// [`solve`], watched: once the monitor is cancelled, what is found by then is returned, marked as
+/// [`solve`], watched: once the monitor is cancelled, it returns what is found by then, marked as
 /// partial.
 ///
 /// # Errors
@@ -70,12 +71,12 @@ pub fn solve_watched(system: &System, options: &SolveOptions, monitor: &Monitor)
     solve_anywhere(system, options, monitor, None)
 }
 
-/// [`solve_watched`], recorded in a [checkpoint](crate::checkpoint): batches of paths that it has are
-/// not tracked again. All options but [`max_paths`](SolveOptions::max_paths) and
-/// [`certify`](SolveOptions::certify) have to be those of the run that it is of.
+/// [`solve_watched`], recorded in a [checkpoint](crate::checkpoint). Batches of paths that the
+/// checkpoint has are not tracked again. All options except [`max_paths`](SolveOptions::max_paths)
+/// and [`certify`](SolveOptions::certify) must be those of the run that the checkpoint belongs to.
 ///
 /// # Errors
-/// As [`solve`]; if the checkpoint is of another run, or cannot be written.
+/// As for [`solve`]; also if the checkpoint belongs to another run, or cannot be written.
 pub fn solve_recorded(
     system: &System,
     options: &SolveOptions,
@@ -85,13 +86,13 @@ pub fn solve_recorded(
     solve_anywhere(system, options, monitor, Some(checkpoint))
 }
 
-/// [`solve_watched`], or with a checkpoint [`solve_recorded`], by several [ranks](crate::ranks) that are
-/// all given the same system and options. Rank 0 alone heeds the monitor, has the checkpoint, and is
-/// given the solutions, those that [`solve`] finds to the bit; the others are given `None` when they
-/// are not needed any more. Preparations and what follows the paths are not divided.
+/// [`solve_watched`], or with a checkpoint [`solve_recorded`], on several [ranks](crate::ranks)
+/// that all get the same system and options. Only rank 0 heeds the monitor and has the checkpoint,
+/// and only rank 0 gets the solutions, those of [`solve`] to the bit. The other ranks get `None`
+/// when they are no longer needed. Preparations and the work after the paths are not divided.
 ///
 /// # Errors
-/// As [`solve_recorded`]; on rank 0 if another rank fails or has another job.
+/// As for [`solve_recorded`]; on rank 0 also if another rank fails or has another job.
 pub fn solve_on_ranks(
     system: &System,
     options: &SolveOptions,

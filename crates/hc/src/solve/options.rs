@@ -6,23 +6,24 @@ use crate::tracker::{OptionError, TrackerOptions};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Which start system is used.
+/// The kind of start system.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Start {
-    /// The one with the least work. Polyhedral never has more paths than the others, but two stages
-    /// instead of one: where another has hardly more (an eighth) that is tried first, and abandoned
-    /// for polyhedral if more than an eighth of its paths do not end at regular solutions, or if
-    /// one is lost. Systems whose mixed cells do not fit into 126 bits are left to the others too.
+    /// The start system with the least work. The polyhedral one never has more paths than the
+    /// others, but two stages instead of one. If another start system has hardly more paths (an
+    /// eighth), it is tried first. It is abandoned for the polyhedral one if more than an eighth of
+    /// its paths do not end at regular solutions, or if one is lost. Systems whose mixed cells do
+    /// not fit into 126 bits are also left to the others.
     #[default]
     Auto,
     /// Polyhedral: as many paths as the mixed volume.
     Polyhedral,
     /// Products of linear forms in the unknowns of given groups ([`SolveOptions::groups`]): as many
-    /// paths as the multihomogeneous Bezout number, and no stage before them.
+    /// paths as the multihomogeneous Bezout number, with no stage before them.
     Multihomogeneous,
-    /// Total degree: as many paths as the product of the degrees, and no stage before them. Its
+    /// Total degree: as many paths as the product of the degrees, with no stage before them. Its
     /// coefficients are so special that paths may go to infinity in degenerate ways.
     TotalDegree,
 }
@@ -39,7 +40,8 @@ impl fmt::Display for Start {
     }
 }
 
-/// Settings of [`solve`](crate::solve), which checks them. Serialized are those on which paths depend.
+/// Settings of [`solve`](crate::solve), which checks them. The serialized settings are those on
+/// which paths depend.
 #[derive(Clone, Debug, Serialize)]
 #[non_exhaustive]
 pub struct SolveOptions {
@@ -47,13 +49,13 @@ pub struct SolveOptions {
     pub seed: u64,
     /// The start system. Default [`Start::Auto`].
     pub start: Start,
-    /// Groups of unknowns, by their indices, for [`Start::Multihomogeneous`]; every unknown belongs
-    /// to just one. Default none.
+    /// Groups of unknowns, by their indices, for [`Start::Multihomogeneous`]. Every unknown belongs
+    /// to exactly one group. Default none.
     pub groups: Vec<Vec<usize>>,
-    /// Whether solutions with zero coordinates are left out, with the paths that lead to them.
+    /// Whether to leave out solutions with zero coordinates and the paths that lead to them.
     /// Default false.
     pub torus_only: bool,
-    /// More paths than this are refused. Default 2^24.
+    /// Largest number of paths; more are refused. Default 2^24.
     #[serde(skip)]
     pub max_paths: u64,
     /// Settings of both stages. Default [`TrackerOptions::fast`]: paths that jump are found by
@@ -61,16 +63,16 @@ pub struct SolveOptions {
     pub paths: FibreOptions,
     /// Settings for the ends of paths that are not regular.
     pub endgame: EndgameOptions,
-    /// How many regular solutions there are, if that is known, for instance of a family. Once so
-    /// many are found, paths without an end are left where they are and count as dropped; as long
-    /// as paths share an end, these alone are tracked again. Default `None`: every path is taken to
+    /// The number of regular solutions, if it is known, for instance for a family. Once that many
+    /// are found, paths without an end are left where they are and count as dropped. As long as
+    /// paths share an end, only these are tracked again. Default `None`: every path is tracked to
     /// its end.
     pub known: Option<usize>,
-    /// How often everything is done again from another start system while paths are lost.
+    /// How often everything is repeated from another start system as long as paths are lost.
     /// Default 2.
     pub restarts: u32,
-    /// Whether regular solutions are certified ([`Solutions::certify`](super::Solutions::certify)),
-    /// which systems of as many equations as unknowns allow. Default false.
+    /// Whether to certify regular solutions ([`Solutions::certify`](super::Solutions::certify)).
+    /// This needs a system with as many equations as unknowns. Default false.
     #[serde(skip)]
     pub certify: bool,
 }
@@ -101,7 +103,7 @@ impl SolveOptions {
     /// Checks the numbers.
     ///
     /// # Errors
-    /// The first that is outside its range.
+    /// The first setting that is outside its range.
     pub fn validate(&self) -> Result<(), OptionError> {
         self.paths.validate()?;
         self.endgame.validate()

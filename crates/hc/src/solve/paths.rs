@@ -417,8 +417,8 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
         which
     }
 
-    /// Paths that are lost, share a start or a regular end, have crossed on the way, or end in a
-    /// cycle that is not whole; all if what is known of them cannot be read.
+    /// Paths that are lost, share a start or a regular end, have crossed on the way, or end in an
+    /// incomplete cycle. If the stored data about paths cannot be read, all paths.
     fn doubts(&mut self) -> Vec<usize> {
         let mut which = self.jumped();
         let crossed = [self.starts.met(self.route.options.paths.coincidence), self.middles.met(CROSSED)];

@@ -1,9 +1,9 @@
-//! Two equations in two unknowns by elimination, for where paths fail: slower, but exact until the
-//! very end.
+//! Two equations in two unknowns by elimination, for use where paths fail: slower, but exact until
+//! the very end.
 //!
-//! After a change of coordinates `u = x + t y` the resultant with respect to `y` has the `u` of all
-//! solutions as its roots, with their multiplicities (van der Waerden, Modern Algebra, section 83).
-//! Two such changes give both coordinates.
+//! After a change of coordinates `u = x + t y`, the roots of the resultant with respect to `y` are
+//! the `u` of all solutions, with their multiplicities (van der Waerden, Modern Algebra, section
+//! 83). Two such changes give both coordinates.
 
 use crate::singular;
 use num_bigint::BigInt;

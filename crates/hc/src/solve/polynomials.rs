@@ -1,4 +1,5 @@
-//! From expanded polynomials to solutions: start systems one after the other, while paths are lost.
+//! From expanded polynomials to solutions: start systems one after the other, as long as paths are
+//! lost.
 
 use super::classify::{Classified, Tracked, Zoomed, classify};
 use super::conditioned::conditioned;

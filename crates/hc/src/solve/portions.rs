@@ -1,4 +1,4 @@
-//! Paths of the coefficient stage in portions, which other ranks take part in.
+//! Paths of the coefficient stage in portions, in which other ranks take part.
 
 use super::paths::{Route, Stage};
 use super::record::{Record, Tracked};

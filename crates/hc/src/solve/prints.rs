@@ -1,5 +1,5 @@
-//! Where paths were, in two numbers each: enough to tell which ones may have met, without keeping
-//! their points.
+//! Where paths were, in two numbers each. This is enough to tell which paths may have met, without
+//! keeping their points.
 
 use crate::distinct::{projection, relative_distance};
 use crate::store::{Records, Sorter};

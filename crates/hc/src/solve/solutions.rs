@@ -21,21 +21,21 @@ pub struct Solution {
     /// The coordinates, in the order of the unknowns.
     pub value: Vec<Complex64>,
     /// Multiplicity: the dimension of the local ring of the given equations. As many paths end
-    /// here, or more where there are more equations than unknowns.
+    /// here, or more if there are more equations than unknowns.
     pub multiplicity: usize,
     /// The largest winding number of these paths.
     pub winding_number: usize,
     /// Whether the Jacobian is singular here, to working precision.
     pub singular: bool,
-    /// Whether all imaginary parts are below 1e-10 of the largest coordinate (or of one); 1e-7
-    /// where singular.
+    /// Whether all imaginary parts are below 1e-10 of the largest coordinate (or of one), or below
+    /// 1e-7 if the solution is singular.
     pub real: bool,
-    /// Largest residual, relative to its row of the Jacobian times the sizes of the coordinates;
-    /// where that is singular, relative to the sizes of the terms of the equation.
+    /// Largest residual, relative to its row of the Jacobian times the sizes of the coordinates. If
+    /// the Jacobian is singular, relative to the sizes of the terms of the equation.
     pub residual: f64,
     /// Condition number of the scaled Jacobian.
     pub condition: f64,
-    /// Whether the solution is certified; `None` where that was not asked for.
+    /// Whether the solution is certified; `None` if this was not requested.
     pub certified: Option<bool>,
 }
 
@@ -69,8 +69,8 @@ impl PartialEq for Member {
     }
 }
 
-/// What [`solve`](crate::solve) has found: the distinct isolated solutions, and what became of the
-/// paths. Serialized without the names of the unknowns and the system.
+/// The result of [`solve`](crate::solve): the distinct isolated solutions, and what became of the
+/// paths. It is serialized without the names of the unknowns and the system.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Solutions {
@@ -79,45 +79,44 @@ pub struct Solutions {
     pub variables: Vec<String>,
     #[serde(skip)]
     pub(super) member: Member,
-    /// The start system that was used, never [`Start::Auto`]; `None` where paths came from a stored
+    /// The start system that was used, never [`Start::Auto`]; `None` if paths came from a stored
     /// fibre or did not begin.
     pub start: Option<Start>,
-    /// The mixed volume of the supports, the origin included unless only the torus was asked for;
-    /// `None` where it was not needed.
+    /// The mixed volume of the supports, including the origin unless only the torus was requested;
+    /// `None` if it was not needed.
     pub mixed_volume: Option<u64>,
-    /// The product of the degrees: the paths of total degree. `None` if exponents are negative or
-    /// the number does not fit.
+    /// The product of the degrees: the number of paths of total degree. `None` if exponents are
+    /// negative or the number does not fit.
     pub bezout_number: Option<u64>,
-    /// The multihomogeneous Bezout number of the groups that were given; `None` as above, or
-    /// without groups.
+    /// The multihomogeneous Bezout number of the given groups; `None` as above, or without groups.
     pub multihomogeneous_number: Option<u64>,
-    /// How the paths ended: `finite` at solutions, singular ones and such on components and in
-    /// excess included.
+    /// How the paths ended. `finite` counts all ends at solutions, including singular solutions,
+    /// solutions on components and excess solutions.
     pub paths: PathCounts,
     /// Paths that ended on components of positive dimension.
     pub on_components: usize,
     /// Points on such components, one or more on each.
     pub component_points: Vec<Vec<Complex64>>,
-    /// Paths that ended at points that were not asked for: those that solve only random
-    /// combinations of more equations than unknowns, and those outside the torus where that was
-    /// asked for.
+    /// Paths that ended at points that were not requested: points that solve only random
+    /// combinations of more equations than unknowns, and points outside the torus if only the torus
+    /// was requested.
     pub excess: usize,
-    /// Where the paths at infinity went.
+    /// The directions in which paths went to infinity.
     pub directions: Vec<Direction>,
-    /// Start systems that were used: more than one if paths were lost.
+    /// Number of start systems that were used: more than one if paths were lost.
     pub start_systems: u32,
-    /// Whether the work was cancelled: the list is then partial, and paths not tracked count as
+    /// Whether the work was cancelled. The list is then partial, and paths not tracked count as
     /// failed. In JSON `partial`.
     #[serde(rename = "partial")]
     pub interrupted: bool,
     /// The distinct isolated solutions, regular ones first.
     pub solutions: Vec<Solution>,
-    /// Ends of paths near which the equations nearly vanish, but that could not be judged. Their
+    /// Ends of paths at which the equations nearly vanish, but which could not be judged. Their
     /// paths count as failed.
     pub unresolved: Vec<Unresolved>,
 }
 
-/// An end of paths of which it is not known what it is.
+/// An end of paths whose nature is not known.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Unresolved {
@@ -167,9 +166,9 @@ impl Solutions {
         self.iter().filter(move |s| is_real(&s.value, tolerance))
     }
 
-    /// Proves of each regular solution that it exists, is one of its own, and whether it is real
-    /// ([`certify`](mod@crate::certify)); notes it in [`Solution::certified`], and what is proved
-    /// in [`Solution::real`] and [`Solution::singular`].
+    /// Proves for each regular solution that it exists, that it is distinct, and whether it is real
+    /// ([`certify`](mod@crate::certify)). The result is noted in [`Solution::certified`], and what
+    /// is proved in [`Solution::real`] and [`Solution::singular`].
     ///
     /// # Errors
     /// If the system has more equations than unknowns.
@@ -192,7 +191,7 @@ impl Solutions {
         Ok(found)
     }
 
-    /// Regular solutions for which certification was asked and failed.
+    /// Number of regular solutions for which certification was requested and failed.
     pub fn uncertified(&self) -> usize {
         self.nonsingular().filter(|s| s.certified == Some(false)).count()
     }

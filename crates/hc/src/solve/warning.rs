@@ -1,6 +1,6 @@
 //! What a reader of a list of solutions must know.
 
-/// A way in which a list of solutions may be less than whole.
+/// A way in which a list of solutions may be incomplete.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Warning {
@@ -10,21 +10,21 @@ pub enum Warning {
     /// There are solutions that are not isolated.
     #[error("there are solution sets of positive dimension: {paths} paths end on them, at {points} points")]
     Components {
-        /// Paths that end on them.
+        /// Number of paths that end on them.
         paths: usize,
-        /// Points at which they do.
+        /// Number of points at which these paths end.
         points: usize,
     },
-    /// Finite ends that are no solutions.
+    /// Finite ends that are not solutions.
     #[error("{paths} finite ends are left out: they do not solve all equations, or lie outside the torus")]
     Excess {
-        /// Paths that end there.
+        /// Number of paths that end there.
         paths: usize,
     },
     /// Paths were lost from the first start system.
     #[error("{start_systems} start systems were used, since paths were lost")]
     Restarted {
-        /// Start systems that were used.
+        /// Number of start systems that were used.
         start_systems: u32,
     },
     /// Paths whose ends are not known.
@@ -33,7 +33,7 @@ pub enum Warning {
         /// Number of paths.
         paths: usize,
     },
-    /// Ends near which the equations nearly vanish, but of which it is not known what they are.
+    /// Ends at which the equations nearly vanish, but whose nature is not known.
     #[error("{ends} ends could not be judged; they are listed as unresolved")]
     Unresolved {
         /// Number of ends.

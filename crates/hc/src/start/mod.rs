@@ -1,9 +1,9 @@
 //! Start systems.
 //!
 //! * Polyhedral: the mixed cells of the supports ([`mixed_volume`], [`mixed_cells`]), and a system
-//!   of binomials for each.
+//!   of binomials for each cell.
 //! * Multihomogeneous: products of linear forms in groups of unknowns.
-//! * Total degree: `x_i^(d_i) - 1`, `d_i` the degrees of the equations.
+//! * Total degree: `x_i^(d_i) - 1` with the degrees `d_i` of the equations.
 
 mod bezout;
 mod binomial;

@@ -1,6 +1,6 @@
-//! The multihomogeneous start system (Morgan & Sommese 1987; Wampler 1993): the unknowns stand in
-//! groups, and every equation becomes a product of linear forms, as many in the unknowns of each
-//! group as the equation has degrees in them.
+//! The multihomogeneous start system (Morgan & Sommese 1987; Wampler 1993). The unknowns are
+//! divided into groups. Every equation becomes a product of linear forms; the number of forms in
+//! the unknowns of a group is the degree of the equation in that group.
 //!
 //! A solution chooses a factor of every equation, so that each group has as many equations as
 //! unknowns.

@@ -1,4 +1,4 @@
-//! What start systems take and give.
+//! The input and output of start systems.
 
 use num_complex::Complex64;
 

@@ -1,5 +1,5 @@
-//! The total degree start system `g_i (x_i^(d_i) - 1)`, `d_i` the degrees and `g_i` random: as many
-//! paths as Bezout's number.
+//! The total degree start system `g_i (x_i^(d_i) - 1)` with the degrees `d_i` and random `g_i`: as
+//! many paths as Bezout's number.
 
 use super::reached::Supports;
 use crate::random::{Random, Stream};

@@ -1,7 +1,7 @@
-//! Rows of small records, one a path or a mixed cell, that may be far more than the solutions: what
-//! exceeds a fixed amount of memory lies in a temporary file.
+//! Rows of small records, one for each path or mixed cell. There may be far more of them than
+//! solutions; what exceeds a fixed amount of memory lies in a temporary file.
 //!
-//! A file that cannot be written is done without: the records then stay in memory.
+//! If a file cannot be written, the records stay in memory.
 
 mod place;
 mod records;

@@ -1,4 +1,4 @@
-//! Bytes at a place of a file.
+//! Bytes at a position in a file.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};

@@ -1,9 +1,9 @@
-//! The tracking loop: one path a lane, lanes refilled as paths end.
+//! The tracking loop: one path per lane; lanes are refilled as paths end.
 //!
-//! All lanes share every evaluation, factorisation and vector operation; what is decided is decided
-//! lane by lane in [`Progress`]. A lane that has finished its part of a step is evaluated again at
-//! the same point until the others have finished theirs, so its numbers do not depend on its
-//! neighbours. Nothing is allocated in the loop.
+//! All lanes share every evaluation, factorisation and vector operation. Decisions are made lane by
+//! lane in [`Progress`]. A lane that has finished its part of a step is evaluated again at the same
+//! point until the other lanes have finished theirs, so that its numbers do not depend on its
+//! neighbours. The loop allocates nothing.
 
 use super::kernels::{Coefficients, Correct, Distance, Negate, Predict, Radius, Take, Weigh};
 use super::options::TrackerOptions;
@@ -18,7 +18,7 @@ use num_complex::Complex64;
 use poly::simd::Isa;
 use poly::{Evaluate, Lane};
 
-/// Tracks paths of one system, `S::LANES` at a time; keeps its memory from call to call.
+/// Tracks paths of one system, `S::LANES` at a time. It keeps its memory from call to call.
 pub struct Tracker<'a, E: Evaluate, S: Lane> {
     system: &'a E,
     bounds: Bounds,
@@ -98,23 +98,24 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         }
     }
 
-    /// Replaces the settings for the paths to come, but for the instruction set.
+    /// Replaces the settings for later paths, except the instruction set.
     pub fn set_options(&mut self, options: &TrackerOptions) {
         self.bounds = Bounds::new(options);
     }
 
-    /// Replaces who may stop the paths to come. Nobody at first.
+    /// Sets the monitor that may stop later paths. The default monitor stops nothing.
     pub fn set_monitor(&mut self, monitor: &Monitor) {
         self.monitor.clone_from(monitor);
     }
 
-    /// Tracks the paths with the given indices into `starts` (`n` coordinates a path) along `path`
-    /// from `t = 1` to 0 and appends their ends to `out`, in the order in which they end. Once the
-    /// monitor is cancelled, paths that have not begun are appended as [`PathEnd::Cancelled`].
+    /// Tracks the paths with the given indices into `starts` (`n` coordinates per path) along
+    /// `path` from `t = 1` to 0, and appends their ends to `out`, in the order in which they end.
+    /// Once the monitor is cancelled, paths that have not begun are appended as
+    /// [`PathEnd::Cancelled`].
     ///
     /// # Panics
-    /// If an index lies outside `starts` or `path` has another number of parameters than the
-    /// system.
+    /// If an index lies outside `starts`, or the numbers of parameters of `path` and the system
+    /// differ.
     pub fn track<P: ParameterPath>(
         &mut self,
         path: &P,

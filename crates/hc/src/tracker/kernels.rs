@@ -1,8 +1,8 @@
 //! The tracker's arithmetic over coordinates, all lanes at once: predictor, radius of trust,
 //! weights and norms.
 //!
-//! All lengths are relative to weights, `|x| = max_j |x_j| / w_j`; squares are kept, so no root is
-//! taken per coordinate.
+//! All lengths are relative to weights, `|x| = max_j |x_j| / w_j`. Squares are kept, so that no
+//! root is taken per coordinate.
 
 use crate::homotopy::ParameterPath;
 use poly::Lane;

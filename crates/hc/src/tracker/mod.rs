@@ -1,18 +1,18 @@
 //! The path tracker.
 //!
-//! A step of a path: the *predictor* extrapolates from Taylor coefficients of order 3 by Pade
-//! approximants of type [2/1]; the *corrector* is Newton's method, given up as soon as its first
-//! corrections show that it would not converge quadratically (estimates of the Lipschitz constant
-//! `omega` of Newton's method and of the limiting accuracy `mu`; Timme 2020, arXiv:1902.02968;
-//! Deuflhard 2004). The next step is bounded by the distance to the nearest pole of the
-//! approximants and by the length for which Newton's method is predicted to converge at once. When
-//! `omega mu` says that double precision ends, residuals are computed in double-double, and where
-//! even that is not enough, because other paths are nearly as near as the next double, so are the
-//! points.
+//! In a step of a path, the *predictor* extrapolates from Taylor coefficients of order 3 by Pade
+//! approximants of type [2/1]. The *corrector* is Newton's method. It is given up as soon as its
+//! first corrections show that it would not converge quadratically. For this the tracker estimates
+//! the Lipschitz constant `omega` of Newton's method and the limiting accuracy `mu` (Timme 2020,
+//! arXiv:1902.02968; Deuflhard 2004). The next step is bounded by the distance to the nearest pole
+//! of the approximants, and by the length for which Newton's method is predicted to converge at
+//! once. When `omega mu` says that double precision is not enough, residuals are computed in
+//! double-double. Even that may not be enough, because other paths are nearly as near as the next
+//! double. The points are then carried in double-double too.
 //!
-//! Paths travel in lanes, eight at once or alone ([`Tracker`] is generic over [`poly::Lane`]); a
-//! path takes the same steps to the same bits in either. [`track`] is the front door: it spreads
-//! paths over threads and returns them in order.
+//! Paths travel in lanes, eight at once or alone ([`Tracker`] is generic over [`poly::Lane`]). A
+//! path takes the same steps to the same bits in either case. [`track`] is the entry point: it
+//! spreads paths over threads and returns them in order.
 
 mod batch;
 mod kernels;
@@ -33,7 +33,7 @@ use crate::monitor::Monitor;
 use num_complex::Complex64;
 use poly::Evaluate;
 
-/// Tracks the paths with the given indices into `starts` (`n` coordinates a start solution) from
+/// Tracks the paths with the given indices into `starts` (`n` coordinates per start solution) from
 /// `t = 1` to `t = 0`, in lanes of eight and on the threads of the current rayon pool.
 ///
 /// ```
@@ -55,7 +55,7 @@ use poly::Evaluate;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// The results stand in the order of `which` if that is ascending; they are the same, bit for bit,
+/// The results are in the order of `which` if that is ascending. They are the same, bit for bit,
 /// for any number of threads.
 ///
 /// # Panics

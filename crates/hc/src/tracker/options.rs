@@ -8,11 +8,11 @@ use serde::{Deserialize, Serialize};
 #[error("option {name} must be {range}, not {value}")]
 #[non_exhaustive]
 pub struct OptionError {
-    /// Its name.
+    /// The name of the setting.
     pub name: &'static str,
-    /// What is allowed.
+    /// The allowed range.
     pub range: &'static str,
-    /// What was given.
+    /// The given value.
     pub value: f64,
 }
 
@@ -29,8 +29,8 @@ impl OptionError {
     }
 }
 
-/// Settings of the path tracker. Steps are bounded twice: by the radius of trust of the predictor
-/// (`beta_tau`) and by the bound under which Newton's method converges at once (`beta_omega`), see
+/// Settings of the path tracker. Two bounds limit the steps: the radius of trust of the predictor
+/// (`beta_tau`) and the length for which Newton's method converges at once (`beta_omega`); see
 /// [`crate::tracker`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
@@ -46,25 +46,25 @@ pub struct TrackerOptions {
     pub beta_tau: f64,
     /// `beta_tau` for the step that reaches the target. Default 0.3; fast 0.6; conservative 0.1875.
     pub beta_tau_last: f64,
-    /// Newton's method stops when `omega |dx|` falls below this (dimensionless); one correction
-    /// with the last Jacobian follows, which leaves a relative error of about its third power.
-    /// Default 1e-4; fast 1e-3.
+    /// Newton's method stops when `omega |dx|` falls below this (dimensionless). One correction
+    /// with the last Jacobian follows, which leaves a relative error of about the third power of
+    /// this. Default 1e-4; fast 1e-3.
     pub corrector_tolerance: f64,
-    /// Steps, accepted and rejected, before a path is given up. Default 10,000.
+    /// Number of steps, accepted and rejected, after which a path is given up. Default 10,000.
     pub max_steps: usize,
     /// A path whose `t` has fallen below this without reaching the target ends as singular or at
     /// infinity. Default 1e-14.
     pub min_t: f64,
-    /// From this `t` on valuations are watched for divergence. Default 0.1.
+    /// Valuations are watched for divergence from this `t` on. Default 0.1.
     pub endgame_start: f64,
-    /// Corrections are measured relative to the size of their coordinate; coordinates below this share
-    /// of the largest, or below 1e-6, count as that large. Default 1e-4. The endgame takes zero, since
-    /// near the target a path may have coordinates of very different sizes, and others like it may
-    /// differ from it in the small ones alone.
+    /// Corrections are measured relative to the size of their coordinate. Coordinates below this
+    /// share of the largest, or below 1e-6, count as that large. Default 1e-4. The endgame takes
+    /// zero: near the target a path may have coordinates of very different sizes, and similar paths
+    /// may differ only in the small ones.
     #[serde(default = "least_share")]
     pub least_share: f64,
-    /// Whether residuals may be computed in double-double where double precision ends. Default
-    /// true.
+    /// Whether residuals may be computed in double-double where double precision is not enough.
+    /// Default true.
     pub extended_precision: bool,
     /// Instruction set of the lane kernels; `None` takes the widest of the machine. The result does
     /// not depend on it. Default `None`.
@@ -96,9 +96,9 @@ impl Default for TrackerOptions {
 }
 
 impl TrackerOptions {
-    /// Longer steps, for whole solution sets, where paths that jump show by their ends and are
-    /// tracked again: results/counts.md says how many, system by system. The factors are less
-    /// careful than those of HomotopyContinuation.jl's fast preset (2, 0.75, 0.4).
+    /// Longer steps, for whole solution sets: there the ends show which paths have jumped, and
+    /// these are tracked again. results/counts.md says how many, system by system. The factors are
+    /// less careful than those of HomotopyContinuation.jl's fast preset (2, 0.75, 0.4).
     pub fn fast() -> Self {
         TrackerOptions {
             contraction: 0.2,
@@ -118,7 +118,7 @@ impl TrackerOptions {
     /// Checks the numbers.
     ///
     /// # Errors
-    /// The first that is outside its range.
+    /// The first setting that is outside its range.
     pub fn validate(&self) -> Result<(), OptionError> {
         OptionError::positive(&[
             ("contraction", self.contraction),
@@ -133,8 +133,8 @@ impl TrackerOptions {
         OptionError::at_least("least_share", self.least_share, 0.0, "zero or more")
     }
 
-    /// Shorter steps than these, for paths that are tracked again: `level` 1 is about half as long,
-    /// each further level half of that.
+    /// Shorter steps than these, for paths that are tracked again: at `level` 1 about half as long,
+    /// at each further level half of that.
     pub fn stricter(&self, level: u32) -> Self {
         let factor = 0.5f64.powi(level as i32);
         TrackerOptions {

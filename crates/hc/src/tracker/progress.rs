@@ -1,6 +1,7 @@
 //! The state of one path and all decisions about it: convergence, precision, step size, divergence.
 //!
-//! Nothing here looks at other paths, so a path takes the same steps alone and among seven others.
+//! Nothing here depends on other paths, so that a path takes the same steps alone and among seven
+//! others.
 
 use super::options::TrackerOptions;
 use super::result::{PathEnd, PathResult};

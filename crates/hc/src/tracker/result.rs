@@ -11,7 +11,7 @@ pub enum PathEnd {
     Success,
     /// Some coordinates grow without bound: their valuations are negative and settled.
     AtInfinity,
-    /// The path stays bounded up to a `t` of nearly zero, but its end is not a regular solution.
+    /// The path stays bounded until `t` is nearly zero, but its end is not a regular solution.
     Singular,
     /// The start point is not a solution of the start system.
     InvalidStart,
@@ -21,12 +21,12 @@ pub enum PathEnd {
     StepTooSmall,
     /// The step limit was reached.
     MaxSteps,
-    /// Not tracked: the work was cancelled before.
+    /// The path was not tracked, because the work was cancelled before.
     Cancelled,
 }
 
 impl PathEnd {
-    /// Whether the path ended as it should: at a regular solution or at infinity.
+    /// Whether the path ended well: at a regular solution or at infinity.
     pub fn is_good(self) -> bool {
         matches!(self, PathEnd::Success | PathEnd::AtInfinity)
     }
@@ -39,22 +39,23 @@ pub struct PathResult {
     pub path: usize,
     /// Why it ended.
     pub end: PathEnd,
-    /// Where it ended: 0 where the target was reached.
+    /// The value of `t` at the end: 0 if the target was reached.
     pub t: f64,
-    /// Size of the last correction relative to the point (weighted maximum norm): a bound for the
+    /// Size of the last correction relative to the point (weighted maximum norm): a bound on the
     /// relative error.
     pub accuracy: f64,
     /// Estimate of the Lipschitz constant `omega` of Newton's method at the end (a reciprocal
     /// relative length): no other solution lies much nearer than `1 / omega`.
     pub omega: f64,
-    /// Smallest pivot of the last Jacobian, rows and unknowns scaled: below 2e-16 it is singular as
-    /// far as doubles can tell, as on a component of solutions of positive dimension.
+    /// Smallest pivot of the last Jacobian, with rows and unknowns scaled. Below 2e-16 the Jacobian
+    /// is singular as far as doubles can tell, for instance on a component of solutions of positive
+    /// dimension.
     pub pivot: f64,
-    /// Accepted steps.
+    /// Number of accepted steps.
     pub accepted: usize,
-    /// Rejected steps.
+    /// Number of rejected steps.
     pub rejected: usize,
-    /// Evaluations of the Jacobian, each with a factorisation.
+    /// Number of evaluations of the Jacobian, each with a factorisation.
     pub jacobians: usize,
     /// Whether residuals in double-double were used.
     pub extended: bool,
@@ -123,12 +124,12 @@ impl PathSet {
         &self.points[k * self.dimension..(k + 1) * self.dimension]
     }
 
-    /// Records with their last points.
+    /// The records with their last points.
     pub fn iter(&self) -> impl Iterator<Item = (&PathResult, &[Complex64])> {
         self.results.iter().enumerate().map(|(k, r)| (r, self.point(k)))
     }
 
-    /// Number of paths that ended in one way.
+    /// Number of paths with this kind of end.
     pub fn count(&self, end: PathEnd) -> usize {
         self.results.iter().filter(|r| r.end == end).count()
     }
@@ -140,7 +141,7 @@ impl PathSet {
         self.points.clear();
     }
 
-    /// Adds a path; `point` has one entry an unknown.
+    /// Adds a path; `point` has one entry per unknown.
     pub fn push(&mut self, result: PathResult, point: impl IntoIterator<Item = Complex64>) {
         self.results.push(result);
         self.points.extend(point);
@@ -160,7 +161,7 @@ impl PathSet {
         self.points[k * self.dimension..(k + 1) * self.dimension].copy_from_slice(point);
     }
 
-    /// Replaces the `k`-th record, not its point.
+    /// Replaces the `k`-th record, but not its point.
     pub fn replace_record(&mut self, k: usize, result: PathResult) {
         self.results[k] = result;
     }

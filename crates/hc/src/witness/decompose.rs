@@ -15,17 +15,17 @@ use std::collections::BTreeMap;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Component {
-    /// Its dimension, one at least.
+    /// Its dimension, at least one.
     pub dimension: usize,
     /// The number of its points in as many general hyperplanes as its dimension.
     pub degree: usize,
     /// The multiplicity of these points there: one for a reduced component.
     pub multiplicity: usize,
     /// Whether it is shown to be one irreducible component: by monodromy, which joins its points,
-    /// and the trace test, which finds none missing. If not, it may be several of this dimension
-    /// and multiplicity together, or a part of one.
+    /// and by the trace test, which shows that none is missing. If not, it may be several
+    /// components of this dimension and multiplicity together, or a part of one.
     pub irreducible: bool,
-    /// The points, their coordinates in the order of the unknowns.
+    /// The points, with their coordinates in the order of the unknowns.
     pub witness_points: Vec<Vec<Complex64>>,
 }
 
@@ -39,10 +39,10 @@ pub struct Decomposition {
     pub isolated: Vec<Solution>,
     /// Ends that could not be judged, in all dimensions.
     pub unresolved: Vec<Unresolved>,
-    /// Dimensions that were not searched, since that takes more paths than are allowed.
+    /// Dimensions that were not searched, because this would take more paths than are allowed.
     pub unsearched: Vec<usize>,
-    /// Paths that were lost, in all dimensions, witness points that do not fit together, and
-    /// dimensions that were not searched: if there are any, something may be missing.
+    /// Lost paths in all dimensions, witness points that do not fit together, and dimensions that
+    /// were not searched. If there are any, something may be missing.
     pub failed: usize,
     /// Whether the work was cancelled: the result is then partial.
     pub partial: bool,
@@ -51,18 +51,20 @@ pub struct Decomposition {
 /// Finds all components of the solution set of a system with their degrees and multiplicities, and
 /// the isolated solutions.
 ///
-/// Of the highest dimensions it is mostly shown in little time, modulo a prime of 64 bits, that they
-/// have nothing: wrong only if the prime divides certain determinants of the equations with random
-/// hyperplanes. In each other dimension the given equations and as many general hyperplanes are [solved](crate::solve)
-/// with these options, but that they are too many: they are combined at random, or get further
-/// unknowns that vanish at the solutions (Sommese & Verschelde 2000), whichever makes less work. What
-/// ends of paths that cannot be judged are is asked of the components of higher dimensions: one of their
-/// witness points moves there with its hyperplanes. The same seed gives the same bits on any number of
+/// For the highest dimensions, arithmetic modulo a prime of 64 bits mostly shows in little time
+/// that they have no components. This is wrong only if the prime divides certain determinants of
+/// the equations with random hyperplanes. In each other dimension, the given equations together
+/// with as many general hyperplanes are [solved](crate::solve) with these options. These are too
+/// many equations: they are combined at random, or get further unknowns that vanish at the
+/// solutions (Sommese & Verschelde 2000), whichever makes less work. Ends of paths that cannot be
+/// judged are compared with the components of higher dimensions: one of their witness points is
+/// moved there together with its hyperplanes. The same seed gives the same bits on any number of
 /// threads.
 ///
-/// The work is bounded: all dimensions together have [`max_paths`](SolveOptions::max_paths), paths
-/// that are tracked again counted, each path has a bounded number of steps, and its end a bounded
-/// amount of work. What is not done for that is counted in [`failed`](Decomposition::failed).
+/// The work is bounded. All dimensions together have [`max_paths`](SolveOptions::max_paths) paths,
+/// counting paths that are tracked again. Each path has a bounded number of steps, and its end a
+/// bounded amount of work. What is left undone for this reason is counted in
+/// [`failed`](Decomposition::failed).
 ///
 /// ```
 /// // The twisted cubic.
@@ -75,7 +77,7 @@ pub struct Decomposition {
 /// ```
 ///
 /// # Errors
-/// As [`solve`](fn@crate::solve), but fewer equations than unknowns are no error.
+/// As for [`solve`](fn@crate::solve), but fewer equations than unknowns are not an error.
 pub fn decompose(system: &System, options: &SolveOptions, monitor: &Monitor) -> Result<Decomposition, SolveError> {
     options.validate()?;
     if !system.parameters().is_empty() {

@@ -1,11 +1,11 @@
-//! Equations of which the witness points of multiple components are regular solutions.
+//! Equations for which the witness points of multiple components are regular solutions.
 //!
-//! On a component of multiplicity two or more the Jacobian has a larger null space than the tangents
-//! make: its vectors become further unknowns, the multipliers, on which as many linear conditions are
-//! laid as make them one vector at each point. The multiplicity of the component in the equations
-//! with multipliers is less; where it is not yet one, their Jacobian has multipliers in turn (Leykin,
-//! Verschelde & Zhao 2006, Theoretical Computer Science 359:111; of components, Sommese & Wampler
-//! 2005, section 13.3).
+//! On a component of multiplicity two or more, the Jacobian has a larger null space than the
+//! tangents explain. Null vectors become further unknowns, the multipliers, with as many linear
+//! conditions as make them one vector at each point. In the equations with multipliers the
+//! component has a smaller multiplicity. Where it is not yet one, their Jacobian gets multipliers
+//! in turn (Leykin, Verschelde & Zhao 2006, Theoretical Computer Science 359:111; for components,
+//! Sommese & Wampler 2005, section 13.3).
 
 use crate::random::{Random, Stream};
 use crate::singular::{Elimination, Given, Number, Stop};
