@@ -1,4 +1,4 @@
-//! How near to the truth a network comes, and how near the noise lets any estimate come.
+//! How near a network comes to the truth, and how near the noise lets any estimate come.
 
 use crate::align::align;
 use crate::network::Network;
@@ -10,28 +10,29 @@ use faer::Mat;
 use faer::linalg::solvers::Solve;
 use hc::Monitor;
 
-/// The Cramer-Rao bound of a network's receivers: the root mean square over them of the smallest
-/// standard deviation that any unbiased estimate can have, metres, after the best rigid alignment.
+/// The Cramer-Rao bound for a network's receivers, in metres: the root mean square over the
+/// receivers of the smallest standard deviation that any unbiased estimate can have, after the best
+/// rigid alignment.
 ///
 /// `truth` is the true network and `noise` the standard deviation of the measurements in metres.
-/// Measurements that `outliers` names (row-major, one a cell) do not count. Infinite if the others
-/// do not determine every receiver.
+/// Measurements marked in `outliers` (row-major, one entry per cell) do not count. The bound is
+/// infinite if the other measurements do not determine every receiver.
 ///
 /// # Panics
-/// If network, measurements and outliers differ in size.
+/// If the sizes of network, measurements and outliers differ.
 pub fn cramer_rao(measured: &Pseudoranges, outliers: &[bool], truth: &Network, noise: f64) -> f64 {
     bound(&without(measured, outliers), truth, noise)
 }
 
-/// [`cramer_rao`] where delays in all measurements of these receivers are unknown too, metres.
+/// [`cramer_rao`] with unknown delays in all measurements of these receivers, in metres.
 ///
-/// `receivers` are rows of the matrix, each once. Delays of all of them cannot be told from the
-/// offsets, so that at least one has to be left out; the bound is infinite where delays are not
-/// determined. Unknowns that are of no interest are eliminated from the Fisher information (Kay 1993,
-/// Fundamentals of Statistical Signal Processing: Estimation Theory, chapter 3).
+/// `receivers` are rows of the matrix, each once. A delay common to all receivers cannot be told
+/// from the offsets, so that at least one receiver has to be left out; the bound is infinite if
+/// delays are not determined. The other unknowns are eliminated from the Fisher information (Kay
+/// 1993, Fundamentals of Statistical Signal Processing: Estimation Theory, chapter 3).
 ///
 /// # Panics
-/// If network, measurements and outliers differ in size.
+/// If the sizes of network, measurements and outliers differ.
 pub fn cramer_rao_with_delays(
     measured: &Pseudoranges,
     outliers: &[bool],

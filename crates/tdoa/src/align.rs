@@ -1,5 +1,5 @@
 //! Procrustes alignment in the plane: the distance-preserving map (or similarity) that brings one
-//! set of points closest to another. Reflections are allowed, since arrival times cannot tell a
+//! set of points closest to another. Reflections are allowed, because arrival times cannot tell a
 //! network from its mirror image.
 
 use serde::Serialize;
@@ -10,7 +10,7 @@ use crate::plane::{centroid, distance};
 /// The map p -> scale * rotation * p + translation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Transform {
-    /// An orthogonal matrix, row by row; determinant -1 if it reflects.
+    /// An orthogonal matrix, row by row; its determinant is -1 if it reflects.
     pub rotation: [[f64; 2]; 2],
     /// Factor on lengths.
     pub scale: f64,
@@ -25,7 +25,7 @@ impl Transform {
         [self.scale * q[0] + self.translation[0], self.scale * q[1] + self.translation[1]]
     }
 
-    /// The image of a direction: turned (and reflected), neither scaled nor moved.
+    /// The image of a direction: turned (and reflected), but neither scaled nor moved.
     pub fn turn(&self, p: [f64; 2]) -> [f64; 2] {
         self.rotation.map(|row| row[0] * p[0] + row[1] * p[1])
     }
@@ -51,7 +51,7 @@ impl Transform {
     }
 }
 
-/// An alignment and how well it fits.
+/// An alignment, and how well it fits.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Alignment {
     /// The map.
@@ -60,13 +60,13 @@ pub struct Alignment {
     pub rms: f64,
 }
 
-/// The map of least squared error from `from` to `to` (same number of points, paired by index):
-/// rotation or reflection and translation, and a common scale if `scale` is true. `None` for no
-/// points or different numbers of them.
+/// The map with least squared error from `from` to `to` (the same number of points, paired by
+/// index): rotation or reflection and translation, and a common scale if `scale` is true. `None` if
+/// there are no points, or if the numbers of points differ.
 ///
-/// With points as complex numbers about their centroids, the best rotation is the phase of sum
-/// conj(a) b, the best reflection the phase of sum a b, and the better of both is the one of larger
-/// modulus.
+/// With points as complex numbers relative to their centroids, the best rotation is the phase of
+/// sum conj(a) b, and the best reflection the phase of sum a b. The better of the two is the one
+/// with the larger modulus.
 pub fn align(from: &[[f64; 2]], to: &[[f64; 2]], scale: bool) -> Option<Alignment> {
     if from.is_empty() || from.len() != to.len() {
         return None;

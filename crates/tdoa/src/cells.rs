@@ -1,4 +1,4 @@
-//! Values in some of the cells of a matrix, in memory proportional to these.
+//! Values in some of the cells of a matrix, in memory proportional to the number of these cells.
 
 use std::sync::Arc;
 
@@ -36,7 +36,8 @@ impl Pattern {
     }
 }
 
-/// Values in some of the cells of a matrix. Copies, and other values in the same cells, share memory.
+/// Values in some of the cells of a matrix. Copies share memory; so do other values in the same
+/// cells.
 ///
 /// ```
 /// use tdoa::Pseudoranges;
@@ -86,12 +87,12 @@ impl<T> Cells<T> {
         self.values.len()
     }
 
-    /// Whether no cell has one.
+    /// Whether no cell has a value.
     pub fn is_empty(&self) -> bool {
         self.values.is_empty()
     }
 
-    /// The value in row `i` and column `j`, `None` where there is none.
+    /// The value in row `i` and column `j`; `None` if there is none.
     pub fn get(&self, i: usize, j: usize) -> Option<&T> {
         self.pattern.find(i, j).map(|k| &self.values[k])
     }

@@ -1,4 +1,4 @@
-//! What the data cannot determine, said before anything is solved.
+//! What the data cannot determine, reported before anything is solved.
 
 use thiserror::Error;
 
@@ -37,12 +37,12 @@ pub enum Degeneracy {
     /// All cells are empty.
     #[error("nothing was measured: all {0} cells are missing")]
     NothingMeasured(usize),
-    /// So many receivers that the matrix of their coordinates would fill the memory.
+    /// There are so many receivers that the matrix of their coordinates would fill the memory.
     #[error(
         "{receivers} receivers are more than the {MAX_RECEIVERS} that can be calibrated at once; calibrate them in groups that share some"
     )]
     TooManyReceivers {
-        /// Receivers.
+        /// Number of receivers.
         receivers: usize,
     },
     /// Too few nodes.
@@ -51,13 +51,13 @@ pub enum Degeneracy {
          {SMALLEST}; add {remedy}"
     )]
     TooSmall {
-        /// Receivers that can be used.
+        /// Number of usable receivers.
         receivers: usize,
-        /// Transmitters that can be used.
+        /// Number of usable transmitters.
         transmitters: usize,
         /// Which nodes were left out, or empty.
         left: String,
-        /// What would help.
+        /// The remedy.
         remedy: String,
     },
     /// More unknowns than measurements.
@@ -66,15 +66,15 @@ pub enum Degeneracy {
          unknowns{left}; measure at least {missing} of the missing cells, or add nodes"
     )]
     TooFew {
-        /// Receivers that can be used.
+        /// Number of usable receivers.
         receivers: usize,
-        /// Transmitters that can be used.
+        /// Number of usable transmitters.
         transmitters: usize,
-        /// Measured cells among them.
+        /// Number of measured cells among them.
         measurements: usize,
-        /// Unknowns.
+        /// Number of unknowns.
         unknowns: usize,
-        /// How many measurements more are needed.
+        /// How many more measurements are needed.
         missing: usize,
         /// Which nodes were left out, or empty.
         left: String,
@@ -85,7 +85,7 @@ pub enum Degeneracy {
          one is a copy of the other, which determines nothing; remove one of them"
     )]
     IdenticalReceivers {
-        /// Name of one.
+        /// Name of the one.
         first: String,
         /// Name of the other.
         second: String,
@@ -98,7 +98,7 @@ pub enum Degeneracy {
          would count twice; remove one of them"
     )]
     IdenticalTransmitters {
-        /// Name of one.
+        /// Name of the one.
         first: String,
         /// Name of the other.
         second: String,

@@ -1,9 +1,9 @@
-//! Nodes that measure the same up to a constant: they stand in one place, or one is a copy of the
-//! other.
+//! Nodes whose measurements are the same up to a constant: they stand in one place, or one is a
+//! copy of the other.
 //!
-//! What "the same" means depends on what the numbers may be. Measurements from anywhere may be
-//! printed with few digits; data that are solved exactly are taken at their word, as two nodes a
-//! micrometre apart are two nodes.
+//! What "the same" means depends on the origin of the numbers. Measured data may be printed with
+//! few digits. Data that are solved exactly are taken literally: two nodes a micrometre apart are
+//! two nodes.
 
 use crate::pseudoranges::Pseudoranges;
 

@@ -1,25 +1,25 @@
 //! Calibration of sensor networks in the plane from arrival times alone.
 //!
 //! Synchronised receivers hear transmitters whose send times are unknown. With all times multiplied
-//! by the propagation speed, receiver i measures of transmitter j the pseudorange f_ij = |r_i -
-//! s_j| + o_j. This crate finds the positions r_i and s_j and the offsets o_j, up to a rotation,
+//! by the propagation speed, receiver i measures the pseudorange f_ij = |r_i - s_j| + o_j of
+//! transmitter j. This crate finds the positions r_i and s_j and the offsets o_j, up to a rotation,
 //! reflection and translation of the plane.
 //!
 //! Where to look first:
 //!
-//! * [`calibrate()`]: any network from measurements as they come, with outliers, gaps and noise:
+//! * [`calibrate()`]: any network from real measurements, with outliers, gaps and noise. It returns
 //!   positions, uncertainty, other networks that explain the data as well, and what is wrong with
-//!   them.
+//!   the data.
 //! * [`minimal`]: every network that explains a small complete matrix exactly, by homotopy
 //!   continuation.
-//! * [`Pseudoranges`]: the measurements, and [`read`] for files of them.
-//! * [`summary`], [`picture`] and [`html`]: a result to look at.
-//! * [`simulate()`] and [`accuracy`]: networks with a known truth, and how near to it an estimate
-//!   comes and can come.
+//! * [`Pseudoranges`]: the measurements; [`read`] reads them from files.
+//! * [`summary`], [`picture`] and [`html`]: the result as text, picture and report.
+//! * [`simulate()`] and [`accuracy`]: networks with a known truth, how near an estimate comes to
+//!   it, and how near any estimate can come.
 //!
-//! Features, all on by default: `csv` ([`read`], [`node_table`]), `mat` (compressed MATLAB files),
-//! `pictures` ([`picture`], [`html`]) and `threads` (all threads of rayon; results are the same
-//! without). Arrays need none of them.
+//! All features are on by default: `csv` ([`read`], [`node_table`]), `mat` (compressed MATLAB
+//! files), `pictures` ([`picture`], [`html`]) and `threads` (all threads of rayon; results are the
+//! same without it). Calibrating and solving arrays needs none of them.
 //!
 //! ```
 //! use tdoa::{CalibrateOptions, Pseudoranges, SimulateOptions, calibrate, simulate};

@@ -1,15 +1,15 @@
 //! The robust loss: residuals as draws of Student's t distribution.
 //!
 //! With nu degrees of freedom and scale s, a residual e costs (nu + 1)/2 ln(1 + (e/s)^2/nu), up to
-//! the term ln s that matters when s is estimated as well; nu = 1 is the Cauchy loss, an infinite
-//! nu least squares.
+//! the term ln s that matters when s is estimated as well. nu = 1 is the Cauchy loss; an infinite
+//! nu is least squares.
 
 /// Student's t loss.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Loss {
     /// Degrees of freedom; infinite for least squares.
     pub nu: f64,
-    /// Scale of the residuals, metres (or a factor on the standard deviations where measurements
+    /// Scale of the residuals in metres (or a factor on the standard deviations, if measurements
     /// carry their own).
     pub scale: f64,
 }
@@ -21,8 +21,8 @@ impl Loss {
         if self.nu.is_infinite() { 0.5 * u2 } else { 0.5 * (self.nu + 1.0) * (u2 / self.nu).ln_1p() }
     }
 
-    /// Sum of the costs of residuals. The logarithm is taken of products: it costs more than all
-    /// else. Infinite for absurd residuals.
+    /// Sum of the costs of residuals. The logarithm is taken of products, because it costs more
+    /// than everything else. Infinite for absurd residuals.
     pub fn total(&self, residuals: impl Iterator<Item = f64>) -> f64 {
         if self.nu.is_infinite() {
             return residuals.map(|e| self.cost(e)).sum();
@@ -48,8 +48,8 @@ impl Loss {
 }
 
 /// Factor from the scale that maximises the likelihood to the standard deviation, for residuals
-/// that are in truth normal: the tau with E[(nu + 1) z^2/(nu + z^2)] = 1 for z normal with
-/// deviation tau.
+/// that are really normal: the tau with E[(nu + 1) z^2/(nu + z^2)] = 1 for normal z with deviation
+/// tau.
 pub fn normal_deviation(nu: f64) -> f64 {
     if nu.is_infinite() {
         return 1.0;
@@ -71,10 +71,11 @@ pub fn normal_deviation(nu: f64) -> f64 {
 /// Degrees of freedom of the search.
 ///
 /// The scale is estimated from the restricted likelihood, (N - p) ln s + sum of costs for N
-/// measurements and p unknowns. With a share q = p/N it breaks down to scale 0 when more than a
-/// share 1 - (1 - q)/(nu + 1) of the residuals can be made zero at once (fitting as many as there
-/// are unknowns makes a share q zero), and grows without bound when a share (1 - q)/(nu + 1) are
-/// outliers. The Cauchy loss, nu = 1, leaves half of the redundancy to either side.
+/// measurements and p unknowns. Let q = p/N. The estimate breaks down to scale 0 when more than a
+/// share 1 - (1 - q)/(nu + 1) of the residuals can be made zero at once (fitting as many
+/// measurements as there are unknowns makes a share q zero). It grows without bound when a share (1
+/// - q)/(nu + 1) are outliers. The Cauchy loss, nu = 1, leaves half of the redundancy on either
+/// side.
 pub const SEARCH_NU: f64 = 1.0;
 
 #[cfg(test)]

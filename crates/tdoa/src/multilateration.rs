@@ -16,15 +16,15 @@ const SUBSETS: usize = 32;
 const STEPS: usize = 12;
 
 /// One measurement of the wanted node: the known node's position and a length in metres. For a
-/// wanted transmitter the length is the pseudorange, for a wanted receiver the pseudorange minus
-/// the known transmitter's offset.
+/// wanted transmitter the length is the pseudorange. For a wanted receiver it is the pseudorange
+/// minus the known transmitter's offset.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sight {
     /// Position of the known node.
     pub position: [f64; 2],
     /// Pseudorange (wanted transmitter) or distance (wanted receiver), metres.
     pub length: f64,
-    /// Factor on the residual before the loss sees it: 1, or one over the measurement's standard
+    /// Factor on the residual before the loss is applied: 1, or one over the measurement's standard
     /// deviation.
     pub precision: f64,
 }
@@ -59,9 +59,9 @@ pub fn transmitter(sights: &[Sight], loss: &Loss) -> Option<Located> {
     best.polish(sights, true, loss)
 }
 
-/// A receiver from sights of at least two transmitters. With exactly two, or all in line, its
-/// mirror image is as good; one of both is returned. `None` for fewer than two sights or coincident
-/// transmitters.
+/// A receiver from sights of at least two transmitters. With exactly two, or all in one line, its
+/// mirror image fits as well; one of the two is returned. `None` for fewer than two sights or
+/// coincident transmitters.
 pub fn receiver(sights: &[Sight], loss: &Loss) -> Option<Located> {
     let mut best = Best::default();
     for_subsets(sights.len(), 2, |s| {

@@ -1,4 +1,4 @@
-//! The answer: positions and offsets.
+//! The solution: positions and offsets.
 
 use serde::Serialize;
 
@@ -18,17 +18,18 @@ pub struct Network {
 }
 
 impl Network {
-    /// Distance of receiver `i` and transmitter `j`.
+    /// Distance between receiver `i` and transmitter `j`.
     pub fn distance(&self, i: usize, j: usize) -> f64 {
         distance(self.receivers[i], self.transmitters[j])
     }
 
-    /// What receiver `i` measures of transmitter `j` without noise: |r_i - s_j| + o_j.
+    /// The pseudorange that receiver `i` measures for transmitter `j` without noise: |r_i - s_j| +
+    /// o_j.
     pub fn pseudorange(&self, i: usize, j: usize) -> f64 {
         self.distance(i, j) + self.offsets[j]
     }
 
-    /// |r_i - s_j| + o_j of all receivers and transmitters in metres, row-major.
+    /// |r_i - s_j| + o_j for all receivers and transmitters in metres, row-major.
     pub fn pseudoranges(&self) -> Vec<f64> {
         let row = |i| (0..self.transmitters.len()).map(move |j| self.pseudorange(i, j));
         (0..self.receivers.len()).flat_map(row).collect()
@@ -62,7 +63,8 @@ impl Network {
     }
 
     /// Whether every measured f_ij - o_j, which is a distance, is at least `-tolerance` (metres).
-    /// The squared equations lose this condition; a network that breaks it is a wrong-sign branch.
+    /// The squared equations lose this condition; a network that violates it lies on a branch with
+    /// the wrong sign.
     ///
     /// # Panics
     /// If the network and the measurements differ in size.

@@ -2,9 +2,9 @@
 
 use crate::calibrate::Calibration;
 
-/// The table: `kind,name,x,y,std_x,std_y,cov_xy,offset,std_offset,measurements,outliers`, receivers
-/// first; metres, empty where nothing could be determined. [`crate::read::read_nodes`] reads its
-/// receivers back.
+/// The table `kind,name,x,y,std_x,std_y,cov_xy,offset,std_offset,measurements,outliers`, with
+/// receivers first, in metres, empty where nothing could be determined. [`crate::read::read_nodes`]
+/// reads its receivers back.
 pub fn node_table(calibration: &Calibration) -> String {
     let mut table = Table(csv::Writer::from_writer(Vec::new()));
     table.row(

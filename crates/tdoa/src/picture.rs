@@ -1,5 +1,5 @@
-//! A calibration as an SVG picture: the network with 95 % ellipses, names, a scale bar, the truth
-//! and error vectors where it is given, outliers, and a histogram of the residuals.
+//! A calibration as an SVG picture: the network with 95 % ellipses, names, a scale bar, outliers, a
+//! histogram of the residuals and, if the truth is given, the truth and error vectors.
 
 mod canvas;
 mod histogram;
@@ -141,8 +141,8 @@ fn scale_bar(canvas: &mut Canvas, map: &Map) {
     canvas.text([end + 8.0, y + 4.0], "start", 12.0, &length(metres));
 }
 
-/// By how much ellipses are drawn larger than they are, so that they stand out from the dots: 1 where
-/// half of them do, a round number otherwise.
+/// By what factor ellipses are enlarged, so that they stand out from the dots: 1 if half of them do
+/// so already, otherwise a round number.
 pub fn ellipse_magnification(calibration: &Calibration) -> f64 {
     magnification(calibration, &map_of(calibration).0)
 }

@@ -3,8 +3,8 @@
 use crate::cells::Cells;
 use thiserror::Error;
 
-/// Largest number of cells (receivers times transmitters) of a matrix: 24 million. Memory goes by
-/// those that were measured.
+/// Largest number of cells (receivers times transmitters) of a matrix: 24 million. Memory is
+/// proportional to the number of measured cells.
 pub const MAX_CELLS: usize = 24_000_000;
 
 /// Largest magnitude of a value, in metres. Above it a double cannot resolve a tenth of a
@@ -123,11 +123,12 @@ pub struct Pseudoranges {
 }
 
 impl Pseudoranges {
-    /// A matrix of `receivers` rows and `transmitters` columns from row-major `values` in metres;
-    /// NaN is a missing cell. Nodes are named `r1`, `r2`, ... and `s1`, `s2`, ...
+    /// A matrix with `receivers` rows and `transmitters` columns from row-major `values` in metres;
+    /// NaN marks a missing cell. Nodes are named `r1`, `r2`, ... and `s1`, `s2`, ...
     ///
     /// # Errors
-    /// An empty or too large matrix, a wrong number of values, an infinite or huge value.
+    /// If the matrix is empty or too large, the number of values is wrong, or a value is infinite
+    /// or huge.
     pub fn new(receivers: usize, transmitters: usize, values: Vec<f64>) -> Result<Self, PseudorangeError> {
         check_count("values", "cell", check_size(receivers, transmitters)?, values.len())?;
         let cells = values.iter().enumerate().filter(|(_, value)| !value.is_nan());
@@ -135,11 +136,13 @@ impl Pseudoranges {
         Self::of(Cells::new(receivers, transmitters, cells))
     }
 
-    /// A matrix of which these cells were measured: receiver, transmitter (both from 0) and value in
-    /// metres, in any order; one that is NaN is missing. Memory is proportional to their number.
+    /// A matrix from its measured cells: receiver, transmitter (both from 0) and value in metres,
+    /// in any order. A cell with the value NaN is missing. Memory is proportional to the number of
+    /// cells given.
     ///
     /// # Errors
-    /// An empty or too large matrix, a cell outside or given twice, an infinite or huge value.
+    /// If the matrix is empty or too large, a cell is outside or given twice, or a value is
+    /// infinite or huge.
     pub fn from_cells(
         receivers: usize,
         transmitters: usize,
@@ -189,7 +192,7 @@ impl Pseudoranges {
     /// The matrix with these names of receivers and transmitters.
     ///
     /// # Errors
-    /// A wrong number of names, or a name given twice.
+    /// If the number of names is wrong, or a name is given twice.
     pub fn with_names(self, receivers: Vec<String>, transmitters: Vec<String>) -> Result<Self, PseudorangeError> {
         self.with_receiver_names(receivers)?.with_transmitter_names(transmitters)
     }
@@ -197,7 +200,7 @@ impl Pseudoranges {
     /// The matrix with these names of receivers.
     ///
     /// # Errors
-    /// A wrong number of names, or a name given twice.
+    /// If the number of names is wrong, or a name is given twice.
     pub fn with_receiver_names(mut self, names: Vec<String>) -> Result<Self, PseudorangeError> {
         check_names("receiver", self.receivers(), &names)?;
         self.receiver_names = names;
@@ -208,18 +211,18 @@ impl Pseudoranges {
     /// The matrix with these names of transmitters.
     ///
     /// # Errors
-    /// A wrong number of names, or a name given twice.
+    /// If the number of names is wrong, or a name is given twice.
     pub fn with_transmitter_names(mut self, names: Vec<String>) -> Result<Self, PseudorangeError> {
         check_names("transmitter", self.transmitters(), &names)?;
         self.transmitter_names = names;
         Ok(self)
     }
 
-    /// This matrix with a standard deviation (metres) for each cell, row-major; those of missing
+    /// This matrix with a standard deviation (metres) for each cell, row-major. Those of missing
     /// cells are ignored.
     ///
     /// # Errors
-    /// A wrong number of them, or one that is not positive and finite.
+    /// If their number is wrong, or one is not positive and finite.
     pub fn with_sigmas(self, sigmas: Vec<f64>) -> Result<Self, PseudorangeError> {
         let n = self.transmitters();
         check_count("standard deviations", "cell", self.receivers() * n, sigmas.len())?;
@@ -230,7 +233,7 @@ impl Pseudoranges {
     /// transmitter.
     ///
     /// # Errors
-    /// One that is not positive and finite.
+    /// If one is not positive and finite.
     pub fn with_sigma_of(mut self, sigma: impl Fn(usize, usize) -> f64) -> Result<Self, PseudorangeError> {
         let sigmas = self.cells.map(|i, j, _| sigma(i, j));
         if let Some((i, j, &value)) = sigmas.iter().find(|(.., sigma)| !(sigma.is_finite() && **sigma > 0.0)) {
@@ -254,13 +257,13 @@ impl Pseudoranges {
         self.cells.columns()
     }
 
-    /// The pseudorange of receiver `i` and transmitter `j` in metres, `None` where it is missing or
+    /// The pseudorange of receiver `i` and transmitter `j` in metres; `None` if it is missing or
     /// out of range.
     pub fn get(&self, i: usize, j: usize) -> Option<f64> {
         self.cells.get(i, j).copied()
     }
 
-    /// The standard deviation (metres) given for a cell, `None` where there is none.
+    /// The standard deviation (metres) given for a cell; `None` if there is none.
     pub fn sigma(&self, i: usize, j: usize) -> Option<f64> {
         self.sigmas.as_ref()?.get(i, j).copied()
     }
@@ -275,7 +278,7 @@ impl Pseudoranges {
         &self.cells
     }
 
-    /// All values row by row, NaN where missing: a copy of receivers times transmitters numbers.
+    /// All values row by row, NaN where missing: a copy with receivers times transmitters numbers.
     pub fn dense(&self) -> Vec<f64> {
         let n = self.transmitters();
         let mut all = vec![f64::NAN; self.receivers() * n];
@@ -295,7 +298,7 @@ impl Pseudoranges {
         &self.receiver_names
     }
 
-    /// Whether names were given to the receivers; else they are counted, `r1`, `r2`, ...
+    /// Whether the receivers were given names; otherwise they are numbered, `r1`, `r2`, ...
     pub fn receivers_named(&self) -> bool {
         self.receivers_named
     }

@@ -1,7 +1,7 @@
-//! Numbers and lengths as people read them.
+//! Numbers and lengths in readable form.
 
-/// A number with this many significant digits at most and none that are zeros at its end: `0.3`,
-/// `343`, `299792458`. Powers of ten appear only below a millionth and from 10^15 on.
+/// A number with at most this many significant digits and no trailing zeros: `0.3`, `343`,
+/// `299792458`. Powers of ten appear only below a millionth and from 10^15 on.
 ///
 /// ```
 /// use tdoa::quantity::number;
@@ -24,8 +24,7 @@ pub fn number(value: f64, digits: usize) -> String {
     if text == "-0" { "0".to_string() } else { text.to_string() }
 }
 
-/// A length with three significant digits in the unit that suits it, from micrometres to
-/// kilometres.
+/// A length with three significant digits in a suitable unit, from micrometres to kilometres.
 ///
 /// ```
 /// use tdoa::quantity::length;
@@ -46,13 +45,13 @@ pub fn length(metres: f64) -> String {
     format!("{} {unit}", number(metres * factor, 3))
 }
 
-/// Decimals with which coordinates of a network of this size, in metres, show a hundred thousandth
-/// of it: 4 for ten metres.
+/// Number of decimals that show coordinates to a hundred thousandth of the size of the network, in
+/// metres: 4 for ten metres.
 pub fn decimals(size: f64) -> usize {
     if size > 0.0 && size.is_finite() { (5.0 - size.log10().floor()).clamp(1.0, 12.0) as usize } else { 4 }
 }
 
-/// A coordinate with this many decimals, without a sign before a zero.
+/// A coordinate with this many decimals; zero has no sign.
 pub fn coordinate(metres: f64, decimals: usize) -> String {
     let text = format!("{metres:.decimals$}");
     match text.strip_prefix('-') {

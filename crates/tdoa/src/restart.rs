@@ -1,10 +1,11 @@
-//! Networks to start the refinement from, when no minimal solver proposes any.
+//! Starting networks for the refinement, if no minimal solver proposes any.
 //!
-//! A transmitter's pseudoranges of two receivers differ by at most the distance of the two, and by
-//! nearly that much if the transmitter lies near the line through them. The largest difference over
-//! all transmitters is therefore a guess of each distance from below; classical multidimensional
-//! scaling turns the guesses into positions. Starts differ in random factors on the guesses and in
-//! a random displacement of the positions. The transmitters are then located by multilateration.
+//! A transmitter's pseudoranges for two receivers differ by at most the distance between the two,
+//! and by nearly that much if the transmitter lies near the line through them. The largest
+//! difference over all transmitters is therefore an estimate of that distance from below. Classical
+//! multidimensional scaling turns these estimates into positions. Starts differ in random factors
+//! on the estimates and in a random displacement of the positions. The transmitters are then
+//! located by multilateration.
 
 use faer::Mat;
 use faer::Side;

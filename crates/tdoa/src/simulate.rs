@@ -14,25 +14,25 @@ use crate::pseudoranges::{PseudorangeError, Pseudoranges};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Layout {
-    /// Coordinates and offsets standard normal, as in the paper's experiments.
+    /// Coordinates and offsets are standard normal, as in the paper's experiments.
     Normal,
-    /// Positions uniform in a rectangle, offsets uniform in plus or minus its diagonal.
+    /// Positions are uniform in a rectangle, offsets uniform in plus or minus its diagonal.
     Room {
         /// Extent in x, metres.
         width: f64,
         /// Extent in y, metres.
         height: f64,
     },
-    /// Receivers evenly along a road, up to a third of their spacing, and anywhere across it;
-    /// transmitters uniform on it.
+    /// Receivers stand evenly along a road, displaced by up to a third of their spacing, and
+    /// anywhere across it; transmitters are uniform on the road.
     Chain {
         /// Its length, metres.
         length: f64,
         /// Its width, metres.
         width: f64,
     },
-    /// Receivers at the points of a square grid over a rectangle, up to a third of their spacing;
-    /// transmitters uniform in it.
+    /// Receivers stand at the points of a square grid over a rectangle, displaced by up to a third
+    /// of their spacing; transmitters are uniform in the rectangle.
     Grid {
         /// Extent in x, metres.
         width: f64,
@@ -58,14 +58,14 @@ impl Layout {
 pub enum ReceiverFault {
     /// All its measurements are this much too long, metres.
     Delay(f64),
-    /// Its clock drifts: the error grows evenly from zero at the first transmitter to this at the
-    /// last one, metres.
+    /// Its clock drifts: the error grows evenly from zero at the first transmitter to this value at
+    /// the last one, metres.
     Drift(f64),
-    /// It is moved by this in x, metres, after half of the transmitters.
+    /// It is moved by this much in x, metres, after half of the transmitters.
     Move(f64),
 }
 
-/// What to simulate.
+/// Options of a simulation.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct SimulateOptions {
@@ -79,18 +79,17 @@ pub struct SimulateOptions {
     pub noise: f64,
     /// Share of the measurements, 0 to 1, that are outliers; their number is rounded. Default 0.
     pub outliers: f64,
-    /// Outliers have an error added that is uniform in plus or minus this, metres. Default 10.
+    /// Outliers have an additional error that is uniform in plus or minus this, metres. Default 10.
     pub outlier_size: f64,
     /// Share of the measurements, 0 to 1, that are missing; their number is rounded. Default 0.
     pub missing: f64,
-    /// Each transmitter is heard by this many receivers, the nearest ones. Default `None`: by all.
+    /// Number of receivers, the nearest ones, that hear each transmitter. Default `None`: all.
     pub hearing: Option<usize>,
-    /// Share of the measurements, 0 to 1, that come by a detour; their number is rounded.
-    /// Default 0.
+    /// Share of the measurements, 0 to 1, that take a detour; their number is rounded. Default 0.
     pub detours: f64,
-    /// Detours are longer by an exponentially distributed length of this mean, metres. Default 1.
+    /// Detours are longer by an exponentially distributed length with this mean, metres. Default 1.
     pub detour_size: f64,
-    /// Errors of the first receiver alone. Default `None`.
+    /// Error of the first receiver. Default `None`.
     pub fault: Option<ReceiverFault>,
     /// Standard deviation of a constant error of each receiver, metres. Default 0.
     pub delays: f64,
@@ -123,9 +122,9 @@ impl Default for SimulateOptions {
 pub struct Simulation {
     /// The true network.
     pub network: Network,
-    /// What is measured of it.
+    /// The measurements.
     pub pseudoranges: Pseudoranges,
-    /// Row-major: which cells are outliers.
+    /// Which cells are outliers, row-major.
     pub outliers: Vec<bool>,
 }
 
@@ -133,25 +132,25 @@ pub struct Simulation {
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SimulateError {
-    /// A number outside its range.
+    /// A number is outside its range.
     #[error("{name} must be {range}, not {value}")]
     Range {
         /// Name of the option.
         name: &'static str,
-        /// What is allowed.
+        /// The allowed range.
         range: &'static str,
-        /// What was given.
+        /// The given value.
         value: f64,
     },
-    /// The size of the network.
+    /// The size of the network is not possible.
     #[error(transparent)]
     Matrix(#[from] PseudorangeError),
 }
 
-/// A random network and its measurements, the same for the same options on any machine.
+/// A random network and its measurements. The same options give the same result on any machine.
 ///
 /// # Errors
-/// Options outside their range, or too many cells.
+/// If an option is out of range, or there are too many cells.
 ///
 /// ```
 /// let mut options = tdoa::SimulateOptions::default();

@@ -8,7 +8,7 @@ use crate::quantity::{length, number};
 /// A smaller network makes one ask whether its measurements are times, metres.
 const SMALL: f64 = 0.2;
 
-/// What was found, a line for each thing; how long it took, if that is known.
+/// What was found, one line for each item, and how long it took, if that is known.
 pub fn heading(calibration: &Calibration, time: Option<Duration>) -> String {
     let (measured, outliers) = (calibration.residuals.len(), calibration.residuals.outliers().count());
     let mut text = format!(
@@ -46,7 +46,7 @@ pub fn heading(calibration: &Calibration, time: Option<Duration>) -> String {
     text
 }
 
-/// [`heading`] and the warnings.
+/// The [`heading`] and the warnings.
 pub fn summary(calibration: &Calibration) -> String {
     let warnings = calibration.warnings.iter().map(|warning| format!("warning: {warning}\n"));
     heading(calibration, None) + &warnings.collect::<String>()
@@ -95,7 +95,7 @@ pub(crate) fn uniqueness(calibration: &Calibration) -> &'static str {
     }
 }
 
-/// What to say of a network so small that its measurements may be times, where nobody has said that
+/// A warning about a network so small that its measurements may be times, if nobody has said that
 /// they are lengths.
 pub fn doubt_of_units(calibration: &Calibration) -> Option<String> {
     let extent = calibration.extent().filter(|&extent| extent < SMALL)?;

@@ -1,4 +1,5 @@
-//! The result of a calibration: the network in a frame, its uncertainty, what may be wrong with it.
+//! The result of a calibration: the network in a frame, its uncertainty, and what may be wrong with
+//! it.
 
 use super::known::{Anchors, SpeedEstimate};
 use super::receiver_errors::ReceiverError;
@@ -9,7 +10,7 @@ use crate::plane::distance;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// A calibrated network. Lengths are in metres; `None` stands for what could not be determined.
+/// A calibrated network. Lengths are in metres; `None` marks what could not be determined.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Calibration {
     /// Size of the matrix, such as `6r/46s`.
@@ -18,31 +19,32 @@ pub struct Calibration {
     pub receiver_names: Vec<String>,
     /// Names of the transmitters.
     pub transmitter_names: Vec<String>,
-    /// Positions of the receivers; `None` also for a receiver most of whose measurements are
-    /// outliers, where those left may agree by chance. Unless another frame is asked for, the first
-    /// receiver is the origin, the second lies on the positive x axis and the third above it.
+    /// Positions of the receivers. A receiver most of whose measurements are outliers also has
+    /// `None`, if the remaining measurements may agree by chance. Unless another frame is
+    /// requested, the first receiver is the origin, the second lies on the positive x axis and the
+    /// third above it.
     pub receivers: Vec<Option<[f64; 2]>>,
     /// Positions of the transmitters.
     pub transmitters: Vec<Option<[f64; 2]>>,
     /// Offsets of the transmitters.
     pub offsets: Vec<Option<f64>>,
-    /// The residuals of the measurements, and which of these agree with the network.
+    /// The residuals of the measurements, and which measurements agree with the network.
     #[serde(flatten)]
     pub residuals: Residuals,
-    /// Standard deviation of the measurements: as given, or estimated from the inliers. A factor on
-    /// the deviations that measurements carry, if they do.
+    /// Standard deviation of the measurements: as given, or estimated from the inliers. If
+    /// measurements carry their own deviations, a factor on those.
     pub sigma: f64,
     /// Whether `sigma` was estimated.
     pub sigma_estimated: bool,
-    /// Whether measurements carry their own deviations, and `sigma` is a factor on those.
+    /// Whether measurements carry their own deviations, so that `sigma` is a factor on those.
     #[serde(default)]
     pub sigma_is_factor: bool,
     /// Root mean square of the inliers' residuals.
     pub residual_rms: f64,
-    /// Inliers minus unknowns: what the estimate of `sigma` rests on.
+    /// Inliers minus unknowns: the redundancy from which `sigma` is estimated.
     pub redundancy: usize,
-    /// Radius of 95 % ellipses in standard deviations; `None` if nothing is left over to estimate
-    /// `sigma` from.
+    /// Radius of 95 % ellipses in standard deviations; `None` if there is no redundancy from which
+    /// to estimate `sigma`.
     pub ellipse_radius: Option<f64>,
     /// Standard deviations of the receivers' coordinates in the gauge.
     pub receiver_std: Vec<Option<[f64; 2]>>,
@@ -56,50 +58,53 @@ pub struct Calibration {
     pub offset_std: Vec<Option<f64>>,
     /// Which receivers were held at known positions.
     pub anchored: Vec<bool>,
-    /// The propagation speed, if it was to be estimated; all lengths are those of the estimate.
+    /// The propagation speed, if it was to be estimated. All lengths are those for the estimated
+    /// speed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed: Option<SpeedEstimate>,
     /// What the covariances are relative to.
     pub gauge: Cow<'static, str>,
-    /// Whether no other network that was found explains the measurements about as well, more than
-    /// one or two starts of the search found this one, the data fit, its receivers are determined,
-    /// none with a deviation larger than the network, known positions do not contradict the
-    /// measurements, and no receiver shows an error of its own that was left in.
+    /// Whether the network is unique. This means that no other network that was found explains the
+    /// measurements about as well, more than one or two starts of the search found this one, and
+    /// the data fit. Also, the receivers are determined, none with a deviation larger than the
+    /// network; known positions do not contradict the measurements; and no receiver shows an error
+    /// of its own that was left in.
     pub unique: bool,
-    /// Whether that holds for the receivers: in other networks only transmitters lie elsewhere.
+    /// Whether the receivers are unique: in other networks only transmitters lie elsewhere.
     pub unique_receivers: bool,
-    /// Whether that holds for the transmitters, of which one in ten may lie elsewhere.
+    /// Whether the transmitters are unique; one in ten of them may lie elsewhere.
     pub unique_transmitters: bool,
-    /// Other networks that do, best first.
+    /// Other networks that explain the measurements about as well, best first.
     pub alternatives: Vec<Alternative>,
     /// Whether the measurements fit a network in the plane.
     pub planar: bool,
     /// Whether the measurements determine at least half of the receivers to a tenth of the
-    /// network's size; true where the noise is not known. A table with receivers as columns is one
+    /// network's size; true if the noise is not known. This is false, for instance, for a table
+    /// with receivers as columns.
     /// that does not.
     pub determined: bool,
-    /// Whether the known positions agree with the measurements, to the same share of the network's size
-    /// as the measurements have to with a plane; true where none are known.
+    /// Whether the known positions agree with the measurements, to the same share of the network's
+    /// size to which the measurements have to agree with a plane; true if no positions are known.
     #[serde(default = "agree")]
     pub anchors_agree: bool,
-    /// Errors of single receivers that the measurements show, most telling first, or delays of all
-    /// receivers, relative to their mean.
+    /// Errors of single receivers that the measurements show, most significant first, or delays of
+    /// all receivers, relative to their mean.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub receiver_errors: Vec<ReceiverError>,
     /// What may be wrong, with names and a remedy.
     pub warnings: Vec<String>,
     /// Seed of the search.
     pub seed: u64,
-    /// Starts of the search; small networks, if such were laid together.
+    /// Number of starts of the search, or of small networks if these were laid together.
     pub starts: usize,
-    /// Starts that ended in the best basin; small networks that fit the whole.
+    /// Number of starts that ended in the best basin, or of small networks that fit the whole.
     pub agreeing: usize,
     /// Whether hearing is local, so that small networks of neighbours were laid together.
     #[serde(default)]
     pub laid_together: bool,
-    /// Probability that a basin which catches one start in twenty would have been seen.
+    /// Probability that a basin which catches one start in twenty would have been found.
     pub confidence: f64,
-    /// Comparison with the truth, if that was given.
+    /// Comparison with the truth, if it was given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub truth: Option<Truth>,
 }
@@ -122,20 +127,21 @@ pub struct Alternative {
     pub transmitters: Vec<Option<[f64; 2]>>,
     /// Offsets of the transmitters.
     pub offsets: Vec<Option<f64>>,
-    /// Root mean square of the residuals of its own inliers.
+    /// Root mean square of the residuals of this network's own inliers.
     pub residual: f64,
-    /// By how much the measurements are less likely than under the best network, natural logarithm; with
-    /// a receiver's error, by how much less they tell of it than of one that is taken out. 0 for the
-    /// network of one-sided errors, which has a likelihood of its own.
+    /// How much less likely the measurements are than under the best network (natural logarithm).
+    /// If this network lacks an error of a receiver, it says how much less evidence the
+    /// measurements give for that error than for one that is taken out. It is 0 for the network of
+    /// one-sided errors, which has a likelihood of its own.
     pub log_likelihood_loss: f64,
-    /// An error of a receiver without which the measurements fit this network: they hint at it, too
-    /// weakly for the result to have it.
+    /// The error of a receiver without which the measurements fit this network. The measurements
+    /// hint at it, but too weakly for the result to include it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub receiver_error: Option<ReceiverError>,
 }
 
 impl Calibration {
-    /// Why the result is not to be trusted, if it is not.
+    /// Why the result cannot be trusted; `None` if it can.
     pub fn distrust(&self) -> Option<&'static str> {
         if !self.planar {
             Some("the measurements do not fit a network in the plane")
@@ -156,17 +162,17 @@ impl Calibration {
         pairs.reduce(f64::max)
     }
 
-    /// Measurements of a receiver, and how many of them are outliers.
+    /// Number of measurements of a receiver, and how many of them are outliers.
     pub fn counts_of_receiver(&self, i: usize) -> [usize; 2] {
         counts(self.residuals.row(i).map(|(_, residual)| residual))
     }
 
-    /// Measurements of a transmitter, and how many of them are outliers.
+    /// Number of measurements of a transmitter, and how many of them are outliers.
     pub fn counts_of_transmitter(&self, j: usize) -> [usize; 2] {
         counts((0..self.receiver_names.len()).filter_map(|i| self.residuals.get(i, j)))
     }
 
-    /// Whether receiver `i` measured transmitter `j`, and agrees with the network.
+    /// Whether receiver `i` measured transmitter `j` and the measurement agrees with the network.
     pub fn is_inlier(&self, i: usize, j: usize) -> bool {
         self.residuals.get(i, j).is_some_and(|residual| residual.inlier)
     }
@@ -190,8 +196,8 @@ impl Calibration {
         self.transmitter_std = std(&self.transmitter_covariance);
     }
 
-    /// Multiplies all lengths of the result by a factor, as if the propagation speed were that much
-    /// larger. A comparison with the truth keeps its figures.
+    /// Multiplies all lengths of the result by a factor, as if the propagation speed were larger by
+    /// that factor. A comparison with the truth keeps its figures.
     pub fn rescale(&mut self, factor: f64) {
         let positions = self.truth.as_ref().map(|truth| [truth.positions.clone(), truth.transmitter_positions.clone()]);
         let map = Transform { rotation: [[1.0, 0.0], [0.0, 1.0]], scale: factor, translation: [0.0; 2] };

@@ -1,4 +1,4 @@
-//! Clocks of all receivers that were started apart: a first guess of their delays.
+//! Clocks of all receivers that were started apart: a first estimate of their delays.
 
 use crate::pseudoranges::Pseudoranges;
 

@@ -1,4 +1,4 @@
-//! A calibration beside known positions.
+//! Comparison of a calibration with known positions.
 
 use super::calibration::Calibration;
 use super::truth::Truth;
@@ -7,14 +7,14 @@ use crate::median::median;
 use crate::plane::distance;
 
 impl Calibration {
-    /// Compares with true positions of receivers, in the order of the receivers, as far as they are
-    /// known. Does nothing with fewer than two.
+    /// Compares with the true positions of receivers, in the order of the receivers, as far as they
+    /// are known. Does nothing if fewer than two are known.
     pub fn compare(&mut self, truth: &[Option<[f64; 2]>]) {
         self.compare_all(truth, &[]);
     }
 
-    /// [`Calibration::compare`] with true transmitters too, in the order of the transmitters, as
-    /// far as they are known.
+    /// [`Calibration::compare`], also with the true positions of transmitters, in the order of the
+    /// transmitters, as far as they are known.
     pub fn compare_all(&mut self, truth: &[Option<[f64; 2]>], transmitters: &[Option<[f64; 2]>]) {
         let pairs: Vec<([f64; 2], [f64; 2])> =
             self.receivers.iter().zip(truth).filter_map(|(a, b)| Some(((*a)?, (*b)?))).collect();

@@ -1,5 +1,5 @@
-//! Errors of whole receivers taken out: estimated beside the network, or left out with the
-//! measurements that have them.
+//! Errors of whole receivers, removed: they are estimated together with the network, or the
+//! measurements that have them are left out.
 
 use faer::Mat;
 use faer::prelude::Solve;

@@ -1,5 +1,5 @@
-//! The last refinement with what is known beforehand: the propagation speed from known distances,
-//! then the receivers of known position held in their places.
+//! The last refinement with prior knowledge: first the propagation speed from known distances, then
+//! with receivers held at their known positions.
 
 use super::deviation::median_size;
 use super::finish::finish;

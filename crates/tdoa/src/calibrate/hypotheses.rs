@@ -1,4 +1,4 @@
-//! Where the search gets its starting networks from.
+//! Sources of starting networks for the search.
 
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
@@ -10,18 +10,18 @@ use crate::restart::Restarts;
 
 /// A source of starting networks for the robust search.
 pub trait Hypotheses: Sync {
-    /// Networks, complete or of some nodes only, to start from; the rest of the nodes is located by
-    /// multilateration and the most promising are refined. Must depend on its arguments alone:
-    /// `index` counts the calls, `seed` is the user's, and calls come from several threads in any
-    /// order.
+    /// Networks to start from, complete or with some of the nodes. The other nodes are located by
+    /// multilateration, and the most promising networks are refined. The result must depend only on
+    /// the arguments: `index` counts the calls, `seed` is the user's, and calls come from several
+    /// threads in any order.
     fn propose(&self, measured: &Pseudoranges, index: usize, seed: u64) -> Vec<PartialNetwork>;
 }
 
-/// Starts from known positions of the receivers: with the truth, the oracle that a calibration is
-/// compared with.
+/// Starts from known positions of the receivers. With the true positions this is the oracle with
+/// which a calibration is compared.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KnownReceivers {
-    /// Names and positions in metres; receivers that are not among them are located by
+    /// Names and positions in metres. Receivers that are not among them are located by
     /// multilateration.
     pub positions: Vec<(String, [f64; 2])>,
 }

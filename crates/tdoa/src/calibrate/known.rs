@@ -12,18 +12,19 @@ use crate::plane::{centroid, distance, flatness};
 use crate::pseudoranges::{MAX_MAGNITUDE, Pseudoranges};
 use crate::refine::Refined;
 
-/// The propagation speed as the known distances have it.
+/// The propagation speed that follows from the known distances.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SpeedEstimate {
-    /// True speed over the one with which the measurements became metres.
+    /// True speed divided by the speed with which the measurements were converted to metres.
     pub factor: f64,
-    /// Its standard deviation, from the noise of the measurements; `None` if that is not known.
+    /// Its standard deviation, from the noise of the measurements; `None` if the noise is not
+    /// known.
     pub factor_std: Option<f64>,
-    /// The speed in metres a second, where the program knows the one that was assumed.
+    /// The speed in metres per second, if the program knows the speed that was assumed.
     pub metres_per_second: Option<f64>,
     /// Root mean square of known minus found distances, metres.
     pub residual: f64,
-    /// Distances that were used.
+    /// Number of distances that were used.
     pub distances: usize,
 }
 

@@ -1,5 +1,5 @@
-//! Measurements that do not fit and are nearly all late: whether the network would be another one if
-//! errors were one-sided.
+//! Measurements that do not fit and are nearly all late: whether one-sided errors would give
+//! another network.
 
 use super::near::{Neighbour, Reason};
 use super::one_sided::finish_one_sided;

@@ -29,8 +29,8 @@ const FAR: f64 = 4.0;
 /// Measurements that are rounded to more than this share of what they differ by.
 const COARSE: f64 = 1e-3;
 
-/// Proposes every candidate of a minimal solver (6r/3s, 5r/4s or 4r/5s) on one random, spread-out,
-/// completely measured subset a call.
+/// Proposes every candidate of a minimal solver (6r/3s, 5r/4s or 4r/5s), each call on one random,
+/// spread-out, completely measured subset.
 pub struct MinimalHypotheses {
     options: SolveOptions,
     solvers: Mutex<Vec<Solver>>,
@@ -46,14 +46,14 @@ impl Default for MinimalHypotheses {
 }
 
 impl MinimalHypotheses {
-    /// With settings for noisy data: roots that noise has made slightly complex count as real, and
-    /// distances may be negative by a twentieth of the network's size.
+    /// Hypotheses with settings for noisy data. Roots that noise has made slightly complex count as
+    /// real, and distances may be negative by up to a twentieth of the network's size.
     pub fn new() -> Self {
         let options = SolveOptions { near_real: 0.1, tolerance: 0.05, ..SolveOptions::default() };
         MinimalHypotheses { options, solvers: Mutex::new(Vec::new()), most: usize::MAX, monitor: Monitor::default() }
     }
 
-    /// A source that gives way after this many calls.
+    /// A source that proposes nothing more after this many calls.
     pub fn at_most(calls: usize) -> Self {
         MinimalHypotheses { most: calls, ..MinimalHypotheses::new() }
     }
@@ -64,7 +64,7 @@ impl MinimalHypotheses {
         MinimalHypotheses { monitor: monitor.quiet(), ..self }
     }
 
-    /// Whether some solver's subsets fit into a matrix of this size.
+    /// Whether the subsets of some solver fit into a matrix of this size.
     pub fn fit(receivers: usize, transmitters: usize) -> bool {
         SHAPES.iter().any(|&(m, n)| receivers >= m && transmitters >= n)
     }

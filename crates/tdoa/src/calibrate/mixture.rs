@@ -1,7 +1,7 @@
-//! The distribution of errors that only lengthen: a measurement is right up to normal noise, or
-//! also late by a length that is exponentially distributed, or gross. Noise and a length that is
-//! exponentially distributed make an exponentially modified normal distribution (Grushka 1972); the
-//! mixture is fitted by expectation and maximisation (Dempster, Laird and Rubin 1977).
+//! The distribution of errors that only lengthen. A measurement is right up to normal noise, or
+//! also late by an exponentially distributed length, or a gross error. Noise together with an
+//! exponentially distributed length gives an exponentially modified normal distribution (Grushka
+//! 1972). The mixture is fitted by expectation and maximisation (Dempster, Laird and Rubin 1977).
 
 use std::f64::consts::{PI, SQRT_2, TAU};
 

@@ -1,5 +1,5 @@
 //! From any matrix of pseudoranges to a network: leave out what cannot be determined, search from
-//! many starts, refine the best, say how sure the result is.
+//! many starts, refine the best networks, and say how sure the result is.
 
 mod calibration;
 mod clocks;
@@ -61,7 +61,7 @@ use report::Solved;
 use submaps::{Layout, OVERLAP, hearing_is_local, lay_out};
 use whole::{Sought, search_whole};
 
-/// Calibrates a network from its pseudoranges: by restarts of the robust refinement, and from the
+/// Calibrates a network from its pseudoranges, by restarts of the robust refinement and from the
 /// networks that the minimal solvers find for subsets.
 ///
 /// ```
@@ -76,12 +76,12 @@ use whole::{Sought, search_whole};
 /// ```
 ///
 /// # Errors
-/// Data that cannot determine a network, options outside their range, or no network found.
+/// If the data cannot determine a network, an option is out of range, or no network is found.
 pub fn calibrate(measured: &Pseudoranges, options: &CalibrateOptions) -> Result<Calibration, CalibrateError> {
     calibrate_with(measured, options, &[], &Monitor::default())
 }
 
-/// [`calibrate`] with further sources of starts beside the restarts, which take turns, and with
+/// [`calibrate`] with further sources of starts besides the restarts, which take turns, and with
 /// progress and cancellation.
 ///
 /// # Errors

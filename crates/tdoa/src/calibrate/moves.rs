@@ -1,4 +1,5 @@
-//! Receivers that were moved: two places, one before a transmitter and one from it on.
+//! Receivers that were moved: two places, one up to a transmitter and another from that transmitter
+//! on.
 
 use super::options::{CalibrateError, check};
 use super::ranking::{OUTLIER_COST, refit};

@@ -1,5 +1,5 @@
-//! Networks near the best one that explain the measurements about as well: too near to be called
-//! another, too far for ellipses about one alone.
+//! Networks near the best one that explain the measurements about as well. They are too near to
+//! count as other networks, and too far for ellipses around the best one alone.
 
 use super::ranking::refit;
 use super::receiver_errors::Fault;

@@ -1,8 +1,7 @@
 //! Calibration where errors only lengthen: detours of sound and radio, late detections.
 //!
-//! The negative log-likelihood of a mixture of measurements that are on time and late ones is the
-//! loss; its shares, lengths and deviation are estimated from the residuals in turns with the
-//! network.
+//! The loss is the negative log-likelihood of a mixture of on-time and late measurements. Its
+//! shares, lengths and deviation are estimated from the residuals, in turns with the network.
 
 use super::deviation::{inlier_deviation, spread_of_residuals};
 use super::mixture::Mixture;

@@ -1,4 +1,4 @@
-//! What calibration is asked for, and how it ends early.
+//! Options of a calibration, and how it ends early.
 
 use super::unfinished::Unfinished;
 use crate::degeneracy::Degeneracy;
@@ -6,91 +6,94 @@ use crate::refine::Cancelled;
 use hc::Monitor;
 use thiserror::Error;
 
-/// What is done about errors that all measurements of one receiver have in common.
+/// How to treat errors that all measurements of one receiver have in common.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum ReceiverDelays {
-    /// They are looked for and told.
+    /// Such errors are looked for and reported.
     #[default]
     None,
-    /// They are looked for, told, and taken out: delays, drifts and jumps are estimated with the
-    /// network, and of a receiver that was moved the longer part of the measurements is kept.
+    /// Such errors are looked for, reported, and taken out. Delays, drifts and jumps are estimated
+    /// together with the network. For a receiver that was moved, the longer part of the
+    /// measurements is kept.
     Auto,
-    /// Every receiver has an unknown constant delay, as where their clocks were started apart: m -
-    /// 1 unknowns more for m receivers, so that at least 3m + 3n - 4 measurements are needed, for
-    /// instance of 4 receivers and 8 transmitters, 5 and 6, 6 and 5, or 8 and 4.
+    /// Every receiver has an unknown constant delay, for instance because their clocks were started
+    /// apart. For m receivers this makes m - 1 more unknowns, and at least 3m + 3n - 4 measurements
+    /// are needed, for instance of 4 receivers and 8 transmitters, 5 and 6, 6 and 5, or 8 and 4.
     All,
 }
 
-/// How measurements are wrong that are wrong by more than noise.
+/// How measurements are wrong if they are wrong by more than noise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Errors {
-    /// Too long or too short alike.
+    /// Too long as often as too short.
     #[default]
     Symmetric,
-    /// Nearly all too long, as where sound or radio comes by a detour. Not together with
-    /// [`CalibrateOptions::receiver_delays`].
+    /// Nearly all too long, for instance because sound or radio takes a detour. Cannot be combined
+    /// with [`CalibrateOptions::receiver_delays`].
     OneSided,
 }
 
-/// How to calibrate. All fields have defaults; start from `CalibrateOptions::default()`.
+/// Options of a calibration. All fields have defaults; start from `CalibrateOptions::default()`.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct CalibrateOptions {
-    /// Standard deviation of the measurements in metres; where measurements carry their own, a
-    /// factor on those. Default `None`: estimated, or 1 where measurements carry their own.
+    /// Standard deviation of the measurements in metres. If measurements carry their own
+    /// deviations, a factor on those. Default `None`: estimated, or 1 if measurements carry their
+    /// own.
     pub sigma: Option<f64>,
-    /// Seed of all random draws: the same seed gives the same result, whatever the number of
-    /// threads. Default 0.
+    /// Seed of all random draws. The same seed gives the same result on any number of threads.
+    /// Default 0.
     pub seed: u64,
-    /// Fewest starts of the search. Default 48: a basin that catches one start in sixteen is then
-    /// missed with a probability of 5 %.
+    /// Smallest number of starts of the search. Default 48: a basin that catches one start in
+    /// sixteen is then missed with a probability of 5 %.
     pub min_starts: usize,
-    /// Most starts of the search. Default 480.
+    /// Largest number of starts of the search. Default 480.
     pub max_starts: usize,
-    /// The search ends, after the fewest starts, when this many starts have found the best network.
-    /// Default 10.
+    /// The search ends, after the smallest number of starts, when this many starts have found the
+    /// best network. Default 10.
     pub agreeing: usize,
     /// Whether the search starts from random networks, besides any other sources. Default true.
     pub restarts: bool,
-    /// Starts, besides those from random networks, that come from solving a small part of the data
-    /// exactly. Default 6: with few nodes, random networks alone miss networks that fit as well;
-    /// with many, each of these starts ends in the best basin more often than a random one does. 0
-    /// for none.
+    /// Number of starts, besides those from random networks, that come from solving a small part of
+    /// the data exactly. Default 6. With few nodes, random networks alone miss networks that fit as
+    /// well. With many nodes, each of these starts ends in the best basin more often than a random
+    /// one. 0 for none.
     pub minimal_subsets: usize,
-    /// Most transmitters that the search works on; the others are located when it has ended.
+    /// Largest number of transmitters on which the search works; the others are located after it.
     /// Default 48.
     pub search_transmitters: usize,
-    /// Most receivers that the search works on; the others are located when it has ended.
+    /// Largest number of receivers on which the search works; the others are located after it.
     /// Default 32.
     pub search_receivers: usize,
     /// Measurements whose residual exceeds this many standard deviations are outliers. Default 3.5.
     pub inlier_threshold: f64,
-    /// Another network is an alternative if the data are less likely under it by at most this
+    /// Another network is an alternative if the data are less likely under it by at most this much
     /// (natural logarithm). Default 8.
     pub alternative_margin: f64,
-    /// Above this ratio of the residuals' deviation to the network's size (root mean square
-    /// distance of the receivers from their centroid) the data are called not planar. Default 0.04.
+    /// The data are called not planar above this ratio of the residuals' deviation to the network's
+    /// size (root mean square distance of the receivers from their centroid). Default 0.04.
     pub planar_limit: f64,
-    /// Known positions of receivers in metres, in the order of the receivers, `None` where unknown.
-    /// They fix the frame; if they are in two places at least, they are held there in the last
-    /// refinement. Default empty: none are known.
+    /// Known positions of receivers in metres, in the order of the receivers, `None` if unknown.
+    /// They fix the frame. If they are in at least two places, the receivers are held there in the
+    /// last refinement. Default empty: none are known.
     pub anchors: Vec<Option<[f64; 2]>>,
-    /// Positions of receivers that were measured by other means, with an error or in one coordinate
-    /// alone. Two receivers or more must have both coordinates, here or among the anchors. Default
-    /// empty.
+    /// Positions of receivers that were measured by other means, with an error or in only one
+    /// coordinate. Two or more receivers must have both coordinates, here or among the anchors.
+    /// Default empty.
     pub positions: Vec<MeasuredPosition>,
-    /// What is done about receivers whose measurements are all too long or too short. Default
-    /// [`ReceiverDelays::None`]: a warning names those that show.
+    /// How to treat receivers whose measurements are all too long or too short. Default
+    /// [`ReceiverDelays::None`]: a warning names the receivers that show such an error.
     pub receiver_delays: ReceiverDelays,
-    /// How measurements are wrong that are wrong by more than noise. Default [`Errors::Symmetric`].
+    /// How measurements are wrong if they are wrong by more than noise. Default
+    /// [`Errors::Symmetric`].
     pub errors: Errors,
     /// Known distances between receivers, for `estimate_speed`. Default empty.
     pub distances: Vec<KnownDistance>,
-    /// Whether the propagation speed with which the measurements became metres is a guess, to be
-    /// replaced by the one that the known distances and the distances between anchors have. Default
-    /// false.
+    /// Whether the propagation speed with which the measurements were converted to metres is a
+    /// guess. It is then replaced by the speed that follows from the known distances and the
+    /// distances between anchors. Default false.
     pub estimate_speed: bool,
 }
 
@@ -122,7 +125,7 @@ impl Default for CalibrateOptions {
 /// A distance between two receivers that is known beforehand.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KnownDistance {
-    /// Places of the two among the receivers.
+    /// Indices of the two receivers.
     pub receivers: [usize; 2],
     /// Metres.
     pub distance: f64,
@@ -131,9 +134,9 @@ pub struct KnownDistance {
 /// A position of a receiver that was measured by other means.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeasuredPosition {
-    /// Place of the receiver among the receivers.
+    /// Index of the receiver.
     pub receiver: usize,
-    /// x and y in metres, `None` where unknown.
+    /// x and y in metres, `None` if unknown.
     pub position: [Option<f64>; 2],
     /// Standard deviations of x and y, metres; both zero if they are exact.
     pub sigma: [f64; 2],
@@ -143,7 +146,7 @@ impl CalibrateOptions {
     /// Checks the numbers.
     ///
     /// # Errors
-    /// The first that is outside its range.
+    /// The first option that is outside its range.
     pub fn validate(&self) -> Result<(), CalibrateError> {
         let positive = |name, value: f64| {
             if value > 0.0 && value.is_finite() {
@@ -202,27 +205,27 @@ pub enum CalibrateError {
     /// An option outside its range.
     #[error("option {name} must be {range}, not {value}")]
     Option {
-        /// Its name.
+        /// The name of the option.
         name: &'static str,
-        /// What is allowed.
+        /// The allowed range.
         range: &'static str,
-        /// What was given.
+        /// The given value.
         value: f64,
     },
-    /// Fewer measurements than unknowns where receivers have delays.
+    /// There are fewer measurements than unknowns, and receivers have delays.
     #[error(
         "{measurements} measurements cannot determine {unknowns} unknowns, {receivers} receivers with a delay each among them; measure more \
          transmitters, or --receiver-delays auto if only a few receivers have one"
     )]
     Delays {
-        /// Measurements that can be used.
+        /// Number of usable measurements.
         measurements: usize,
-        /// Unknowns.
+        /// Number of unknowns.
         unknowns: usize,
-        /// Receivers.
+        /// Number of receivers.
         receivers: usize,
     },
-    /// Errors to one side, and errors of receivers that are to be estimated beside them.
+    /// One-sided errors together with errors of receivers that are to be estimated.
     #[error(
         "errors to one side and delays of receivers cannot be estimated together: a receiver all of whose measurements are late looks like one \
          with a delay; give --errors one-sided or --receiver-delays, not both"
@@ -231,7 +234,8 @@ pub enum CalibrateError {
     /// Known positions or distances that cannot be used.
     #[error("known positions and distances: {0}")]
     Known(String),
-    /// Stopped through its [`Monitor`]; with the best network so far, if there was one.
+    /// The calibration was stopped through its [`Monitor`]; with the best network so far, if there
+    /// was one.
     #[error("calibration was cancelled")]
     Cancelled(Option<Box<Unfinished>>),
 }

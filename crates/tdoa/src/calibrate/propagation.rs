@@ -1,11 +1,12 @@
-//! Which measurements are late is judged by what the others say of them (expectation
-//! propagation, Minka 2001).
+//! Which measurements are late is inferred from the other measurements (expectation propagation,
+//! Minka 2001).
 //!
 //! Where few measurements are left over, the network bends to each of them, and residuals of late
-//! ones look like noise. Here each measurement is replaced by a normal distribution (its site) that
-//! has, beside those of all others, the mean and the variance of the mixture. The network is then
-//! the mean of its distribution instead of the most likely one, and the sites hold the information
-//! that the measurements have while it is not known which of them are late.
+//! measurements look like noise. Here each measurement is replaced by a normal distribution (its
+//! site). Together with the sites of all other measurements, it has the mean and the variance of
+//! the mixture. The network is then the mean of its distribution instead of the most likely one.
+//! The sites hold the information that the measurements have while it is unknown which of them are
+//! late.
 
 use super::mixture::{LEAST_WEIGHT, Mixture};
 use super::options::{CalibrateError, check};

@@ -1,10 +1,10 @@
 //! Networks ranked by the measurements that they explain.
 //!
-//! The search minimises the Cauchy loss, which pulls a network towards the truth from afar but
-//! never stops charging for a gross error: one of 360 standard deviations costs 28 units of
-//! log-likelihood and one of 10 costs 8: so that a wrong network whose outlier is smaller can beat
-//! the truth. Where the noise is known, networks are therefore ranked by the sum of min(e^2/2, h)
-//! over residuals e in standard deviations, after least squares over the measurements that cost
+//! The search minimises the Cauchy loss. It pulls a network towards the truth from afar, but its
+//! cost keeps growing with a gross error: an error of 360 standard deviations costs 28 units of
+//! log-likelihood, an error of 10 costs 8. A wrong network whose outlier is smaller can therefore
+//! beat the truth. Where the noise is known, networks are ranked instead by the sum of min(e^2/2,
+//! h) over residuals e in standard deviations, after least squares over the measurements that cost
 //! less than h.
 
 use crate::network::Network;

@@ -1,9 +1,10 @@
 //! Receivers with errors of their own: a delay, a clock that drifts or jumps, a receiver that was
 //! moved.
 //!
-//! Such an error is a column beside the Jacobian: what it adds to the residuals of one receiver.
-//! Its part that no motion of the nodes makes is compared with the residuals (a score test); the
-//! column that explains most is taken into the model, and the test goes on with what remains.
+//! Such an error is a column beside the Jacobian: its contribution to the residuals of one
+//! receiver. The part of the column that no motion of the nodes produces is compared with the
+//! residuals (a score test). The column that explains most is added to the model, and the test goes
+//! on with what remains.
 
 use serde::{Deserialize, Serialize};
 
@@ -22,31 +23,30 @@ pub(super) const SIDE: usize = 4;
 /// Receivers whose columns are projected; in larger networks those with the most telling residuals.
 const PROJECTED: usize = 24;
 
-/// What is wrong with a receiver.
+/// The kind of error that a receiver has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum ReceiverErrorKind {
-    /// All its measurements are too long or too short by one length.
+    /// All its measurements are too long, or too short, by the same length.
     Delay,
-    /// Its measurements grow too long or too short evenly from the first transmitter to the last
-    /// one.
+    /// The error of its measurements grows evenly from the first transmitter to the last one.
     Drift,
-    /// Its clock jumps: from one transmitter on its measurements are too long or too short by one
-    /// length.
+    /// Its clock jumps: from one transmitter on, its measurements are too long, or too short, by
+    /// the same length.
     Jump,
     /// It stands elsewhere from one transmitter on.
     Move,
 }
 
-/// Which place of a receiver that was moved.
+/// One of the two places of a receiver that was moved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum MovedPlace {
-    /// The one before the move.
+    /// The place before the move.
     Before,
-    /// The one after it.
+    /// The place after the move.
     After,
 }
 
@@ -55,22 +55,22 @@ pub enum MovedPlace {
 pub struct ReceiverError {
     /// Name of the receiver.
     pub receiver: String,
-    /// What is wrong.
+    /// The kind of error.
     pub kind: ReceiverErrorKind,
     /// Name of the first transmitter after a jump or a move, in the order of the table.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub from: Option<String>,
-    /// Which place of a receiver that was moved the result has for it: the one with more measurements.
-    /// `None` for other errors, and for a move that was not taken out: the result then has a place
-    /// between both, with a covariance that holds both.
+    /// The place that the result has for a receiver that was moved: the one with more measurements.
+    /// `None` for other errors, and for a move that was not taken out. In the latter case the
+    /// result has a place between both, with a covariance that includes both.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub place: Option<MovedPlace>,
-    /// How large it is, metres: the delay, the drift from the first transmitter to the last one,
-    /// the jump, the distance of the move.
+    /// Size of the error in metres: the delay, the drift from the first transmitter to the last
+    /// one, the jump, or the distance of the move.
     pub size: f64,
-    /// By how much the measurements are more likely with it, natural logarithm.
+    /// How much more likely the measurements are with the error (natural logarithm).
     pub gain: f64,
-    /// Whether the network was found with it taken out.
+    /// Whether the error was taken out of the network.
     pub taken_out: bool,
 }
 

@@ -1,11 +1,11 @@
-//! Errors of receivers that a network has bent itself to: each receiver is fitted once with a free
-//! error of its own, all its measurements back in; so is a receiver that the score test names, since
-//! an error of one kind looks like one of another to it.
+//! Errors of receivers to which a network has bent itself. Each receiver is fitted once with a free
+//! error of its own and with all its measurements. So is a receiver that the score test names,
+//! because the test may take one kind of error for another.
 //!
-//! The score test of `receiver_errors` is linear. Where the best network has given up some of the
-//! measurements that tell of an error as outliers, the error is too far away for it. Here the others
-//! are refined without the receiver, the receiver is located from them together with the size of its
-//! error, and the whole is refitted; what counts is by how much the truncated cost falls.
+//! The score test of `receiver_errors` is linear. If the best network has given up some of the
+//! measurements that show an error as outliers, the error is too large for it. Here the other nodes
+//! are refined without the receiver, the receiver is located from them together with the size of
+//! its error, and the whole is refitted. What counts is the decrease of the truncated cost.
 
 use super::deviation::inlier_deviation;
 use super::finish::CAUCHY;

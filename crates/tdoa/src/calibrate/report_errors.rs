@@ -1,4 +1,5 @@
-//! What the report says of errors of single receivers, and what estimating them costs in certainty.
+//! What the report says about errors of single receivers, and how much certainty estimating them
+//! costs.
 
 use super::delays::columns;
 use super::near::{Neighbour, Reason};

@@ -7,7 +7,7 @@ use serde::de::Error;
 use serde::ser::{SerializeMap, SerializeSeq};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// What a measurement is off the network.
+/// The residual of one measurement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Residual {
     /// f_ij - o_j - |r_i - s_j|, metres.
@@ -16,8 +16,8 @@ pub struct Residual {
     pub inlier: bool,
 }
 
-/// The residuals of all measurements. In JSON they are two matrices: `residuals`, null where nothing
-/// was measured, and `inliers`, false there.
+/// The residuals of all measurements. In JSON they are two matrices, `residuals` and `inliers`;
+/// cells that were not measured are null and false.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Residuals(pub(super) Cells<Residual>);
 

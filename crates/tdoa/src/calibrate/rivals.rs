@@ -1,11 +1,11 @@
-//! Networks that fit as well as the best one where few measurements are left over, and that no
-//! start of the search ends in.
+//! Networks that fit as well as the best one where few measurements are left over, but in which no
+//! start of the search ends.
 //!
 //! A receiver with a gross error among its few measurements may have two places, each of which
-//! leaves one or two of its measurements out. Whatever the search starts from, exact solutions and
-//! the truth among them, it takes the place that its own loss prefers, and that loss charges for the
-//! size of what is left out. Here every place of every single node is tried beside the best network
-//! of the others and carried down the truncated cost, which does not.
+//! leaves out one or two of its measurements. The search takes the place that its own loss prefers,
+//! even if it starts from exact solutions or from the truth. That loss grows with the size of the
+//! error that is left out. Here every place of every single node is tried together with the best
+//! network of the other nodes, and refined under the truncated cost, which does not grow with it.
 
 use hc::Monitor;
 

@@ -5,8 +5,8 @@ use crate::network::Network;
 use crate::plane::{centroid, distance};
 use crate::refine::Refined;
 
-/// Networks are the same if their nodes differ by less than this share of the network's size, root
-/// mean square.
+/// Two networks are the same if their nodes differ by less than this share of the network's size,
+/// as a root mean square.
 pub const SAME_NETWORK: f64 = 0.02;
 
 /// The first of each kind of network in a list sorted by objective, at most `most` of them, with

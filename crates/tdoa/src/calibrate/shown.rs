@@ -1,5 +1,5 @@
-//! What a network shows of errors of receivers: those that are taken out, and those that it only
-//! hints at.
+//! Errors of receivers that a network shows: those that are taken out, and those at which it only
+//! hints.
 
 use super::one_sided::mixture_of;
 use super::options::{CalibrateError, CalibrateOptions, Errors};

@@ -1,4 +1,4 @@
-//! How improbable it is that noise alone looks as much like an error of a receiver.
+//! How improbable it is that noise alone looks this much like an error of a receiver.
 
 /// Probability of a false alarm in data with normal noise, at most.
 const FALSE_ALARM: f64 = 5e-3;

@@ -1,5 +1,5 @@
-//! Networks that nobody hears whole: small networks of neighbouring receivers, laid together where
-//! they overlap, then refined as one.
+//! Networks in which each transmitter is heard only by the receivers near it: small networks of
+//! neighbouring receivers, laid together where they overlap, then refined as one.
 
 use super::deviation::{median_size, typical_deviation};
 use super::finish::finish;

@@ -8,11 +8,11 @@ pub struct Truth {
     /// Root mean square distance of the receivers after the best rigid alignment (reflection
     /// allowed).
     pub receiver_rms: f64,
-    /// That of the receivers, in metres, with a common scale fitted as well.
+    /// Root mean square distance of the receivers, in metres, if a common scale is fitted as well.
     pub receiver_rms_scaled: f64,
     /// That scale, from the calibration to the truth.
     pub scale: f64,
-    /// Receivers that were compared.
+    /// Number of receivers that were compared.
     pub receivers: usize,
     /// The true positions in the frame of the calibration (rigid alignment), in the order of the
     /// receivers.
@@ -21,8 +21,8 @@ pub struct Truth {
     /// true transmitters were given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub transmitter_median: Option<f64>,
-    /// Their true positions in the frame of the calibration, in the order of the transmitters;
-    /// empty if none were given.
+    /// The true positions of the transmitters in the frame of the calibration, in the order of the
+    /// transmitters; empty if none were given.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub transmitter_positions: Vec<Option<[f64; 2]>>,
 }

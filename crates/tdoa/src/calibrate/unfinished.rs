@@ -1,22 +1,24 @@
-//! What a calibration that was stopped leaves.
+//! The result of a calibration that was stopped.
 
 use crate::network::Network;
 use serde::{Deserialize, Serialize};
 
-/// The best network so far of a calibration that was stopped, in a frame of its own. A longer search
-/// may find a better one, outliers may have bent it, and its uncertainty is not known.
+/// The best network so far of a calibration that was stopped, in a frame of its own. A longer
+/// search may find a better network, outliers may have bent this one, and its uncertainty is not
+/// known.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Unfinished {
-    /// Positions of the receivers in metres; `None` for those that the search had left for later.
+    /// Positions of the receivers in metres; `None` for receivers that the search had not placed
+    /// yet.
     pub receivers: Vec<Option<[f64; 2]>>,
     /// Positions of the transmitters in metres, as for receivers.
     pub transmitters: Vec<Option<[f64; 2]>>,
     /// Offsets of the transmitters in metres.
     pub offsets: Vec<Option<f64>>,
-    /// Starts of the search that had ended.
+    /// Number of starts of the search that had ended.
     pub starts: usize,
-    /// Starts that had ended in this network.
+    /// Number of starts that had ended in this network.
     pub agreeing: usize,
 }
 

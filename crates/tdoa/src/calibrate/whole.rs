@@ -1,4 +1,4 @@
-//! The search where most receivers hear most transmitters: from a part of the nodes to all of them.
+//! The search where most receivers hear most transmitters: from some of the nodes to all of them.
 
 use super::deviation::typical_deviation;
 use super::finish::finish;

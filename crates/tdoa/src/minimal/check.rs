@@ -1,4 +1,4 @@
-//! What a matrix must have before it is solved.
+//! What a matrix must satisfy before it is solved.
 
 use super::error::SolveError;
 use crate::degeneracy::is_solvable;

@@ -1,4 +1,4 @@
-//! Whether the networks found are all there are, and can be told apart.
+//! Whether the networks found are complete and can be told apart.
 
 use super::nodes::Nodes;
 use super::planar::collinear::Collinear;

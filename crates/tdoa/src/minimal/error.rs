@@ -7,7 +7,7 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SolveError {
-    /// A setting of the tracker outside its range.
+    /// A setting of the tracker is out of range.
     #[error(transparent)]
     Option(#[from] OptionError),
     /// Fewer constraints than unknowns.
@@ -18,19 +18,19 @@ pub enum SolveError {
     Underdetermined {
         /// Size, such as `4r/4s`.
         configuration: String,
-        /// Measurements.
+        /// Number of measurements.
         constraints: usize,
-        /// Unknowns.
+        /// Number of unknowns.
         unknowns: usize,
     },
-    /// More measurements than all of them can be refined with by dense algebra.
+    /// There are more measurements than dense algebra can refine with.
     #[error(
         "{configuration} has more than the {limit} measurements that exact solvers take; use `calibrate`, or select nodes"
     )]
     TooLarge {
         /// Size, such as `400r/300s`.
         configuration: String,
-        /// Measurements at most.
+        /// Largest number of measurements.
         limit: usize,
     },
     /// The polyhedral route failed before any path was tracked.
@@ -55,7 +55,7 @@ pub enum SolveError {
          remove one of them"
     )]
     IdenticalReceivers {
-        /// Name of one.
+        /// Name of the one.
         first: String,
         /// Name of the other.
         second: String,
@@ -63,7 +63,7 @@ pub enum SolveError {
     /// Two transmitters that cannot be told apart.
     #[error("transmitters {first} and {second} are heard alike up to a constant: they coincide; remove one of them")]
     IdenticalTransmitters {
-        /// Name of one.
+        /// Name of the one.
         first: String,
         /// Name of the other.
         second: String,

@@ -1,4 +1,4 @@
-//! What distinguishes one generated solver from another; [`super::engine`] does the rest.
+//! What distinguishes one generated solver from another; [`super::engine`] does everything else.
 
 use super::linear::LeastSquares;
 use crate::network::Network;

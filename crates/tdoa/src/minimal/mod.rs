@@ -1,8 +1,7 @@
 //! Solvers for small networks: every network that explains a few arrival times exactly.
 //!
-//! [`Solver`] picks the method by the size of the matrix. Most work by homotopy continuation from
-//! stored solutions of a generic instance; all paths are accounted for in
-//! [`MinimalSolution::paths`].
+//! [`Solver`] chooses the method by the size of the matrix. Most methods use homotopy continuation
+//! from stored solutions of a generic instance. [`MinimalSolution::paths`] accounts for all paths.
 //!
 //! | size | method | paths |
 //! |---|---|---|
@@ -12,9 +11,10 @@
 //! | 5r/6s, and more of both | offsets by rank | 5 |
 //! | 7r/4s, and more of both | offsets by rank, linear | 0 |
 //!
-//! A solver that is used again keeps 0.2 to 0.5 MB, start solutions and workspace, and a solve
-//! allocates its result alone, a few kilobytes (`cargo run --release -p tdoa --example memory`),
-//! but for the few networks with roots whose Jacobians are singular as far as doubles can tell.
+//! A solver that is used again keeps 0.2 to 0.5 MB of start solutions and workspace. A solve then
+//! allocates only its result, a few kilobytes (`cargo run --release -p tdoa --example memory`).
+//! Exceptions are the few networks with roots whose Jacobians are singular as far as doubles can
+//! tell.
 
 mod check;
 mod doubts;

@@ -1,8 +1,8 @@
 //! The stored fibre in the position nearest to the data.
 //!
-//! Reordering nodes that the unknowns do not tell apart, and multiplying all lengths by a complex
-//! number of size one, turn the stored fibre into others with known solutions. Of all these the one
-//! nearest to the data is taken: paths are shorter.
+//! Two operations turn the stored fibre into others with known solutions: reordering nodes that the
+//! unknowns do not tell apart, and multiplying all lengths by a complex number of size one. The
+//! fibre nearest to the data is taken, because its paths are shorter.
 
 use super::formulation::{Formulation, Free, Point};
 use hc::Fibre;

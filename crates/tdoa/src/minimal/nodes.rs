@@ -4,7 +4,7 @@ use crate::network::Network;
 use crate::pseudoranges::Pseudoranges;
 use std::fmt::{self, Display, Formatter};
 
-/// The one kind of nodes or the other.
+/// One of the two kinds of nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Nodes {
     /// Receivers.

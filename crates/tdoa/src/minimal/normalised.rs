@@ -1,4 +1,4 @@
-//! Measurements in the form that the equations want.
+//! Measurements in the form that the equations need.
 
 use super::options::SolveOptions;
 use super::polish::Polisher;

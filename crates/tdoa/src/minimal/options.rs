@@ -6,19 +6,19 @@ use hc::family::FibreOptions;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SolveOptions {
-    /// How far below zero a distance f_ij - o_j may lie for a candidate to count as physical,
+    /// How far below zero a distance f_ij - o_j may lie if a candidate is to count as physical,
     /// relative to the size of the data (root mean square of f_ij - f_1j). Default 1e-6; for noisy
-    /// data take the noise.
+    /// data, use the noise.
     pub tolerance: f64,
-    /// Roots whose imaginary parts are at most this share of the size of the data are tried as real
-    /// ones too: noise can make two real roots complex. Default 0: real roots only.
+    /// Roots whose imaginary parts are at most this share of the size of the data are also tried as
+    /// real roots, because noise can make two real roots complex. Default 0: real roots only.
     pub near_real: f64,
     /// Whether candidates are polished in the primal coordinates. Default true.
     pub polish: bool,
-    /// For callers in a hurry: stop at the first physical candidate whose residual (root mean
-    /// square, metres) is below this. Only sizes solved by paths without a smaller part (6r/3s,
-    /// 5r/4s, 4r/5s, 5r/6s) stop early; in 6r/3s and 4r/5s every candidate fits exactly, so that
-    /// the first physical one is given, which need not be the true one. Default `None`: all
+    /// Stops at the first physical candidate whose residual (root mean square, metres) is below
+    /// this, for callers in a hurry. Only sizes that are solved by paths without a smaller part
+    /// (6r/3s, 5r/4s, 4r/5s, 5r/6s) stop early. In 6r/3s and 4r/5s every candidate fits exactly;
+    /// the first physical one is then returned, which need not be the true one. Default `None`: all
     /// networks.
     pub first_under: Option<f64>,
     /// Settings for the paths.
@@ -35,8 +35,8 @@ pub enum Start {
     #[default]
     Stored,
     /// From a polyhedral start system that is computed for the data, as in the paper: slower, and
-    /// independent of what is stored. Where that leaves roots missing, all roots of a random member
-    /// of the family are found in this way and tracked to the data; the paths that this takes count
+    /// independent of the stored solutions. If this leaves roots missing, all roots of a random
+    /// member of the family are found in this way and tracked to the data. The paths for this count
     /// as tracked again.
     Polyhedral,
 }

@@ -6,16 +6,16 @@ use hc::poly::{ComplexInterval, System, parse};
 use num_complex::Complex64;
 use serde::Serialize;
 
-/// What interval arithmetic proves of the complex roots that a solver has found.
+/// What interval arithmetic proves about the complex roots that a solver has found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct RootProofs {
-    /// Roots put to the test.
+    /// Number of roots that were tested.
     pub roots: usize,
-    /// Roots proved to exist, each the only one in a box of its own.
+    /// Number of roots proved to exist, each the only one in a box of its own.
     pub proved: usize,
-    /// Of these, roots proved real.
+    /// Number of these proved real.
     pub real: usize,
-    /// Pairs of roots that are not proved different.
+    /// Number of pairs of roots that are not proved different.
     pub unseparated: usize,
 }
 

@@ -1,4 +1,4 @@
-//! The charts of a formulation, as the tracker of fibres takes them.
+//! The charts of a formulation, in the form that the tracker of fibres takes.
 
 use super::formulation::Formulation;
 use hc::family::Charts;

@@ -1,7 +1,7 @@
-//! The paper's own route: a family solved from nothing, by a polyhedral start system.
+//! The paper's own route: a family solved from scratch, by a polyhedral start system.
 //!
-//! First the member at the data is solved as it stands, as in the paper. Far more paths leave the
-//! torus than end in it, and roots with large coordinates look like such paths for long. Where that
+//! First the member at the data is solved directly, as in the paper. Far more paths leave the torus
+//! than end in it, and roots with large coordinates look like such paths for a long time. If this
 //! leaves roots missing, a member at random complex parameters, whose roots are of ordinary size,
 //! is solved by a polyhedral start system too, and its roots are tracked to the data.
 

@@ -1,4 +1,4 @@
-//! What a minimal solver finds.
+//! The result of a minimal solver.
 
 use super::warning::SolveWarning;
 use crate::network::Network;
@@ -19,20 +19,20 @@ pub struct Candidate {
     pub condition: f64,
 }
 
-/// How many roots pass each condition; each is a part of the one before.
+/// How many roots pass each condition; each count is a part of the one before.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct RootCounts {
     /// Complex roots.
     pub complex: usize,
     /// Real roots.
     pub real: usize,
-    /// Real roots with positive definite H, that is with real positions.
+    /// Real roots with positive definite H, that is, with real positions.
     pub positive_definite: usize,
     /// Of these, roots with all f_ij - o_j >= 0 up to the tolerance.
     pub physical: usize,
 }
 
-/// All that a minimal solver finds for one matrix.
+/// Everything that a minimal solver finds for one matrix.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MinimalSolution {
     /// The size of the matrix, such as `6r/3s`.
@@ -41,11 +41,11 @@ pub struct MinimalSolution {
     pub solver: &'static str,
     /// How its paths ended.
     pub paths: PathCounts,
-    /// How many roots there are.
+    /// The numbers of roots.
     pub counts: RootCounts,
     /// Whether the search was stopped at the first network that fits
-    /// ([`super::SolveOptions::first_under`]): others may fit as well, and `paths` and `counts` are
-    /// those up to there.
+    /// ([`super::SolveOptions::first_under`]). Other networks may fit as well; `paths` and `counts`
+    /// cover the search up to that point.
     pub stopped_early: bool,
     /// What makes the result doubtful: lost paths, networks that the data cannot tell apart.
     pub warnings: Vec<SolveWarning>,

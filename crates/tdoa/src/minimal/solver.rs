@@ -29,7 +29,8 @@ pub fn solve(measured: &Pseudoranges, options: &SolveOptions) -> Result<MinimalS
     Solver::new().solve(measured, options)
 }
 
-/// Solver for small networks; picks the method by size, and keeps its memory from call to call.
+/// Solver for small networks. It chooses the method by size, and keeps its memory from call to
+/// call.
 #[derive(Default)]
 pub struct Solver {
     six_three: Option<Engine<SixThree>>,
@@ -73,7 +74,7 @@ impl Method {
 }
 
 impl Solver {
-    /// A solver; start solutions are unpacked when they are first needed.
+    /// A solver. Start solutions are unpacked when they are first needed.
     pub fn new() -> Self {
         Self::default()
     }
@@ -81,12 +82,12 @@ impl Solver {
     /// Every network that explains the measurements, best first.
     ///
     /// Networks whose receivers or transmitters lie exactly in one line are found without paths,
-    /// all mirror images of the other nodes, and a warning names the nodes;
-    /// [`MinimalSolution::counts`] is of roots at the ends of paths.
+    /// together with all mirror images of the other nodes, and a warning names the nodes.
+    /// [`MinimalSolution::counts`] counts roots at the ends of paths.
     ///
-    /// The minimal sizes 6r/3s and 4r/5s, 5r/4s, and 5r/6s are solved by homotopy continuation,
-    /// 7r/4s linearly, larger ones through the best spread part of one of these sizes: its
-    /// candidates are extended to all nodes and refined over all measurements.
+    /// The minimal sizes 6r/3s and 4r/5s, 5r/4s, and 5r/6s are solved by homotopy continuation, and
+    /// 7r/4s linearly. Larger sizes are solved through the best spread part of one of these sizes:
+    /// its candidates are extended to all nodes and refined over all measurements.
     ///
     /// # Errors
     /// If the matrix is too small or too large, a measurement is missing, two nodes coincide, or a
@@ -98,7 +99,7 @@ impl Solver {
     /// [`solve`](Self::solve), watched: a cancelled monitor ends it.
     ///
     /// # Errors
-    /// Those of [`solve`](Self::solve), and [`SolveError::Cancelled`] of the polyhedral route.
+    /// Those of [`solve`](Self::solve), and [`SolveError::Cancelled`] for the polyhedral route.
     pub fn solve_watched(
         &mut self,
         measured: &Pseudoranges,
@@ -148,8 +149,8 @@ impl Solver {
     }
 
     /// Proofs, in interval arithmetic, that the complex roots that the last call tracked exist and
-    /// are distinct ([`hc::certify()`]). `None` if it tracked none; of a larger network the roots
-    /// are those of the part that was solved.
+    /// are distinct ([`hc::certify()`]). `None` if the last call tracked none. For a larger network
+    /// these are the roots of the part that was solved.
     pub fn prove(&self) -> Option<RootProofs> {
         match self.last? {
             Method::SixThree => self.six_three.as_ref()?.prove(),

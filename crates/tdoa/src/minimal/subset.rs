@@ -1,4 +1,4 @@
-//! Which part of a larger matrix to solve: the one whose nodes are farthest apart, as far as the
+//! Which part of a larger matrix to solve: the part whose nodes are farthest apart, as far as the
 //! measurements tell.
 
 use crate::pseudoranges::Pseudoranges;

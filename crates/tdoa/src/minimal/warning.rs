@@ -5,45 +5,45 @@ use crate::degeneracy::list;
 use serde::{Serialize, Serializer};
 use thiserror::Error;
 
-/// Why the networks of a [`MinimalSolution`](super::MinimalSolution) may not be all there are, or
-/// cannot be told apart. In JSON it is its text.
+/// Why the networks of a [`MinimalSolution`](super::MinimalSolution) may be incomplete, or cannot
+/// be told apart. In JSON a warning is its text.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum SolveWarning {
-    /// Some paths have come to no end.
+    /// Some paths were lost.
     #[error(
         "{lost} of {tracked} paths were lost: the list of networks may not be whole; nodes may lie in one line, nearly coincide or be \
          placed symmetrically"
     )]
     PathsLost {
-        /// Paths lost.
+        /// Number of lost paths.
         lost: usize,
-        /// Paths tracked.
+        /// Number of tracked paths.
         tracked: usize,
     },
-    /// The data fit networks with all nodes of a kind exactly in one line, so that each node of the
-    /// other kind may be its mirror image.
+    /// The data fit networks with all nodes of one kind exactly in one line; each node of the other
+    /// kind may then be its mirror image.
     #[error(
         "the {kind} {} lie exactly in one line: every {} may be its mirror image{}; move some {kind} off the line",
         list(names), kind.others(), if *listed { ", and all these networks are among those found" } else { ", more than are listed" }
     )]
     InOneLine {
-        /// Which nodes.
+        /// The kind of these nodes.
         kind: Nodes,
         /// Their names.
         names: Vec<String>,
-        /// Whether all mirror images are among the candidates; of many nodes there would be too
+        /// Whether all mirror images are among the candidates; for many nodes there would be too
         /// many.
         listed: bool,
     },
-    /// In a physical candidate the nodes of a kind lie in one line, as far as the data tell.
+    /// The nodes of one kind lie in one line in a physical candidate, as far as the data tell.
     #[error(
         "in a network that fits, the {kind} {} lie in one line: the data cannot tell on which side of it the other nodes lie; move some \
          {kind} off the line",
         list(names)
     )]
     NearlyInOneLine {
-        /// Which nodes.
+        /// The kind of these nodes.
         kind: Nodes,
         /// Their names.
         names: Vec<String>,

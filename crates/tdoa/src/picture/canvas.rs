@@ -83,7 +83,7 @@ impl Canvas {
         ));
     }
 
-    /// Lines from point to point; the area that they enclose is filled with this opacity, 0 to 1.
+    /// Lines from point to point. The area that they enclose is filled with this opacity, 0 to 1.
     pub fn polyline(&mut self, points: &[[f64; 2]], colour: &str, fill: f64) {
         let list: Vec<String> = points.iter().map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
         self.add(format_args!(
@@ -146,7 +146,7 @@ impl Canvas {
         ));
     }
 
-    /// Text at a point of its baseline that is its `start`, `middle` or `end`.
+    /// Text. The point is the `start`, `middle` or `end` of its baseline.
     pub fn text(&mut self, at: [f64; 2], anchor: &str, size: f64, text: &str) {
         self.coloured(at, anchor, size, "#222", text);
     }

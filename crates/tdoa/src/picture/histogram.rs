@@ -1,4 +1,4 @@
-//! How the residuals are distributed.
+//! The distribution of the residuals.
 
 use super::canvas::{Canvas, nice};
 use crate::calibrate::Calibration;

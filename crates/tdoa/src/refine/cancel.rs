@@ -1,5 +1,5 @@
-//! Work that is asked to stop: what takes long looks often whether it is, and decompositions, which
-//! cannot look, are left behind.
+//! Work that may be asked to stop. Long computations check often whether to stop; decompositions
+//! cannot check, and are left behind.
 
 use hc::Monitor;
 

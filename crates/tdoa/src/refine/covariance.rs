@@ -1,12 +1,12 @@
 //! Covariance of all nodes.
 //!
-//! Arrival times leave a rigid motion of the plane open, so a covariance needs a gauge. Here it is
-//! the inner constraint over the receivers: of all covariances that explain the same data the one
-//! of smallest trace over the receivers, which is sigma^2 times the pseudo-inverse of the normal
-//! equations reduced to the receivers. It says how well the nodes lie relative to the receivers as
-//! a whole after the best rigid alignment of the receivers. Held receivers are the gauge
-//! themselves: they have no error, and the normal equations of the others are inverted. So are
-//! measured coordinates, with their errors.
+//! Arrival times leave a rigid motion of the plane open, so that a covariance needs a gauge. Here
+//! the gauge is the inner constraint over the receivers: among all covariances that explain the
+//! same data, the one with the smallest trace over the receivers. It is sigma^2 times the
+//! pseudo-inverse of the normal equations reduced to the receivers. It says how well the nodes lie
+//! relative to the receivers as a whole, after the best rigid alignment of the receivers. Held
+//! receivers are the gauge themselves: they have no error, and the normal equations of the other
+//! receivers are inverted. The same holds for measured coordinates, with their errors.
 
 use faer::Mat;
 use faer::Side;

@@ -1,5 +1,5 @@
 //! From a part of a network to all of it: nodes are located one after the other from those that are
-//! already there.
+//! already known.
 
 use super::cancel::{Cancelled, check};
 use crate::loss::Loss;
@@ -8,7 +8,7 @@ use crate::network::Network;
 use crate::observations::{Observation, Observations};
 use hc::Monitor;
 
-/// A network of which some nodes are known.
+/// A network in which some nodes are known.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PartialNetwork {
     /// Positions of receivers, metres.
@@ -18,12 +18,12 @@ pub struct PartialNetwork {
 }
 
 impl PartialNetwork {
-    /// With these numbers of receivers and transmitters, none known.
+    /// A network with these numbers of receivers and transmitters, none of them known.
     pub fn unknown(receivers: usize, transmitters: usize) -> Self {
         PartialNetwork { receivers: vec![None; receivers], transmitters: vec![None; transmitters] }
     }
 
-    /// Puts a network of the nodes with these indices into place.
+    /// Enters a network for the nodes with these indices.
     pub fn place(&mut self, network: &Network, receivers: &[usize], transmitters: &[usize]) {
         for (&i, &position) in receivers.iter().zip(&network.receivers) {
             self.receivers[i] = Some(position);

@@ -1,13 +1,13 @@
 //! Robust nonlinear least squares over all nodes.
 //!
-//! The objective is the negative logarithm of the likelihood of the residuals under Student's t
-//! ([`crate::loss`]), minimised by Levenberg-Marquardt steps on reweighted normal equations. When
-//! the scale is not given, it is estimated beside the network from the restricted likelihood, (N -
-//! p) ln s instead of N ln s for N measurements and p unknowns: with six receivers the unknowns
-//! take more than half of the measurements, and plain likelihood would drive as many residuals to
-//! zero as there are unknowns and shrink the scale after them. Two things make it converge from
-//! afar: the scale starts large and shrinks with every step (annealing), and nodes that are stuck
-//! are multilaterated anew from all others (`reseed`).
+//! The objective is the negative log-likelihood of the residuals under Student's t
+//! ([`crate::loss`]). It is minimised by Levenberg-Marquardt steps on reweighted normal equations.
+//! If the scale is not given, it is estimated together with the network from the restricted
+//! likelihood, (N - p) ln s instead of N ln s for N measurements and p unknowns. With six receivers
+//! the unknowns take more than half of the measurements; plain likelihood would drive as many
+//! residuals to zero as there are unknowns, and shrink the scale accordingly. Two things make the
+//! minimisation converge from afar: the scale starts large and shrinks with every step (annealing),
+//! and nodes that are stuck are multilaterated anew from all others (`reseed`).
 
 mod cancel;
 mod covariance;

@@ -1,11 +1,11 @@
 //! The damped normal equations of all nodes, reduced to the receivers by the Schur complement over
 //! the transmitters.
 //!
-//! Residual e = f - o - |r - s|. With u the unit vector from receiver to transmitter and g = (u,
-//! 1), its derivatives are u by the receiver and -g by transmitter and offset. Each transmitter j
-//! has a 3x3 block C_j = sum w g g^T and couples to its receivers by -w u g^T, so that eliminating
-//! it subtracts w_i w_k (g_i^T C_j^-1 g_k) u_i u_k^T from block (i, k): with C_j = L L^T the
-//! product B^T B of the columns w_i (L^-1 g_i) u_i^T.
+//! The residual is e = f - o - |r - s|. With u the unit vector from receiver to transmitter and g =
+//! (u, 1), its derivatives are u by the receiver and -g by transmitter and offset. Each transmitter
+//! j has a 3x3 block C_j = sum w g g^T and couples to its receivers by -w u g^T. Eliminating it
+//! therefore subtracts w_i w_k (g_i^T C_j^-1 g_k) u_i u_k^T from block (i, k): with C_j = L L^T,
+//! this is the product B^T B of the columns w_i (L^-1 g_i) u_i^T.
 
 use faer::Par;
 use faer::dyn_stack::{MemBuffer, MemStack};

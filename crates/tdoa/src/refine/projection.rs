@@ -1,5 +1,5 @@
-//! What a network can absorb of a change of its measurements, and what it cannot: the projection
-//! off the Jacobian of all nodes.
+//! Which part of a change of its measurements a network can absorb, and which part it cannot: the
+//! projection off the Jacobian of all nodes.
 
 use super::cancel::{Cancelled, check};
 use super::normal::{backward, forward};

@@ -1,5 +1,5 @@
-//! Single nodes located anew from all others: a joint minimisation cannot carry a node across a
-//! ridge of its own cost, multilateration can.
+//! Single nodes located anew from all others. A joint minimisation cannot carry a node across a
+//! ridge of its own cost; multilateration can.
 
 use super::cancel::{Cancelled, check};
 use crate::loss::Loss;

@@ -1,10 +1,10 @@
-//! Charts of the dual formulation on three transmitters: the same network with these in another
-//! order.
+//! Charts of the dual formulation on three transmitters: the same network with the transmitters in
+//! another order.
 //!
 //! A path that comes near a far transmitter, or near a triangle of transmitters whose first side is
 //! isotropic, is hard in one chart and easy in another. The equations keep their form when the
-//! columns of the measurements are permuted, so a path continues in another chart with the same
-//! family: its start solution is carried over, and its end carried back.
+//! columns of the measurements are permuted. A path can therefore continue in another chart with
+//! the same family: its start solution is carried over, and its end carried back.
 
 use crate::minimal::formulation::Parameters;
 use num_complex::Complex64;

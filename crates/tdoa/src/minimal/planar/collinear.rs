@@ -1,11 +1,11 @@
-//! Nodes exactly in one line, told from the measurements alone, and the networks that they may
-//! belong to.
+//! Nodes exactly in one line, recognised from the measurements alone, and the networks to which
+//! they may belong.
 //!
-//! Each node off the line may be its mirror image, one by one, and the roots of such networks are
-//! singular: paths seldom reach them. But `D_ij = q_ij - q_i1 = -2 r_i . (s_j - s_1)`,
-//! `q_ij = f_ij (f_ij - 2 p_j)`, then has rank one instead of two, for receivers in a line as for
-//! transmitters. The offsets for which it has follow from linear equations, and from these the
-//! positions along the line and the distances from it.
+//! Each node off the line may be its mirror image, independently of the others. The roots of such
+//! networks are singular, and paths seldom reach them. But then `D_ij = q_ij - q_i1 = -2 r_i . (s_j
+//! - s_1)`, `q_ij = f_ij (f_ij - 2 p_j)`, has rank one instead of two, for receivers in a line as
+//! well as for transmitters. The offsets for which it has rank one follow from linear equations.
+//! From these follow the positions along the line and the distances from it.
 
 use super::rank::differences;
 use crate::minimal::linear::LeastSquares;

@@ -1,5 +1,5 @@
 //! Larger networks through smaller ones: a well-spread part is solved, the other nodes follow
-//! linearly from squared distances, and all measurements enter the last refinement.
+//! linearly from squared distances, and the last refinement uses all measurements.
 
 use crate::minimal::linear::LeastSquares;
 use crate::minimal::normalised::{Normalised, rank};

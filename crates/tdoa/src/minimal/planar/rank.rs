@@ -1,8 +1,8 @@
 //! Offsets by rank alone: seven receivers with four transmitters (one root), five with six (five
-//! roots), and networks from offsets.
+//! roots); and networks from offsets.
 //!
 //! With the first receiver's measurements subtracted, `q_ij = f_ij (f_ij - 2 p_j)` is the
-//! difference of the squared distances, and `q_ij - q_i1` has rank two in the plane. Where that
+//! difference of the squared distances, and `q_ij - q_i1` has rank two in the plane. Where this
 //! fixes the offsets, the rest is linear.
 
 use crate::generated::five_six;
