@@ -205,7 +205,7 @@ impl Monitor {
         }
     }
 
-    /// Who is told of progress.
+    /// The shared state to which progress is reported.
     fn told(&self) -> Option<&Shared> {
         self.shared.as_deref().filter(|_| !self.quiet)
     }

@@ -48,7 +48,7 @@ pub struct Refiner<'a, E: Evaluate> {
     estimate: Estimate,
     /// The random changes of the parameters, one draw after the other.
     changes: Vec<Complex64>,
-    /// A result for whoever needs one for a while.
+    /// A result that callers may use for a while.
     pub(crate) spare: Refined,
 }
 

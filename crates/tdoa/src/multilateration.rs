@@ -29,7 +29,7 @@ pub struct Sight {
     pub precision: f64,
 }
 
-/// Starts that are polished, and places of one node that are told.
+/// Largest numbers of starts that are polished, and of places of one node that are returned.
 const MOST_STARTS: usize = 24;
 const MOST_PLACES: usize = 5;
 
@@ -137,8 +137,8 @@ impl Best {
     }
 }
 
-/// Calls `visit` with subsets of 0..count: all of them if they are at most [`SUBSETS`], else that
-/// many which are spread evenly by a fixed rule.
+/// Calls `visit` with subsets of 0..count: all of them if there are at most [`SUBSETS`], otherwise
+/// that many, spread evenly by a fixed rule.
 fn for_subsets(count: usize, size: usize, mut visit: impl FnMut(&[usize])) {
     if count < size {
         return;

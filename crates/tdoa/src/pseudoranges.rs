@@ -114,7 +114,7 @@ pub enum PseudorangeError {
 #[derive(Debug, Clone)]
 pub struct Pseudoranges {
     cells: Cells<f64>,
-    /// Of the same cells.
+    /// The standard deviations of the same cells.
     sigmas: Option<Cells<f64>>,
     receiver_names: Vec<String>,
     transmitter_names: Vec<String>,

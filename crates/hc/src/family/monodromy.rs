@@ -226,7 +226,7 @@ pub(super) fn fill<E: Evaluate>(
     Monodromy { fibre: filling.fibre, stop, loops, paths, trace: None }
 }
 
-/// Of loops with more paths every side is recorded.
+/// In loops with more paths than this, every side is recorded.
 const LONG: usize = 1 << 12;
 
 /// Loops times solutions at least, before a search ends without a new one.
@@ -263,8 +263,8 @@ struct Added {
 }
 
 impl<E: Evaluate> Filling<'_, E> {
-    /// Tracks the fibre round one triangle and adds what is new, or what is recorded of that. Returns
-    /// the number of paths.
+    /// Tracks the fibre round one triangle and adds new solutions, or takes them from a record.
+    /// Returns the number of paths.
     fn go_round(
         &mut self,
         number: usize,

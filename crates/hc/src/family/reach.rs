@@ -26,9 +26,9 @@ const POINTS: usize = 8;
 pub(super) struct Reach {
     /// The sizes of parameters and points alone.
     pub(super) natural: Sizes,
-    /// Of each parameter its natural size, or that times 8 and a power of 64, such that half of the
-    /// points are straight on an eighth of it, and not on eight times that. Of each unknown the
-    /// natural size of the largest of the points and of what they move by.
+    /// For each parameter, its natural size, or that size times 8 and a power of 64, such that half
+    /// of the points are straight on an eighth of it, and not on eight times that. For each
+    /// unknown, the natural size of the largest among the points and their motions.
     pub(super) wide: Sizes,
     /// Whether some coordinate of most points is straight even where all parameters move by their
     /// natural sizes, and not on the wide ones: the family looks simpler than it is there.
@@ -36,7 +36,7 @@ pub(super) struct Reach {
 }
 
 impl Reach {
-    /// Of the regular points of a fibre.
+    /// The reach of the regular points of a fibre.
     pub(super) fn new<E: Evaluate>(system: &E, fibre: &Fibre) -> Reach {
         let mut walker = Walker { refiner: Refiner::new(system), parameters: &fibre.parameters };
         let points: Vec<&[Complex64]> = fibre.iter().step_by(fibre.len().div_ceil(POINTS).max(1)).collect();

@@ -55,7 +55,7 @@ pub(super) fn trace_test(
     Ok(test)
 }
 
-/// Of a test that came to no result.
+/// The outcome of a test without a result.
 const FAILED: TraceTest = TraceTest { deviation: f64::INFINITY, fibre: 0, further: 0, complete: false };
 
 /// The trace test with a line and a hypersurface of these sizes.
@@ -77,7 +77,7 @@ fn on_sizes<E: Evaluate>(
     let shares = sizes.unknowns.iter().map(|size| 1.0 / size);
     let scales = sizes.parameters.iter().copied().chain(shares).chain([1.0]);
     parameters.extend(random.normals(m + n + 1).into_iter().zip(scales).map(|(z, scale)| z * scale));
-    // Of so few digits that its multiples are at equal distances to the last bit.
+    // It has so few digits that its multiples are equidistant to the last bit.
     let tau = random.short_unit();
     let at = |factor: f64| {
         let mut p = parameters.clone();
@@ -159,7 +159,8 @@ pub(crate) fn deviation<E: Evaluate>(system: &E, fibres: &[&Fibre; 3], n: usize)
             sizes[j] += Complex64::from(b[j]).norm();
         }
     }
-    // Of the largest coordinate: others may be zero but for its rounding errors.
+    // The size of the largest coordinate: other coordinates may be zero except for its rounding
+    // errors.
     let size = sizes.iter().copied().fold(0.0, f64::max);
     let relative = |j: usize| {
         let off = Complex64::from(whole[j]).norm();

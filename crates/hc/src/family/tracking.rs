@@ -116,7 +116,7 @@ pub(super) struct Tracking<'r, C, U> {
 pub(super) struct Over<'r, 'a, E: Evaluate, C, U> {
     tracking: Tracking<'r, C, U>,
     system: &'a E,
-    /// Of a batch of several ranks: the paths that the monitor has been told of.
+    /// In a batch on several ranks, the paths that were reported to the monitor.
     told: Cell<usize>,
 }
 

@@ -74,7 +74,7 @@ pub(super) struct Total<'a> {
 }
 
 impl<'a> Total<'a> {
-    /// Of no cells yet; the monitor is told of each.
+    /// A total without cells; the monitor hears of each cell that is added.
     pub(super) fn new(monitor: &'a Monitor) -> Self {
         Total { volume: 0, cells: 0, monitor }
     }
@@ -123,7 +123,7 @@ pub fn mixed_cells(
     Ok(cells)
 }
 
-/// Keeps what is wanted of the mixed cells that a thread finds.
+/// Keeps the required data of the mixed cells that a thread finds.
 pub(crate) trait Keep: Send {
     /// A cell as in [`MixedCell`].
     fn keep(&mut self, edges: &[[u32; 2]], volume: u64, normal: &[i128]);

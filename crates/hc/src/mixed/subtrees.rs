@@ -15,7 +15,7 @@ use crate::threads::{IntoParallelRefIterator, ParallelIterator};
 /// Subtrees at least, unless the whole tree is smaller: enough for many ranks, though some are much
 /// larger than others.
 const SUBTREES: usize = 1 << 10;
-/// Subtrees of a batch, after which the progress is told.
+/// Number of subtrees in a batch, after which progress is reported.
 const BATCH: usize = 1 << 6;
 /// A subtree counts for so many paths where portions are made.
 const WEIGHT: usize = 1 << 5;

@@ -121,7 +121,7 @@ impl<T: Integer> Scratch<T> {
         self.first_failing(points, k, cell)
     }
 
-    /// One step on the way to the lifting `-tau`, one value a point, of the supports alone.
+    /// One step on the way to the lifting `-tau` of the supports alone, one value per point.
     #[inline(always)]
     pub(super) fn lift(&mut self, points: &Points<T>, tau: &[i64], cell: &Cell<T>) -> Result<Step, Overflow> {
         let n = points.n;

@@ -38,9 +38,9 @@ pub struct Desk {
     round: Round,
     /// Least and largest portion for each thread.
     sizes: [usize; 2],
-    /// Paths that nobody has, ascending.
+    /// Paths that no rank has, in ascending order.
     fresh: VecDeque<usize>,
-    /// The last one that was offered.
+    /// The last path that was offered.
     last: Option<usize>,
     /// The number of the next portion.
     next: u64,
@@ -140,7 +140,7 @@ impl Desk {
         if rank > 0 && seat.held.len() >= DEPTH {
             return None;
         }
-        // Of thousands of portions one looks for late ones only when there may be some.
+        // There may be thousands of portions: late ones are sought only if there may be some.
         let is_late = |since: Instant| now.saturating_duration_since(since) >= self.patience;
         let mut late = None;
         if self.oldest.is_some_and(is_late) {

@@ -52,7 +52,7 @@ pub(crate) struct Task<T> {
 }
 
 impl Worker<'_> {
-    /// Works at a job of this fingerprint for rank 0, which is told of an error.
+    /// Works on the job with this fingerprint for rank 0, and reports errors to it.
     pub(crate) fn at<T, E: Display>(
         ranks: &Ranks<'_>,
         fingerprint: &str,
@@ -84,7 +84,7 @@ impl Worker<'_> {
             match self.heard.recv() {
                 Err(_) => return Ok(None),
                 Ok(Ok(Heard::Begun(part))) => begun = Some(part),
-                // Of a part that is past.
+                // This portion belongs to a part that is over.
                 Ok(Ok(Heard::Portion(..))) => {}
                 Ok(Err(error)) => return Err(error),
             }

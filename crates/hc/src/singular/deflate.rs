@@ -34,7 +34,7 @@ pub(crate) struct Profile {
 }
 
 impl Profile {
-    /// Of a regular solution: all unknowns are determined at once.
+    /// Whether this is the profile of a regular solution: all unknowns are determined at once.
     pub(crate) fn is_regular(&self) -> bool {
         self.remaining == 0 && self.ranks.len() == 1
     }

@@ -91,7 +91,7 @@ impl<S: Number> Elimination<S> {
     }
 
     /// The entries of the pivots' columns that solve the pivots' rows for this right-hand side, one
-    /// entry a row of the matrix.
+    /// entry per row of the matrix.
     pub(crate) fn solve(&self, side: &[S]) -> Vec<S> {
         let mut x: Vec<S> = self.rows.iter().map(|&i| side[i]).collect();
         for k in 0..x.len() {

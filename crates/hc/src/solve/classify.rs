@@ -37,8 +37,8 @@ pub(super) struct Classified {
 }
 
 impl Classified {
-    /// Without what is known of the start system; `tracked` paths, of which `retracked` were run
-    /// again.
+    /// The solutions, without data about the start system. `tracked` paths were tracked, and
+    /// `retracked` of these were tracked again.
     pub(super) fn solutions(self, tracked: usize, retracked: usize) -> Solutions {
         Solutions {
             paths: self.counts(tracked, retracked),

@@ -51,7 +51,7 @@ impl EndList {
     }
 }
 
-/// How all paths end. Of paths to infinity no points are kept.
+/// How all paths end. No points are kept for paths to infinity.
 pub(super) struct Ends {
     /// Paths whose end is not known.
     pub(super) lost: usize,

@@ -80,7 +80,8 @@ impl Equations {
         self.supports[equation].iter().map(|p| p.iter().map(|&e| i64::from(e)).sum::<i64>()).max().unwrap_or(0)
     }
 
-    /// Those of degree one, if they are independent, and no more than unknowns; else none.
+    /// The equations of degree one, if they are independent and not more than the unknowns;
+    /// otherwise none.
     pub(super) fn linear(&self) -> Vec<usize> {
         let is_linear = |i: &usize| self.supports[*i].iter().flatten().all(|&e| e >= 0) && self.degree(*i) <= 1;
         let linear: Vec<usize> = (0..self.len()).filter(is_linear).collect();

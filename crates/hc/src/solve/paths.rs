@@ -104,7 +104,7 @@ pub(super) struct Stage<'a, 'e, E: Evaluate, S> {
     /// Where the paths that needed the endgame were at a common radius.
     middles: Prints,
     pub(super) round: Pass,
-    /// Of the open paths of the batch those that have been through the endgame already.
+    /// The open paths of the batch that have been through the endgame already.
     pub(super) closed: RefCell<BTreeMap<usize, Record>>,
 }
 
@@ -225,8 +225,8 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
         EndgameOptions { start, ..options }
     }
 
-    /// Tracks paths to regular ends, or to where the endgame begins. One record a path, in order;
-    /// none once the work is cancelled.
+    /// Tracks paths to regular ends, or to the point where the endgame begins. Returns one record
+    /// per path, in order; none once the work is cancelled.
     pub(super) fn tracked(&self, numbers: &[usize], round: Round, monitor: &Monitor) -> Vec<Record> {
         let Route { trackers, start, target, .. } = self.route;
         if monitor.is_cancelled() {
@@ -278,7 +278,7 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
         records
     }
 
-    /// Takes open paths through the endgame. One record a path, in order.
+    /// Takes open paths through the endgame. Returns one record per path, in order.
     pub(super) fn ended(&self, open: &[Record], round: Round, monitor: &Monitor) -> Vec<Record> {
         let Route { trackers, start, target, .. } = self.route;
         let settings = self.settings(round);
@@ -446,8 +446,9 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
     }
 }
 
-/// What the endgame tells of a path, its end refined where it is regular after all. One that comes to
-/// the target along the radius `again`, though it is singular there, ends on a component.
+/// The verdict of the endgame on a path; if the end is regular after all, it is refined. A path
+/// that comes to the target along the radius `again`, although it is singular there, ends on a
+/// component.
 fn judged<E: Evaluate>(refiner: &mut Refiner<'_, E>, target: &[Complex64], ending: Ending, again: bool) -> RecordEnd {
     if matches!(ending.verdict, Verdict::Reached | Verdict::Finite { winding: 1, .. }) {
         let refined = refiner.refine(target, &ending.point);

@@ -188,7 +188,7 @@ fn solve_zoomed(
             };
             let tracked =
                 Tracked { given: &given, work, polynomials, system, target, line: Some(line), exact, monitor, zoomed };
-            // Of a polynomial in one unknown there is a better way to all roots than other paths.
+            // For a polynomial in one unknown there is a better way to all roots than other paths.
             let whole = univariate.is_none_or(|(_, degree)| ends.lost == 0 && ends.regular.len() == degree);
             let graph = if whole || monitor.is_cancelled() { None } else { Graph::new(polynomials) };
             let roots = graph.and_then(|graph| graph.solutions(&units, &tracked));

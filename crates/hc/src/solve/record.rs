@@ -76,7 +76,7 @@ pub(crate) struct SingularEnd {
 }
 
 impl Record {
-    /// Of a path of which nothing is known.
+    /// The record of a path about which nothing is known.
     pub(crate) fn lost(path: usize) -> Record {
         Record { path, begun: None, middle: None, end: RecordEnd::Lost }
     }

@@ -1,9 +1,9 @@
-//! Equations that are too many, made as many as unknowns while linear ones are kept.
+//! Too many equations, reduced to as many as unknowns; linear equations are kept.
 //!
-//! Random combinations `f_i + sum c_ij f_j` have few paths where degrees tell their number. Where
-//! supports do, unknowns `z_j` that vanish at the solutions take the place of the `f_j` (Sommese &
-//! Verschelde 2000, J. Complexity 16:572): with `f_j + z_j` these are the same combinations, `z`
-//! eliminated, but supports stay small, and with them the mixed volume.
+//! Random combinations `f_i + sum c_ij f_j` have few paths if the degrees determine their number.
+//! If the supports determine it, unknowns `z_j` that vanish at the solutions take the place of the
+//! `f_j` (Sommese & Verschelde 2000, J. Complexity 16:572). With `f_j + z_j` these are the same
+//! combinations once `z` is eliminated, but the supports stay small, and so does the mixed volume.
 
 use super::ends::Ends;
 use super::equations::Equations;
@@ -15,8 +15,8 @@ use crate::start::{MixedError, Polyhedral, bezout_number, degrees};
 use num_complex::Complex64;
 use poly::SparseSystem;
 
-/// Of combinations as many paths as this for one with further unknowns are less work: they have one
-/// stage and fewer unknowns.
+/// Combinations are less work if they have up to this many paths for each path with further
+/// unknowns, because they have one stage and fewer unknowns.
 const WORTH: u64 = 2;
 /// Steps at most of a path with further unknowns, and how often it is tracked again: those that need
 /// more do not with another start system.

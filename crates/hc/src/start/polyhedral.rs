@@ -24,8 +24,8 @@ pub(crate) struct Polyhedral {
     pub(crate) mixed_volume: u64,
 }
 
-/// Cells in ascending order of their edges: the edges, one a support, then the number of the first
-/// path.
+/// Cells in ascending order of their edges: the edges, one per support, then the number of the
+/// first path.
 struct Cells {
     records: Records,
     count: usize,

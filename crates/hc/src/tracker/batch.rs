@@ -38,8 +38,8 @@ pub struct Tracker<'a, E: Evaluate, S: Lane> {
     /// Where the Jacobian is evaluated.
     point: Vec<S>,
     corrected: Vec<S>,
-    /// What doubles leave of these two, and of the point of the last accepted step, for paths whose
-    /// points are in double-double; else anything.
+    /// The low parts of these two, and of the point of the last accepted step, for paths whose
+    /// points are in double-double; arbitrary for other paths.
     point_low: Vec<S>,
     corrected_low: Vec<S>,
     taylor_low: Vec<S>,

@@ -62,7 +62,7 @@ pub struct PathResult {
 }
 
 impl PathResult {
-    /// Of a path that was not tracked.
+    /// The record of a path that was not tracked.
     pub(super) fn cancelled(path: usize) -> PathResult {
         PathResult {
             path,

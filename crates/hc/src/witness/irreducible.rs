@@ -77,7 +77,7 @@ pub(super) fn orbits(set: &WitnessSet, given: &Given, seed: u64, monitor: &Monit
 /// their place, and squares of these underflow.
 const NOTHING: f64 = 1e-40;
 
-/// A fibre with zeros for what is left of them.
+/// A fibre with zeros in place of such coordinates.
 fn settled(mut fibre: Fibre) -> Fibre {
     for point in fibre.solutions.chunks_exact_mut(fibre.dimension.max(1)) {
         let largest = point.iter().map(|z| z.norm()).fold(0.0, f64::max);

@@ -52,8 +52,8 @@ impl Program {
         let mut reverse_graph = graph.clone();
         let reverse = derivative::reverse(&mut reverse_graph, roots);
         let mut jacobian = lower_jacobian(&reverse_graph, roots, &reverse, &mut constants)?;
-        // Forward mode needs a sweep an unknown over everything, so it is tried only where it can
-        // win.
+        // Forward mode needs a sweep over everything for each unknown; it is tried only where it
+        // can win.
         if graph.len().saturating_mul(variables) <= NODE_LIMIT {
             let mut forward_graph = graph.clone();
             let forward = derivative::forward(&mut forward_graph, roots, variables);

@@ -24,8 +24,8 @@ use std::sync::Arc;
 /// A system of sparse (Laurent) polynomials with fixed supports; its parameters are the
 /// coefficients.
 ///
-/// Parameter `k` is the coefficient of term `k`. Terms are counted equation after equation, in the
-/// order of the supports. Cheap to clone.
+/// Parameter `k` is the coefficient of term `k`. Terms are numbered equation after equation, in the
+/// order of the supports. The system is cheap to clone.
 ///
 /// ```
 /// use poly::{Complex64, Evaluate, Isa, SparseSystem};
@@ -59,7 +59,8 @@ pub struct SparseMemory<S> {
 }
 
 impl SparseSystem {
-    /// The system with one equation a support. A support has one exponent vector a term.
+    /// The system with one equation for each support. A support has one exponent vector for each
+    /// term.
     ///
     /// # Errors
     /// If an exponent vector has the wrong length or occurs twice in an equation.
@@ -67,11 +68,10 @@ impl SparseSystem {
         Ok(SparseSystem { plan: Arc::new(Plan::new(variables, supports)?) })
     }
 
-    /// The system with the supports of some polynomials, and their coefficients in the order of the
-    /// parameters.
+    /// The system with the supports of these polynomials, and their coefficients in the order of
+    /// the parameters.
     ///
-    /// # Errors
-    /// If the polynomials are in different numbers of unknowns or an exponent is -2^31.
+    /// # Errors If the polynomials have different numbers of unknowns, or an exponent is -2^31.
     pub fn from_polynomials<R: Ring>(polynomials: &[Polynomial<R>]) -> Result<(SparseSystem, Vec<R>), SupportError> {
         let variables = polynomials.first().map_or(0, Polynomial::variables);
         let supports: Vec<Vec<Vec<i32>>> = polynomials.iter().map(Polynomial::support).collect();
@@ -80,7 +80,7 @@ impl SparseSystem {
         Ok((SparseSystem::new(variables, &supports)?, coefficients))
     }
 
-    /// The range of the parameters that are coefficients of an equation.
+    /// The range of the parameters that are the coefficients of an equation.
     ///
     /// # Panics
     /// If there is no such equation.

@@ -30,9 +30,8 @@ pub(super) fn truncated_cost(observations: &Observations, network: &Network, dev
     observations.all().iter().map(|o| cost(o.residual(network))).sum()
 }
 
-/// The networks with truncated costs as objectives, least first: of networks refitted to their
-/// inliers, as far as they are among the best. Of networks that the refit carries to the same one
-/// the first is kept.
+/// The networks with truncated costs as objectives, least first. The best ones are refitted to
+/// their inliers. If the refit carries several networks to the same one, the first is kept.
 pub(super) fn rank(
     observations: &Observations,
     mut networks: Vec<Refined>,

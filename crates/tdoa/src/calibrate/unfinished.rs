@@ -39,8 +39,8 @@ impl Unfinished {
         Unfinished { receivers, transmitters: nowhere, offsets: never, starts, agreeing: 0 }
     }
 
-    /// The same network among `m` receivers and `n` transmitters, of which its own are those at
-    /// `rows` and `columns`.
+    /// The same network among `m` receivers and `n` transmitters; its own nodes are those at `rows`
+    /// and `columns`.
     pub(super) fn among(self, m: usize, rows: &[usize], n: usize, columns: &[usize]) -> Unfinished {
         Unfinished {
             receivers: scatter(m, rows, self.receivers),

@@ -21,9 +21,9 @@ fn count(measured: &Pseudoranges, i: usize) -> usize {
     measured.cells().row(i).count()
 }
 
-/// Of the receivers most of whose measurements are outliers, those whose inliers may agree by chance:
-/// the others' network says nothing of where they are. `width` is the width of the band of an inlier
-/// as a share of the network's size.
+/// Receivers most of whose measurements are outliers, and whose inliers may agree by chance: the
+/// network of the others does not tell where they are. `width` is the width of the band of an
+/// inlier as a share of the network's size.
 pub(super) fn doubtful_receivers(measured: &Pseudoranges, kept: &Observations, width: f64) -> Vec<usize> {
     let by_chance = |i: &usize| {
         measured.receivers() as f64 * agree_by_chance(count(measured, *i), kept.of_receiver(*i).len(), width)

@@ -48,7 +48,7 @@ pub(crate) trait Formulation {
     /// Carries a solution of a chart back.
     fn leave(chart: usize, x: &[Complex64]) -> Point;
 
-    /// `p_j = o_j - f_1j` of a solution, one a transmitter.
+    /// `p_j = o_j - f_1j` of a solution, one for each transmitter.
     fn offsets(f: &[Complex64], x: &[Complex64]) -> Point;
 
     /// The network of a real solution, its first receiver in the origin, its offsets `p_j`; `None`

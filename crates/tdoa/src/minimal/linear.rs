@@ -96,7 +96,7 @@ impl LeastSquares {
         (matrix[(0, 0)], matrix[(columns - 1, columns - 1)])
     }
 
-    /// The solution, one entry a column.
+    /// The solution, one entry per column.
     pub(crate) fn solution(&self) -> &[f64] {
         &self.rhs[..self.columns]
     }

@@ -34,9 +34,8 @@ pub(crate) fn best(measured: &Pseudoranges, m: usize, n: usize) -> Subset {
     Subset { receivers: all[best.1 / others.len()].clone(), transmitters: others[best.1 % others.len()].clone() }
 }
 
-/// Subsets of `size` out of `count`, each ascending: all of them in lexicographic order if these
-/// are at most [`LOOKED_AT`], else that many which are drawn at random, the same for the same
-/// sizes.
+/// Subsets of `size` out of `count`, each ascending: all of them in lexicographic order if there
+/// are at most [`LOOKED_AT`], otherwise that many, drawn at random, the same for the same sizes.
 fn combinations(count: usize, size: usize) -> Vec<Vec<usize>> {
     let total = (0..size).try_fold(1usize, |t, k| Some(t.checked_mul(count - k)? / (k + 1)));
     if total.is_none_or(|t| t > LOOKED_AT) {

@@ -33,7 +33,7 @@ const LONG: usize = 200;
 pub(crate) struct Covariance {
     /// Per receiver.
     pub(crate) receivers: Vec<[[f64; 2]; 2]>,
-    /// Of all coordinates of the receivers, 2m x 2m by rows.
+    /// The covariance of all coordinates of the receivers, 2m x 2m by rows.
     pub(crate) joint: Vec<f64>,
     /// Per transmitter: x, y, offset; `None` where its own measurements do not determine it.
     pub(crate) transmitters: Vec<Option<[[f64; 3]; 3]>>,
@@ -45,7 +45,7 @@ pub(crate) struct Covariance {
 /// The normal equations reduced to the receivers, inverted.
 pub(super) struct Reduced<'a> {
     refiner: Refiner<'a>,
-    /// Of all coordinates of the receivers, 2m x 2m.
+    /// The inverse for all coordinates of the receivers, 2m x 2m.
     inverse: Mat<f64>,
     /// Eigenvectors of the normal equations of the free coordinates, by ascending eigenvalue.
     modes: Mat<f64>,

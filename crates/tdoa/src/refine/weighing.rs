@@ -12,7 +12,7 @@ const GAUGE: f64 = 1e-9;
 
 /// A cost of residuals.
 pub(crate) trait Cost {
-    /// Of the residual of a measurement.
+    /// The cost of the residual of a measurement.
     fn cost(&self, residual: f64) -> f64;
     /// A weight for the normal equations, and the residual that has the derivative of the cost with
     /// that weight.
