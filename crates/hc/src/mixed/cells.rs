@@ -107,7 +107,6 @@ impl Sink for Total<'_> {
 /// The lifting is perturbed symbolically, so that all cells are fine and their volumes add up to
 /// the mixed volume. If the lifting was not generic, the least value over a support is also taken
 /// at points outside the edge.
-/// points besides those of the edge.
 ///
 /// # Errors
 /// If the numbers of supports, exponents, points and values do not match, or volumes exceed 64

@@ -18,7 +18,6 @@ const MOST: usize = 256;
 /// A rank with room takes a portion: half of its share of the known paths, but 32 to 256 paths for
 /// each of its threads. Ranks other than the first may have two portions at a time. The desk has no
 /// clock; the caller passes the time.
-/// told the time.
 ///
 /// ```
 /// use hc::ranks::Desk;

@@ -71,7 +71,8 @@ impl SparseSystem {
     /// The system with the supports of these polynomials, and their coefficients in the order of
     /// the parameters.
     ///
-    /// # Errors If the polynomials have different numbers of unknowns, or an exponent is -2^31.
+    /// # Errors
+    /// If the polynomials have different numbers of unknowns, or an exponent is -2^31.
     pub fn from_polynomials<R: Ring>(polynomials: &[Polynomial<R>]) -> Result<(SparseSystem, Vec<R>), SupportError> {
         let variables = polynomials.first().map_or(0, Polynomial::variables);
         let supports: Vec<Vec<Vec<i32>>> = polynomials.iter().map(Polynomial::support).collect();

@@ -81,7 +81,6 @@ pub struct Calibration {
     /// Whether the measurements determine at least half of the receivers to a tenth of the
     /// network's size; true if the noise is not known. This is false, for instance, for a table
     /// with receivers as columns.
-    /// that does not.
     pub determined: bool,
     /// Whether the known positions agree with the measurements, to the same share of the network's
     /// size to which the measurements have to agree with a plane; true if no positions are known.
