@@ -131,19 +131,21 @@ impl Family {
                 tracking.transform(|_, found| slots(&found, roots, shown, certify))
             })?;
             let found = found.map_err(Failure::input)?;
-            let width = found.iter().map(|row| row.1.len()).max().unwrap_or(0).max(roots);
-            let (mut points, mut ends) = (Vec::new(), Vec::new());
+            let width = found.iter().map(|row| row.ends.len()).max().unwrap_or(0).max(roots);
             let nothing = Complex64::new(f64::NAN, f64::NAN);
-            points.resize(found.len() * width * unknowns, nothing);
-            ends.resize(found.len() * width, end::AT_INFINITY);
+            let mut points = vec![nothing; found.len() * width * unknowns];
+            let mut ends = vec![end::AT_INFINITY; found.len() * width];
+            let mut real = vec![false; found.len() * width];
             for (k, row) in found.iter().enumerate() {
-                points[k * width * unknowns..][..row.0.len()].copy_from_slice(&row.0);
-                ends[k * width..][..row.1.len()].copy_from_slice(&row.1);
+                points[k * width * unknowns..][..row.points.len()].copy_from_slice(&row.points);
+                ends[k * width..][..row.ends.len()].copy_from_slice(&row.ends);
+                real[k * width..][..row.real.len()].copy_from_slice(&row.real);
             }
             let result = PyDict::new(py);
             result.set_item("points", array(py, points, &[found.len(), width, unknowns])?)?;
             result.set_item("ends", array(py, ends, &[found.len(), width])?)?;
-            let uncertified: Vec<i64> = found.iter().map(|row| row.2 as i64).collect();
+            result.set_item("is_real", array(py, real, &[found.len(), width])?)?;
+            let uncertified: Vec<i64> = found.iter().map(|row| row.uncertified as i64).collect();
             result.set_item("seconds", seconds)?;
             result.set_item("uncertified", array(py, uncertified, &[found.len()])?)?;
             whole(py, result.into_any(), stopped)
@@ -151,14 +153,25 @@ impl Family {
     }
 }
 
-/// One target's solutions, a singular one as often as it counts, and the ends of all slots; regular
-/// ones without certificate.
-fn slots(found: &Solutions, roots: usize, tracked: usize, certify: bool) -> (Vec<Complex64>, Vec<i8>, usize) {
-    let (mut points, mut ends) = (Vec::new(), Vec::with_capacity(roots));
+/// One target's solutions.
+struct Slots {
+    /// Coordinates, of a singular solution as often as it counts.
+    points: Vec<Complex64>,
+    /// Whether each is real.
+    real: Vec<bool>,
+    /// The ends of all slots.
+    ends: Vec<i8>,
+    /// Regular solutions without certificate, where one was asked for.
+    uncertified: usize,
+}
+
+fn slots(found: &Solutions, roots: usize, tracked: usize, certify: bool) -> Slots {
+    let (mut points, mut real, mut ends) = (Vec::new(), Vec::new(), Vec::with_capacity(roots));
     for solution in found {
         let end = if solution.singular { end::SINGULAR } else { end::FINITE };
         for _ in 0..if solution.singular { solution.multiplicity } else { 1 } {
             points.extend(&solution.value);
+            real.push(solution.real);
             ends.push(end);
         }
     }
@@ -171,5 +184,5 @@ fn slots(found: &Solutions, roots: usize, tracked: usize, certify: bool) -> (Vec
     ends.extend(std::iter::repeat_n(end::FAILED, failed));
     ends.extend(std::iter::repeat_n(end::ON_COMPONENT, components));
     ends.extend(std::iter::repeat_n(end::AT_INFINITY, rest - failed - components));
-    (points, ends, if certify { found.uncertified() } else { 0 })
+    Slots { points, real, ends, uncertified: if certify { found.uncertified() } else { 0 } }
 }

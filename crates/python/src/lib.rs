@@ -24,11 +24,14 @@ mod _native {
     #[pymodule_export]
     use crate::family::{Family, Fibre};
     #[pymodule_export]
-    use crate::measured::{check_size, read};
+    use crate::measured::{check_size, heads_list, read};
     #[pymodule_export]
     use crate::networks::{cramer_rao, simulate, solve_network};
     #[pymodule_export]
     use crate::solve::solve;
-    #[pymodule_export]
-    use crate::work::fail_for_a_test;
+
+    #[pymodule_init]
+    fn init(module: &pyo3::Bound<'_, pyo3::types::PyModule>) -> pyo3::PyResult<()> {
+        pyo3::types::PyModuleMethods::add(module, "__version__", env!("CARGO_PKG_VERSION"))
+    }
 }

@@ -4,11 +4,12 @@ use crate::arrays::{array, elements};
 use crate::errors::{Failure, guarded};
 use numpy::PyReadonlyArrayDyn;
 use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedBytes;
 use pyo3::types::PyDict;
 use tdoa::PseudorangeError;
 use tdoa::Pseudoranges;
 use tdoa::pseudoranges::MAX_CELLS;
-use tdoa::read::{ReadOptions, Units, read as read_file};
+use tdoa::read::{ReadOptions, Units, read as read_file, read_from};
 
 /// A table of pseudoranges as Python gives it.
 #[derive(FromPyObject)]
@@ -62,11 +63,19 @@ pub(crate) fn check_size(receivers: usize, transmitters: usize) -> PyResult<()> 
     guarded(|| fits(receivers, transmitters))
 }
 
-/// Measurements from a file: a dict of values, sigmas and names.
+/// Whether a table with these headings is a list of one measurement a row.
+#[pyfunction]
+pub(crate) fn heads_list(headings: Vec<String>) -> bool {
+    tdoa::read::heads_list(&headings)
+}
+
+/// Measurements from a file, or from `data` as if they were in a file of that name: a dict of
+/// values, sigmas and names.
 #[pyfunction]
 pub(crate) fn read<'py>(
     py: Python<'py>,
     path: std::path::PathBuf,
+    data: Option<PyBackedBytes>,
     units: Option<&str>,
     speed: Option<f64>,
     rate: Option<f64>,
@@ -76,7 +85,11 @@ pub(crate) fn read<'py>(
         let mut options = ReadOptions::default();
         options.units = units.map(|units| unit(units, speed, rate)).transpose()?;
         options.variable = variable;
-        let measured = py.detach(|| read_file(&path, options)).map_err(Failure::input)?;
+        let measured = py.detach(|| match &data {
+            None => read_file(&path, options),
+            Some(data) => read_from(&data[..], &path, options),
+        });
+        let measured = measured.map_err(Failure::input)?;
         let (m, n) = (measured.receivers(), measured.transmitters());
         let sigma = |k: usize| measured.sigma(k / n, k % n).unwrap_or(f64::NAN);
         let found = PyDict::new(py);

@@ -191,8 +191,13 @@ pub(crate) fn cramer_rao(
     guarded(|| {
         let points = |array: &PyReadonlyArrayDyn<'_, f64>| {
             let (values, shape) = elements(array, 2)?;
-            if shape[1] != 2 || values.iter().any(|x| !x.is_finite()) {
-                return Err(Failure::Input("positions must be finite and of shape (number, 2)".to_owned()));
+            if shape[1] != 2 {
+                let (rows, columns) = (shape[0], shape[1]);
+                let message = format!("positions must be of shape (number, 2), not ({rows}, {columns})");
+                return Err(Failure::Input(message));
+            }
+            if values.iter().any(|x| !x.is_finite()) {
+                return Err(Failure::Input("positions must be finite".to_owned()));
             }
             Ok(values.chunks_exact(2).map(|p| [p[0], p[1]]).collect::<Vec<_>>())
         };

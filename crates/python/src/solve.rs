@@ -41,7 +41,7 @@ pub(crate) fn solve(py: Python<'_>, system: Given, settings: Settings, how: How)
             "auto" => Start::Auto,
             "polyhedral" => Start::Polyhedral,
             "multihomogeneous" => Start::Multihomogeneous,
-            "total-degree" => Start::TotalDegree,
+            "total-degree" | "total_degree" => Start::TotalDegree,
             other => {
                 return Err(Failure::Input(format!(
                     "start must be auto, polyhedral, multihomogeneous or total-degree, not {other:?}"

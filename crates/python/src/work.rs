@@ -1,7 +1,7 @@
 //! Work beside the interpreter: the lock is released, signals are heeded, progress is told, panics
 //! are caught.
 
-use crate::errors::{Failure, guarded};
+use crate::errors::Failure;
 use hc::{Monitor, Progress};
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -195,15 +195,4 @@ pub(crate) fn whole<'py>(
             Err(error.into())
         }
     }
-}
-
-/// Panics, on a thread of the work or before it: tests see what comes of that.
-#[pyfunction]
-pub(crate) fn fail_for_a_test(py: Python<'_>, at_work: bool) -> PyResult<()> {
-    guarded(|| {
-        assert!(at_work, "before the work");
-        let how = How { threads: Some(1), progress: None };
-        run(py, &how, |_| -> () { panic!("at work") })?;
-        Ok(())
-    })
 }

@@ -145,6 +145,6 @@ def test_mixed_volumes_and_certificates(run_json, tmp_path):
     (tmp_path / "solutions.json").write_text(found.to_json())
     expected = run_json("hc", "certify", path, tmp_path / "solutions.json")
     proved = hc.certify(path.read_text(), found)
-    assert proved.complete and proved.distinct == expected["distinct"] == 64 and proved.real == expected["real"]
+    assert proved.complete and proved.n_distinct == expected["distinct"] == 64 and proved.n_real == expected["real"]
     for k, each in enumerate(expected["solutions"]):
         assert bits(proved.boxes[k].tolist()) == bits(each["box"])

@@ -1,5 +1,8 @@
 """Input that cannot be used, and what Python hears of it."""
 
+import io
+import pathlib
+
 import hc
 import numpy as np
 import pytest
@@ -156,8 +159,14 @@ def test_families_that_are_none():
 
 
 def test_files(tmp_path):
-    with pytest.raises(hc.InputError, match="nothing.csv"):
-        tdoa.read(tmp_path / "nothing.csv")
+    for path in (tmp_path / "nothing.csv", str(tmp_path / "nothing.csv"), bytes(tmp_path / "nothing.csv")):
+        with pytest.raises(FileNotFoundError, match="nothing.csv"):
+            tdoa.read(path)
+    with pytest.raises(IsADirectoryError):
+        tdoa.read(tmp_path)
+    for thing in (3.0, None, "\0", [1]):
+        with pytest.raises(hc.InputError, match="must be a path or an open file"):
+            tdoa.read(thing)
     (tmp_path / "bad.csv").write_text("1,2\n3,x\n")
     with pytest.raises(hc.InputError, match="bad.csv.*line 2"):
         tdoa.read(tmp_path / "bad.csv")
@@ -167,12 +176,66 @@ def test_files(tmp_path):
         tdoa.read(tmp_path / "bad.csv", units="parsec", speed=1.0)
 
 
-def test_panics_are_exceptions_of_this_library(capfd):
+# 3^12 paths: an hour's work and more.
+LONG = [f"x{i}^3 - {i + 2}*x{(i + 1) % 12}^2*x{(i + 2) % 12} + 2*x{(i + 3) % 12} + {i + 1}" for i in range(12)]
+
+
+@pytest.mark.parametrize("threads", [1, None])
+def test_panics_are_exceptions_of_this_library(threads, capfd):
+    """PyO3 panics where Rust is handed the exception that it makes of a panic.
+
+    With one thread it is the work that panics, with more the thread that waits for it.
+    """
+    raised = RuntimeError("at work")
+
+    def fail(*_):
+        raise raised
+
+    def solve():
+        return hc.solve(LONG, start="total_degree", threads=threads, progress=fail)
+
+    # PyO3 makes the class when it sees an exception for the first time.
+    with pytest.raises(RuntimeError, match="at work"):
+        solve()
+    internal = 0
+    # Other extension modules have such a class of their own, which is any other exception here.
+    for kind in [each for each in BaseException.__subclasses__() if each.__name__ == "PanicException"]:
+        raised = kind("at work")
+        with pytest.raises((hc.InternalError, kind), match="at work") as caught:
+            solve()
+        if isinstance(caught.value, hc.InternalError):
+            internal += 1
+            assert isinstance(caught.value, Exception) and type(caught.value).__module__ == "hc"
+    assert internal == 1
+    # The threads still work.
+    assert len(hc.solve(["x^2 - 2"], threads=threads)) == 2
+
+
+def test_nothing_but_the_packages_is_in_the_extension_module():
     from hc import _native
 
-    for at_work in (False, True):
-        with pytest.raises(hc.InternalError, match="at work" if at_work else "before the work") as caught:
-            _native.fail_for_a_test(at_work)
-        assert isinstance(caught.value, Exception) and type(caught.value).__module__ == "hc"
-    # The threads still work.
-    assert len(hc.solve(["x^2 - 2"], threads=1)) == 2
+    assert not [name for name in dir(_native) if "test" in name or "fail" in name]
+
+
+def test_shapes_that_came_are_named():
+    family = hc.Family(["x^2 - a*y", "y - b"], "x y", "a b", roots=2)
+    for call, words in [
+        (lambda: tdoa.calibrate(np.zeros(5)), r"not an array of shape \(5,\)"),
+        (lambda: tdoa.calibrate(3.0), "not a single number"),
+        (lambda: tdoa.calibrate(TABLE, anchors=np.zeros((3, 2))), r"not \(3, 2\)"),
+        (lambda: tdoa.cramer_rao(np.zeros((3, 3)), np.zeros((3, 2)), 1.0), r"not \(3, 3\)"),
+        (lambda: tdoa.cramer_rao(np.zeros(3), np.zeros((3, 2)), 1.0), r"not an array of shape \(3,\)"),
+        (lambda: family.track(np.zeros((2, 2, 2))), r"not an array of shape \(2, 2, 2\)"),
+        (lambda: family.track([[1.0, 2.0, 3.0]]), r"a column for each of a, b, not shape \(1, 3\)"),
+        (lambda: hc.certify(["x^2 - y", "y - 2"], [[1.0, 2.0, 3.0]]), "3 coordinates|2 unknowns|2 coordinates"),
+        (lambda: hc.certify(["x^2 - 2"], 1.0), "not a single number"),
+    ]:
+        with pytest.raises(hc.InputError, match=words):
+            call()
+
+
+@pytest.mark.parametrize("given", ["table.csv", b"table.csv", pathlib.Path("table.csv"), io.StringIO("1,2"), io.BytesIO(b"1,2")])
+def test_files_in_place_of_tables(given):
+    for function in (tdoa.calibrate, tdoa.solve):
+        with pytest.raises(hc.InputError, match=r"read it first: tdoa.read\((file|'table.csv')\)"):
+            function(given)

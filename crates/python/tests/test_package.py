@@ -21,6 +21,65 @@ def test_stubs_agree_with_what_is_there():
     assert output.returncode == 0, output.stdout + output.stderr
 
 
+# Each line after `# wrong` is an error to mypy, no other line is.
+TYPES = """
+import hc
+import numpy as np
+import sympy
+import tdoa
+
+x = sympy.Symbol("x")
+hc.solve("x^2 - 1", start="total_degree")
+hc.solve(["x^2 - 1", x**2 - 1], variables=[x])
+points: np.ndarray = hc.solve("x - 1").real_points
+number: int = hc.solve("x - 1").n_real
+table = tdoa.simulate(layout="grid", fault=("move", 0.1)).pseudoranges
+tdoa.calibrate(table, receiver_delays="auto", dimensions=2)
+tdoa.calibrate([[1.0, None], [2.0, 3.0]])
+tdoa.calibrate(tdoa.read("table.csv", units="ms", speed=343.0))
+with open("table.csv") as file:
+    tdoa.read(file)
+# wrong
+hc.solve("x^2 - 1", start="foo")
+# wrong
+hc.solve(3)
+# wrong
+hc.solve("x - 1").real
+# wrong
+tdoa.calibrate("table.csv")
+# wrong
+tdoa.calibrate(table, errors="late")
+# wrong
+tdoa.calibrate(table, receiver_delays="some")
+# wrong
+tdoa.calibrate(table, dimensions=3)
+# wrong
+tdoa.solve(table, start="auto")
+# wrong
+tdoa.simulate(layout="hall")
+# wrong
+tdoa.simulate(fault=("loss", 1.0))
+# wrong
+tdoa.read("table.csv", units="parsec")
+"""
+
+
+def test_mypy_finds_wrong_words(tmp_path):
+    (tmp_path / "uses.py").write_text(TYPES)
+    (tmp_path / "mypy.ini").write_text("[mypy]\n[mypy-sympy.*]\nignore_missing_imports = True\nfollow_imports = skip\n")
+    command = [sys.executable, "-m", "mypy", "--strict", "--config-file", "mypy.ini", "--no-error-summary", "uses.py"]
+    output = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=600)
+    found = [int(line.split(":")[1]) for line in output.stdout.splitlines() if ": error:" in line]
+    wrong = [k + 2 for k, line in enumerate(TYPES.splitlines()) if line == "# wrong"]
+    assert found == wrong, output.stdout + output.stderr
+
+
+def test_versions():
+    import importlib.metadata
+
+    assert hc.__version__ == tdoa.__version__ == importlib.metadata.version("tdoa")
+
+
 @pytest.mark.parametrize("thing", [hc.solve, hc.mixed_volume, hc.certify, hc.Family, tdoa.calibrate, tdoa.solve])
 def test_examples_of_the_documentation(thing):
     tests = doctest.DocTestFinder(recurse=False).find(thing, thing.__name__, module=False, globs={})

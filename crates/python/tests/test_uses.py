@@ -10,14 +10,19 @@ def test_sympy():
     sympy = pytest.importorskip("sympy")
     x, y = sympy.symbols("x y")
     found = hc.solve([x**2 + y**2 - 5, sympy.Eq(x * y, 2)])
-    assert found.variables == ["x", "y"] and len(found.real) == 4
+    assert found.variables == ["x", "y"] and found.n_real == 4
     same = hc.solve(["x^2 + y^2 - 5", "x*y - 2"], variables="x y")
-    assert np.allclose(sorted(map(tuple, found.real)), sorted(map(tuple, same.real)), atol=1e-12)
+    assert np.allclose(sorted(map(tuple, found.real_points)), sorted(map(tuple, same.real_points)), atol=1e-12)
     # Names with numbers in their order, and the order that is asked for.
     many = sympy.symbols("x1:12")
     system = [v - k for k, v in enumerate(many)]
     assert hc.solve(system).variables == [f"x{k}" for k in range(1, 12)]
     assert hc.solve([y - 1, x - 2], variables=[y, x]).points.tolist() == [[1, 2]]
+    # Texts of every format take an order too.
+    for text in ("2\nx - 2;\ny - 1;\n", "x = 2\ny = 1", "x - 2; y - 1;", ["x - 2", "y - 1"]):
+        assert hc.solve(text, variables="y x").points.tolist() == [[1, 2]]
+        with pytest.raises(hc.InputError, match="`x` is neither an unknown"):
+            hc.solve(text, variables="y z")
     # Numbers of all kinds: the solution of x = c is c.
     for number in (
         sympy.Rational(1, 3),
@@ -44,9 +49,9 @@ def test_sympy():
     a, b = sympy.symbols("a b")
     family = hc.Family([x**2 + a * x + b], parameters=[a, b], nonzero=[b])
     family.monodromy()
-    points, ends = family.track([[-3.0, 2.0], [0.0, -4.0]])[:2]
-    assert np.sort(points[:, :, 0].real, axis=1).round(12).tolist() == [[1, 2], [-2, 2]]
-    assert (ends == hc.End.FINITE).all()
+    tracked = family.track([[-3.0, 2.0], [0.0, -4.0]])
+    assert np.sort(tracked.points[:, :, 0].real, axis=1).round(12).tolist() == [[1, 2], [-2, 2]]
+    assert (tracked.ends == hc.End.FINITE).all()
 
 
 def test_pandas():
@@ -65,6 +70,64 @@ def test_pandas():
     assert tdoa.calibrate(frame, anchors={"mic 0": (1, 2), "mic 5": (4, 3)}).data["anchored"][5] in (True, False)
     with pytest.raises(hc.InputError, match="numbers"):
         tdoa.calibrate(pandas.DataFrame({"a": ["x"]}))
+
+
+def test_long_frames(tmp_path):
+    pandas = pytest.importorskip("pandas")
+    made = tdoa.simulate(8, 10, noise=0.01, missing=0.1, seed=1)
+    wide = pandas.DataFrame(made.pseudoranges, index=[f"mic {k}" for k in range(8)], columns=[f"clap, {k}" for k in range(10)])
+    heard = [(i, j) for i in wide.index for j in wide.columns if np.isfinite(wide.at[i, j])]
+    long = pandas.DataFrame([(i, j, wide.at[i, j]) for i, j in heard], columns=["mic", "event", "value"])
+    path = tmp_path / "long.csv"
+    long.to_csv(path, index=False)
+    expected = tdoa.calibrate(tdoa.read(path))
+    assert tdoa.calibrate(long) == expected
+    assert sorted(expected.receiver_names) == sorted(wide.index) and expected.transmitter_names[0] == "clap, 0"
+    # Columns in any order, and as levels of the index.
+    assert tdoa.calibrate(long[["event", "value", "mic"]]) == expected
+    assert tdoa.calibrate(long.set_index(["mic", "event"])) == expected
+    # Times, and standard deviations of their own.
+    seconds = long.rename(columns={"value": "arrival time (s)"}).assign(**{"arrival time (s)": long["value"] / 343})
+    seconds.to_csv(path, index=False)
+    assert tdoa.calibrate(seconds, speed=343) == tdoa.calibrate(long.assign(value=long["value"] / 343), speed=343)
+    of_file = tdoa.calibrate(tdoa.read(path, units="s", speed=343))
+    assert np.array_equal(tdoa.calibrate(seconds, speed=343).receivers, of_file.receivers)
+    with pytest.raises(hc.InputError, match="give speed=V and the times in seconds"):
+        tdoa.calibrate(seconds)
+    sure = tdoa.calibrate(long.assign(sigma=0.01))
+    assert sure.data["sigma_is_factor"]
+    for bad, words in [
+        (long[["mic", "value"]], "no column is the transmitter"),
+        (pandas.concat([long, long[:1]]), "twice|again|second"),
+        (long.assign(value="loud"), "loud"),
+    ]:
+        with pytest.raises(hc.InputError, match=words):
+            tdoa.calibrate(bad)
+
+
+def test_open_files(tmp_path):
+    import io
+
+    made = tdoa.simulate(6, 8, noise=0.01, seed=4)
+    text = "\n".join(",".join(map(repr, row)) for row in made.pseudoranges.tolist()) + "\n"
+    (tmp_path / "table.csv").write_text(text)
+    np.save(tmp_path / "table.npy", made.pseudoranges)
+    expected = tdoa.read(tmp_path / "table.csv")
+    assert np.array_equal(expected.values, made.pseudoranges)
+    for mode in ("r", "rb"):
+        with open(tmp_path / "table.csv", mode) as file:
+            assert tdoa.read(file) == expected
+    with open(tmp_path / "table.npy", "rb") as file:
+        assert tdoa.read(file) == expected
+    assert tdoa.read(io.StringIO(text)) == tdoa.read(io.BytesIO(text.encode())) == expected
+    assert tdoa.read(io.StringIO(text), units="s", speed=2.0).values[0, 0] == 2.0 * made.pseudoranges[0, 0]
+    for file, words in [
+        (io.StringIO("1,x\n"), "open file, line 1"),
+        (io.BytesIO(b"\xff\xff"), "not UTF-8"),
+        (io.StringIO(), "open file"),
+    ]:
+        with pytest.raises(hc.InputError, match=words):
+            tdoa.read(file)
 
 
 def test_names():
@@ -205,27 +268,38 @@ def test_solutions():
     found = hc.solve("2\nx*(x - y);\n(y - 1)^2*(y + x);", seed=1)
     assert sorted(found.multiplicities.tolist()) == [2, 2, 2] and found.singular.all() and found.complete
     found = hc.solve(["x^2 + y^2 - 5", "x*y - 2"], certify=True)
-    assert found.certified.all() and found.points.dtype == complex and found.real.dtype == float
+    assert found.certified.all() and found.points.dtype == complex and found.real_points.dtype == float
     assert len(found) == 4 and np.allclose(found.points[:, 0] * found.points[:, 1], 2)
     assert repr(found).startswith("4 isolated solutions, 4 real") and "<pre>" in found._repr_html_()
+    assert found == hc.solve(["x^2 + y^2 - 5", "x*y - 2"], certify=True) and found.n_real == 4
+    assert found != hc.solve(["x^2 + y^2 - 5", "x*y - 2"]) and found != hc.solve(["x^2 - 1"]) and found != 4
+    for start in ("total_degree", "total-degree"):
+        assert hc.solve(["x^2 + y^2 - 5", "x*y - 2"], start=start).start == "total-degree"
+    proved = hc.certify(["x^2 - 2"], [[1.41421356], [1.5], [-1.41421356]])
+    assert proved.is_real.tolist() == [True, False, True] and (proved.n_real, proved.n_distinct) == (2, 2)
+    assert np.allclose(proved.real_points, [[2**0.5], [-(2**0.5)]], rtol=1e-15)
     assert len(hc.solve(["x*y - x", "x*y - y"], torus_only=True)) == 1
     groups = hc.solve(["x*y - 2", "x + y - 3"], start="multihomogeneous", groups=[["x"], ["y"]])
-    assert sorted(groups.real.round(9).tolist()) == [[1, 2], [2, 1]]
+    assert sorted(groups.real_points.round(9).tolist()) == [[1, 2], [2, 1]]
 
 
 def test_families_at_special_targets():
     # x^2 + a x + b at a double root; a x - b at infinity.
     family = hc.Family(["x^2 + a*x + b"], "x", "a b", roots=2)
     family.monodromy()
-    points, ends = family.track([[-6.0, 9.0]])[:2]
-    assert ends.tolist() == [[hc.End.SINGULAR] * 2] and np.allclose(points, 3, atol=1e-6)
+    tracked = family.track([[-6.0, 9.0]])
+    assert tracked.ends.tolist() == [[hc.End.SINGULAR] * 2] and np.allclose(tracked.points, 3, atol=1e-6)
     line = hc.Family(["a*x - b"], "x", "a b", roots=1)
     line.monodromy(first=([2.0, 4.0], [2.0]))
     tracked = line.track([[0.0, 1.0], [2.0, 1.0]])
     assert tracked.ends.tolist() == [[hc.End.AT_INFINITY], [hc.End.FINITE]]
     assert np.isnan(tracked.points[0]).all() and tracked.points[1, 0, 0] == 0.5
-    assert tracked.complete.all() and tracked.real().tolist() == [[False], [True]]
+    assert tracked.complete.all() and tracked.is_real.tolist() == [[False], [True]]
     assert line.track([[2.0, 1.0]], certify=True).uncertified.tolist() == [0]
+    assert repr(tracked) == "2 targets of 1 root: 1 finite, 1 at infinity; all complete"
+    assert [each.tolist() for each in tracked] == [[], [[0.5]]] and len(tracked) == 2
+    assert tracked.n_real.tolist() == [0, 1] and [each.tolist() for each in tracked.real_points] == [[], [[0.5]]]
+    assert tracked == line.track([[0.0, 1.0], [2.0, 1.0]]) and tracked != line.track([[2.0, 1.0]])
     # Nothing shows that these are all.
     found = family.monodromy(first=([-3.0, 2.0], [1.0]), roots=3, patience=2, trace=False)
     assert len(found) == 2 and not found.complete

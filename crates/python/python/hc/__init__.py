@@ -10,6 +10,7 @@ Arrays in, arrays out. Work runs on all cores without Python's lock, and Ctrl-C 
 
 from ._errors import Error, InputError, InternalError, UndeterminedError
 from ._family import Compiled, End, Family, Fibre, Tracked
+from ._native import __version__
 from ._solutions import Certificates, Solutions, Unresolved
 from ._solve import certify, mixed_volume, solve
 

@@ -3,7 +3,7 @@
 import enum
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,8 +26,19 @@ __all__ = [
     "solve",
 ]
 
-# A formula is a string or an expression of SymPy, which need not be installed.
-_Formula = Any
+__version__: str
+
+# An expression of SymPy, which need not be installed.
+class _Expression(Protocol):
+    @property
+    def free_symbols(self) -> Any: ...
+
+_Formula = str | float | _Expression
+# One expression has no order, a matrix of SymPy no `__iter__`.
+_System = str | _Expression | Iterable[_Formula]
+# Names or symbols; a string has blanks or commas between them.
+_Names = str | Iterable[Any]
+_Start = Literal["auto", "polyhedral", "multihomogeneous", "total_degree", "total-degree"]
 _Progress = bool | Callable[[str, int, int], object]
 _Path = str | os.PathLike[str]
 
@@ -65,11 +76,15 @@ class Solutions:
     summary: str
     seed: int
     seconds: float
-    def __init__(self, found: dict[str, Any]) -> None: ...
+    def __init__(self, found: dict[str, Any], shown: dict[str, str] | None = None) -> None: ...
     @property
-    def real(self) -> NDArray[np.float64]: ...
+    def real_points(self) -> NDArray[np.float64]: ...
+    @property
+    def n_real(self) -> int: ...
     @property
     def complete(self) -> bool: ...
+    def __eq__(self, other: object) -> bool: ...
+    __hash__: None  # type: ignore[assignment]
     def __len__(self) -> int: ...
     def __iter__(self) -> Iterator[NDArray[np.complex128]]: ...
     def __getitem__(self, which: Any) -> Any: ...
@@ -84,11 +99,17 @@ class Certificates:
     duplicate_of: NDArray[np.int64]
     unseparated: NDArray[np.int64]
     reasons: list[str | None]
-    distinct: int
-    real: int
+    n_distinct: int
+    n_real: int
     def __init__(self, found: dict[str, Any]) -> None: ...
     @property
+    def is_real(self) -> NDArray[np.bool_]: ...
+    @property
+    def real_points(self) -> NDArray[np.float64]: ...
+    @property
     def complete(self) -> bool: ...
+    def __eq__(self, other: object) -> bool: ...
+    __hash__: None  # type: ignore[assignment]
     def __len__(self) -> int: ...
 
 class End(enum.IntEnum):
@@ -98,18 +119,28 @@ class End(enum.IntEnum):
     ON_COMPONENT = 3
     FAILED = 4
 
-class Tracked(NamedTuple):
+class Tracked:
     points: NDArray[np.complex128]
     ends: NDArray[np.int8]
+    is_real: NDArray[np.bool_]
     uncertified: NDArray[np.int64]
     seconds: float
+    def __init__(self, found: dict[str, Any]) -> None: ...
     @property
     def complete(self) -> NDArray[np.bool_]: ...
-    def real(self, tolerance: float = 1e-10) -> NDArray[np.bool_]: ...
+    @property
+    def real_points(self) -> list[NDArray[np.float64]]: ...
+    @property
+    def n_real(self) -> NDArray[np.int64]: ...
+    def __eq__(self, other: object) -> bool: ...
+    __hash__: None  # type: ignore[assignment]
+    def __len__(self) -> int: ...
+    def __iter__(self) -> Iterator[NDArray[np.complex128]]: ...
+    def __getitem__(self, k: int) -> NDArray[np.complex128]: ...
 
 class Fibre:
     parameters: NDArray[np.complex128]
-    solutions: NDArray[np.complex128]
+    points: NDArray[np.complex128]
     trace_test: float | None
     stopped: str
     def __init__(self, text: str) -> None: ...
@@ -138,9 +169,9 @@ class Family:
     fibre: Fibre | None
     def __init__(
         self,
-        equations: str | Iterable[_Formula],
-        unknowns: str | Iterable[Any] | None = None,
-        parameters: str | Iterable[Any] | None = None,
+        equations: _System,
+        unknowns: _Names | None = None,
+        parameters: _Names | None = None,
         *,
         nonzero: Iterable[_Formula] = (),
         symmetry: Iterable[Iterable[_Formula]] = (),
@@ -174,12 +205,12 @@ class Family:
     def __setstate__(self, state: tuple[Any, ...]) -> None: ...
 
 def solve(
-    system: str | Iterable[_Formula],
+    system: _System,
     *,
-    variables: str | Iterable[Any] | None = None,
+    variables: _Names | None = None,
     seed: int = 0,
-    start: str = "auto",
-    groups: Sequence[Sequence[Any]] | None = None,
+    start: _Start = "auto",
+    groups: Sequence[_Names] | None = None,
     torus_only: bool = False,
     max_paths: int | None = None,
     certify: bool = False,
@@ -187,17 +218,17 @@ def solve(
     progress: _Progress = True,
 ) -> Solutions: ...
 def mixed_volume(
-    system: str | Iterable[_Formula],
+    system: _System,
     *,
-    variables: str | Iterable[Any] | None = None,
+    variables: _Names | None = None,
     threads: int | None = None,
     progress: _Progress = True,
 ) -> int: ...
 def certify(
-    system: str | Iterable[_Formula],
+    system: _System,
     points: ArrayLike | Solutions,
     *,
-    variables: str | Iterable[Any] | None = None,
+    variables: _Names | None = None,
     threads: int | None = None,
     progress: _Progress = True,
 ) -> Certificates: ...

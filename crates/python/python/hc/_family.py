@@ -3,15 +3,16 @@
 import enum
 import json
 import os
-from typing import NamedTuple
 
 import numpy as np
 
 from . import _native
 from ._errors import InputError
 from ._run import call, integer, seeded
+from ._result import Result
 from ._solve import complex_rows
-from ._system import formulas, names
+from ._symbols import Symbols, listed
+from ._system import formulas, names, split
 
 
 class End(enum.IntEnum):
@@ -24,8 +25,8 @@ class End(enum.IntEnum):
     FAILED = 4
 
 
-class Tracked(NamedTuple):
-    """Solutions of a family for many targets.
+class Tracked(Result):
+    """Solutions of a family for many targets: `tracked[k]` has those of one, iteration those of each.
 
     Attributes
     ----------
@@ -33,34 +34,47 @@ class Tracked(NamedTuple):
         The solutions for each target; NaN where a slot has none. A singular solution fills as many slots as it counts.
     ends : ndarray of int8, shape (k, roots)
         How each slot was filled, an `End`.
+    is_real : ndarray of bool, shape (k, roots)
+        Which slots hold a real solution: all imaginary parts are below 1e-10 of the largest coordinate (or of one), 1e-7 where
+        singular.
     uncertified : ndarray of int, shape (k,)
         Regular solutions that could not be certified, where that was asked for.
     seconds : float
         How long the work took, without what Python adds.
     """
 
-    points: np.ndarray
-    ends: np.ndarray
-    uncertified: np.ndarray
-    seconds: float
-
     @property
     def complete(self):
         """Which targets have all their solutions: ndarray of bool, shape (k,)."""
         return ~np.any(self.ends == End.FAILED, axis=1) & (self.uncertified == 0)
 
-    def real(self, tolerance=1e-10):
-        """Which slots hold a real solution: ndarray of bool, shape (k, roots).
+    @property
+    def real_points(self):
+        """The real solutions for each target: list of ndarrays of float of shapes (n_real[k], n)."""
+        return [points[real].real.copy() for points, real in zip(self.points, self.is_real)]
 
-        Parameters
-        ----------
-        tolerance : float
-            Largest imaginary part, as a share of the largest coordinate or of one.
-        """
-        if self.points.shape[2] == 0:
-            return np.zeros(self.ends.shape, bool)
-        size = np.maximum(np.abs(self.points).max(axis=2), 1.0)
-        return np.abs(self.points.imag).max(axis=2) <= tolerance * size
+    @property
+    def n_real(self):
+        """How many solutions are real, for each target: ndarray of int, shape (k,)."""
+        return self.is_real.sum(axis=1)
+
+    def __len__(self):
+        return len(self.points)
+
+    def __getitem__(self, k):
+        """The solutions for one target: ndarray of complex, shape (s, n)."""
+        return self.points[k][self.ends[k] <= End.SINGULAR]
+
+    def __iter__(self):
+        return (self[k] for k in range(len(self)))
+
+    def __repr__(self):
+        counts = {end: int((self.ends == end).sum()) for end in End}
+        ends = ", ".join(f"{count} {end.name.lower().replace('_', ' ')}" for end, count in counts.items() if count)
+        words = f"{_counted(len(self), 'target')} of {_counted(self.ends.shape[1], 'root')}: {ends or 'no ends'}"
+        lost, unproved = len(self) - int(self.complete.sum()), int(self.uncertified.sum())
+        words += f"; {_counted(lost, 'target')} incomplete" if lost else "; all complete"
+        return words + (f"; {_counted(unproved, 'solution')} without certificate" if unproved else "")
 
 
 class Fibre:
@@ -70,7 +84,7 @@ class Fibre:
     ----------
     parameters : ndarray of complex, shape (p,)
         The parameter point.
-    solutions : ndarray of complex, shape (roots, n)
+    points : ndarray of complex, shape (roots, n)
         The solutions.
     trace_test : float or None
         Deviation found by the trace test: rounding error shows that the solutions are all.
@@ -89,7 +103,7 @@ class Fibre:
             raise InputError(f"not a start file: {error}") from None
         self.parameters = pairs[:, 0] + 1j * pairs[:, 1]
         # No arithmetic: zeros keep their signs.
-        self.solutions = rows.view(complex)[..., 0]
+        self.points = rows.view(complex)[..., 0]
         self.parameters = pairs.view(complex)[..., 0]
         self.trace_test = data.get("trace_test")
         self.stopped = data.get("stopped", "")
@@ -104,11 +118,11 @@ class Fibre:
         return self._text
 
     def __len__(self):
-        return len(self.solutions)
+        return len(self.points)
 
     def __repr__(self):
         trace = "" if self.trace_test is None else f", trace test {self.trace_test:.1e}"
-        return f"{len(self)} solutions; stopped: {self.stopped}{trace}"
+        return f"{_counted(len(self), 'solution')}; stopped: {self.stopped}{trace}"
 
     def __eq__(self, other):
         return isinstance(other, Fibre) and self._text == other._text
@@ -138,6 +152,9 @@ class Compiled:
     def __call__(self, targets, *, certify=False, threads=None, progress=True):
         """Track all solutions to each target: see `Family.track`."""
         rows = complex_rows("targets", targets)
+        parameters = self._family.parameters
+        if rows.shape[1] != len(parameters):
+            raise InputError(f"targets must have a column for each of {', '.join(parameters) or 'no parameters'}, not shape {rows.shape}")
         return call(
             self._family._native.track,
             self._native,
@@ -145,7 +162,7 @@ class Compiled:
             bool(certify),
             threads=threads,
             progress=progress,
-            wrap=lambda found: Tracked(found["points"], found["ends"], found["uncertified"], found["seconds"]),
+            wrap=Tracked,
         )
 
     def __repr__(self):
@@ -187,9 +204,11 @@ class Family:
     >>> family = hc.Family(["x^2 + y^2 - r^2", "y - a*x"], unknowns="x y", parameters="r a")
     >>> family.monodromy()
     2 solutions; stopped: trace, trace test ...
-    >>> points, ends = family.track([[5.0, 0.75], [10.0, 0.75]])[:2]
-    >>> points.shape, np.sort(points[1, :, 0].real).round(9).tolist()
-    ((2, 2, 2), [-8.0, 8.0])
+    >>> tracked = family.track([[5.0, 0.75], [10.0, 0.75]])
+    >>> tracked
+    2 targets of 2 roots: 4 finite; all complete
+    >>> np.sort(tracked[1][:, 0].real).round(9).tolist()
+    [-8.0, 8.0]
     """
 
     def __init__(
@@ -203,21 +222,28 @@ class Family:
         roots=None,
         name="",
     ):
+        self._shown = {}
         if isinstance(equations, str) and unknowns is None and parameters is None:
             self._given = equations
+            self._build()
         else:
-            texts, found = formulas("equation", equations)
-            factors, _ = formulas("factor", nonzero)
-            maps = [formulas("formula of a symmetry", each)[0] for each in symmetry]
-            parameters = names("parameters", parameters) or []
-            unknowns = names("unknowns", unknowns)
-            if unknowns is None:
-                if found is None:
-                    raise InputError("say which names are unknowns: unknowns=[...]")
-                unknowns = [each for each in found if each not in parameters]
-            roots = integer("roots", roots)
-            self._given = (unknowns, parameters, texts, factors, maps, roots, str(name))
-        self._build()
+            equations, nonzero = listed(equations), listed(nonzero)
+            symmetry = [listed(each) for each in listed(symmetry)]
+            unknowns, parameters = split(unknowns), split(parameters) or []
+            symbols = Symbols(equations, nonzero, symmetry, unknowns, parameters)
+            self._shown = symbols.shown
+            with symbols.in_errors():
+                texts, found = formulas("equation", equations, symbols)
+                factors, _ = formulas("factor", nonzero, symbols)
+                maps = [formulas("formula of a symmetry", each, symbols)[0] for each in symmetry]
+                parameters = names("parameters", parameters, symbols)
+                unknowns = names("unknowns", unknowns, symbols)
+                if unknowns is None:
+                    if found is None:
+                        raise InputError("say which names are unknowns: unknowns=[...]")
+                    unknowns = [each for each in found if each not in parameters]
+                self._given = (unknowns, parameters, texts, factors, maps, integer("roots", roots), str(name))
+                self._build()
         self.fibre = None
 
     def _build(self):
@@ -225,7 +251,9 @@ class Family:
             self._native = _native.Family.from_text(self._given)
         else:
             self._native = _native.Family.from_formulas(*self._given)
-        self.name, self.unknowns, self.parameters, self.roots = self._native.describe()
+        self.name, unknowns, parameters, self.roots = self._native.describe()
+        self.unknowns = [self._shown.get(each, each) for each in unknowns]
+        self.parameters = [self._shown.get(each, each) for each in parameters]
 
     @classmethod
     def read(cls, path, start=None):
@@ -317,7 +345,7 @@ class Family:
         Returns
         -------
         Tracked
-            `points` of shape (k, roots, n) and `ends` of shape (k, roots).
+            `points` of shape (k, roots, n), `ends` and `is_real` of shape (k, roots).
 
         Raises
         ------
@@ -332,11 +360,16 @@ class Family:
         return f"{name}family in {unknowns} with parameters {parameters or 'none'}"
 
     def __getstate__(self):
-        return self._given, self.fibre
+        return self._given, self._shown, self.fibre
 
     def __setstate__(self, state):
-        self._given, self.fibre = state
+        self._given, self._shown, self.fibre = state
         self._build()
+
+
+def _counted(number, word):
+    """A number of things, with the word in the plural where it is due."""
+    return f"{number} {word}" if number == 1 else f"{number} {word}s"
 
 
 def _pair(parameters, solution):

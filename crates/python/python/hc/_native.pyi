@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 __all__ = [
     "Family",
     "Fibre",
+    "__version__",
     "calibrate",
     "calibration_html",
     "calibration_style",
@@ -17,7 +18,7 @@ __all__ = [
     "certify",
     "check_size",
     "cramer_rao",
-    "fail_for_a_test",
+    "heads_list",
     "mixed_volume",
     "read",
     "simulate",
@@ -29,7 +30,9 @@ class _How(TypedDict):
     threads: int | None
     progress: Callable[[str, int, int], object] | None
 
-_System = str | tuple[list[str], list[str] | None]
+__version__: str
+
+_System = tuple[str | list[str], list[str] | None]
 _Found = dict[str, Any]
 
 def solve(system: _System, settings: _Found, how: _How) -> _Found: ...
@@ -48,10 +51,10 @@ def cramer_rao(
     receivers: NDArray[np.float64], transmitters: NDArray[np.float64], used: NDArray[np.bool_], sigma: float
 ) -> float: ...
 def check_size(receivers: int, transmitters: int) -> None: ...
+def heads_list(headings: list[str]) -> bool: ...
 def read(
-    path: str, units: str | None, speed: float | None, rate: float | None, variable: str | None
+    path: str, data: bytes | None, units: str | None, speed: float | None, rate: float | None, variable: str | None
 ) -> _Found: ...
-def fail_for_a_test(at_work: bool) -> None: ...
 @final
 class Fibre: ...
 

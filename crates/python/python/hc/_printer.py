@@ -10,6 +10,15 @@ from ._numbers import decimal
 class Printer(StrPrinter):
     """Formulas whose numbers are read back to the same bits; irrational numbers become doubles."""
 
+    def __init__(self, symbols):
+        super().__init__({"order": None})
+        self._symbols = symbols
+
+    def _print_Symbol(self, symbol):
+        return self._symbols.name(symbol)
+
+    _print_Dummy = _print_Symbol
+
     def _print_Float(self, number):
         if number._prec <= 53:
             return decimal(float(number))

@@ -50,6 +50,13 @@ def text(name, value):
     return value
 
 
+def came(array):
+    """What came in place of a matrix, in words."""
+    if array.ndim:
+        return f"an array of shape {array.shape}"
+    return "a single number" if array.dtype.kind in "biufc" else f"a single {type(array.item()).__name__}"
+
+
 def _watched():
     """Whether somebody looks: a terminal, or a notebook."""
     kernel = sys.modules.get("ipykernel")

@@ -6,6 +6,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ._result import Result
+from ._symbols import own_names
+
 
 class Unresolved(NamedTuple):
     """An end of paths of which it is not known what it is: `value` (ndarray of shape (n,)), the number of `paths` that end there, and the `reason`."""
@@ -15,8 +18,8 @@ class Unresolved(NamedTuple):
     reason: str
 
 
-class Solutions:
-    """The isolated solutions of a system, regular ones first.
+class Solutions(Result):
+    """The isolated solutions of a system, regular ones first; equal if all but `seconds` is, to the last bit.
 
     Attributes
     ----------
@@ -25,13 +28,15 @@ class Solutions:
     points : ndarray of complex, shape (k, n)
         The solutions, one a row, coordinates in the order of `variables`.
     multiplicities : ndarray of int, shape (k,)
-        Multiplicities: paths that end at each.
+        Multiplicities: the dimension of the local ring of the given equations. As many paths end at each, or more where there
+        are more equations than unknowns.
     winding_numbers : ndarray of int, shape (k,)
         The largest winding number of these paths.
     singular : ndarray of bool, shape (k,)
         Whether the Jacobian is singular there, to working precision.
     is_real : ndarray of bool, shape (k,)
-        Whether all imaginary parts are below 1e-10 of the largest coordinate (or of one); 1e-7 where singular.
+        Which solutions are real: all imaginary parts are below 1e-10 of the largest coordinate (or of one), 1e-7 where
+        singular.
     residuals : ndarray of float, shape (k,)
         Largest relative residuals.
     conditions : ndarray of float, shape (k,)
@@ -60,14 +65,22 @@ class Solutions:
         How long the work took, without what Python adds.
     """
 
-    def __init__(self, found):
-        self.__dict__.update(found)
+    def __init__(self, found, shown=None):
+        super().__init__(found)
+        if shown:
+            self.variables = [shown.get(name, name) for name in self.variables]
+            self.summary = own_names(self.summary, shown)
         self.unresolved = [Unresolved(*end) for end in self.unresolved]
 
     @property
-    def real(self):
-        """The real solutions, ndarray of float of shape (r, n)."""
+    def real_points(self):
+        """The real solutions, ndarray of float of shape (n_real, n)."""
         return self.points[self.is_real].real.copy()
+
+    @property
+    def n_real(self):
+        """How many solutions are real."""
+        return int(self.is_real.sum())
 
     @property
     def complete(self):
@@ -131,7 +144,7 @@ class Solutions:
         return json.dumps(whole, indent=2) + "\n"
 
 
-class Certificates:
+class Certificates(Result):
     """What is proved of points.
 
     Attributes
@@ -151,12 +164,19 @@ class Certificates:
         Pairs of points proved neither the same solution nor different ones.
     reasons : list
         Why there is no certificate; None where there is one.
-    distinct, real : int
-        Numbers of distinct solutions, and of those that are real.
+    n_distinct, n_real : int
+        Numbers of distinct solutions, and of those of them that are proved real.
     """
 
-    def __init__(self, found):
-        self.__dict__.update(found)
+    @property
+    def is_real(self):
+        """Which points are proved to stand for a real solution, ndarray of bool of shape (k,)."""
+        return self.reality == 1
+
+    @property
+    def real_points(self):
+        """The points that are proved to stand for real solutions, ndarray of float of shape (r, n)."""
+        return self.points[self.is_real].real.copy()
 
     @property
     def complete(self):
@@ -169,7 +189,7 @@ class Certificates:
     def __repr__(self):
         return (
             f"{int(self.certified.sum())} of {len(self)} points certified: "
-            f"{self.distinct} distinct solutions, {self.real} of them proved real"
+            f"{self.n_distinct} distinct solutions, {self.n_real} of them proved real"
         )
 
 

@@ -4,9 +4,10 @@ import numpy as np
 
 from . import _native
 from ._errors import InputError
-from ._run import call, integer, seeded, text
+from ._run import call, came, integer, seeded, text
 from ._solutions import Certificates, Solutions
-from ._system import names, system as _system
+from ._symbols import Symbols, listed
+from ._system import names, split, system as _system
 
 
 def complex_rows(name, values):
@@ -17,7 +18,8 @@ def complex_rows(name, values):
             array = np.asarray(values, dtype=complex)
         if array.size > 1 << 28:
             raise InputError(f"{name} has {array.size} numbers, more than {1 << 28}")
-        array = array.astype(complex, copy=False)
+        # Rust reads aligned numbers alone.
+        array = np.require(array.astype(complex, copy=False), requirements="A")
     except (TypeError, ValueError, OverflowError) as error:
         if isinstance(error, InputError):
             raise
@@ -25,8 +27,15 @@ def complex_rows(name, values):
     if array.ndim == 1:
         array = array[None, :]
     if array.ndim != 2:
-        raise InputError(f"{name} must be a matrix, not an array of {array.ndim} axes")
+        raise InputError(f"{name} must be a matrix, one in each row, not {came(array)}")
     return array
+
+
+def _read(given, variables, *others):
+    """A system and its variables as lists or text, and the names of all symbols in them and in others."""
+    given = given if isinstance(given, str) else listed(given)
+    variables = split(variables)
+    return given, variables, Symbols(given, variables, *others)
 
 
 def solve(
@@ -48,13 +57,15 @@ def solve(
     ----------
     system : str, or sequence of str or SymPy expressions
         The equations, each a formula that is to vanish or with `=` in it (SymPy: `Eq`). One text holds one equation a
-        line, or PHCpack's format, or TOML. Powers are written `^` or `**`, the imaginary unit `i` or `I`.
+        line, or PHCpack's format, or TOML. Powers are written `^` or `**`, the imaginary unit `i` or `I`. Symbols of SymPy
+        may have any name, `x_{1}` or that of a `Dummy`.
     variables : sequence of str or symbols, optional
-        The unknowns in their order. By default in the order of their appearance; those of SymPy sorted by name.
+        The unknowns in their order, whatever the equations are given as. By default in the order of their appearance; those of
+        SymPy sorted by name.
     seed : int
         Seed of everything random; the same seed gives the same bits, those of the program `hc solve` too.
-    start : {"auto", "polyhedral", "multihomogeneous", "total-degree"}
-        The start system.
+    start : {"auto", "polyhedral", "multihomogeneous", "total_degree"}
+        The start system; `total-degree`, as the program has it, is the same.
     groups : sequence of sequences of names, optional
         Groups of unknowns for `multihomogeneous`.
     torus_only : bool
@@ -71,7 +82,7 @@ def solve(
     Returns
     -------
     Solutions
-        With `points`, `real`, `multiplicities`, `certified`.
+        With `points`, `real_points`, `multiplicities`, `certified`.
 
     Raises
     ------
@@ -84,22 +95,28 @@ def solve(
     --------
     >>> import hc
     >>> found = hc.solve(["x^2 + y^2 - 5", "x*y - 2"])
-    >>> sorted(found.real.round(12).tolist())
+    >>> sorted(found.real_points.round(12).tolist())
     [[-2.0, -1.0], [-1.0, -2.0], [1.0, 2.0], [2.0, 1.0]]
     """
-    wanted = [names("groups", group) for group in groups] if groups is not None else []
-    given = _system(system, variables)
-    if start == "multihomogeneous" and not wanted:
+    groups = [split(group) for group in listed(groups)] if groups is not None else []
+    system, variables, symbols = _read(system, variables, groups)
+    if start == "multihomogeneous" and not groups:
         raise InputError('say which unknowns form groups, for instance groups=[["x"], ["y"]]')
     settings = {
         "seed": seeded(seed),
         "start": text("start", start),
-        "groups": wanted,
+        "groups": [names("groups", group, symbols) for group in groups],
         "torus_only": bool(torus_only),
         "max_paths": integer("max_paths", max_paths, 0, 2**64 - 1),
         "certify": bool(certify),
     }
-    return call(_native.solve, given, settings, threads=threads, progress=progress, wrap=Solutions)
+
+    def wrap(found):
+        return Solutions(found, symbols.shown)
+
+    with symbols.in_errors():
+        given = _system(system, variables, symbols)
+        return call(_native.solve, given, settings, threads=threads, progress=progress, wrap=wrap)
 
 
 def mixed_volume(system, *, variables=None, threads=None, progress=True):
@@ -125,7 +142,10 @@ def mixed_volume(system, *, variables=None, threads=None, progress=True):
     >>> hc.mixed_volume(["x^2*y + x + 1", "x*y^2 + y + 2"])
     3
     """
-    return call(_native.mixed_volume, _system(system, variables), threads=threads, progress=progress)
+    system, variables, symbols = _read(system, variables)
+    with symbols.in_errors():
+        given = _system(system, variables, symbols)
+        return call(_native.mixed_volume, given, threads=threads, progress=progress)
 
 
 def certify(system, points, *, variables=None, threads=None, progress=True):
@@ -149,5 +169,7 @@ def certify(system, points, *, variables=None, threads=None, progress=True):
     2 of 3 points certified: 2 distinct solutions, 2 of them proved real
     """
     rows = complex_rows("points", points.points if isinstance(points, Solutions) else points)
-    given = _system(system, variables)
-    return call(_native.certify, given, rows, threads=threads, progress=progress, wrap=Certificates)
+    system, variables, symbols = _read(system, variables)
+    with symbols.in_errors():
+        given = _system(system, variables, symbols)
+        return call(_native.certify, given, rows, threads=threads, progress=progress, wrap=Certificates)

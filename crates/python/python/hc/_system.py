@@ -1,43 +1,24 @@
 """Systems as users write them: text, strings, SymPy expressions."""
 
-import re
-import sys
-
 from ._errors import InputError
 from ._numbers import decimal
+from ._symbols import is_sympy, listed, natural
 
 
-def _is_sympy(thing):
-    sympy = sys.modules.get("sympy")
-    return sympy is not None and isinstance(thing, (sympy.Basic, sympy.MatrixBase))
-
-
-def _natural(name):
-    return [(int(part), "") if part.isdigit() else (-1, part) for part in re.split(r"(\d+)", name)]
-
-
-def _listed(given):
-    """One thing or many as a list. A SymPy matrix is many, though it has no `__iter__`."""
-    if _is_sympy(given):
-        return list(given) if hasattr(given, "shape") else [given]
-    return given if hasattr(given, "__iter__") and not isinstance(given, str) else [given]
-
-
-def formulas(name, given):
+def formulas(name, given, symbols):
     """A list of formulas as strings, and the names in them where they come from SymPy."""
-    given = _listed(given)
     texts, names, symbolic = [], set(), False
     printer = None
     for item in given:
         if isinstance(item, str):
             texts.append(item)
-        elif _is_sympy(item):
+        elif is_sympy(item):
             import sympy
 
             if printer is None:
                 from ._printer import Printer
 
-                printer = Printer({"order": None})
+                printer = Printer(symbols)
             symbolic = True
             expression = item
             if isinstance(item, sympy.Equality):
@@ -46,38 +27,44 @@ def formulas(name, given):
                 expression = item.as_expr()
             if not isinstance(expression, sympy.Expr):
                 raise InputError(f"{name} {len(texts) + 1} is no formula: {item!r}")
-            names.update(symbol.name for symbol in expression.free_symbols)
+            names.update(expression.free_symbols)
             texts.append(printer.doprint(expression))
         elif isinstance(item, (int, float)) and not isinstance(item, bool):
             texts.append(decimal(item))
         else:
             raise InputError(f"{name} {len(texts) + 1} must be a string or a SymPy expression, not {type(item).__name__}")
-    return texts, sorted(names, key=_natural) if symbolic else None
+    if not symbolic:
+        return texts, None
+    found = {symbols.name(symbol): symbol for symbol in names if symbol.is_Symbol}
+    return texts, sorted(found, key=lambda each: (natural(found[each].name), natural(each)))
 
 
-def names(name, given):
-    """A list of names from strings, SymPy symbols, or one string with blanks or commas."""
+def split(given):
+    """A list of names, symbols or others from what a user gives for it; one string has blanks or commas."""
     if given is None:
         return None
-    if isinstance(given, str):
-        given = given.replace(",", " ").split()
+    return given.replace(",", " ").split() if isinstance(given, str) else listed(given)
+
+
+def names(name, given, symbols):
+    """The names that formulas have for names and symbols."""
+    if given is None:
+        return None
     found = []
-    for item in _listed(given):
+    for item in given:
         if isinstance(item, str):
-            found.append(item)
-        elif _is_sympy(item) and item.is_Symbol:
-            found.append(item.name)
+            found.append(symbols.named(item))
+        elif is_sympy(item) and item.is_Symbol:
+            found.append(symbols.name(item))
         else:
             raise InputError(f"{name} must be names or symbols, not {item!r}")
     return found
 
 
-def system(given, variables=None):
-    """What the extension module takes for a system."""
-    variables = names("variables", variables)
+def system(given, variables, symbols):
+    """What the extension module takes for a system; `given` is a text or a list, `variables` a list or None."""
+    variables = names("variables", variables, symbols)
     if isinstance(given, str):
-        if variables is None:
-            return given
-        return [line for line in re.split(r"[;\n]", given) if line.strip()], variables
-    texts, found = formulas("equation", given)
+        return given, variables
+    texts, found = formulas("equation", given, symbols)
     return texts, variables if variables is not None else found

@@ -12,7 +12,7 @@ a rotation, reflection and translation of the plane.
 Arrays in, arrays out, lengths in metres, NaN for what is missing. Exceptions are those of the package `hc`.
 """
 
-from hc import Error, InputError, InternalError, UndeterminedError
+from hc import Error, InputError, InternalError, UndeterminedError, __version__
 
 from ._calibration import Alternative, Calibration
 from ._networks import Networks, Simulation, Unfinished, calibrate, cramer_rao, simulate, solve

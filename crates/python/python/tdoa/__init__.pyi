@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple, Protocol
 
 import numpy as np
 from hc import Error, InputError, InternalError, UndeterminedError
@@ -29,8 +29,23 @@ __all__ = [
 _Floats = NDArray[np.float64]
 _Progress = bool | Callable[[str, int, int], object]
 _Path = str | os.PathLike[str]
-# An array, a pandas.DataFrame, which need not be installed, or Pseudoranges.
-_Table = Any
+
+__version__: str
+
+# A pandas.DataFrame, which need not be installed.
+class _Frame(Protocol):
+    @property
+    def columns(self) -> Any: ...
+    @property
+    def index(self) -> Any: ...
+    def to_numpy(self) -> Any: ...
+
+# An open file.
+class _File(Protocol):
+    def read(self, size: int, /) -> str | bytes: ...
+
+_Table = NDArray[Any] | Sequence[Sequence[float | None]] | _Frame | Pseudoranges
+_Units = Literal["m", "cm", "km", "s", "ms", "us", "ns", "samples"]
 _Names = Sequence[str] | tuple[Sequence[str] | None, Sequence[str] | None] | Mapping[str, Sequence[str]]
 
 class Pseudoranges:
@@ -48,6 +63,8 @@ class Pseudoranges:
     ) -> None: ...
     @property
     def shape(self) -> tuple[int, int]: ...
+    def __eq__(self, other: object) -> bool: ...
+    __hash__: None  # type: ignore[assignment]
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]: ...
 
 class Unfinished:
@@ -57,6 +74,8 @@ class Unfinished:
     starts: int
     agreeing: int
     def __init__(self, found: dict[str, Any]) -> None: ...
+    def __eq__(self, other: object) -> bool: ...
+    __hash__: None  # type: ignore[assignment]
 
 class Alternative:
     receivers: _Floats
@@ -126,6 +145,8 @@ class Networks:
     receiver_names: list[str]
     transmitter_names: list[str]
     def __init__(self, found: dict[str, Any]) -> None: ...
+    def __eq__(self, other: object) -> bool: ...
+    __hash__: None  # type: ignore[assignment]
     def __len__(self) -> int: ...
 
 class Simulation(NamedTuple):
@@ -140,15 +161,15 @@ def calibrate(
     *,
     sigma: ArrayLike | None = None,
     speed: float | None = None,
-    dimensions: str | int = "auto",
+    dimensions: Literal["auto", 2] = "auto",
     anchors: ArrayLike | Mapping[str, ArrayLike] | None = None,
     anchor_sigma: ArrayLike | Mapping[str, float] | None = None,
     names: _Names | None = None,
     seed: int = 0,
     threads: int | None = None,
     progress: _Progress = True,
-    receiver_delays: str = "none",
-    errors: str = "symmetric",
+    receiver_delays: Literal["none", "auto", "all"] = "none",
+    errors: Literal["symmetric", "one-sided"] = "symmetric",
     distances: Iterable[tuple[str | int, str | int, float]] | None = None,
     estimate_speed: bool = False,
     max_starts: int | None = None,
@@ -158,9 +179,9 @@ def solve(
     pseudoranges: _Table,
     *,
     speed: float | None = None,
-    dimensions: str | int = "auto",
+    dimensions: Literal["auto", 2] = "auto",
     tolerance: float | None = None,
-    start: str = "stored",
+    start: Literal["stored", "polyhedral"] = "stored",
     first_under: float | None = None,
     names: _Names | None = None,
     threads: int | None = None,
@@ -170,7 +191,7 @@ def simulate(
     receivers: int = 8,
     transmitters: int = 12,
     *,
-    layout: str = "room",
+    layout: Literal["room", "chain", "grid", "normal"] = "room",
     size: tuple[float, float] = (10.0, 10.0),
     noise: float = 0.0,
     outliers: float = 0.0,
@@ -179,7 +200,7 @@ def simulate(
     hearing: int | None = None,
     detours: float = 0.0,
     detour_size: float = 1.0,
-    fault: tuple[str, float] | None = None,
+    fault: tuple[Literal["delay", "drift", "move"], float] | None = None,
     delays: float = 0.0,
     seed: int = 0,
 ) -> Simulation: ...
@@ -187,9 +208,9 @@ def cramer_rao(
     receivers: ArrayLike, transmitters: ArrayLike, sigma: float, *, used: ArrayLike | None = None
 ) -> float: ...
 def read(
-    path: _Path,
+    path: _Path | _File,
     *,
-    units: str | None = None,
+    units: _Units | None = None,
     speed: float | None = None,
     rate: float | None = None,
     variable: str | None = None,

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hc import InputError, _native
+from hc._result import Result
 from hc._run import call, integer, number, seeded, text
 
 from ._calibration import Calibration
@@ -104,7 +105,8 @@ def calibrate(
     ----------
     pseudoranges : array_like of float, shape (m, n), or pandas.DataFrame, or Pseudoranges
         What receiver i (row) measures of transmitter j (column): distance plus offset, metres; NaN where nothing was measured.
-        With `speed`: arrival times in seconds.
+        With `speed`: arrival times in seconds. A DataFrame may also have one measurement a row, in columns such as mic, event
+        and value, as `read` takes it from a file.
     sigma : float or array_like of shape (m, n), optional
         Standard deviation of the measurements in metres; an array has one for each. Estimated by default.
     speed : float, optional
@@ -160,7 +162,7 @@ def calibrate(
     (True, (8, 2))
     """
     _plane(dimensions)
-    given, single = table(pseudoranges, names, sigma, speed)
+    given, single, factor = table(pseudoranges, names, sigma, speed)
     count = len(given["values"])
     exact, measured = _known(_anchors(anchors, given["receivers"], count), anchor_sigma, given["receivers"], count)
     settings = {
@@ -175,7 +177,7 @@ def calibrate(
         "max_starts": integer("max_starts", max_starts),
         "agreeing": integer("agreeing", agreeing),
     }
-    arguments = given, settings, given["factor"]
+    arguments = given, settings, factor
     return call(_native.calibrate, *arguments, threads=threads, progress=progress, wrap=_calibrated)
 
 
@@ -199,7 +201,7 @@ def _distances(distances, names, count):
     return found
 
 
-class Unfinished:
+class Unfinished(Result):
     """The best network so far of a calibration that was stopped: a longer search may find a better one.
 
     Attributes
@@ -214,9 +216,6 @@ class Unfinished:
         How many starts of the search had ended, and how many of them in this network.
     """
 
-    def __init__(self, found):
-        self.__dict__.update(found)
-
     def __repr__(self):
         m, n = len(self.receivers), len(self.transmitters)
         return f"unfinished calibration of {m} receivers and {n} transmitters: {self.agreeing} of {self.starts} starts agree"
@@ -226,8 +225,8 @@ def _calibrated(found):
     return Unfinished(found) if isinstance(found, dict) else Calibration(found)
 
 
-class Networks:
-    """Every network that explains a small table exactly, best first.
+class Networks(Result):
+    """Every network that explains a small table exactly, best first. Two are equal if all but `seconds` is, to the last bit.
 
     Attributes
     ----------
@@ -258,9 +257,6 @@ class Networks:
     seconds : float
         How long the work took, without what Python adds.
     """
-
-    def __init__(self, found):
-        self.__dict__.update(found)
 
     def __len__(self):
         return len(self.residuals)
@@ -319,7 +315,7 @@ def solve(
     (True, True)
     """
     _plane(dimensions)
-    given, _ = table(pseudoranges, names, None, speed)
+    given, _, _ = table(pseudoranges, names, None, speed)
     arguments = given, number("tolerance", tolerance), text("start", start), number("first_under", first_under)
     return call(_native.solve_network, *arguments, threads=threads, progress=progress, wrap=Networks)
 

@@ -1,15 +1,20 @@
 """Measurements: tables of pseudoranges, with names."""
 
 import os
+import re
 import sys
 
 import numpy as np
 
 from hc import InputError, _native
-from hc._run import number, text
+from hc._result import Result
+from hc._run import came, number, text
+
+# The largest file that is read, bytes.
+_MOST = 512_000_000
 
 
-class Pseudoranges:
+class Pseudoranges(Result):
     """A table of pseudoranges with names, as `read` gives it; `calibrate` and `solve` take it as it is.
 
     Attributes
@@ -57,16 +62,15 @@ def real_matrix(name, values):
     try:
         array = np.asarray(values)
         if array.ndim != 2:
-            raise InputError(
-                f"{name} must be a matrix, receivers in rows and transmitters in columns, not an array of {array.ndim} axes"
-            )
+            raise InputError(f"{name} must be a matrix, receivers in rows and transmitters in columns, not {came(array)}")
         _native.check_size(*array.shape)
         if array.dtype.kind == "O":
             array = np.array([[np.nan if cell is None else cell for cell in row] for row in array], dtype=float)
             array = array.reshape(np.shape(values))
         if array.dtype.kind not in "biuf":
             raise InputError(f"{name} must be real numbers, not {array.dtype}")
-        array = array.astype(float, copy=False)
+        # Rust reads aligned numbers alone.
+        array = np.require(array.astype(float, copy=False), requirements="A")
         if np.ma.is_masked(values):
             # What is masked was not measured.
             array = np.where(np.ma.getmaskarray(values), np.nan, array)
@@ -77,11 +81,49 @@ def real_matrix(name, values):
         raise InputError(f"{name} must be a matrix of numbers: {error}") from None
 
 
+def _long(frame, factor):
+    """The pseudoranges of a frame of one measurement a row, read as the program reads such a list; None if it is no list."""
+    if any(name is not None for name in frame.index.names):
+        frame = frame.reset_index()
+    headings = [str(heading) for heading in frame.columns]
+    if not _native.heads_list(headings):
+        return None
+    _native.check_size(len(frame), 1)
+    data = frame.to_csv(index=False).encode()
+    units = (None, None) if factor is None else ("s", factor)
+    try:
+        return _pseudoranges(_native.read("DataFrame", data, *units, None, None))
+    except InputError as error:
+        # Their unit is told in another way here.
+        words = re.sub(r"give --units s --speed V|--units \w+ --speed V", "give speed=V and the times in seconds", str(error))
+        raise InputError(words) from None
+
+
+def _is_file(thing):
+    return isinstance(thing, (str, bytes, os.PathLike)) or hasattr(thing, "read")
+
+
 def table(pseudoranges, names=None, sigma=None, speed=None):
-    """What the extension module takes for measurements, and the single standard deviation, if there is one."""
+    """What the extension module takes for measurements; the single standard deviation and the speed, if there are these."""
+    if _is_file(pseudoranges):
+        given = repr(os.fspath(pseudoranges)) if isinstance(pseudoranges, os.PathLike) else repr(pseudoranges)
+        given = given if isinstance(pseudoranges, (str, os.PathLike)) else "file"
+        raise InputError(f"pseudoranges must be a table, not a file; read it first: tdoa.read({given}), with the units of its numbers")
     receivers = transmitters = sigmas = None
+    factor = None
+    if speed is not None:
+        factor = number("speed", speed)
+        if not (factor > 0 and factor < float("inf")):
+            raise InputError(f"speed must be positive and finite, not {factor}")
+    in_metres = factor
     pandas = sys.modules.get("pandas")
-    if pandas is not None and isinstance(pseudoranges, pandas.DataFrame):
+    is_frame = pandas is not None and isinstance(pseudoranges, pandas.DataFrame)
+    if is_frame and (measured := _long(pseudoranges, factor)) is not None:
+        pseudoranges, in_metres = measured, None
+    if isinstance(pseudoranges, Pseudoranges):
+        values, sigmas = pseudoranges.values, pseudoranges.sigmas
+        receivers, transmitters = pseudoranges.receiver_names, pseudoranges.transmitter_names
+    elif is_frame:
         frame = pseudoranges
         # The numbers that pandas gives to rows and columns are no names.
         if not isinstance(frame.index, pandas.RangeIndex):
@@ -92,9 +134,6 @@ def table(pseudoranges, names=None, sigma=None, speed=None):
             values = frame.to_numpy(dtype=float, na_value=np.nan)
         except (TypeError, ValueError) as error:
             raise InputError(f"pseudoranges must be numbers: {error}") from None
-    elif isinstance(pseudoranges, Pseudoranges):
-        values, sigmas = pseudoranges.values, pseudoranges.sigmas
-        receivers, transmitters = pseudoranges.receiver_names, pseudoranges.transmitter_names
     else:
         values = pseudoranges
     values = real_matrix("pseudoranges", values)
@@ -110,11 +149,6 @@ def table(pseudoranges, names=None, sigma=None, speed=None):
             pair = names, None
         receivers = strings("names", pair[0]) if pair[0] is not None else receivers
         transmitters = strings("names", pair[1]) if pair[1] is not None else transmitters
-    factor = None
-    if speed is not None:
-        factor = number("speed", speed)
-        if not (factor > 0 and factor < float("inf")):
-            raise InputError(f"speed must be positive and finite, not {factor}")
     single = None
     if sigma is not None:
         if isinstance(sigma, (str, bytes)) or not hasattr(sigma, "__iter__") or getattr(sigma, "ndim", 1) == 0:
@@ -128,9 +162,9 @@ def table(pseudoranges, names=None, sigma=None, speed=None):
         "sigmas": sigmas,
         "receivers": receivers,
         "transmitters": transmitters,
-        "factor": factor,
+        "factor": in_metres,
     }
-    return given, single
+    return given, single, factor
 
 
 def read(path, *, units=None, speed=None, rate=None, variable=None):
@@ -138,12 +172,12 @@ def read(path, *, units=None, speed=None, rate=None, variable=None):
 
     Parameters
     ----------
-    path : path
-        The file.
-    units : {"m", "s", "ms", "us", "samples"}, optional
+    path : str, os.PathLike or open file
+        The file. What an open file holds is known by the ending of its `name`, and CSV if it has none.
+    units : {"m", "cm", "km", "s", "ms", "us", "ns", "samples"}, optional
         Unit of the numbers. Metres by default, but a table headed by times is then refused.
     speed : float, optional
-        Propagation speed in metres a second, for all units but metres; sound in air: 343, radio: 299792458.
+        Propagation speed in metres a second, for times; sound in air: 343, radio: 299792458.
     rate : float, optional
         Samples a second, for samples.
     variable : str, optional
@@ -155,18 +189,38 @@ def read(path, *, units=None, speed=None, rate=None, variable=None):
 
     Raises
     ------
+    FileNotFoundError
+        If there is no such file; other errors of the system likewise.
     InputError
-        With file, line, column and what to do.
+        If the file cannot be used: with file, line, column and what to do.
     """
     if units is None and (speed is not None or rate is not None):
         raise InputError("speed and rate need units: s, ms, us or samples")
     units = None if units is None else text("units", units)
     variable = None if variable is None else text("variable", variable)
-    try:
-        path = os.fsdecode(path)
-    except TypeError:
-        raise InputError(f"path must be a path, not {path!r}") from None
-    return _pseudoranges(_native.read(path, units, number("speed", speed), number("rate", rate), variable))
+    data = None
+    if hasattr(path, "read"):
+        path, data = _contents(path)
+    else:
+        try:
+            path = os.fsdecode(path)
+            # Errors of the system are Python's own.
+            with open(path, "rb"):
+                pass
+        except (TypeError, ValueError):
+            raise InputError(f"path must be a path or an open file, not {path!r}") from None
+    return _pseudoranges(_native.read(path, data, units, number("speed", speed), number("rate", rate), variable))
+
+
+def _contents(file):
+    """The name of an open file, and what is in it from where it stands."""
+    name = getattr(file, "name", None)
+    name = name if isinstance(name, str) and name else "open file"
+    data = file.read(_MOST + 1)
+    data = data.encode() if isinstance(data, str) else data
+    if not isinstance(data, bytes):
+        raise InputError(f"{name}: reading gives {type(data).__name__}, not bytes or text")
+    return name, data
 
 
 def _pseudoranges(found):
