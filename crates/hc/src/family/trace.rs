@@ -1,10 +1,10 @@
 //! The trace test: numerical proof that a fibre of a parameter family is whole.
 //!
 //! On a generic line `p + lambda v` through the parameter point, the solutions `(x, lambda)` form a
-//! curve. The fibre is the intersection of the curve with `lambda = 0`. The intersection with `(a x
-//! - c) lambda = tau` has instead the points of the fibre and further points near `a x = c`. Over
-//! parallel hypersurfaces of this kind (in `tau`), the sum of all points moves linearly if, and for
-//! a generic choice only if, no point is missing (Leykin, Rodriguez, Sottile 2018,
+//! curve. The fibre is the intersection of the curve with `lambda = 0`. The intersection with
+//! `(a x - c) lambda = tau` has instead the points of the fibre and further points near `a x = c`.
+//! Over parallel hypersurfaces of this kind (in `tau`), the sum of all points moves linearly if, and
+//! for a generic choice only if, no point is missing (Leykin, Rodriguez, Sottile 2018,
 //! arXiv:1608.00540, for the bilinear case). Monodromy in the enlarged family finds the further
 //! points, starting from the fibre.
 
