@@ -14,8 +14,8 @@ use std::path::Path;
 pub(super) fn write(results: &Path) -> Result<String> {
     let mut text = String::from(
         "# Results\n\n\
-         Written by `cargo xtask experiments --page` from the tables in [results](../results); `cargo xtask experiments` makes the tables anew (hours), \
-         `--quick` a small version of each (minutes). How each was made stands at the end. \"The paper\" is Ferranti, Åström, Oskarsson, Boutellier, \
+         Written by `cargo xtask experiments --page` from the tables in [results](../results); `cargo xtask experiments` makes the tables anew \
+         (hours), and with `--quick` a small version of each (minutes). The end of the page says how each was made. \"The paper\" is Ferranti, Åström, Oskarsson, Boutellier, \
          Kannala, *Homotopy Continuation for Sensor Networks Self-Calibration*.\n",
     );
     for (name, title, section) in SECTIONS {
@@ -52,10 +52,11 @@ fn calibration(results: &Path) -> Result<String> {
     let others: Vec<Option<Table>> =
         ["calibrate-restarts", "calibrate-minimal"].map(|name| summary(results, name).ok()).into_iter().collect();
     let mut text = String::from(
-        "A room of 10 m by 10 m, noise 0.01 m, not told to the calibration; 10 % of the measurements missing, outliers as stated (shares of all cells, errors uniform \
-         within 10 m). Success: receivers within three times the Cramer-Rao bound (root mean square), over the networks that the good measurements determine at all. \
-         Beside the portfolio of `tdoa calibrate`, random restarts alone and exactly solved subsets alone, with numbers of starts that take about as long. Seconds are \
-         processor seconds of one thread, median.\n\n",
+        "The networks lie in a room of 10 m by 10 m. The noise is 0.01 m and is not given to the calibration. 10 % of the measurements are missing; \
+         outliers are as stated (shares of all cells, errors uniform within 10 m). Success means receivers within three times the Cramer-Rao bound \
+         (root mean square), over the networks that the good measurements determine at all. The portfolio of `tdoa calibrate` is compared with random \
+         restarts alone and with exactly solved subsets alone, with numbers of starts that take about as long. Seconds are processor seconds of one \
+         thread, median.\n\n",
     );
     text += &head(&[
         "",
@@ -88,22 +89,24 @@ fn calibration(results: &Path) -> Result<String> {
         }
         text += &line(&cells);
     }
-    text += "\nWhere the share is low, the reason is what the outliers leave over. With 30 % of the cells wrong and 10 % missing, 6r/10s has 36 good measurements for 39 unknowns: \
-             no network is determined. 8r/12s has 57 for 49, and 29 wrong ones: a wrong network that fits 49 of the 86 exactly needs only a few chance agreements \
-             to fit as many as the true one. 10r/20s has 120 for 77 unknowns and 60 wrong: a third of the measurements, while the estimate of the noise from the data breaks \
-             down at a share of (1 - 77/180)/2 = 29 % (see the module `loss`). 6r/10s with 10 % has 48 good measurements for 39 unknowns and 6 wrong: nine spare ones \
-             are few for finding six wrong. What is wrong there and yet called unique is mostly an outlier of some decimetres that passes for noise: of the 17 such networks \
-             among the first 250, the noise is estimated 1.6 to 33 times too large in 15, and in 13 a search that starts at the \
-             true positions fails as well, so that these data prefer another network (`cargo run --release -p experiments --example mistaken`). 25r/20s has 300 for 107, and stays below its share of 39 %.\n";
+    text += "\nWhere the share is low, the outliers leave too few good measurements. With 30 % of the cells wrong and 10 % missing, 6r/10s has 36 good measurements for 39 unknowns: \
+             no network is determined. 8r/12s has 57 good measurements for 49 unknowns, and 29 wrong ones: a wrong network that fits 49 of the 86 exactly needs only a few chance agreements \
+             to fit as many as the true one. 10r/20s has 120 good measurements for 77 unknowns and 60 wrong ones. That is a third of the measurements, \
+             while the estimate of the noise from the data breaks down at a share of (1 - 77/180)/2 = 29 % (see the module `loss`). 6r/10s with 10 % \
+             has 48 good measurements for 39 unknowns and 6 wrong ones: nine spare measurements are few for finding six wrong ones. Networks that are \
+             wrong there and yet called unique mostly have an outlier of some decimetres that passes for noise. Among the first 250 there are 17 such \
+             networks. In 15 of them the noise is estimated 1.6 to 33 times too large. In 13 a search that starts at the true positions fails as well, \
+             so that these data prefer another network (`cargo run --release -p experiments --example mistaken`). 25r/20s has 300 good measurements \
+             for 107 unknowns, and stays below its share of 39 %.\n";
     Ok(text)
 }
 
 fn small(results: &Path) -> Result<String> {
     let table = summary(results, "small")?;
     let mut text = String::from(
-        "Nothing missing, no outliers, the noise told to the calibration (the smallest sizes leave nothing over to estimate it from). \"Among\": the true network is the \
-         result or among its alternatives (receivers within three times the Cramer-Rao bound or 2 % of the network's size). \"Unique\": no alternative was \
-         found.\n\n",
+        "Nothing is missing, there are no outliers, and the noise is given to the calibration (the smallest sizes leave no measurements from which to \
+         estimate it). \"Among\" means that the true network is the result or among its alternatives (receivers within three times the Cramer-Rao \
+         bound or 2 % of the network's size). \"Unique\" means that no alternative was found.\n\n",
     );
     text += &head(&[
         "",
@@ -127,16 +130,17 @@ fn small(results: &Path) -> Result<String> {
             row.get("processor_seconds_median")?.to_owned(),
         ]);
     }
-    text += "\nThe minimal sizes 6r/3s and 4r/5s fit every physical solution exactly, so the true one cannot be told from the others: all are listed.\n";
+    text += "\nThe minimal sizes 6r/3s and 4r/5s fit every physical solution exactly. The true one cannot be told from the others, so that all are \
+             listed.\n";
     Ok(text)
 }
 
 fn coverage(results: &Path) -> Result<String> {
     let table = summary(results, "coverage")?;
     let mut text = String::from(
-        "As above, without outliers. The root mean square of receiver error over bound, each network in terms of its own, and the share of true receivers in their \
-         95 % ellipses, over the successful networks. The robust loss loses 5 % of efficiency on normal noise, so 1/sqrt(0.95) = 1.026 is expected for \
-         the ratio.\n\n",
+        "As above, without outliers. The table has the root mean square of the receiver error divided by the bound of the same network, and the share \
+         of true receivers in their 95 % ellipses, over the successful networks. The robust loss loses 5 % of efficiency on normal noise; the expected \
+         ratio is therefore 1/sqrt(0.95) = 1.026.\n\n",
     );
     text += &head(&["", "networks", "success", "error over bound", "in the 95 % ellipses", "s"]);
     for row in table.rows() {
@@ -155,7 +159,8 @@ fn coverage(results: &Path) -> Result<String> {
 fn growth(results: &Path) -> Result<String> {
     let table = summary(results, "growth")?;
     let mut text = String::from(
-        "30 % missing, 10 % outliers, one network each; seconds on the clock, memory of the whole process so far.\n\n",
+        "30 % of the measurements are missing and 10 % are outliers; one network each. Seconds are wall-clock seconds; memory is that of the whole \
+             process so far.\n\n",
     );
     text += &head(&["", "threads", "s", "MB", "success", "error over bound"]);
     for row in table.rows() {
@@ -163,8 +168,8 @@ fn growth(results: &Path) -> Result<String> {
         let cells = columns.iter().map(|column| Ok(row.get(column)?.to_owned())).collect::<Result<Vec<_>>>()?;
         text += &line(&cells);
     }
-    text += "\nThe search works on at most 32 receivers and 48 transmitters; the others are located afterwards and refined with all measurements by a Schur complement over \
-             the transmitters, whose cost grows as the square of the receivers times the transmitters.\n";
+    text += "\nThe search works on at most 32 receivers and 48 transmitters. The others are located afterwards and refined with all measurements by a \
+             Schur complement over the transmitters. Its cost grows as the square of the receivers times the transmitters.\n";
     Ok(text)
 }
 
@@ -172,9 +177,10 @@ fn recordings(results: &Path) -> Result<String> {
     let table = summary(results, "damaged")?;
     let shares = Table::read(&results.join("damaged/candidates_summary.csv"))?;
     let mut text = String::from(
-        "Six microphones and 46, 75 and 132 chirps, nearly planar (martinkjlarsson/tdoa-self-calibration, MIT licence), as they are and with 20 % of the entries removed \
-         and 10 % of the rest replaced by gross errors at random. The oracle is the same refinement on the same data started at the true receivers. Published for the \
-         oracle on the full data: 0.045, 0.048 and 0.051 m (scaled 0.020, 0.027, 0.019 m).\n\n",
+        "The recordings have six microphones and 46, 75 and 132 chirps, and are nearly planar (martinkjlarsson/tdoa-self-calibration, MIT licence). \
+         They are used as they are, and with 20 % of the entries removed and 10 % of the rest replaced by gross errors at random. The oracle is the \
+         same refinement on the same data, started at the true receivers. The published values for the oracle on the full data are 0.045, 0.048 and \
+         0.051 m (scaled 0.020, 0.027, 0.019 m).\n\n",
     );
     text += &head(&[
         "",
@@ -204,8 +210,8 @@ fn recordings(results: &Path) -> Result<String> {
         let cells = columns.iter().map(|column| Ok(row.get(column)?.to_owned())).collect::<Result<Vec<_>>>()?;
         text += &line(&cells);
     }
-    text += "\nCandidates of 6r/3s on spread triples of transmitters, before any refinement: how often one is within a quarter of the network's size of the truth \
-             (79 % on h40 and 76 % on h60 were seen elsewhere).\n\n";
+    text += "\nThe next table has candidates of 6r/3s on spread triples of transmitters, before any refinement, and how often one is within a quarter \
+             of the network's size of the truth (79 % on h40 and 76 % on h60 were seen elsewhere).\n\n";
     text += &head(&["", "triples", "with such a candidate", "candidates a triple"]);
     for row in shares.rows() {
         text += &line(&[
@@ -237,7 +243,7 @@ fn runs(results: &Path) -> Result<String> {
             item("cores").to_owned(),
         ]);
     }
-    text += "\nOther work ran on the same cores, so that seconds on the clock are too long by some factor; processor seconds are less sensitive. Counts and errors do not \
-             depend on it, nor on the number of threads.\n";
+    text += "\nOther work ran on the same cores, so that wall-clock seconds are too long by some factor; processor seconds are less sensitive. Counts \
+             and errors depend neither on other work nor on the number of threads.\n";
     Ok(text)
 }

@@ -21,8 +21,7 @@ pub(super) fn table2(results: &Path) -> Result<String> {
         Ok(line(&cells))
     };
     let mut text = format!(
-        "{} random networks, positions and offsets standard normal, no noise. The mean is given with its \
-         standard error.\n\n",
+        "{} random networks, with standard normal positions and offsets, without noise. The mean is given with its standard error.\n\n",
         real.get("instances")?
     );
     text += &head(&["", "min", "max", "mean", "standard deviation"]);
@@ -32,15 +31,16 @@ pub(super) fn table2(results: &Path) -> Result<String> {
     text += "| the paper: feasible solutions | 1 | 32 | 3 | 3.9 |\n| 260 instances, computed independently | 1 | 35 | 3.44 | 4.85 |\n";
     text += &ours("real, H of any sign", all)?;
     text += "\n![Histogram of the numbers of solutions](../results/table2/counts.svg)\n\n";
-    text += "The largest count grows with the number of instances, since the tail is long: it is no bound. The means of the few hundred instances elsewhere have \
+    text += "The largest count grows with the number of instances, because the tail is long; it is not a bound. The means of the few hundred instances elsewhere have \
              standard errors of about 0.5 (real) and 0.3 (physical).\n\n\
-             The paper takes as feasible the solutions whose residual in the squared equations is below 1e-10 and calls the others false roots. But every real \
-             solution with H > 0 solves the squared equations exactly; the residual only tells how accurately it was computed. What is false about a false root is a \
-             sign: some f_ij - o_j is negative, though it has to be a distance. Here the sign decides, so these counts do not depend on a threshold for rounding \
-             errors. One more slip: with L upper triangular the frame of the paper's parametrisation has (s_2 - s_1)_y = 0, not r_2y = 0 as its text says; counts \
+             The paper calls solutions feasible if their residual in the squared equations is below 1e-10, and calls the others false roots. But every real \
+             solution with H > 0 solves the squared equations exactly; the residual only tells how accurately it was computed. A false root really has \
+             a wrong sign: some f_ij - o_j is negative, although it must be a distance. Here the sign decides, so that these counts do not depend on a \
+             threshold for rounding errors. The paper has another slip: with L upper triangular the frame of the paper's parametrisation has (s_2 - s_1)_y = 0, not r_2y = 0 as its text says; counts \
              and distances do not depend on it.\n\n";
     text += &format!(
-        "Real networks come in pairs along any path of real data, so their number is even; an odd one betrays a lost or doubled path, or a real root called complex. Odd counts: {} of {}; instances \
+        "Real networks come in pairs along any path of real data, so that their number is even. An odd number reveals a lost or doubled path, or a \
+         real root that was called complex. Odd counts: {} of {}; instances \
          with a lost path: {}.\n",
         real.get("odd")?,
         real.get("instances")?,
@@ -54,8 +54,8 @@ pub(super) fn clean(results: &Path) -> Result<String> {
         ["clean-6r3s", "clean", "clean-larger", "clean-others"].map(|name| (name, summary(results, name).ok()));
     let mut text = String::from(
         "Relative errors |X^ - X| / |X - mean X| over all nodes after the best rigid alignment, and |o^ - o| / |o|, of the physical candidate nearest to the truth. \
-         \"Found\": within 1e-4. The paper says: errors \"in the order of magnitude 1e-12\", about 10 s a solve; it has no figures for 6r/3s, and leaves 4r/5s and \
-         4r/6s unsolved.\n\n",
+         \"Found\" means within 1e-4. The paper gives errors \"in the order of magnitude 1e-12\" and about 10 s per solve. It has no figures for \
+         6r/3s, and leaves 4r/5s and 4r/6s unsolved.\n\n",
     );
     text += &head(&[
         "",
@@ -89,9 +89,9 @@ pub(super) fn clean(results: &Path) -> Result<String> {
         cells.push(if milliseconds == "0" { "below 0.01" } else { milliseconds }.to_owned());
         text += &line(&cells);
     }
-    text += "\nThe errors are smaller than the paper's because every candidate is polished in the positions themselves after its path has ended, in which the problem \
-             is far better conditioned than in H. What remains is the condition of the instance. Milliseconds are processor time, of a machine with \
-             other work on the same cores. The one root of 7r/4s and the five of 5r/6s, from ranks, \
+    text += "\nThe errors are smaller than the paper's because every candidate is polished after its path has ended. This is done in the positions \
+             themselves, in which the problem is far better conditioned than in H. The remaining error is due to the condition of the instance. \
+             Milliseconds are processor time, on a machine with other work on the same cores. The one root of 7r/4s and the five of 5r/6s, from ranks, \
              need not be real in pairs. Where paths were lost, the result says so.\n\n";
     for (folder, table) in &tables {
         text += &figures(table.iter().flat_map(Table::rows), folder)?;
@@ -115,8 +115,9 @@ fn figures<'a>(rows: impl Iterator<Item = Row<'a>>, folder: &str) -> Result<Stri
 pub(super) fn speed(results: &Path) -> Result<String> {
     let table = summary(results, "speed")?;
     let mut text = String::from(
-        "Clean random networks, all paths tracked, by the wall on an otherwise idle machine. A Jacobian comes with its factorisation. Where the time goes, and what stands in the \
-         way of more: [how the tracker works](guide/tracker.md). Beside PHCpack on the same networks: [compare.md](compare.md).\n\n",
+        "Clean random networks with all paths tracked; wall-clock time on an otherwise idle machine. Each Jacobian includes its factorisation. [How \
+         the tracker works](guide/tracker.md) says where the time goes, and what stands in the way of more speed. [compare.md](compare.md) has PHCpack \
+         on the same networks.\n\n",
     );
     text += &head(&[
         "",
@@ -152,9 +153,10 @@ pub(super) fn speed(results: &Path) -> Result<String> {
 pub(super) fn routes(results: &Path) -> Result<String> {
     let table = summary(results, "routes")?;
     let mut text = String::from(
-        "All real networks of clean data twice: from the stored start solutions, and from a polyhedral start system as in the paper (`tdoa solve --start polyhedral`), \
-         which is computed anew for each network. \"Agree\": the same networks, no more and no fewer. \"At the data\": the start system for the data themselves had led to all \
-         roots; for the others one for a random member of the family, another one each time, led to all of its roots, and these to the data. Seconds are processor \
+        "All real networks of clean data were found twice: from the stored start solutions, and from a polyhedral start system as in the paper (`tdoa \
+         solve --start polyhedral`), which is computed anew for each network. \"Agree\" counts those with the same networks, no more and no fewer. \
+         \"At the data\" counts those for which the start system for the data themselves led to all roots. For the others, a start system for a random \
+         member of the family, another one each time, led to all of its roots, and these led to the data. Seconds are processor \
          seconds of one thread for both routes. 7r/4s is solved linearly, without paths.\n\n",
     );
     text +=
@@ -179,10 +181,12 @@ pub(super) fn routes(results: &Path) -> Result<String> {
 pub(super) fn noise(results: &Path) -> Result<String> {
     let table = summary(results, "noise")?;
     let mut text = String::from(
-        "Normal noise on every measurement, in units of the standard deviation of the positions. Where more is measured than there are unknowns the candidate of \
-         smallest residual is judged, as in the paper; for the minimal 6r/3s and 4r/5s every candidate fits exactly and the one nearest to the truth is judged. \
-         \"Refined\": least squares over all measurements from the candidate. Relative position errors; offsets are in \
-         [results/noise/summary.csv](../results/noise/summary.csv). The paper's own figures are not in its source, so that there is nothing to set beside these.\n\n",
+        "Every measurement has normal noise, in units of the standard deviation of the positions. Where there are more measurements than unknowns, the \
+         candidate with the smallest residual is judged, as in the paper. For the minimal 6r/3s and 4r/5s every candidate fits exactly, and the one \
+         nearest to the truth is judged. \"Refined\" is least squares over all measurements from the candidate. The table has relative position \
+         errors; offsets are in \
+         [results/noise/summary.csv](../results/noise/summary.csv). The paper's own figures are not in its source, so that these cannot be compared \
+             with them.\n\n",
     );
     text += &head(&["", "noise", "instances", "median", "90 %", "refined: median", "90 %", "no candidate"]);
     for row in table.rows() {
@@ -199,9 +203,9 @@ pub(super) fn noise(results: &Path) -> Result<String> {
         let cells = columns.iter().map(|column| Ok(row.get(column)?.to_owned())).collect::<Result<Vec<_>>>()?;
         text += &line(&cells);
     }
-    text += "\nA candidate that fits exactly as many measurements as there are unknowns is not moved by refinement (6r/3s, 4r/5s). In the other sizes refinement uses the \
-             measurements that the solver left over. The 90 % columns are those of near-degenerate networks, where a little noise moves the nodes far; small networks \
-             also prefer a wrong candidate more often the more noise there is.\n\n";
+    text += "\nRefinement does not move a candidate that fits exactly as many measurements as there are unknowns (6r/3s, 4r/5s). In the other sizes \
+             refinement uses the measurements that the solver left over. The 90 % columns show near-degenerate networks, where a little noise moves \
+             the nodes far. The more noise there is, the more often small networks also prefer a wrong candidate.\n\n";
     text += &figures(table.rows(), "noise")?;
     Ok(text)
 }
