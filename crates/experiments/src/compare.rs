@@ -131,12 +131,11 @@ fn introduction(plan: &Plan, tools: &Tools) -> String {
     let times = if plan.repeats == 1 { "once".to_owned() } else { format!("{} times", plan.repeats) };
     format!(
         "# Beside other programs\n\n\
-         Written by `cargo xtask compare`{}: every case runs first here, then in the peer, the pair {times} (once where the peer takes over a \
-         minute); peers are stopped after {} processor seconds. Seconds are processor seconds of the whole process, so that other work on the machine \
-         matters little; shown is the run of median time; \
-         a ratio is the median of the pairs' ratios, above one where this project is faster. Memory is the peak of the process from its fork on: \
-         less than about 13 MB cannot be seen.\n\n\
-         Peers: {peers}.{absent} Machine: {}. Commit {}. What each can do is in [features.md](features.md).\n\n",
+         Written by `cargo xtask compare`{}. Every case runs first here, then in the peer; the pair runs {times} (once if the peer takes over a \
+         minute). Peers are stopped after {} processor seconds. Seconds are processor seconds of the whole process, so that other work on the machine \
+         matters little. The table shows the run of median time. A ratio is the median of the pairs' ratios; it is above one where this project is \
+         faster. Memory is the peak of the process from its fork on: less than about 13 MB cannot be seen.\n\n\
+         Peers: {peers}.{absent} Machine: {}. Commit {}. [features.md](features.md) says what each program can do.\n\n",
         if plan.quick { " --quick" } else { "" },
         plan.limit,
         machine(),

@@ -17,7 +17,7 @@ const SIZES: [(usize, usize); 3] = [(6, 3), (5, 4), (4, 5)];
 /// The table of networks.
 pub(super) fn beside_phcpack(tools: &Tools, plan: &Plan, text: &mut String) -> Result<()> {
     *text += "\n## Smallest networks: `tdoa solve` beside `phc -b`\n\n\
-        The same random instance for both (positions and offsets standard normal, no noise), one thread each. PHCpack gets the \
+        Both get the same random instance (standard normal positions and offsets, no noise), one thread each. PHCpack gets the \
         polynomials of this project's formulation, expanded.\n\n\
         | network | instance | tdoa found | lost | s | MB | phc found | s | MB | ratio |\n|---|---|---|---|---|---|---|---|---|---|\n";
     for (receivers, transmitters) in SIZES {

@@ -81,7 +81,7 @@ pub(super) fn regular_solutions(result: &str) -> Option<usize> {
 /// The table beside PHCpack.
 pub(super) fn beside_phcpack(tools: &Tools, plan: &Plan, text: &mut String) -> Result<()> {
     *text += "## All isolated solutions: `hc solve` beside `phc -b`\n\n\
-        One thread each. \"found\": distinct isolated solutions, for PHCpack those that its last summary calls regular.\n\n\
+        One thread each. \"found\" counts distinct isolated solutions, for PHCpack those that its last summary calls regular.\n\n\
         | system | solutions | hc found | lost | s | MB | phc found | s | MB | ratio |\n|---|---|---|---|---|---|---|---|---|---|\n";
     let (mut ratios, mut crashes) = (Vec::new(), Vec::new());
     for problem in problems(plan)? {
@@ -121,9 +121,9 @@ pub(super) fn beside_phcpack(tools: &Tools, plan: &Plan, text: &mut String) -> R
 /// The table beside Macaulay2.
 pub(super) fn beside_macaulay2(tools: &Tools, plan: &Plan, text: &mut String) -> Result<()> {
     *text += "\n## `hc solve` beside Macaulay2's `solveSystem`\n\n\
-        One thread each, and processor seconds of solving alone, without the start of the program and its output: Macaulay2's are those \
-        of `solveSystem` (package NumericalAlgebraicGeometry); hc's are at most the seconds by the wall that it reports for solving and \
-        the processor seconds of the whole process, the lesser of which is taken.\n\n\
+        One thread each. Seconds are processor seconds of solving alone, without the start of the program and its output. For Macaulay2 \
+        these are the seconds of `solveSystem` (package NumericalAlgebraicGeometry). For hc the smaller of two upper bounds is taken: the \
+        wall-clock seconds that it reports for solving, and the processor seconds of the whole process.\n\n\
         | system | solutions | hc found | lost | s | MB | M2 found | s | MB | ratio |\n|---|---|---|---|---|---|---|---|---|---|\n";
     for problem in problems_beside_macaulay2(plan)? {
         eprintln!("{} beside M2", problem.name);
@@ -215,7 +215,7 @@ pub(super) fn small(tools: &Tools, plan: &Plan, text: &mut String) -> Result<()>
     let most = milliseconds.iter().copied().fold(0.0, f64::max);
     writeln!(
         text,
-        "\n`hc solve` on cyclic-5 (70 solutions), from the start of the process to its end, by the wall: median {:.1} ms, least {least:.1} ms, \
+        "\n`hc solve` on cyclic-5 (70 solutions), wall-clock time from the start of the process to its end: median {:.1} ms, least {least:.1} ms, \
          most {most:.1} ms of {count} runs.",
         median(&milliseconds)
     )?;

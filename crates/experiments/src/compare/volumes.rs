@@ -34,7 +34,7 @@ fn supports(system: &str) -> Result<String> {
 /// The table beside gfan.
 pub(super) fn beside_gfan(tools: &Tools, plan: &Plan, text: &mut String) -> Result<()> {
     *text += "\n## Mixed volumes: `hc mixed-volume` beside `gfan _mixedvolume`\n\n\
-        The same supports for both. With one thread processor seconds are compared, with two seconds by the wall.\n\n\
+        Both get the same supports. Processor seconds are compared with one thread, wall-clock seconds with two.\n\n\
         | system | threads | hc | s | MB | gfan | s | MB | ratio |\n|---|---|---|---|---|---|---|---|---|\n";
     for (name, system) in problems(plan) {
         let folder = tempfile::tempdir()?;
