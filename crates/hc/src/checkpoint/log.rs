@@ -12,8 +12,8 @@ use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// The first bytes of a log. They have two kinds of line ends, so that files which were converted
-/// as text are detected.
+/// The first bytes of a log. They contain CR and LF, so that files which were converted as text are
+/// detected.
 const MAGIC: [u8; 8] = *b"hclog\r\n\x1a";
 /// Bytes before the first record.
 const PREAMBLE: u64 = 16;
