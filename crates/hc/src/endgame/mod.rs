@@ -37,13 +37,13 @@ const HOME_MIN: f64 = 1e-7;
 /// A leg may take the steps of a path divided by this.
 const LEGS: usize = 20;
 
-/// All legs of a path may take the steps of a path, or fewer where a step is much work: half as many
-/// in a system of as many parameters.
+/// All legs of a path may take the steps of a path, or fewer if a step is much work: half as many
+/// in a system with this many parameters.
 const HEAVY: usize = 256;
 
 /// Finds the ends of paths along `segment`, in the order given.
 ///
-/// `tracker` are the settings for the legs; `turns` bounds the winding number, for instance by the
+/// `tracker` has the settings for the legs. `turns` bounds the winding number, for instance by the
 /// number of all paths.
 ///
 /// # Panics

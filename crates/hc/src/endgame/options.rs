@@ -3,7 +3,7 @@
 use crate::tracker::OptionError;
 use serde::Serialize;
 
-/// Each circle is at least that many times smaller than the one before.
+/// Each circle is at least this many times smaller than the one before.
 pub(super) const LEAST_SHRINK: f64 = 1.5;
 
 /// Settings of the endgame.

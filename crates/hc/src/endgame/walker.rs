@@ -8,22 +8,21 @@ use crate::refine;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// Samples a turn where coordinates are of order between `t^(-5/4)` and `t^(5/4)`.
+/// Samples per turn if coordinates are of order between `t^(-5/4)` and `t^(5/4)`.
 const SAMPLES: usize = 4;
-/// Most samples a turn: valuations up to 16.
+/// Largest number of samples per turn: valuations up to 16.
 const MAX_SAMPLES: usize = 64;
-/// Samples at most where the radius cannot be made smaller.
+/// Largest number of samples if the radius cannot be made smaller.
 const MAX_SAMPLES_WIDE: usize = 16;
-/// Where rounded coefficients move a coordinate by more than this share of its size, a wider circle
-/// is better.
+/// If rounded coefficients move a coordinate by more than this share of its size, a wider circle is
+/// better.
 const SHARP: f64 = 1e-6;
-/// Where they do by more than this on the widest circle too, samples would tell nothing.
+/// If they move it by more than this on the widest circle too, samples would tell nothing.
 const HOPELESS: f64 = 1e-2;
-/// Relative distance below which a loop counts as closed, unless the samples are less accurate than
-/// that.
+/// Relative distance below which a loop counts as closed, unless the samples are less accurate.
 const CLOSED: f64 = 1e-10;
 
-/// After so many loops that were too wide the path is tracked straight to zero.
+/// After this many loops that were too wide, the path is tracked straight to zero.
 const TRY_HOME: u32 = 2;
 
 /// The end of a leg.
@@ -42,14 +41,14 @@ pub(super) struct Walker {
     at: f64,
     x: Vec<Complex64>,
     radius: f64,
-    /// Logarithmic time and point where the path came in.
+    /// Logarithmic time and point at which the endgame began.
     origin: (f64, Vec<Complex64>),
     /// Circles must be wider than this.
     deepest: f64,
     /// Samples of the loop, `x` the last of them; empty on a leg along the radius.
     samples: Vec<Complex64>,
     per_turn: usize,
-    /// Turns after which the loop is given up, and the most ever.
+    /// Turns after which the loop is given up, and the largest number ever.
     turns: usize,
     max_turns: usize,
     shrunk: u32,
@@ -59,7 +58,7 @@ pub(super) struct Walker {
     going_home: bool,
     noise: f64,
     blur: Vec<f64>,
-    /// What a loop says that was not quite clear, with the limit if it is finite.
+    /// The verdict of a loop that was not quite clear, with the limit if it is finite.
     vague: Option<(Verdict, Vec<Complex64>)>,
     middle: Vec<Complex64>,
     verdict: Option<Verdict>,
@@ -112,7 +111,7 @@ impl Walker {
         Leg::Logarithmic([done, done + 1].map(|k| Complex64::new(s, angle * k as f64)))
     }
 
-    /// Takes in the end of the leg, `None` if the tracker failed on it.
+    /// Takes the end of the leg; `None` if the tracker failed on it.
     pub(super) fn advance(&mut self, end: Option<Sample>, options: &EndgameOptions) {
         if self.going_home {
             self.going_home = false;
@@ -139,7 +138,7 @@ impl Walker {
         }
     }
 
-    /// Counts the steps of a leg; a path that is not over after so many in all is given up.
+    /// Counts the steps of a leg. A path that is not over after `limit` steps in all is given up.
     pub(super) fn spend(&mut self, steps: usize, limit: usize) {
         self.steps = self.steps.saturating_add(steps);
         if self.is_live() && self.steps > limit {
@@ -173,13 +172,14 @@ impl Walker {
         self.samples = point;
     }
 
-    /// The next wider radius, if it is not beyond the point where the path came in.
+    /// The next wider radius, if it is not beyond the point at which the endgame began.
     fn widen_to(&self) -> Option<f64> {
         let start = (-self.origin.0).exp();
         (self.radius < start).then(|| (10.0 * self.radius).min(start))
     }
 
-    /// From the point where the path came in to a wider circle than the one that was too deep.
+    /// Goes from the point at which the endgame began to a wider circle than the one that was too
+    /// deep.
     fn widen(&mut self) {
         match self.widen_to() {
             Some(radius) => {
@@ -223,8 +223,8 @@ impl Walker {
         self.x.copy_from_slice(end);
     }
 
-    /// Notes what a loop says that is not quite clear: of several the first, but that a path diverges
-    /// must be said by all.
+    /// Notes the verdict of a loop that is not quite clear. Of several verdicts the first counts,
+    /// but all loops must agree that a path diverges.
     fn suppose(&mut self, vague: Option<(Verdict, Vec<Complex64>)>) {
         let diverges = |vague: &Option<(Verdict, Vec<Complex64>)>| match vague {
             Some((Verdict::Infinite { winding, valuations }, _)) => Some((*winding, valuations.clone())),
@@ -295,8 +295,8 @@ fn judged(reading: Reading, winding: usize) -> Option<(Verdict, Vec<Complex64>)>
     }
 }
 
-/// A direction to infinity in lowest terms. Branch points within a loop, which is not clear then, can
-/// join cycles that go the same way, and only the winding number of one of them is of interest.
+/// A direction to infinity in lowest terms. Branch points within a loop make it unclear. They can
+/// join cycles that go the same way, and only the winding number of one of these is of interest.
 fn reduced((verdict, limit): (Verdict, Vec<Complex64>)) -> (Verdict, Vec<Complex64>) {
     let Verdict::Infinite { winding, valuations } = verdict else { return (verdict, limit) };
     let common = valuations.iter().fold(winding as u64, |divisor, v| gcd(v.unsigned_abs(), divisor)).max(1);
@@ -308,8 +308,8 @@ fn gcd(a: u64, b: u64) -> u64 {
     if b == 0 { a } else { gcd(b, a % b) }
 }
 
-/// Relative distance of two points of a path, each coordinate measured by its own size: cycles may
-/// differ in the small ones alone.
+/// Relative distance of two points of a path. Each coordinate is measured by its own size, because
+/// cycles may differ only in the small ones.
 fn distance(a: &[Complex64], b: &[Complex64]) -> f64 {
     let largest = a.iter().chain(b).map(|z| z.norm()).fold(0.0, f64::max);
     a.iter().zip(b).map(|(a, b)| (a - b).norm() / refine::size(a.norm().max(b.norm()), largest)).fold(0.0, f64::max)
@@ -324,8 +324,8 @@ fn steepest(from: &[Complex64], to: &[Complex64], ds: f64) -> f64 {
     clear.map(|(x, y)| ((y.norm() / x.norm()).ln() / ds).abs()).fold(0.0, f64::max)
 }
 
-/// Samples a turn that tell powers up to `steepest` from their aliases, with room for the decay
-/// beyond them.
+/// Samples per turn that separate powers up to `steepest` from their aliases, with room for the
+/// decay beyond them.
 fn samples_for(steepest: f64) -> usize {
     let mut samples = SAMPLES;
     while samples < MAX_SAMPLES && steepest > 0.25 * samples as f64 + 0.25 {

@@ -14,23 +14,23 @@ use poly::{Exact, Polynomial, SparseSystem};
 
 /// Imaginary parts of regular solutions up to this share of the point count as zero.
 pub(super) const REAL: f64 = 1e-10;
-/// The same of singular ones.
+/// The same for singular solutions.
 pub(super) const REAL_SINGULAR: f64 = 1e-7;
 
-/// What the ends of all paths amount to.
+/// The result of all ends of paths.
 #[derive(Debug, Default)]
 pub(super) struct Classified {
     /// Isolated solutions.
     pub(super) solutions: Vec<Solution>,
     /// Points on components of positive dimension.
     pub(super) component_points: Vec<Vec<Complex64>>,
-    /// Paths that end there.
+    /// Number of paths that end on components.
     pub(super) on_components: usize,
-    /// Paths that end at points that were not asked for.
+    /// Number of paths that end at points that were not requested.
     pub(super) excess: usize,
     pub(super) infinite: usize,
     pub(super) directions: Vec<Direction>,
-    /// Paths whose ends are not known, those at unresolved ends included.
+    /// Number of paths whose ends are not known, including those at unresolved ends.
     pub(super) lost: usize,
     pub(super) dropped: usize,
     pub(super) unresolved: Vec<Unresolved>,
@@ -65,14 +65,14 @@ impl Classified {
     }
 }
 
-/// A system that was tracked, and the equations as they were given, by which its ends are judged.
+/// A system that was tracked, and the given equations, by which its ends are judged.
 pub(super) struct Tracked<'a> {
     pub(super) given: &'a Given,
     /// The work that may be done for the ends.
     pub(super) work: u64,
     /// The same equations as polynomials.
     pub(super) polynomials: &'a [Polynomial<Exact>],
-    /// As many equations as unknowns, their coefficients as parameters.
+    /// As many equations as unknowns, with their coefficients as parameters.
     pub(super) system: &'a SparseSystem,
     pub(super) target: &'a [Complex64],
     /// The same as supports and coefficients, where these move along a straight line.
@@ -80,8 +80,8 @@ pub(super) struct Tracked<'a> {
     /// Whether the coefficients that were tracked are exactly those that were given.
     pub(super) exact: bool,
     pub(super) monitor: &'a Monitor,
-    /// How equations around ends that are not told apart are solved; not at all where they have been
-    /// zoomed often enough.
+    /// How to solve equations around ends that cannot be separated; `None` if the equations have
+    /// been zoomed often enough.
     pub(super) zoomed: Option<&'a Zoomed<'a>>,
 }
 

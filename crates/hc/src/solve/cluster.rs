@@ -7,22 +7,24 @@ use crate::singular::{self, Effort, Found, Given, Verdict, Zoom};
 use num_complex::Complex64;
 use poly::{Exact, Polynomial};
 
-/// Relative distance below which two refined solutions are one if no digits of them differ that are
-/// right: the first is that of regular ones from doubles, the second that of those of more digits.
+/// Relative distance below which two refined solutions are the same if none of their correct digits
+/// differ. The first is for regular solutions from doubles, the second for solutions with more
+/// digits.
 const NEAR: f64 = 1e-12;
 const EQUAL: f64 = 2e-15;
 
-/// Ways to look at a cluster at most.
+/// Largest number of ways to look at a cluster.
 const WAYS: usize = 12;
-/// Bezout's number of the equations of a zoom at most, and about what a path takes for a term, in
+/// Largest Bezout number of the equations of a zoom; and about what a path costs per term, in
 /// products of complex double-doubles.
 const PATHS: u64 = 600;
 const WORK: u64 = 20;
-/// Solutions this many times further from the centre than the cluster is wide are none of it.
+/// Solutions that are this many times further from the centre than the cluster is wide do not
+/// belong to it.
 const OUTSIDE: f64 = 4096.0;
 
 /// The solutions around the end of `paths` paths that are not among the `known` ones: all, or as
-/// many as are found. `most` may end at any one point.
+/// many as are found. At most `most` paths may end at any one point.
 pub(super) fn clustered(
     tracked: &Tracked<'_>,
     given: &Given,
@@ -64,7 +66,7 @@ pub(super) fn clustered(
     best
 }
 
-/// Whether a regular solution, rounded from many digits, is among those that are known.
+/// Whether a regular solution, rounded from many digits, is among the known ones.
 pub(super) fn is_known(given: &Given, known: &[Solution], point: &[Complex64]) -> bool {
     known.iter().filter(|s| !s.singular).any(|s| is_same(given, &s.value, point))
 }
@@ -81,7 +83,7 @@ pub(super) fn is_same(given: &Given, known: &[Complex64], point: &[Complex64]) -
     }
 }
 
-/// How many paths end at these solutions, at least.
+/// The least number of paths that end at these solutions.
 fn multiplicity(found: &[Verdict]) -> usize {
     let paths = |verdict: &Verdict| match verdict {
         Verdict::Isolated { multiplicity, .. } => *multiplicity,
@@ -90,8 +92,8 @@ fn multiplicity(found: &[Verdict]) -> usize {
     found.iter().map(paths).sum()
 }
 
-/// The ends of a group distributed over the solutions that are found around them, and those for
-/// which none is left.
+/// The ends of a group, distributed over the solutions that were found around them, and the ends
+/// for which no solution is left.
 pub(super) fn distributed(group: &[usize], found: Vec<Verdict>) -> (Vec<(Vec<usize>, Verdict)>, Vec<usize>) {
     let mut left = group.to_vec();
     let (components, points): (Vec<Verdict>, Vec<Verdict>) =

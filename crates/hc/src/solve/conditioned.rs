@@ -6,15 +6,15 @@ use poly::{Exact, Monomial, Polynomial};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-/// What is left of an equation of size one apart from combinations of those before it, from which
-/// on it stays as it is.
+/// If at least this much of an equation of size one is left beside combinations of the equations
+/// before it, it stays as it is.
 const DEPENDENT: f64 = 1e-5;
-/// More coefficients than this, zeros included, are not looked at.
+/// Systems with more coefficients than this, zeros included, are not examined.
 const MAX_SIZE: usize = 1 << 20;
 
-/// The polynomials themselves, or others that span the same space, if some nearly depend on others:
-/// then exact multiples of these are taken from them, so that what tells them apart is not lost to
-/// rounding.
+/// The polynomials themselves, or, if some nearly depend on others, polynomials that span the same
+/// space. Exact multiples of the others are then subtracted from the dependent ones, so that
+/// rounding does not destroy their difference.
 pub(super) fn conditioned(polynomials: &[Polynomial<Exact>]) -> Cow<'_, [Polynomial<Exact>]> {
     let mut monomials: BTreeMap<&Monomial, usize> = BTreeMap::new();
     for (monomial, _) in polynomials.iter().flat_map(Polynomial::terms) {
@@ -77,7 +77,7 @@ fn nearly_dependent(polynomials: &[Polynomial<Exact>], monomials: &BTreeMap<&Mon
     nearly
 }
 
-/// Divides a vector by its length, and returns that.
+/// Divides a vector by its length, and returns the length.
 fn normalise(row: &mut [Complex64]) -> f64 {
     let largest = row.iter().map(|z| z.norm()).fold(0.0, f64::max);
     if largest == 0.0 || !largest.is_finite() {

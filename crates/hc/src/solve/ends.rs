@@ -5,7 +5,7 @@ use crate::refine::Refined;
 use crate::store::Records;
 use std::collections::BTreeMap;
 
-/// How a path ends: four bytes, since there is one for each path.
+/// How a path ends, in four bytes, because there is one for each path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct End(u32);
 
@@ -16,7 +16,7 @@ impl End {
     pub(super) const REGULAR: End = End(1);
     /// At a solution at which the Jacobian is singular.
     pub(super) const SINGULAR: End = End(2);
-    /// Not sought any more, since all solutions are known ([`SolveOptions::known`]).
+    /// No longer sought, because all solutions are known ([`SolveOptions::known`]).
     pub(super) const DROPPED: End = End(3);
 
     /// At infinity, in the direction of this number.
@@ -37,7 +37,7 @@ pub(super) struct EndList {
 }
 
 impl EndList {
-    /// None known.
+    /// A list in which no end is known.
     pub(super) fn new(count: usize) -> Self {
         EndList { count, records: Records::new(4) }
     }
@@ -53,9 +53,9 @@ impl EndList {
 
 /// How all paths end. No points are kept for paths to infinity.
 pub(super) struct Ends {
-    /// Paths whose end is not known.
+    /// Number of paths whose end is not known.
     pub(super) lost: usize,
-    /// Paths whose end is not sought any more.
+    /// Number of paths whose end is no longer sought.
     pub(super) dropped: usize,
     /// The regular ends by the numbers of their paths.
     pub(super) regular: BTreeMap<usize, Refined>,
@@ -64,8 +64,8 @@ pub(super) struct Ends {
     /// Directions of paths to infinity, in order: valuations in units of the reciprocal winding
     /// number, that number, and the number of paths.
     pub(super) directions: Vec<(Vec<i64>, usize, usize)>,
-    /// Tracks that were run again.
+    /// How often a path was tracked again.
     pub(super) retracked: usize,
-    /// Whether they were given up on trial: the ends are then no result.
+    /// Whether the paths were given up on trial; the ends are then not a result.
     pub(super) abandoned: bool,
 }

@@ -97,9 +97,10 @@ impl Equations {
         if are_independent(linear.iter().map(row)) { linear } else { Vec::new() }
     }
 
-    /// As many equations as unknowns: `fixed` ones as they are, and of the others those of highest
-    /// degree, each with a random combination of the rest added, so that Bezout's number is the
-    /// product of the highest degrees. They have all solutions of these equations, and excess ones.
+    /// As many equations as unknowns: the `fixed` ones unchanged, and those of highest degree among
+    /// the others, each with a random combination of the remaining ones added. Bezout's number is
+    /// then the product of the highest degrees. They have all solutions of these equations, and
+    /// excess ones.
     pub(super) fn squared(&self, seed: u64, fixed: &[usize]) -> Equations {
         let mut order: Vec<usize> = (0..self.len()).filter(|i| !fixed.contains(i)).collect();
         order.sort_by_key(|&i| std::cmp::Reverse(self.degree(i)));
@@ -125,7 +126,7 @@ impl Equations {
         squared
     }
 
-    /// The same with so many unknowns more, which do not occur in them.
+    /// The same equations with `further` more unknowns, which do not occur in them.
     pub(super) fn widened(&self, further: usize) -> Equations {
         let mut wide = self.clone();
         wide.unknowns += further;
@@ -185,7 +186,7 @@ fn are_independent(rows: impl Iterator<Item = Vec<Complex64>>) -> bool {
     true
 }
 
-/// What is left of a row apart from those before it, at least.
+/// The least part of a row that must be left beside the rows before it.
 const INDEPENDENT: f64 = 1e-6;
 
 /// Whether a rational is a double exactly.
@@ -205,7 +206,8 @@ fn scaled(support: &[Vec<i32>], coefficients: &[Complex64], exponents: &[i32]) -
     coefficients.iter().zip(&shifts).map(|(c, &s)| c * scale(s - largest).0 * scale(s - largest).1).collect()
 }
 
-/// Equations of more terms are refused if their coefficients, scaled, differ by more decades.
+/// Equations with more terms than this are refused if their scaled coefficients differ by more
+/// decades than this.
 const DENSE: usize = 1000;
 const SPREAD: f64 = 30.0;
 

@@ -1,4 +1,4 @@
-//! Solutions that were not asked for.
+//! Solutions that were not requested.
 
 use crate::singular::{self, Given};
 use num_complex::Complex64;
@@ -6,9 +6,9 @@ use num_complex::Complex64;
 /// Coordinates up to this share of the largest count as zero.
 const TORUS: f64 = 1e-12;
 
-/// Which points were not asked for.
+/// Which points were not requested.
 pub(super) struct Excess<'a> {
-    /// All equations, where they are more than the unknowns.
+    /// All equations, if there are more equations than unknowns.
     all: Option<&'a Given>,
     torus_only: bool,
 }
@@ -18,18 +18,18 @@ impl<'a> Excess<'a> {
         Excess { all: Some(given).filter(|given| given.len() > given.unknowns()), torus_only }
     }
 
-    /// Every point that is found was asked for.
+    /// No point is excess: every point that is found was requested.
     pub(super) fn none() -> Excess<'static> {
         Excess { all: None, torus_only: false }
     }
 
-    /// Whether a regular end was not asked for: it does not solve all equations, or lies outside
+    /// Whether a regular end was not requested: it does not solve all equations, or lies outside
     /// the torus.
     pub(super) fn contains_regular(&self, point: &[Complex64]) -> bool {
         self.outside(point) || self.all.is_some_and(|given| !singular::solves(given, point))
     }
 
-    /// Whether a point has a zero coordinate where only the torus was asked for.
+    /// Whether a point has a zero coordinate although only the torus was requested.
     pub(super) fn outside(&self, point: &[Complex64]) -> bool {
         let largest = point.iter().map(|z| z.norm()).fold(0.0, f64::max);
         self.torus_only && point.iter().any(|z| z.norm() <= TORUS * largest)

@@ -11,12 +11,12 @@ use num_complex::Complex64;
 use num_traits::One;
 use poly::{Exact, Monomial, Polynomial, Scalar};
 
-/// Equations of a higher degree, or more terms, are not made.
+/// Equations of a higher degree, or with more terms, are not made.
 const DEGREE: i64 = 150;
 const TERMS: f64 = 2000.0;
 
-/// One equation in one unknown or two in two, and the other unknowns as polynomials in those behind
-/// them.
+/// One equation in one unknown or two in two, and the other unknowns as polynomials in the unknowns
+/// after them.
 pub(super) struct Graph {
     equations: Vec<Polynomial<Exact>>,
     unknowns: Vec<usize>,
@@ -24,8 +24,8 @@ pub(super) struct Graph {
 }
 
 impl Graph {
-    /// Replaces one unknown after the other by what an equation says of it, that of the lowest degree
-    /// first; `None` where more than two are left.
+    /// Replaces one unknown after the other by its expression from an equation, the lowest degree
+    /// first; `None` if more than two are left.
     pub(super) fn new(polynomials: &[Polynomial<Exact>]) -> Option<Graph> {
         let count = polynomials.first()?.variables();
         let negative = |p: &Polynomial<Exact>| p.terms().iter().any(|(m, _)| m.exponents().iter().any(|&e| e < 0));
@@ -64,7 +64,7 @@ impl Graph {
         (unknowns.len() <= 2).then_some(Graph { equations, unknowns, others })
     }
 
-    /// The number of solutions, as often as they count, if they are isolated and known at once.
+    /// The number of solutions, with their multiplicities, if they are isolated and known at once.
     pub(super) fn count(&self) -> Option<usize> {
         match &self.equations[..] {
             [equation] => usize::try_from(equation.degree()?).ok(),

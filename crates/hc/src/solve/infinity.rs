@@ -14,7 +14,7 @@ pub(super) struct Line<'a> {
 
 impl Line<'_> {
     /// The number of paths in `all` that cannot have ended as they seem to: in a direction in which
-    /// none go, or in a cycle that is not whole.
+    /// no paths go, or in an incomplete cycle.
     pub(super) fn impossible(&self, all: &Ends) -> usize {
         let impossible = |(valuations, winding, paths): &(Vec<i64>, usize, usize)| {
             if self.is_balanced(valuations, *winding) { paths % winding.max(&1) } else { *paths }
@@ -23,9 +23,9 @@ impl Line<'_> {
     }
 
     /// Whether the leading terms of every equation can cancel where unknowns grow like powers
-    /// `t^(valuation / winding)`: there are two of them at least. Terms whose coefficient vanishes
-    /// at the end have it in first order of `t`. Unknowns of valuation zero may vanish as well, too
-    /// fast to be seen, and terms with them cancel with any.
+    /// `t^(valuation / winding)`: there are at least two of them. Terms whose coefficient vanishes
+    /// at the end have a coefficient of first order in `t`. Unknowns of valuation zero may vanish
+    /// as well, too fast to be seen, and terms with them cancel with any.
     fn is_balanced(&self, valuations: &[i64], winding: usize) -> bool {
         let mut coefficients = self.target.iter();
         self.supports.iter().all(|support| {

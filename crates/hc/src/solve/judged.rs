@@ -27,7 +27,7 @@ struct Multiple {
 }
 
 impl Classified {
-    /// Judges the singular ends, and the doubtful among the regular ones.
+    /// Judges the singular ends, and the doubtful ones among the regular ends.
     pub(super) fn add_singular(
         &mut self,
         tracked: &Tracked<'_>,
@@ -113,8 +113,8 @@ impl Classified {
         }
     }
 
-    /// The same, with what other ways tell of all solutions where some of the `paths` are lost or some
-    /// ends are singular.
+    /// The same, together with all solutions from other methods, if some of the `paths` are lost or
+    /// some ends are singular.
     pub(super) fn checked(
         mut self,
         polynomials: &[Polynomial<Exact>],
@@ -152,7 +152,7 @@ impl Classified {
         self
     }
 
-    /// All solutions, whatever the paths are; those that end at none go to infinity.
+    /// All solutions, independently of the paths; paths that end at none of them go to infinity.
     fn complete(solutions: Vec<Solution>, paths: usize) -> Classified {
         let ends: usize = solutions.iter().map(|s| s.multiplicity).sum();
         Classified { solutions, infinite: paths.saturating_sub(ends), ..Classified::default() }
@@ -163,9 +163,9 @@ impl Classified {
         self.unresolved.push(Unresolved { value: end.to_vec(), paths, reason: why.to_string() });
     }
 
-    /// Replaces regular solutions by those of the given equations, where rounded coefficients move
-    /// them or doubles have too few digits. Returns those that are not clearly regular, to be
-    /// judged as singular ends are.
+    /// Replaces regular solutions by those of the given equations, if rounded coefficients move
+    /// them or doubles have too few digits. Returns the solutions that are not clearly regular, to
+    /// be judged like singular ends.
     pub(super) fn correct_rounded(&mut self, tracked: &Tracked<'_>) -> Vec<SingularEnd> {
         let mut kept: Vec<Solution> = Vec::with_capacity(self.solutions.len());
         let mut doubtful = Vec::new();
@@ -199,23 +199,24 @@ impl Classified {
     }
 }
 
-/// Condition numbers below which solutions of exact coefficients have all their digits.
+/// Condition numbers below which solutions for exact coefficients have all their digits.
 const STEADY: f64 = 1e8;
-/// Residuals of such solutions: a single equation has no condition number to tell.
+/// Residuals of such solutions; for a single equation the condition number says nothing.
 const ACCURATE_RESIDUAL: f64 = 1e-14;
-/// How far rounded coefficients may move a regular solution that is still told apart from others.
+/// How far rounded coefficients may move a regular solution that can still be separated from
+/// others.
 const ROUNDED: f64 = 1e-4;
 
 /// Groups that are judged at a time.
 const BATCH: usize = 16;
 /// One of several may take this share of the work that is left.
 const SHARE: usize = 4;
-/// Work that a solve takes for its ends at least, in products of complex double-doubles: about a
-/// second of a processor. And what it takes for each path and factor, about as much as tracking.
+/// The least work that a solve may spend on its ends, in products of complex double-doubles: about
+/// a processor second. And the work for each path and factor, about as much as tracking.
 const WORK: u64 = 200_000_000;
 const WORK_OF_FACTORS: u64 = 100;
 
-/// Verdicts on all groups of ends, until the work is done that one solve may take or it is
+/// Verdicts on all groups of ends, until the work that one solve may take is done, or the solve is
 /// cancelled.
 fn judged_groups(
     tracked: &Tracked<'_>,
@@ -246,13 +247,13 @@ fn judged_groups(
     judged
 }
 
-/// The work that a solve may take for the ends of so many paths.
+/// The work that a solve may spend on the ends of this many paths.
 pub(super) fn work(given: &singular::Given, paths: usize) -> u64 {
     WORK.saturating_add(WORK_OF_FACTORS.saturating_mul(paths as u64).saturating_mul(given.factors() as u64))
 }
 
-/// Verdicts on ends that nearly coincide: on all at once, or on each where they are no multiple
-/// solution. `spare` paths more may end there; at the `known` solutions others do.
+/// Verdicts on ends that nearly coincide: on all at once, or on each if they are not a multiple
+/// solution. `spare` more paths may end there; other paths end at the `known` solutions.
 fn verdicts(
     tracked: &Tracked<'_>,
     given: &singular::Given,
@@ -314,7 +315,7 @@ fn verdicts(
     }
 }
 
-/// Relative distance up to which two ends, or two multiple solutions, are one point.
+/// Relative distance up to which two ends, or two multiple solutions, are the same point.
 const ONE: f64 = 1e-13;
 
 /// Whether every end has a verdict of its own.

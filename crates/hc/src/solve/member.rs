@@ -16,8 +16,8 @@ use num_traits::ToPrimitive;
 use poly::{Evaluate, Exact, Polynomial, SparseSystem, System};
 
 /// The isolated solutions of the member of `family` at the parameters `target`, from those at the
-/// parameters of `fibre`, all of which are tracked. `trackers` are of the family, compiled. The result
-/// is not yet noted to be [of it](Solutions::of_member).
+/// parameters of `fibre`, all of which are tracked. `trackers` belong to the compiled family. The
+/// result does not know its member yet ([`Solutions::of_member`]).
 pub(crate) fn solve_member<E: Evaluate>(
     family: &System,
     trackers: &Trackers<'_, E>,
@@ -50,7 +50,8 @@ pub(crate) fn solve_member<E: Evaluate>(
 }
 
 impl Solutions {
-    /// Notes that they are of the member of `family` at these parameters, which is not serialized.
+    /// Notes that these solutions belong to the member of `family` at these parameters. The member
+    /// is not serialized.
     pub(crate) fn of_member(self, family: &System, target: &[Complex64]) -> Solutions {
         Solutions { variables: family.variables().to_vec(), member: Member::new(family, target), ..self }
     }

@@ -153,7 +153,7 @@ fn solve_expanded(
     Ok(found)
 }
 
-/// What a checkpoint of this is of, and all ranks do.
+/// The job: what a checkpoint of this work describes, and what all ranks do.
 fn job(polynomials: &[Polynomial<Exact>], variables: &[String], options: &SolveOptions) -> Job {
     let names: Vec<&str> = variables.iter().map(String::as_str).collect();
     let hash = Hash::of(polynomials.iter().map(|polynomial| polynomial.display(&names).to_string()));

@@ -21,37 +21,38 @@ use poly::Evaluate;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
-/// Whether so many paths of `count` are lost or in doubt after the first round that stricter steps
-/// or another start system would not help.
+/// Whether so many of `count` paths are lost or doubtful after the first round that neither
+/// stricter steps nor another start system would help.
 pub(super) fn are_hopeless(lost: usize, count: usize) -> bool {
     lost >= HOPELESS && lost > count - count / 4
 }
 
-/// Relative distance below which two paths that have not yet ended are one: only paths that have
-/// crossed come that near.
+/// Relative distance below which two paths that have not yet ended are the same: only paths that
+/// have crossed come that near.
 const CROSSED: f64 = 1e-11;
-/// Paths that are under way at a time: memory for their points is bounded by this, not by the
-/// number of paths.
+/// Number of paths under way at a time. It bounds the memory for their points, independently of the
+/// number of all paths.
 const CHUNK: usize = 1 << 11;
-/// Paths that go through the endgame at a time: there each takes more memory than on its way.
+/// Number of paths that go through the endgame at a time, because each takes more memory there than
+/// before.
 const PORTION: usize = 1 << 9;
 /// Where the endgame begins, if early.
 const EARLY: f64 = 1e-3;
-/// The relative error of a singular end to which the tracker came, though it is not sure of it.
+/// The relative error of a singular end that the tracker reached without being sure of it.
 const REACHED: f64 = 1e-6;
-/// Relative distance to which refinement moves the end of a path at most: beside a component Newton's
-/// method leads away to regular solutions.
+/// Largest relative distance by which refinement moves the end of a path: near a component,
+/// Newton's method leads away to regular solutions.
 const ARRIVED: f64 = 1e-5;
 /// Fewer lost paths are never given up.
 const HOPELESS: usize = 32;
-/// Ends that one thread refines at a time, at least.
+/// Least number of ends that one thread refines at a time.
 const LEAST: usize = 8;
-/// On trial, as many paths are followed first.
+/// On trial, this many paths are followed first.
 const TRIAL: usize = 32;
-/// On trial, one path in as many may end irregularly.
+/// On trial, one path in this many may end irregularly.
 const IRREGULAR: usize = 8;
 
-/// What paths are followed along, and how.
+/// What the paths follow, and how.
 pub(super) struct Route<'a, 'e, E: Evaluate, S> {
     pub(super) trackers: &'a Trackers<'e, E>,
     pub(super) start: &'a S,
@@ -59,7 +60,7 @@ pub(super) struct Route<'a, 'e, E: Evaluate, S> {
     pub(super) count: usize,
     /// The parameters to which they lead.
     pub(super) target: &'a [Complex64],
-    /// Regular ends in it are none of the [known](SolveOptions::known) ones.
+    /// Regular ends that are excess do not count as [known](SolveOptions::known) solutions.
     pub(super) excess: &'a Excess<'a>,
     pub(super) options: &'a SolveOptions,
     pub(super) monitor: &'a Monitor,
@@ -72,8 +73,8 @@ pub(super) struct Route<'a, 'e, E: Evaluate, S> {
 /// Follows the paths of a route; those that share a start or a regular end, have crossed or are
 /// lost are tracked again with stricter steps.
 ///
-/// On `trial` they are abandoned as soon as too many do not end at regular solutions: with another
-/// source that may be less work.
+/// On `trial` the paths are abandoned as soon as too many do not end at regular solutions, because
+/// another source may then be less work.
 pub(super) fn follow<E: Evaluate, S: Source<E>>(route: Route<'_, '_, E, S>, trial: bool) -> Ends {
     let Route { count, options, monitor, record, lead, .. } = route;
     let mut work = Recorded::new(Shared::new(Stage::new(route, trial), lead, monitor), record, monitor);
@@ -108,7 +109,7 @@ pub(super) struct Stage<'a, 'e, E: Evaluate, S> {
     pub(super) closed: RefCell<BTreeMap<usize, Record>>,
 }
 
-/// How far a round is.
+/// The progress of a round.
 #[derive(Default)]
 pub(super) struct Pass {
     /// Paths of the round, those that have been tracked, and those of them with a regular end.
@@ -318,7 +319,7 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
         records
     }
 
-    /// Takes a record in, in the place of an earlier one of its path.
+    /// Takes a record, which replaces an earlier record of its path.
     fn take(&mut self, record: &Record) {
         let path = record.path;
         self.lose(path);
@@ -363,7 +364,7 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
         points.len() - groups.iter().map(|group| group.len() - 1).sum::<usize>() >= known
     }
 
-    /// Gives up paths that still share an end, which counts once, and others in doubt.
+    /// Gives up paths that still share an end, which counts once, and other doubtful paths.
     fn lose_doubtful(&mut self, which: &[usize]) {
         for &k in which {
             let first = match self.ends.get(k) {
