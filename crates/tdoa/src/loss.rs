@@ -73,8 +73,8 @@ pub fn normal_deviation(nu: f64) -> f64 {
 /// The scale is estimated from the restricted likelihood, (N - p) ln s + sum of costs for N
 /// measurements and p unknowns. Let q = p/N. The estimate breaks down to scale 0 when more than a
 /// share 1 - (1 - q)/(nu + 1) of the residuals can be made zero at once (fitting as many
-/// measurements as there are unknowns makes a share q zero). It grows without bound when a share (1
-/// - q)/(nu + 1) are outliers. The Cauchy loss, nu = 1, leaves half of the redundancy on either
+/// measurements as there are unknowns makes a share q zero). It grows without bound when a share
+/// (1 - q)/(nu + 1) are outliers. The Cauchy loss, nu = 1, leaves half of the redundancy on either
 /// side.
 pub const SEARCH_NU: f64 = 1.0;
 

@@ -29,13 +29,14 @@
 //!
 //! `g(x) = x - C F(x)` maps `c + D` into `c + K`, because `F(x) - F(y) = A (x - y)` for a matrix
 //! `A` in the interval matrix `J(c + D)` (rectangles are convex). If `K` lies in the interior of
-//! `D`, Brouwer's theorem gives a fixed point of `g`. Suppose also that the norm of `I - C J(c +
-//! D)` is below one, with moduli of entries and coordinates weighted by the box. Then `C` is
-//! regular, so that fixed points are solutions, and `g` contracts, so that there is only one.
-//! (Krawczyk 1969, Moore 1977, Rump 1983; for polynomial systems Breiding, Rose, Timme, *Certifying
-//! zeros of polynomial systems using interval arithmetic*, arXiv:2011.05000.) In that case `c + K`
-//! contains the solution, and repetition makes it small. `F(c)` is evaluated over balls of 32
-//! digits ([`poly::ComplexBall`]), so that rounding does not make ill-conditioned solutions fail.
+//! `D`, Brouwer's theorem gives a fixed point of `g`. Suppose also that the norm of
+//! `I - C J(c + D)` is below one, with moduli of entries and coordinates weighted by the box. Then
+//! `C` is regular, so that fixed points are solutions, and `g` contracts, so that there is only
+//! one. (Krawczyk 1969, Moore 1977, Rump 1983; for polynomial systems Breiding, Rose, Timme,
+//! *Certifying zeros of polynomial systems using interval arithmetic*, arXiv:2011.05000.) In that
+//! case `c + K` contains the solution, and repetition makes it small. `F(c)` is evaluated over
+//! balls of 32 digits ([`poly::ComplexBall`]), so that rounding does not make ill-conditioned
+//! solutions fail.
 //!
 //! * **Real**: for a system with real coefficients the conjugate of a solution is a solution. If
 //!   the conjugate of the small box lies in the large one, both solutions are the same. **Not

@@ -4,8 +4,8 @@ use super::certificate::{Certificate, Reality};
 use poly::Interval;
 use poly::{ComplexBall, ComplexDd, ComplexInterval, Scalar};
 
-/// A proved solution: there is exactly one in `centre + large box`, and it lies in `centre +
-/// small`.
+/// A proved solution: there is exactly one in `centre + large box`, and it lies in
+/// `centre + small`.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Proof {
     pub(super) centre: Vec<ComplexDd>,

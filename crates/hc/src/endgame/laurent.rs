@@ -3,8 +3,9 @@
 //! Near `t = 0` a path is a convergent series in `t^(1/m)`, where `m` is its winding number; if the
 //! path diverges, the series has finitely many negative powers. On a loop of `m` turns round the
 //! circle `|t| = r`, its coefficients times powers of `r` are the Fourier coefficients of the
-//! samples, up to aliasing. The aliasing error falls with the number of samples per turn as `(r /
-//! R)^samples`, where `R` is the distance to the next singularity (Morgan, Sommese & Wampler 1991).
+//! samples, up to aliasing. The aliasing error falls with the number of samples per turn as
+//! `(r / R)^samples`, where `R` is the distance to the next singularity (Morgan, Sommese & Wampler
+//! 1991).
 
 use crate::refine;
 use num_complex::Complex64;

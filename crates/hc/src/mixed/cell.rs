@@ -3,8 +3,8 @@
 //! A cell has two points `a_j`, `b_j` of every configuration `j`. With the edges `E_j = a_j - b_j`
 //! and `V = |det(E_0 .. E_{n-1})|`, the duals are the integer vectors `u_j` with `<u_j, E_i> = V`
 //! for `i = j`, and zero otherwise. The circuit of any other point `g` of configuration `c` on the
-//! columns of the Cayley matrix has the entries `t_j = <u_j, g - b_c>`: `V (g - b_c) = sum_j t_j
-//! E_j`.
+//! columns of the Cayley matrix has the entries `t_j = <u_j, g - b_c>`:
+//! `V (g - b_c) = sum_j t_j E_j`.
 
 use super::error::Overflow;
 use super::integer::Integer;

@@ -1,8 +1,8 @@
 //! The search for mixed cells, one support brought in after the other, on all threads.
 //!
-//! Sending the lifting of `d_k Delta` to minus infinity at stage `k` leaves the mixed cells of `A_0
-//! .. A_k, Delta, ..`. Each of these is a start for the next stage. All stages make one tree, whose
-//! subtrees are tasks.
+//! Sending the lifting of `d_k Delta` to minus infinity at stage `k` leaves the mixed cells of
+//! `A_0 .. A_k, Delta, ..`. Each of these is a start for the next stage. All stages make one tree,
+//! whose subtrees are tasks.
 
 use super::cell::{Cell, Flip, Place};
 use super::error::{MixedError, Overflow};

@@ -1,9 +1,9 @@
 //! Straight-line programs, which evaluate systems.
 //!
-//! Like terms of sums are collected. Formulas become instructions of up to four operands (`a*b +
-//! c*d` is one). Equal subformulas are computed once, and dead ones not at all. The Jacobian is
-//! made by reverse or forward mode, whichever needs fewer instructions. [`Interpreter`] runs a
-//! program over any [`Scalar`](crate::Scalar).
+//! Like terms of sums are collected. Formulas become instructions of up to four operands
+//! (`a*b + c*d` is one). Equal subformulas are computed once, and dead ones not at all. The
+//! Jacobian is made by reverse or forward mode, whichever needs fewer instructions. [`Interpreter`]
+//! runs a program over any [`Scalar`](crate::Scalar).
 
 mod collect;
 mod compile;

@@ -2,10 +2,11 @@
 //! they may belong.
 //!
 //! Each node off the line may be its mirror image, independently of the others. The roots of such
-//! networks are singular, and paths seldom reach them. But then `D_ij = q_ij - q_i1 = -2 r_i . (s_j
-//! - s_1)`, `q_ij = f_ij (f_ij - 2 p_j)`, has rank one instead of two, for receivers in a line as
-//! well as for transmitters. The offsets for which it has rank one follow from linear equations.
-//! From these follow the positions along the line and the distances from it.
+//! networks are singular, and paths seldom reach them. But then
+//! `D_ij = q_ij - q_i1 = -2 r_i . (s_j - s_1)`, `q_ij = f_ij (f_ij - 2 p_j)`, has rank one instead
+//! of two, for receivers in a line as well as for transmitters. The offsets for which it has rank
+//! one follow from linear equations. From these follow the positions along the line and the
+//! distances from it.
 
 use super::rank::differences;
 use crate::minimal::linear::LeastSquares;
