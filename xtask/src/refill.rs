@@ -2,7 +2,7 @@
 //! well-placed parameter point.
 
 use anyhow::{Context, Result, ensure};
-use hc::family::{StartFile, Stop, move_fibre, track_fibre};
+use hc::family::{StartFile, Stopped, move_fibre, track_fibre};
 use hc::poly::Interpreter;
 use hc::random::{Random, Stream};
 use hc::{Family, Fibre, FibreOptions, Monitor, MonodromyOptions};
@@ -18,13 +18,10 @@ const TRACES: u64 = 4;
 
 /// The fibre of a family, found from nothing.
 pub(crate) fn refill(family: &Family, seed: u64, with_trace: bool) -> Result<StartFile> {
-    let mut options = MonodromyOptions::new().seed(seed);
+    let mut options = MonodromyOptions::new().seed(seed).trace_test(false);
     let found = family.monodromy(&options).with_context(|| family.name().to_owned())?;
     eprintln!("{}: {} roots after {} loops and {} paths", family.name(), found.fibre.len(), found.loops, found.paths);
-    let mut stopped = match found.stop {
-        Stop::RootsReached => "roots reached",
-        _ => "no progress",
-    };
+    let mut stopped = found.stopped;
     if let Some(roots) = family.roots() {
         ensure!(found.fibre.len() == roots, "{}: {} roots instead of {roots}", family.name(), found.fibre.len());
     }
@@ -45,11 +42,11 @@ pub(crate) fn refill(family: &Family, seed: u64, with_trace: bool) -> Result<Sta
             }
         }
         if passed && family.roots().is_none() {
-            stopped = "trace";
+            stopped = Stopped::Trace;
         }
         ensure!(passed, "{}: the trace test does not confirm {} roots", family.name(), fibre.len());
     }
-    Ok(StartFile::new(&fibre, deviation, stopped))
+    Ok(StartFile::new(&fibre, deviation, &stopped.to_string()))
 }
 
 /// Moves the fibre to the parameter point, out of some random ones, from which random real targets

@@ -3,7 +3,7 @@
 use crate::checkpoint::{self, Recording};
 use crate::{family, watch};
 use cli::{Failure, output};
-use hc::family::Stop;
+use hc::family::Stopped;
 use hc::ranks::Ranks;
 use hc::{FamilyError, MonodromyOptions};
 use std::path::PathBuf;
@@ -83,14 +83,14 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
         found.loops,
         found.paths
     );
-    if found.stop == Stop::Cancelled {
+    if found.stopped == Stopped::Cancelled {
         return Err(arguments.checkpoint.interrupted());
     }
     match family.roots() {
         Some(roots) if roots != count => {
             Err(Failure::Undetermined(format!("{count} solutions were found, the family states {roots}")))
         }
-        None if stopped == "no progress" => Err(Failure::Undetermined(
+        None if !found.stopped.is_complete() => Err(Failure::Undetermined(
             "neither a known number of roots nor the trace test shows that these are all".to_string(),
         )),
         _ => Ok(()),

@@ -12,7 +12,7 @@
 
 use hc::poly::parse;
 use hc::random::{Random, Stream};
-use hc::{Family, Monitor, MonodromyOptions};
+use hc::{Family, MonodromyOptions};
 use std::error::Error;
 use std::time::Instant;
 
@@ -45,9 +45,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (name, text) in FAMILIES {
         let family = Family::new(parse::family(text)?)?;
         let options = MonodromyOptions::new().seed(seed);
-        let fibre = family.monodromy(&options)?.fibre;
-        let test = family.trace_test(&fibre, &options, &Monitor::default())?;
-        if family.roots() != Some(fibre.len()) && !test.passed(fibre.len()) {
+        let found = family.monodromy(&options)?;
+        let fibre = found.fibre;
+        if !found.stopped.is_complete() {
             return Err(
                 format!("{name}: the fibre of {} solutions is not whole; take another seed", fibre.len()).into()
             );

@@ -46,10 +46,10 @@
 //! "#.parse()?;
 //!
 //! // All solutions for some generic parameters: eight, of which four are tracked.
-//! let options = hc::MonodromyOptions::new();
-//! let fibre = family.monodromy(&options)?.fibre;
+//! let found = family.monodromy(&hc::MonodromyOptions::new())?;
+//! assert_eq!(found.stopped, hc::Stopped::Trace, "the trace test shows that no solution is missing");
+//! let fibre = found.fibre;
 //! assert_eq!((fibre.len(), fibre.representatives.as_ref().map(Vec::len)), (8, Some(4)));
-//! assert!(family.trace_test(&fibre, &options, &hc::Monitor::default())?.passed(8));
 //!
 //! // A camera at distances 2, 3 and 4 from the points.
 //! let g = [0.5, 0.6, 0.7];
@@ -86,8 +86,9 @@ pub mod witness;
 
 pub use certify::{Certificates, CertifyOptions, certify};
 pub use endgame::EndgameOptions;
-pub use family::{Family, FamilyError, Fibre, FibreOptions, Monodromy, MonodromyOptions, PathCounts};
+pub use family::{Family, FamilyError, Fibre, FibreOptions, Monodromy, MonodromyOptions, PathCounts, Stopped};
 pub use monitor::{Monitor, Progress, Stage};
+pub use num_complex::Complex64;
 pub use poly;
 pub use poly::System;
 pub use solve::{

@@ -79,9 +79,8 @@ impl Scaled {
         let family: hc::Family = self.family(factor).parse().expect("a family");
         let options = hc::MonodromyOptions::new().seed(seed);
         let Ok(found) = family.monodromy(&options) else { return Outcome::Unsettled(0) };
-        let test = family.trace_test(&found.fibre, &options, &hc::Monitor::default()).expect("of this family");
         match found.fibre.len() {
-            count if !test.passed(count) => Outcome::Unsettled(count),
+            count if !found.stopped.is_complete() => Outcome::Unsettled(count),
             count if count == self.count => Outcome::Whole,
             count => Outcome::False(count),
         }

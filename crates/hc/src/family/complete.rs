@@ -4,7 +4,7 @@ use super::compiled::Family;
 use super::error::FamilyError;
 use super::fibre::Fibre;
 use super::job::{Points, job};
-use super::monodromy::{Monodromy, MonodromyOptions, Stop, fill, joined};
+use super::monodromy::{Monodromy, MonodromyOptions, Stopped, fill, joined};
 use super::pair::find_pair;
 use super::sides::{Searched, Side, Which};
 use super::trace::{enlarge, trace_test};
@@ -116,7 +116,7 @@ impl Family {
         let searched = Searched { system: &self.program, which: Which::Given };
         let accept = |p: &[Complex64], x: &[Complex64]| self.accepts(p, x);
         let mut found = fill(searched, first, accept, &self.symmetry, &options, pieces);
-        if found.stop == Stop::NoProgress {
+        if found.stopped == Stopped::NoProgress {
             let others = self.other_pairs(options.seed)?;
             let joined = joined(searched, &found.fibre, &others, accept, &self.symmetry, &options, monitor);
             if let Some(fibre) = joined {
@@ -125,10 +125,17 @@ impl Family {
                 (found.loops, found.paths) = (found.loops + loops, found.paths + paths);
             }
         }
-        if options.trace_test && !matches!(found.stop, Stop::RootsReached | Stop::Cancelled) {
+        if options.trace_test && matches!(found.stopped, Stopped::NoProgress | Stopped::TooMany) {
             let test = trace_test(self.system(), &found.fibre, &options, pieces.part(TRACE))?;
             // What an interrupted test says is no deviation.
-            if monitor.is_cancelled() { found.stop = Stop::Cancelled } else { found.trace = Some(test) }
+            if monitor.is_cancelled() {
+                found.stopped = Stopped::Cancelled;
+            } else {
+                found.trace = Some(test);
+                if test.passed(found.fibre.len()) {
+                    found.stopped = Stopped::Trace;
+                }
+            }
         }
         if let Some(error) = checkpoint.and_then(Checkpoint::failure) {
             return Err(error.into());

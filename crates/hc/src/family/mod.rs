@@ -32,7 +32,7 @@ pub use compiled::Family;
 pub use error::FamilyError;
 pub use fibre::{Fibre, FibreOptions, PathCounts};
 pub(crate) use monodromy::monodromy;
-pub use monodromy::{Monodromy, MonodromyOptions, Stop};
+pub use monodromy::{Monodromy, MonodromyOptions, Stopped};
 pub use start_file::{StartFile, StartFileError};
 pub use targets::Targets;
 pub(crate) use trace::deviation;

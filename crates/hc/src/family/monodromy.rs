@@ -21,6 +21,7 @@ use crate::tracker::PathEnd;
 use num_complex::Complex64;
 use poly::Evaluate;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// Settings of [`Family::monodromy`](crate::Family::monodromy). The serialized settings are those
 /// on which loops depend.
@@ -42,7 +43,7 @@ pub struct MonodromyOptions {
     /// retry), because easier paths of later loops find the same solutions.
     pub fibre: FibreOptions,
     /// Whether the [trace test](crate::Family::trace_test) comes last, unless the known number of
-    /// solutions is reached. Default false.
+    /// solutions is reached. It takes several times as long as the search. Default true.
     #[serde(skip)]
     pub trace_test: bool,
 }
@@ -95,22 +96,44 @@ impl Default for MonodromyOptions {
         let mut fibre = FibreOptions::default();
         fibre.tracker.max_steps = 2_000;
         fibre.retries = 1;
-        MonodromyOptions { seed: 0, roots: None, patience: 8, max_solutions: 100_000, fibre, trace_test: false }
+        MonodromyOptions { seed: 0, roots: None, patience: 8, max_solutions: 100_000, fibre, trace_test: true }
     }
 }
 
-/// Why the search for solutions ended.
+/// Why the search for solutions ended, and whether it is known that there are no others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Stop {
+pub enum Stopped {
     /// The known number of solutions was reached.
     RootsReached,
-    /// The last loops brought nothing new. This is no proof: see the trace test.
+    /// The last loops brought nothing new, and the trace test shows that there are no others.
+    Trace,
+    /// The last loops brought nothing new. This is no proof, and the trace test has given none.
     NoProgress,
     /// More solutions than allowed.
     TooMany,
     /// The monitor was cancelled: these are the solutions found so far.
     Cancelled,
+}
+
+impl Stopped {
+    /// Whether a known number of roots or the trace test shows that the solutions are all.
+    pub fn is_complete(self) -> bool {
+        matches!(self, Stopped::RootsReached | Stopped::Trace)
+    }
+}
+
+/// The words of start files and programs.
+impl fmt::Display for Stopped {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Stopped::RootsReached => "roots reached",
+            Stopped::Trace => "trace",
+            Stopped::NoProgress => "no progress",
+            Stopped::TooMany => "too many solutions",
+            Stopped::Cancelled => "interrupted",
+        })
+    }
 }
 
 /// What monodromy found.
@@ -120,7 +143,7 @@ pub struct Monodromy {
     /// The fibre, refined.
     pub fibre: Fibre,
     /// Why the search ended.
-    pub stop: Stop,
+    pub stopped: Stopped,
     /// Number of loops.
     pub loops: usize,
     /// Number of paths tracked.
@@ -133,13 +156,7 @@ impl Monodromy {
     /// The fibre in its file form.
     pub fn start_file(&self) -> StartFile {
         let count = self.fibre.len();
-        let stopped = match self.stop {
-            Stop::RootsReached => "roots reached",
-            Stop::Cancelled => "interrupted",
-            _ if self.trace.is_some_and(|test| test.passed(count)) => "trace",
-            Stop::NoProgress | Stop::TooMany => "no progress",
-        };
-        StartFile::new(&self.fibre, self.trace.and_then(|test| test.result(count)), stopped)
+        StartFile::new(&self.fibre, self.trace.and_then(|test| test.result(count)), &self.stopped.to_string())
     }
 }
 
@@ -198,20 +215,20 @@ pub(super) fn fill<E: Evaluate>(
     let mut sizes = vec![wide.parameters, natural.parameters];
     sizes.dedup();
     let (mut loops, mut idle, mut paths) = (0, 0, 0);
-    let stop = loop {
+    let stopped = loop {
         if pieces.are_stopped() {
-            break Stop::Cancelled;
+            break Stopped::Cancelled;
         }
         let known = filling.fibre.len();
         if options.roots.is_some_and(|roots| known >= roots) {
-            break Stop::RootsReached;
+            break Stopped::RootsReached;
         }
         let turns = idle / sizes.len();
         if turns >= options.patience && turns * known >= CHANCES {
-            break Stop::NoProgress;
+            break Stopped::NoProgress;
         }
         if known > options.max_solutions {
-            break Stop::TooMany;
+            break Stopped::TooMany;
         }
         let mut random = Random::new(options.seed, Stream::Loop(loops as u64));
         let scale = scale(turns, options.patience);
@@ -223,7 +240,7 @@ pub(super) fn fill<E: Evaluate>(
         loops += 1;
         idle = if filling.fibre.len() > known { 0 } else { idle + 1 };
     };
-    Monodromy { fibre: filling.fibre, stop, loops, paths, trace: None }
+    Monodromy { fibre: filling.fibre, stopped, loops, paths, trace: None }
 }
 
 /// In loops with more paths than this, every side is recorded.

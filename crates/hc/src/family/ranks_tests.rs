@@ -1,7 +1,7 @@
 //! Targets tracked, and fibres filled, by several ranks.
 
 use super::tests::{conics, fibre, pairs_of_roots, targets};
-use super::{Family, FamilyError, Monodromy, MonodromyOptions, Stop};
+use super::{Family, FamilyError, Monodromy, MonodromyOptions, Stopped};
 use crate::checkpoint::{Checkpoint, CheckpointOptions, status};
 use crate::ranks::support::{Faulty, PATIENCE, on};
 use crate::ranks::{Exchange, Local, Ranks, RanksError};
@@ -99,9 +99,9 @@ fn searched<X: Exchange>(
 fn any_number_of_ranks_fills_a_fibre_to_the_same_bits() {
     for (more, orbits) in [("", None), ("symmetry = [[\"-x\", \"-y\"]]", Some(32))] {
         let family = curves(more);
-        let options = MonodromyOptions::new().seed(1).trace_test(true);
+        let options = MonodromyOptions::new().seed(1);
         let expected = family.complete(&family.find_pair(1).unwrap(), &options, &Monitor::default()).unwrap();
-        assert_eq!((expected.fibre.len(), expected.stop), (64, Stop::NoProgress));
+        assert_eq!((expected.fibre.len(), expected.stopped), (64, Stopped::Trace));
         assert_eq!(expected.fibre.representatives.as_ref().map(Vec::len), orbits);
         assert!(expected.trace.is_some_and(|test| test.passed(64)), "{:?}", expected.trace);
         for count in [1, 2, 4] {
@@ -130,7 +130,7 @@ fn checkpoints_of_searches_by_several_ranks_serve_any_number() {
     let (family, first) = pairs_of_roots();
     let options = MonodromyOptions::new().roots(65 * 65);
     let expected = family.complete(&first, &options, &Monitor::default()).unwrap();
-    assert_eq!((expected.fibre.len(), expected.stop), (4225, Stop::RootsReached));
+    assert_eq!((expected.fibre.len(), expected.stopped), (4225, Stopped::RootsReached));
     let folder = tempfile::tempdir().unwrap();
     let run = |count: usize, monitor: &Monitor| {
         let found = on(&Local::ranks(count), PATIENCE, |ranks| {
@@ -143,7 +143,7 @@ fn checkpoints_of_searches_by_several_ranks_serve_any_number() {
     };
     // Cancelled on the second side of the first loop.
     let cancelled = run(3, &Monitor::asking(|progress| progress.done >= 5000));
-    assert_eq!((cancelled.stop, cancelled.fibre), (Stop::Cancelled, first.clone()));
+    assert_eq!((cancelled.stopped, cancelled.fibre), (Stopped::Cancelled, first.clone()));
     assert_eq!(status(folder.path()).unwrap().records, 1);
     assert_eq!(run(2, &Monitor::default()), expected);
     assert_eq!(run(1, &Monitor::default()), expected);

@@ -1,6 +1,6 @@
 //! Work on families that goes on from a checkpoint.
 
-use super::{Family, FamilyError, Fibre, MonodromyOptions, Stop};
+use super::{Family, FamilyError, Fibre, MonodromyOptions, Stopped};
 use crate::checkpoint::support::{goes_on_from_every_record, resumed};
 use crate::checkpoint::{Checkpoint, CheckpointError, CheckpointOptions, status};
 use crate::{Monitor, Solutions, SolveOptions};
@@ -122,11 +122,11 @@ fn searches_go_on_from_every_record_to_the_same_bits() {
     // A root of its own beside two that change places; orbits.
     let apart = family("\"x\"", "\"a\", \"b\"", "\"(x^2 - a)*(x - b)\"");
     for (name, family, count) in [("apart", apart, 3), ("orbits", conics("symmetry = [[\"-x\", \"-y\"]]"), 4)] {
-        let options = MonodromyOptions::new().seed(1).trace_test(true);
+        let options = MonodromyOptions::new().seed(1);
         let first = family.find_pair(1).unwrap();
         let directory = folder.path().join(name);
         let expected = family.complete(&first, &options, &Monitor::default()).unwrap();
-        assert_eq!((expected.fibre.len(), expected.stop), (count, Stop::NoProgress));
+        assert_eq!((expected.fibre.len(), expected.stopped), (count, Stopped::Trace));
         let test = family.trace_test(&expected.fibre, &options, &Monitor::default()).unwrap();
         assert!(test.passed(count) && expected.trace == Some(test), "{test:?}");
         assert_eq!(expected.start_file().stopped, "trace");
@@ -169,7 +169,7 @@ fn sides_of_long_loops_are_recorded() {
     let (family, first) = pairs_of_roots();
     let options = MonodromyOptions::new().roots(65 * 65);
     let expected = family.complete(&first, &options, &Monitor::default()).unwrap();
-    assert_eq!((expected.fibre.len(), expected.stop), (4225, Stop::RootsReached));
+    assert_eq!((expected.fibre.len(), expected.stopped), (4225, Stopped::RootsReached));
     let folder = tempfile::tempdir().unwrap();
     let work = |checkpoint: &Checkpoint| family.complete_recorded(&first, &options, &Monitor::default(), checkpoint);
     let checkpoint = Checkpoint::open(folder.path(), &CheckpointOptions::new()).unwrap();

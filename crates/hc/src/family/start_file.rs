@@ -15,8 +15,7 @@ pub struct StartFile {
     /// of the size of rounding error shows that the fibre is whole.
     #[serde(default)]
     pub trace_test: Option<f64>,
-    /// Why the search ended: `roots reached`, `trace`, `no progress` or `interrupted`; empty if not
-    /// stated.
+    /// Why the search ended: [`Stopped`](crate::family::Stopped) in words; empty if not stated.
     #[serde(default)]
     pub stopped: String,
 }

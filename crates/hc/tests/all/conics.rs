@@ -3,14 +3,14 @@
 
 use crate::common::conics::{COUNTS, tangent_conics};
 use hc::certify::{CertifyOptions, certify};
-use hc::family::Stop;
+use hc::family::Stopped;
 use hc::poly::{Complex64, ComplexInterval, System};
 use hc::random::{Random, Stream};
 use hc::{Family, Fibre, Monitor, MonodromyOptions, Solutions, SolveOptions, solve};
 
 fn fibre(family: &Family, count: usize) -> Fibre {
     let found = family.monodromy(&MonodromyOptions::new().roots(count)).unwrap();
-    assert_eq!((found.stop, found.fibre.len()), (Stop::RootsReached, count));
+    assert_eq!((found.stopped, found.fibre.len()), (Stopped::RootsReached, count));
     found.fibre
 }
 

@@ -1,7 +1,7 @@
 //! The tracker and what is built on it, on families whose solutions are known.
 
 use hc::distinct::relative_distance;
-use hc::family::{Stop, track_fibre};
+use hc::family::{Stopped, track_fibre};
 use hc::homotopy::Segment;
 use hc::poly::{Interpreter, Isa, Lane, Lanes8, parse};
 use hc::random::{Random, Stream};
@@ -42,7 +42,7 @@ fn p3p() -> (Family, Interpreter) {
 fn p3p_fibre() -> (Family, Interpreter, Fibre) {
     let (family, system) = p3p();
     let found = family.monodromy(&MonodromyOptions::new().roots(8)).unwrap();
-    assert_eq!((found.stop, found.fibre.len()), (Stop::RootsReached, 8));
+    assert_eq!((found.stopped, found.fibre.len()), (Stopped::RootsReached, 8));
     (family, system, found.fibre)
 }
 
@@ -276,13 +276,17 @@ fn the_trace_test_tells_a_whole_fibre_from_one_with_a_hole() {
 }
 
 #[test]
-fn monodromy_without_a_known_count_says_that_it_only_stopped() {
+fn monodromy_without_a_known_count_says_why_it_stopped() {
     let (family, _) = family("x y", "r a b", "x^2 + y^2 - r; y - a*x - b");
     let start = family.find_pair(3).unwrap();
-    let (options, monitor) = (MonodromyOptions::default(), Monitor::default());
-    let found = family.complete(&start, &options, &monitor).unwrap();
-    assert_eq!((found.stop, found.fibre.len()), (Stop::NoProgress, 2));
-    assert!(family.trace_test(&found.fibre, &options, &monitor).unwrap().passed(2));
+    let monitor = Monitor::default();
+    for (trace_test, stopped) in [(true, Stopped::Trace), (false, Stopped::NoProgress)] {
+        let options = MonodromyOptions::new().trace_test(trace_test);
+        let found = family.complete(&start, &options, &monitor).unwrap();
+        assert_eq!((found.stopped, found.fibre.len(), found.trace.is_some()), (stopped, 2, trace_test));
+        assert_eq!(found.stopped.is_complete(), trace_test);
+        assert_eq!(found.start_file().stopped, stopped.to_string());
+    }
 }
 
 /// Branch points far from one: a = 16 and -16; a = 2 and -2, where the loops have to part; lengths
@@ -303,11 +307,10 @@ fn monodromy_finds_branch_points_at_any_scale() {
         for seed in 0..20 {
             let options = MonodromyOptions::new().seed(seed);
             let found = family.complete(&family.find_pair(seed).unwrap(), &options, &monitor).unwrap();
-            let test = family.trace_test(&found.fibre, &options, &monitor).unwrap();
             // Never more than there are, and never fewer that are said to be all.
-            let count = found.fibre.len();
-            assert!(count == roots || count < roots && !test.passed(count), "{equations} {seed}: {count} {test:?}");
-            whole += usize::from(count == roots && test.passed(count));
+            let (count, is_complete) = (found.fibre.len(), found.stopped.is_complete());
+            assert!(count == roots || count < roots && !is_complete, "{equations} {seed}: {count} {:?}", found.trace);
+            whole += usize::from(count == roots && is_complete);
         }
         assert!(whole >= 18, "{equations}: all found {whole} times");
     }
