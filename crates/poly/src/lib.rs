@@ -27,7 +27,7 @@
 //! |---|---|
 //! | [`Expressions`], [`System::build`] | formulas by operators; equal subformulas are stored once |
 //! | [`System::from_formulas`], `text.parse::<System>()` | systems from text: errors have line, column and a caret |
-//! | [`Family::from_formulas`], [`parse::family`] | parameter families, from formulas or TOML |
+//! | [`Family::from_formulas`], [`Family::from_str`](Family#impl-FromStr-for-Family) | parameter families, from formulas or text |
 //! | [`Formula`], [`System::new`] | formulas that own their parts |
 //! | [`System::expand`] | sparse [`Polynomial`]s, within [`ExpandLimits`] |
 //! | [`System::compile`] | an [`Interpreter`]: values, Jacobian by reverse or forward mode, Taylor coefficients |
@@ -60,6 +60,7 @@ mod polynomial;
 mod rational;
 mod sparse;
 mod system;
+mod wording;
 
 pub mod evaluate;
 pub mod parse;
@@ -87,3 +88,4 @@ pub use scalar::{Lane, Scalar};
 pub use simd::Isa;
 pub use sparse::{SparseMemory, SparseSystem, SupportError};
 pub use system::{System, SystemError};
+pub use wording::{counted, one_or};

@@ -6,13 +6,13 @@ use super::formula::{Names, Role};
 use crate::arena::Arena;
 use crate::system::System;
 use serde::Deserialize;
-use std::str::FromStr;
 use toml::Spanned;
 
 /// A parameter family: a system whose parameters are given values later, and what is known of its
 /// solutions.
 ///
-/// [`Family::from_formulas`] makes one from formulas; `text.parse::<Family>()` reads one in TOML.
+/// [`Family::from_formulas`] makes one from formulas; `text.parse::<Family>()` reads one in plain text
+/// or TOML.
 #[derive(Clone, Debug)]
 pub struct Family {
     /// Name of the family; empty if it has none.
@@ -27,15 +27,6 @@ pub struct Family {
     /// Symmetries: maps of the unknowns that take solutions to solutions for the same parameters.
     /// Each has one formula an unknown, its image.
     pub symmetry: Vec<System>,
-}
-
-impl FromStr for Family {
-    type Err = ParseError;
-
-    /// Reads a family in TOML, as [`family`] does.
-    fn from_str(text: &str) -> Result<Family, ParseError> {
-        family(text)
-    }
 }
 
 #[derive(Deserialize)]
@@ -53,7 +44,7 @@ struct FamilyText {
     symmetry: Vec<Vec<String>>,
 }
 
-/// Reads a parameter family.
+/// Reads a parameter family in TOML.
 ///
 /// ```
 /// let family = poly::parse::family(r#"

@@ -1,6 +1,6 @@
 //! Systems and families from formulas that a program gives one by one.
 
-use super::detect::{BYTE_ORDER_MARK, begins_with_count, list_of_toml};
+use super::detect::{begins_with_count, line_of_toml, unmarked};
 use super::equations::equations;
 use super::error::ParseError;
 use super::family::Family;
@@ -80,11 +80,11 @@ impl System {
     pub fn from_text_in<N: AsRef<str>>(unknowns: &[N], text: &str) -> Result<System, ParseError> {
         let none: &[&str] = &[];
         let (arena, names) = declared(unknowns, none)?;
-        let text = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
+        let text = unmarked(text);
         if begins_with_count(text) {
             return phcpack_in(text, arena, names);
         }
-        match list_of_toml(text) {
+        match line_of_toml(text) {
             None => plain_in(text, arena, names),
             Some(list) => Err(ParseError::at(text, list, "this text declares its unknowns; do not give them again")),
         }

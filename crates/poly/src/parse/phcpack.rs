@@ -5,6 +5,7 @@ use super::formula::{FormulaParser, Names};
 use super::token::{Token, Tokens};
 use crate::arena::Arena;
 use crate::system::System;
+use crate::wording::counted;
 
 /// Reads a system in PHCpack's format.
 ///
@@ -33,7 +34,9 @@ pub(super) fn phcpack_in(text: &str, mut arena: Arena, mut names: Names) -> Resu
     for k in 0..count {
         let mut tokens = Tokens::new(text, position)?;
         if *tokens.current() == Token::End {
-            return Err(tokens.error(format!("expected {count} polynomials, each ended by `;`, found {k}")));
+            return Err(
+                tokens.error(format!("expected {}, each ended by `;`, found {k}", counted(count, "polynomial")))
+            );
         }
         equations.push(FormulaParser::new(&mut arena, &mut names).sum(&mut tokens)?);
         if *tokens.current() != Token::Semicolon {
@@ -44,7 +47,8 @@ pub(super) fn phcpack_in(text: &str, mut arena: Arena, mut names: Names) -> Resu
     }
     if let Some(unknowns) = unknowns.filter(|&unknowns| unknowns != arena.variables.len()) {
         let found = arena.variables.len();
-        let message = format!("the first line announces {unknowns} unknowns, the polynomials have {found}");
+        let message =
+            format!("the first line announces {}, the polynomials have {found}", counted(unknowns, "unknown"));
         return Err(ParseError::at(text, 0, message));
     }
     Ok(System { arena, equations })

@@ -56,7 +56,7 @@ impl<'t> Reader<'t> {
     fn statement(&mut self) -> Result<(), ParseError> {
         let role = match *self.tokens.current() {
             Token::LineEnd | Token::Semicolon => return self.tokens.advance(),
-            Token::Name("variables") if self.tokens.colon_follows() => Some(Role::Unknown),
+            Token::Name("variables" | "unknowns") if self.tokens.colon_follows() => Some(Role::Unknown),
             Token::Name("parameters") if self.tokens.colon_follows() => Some(Role::Parameter),
             _ => None,
         };
@@ -68,7 +68,7 @@ impl<'t> Reader<'t> {
 
     fn declaration(&mut self, role: Role) -> Result<(), ParseError> {
         let (seen, word) = match role {
-            Role::Unknown => (&mut self.unknowns_declared, "variables"),
+            Role::Unknown => (&mut self.unknowns_declared, "unknowns"),
             Role::Parameter => (&mut self.parameters_declared, "parameters"),
         };
         if std::mem::replace(seen, true) {
@@ -150,6 +150,9 @@ mod tests {
         assert_eq!((system.variables(), system.len()), (["y".to_owned(), "x".to_owned()].as_slice(), 3));
         let found = plain("x^2 + y^2 - 5; x*y - 2").unwrap();
         assert_eq!((found.variables(), found.len()), (["x".to_owned(), "y".to_owned()].as_slice(), 2));
+        let same = plain("unknowns: y x\nx^2 + y^2 - 5; x*y - 2\nunknowns = 3").unwrap_err();
+        assert!(same.message.contains("`unknowns` is neither"), "{same}");
+        assert_eq!(plain("unknowns: y x\nx*y").unwrap().variables(), ["y".to_owned(), "x".to_owned()].as_slice());
         let family = plain("parameters: r\nx^2 + y^2 = r^2\nvariables = 3").unwrap();
         assert_eq!((family.variables().len(), family.parameters()), (3, ["r".to_owned()].as_slice()));
     }

@@ -1,11 +1,13 @@
 //! Errors in supports.
 
+use crate::wording::counted;
+
 /// Why supports do not make a system.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SupportError {
     /// An exponent vector of the wrong length.
-    #[error("term {term} of equation {equation} has {found} exponents, the system has {expected} unknowns")]
+    #[error("term {term} of equation {equation} has {}, the system has {}", counted(*.found, "exponent"), counted(*.expected, "unknown"))]
     Length {
         /// The equation, from 1.
         equation: usize,
