@@ -6,6 +6,7 @@
 use crate::distinct::{coincidences, relative_distance};
 use crate::family::{Family, FamilyError, StartFile, StartFileError};
 use crate::refine::Refiner;
+use poly::counted;
 use poly::program::{EmitError, EmitOptions, emit};
 use std::fmt::Write;
 use thiserror::Error;
@@ -31,7 +32,7 @@ pub enum CodegenError {
     #[error(transparent)]
     Emit(#[from] EmitError),
     /// The number of solutions differs from the number that the family states.
-    #[error("{found} solutions, but the family states {stated}; compute the start file anew or correct `roots`")]
+    #[error("{}, but the family states {stated}; compute the start file anew or correct `roots`", counted(*.found, "solution"))]
     Count {
         /// Number of stored solutions.
         found: usize,

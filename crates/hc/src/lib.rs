@@ -92,8 +92,8 @@ pub use num_complex::Complex64;
 pub use poly;
 pub use poly::System;
 pub use solve::{
-    Direction, Solution, Solutions, SolveError, SolveOptions, Start, Unresolved, Warning, solve, solve_on_ranks,
-    solve_recorded, solve_watched,
+    Direction, Solution, Solutions, SolveError, SolveOptions, Start, Unresolved, Warning, coordinates, solve,
+    solve_on_ranks, solve_recorded, solve_watched,
 };
 pub use start::mixed_volume;
 pub use tracker::{OptionError, TrackerOptions};

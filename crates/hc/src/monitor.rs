@@ -1,5 +1,6 @@
 //! Watching and stopping work: its progress, read from another thread or passed to a callback.
 
+use poly::counted;
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering};
@@ -49,12 +50,12 @@ impl fmt::Display for Progress {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.stage {
             Stage::Preparing => f.write_str("preparing"),
-            Stage::MixedCells => write!(f, "{} mixed cells, of volume {}", self.done, self.counted),
+            Stage::MixedCells => write!(f, "{}, of volume {}", counted(self.done, "mixed cell"), self.counted),
             Stage::Start => f.write_str("paths to generic coefficients"),
             Stage::Paths => write!(f, "paths, {} of them at regular solutions", self.counted),
             Stage::Endgame => f.write_str("paths through the endgame"),
             Stage::Search => write!(f, "starts, {} of them agree", self.counted),
-            Stage::Loop => write!(f, "paths round a loop, {} solutions so far", self.total / 3),
+            Stage::Loop => write!(f, "paths round a loop, {} so far", counted(self.total / 3, "solution")),
         }
     }
 }

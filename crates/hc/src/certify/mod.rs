@@ -59,7 +59,7 @@ pub use certificate::{Certificate, CertifyOptions, Obstacle, Reality};
 
 use crate::threads::{IntoParallelRefIterator, ParallelIterator};
 use num_complex::Complex64;
-use poly::{CompileError, ComplexInterval, Evaluate, System};
+use poly::{CompileError, ComplexInterval, Evaluate, System, counted};
 use prover::{Prover, Target};
 
 /// Why nothing is certified at all.
@@ -70,7 +70,7 @@ pub enum CertifyError {
     #[error(transparent)]
     Compile(#[from] CompileError),
     /// Not as many equations as unknowns.
-    #[error("{equations} equations in {unknowns} unknowns; only square systems can be certified")]
+    #[error("{} in {}; only square systems can be certified", counted(*.equations, "equation"), counted(*.unknowns, "unknown"))]
     NotSquare {
         /// Number of equations.
         equations: usize,
@@ -78,7 +78,7 @@ pub enum CertifyError {
         unknowns: usize,
     },
     /// A point has the wrong number of coordinates.
-    #[error("point {point} has {found} coordinates, the system has {expected} unknowns")]
+    #[error("point {point} has {}, the system has {}", counted(*.found, "coordinate"), counted(*.expected, "unknown"))]
     Length {
         /// The point, from 1.
         point: usize,
@@ -88,7 +88,7 @@ pub enum CertifyError {
         expected: usize,
     },
     /// The wrong number of parameters.
-    #[error("{found} parameters are given, the system has {expected}")]
+    #[error("{} given, the system has {expected}", counted(*.found, "parameter"))]
     Parameters {
         /// Number of intervals given.
         found: usize,

@@ -1,5 +1,6 @@
 //! Messages about a checkpoint for whoever started the run.
 
+use poly::counted;
 use std::fmt;
 
 /// A message about a checkpoint while the work goes on.
@@ -43,7 +44,7 @@ impl fmt::Display for Note {
         match self {
             Note::Nothing => f.write_str("there is no checkpoint yet; starts from the beginning"),
             Note::Resumed { records, seconds } => {
-                write!(f, "goes on after {records} records, {seconds:.1} s of work")
+                write!(f, "goes on after {}, {seconds:.1} s of work", counted(*records, "record"))
             }
             Note::Torn { dropped } => {
                 write!(f, "the log ends within a record; its last {dropped} bytes are cut off and computed again")

@@ -160,11 +160,11 @@ impl Family {
     }
 }
 
-/// From TOML.
+/// From plain text or TOML, as [`poly::Family`] is read.
 impl FromStr for Family {
     type Err = FamilyError;
 
     fn from_str(text: &str) -> Result<Family, FamilyError> {
-        Family::new(poly::parse::family(text)?)
+        Family::new(text.parse::<poly::Family>()?)
     }
 }

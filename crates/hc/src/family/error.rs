@@ -3,7 +3,7 @@
 use crate::checkpoint::CheckpointError;
 use crate::ranks::RanksError;
 use crate::tracker::OptionError;
-use poly::{CompileError, ParseError};
+use poly::{CompileError, ParseError, counted};
 
 /// Why a family cannot be tracked.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -25,7 +25,7 @@ pub enum FamilyError {
     #[error(transparent)]
     Ranks(#[from] RanksError),
     /// The number of equations differs from the number of unknowns, or is zero.
-    #[error("{equations} equations in {unknowns} unknowns; as many equations as unknowns are needed, and at least one")]
+    #[error("{} in {}; as many equations as unknowns are needed, and at least one", counted(*.equations, "equation"), counted(*.unknowns, "unknown"))]
     NotSquare {
         /// Number of equations.
         equations: usize,
@@ -33,7 +33,7 @@ pub enum FamilyError {
         unknowns: usize,
     },
     /// A symmetry whose number of formulas differs from the number of unknowns.
-    #[error("symmetry {map} has {found} formulas; it needs one for each of the {unknowns} unknowns")]
+    #[error("symmetry {map} has {}; it needs one for each unknown, {unknowns} in all", counted(*.found, "formula"))]
     Symmetry {
         /// The map, from 1.
         map: usize,
@@ -52,8 +52,11 @@ pub enum FamilyError {
     },
     /// A fibre of another family.
     #[error(
-        "{found_parameters} parameters and solutions of {found_unknowns} coordinates, but the family has {parameters} parameters and \
-         {unknowns} unknowns"
+        "{} and solutions of {}, but the family has {} and {}",
+        counted(*.found_parameters, "parameter"),
+        counted(*.found_unknowns, "coordinate"),
+        counted(*.parameters, "parameter"),
+        counted(*.unknowns, "unknown")
     )]
     Misfit {
         /// Number of parameters of the fibre.
@@ -66,7 +69,7 @@ pub enum FamilyError {
         unknowns: usize,
     },
     /// A target that does not fit.
-    #[error("target {target}: {parameters} finite parameters are needed")]
+    #[error("target {target}: {} needed", counted(*.parameters, "finite parameter"))]
     Target {
         /// The target, from 1.
         target: usize,

@@ -2,6 +2,7 @@
 
 use super::fibre::Fibre;
 use num_complex::Complex64;
+use poly::counted;
 use serde::{Deserialize, Serialize};
 
 /// A stored generic fibre. Numbers are written so that they are read back bit for bit.
@@ -36,7 +37,7 @@ pub enum StartFileError {
         place: String,
     },
     /// The solutions do not all have the same number of coordinates.
-    #[error("solution {index} (counted from 1) has {found} coordinates, the first has {expected}")]
+    #[error("solution {index} (counted from 1) has {}, the first has {expected}", counted(*.found, "coordinate"))]
     Ragged {
         /// The solution, counted from 1.
         index: usize,

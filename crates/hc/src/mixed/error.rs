@@ -1,6 +1,7 @@
 //! Why there are no mixed cells.
 
 use crate::ranks::RanksError;
+use poly::counted;
 
 /// Integers have grown beyond the limit of their type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,7 +12,7 @@ pub(super) struct Overflow;
 #[non_exhaustive]
 pub enum MixedError {
     /// The number of supports differs from the number of unknowns.
-    #[error("{supports} supports in {unknowns} unknowns; as many supports as unknowns are needed")]
+    #[error("{} in {}; as many supports as unknowns are needed", counted(*.supports, "support"), counted(*.unknowns, "unknown"))]
     NotSquare {
         /// Number of supports.
         supports: usize,
@@ -19,7 +20,7 @@ pub enum MixedError {
         unknowns: usize,
     },
     /// An exponent vector of the wrong length.
-    #[error("a point of support {support} has {found} exponents, there are {unknowns} unknowns")]
+    #[error("a point of support {support} has {}, for {}", counted(*.found, "exponent"), counted(*.unknowns, "unknown"))]
     Length {
         /// The support, from 1.
         support: usize,
@@ -29,7 +30,7 @@ pub enum MixedError {
         unknowns: usize,
     },
     /// A lifting that does not fit the supports.
-    #[error("support {support} has {points} points but its lifting {values} values")]
+    #[error("support {support} has {} but its lifting {}", counted(*.points, "point"), counted(*.values, "value"))]
     Lifting {
         /// The support, from 1.
         support: usize,

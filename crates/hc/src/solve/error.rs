@@ -5,7 +5,7 @@ use crate::checkpoint::CheckpointError;
 use crate::ranks::RanksError;
 use crate::start::MixedError;
 use crate::tracker::OptionError;
-use poly::{ExpandError, SupportError};
+use poly::{ExpandError, SupportError, counted};
 
 /// Why a system is not solved.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -40,8 +40,9 @@ pub enum SolveError {
     Mismatched(usize),
     /// Fewer equations than unknowns, or no unknowns.
     #[error(
-        "{equations} equations in {} unknowns{} have no isolated solutions; add equations, or numbers for some of the unknowns",
-        unknowns.len(),
+        "too few equations for isolated solutions, {} in {}{}; add equations, or numbers for some of the unknowns",
+        counted(*.equations, "equation"),
+        counted(unknowns.len(), "unknown"),
         if unknowns.is_empty() { String::new() } else { format!(" ({})", unknowns.join(", ")) }
     )]
     Underdetermined {

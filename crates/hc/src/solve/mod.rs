@@ -21,6 +21,7 @@ mod record;
 mod slack;
 mod solutions;
 mod start;
+mod summary;
 mod warning;
 
 pub use error::SolveError;
@@ -28,6 +29,7 @@ pub(crate) use member::{ends, solve_member};
 pub use options::{SolveOptions, Start};
 pub(crate) use polynomials::{Place, solve_polynomials, solve_sliced};
 pub use solutions::{Direction, Solution, Solutions, Unresolved};
+pub use summary::coordinates;
 pub use warning::Warning;
 
 use crate::checkpoint::{Checkpoint, Hash, Job};

@@ -7,12 +7,7 @@ use crate::family::PathCounts;
 use num_complex::Complex64;
 use poly::{ComplexInterval, System};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
-use std::fmt;
 use std::sync::Arc;
-
-/// Real solutions that a summary shows.
-const LISTED: usize = 20;
 
 /// An isolated solution.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -224,7 +219,7 @@ impl Solutions {
     }
 
     /// The numbers of paths of the start systems that were not chosen, as far as they are known.
-    fn others(&self, chosen: Start) -> String {
+    pub(super) fn others(&self, chosen: Start) -> String {
         let all = [
             (Start::Polyhedral, self.mixed_volume),
             (Start::Multihomogeneous, self.multihomogeneous_number),
@@ -242,42 +237,6 @@ impl<'a> IntoIterator for &'a Solutions {
 
     fn into_iter(self) -> Self::IntoIter {
         self.iter()
-    }
-}
-
-/// One screen: numbers of solutions and paths, warnings, and the first real solutions.
-impl fmt::Display for Solutions {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (paths, real) = (&self.paths, self.iter().filter(|s| s.real).count());
-        writeln!(f, "{} isolated solutions, {real} real", self.len())?;
-        let mut multiplicities: BTreeMap<usize, usize> = BTreeMap::new();
-        for solution in self.iter().filter(|s| s.singular) {
-            *multiplicities.entry(solution.multiplicity).or_default() += 1;
-        }
-        for (multiplicity, count) in multiplicities {
-            writeln!(f, "  {count} of them singular, of multiplicity {multiplicity}")?;
-        }
-        if self.iter().any(|s| s.certified.is_some()) {
-            let certified = self.iter().filter(|s| s.certified == Some(true)).count();
-            writeln!(f, "  {certified} of them certified")?;
-        }
-        let start = self.start.map_or(String::new(), |start| format!(" ({start}{})", self.others(start)));
-        writeln!(
-            f,
-            "{} paths{start}: {} finite, {} at infinity, {} failed, {} tracked again",
-            paths.tracked, paths.finite, paths.at_infinity, paths.failed, paths.retracked
-        )?;
-        for warning in self.warnings() {
-            writeln!(f, "warning: {warning}")?;
-        }
-        for x in self.real_solutions().take(LISTED) {
-            let values = self.variables.iter().zip(x).map(|(name, x)| format!("{name} = {x:.12}"));
-            writeln!(f, "  {}", values.collect::<Vec<_>>().join(", "))?;
-        }
-        if real > LISTED {
-            writeln!(f, "  and {} real ones more", real - LISTED)?;
-        }
-        Ok(())
     }
 }
 

@@ -1,5 +1,7 @@
 //! What a reader of a list of solutions must know.
 
+use poly::{counted, one_or};
+
 /// A way in which a list of solutions may be incomplete.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
@@ -8,7 +10,7 @@ pub enum Warning {
     #[error("interrupted: this is a partial result")]
     Partial,
     /// There are solutions that are not isolated.
-    #[error("there are solution sets of positive dimension: {paths} paths end on them, at {points} points")]
+    #[error("there are solution sets of positive dimension: {} {} on them, at {}", counted(*.paths, "path"), one_or(*.paths, "ends", "end"), counted(*.points, "point"))]
     Components {
         /// Number of paths that end on them.
         paths: usize,
@@ -16,31 +18,31 @@ pub enum Warning {
         points: usize,
     },
     /// Finite ends that are not solutions.
-    #[error("{paths} finite ends are left out: they do not solve all equations, or lie outside the torus")]
+    #[error("left out, since some equation does not hold or they lie outside the torus: {}", counted(*.paths, "finite end"))]
     Excess {
         /// Number of paths that end there.
         paths: usize,
     },
     /// Paths were lost from the first start system.
-    #[error("{start_systems} start systems were used, since paths were lost")]
+    #[error("{} used, since paths were lost", counted(*.start_systems, "start system"))]
     Restarted {
         /// Number of start systems that were used.
         start_systems: u32,
     },
     /// Paths whose ends are not known.
-    #[error("the list may be incomplete: it is not known where {paths} paths end")]
+    #[error("the list may be incomplete: it is not known where {} {}", counted(*.paths, "path"), one_or(*.paths, "ends", "end"))]
     Lost {
         /// Number of paths.
         paths: usize,
     },
     /// Ends at which the equations nearly vanish, but whose nature is not known.
-    #[error("{ends} ends could not be judged; they are listed as unresolved")]
+    #[error("{} could not be judged, and {} listed as unresolved", counted(*.ends, "end"), one_or(*.ends, "is", "are"))]
     Unresolved {
         /// Number of ends.
         ends: usize,
     },
     /// Regular solutions that could not be certified.
-    #[error("{solutions} regular solutions are not certified")]
+    #[error("{} not certified", counted(*.solutions, "regular solution"))]
     Uncertified {
         /// Number of solutions.
         solutions: usize,
