@@ -104,18 +104,20 @@ pub(crate) fn read<'py>(
 
 fn unit(name: &str, speed: Option<f64>, rate: Option<f64>) -> Result<Units, Failure> {
     let needs = |what: &str| Failure::Input(format!("units={name:?} needs {what}"));
-    if name == "m" {
-        return Ok(Units::Metres);
-    }
-    let speed = || speed.ok_or_else(|| needs("speed in metres a second, such as 343 for sound in air"));
+    let speed =
+        || speed.ok_or_else(|| needs("speed in metres a second, such as 343 for sound in air or 299792458 for radio"));
     Ok(match name {
+        "m" => Units::Metres,
+        "cm" => Units::Centimetres,
+        "km" => Units::Kilometres,
         "s" => Units::Seconds { speed: speed()? },
         "ms" => Units::Milliseconds { speed: speed()? },
         "us" => Units::Microseconds { speed: speed()? },
+        "ns" => Units::Nanoseconds { speed: speed()? },
         "samples" => {
             let rate = rate.ok_or_else(|| needs("rate, the samples a second, such as 48000"))?;
             Units::Samples { speed: speed()?, rate }
         }
-        _ => return Err(Failure::Input(format!("units must be m, s, ms, us or samples, not {name:?}"))),
+        _ => return Err(Failure::Input(format!("units must be m, cm, km, s, ms, us, ns or samples, not {name:?}"))),
     })
 }

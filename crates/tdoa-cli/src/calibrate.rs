@@ -62,7 +62,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "FILE.csv", requires = "estimate_speed")]
     distances: Option<PathBuf>,
     /// Estimates the propagation speed from the known distances and those between anchors: with
-    /// --units s, ms, us or samples in metres a second (only --sigma depends on --speed then),
+    /// --units s, ms, us, ns or samples in metres a second (only --sigma depends on --speed then),
     /// otherwise as a factor on the one that made the measurements metres.
     #[arg(long)]
     estimate_speed: bool,

@@ -1,5 +1,6 @@
 //! Known positions of receivers: the truth to compare with, and anchors.
 
+use hc::poly::counted;
 use std::path::Path;
 
 use tdoa::quantity::length;
@@ -47,10 +48,10 @@ impl Truth {
             truth.notes.extend(match truth.receivers {
                 Some(_) => heights(file, &nodes),
                 None => Some(format!(
-                    "{}: rgt has {} positions for {} receivers, so that nothing is compared with it",
+                    "{}: rgt has {} for {}, so that nothing is compared with it",
                     file.display(),
-                    nodes.positions.len(),
-                    measured.receivers()
+                    counted(nodes.positions.len(), "position"),
+                    counted(measured.receivers(), "receiver")
                 )),
             });
         }
@@ -80,10 +81,10 @@ impl Truth {
         }
         let Some(found) = nodes.in_order(receivers) else {
             return unusable(format!(
-                "has {} positions for {} receivers, and no name in common; give one line id,x,y for each receiver, in order \
+                "has {} for {}, and no name in common; give one line id,x,y for each receiver, in order \
                  or with its name",
-                nodes.positions.len(),
-                measured.receivers()
+                counted(nodes.positions.len(), "position"),
+                counted(measured.receivers(), "receiver")
             ));
         };
         if found.iter().flatten().count() < 2 {

@@ -7,12 +7,12 @@ use crate::Failure;
 /// Unit of the measurements.
 #[derive(clap::Args)]
 pub(crate) struct UnitArguments {
-    /// Unit of the measurements: metres, seconds, milliseconds, microseconds or samples. What is
-    /// written is in metres; offsets in this unit too. Metres if not given, but then a table headed
-    /// by times is refused.
+    /// Unit of the measurements: metres, centimetres, kilometres, seconds, milliseconds,
+    /// microseconds, nanoseconds or samples. What is written is in metres; offsets in this unit too.
+    /// Metres if not given, but then a table headed by times or another unit is refused.
     #[arg(long, value_enum)]
     units: Option<Choice>,
-    /// Propagation speed in metres a second, for all units but metres; sound in air: 343,
+    /// Propagation speed in metres a second, for all units but lengths; sound in air: 343,
     /// radio: 299792458.
     #[arg(long, allow_negative_numbers = true, value_name = "M/S")]
     speed: Option<f64>,
@@ -24,10 +24,13 @@ pub(crate) struct UnitArguments {
 #[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
 enum Choice {
     M,
+    Cm,
+    Km,
     S,
     Ms,
     #[value(alias = "µs")]
     Us,
+    Ns,
     Samples,
 }
 
@@ -38,38 +41,44 @@ impl UnitArguments {
     /// The unit, if one is given; where the speed is estimated anyway, any speed will do.
     pub(crate) fn units(&self, estimate_speed: bool) -> Result<Option<Units>, Failure> {
         let unusable = |message: String| Err(Failure::Unusable(message));
-        let Some(unit) = self.units.filter(|&unit| unit != Choice::M) else {
-            return match (self.speed, self.rate) {
-                (None, None) => Ok(self.units.map(|_| Units::Metres)),
-                (Some(_), _) => unusable("--speed needs --units s, ms, us or samples".to_string()),
-                (None, Some(_)) => unusable("--rate needs --units samples and --speed".to_string()),
-            };
-        };
-        let name = match unit {
-            Choice::M => "m",
-            Choice::S => "s",
-            Choice::Ms => "ms",
-            Choice::Us => "us",
-            Choice::Samples => "samples",
-        };
-        let Some(speed) = self.speed.or(estimate_speed.then_some(ASSUMED)) else {
-            return unusable(format!("--units {name} needs --speed in metres a second, such as 343 for sound in air"));
-        };
-        if unit != Choice::Samples && self.rate.is_some() {
-            return unusable(format!("--rate is for --units samples, not {name}"));
-        }
-        Ok(Some(match unit {
+        let Some(unit) = self.units else { return self.refuse_speed().map(|()| None) };
+        // Whether these were given is seen to below.
+        let (speed, rate) = (self.speed.unwrap_or(ASSUMED), self.rate.unwrap_or(f64::NAN));
+        let units = match unit {
             Choice::M => Units::Metres,
+            Choice::Cm => Units::Centimetres,
+            Choice::Km => Units::Kilometres,
             Choice::S => Units::Seconds { speed },
             Choice::Ms => Units::Milliseconds { speed },
             Choice::Us => Units::Microseconds { speed },
-            Choice::Samples => match self.rate {
-                Some(rate) => Units::Samples { speed, rate },
-                None => {
-                    return unusable("--units samples needs --rate, the samples a second, such as 48000".to_string());
-                }
-            },
-        }))
+            Choice::Ns => Units::Nanoseconds { speed },
+            Choice::Samples => Units::Samples { speed, rate },
+        };
+        if units.speed().is_none() {
+            return self.refuse_speed().map(|()| Some(units));
+        }
+        let name = units.name();
+        if self.speed.is_none() && !estimate_speed {
+            return unusable(format!(
+                "--units {name} needs --speed in metres a second, such as 343 for sound in air or 299792458 for radio"
+            ));
+        }
+        match (unit, self.rate) {
+            (Choice::Samples, None) => {
+                unusable("--units samples needs --rate, the samples a second, such as 48000".to_string())
+            }
+            (Choice::Samples, _) | (_, None) => Ok(Some(units)),
+            (_, Some(_)) => unusable(format!("--rate is for --units samples, not {name}")),
+        }
+    }
+
+    /// Lengths have neither speed nor rate.
+    fn refuse_speed(&self) -> Result<(), Failure> {
+        match (self.speed, self.rate) {
+            (None, None) => Ok(()),
+            (Some(_), _) => Err(Failure::unusable("--speed needs --units s, ms, us, ns or samples")),
+            (None, Some(_)) => Err(Failure::unusable("--rate needs --units samples and --speed")),
+        }
     }
 }
 
@@ -83,7 +92,7 @@ pub(crate) struct Unit {
 impl Unit {
     /// The unit of measurements; `None` for metres.
     pub(crate) fn new(units: Units) -> Option<Unit> {
-        units.speed().map(|_| Unit { name: units.name(), metres: units.metres() })
+        (units != Units::Metres).then(|| Unit { name: units.name(), metres: units.metres() })
     }
 
     /// The unit where the propagation speed is this many times as large.

@@ -1,5 +1,6 @@
 //! What the data cannot determine, reported before anything is solved.
 
+use hc::poly::{counted, one_or};
 use thiserror::Error;
 
 use crate::duplicates::{constant_difference, copied_transmitters, printed};
@@ -35,7 +36,7 @@ pub(crate) fn is_solvable(receivers: usize, transmitters: usize) -> bool {
 #[non_exhaustive]
 pub enum Degeneracy {
     /// All cells are empty.
-    #[error("nothing was measured: all {0} cells are missing")]
+    #[error("nothing was measured; missing: {}", counted(*.0, "cell"))]
     NothingMeasured(usize),
     /// There are so many receivers that the matrix of their coordinates would fill the memory.
     #[error(
@@ -47,8 +48,9 @@ pub enum Degeneracy {
     },
     /// Too few nodes.
     #[error(
-        "{receivers} receivers and {transmitters} transmitters cannot be calibrated{left}: the smallest solvable sizes are \
-         {SMALLEST}; add {remedy}"
+        "{} and {} cannot be calibrated{left}: the smallest solvable sizes are {SMALLEST}; add {remedy}",
+        counted(*.receivers, "receiver"),
+        counted(*.transmitters, "transmitter")
     )]
     TooSmall {
         /// Number of usable receivers.
@@ -62,8 +64,11 @@ pub enum Degeneracy {
     },
     /// More unknowns than measurements.
     #[error(
-        "{measurements} measurements of {receivers} receivers and {transmitters} transmitters cannot determine {unknowns} \
-         unknowns{left}; measure at least {missing} of the missing cells, or add nodes"
+        "{} of {} and {} cannot determine {}{left}; measure at least {missing} of the missing cells, or add nodes",
+        counted(*.measurements, "measurement"),
+        counted(*.receivers, "receiver"),
+        counted(*.transmitters, "transmitter"),
+        counted(*.unknowns, "unknown")
     )]
     TooFew {
         /// Number of usable receivers.
@@ -301,10 +306,10 @@ pub(crate) fn list(names: &[String]) -> String {
 /// Names of both kinds of nodes, each kind by itself; empty if there are none.
 fn nodes(receivers: &[String], transmitters: &[String]) -> String {
     let kinds = [("receiver", receivers), ("transmitter", transmitters)];
-    let named = kinds.iter().filter(|(_, names)| !names.is_empty()).map(|(kind, names)| {
-        let plural = if names.len() == 1 { "" } else { "s" };
-        format!("{kind}{plural} {}", list(names))
-    });
+    let named = kinds
+        .iter()
+        .filter(|(_, names)| !names.is_empty())
+        .map(|(kind, names)| format!("{kind}{} {}", one_or(names.len(), "", "s"), list(names)));
     named.collect::<Vec<_>>().join(", and ")
 }
 

@@ -1,6 +1,7 @@
 //! A calibration as one self-contained HTML report: the picture, the warnings, and sortable tables
 //! of nodes and measurements. It refers to nothing outside itself.
 
+use hc::poly::{counted, one_or};
 use std::fmt::Write;
 
 use crate::calibrate::Calibration;
@@ -72,7 +73,9 @@ pub fn html(calibration: &Calibration) -> String {
     let (rows, left_out) = measurements(calibration);
     if left_out > 0 {
         page += &format!(
-            "<p class=\"note\">The outliers and the largest residuals; {left_out} smaller ones are in the JSON only.</p>\n"
+            "<p class=\"note\">The outliers and the largest residuals; {} {} in the JSON only.</p>\n",
+            counted(left_out, "smaller one"),
+            one_or(left_out, "is", "are")
         );
     }
     page += &table("measurements", &MEASUREMENTS, rows);
@@ -88,7 +91,7 @@ fn facts(calibration: &Calibration) -> String {
         ("Noise", deviation(calibration)),
         ("Residuals of inliers", format!("{} root mean square", length(calibration.residual_rms))),
         ("Size", calibration.extent().map_or_else(String::new, |size| format!("{} across", length(size)))),
-        ("Redundancy", format!("{} measurements more than unknowns", calibration.redundancy)),
+        ("Redundancy", counted(calibration.redundancy, "measurement") + " more than unknowns"),
         ("Uniqueness", uniqueness(calibration).to_string()),
         (
             "Other networks",
@@ -105,7 +108,7 @@ fn facts(calibration: &Calibration) -> String {
             || format!("{} times the assumed one", number(speed.factor, 6)),
             |value| format!("{} m/s", number(value, 6)),
         );
-        list.push(("Propagation speed", format!("{value}, estimated from {} distances", speed.distances)));
+        list.push(("Propagation speed", format!("{value}, estimated from {}", counted(speed.distances, "distance"))));
     }
     let anchored: Vec<&str> = calibration
         .receiver_names
@@ -121,8 +124,8 @@ fn facts(calibration: &Calibration) -> String {
         list.push((
             "Against the truth",
             format!(
-                "{} receivers, {} root mean square, {} with scale {:.4}",
-                truth.receivers,
+                "{}, {} root mean square, {} with scale {:.4}",
+                counted(truth.receivers, "receiver"),
                 length(truth.receiver_rms),
                 length(truth.receiver_rms_scaled),
                 truth.scale

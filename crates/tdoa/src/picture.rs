@@ -1,6 +1,8 @@
 //! A calibration as an SVG picture: the network with 95 % ellipses, names, a scale bar, outliers, a
 //! histogram of the residuals and, if the truth is given, the truth and error vectors.
 
+use hc::poly::{counted, one_or};
+
 mod canvas;
 mod histogram;
 
@@ -180,7 +182,7 @@ fn legend(canvas: &mut Canvas, calibration: &Calibration, magnified: f64, outsid
     let h = row(canvas, &format!("transmitter, with 95 % ellipse{times}"));
     canvas.circle([at[0], h], 3.0, "#D55E00");
     let (measured, outlying) = (calibration.residuals.len(), calibration.residuals.outliers().count());
-    let h = row(canvas, &format!("outliers: {outlying} of {measured} measurements"));
+    let h = row(canvas, &format!("outliers: {outlying} of {}", counted(measured, "measurement")));
     canvas.line([at[0] - 10.0, h], [at[0] + 12.0, h], "#CC79A7", 1.0, "5 3");
     if calibration.truth.is_some() {
         let h = row(canvas, "true position, and the error");
@@ -191,14 +193,17 @@ fn legend(canvas: &mut Canvas, calibration: &Calibration, magnified: f64, outsid
         canvas.square([at[0], h], 9.0);
     }
     if outside > 0 {
-        row(canvas, &format!("{outside} transmitters lie outside the picture"));
+        row(
+            canvas,
+            &format!("{} {} outside the picture", counted(outside, "transmitter"), one_or(outside, "lies", "lie")),
+        );
     }
     if !calibration.unique {
         row(
             canvas,
             &match calibration.alternatives.len() {
                 0 => "not unique, see the warnings".to_string(),
-                others => format!("not unique: {others} alternatives"),
+                others => format!("not unique: {}", counted(others, "alternative")),
             },
         );
     }

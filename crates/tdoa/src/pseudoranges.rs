@@ -1,6 +1,7 @@
 //! The measurement matrix.
 
 use crate::cells::Cells;
+use hc::poly::counted;
 use thiserror::Error;
 
 /// Largest number of cells (receivers times transmitters) of a matrix: 24 million. Memory is
@@ -17,7 +18,7 @@ pub const MAX_MAGNITUDE: f64 = 1e12;
 #[non_exhaustive]
 pub enum PseudorangeError {
     /// No receivers or no transmitters.
-    #[error("the matrix is empty ({receivers} receivers, {transmitters} transmitters)")]
+    #[error("the matrix is empty ({}, {})", counted(*.receivers, "receiver"), counted(*.transmitters, "transmitter"))]
     Empty {
         /// Number of rows.
         receivers: usize,
@@ -26,7 +27,9 @@ pub enum PseudorangeError {
     },
     /// More than [`MAX_CELLS`] cells.
     #[error(
-        "{receivers} receivers times {transmitters} transmitters are more than {MAX_CELLS} cells; split the recording"
+        "{} times {} are more than {MAX_CELLS} cells; split the recording",
+        counted(*.receivers, "receiver"),
+        counted(*.transmitters, "transmitter")
     )]
     TooLarge {
         /// Number of rows.

@@ -32,11 +32,12 @@ use source::{has_extension, open, text};
 /// was measured, with an optional first line that names the transmitters and an optional first
 /// column that names the receivers (headed by `receiver`, `id`, `name` or nothing, or by any word
 /// if names stand below it); or a list of one measurement a line with a first line that names the
-/// columns receiver (or mic, microphone, anchor, sensor, station), transmitter (or event, source,
-/// emitter, sound, tag), value (or pseudorange, range, distance, time, toa, arrival) and optionally
-/// sigma, a standard deviation for each measurement. Cells are separated by semicolons, tabs,
-/// commas or blanks, whichever the first line has; with any but commas, numbers may have decimal
-/// commas. The text is UTF-8, or UTF-16 with a byte order mark.
+/// columns receiver (or mic, microphone, channel, anchor, sensor, station, node), transmitter (or
+/// event, shot, source, emitter, sound, tag, beacon), value (or pseudorange, range, distance, time,
+/// toa, arrival) and optionally sigma, a standard deviation for each measurement. A unit behind a
+/// name, as in `arrival time (ms)`, must be that of the options. Cells are separated by semicolons,
+/// tabs, commas or blanks, whichever the first line has; with any but commas, numbers may have
+/// decimal commas. The text is UTF-8, or UTF-16 with a byte order mark.
 ///
 /// # Errors
 /// With file, line, column and the names of the nodes, and what to do.

@@ -1,5 +1,6 @@
 //! A calibration in words: what the program prints above its tables, and what Python shows.
 
+use hc::poly::{counted, one_or};
 use std::time::Duration;
 
 use crate::calibrate::{Calibration, SpeedEstimate};
@@ -12,8 +13,9 @@ const SMALL: f64 = 0.2;
 pub fn heading(calibration: &Calibration, time: Option<Duration>) -> String {
     let (measured, outliers) = (calibration.residuals.len(), calibration.residuals.outliers().count());
     let mut text = format!(
-        "{}: {measured} measurements, {outliers} of them outliers, {}\n",
+        "{}: {}, {outliers} of them outliers, {}\n",
         calibration.configuration,
+        counted(measured, "measurement"),
         deviation(calibration),
     );
     if let Some(extent) = calibration.extent() {
@@ -29,12 +31,12 @@ pub fn heading(calibration: &Calibration, time: Option<Duration>) -> String {
     }
     let anchored = calibration.anchored.iter().filter(|&&held| held).count();
     if anchored > 0 {
-        text += &format!("{anchored} receivers held at their known positions\n");
+        text += &format!("held at known positions: {}\n", counted(anchored, "receiver"));
     }
     if let Some(truth) = &calibration.truth {
         text += &format!(
-            "against the truth: {} receivers, {} root mean square, {} with scale {:.4}\n",
-            truth.receivers,
+            "against the truth: {}, {} root mean square, {} with scale {:.4}\n",
+            counted(truth.receivers, "receiver"),
             length(truth.receiver_rms),
             length(truth.receiver_rms_scaled),
             truth.scale,
@@ -68,9 +70,9 @@ pub fn deviation(calibration: &Calibration) -> String {
 pub(crate) fn agreement(calibration: &Calibration) -> String {
     let (agreeing, starts) = (calibration.agreeing, calibration.starts);
     if calibration.laid_together {
-        format!("{agreeing} of {starts} small networks of neighbours fit")
+        format!("{agreeing} of {} of neighbours {}", counted(starts, "small network"), one_or(agreeing, "fits", "fit"))
     } else {
-        format!("{agreeing} of {starts} starts agree")
+        format!("{agreeing} of {} {}", counted(starts, "start"), one_or(agreeing, "agrees", "agree"))
     }
 }
 

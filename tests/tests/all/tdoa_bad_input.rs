@@ -62,7 +62,7 @@ fn not_a_number_and_ragged_rows() {
     assert_says(
         calibrate("f.csv", b"1,2,3\n4,5,6\n7,8\n", &[]),
         2,
-        &["line 3", "receiver r3", "2 cells where 3 are expected"],
+        &["line 3", "receiver r3", "has 2 cells in place of 3"],
     );
 }
 

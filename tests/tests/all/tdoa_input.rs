@@ -85,11 +85,11 @@ fn all_units_give_one_network() {
     let folder = Folder::new();
     let speed = 343.0;
     let size = ["--receivers", "8", "--transmitters", "10", "--noise", "0.001", "--seed", "4"];
-    let found: Vec<Value> = ["m", "s", "ms", "us", "samples"]
+    let found: Vec<Value> = ["m", "s", "ms", "us", "ns", "samples", "cm", "km"]
         .into_iter()
         .map(|unit| {
             let units: &[&str] = match unit {
-                "m" => &["--units", "m"],
+                "m" | "cm" | "km" => &["--units", unit],
                 "samples" => &["--units", "samples", "--rate", "48000", "--speed", "343"],
                 unit => &["--units", unit, "--speed", "343"],
             };
@@ -101,7 +101,9 @@ fn all_units_give_one_network() {
         .collect();
     let number = |value: &Value| value.as_f64().expect("number");
     // One of each unit in metres.
-    for (other, metres) in found[1..].iter().zip([speed, 1e-3 * speed, 1e-6 * speed, speed / 48000.0]) {
+    for (other, metres) in
+        found[1..].iter().zip([speed, 1e-3 * speed, 1e-6 * speed, 1e-9 * speed, speed / 48000.0, 0.01, 1e3])
+    {
         for i in 0..8 {
             for k in 0..2 {
                 let (a, b) = (number(&found[0]["receivers"][i][k]), number(&other["receivers"][i][k]));
@@ -148,7 +150,9 @@ fn units_that_are_not_whole_say_what_is_missing() {
     refused(&["calibrate", file, "--units", "ms"], &["--units ms needs --speed", "343"]);
     refused(&["solve", file, "--units", "samples", "--speed", "343"], &["needs --rate", "48000"]);
     refused(&["calibrate", file, "--units", "samples", "--rate", "48000"], &["needs --speed"]);
-    refused(&["calibrate", file, "--speed", "343"], &["--speed needs --units s, ms, us or samples"]);
+    refused(&["calibrate", file, "--speed", "343"], &["--speed needs --units s, ms, us, ns or samples"]);
+    refused(&["calibrate", file, "--units", "cm", "--speed", "343"], &["--speed needs --units s, ms, us, ns"]);
+    refused(&["calibrate", file, "--units", "ns"], &["--units ns needs --speed", "299792458"]);
     refused(&["calibrate", file, "--rate", "48000"], &["--rate needs --units samples"]);
     refused(&["calibrate", file, "--units", "s", "--speed", "343", "--rate", "9"], &["--rate is for --units samples"]);
     refused(
@@ -175,6 +179,30 @@ fn headings_that_name_units() {
     let file = folder.write("times.csv", list("mic,event,toa", [0, 1, 2], ","));
     refused(&["calibrate", text(&file)], &["\"toa\" holds times", "--units s --speed", "--units m if"]);
     assert_eq!(json(&["calibrate", text(&file), "--units", "m"])["configuration"], "8r/12s");
+    let file = folder.write("shots.csv", list("Channel,Shot,Arrival time (ms)", [0, 1, 2], ","));
+    refused(
+        &["calibrate", text(&file), "--units", "s", "--speed", "343"],
+        &["\"Arrival time (ms)\" is in ms, but --units s is asked for"],
+    );
+    assert_eq!(json(&["calibrate", text(&file), "--units", "ms", "--speed", "1000"])["configuration"], "8r/12s");
+    let file = folder.write("beacons.csv", list("node,beacon,range (km)", [0, 1, 2], ","));
+    refused(&["calibrate", text(&file)], &["is in km; give --units km"]);
+    assert_eq!(json(&["calibrate", text(&file), "--units", "km"])["units"]["name"], "km");
+}
+
+/// What NumPy saved is named in words.
+#[test]
+fn arrays_of_complex_numbers_are_refused_without_their_header() {
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    let header = "{'descr': '<c16', 'fortran_order': False, 'shape': (8, 12), }\n";
+    bytes.extend((header.len() as u16).to_le_bytes());
+    bytes.extend(header.as_bytes());
+    let folder = Folder::new();
+    let file = folder.write("z.npy", bytes);
+    let ran = tdoa(&["calibrate", text(&file)]);
+    assert_eq!(ran.status, Some(2), "{}", ran.message);
+    let says = "z.npy: holds complex numbers (c16); real numbers are needed";
+    assert!(ran.message.contains(says) && !ran.message.contains("fortran"), "{}", ran.message);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Known positions and distances of receivers: they fix the frame, sharpen the rest and give the
 //! propagation speed.
 
+use hc::poly::counted;
 use serde::{Deserialize, Serialize};
 
 use super::options::{CalibrateError, CalibrateOptions, KnownDistance, MeasuredPosition};
@@ -48,7 +49,11 @@ pub(super) fn validate(measured: &Pseudoranges, options: &CalibrateOptions) -> R
     let m = measured.receivers();
     let bad = |problem: String| Err(CalibrateError::Known(problem));
     if !options.anchors.is_empty() && options.anchors.len() != m {
-        return bad(format!("{} anchors are given for {m} receivers; one for each is needed", options.anchors.len()));
+        return bad(format!(
+            "{} for {}; one for each is needed",
+            counted(options.anchors.len(), "anchor"),
+            counted(m, "receiver")
+        ));
     }
     let name = |i: usize| &measured.receiver_names()[i];
     for (i, position) in options.anchors.iter().enumerate() {

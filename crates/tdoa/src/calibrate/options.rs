@@ -4,6 +4,7 @@ use super::unfinished::Unfinished;
 use crate::degeneracy::Degeneracy;
 use crate::refine::Cancelled;
 use hc::Monitor;
+use hc::poly::counted;
 use thiserror::Error;
 
 /// How to treat errors that all measurements of one receiver have in common.
@@ -199,7 +200,8 @@ pub enum CalibrateError {
     Degenerate(#[from] Degeneracy),
     /// No start led to a complete, finite network.
     #[error(
-        "no network was found in {0} starts; check the units, and that receivers are rows and transmitters columns"
+        "no network was found in {}; check the units, and that receivers are rows and transmitters columns",
+        counted(*.0, "start")
     )]
     NotFound(usize),
     /// An option outside its range.
@@ -214,8 +216,11 @@ pub enum CalibrateError {
     },
     /// There are fewer measurements than unknowns, and receivers have delays.
     #[error(
-        "{measurements} measurements cannot determine {unknowns} unknowns, {receivers} receivers with a delay each among them; measure more \
-         transmitters, or --receiver-delays auto if only a few receivers have one"
+        "{} cannot determine {}, a delay of each of {} among them; measure more transmitters, or --receiver-delays auto if \
+         only a few receivers have one",
+        counted(*.measurements, "measurement"),
+        counted(*.unknowns, "unknown"),
+        counted(*.receivers, "receiver")
     )]
     Delays {
         /// Number of usable measurements.

@@ -23,6 +23,7 @@ use crate::pseudoranges::Pseudoranges;
 use crate::quantity::length;
 use crate::refine::{Covariance, Refined};
 use hc::Monitor;
+use hc::poly::{counted, one_or};
 use std::borrow::Cow;
 
 /// Starts that must end in the best network before it is called unique: one or two may have found
@@ -175,10 +176,10 @@ impl Solved<'_> {
         let plain = others.iter().filter(|(.., reason)| *reason == Reason::Found).count();
         if plain > 0 {
             warnings.push(format!(
-                "{plain} other network{} explain{} the measurements about as well (see alternatives){}; add receivers or transmitters, \
-                 or give --sigma if the noise is known",
-                if plain == 1 { "" } else { "s" },
-                if plain == 1 { "s" } else { "" },
+                "{} {} the measurements about as well (see alternatives){}; add receivers or transmitters, or give --sigma if \
+                 the noise is known",
+                counted(plain, "other network"),
+                one_or(plain, "explains", "explain"),
                 if receivers_agree { ", with the same receivers and other transmitters" } else { "" },
             ));
         }
@@ -193,9 +194,10 @@ impl Solved<'_> {
         if let Some(weak) = self.weak.as_ref().filter(|_| !settled) {
             let names: Vec<String> = weak.iter().map(|&i| self.centred.receiver_names()[i].clone()).collect();
             warnings.push(format!(
-                "{agreeing} of {} small networks of neighbours fit the whole, but none that overlaps with others places {}; measure \
+                "{agreeing} of {} of neighbours {} the whole, but none that overlaps with others places {}; measure \
                  transmitters that these receivers and at least {OVERLAP} of their neighbours hear",
-                self.starts,
+                counted(self.starts, "small network"),
+                one_or(agreeing, "fits", "fit"),
                 list(&names)
             ));
         } else if !settled {

@@ -1,5 +1,6 @@
 //! Why a matrix cannot be solved.
 
+use hc::poly::counted;
 use hc::tracker::OptionError;
 use thiserror::Error;
 
@@ -12,8 +13,10 @@ pub enum SolveError {
     Option(#[from] OptionError),
     /// Fewer constraints than unknowns.
     #[error(
-        "{configuration} is underdetermined: {constraints} measurements for {unknowns} unknowns (positions up to a rigid motion, \
-         offsets); the smallest solvable networks are 6 receivers with 3 transmitters, 5 with 4, and 4 with 5"
+        "{configuration} is underdetermined: {} for {} (positions up to a rigid motion, offsets); the smallest solvable networks are \
+         6 receivers with 3 transmitters, 5 with 4, and 4 with 5",
+        counted(*.constraints, "measurement"),
+        counted(*.unknowns, "unknown")
     )]
     Underdetermined {
         /// Size, such as `4r/4s`.

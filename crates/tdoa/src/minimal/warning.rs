@@ -2,6 +2,7 @@
 
 use super::nodes::Nodes;
 use crate::degeneracy::list;
+use hc::poly::{counted, one_or};
 use serde::{Serialize, Serializer};
 use thiserror::Error;
 
@@ -12,8 +13,10 @@ use thiserror::Error;
 pub enum SolveWarning {
     /// Some paths were lost.
     #[error(
-        "{lost} of {tracked} paths were lost: the list of networks may not be whole; nodes may lie in one line, nearly coincide or be \
-         placed symmetrically"
+        "{lost} of {} {} lost: the list of networks may not be whole; nodes may lie in one line, nearly coincide or be placed \
+         symmetrically",
+        counted(*.tracked, "path"),
+        one_or(*.lost, "was", "were")
     )]
     PathsLost {
         /// Number of lost paths.

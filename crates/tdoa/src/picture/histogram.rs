@@ -3,6 +3,7 @@
 use super::canvas::{Canvas, nice};
 use crate::calibrate::Calibration;
 use crate::quantity::number;
+use hc::poly::counted;
 
 const BINS: usize = 32;
 
@@ -39,7 +40,7 @@ pub(super) fn draw(canvas: &mut Canvas, calibration: &Calibration, corner: [f64;
         canvas.line([x, base], [x, base + 5.0], "#222", 1.0, "");
         canvas.text([x, base + 19.0], "middle", 11.0, &number(k as f64 * step, 4));
     }
-    let label = format!("residuals in metres ({} measurements)", calibration.residuals.len());
+    let label = format!("residuals in metres ({})", counted(calibration.residuals.len(), "measurement"));
     canvas.text([corner[0] + 0.5 * size[0], base + 38.0], "middle", 12.0, &label);
     canvas.text([corner[0], corner[1] - 8.0], "start", 11.0, &format!("{most} in the highest bar"));
     if below > 0 {

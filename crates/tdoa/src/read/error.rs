@@ -1,5 +1,6 @@
 //! Why a file cannot be used.
 
+use hc::poly::counted;
 use thiserror::Error;
 
 use crate::pseudoranges::{MAX_CELLS, PseudorangeError};
@@ -8,8 +9,8 @@ use crate::pseudoranges::{MAX_CELLS, PseudorangeError};
 pub const MAX_BYTES: u64 = 512_000_000;
 
 /// What a first line may say, for messages.
-pub(super) const ACCEPTED: &str = "a list of measurements has the columns receiver (or mic, microphone, anchor, sensor, \
-     station), transmitter (or event, source, emitter, sound, tag), value (or pseudorange, range, distance, time, toa, \
+pub(super) const ACCEPTED: &str = "a list of measurements has the columns receiver (or mic, microphone, channel, anchor, \
+     sensor, station, node), transmitter (or event, shot, source, emitter, sound, tag, beacon), value (or pseudorange, range, distance, time, toa, \
      arrival) and, if wanted, sigma (or std), in any order; a matrix has the names of the transmitters in its first line, \
      after an empty cell or the word receiver where the rows begin with names";
 
@@ -86,8 +87,9 @@ pub enum ReadError {
     },
     /// Rows of different lengths.
     #[error(
-        "{file}, line {line} (receiver {receiver}): has {found} cells where {expected} are expected; every receiver needs a \
-         cell for every transmitter, empty or nan if it was not measured"
+        "{file}, line {line} (receiver {receiver}): has {} in place of {expected}; every receiver needs a cell for every \
+         transmitter, empty or nan if it was not measured",
+        counted(*.found, "cell")
     )]
     Ragged {
         /// The file.

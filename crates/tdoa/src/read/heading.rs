@@ -3,14 +3,16 @@
 use super::error::ReadError;
 use super::units::Units;
 
-const RECEIVER: &[&str] = &["receiver", "mic", "microphone", "anchor", "sensor", "station", "rx"];
-const TRANSMITTER: &[&str] = &["transmitter", "event", "source", "emitter", "sound", "tag", "tx"];
+const RECEIVER: &[&str] = &["receiver", "mic", "microphone", "anchor", "sensor", "station", "channel", "rx"];
+const TRANSMITTER: &[&str] = &["transmitter", "event", "source", "emitter", "sound", "shot", "tag", "beacon", "tx"];
 const LENGTH: &[&str] = &["value", "pseudorange", "range", "distance", "measurement"];
 const TIME: &[&str] =
     &["time", "toa", "tdoa", "arrival", "arrival_time", "time_of_arrival", "timestamp", "sample", "seconds"];
 const SIGMA: &[&str] = &["sigma", "std", "stddev", "std_dev", "standard_deviation"];
 /// Columns that name nodes of either kind.
 const NODE: &[&str] = &["name", "id", "node", "label"];
+/// Stands for receivers in a list without a column that says so more clearly.
+const SENSOR_NODE: &[&str] = &["node"];
 
 /// Spellings of units, and the unit they stand for.
 const UNITS: &[(&str, &str)] = &[
@@ -34,9 +36,17 @@ const UNITS: &[(&str, &str)] = &[
     ("microseconds", "us"),
     ("samples", "samples"),
     ("ns", "ns"),
+    ("nsec", "ns"),
+    ("nanoseconds", "ns"),
     ("mm", "mm"),
+    ("millimetres", "mm"),
+    ("millimeters", "mm"),
     ("cm", "cm"),
+    ("centimetres", "cm"),
+    ("centimeters", "cm"),
     ("km", "km"),
+    ("kilometres", "km"),
+    ("kilometers", "km"),
 ];
 
 /// A column's name in lower case, with single underscores between its words, and the unit behind
@@ -134,9 +144,9 @@ struct Roles {
 impl Roles {
     fn of(headings: &[Heading]) -> Roles {
         let under = |names| -> Vec<usize> { (0..headings.len()).filter(|&k| headings[k].is(names)).collect() };
-        let times = under(TIME);
+        let (receivers, times) = (under(RECEIVER), under(TIME));
         Roles {
-            receivers: under(RECEIVER),
+            receivers: if receivers.is_empty() { under(SENSOR_NODE) } else { receivers },
             transmitters: under(TRANSMITTER),
             values: [under(LENGTH), times.clone()].concat(),
             times,
@@ -249,8 +259,10 @@ fn check_unit(what: &str, cell: &str, unit: Option<&str>, is_time: bool, units: 
     let option = |unit: &str| match unit {
         "m" => "leave out --units".to_string(),
         "samples" => "give --units samples --rate HZ --speed V (metres a second; sound in air: 343)".to_string(),
+        "cm" | "km" => format!("give --units {unit}"),
         "s" | "ms" | "us" => format!("give --units {unit} --speed V (metres a second; sound in air: 343)"),
-        _ => format!("{unit} are not read: convert the numbers to m, s, ms, us or samples"),
+        "ns" => "give --units ns --speed V (metres a second; radio: 299792458)".to_string(),
+        _ => format!("{unit} are not read: convert the numbers to m, cm or km"),
     };
     match (unit, units) {
         (Some(unit), _) if unit == units.unwrap_or_default().name() => Ok(()),
@@ -264,7 +276,7 @@ fn check_unit(what: &str, cell: &str, unit: Option<&str>, is_time: bool, units: 
         }
         (None, None) if is_time => Err(format!(
             "the {what} {cell:?} holds times, and their unit is not said; give --units s --speed V (metres a second; sound in air: \
-             343), or ms, us, or samples with --rate; --units m if they are multiplied by the speed already"
+             343), or ms, us, ns, or samples with --rate; --units m if they are multiplied by the speed already"
         )),
         (None, _) => Ok(()),
     }
@@ -280,6 +292,9 @@ mod tests {
             ("Time (ms)", "time", Some("ms")),
             ("time_ms", "time", Some("ms")),
             ("arrival time [µs]", "arrival_time", Some("us")),
+            ("Arrival time (ms)", "arrival_time", Some("ms")),
+            ("range (cm)", "range", Some("cm")),
+            ("time of arrival (nanoseconds)", "time_of_arrival", Some("ns")),
             ("TOA", "toa", None),
             ("x_m", "x", Some("m")),
             ("samples", "samples", Some("samples")),
@@ -289,8 +304,11 @@ mod tests {
             let heading = Heading::new(cell);
             assert_eq!((heading.name.as_str(), heading.unit), (name, unit), "{cell}");
         }
-        for cell in ["Microphone", "mic_id", "Mics", "receiver", "anchorid"] {
+        for cell in ["Microphone", "mic_id", "Mics", "receiver", "anchorid", "Channel", "channel_number"] {
             assert!(Heading::new(cell).is(RECEIVER), "{cell}");
+        }
+        for cell in ["Shot", "shot_number", "beacon", "Beacon id"] {
+            assert!(Heading::new(cell).is(TRANSMITTER), "{cell}");
         }
         assert!(!Heading::new("s1").is(TRANSMITTER) && !Heading::new("mic1").is(RECEIVER));
         assert!(["mic1", "Mic 2", "receiver_03"].iter().all(|cell| Heading::new(cell).is_numbered(RECEIVER)));

@@ -1,5 +1,6 @@
 //! The CSV list: one measurement a line.
 
+use hc::poly::counted;
 use std::collections::HashMap;
 
 use super::cells::{Decimals, Record, shorten};
@@ -28,8 +29,8 @@ pub(super) fn list(
         let extra = cells.get(columns.count..).unwrap_or_default();
         if cells.len() < columns.count || extra.iter().any(|cell| !cell.is_empty()) {
             return Err(bad(format!(
-                "has {} cells where the header has {}; write decimal points, or decimal commas with semicolons between cells",
-                cells.len(),
+                "has {} where the header has {}; write decimal points, or decimal commas with semicolons between cells",
+                counted(cells.len(), "cell"),
                 columns.count
             )));
         }

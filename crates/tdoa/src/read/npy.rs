@@ -7,7 +7,6 @@
 
 use std::io::Read;
 
-use super::cells::shorten;
 use super::error::ReadError;
 use crate::pseudoranges::{MAX_CELLS, Pseudoranges};
 
@@ -19,15 +18,16 @@ pub(super) fn parse(mut source: impl Read, file: &str, factor: f64) -> Result<Ps
     let header = header(&mut source).map_err(|problem| bad(problem.to_string()))?;
     let field = |name: &str| value_of(&header, name).ok_or_else(|| bad(format!("has no {name} in its header")));
     let kind = field("descr")?;
-    let decode = decoder(kind).ok_or_else(|| bad(format!("holds elements of type {kind} instead of floats")))?;
+    let decode = decoder(kind).ok_or_else(|| bad(format!("holds {}; real numbers are needed", described(kind))))?;
     let fortran = field("fortran_order")?.starts_with("True");
-    let shape = field("shape")?;
-    let inner = shape.strip_prefix('(').and_then(|s| s.split_once(')')).map(|(inner, _)| inner);
-    let sizes: Option<Vec<usize>> = inner.and_then(|inner| {
-        inner.split(',').map(str::trim).filter(|size| !size.is_empty()).map(|size| size.parse().ok()).collect()
-    });
-    let Some(&[rows, columns]) = sizes.as_deref() else {
-        return Err(bad(format!("has the shape {} instead of (receivers, transmitters)", shorten(shape))));
+    let sizes = sizes(field("shape")?).ok_or_else(|| bad("has an unreadable shape in its header".to_string()))?;
+    let &[rows, columns] = sizes.as_slice() else {
+        let problem = match sizes.as_slice() {
+            [] => "holds a single number".to_string(),
+            [size] => format!("holds one row of {size}"),
+            more => format!("has {} dimensions", more.len()),
+        };
+        return Err(bad(format!("{problem}; two dimensions are needed, receivers and transmitters")));
     };
     let Some(cells) = rows.checked_mul(columns).filter(|&cells| cells <= MAX_CELLS) else {
         return Err(bad(format!("has {rows} x {columns} cells, more than {MAX_CELLS}")));
@@ -62,10 +62,37 @@ fn header(source: &mut impl Read) -> Result<String, &'static str> {
     String::from_utf8(header).map_err(|_| "has a header that is no text")
 }
 
+/// The sizes of a shape, such as `(2, 3)`.
+fn sizes(shape: &str) -> Option<Vec<usize>> {
+    let (inner, _) = shape.strip_prefix('(')?.split_once(')')?;
+    inner.split(',').map(str::trim).filter(|size| !size.is_empty()).map(|size| size.parse().ok()).collect()
+}
+
 /// What follows `'name':` in the header.
 fn value_of<'a>(header: &'a str, name: &str) -> Option<&'a str> {
     let (_, rest) = header.split_once(&format!("'{name}'"))?;
     Some(rest.trim_start().strip_prefix(':')?.trim_start())
+}
+
+/// In words, what elements that cannot be read are: byte order, a letter and a size, as in `<c16`.
+fn described(kind: &str) -> String {
+    let Some(quoted) = kind.strip_prefix(['\'', '"']) else { return "records of several fields".to_string() };
+    let code = quoted.split(['\'', '"']).next().unwrap_or_default().trim_start_matches(['<', '>', '|', '=']);
+    let words = match code.chars().next() {
+        Some('c') => "complex numbers",
+        Some('b' | '?') => "truth values",
+        Some('u') => "whole numbers without a sign",
+        Some('i') => "whole numbers of another size or byte order than is read",
+        Some('f') => "floats of another size than is read",
+        Some('U' | 'S' | 'a') => "text",
+        Some('M' | 'm') => "dates or time spans",
+        Some('O') => "Python objects",
+        Some('V') => "raw bytes",
+        _ => return "elements of an unknown type".to_string(),
+    };
+    // What is no short code is left out.
+    let is_code = code.len() <= 6 && code.chars().all(|c| c.is_ascii_alphanumeric());
+    if is_code { format!("{words} ({code})") } else { words.to_string() }
 }
 
 /// Name, size in bytes and conversion of an element type.

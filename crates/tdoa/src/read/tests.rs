@@ -103,6 +103,10 @@ fn spellings_of_one_list() {
     for text in [
         "receiver,transmitter,value\nm,a,1.5\nm,b,2.5\nn,a,3.5\nn,b,4.5\n",
         "event,microphone,time\na,m,1.5\nb,m,2.5\na,n,3.5\nb,n,4.5\n",
+        "channel,shot,arrival time\nm,a,1.5\nm,b,2.5\nn,a,3.5\nn,b,4.5\n",
+        "Node\tBeacon\trange (m)\nm\ta\t1.5\nm\tb\t2.5\nn\ta\t3.5\nn\tb\t4.5\n",
+        // Where receivers have a column, one of nodes is left out.
+        "node,receiver,event,range\n1,m,a,1.5\n1,m,b,2.5\n2,n,a,3.5\n2,n,b,4.5\n",
         "TOA;Mic;Source\n1,5;m;a\n2,5;m;b\n3,5;n;a\n4,5;n;b\n;;\n",
         "anchor_id\ttag_id\trange\tquality\nm\ta\t1.5\t0\nm\tb\t2.5\t0\nn\ta\t3.5\t0\nn\tb\t4.5\t0\n",
     ] {
@@ -120,6 +124,8 @@ fn first_lines_that_are_not_understood() {
     for (text, part) in [
         ("event,microphone,loudness\na,m,1\n", "no column is the value"),
         ("mic,time\nm,1\n", "no column is the transmitter"),
+        // A node may be a receiver or a transmitter, which is not guessed.
+        ("node,anchor,range\nm,a,1\n", "no column is the transmitter"),
         ("mic,sensor,event,time\nm,m,a,1\n", "\"mic\" and \"sensor\" may both be the receiver"),
         ("a,b,c\nm,e,1\n", "taken for names: a list of measurements has the columns receiver"),
         ("receiver,event,time\nm,a,0,5\n", "semicolons between cells"),
@@ -148,7 +154,8 @@ fn units_of_a_matrix_are_heeded() {
         ("mic,clap1 [ms],clap2 [ms]\nm,1.5,2.5\nn,3.5,4.5\n", "\"clap1 [ms]\" is in ms"),
         // A column of numbers that was taken for a transmitter.
         ("time_ms,a\n1,2.5\n2,4.5\n", "is in ms"),
-        ("range_km,a,b\nm,1.5,2.5\nn,3.5,4.5\n", "km are not read"),
+        ("range_km,a,b\nm,1.5,2.5\nn,3.5,4.5\n", "is in km; give --units km"),
+        ("range_mm,a,b\nm,1.5,2.5\nn,3.5,4.5\n", "mm are not read: convert"),
     ] {
         let error = read(text, None).unwrap_err();
         assert!(error.contains(part), "{part:?} is not in: {error}");
@@ -166,6 +173,8 @@ fn tables_with_receivers_as_columns_are_refused() {
         ",Receiver 1,Receiver 2\nx,1,2\ny,3,4\n",
         "clap,mic1,mic2\nx,1,2\ny,3,4\n",
         "event1,1,2\nevent2,3,4\n",
+        "shot,1,2\na,1,2\nb,3,4\n",
+        "clap,channel1,channel2\nx,1,2\ny,3,4\n",
     ] {
         let error = message(text);
         assert!(error.contains("transpose the table"), "{text:?}: {error}");
@@ -213,6 +222,12 @@ fn units_that_first_lines_name() {
     assert_eq!(list("time_ms", milliseconds.into()), Ok(Some(3.0 * milliseconds.metres())));
     let samples = Units::Samples { speed, rate: 48_000.0 };
     assert_eq!(list("time (samples)", samples.into()), Ok(Some(3.0 * samples.metres())));
+    assert_eq!(list("Arrival time (ms)", milliseconds.into()), Ok(Some(3.0 * milliseconds.metres())));
+    // A nanosecond of light is 0.299792458 m.
+    let light = Units::Nanoseconds { speed: 299_792_458.0 };
+    assert!((list("toa_ns", light.into()).unwrap().unwrap() - 3.0 * 0.299_792_458).abs() < 1e-12);
+    assert_eq!(list("range (cm)", Units::Centimetres.into()), Ok(Some(3.0 * 0.01)));
+    assert_eq!(list("range_km", Units::Kilometres.into()), Ok(Some(3000.0)));
     assert_eq!(list("time", Units::Metres.into()), Ok(Some(3.0)));
     assert_eq!(list("value", ReadOptions::default()), Ok(Some(3.0)));
     assert_eq!(list("range_m", ReadOptions::default()), Ok(Some(3.0)));
@@ -221,7 +236,11 @@ fn units_that_first_lines_name() {
         ("time_ms", ReadOptions::default(), "give --units ms --speed"),
         ("Time [s]", milliseconds.into(), "is in s, but --units ms is asked for"),
         ("samples", ReadOptions::default(), "--rate HZ"),
-        ("time_ns", ReadOptions::default(), "ns are not read: convert"),
+        ("time_ns", ReadOptions::default(), "give --units ns --speed"),
+        ("range (cm)", ReadOptions::default(), "is in cm; give --units cm"),
+        ("range (cm)", Units::Kilometres.into(), "is in cm, but --units km is asked for"),
+        ("arrival time (ms)", Units::Seconds { speed }.into(), "is in ms, but --units s is asked for"),
+        ("range_mm", Units::Centimetres.into(), "mm are not read: convert"),
         ("range_m", milliseconds.into(), "leave out --units"),
     ] {
         let error = list(heading, options).unwrap_err();
@@ -258,22 +277,49 @@ fn endless_garbage_is_refused_early() {
     assert!(matches!(read_npy(Endless(b'x', 0), "f", Units::Metres), Err(ReadError::Npy { .. })));
 }
 
+/// A file of numpy.save.
+fn npy(kind: &str, order: &str, shape: &str, values: &[f64]) -> Vec<u8> {
+    let mut header = format!("{{'descr': {kind}, 'fortran_order': {order}, 'shape': {shape}, }}");
+    while (10 + header.len() + 1) % 64 != 0 {
+        header.push(' ');
+    }
+    header.push('\n');
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend((header.len() as u16).to_le_bytes());
+    bytes.extend(header.as_bytes());
+    for v in values.iter() {
+        bytes.extend(v.to_le_bytes());
+    }
+    bytes
+}
+
+#[test]
+fn npy_of_another_kind_is_named_without_its_header() {
+    for (kind, shape, part) in [
+        ("'<c16'", "(1, 2)", "holds complex numbers (c16); real numbers are needed"),
+        ("'|b1'", "(1, 2)", "holds truth values (b1)"),
+        ("'|O'", "(1, 2)", "holds Python objects (O)"),
+        ("'<U3'", "(1, 2)", "holds text (U3)"),
+        ("'>i8'", "(1, 2)", "of another size or byte order than is read (i8)"),
+        ("[('t', '<f8'), ('x', '<f8')]", "(1, 2)", "holds records of several fields"),
+        ("'zzzzzzzzzzzzzz'", "(1, 2)", "holds elements of an unknown type"),
+        ("'<f8'", "(2,)", "holds one row of 2; two dimensions are needed"),
+        ("'<f8'", "(1, 2, 1)", "has 3 dimensions; two dimensions are needed"),
+        ("'<f8'", "()", "holds a single number"),
+        ("'<f8'", "(1, -2)", "has an unreadable shape"),
+        ("'<f8'", "3", "has an unreadable shape"),
+    ] {
+        let error =
+            read_npy(&npy(kind, "False", shape, &[1.0; 4])[..], "f.npy", Units::Metres).unwrap_err().to_string();
+        assert!(error.starts_with("f.npy: ") && error.contains(part), "{part:?} is not in: {error}");
+        let raw = ["descr", "fortran_order", "shape':", "{", "}", "'"];
+        assert!(raw.iter().all(|word| !error.contains(word)), "{error}");
+    }
+}
+
 #[test]
 fn npy_both_orders_and_damage() {
-    let npy = |order: &str, shape: &str, values: &[f64]| {
-        let mut header = format!("{{'descr': '<f8', 'fortran_order': {order}, 'shape': {shape}, }}");
-        while (10 + header.len() + 1) % 64 != 0 {
-            header.push(' ');
-        }
-        header.push('\n');
-        let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
-        bytes.extend((header.len() as u16).to_le_bytes());
-        bytes.extend(header.as_bytes());
-        for v in values.iter() {
-            bytes.extend(v.to_le_bytes());
-        }
-        bytes
-    };
+    let npy = |order: &str, shape: &str, values: &[f64]| npy("'<f8'", order, shape, values);
     let six = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
     let f = read_npy(&npy("False", "(2, 3)", &six)[..], "f.npy", Units::Metres).unwrap();
     assert_eq!((f.get(0, 1), f.get(1, 0)), (Some(2.0), Some(4.0)));

@@ -9,6 +9,10 @@ pub enum Units {
     /// They are metres. The default.
     #[default]
     Metres,
+    /// They are centimetres.
+    Centimetres,
+    /// They are kilometres.
+    Kilometres,
     /// They are seconds.
     Seconds {
         /// Propagation speed in metres a second.
@@ -21,6 +25,11 @@ pub enum Units {
     },
     /// They are microseconds.
     Microseconds {
+        /// Propagation speed in metres a second.
+        speed: f64,
+    },
+    /// They are nanoseconds.
+    Nanoseconds {
         /// Propagation speed in metres a second.
         speed: f64,
     },
@@ -38,31 +47,38 @@ impl Units {
     pub fn metres(self) -> f64 {
         match self {
             Units::Metres => 1.0,
+            Units::Centimetres => 0.01,
+            Units::Kilometres => 1e3,
             Units::Seconds { speed } => speed,
             Units::Milliseconds { speed } => 1e-3 * speed,
             Units::Microseconds { speed } => 1e-6 * speed,
+            Units::Nanoseconds { speed } => 1e-9 * speed,
             Units::Samples { speed, rate } => speed / rate,
         }
     }
 
-    /// The propagation speed in metres a second; `None` for metres.
+    /// The propagation speed in metres a second; `None` for lengths.
     pub fn speed(self) -> Option<f64> {
         match self {
-            Units::Metres => None,
+            Units::Metres | Units::Centimetres | Units::Kilometres => None,
             Units::Seconds { speed }
             | Units::Milliseconds { speed }
             | Units::Microseconds { speed }
+            | Units::Nanoseconds { speed }
             | Units::Samples { speed, .. } => Some(speed),
         }
     }
 
-    /// The unit's short name: `m`, `s`, `ms`, `us` or `samples`.
+    /// The unit's short name: `m`, `cm`, `km`, `s`, `ms`, `us`, `ns` or `samples`.
     pub fn name(self) -> &'static str {
         match self {
             Units::Metres => "m",
+            Units::Centimetres => "cm",
+            Units::Kilometres => "km",
             Units::Seconds { .. } => "s",
             Units::Milliseconds { .. } => "ms",
             Units::Microseconds { .. } => "us",
+            Units::Nanoseconds { .. } => "ns",
             Units::Samples { .. } => "samples",
         }
     }
