@@ -1,9 +1,8 @@
 //! End-to-end tests live in `tests/tests`; this is what they share.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
-#[cfg(unix)]
-use std::process::Stdio;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 #[cfg(unix)]
 use std::time::{Duration, Instant};
 
@@ -23,6 +22,19 @@ pub fn program(name: &str) -> PathBuf {
 /// If it cannot be started.
 pub fn run(name: &str, arguments: &[&str]) -> Output {
     Command::new(program(name)).args(arguments).output().expect("the program starts")
+}
+
+/// Runs a program of the workspace to its end, with this text as its standard input.
+///
+/// # Panics
+/// If it cannot be started.
+pub fn run_on(name: &str, arguments: &[&str], text: &str) -> Output {
+    let mut command = Command::new(program(name));
+    command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().expect("the program starts");
+    // A program that does not read its input to the end is no failure of the test.
+    let _ = child.stdin.take().expect("a pipe").write_all(text.as_bytes());
+    child.wait_with_output().expect("the program ends")
 }
 
 /// Starts a program, interrupts it once it has caught interrupts for this long, and returns what it

@@ -5,6 +5,7 @@ pub mod bar;
 pub mod input;
 pub mod interrupt;
 pub mod output;
+mod standard;
 mod writing;
 
 use std::process::ExitCode;
@@ -35,9 +36,9 @@ impl Failure {
         Failure::Unusable(error.to_string())
     }
 
-    /// Unusable input in a file.
+    /// Unusable input in a file, or in standard input for `-`.
     pub fn in_file(path: &std::path::Path, error: impl std::fmt::Display) -> Failure {
-        Failure::Unusable(format!("{}: {error}", path.display()))
+        Failure::Unusable(format!("{}: {error}", standard::name(path)))
     }
 }
 

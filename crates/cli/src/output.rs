@@ -50,7 +50,8 @@ pub fn check(files: &[(&str, Option<&Path>)]) -> Result<(), Failure> {
     let files: Vec<(&str, &Path)> = files.iter().filter_map(|(option, path)| Some((*option, (*path)?))).collect();
     for (k, (option, path)) in files.iter().enumerate() {
         if let Some((other, _)) = files[..k].iter().find(|(_, other)| other == path) {
-            return Err(Failure::in_file(path, format!("is asked for by {other} and {option}; give two names")));
+            let name = path.display();
+            return Err(Failure::Unusable(format!("{name}: is asked for by {other} and {option}; give two names")));
         }
         if !is_standard_output(path) && !is_special(path) {
             temporary(path)?;

@@ -3,7 +3,7 @@
 use crate::{input, points};
 use cli::{Failure, output};
 use hc::certify::{Certificate, Certificates, CertifyOptions, Obstacle, Reality, certify};
-use hc::poly::ComplexInterval;
+use hc::poly::{ComplexInterval, counted};
 use num_complex::Complex64;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -15,10 +15,17 @@ use std::time::Instant;
 /// status 1 if some point could not be certified.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The system: plain text with one equation a line, PHCpack's format, or TOML.
+    /// The system: plain text with one equation a line, PHCpack's format, or TOML; - for standard
+    /// input.
     system: PathBuf,
     /// The solutions: what `hc solve --json` writes, a list of points [[number or [re, im], ...],
-    /// ...], or a list of solutions in PHCpack's format, such as `phc -b` appends to its output.
+    /// ...], a list of solutions in PHCpack's format, such as `phc -b` appends to its output, or
+    /// plain text; - for standard input.
+    ///
+    /// Plain text has one point a line: a number for each unknown, in their order, with blanks or
+    /// commas between them, such as `1.5 -2e-3 1.5+2i -i`. A number has no blanks in it; its
+    /// imaginary part ends in i or j. A line `variables: y x` before the points gives another order,
+    /// # begins a comment.
     solutions: PathBuf,
     /// Write the result as JSON to this file, `-` for standard output.
     #[arg(long, value_name = "OUT")]
@@ -65,6 +72,7 @@ struct Point {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     output::check(&[("--json", arguments.json.as_deref())])?;
+    input::check(&[Some(&arguments.system), Some(&arguments.solutions)], false)?;
     let start = Instant::now();
     let file = &arguments.system;
     let system = input::system(file)?;
@@ -91,7 +99,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Ok(());
     }
     let without = points.len() - found.certified();
-    let message = format!("{without} points without certificate, {} pairs not told apart", found.unseparated.len());
+    let pairs = counted(found.unseparated.len(), "pair");
+    let message = format!("{} without certificate, {pairs} not told apart", counted(without, "point"));
     Err(Failure::Undetermined(message))
 }
 
@@ -125,9 +134,10 @@ fn entry(result: &Result<Certificate, Obstacle>, duplicate_of: Option<usize>, po
 fn summary(found: &Certificates) -> String {
     let points = found.points.len();
     let mut text = format!(
-        "{} of {points} points certified: {} distinct solutions, {} of them proved real\n",
+        "{} of {} certified: {}, {} of them proved real\n",
         found.certified(),
-        found.distinct(),
+        counted(points, "point"),
+        counted(found.distinct(), "distinct solution"),
         found.real()
     );
     let failures = found.points.iter().enumerate().filter_map(|(k, p)| Some((k, p.as_ref().err()?)));
@@ -136,7 +146,7 @@ fn summary(found: &Certificates) -> String {
     }
     let more = failures.count().saturating_sub(10);
     if more > 0 {
-        text += &format!("{more} more points without certificate\n");
+        text += &format!("{} without certificate\n", counted(more, "more point"));
     }
     for [a, b] in &found.unseparated {
         text += &format!("points {} and {}: neither proved equal nor different\n", a + 1, b + 1);

@@ -12,11 +12,11 @@ use std::path::PathBuf;
 /// The module depends on the crate hc alone. The same inputs give the same bytes.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The family (TOML).
+    /// The family: plain text with a line `parameters: a b`, or TOML; - for standard input.
     family: PathBuf,
     /// Its stored solutions: what `hc monodromy` writes.
     start: PathBuf,
-    /// The Rust file; - for standard output.
+    /// The Rust file; - for standard output, or standard input with --check.
     #[arg(long, short)]
     output: PathBuf,
     /// Write nothing; exit status 1 if the file is stale.
@@ -26,16 +26,21 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { family: family_file, start: start_file, output, check } = arguments;
+    input::check(&[Some(family_file), Some(start_file), check.then_some(output)], false)?;
     let family = family::read(family_file)?;
     let start = StartFile::from_json(&input::text(start_file)?).map_err(|e| Failure::in_file(start_file, e))?;
-    let source = family_file.file_name().unwrap_or_default().to_string_lossy();
+    let source = if input::is_standard(family_file) {
+        "standard input".into()
+    } else {
+        family_file.file_name().unwrap_or_default().to_string_lossy()
+    };
     let module = generate(&family, &start, &source).map_err(|e| Failure::in_file(start_file, e))?;
     if !check {
         return output::text(output, &module);
     }
     if input::text(output)? == module {
-        eprintln!("{} is up to date", output.display());
+        eprintln!("{} is up to date", input::name(output));
         return Ok(());
     }
-    Err(Failure::Undetermined(format!("{} is stale; run the command without --check", output.display())))
+    Err(Failure::Undetermined(format!("{} is stale; run the command without --check", input::name(output))))
 }

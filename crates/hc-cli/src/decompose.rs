@@ -2,20 +2,25 @@
 
 use crate::{input, watch};
 use cli::{Failure, output};
-use hc::SolveOptions;
+use hc::poly::counted;
 use hc::witness::{Decomposition, decompose};
+use hc::{SolveOptions, coordinates};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::Instant;
 
-/// All solutions of a system, isolated ones and components of positive dimension with their degrees
-/// and multiplicities.
+/// Points of each component, and isolated solutions, that a summary shows.
+const LISTED: usize = 10;
+
+/// All solutions of a system, isolated ones and components of positive dimension with their degrees,
+/// multiplicities and witness points.
 ///
-/// Exit status 1 if something may be missing.
+/// Ten points of a component are shown; --json has all. Exit status 1 if something may be missing.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The system, in PHCpack's format.
+    /// The system: plain text with one equation a line, PHCpack's format, or TOML; - for standard
+    /// input.
     file: PathBuf,
     /// Write the result as JSON to this file, `-` for standard output.
     #[arg(long, value_name = "OUT")]
@@ -48,7 +53,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let found = watch::watched(arguments.threads, &monitor, watch::stages, || decompose(&system, &options, &monitor))?;
     let found = found.map_err(|error| Failure::in_file(&arguments.file, error))?;
     let seconds = begun.elapsed().as_secs_f64();
-    output::summary(arguments.json.as_deref(), || summary(&found, seconds))?;
+    output::summary(arguments.json.as_deref(), || summary(&found, system.variables(), seconds))?;
     if let Some(out) = &arguments.json {
         output::json(out, &Output { variables: system.variables(), seed: arguments.seed, seconds, found: &found })?;
     }
@@ -57,7 +62,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     if found.failed > 0 {
         return Err(Failure::Undetermined(format!(
-            "{} paths, witness points or dimensions are not accounted for",
+            "not accounted for: {} in number, of paths, witness points and dimensions",
             found.failed
         )));
     }
@@ -67,12 +72,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// In words, a line for each component.
-fn summary(found: &Decomposition, seconds: f64) -> String {
+/// In words: a line for each component, with its witness points below, and the isolated solutions.
+fn summary(found: &Decomposition, unknowns: &[String], seconds: f64) -> String {
     let mut text = format!(
-        "{} components of positive dimension, {} isolated solutions, {seconds:.3} s\n",
-        found.components.len(),
-        found.isolated.len()
+        "{} of positive dimension, {}, {seconds:.3} s\n",
+        counted(found.components.len(), "component"),
+        counted(found.isolated.len(), "isolated solution")
     );
     for component in &found.components {
         text += &format!("  dimension {}, degree {}", component.dimension, component.degree);
@@ -80,6 +85,11 @@ fn summary(found: &Decomposition, seconds: f64) -> String {
             text += &format!(", multiplicity {}", component.multiplicity);
         }
         text += if component.irreducible { "\n" } else { ", perhaps several together\n" };
+        text += &list(component.witness_points.iter().map(|point| coordinates(unknowns, point)), "witness point");
+    }
+    if !found.isolated.is_empty() {
+        text += "  isolated\n";
+        text += &list(found.isolated.iter().map(|solution| solution.row(unknowns)), "isolated solution");
     }
     for dimension in &found.unsearched {
         text +=
@@ -91,7 +101,17 @@ fn summary(found: &Decomposition, seconds: f64) -> String {
         (*ends, *paths) = (*ends + 1, *paths + end.paths);
     }
     for (reason, (ends, paths)) in reasons {
-        text += &format!("unresolved: {ends} ends of {paths} paths: {reason}\n");
+        text += &format!("unresolved: {} of {}: {reason}\n", counted(ends, "end"), counted(paths, "path"));
+    }
+    text
+}
+
+/// The first of some rows, and how many more there are.
+fn list(rows: impl ExactSizeIterator<Item = String>, noun: &str) -> String {
+    let more = rows.len().saturating_sub(LISTED);
+    let mut text: String = rows.take(LISTED).map(|row| format!("    {row}\n")).collect();
+    if more > 0 {
+        text += &format!("    and {} (--json has all)\n", counted(more, &format!("more {noun}")));
     }
     text
 }

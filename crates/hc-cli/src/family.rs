@@ -6,7 +6,7 @@ use hc::family::StartFile;
 use hc::{Family, FamilyError, Fibre};
 use std::path::Path;
 
-/// Reads a family.
+/// Reads a family in plain text or TOML.
 pub(crate) fn read(path: &Path) -> Result<Family, Failure> {
     input::text(path)?.parse().map_err(|e| Failure::in_file(path, e))
 }

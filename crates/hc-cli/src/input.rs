@@ -1,6 +1,6 @@
 //! Systems, and numbers in JSON.
 
-pub(crate) use cli::input::text;
+pub(crate) use cli::input::{check, is_standard, name, text};
 
 use cli::Failure;
 use hc::System;

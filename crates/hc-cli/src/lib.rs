@@ -8,6 +8,7 @@ mod family;
 mod input;
 mod mixed_volume;
 mod monodromy;
+mod numbers;
 mod points;
 mod report;
 mod solve;

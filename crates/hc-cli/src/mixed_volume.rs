@@ -2,7 +2,7 @@
 
 use crate::{input, watch};
 use cli::{Failure, output};
-use hc::poly::Polynomial;
+use hc::poly::{Polynomial, counted};
 use hc::ranks::Ranks;
 use hc::start::{MixedError, mixed_volume_on_ranks, mixed_volume_watched};
 use serde::Serialize;
@@ -16,7 +16,8 @@ use std::time::Instant;
 /// status 130.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The system: plain text with one equation a line, PHCpack's format, or TOML.
+    /// The system: plain text with one equation a line, PHCpack's format, or TOML; - for standard
+    /// input.
     file: PathBuf,
     /// Write the result as JSON to this file, `-` for standard output.
     #[arg(long, value_name = "OUT")]
@@ -46,6 +47,7 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
     if ranks.is_none_or(Ranks::is_lead) {
         output::check(&[("--json", arguments.json.as_deref())])?;
     }
+    input::check(&[Some(&arguments.file)], ranks.is_some())?;
     let system = input::system(&arguments.file)?;
     let polynomials = system.expand(&Default::default()).map_err(|error| Failure::in_file(&arguments.file, error))?;
     let supports: Vec<Vec<Vec<i32>>> = polynomials.iter().map(Polynomial::support).collect();
@@ -70,7 +72,7 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
     let seconds = start.elapsed().as_secs_f64();
     output::summary(arguments.json.as_deref(), || {
         let least = if partial { "partial result: at least " } else { "" };
-        format!("{least}mixed volume {mixed_volume}, {cells} mixed cells, {seconds:.3} s\n")
+        format!("{least}mixed volume {mixed_volume}, {}, {seconds:.3} s\n", counted(cells, "mixed cell"))
     })?;
     if let Some(out) = &arguments.json {
         output::json(out, &Output { mixed_volume, cells, seed: arguments.seed, seconds, partial })?;

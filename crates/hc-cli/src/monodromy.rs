@@ -1,9 +1,10 @@
 //! `hc monodromy`.
 
 use crate::checkpoint::{self, Recording};
-use crate::{family, watch};
+use crate::{family, input, watch};
 use cli::{Failure, output};
 use hc::family::Stopped;
+use hc::poly::counted;
 use hc::ranks::Ranks;
 use hc::{FamilyError, MonodromyOptions};
 use std::path::PathBuf;
@@ -14,7 +15,8 @@ use std::path::PathBuf;
 /// status 130.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The family (TOML).
+    /// The family: plain text with a line `parameters: a b` and one equation a line, or TOML; - for
+    /// standard input.
     #[arg(required_unless_present = "status")]
     family: Option<PathBuf>,
     /// A first pair (JSON with "parameters" and one entry in "solutions"); found by Newton's method
@@ -50,6 +52,7 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
     if is_lead {
         output::check(&[("--output", Some(output))])?;
     }
+    input::check(&[arguments.family.as_deref(), arguments.seed_pair.as_deref()], ranks.is_some())?;
     let path = Recording::needed(&arguments.family, "a family")?;
     let family = family::read(path)?;
     let start = match &arguments.seed_pair {
@@ -77,18 +80,19 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
         (None, None) => String::new(),
     };
     let stopped = &file.stopped;
+    let name = if family.name().is_empty() { input::name(path) } else { family.name().to_owned() };
     eprintln!(
-        "{}: {count} solutions after {} loops and {} paths; stopped: {stopped}{trace}",
-        family.name(),
-        found.loops,
-        found.paths
+        "{name}: {} after {} and {}; stopped: {stopped}{trace}",
+        counted(count, "solution"),
+        counted(found.loops, "loop"),
+        counted(found.paths, "path")
     );
     if found.stopped == Stopped::Cancelled {
         return Err(arguments.checkpoint.interrupted());
     }
     match family.roots() {
         Some(roots) if roots != count => {
-            Err(Failure::Undetermined(format!("{count} solutions were found, the family states {roots}")))
+            Err(Failure::Undetermined(format!("{} found, the family states {roots}", counted(count, "solution"))))
         }
         None if !found.stopped.is_complete() => Err(Failure::Undetermined(
             "neither a known number of roots nor the trace test shows that these are all".to_string(),

@@ -1,8 +1,9 @@
-//! Points of the unknowns of a system, read from JSON or from PHCpack's lists of solutions.
+//! Points of the unknowns of a system, read from JSON, PHCpack's lists of solutions, or plain text.
 
 use crate::input::{self, Number};
+use crate::numbers::{self, Named};
 use cli::Failure;
-use hc::poly::System;
+use hc::poly::{System, counted};
 use num_complex::Complex64;
 use serde::Deserialize;
 use std::path::Path;
@@ -25,14 +26,19 @@ enum Points {
     List(Vec<Vec<Number>>),
 }
 
-/// Points with the names of their coordinates, where the file has them.
-type Named = (Option<Vec<String>>, Vec<Vec<Complex64>>);
+/// The line that begins a list of solutions in PHCpack's format.
+const LIST: &str = "THE SOLUTIONS";
 
 /// The points of a file, their coordinates in the order of the system's unknowns.
 pub(crate) fn read(file: &Path, system: &System) -> Result<Vec<Vec<Complex64>>, Failure> {
     let text = input::text(file)?;
-    let is_json = text.trim_start().starts_with(['{', '[']);
-    let found = if is_json { json(&text) } else { phcpack(&text) };
+    let found = if text.trim_start().starts_with(['{', '[']) {
+        json(&text)
+    } else if text.contains(LIST) {
+        phcpack(&text)
+    } else {
+        numbers::points(&text, system.variables())
+    };
     found.and_then(|found| ordered(found, system.variables())).map_err(|message| Failure::in_file(file, message))
 }
 
@@ -49,9 +55,7 @@ fn json(text: &str) -> Result<Named, String> {
 /// The last list of solutions in a file of PHCpack: after a line `THE SOLUTIONS`, for each solution
 /// a line `the solution for t :`, lines `name : re im` and one that begins with `==`.
 fn phcpack(text: &str) -> Result<Named, String> {
-    let start = text.rfind("THE SOLUTIONS").ok_or(
-        "expected JSON, or PHCpack's list of solutions below a line THE SOLUTIONS; is it the output of `phc -b`?",
-    )?;
+    let start = text.rfind(LIST).unwrap_or(text.len());
     // The line, from 1, on which the list begins.
     let first = text[..start].matches('\n').count() + 1;
     let mut names: Option<Vec<String>> = None;
@@ -97,8 +101,8 @@ fn ordered((names, points): Named, unknowns: &[String]) -> Result<Vec<Vec<Comple
     let mut ordered = Vec::with_capacity(points.len());
     for (k, point) in points.iter().enumerate() {
         if point.len() != unknowns.len() {
-            let (number, found, expected) = (k + 1, point.len(), unknowns.len());
-            return Err(format!("point {number} has {found} coordinates, the system has {expected} unknowns"));
+            let (found, expected) = (counted(point.len(), "coordinate"), counted(unknowns.len(), "unknown"));
+            return Err(format!("point {} has {found}, the system has {expected}", k + 1));
         }
         ordered.push(places.iter().map(|&place| point[place]).collect());
     }
@@ -127,7 +131,6 @@ mod tests {
         let points = phcpack(&text).and_then(|named| ordered(named, &unknowns)).unwrap();
         assert_eq!(points, [[Complex64::new(1.0, -3e-17), Complex64::new(2.0, 0.0)]]);
         for (text, word) in [
-            ("2\nx;\n", "THE SOLUTIONS"),
             ("THE SOLUTIONS\nthe solution for t :\n x 1.0 2.0\n==", "line 3: expected `name"),
             ("THE SOLUTIONS\nthe solution for t :\n x : 1.0\n==", "line 3: expected two"),
             ("THE SOLUTIONS\nthe solution for t :\n x : 1.0 0.0\n", "cut off"),

@@ -4,6 +4,7 @@ use crate::checkpoint::{self, Recording};
 use crate::report::Report;
 use crate::{input, watch};
 use cli::{Failure, output};
+use hc::poly::counted;
 use hc::ranks::Ranks;
 use hc::{SolveError, SolveOptions, Start, solve_on_ranks, solve_recorded, solve_watched};
 use std::path::PathBuf;
@@ -15,7 +16,8 @@ use std::time::Instant;
 /// status 130.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The system: plain text with one equation a line, PHCpack's format, or TOML.
+    /// The system: plain text with one equation a line, PHCpack's format, or TOML; - for standard
+    /// input.
     #[arg(required_unless_present = "status")]
     file: Option<PathBuf>,
     /// Write the result as JSON to this file, `-` for standard output.
@@ -79,6 +81,7 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
     if is_lead {
         output::check(&[("--json", arguments.json.as_deref())])?;
     }
+    input::check(&[arguments.file.as_deref()], ranks.is_some())?;
     let begun = Instant::now();
     let file = Recording::needed(&arguments.file, "a system")?;
     let system = input::system(file)?;
@@ -117,10 +120,13 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
         return Err(arguments.checkpoint.interrupted());
     }
     if found.paths.failed > 0 {
-        return Err(Failure::Undetermined(format!("{} paths were lost", found.paths.failed)));
+        return Err(Failure::Undetermined(format!("lost: {}", counted(found.paths.failed, "path"))));
     }
     if found.uncertified() > 0 {
-        return Err(Failure::Undetermined(format!("{} regular solutions are not certified", found.uncertified())));
+        return Err(Failure::Undetermined(format!(
+            "not certified: {}",
+            counted(found.uncertified(), "regular solution")
+        )));
     }
     if found.is_empty() {
         return Err(Failure::Undetermined("no isolated solutions".to_owned()));

@@ -5,6 +5,7 @@ use crate::input::{self, Number};
 use crate::report::Report;
 use crate::{family, watch};
 use cli::{Failure, output};
+use hc::poly::counted;
 use hc::ranks::Ranks;
 use hc::{Solutions, SolveOptions};
 use num_complex::Complex64;
@@ -23,7 +24,7 @@ const LISTED: usize = 10;
 /// status 130.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The family (TOML).
+    /// The family: plain text with a line `parameters: a b`, or TOML; - for standard input.
     #[arg(required_unless_present = "status")]
     family: Option<PathBuf>,
     /// Its fibre, as `hc monodromy` writes it.
@@ -72,6 +73,10 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
     if is_lead {
         output::check(&[("--json", arguments.json.as_deref())])?;
     }
+    input::check(
+        &[arguments.family.as_deref(), arguments.start.as_deref(), arguments.target.as_deref()],
+        ranks.is_some(),
+    )?;
     let begun = Instant::now();
     let file = Recording::needed(&arguments.family, "a family")?;
     let family = family::read(file)?;
@@ -120,11 +125,11 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
     }
     let failed: usize = solved.iter().map(|(found, _)| found.paths.failed).sum();
     if failed > 0 {
-        return Err(Failure::Undetermined(format!("{failed} paths were lost: the lists are not whole")));
+        return Err(Failure::Undetermined(format!("the lists are not whole; lost: {}", counted(failed, "path"))));
     }
     let uncertified: usize = solved.iter().map(|(found, _)| found.uncertified()).sum();
     if uncertified > 0 {
-        return Err(Failure::Undetermined(format!("{uncertified} regular solutions are not certified")));
+        return Err(Failure::Undetermined(format!("not certified: {}", counted(uncertified, "regular solution"))));
     }
     Ok(())
 }
@@ -142,7 +147,10 @@ fn targets(file: &Path, parameters: usize) -> Result<(Vec<Vec<Complex64>>, bool)
         targets.into_iter().map(|t| t.parameters.into_iter().map(Complex64::from).collect()).collect();
     let unusable = |target: &Vec<Complex64>| target.len() != parameters || target.iter().any(|z| !z.is_finite());
     if let Some(k) = targets.iter().position(unusable) {
-        return Err(Failure::in_file(file, format!("target {}: {parameters} finite parameters are needed", k + 1)));
+        return Err(Failure::in_file(
+            file,
+            format!("target {}: {} needed", k + 1, counted(parameters, "finite parameter")),
+        ));
     }
     Ok((targets, single))
 }
@@ -155,11 +163,11 @@ fn summary(solved: &[(Solutions, f64)], seconds: f64) -> String {
     }
     let sum = |count: &dyn Fn(&Solutions) -> usize| -> usize { solved.iter().map(|(found, _)| count(found)).sum() };
     let mut text = format!(
-        "{} targets: {} isolated solutions, {} real; {} paths: {} finite, {} at infinity, {} failed, {} tracked again; {seconds:.3} s\n",
+        "{} targets: {}, {} real; {}: {} finite, {} at infinity, {} failed, {} tracked again; {seconds:.3} s\n",
         solved.len(),
-        sum(&Solutions::len),
+        counted(sum(&Solutions::len), "isolated solution"),
         sum(&|found| found.iter().filter(|s| s.real).count()),
-        sum(&|found| found.paths.tracked),
+        counted(sum(&|found| found.paths.tracked), "path"),
         sum(&|found| found.paths.finite),
         sum(&|found| found.paths.at_infinity),
         sum(&|found| found.paths.failed),
@@ -170,7 +178,7 @@ fn summary(solved: &[(Solutions, f64)], seconds: f64) -> String {
         *numbers.entry(found.iter().filter(|s| s.real).count()).or_default() += 1;
     }
     for (real, targets) in numbers {
-        text += &format!("  {targets} targets with {real} real solutions\n");
+        text += &format!("  {} with {}\n", counted(targets, "target"), counted(real, "real solution"));
     }
     let doubtful = solved.iter().enumerate().filter(|(_, (found, _))| !found.warnings().is_empty());
     for (k, (found, _)) in doubtful.clone().take(LISTED) {
@@ -180,7 +188,7 @@ fn summary(solved: &[(Solutions, f64)], seconds: f64) -> String {
     }
     let more = doubtful.count().saturating_sub(LISTED);
     if more > 0 {
-        text += &format!("warnings of {more} targets more\n");
+        text += &format!("warnings of {}\n", counted(more, "more target"));
     }
     text
 }

@@ -96,6 +96,31 @@ fn lists_of_points_are_read_in_the_order_of_the_unknowns() {
 }
 
 #[test]
+fn plain_numbers_are_read() {
+    let folder = Folder::new();
+    let system = folder.write("system.phc", SYSTEM);
+    let points = folder.write("points.txt", "# two and one that is none\n2 4\n-1+0i, (-2-1e-9j)\n\n1e1 i\n");
+    let output = hc(&["certify", "--json", "-"], &[&system, &points]);
+    assert_eq!(output.status.code(), Some(1));
+    let proved = report(&output);
+    assert_eq!((&proved["points"], &proved["certified"], &proved["distinct"]), (&json!(3), &json!(2), &json!(2)));
+    // Names decide where there are some.
+    let named = folder.write("named.txt", "variables: y x\n4 2\n");
+    let output = hc(&["certify"], &[&system, &named]);
+    let shown = String::from_utf8_lossy(&output.stdout);
+    assert!(shown.starts_with("1 of 1 point certified: 1 distinct solution, 1 of them proved real\n"), "{shown}");
+    for (text, word) in [
+        ("2 4\n2 4 6", "bad.txt: line 2: 3 numbers, but 2 coordinates needed: x y"),
+        ("2 four", "bad.txt: line 1: `four` is not a finite number"),
+        ("variables: u v\n1 2", "bad.txt: its variables are u v, those of the system x y"),
+    ] {
+        let output = hc(&["certify"], &[&system, &folder.write("bad.txt", text)]);
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.code() == Some(2) && message.contains(word), "{message}");
+    }
+}
+
+#[test]
 fn lists_of_phcpack_are_read() {
     let folder = Folder::new();
     let system = folder.write("system.phc", SYSTEM);
@@ -124,10 +149,10 @@ fn unusable_input_is_told_apart_from_failure() {
     let wide = folder.write("wide.phc", "1\nx + y;");
     let points = folder.write("points.json", "[[2, 4]]");
     for (system, solutions, word) in [
-        (&system, "[[1]]", "point 1 has 1 coordinates"),
+        (&system, "[[1]]", "point 1 has 1 coordinate, the system has 2 unknowns"),
         (&system, "{\"solutions\": 3}", "expected the JSON"),
         (&system, r#"{"variables": ["u", "v"], "solutions": []}"#, "variables are u v"),
-        (&wide, "[[2, 4]]", "1 equations in 2 unknowns"),
+        (&wide, "[[2, 4]]", "1 equation in 2 unknowns"),
     ] {
         let solutions = folder.write("bad.json", solutions);
         let output = hc(&["certify"], &[system, &solutions]);
@@ -142,5 +167,5 @@ fn unusable_input_is_told_apart_from_failure() {
     let one = folder.write("one.json", "[[1]]");
     let output = hc(&["certify"], &[&double, &one]);
     assert_eq!(output.status.code(), Some(1));
-    assert!(String::from_utf8_lossy(&output.stdout).contains("0 of 1 points certified"));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("0 of 1 point certified"));
 }

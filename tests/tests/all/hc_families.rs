@@ -186,7 +186,17 @@ fn unusable_input_is_named() {
             2,
             "no-such-file.toml",
         ),
-        (vec!["monodromy".into(), write("a.toml", "name = 1"), "--output".into(), start.clone()], 2, "invalid type"),
+        (
+            vec!["monodromy".into(), write("a.toml", "name = ['a']"), "--output".into(), start.clone()],
+            2,
+            "invalid type",
+        ),
+        (vec!["monodromy".into(), write("a.txt", "x^2 = 1"), "--output".into(), start.clone()], 2, "parameters: a b"),
+        (
+            vec!["monodromy".into(), write("c.txt", "parameters: a\nx = a*y"), "--output".into(), start.clone()],
+            2,
+            "1 equation in 2 unknowns; as many equations as unknowns are needed",
+        ),
         (
             vec![
                 "monodromy".into(),

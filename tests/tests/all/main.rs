@@ -4,12 +4,14 @@ mod guide;
 mod hc_certify;
 #[cfg(unix)]
 mod hc_checkpoint;
+mod hc_decompose;
 mod hc_families;
 #[cfg(unix)]
 mod hc_interrupt;
 #[cfg(unix)]
 mod hc_mpi;
 mod hc_solve;
+mod hc_standard_input;
 mod links;
 #[cfg(unix)]
 mod mpi;

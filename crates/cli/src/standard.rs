@@ -1,0 +1,13 @@
+//! Standard input in the place of a file.
+
+use std::path::Path;
+
+/// Whether a path stands for standard input: `-`.
+pub fn is_standard(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// What a path of something that is read is called in messages.
+pub fn name(path: &Path) -> String {
+    if is_standard(path) { "standard input".to_owned() } else { path.display().to_string() }
+}
