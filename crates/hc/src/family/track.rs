@@ -2,7 +2,7 @@
 
 use super::charts::{Charts, OneChart};
 use super::fibre::{Fibre, FibreOptions, PathCounts};
-use super::tracking::{Lanes, Over, Scratch, Tracking, ends};
+use super::tracking::{FibreTracking, FibreWork, Lanes, Scratch, ends};
 use crate::homotopy::Segment;
 use crate::monitor::Monitor;
 use crate::ranks::{Lead, Shared};
@@ -192,7 +192,7 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
         }
         self.segment.join(&self.ends[0], &self.ends[1]);
         self.paths.clear(fibre.dimension);
-        let tracking = Tracking {
+        let tracking = FibreTracking {
             charts: &self.charts,
             fibre,
             segment: &self.segment,
@@ -204,7 +204,7 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
             steps: 0,
         };
         let policy = Policy { retries: options.retries, charts: C::COUNT, first: size, batch: size };
-        let mut work = Shared::new(Over::new(tracking, self.system), lead, &self.monitor);
+        let mut work = Shared::new(FibreWork::new(tracking, self.system), lead, &self.monitor);
         let outcome = run(&mut work, fibre.len(), &policy, &mut self.room, &self.monitor);
         let found = outcome.flow == Flow::Found;
         let failed = if found { 0 } else { self.room.which.len() };

@@ -97,7 +97,7 @@ impl<E: Evaluate> Lanes<'_, E> {
 }
 
 /// The paths of a fibre to a target.
-pub(super) struct Tracking<'r, C, U> {
+pub(super) struct FibreTracking<'r, C, U> {
     pub(super) charts: &'r C,
     pub(super) fibre: &'r Fibre,
     /// The way from there to the target in chart 0.
@@ -112,21 +112,21 @@ pub(super) struct Tracking<'r, C, U> {
     pub(super) steps: usize,
 }
 
-/// Paths of a fibre to a target, with their system.
-pub(super) struct Over<'r, 'a, E: Evaluate, C, U> {
-    tracking: Tracking<'r, C, U>,
+/// The work of tracking these paths, with their system.
+pub(super) struct FibreWork<'r, 'a, E: Evaluate, C, U> {
+    tracking: FibreTracking<'r, C, U>,
     system: &'a E,
     /// In a batch on several ranks, the paths that were reported to the monitor.
     told: Cell<usize>,
 }
 
-impl<'r, 'a, E: Evaluate, C, U> Over<'r, 'a, E, C, U> {
-    pub(super) fn new(tracking: Tracking<'r, C, U>, system: &'a E) -> Self {
-        Over { tracking, system, told: Cell::new(0) }
+impl<'r, 'a, E: Evaluate, C, U> FibreWork<'r, 'a, E, C, U> {
+    pub(super) fn new(tracking: FibreTracking<'r, C, U>, system: &'a E) -> Self {
+        FibreWork { tracking, system, told: Cell::new(0) }
     }
 }
 
-impl<'a, E, C, U> Work for Over<'_, 'a, E, C, U>
+impl<'a, E, C, U> Work for FibreWork<'_, 'a, E, C, U>
 where
     E: Evaluate,
     C: Charts,
@@ -144,7 +144,7 @@ where
     }
 
     fn absorb(&mut self, batch: &mut PathSet, round: Round) -> Flow {
-        let Tracking { paths, enough, .. } = &mut self.tracking;
+        let FibreTracking { paths, enough, .. } = &mut self.tracking;
         if round.is_first() {
             let found = enough(batch);
             paths.append(batch);
@@ -169,7 +169,7 @@ where
     }
 
     fn doubtful(&mut self, scratch: &mut Scratch<'a, E>, which: &mut Vec<usize>) {
-        let Tracking { paths, options, .. } = &mut self.tracking;
+        let FibreTracking { paths, options, .. } = &mut self.tracking;
         paths.sort();
         doubtful(paths, options.coincidence, &mut scratch.coincidences, which);
     }
@@ -183,7 +183,7 @@ where
 }
 
 /// In one chart: in several, rounds go on from where paths broke off.
-impl<E, C, U> Shareable for Over<'_, '_, E, C, U>
+impl<E, C, U> Shareable for FibreWork<'_, '_, E, C, U>
 where
     E: Evaluate,
     C: Charts,
@@ -231,7 +231,7 @@ pub(super) fn serve_fibre<E: Evaluate, T>(
     target: &[Complex64],
     options: &FibreOptions,
 ) -> Result<(), RanksError> {
-    let tracking = Tracking {
+    let tracking = FibreTracking {
         charts: &OneChart,
         fibre,
         segment: &Segment::new(&fibre.parameters, target),
@@ -242,8 +242,8 @@ pub(super) fn serve_fibre<E: Evaluate, T>(
         enough: |_: &PathSet| false,
         steps: 0,
     };
-    let over = Over::new(tracking, system);
-    worker.serve(task, |numbers, round| over.ends(numbers, round))
+    let work = FibreWork::new(tracking, system);
+    worker.serve(task, |numbers, round| work.ends(numbers, round))
 }
 
 /// Whether a path that was tracked again has come farther than before. Where paths go to infinity
@@ -273,7 +273,7 @@ fn stricter<C: Charts>(settings: &TrackerOptions, level: u32) -> TrackerOptions 
     TrackerOptions { max_steps: settings.max_steps.saturating_mul(1 << (2 * level).min(20)), ..stricter }
 }
 
-impl<C: Charts, U> Tracking<'_, C, U> {
+impl<C: Charts, U> FibreTracking<'_, C, U> {
     /// Tracks the paths with these numbers in a round.
     fn pass<E: Evaluate>(
         &self,

@@ -103,7 +103,7 @@ fn serve(unknowns: usize, supports: &[Vec<Vec<i32>>], worker: &Worker<'_>) -> Re
 }
 
 /// The number of a subtree, and its volume and cells; none where volumes are too large.
-type Found = (usize, Option<(u128, usize)>);
+type SubtreeVolume = (usize, Option<(u128, usize)>);
 
 /// A tree in subtrees, which all ranks number alike.
 struct Divided<'a> {
@@ -113,7 +113,7 @@ struct Divided<'a> {
 
 impl Divided<'_> {
     /// What is in the subtrees with these numbers, up to the first that was not searched to its end.
-    fn searched(&self, numbers: &[usize]) -> Vec<Found> {
+    fn searched(&self, numbers: &[usize]) -> Vec<SubtreeVolume> {
         let Divided { space, tasks } = self;
         let searched = |&number: &usize| {
             let task = tasks.get(number)?.clone();
@@ -123,7 +123,7 @@ impl Divided<'_> {
                 Err(_) => Some((number, None)),
             }
         };
-        let found: Vec<Option<Found>> = numbers.par_iter().map(searched).collect();
+        let found: Vec<Option<SubtreeVolume>> = numbers.par_iter().map(searched).collect();
         found.into_iter().map_while(|found| found).collect()
     }
 }
@@ -154,14 +154,14 @@ impl Sum<'_> {
 }
 
 impl Work for Sum<'_> {
-    type Batch = Vec<Found>;
+    type Batch = Vec<SubtreeVolume>;
     type Memory = ();
 
-    fn batch(&self, (): &mut (), numbers: &[usize], _: Round, batch: &mut Vec<Found>) {
+    fn batch(&self, (): &mut (), numbers: &[usize], _: Round, batch: &mut Vec<SubtreeVolume>) {
         *batch = self.divided.searched(numbers);
     }
 
-    fn absorb(&mut self, batch: &mut Vec<Found>, _: Round) -> Flow {
+    fn absorb(&mut self, batch: &mut Vec<SubtreeVolume>, _: Round) -> Flow {
         for (_, found) in batch.drain(..) {
             self.add(found);
             self.done += 1;
@@ -175,17 +175,17 @@ impl Work for Sum<'_> {
 }
 
 impl Shareable for Sum<'_> {
-    type End = Found;
+    type End = SubtreeVolume;
 
-    fn ends(&self, numbers: &[usize], _: Round) -> Vec<Found> {
+    fn ends(&self, numbers: &[usize], _: Round) -> Vec<SubtreeVolume> {
         self.divided.searched(numbers)
     }
 
-    fn is_end(&self, (found, _): &Found, number: usize) -> bool {
+    fn is_end(&self, (found, _): &SubtreeVolume, number: usize) -> bool {
         *found == number
     }
 
-    fn gather(&self, ends: Vec<Found>, batch: &mut Vec<Found>) {
+    fn gather(&self, ends: Vec<SubtreeVolume>, batch: &mut Vec<SubtreeVolume>) {
         *batch = ends;
     }
 }

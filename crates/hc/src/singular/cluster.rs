@@ -46,8 +46,8 @@ pub(crate) struct Zoom<'a> {
     pub(crate) polynomials: Vec<Polynomial<Exact>>,
 }
 
-/// What was found at the solutions of the equations of a [`Zoom`].
-pub(crate) struct Found {
+/// What the given equations have at a solution of those of a [`Zoom`].
+pub(crate) struct ClusterSolution {
     pub(crate) verdict: Verdict,
     /// A regular solution to all digits.
     point: Option<Vec<Digits>>,
@@ -106,17 +106,20 @@ impl<'a> Zoom<'a> {
 
     /// Adds what the given equations have at a solution of those of the zoom at which `paths` paths
     /// end, if it is not found already.
-    pub(crate) fn add(&self, found: &mut Vec<Found>, solution: &[Complex64], paths: usize, most: usize) {
+    pub(crate) fn add(&self, found: &mut Vec<ClusterSolution>, solution: &[Complex64], paths: usize, most: usize) {
         let unit = |z: &Complex64| Digits::from_c64(*z).shifted(self.size);
         let start = self.reduced.at(&solution.iter().map(unit).collect::<Vec<_>>());
         let regular = deflated(&self.local, &start, 1, f64::NEG_INFINITY, &mut Vec::new())
             .filter(|solution| solution.profile.is_regular())
             .filter(|solution| distance(&start, &solution.point) <= self.size as f64 + 1.0);
         if let Some(regular) = regular {
-            let known = |f: &Found| f.point.as_ref().is_some_and(|p| distance(p, &regular.point) <= SAME);
+            let known = |f: &ClusterSolution| f.point.as_ref().is_some_and(|p| distance(p, &regular.point) <= SAME);
             if !found.iter().any(known) {
                 let (point, residual) = rounded(self.given, &self.local, &regular.point);
-                found.push(Found { verdict: Verdict::Regular { point, residual }, point: Some(regular.point) });
+                found.push(ClusterSolution {
+                    verdict: Verdict::Regular { point, residual },
+                    point: Some(regular.point),
+                });
             }
             return;
         }
@@ -124,7 +127,7 @@ impl<'a> Zoom<'a> {
         // As accurate as the equations of the zoom are.
         let verdict = judge(self.given, &point, paths, most, 2f64.powi(2 * self.size as i32), Effort::Little);
         if matches!(verdict, Verdict::Isolated { .. } | Verdict::OnComponent { .. }) {
-            found.push(Found { verdict, point: None });
+            found.push(ClusterSolution { verdict, point: None });
         }
     }
 }

@@ -22,7 +22,7 @@ mod squarefree;
 mod univariate;
 mod verdict;
 
-pub(crate) use cluster::{Found, Zoom};
+pub(crate) use cluster::{ClusterSolution, Zoom};
 pub(crate) use eliminate::{Elimination, Stop};
 pub(crate) use empty::is_missed;
 pub(crate) use equations::Given;

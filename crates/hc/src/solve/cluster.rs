@@ -3,7 +3,7 @@
 use super::classify::Tracked;
 use super::solutions::Solution;
 use crate::distinct::relative_distance;
-use crate::singular::{self, Effort, Found, Given, Verdict, Zoom};
+use crate::singular::{self, ClusterSolution, Effort, Given, Verdict, Zoom};
 use num_complex::Complex64;
 use poly::{Exact, Polynomial};
 
@@ -43,7 +43,7 @@ pub(super) fn clustered(
         }
         zoom.spend(bezout * zoom.polynomials.iter().map(|p| p.terms().len() as u64).sum::<u64>() * WORK);
         let Some(solved) = solve(&zoom.polynomials, given) else { continue };
-        let mut found: Vec<Found> = Vec::new();
+        let mut found: Vec<ClusterSolution> = Vec::new();
         let regular = solved.solutions.iter().map(|s| (&s.value, s.multiplicity));
         let components = solved.component_points.iter().map(|point| (point, 1));
         for (point, multiplicity) in regular.chain(components) {

@@ -2,7 +2,7 @@
 
 use super::ends::{End, EndList, Ends};
 use super::excess::Excess;
-use super::prints::{Print, Prints};
+use super::fingerprints::{Fingerprint, Fingerprints};
 use super::record::{Record, RecordEnd, SingularEnd};
 use crate::SolveOptions;
 use crate::checkpoint::{Part, Recordable, Recorded};
@@ -77,7 +77,7 @@ pub(super) struct Route<'a, 'e, E: Evaluate, S> {
 /// another source may then be less work.
 pub(super) fn follow<E: Evaluate, S: Source<E>>(route: Route<'_, '_, E, S>, trial: bool) -> Ends {
     let Route { count, options, monitor, record, lead, .. } = route;
-    let mut work = Recorded::new(Shared::new(Stage::new(route, trial), lead, monitor), record, monitor);
+    let mut work = Recorded::new(Shared::new(CoefficientStage::new(route, trial), lead, monitor), record, monitor);
     let first = if trial { TRIAL } else { CHUNK };
     let policy = Policy { retries: options.paths.retries, charts: 1, first, batch: CHUNK };
     let mut room = Room::default();
@@ -91,7 +91,8 @@ pub(super) fn follow<E: Evaluate, S: Source<E>>(route: Route<'_, '_, E, S>, tria
     stage.finish(outcome.retracked, false)
 }
 
-pub(super) struct Stage<'a, 'e, E: Evaluate, S> {
+/// The coefficient stage: its route, and how its paths have ended so far.
+pub(super) struct CoefficientStage<'a, 'e, E: Evaluate, S> {
     pub(super) route: Route<'a, 'e, E, S>,
     segment: Segment,
     trial: bool,
@@ -101,29 +102,29 @@ pub(super) struct Stage<'a, 'e, E: Evaluate, S> {
     /// Numbers of directions to infinity.
     directions: BTreeMap<(Vec<i64>, usize), u32>,
     /// Where the paths began, if they were tracked there.
-    starts: Prints,
+    starts: Fingerprints,
     /// Where the paths that needed the endgame were at a common radius.
-    middles: Prints,
-    pub(super) round: Pass,
+    middles: Fingerprints,
+    pub(super) round: RoundCounts,
     /// The open paths of the batch that have been through the endgame already.
     pub(super) closed: RefCell<BTreeMap<usize, Record>>,
 }
 
 /// The progress of a round.
 #[derive(Default)]
-pub(super) struct Pass {
+pub(super) struct RoundCounts {
     /// Paths of the round, those that have been tracked, and those of them with a regular end.
     pub(super) all: usize,
     pub(super) done: usize,
     pub(super) regular: usize,
 }
 
-impl<E: Evaluate, S: Source<E>> Work for Stage<'_, '_, E, S> {
+impl<E: Evaluate, S: Source<E>> Work for CoefficientStage<'_, '_, E, S> {
     type Batch = Vec<Record>;
     type Memory = ();
 
     fn begin(&mut self, _: Round, count: usize) {
-        self.round = Pass { all: count, ..Pass::default() };
+        self.round = RoundCounts { all: count, ..RoundCounts::default() };
     }
 
     fn batch(&self, (): &mut (), numbers: &[usize], round: Round, batch: &mut Vec<Record>) {
@@ -179,7 +180,7 @@ impl<E: Evaluate, S: Source<E>> Work for Stage<'_, '_, E, S> {
     }
 }
 
-impl<E: Evaluate, S: Source<E>> Recordable for Stage<'_, '_, E, S> {
+impl<E: Evaluate, S: Source<E>> Recordable for CoefficientStage<'_, '_, E, S> {
     fn is_of(batch: &Vec<Record>, numbers: &[usize]) -> bool {
         let mut paths: Vec<usize> = batch.iter().map(|record| record.path).collect();
         paths.sort_unstable();
@@ -191,11 +192,11 @@ impl<E: Evaluate, S: Source<E>> Recordable for Stage<'_, '_, E, S> {
     }
 }
 
-impl<'a, 'e, E: Evaluate, S: Source<E>> Stage<'a, 'e, E, S> {
+impl<'a, 'e, E: Evaluate, S: Source<E>> CoefficientStage<'a, 'e, E, S> {
     /// Before anything is tracked.
     pub(super) fn new(route: Route<'a, 'e, E, S>, trial: bool) -> Self {
         let count = route.count;
-        Stage {
+        CoefficientStage {
             segment: Segment::new(route.start.parameters(), route.target),
             route,
             trial,
@@ -203,15 +204,15 @@ impl<'a, 'e, E: Evaluate, S: Source<E>> Stage<'a, 'e, E, S> {
             regular: BTreeMap::new(),
             singular: BTreeMap::new(),
             directions: BTreeMap::new(),
-            starts: Prints::new(count),
-            middles: Prints::new(count),
-            round: Pass::default(),
+            starts: Fingerprints::new(count),
+            middles: Fingerprints::new(count),
+            round: RoundCounts::default(),
             closed: RefCell::default(),
         }
     }
 }
 
-impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
+impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
     fn settings(&self, round: Round) -> TrackerOptions {
         let first = &self.route.options.paths.tracker;
         if round.level == 0 { first.clone() } else { first.stricter(round.level) }
@@ -271,7 +272,7 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
         let mut records: Vec<Record> = numbers.iter().map(|&path| Record::lost(path)).collect();
         for (result, end) in paths.results().iter().zip(ends) {
             let path = reached.numbers[result.path];
-            let begun = start.is_tracked().then(|| Print::new(reached.point(result.path), !round.is_first()));
+            let begun = start.is_tracked().then(|| Fingerprint::new(reached.point(result.path), !round.is_first()));
             if let Ok(k) = numbers.binary_search(&path) {
                 records[k] = Record { path, begun, middle: None, end };
             }
@@ -313,7 +314,7 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
         let mut refiner = Refiner::new(trackers.system());
         for ending in endgame(trackers, &self.segment, handed, self.route.count, &tracker, &options, monitor) {
             let record = &mut records[ending.path];
-            record.middle = (!ending.middle.is_empty()).then(|| Print::new(&ending.middle, !round.is_first()));
+            record.middle = (!ending.middle.is_empty()).then(|| Fingerprint::new(&ending.middle, !round.is_first()));
             record.end = judged(&mut refiner, target, ending, !round.is_first());
         }
         records
@@ -325,11 +326,11 @@ impl<E: Evaluate, S: Source<E>> Stage<'_, '_, E, S> {
         self.lose(path);
         self.middles.forget(path);
         self.starts.forget(path);
-        if let Some(print) = &record.begun {
-            self.starts.note(path, print);
+        if let Some(fingerprint) = &record.begun {
+            self.starts.note(path, fingerprint);
         }
-        if let Some(print) = &record.middle {
-            self.middles.note(path, print);
+        if let Some(fingerprint) = &record.middle {
+            self.middles.note(path, fingerprint);
         }
         match &record.end {
             RecordEnd::Regular(refined) => {

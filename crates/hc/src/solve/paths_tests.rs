@@ -1,6 +1,6 @@
 //! Batches may come from anywhere, in any order.
 
-use super::{CHUNK, End, Route, Stage};
+use super::{CHUNK, CoefficientStage, End, Route};
 use crate::family::Fibre;
 use crate::monitor::Monitor;
 use crate::runner::{Round, Work};
@@ -65,7 +65,7 @@ fn batches_are_absorbed_in_any_order() {
 
     // Records of batches of some paths, through the text that another machine would send.
     let batches = |cuts: &[&[usize]]| -> Vec<Vec<Record>> {
-        let stage = Stage::new(route(), false);
+        let stage = CoefficientStage::new(route(), false);
         let batch = |numbers: &&[usize]| {
             let mut records = Vec::new();
             stage.batch(&mut (), numbers, Round::FIRST, &mut records);
@@ -79,7 +79,7 @@ fn batches_are_absorbed_in_any_order() {
         cuts.iter().map(batch).collect()
     };
     let absorbed = |batches: Vec<Vec<Record>>| {
-        let mut stage = Stage::new(route(), false);
+        let mut stage = CoefficientStage::new(route(), false);
         for mut batch in batches {
             stage.absorb(&mut batch, Round::FIRST);
         }

@@ -125,7 +125,7 @@ fn solve_zoomed(
         other => other?,
     };
     let mut retracked = 0;
-    let mut best = Best::default();
+    let mut best = BestStart::default();
     let mut start_systems = 0;
     // First, on trial, those of one stage.
     let mut direct = starts.direct(options);
@@ -203,7 +203,7 @@ fn solve_zoomed(
             };
             let all = !options.torus_only && options.known.is_none() && !monitor.is_cancelled();
             let found = if all { found.checked(polynomials, &units, &tracked, count) } else { found };
-            let this = Best { start: Some(from.kind), tracked: from.paths, found };
+            let this = BestStart { start: Some(from.kind), tracked: from.paths, found };
             best = if start_systems == 1 { this } else { best.joined(this) };
             let hopeless = univariate.is_some() || are_hopeless(ends.lost, count);
             let last = start_systems > options.restarts || hopeless;
@@ -217,7 +217,7 @@ fn solve_zoomed(
         around.spend(given.spent());
     }
     let whole = start_systems > 0 && best.found.lost == 0;
-    let Best { start, tracked, found } = best;
+    let BestStart { start, tracked, found } = best;
     let mut found = found.solutions(tracked, retracked);
     for solution in &mut found.solutions {
         starts.equations.unscale(&mut solution.value);
@@ -240,9 +240,9 @@ fn solve_zoomed(
     })
 }
 
-/// What the start systems so far have given.
+/// The best start system so far, and what all of them have given.
 #[derive(Default)]
-struct Best {
+struct BestStart {
     /// The one that lost fewest paths, the first of such.
     start: Option<Start>,
     tracked: usize,
@@ -250,8 +250,8 @@ struct Best {
     found: Classified,
 }
 
-impl Best {
-    fn joined(self, new: Best) -> Best {
+impl BestStart {
+    fn joined(self, new: BestStart) -> BestStart {
         let (mut better, other) = if self.found.lost <= new.found.lost { (self, new) } else { (new, self) };
         if better.found.lost == 0 {
             return better;

@@ -1,6 +1,6 @@
 //! Paths of the coefficient stage in portions, in which other ranks take part.
 
-use super::paths::{Route, Stage};
+use super::paths::{CoefficientStage, Route};
 use super::record::{Record, Tracked};
 use crate::monitor;
 use crate::ranks::{RanksError, Shareable, Task, Worker};
@@ -23,11 +23,11 @@ pub(super) fn serve<E: Evaluate, S: Source<E>>(
     task: &Task<Announced>,
     route: Route<'_, '_, E, S>,
 ) -> Result<(), RanksError> {
-    let stage = Stage::new(route, task.content.trial);
+    let stage = CoefficientStage::new(route, task.content.trial);
     worker.serve(task, |numbers, round| stage.ends(numbers, round))
 }
 
-impl<E: Evaluate, S: Source<E>> Shareable for Stage<'_, '_, E, S> {
+impl<E: Evaluate, S: Source<E>> Shareable for CoefficientStage<'_, '_, E, S> {
     type End = Tracked;
 
     fn ends(&self, numbers: &[usize], round: Round) -> Vec<Tracked> {

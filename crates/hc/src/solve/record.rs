@@ -1,6 +1,6 @@
 //! How paths end: plain records, which may come from another thread or another machine.
 
-use super::prints::Print;
+use super::fingerprints::Fingerprint;
 use crate::refine::Refined;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -11,9 +11,9 @@ pub(crate) struct Record {
     /// The number of the path.
     pub(crate) path: usize,
     /// Where it began, if it was tracked there.
-    pub(crate) begun: Option<Print>,
+    pub(crate) begun: Option<Fingerprint>,
     /// Where it was at a common radius, if it went through the endgame.
-    pub(crate) middle: Option<Print>,
+    pub(crate) middle: Option<Fingerprint>,
     /// How it ends.
     pub(crate) end: RecordEnd,
 }
@@ -84,8 +84,8 @@ impl Record {
     /// Whether all points have so many coordinates.
     fn fits(&self, unknowns: usize) -> bool {
         let fits = |point: &[Complex64]| point.len() == unknowns;
-        let prints = self.begun.iter().chain(&self.middle);
-        prints.filter_map(Print::point).all(fits)
+        let fingerprints = self.begun.iter().chain(&self.middle);
+        fingerprints.filter_map(Fingerprint::point).all(fits)
             && match &self.end {
                 RecordEnd::Lost => true,
                 RecordEnd::Regular(end) => fits(&end.point),

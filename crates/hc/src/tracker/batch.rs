@@ -8,7 +8,7 @@
 use super::kernels::{Coefficients, Correct, Distance, Negate, Predict, Radius, Take, Weigh};
 use super::options::TrackerOptions;
 use super::precise::{Precise, subtract};
-use super::progress::{Bounds, Progress, Stage};
+use super::progress::{Bounds, Progress, StepState};
 use super::result::{PathEnd, PathResult, PathSet};
 use super::valuation::valuation;
 use crate::homotopy::ParameterPath;
@@ -179,7 +179,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             self.close();
             let mut unfinished = 0u8;
             for (l, lane) in self.lanes.iter().enumerate() {
-                unfinished |= u8::from(lane.stage == Stage::Iterating) << l;
+                unfinished |= u8::from(lane.state == StepState::Iterating) << l;
             }
             if unfinished == 0 {
                 break;
@@ -189,7 +189,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
 
         let mut accepted = 0u8;
         for l in 0..S::LANES {
-            accepted |= u8::from(self.lanes[l].stage == Stage::Accepted) << l;
+            accepted |= u8::from(self.lanes[l].state == StepState::Accepted) << l;
             if let Some(end) = self.lanes[l].retreat(&self.bounds) {
                 self.finish(l, end, out);
             }
@@ -205,7 +205,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         }
         for l in 0..S::LANES {
             // Paths that only ever reject must come to an end too.
-            if matches!(self.lanes[l].stage, Stage::Rejected { .. })
+            if matches!(self.lanes[l].state, StepState::Rejected { .. })
                 && let Some(end) = self.lanes[l].finished(&self.bounds)
             {
                 self.finish(l, end, out);
@@ -265,7 +265,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             let p = &self.parameters[..m];
             self.system.jacobian(&mut self.memory, &self.point, p, &mut self.values, &mut self.jacobian);
             for l in 0..S::LANES {
-                if self.lanes[l].extended && self.lanes[l].stage == Stage::Iterating {
+                if self.lanes[l].extended && self.lanes[l].state == StepState::Iterating {
                     let x = [&self.point[..], &self.point_low];
                     self.precise.overwrite(self.system, l, self.lanes[l].wide, x, &mut self.values);
                 }
@@ -275,7 +275,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             // The lanes that have stopped keep what they have in `corrected`.
             let mut running = 0u8;
             for (l, lane) in self.lanes.iter().enumerate() {
-                running |= u8::from(lane.stage == Stage::Iterating) << l;
+                running |= u8::from(lane.state == StepState::Iterating) << l;
             }
             let norm = self.isa.run(Correct {
                 x: &self.point,
@@ -291,7 +291,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             let mut again = 0u8;
             for (l, lane) in self.lanes.iter_mut().enumerate() {
                 lane.judge(norm.as_ref()[l].sqrt(), &self.bounds);
-                again |= u8::from(lane.stage == Stage::Iterating) << l;
+                again |= u8::from(lane.state == StepState::Iterating) << l;
             }
             if again == 0 {
                 return;
@@ -311,12 +311,12 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
     /// One more correction with the last Jacobian: it makes the points accurate and measures how
     /// accurate.
     fn close(&mut self) {
-        if !self.lanes.iter().any(|lane| lane.stage == Stage::Converged) {
+        if !self.lanes.iter().any(|lane| lane.state == StepState::Converged) {
             return;
         }
         let p = &self.parameters[..self.system.parameters()];
         self.system.values(&mut self.memory, &self.corrected, p, &mut self.values);
-        let converged = |lane: &Progress| lane.stage == Stage::Converged;
+        let converged = |lane: &Progress| lane.state == StepState::Converged;
         let any_extended = self.lanes.iter().any(|lane| lane.extended && converged(lane));
         let mut rough = S::real(0.0);
         if any_extended {

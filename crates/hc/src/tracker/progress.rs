@@ -30,9 +30,9 @@ fn h(a: f64) -> f64 {
     2.0 * a * ((4.0 * a * a + 1.0).sqrt() - 2.0 * a)
 }
 
-/// What the corrector is doing for this path.
+/// How far the step of a path has come.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Stage {
+pub(crate) enum StepState {
     /// No path in this lane.
     Idle,
     /// More iterations are needed.
@@ -90,7 +90,7 @@ impl Bounds {
 #[derive(Clone, Debug)]
 pub(crate) struct Progress {
     pub(crate) path: usize,
-    pub(crate) stage: Stage,
+    pub(crate) state: StepState,
     /// Whether the start point has still to be checked and the first derivatives taken.
     pub(crate) fresh: bool,
     pub(crate) t: f64,
@@ -132,7 +132,7 @@ impl Progress {
     pub(crate) fn idle() -> Self {
         Progress {
             path: usize::MAX,
-            stage: Stage::Idle,
+            state: StepState::Idle,
             fresh: false,
             t: 1.0,
             t_next: 1.0,
@@ -162,11 +162,11 @@ impl Progress {
     }
 
     pub(crate) fn start(path: usize) -> Self {
-        Progress { path, stage: Stage::Accepted, fresh: true, ..Self::idle() }
+        Progress { path, state: StepState::Accepted, fresh: true, ..Self::idle() }
     }
 
     pub(crate) fn is_live(&self) -> bool {
-        self.stage != Stage::Idle
+        self.state != StepState::Idle
     }
 
     fn widen(&mut self) {
@@ -199,10 +199,10 @@ impl Progress {
     /// Chooses the next step from the radius of trust and the Newton bound (reference: Timme 2020,
     /// section 5).
     pub(crate) fn choose_step(&mut self, bounds: &Bounds) {
-        if self.fresh || self.stage == Stage::Retry {
+        if self.fresh || self.state == StepState::Retry {
             return;
         }
-        if let Stage::Rejected { .. } = self.stage {
+        if let StepState::Rejected { .. } = self.state {
             self.t_next = self.t - self.step; // shortened when it was rejected
             return;
         }
@@ -232,7 +232,7 @@ impl Progress {
 
     pub(crate) fn begin_correction(&mut self, bounds: &Bounds) {
         if self.is_live() {
-            self.stage = Stage::Iterating;
+            self.state = StepState::Iterating;
             self.theta_bound = bounds.options.contraction;
             self.omega_now = self.omega;
             self.iterations = 0;
@@ -242,14 +242,14 @@ impl Progress {
 
     /// Judges the correction of size `norm`.
     pub(crate) fn judge(&mut self, norm: f64, bounds: &Bounds) {
-        if self.stage != Stage::Iterating {
+        if self.state != StepState::Iterating {
             return;
         }
         let i = self.iterations;
         self.iterations += 1;
         self.jacobians += 1;
         if !norm.is_finite() {
-            self.stage = Stage::Rejected { theta: f64::INFINITY };
+            self.state = StepState::Rejected { theta: f64::INFINITY };
             return;
         }
         if i == 0 {
@@ -258,7 +258,7 @@ impl Progress {
             // of 4).
             if !self.fresh && 0.125 * self.omega * norm > bounds.h {
                 self.last = norm;
-                self.stage = Stage::Rejected { theta: f64::INFINITY };
+                self.state = StepState::Rejected { theta: f64::INFINITY };
                 return;
             }
         } else if norm > NOISE_MARGIN * self.noise {
@@ -267,7 +267,7 @@ impl Progress {
                 self.omega_now = 2.0 * norm / (self.last * self.last);
             }
             if theta > self.theta_bound {
-                self.stage = Stage::Rejected { theta: if i == 1 { theta } else { f64::INFINITY } };
+                self.state = StepState::Rejected { theta: if i == 1 { theta } else { f64::INFINITY } };
                 return;
             }
             self.theta_bound *= self.theta_bound;
@@ -275,14 +275,14 @@ impl Progress {
             // Rounding error: it says nothing about contraction, and no correction will be smaller.
             self.omega_now = if i == 1 { 0.5 * self.omega } else { self.omega_now };
             self.last = norm;
-            self.stage = Stage::Converged;
+            self.state = StepState::Converged;
             return;
         }
         self.last = norm;
         if self.omega_now.max(MIN_OMEGA) * norm <= bounds.options.corrector_tolerance {
-            self.stage = Stage::Converged;
+            self.state = StepState::Converged;
         } else if i + 1 >= MAX_ITERATIONS {
-            self.stage = Stage::Rejected { theta: f64::INFINITY };
+            self.state = StepState::Rejected { theta: f64::INFINITY };
         }
     }
 
@@ -290,11 +290,11 @@ impl Progress {
     /// limiting accuracy `mu`); `double` is the size that residuals in double precision give at the
     /// same point, for paths in extended precision.
     pub(crate) fn judge_closing(&mut self, norm: f64, double: Option<f64>, bounds: &Bounds) {
-        if self.stage != Stage::Converged {
+        if self.state != StepState::Converged {
             return;
         }
         if !norm.is_finite() {
-            self.stage = Stage::Rejected { theta: f64::INFINITY };
+            self.state = StepState::Rejected { theta: f64::INFINITY };
             return;
         }
         let matters = self.omega_now.max(1.0) * norm > 0.01 * bounds.leave_double && norm > NOISE_MARGIN * self.noise;
@@ -331,15 +331,15 @@ impl Progress {
         if noise > bounds.leave_double && !self.extended && bounds.options.extended_precision {
             self.extended = true;
             self.used_extended = true;
-            self.stage = Stage::Retry;
+            self.state = StepState::Retry;
             return;
         }
         if noise > bounds.limit {
-            self.stage = if self.wide || !self.extended {
-                Stage::Failed(PathEnd::AccuracyLimit)
+            self.state = if self.wide || !self.extended {
+                StepState::Failed(PathEnd::AccuracyLimit)
             } else {
                 self.widen();
-                Stage::Retry
+                StepState::Retry
             };
             return;
         }
@@ -351,7 +351,7 @@ impl Progress {
         self.omega_before = self.omega;
         self.omega = omega;
         self.mu = norm.max(self.rounding());
-        self.stage = Stage::Accepted;
+        self.state = StepState::Accepted;
     }
 
     /// Goes on with Newton's method after a closing correction of size `norm`.
@@ -363,7 +363,7 @@ impl Progress {
         }
         self.last = norm;
         self.theta_bound = bounds.options.contraction;
-        self.stage = Stage::Iterating;
+        self.state = StepState::Iterating;
     }
 
     /// Takes the accepted step; `distance` is that of the corrected from the predicted point.
@@ -383,9 +383,9 @@ impl Progress {
 
     /// Shortens the step after a rejection, or ends the path.
     pub(crate) fn retreat(&mut self, bounds: &Bounds) -> Option<PathEnd> {
-        let theta = match self.stage {
-            Stage::Rejected { theta } => theta,
-            Stage::Failed(end) => return Some(end),
+        let theta = match self.state {
+            StepState::Rejected { theta } => theta,
+            StepState::Failed(end) => return Some(end),
             _ => return None,
         };
         if self.fresh {

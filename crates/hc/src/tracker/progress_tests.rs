@@ -1,6 +1,6 @@
 //! What corrections say of a path.
 
-use super::{Bounds, Progress, Stage, h};
+use super::{Bounds, Progress, StepState, h};
 use crate::tracker::TrackerOptions;
 
 /// On its way, with residuals in double-double.
@@ -19,16 +19,16 @@ fn a_large_closing_correction_is_followed_by_more() {
         let mut progress = under_way(5.0, &bounds);
         progress.wide = true;
         progress.judge(1.12e-6, &bounds);
-        assert_eq!(progress.stage, Stage::Converged);
+        assert_eq!(progress.state, StepState::Converged);
         progress.judge_closing(closing, None, &bounds);
-        assert_eq!(progress.stage, Stage::Iterating, "{closing}");
+        assert_eq!(progress.state, StepState::Iterating, "{closing}");
         for share in [0.05, 1e-3] {
-            if progress.stage == Stage::Iterating {
+            if progress.state == StepState::Iterating {
                 progress.judge(share * closing, &bounds);
             }
         }
         progress.judge_closing(1e-16, None, &bounds);
-        assert_eq!(progress.stage, Stage::Accepted, "{closing}");
+        assert_eq!(progress.state, StepState::Accepted, "{closing}");
         let omega = 2.0 * closing / (1.12e-6 * 1.12e-6);
         assert!((progress.omega / omega - 1.0).abs() < 1e-12, "{}", progress.omega);
     }
@@ -42,12 +42,12 @@ fn rounding_errors_seen_in_double_double_are_remembered() {
     let mut progress = under_way(300.0, &bounds);
     progress.judge(1e-9, &bounds);
     progress.judge_closing(1e-15, Some(1e-8), &bounds);
-    assert!(progress.stage == Stage::Accepted && !progress.extended);
+    assert!(progress.state == StepState::Accepted && !progress.extended);
     progress.omega = 300.0;
     progress.begin_correction(&bounds);
     progress.judge(5e-8, &bounds);
     progress.judge(4e-8, &bounds);
-    assert_eq!(progress.stage, Stage::Converged);
+    assert_eq!(progress.state, StepState::Converged);
 }
 
 #[test]

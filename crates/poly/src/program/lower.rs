@@ -2,7 +2,7 @@
 //! reciprocals.
 
 use super::instruction::{Instruction, Op, Operand, Tape};
-use super::registers::Layout;
+use super::registers::InputLayout;
 use super::taylor::TaylorTape;
 use crate::exact::{self, Exact};
 use crate::graph::{Graph, Id, Node};
@@ -125,6 +125,6 @@ impl TapeWriter {
     /// The Taylor program of the outputs; its only constant, of index 0, is zero.
     pub(crate) fn finish(self, outputs: Vec<Operand>, parameters: usize, variables: usize) -> TaylorTape {
         let tape = Tape { instructions: self.instructions, outputs: (0u32..).zip(outputs).collect() };
-        TaylorTape::new(&tape, Layout { constants: 1, parameters, variables })
+        TaylorTape::new(&tape, InputLayout { constants: 1, parameters, variables })
     }
 }

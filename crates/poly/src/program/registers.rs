@@ -5,13 +5,13 @@ use super::tape::{Code, RegisterTape};
 
 /// The layout of inputs in the array.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Layout {
+pub(crate) struct InputLayout {
     pub(crate) constants: usize,
     pub(crate) parameters: usize,
     pub(crate) variables: usize,
 }
 
-impl Layout {
+impl InputLayout {
     /// Place of the first register.
     pub(crate) fn inputs(self) -> usize {
         self.constants + self.parameters + self.variables
@@ -19,7 +19,7 @@ impl Layout {
 }
 
 /// The place of a result, from the given table, or of an input, which is fixed.
-pub(crate) fn place(operand: Operand, layout: Layout, temporary: impl Fn(u32) -> u32) -> u32 {
+pub(crate) fn place(operand: Operand, layout: InputLayout, temporary: impl Fn(u32) -> u32) -> u32 {
     match operand {
         Operand::Constant(k) => k,
         Operand::Parameter(k) => layout.constants as u32 + k,
@@ -29,7 +29,7 @@ pub(crate) fn place(operand: Operand, layout: Layout, temporary: impl Fn(u32) ->
 }
 
 /// Assigns registers by linear scan; outputs keep theirs to the end.
-pub(crate) fn allocate(tape: &Tape, layout: Layout, slots: usize) -> RegisterTape {
+pub(crate) fn allocate(tape: &Tape, layout: InputLayout, slots: usize) -> RegisterTape {
     const FOREVER: usize = usize::MAX;
     let mut last_use = vec![0; tape.instructions.len()];
     for (k, instruction) in tape.instructions.iter().enumerate() {

@@ -1,7 +1,7 @@
 //! The straight-line program, which is run or written as source.
 
 use super::instruction::Tape;
-use super::registers::Layout;
+use super::registers::InputLayout;
 use crate::exact::Exact;
 
 /// Instructions for the values of a system and for its Jacobian.
@@ -29,7 +29,7 @@ impl Program {
     }
 
     /// How inputs are laid out before results.
-    pub(super) fn layout(&self) -> Layout {
-        Layout { constants: self.constants.len(), parameters: self.parameters, variables: self.variables }
+    pub(super) fn layout(&self) -> InputLayout {
+        InputLayout { constants: self.constants.len(), parameters: self.parameters, variables: self.variables }
     }
 }

@@ -7,7 +7,7 @@
 //! leave these out.
 
 use super::instruction::{Op, Operand, Tape};
-use super::registers::{Layout, place};
+use super::registers::{InputLayout, place};
 use super::series::{
     BY_LINEAR, BY_UNKNOWN, GENERAL, LINEAR_BY_UNKNOWN, LINEARS, Series, UNKNOWNS, WIDTH, step_product, step_sum,
 };
@@ -61,7 +61,7 @@ pub struct TaylorMemory<S> {
 }
 
 impl TaylorTape {
-    pub(super) fn new(tape: &Tape, layout: Layout) -> TaylorTape {
+    pub(super) fn new(tape: &Tape, layout: InputLayout) -> TaylorTape {
         let base = layout.inputs() as u32;
         let at = |operand| place(operand, layout, |k| base + k);
         let mut groups: [Vec<TaylorCode>; 3] = Default::default();
@@ -151,7 +151,7 @@ impl TaylorTape {
             series[order - 1] = x.clone();
             series[order] = S::zero();
         }
-        let pass = Pass { tape: self, order, straight };
+        let pass = TaylorPass { tape: self, order, straight };
         if const { S::TAYLOR_COMPILED } {
             let series: &mut dyn Any = series;
             if let Some(series) = series.downcast_mut() {
@@ -233,17 +233,17 @@ fn sort_factors(op: Op, args: [Operand; 4], factor: impl Fn(Operand) -> Factor) 
 
 /// The instructions of a tape for one order, 1, 2 or 3.
 #[derive(Clone, Copy)]
-struct Pass<'a> {
+struct TaylorPass<'a> {
     tape: &'a TaylorTape,
     order: usize,
     /// Whether the parameters' coefficients of that order are zero.
     straight: bool,
 }
 
-impl Pass<'_> {
+impl TaylorPass<'_> {
     #[inline(always)]
     fn run<S: Scalar>(self, isa: Isa, series: &mut [Series<S>]) {
-        let Pass { tape, order, straight } = self;
+        let TaylorPass { tape, order, straight } = self;
         match (order, straight) {
             (1, _) => isa.run(Order1 { tape, series }),
             (2, false) => isa.run(Later::<2, false, S> { tape, series }),

@@ -1,5 +1,5 @@
-//! Where paths were, in two numbers each. This is enough to tell which paths may have met, without
-//! keeping their points.
+//! Fingerprints of points: where paths were, in two numbers each. This is enough to tell which paths
+//! may have met, without keeping their points.
 
 use crate::distinct::{projection, relative_distance};
 use crate::store::{Records, Sorter};
@@ -10,17 +10,17 @@ use std::io;
 
 /// A projection and the size of a point, and the point itself if it is to be compared in full.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Print {
+pub(crate) struct Fingerprint {
     key: f64,
     size: f64,
     point: Option<Vec<Complex64>>,
 }
 
-impl Print {
-    /// The print of a point; with `keep` the point stays with it.
-    pub(super) fn new(point: &[Complex64], keep: bool) -> Print {
+impl Fingerprint {
+    /// The fingerprint of a point; with `keep` the point stays with it.
+    pub(super) fn new(point: &[Complex64], keep: bool) -> Fingerprint {
         let size = point.iter().map(|z| z.re.abs() + z.im.abs()).sum();
-        Print { key: projection(point), size, point: keep.then(|| point.to_vec()) }
+        Fingerprint { key: projection(point), size, point: keep.then(|| point.to_vec()) }
     }
 
     /// The point, if it is kept.
@@ -31,7 +31,7 @@ impl Print {
 
 /// A projection and roughly the size of a point for every path, twelve bytes; the points themselves
 /// only of few.
-pub(super) struct Prints {
+pub(super) struct Fingerprints {
     paths: usize,
     /// None until a path has a point.
     records: Option<Records>,
@@ -41,10 +41,10 @@ pub(super) struct Prints {
 /// Bound on what the lower half of a double adds, relative, with a margin.
 const ROUGH: f64 = 1.0 / (1 << 19) as f64;
 
-/// Bytes of a print.
+/// Bytes of a fingerprint.
 const WIDTH: usize = 12;
 
-/// A print in bytes, of which the first eight are not all zero and in the order of the keys.
+/// A fingerprint in bytes, of which the first eight are not all zero and in the order of the keys.
 fn written(key: f64, size: f64) -> [u8; WIDTH] {
     let bits = key.to_bits();
     let ordered = if key.is_sign_negative() { !bits } else { bits | 1 << 63 };
@@ -55,7 +55,7 @@ fn written(key: f64, size: f64) -> [u8; WIDTH] {
     record
 }
 
-/// Key and rough size of a print.
+/// Key and rough size of a fingerprint.
 fn read(record: &[u8]) -> (f64, f64) {
     let number = |bytes: &[u8]| bytes.iter().fold(0u64, |number, &byte| number << 8 | u64::from(byte));
     let ordered = number(&record[..8]);
@@ -63,9 +63,9 @@ fn read(record: &[u8]) -> (f64, f64) {
     (key, f64::from_bits(number(&record[8..WIDTH]) << 32))
 }
 
-impl Prints {
+impl Fingerprints {
     pub(super) fn new(paths: usize) -> Self {
-        Prints { paths, records: None, points: BTreeMap::new() }
+        Fingerprints { paths, records: None, points: BTreeMap::new() }
     }
 
     pub(super) fn forget(&mut self, path: usize) {
@@ -76,13 +76,13 @@ impl Prints {
     }
 
     /// Notes where a path was.
-    pub(super) fn note(&mut self, path: usize, print: &Print) {
+    pub(super) fn note(&mut self, path: usize, fingerprint: &Fingerprint) {
         self.forget(path);
-        if !print.key.is_nan() {
-            let record = written(print.key, print.size);
+        if !fingerprint.key.is_nan() {
+            let record = written(fingerprint.key, fingerprint.size);
             self.records.get_or_insert_with(|| Records::new(WIDTH)).set(path, &record);
         }
-        if let Some(point) = &print.point {
+        if let Some(point) = &fingerprint.point {
             self.points.insert(path, point.clone());
         }
     }
@@ -91,7 +91,7 @@ impl Prints {
     /// another, and perhaps some that merely look so because one of the two points is not kept.
     ///
     /// # Errors
-    /// If prints cannot be read back.
+    /// If fingerprints cannot be read back.
     pub(super) fn met(&mut self, tolerance: f64) -> io::Result<Vec<usize>> {
         let Some(records) = &mut self.records else { return Ok(Vec::new()) };
         let mut sorter = Sorter::new(8 + 8 + 4);
@@ -135,41 +135,41 @@ impl Prints {
 
 #[cfg(test)]
 mod tests {
-    use super::{Print, Prints};
+    use super::{Fingerprint, Fingerprints};
     use num_complex::Complex64;
 
     #[test]
     fn finds_paths_that_have_met() {
         let z = |re: f64, im: f64| Complex64::new(re, im);
         let points = [[z(1.0, 0.5), z(-2.0, 0.0)], [z(1.0, 0.5), z(-2.0, 1e-13)], [z(1.0, 0.5), z(-2.0, 1e-3)]];
-        let mut prints = Prints::new(5);
+        let mut fingerprints = Fingerprints::new(5);
         for (k, x) in points.iter().enumerate() {
-            prints.note(k + 1, &Print::new(x, false));
+            fingerprints.note(k + 1, &Fingerprint::new(x, false));
         }
-        assert_eq!(prints.met(1e-11).unwrap(), [1, 2]);
-        prints.forget(1);
-        assert_eq!(prints.met(1e-11).unwrap(), [0usize; 0]);
+        assert_eq!(fingerprints.met(1e-11).unwrap(), [1, 2]);
+        fingerprints.forget(1);
+        assert_eq!(fingerprints.met(1e-11).unwrap(), [0usize; 0]);
         // A small coordinate beside a large one shows only in points that are kept.
         for keep in [false, true] {
-            prints.note(0, &Print::new(&[z(1e9, 0.0), z(0.0, 0.0)], keep));
-            prints.note(1, &Print::new(&[z(1e9, 0.0), z(1e-5, 0.0)], keep));
-            assert_eq!(prints.met(1e-9).unwrap(), [0, 1]);
-            assert_eq!(prints.met(1e-11).unwrap(), if keep { vec![] } else { vec![0, 1] });
+            fingerprints.note(0, &Fingerprint::new(&[z(1e9, 0.0), z(0.0, 0.0)], keep));
+            fingerprints.note(1, &Fingerprint::new(&[z(1e9, 0.0), z(1e-5, 0.0)], keep));
+            assert_eq!(fingerprints.met(1e-9).unwrap(), [0, 1]);
+            assert_eq!(fingerprints.met(1e-11).unwrap(), if keep { vec![] } else { vec![0, 1] });
         }
     }
 
     #[test]
     fn points_of_any_size_are_told_apart() {
         let mut random = crate::random::Random::new(0, crate::random::Stream::Member(0));
-        let mut prints = Prints::new(8_000);
+        let mut fingerprints = Fingerprints::new(8_000);
         let mut last = Vec::new();
         for path in 0..7_999 {
             let size = 10f64.powi(path as i32 % 601 - 300);
             last = random.normals(4).iter().map(|z| z * size).collect();
-            prints.note(path, &Print::new(&last, false));
+            fingerprints.note(path, &Fingerprint::new(&last, false));
         }
-        assert_eq!(prints.met(1e-11).unwrap(), [0usize; 0]);
-        prints.note(7_999, &Print::new(&last, false));
-        assert_eq!(prints.met(1e-11).unwrap(), [7_998, 7_999]);
+        assert_eq!(fingerprints.met(1e-11).unwrap(), [0usize; 0]);
+        fingerprints.note(7_999, &Fingerprint::new(&last, false));
+        assert_eq!(fingerprints.met(1e-11).unwrap(), [7_998, 7_999]);
     }
 }
