@@ -50,7 +50,7 @@ pub struct Located {
 /// Three receivers give a line of solutions linear in p = o - f_1 and a quadratic for p (Bancroft's
 /// equations in the plane); both roots with f_1 - o >= 0 are tried.
 pub fn transmitter(sights: &[Sight], loss: &Loss) -> Option<Located> {
-    let mut best = Best::default();
+    let mut best = BestTwo::default();
     for_subsets(sights.len(), 3, |s| {
         for (position, offset) in from_three(&sights[s[0]], &sights[s[1]], &sights[s[2]]).into_iter().flatten() {
             best.offer(cost(sights, position, offset, loss), position, offset);
@@ -63,7 +63,7 @@ pub fn transmitter(sights: &[Sight], loss: &Loss) -> Option<Located> {
 /// mirror image fits as well; one of the two is returned. `None` for fewer than two sights or
 /// coincident transmitters.
 pub fn receiver(sights: &[Sight], loss: &Loss) -> Option<Located> {
-    let mut best = Best::default();
+    let mut best = BestTwo::default();
     for_subsets(sights.len(), 2, |s| {
         for position in from_two(&sights[s[0]], &sights[s[1]]).into_iter().flatten() {
             best.offer(cost(sights, position, 0.0, loss), position, 0.0);
@@ -117,9 +117,9 @@ pub(crate) fn cost(sights: &[Sight], position: [f64; 2], offset: f64, loss: &Los
 /// The two best solutions so far: an outlier's or a mirror image's basin may look better before the
 /// polish.
 #[derive(Default)]
-struct Best([Option<Located>; 2]);
+struct BestTwo([Option<Located>; 2]);
 
-impl Best {
+impl BestTwo {
     fn offer(&mut self, cost: f64, position: [f64; 2], offset: f64) {
         let better = |other: &Option<Located>| other.is_none_or(|o| cost < o.cost);
         if !cost.is_finite() || !better(&self.0[1]) {

@@ -12,13 +12,13 @@ use super::near::{Neighbour, Reason};
 use super::options::{CalibrateError, CalibrateOptions, ReceiverDelays, check};
 use super::ranking::truncated_cost;
 use super::receiver_errors::{Fault, ReceiverErrorKind};
-use super::refits::Found;
+use super::refits::Refit;
 use super::same::merged;
 use super::shown::{Shown, look};
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
-use crate::refine::{Cancelled, Motion, Projection, RefineOptions, Refined, Refiner, SEARCH, dot, gram};
+use crate::refine::{Cancelled, Motion, NetworkRefiner, Projection, RefineOptions, RefinedNetwork, SEARCH, dot, gram};
 
 /// Rounds of looking for further errors once those found are taken out.
 const ROUNDS: usize = 6;
@@ -58,7 +58,7 @@ pub(super) struct Cleared {
     /// The measurements without the errors that were taken out.
     pub(super) measured: Pseudoranges,
     pub(super) observations: Observations,
-    pub(super) ranked: Vec<Refined>,
+    pub(super) ranked: Vec<RefinedNetwork>,
     pub(super) deviation: f64,
     /// Errors that were taken out.
     pub(super) taken: Vec<Fault>,
@@ -69,12 +69,12 @@ pub(super) struct Cleared {
 }
 
 /// Errors with their sizes, the network beside them, and the deviation that is left.
-type Estimated = (Vec<Fault>, Refined, f64);
+type Estimated = (Vec<Fault>, RefinedNetwork, f64);
 
 impl Clearing<'_> {
     /// Looks for errors of receivers in the best of some networks and takes them out as the options
     /// say.
-    pub(super) fn clear(&self, ranked: Vec<Refined>, deviation: f64) -> Result<Cleared, CalibrateError> {
+    pub(super) fn clear(&self, ranked: Vec<RefinedNetwork>, deviation: f64) -> Result<Cleared, CalibrateError> {
         let observations = Observations::new(self.measured, |_, _| true);
         let mut now = Cleared {
             measured: self.measured.clone(),
@@ -107,7 +107,7 @@ impl Clearing<'_> {
                     now.taken.extend(fresh);
                     rivals = shown.rivals;
                     if let Some(network) = shown.hidden {
-                        let first = Refined { network, ..now.ranked[0].clone() };
+                        let first = RefinedNetwork { network, ..now.ranked[0].clone() };
                         now.ranked.insert(0, first);
                     }
                     now = self.without(now)?;
@@ -209,7 +209,7 @@ impl Clearing<'_> {
         }
         let measured = self.corrected(&taken);
         let observations = Observations::new(&measured, |_, _| true).beside(unknown.len());
-        let mut ranked: Vec<Refined> = all.into_iter().map(|(_, refined, _)| refined).collect();
+        let mut ranked: Vec<RefinedNetwork> = all.into_iter().map(|(_, refined, _)| refined).collect();
         for refined in &mut ranked {
             for offset in refined.network.offsets.iter_mut() {
                 *offset += mean;
@@ -220,7 +220,7 @@ impl Clearing<'_> {
 
     /// Sizes of errors and a network brought near their best fit, with the deviation that is left:
     /// the loss is as wide as the residuals, which are those of wrong sizes at first.
-    fn approach(&self, mut best: Refined, mut faults: Vec<Fault>) -> Result<Estimated, CalibrateError> {
+    fn approach(&self, mut best: RefinedNetwork, mut faults: Vec<Fault>) -> Result<Estimated, CalibrateError> {
         let count = linear(&faults).count();
         let least = self.known.unwrap_or(self.floor);
         let mut deviation = least;
@@ -229,8 +229,8 @@ impl Clearing<'_> {
             let observations = Observations::new(&self.corrected(&faults), |_, _| true).beside(count);
             deviation = spread_of_residuals(&observations, &best.network).max(least);
             let refine = RefineOptions { scale: Some(CAUCHY * deviation), steps: 8, rounds: 1, ..SEARCH };
-            let refined = Refiner::new(&observations, 1.0).heeding(self.monitor).refine(best.network, &refine);
-            best = Refined { starts: best.starts, ..refined };
+            let refined = NetworkRefiner::new(&observations, 1.0).heeding(self.monitor).refine(best.network, &refine);
+            best = RefinedNetwork { starts: best.starts, ..refined };
             let wide = inlier_deviation(&observations, &best.network, deviation, self.options.inlier_threshold);
             let Some(steps) = self.step(&observations, &best.network, wide, &faults)? else { break };
             if moved(&mut faults, steps) < 1e-2 * deviation {
@@ -277,7 +277,7 @@ impl Clearing<'_> {
                 let reach = self.options.inlier_threshold * wide;
                 let inliers = observations.subset(|o| o.residual(&refined.network).abs() <= reach);
                 let refine = RefineOptions { scale: Some(wide), steps: 8, rounds: 0, ..SEARCH };
-                let mut refiner = Refiner::new(&inliers, f64::INFINITY).heeding(self.monitor);
+                let mut refiner = NetworkRefiner::new(&inliers, f64::INFINITY).heeding(self.monitor);
                 refined.network = refiner.refine(refined.network, &refine).network;
                 let Some(steps) = self.step(&observations, &refined.network, wide, &faults)? else { return Ok(None) };
                 if moved(&mut faults, steps) < 1e-2 * deviation {
@@ -312,7 +312,7 @@ impl Clearing<'_> {
     /// and the robust refinement of the network at these sizes, in turns.
     fn estimate(
         &self,
-        mut best: Refined,
+        mut best: RefinedNetwork,
         mut deviation: f64,
         mut faults: Vec<Fault>,
     ) -> Result<Estimated, CalibrateError> {
@@ -368,9 +368,9 @@ impl Clearing<'_> {
 
 impl Cleared {
     /// Errors that are worth a doubt, as neighbours of the best network.
-    pub(super) fn doubts(&self, doubted: impl IntoIterator<Item = Found>) -> Vec<Neighbour> {
-        let is_new = |f: &Found| !self.taken.iter().any(|t| t.receiver == f.fault.receiver && t.kind == f.fault.kind);
-        let of = |f: Found| Neighbour::new(&f.network, -f.lead, Reason::Error(f.fault), &self.ranked[0].network);
+    pub(super) fn doubts(&self, doubted: impl IntoIterator<Item = Refit>) -> Vec<Neighbour> {
+        let is_new = |f: &Refit| !self.taken.iter().any(|t| t.receiver == f.fault.receiver && t.kind == f.fault.kind);
+        let of = |f: Refit| Neighbour::new(&f.network, -f.lead, Reason::Error(f.fault), &self.ranked[0].network);
         doubted.into_iter().filter(is_new).filter_map(of).collect()
     }
 }

@@ -6,7 +6,7 @@ use super::options::{CalibrateError, CalibrateOptions, Errors, check};
 use super::ranking::rank;
 use super::same::distinct;
 use crate::observations::Observations;
-use crate::refine::{RefineOptions, Refined, Refiner, SEARCH};
+use crate::refine::{NetworkRefiner, RefineOptions, RefinedNetwork, SEARCH};
 use hc::Monitor;
 
 /// Scale of the Cauchy loss, in standard deviations, that is 95 % efficient on normal noise
@@ -20,17 +20,17 @@ pub(super) const CAUCHY: f64 = 2.385;
 /// measurements are left over and too large where many are outliers.
 pub(super) fn finish(
     observations: &Observations,
-    mut networks: Vec<Refined>,
+    mut networks: Vec<RefinedNetwork>,
     first: f64,
     known: bool,
     floor: f64,
     options: &CalibrateOptions,
     monitor: &Monitor,
-) -> Result<(Vec<Refined>, f64), CalibrateError> {
+) -> Result<(Vec<RefinedNetwork>, f64), CalibrateError> {
     if options.errors == Errors::OneSided {
         return finish_one_sided(observations, networks, first, known.then_some(first), floor, monitor);
     }
-    let mut refiner = Refiner::new(observations, 1.0).heeding(monitor);
+    let mut refiner = NetworkRefiner::new(observations, 1.0).heeding(monitor);
     let mut deviation = first;
     let turns = if known { 1 } else { 4 };
     for turn in 0..turns {

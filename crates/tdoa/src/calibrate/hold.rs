@@ -10,7 +10,7 @@ use crate::degeneracy::Usable;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
 use crate::quantity::length;
-use crate::refine::{Refined, covariance};
+use crate::refine::{RefinedNetwork, covariance};
 use hc::Monitor;
 
 /// What is known when the network has been refined from the measurements alone.
@@ -24,7 +24,7 @@ pub(super) struct Free<'a> {
 /// A network after receivers of known position were put in their places.
 pub(super) struct Held {
     pub(super) observations: Observations,
-    pub(super) ranked: Vec<Refined>,
+    pub(super) ranked: Vec<RefinedNetwork>,
     pub(super) deviation: f64,
     pub(super) anchors: Option<Anchors>,
     pub(super) speed: Option<SpeedEstimate>,
@@ -38,7 +38,7 @@ impl Free<'_> {
     /// Estimates the propagation speed, then refines with the anchors held.
     pub(super) fn hold(
         self,
-        mut ranked: Vec<Refined>,
+        mut ranked: Vec<RefinedNetwork>,
         deviation: f64,
         usable: &Usable,
         options: &CalibrateOptions,

@@ -11,7 +11,7 @@ use crate::network::Network;
 use crate::observations::Pin;
 use crate::plane::{centroid, distance, flatness};
 use crate::pseudoranges::{MAX_MAGNITUDE, Pseudoranges};
-use crate::refine::Refined;
+use crate::refine::RefinedNetwork;
 
 /// The propagation speed that follows from the known distances.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -305,7 +305,7 @@ impl Anchors {
 
     /// Moves a network onto the anchors and puts exact ones in their places; root mean square of the
     /// distances that remain before.
-    pub(super) fn place(&self, refined: &mut Refined) -> f64 {
+    pub(super) fn place(&self, refined: &mut RefinedNetwork) -> f64 {
         let pairs = refined.network.receivers.iter().zip(&self.positions);
         let (from, to): (Vec<_>, Vec<_>) = pairs.filter_map(|(r, p)| Some((*r, (*p)?))).unzip();
         let Some(alignment) = align(&from, &to, false) else { return 0.0 };

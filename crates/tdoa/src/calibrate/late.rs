@@ -6,7 +6,7 @@ use super::one_sided::finish_one_sided;
 use super::options::CalibrateError;
 use crate::network::Network;
 use crate::observations::Observations;
-use crate::refine::Refined;
+use crate::refine::RefinedNetwork;
 use hc::Monitor;
 
 /// Probability that gross errors of either sign are late as often, at most: three of three.
@@ -18,7 +18,7 @@ const MOST_LEFT_OVER: usize = 100;
 /// What the best network is compared with.
 pub(super) struct Symmetric<'a> {
     pub(super) observations: &'a Observations,
-    pub(super) best: &'a Refined,
+    pub(super) best: &'a RefinedNetwork,
     pub(super) deviation: f64,
     pub(super) known: Option<f64>,
     pub(super) floor: f64,

@@ -58,7 +58,7 @@ use hold::{Free, Held};
 use impossible::without_impossible;
 use late::Symmetric;
 use report::Solved;
-use submaps::{Layout, OVERLAP, hearing_is_local, lay_out};
+use submaps::{OVERLAP, ReceiverLayout, hearing_is_local, lay_out};
 use whole::{Sought, search_whole};
 
 /// Calibrates a network from its pseudoranges, by restarts of the robust refinement and from the
@@ -180,7 +180,7 @@ fn local_layout(
     options: &CalibrateOptions,
     sources: &[&dyn Hypotheses],
     monitor: &Monitor,
-) -> Result<Option<(Layout, Vec<usize>)>, CalibrateError> {
+) -> Result<Option<(ReceiverLayout, Vec<usize>)>, CalibrateError> {
     let (centred, _) = centre(&measured.select(&usable.receivers, &usable.transmitters));
     if !hearing_is_local(&centred) {
         return Ok(None);
@@ -189,7 +189,7 @@ fn local_layout(
     let place = |best: Unfinished| best.among(m, &usable.receivers, n, &usable.transmitters);
     let mut layout = match sources.first() {
         None => lay_out(&centred, known, options, monitor).map_err(|error| error.placing(place))?,
-        Some(source) => match Layout::proposed(&centred, *source, options.seed) {
+        Some(source) => match ReceiverLayout::proposed(&centred, *source, options.seed) {
             Some(layout) => layout,
             None => return Ok(None),
         },

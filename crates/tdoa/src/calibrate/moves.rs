@@ -4,7 +4,7 @@
 use super::options::{CalibrateError, check};
 use super::ranking::{OUTLIER_COST, refit};
 use super::receiver_errors::{Fault, ReceiverErrorKind, SIDE, tests};
-use super::refits::{Fitting, Found};
+use super::refits::{Fitting, Refit};
 use super::significance::least_surprise;
 use super::warnings::{BY_CHANCE, agree_by_chance};
 use crate::loss::{Loss, SEARCH_NU};
@@ -72,7 +72,7 @@ impl Sights {
 impl Fitting<'_> {
     /// The move of a receiver that fits best, as two receivers beside the network of all others.
     /// `None` where one of its places may be chance.
-    pub(super) fn moved(&self, receiver: usize, alone: &Network) -> Result<Option<Found>, CalibrateError> {
+    pub(super) fn moved(&self, receiver: usize, alone: &Network) -> Result<Option<Refit>, CalibrateError> {
         let own: Vec<_> = self.observations.of_receiver(receiver).collect();
         let sights = Sights {
             transmitters: own.iter().map(|o| o.transmitter).collect(),
@@ -118,7 +118,7 @@ impl Fitting<'_> {
         }
         let size = [after[0] - before[0], after[1] - before[1]];
         let fault = Fault { size, gain, ..Fault::new(receiver, ReceiverErrorKind::Move, from) };
-        Ok(Some(Found { fault, network, freedom, lead: 0.0 }))
+        Ok(Some(Refit { fault, network, freedom, lead: 0.0 }))
     }
 }
 

@@ -6,7 +6,7 @@ use super::receiver_errors::Fault;
 use crate::align::align;
 use crate::network::Network;
 use crate::observations::Observations;
-use crate::refine::{Cancelled, Covariance, Refined};
+use crate::refine::{Cancelled, Covariance, RefinedNetwork};
 use hc::Monitor;
 
 /// Networks that differ by less than this share of their size, root mean square, ended in one
@@ -66,7 +66,7 @@ pub(super) fn minima(best: &Network, same: impl Iterator<Item = Network>) -> Vec
 /// best.
 pub(super) fn neighbours(
     observations: &Observations,
-    best: &Refined,
+    best: &RefinedNetwork,
     near: Vec<Network>,
     deviation: f64,
     monitor: &Monitor,

@@ -10,7 +10,7 @@ use super::propagation::{Propagated, propagated};
 use super::same::merged;
 use crate::network::Network;
 use crate::observations::Observations;
-use crate::refine::{Cost, Refined, Weighing};
+use crate::refine::{Cost, RefinedNetwork, Weighing};
 use hc::Monitor;
 
 /// Turns of estimating the mixture and refining the network, fewest turns, steps of the network in
@@ -76,15 +76,15 @@ pub(super) fn noise(observations: &Observations, network: &Network, first: f64, 
 /// deviation of the noise. Objectives are differences of log-likelihood.
 pub(super) fn finish_one_sided(
     observations: &Observations,
-    networks: Vec<Refined>,
+    networks: Vec<RefinedNetwork>,
     first: f64,
     known: Option<f64>,
     floor: f64,
     monitor: &Monitor,
-) -> Result<(Vec<Refined>, f64), CalibrateError> {
+) -> Result<(Vec<RefinedNetwork>, f64), CalibrateError> {
     let least = known.unwrap_or(floor).max(floor);
     let mut fitting = Fitting { observations, weighing: Weighing::new(observations, monitor), least, known, monitor };
-    let mut ranked: Vec<Refined> = Vec::new();
+    let mut ranked: Vec<RefinedNetwork> = Vec::new();
     // The widest is the same for all, so that gross errors have one density.
     let wide = networks.iter().map(|refined| spread_of_residuals(observations, &refined.network));
     let wide = wide.fold(f64::INFINITY, f64::min).max(first).max(least);
@@ -94,7 +94,7 @@ pub(super) fn finish_one_sided(
             // The first is there where no other is.
             if network.is_finite() && (k == 0 || fitting.determined(&mixture)) {
                 let objective = fitting.objective(&network, &mixture)?;
-                ranked.push(Refined { network, scale: mixture.deviation, objective, starts: refined.starts });
+                ranked.push(RefinedNetwork { network, scale: mixture.deviation, objective, starts: refined.starts });
             }
         }
     }

@@ -9,7 +9,7 @@
 
 use crate::network::Network;
 use crate::observations::Observations;
-use crate::refine::{Cancelled, RefineOptions, Refined, Refiner, SEARCH, check};
+use crate::refine::{Cancelled, NetworkRefiner, RefineOptions, RefinedNetwork, SEARCH, check};
 use hc::Monitor;
 
 use super::same::same;
@@ -34,11 +34,11 @@ pub(super) fn truncated_cost(observations: &Observations, network: &Network, dev
 /// their inliers. If the refit carries several networks to the same one, the first is kept.
 pub(super) fn rank(
     observations: &Observations,
-    mut networks: Vec<Refined>,
+    mut networks: Vec<RefinedNetwork>,
     deviation: f64,
     margin: f64,
     monitor: &Monitor,
-) -> Result<Vec<Refined>, Cancelled> {
+) -> Result<Vec<RefinedNetwork>, Cancelled> {
     let mut least = f64::INFINITY;
     for refined in &mut networks {
         refined.objective = truncated_cost(observations, &refined.network, deviation);
@@ -47,7 +47,7 @@ pub(super) fn rank(
     if networks.len() < 2 {
         return Ok(networks);
     }
-    let mut kept: Vec<(Network, Refined)> = Vec::new();
+    let mut kept: Vec<(Network, RefinedNetwork)> = Vec::new();
     for mut refined in networks.into_iter().filter(|refined| refined.objective <= least + 4.0 * margin) {
         let (network, cost) = refit(observations, &refined.network, deviation, monitor)?;
         refined.objective = cost;
@@ -56,7 +56,7 @@ pub(super) fn rank(
             None => kept.push((network, refined)),
         }
     }
-    let mut ranked: Vec<Refined> = kept.into_iter().map(|(_, refined)| refined).collect();
+    let mut ranked: Vec<RefinedNetwork> = kept.into_iter().map(|(_, refined)| refined).collect();
     ranked.sort_by(|a, b| a.objective.total_cmp(&b.objective));
     Ok(ranked)
 }
@@ -74,7 +74,8 @@ pub(super) fn refit(
     let mut best = (network.clone(), truncated_cost(observations, network, deviation));
     for _ in 0..ROUNDS {
         let inliers = observations.subset(|o| o.residual(&best.0).abs() <= limit);
-        let fitted = Refiner::new(&inliers, f64::INFINITY).heeding(monitor).refine(best.0.clone(), &options).network;
+        let fitted =
+            NetworkRefiner::new(&inliers, f64::INFINITY).heeding(monitor).refine(best.0.clone(), &options).network;
         check(monitor)?;
         let cost = truncated_cost(observations, &fitted, deviation);
         // Each round lowers the cost or leaves the inliers as they are.
@@ -94,7 +95,7 @@ mod tests {
     use super::{OUTLIER_COST, rank, refit, truncated_cost};
     use crate::observations::Observations;
     use crate::pseudoranges::Pseudoranges;
-    use crate::refine::Refined;
+    use crate::refine::RefinedNetwork;
     use crate::simulate::{SimulateOptions, simulate};
     use hc::Monitor;
 
@@ -144,7 +145,7 @@ mod tests {
         // Most of the eight measurements of this transmitter are then wrong by much more than the
         // noise, and no refit of these reaches back.
         wrong.transmitters[3] = [60.0, -40.0];
-        let refined = |network| Refined { network, scale: SIGMA, objective: 0.0, starts: 1 };
+        let refined = |network| RefinedNetwork { network, scale: SIGMA, objective: 0.0, starts: 1 };
         let networks = vec![refined(wrong), refined(truth.clone())];
         let ranked = rank(&observations, networks, SIGMA, 8.0, &Monitor::default()).unwrap();
         assert_eq!((ranked.len(), &ranked[0].network), (1, &truth), "the wrong one is no alternative");

@@ -18,7 +18,7 @@ use crate::multilateration::solve3;
 use crate::network::Network;
 use crate::observations::{Observation, Observations};
 use crate::plane::distance;
-use crate::refine::{Projection, RefineOptions, Refiner, SEARCH, dot};
+use crate::refine::{NetworkRefiner, Projection, RefineOptions, SEARCH, dot};
 use hc::Monitor;
 
 /// Jumps of one receiver that are tried.
@@ -39,7 +39,7 @@ const ROUNDS: usize = 10;
 const RELAXED: [f64; 3] = [10.0, 3.0, 1.0];
 
 /// An error of a receiver and the network that goes with it.
-pub(super) struct Found {
+pub(super) struct Refit {
     pub(super) fault: Fault,
     pub(super) network: Network,
     /// Measurements left over.
@@ -48,13 +48,13 @@ pub(super) struct Found {
     pub(super) lead: f64,
 }
 
-impl Found {
-    fn leading(self, observations: &Observations, kept: usize) -> Found {
+impl Refit {
+    fn leading(self, observations: &Observations, kept: usize) -> Refit {
         let is_move = self.fault.kind == ReceiverErrorKind::Move;
         let told = surprise(self.fault.gain, self.freedom, if is_move { 2 } else { 1 });
         let tested = told - least_surprise(tests(self.fault.kind, observations.receivers, kept));
         // A move has one more unknown than other errors (Schwarz 1978).
-        Found { lead: tested - if is_move { 0.5 * (kept as f64).ln() } else { 0.0 }, ..self }
+        Refit { lead: tested - if is_move { 0.5 * (kept as f64).ln() } else { 0.0 }, ..self }
     }
 }
 
@@ -69,7 +69,7 @@ pub(super) fn refits(
     limit: f64,
     suspects: &[Fault],
     monitor: &Monitor,
-) -> Result<Vec<Found>, CalibrateError> {
+) -> Result<Vec<Refit>, CalibrateError> {
     let mut given_up = vec![0usize; observations.receivers];
     for o in observations.all().iter().filter(|o| o.residual(best).abs() > limit * deviation) {
         given_up[o.receiver] += 1;
@@ -84,7 +84,7 @@ pub(super) fn refits(
     let of = |i: usize| suspects.iter().filter(move |suspect| suspect.receiver == i);
     order.sort_by_key(|&i| (of(i).count() == 0, std::cmp::Reverse(given_up[i])));
     order.truncate(tried);
-    let mut found: Vec<Found> = Vec::new();
+    let mut found: Vec<Refit> = Vec::new();
     let fitting = Fitting { observations, base: &base, cost, deviation, limit, monitor };
     for receiver in order {
         check(monitor)?;
@@ -127,10 +127,10 @@ struct Joint {
 
 impl Fitting<'_> {
     /// Fits of one receiver with an error of each kind, as far as they are worth a look.
-    fn receiver(&self, receiver: usize, may_have_moved: bool) -> Result<Vec<Found>, CalibrateError> {
+    fn receiver(&self, receiver: usize, may_have_moved: bool) -> Result<Vec<Refit>, CalibrateError> {
         let others = self.observations.subset(|o| o.receiver != receiver);
         let options = RefineOptions { scale: Some(CAUCHY * self.deviation), rounds: 0, steps: 30, ..SEARCH };
-        let bent = Refiner::new(&others, 1.0).heeding(self.monitor).refine(self.base.clone(), &options).network;
+        let bent = NetworkRefiner::new(&others, 1.0).heeding(self.monitor).refine(self.base.clone(), &options).network;
         let (alone, cost) = refit(&others, &bent, self.deviation, self.monitor)?;
         // No error can bring the cost below that of the others.
         let least = least_gain(tests(ReceiverErrorKind::Delay, others.receivers, 1)) - doubt();
@@ -155,13 +155,13 @@ impl Fitting<'_> {
                 network.receivers[receiver] = located.position;
                 self.joint(network, located.fault)
             });
-        let fitted: Vec<Option<Found>> = fitted.collect::<Result<_, CalibrateError>>()?;
+        let fitted: Vec<Option<Refit>> = fitted.collect::<Result<_, CalibrateError>>()?;
         Ok(fitted.into_iter().flatten().chain(moved).collect())
     }
 
     /// Least squares of all nodes and the error over the inliers, from here; `None` where the error
     /// cannot be told from a motion of the nodes.
-    fn joint(&self, network: Network, fault: Fault) -> Result<Option<Found>, CalibrateError> {
+    fn joint(&self, network: Network, fault: Fault) -> Result<Option<Refit>, CalibrateError> {
         let start = Joint { observations: self.corrected(&fault), network, fault, square: 0.0, cost: f64::INFINITY };
         let Some(mut fitted) = self.descend(start, 1.0)? else { return Ok(None) };
         // A network that is still bent gives up measurements that the error would explain.
@@ -181,7 +181,7 @@ impl Fitting<'_> {
         let with_error = observations.beside(self.observations.others() + 1);
         let size = fault.size[0];
         let gain = self.gain(&with_error, &network, &[fault.receiver], Some(size * size * square))?;
-        Ok(gain.map(|(gain, freedom)| Found { fault: Fault { gain, ..fault }, network, freedom, lead: 0.0 }))
+        Ok(gain.map(|(gain, freedom)| Refit { fault: Fault { gain, ..fault }, network, freedom, lead: 0.0 }))
     }
 
     /// Whether a fit costs less than another, with the smaller of the deviations that they leave: with

@@ -21,7 +21,7 @@ use crate::network::Network;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
 use crate::quantity::length;
-use crate::refine::{Covariance, Refined};
+use crate::refine::{Covariance, RefinedNetwork};
 use hc::Monitor;
 use hc::poly::{counted, one_or};
 use std::borrow::Cow;
@@ -38,7 +38,7 @@ pub(super) struct Solved<'a> {
     pub(super) centred: &'a Pseudoranges,
     pub(super) shifts: &'a [f64],
     /// At least one network.
-    pub(super) ranked: Vec<Refined>,
+    pub(super) ranked: Vec<RefinedNetwork>,
     /// Neighbours of the best network.
     pub(super) neighbours: Vec<Neighbour>,
     pub(super) deviation: f64,

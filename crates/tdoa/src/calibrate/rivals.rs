@@ -15,7 +15,7 @@ use super::same::same;
 use crate::loss::{Loss, SEARCH_NU};
 use crate::network::Network;
 use crate::observations::Observations;
-use crate::refine::{Refined, places_of_receiver, places_of_transmitter};
+use crate::refine::{RefinedNetwork, places_of_receiver, places_of_transmitter};
 
 /// Measurements left over, outliers not counted, above which no rivals are looked for: a node has
 /// then more to agree with than another place can.
@@ -28,11 +28,11 @@ const ANNEALED: [f64; 2] = [3.0, 1.0];
 /// The networks with their rivals, best first. `deviation` is that of the measurements.
 pub(super) fn with_rivals(
     observations: &Observations,
-    mut ranked: Vec<Refined>,
+    mut ranked: Vec<RefinedNetwork>,
     deviation: f64,
     options: &CalibrateOptions,
     monitor: &Monitor,
-) -> Result<Vec<Refined>, CalibrateError> {
+) -> Result<Vec<RefinedNetwork>, CalibrateError> {
     let limit = options.inlier_threshold * deviation;
     let (best, cost) = refit(observations, &ranked[0].network, deviation, monitor)?;
     let suspected = observations.all().iter().filter(|o| o.residual(&best).abs() > limit).count();
@@ -76,7 +76,7 @@ pub(super) fn with_rivals(
     let (shift, scale) = (ranked[0].objective - cost, ranked[0].scale);
     for (network, new) in found {
         if !same(&best, &network) && !ranked.iter().any(|r| same(&r.network, &network)) {
-            ranked.push(Refined { network, scale, objective: new + shift, starts: 1 });
+            ranked.push(RefinedNetwork { network, scale, objective: new + shift, starts: 1 });
         }
     }
     ranked.sort_by(|a, b| a.objective.total_cmp(&b.objective));

@@ -3,7 +3,7 @@
 use crate::align::align;
 use crate::network::Network;
 use crate::plane::{centroid, distance};
-use crate::refine::Refined;
+use crate::refine::RefinedNetwork;
 
 /// Two networks are the same if their nodes differ by less than this share of the network's size,
 /// as a root mean square.
@@ -11,8 +11,8 @@ pub const SAME_NETWORK: f64 = 0.02;
 
 /// The first of each kind of network in a list sorted by objective, at most `most` of them, with
 /// the starts of the one that most ended in.
-pub(super) fn distinct(sorted: Vec<Refined>, most: usize) -> Vec<Refined> {
-    let mut kept: Vec<Refined> = Vec::new();
+pub(super) fn distinct(sorted: Vec<RefinedNetwork>, most: usize) -> Vec<RefinedNetwork> {
+    let mut kept: Vec<RefinedNetwork> = Vec::new();
     for candidate in sorted {
         if kept.len() == most {
             break;
@@ -27,7 +27,7 @@ pub(super) fn distinct(sorted: Vec<Refined>, most: usize) -> Vec<Refined> {
 }
 
 /// The first of each kind of network in a sorted list, with the starts of all of its kind.
-pub(super) fn merged<T>(sorted: Vec<T>, of: impl Fn(&mut T) -> &mut Refined) -> Vec<T> {
+pub(super) fn merged<T>(sorted: Vec<T>, of: impl Fn(&mut T) -> &mut RefinedNetwork) -> Vec<T> {
     let mut kept: Vec<T> = Vec::new();
     for mut next in sorted {
         let this = of(&mut next);

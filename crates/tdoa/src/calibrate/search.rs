@@ -14,7 +14,7 @@ use crate::loss::{Loss, SEARCH_NU};
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
-use crate::refine::{RefineOptions, Refined, Refiner, extend, residuals};
+use crate::refine::{NetworkRefiner, RefineOptions, RefinedNetwork, extend, residuals};
 
 /// Starts that run between two looks at the result. Fixed, so that the result does not depend on
 /// the number of threads.
@@ -34,9 +34,9 @@ const AS_GOOD: f64 = 4.0;
 const SAME_BASIN: f64 = 20.0;
 
 /// What the search found.
-pub(crate) struct Found {
+pub(crate) struct SearchOutcome {
     /// Different networks, best objective first, each with the starts that ended in it.
-    pub(crate) networks: Vec<Refined>,
+    pub(crate) networks: Vec<RefinedNetwork>,
     /// Networks that count as the best one and end in other minima.
     pub(crate) near: Vec<Network>,
     /// Starts that were made.
@@ -60,21 +60,21 @@ pub(crate) struct Search<'a> {
 const EXTRA_TURNS: usize = 1 << 24;
 
 impl Search<'_> {
-    pub(crate) fn run(&self, options: &CalibrateOptions, monitor: &Monitor) -> Result<Found, CalibrateError> {
-        let mut refined: Vec<Refined> = Vec::new();
+    pub(crate) fn run(&self, options: &CalibrateOptions, monitor: &Monitor) -> Result<SearchOutcome, CalibrateError> {
+        let mut refined: Vec<RefinedNetwork> = Vec::new();
         let mut starts = 0;
         monitor.enter(Stage::Search, options.max_starts as u64);
         loop {
             let batch = BATCH.min(options.max_starts - starts);
-            let refiner = || Refiner::new(self.observations, SEARCH_NU).heeding(monitor);
-            let start = |refiner: &mut Refiner<'_>, index| {
+            let refiner = || NetworkRefiner::new(self.observations, SEARCH_NU).heeding(monitor);
+            let start = |refiner: &mut NetworkRefiner<'_>, index| {
                 if monitor.is_cancelled() { Vec::new() } else { self.start(refiner, index, options.seed, monitor) }
             };
             let batch = starts..starts + batch;
             #[cfg(feature = "threads")]
-            let ended: Vec<Vec<Refined>> = batch.clone().into_par_iter().map_init(refiner, start).collect();
+            let ended: Vec<Vec<RefinedNetwork>> = batch.clone().into_par_iter().map_init(refiner, start).collect();
             #[cfg(not(feature = "threads"))]
-            let ended: Vec<Vec<Refined>> = {
+            let ended: Vec<Vec<RefinedNetwork>> = {
                 let mut refiner = refiner();
                 batch.clone().map(|index| start(&mut refiner, index)).collect()
             };
@@ -107,12 +107,18 @@ impl Search<'_> {
                 let close = refined.iter().take_while(|r| r.objective <= best.objective + SAME_BASIN);
                 let close = close.filter(|r| same(&r.network, &best.network)).map(|r| r.network.clone());
                 let near = minima(&best.network, close);
-                return Ok(Found { networks, near, starts });
+                return Ok(SearchOutcome { networks, near, starts });
             }
         }
     }
 
-    fn start(&self, refiner: &mut Refiner<'_>, index: usize, seed: u64, monitor: &Monitor) -> Vec<Refined> {
+    fn start(
+        &self,
+        refiner: &mut NetworkRefiner<'_>,
+        index: usize,
+        seed: u64,
+        monitor: &Monitor,
+    ) -> Vec<RefinedNetwork> {
         let source = self.sources[index % self.sources.len()];
         let mut proposals = source.propose(self.measured, index / self.sources.len(), seed);
         if proposals.is_empty() && self.sources.len() > 1 {
@@ -129,7 +135,7 @@ impl Search<'_> {
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
         let limit = ranked.first().map_or(0.0, |best| best.0 + AS_GOOD);
         let promising = ranked.iter().take(MOST_REFINED).filter(|(cost, _)| *cost <= limit).count();
-        let mut refined: Vec<Refined> = ranked
+        let mut refined: Vec<RefinedNetwork> = ranked
             .into_iter()
             .take(promising.max(REFINED))
             .map(|(_, network)| refiner.refine(network, &self.refine))
@@ -141,11 +147,11 @@ impl Search<'_> {
     }
 
     /// Replaces the objective by the truncated cost where the noise is known.
-    fn judge(&self, refined: Refined) -> Refined {
+    fn judge(&self, refined: RefinedNetwork) -> RefinedNetwork {
         match self.deviation {
             Some(deviation) => {
                 let objective = truncated_cost(self.observations, &refined.network, deviation);
-                Refined { objective, ..refined }
+                RefinedNetwork { objective, ..refined }
             }
             None => refined,
         }
@@ -159,7 +165,7 @@ impl Search<'_> {
 }
 
 /// How many of `all` ended in the basin of `best`.
-fn starts_in(best: &Refined, all: &[Refined]) -> usize {
-    let agrees = |r: &&Refined| r.objective < best.objective + SAME_BASIN && same(&r.network, &best.network);
+fn starts_in(best: &RefinedNetwork, all: &[RefinedNetwork]) -> usize {
+    let agrees = |r: &&RefinedNetwork| r.objective < best.objective + SAME_BASIN && same(&r.network, &best.network);
     all.iter().filter(agrees).count()
 }

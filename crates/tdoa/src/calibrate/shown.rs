@@ -4,7 +4,7 @@
 use super::one_sided::mixture_of;
 use super::options::{CalibrateError, CalibrateOptions, Errors};
 use super::receiver_errors::{Fault, ReceiverErrorKind, Told, find, find_one_sided};
-use super::refits::{Found, refits};
+use super::refits::{Refit, refits};
 use crate::network::Network;
 use crate::observations::Observations;
 use hc::Monitor;
@@ -21,18 +21,18 @@ pub(super) struct Shown {
     /// The network without the first of them, where the present one is bent by it.
     pub(super) hidden: Option<Network>,
     /// Further errors that are worth a doubt, with the networks without them.
-    pub(super) doubted: Vec<Found>,
+    pub(super) doubted: Vec<Refit>,
     /// Errors that may be there in the place of the first, likewise.
-    pub(super) rivals: Vec<Found>,
+    pub(super) rivals: Vec<Refit>,
 }
 
 impl Shown {
     /// With those of these fits that tell about as much as the first error, of other receivers.
-    fn beside(mut self, fitted: Vec<Found>, margin: f64) -> Shown {
+    fn beside(mut self, fitted: Vec<Refit>, margin: f64) -> Shown {
         let of = |fault: &Fault| fitted.iter().find(|other| other.fault.receiver == fault.receiver);
         let Some(lead) = self.found.first().and_then(of).map(|other| other.lead) else { return self };
-        let behind = fitted.into_iter().map(|other| Found { lead: other.lead - lead, ..other });
-        let is_other = |other: &Found| self.found.iter().all(|fault| fault.receiver != other.fault.receiver);
+        let behind = fitted.into_iter().map(|other| Refit { lead: other.lead - lead, ..other });
+        let is_other = |other: &Refit| self.found.iter().all(|fault| fault.receiver != other.fault.receiver);
         self.rivals = behind.filter(|other| other.lead > -margin && is_other(other)).collect();
         self
     }
@@ -71,7 +71,7 @@ pub(super) fn look(
             continue;
         }
         let Some(hidden) = fitted.first() else { return Ok(Shown { found, doubted, ..Shown::default() }) };
-        let alone = |hidden: &Found| (vec![hidden.fault], Some(hidden.network.clone()));
+        let alone = |hidden: &Refit| (vec![hidden.fault], Some(hidden.network.clone()));
         let (found, hidden) = match found.first().copied() {
             None => alone(hidden),
             Some(first) => {

@@ -15,7 +15,7 @@ use crate::network::Network;
 use crate::observations::Observations;
 use crate::plane::{distance, flatness, spread};
 use crate::pseudoranges::Pseudoranges;
-use crate::refine::{PartialNetwork, RefineOptions, Refiner, SEARCH, extend};
+use crate::refine::{NetworkRefiner, PartialNetwork, RefineOptions, SEARCH, extend};
 use hc::{Monitor, Stage};
 
 /// Receivers and transmitters of a submap.
@@ -53,7 +53,7 @@ struct Submap {
 }
 
 /// What the submaps say of the receivers: those that hang together.
-pub(super) struct Layout {
+pub(super) struct ReceiverLayout {
     submaps: Vec<Submap>,
     /// Positions in one frame; `None` where no submap ties a receiver to the others.
     pub(super) positions: Vec<Option<[f64; 2]>>,
@@ -99,7 +99,7 @@ pub(super) fn lay_out(
     known: Option<f64>,
     options: &CalibrateOptions,
     monitor: &Monitor,
-) -> Result<Layout, CalibrateError> {
+) -> Result<ReceiverLayout, CalibrateError> {
     let m = measured.receivers();
     let common = common_transmitters(measured);
     let options = &CalibrateOptions {
@@ -138,7 +138,7 @@ pub(super) fn lay_out(
     }
     let positions = largest(&submaps, m);
     let size = submaps.iter().map(|submap| submap.size).fold(0.0, f64::max);
-    Ok(Layout { solved: submaps.len(), submaps, positions, size })
+    Ok(ReceiverLayout { solved: submaps.len(), submaps, positions, size })
 }
 
 /// The network of some receivers if their transmitters determine it and no other network fits about
@@ -243,14 +243,14 @@ fn fit(submap: &Submap, placed: &[Option<[f64; 2]>]) -> Option<(usize, Transform
     None
 }
 
-impl Layout {
+impl ReceiverLayout {
     /// The places that a source of networks proposes first, if it has receivers for all.
-    pub(super) fn proposed(measured: &Pseudoranges, source: &dyn Hypotheses, seed: u64) -> Option<Layout> {
+    pub(super) fn proposed(measured: &Pseudoranges, source: &dyn Hypotheses, seed: u64) -> Option<ReceiverLayout> {
         let positions = source.propose(measured, 0, seed).into_iter().next()?.receivers;
         let placed: Vec<[f64; 2]> = positions.iter().copied().collect::<Option<_>>()?;
         // As much as ten neighbours would take of it.
         let share = (RECEIVERS as f64 / placed.len() as f64).sqrt();
-        Some(Layout { submaps: Vec::new(), positions, solved: 1, size: share * spread(placed.iter()) })
+        Some(ReceiverLayout { submaps: Vec::new(), positions, solved: 1, size: share * spread(placed.iter()) })
     }
 
     /// The receivers alone.
@@ -310,7 +310,7 @@ impl Layout {
         let refine = RefineOptions { anneal_from: Some(bent), steps: 60, floor: 1e-9 * size, ..SEARCH };
         let to_deviation = normal_deviation(SEARCH_NU);
         let start = RefineOptions { scale: known.map(|sigma| sigma / to_deviation), ..refine };
-        let mut refiner = Refiner::new(&observations, SEARCH_NU).heeding(monitor);
+        let mut refiner = NetworkRefiner::new(&observations, SEARCH_NU).heeding(monitor);
         let mut refined = refiner.refine(network, &start);
         let so_far = Unfinished::of(&refined.network, self.solved, 0);
         check(monitor).map_err(|error| error.leaving(&so_far))?;

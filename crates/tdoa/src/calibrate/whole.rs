@@ -13,7 +13,7 @@ use crate::degeneracy::{Usable, usable};
 use crate::loss::{Loss, SEARCH_NU, normal_deviation};
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
-use crate::refine::{PartialNetwork, RefineOptions, Refined, Refiner, SEARCH, extend};
+use crate::refine::{NetworkRefiner, PartialNetwork, RefineOptions, RefinedNetwork, SEARCH, extend};
 use hc::Monitor;
 
 /// No measurement is trusted beyond this share of the network's diameter.
@@ -22,7 +22,7 @@ const RESOLUTION: f64 = 1e-9;
 /// Networks for all nodes.
 pub(super) struct Sought {
     /// At least one network, best first.
-    pub(super) ranked: Vec<Refined>,
+    pub(super) ranked: Vec<RefinedNetwork>,
     /// Deviation of the measurements.
     pub(super) deviation: f64,
     /// No measurement is trusted beyond this.
@@ -84,7 +84,7 @@ pub(super) fn search_whole(
     let best = found.networks[0].objective;
     let close = found.networks.into_iter().filter(|r| r.objective <= best + 4.0 * options.alternative_margin);
     let complete_part = part.receivers.len() == m && part.transmitters.len() == n;
-    let whole: Vec<Refined> = if complete_part {
+    let whole: Vec<RefinedNetwork> = if complete_part {
         close.collect()
     } else {
         complete(&observations, &part, close.take(4), &refine, monitor).map_err(|error| error.leaving(&so_far))?
@@ -147,11 +147,11 @@ fn search_part(measured: &Pseudoranges, options: &CalibrateOptions) -> Usable {
 fn complete(
     observations: &Observations,
     part: &Usable,
-    networks: impl Iterator<Item = Refined>,
+    networks: impl Iterator<Item = RefinedNetwork>,
     refine: &RefineOptions,
     monitor: &Monitor,
-) -> Result<Vec<Refined>, CalibrateError> {
-    let mut refiner = Refiner::new(observations, SEARCH_NU).heeding(monitor);
+) -> Result<Vec<RefinedNetwork>, CalibrateError> {
+    let mut refiner = NetworkRefiner::new(observations, SEARCH_NU).heeding(monitor);
     let refine = RefineOptions { anneal_from: None, ..*refine };
     let mut all = Vec::new();
     for refined in networks {
@@ -159,7 +159,7 @@ fn complete(
         known.place(&refined.network, &part.receivers, &part.transmitters);
         let loss = Loss { nu: SEARCH_NU, scale: refined.scale };
         let Some(network) = extend(observations, &known, &loss, monitor)? else { continue };
-        let next = Refined { starts: refined.starts, ..refiner.refine(network, &refine) };
+        let next = RefinedNetwork { starts: refined.starts, ..refiner.refine(network, &refine) };
         check(monitor)?;
         if next.objective.is_finite() && next.network.is_finite() {
             all.push(next);

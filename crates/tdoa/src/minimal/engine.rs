@@ -36,7 +36,7 @@ const CANDIDATES: usize = 64;
 
 /// A solver of one configuration; keeps its memory from call to call.
 pub(crate) struct Engine<F: Formulation> {
-    tracking: Tracking<F>,
+    finder: RootFinder<F>,
     roots: Roots<F>,
     data: Normalised,
     /// The parameters of the last call.
@@ -48,7 +48,7 @@ impl<F: Formulation> Engine<F> {
     pub(crate) fn new() -> Self {
         let stored = F::fibre();
         let start = stored.clone();
-        let tracking = Tracking {
+        let finder = RootFinder {
             tracker: FibreTracker::new(F::system(), Recharted::default(), &stored),
             stored,
             nearest: Nearest::default(),
@@ -60,7 +60,7 @@ impl<F: Formulation> Engine<F> {
             squares: LeastSquares::default(),
             polisher: Polisher::default(),
         };
-        Engine { tracking, roots, data: Normalised::default(), target: Vec::new() }
+        Engine { finder, roots, data: Normalised::default(), target: Vec::new() }
     }
 
     /// Every network that explains a matrix of the formulation's size that has passed the checks,
@@ -81,13 +81,13 @@ impl<F: Formulation> Engine<F> {
         let (data, target, roots) = (&self.data, &self.target[..], &mut self.roots);
         let candidates = Vec::with_capacity(CANDIDATES);
         let mut found =
-            Found::<F> { measured, data, options, target, roots, counts: RootCounts::default(), candidates };
-        self.tracking.tracker.set_monitor(monitor);
+            RootNetworks::<F> { measured, data, options, target, roots, counts: RootCounts::default(), candidates };
+        self.finder.tracker.set_monitor(monitor);
         let (paths, stopped_early) = match options.start {
-            Start::Stored => self.tracking.run(&mut found),
-            Start::Polyhedral => self.tracking.run_polyhedral(&mut found, monitor)?,
+            Start::Stored => self.finder.run(&mut found),
+            Start::Polyhedral => self.finder.run_polyhedral(&mut found, monitor)?,
         };
-        let Found { counts, mut candidates, .. } = found;
+        let RootNetworks { counts, mut candidates, .. } = found;
         rank(&mut candidates);
         let (configuration, warnings) = (measured.configuration(), Vec::new());
         Ok(MinimalSolution { configuration, solver: F::NAME, paths, counts, stopped_early, warnings, candidates })
@@ -95,18 +95,18 @@ impl<F: Formulation> Engine<F> {
 
     /// The records of the paths of the last call.
     pub(crate) fn records(&self) -> &[PathResult] {
-        self.tracking.tracker.paths().results()
+        self.finder.tracker.paths().results()
     }
 
     /// Proofs that the complex roots of the last call exist and are distinct.
     pub(crate) fn prove(&self) -> Option<RootProofs> {
-        let ends = self.tracking.tracker.paths().iter().filter(|(r, _)| r.end == PathEnd::Success);
+        let ends = self.finder.tracker.paths().iter().filter(|(r, _)| r.end == PathEnd::Success);
         prove::<F>(&self.target, &ends.map(|(_, x)| x.to_vec()).collect::<Vec<_>>())
     }
 }
 
-/// The paths, and what follows them.
-struct Tracking<F: Formulation> {
+/// What finds the roots: the paths to the data, and where they start.
+struct RootFinder<F: Formulation> {
     tracker: FibreTracker<'static, F::System, Recharted<F>>,
     stored: Fibre,
     nearest: Nearest,
@@ -114,11 +114,11 @@ struct Tracking<F: Formulation> {
     start: Fibre,
 }
 
-impl<F: Formulation> Tracking<F> {
+impl<F: Formulation> RootFinder<F> {
     /// Tracks all paths, again from a turned fibre where some stay lost, keeps the most complete
     /// set and adds its roots to `found`. Returns the counts and whether the search stopped at a
     /// network that fits.
-    fn run(&mut self, found: &mut Found<'_, F>) -> (PathCounts, bool) {
+    fn run(&mut self, found: &mut RootNetworks<'_, F>) -> (PathCounts, bool) {
         let (target, options) = (found.target, found.options);
         let mut retracked = 0;
         let mut best: Option<(PathCounts, PathSet)> = None;
@@ -162,7 +162,7 @@ impl<F: Formulation> Tracking<F> {
     /// through a random member.
     fn run_polyhedral(
         &mut self,
-        found: &mut Found<'_, F>,
+        found: &mut RootNetworks<'_, F>,
         monitor: &Monitor,
     ) -> Result<(PathCounts, bool), SolveError> {
         let direct = scratch::at_data::<F>(found.target, monitor)?;
@@ -199,7 +199,7 @@ struct Roots<F: Formulation> {
 }
 
 /// The networks of the real roots found so far.
-struct Found<'a, F: Formulation> {
+struct RootNetworks<'a, F: Formulation> {
     measured: &'a Pseudoranges,
     data: &'a Normalised,
     options: &'a SolveOptions,
@@ -209,7 +209,7 @@ struct Found<'a, F: Formulation> {
     candidates: Vec<Candidate>,
 }
 
-impl<F: Formulation> Found<'_, F> {
+impl<F: Formulation> RootNetworks<'_, F> {
     fn clear(&mut self) {
         self.counts = RootCounts::default();
         self.candidates.clear();

@@ -37,7 +37,7 @@ impl Nearest {
         self.order.clear();
         self.order.extend(0..count);
         let (products, order) = (&self.products, &mut self.best);
-        let mut best = Best { products, count, size: -1.0, order, sum: Complex64::new(1.0, 0.0) };
+        let mut best = BestOrder { products, count, size: -1.0, order, sum: Complex64::new(1.0, 0.0) };
         best.search(&mut self.order, 0, Complex64::new(0.0, 0.0));
         let towards = if best.sum.norm() > 0.0 { best.sum / best.sum.norm() } else { Complex64::new(1.0, 0.0) };
         let factor = towards * Complex64::from_polar(1.0, turn);
@@ -56,7 +56,7 @@ impl Nearest {
 }
 
 /// The order with the largest sum of products, found by going through all of them.
-struct Best<'a> {
+struct BestOrder<'a> {
     products: &'a [Complex64],
     count: usize,
     size: f64,
@@ -64,7 +64,7 @@ struct Best<'a> {
     sum: Complex64,
 }
 
-impl Best<'_> {
+impl BestOrder<'_> {
     /// `order[..at]` is settled and gives the partial sum `sum`.
     fn search(&mut self, order: &mut [usize], at: usize, sum: Complex64) {
         if at == self.count {

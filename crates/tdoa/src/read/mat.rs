@@ -121,7 +121,7 @@ impl<'a> File<'a> {
                 }
                 _ => &[],
             };
-            if let Some(found) = start(body, order) {
+            if let Some(found) = variable_header(body, order) {
                 let name = String::from_utf8_lossy(found.name).into_owned();
                 entries.push(Entry { name, is_numeric: found.is_numeric(), sizes: found.dimensions });
                 places.push((kind, begin..begin + size));
@@ -143,7 +143,7 @@ impl<'a> File<'a> {
         } else {
             data
         };
-        let found = start(body, self.order).ok_or_else(|| "is damaged".to_string());
+        let found = variable_header(body, self.order).ok_or_else(|| "is damaged".to_string());
         let variable = found.and_then(|found| found.variable(self.order)).map_err(|problem| ReadError::Variable {
             file: self.file.to_string(),
             problem: format!("has a variable {name} that {problem}; {}", self.list()),
@@ -249,7 +249,7 @@ fn inner(unpacked: &[u8], order: Order) -> Option<&[u8]> {
 }
 
 /// What a variable begins with, and the rest.
-struct Start<'a> {
+struct VariableHeader<'a> {
     name: &'a [u8],
     flags: u32,
     dimensions: Vec<usize>,
@@ -257,15 +257,15 @@ struct Start<'a> {
 }
 
 /// `None` for a damaged variable.
-fn start(body: &[u8], order: Order) -> Option<Start<'_>> {
+fn variable_header(body: &[u8], order: Order) -> Option<VariableHeader<'_>> {
     let (_, flags, rest) = element(body, order)?;
     let (_, dimensions, rest) = element(rest, order)?;
     let (_, name, rest) = element(rest, order)?;
     let sizes = dimensions.chunks_exact(4).map(|size| order.u32(size).map(|size| size as usize));
-    Some(Start { name, flags: order.u32(flags)?, dimensions: sizes.collect::<Option<_>>()?, rest })
+    Some(VariableHeader { name, flags: order.u32(flags)?, dimensions: sizes.collect::<Option<_>>()?, rest })
 }
 
-impl Start<'_> {
+impl VariableHeader<'_> {
     /// Whether it is an array of real numbers: classes 6 to 15 are numeric, bit 11 says complex.
     fn is_numeric(&self) -> bool {
         (6..=15).contains(&(self.flags & 0xff)) && self.flags & 0x800 == 0

@@ -13,7 +13,7 @@ use faer::Side;
 
 use super::cancel::{Cancelled, apart, check};
 use super::normal::{Normal, backward, forward};
-use super::refiner::Refiner;
+use super::refiner::NetworkRefiner;
 use crate::loss::Loss;
 use crate::network::Network;
 use crate::observations::Observations;
@@ -44,7 +44,7 @@ pub(crate) struct Covariance {
 
 /// The normal equations reduced to the receivers, inverted.
 pub(super) struct Reduced<'a> {
-    refiner: Refiner<'a>,
+    refiner: NetworkRefiner<'a>,
     /// The inverse for all coordinates of the receivers, 2m x 2m.
     inverse: Mat<f64>,
     /// Eigenvectors of the normal equations of the free coordinates, by ascending eigenvalue.
@@ -63,7 +63,7 @@ pub(super) fn reduced<'a>(
     sigma: f64,
     monitor: &Monitor,
 ) -> Result<Option<Reduced<'a>>, Cancelled> {
-    let mut refiner = Refiner::new(observations, f64::INFINITY).heeding(monitor);
+    let mut refiner = NetworkRefiner::new(observations, f64::INFINITY).heeding(monitor);
     let normal = refiner.normal_at(network, &Loss { nu: f64::INFINITY, scale: 1.0 })?;
     let size = 2 * observations.receivers;
     let lower = normal.schur();

@@ -26,6 +26,6 @@ pub use extend::PartialNetwork;
 pub(crate) use extend::extend;
 pub(crate) use predicted::predicted_variances;
 pub(crate) use projection::{Motion, Projection, dot, gram};
-pub(crate) use refiner::{RefineOptions, Refined, Refiner, SEARCH, residuals};
+pub(crate) use refiner::{NetworkRefiner, RefineOptions, RefinedNetwork, SEARCH, residuals};
 pub(crate) use reseed::{place_transmitters, places_of_receiver, places_of_transmitter};
 pub(crate) use weighing::{Cost, Weighing};

@@ -389,7 +389,7 @@ pub(crate) fn backward(l: &[f64; 6], x: [f64; 3]) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::refine::Refiner;
+    use crate::refine::NetworkRefiner;
     use crate::simulate::{SimulateOptions, simulate};
 
     #[test]
@@ -417,7 +417,7 @@ mod tests {
             let simulation = simulate(&options).unwrap();
             let network = &simulation.network;
             let observations = Observations::new(&simulation.pseudoranges, |_, _| true);
-            let mut refiner = Refiner::new(&observations, f64::INFINITY);
+            let mut refiner = NetworkRefiner::new(&observations, f64::INFINITY);
             let normal = refiner.normal_at(network, &Loss { nu: f64::INFINITY, scale: 1.0 }).unwrap();
             let size = 60;
             let mut expected = vec![0.0; size * size];

@@ -42,7 +42,7 @@ pub(crate) struct RefineOptions {
 
 /// A refined network.
 #[derive(Debug, Clone)]
-pub(crate) struct Refined {
+pub(crate) struct RefinedNetwork {
     pub(crate) network: Network,
     /// Scale of the residuals.
     pub(crate) scale: f64,
@@ -54,7 +54,7 @@ pub(crate) struct Refined {
 }
 
 /// Refines networks for one set of measurements; holds the buffers.
-pub(crate) struct Refiner<'a> {
+pub(crate) struct NetworkRefiner<'a> {
     observations: &'a Observations,
     nu: f64,
     /// Redundancy: share of the measurements that is left over when the unknowns are determined.
@@ -66,11 +66,11 @@ pub(crate) struct Refiner<'a> {
     monitor: Monitor,
 }
 
-impl<'a> Refiner<'a> {
+impl<'a> NetworkRefiner<'a> {
     /// With these degrees of freedom of the loss; infinite for least squares, which needs the scale
     /// to be given.
     pub(crate) fn new(observations: &'a Observations, nu: f64) -> Self {
-        Refiner {
+        NetworkRefiner {
             observations,
             nu,
             share: (1.0 - observations.unknowns() as f64 / observations.len().max(1) as f64).max(0.02),
@@ -85,11 +85,11 @@ impl<'a> Refiner<'a> {
     /// A refiner that stops within its next step once the monitor is cancelled; what it then
     /// returns is not converged.
     pub(crate) fn heeding(self, monitor: &Monitor) -> Self {
-        Refiner { monitor: monitor.clone(), ..self }
+        NetworkRefiner { monitor: monitor.clone(), ..self }
     }
 
     /// The best network near `start`, which must be complete and finite.
-    pub(crate) fn refine(&mut self, start: Network, options: &RefineOptions) -> Refined {
+    pub(crate) fn refine(&mut self, start: Network, options: &RefineOptions) -> RefinedNetwork {
         let mut best = self.minimise(start, options);
         let again = RefineOptions { anneal_from: None, ..*options };
         for _ in 0..options.rounds {
@@ -113,7 +113,7 @@ impl<'a> Refiner<'a> {
         best
     }
 
-    fn minimise(&mut self, mut network: Network, options: &RefineOptions) -> Refined {
+    fn minimise(&mut self, mut network: Network, options: &RefineOptions) -> RefinedNetwork {
         self.trial.clone_from(&network);
         let observations = self.observations;
         residuals(observations, &network, &mut self.residuals);
@@ -169,7 +169,7 @@ impl<'a> Refiner<'a> {
             }
         }
         let objective = cost + self.constant(loss.scale);
-        Refined { network, scale: loss.scale, objective, starts: 1 }
+        RefinedNetwork { network, scale: loss.scale, objective, starts: 1 }
     }
 
     /// The part of the objective that depends on the scale alone.
@@ -238,8 +238,9 @@ mod tests {
         let simulation = simulate(&SimulateOptions { noise: 0.1, ..Default::default() }).unwrap();
         let observations = Observations::new(&simulation.pseudoranges, |_, _| true);
         let monitor = Monitor::watched();
-        let refined =
-            || Refiner::new(&observations, SEARCH_NU).heeding(&monitor).refine(simulation.network.clone(), &SEARCH);
+        let refined = || {
+            NetworkRefiner::new(&observations, SEARCH_NU).heeding(&monitor).refine(simulation.network.clone(), &SEARCH)
+        };
         assert_ne!(refined().network, simulation.network);
         monitor.cancel();
         assert_eq!(refined().network, simulation.network);

@@ -6,7 +6,7 @@ use faer::{Mat, MatMut, Side, linalg::solvers::Llt};
 use super::cancel::{Cancelled, apart};
 use super::covariance::{RANK_TOLERANCE, reduced, rigid_motion};
 use super::normal::Normal;
-use super::refiner::Refiner;
+use super::refiner::NetworkRefiner;
 use crate::loss::Loss;
 use crate::network::Network;
 use crate::observations::Observations;
@@ -33,7 +33,7 @@ impl Solver {
         use_normal: impl FnOnce(&Normal) -> T,
     ) -> Result<Option<(Solver, T)>, Cancelled> {
         if observations.receivers >= MANY {
-            let mut refiner = Refiner::new(observations, f64::INFINITY).heeding(monitor);
+            let mut refiner = NetworkRefiner::new(observations, f64::INFINITY).heeding(monitor);
             let normal = refiner.normal_at(network, &Loss { nu: f64::INFINITY, scale: 1.0 })?;
             if let Some(factor) = factor(observations, network, normal, monitor)? {
                 return Ok(Some((Solver::Factor(factor), use_normal(normal))));
