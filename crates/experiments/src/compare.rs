@@ -4,7 +4,6 @@
 #[path = "../../hc/tests/all/common/generators.rs"]
 mod generators;
 mod networks;
-mod plan;
 mod program;
 mod solving;
 mod volumes;
@@ -12,7 +11,7 @@ mod volumes;
 use crate::workspace;
 use anyhow::Result;
 use clap::{Args, ValueEnum};
-use plan::{Plan, Tools};
+use program::{Plan, Tools};
 use std::path::PathBuf;
 use std::process::Command;
 

@@ -6,9 +6,7 @@
 #[cfg(feature = "mpi")]
 mod carrier;
 mod program;
-mod sharing;
 #[cfg(feature = "mpi")]
 mod world;
 
-pub use program::{Program, main};
-pub use sharing::Sharing;
+pub use program::{Program, Sharing, main};

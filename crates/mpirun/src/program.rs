@@ -1,9 +1,8 @@
-//! A program from its arguments to its exit status.
+//! A program from its arguments to its exit status, and its options of work over several ranks.
 
-use crate::Sharing;
 use clap::Parser;
 use cli::Failure;
-use hc::ranks::{Exchange, Ranks};
+use hc::ranks::{Exchange, Ranks, RanksOptions};
 use std::process::ExitCode;
 
 /// A program that several ranks can run together: its arguments, and what it does with them.
@@ -25,6 +24,32 @@ pub trait Program: Parser {
 
     /// What an interrupt leaves.
     fn left(&self) -> &'static str;
+}
+
+/// Options of a command that several ranks can do together; none in a build without MPI.
+#[derive(clap::Args)]
+#[command(next_help_heading = "Several machines (mpirun)")]
+pub struct Sharing {
+    /// After this many seconds work that another rank has not sent back is given to one more; the
+    /// first answer counts. The result does not depend on it.
+    #[cfg(feature = "mpi")]
+    #[arg(long, global = true, value_name = "SECONDS", default_value_t = 600)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..))]
+    rank_timeout: u32,
+}
+
+impl Sharing {
+    /// The settings that were asked for.
+    #[cfg(feature = "mpi")]
+    pub fn options(&self) -> RanksOptions {
+        RanksOptions::new().patience(std::time::Duration::from_secs(self.rank_timeout.into()))
+    }
+
+    /// The defaults.
+    #[cfg(not(feature = "mpi"))]
+    pub fn options(&self) -> RanksOptions {
+        RanksOptions::new()
+    }
 }
 
 /// Runs a program with the arguments of the process; its exit status.

@@ -1,7 +1,6 @@
 //! `tdoa solve` beside PHCpack on the smallest networks.
 
-use super::plan::{Plan, Tools};
-use super::program::{Pairs, Run, run, typical};
+use super::program::{Pairs, Plan, Run, Tools, run, typical};
 use super::solving::{phc, regular_solutions};
 use crate::workspace;
 use anyhow::{Context, Result, ensure};

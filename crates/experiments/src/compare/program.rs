@@ -1,13 +1,31 @@
-//! Programs built, started and measured.
+//! What a comparison measures; its programs, started and measured.
 
 use crate::quantile::median;
 use anyhow::{Context, Result, ensure};
 use std::fs::File;
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 use std::time::Instant;
 use wait4::{ResUse, Wait4};
+
+/// What is measured, and how.
+pub(super) struct Plan {
+    pub(super) quick: bool,
+    pub(super) repeats: u32,
+    pub(super) instances: u64,
+    pub(super) limit: u32,
+    pub(super) systems: PathBuf,
+}
+
+/// Where the programs of this workspace are, and which peers there are.
+pub(super) struct Tools {
+    pub(super) hc: PathBuf,
+    pub(super) tdoa: PathBuf,
+    pub(super) phc: bool,
+    pub(super) macaulay2: bool,
+    pub(super) gfan: bool,
+}
 
 /// What one run of a program took.
 pub(super) struct Run {

@@ -1,8 +1,7 @@
 //! `hc solve` beside PHCpack and Macaulay2.
 
 use super::generators::{cyclic, eco, katsura, noon, reimer};
-use super::plan::{Plan, Tools};
-use super::program::{Pairs, Run, run, typical};
+use super::program::{Pairs, Plan, Run, Tools, run, typical};
 use crate::quantile::median;
 use anyhow::{Context, Result};
 use hc::poly::parse::phcpack;

@@ -1,8 +1,7 @@
 //! `hc mixed-volume` beside gfan.
 
 use super::generators::{cyclic, eco, gaukwa, katsura, noon};
-use super::plan::{Plan, Tools};
-use super::program::{Pairs, Run, run, typical};
+use super::program::{Pairs, Plan, Run, Tools, run, typical};
 use anyhow::{Context, Result};
 use hc::poly::{Polynomial, parse::phcpack};
 use std::fmt::Write;

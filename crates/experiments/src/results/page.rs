@@ -1,12 +1,10 @@
 //! docs/results.md from the tables in results/, byte for byte the same from the same tables.
 
-mod markdown;
 mod solvers;
 
 use super::plan::PLAN;
-use super::table::{Row, Table, record};
+use super::table::{Row, Table, head, line, record, summary};
 use anyhow::Result;
-use markdown::{head, line, summary};
 use solvers::{clean, noise, routes, speed, table2};
 use std::path::Path;
 

@@ -1,5 +1,5 @@
 //! The tables in results/: CSV without quotes, read as text so that the page shows the figures as
-//! they stand.
+//! they stand; and the lines of its Markdown tables.
 
 use anyhow::{Context, Result, ensure};
 use std::path::Path;
@@ -64,4 +64,19 @@ pub(super) fn record(path: &Path) -> Result<Vec<(String, String)>> {
     let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
     let pairs = text.lines().skip(1).filter_map(|line| line.split_once(','));
     Ok(pairs.map(|(item, value)| (item.to_owned(), value.to_owned())).collect())
+}
+
+/// The sums of an experiment.
+pub(super) fn summary(results: &Path, name: &str) -> Result<Table> {
+    Table::read(&results.join(name).join("summary.csv"))
+}
+
+/// A line of a Markdown table.
+pub(super) fn line(cells: &[String]) -> String {
+    format!("| {} |\n", cells.join(" | "))
+}
+
+/// The head of a Markdown table.
+pub(super) fn head(names: &[&str]) -> String {
+    format!("| {} |\n|{}\n", names.join(" | "), "---|".repeat(names.len()))
 }

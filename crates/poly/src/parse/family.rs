@@ -1,8 +1,7 @@
 //! Parameter families in TOML.
 
-use super::equations::equations;
 use super::error::ParseError;
-use super::formula::{Names, Role};
+use super::formula::{Names, Role, equations};
 use crate::arena::Arena;
 use crate::system::System;
 use serde::Deserialize;

@@ -1,11 +1,12 @@
-//! Formulas by operator precedence, straight into the hash-consed graph.
+//! Formulas by operator precedence, straight into the hash-consed graph; lists of equations, each a
+//! text of its own.
 
 use super::error::ParseError;
 use super::token::{Token, Tokens};
 use crate::arena::Arena;
 use crate::exact::Exact;
 use crate::graph::Id;
-use crate::system::is_name;
+use crate::system::{System, is_name};
 use num_complex::Complex;
 use num_rational::BigRational;
 use num_traits::{One, ToPrimitive, Zero};
@@ -201,6 +202,21 @@ pub(super) fn whole_equation(arena: &mut Arena, names: &mut Names, text: &str) -
     let id = FormulaParser::new(arena, names).equation(&mut tokens)?;
     at_end(&tokens)?;
     Ok(id)
+}
+
+/// A system of these equations; errors name the `part` and its number.
+pub(super) fn equations<S: AsRef<str>>(
+    mut arena: Arena,
+    mut names: Names,
+    part: &str,
+    formulas: &[S],
+) -> Result<System, ParseError> {
+    let mut equations = Vec::with_capacity(formulas.len());
+    for (k, formula) in formulas.iter().enumerate() {
+        let equation = whole_equation(&mut arena, &mut names, formula.as_ref());
+        equations.push(equation.map_err(|e| e.within(format!("{part} {}", k + 1)))?);
+    }
+    Ok(System { arena, equations })
 }
 
 fn at_end(tokens: &Tokens<'_>) -> Result<(), ParseError> {

@@ -1,10 +1,9 @@
 //! Systems and families from formulas that a program gives one by one.
 
 use super::detect::{begins_with_count, line_of_toml, unmarked};
-use super::equations::equations;
 use super::error::ParseError;
 use super::family::Family;
-use super::formula::{Names, Role, whole_formula};
+use super::formula::{Names, Role, equations, whole_formula};
 use super::phcpack::phcpack_in;
 use super::plain::plain_in;
 use crate::arena::Arena;

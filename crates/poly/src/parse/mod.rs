@@ -2,7 +2,6 @@
 //! in TOML.
 
 mod detect;
-mod equations;
 mod error;
 mod family;
 mod formula;

@@ -1,7 +1,6 @@
 //! Sums, products, derivatives and values of polynomials.
 
-use super::ring::Ring;
-use super::terms::{Polynomial, Terms, accumulate};
+use super::terms::{Polynomial, Ring, Terms, accumulate};
 use crate::monomial::Monomial;
 use std::cmp::Ordering;
 use std::ops::{Add, Mul, Neg, Sub};

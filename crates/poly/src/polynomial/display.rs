@@ -1,7 +1,6 @@
 //! Polynomials as text that the parsers read back.
 
-use super::ring::Ring;
-use super::terms::Polynomial;
+use super::terms::{Polynomial, Ring};
 use crate::display::{PRODUCT, write_constant};
 use crate::exact::{self, ToExact};
 use num_traits::{One, Signed};

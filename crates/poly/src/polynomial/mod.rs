@@ -2,12 +2,10 @@
 
 mod arithmetic;
 mod display;
-mod ring;
 mod terms;
 #[cfg(test)]
 mod tests;
 mod transform;
 
-pub use ring::Ring;
-pub use terms::Polynomial;
+pub use terms::{Polynomial, Ring};
 pub(crate) use terms::{Terms, accumulate};

@@ -1,9 +1,15 @@
-//! The polynomial itself: its terms, and operations that need no other polynomial.
+//! The polynomial itself: its coefficients and terms, and operations that need no other polynomial.
 
-use super::ring::Ring;
 use crate::monomial::Monomial;
+use num_traits::{One, Zero};
 use std::collections::HashMap;
 use std::hash::BuildHasherDefault;
+use std::ops::{Neg, Sub};
+
+/// Coefficients of polynomials: elements of a commutative ring.
+pub trait Ring: Clone + PartialEq + Zero + One + Sub<Output = Self> + Neg<Output = Self> {}
+
+impl<R: Clone + PartialEq + Zero + One + Sub<Output = R> + Neg<Output = R>> Ring for R {}
 
 /// Deterministic, so that nothing depends on a random seed.
 pub(crate) type Terms<R> = HashMap<Monomial, R, BuildHasherDefault<std::hash::DefaultHasher>>;

@@ -1,7 +1,6 @@
 //! Substitution and homogenising.
 
-use super::ring::Ring;
-use super::terms::{Polynomial, group_degree};
+use super::terms::{Polynomial, Ring, group_degree};
 use crate::monomial::Monomial;
 
 impl<R: Ring> Polynomial<R> {

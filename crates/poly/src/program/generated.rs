@@ -4,7 +4,7 @@ use crate::scalar::Scalar;
 use crate::simd::Isa;
 
 pub use super::instruction::Op;
-pub use super::tables::Tables;
+pub use super::straight_line::Tables;
 pub use super::tape::{Code, RegisterTape};
 pub use super::taylor::{TaylorCode, TaylorMemory, TaylorTape};
 pub use crate::scalar::narrowest;

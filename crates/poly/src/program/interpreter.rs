@@ -1,7 +1,6 @@
 //! Runs a program over any scalar.
 
-use super::straight_line::Program;
-use super::tables::Tables;
+use super::straight_line::{Program, Tables};
 use super::taylor::TaylorMemory;
 use crate::evaluate::Evaluate;
 use crate::scalar::Scalar;

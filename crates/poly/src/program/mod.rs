@@ -18,7 +18,6 @@ mod registers;
 mod schedule;
 mod series;
 mod straight_line;
-mod tables;
 mod tape;
 mod taylor;
 #[cfg(test)]

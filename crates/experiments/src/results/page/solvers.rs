@@ -1,7 +1,6 @@
 //! The parts of the page on the exact solvers.
 
-use super::super::table::{Row, Table};
-use super::markdown::{head, line, summary};
+use super::super::table::{Row, Table, head, line, summary};
 use anyhow::{Context, Result};
 use std::path::Path;
 

@@ -4,8 +4,7 @@ mod literal;
 mod straight;
 mod tables;
 
-use super::straight_line::Program;
-use super::tables::Tables;
+use super::straight_line::{Program, Tables};
 use crate::exact;
 use literal::number;
 use proc_macro2::Literal;
