@@ -3,7 +3,7 @@
 
 use super::deflate::{Profile, Reduced, centred, deflated, distance};
 use super::eliminate::{Elimination, Stop};
-use super::equations::{Given, Local};
+use super::equations::{Given, LocalEquations};
 use super::judge::{judge, rounded};
 use super::number::{Number, largest};
 use super::verdict::{Effort, Verdict};
@@ -38,7 +38,7 @@ const SAME: f64 = -250.0;
 /// in units of its size.
 pub(crate) struct Zoom<'a> {
     given: &'a Given,
-    local: Local<'a, Digits>,
+    local: LocalEquations<'a, Digits>,
     reduced: Reduced<Digits>,
     /// The logarithm to base 2 of the size.
     size: i64,

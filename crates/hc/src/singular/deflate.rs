@@ -10,7 +10,7 @@
 //! system that is zero to the order at hand: the solution then lies on a set of positive dimension.
 
 use super::eliminate::{Elimination, Stop};
-use super::equations::Local;
+use super::equations::LocalEquations;
 use super::number::{Number, largest};
 use super::series::Basis;
 use num_complex::Complex64;
@@ -65,18 +65,18 @@ const MANY: usize = 24;
 
 /// How ranks are decided.
 #[derive(Clone, Copy)]
-enum Ranks<'a> {
+enum RankRule<'a> {
     /// Pivots of this size (logarithm to base 2) or less count as zero.
     Tolerance(f64),
     /// As in this profile.
     Known(&'a Profile),
 }
 
-impl Ranks<'_> {
+impl RankRule<'_> {
     fn stop(self, level: usize) -> Stop {
         match self {
-            Ranks::Tolerance(size) => Stop::Below(size),
-            Ranks::Known(profile) => Stop::After(profile.ranks.get(level).copied().unwrap_or(0)),
+            RankRule::Tolerance(size) => Stop::Below(size),
+            RankRule::Known(profile) => Stop::After(profile.ranks.get(level).copied().unwrap_or(0)),
         }
     }
 }
@@ -92,7 +92,7 @@ struct Step<S> {
 
 impl<S: Number> Step<S> {
     /// Whether the point solves the equations and what was taken as zero is clearly zero.
-    fn is_solution(&self, local: &Local<'_, S>) -> bool {
+    fn is_solution(&self, local: &LocalEquations<'_, S>) -> bool {
         let clear = self.accepted >= CLEAR * S::BITS && self.rejected <= ZERO * S::BITS;
         clear && local.residual(&self.point) <= SOLVED * S::BITS
     }
@@ -102,7 +102,7 @@ impl<S: Number> Step<S> {
 /// base 2) show there, by series up to `order`; `None` if there is none to which the iteration
 /// converges as Newton's method does, or the profile was `tried` before.
 pub(crate) fn deflated<S: Number>(
-    local: &Local<'_, S>,
+    local: &LocalEquations<'_, S>,
     start: &[S],
     order: usize,
     tolerance: f64,
@@ -116,13 +116,13 @@ pub(crate) fn deflated<S: Number>(
 
 /// The same, with what else may be there.
 pub(crate) fn ending<S: Number>(
-    local: &Local<'_, S>,
+    local: &LocalEquations<'_, S>,
     start: &[S],
     order: usize,
     tolerance: f64,
     tried: &mut Vec<Profile>,
 ) -> Ending<S> {
-    let Some(first) = step(local, start, order, Ranks::Tolerance(tolerance)) else { return Ending::Nowhere };
+    let Some(first) = step(local, start, order, RankRule::Tolerance(tolerance)) else { return Ending::Nowhere };
     let profile = first.profile;
     if tried.contains(&profile) {
         return Ending::Nowhere;
@@ -141,7 +141,7 @@ pub(crate) fn ending<S: Number>(
 
 /// Iterates with the ranks of a profile, after a first correction of size `before`.
 pub(crate) fn settled<S: Number>(
-    local: &Local<'_, S>,
+    local: &LocalEquations<'_, S>,
     point: Vec<S>,
     order: usize,
     profile: &Profile,
@@ -155,13 +155,13 @@ pub(crate) fn settled<S: Number>(
 /// the solutions around it, where these are several. The profile is the one that pivots above
 /// `tolerance` show at the start, if it is `wanted` and determines all unknowns.
 pub(super) fn centred<S: Number>(
-    local: &Local<'_, S>,
+    local: &LocalEquations<'_, S>,
     start: &[S],
     order: usize,
     tolerance: f64,
     wanted: impl FnOnce(&Profile) -> bool,
 ) -> Option<(Vec<S>, Profile)> {
-    let first = step(local, start, order, Ranks::Tolerance(tolerance))?;
+    let first = step(local, start, order, RankRule::Tolerance(tolerance))?;
     if first.profile.remaining > 0 || !wanted(&first.profile) {
         return None;
     }
@@ -172,7 +172,7 @@ pub(super) fn centred<S: Number>(
 
 /// The last step of an iteration that converges as Newton's method does.
 fn iterated<S: Number>(
-    local: &Local<'_, S>,
+    local: &LocalEquations<'_, S>,
     mut point: Vec<S>,
     order: usize,
     profile: &Profile,
@@ -183,7 +183,7 @@ fn iterated<S: Number>(
         if local.is_exhausted() {
             return None;
         }
-        let next = step(local, &point, order, Ranks::Known(profile))?;
+        let next = step(local, &point, order, RankRule::Known(profile))?;
         let correction = distance(&point, &next.point);
         point = next.point;
         // Corrections shrink fast once they are small on the scale on which solutions lie apart.
@@ -193,7 +193,7 @@ fn iterated<S: Number>(
         }
         before = correction;
         if correction <= CONVERGED * S::BITS {
-            return step(local, &point, order, Ranks::Known(profile));
+            return step(local, &point, order, RankRule::Known(profile));
         }
     }
     None
@@ -203,7 +203,7 @@ fn iterated<S: Number>(
 /// direction in which the linear parts of the equations do not change; `None` if it does not
 /// converge to one.
 pub(crate) fn moved<S: Number>(
-    local: &Local<'_, S>,
+    local: &LocalEquations<'_, S>,
     point: &[S],
     order: usize,
     profile: &Profile,
@@ -234,7 +234,7 @@ pub(crate) fn distance<S: Number>(a: &[S], b: &[S]) -> f64 {
     largest(&differences)
 }
 
-fn step<S: Number>(local: &Local<'_, S>, x: &[S], order: usize, ranks: Ranks<'_>) -> Option<Step<S>> {
+fn step<S: Number>(local: &LocalEquations<'_, S>, x: &[S], order: usize, ranks: RankRule<'_>) -> Option<Step<S>> {
     let (values, jacobian) = local.jacobian(x);
     let pivots = Elimination::new(jacobian, x.len(), ranks.stop(0));
     let mut profile = Profile { ranks: vec![pivots.rank()], remaining: 0 };
@@ -273,8 +273,8 @@ fn step<S: Number>(local: &Local<'_, S>, x: &[S], order: usize, ranks: Ranks<'_>
         left -= 1;
         let size = largest(equations.iter().flatten());
         let ends = match ranks {
-            Ranks::Tolerance(limit) => size <= limit || left == 0,
-            Ranks::Known(profile) => levels.len() + 1 >= profile.ranks.len(),
+            RankRule::Tolerance(limit) => size <= limit || left == 0,
+            RankRule::Known(profile) => levels.len() + 1 >= profile.ranks.len(),
         };
         if ends || left == 0 {
             profile.remaining = variables;
@@ -329,7 +329,12 @@ impl<S: Number> Reduced<S> {
     }
 
     /// `None` if there are too many coefficients. `pivots` are those of the Jacobian at `x`.
-    pub(crate) fn new(local: &Local<'_, S>, x: &[S], pivots: &Elimination<S>, order: usize) -> Option<Reduced<S>> {
+    pub(crate) fn new(
+        local: &LocalEquations<'_, S>,
+        x: &[S],
+        pivots: &Elimination<S>,
+        order: usize,
+    ) -> Option<Reduced<S>> {
         let free = pivots.free();
         let basis = Basis::new(free.len(), order)?;
         let mut unknowns: Vec<Vec<S>> = x.iter().map(|&z| basis.constant(z, order)).collect();

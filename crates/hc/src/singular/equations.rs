@@ -232,12 +232,12 @@ impl Given {
     }
 
     /// The equations in unknowns of about unit size near a point.
-    pub(crate) fn near<S: Precision>(&self, point: &[Complex64]) -> Local<'_, S> {
+    pub(crate) fn near<S: Precision>(&self, point: &[Complex64]) -> LocalEquations<'_, S> {
         self.near_within(point, SMALL)
     }
 
     /// The same where coordinates below this share of the largest, or of one, may be zero in truth.
-    pub(crate) fn near_within<S: Precision>(&self, point: &[Complex64], small: f64) -> Local<'_, S> {
+    pub(crate) fn near_within<S: Precision>(&self, point: &[Complex64], small: f64) -> LocalEquations<'_, S> {
         let units = units(point, small);
         // By how much coordinates exceed their units, as logarithms to base 2. Half a unit is much in
         // a high power; those that are much smaller than their unit may be zero.
@@ -255,7 +255,7 @@ impl Given {
             let top = if top.is_finite() { top.ceil() as i64 } else { 0 };
             coefficients.push(numbers.iter().zip(&shifts).map(|(c, s)| c.shifted(s - top)).collect());
         }
-        Local { given: self, units, coefficients }
+        LocalEquations { given: self, units, coefficients }
     }
 }
 
@@ -268,17 +268,17 @@ fn units(point: &[Complex64], small: f64) -> Vec<i64> {
 }
 
 /// The given equations in unknowns and terms of about unit size near a point.
-pub(crate) struct Local<'a, S> {
+pub(crate) struct LocalEquations<'a, S> {
     given: &'a Given,
     units: Vec<i64>,
     coefficients: Vec<Vec<S>>,
 }
 
-impl<'a, S: Number> Local<'a, S> {
+impl<'a, S: Number> LocalEquations<'a, S> {
     /// The same in doubles.
-    pub(crate) fn rounded(&self) -> Local<'a, Complex64> {
+    pub(crate) fn rounded(&self) -> LocalEquations<'a, Complex64> {
         let coefficients = self.coefficients.iter().map(|row| row.iter().map(S::to_c64).collect()).collect();
-        Local { given: self.given, units: self.units.clone(), coefficients }
+        LocalEquations { given: self.given, units: self.units.clone(), coefficients }
     }
 
     /// Number of equations.

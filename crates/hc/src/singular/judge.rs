@@ -4,7 +4,7 @@
 use super::deflate::{CLEAR, Deflated, Ending, Profile, Reduced, ZERO, deflated, distance, ending};
 use super::dual::{Count, count};
 use super::eliminate::{Elimination, Stop};
-use super::equations::{Given, Local, Precision};
+use super::equations::{Given, LocalEquations, Precision};
 use super::number::Number;
 use super::rational::at_rational;
 use super::sheet::{leads_on_somewhere, on_sheet};
@@ -160,7 +160,12 @@ fn regular<S: Precision>(given: &Given, point: &[Complex64], error: f64) -> Opti
 const OWN_UNITS: f64 = 1e-14;
 
 /// The same by the equations near the point.
-fn regular_from<S: Precision>(local: &Local<'_, S>, given: &Given, point: &[Complex64], error: f64) -> Option<Verdict> {
+fn regular_from<S: Precision>(
+    local: &LocalEquations<'_, S>,
+    given: &Given,
+    point: &[Complex64],
+    error: f64,
+) -> Option<Verdict> {
     let start = local.scaled(point);
     let found = deflated(local, &start, 1, f64::NEG_INFINITY, &mut Vec::new())?;
     if !found.profile.is_regular() || distance(&start, &found.point) > NEAR.max(NEAR_ERRORS * error).log2() {
@@ -265,7 +270,7 @@ fn on_axes(given: &Given, point: &[Complex64], error: f64) -> Option<Verdict> {
 
 /// The verdict if zeros in place of small coordinates give an exact solution; nothing needs to be
 /// refined there.
-fn at_zeros<S: Number>(local: &Local<'_, S>, start: &[S], limit: usize) -> Option<Verdict> {
+fn at_zeros<S: Number>(local: &LocalEquations<'_, S>, start: &[S], limit: usize) -> Option<Verdict> {
     let snapped: Vec<S> = start.iter().map(|z| if z.log2() < NEAR_SINGULAR.log2() { S::zero() } else { *z }).collect();
     let (values, jacobian) = local.jacobian(&snapped);
     if !values.iter().all(Number::vanishes) {
@@ -295,7 +300,7 @@ enum Structure {
 /// The structure at a refined solution, as far as series up to an order tell; `None` if ranks are
 /// not clear.
 fn structure<S: Number>(
-    local: &Local<'_, S>,
+    local: &LocalEquations<'_, S>,
     found: &Deflated<S>,
     order: usize,
     limit: usize,
@@ -359,7 +364,7 @@ fn dimension<S: Number>(reduced: &Reduced<S>, at_least: usize) -> usize {
 }
 
 /// A point as doubles, and the values of the equations there relative to their terms.
-pub(super) fn rounded<S: Number>(given: &Given, local: &Local<'_, S>, point: &[S]) -> (Vec<Complex64>, f64) {
+pub(super) fn rounded<S: Number>(given: &Given, local: &LocalEquations<'_, S>, point: &[S]) -> (Vec<Complex64>, f64) {
     let point: Vec<Complex64> = local.unscaled(point).iter().map(Number::to_c64).collect();
     let residual = residual(given, &point);
     (point, residual)

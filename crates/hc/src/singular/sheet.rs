@@ -3,7 +3,7 @@
 
 use super::deflate::{CLEAR, Deflated, Profile, deflated, distance, moved, settled};
 use super::eliminate::{Elimination, Stop};
-use super::equations::Local;
+use super::equations::LocalEquations;
 use super::number::Number;
 use crate::random::{Random, Stream};
 
@@ -26,7 +26,7 @@ const UNSEEN: f64 = -80.0;
 /// cannot be as small as they are required to be where it leads: they grow with that power of the
 /// distance at most. `None` tells nothing.
 pub(crate) fn on_sheet<S: Number>(
-    local: &Local<'_, S>,
+    local: &LocalEquations<'_, S>,
     start: &[S],
     paths: usize,
     near: f64,
@@ -60,7 +60,7 @@ pub(crate) fn on_sheet<S: Number>(
 }
 
 /// Ranks that the Jacobian may have at a point of a reduced set nearby, the highest first.
-fn ranks<S: Number>(local: &Local<'_, S>, start: &[S]) -> Vec<usize> {
+fn ranks<S: Number>(local: &LocalEquations<'_, S>, start: &[S]) -> Vec<usize> {
     let (_, jacobian) = local.jacobian(start);
     let sizes = Elimination::new(jacobian, start.len(), Stop::Below(CLEAR * S::BITS)).sizes;
     let others = |rank: usize| sizes.get(rank).copied().unwrap_or(f64::NEG_INFINITY);
@@ -80,7 +80,7 @@ const DIMENSIONS: usize = 2;
 /// The dimension of a reduced set on which a solution lies though ranks are lower there than beside
 /// it, as where a curve crosses itself: at all distances there are solutions of a common rank.
 /// `None` tells nothing.
-fn touched<S: Number>(local: &Local<'_, S>, point: &[S], paths: usize) -> Option<usize> {
+fn touched<S: Number>(local: &LocalEquations<'_, S>, point: &[S], paths: usize) -> Option<usize> {
     if paths > FEW {
         return None;
     }
@@ -102,7 +102,7 @@ fn touched<S: Number>(local: &Local<'_, S>, point: &[S], paths: usize) -> Option
 /// Whether solutions of the same ranks lead on from this one, which is isolated with at most that
 /// multiplicity, if it is.
 pub(crate) fn leads_on_somewhere<S: Number>(
-    local: &Local<'_, S>,
+    local: &LocalEquations<'_, S>,
     found: &Deflated<S>,
     order: usize,
     multiplicity: usize,
@@ -113,7 +113,7 @@ pub(crate) fn leads_on_somewhere<S: Number>(
 }
 
 /// Whether the point can be moved by some strides, each to another solution of the same ranks.
-fn leads_on<S: Number>(local: &Local<'_, S>, found: &Deflated<S>, order: usize, stride: f64) -> bool {
+fn leads_on<S: Number>(local: &LocalEquations<'_, S>, found: &Deflated<S>, order: usize, stride: f64) -> bool {
     let mut point = found.point.clone();
     for _ in 0..MOVES {
         let Some(next) = moved(local, &point, order, &found.profile, stride) else { return false };

@@ -1,7 +1,7 @@
 //! Paths of the coefficient stage in portions, in which other ranks take part.
 
 use super::paths::{CoefficientStage, Route};
-use super::record::{Record, Tracked};
+use super::record::{Record, TrackedPath};
 use crate::monitor;
 use crate::ranks::{RanksError, Shareable, Task, Worker};
 use crate::runner::Round;
@@ -28,26 +28,27 @@ pub(super) fn serve<E: Evaluate, S: Source<E>>(
 }
 
 impl<E: Evaluate, S: Source<E>> Shareable for CoefficientStage<'_, '_, E, S> {
-    type End = Tracked;
+    type End = TrackedPath;
 
-    fn ends(&self, numbers: &[usize], round: Round) -> Vec<Tracked> {
+    fn ends(&self, numbers: &[usize], round: Round) -> Vec<TrackedPath> {
         // The progress of a batch is told as a whole.
         let monitor = self.route.monitor.quiet();
         let records = self.tracked(numbers, round, &monitor);
         let (places, open): (Vec<usize>, Vec<Record>) =
             records.iter().enumerate().filter(|(_, record)| record.is_open()).map(|(k, r)| (k, r.clone())).unzip();
-        let mut ends: Vec<Tracked> = records.into_iter().map(|record| Tracked { record, ended: None }).collect();
+        let mut ends: Vec<TrackedPath> =
+            records.into_iter().map(|record| TrackedPath { record, ended: None }).collect();
         for (k, record) in places.into_iter().zip(self.ended(&open, round, &monitor)) {
             ends[k].ended = Some(record);
         }
         ends
     }
 
-    fn is_end(&self, end: &Tracked, path: usize) -> bool {
+    fn is_end(&self, end: &TrackedPath, path: usize) -> bool {
         end.is_of(path, self.route.trackers.system().variables())
     }
 
-    fn gather(&self, ends: Vec<Tracked>, batch: &mut Vec<Record>) {
+    fn gather(&self, ends: Vec<TrackedPath>, batch: &mut Vec<Record>) {
         batch.clear();
         let mut closed = self.closed.borrow_mut();
         closed.clear();

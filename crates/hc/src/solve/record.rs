@@ -51,13 +51,13 @@ pub(crate) enum RecordEnd {
 
 /// How far a path gets in one go: up to the endgame, and if it needs that through it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Tracked {
+pub(crate) struct TrackedPath {
     pub(super) record: Record,
     /// After the endgame.
     pub(super) ended: Option<Record>,
 }
 
-impl Tracked {
+impl TrackedPath {
     /// Whether it can be of the path with this number, in so many unknowns.
     pub(super) fn is_of(&self, path: usize, unknowns: usize) -> bool {
         let fits = |record: &Record| record.path == path && record.fits(unknowns);

@@ -1,14 +1,14 @@
 //! The tracking loop: one path per lane; lanes are refilled as paths end.
 //!
 //! All lanes share every evaluation, factorisation and vector operation. Decisions are made lane by
-//! lane in [`Progress`]. A lane that has finished its part of a step is evaluated again at the same
-//! point until the other lanes have finished theirs, so that its numbers do not depend on its
+//! lane in [`PathProgress`]. A lane that has finished its part of a step is evaluated again at the
+//! same point until the other lanes have finished theirs, so that its numbers do not depend on its
 //! neighbours. The loop allocates nothing.
 
 use super::kernels::{Coefficients, Correct, Distance, Negate, Predict, Radius, Take, Weigh};
 use super::options::TrackerOptions;
 use super::precise::{Precise, subtract};
-use super::progress::{Bounds, Progress, StepState};
+use super::progress::{Bounds, PathProgress, StepState};
 use super::result::{PathEnd, PathResult, PathSet};
 use super::valuation::valuation;
 use crate::homotopy::ParameterPath;
@@ -25,7 +25,7 @@ pub struct Tracker<'a, E: Evaluate, S: Lane> {
     monitor: Monitor,
     isa: Isa,
     n: usize,
-    lanes: Vec<Progress>,
+    lanes: Vec<PathProgress>,
     /// Index of the path in each lane.
     labels: Vec<usize>,
     memory: E::Memory<S>,
@@ -73,7 +73,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             monitor: Monitor::default(),
             isa,
             n,
-            lanes: vec![Progress::idle(); S::LANES],
+            lanes: vec![PathProgress::idle(); S::LANES],
             labels: vec![0; S::LANES],
             memory: system.memory(isa),
             taylor: zeros(4 * n),
@@ -125,7 +125,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
     ) {
         assert_eq!(path.parameters(), self.system.parameters(), "parameters of path and system");
         let mut which = which.into_iter();
-        self.lanes.fill(Progress::idle());
+        self.lanes.fill(PathProgress::idle());
         // Idle lanes compute too; harmless numbers keep them from slow exceptional arithmetic.
         self.taylor.fill(S::zero());
         loop {
@@ -138,14 +138,14 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
                 } else if !self.lanes[l].is_live()
                     && let Some(index) = which.next()
                 {
-                    self.lanes[l] = Progress::start(index);
+                    self.lanes[l] = PathProgress::start(index);
                     let start = &starts[index * self.n..(index + 1) * self.n];
                     for (x, z) in self.taylor.iter_mut().zip(start) {
                         x.set(l, *z);
                     }
                 }
             }
-            if !self.lanes.iter().any(Progress::is_live) {
+            if !self.lanes.iter().any(PathProgress::is_live) {
                 return;
             }
             self.step(path, out);
@@ -316,7 +316,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         }
         let p = &self.parameters[..self.system.parameters()];
         self.system.values(&mut self.memory, &self.corrected, p, &mut self.values);
-        let converged = |lane: &Progress| lane.state == StepState::Converged;
+        let converged = |lane: &PathProgress| lane.state == StepState::Converged;
         let any_extended = self.lanes.iter().any(|lane| lane.extended && converged(lane));
         let mut rough = S::real(0.0);
         if any_extended {
@@ -419,6 +419,6 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
     fn finish(&mut self, l: usize, end: PathEnd, out: &mut PathSet) {
         let result = self.lanes[l].result(end, self.lu.smallest_pivot(l, &self.weights_sqr));
         out.push(result, self.taylor[..self.n].iter().map(|x| x.get(l)));
-        self.lanes[l] = Progress::idle();
+        self.lanes[l] = PathProgress::idle();
     }
 }

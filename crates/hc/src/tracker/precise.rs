@@ -1,7 +1,7 @@
 //! What ill-conditioned paths need beyond double precision, one lane at a time: residuals,
 //! parameters and points in double-double.
 
-use super::progress::Progress;
+use super::progress::PathProgress;
 use crate::homotopy::ParameterPath;
 use num_complex::Complex64;
 use poly::Dd;
@@ -33,7 +33,7 @@ impl<E: Evaluate> Precise<E> {
         &mut self,
         l: usize,
         path: &P,
-        lane: &Progress,
+        lane: &PathProgress,
         rounded: &[S],
     ) {
         let m = path.parameters();

@@ -88,7 +88,7 @@ impl Bounds {
 
 /// One path on its way.
 #[derive(Clone, Debug)]
-pub(crate) struct Progress {
+pub(crate) struct PathProgress {
     pub(crate) path: usize,
     pub(crate) state: StepState,
     /// Whether the start point has still to be checked and the first derivatives taken.
@@ -128,9 +128,9 @@ pub(crate) struct Progress {
     resumed: bool,
 }
 
-impl Progress {
+impl PathProgress {
     pub(crate) fn idle() -> Self {
-        Progress {
+        PathProgress {
             path: usize::MAX,
             state: StepState::Idle,
             fresh: false,
@@ -162,7 +162,7 @@ impl Progress {
     }
 
     pub(crate) fn start(path: usize) -> Self {
-        Progress { path, state: StepState::Accepted, fresh: true, ..Self::idle() }
+        PathProgress { path, state: StepState::Accepted, fresh: true, ..Self::idle() }
     }
 
     pub(crate) fn is_live(&self) -> bool {

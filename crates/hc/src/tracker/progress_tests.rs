@@ -1,11 +1,11 @@
 //! What corrections say of a path.
 
-use super::{Bounds, Progress, StepState, h};
+use super::{Bounds, PathProgress, StepState, h};
 use crate::tracker::TrackerOptions;
 
 /// On its way, with residuals in double-double.
-fn under_way(omega: f64, bounds: &Bounds) -> Progress {
-    let mut progress = Progress { fresh: false, extended: true, omega, ..Progress::start(0) };
+fn under_way(omega: f64, bounds: &Bounds) -> PathProgress {
+    let mut progress = PathProgress { fresh: false, extended: true, omega, ..PathProgress::start(0) };
     progress.begin_correction(bounds);
     progress
 }

@@ -291,7 +291,7 @@ struct Local {
 }
 
 /// A receiver located with its error.
-struct Located {
+struct LocatedFault {
     position: [f64; 2],
     fault: Fault,
     /// Truncated cost of its measurements.
@@ -314,7 +314,7 @@ impl Local {
     }
 
     /// The jump that fits best.
-    fn jump(&self) -> Option<Located> {
+    fn jump(&self) -> Option<LocatedFault> {
         let last = self.sights.len().checked_sub(SIDE).filter(|&last| last > SIDE)?;
         let tried = (last - SIDE + 1).min(JUMPS);
         let at = |k: usize| SIDE + k * (last - SIDE) / tried.max(2).saturating_sub(1);
@@ -336,7 +336,7 @@ impl Local {
 
     /// Position and size of the error together: reweighted least squares whose loss starts as wide as
     /// the residuals.
-    fn locate(&self, mut fault: Fault) -> Option<Located> {
+    fn locate(&self, mut fault: Fault) -> Option<LocatedFault> {
         let shapes: Vec<f64> = self.sights.iter().map(|s| fault.shape(s.0, self.transmitters)).collect();
         let residual = |k: usize, at: [f64; 2], size: f64| {
             let (_, s, length, precision) = self.sights[k];
@@ -379,6 +379,10 @@ impl Local {
         let cost = |e: f64| (0.5 * (e / self.deviation).powi(2)).min(OUTLIER_COST);
         let cost = (0..shapes.len()).map(|k| cost(residual(k, at, size))).sum();
         fault.size = [size, 0.0];
-        (at[0].is_finite() && at[1].is_finite() && size.is_finite()).then_some(Located { position: at, fault, cost })
+        (at[0].is_finite() && at[1].is_finite() && size.is_finite()).then_some(LocatedFault {
+            position: at,
+            fault,
+            cost,
+        })
     }
 }

@@ -3,7 +3,7 @@
 
 use super::cancel::{Cancelled, check};
 use super::normal::{backward, forward};
-use super::solver::Solver;
+use super::solver::ReceiverEquations;
 use crate::network::Network;
 use crate::observations::{Observation, Observations};
 use faer::linalg::solvers::Llt;
@@ -20,7 +20,7 @@ pub(crate) struct Projection<'a> {
     /// singular.
     factors: Vec<Option<[f64; 6]>>,
     /// The receivers' normal equations with the transmitters eliminated.
-    receivers: Solver,
+    receivers: ReceiverEquations,
 }
 
 /// A change of all nodes.
@@ -55,7 +55,7 @@ impl<'a> Projection<'a> {
         network: &Network,
         monitor: &Monitor,
     ) -> Result<Option<Self>, Cancelled> {
-        let solver = Solver::new(observations, network, monitor, |normal| {
+        let solver = ReceiverEquations::new(observations, network, monitor, |normal| {
             let rays = normal.rays().iter().map(|(u, _)| *u).collect();
             let factors = (0..observations.transmitters).map(|j| normal.inverse_factor(j).copied()).collect();
             (rays, factors)

@@ -17,30 +17,30 @@ const MANY: usize = 200;
 
 /// Equations of all coordinates of the receivers, with the motion of least size where they leave one
 /// open.
-pub(super) enum Solver {
+pub(super) enum ReceiverEquations {
     /// The inverse, 2m x 2m by rows.
     Inverse(Vec<f64>),
     /// The Cholesky factor, rigid motions made to cost something.
     Factor(Llt<f64>),
 }
 
-impl Solver {
+impl ReceiverEquations {
     /// `None` where the network cannot be linearised; with the normal equations it comes from.
     pub(super) fn new<T>(
         observations: &Observations,
         network: &Network,
         monitor: &Monitor,
         use_normal: impl FnOnce(&Normal) -> T,
-    ) -> Result<Option<(Solver, T)>, Cancelled> {
+    ) -> Result<Option<(ReceiverEquations, T)>, Cancelled> {
         if observations.receivers >= MANY {
             let mut refiner = NetworkRefiner::new(observations, f64::INFINITY).heeding(monitor);
             let normal = refiner.normal_at(network, &Loss { nu: f64::INFINITY, scale: 1.0 })?;
             if let Some(factor) = factor(observations, network, normal, monitor)? {
-                return Ok(Some((Solver::Factor(factor), use_normal(normal))));
+                return Ok(Some((ReceiverEquations::Factor(factor), use_normal(normal))));
             }
         }
         let Some(reduced) = reduced(observations, network, 1.0, monitor)? else { return Ok(None) };
-        Ok(Some((Solver::Inverse(reduced.joint()), use_normal(reduced.normal()))))
+        Ok(Some((ReceiverEquations::Inverse(reduced.joint()), use_normal(reduced.normal()))))
     }
 
     /// The solution for a right-hand side that no rigid motion changes; what belongs to held receivers
@@ -48,11 +48,11 @@ impl Solver {
     pub(super) fn solve(&self, right: &[f64]) -> Vec<f64> {
         let size = right.len();
         match self {
-            Solver::Inverse(inverse) => {
+            ReceiverEquations::Inverse(inverse) => {
                 let row = |a: usize| inverse[a * size..(a + 1) * size].iter().zip(right).map(|(x, y)| x * y).sum();
                 (0..size).map(row).collect()
             }
-            Solver::Factor(factor) => {
+            ReceiverEquations::Factor(factor) => {
                 let mut solution = right.to_vec();
                 factor.solve_in_place(MatMut::from_column_major_slice_mut(&mut solution, size, 1));
                 solution
@@ -100,20 +100,22 @@ mod tests {
         let network = &simulation.network;
         for held in [vec![false; 12], (0..12).map(|i| i < 2).collect::<Vec<bool>>()] {
             let observations = Observations::new(&simulation.pseudoranges, |_, _| true).holding(&held);
-            let (inverse, (right, factor)) = Solver::new(&observations, network, &Monitor::default(), |normal| {
-                // What measurements that differ make of a right-hand side: rays of pairs.
-                let mut right = vec![0.0; 24];
-                let schur = normal.schur();
-                let any: Vec<f64> = (0..24).map(|k| (k as f64).sin()).collect();
-                for a in (0..24).filter(|a| !held[a / 2]) {
-                    right[a] = (0..24).filter(|b| !held[b / 2]).map(|b| schur[a.min(b) * 24 + a.max(b)] * any[b]).sum();
-                }
-                (right, factor(&observations, network, normal, &Monitor::default()).unwrap().unwrap())
-            })
-            .unwrap()
-            .unwrap();
-            assert!(matches!(inverse, Solver::Inverse(_)));
-            let (x, y) = (inverse.solve(&right), Solver::Factor(factor).solve(&right));
+            let (inverse, (right, factor)) =
+                ReceiverEquations::new(&observations, network, &Monitor::default(), |normal| {
+                    // What measurements that differ make of a right-hand side: rays of pairs.
+                    let mut right = vec![0.0; 24];
+                    let schur = normal.schur();
+                    let any: Vec<f64> = (0..24).map(|k| (k as f64).sin()).collect();
+                    for a in (0..24).filter(|a| !held[a / 2]) {
+                        right[a] =
+                            (0..24).filter(|b| !held[b / 2]).map(|b| schur[a.min(b) * 24 + a.max(b)] * any[b]).sum();
+                    }
+                    (right, factor(&observations, network, normal, &Monitor::default()).unwrap().unwrap())
+                })
+                .unwrap()
+                .unwrap();
+            assert!(matches!(inverse, ReceiverEquations::Inverse(_)));
+            let (x, y) = (inverse.solve(&right), ReceiverEquations::Factor(factor).solve(&right));
             for (x, y) in x.iter().zip(&y) {
                 assert!((x - y).abs() < 1e-8, "{x} {y}");
             }
