@@ -245,13 +245,13 @@ fn one(name: &str, system: &System, seed: u64) -> Result<Row> {
         seed,
         distinct: found.solutions.len(),
         structure: structure(&found),
-        real: found.solutions.iter().filter(|s| s.real).count(),
+        real: found.n_real(),
         on_components: found.on_components,
         lost: found.paths.failed,
         retracked: found.paths.retracked,
         start_systems: found.start_systems,
         regular: regular.len(),
-        certified: certify(system, &[], &regular, &CertifyOptions::default())?.distinct(),
+        certified: certify(system, &[], &regular, &CertifyOptions::default())?.n_distinct(),
         seconds,
     })
 }

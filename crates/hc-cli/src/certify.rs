@@ -43,10 +43,10 @@ struct Output<'a> {
     variables: &'a [String],
     seed: u64,
     seconds: f64,
-    points: usize,
-    certified: usize,
-    distinct: usize,
-    real: usize,
+    n_points: usize,
+    n_certified: usize,
+    n_distinct: usize,
+    n_real: usize,
     /// Pairs of points proved neither the same solution nor different ones.
     unseparated: &'a [[usize; 2]],
     solutions: Vec<Point>,
@@ -59,7 +59,7 @@ struct Point {
     value: Vec<[f64; 2]>,
     certified: bool,
     /// Null where nothing is proved.
-    real: Option<bool>,
+    is_real: Option<bool>,
     /// Bounds of the real and of the imaginary part of each coordinate; exactly one solution lies
     /// within.
     #[serde(rename = "box")]
@@ -84,10 +84,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         variables: system.variables(),
         seed: arguments.seed,
         seconds: start.elapsed().as_secs_f64(),
-        points: points.len(),
-        certified: found.certified(),
-        distinct: found.distinct(),
-        real: found.real(),
+        n_points: points.len(),
+        n_certified: found.n_certified(),
+        n_distinct: found.n_distinct(),
+        n_real: found.n_real(),
         unseparated: &found.unseparated,
         solutions: solutions.map(|((result, &duplicate), point)| entry(result, duplicate, point)).collect(),
     };
@@ -98,7 +98,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if found.complete() {
         return Ok(());
     }
-    let without = points.len() - found.certified();
+    let without = points.len() - found.n_certified();
     let pairs = counted(found.unseparated.len(), "pair");
     let message = format!("{} without certificate, {pairs} not told apart", counted(without, "point"));
     Err(Failure::Undetermined(message))
@@ -111,7 +111,7 @@ fn entry(result: &Result<Certificate, Obstacle>, duplicate_of: Option<usize>, po
         Ok(certificate) => Point {
             value: pairs(&certificate.value),
             certified: true,
-            real: match certificate.reality {
+            is_real: match certificate.reality {
                 Reality::Real => Some(true),
                 Reality::NotReal => Some(false),
                 Reality::Undecided => None,
@@ -123,7 +123,7 @@ fn entry(result: &Result<Certificate, Obstacle>, duplicate_of: Option<usize>, po
         Err(obstacle) => Point {
             value: pairs(point),
             certified: false,
-            real: None,
+            is_real: None,
             enclosure: None,
             duplicate_of: None,
             reason: Some(obstacle.to_string()),
@@ -135,10 +135,10 @@ fn summary(found: &Certificates) -> String {
     let points = found.points.len();
     let mut text = format!(
         "{} of {} certified: {}, {} of them proved real\n",
-        found.certified(),
+        found.n_certified(),
         counted(points, "point"),
-        counted(found.distinct(), "distinct solution"),
-        found.real()
+        counted(found.n_distinct(), "distinct solution"),
+        found.n_real()
     );
     let failures = found.points.iter().enumerate().filter_map(|(k, p)| Some((k, p.as_ref().err()?)));
     for (k, obstacle) in failures.clone().take(10) {

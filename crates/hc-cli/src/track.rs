@@ -166,7 +166,7 @@ fn summary(solved: &[(Solutions, f64)], seconds: f64) -> String {
         "{} targets: {}, {} real; {}: {} finite, {} at infinity, {} failed, {} tracked again; {seconds:.3} s\n",
         solved.len(),
         counted(sum(&Solutions::len), "isolated solution"),
-        sum(&|found| found.iter().filter(|s| s.real).count()),
+        sum(&|found| found.n_real()),
         counted(sum(&|found| found.paths.tracked), "path"),
         sum(&|found| found.paths.finite),
         sum(&|found| found.paths.at_infinity),
@@ -175,7 +175,7 @@ fn summary(solved: &[(Solutions, f64)], seconds: f64) -> String {
     );
     let mut numbers: BTreeMap<usize, usize> = BTreeMap::new();
     for (found, _) in solved {
-        *numbers.entry(found.iter().filter(|s| s.real).count()).or_default() += 1;
+        *numbers.entry(found.n_real()).or_default() += 1;
     }
     for (real, targets) in numbers {
         text += &format!("  {} with {}\n", counted(targets, "target"), counted(real, "real solution"));

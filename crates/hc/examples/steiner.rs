@@ -43,11 +43,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let proofs = solved.certify()?;
     println!(
         "certified: {} distinct, {} of them real, {:.1} s",
-        proofs.distinct(),
-        proofs.real(),
+        proofs.n_distinct(),
+        proofs.n_real(),
         started.elapsed().as_secs_f64()
     );
-    if (proofs.distinct(), proofs.complete(), paths.failed) != (count, true, 0) {
+    if (proofs.n_distinct(), proofs.complete(), paths.failed) != (count, true, 0) {
         return Err(format!("{count} certified conics were expected").into());
     }
     Ok(())

@@ -81,8 +81,8 @@ pub(crate) fn certify<'py>(
         result.set_item("reasons", reasons)?;
         let pairs = found.unseparated.iter().flatten().map(|&k| k as i64).collect();
         result.set_item("unseparated", array::<i64>(py, pairs, &[found.unseparated.len(), 2])?)?;
-        result.set_item("n_distinct", found.distinct())?;
-        result.set_item("n_real", found.real())?;
+        result.set_item("n_distinct", found.n_distinct())?;
+        result.set_item("n_real", found.n_real())?;
         whole(py, result.into_any(), stopped)
     })
 }

@@ -171,7 +171,7 @@ fn slots(found: &Solutions, roots: usize, tracked: usize, certify: bool) -> Slot
         let end = if solution.singular { end::SINGULAR } else { end::FINITE };
         for _ in 0..if solution.singular { solution.multiplicity } else { 1 } {
             points.extend(&solution.value);
-            real.push(solution.real);
+            real.push(solution.is_real);
             ends.push(end);
         }
     }

@@ -105,6 +105,7 @@ fn solution<'py>(py: Python<'py>, found: &MinimalSolution) -> Result<Bound<'py, 
         ("physical", counts.physical),
     ];
     result.set_item("counts", numbers(py, &of_roots)?)?;
+    result.set_item("summary", tdoa::summary::networks(found, None))?;
     result.set_item("stopped_early", found.stopped_early)?;
     result.set_item("warnings", found.warnings.iter().map(ToString::to_string).collect::<Vec<_>>())?;
     Ok(result)

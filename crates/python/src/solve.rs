@@ -74,7 +74,7 @@ pub(crate) fn solutions<'py>(py: Python<'py>, found: &Solutions) -> Result<Bound
     result.set_item("multiplicities", array(py, found.iter().map(|s| s.multiplicity as i64).collect(), &[k])?)?;
     result.set_item("winding_numbers", array(py, found.iter().map(|s| s.winding_number as i64).collect(), &[k])?)?;
     result.set_item("singular", array(py, found.iter().map(|s| s.singular).collect(), &[k])?)?;
-    result.set_item("is_real", array(py, found.iter().map(|s| s.real).collect(), &[k])?)?;
+    result.set_item("is_real", array(py, found.iter().map(|s| s.is_real).collect(), &[k])?)?;
     result.set_item("residuals", array(py, found.iter().map(|s| s.residual).collect(), &[k])?)?;
     result.set_item("conditions", array(py, found.iter().map(|s| s.condition).collect(), &[k])?)?;
     let certified: Option<Vec<bool>> = found.iter().map(|s| s.certified).collect();

@@ -1,12 +1,13 @@
 //! `tdoa solve`.
 
 use std::path::PathBuf;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use serde::Serialize;
 use tdoa::minimal::{SolveOptions, Solver, Start};
 use tdoa::quantity::{coordinate, decimals};
 use tdoa::read::read;
+use tdoa::summary::networks;
 use tdoa::{MinimalSolution, Monitor, Pseudoranges};
 
 use crate::units::Unit;
@@ -123,31 +124,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn summary(solution: &MinimalSolution, measured: &Pseudoranges, unit: Option<Unit>, seconds: f64) -> String {
-    let (paths, counts) = (solution.paths, solution.counts);
-    let mut text = format!(
-        "{} by {} in {:.1} ms\npaths: {} tracked, {} finite, {} at infinity, {} failed, {} tracked again\n\
-         roots: {} complex, {} real, {} with real positions, {} of these physical\n\n\
-         {:>4} {:>12} {:>10} {:>10}\n",
-        solution.configuration,
-        solution.solver,
-        1e3 * seconds,
-        paths.tracked,
-        paths.finite,
-        paths.at_infinity,
-        paths.failed,
-        paths.retracked,
-        counts.complex,
-        counts.real,
-        counts.positive_definite,
-        counts.physical,
-        "rank",
-        "residual m",
-        "physical",
-        "condition",
-    );
-    if solution.stopped_early {
-        text += "stopped at the first network that fits; others may fit as well\n";
-    }
+    let mut text = networks(solution, Some(Duration::from_secs_f64(seconds)));
+    text += &format!("\n{:>4} {:>12} {:>10} {:>10}\n", "rank", "residual m", "physical", "condition");
     for (k, candidate) in solution.candidates.iter().take(20).enumerate() {
         let physical = if candidate.physical { "yes" } else { "no" };
         text +=

@@ -1,9 +1,10 @@
-//! A calibration in words: what the program prints above its tables, and what Python shows.
+//! Results in words: what the program prints above its tables, and what Python shows.
 
 use hc::poly::{counted, one_or};
 use std::time::Duration;
 
 use crate::calibrate::{Calibration, SpeedEstimate};
+use crate::minimal::MinimalSolution;
 use crate::quantity::{length, number};
 
 /// A smaller network makes one ask whether its measurements are times, metres.
@@ -52,6 +53,36 @@ pub fn heading(calibration: &Calibration, time: Option<Duration>) -> String {
 pub fn summary(calibration: &Calibration) -> String {
     let warnings = calibration.warnings.iter().map(|warning| format!("warning: {warning}\n"));
     heading(calibration, None) + &warnings.collect::<String>()
+}
+
+/// What an exact solution has found, one line for each item, and how long it took, if that is known.
+pub fn networks(solution: &MinimalSolution, time: Option<Duration>) -> String {
+    let (paths, counts) = (solution.paths, solution.counts);
+    let time = time.map_or_else(String::new, |time| format!(" in {:.1} ms", 1e3 * time.as_secs_f64()));
+    let mut text = format!(
+        "{} by {}{time}: {}\n{}: {} finite, {} at infinity, {} failed, {} tracked again\n\
+         {}: {} real, {} with real positions, {} of these physical\n",
+        solution.configuration,
+        solution.solver,
+        counted(solution.candidates.len(), "network"),
+        counted(paths.tracked, "path"),
+        paths.finite,
+        paths.at_infinity,
+        paths.failed,
+        paths.retracked,
+        counted(counts.complex, "complex root"),
+        counts.real,
+        counts.positive_definite,
+        counts.physical,
+    );
+    if let Some(best) = solution.candidates.first() {
+        let size = length(best.network.size());
+        text += &format!("size: {size} (receivers from their centroid, root mean square, best network)\n");
+    }
+    if solution.stopped_early {
+        text += "stopped at the first network that fits; others may fit as well\n";
+    }
+    text
 }
 
 /// The standard deviation of the measurements, and where it comes from.

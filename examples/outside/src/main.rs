@@ -10,7 +10,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut found = hc::solve(&system, &SolveOptions::new().seed(1))?;
     let proofs = found.certify()?;
     print!("{found}");
-    assert_eq!((proofs.distinct(), proofs.real()), (4, 4));
+    assert_eq!((proofs.n_distinct(), proofs.n_real()), (4, 4));
 
     // All points of a circle on a line through its centre, for a thousand circles and lines.
     let family = Family::from_formulas(&["x", "y"], &["r", "a"], &["x^2 + y^2 - r^2", "y - a*x"])?;

@@ -42,12 +42,12 @@ fn what_solve_finds_certify_proves() {
     let found: Value = serde_json::from_slice(&std::fs::read(&solved).unwrap()).unwrap();
     let solutions = found["solutions"].as_array().unwrap();
     assert_eq!(solutions.len(), 3);
-    assert!(solutions.iter().all(|s| s["certified"] == true && s["real"] == true));
+    assert!(solutions.iter().all(|s| s["certified"] == true && s["is_real"] == true));
 
     let output = hc(&["certify", "--json", "-"], &[&system, &solved]);
     assert_eq!(output.status.code(), Some(0));
     let proved = report(&output);
-    assert_eq!((&proved["certified"], &proved["distinct"], &proved["real"]), (&json!(3), &json!(3), &json!(3)));
+    assert_eq!((&proved["n_certified"], &proved["n_distinct"], &proved["n_real"]), (&json!(3), &json!(3), &json!(3)));
     for s in proved["solutions"].as_array().unwrap() {
         for (value, bounds) in s["value"].as_array().unwrap().iter().zip(s["box"].as_array().unwrap()) {
             for part in 0..2 {
@@ -83,7 +83,7 @@ fn lists_of_points_are_read_in_the_order_of_the_unknowns() {
     // One point is no solution.
     assert_eq!(output.status.code(), Some(1));
     let proved = report(&output);
-    assert_eq!((&proved["points"], &proved["certified"], &proved["distinct"]), (&json!(4), &json!(3), &json!(2)));
+    assert_eq!((&proved["n_points"], &proved["n_certified"], &proved["n_distinct"]), (&json!(4), &json!(3), &json!(2)));
     assert_eq!(proved["solutions"][1]["duplicate_of"], 0);
     assert_eq!(proved["solutions"][3]["certified"], false);
     assert!(proved["solutions"][3]["reason"].is_string());
@@ -92,7 +92,7 @@ fn lists_of_points_are_read_in_the_order_of_the_unknowns() {
     // Names decide where there are some.
     let named = folder.write("named.json", r#"{"variables": ["y", "x"], "solutions": [{"value": [[4, 0], [2, 0]]}]}"#);
     let proved = report(&hc(&["certify", "--json", "-"], &[&system, &named]));
-    assert_eq!((&proved["certified"], &proved["solutions"][0]["value"][1][0]), (&json!(1), &json!(4.0)));
+    assert_eq!((&proved["n_certified"], &proved["solutions"][0]["value"][1][0]), (&json!(1), &json!(4.0)));
 }
 
 #[test]
@@ -103,7 +103,7 @@ fn plain_numbers_are_read() {
     let output = hc(&["certify", "--json", "-"], &[&system, &points]);
     assert_eq!(output.status.code(), Some(1));
     let proved = report(&output);
-    assert_eq!((&proved["points"], &proved["certified"], &proved["distinct"]), (&json!(3), &json!(2), &json!(2)));
+    assert_eq!((&proved["n_points"], &proved["n_certified"], &proved["n_distinct"]), (&json!(3), &json!(2), &json!(2)));
     // Names decide where there are some.
     let named = folder.write("named.txt", "variables: y x\n4 2\n");
     let output = hc(&["certify"], &[&system, &named]);
@@ -138,7 +138,7 @@ fn lists_of_phcpack_are_read() {
         solution(2, "-1.00000000000000E+00  0.0E+00", "-2.00000000000000E+00  0.00000000000000E+00")
     );
     let proved = report(&hc(&["certify", "--json", "-"], &[&system, &folder.write("solutions", &list)]));
-    assert_eq!((&proved["certified"], &proved["distinct"], &proved["real"]), (&json!(2), &json!(2), &json!(2)));
+    assert_eq!((&proved["n_certified"], &proved["n_distinct"], &proved["n_real"]), (&json!(2), &json!(2), &json!(2)));
     assert_eq!(proved["solutions"][0]["value"], json!([[2.0, 0.0], [4.0, 0.0]]));
 }
 

@@ -40,7 +40,7 @@ fn solve(name: &str, targets: &[Vec<f64>], threads: &str) -> Vec<Value> {
 
 /// Whether a report has a real solution within `tolerance` of `x`.
 fn has(report: &Value, x: &[f64], tolerance: f64) -> bool {
-    report["solutions"].as_array().unwrap().iter().filter(|s| s["real"] == true).any(|s| {
+    report["solutions"].as_array().unwrap().iter().filter(|s| s["is_real"] == true).any(|s| {
         let value = s["value"].as_array().unwrap();
         value.iter().zip(x).all(|(z, x)| (z[0].as_f64().unwrap() - x).abs() < tolerance)
     })
@@ -163,7 +163,7 @@ fn special_members_are_solved_like_any_system() {
         let solutions = report["solutions"].as_array().unwrap();
         assert_eq!(solutions.len(), count, "{report}");
         for s in solutions {
-            assert_eq!((&s["multiplicity"], &s["real"]), (&json!(multiplicity), &json!(true)), "{report}");
+            assert_eq!((&s["multiplicity"], &s["is_real"]), (&json!(multiplicity), &json!(true)), "{report}");
             assert_eq!((&s["singular"], &s["certified"]), (&json!(multiplicity == 2), &json!(multiplicity == 1)));
         }
     }

@@ -34,7 +34,7 @@ fn writes_what_the_contract_says() {
         let double = solution["value"][0][0].as_f64().expect("a number").abs() > 0.5;
         assert_eq!(solution["multiplicity"], if double { 2 } else { 1 });
         assert_eq!(solution["singular"], double);
-        assert_eq!(solution["real"], true);
+        assert_eq!(solution["is_real"], true);
         assert_eq!(solution["certified"], Value::Null);
         assert!(solution["residual"].as_f64().expect("a number") < 1e-10);
     }

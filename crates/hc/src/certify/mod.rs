@@ -15,7 +15,7 @@
 //! let near = |x: f64, y: f64| vec![Complex64::new(x, 0.0), Complex64::new(y, 0.0)];
 //! let points = [near(0.0995, 0.9950), near(-0.0995, -0.9950), near(0.09950372, 0.99503719), near(0.3, 0.4)];
 //! let found = certify(&system, &[], &points, &CertifyOptions::default())?;
-//! assert_eq!((found.certified(), found.distinct(), found.real()), (3, 2, 2));
+//! assert_eq!((found.n_certified(), found.n_distinct(), found.n_real()), (3, 2, 2));
 //! assert_eq!(found.duplicate_of, [None, None, Some(0), None]);
 //! assert!(found.points[3].is_err());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -118,24 +118,24 @@ impl Certificates {
     }
 
     /// Number of points with a certificate.
-    pub fn certified(&self) -> usize {
+    pub fn n_certified(&self) -> usize {
         self.points.iter().filter(|p| p.is_ok()).count()
     }
 
     /// Number of distinct solutions, a lower bound of the number of regular solutions if no pair is
     /// left unseparated.
-    pub fn distinct(&self) -> usize {
+    pub fn n_distinct(&self) -> usize {
         self.solutions().count()
     }
 
     /// Number of distinct solutions that are proved real.
-    pub fn real(&self) -> usize {
+    pub fn n_real(&self) -> usize {
         self.solutions().filter(|s| s.reality == Reality::Real).count()
     }
 
     /// Whether every point is certified and every two are proved equal or different.
     pub fn complete(&self) -> bool {
-        self.certified() == self.points.len() && self.unseparated.is_empty()
+        self.n_certified() == self.points.len() && self.unseparated.is_empty()
     }
 }
 

@@ -44,7 +44,7 @@ fn signs_of_real_solutions_are_proved_by_their_boxes() {
     // Row A17 of the list of test systems: two real solutions, one of them positive.
     let root = 0.5f64.sqrt();
     let found = run("2\nx^2 + y^2 - 1;\nx - y;", &[vec![z(root, 0.0); 2], vec![z(-root, 0.0); 2]]);
-    assert_eq!((found.certified(), found.distinct(), found.real()), (2, 2, 2));
+    assert_eq!((found.n_certified(), found.n_distinct(), found.n_real()), (2, 2, 2));
     let positive = |k: usize| found.points[k].as_ref().is_ok_and(|p| p.enclosure.iter().all(|x| x.re.low > 0.0));
     assert_eq!((positive(0), positive(1)), (true, false));
 }
@@ -67,7 +67,7 @@ fn points_of_one_solution_are_duplicates() {
     let near = |x: f64, y: f64| vec![z(x, 0.0), z(y, 0.0)];
     let points = [near(3.0, 4.0), near(-3.0, -4.0), near(3.000001, 4.000001), near(3.0, 4.0), near(-3.00001, -4.0)];
     let found = run("2\nx^2 + y^2 - 25;\n4*x - 3*y;", &points);
-    assert_eq!((found.certified(), found.distinct(), found.real()), (5, 2, 2));
+    assert_eq!((found.n_certified(), found.n_distinct(), found.n_real()), (5, 2, 2));
     assert_eq!(found.duplicate_of, [None, None, Some(0), Some(0), Some(1)]);
     assert!(found.complete());
 }
@@ -80,14 +80,14 @@ fn tiny_coordinates_do_not_set_the_size_of_a_box() {
     let mut point = vec![z(0.0, 0.0); 9];
     (point[0], point[7], point[8]) = (z(1.0, 0.0), z(0.0, -9.2888628151065e-69), z(-1.85586238071561e-68, 0.0));
     let found = run(&text[..=text.rfind(';').unwrap()], &[point]);
-    assert_eq!((found.certified(), found.real()), (1, 1));
+    assert_eq!((found.n_certified(), found.n_real()), (1, 1));
 }
 
 #[test]
 fn near_solutions_are_told_apart() {
     // 1 and 1 + 1e-14, 50 doubles apart.
     let found = run("1\n(x - 1)*(x - 1.00000000000001);", &[vec![z(1.0, 0.0)], vec![z(1.0 + 1e-14, 0.0)]]);
-    assert_eq!((found.certified(), found.distinct(), found.real()), (2, 2, 2));
+    assert_eq!((found.n_certified(), found.n_distinct(), found.n_real()), (2, 2, 2));
     assert!(found.complete());
 }
 
@@ -96,11 +96,11 @@ fn solutions_closer_than_doubles_are_not_certified() {
     // A box of doubles about one would contain the other.
     for gap in ["1E-16", "1E-17", "1E-20", "1E-30"] {
         let found = run(&format!("1\n(x - 1)*(x - 1 - {gap});"), &[vec![z(1.0, 0.0)], vec![z(1.0, 1e-17)]]);
-        assert_eq!(found.certified(), 0, "{gap}: {found:?}");
+        assert_eq!(found.n_certified(), 0, "{gap}: {found:?}");
     }
     // Near zero doubles are closer.
     let found = run("1\nx*(x - 1E-30);", &[vec![z(0.0, 0.0)], vec![z(1e-30, 0.0)]]);
-    assert_eq!((found.certified(), found.distinct(), found.real()), (2, 2, 2), "{found:?}");
+    assert_eq!((found.n_certified(), found.n_distinct(), found.n_real()), (2, 2, 2), "{found:?}");
 }
 
 #[test]
@@ -130,7 +130,7 @@ fn points_that_are_no_solutions_are_not_certified() {
     let near = |x: f64, y: f64| vec![z(x, 0.0), z(y, 0.0)];
     let points = [near(3.2, 4.0), near(30.0, 4.0), near(f64::NAN, 1.0), near(3.0, f64::INFINITY), near(0.0, 0.0)];
     let found = run("2\nx^2 + y^2 - 25;\n4*x - 3*y;", &points);
-    assert_eq!(found.certified(), 0);
+    assert_eq!(found.n_certified(), 0);
     assert_eq!(found.points[0], Err(Obstacle::Away));
     assert_eq!(found.points[2], Err(Obstacle::NotFinite));
     assert_eq!(found.points[3], Err(Obstacle::NotFinite));
@@ -159,7 +159,7 @@ fn noise_far_below_the_other_coordinates_is_no_scale() {
             vec![z(1.0, 0.0), z(noise, noise), z(-noise, 0.0)],
         ];
         let found = run(text, &points);
-        assert_eq!((found.certified(), found.distinct(), found.real()), (2, 2, 2), "{noise}: {found:?}");
+        assert_eq!((found.n_certified(), found.n_distinct(), found.n_real()), (2, 2, 2), "{noise}: {found:?}");
     }
 }
 
@@ -190,7 +190,7 @@ fn ill_conditioned_roots_are_certified() {
     let terms: Vec<String> = coefficients.iter().enumerate().map(|(k, c)| format!("({c})*x^{k}")).collect();
     let points: Vec<Vec<Complex64>> = (1..=15).map(|k| vec![z(f64::from(k) + 1e-6, 1e-7)]).collect();
     let found = run(&format!("1\n{};", terms.join("+")), &points);
-    assert_eq!((found.certified(), found.distinct(), found.real()), (15, 15, 15), "{found:?}");
+    assert_eq!((found.n_certified(), found.n_distinct(), found.n_real()), (15, 15, 15), "{found:?}");
     for (k, point) in (1..).zip(&found.points) {
         let x = &point.as_ref().unwrap().enclosure[0];
         assert!(x.contains(z(f64::from(k), 0.0)) && x.radius() < 1e-12, "{x:?}");
@@ -284,7 +284,7 @@ fn boxes_as_small_as_doubles_allow_are_tried() {
     .map(|x| z(x, 0.0))
     .to_vec();
     let found = certify(&family.system, &parameters, &[point], &CertifyOptions::default()).unwrap();
-    assert_eq!((found.certified(), found.real()), (1, 1), "{found:?}");
+    assert_eq!((found.n_certified(), found.n_real()), (1, 1), "{found:?}");
 }
 
 /// A number with few digits, and its text.

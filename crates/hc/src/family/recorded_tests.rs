@@ -67,7 +67,7 @@ fn targets_go_on_from_every_record_to_the_same_bits() {
             all.recorded(checkpoint).run()
         };
         let (real, _) = resumed(&directory, 2, asked).unwrap();
-        assert!(real.iter().flatten().all(|s| s.real && s.certified == Some(!s.singular)));
+        assert!(real.iter().flatten().all(|s| s.is_real && s.certified == Some(!s.singular)));
         // As far as was asked for.
         let first =
             |checkpoint: &Checkpoint| family.track(&fibre, &targets).recorded(checkpoint).until(|k, _| k == 300).run();

@@ -359,7 +359,7 @@ impl How<'_> {
             }
         }
         if self.only_real {
-            found.solutions.retain(|s| s.real);
+            found.solutions.retain(|s| s.is_real);
         }
         found
     }

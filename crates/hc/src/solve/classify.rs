@@ -125,7 +125,7 @@ fn regular_solution(refined: &Refined) -> Solution {
         multiplicity: 1,
         winding_number: 1,
         singular: false,
-        real: is_real(&refined.point, REAL),
+        is_real: is_real(&refined.point, REAL),
         residual: refined.residual,
         condition: refined.condition,
         certified: None,

@@ -103,7 +103,7 @@ fn listed(points: impl Iterator<Item = (Vec<Digits>, usize)>, units: &[i64], tra
             multiplicity,
             winding_number: multiplicity,
             singular,
-            real: is_real(&value, if singular { REAL_SINGULAR } else { REAL }),
+            is_real: is_real(&value, if singular { REAL_SINGULAR } else { REAL }),
             residual: singular::residual(tracked.given, &value),
             condition: refiner.judged(tracked.target, &value).condition,
             certified: None,

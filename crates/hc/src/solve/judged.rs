@@ -187,7 +187,7 @@ impl Classified {
                 continue;
             };
             solution.residual = residual;
-            solution.real = is_real(&exact, REAL);
+            solution.is_real = is_real(&exact, REAL);
             if is_known(tracked.given, &kept, &exact) {
                 self.lost += 1;
             } else {
@@ -339,14 +339,14 @@ fn solution(
     winding_number: usize,
     residual: f64,
     condition: f64,
-    real: bool,
+    is_real: bool,
 ) -> Solution {
     Solution {
         value: point.to_vec(),
         multiplicity,
         winding_number,
         singular: false,
-        real,
+        is_real,
         residual,
         condition,
         certified: None,

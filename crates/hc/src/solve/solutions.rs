@@ -24,7 +24,7 @@ pub struct Solution {
     pub singular: bool,
     /// Whether all imaginary parts are below 1e-10 of the largest coordinate (or of one), or below
     /// 1e-7 if the solution is singular.
-    pub real: bool,
+    pub is_real: bool,
     /// Largest residual, relative to its row of the Jacobian times the sizes of the coordinates. If
     /// the Jacobian is singular, relative to the sizes of the terms of the equation.
     pub residual: f64,
@@ -147,7 +147,7 @@ impl Solutions {
 
     /// The real solutions ([`Solution::real`]), as real numbers.
     pub fn real_solutions(&self) -> impl Iterator<Item = Vec<f64>> {
-        self.iter().filter(|s| s.real).map(|s| s.value.iter().map(|z| z.re).collect())
+        self.iter().filter(|s| s.is_real).map(|s| s.value.iter().map(|z| z.re).collect())
     }
 
     /// The solutions at which the Jacobian is not singular.
@@ -178,12 +178,17 @@ impl Solutions {
             // What is certified is regular, however badly conditioned.
             solution.singular &= proof.is_none();
             match proof.map(|p| p.reality) {
-                Some(Reality::Real) => solution.real = true,
-                Some(Reality::NotReal) => solution.real = false,
+                Some(Reality::Real) => solution.is_real = true,
+                Some(Reality::NotReal) => solution.is_real = false,
                 Some(Reality::Undecided) | None => {}
             }
         }
         Ok(found)
+    }
+
+    /// How many solutions are real.
+    pub fn n_real(&self) -> usize {
+        self.iter().filter(|s| s.is_real).count()
     }
 
     /// Number of regular solutions for which certification was requested and failed.

@@ -35,7 +35,7 @@ pub fn coordinates(names: &[String], point: &[Complex64]) -> String {
 /// and the first singular ones.
 impl fmt::Display for Solutions {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (paths, real) = (&self.paths, self.iter().filter(|s| s.real).count());
+        let (paths, real) = (&self.paths, self.n_real());
         writeln!(f, "{}, {real} real", counted(self.len(), "isolated solution"))?;
         let mut multiplicities: BTreeMap<usize, usize> = BTreeMap::new();
         for solution in self.iter().filter(|s| s.singular) {
@@ -61,7 +61,7 @@ impl fmt::Display for Solutions {
         for warning in self.warnings() {
             writeln!(f, "warning: {warning}")?;
         }
-        self.list(f, |s| s.real && !s.singular, "regular real")?;
+        self.list(f, |s| s.is_real && !s.singular, "regular real")?;
         self.list(f, |s| s.singular, "singular")
     }
 }
@@ -84,7 +84,7 @@ impl Solution {
     /// The solution in a line: its [coordinates], without imaginary parts where it is real, and its
     /// multiplicity if that is not one, or whether it is singular.
     pub fn row(&self, names: &[String]) -> String {
-        let is_shown = |z: &Complex64| if self.real { Complex64::new(z.re, 0.0) } else { *z };
+        let is_shown = |z: &Complex64| if self.is_real { Complex64::new(z.re, 0.0) } else { *z };
         let point: Vec<Complex64> = self.value.iter().map(is_shown).collect();
         let kind = match (self.multiplicity, self.singular) {
             (multiplicity @ 2.., _) => format!("  (multiplicity {multiplicity})"),

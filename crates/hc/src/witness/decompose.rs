@@ -33,6 +33,9 @@ pub struct Component {
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Decomposition {
+    /// The unknowns, in the order of all points.
+    #[serde(skip)]
+    pub variables: Vec<String>,
     /// Components of positive dimension, higher dimensions first.
     pub components: Vec<Component>,
     /// Isolated solutions.
@@ -87,7 +90,7 @@ pub fn decompose(system: &System, options: &SolveOptions, monitor: &Monitor) -> 
     let names = system.variables();
     let lowest = names.len().saturating_sub(polynomials.len());
     let given = Given::new(&polynomials, vec![0; names.len()]);
-    let mut all = Decomposition::default();
+    let mut all = Decomposition { variables: names.to_vec(), ..Decomposition::default() };
     let mut missed = true;
     let mut paths = options.max_paths;
     let mut sets: Vec<WitnessSet> = Vec::new();

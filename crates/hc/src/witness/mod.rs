@@ -12,5 +12,6 @@ mod deflated;
 mod irreducible;
 mod set;
 mod slices;
+mod summary;
 
 pub use decompose::{Component, Decomposition, decompose};

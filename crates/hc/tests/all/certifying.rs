@@ -62,9 +62,9 @@ fn all_solutions_of_known_systems_are_certified() {
     {
         let found = run(&system);
         assert!(found.complete(), "{name}");
-        assert_eq!((found.certified(), found.distinct()), (distinct, distinct), "{name}");
+        assert_eq!((found.n_certified(), found.n_distinct()), (distinct, distinct), "{name}");
         if let Some(real) = real {
-            assert_eq!(found.real(), real, "{name}");
+            assert_eq!(found.n_real(), real, "{name}");
         }
     }
 }
@@ -75,11 +75,11 @@ fn a_list_given_twice_has_half_as_many_solutions() {
     let text = "2\n(x^4 + y^4 - 1)*(x^2 + y^2 - 2) + x^5*y;\nx^2 + 2*x*y^2 - 2*y^2 - 1/2;";
     let system = phcpack(text).unwrap();
     let once = run(&system);
-    assert_eq!((once.certified(), once.distinct(), once.real()), (18, 18, 4));
+    assert_eq!((once.n_certified(), once.n_distinct(), once.n_real()), (18, 18, 4));
     let mut points: Vec<Vec<Complex64>> = once.solutions().map(|s| s.value.clone()).collect();
     points.extend(points.clone());
     let twice = certify(&system, &[], &points, &CertifyOptions::default()).unwrap();
-    assert_eq!((twice.certified(), twice.distinct(), twice.real()), (36, 18, 4));
+    assert_eq!((twice.n_certified(), twice.n_distinct(), twice.n_real()), (36, 18, 4));
     assert!(twice.complete() && twice.duplicate_of[18..].iter().zip(0..).all(|(d, k)| *d == Some(k)));
 }
 
@@ -98,7 +98,7 @@ fn a_curve_of_degree_four_given_by_quotients() {
         assert_eq!((found.solutions.len(), found.paths.failed), (4, 0), "seed {seed}");
         let points: Vec<Vec<Complex64>> = found.iter().map(|s| s.value.clone()).collect();
         let proofs = certify(&quotients, &[], &points, &CertifyOptions::default()).unwrap();
-        assert_eq!((proofs.distinct(), proofs.complete()), (4, true), "seed {seed}");
+        assert_eq!((proofs.n_distinct(), proofs.complete()), (4, true), "seed {seed}");
     }
 }
 
@@ -118,9 +118,9 @@ fn regular_systems_on_record_are_certified_in_full() {
         let system = phcpack(&std::fs::read_to_string(folder.join(format!("{name}.phc"))).unwrap()).unwrap();
         let found = run(&system);
         assert!(found.complete(), "{name}");
-        assert_eq!(found.distinct().to_string(), distinct, "{name}");
+        assert_eq!(found.n_distinct().to_string(), distinct, "{name}");
         if !real.is_empty() {
-            assert_eq!(found.real().to_string(), real, "{name}: real solutions");
+            assert_eq!(found.n_real().to_string(), real, "{name}: real solutions");
         }
         seen += 1;
     }

@@ -20,7 +20,7 @@ fn proved(family: &System, target: &[Complex64], found: &Solutions) -> (usize, u
     let parameters: Vec<ComplexInterval> = target.iter().map(|&p| ComplexInterval::point(p)).collect();
     let certificates = certify(family, &parameters, &points, &CertifyOptions::default()).unwrap();
     assert!(certificates.unseparated.is_empty());
-    (certificates.distinct(), certificates.real())
+    (certificates.n_distinct(), certificates.n_real())
 }
 
 #[test]

@@ -89,7 +89,7 @@ class Fibre:
     trace_test : float or None
         Deviation found by the trace test: rounding error shows that the solutions are all.
     stopped : str
-        Why the search ended: `roots reached`, `trace`, `no progress` or `interrupted`.
+        Why the search ended: `roots reached`, `trace`, `no progress`, `too many solutions` or `interrupted`.
     """
 
     def __init__(self, text):

@@ -113,7 +113,7 @@ class Solutions(Result):
                     "multiplicity": int(self.multiplicities[k]),
                     "winding_number": int(self.winding_numbers[k]),
                     "singular": bool(self.singular[k]),
-                    "real": bool(self.is_real[k]),
+                    "is_real": bool(self.is_real[k]),
                     "residual": _finite(self.residuals[k]),
                     "condition": _finite(self.conditions[k]),
                     "certified": None if self.certified is None else bool(self.certified[k]),

@@ -137,6 +137,7 @@ class Networks:
     conditions: _Floats
     counts: dict[str, int]
     paths: dict[str, int]
+    summary: str
     configuration: str
     solver: str
     stopped_early: bool

@@ -246,6 +246,8 @@ class Networks(Result):
         Roots: `complex`, `real`, `positive_definite` (with real positions), `physical`.
     paths : dict
         How the paths ended.
+    summary : str
+        The lines that `tdoa solve` prints above its table.
     configuration, solver : str
         The size of the table, and of what was solved by paths.
     stopped_early : bool
@@ -262,11 +264,7 @@ class Networks(Result):
         return len(self.residuals)
 
     def __repr__(self):
-        lines = [
-            f"{self.configuration} by {self.solver}: {len(self)} networks, {int(self.physical.sum())} of them physical; "
-            f"{self.paths['tracked']} paths, {self.paths['failed']} failed"
-        ]
-        return "\n".join(lines + [f"warning: {warning}" for warning in self.warnings])
+        return "\n".join([self.summary.rstrip("\n"), *(f"warning: {warning}" for warning in self.warnings)])
 
 
 def solve(

@@ -35,5 +35,5 @@ pub(crate) fn multiplicities(found: &Solutions) -> String {
 }
 
 pub(crate) fn real(found: &Solutions) -> usize {
-    found.solutions.iter().filter(|s| s.real).count()
+    found.solutions.iter().filter(|s| s.is_real).count()
 }
