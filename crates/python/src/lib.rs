@@ -7,6 +7,7 @@
 mod arrays;
 mod calibration;
 mod certify;
+mod decompose;
 mod errors;
 mod family;
 mod measured;
@@ -21,6 +22,8 @@ mod _native {
     use crate::calibration::{calibrate, calibration_html, calibration_style, calibration_summary, calibration_svg};
     #[pymodule_export]
     use crate::certify::{certify, mixed_volume};
+    #[pymodule_export]
+    use crate::decompose::decompose;
     #[pymodule_export]
     use crate::family::{Family, Fibre};
     #[pymodule_export]

@@ -96,6 +96,14 @@ def test_exact_networks(m, n, run_json, tmp_path):
             assert bits(float(found.conditions[k])) == bits(each["condition"])
 
 
+@pytest.mark.parametrize("name", ["sendra", "trinks"])
+def test_decompositions(name, run_json):
+    path = ROOT / "examples/systems" / f"{name}.phc"
+    expected = run_json("hc", "decompose", path, "--seed", 3, "--threads", 1)
+    expected.pop("seconds")
+    assert bits(json.loads(hc.decompose(path.read_text(), seed=3).to_json())) == bits(expected)
+
+
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_systems(name, run_json):
     path = ROOT / "examples/systems" / f"{name}.phc"
@@ -145,6 +153,6 @@ def test_mixed_volumes_and_certificates(run_json, tmp_path):
     (tmp_path / "solutions.json").write_text(found.to_json())
     expected = run_json("hc", "certify", path, tmp_path / "solutions.json")
     proved = hc.certify(path.read_text(), found)
-    assert proved.complete and proved.n_distinct == expected["distinct"] == 64 and proved.n_real == expected["real"]
+    assert proved.complete and proved.n_distinct == expected["n_distinct"] == 64 and proved.n_real == expected["n_real"]
     for k, each in enumerate(expected["solutions"]):
         assert bits(proved.boxes[k].tolist()) == bits(each["box"])

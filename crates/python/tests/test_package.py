@@ -80,7 +80,7 @@ def test_versions():
     assert hc.__version__ == tdoa.__version__ == importlib.metadata.version("tdoa")
 
 
-@pytest.mark.parametrize("thing", [hc.solve, hc.mixed_volume, hc.certify, hc.Family, tdoa.calibrate, tdoa.solve])
+@pytest.mark.parametrize("thing", [hc.solve, hc.decompose, hc.mixed_volume, hc.certify, hc.Family, tdoa.calibrate, tdoa.solve])
 def test_examples_of_the_documentation(thing):
     tests = doctest.DocTestFinder(recurse=False).find(thing, thing.__name__, module=False, globs={})
     runner = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS)

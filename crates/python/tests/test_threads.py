@@ -50,6 +50,7 @@ assert len(hc.solve(["x^2 - 2"])) == 2
     "call, kind, show",
     [
         ("hc.solve(LONG, start='total-degree', {how})", "Solutions", "assert found.partial and not found.complete and found.warnings"),
+        ("hc.decompose(LONG, max_paths=10**9, {how})", "Decomposition", "assert found.partial and not found.complete"),
         ("hc.mixed_volume(CYCLIC, {how})", "int", "assert found >= 0"),
         ("family.track(targets, {how})", "Tracked", "assert 0 < len(found.points) < 200_000 and found.complete[:-256].all()"),
         ("tdoa.calibrate(table, max_starts=10**9, agreeing=10**9, {how})", "Unfinished", "assert found.receivers.shape == (40, 2)"),
@@ -109,6 +110,7 @@ def results():
         "networks": tdoa.solve(made.pseudoranges[:6, :3]),
         "simulation": made,
         "solutions": hc.solve(["x^2 - 2", "y - x"], certify=True),
+        "decomposition": hc.decompose(["x*(y - 1)", "x*(x - 2)"]),
         "certificates": hc.certify(["x^2 - 2"], [[1.41421356]]),
         "fibre": fibre,
         "family": family,

@@ -188,6 +188,18 @@ def test_summaries_are_those_of_the_program(programs, tmp_path):
     assert "each with its own standard deviation" in repr(each) and each.data["sigma_is_factor"]
 
 
+def test_summaries_of_exact_networks_are_those_of_the_program(programs, tmp_path):
+    import subprocess
+
+    made = tdoa.simulate(6, 3, layout="normal", seed=9)
+    path = tmp_path / "table.csv"
+    path.write_text("\n".join(",".join(map(repr, row)) for row in made.pseudoranges.tolist()) + "\n")
+    printed = subprocess.run([programs["tdoa"], "solve", path], check=True, capture_output=True, text=True).stdout
+    first, *rest = repr(tdoa.solve(made.pseudoranges)).splitlines()
+    assert first.startswith("6r/3s by 6r/3s: ") and first.split(": ")[1] in printed
+    assert any(line.startswith("size: ") for line in rest) and all(line in printed for line in rest)
+
+
 def test_anchors_have_standard_deviations():
     made = tdoa.simulate(8, 14, noise=0.01, seed=6)
     anchors = np.full((8, 2), np.nan)
@@ -281,6 +293,28 @@ def test_solutions():
     assert len(hc.solve(["x*y - x", "x*y - y"], torus_only=True)) == 1
     groups = hc.solve(["x*y - 2", "x + y - 3"], start="multihomogeneous", groups=[["x"], ["y"]])
     assert sorted(groups.real_points.round(9).tolist()) == [[1, 2], [2, 1]]
+
+
+def test_decompositions():
+    # The twisted cubic is a curve of degree three.
+    found = hc.decompose("y - x^2; z - x*y; x*z - y^2")
+    [cubic] = found.components
+    assert cubic[:4] == (1, 3, 1, True) and cubic.witness_points.shape == (3, 3)
+    x, y, z = cubic.witness_points.T
+    assert np.allclose(y, x**2) and np.allclose(z, x**3)
+    assert found.complete and found.points.shape == (0, 3) and found.real_points.shape == (0, 3) and found.n_real == 0
+    assert repr(found).startswith("1 component of positive dimension, 0 isolated solutions")
+    # A line and a point beside it; unknowns in the order that is asked for.
+    found = hc.decompose(["x*(y - 1)", "x*(x - 2)"], variables="y x")
+    [line] = found.components
+    assert line[:4] == (1, 1, 1, True) and abs(line.witness_points[0, 1]) < 1e-12
+    assert found.real_points.round(12).tolist() == [[1, 2]] and found.multiplicities.tolist() == [1]
+    assert found == hc.decompose(["x*(y - 1)", "x*(x - 2)"], variables="y x") and found != hc.decompose("x^2")
+    # No equation that holds: nothing at all.
+    nothing = hc.decompose(["x - 1", "x - 2"])
+    assert (nothing.components, len(nothing.points), nothing.complete) == ([], 0, True)
+    few = hc.decompose(["x*y - 1"], max_paths=0)
+    assert few.unsearched and few.failed and not few.complete
 
 
 def test_families_at_special_targets():

@@ -1,6 +1,7 @@
 """Polynomial systems by homotopy continuation.
 
 * `solve`: all isolated solutions of a system.
+* `decompose`: all solutions of a system, components of positive dimension too.
 * `Family`: a system with parameters, solved once and tracked to thousands of parameter points.
 * `mixed_volume`: how many solutions a generic system with the same terms has.
 * `certify`: proofs that solutions exist, are distinct, are real.
@@ -8,6 +9,7 @@
 Arrays in, arrays out. Work runs on all cores without Python's lock, and Ctrl-C leaves what was found.
 """
 
+from ._decompose import Component, Decomposition, decompose
 from ._errors import Error, InputError, InternalError, UndeterminedError
 from ._family import Compiled, End, Family, Fibre, Tracked
 from ._native import __version__
@@ -21,6 +23,8 @@ del _function
 __all__ = [
     "Certificates",
     "Compiled",
+    "Component",
+    "Decomposition",
     "End",
     "Error",
     "Family",
@@ -32,6 +36,7 @@ __all__ = [
     "UndeterminedError",
     "Unresolved",
     "certify",
+    "decompose",
     "mixed_volume",
     "solve",
 ]

@@ -11,6 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 __all__ = [
     "Certificates",
     "Compiled",
+    "Component",
+    "Decomposition",
     "End",
     "Error",
     "Family",
@@ -22,6 +24,7 @@ __all__ = [
     "UndeterminedError",
     "Unresolved",
     "certify",
+    "decompose",
     "mixed_volume",
     "solve",
 ]
@@ -88,6 +91,39 @@ class Solutions:
     def __len__(self) -> int: ...
     def __iter__(self) -> Iterator[NDArray[np.complex128]]: ...
     def __getitem__(self, which: Any) -> Any: ...
+    def _repr_html_(self) -> str: ...
+    def to_json(self) -> str: ...
+
+class Component(NamedTuple):
+    dimension: int
+    degree: int
+    multiplicity: int
+    irreducible: bool
+    witness_points: NDArray[np.complex128]
+
+class Decomposition:
+    variables: list[str]
+    components: list[Component]
+    points: NDArray[np.complex128]
+    multiplicities: NDArray[np.int64]
+    singular: NDArray[np.bool_]
+    is_real: NDArray[np.bool_]
+    unresolved: list[Unresolved]
+    unsearched: list[int]
+    failed: int
+    partial: bool
+    summary: str
+    seed: int
+    seconds: float
+    def __init__(self, found: dict[str, Any], shown: dict[str, str] | None = None) -> None: ...
+    @property
+    def real_points(self) -> NDArray[np.float64]: ...
+    @property
+    def n_real(self) -> int: ...
+    @property
+    def complete(self) -> bool: ...
+    def __eq__(self, other: object) -> bool: ...
+    __hash__: None  # type: ignore[assignment]
     def _repr_html_(self) -> str: ...
     def to_json(self) -> str: ...
 
@@ -217,6 +253,15 @@ def solve(
     threads: int | None = None,
     progress: _Progress = True,
 ) -> Solutions: ...
+def decompose(
+    system: _System,
+    *,
+    variables: _Names | None = None,
+    seed: int = 0,
+    max_paths: int = 1_000_000,
+    threads: int | None = None,
+    progress: _Progress = True,
+) -> Decomposition: ...
 def mixed_volume(
     system: _System,
     *,

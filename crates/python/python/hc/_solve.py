@@ -31,7 +31,7 @@ def complex_rows(name, values):
     return array
 
 
-def _read(given, variables, *others):
+def read_system(given, variables, *others):
     """A system and its variables as lists or text, and the names of all symbols in them and in others."""
     given = given if isinstance(given, str) else listed(given)
     variables = split(variables)
@@ -99,7 +99,7 @@ def solve(
     [[-2.0, -1.0], [-1.0, -2.0], [1.0, 2.0], [2.0, 1.0]]
     """
     groups = [split(group) for group in listed(groups)] if groups is not None else []
-    system, variables, symbols = _read(system, variables, groups)
+    system, variables, symbols = read_system(system, variables, groups)
     if start == "multihomogeneous" and not groups:
         raise InputError('say which unknowns form groups, for instance groups=[["x"], ["y"]]')
     settings = {
@@ -142,7 +142,7 @@ def mixed_volume(system, *, variables=None, threads=None, progress=True):
     >>> hc.mixed_volume(["x^2*y + x + 1", "x*y^2 + y + 2"])
     3
     """
-    system, variables, symbols = _read(system, variables)
+    system, variables, symbols = read_system(system, variables)
     with symbols.in_errors():
         given = _system(system, variables, symbols)
         return call(_native.mixed_volume, given, threads=threads, progress=progress)
@@ -169,7 +169,7 @@ def certify(system, points, *, variables=None, threads=None, progress=True):
     2 of 3 points certified: 2 distinct solutions, 2 of them proved real
     """
     rows = complex_rows("points", points.points if isinstance(points, Solutions) else points)
-    system, variables, symbols = _read(system, variables)
+    system, variables, symbols = read_system(system, variables)
     with symbols.in_errors():
         given = _system(system, variables, symbols)
         return call(_native.certify, given, rows, threads=threads, progress=progress, wrap=Certificates)

@@ -1,0 +1,42 @@
+//! `hc.decompose`.
+
+use crate::errors::{Failure, guarded};
+use crate::system::Given;
+use crate::work::{Done, How, run, whole};
+use hc::SolveOptions;
+use hc::witness::{Decomposition, decompose as find};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use serde::Serialize;
+
+/// The JSON of the program, without the seconds.
+#[derive(Serialize)]
+struct Report<'a> {
+    variables: &'a [String],
+    seed: u64,
+    #[serde(flatten)]
+    found: &'a Decomposition,
+}
+
+/// All solutions of a system: a dict of the JSON and the words of the program, and the seconds.
+#[pyfunction]
+pub(crate) fn decompose(
+    py: Python<'_>,
+    system: Given,
+    seed: u64,
+    max_paths: u64,
+    how: How,
+) -> PyResult<Bound<'_, PyAny>> {
+    guarded(|| {
+        let system = system.system()?;
+        let options = SolveOptions::new().seed(seed).max_paths(max_paths);
+        let Done { result: found, stopped, seconds } = run(py, &how, move |monitor| find(&system, &options, monitor))?;
+        let found = found.map_err(Failure::input)?;
+        let report = Report { variables: &found.variables, seed, found: &found };
+        let result = PyDict::new(py);
+        result.set_item("json", serde_json::to_string_pretty(&report).map_err(Failure::input)? + "\n")?;
+        result.set_item("summary", found.to_string())?;
+        result.set_item("seconds", seconds)?;
+        whole(py, result.into_any(), stopped)
+    })
+}
