@@ -98,7 +98,7 @@ pub(crate) struct Outcome {
 
 /// The memory of a run, which may be used again.
 #[derive(Debug, Default)]
-pub(crate) struct Room<M, B> {
+pub(crate) struct Workspace<M, B> {
     pub(crate) memory: M,
     pub(crate) batch: B,
     /// Paths that are tracked, then those that are doubtful. The paths that a run leaves here stay
@@ -111,38 +111,38 @@ pub(crate) fn run<W: Work>(
     work: &mut W,
     count: usize,
     policy: &Policy,
-    room: &mut Room<W::Memory, W::Batch>,
+    workspace: &mut Workspace<W::Memory, W::Batch>,
     monitor: &Monitor,
 ) -> Outcome {
-    room.which.clear();
-    room.which.extend(0..count);
+    workspace.which.clear();
+    workspace.which.extend(0..count);
     let mut retracked = 0;
-    let flow = pass(work, Round::FIRST, policy, room);
+    let flow = pass(work, Round::FIRST, policy, workspace);
     if flow != Flow::On {
         return Outcome { retracked, flow };
     }
     for level in 0..=policy.retries {
-        let before = room.which.len();
+        let before = workspace.which.len();
         for chart in usize::from(level == 0)..policy.charts {
-            if room.which.is_empty() || monitor.is_cancelled() {
+            if workspace.which.is_empty() || monitor.is_cancelled() {
                 return Outcome { retracked, flow };
             }
-            retracked += room.which.len();
-            let flow = pass(work, Round { level, chart }, policy, room);
+            retracked += workspace.which.len();
+            let flow = pass(work, Round { level, chart }, policy, workspace);
             if flow != Flow::On {
                 return Outcome { retracked, flow };
             }
         }
-        if work.is_hopeless(level, before, room.which.len()) {
+        if work.is_hopeless(level, before, workspace.which.len()) {
             break;
         }
     }
     Outcome { retracked, flow }
 }
 
-/// One round over `room.which`, which afterwards holds the doubtful paths.
-fn pass<W: Work>(work: &mut W, round: Round, policy: &Policy, room: &mut Room<W::Memory, W::Batch>) -> Flow {
-    let Room { memory, batch, which } = room;
+/// One round over `workspace.which`, which afterwards holds the doubtful paths.
+fn pass<W: Work>(work: &mut W, round: Round, policy: &Policy, workspace: &mut Workspace<W::Memory, W::Batch>) -> Flow {
+    let Workspace { memory, batch, which } = workspace;
     work.begin(round, which.len());
     let (mut done, mut size) = (0, if round.is_first() { policy.first } else { policy.batch });
     while done < which.len() {

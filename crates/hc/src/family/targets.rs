@@ -11,7 +11,7 @@ use crate::checkpoint::{Checkpoint, Job, Part, Recordable, Recorded};
 use crate::endgame::EndgameOptions;
 use crate::monitor::Monitor;
 use crate::ranks::{Lead, Ranks, Shareable, Shared, Worker};
-use crate::runner::{Flow, Policy, Room, Round, Work, run};
+use crate::runner::{Flow, Policy, Round, Work, Workspace, run};
 use crate::solve::{Solutions, SolveOptions, solve_member};
 // One thread needs no trait for `map`.
 #[cfg_attr(not(feature = "threads"), allow(unused_imports))]
@@ -168,7 +168,7 @@ impl<'a> Targets<'a> {
         let policy = Policy { retries: 0, charts: 1, first: block, batch: block };
         let part = checkpoint.as_ref().map(|checkpoint| Part { checkpoint, number: 0 });
         let mut work = Recorded::new(Shared::new(each, lead, monitor), part, monitor);
-        run(&mut work, count, &policy, &mut Room::default(), monitor);
+        run(&mut work, count, &policy, &mut Workspace::default(), monitor);
         if let Some(error) = checkpoint.as_ref().and_then(Checkpoint::failure) {
             return Err(error.into());
         }

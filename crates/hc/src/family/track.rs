@@ -7,7 +7,7 @@ use crate::homotopy::Segment;
 use crate::monitor::Monitor;
 use crate::ranks::{Lead, Shared};
 use crate::refine::Refiner;
-use crate::runner::{Flow, Policy, Room, run};
+use crate::runner::{Flow, Policy, Workspace, run};
 use crate::tracker::{PathEnd, PathSet, Tracker, TrackerOptions, Trackers};
 use num_complex::Complex64;
 use poly::Evaluate;
@@ -106,7 +106,7 @@ pub struct FibreTracker<'a, E: Evaluate, C: Charts = OneChart> {
     paths: PathSet,
     segment: Segment,
     ends: [Vec<Complex64>; 2],
-    room: Room<Scratch<'a, E>, PathSet>,
+    workspace: Workspace<Scratch<'a, E>, PathSet>,
 }
 
 impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
@@ -131,7 +131,7 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
             paths: PathSet::with_capacity(dimension, paths),
             segment: Segment::new(&fibre.parameters, &fibre.parameters),
             ends: ends(fibre),
-            room: Room { memory: Scratch::new(system, lanes, fibre, paths), batch, which },
+            workspace: Workspace { memory: Scratch::new(system, lanes, fibre, paths), batch, which },
         }
     }
 
@@ -205,9 +205,9 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
         };
         let policy = Policy { retries: options.retries, charts: C::COUNT, first: size, batch: size };
         let mut work = Shared::new(FibreWork::new(tracking, self.system), lead, &self.monitor);
-        let outcome = run(&mut work, fibre.len(), &policy, &mut self.room, &self.monitor);
+        let outcome = run(&mut work, fibre.len(), &policy, &mut self.workspace, &self.monitor);
         let found = outcome.flow == Flow::Found;
-        let failed = if found { 0 } else { self.room.which.len() };
+        let failed = if found { 0 } else { self.workspace.which.len() };
         (PathCounts { retracked: outcome.retracked, ..self.counts(failed) }, found)
     }
 

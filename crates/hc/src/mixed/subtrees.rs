@@ -7,7 +7,7 @@ use super::space::Space;
 use crate::checkpoint::{Hash, Job, System};
 use crate::monitor::{Monitor, Stage};
 use crate::ranks::{Lead, Ranks, Shareable, Shared, Worker};
-use crate::runner::{Flow, Policy, Room, Round, Work, run};
+use crate::runner::{Flow, Policy, Round, Work, Workspace, run};
 // One thread needs no trait for `map`.
 #[cfg_attr(not(feature = "threads"), allow(unused_imports))]
 use crate::threads::{IntoParallelRefIterator, ParallelIterator};
@@ -74,7 +74,7 @@ fn led(
     sum.add(Some(total(vec![first])?));
     let mut work = Shared::new(sum, Some(lead), monitor);
     let policy = Policy { retries: 0, charts: 1, first: BATCH, batch: BATCH };
-    run(&mut work, count, &policy, &mut Room::default(), monitor);
+    run(&mut work, count, &policy, &mut Workspace::default(), monitor);
     if let Some(error) = lead.failure() {
         return Err(error.into());
     }

@@ -12,7 +12,7 @@ use crate::homotopy::Segment;
 use crate::monitor::{self, Monitor};
 use crate::ranks::{Lead, Shared};
 use crate::refine::{Refined, Refiner};
-use crate::runner::{Flow, Policy, Room, Round, Work, run};
+use crate::runner::{Flow, Policy, Round, Work, Workspace, run};
 use crate::start::Source;
 use crate::threads::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use crate::tracker::{PathEnd, TrackerOptions, Trackers};
@@ -80,13 +80,13 @@ pub(super) fn follow<E: Evaluate, S: Source<E>>(route: Route<'_, '_, E, S>, tria
     let mut work = Recorded::new(Shared::new(CoefficientStage::new(route, trial), lead, monitor), record, monitor);
     let first = if trial { TRIAL } else { CHUNK };
     let policy = Policy { retries: options.paths.retries, charts: 1, first, batch: CHUNK };
-    let mut room = Room::default();
-    let outcome = run(&mut work, count, &policy, &mut room, monitor);
+    let mut workspace = Workspace::default();
+    let outcome = run(&mut work, count, &policy, &mut workspace, monitor);
     let mut stage = work.into_inner().into_inner();
     match outcome.flow {
         Flow::Abandoned => return stage.finish(outcome.retracked, true),
         Flow::Found => stage.drop_others(),
-        Flow::On => stage.lose_doubtful(&room.which),
+        Flow::On => stage.lose_doubtful(&workspace.which),
     }
     stage.finish(outcome.retracked, false)
 }
