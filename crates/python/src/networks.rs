@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Mutex, PoisonError};
 use tdoa::accuracy::cramer_rao as bound;
-use tdoa::minimal::{SolveError, SolveOptions, Solver, Start};
+use tdoa::minimal::{MinimalOptions, MinimalStart, SolveError, Solver};
 use tdoa::{Layout, MinimalSolution, Network, Pseudoranges, ReceiverFault, SimulateOptions};
 
 /// Solvers that are not in use; they keep their start solutions and their memory.
@@ -29,12 +29,12 @@ pub(crate) fn solve_network<'py>(
     how: How,
 ) -> PyResult<Bound<'py, PyAny>> {
     guarded(|| {
-        let mut options = SolveOptions::default();
+        let mut options = MinimalOptions::default();
         options.tolerance = tolerance.unwrap_or(options.tolerance);
         options.first_under = first_under;
         options.start = match start {
-            "stored" => Start::Stored,
-            "polyhedral" => Start::Polyhedral,
+            "stored" => MinimalStart::Stored,
+            "polyhedral" => MinimalStart::Polyhedral,
             other => return Err(Failure::Input(format!("start must be stored or polyhedral, not {other:?}"))),
         };
         for (name, value) in [("tolerance", Some(options.tolerance)), ("first_under", first_under)] {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
-use tdoa::minimal::{SolveOptions, Solver, Start};
+use tdoa::minimal::{MinimalOptions, MinimalStart, Solver};
 use tdoa::quantity::{coordinate, decimals};
 use tdoa::read::read;
 use tdoa::summary::networks;
@@ -23,7 +23,7 @@ pub(crate) struct Arguments {
     input: crate::units::InputArguments,
     /// How far below zero a distance may lie for a network to count as physical, as a share of the
     /// size of the data; for noisy data the noise.
-    #[arg(long, default_value_t = SolveOptions::default().tolerance)]
+    #[arg(long, default_value_t = MinimalOptions::default().tolerance)]
     tolerance: f64,
     /// Where paths start: at the stored solutions of a generic instance, or at a polyhedral start
     /// system computed for these data.
@@ -73,12 +73,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.first_under.is_some_and(|v| v.is_nan() || v < 0.0) {
         return Err(Failure::Unusable("--first-under must not be negative".to_string()));
     }
-    let mut options = SolveOptions::default();
+    let mut options = MinimalOptions::default();
     options.first_under = arguments.first_under;
     options.tolerance = arguments.tolerance;
     options.start = match arguments.start {
-        StartArgument::Stored => Start::Stored,
-        StartArgument::Polyhedral => Start::Polyhedral,
+        StartArgument::Stored => MinimalStart::Stored,
+        StartArgument::Polyhedral => MinimalStart::Polyhedral,
     };
     let monitor = Monitor::heeding(interrupt::watch()?);
     let progress = || {

@@ -1,7 +1,7 @@
 //! The calibration and the exact solvers on simulated networks, on all cores.
 
 use divan::{Bencher, black_box};
-use tdoa::minimal::{SolveOptions, Solver};
+use tdoa::minimal::{MinimalOptions, Solver};
 use tdoa::{CalibrateOptions, Layout, SimulateOptions, calibrate, simulate};
 
 fn main() {
@@ -27,5 +27,5 @@ fn exact(bencher: Bencher<'_, '_>, (receivers, transmitters): (usize, usize)) {
     options.layout = Layout::Normal;
     let measured = simulate(&options).expect("a network").pseudoranges;
     let mut solver = Solver::new();
-    bencher.bench_local(|| solver.solve(black_box(&measured), &SolveOptions::default()));
+    bencher.bench_local(|| solver.solve(black_box(&measured), &MinimalOptions::default()));
 }

@@ -5,13 +5,13 @@
 
 use std::time::Instant;
 use tdoa::align::align;
-use tdoa::minimal::{SolveOptions, Solver};
+use tdoa::minimal::{MinimalOptions, Solver};
 use tdoa::{SimulateOptions, simulate};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // A solver keeps its start solutions and its memory for the next network; here each is used
     // once.
-    let (mut solver, exact) = (Solver::new(), SolveOptions::default());
+    let (mut solver, exact) = (Solver::new(), MinimalOptions::default());
     println!("size    paths  lost  real  physical  milliseconds  truth among them");
     for (receivers, transmitters) in [(6, 3), (7, 3), (6, 4), (5, 4), (5, 5), (4, 5), (4, 6), (5, 6), (7, 4), (9, 3)] {
         let mut options = SimulateOptions::default();

@@ -4,16 +4,16 @@
 //!     cargo run --release -p tdoa --example memory
 
 use allocation_counter::measure;
-use tdoa::minimal::{SolveOptions, Solver};
+use tdoa::minimal::{MinimalOptions, Solver};
 use tdoa::{Layout, Pseudoranges, SimulateOptions, simulate};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // What the process allocates once is no solver's.
-    Solver::new().solve(&problem(5, 6, 0)?, &SolveOptions::default())?;
+    Solver::new().solve(&problem(5, 6, 0)?, &MinimalOptions::default())?;
     println!("size   kept by the solver  of later solves: largest peak  most allocations  of these in the result");
     for (receivers, transmitters) in [(6, 3), (5, 4), (4, 5), (5, 6)] {
         let problems = (0..20).map(|seed| problem(receivers, transmitters, seed)).collect::<Result<Vec<_>, _>>()?;
-        let (mut solver, options) = (Solver::new(), SolveOptions::default());
+        let (mut solver, options) = (Solver::new(), MinimalOptions::default());
         let mut first = None;
         let start = measure(|| first = solver.solve(&problems[0], &options).ok());
         let result = measure(|| drop(first.clone()));

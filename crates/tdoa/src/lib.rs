@@ -40,7 +40,7 @@
 //!
 //! // Six receivers and three transmitters alone have a few exact solutions, best first: some with all distances positive, the others not.
 //! let small = measured.select(&[2, 3, 4, 5, 6, 7], &[0, 1, 2]);
-//! let exact = tdoa::minimal::solve(&small, &tdoa::minimal::SolveOptions::default())?;
+//! let exact = tdoa::minimal::solve(&small, &tdoa::minimal::MinimalOptions::default())?;
 //! assert!(exact.paths.failed == 0 && exact.candidates[0].physical && exact.candidates[0].residual < 1e-9);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

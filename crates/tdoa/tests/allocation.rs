@@ -2,14 +2,14 @@
 //! the paths.
 
 use allocation_counter::measure;
-use tdoa::minimal::{SolveOptions, Solver};
+use tdoa::minimal::{MinimalOptions, Solver};
 use tdoa::{Layout, SimulateOptions, simulate};
 
 #[test]
 fn later_solves_allocate_their_results_alone() {
     let mut retracked = 0;
     for (receivers, transmitters) in [(6, 3), (5, 4), (4, 5), (5, 6)] {
-        let (mut solver, solve_options) = (Solver::new(), SolveOptions::default());
+        let (mut solver, solve_options) = (Solver::new(), MinimalOptions::default());
         for seed in 0..40 {
             let mut options = SimulateOptions::default();
             (options.receivers, options.transmitters, options.seed) = (receivers, transmitters, seed);

@@ -7,7 +7,7 @@ use cli::{Failure, output};
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 use std::fmt::Write;
 use std::path::PathBuf;
-use tdoa::minimal::{RootProofs, SolveError, SolveOptions, Solver};
+use tdoa::minimal::{MinimalOptions, RootProofs, SolveError, Solver};
 use tdoa::{Layout, SimulateOptions, Simulation, simulate};
 
 /// What all of them take.
@@ -112,7 +112,7 @@ pub(super) fn hurry(arguments: &Arguments) -> Result<(), Failure> {
          |---|---|---|---|---|---|\n",
         arguments.command("hurry")
     );
-    let mut options = SolveOptions::default();
+    let mut options = MinimalOptions::default();
     options.first_under = Some(1e-9);
     for &size in &arguments.configuration {
         let trials = arguments.each(size, |solver, simulation| hurry_trial(solver, simulation, &options))?;

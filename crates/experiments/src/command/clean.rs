@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::trials::clean::clean_trial;
-use tdoa::minimal::{SolveOptions, Solver};
+use tdoa::minimal::{MinimalOptions, Solver};
 
 use super::book::Rows;
 use super::chart::{Labels, Series, histogram};
@@ -39,7 +39,7 @@ pub(super) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
         let (size, seed) = trials[k];
         let simulation = normal(size, 0.0, seed)?;
         let started = thread_seconds();
-        let t = clean_trial(solver, &simulation, &SolveOptions::default()).map_err(Failure::unusable)?;
+        let t = clean_trial(solver, &simulation, &MinimalOptions::default()).map_err(Failure::unusable)?;
         let milliseconds = 1e3 * (thread_seconds() - started);
         let (p, c) = (&t.paths, &t.counts);
         Ok(format!(

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use tdoa::Pseudoranges;
-use tdoa::minimal::{SolveError, SolveOptions, Solver};
+use tdoa::minimal::{MinimalOptions, SolveError, Solver};
 
 use super::common::{Common, Size, normal};
 use super::statistics::short;
@@ -76,7 +76,7 @@ struct Counts {
 
 /// Seconds of each solve on one thread.
 fn on_one(networks: &[Pseudoranges]) -> Result<(Vec<f64>, Counts), Failure> {
-    let (mut solver, options) = (warm(networks)?, SolveOptions::default());
+    let (mut solver, options) = (warm(networks)?, MinimalOptions::default());
     let mut counts = Counts::default();
     let mut seconds = Vec::with_capacity(networks.len());
     for network in networks {
@@ -96,7 +96,7 @@ fn on_one(networks: &[Pseudoranges]) -> Result<(Vec<f64>, Counts), Failure> {
 /// Seconds for all networks, each thread with a solver of its own.
 fn on_all(networks: &[Pseudoranges], threads: usize) -> Result<f64, Failure> {
     let solvers = (0..threads).map(|_| warm(networks)).collect::<Result<Vec<Solver>, Failure>>()?;
-    let options = SolveOptions::default();
+    let options = MinimalOptions::default();
     let started = Instant::now();
     let work = solvers.into_par_iter().enumerate().map(|(thread, mut solver)| {
         for network in networks.iter().skip(thread).step_by(threads) {
@@ -112,7 +112,7 @@ fn on_all(networks: &[Pseudoranges], threads: usize) -> Result<f64, Failure> {
 fn warm(networks: &[Pseudoranges]) -> Result<Solver, Failure> {
     let mut solver = Solver::new();
     if let Some(first) = networks.first() {
-        solver.solve(first, &SolveOptions::default()).map_err(Failure::unusable)?;
+        solver.solve(first, &MinimalOptions::default()).map_err(Failure::unusable)?;
     }
     Ok(solver)
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use tdoa::minimal::{SolveOptions, Solver};
+use tdoa::minimal::{MinimalOptions, Solver};
 
 use super::book::Rows;
 use super::chart::{Labels, Series, histogram};
@@ -37,7 +37,7 @@ pub(super) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
     let table = Table::new(common, "trials.csv", HEADER, &keys, ranks);
     let rows = table.resume(Solver::new, |solver, k| {
         let simulation = normal(size, 0.0, seeds.start + k as u64)?;
-        let solution = solver.solve(&simulation.pseudoranges, &SolveOptions::default()).map_err(Failure::unusable)?;
+        let solution = solver.solve(&simulation.pseudoranges, &MinimalOptions::default()).map_err(Failure::unusable)?;
         let c = solution.counts;
         Ok(format!("{},{},{},{},{}", c.complex, c.real, c.positive_definite, c.physical, solution.paths.failed))
     })?;

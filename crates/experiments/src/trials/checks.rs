@@ -6,7 +6,7 @@ use serde::Serialize;
 use std::time::Instant;
 use tdoa::Simulation;
 use tdoa::accuracy::position_error;
-use tdoa::minimal::{RootProofs, SolveError, SolveOptions, Solver, Start};
+use tdoa::minimal::{MinimalOptions, MinimalStart, RootProofs, SolveError, Solver};
 use tdoa::{MinimalSolution, PathCounts, RootCounts};
 
 /// A candidate this near the truth (relative to the network's size) is the truth.
@@ -18,7 +18,7 @@ const FOUND: f64 = 1e-4;
 /// # Errors
 /// If the solver refuses the instance.
 pub fn proof_trial(solver: &mut Solver, simulation: &Simulation) -> Result<(RootProofs, usize), SolveError> {
-    let solution = solver.solve(&simulation.pseudoranges, &SolveOptions::default())?;
+    let solution = solver.solve(&simulation.pseudoranges, &MinimalOptions::default())?;
     Ok((solver.prove().unwrap_or_default(), solution.counts.real))
 }
 
@@ -40,9 +40,9 @@ pub struct RouteTrial {
 /// # Errors
 /// If the solver refuses the instance.
 pub fn route_trial(solver: &mut Solver, simulation: &Simulation) -> Result<RouteTrial, SolveError> {
-    let mut options = SolveOptions::default();
+    let mut options = MinimalOptions::default();
     let stored = solver.solve(&simulation.pseudoranges, &options)?;
-    options.start = Start::Polyhedral;
+    options.start = MinimalStart::Polyhedral;
     let polyhedral = solver.solve(&simulation.pseudoranges, &options)?;
     let agree = same_networks(&stored, &polyhedral);
     Ok(RouteTrial { stored: stored.counts, polyhedral: polyhedral.counts, paths: polyhedral.paths, agree })
@@ -67,7 +67,7 @@ pub struct ChartTrial {
 /// # Errors
 /// If the solver refuses the instance.
 pub fn chart_trial(solver: &mut Solver, simulation: &Simulation, retries: u32) -> Result<ChartTrial, SolveError> {
-    let mut options = SolveOptions::default();
+    let mut options = MinimalOptions::default();
     options.paths.retries = retries;
     let started = Instant::now();
     let solution = solver.solve(&simulation.pseudoranges, &options)?;
@@ -116,9 +116,9 @@ pub struct HurryTrial {
 pub fn hurry_trial(
     solver: &mut Solver,
     simulation: &Simulation,
-    hurried: &SolveOptions,
+    hurried: &MinimalOptions,
 ) -> Result<HurryTrial, SolveError> {
-    let mut timed = |options: &SolveOptions| {
+    let mut timed = |options: &MinimalOptions| {
         let started = Instant::now();
         let solution = solver.solve(&simulation.pseudoranges, options)?;
         let seconds = started.elapsed().as_secs_f64();
@@ -129,7 +129,7 @@ pub fn hurry_trial(
         let truth = near(&solution);
         Ok::<_, SolveError>((solution, seconds, truth))
     };
-    let (full, seconds_full, truth_full) = timed(&SolveOptions::default())?;
+    let (full, seconds_full, truth_full) = timed(&MinimalOptions::default())?;
     let (fast, seconds, truth) = timed(hurried)?;
     Ok(HurryTrial {
         seconds_full,
@@ -145,7 +145,7 @@ pub fn hurry_trial(
 #[cfg(test)]
 mod tests {
     use super::hurry_trial;
-    use tdoa::minimal::{SolveOptions, Solver};
+    use tdoa::minimal::{MinimalOptions, Solver};
     use tdoa::{Layout, SimulateOptions, simulate};
 
     #[test]
@@ -153,7 +153,7 @@ mod tests {
         let mut simulated = SimulateOptions::default();
         (simulated.receivers, simulated.transmitters) = (6, 3);
         simulated.layout = Layout::Normal;
-        let mut options = SolveOptions::default();
+        let mut options = MinimalOptions::default();
         options.first_under = Some(1e-9);
         let trial = hurry_trial(&mut Solver::new(), &simulate(&simulated).unwrap(), &options).unwrap();
         assert!(trial.tracked <= 180 && trial.truth_full, "{trial:?}");

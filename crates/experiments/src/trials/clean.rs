@@ -4,7 +4,7 @@
 use serde::Serialize;
 use tdoa::Simulation;
 use tdoa::accuracy::{offset_error, position_error};
-use tdoa::minimal::{SolveError, SolveOptions, Solver};
+use tdoa::minimal::{MinimalOptions, SolveError, Solver};
 use tdoa::{PathCounts, RootCounts};
 
 /// A candidate this near the truth (relative, positions and offsets) is the truth.
@@ -39,7 +39,7 @@ pub struct CleanTrial {
 pub fn clean_trial(
     solver: &mut Solver,
     simulation: &Simulation,
-    options: &SolveOptions,
+    options: &MinimalOptions,
 ) -> Result<CleanTrial, SolveError> {
     let solution = solver.solve(&simulation.pseudoranges, options)?;
     let truth = &simulation.network;

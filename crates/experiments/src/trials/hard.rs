@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use tdoa::Network;
 use tdoa::Pseudoranges;
 use tdoa::accuracy::position_error;
-use tdoa::minimal::{SolveOptions, Solver};
+use tdoa::minimal::{MinimalOptions, Solver};
 
 /// A candidate whose positions are this near the truth (relative to the network's size) is the
 /// truth.
@@ -162,7 +162,7 @@ pub fn hard_trials(solver: &mut Solver, case: Case, networks: impl Iterator<Item
         let (m, n) = (truth.receivers.len(), truth.transmitters.len());
         let solved = Pseudoranges::new(m, n, truth.pseudoranges())
             .map_err(|e| e.to_string())
-            .and_then(|f| solver.solve(&f, &SolveOptions::default()).map_err(|e| e.to_string()));
+            .and_then(|f| solver.solve(&f, &MinimalOptions::default()).map_err(|e| e.to_string()));
         let solution = match solved {
             Ok(solution) => solution,
             Err(message) => {

@@ -6,7 +6,7 @@ use serde::Serialize;
 use tdoa::Candidate;
 use tdoa::Simulation;
 use tdoa::accuracy::{offset_error, position_error};
-use tdoa::minimal::{SolveError, SolveOptions, Solver};
+use tdoa::minimal::{MinimalOptions, SolveError, Solver};
 
 /// One noisy instance, solved without and with refinement. Errors are infinite where no candidate
 /// was left.
@@ -30,7 +30,7 @@ pub struct NoiseTrial {
 /// If the solver refuses the instance.
 pub fn noise_trial(solver: &mut Solver, simulation: &Simulation, noise: f64) -> Result<NoiseTrial, SolveError> {
     // Noise makes pairs of real roots complex and small distances negative.
-    let mut options = SolveOptions::default();
+    let mut options = MinimalOptions::default();
     (options.near_real, options.tolerance) = (0.1, (5.0 * noise).clamp(1e-6, 0.05));
     let measured = &simulation.pseudoranges;
     let minimal = matches!((measured.receivers(), measured.transmitters()), (6, 3) | (4, 5));

@@ -11,7 +11,7 @@ use super::hypotheses::{Hypotheses, generator};
 use crate::duplicates::step;
 use crate::median::median;
 use crate::minimal::subset::spread;
-use crate::minimal::{SolveOptions, Solver};
+use crate::minimal::{MinimalOptions, Solver};
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::PartialNetwork;
 
@@ -32,7 +32,7 @@ const COARSE: f64 = 1e-3;
 /// Proposes every candidate of a minimal solver (6r/3s, 5r/4s or 4r/5s), each call on one random,
 /// spread-out, completely measured subset.
 pub struct MinimalHypotheses {
-    options: SolveOptions,
+    options: MinimalOptions,
     solvers: Mutex<Vec<Solver>>,
     /// Calls that are answered; later ones propose nothing.
     most: usize,
@@ -49,7 +49,7 @@ impl MinimalHypotheses {
     /// Hypotheses with settings for noisy data. Roots that noise has made slightly complex count as
     /// real, and distances may be negative by up to a twentieth of the network's size.
     pub fn new() -> Self {
-        let options = SolveOptions { near_real: 0.1, tolerance: 0.05, ..SolveOptions::default() };
+        let options = MinimalOptions { near_real: 0.1, tolerance: 0.05, ..MinimalOptions::default() };
         MinimalHypotheses { options, solvers: Mutex::new(Vec::new()), most: usize::MAX, monitor: Monitor::default() }
     }
 

@@ -6,7 +6,7 @@ use super::formulation::Formulation;
 use super::linear::LeastSquares;
 use super::nearest::Nearest;
 use super::normalised::{Normalised, rank};
-use super::options::{SolveOptions, Start};
+use super::options::{MinimalOptions, MinimalStart};
 use super::polish::Polisher;
 use super::proofs::{RootProofs, prove};
 use super::real::real_root;
@@ -70,7 +70,7 @@ impl<F: Formulation> Engine<F> {
     pub(crate) fn solve(
         &mut self,
         measured: &Pseudoranges,
-        options: &SolveOptions,
+        options: &MinimalOptions,
         monitor: &Monitor,
     ) -> Result<MinimalSolution, SolveError> {
         let size = (measured.receivers(), measured.transmitters());
@@ -84,8 +84,8 @@ impl<F: Formulation> Engine<F> {
             RootNetworks::<F> { measured, data, options, target, roots, counts: RootCounts::default(), candidates };
         self.finder.tracker.set_monitor(monitor);
         let (paths, stopped_early) = match options.start {
-            Start::Stored => self.finder.run(&mut found),
-            Start::Polyhedral => self.finder.run_polyhedral(&mut found, monitor)?,
+            MinimalStart::Stored => self.finder.run(&mut found),
+            MinimalStart::Polyhedral => self.finder.run_polyhedral(&mut found, monitor)?,
         };
         let RootNetworks { counts, mut candidates, .. } = found;
         rank(&mut candidates);
@@ -202,7 +202,7 @@ struct Roots<F: Formulation> {
 struct RootNetworks<'a, F: Formulation> {
     measured: &'a Pseudoranges,
     data: &'a Normalised,
-    options: &'a SolveOptions,
+    options: &'a MinimalOptions,
     target: &'a [Complex64],
     roots: &'a mut Roots<F>,
     counts: RootCounts,

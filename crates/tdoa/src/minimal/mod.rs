@@ -39,7 +39,7 @@ mod warning;
 
 pub use error::SolveError;
 pub use nodes::Nodes;
-pub use options::{SolveOptions, Start};
+pub use options::{MinimalOptions, MinimalStart};
 pub use proofs::RootProofs;
 pub use solution::{Candidate, MinimalSolution, PathCounts, RootCounts};
 pub use solver::{Solver, solve};

@@ -1,6 +1,6 @@
 //! Measurements in the form that the equations need.
 
-use super::options::SolveOptions;
+use super::options::MinimalOptions;
 use super::polish::Polisher;
 use super::solution::Candidate;
 use crate::network::Network;
@@ -49,7 +49,12 @@ impl Normalised {
     }
 
     /// A network in these units, polished over all measurements and judged.
-    pub(crate) fn candidate(&self, mut network: Network, options: &SolveOptions, polisher: &mut Polisher) -> Candidate {
+    pub(crate) fn candidate(
+        &self,
+        mut network: Network,
+        options: &MinimalOptions,
+        polisher: &mut Polisher,
+    ) -> Candidate {
         let condition = if options.polish { polisher.polish(&self.matrix, &mut network) } else { f64::NAN };
         let n = self.transmitters();
         let physical = (self.matrix.iter().enumerate()).all(|(k, f)| f - network.offsets[k % n] >= -options.tolerance);

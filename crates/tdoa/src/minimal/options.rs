@@ -5,7 +5,7 @@ use hc::family::FibreOptions;
 /// Settings of the minimal solvers.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct SolveOptions {
+pub struct MinimalOptions {
     /// How far below zero a distance f_ij - o_j may lie if a candidate is to count as physical,
     /// relative to the size of the data (root mean square of f_ij - f_1j). Default 1e-6; for noisy
     /// data, use the noise.
@@ -23,14 +23,14 @@ pub struct SolveOptions {
     pub first_under: Option<f64>,
     /// Settings for the paths.
     pub paths: FibreOptions,
-    /// Where paths start. Default [`Start::Stored`].
-    pub start: Start,
+    /// Where paths start. Default [`MinimalStart::Stored`].
+    pub start: MinimalStart,
 }
 
 /// Where the paths of the minimal solvers start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Start {
+pub enum MinimalStart {
     /// From the stored solutions of a generic instance: as many paths as roots.
     #[default]
     Stored,
@@ -41,7 +41,7 @@ pub enum Start {
     Polyhedral,
 }
 
-impl Default for SolveOptions {
+impl Default for MinimalOptions {
     fn default() -> Self {
         let mut paths = FibreOptions::default();
         paths.tracker.contraction = 0.2;
@@ -51,6 +51,13 @@ impl Default for SolveOptions {
         paths.tracker.beta_tau_last = 0.5;
         // Most paths take about 45 steps. One that takes many more is quicker in another chart.
         paths.tracker.max_steps = 400;
-        SolveOptions { tolerance: 1e-6, near_real: 0.0, polish: true, first_under: None, paths, start: Start::Stored }
+        MinimalOptions {
+            tolerance: 1e-6,
+            near_real: 0.0,
+            polish: true,
+            first_under: None,
+            paths,
+            start: MinimalStart::Stored,
+        }
     }
 }

@@ -44,7 +44,7 @@ pub struct MinimalSolution {
     /// The numbers of roots.
     pub counts: RootCounts,
     /// Whether the search was stopped at the first network that fits
-    /// ([`super::SolveOptions::first_under`]). Other networks may fit as well; `paths` and `counts`
+    /// ([`super::MinimalOptions::first_under`]). Other networks may fit as well; `paths` and `counts`
     /// cover the search up to that point.
     pub stopped_early: bool,
     /// What makes the result doubtful: lost paths, networks that the data cannot tell apart.

@@ -7,7 +7,7 @@ use super::error::SolveError;
 use super::formulation::Formulation;
 use super::linear::LeastSquares;
 use super::normalised::{Normalised, rank};
-use super::options::SolveOptions;
+use super::options::MinimalOptions;
 use super::planar::collinear::Collinear;
 use super::planar::four_five::FourFive;
 use super::planar::larger::extend;
@@ -25,7 +25,7 @@ use hc::tracker::PathResult;
 ///
 /// # Errors
 /// If the matrix is too small, a measurement is missing, or two nodes coincide.
-pub fn solve(measured: &Pseudoranges, options: &SolveOptions) -> Result<MinimalSolution, SolveError> {
+pub fn solve(measured: &Pseudoranges, options: &MinimalOptions) -> Result<MinimalSolution, SolveError> {
     Solver::new().solve(measured, options)
 }
 
@@ -92,7 +92,7 @@ impl Solver {
     /// # Errors
     /// If the matrix is too small or too large, a measurement is missing, two nodes coincide, or a
     /// setting of the tracker is out of range.
-    pub fn solve(&mut self, measured: &Pseudoranges, options: &SolveOptions) -> Result<MinimalSolution, SolveError> {
+    pub fn solve(&mut self, measured: &Pseudoranges, options: &MinimalOptions) -> Result<MinimalSolution, SolveError> {
         self.solve_watched(measured, options, &Monitor::default())
     }
 
@@ -103,7 +103,7 @@ impl Solver {
     pub fn solve_watched(
         &mut self,
         measured: &Pseudoranges,
-        options: &SolveOptions,
+        options: &MinimalOptions,
         monitor: &Monitor,
     ) -> Result<MinimalSolution, SolveError> {
         options.paths.validate()?;
@@ -131,7 +131,7 @@ impl Solver {
         line: &Collinear,
         candidates: &mut Vec<Candidate>,
         measured: &Pseudoranges,
-        options: &SolveOptions,
+        options: &MinimalOptions,
     ) {
         let data = &self.data;
         candidates.retain(|candidate| {
@@ -170,7 +170,7 @@ impl Solver {
         &mut self,
         method: Method,
         measured: &Pseudoranges,
-        options: &SolveOptions,
+        options: &MinimalOptions,
         monitor: &Monitor,
     ) -> Result<MinimalSolution, SolveError> {
         self.last = Some(method);
@@ -192,7 +192,7 @@ impl Solver {
 fn through<F: Formulation>(
     engine: &mut Option<Engine<F>>,
     measured: &Pseudoranges,
-    options: &SolveOptions,
+    options: &MinimalOptions,
     monitor: &Monitor,
     records: &mut Vec<PathResult>,
 ) -> Result<MinimalSolution, SolveError> {
@@ -202,7 +202,7 @@ fn through<F: Formulation>(
     } else {
         let part = subset::best(measured, F::RECEIVERS, F::TRANSMITTERS);
         // Only all measurements together tell which candidate of the part is the network.
-        let whole = SolveOptions { first_under: None, ..options.clone() };
+        let whole = MinimalOptions { first_under: None, ..options.clone() };
         let solution = engine.solve(&measured.select(&part.receivers, &part.transmitters), &whole, monitor)?;
         extend(measured, &part, solution, options)
     };
@@ -213,7 +213,7 @@ fn through<F: Formulation>(
 
 /// Seven or more receivers, four or more transmitters: the offsets of the four best spread
 /// transmitters by rank, then everything linearly.
-fn seven_four(measured: &Pseudoranges, options: &SolveOptions) -> MinimalSolution {
+fn seven_four(measured: &Pseudoranges, options: &MinimalOptions) -> MinimalSolution {
     let m = measured.receivers();
     let four = subset::best(measured, m, 4).transmitters;
     let part = Subset { receivers: (0..m).collect(), transmitters: four };
@@ -248,7 +248,7 @@ fn seven_four(measured: &Pseudoranges, options: &SolveOptions) -> MinimalSolutio
 mod tests {
     use super::Solver;
     use crate::minimal::MinimalSolution;
-    use crate::minimal::{SolveOptions, Start};
+    use crate::minimal::{MinimalOptions, MinimalStart};
     use crate::simulate::{Layout, SimulateOptions, simulate};
 
     /// The stored start and a polyhedral one give one set of networks, no more and no fewer; of
@@ -267,9 +267,9 @@ mod tests {
                     ..SimulateOptions::default()
                 })
                 .unwrap();
-                let mut options = SolveOptions::default();
+                let mut options = MinimalOptions::default();
                 let stored = solver.solve(&simulation.pseudoranges, &options).unwrap();
-                options.start = Start::Polyhedral;
+                options.start = MinimalStart::Polyhedral;
                 let scratch = solver.solve(&simulation.pseudoranges, &options).unwrap();
                 assert_eq!((scratch.counts, scratch.paths.failed), (stored.counts, 0), "seed {seed}");
                 // In order of the first offset, the candidates agree one by one.

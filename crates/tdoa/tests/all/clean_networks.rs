@@ -4,7 +4,7 @@
 use crate::common::clean;
 use tdoa::MinimalSolution;
 use tdoa::accuracy::{offset_error, position_error};
-use tdoa::minimal::{SolveOptions, Solver};
+use tdoa::minimal::{MinimalOptions, Solver};
 
 /// Solves `count` networks of a size: no path is lost, the truth is found, and with at most 1e-12
 /// of error in the median.
@@ -15,7 +15,7 @@ fn solve_all(receivers: usize, transmitters: usize, count: u64) -> Vec<MinimalSo
     let mut solutions = Vec::new();
     for seed in 0..count {
         let simulation = clean(receivers, transmitters, seed);
-        let solution = solver.solve(&simulation.pseudoranges, &SolveOptions::default()).unwrap();
+        let solution = solver.solve(&simulation.pseudoranges, &MinimalOptions::default()).unwrap();
         let physical = solution.candidates.iter().filter(|c| c.physical).map(|c| &c.network);
         let truth = &simulation.network;
         let both = physical.map(|network| [position_error(network, truth), offset_error(network, truth)]);
@@ -60,7 +60,7 @@ fn all_roots_are_proved_distinct() {
     for (receivers, transmitters, roots) in [(6, 3, 180), (5, 4, 152), (5, 6, 5)] {
         for seed in 0..2 {
             let measured = clean(receivers, transmitters, seed).pseudoranges;
-            let solution = solver.solve(&measured, &SolveOptions::default()).unwrap();
+            let solution = solver.solve(&measured, &MinimalOptions::default()).unwrap();
             let proofs = solver.prove().unwrap();
             assert_eq!((proofs.roots, proofs.proved, proofs.unseparated), (roots, roots, 0));
             assert_eq!(proofs.real, solution.counts.real);
@@ -73,7 +73,7 @@ fn all_roots_are_proved_distinct() {
 #[test]
 fn real_roots_known_roughly_are_real() {
     let mut solver = Solver::new();
-    let solution = solver.solve(&clean(4, 6, 7315).pseudoranges, &SolveOptions::default()).unwrap();
+    let solution = solver.solve(&clean(4, 6, 7315).pseudoranges, &MinimalOptions::default()).unwrap();
     let proofs = solver.prove().unwrap();
     assert_eq!((proofs.roots, proofs.proved, proofs.unseparated), (344, 344, 0));
     assert_eq!(proofs.real, solution.counts.real);
@@ -82,7 +82,7 @@ fn real_roots_known_roughly_are_real() {
 #[test]
 fn the_first_network_that_fits_ends_the_search() {
     // One equation more than unknowns: only the true network fits.
-    let mut options = SolveOptions::default();
+    let mut options = MinimalOptions::default();
     options.first_under = Some(1e-9);
     let mut solver = Solver::new();
     let mut tracked = 0;
@@ -98,7 +98,7 @@ fn the_first_network_that_fits_ends_the_search() {
     // What cannot be reached is no reason to give less than everything.
     options.first_under = Some(0.0);
     let measured = clean(5, 4, 0).pseudoranges;
-    let all = solver.solve(&measured, &SolveOptions::default()).unwrap();
+    let all = solver.solve(&measured, &MinimalOptions::default()).unwrap();
     assert_eq!(solver.solve(&measured, &options).unwrap(), all);
 }
 
@@ -106,7 +106,7 @@ fn the_first_network_that_fits_ends_the_search() {
 /// before they went on in other charts.
 #[test]
 fn hard_paths_are_recovered() {
-    let solution = Solver::new().solve(&clean(5, 4, 1943).pseudoranges, &SolveOptions::default()).unwrap();
+    let solution = Solver::new().solve(&clean(5, 4, 1943).pseudoranges, &MinimalOptions::default()).unwrap();
     assert_eq!((solution.paths.failed, solution.paths.finite), (0, 152));
     assert!(solution.counts.real.is_multiple_of(2));
 }
@@ -122,7 +122,7 @@ fn jumped_paths_are_seen() {
         [(6, 3, 393), (6, 3, 4335), (4, 5, 209), (4, 5, 413), (4, 5, 3261), (4, 5, 3887), (4, 5, 6832)]
     {
         let measured = clean(receivers, transmitters, seed).pseudoranges;
-        let solution = solver.solve(&measured, &SolveOptions::default()).unwrap();
+        let solution = solver.solve(&measured, &MinimalOptions::default()).unwrap();
         let name = format!("{receivers}r/{transmitters}s, seed {seed}");
         assert!(solution.paths.failed == 0 && solution.counts.real.is_multiple_of(2), "{name}: {:?}", solution.paths);
     }

@@ -2,7 +2,7 @@
 
 use crate::common::clean;
 use tdoa::accuracy::position_error;
-use tdoa::minimal::{Nodes, SolveOptions, SolveWarning, Solver};
+use tdoa::minimal::{MinimalOptions, Nodes, SolveWarning, Solver};
 use tdoa::{Candidate, MinimalSolution, Network, Pseudoranges};
 
 /// Solves networks of 6 receivers and 3 transmitters made hard: the truth is found in each.
@@ -13,7 +13,7 @@ fn all_found(count: u64, harden: impl Fn(&mut Network)) -> Vec<MinimalSolution> 
         let mut truth = clean(6, 3, seed).network;
         harden(&mut truth);
         let measured = Pseudoranges::new(6, 3, truth.pseudoranges()).unwrap();
-        let solution = solver.solve(&measured, &SolveOptions::default()).unwrap();
+        let solution = solver.solve(&measured, &MinimalOptions::default()).unwrap();
         let found = |c: &Candidate| c.physical && position_error(&c.network, &truth) < 1e-3;
         assert!(solution.candidates.iter().any(found), "seed {seed}");
         solutions.push(solution);
@@ -108,7 +108,7 @@ fn a_symmetric_network_ends_in_time_and_says_what_is_lost() {
     };
     let measured = Pseudoranges::new(6, 3, network.pseudoranges()).unwrap();
     let mut solver = Solver::new();
-    let solution = solver.solve(&measured, &SolveOptions::default()).unwrap();
+    let solution = solver.solve(&measured, &MinimalOptions::default()).unwrap();
     let lost = solution.paths.failed;
     assert!(lost > 0 && solution.warnings.contains(&SolveWarning::PathsLost { lost, tracked: 180 }), "{solution:?}");
     // About 64 paths with six charts of 1,600 steps in the last round, not four rounds of up to
@@ -123,7 +123,7 @@ fn coincident_nodes_are_refused_by_name() {
         let mut network = clean(6, 3, seed).network;
         network.receivers[1] = network.receivers[0];
         let measured = Pseudoranges::new(6, 3, network.pseudoranges()).unwrap();
-        let error = Solver::new().solve(&measured, &SolveOptions::default()).unwrap_err();
+        let error = Solver::new().solve(&measured, &MinimalOptions::default()).unwrap_err();
         assert!(error.to_string().contains("receivers r1 and r2"), "{error}");
     }
 }

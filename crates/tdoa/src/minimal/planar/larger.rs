@@ -3,7 +3,7 @@
 
 use crate::minimal::linear::LeastSquares;
 use crate::minimal::normalised::{Normalised, rank};
-use crate::minimal::options::SolveOptions;
+use crate::minimal::options::MinimalOptions;
 use crate::minimal::polish::Polisher;
 use crate::minimal::solution::MinimalSolution;
 use crate::minimal::subset::Subset;
@@ -16,7 +16,7 @@ pub(crate) fn extend(
     measured: &Pseudoranges,
     part: &Subset,
     mut solution: MinimalSolution,
-    options: &SolveOptions,
+    options: &MinimalOptions,
 ) -> MinimalSolution {
     let data = Normalised::new(measured);
     let (mut squares, mut polisher) = (LeastSquares::default(), Polisher::default());
