@@ -297,7 +297,7 @@ def test_solutions():
 
 def test_decompositions():
     # The twisted cubic is a curve of degree three.
-    found = hc.decompose("y - x^2; z - x*y; x*z - y^2")
+    found = hc.decompose("y - x^2; z - x*y; x*z - y^2", variables="x y z")
     [cubic] = found.components
     assert cubic[:4] == (1, 3, 1, True) and cubic.witness_points.shape == (3, 3)
     x, y, z = cubic.witness_points.T

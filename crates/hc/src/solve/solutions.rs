@@ -145,7 +145,7 @@ impl Solutions {
         self.solutions.iter()
     }
 
-    /// The real solutions ([`Solution::real`]), as real numbers.
+    /// The real solutions ([`Solution::is_real`]), as real numbers.
     pub fn real_solutions(&self) -> impl Iterator<Item = Vec<f64>> {
         self.iter().filter(|s| s.is_real).map(|s| s.value.iter().map(|z| z.re).collect())
     }
@@ -163,7 +163,7 @@ impl Solutions {
 
     /// Proves for each regular solution that it exists, that it is distinct, and whether it is real
     /// ([`certify`](mod@crate::certify)). The result is noted in [`Solution::certified`], and what
-    /// is proved in [`Solution::real`] and [`Solution::singular`].
+    /// is proved in [`Solution::is_real`] and [`Solution::singular`].
     ///
     /// # Errors
     /// If the system has more equations than unknowns.
