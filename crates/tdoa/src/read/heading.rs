@@ -91,6 +91,11 @@ impl Heading {
         self.name.is_empty() || self.is(RECEIVER) || self.is(NODE)
     }
 
+    /// Whether this says that transmitters are the rows below it.
+    pub(super) fn heads_transmitters(&self) -> bool {
+        self.is(TRANSMITTER)
+    }
+
     /// Whether names of receivers stand below this in a table of positions.
     pub(super) fn heads_nodes(&self) -> bool {
         self.is(RECEIVER) || self.is(NODE)
@@ -227,7 +232,7 @@ pub(super) fn check_matrix(
              the table, or rename it if it is right"
         ),
     };
-    if corner.iter().any(|heading| heading.is(TRANSMITTER)) {
+    if corner.iter().any(Heading::heads_transmitters) {
         return Err(transposed("the corner cell", &first[0]));
     }
     let all_numbered =

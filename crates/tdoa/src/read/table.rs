@@ -79,7 +79,9 @@ impl Shape {
 fn counts(cells: &[String]) -> bool {
     let [corner, numbers @ ..] = cells else { return false };
     let counted = |first: usize| numbers.iter().enumerate().all(|(k, cell)| *cell == (first + k).to_string());
-    let is_corner = corner.is_empty() || (number(corner).is_none() && Heading::new(corner).heads_receivers());
+    let heading = Heading::new(corner);
+    let heads_rows = heading.heads_receivers() || heading.heads_transmitters();
+    let is_corner = corner.is_empty() || (number(corner).is_none() && heads_rows);
     is_corner && numbers.len() > 1 && (counted(0) || counted(1))
 }
 

@@ -47,7 +47,7 @@ fn mistakes_are_placed() {
     // The first line too: it has numbers, so it is no header.
     assert!(message("1,x,3\n4,5,6\n").contains("line 1, column 2"));
     let text = message("1,2,3\n4,5\n");
-    assert!(text.contains("line 2 (receiver r2)") && text.contains("2 cells where 3"), "{text}");
+    assert!(text.contains("line 2 (receiver r2)") && text.contains("2 cells in place of 3"), "{text}");
     assert!(message("").contains("no measurements"));
     assert!(message("a,b\n").contains("no measurements"));
     let text = message("1,inf\n2,3\n");
