@@ -142,7 +142,7 @@ def test_families_that_are_none():
     for arguments, words in [
         ((["x - a"],), "say which names are unknowns"),
         ((["x - b"], ["x"], ["a"]), "b"),
-        ((["x - a", "x"], ["x"], ["a"]), "2 equations in 1 unknowns"),
+        ((["x - a", "x"], ["x"], ["a"]), "2 equations in 1 unknown;"),
         (("name = 3",), "line 1|string|expected"),
     ]:
         with pytest.raises(hc.InputError, match=words):

@@ -188,7 +188,7 @@ fn errors_are_said_once_and_end_all_ranks() {
     let missing = text(&folder.path().join("missing.txt"));
     for (arguments, words) in [
         (&["solve", &missing][..], "missing.txt"),
-        (&["solve", &open], "1 equations in 2 unknowns"),
+        (&["solve", &open], "1 equation in 2 unknowns"),
         (&["solve", &system, "--max-paths", "1"], "more than the 1 allowed"),
         (&["solve", &system, "--seed", "none"], "invalid value 'none'"),
         (&["solve", &system, "--rank-timeout", "0"], "--rank-timeout"),
