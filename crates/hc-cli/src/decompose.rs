@@ -57,7 +57,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     if found.failed > 0 {
         return Err(Failure::Undetermined(format!(
-            "not accounted for: {} in number, of paths, witness points and dimensions",
+            "something may be missing; paths, witness points and dimensions that are not accounted for: {}",
             found.failed
         )));
     }

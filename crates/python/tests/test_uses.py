@@ -94,6 +94,9 @@ def test_long_frames(tmp_path):
     assert np.array_equal(tdoa.calibrate(seconds, speed=343).receivers, of_file.receivers)
     with pytest.raises(hc.InputError, match="give speed=V and the times in seconds"):
         tdoa.calibrate(seconds)
+    milliseconds = long.rename(columns={"value": "time_ms"})
+    with pytest.raises(hc.InputError, match="is in ms.*; give speed=V and the times in seconds"):
+        tdoa.calibrate(milliseconds, speed=343)
     sure = tdoa.calibrate(long.assign(sigma=0.01))
     assert sure.data["sigma_is_factor"]
     for bad, words in [

@@ -55,13 +55,25 @@ class Unresolved(NamedTuple):
     paths: int
     reason: str
 
-class Solutions:
-    variables: list[str]
+class _Result:
+    def __eq__(self, other: object) -> bool: ...
+    __hash__: None  # type: ignore[assignment]
+
+class _Points(_Result):
     points: NDArray[np.complex128]
+    is_real: NDArray[np.bool_]
+    summary: str
+    @property
+    def real_points(self) -> NDArray[np.float64]: ...
+    @property
+    def n_real(self) -> int: ...
+    def _repr_html_(self) -> str: ...
+
+class Solutions(_Points):
+    variables: list[str]
     multiplicities: NDArray[np.int64]
     winding_numbers: NDArray[np.int64]
     singular: NDArray[np.bool_]
-    is_real: NDArray[np.bool_]
     residuals: NDArray[np.float64]
     conditions: NDArray[np.float64]
     certified: NDArray[np.bool_] | None
@@ -76,22 +88,14 @@ class Solutions:
     multihomogeneous_number: int | None
     partial: bool
     warnings: list[str]
-    summary: str
     seed: int
     seconds: float
     def __init__(self, found: dict[str, Any], shown: dict[str, str] | None = None) -> None: ...
     @property
-    def real_points(self) -> NDArray[np.float64]: ...
-    @property
-    def n_real(self) -> int: ...
-    @property
     def complete(self) -> bool: ...
-    def __eq__(self, other: object) -> bool: ...
-    __hash__: None  # type: ignore[assignment]
     def __len__(self) -> int: ...
     def __iter__(self) -> Iterator[NDArray[np.complex128]]: ...
     def __getitem__(self, which: Any) -> Any: ...
-    def _repr_html_(self) -> str: ...
     def to_json(self) -> str: ...
 
 class Component(NamedTuple):
@@ -101,33 +105,23 @@ class Component(NamedTuple):
     irreducible: bool
     witness_points: NDArray[np.complex128]
 
-class Decomposition:
+class Decomposition(_Points):
     variables: list[str]
     components: list[Component]
-    points: NDArray[np.complex128]
     multiplicities: NDArray[np.int64]
     singular: NDArray[np.bool_]
-    is_real: NDArray[np.bool_]
     unresolved: list[Unresolved]
     unsearched: list[int]
     failed: int
     partial: bool
-    summary: str
     seed: int
     seconds: float
     def __init__(self, found: dict[str, Any], shown: dict[str, str] | None = None) -> None: ...
     @property
-    def real_points(self) -> NDArray[np.float64]: ...
-    @property
-    def n_real(self) -> int: ...
-    @property
     def complete(self) -> bool: ...
-    def __eq__(self, other: object) -> bool: ...
-    __hash__: None  # type: ignore[assignment]
-    def _repr_html_(self) -> str: ...
     def to_json(self) -> str: ...
 
-class Certificates:
+class Certificates(_Result):
     points: NDArray[np.complex128]
     boxes: NDArray[np.float64]
     certified: NDArray[np.bool_]
@@ -144,8 +138,6 @@ class Certificates:
     def real_points(self) -> NDArray[np.float64]: ...
     @property
     def complete(self) -> bool: ...
-    def __eq__(self, other: object) -> bool: ...
-    __hash__: None  # type: ignore[assignment]
     def __len__(self) -> int: ...
 
 class End(enum.IntEnum):
@@ -155,7 +147,7 @@ class End(enum.IntEnum):
     ON_COMPONENT = 3
     FAILED = 4
 
-class Tracked:
+class Tracked(_Result):
     points: NDArray[np.complex128]
     ends: NDArray[np.int8]
     is_real: NDArray[np.bool_]
@@ -168,8 +160,6 @@ class Tracked:
     def real_points(self) -> list[NDArray[np.float64]]: ...
     @property
     def n_real(self) -> NDArray[np.int64]: ...
-    def __eq__(self, other: object) -> bool: ...
-    __hash__: None  # type: ignore[assignment]
     def __len__(self) -> int: ...
     def __iter__(self) -> Iterator[NDArray[np.complex128]]: ...
     def __getitem__(self, k: int) -> NDArray[np.complex128]: ...

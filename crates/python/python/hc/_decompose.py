@@ -1,13 +1,12 @@
 """Solution sets of positive dimension."""
 
-import html
 import json
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from . import _native
-from ._result import Result
+from ._result import Points
 from ._run import call, integer, seeded
 from ._solutions import Unresolved
 from ._solve import read_system
@@ -39,7 +38,7 @@ class Component(NamedTuple):
     witness_points: Any
 
 
-class Decomposition(Result):
+class Decomposition(Points):
     """All solutions of a system: components of positive dimension, and isolated solutions.
 
     Attributes
@@ -93,25 +92,9 @@ class Decomposition(Result):
         self.partial, self.seed = data["partial"], data["seed"]
 
     @property
-    def real_points(self):
-        """The real isolated solutions, ndarray of float of shape (n_real, n)."""
-        return self.points[self.is_real].real.copy()
-
-    @property
-    def n_real(self):
-        """How many isolated solutions are real."""
-        return int(self.is_real.sum())
-
-    @property
     def complete(self):
         """Whether nothing may be missing, and every component is shown to be irreducible."""
         return self.failed == 0 and not self.partial and all(each.irreducible for each in self.components)
-
-    def __repr__(self):
-        return self.summary.rstrip("\n")
-
-    def _repr_html_(self):
-        return f"<pre>{html.escape(repr(self))}</pre>"
 
     def to_json(self):
         """The decomposition as JSON text, in the form that `hc decompose --json` writes, without the seconds."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from . import _native
 from ._errors import InputError
+from ._numbers import counted
 from ._run import call, integer, seeded
 from ._result import Result
 from ._solve import complex_rows
@@ -71,10 +72,10 @@ class Tracked(Result):
     def __repr__(self):
         counts = {end: int((self.ends == end).sum()) for end in End}
         ends = ", ".join(f"{count} {end.name.lower().replace('_', ' ')}" for end, count in counts.items() if count)
-        words = f"{_counted(len(self), 'target')} of {_counted(self.ends.shape[1], 'root')}: {ends or 'no ends'}"
+        words = f"{counted(len(self), 'target')} of {counted(self.ends.shape[1], 'root')}: {ends or 'no ends'}"
         lost, unproved = len(self) - int(self.complete.sum()), int(self.uncertified.sum())
-        words += f"; {_counted(lost, 'target')} incomplete" if lost else "; all complete"
-        return words + (f"; {_counted(unproved, 'solution')} without certificate" if unproved else "")
+        words += f"; {counted(lost, 'target')} incomplete" if lost else "; all complete"
+        return words + (f"; {counted(unproved, 'solution')} without certificate" if unproved else "")
 
 
 class Fibre:
@@ -122,7 +123,7 @@ class Fibre:
 
     def __repr__(self):
         trace = "" if self.trace_test is None else f", trace test {self.trace_test:.1e}"
-        return f"{_counted(len(self), 'solution')}; stopped: {self.stopped}{trace}"
+        return f"{counted(len(self), 'solution')}; stopped: {self.stopped}{trace}"
 
     def __eq__(self, other):
         return isinstance(other, Fibre) and self._text == other._text
@@ -178,7 +179,7 @@ class Family:
     Parameters
     ----------
     equations : str, or sequence of str or SymPy expressions
-        As many equations as unknowns; or one text in TOML with everything.
+        As many equations as unknowns; or one text with everything: plain, with a line `parameters: a b`, or TOML.
     unknowns : sequence of str or symbols, optional
         By default all names in SymPy expressions that are no parameters, sorted by name.
     parameters : sequence of str or symbols, optional
@@ -257,7 +258,7 @@ class Family:
 
     @classmethod
     def read(cls, path, start=None):
-        """A family from a TOML file, with its solutions from a start file if one is given.
+        """A family from a file in plain text or TOML, with its solutions from a start file if one is given.
 
         Parameters
         ----------
@@ -365,11 +366,6 @@ class Family:
     def __setstate__(self, state):
         self._given, self._shown, self.fibre = state
         self._build()
-
-
-def _counted(number, word):
-    """A number of things, with the word in the plural where it is due."""
-    return f"{number} {word}" if number == 1 else f"{number} {word}s"
 
 
 def _pair(parameters, solution):

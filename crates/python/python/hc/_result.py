@@ -1,4 +1,6 @@
-"""What all results are: attributes that compare by value."""
+"""What all results are: attributes that compare by value, and points with words for them."""
+
+import html
 
 import numpy as np
 
@@ -16,6 +18,26 @@ class Result:
         return mine.keys() == theirs.keys() and all(same(mine[name], theirs[name]) for name in mine)
 
     __hash__ = None  # type: ignore[assignment]
+
+
+class Points(Result):
+    """A result with `points`, of which `is_real` says which are real, and the program's `summary`."""
+
+    @property
+    def real_points(self):
+        """The real ones of `points`, ndarray of float of shape (n_real, n)."""
+        return self.points[self.is_real].real.copy()
+
+    @property
+    def n_real(self):
+        """How many of `points` are real."""
+        return int(self.is_real.sum())
+
+    def __repr__(self):
+        return self.summary.rstrip("\n")
+
+    def _repr_html_(self):
+        return f"<pre>{html.escape(repr(self))}</pre>"
 
 
 def _lasting(result):

@@ -1,12 +1,12 @@
 """What a solve has found."""
 
-import html
 import json
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ._result import Result
+from ._numbers import counted
+from ._result import Points, Result
 from ._symbols import own_names
 
 
@@ -18,7 +18,7 @@ class Unresolved(NamedTuple):
     reason: str
 
 
-class Solutions(Result):
+class Solutions(Points):
     """The isolated solutions of a system, regular ones first; equal if all but `seconds` is, to the last bit.
 
     Attributes
@@ -73,16 +73,6 @@ class Solutions(Result):
         self.unresolved = [Unresolved(*end) for end in self.unresolved]
 
     @property
-    def real_points(self):
-        """The real solutions, ndarray of float of shape (n_real, n)."""
-        return self.points[self.is_real].real.copy()
-
-    @property
-    def n_real(self):
-        """How many solutions are real."""
-        return int(self.is_real.sum())
-
-    @property
     def complete(self):
         """Whether the list is whole: no path lost, no interrupt, no regular solution without the certificate that was asked for."""
         proved = self.certified is None or bool(np.all(self.certified | self.singular))
@@ -96,12 +86,6 @@ class Solutions(Result):
 
     def __getitem__(self, which):
         return self.points[which]
-
-    def __repr__(self):
-        return self.summary.rstrip("\n")
-
-    def _repr_html_(self):
-        return f"<pre>{html.escape(repr(self))}</pre>"
 
     def to_json(self):
         """The solutions as JSON text, in the form that `hc solve --json` writes."""
@@ -188,8 +172,8 @@ class Certificates(Result):
 
     def __repr__(self):
         return (
-            f"{int(self.certified.sum())} of {len(self)} points certified: "
-            f"{self.n_distinct} distinct solutions, {self.n_real} of them proved real"
+            f"{int(self.certified.sum())} of {counted(len(self), 'point')} certified: "
+            f"{counted(self.n_distinct, 'distinct solution')}, {self.n_real} of them proved real"
         )
 
 

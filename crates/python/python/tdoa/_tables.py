@@ -95,7 +95,7 @@ def _long(frame, factor):
         return _pseudoranges(_native.read("DataFrame", data, *units, None, None))
     except InputError as error:
         # Their unit is told in another way here.
-        words = re.sub(r"give --units s --speed V|--units \w+ --speed V", "give speed=V and the times in seconds", str(error))
+        words = re.sub(r"give --units \w+ --speed V", "give speed=V and the times in seconds", str(error))
         raise InputError(words) from None
 
 
@@ -106,8 +106,8 @@ def _is_file(thing):
 def table(pseudoranges, names=None, sigma=None, speed=None):
     """What the extension module takes for measurements; the single standard deviation and the speed, if there are these."""
     if _is_file(pseudoranges):
-        given = repr(os.fspath(pseudoranges)) if isinstance(pseudoranges, os.PathLike) else repr(pseudoranges)
-        given = given if isinstance(pseudoranges, (str, os.PathLike)) else "file"
+        is_path = isinstance(pseudoranges, (str, os.PathLike))
+        given = repr(os.fspath(pseudoranges)) if is_path else "file"
         raise InputError(f"pseudoranges must be a table, not a file; read it first: tdoa.read({given}), with the units of its numbers")
     receivers = transmitters = sigmas = None
     factor = None
