@@ -5,7 +5,7 @@ use anyhow::{Context, Result, ensure};
 use hc::family::{StartFile, Stopped, move_fibre, track_fibre};
 use hc::poly::Interpreter;
 use hc::random::{Random, Stream};
-use hc::{Family, Fibre, FibreOptions, Monitor, MonodromyOptions};
+use hc::{Family, Fibre, FibreOptions, MonodromyOptions};
 use num_complex::Complex64;
 
 /// Parameter points that are tried as the place of the fibre, and real targets that each is judged
@@ -33,7 +33,7 @@ pub(crate) fn refill(family: &Family, seed: u64, with_trace: bool) -> Result<Sta
         let mut passed = false;
         for attempt in 0..TRACES {
             options.seed = seed.wrapping_add(attempt);
-            let test = family.trace_test(&fibre, &options, &Monitor::default())?;
+            let test = family.trace_test(&fibre, &options)?;
             eprintln!("{}: trace test {test:?}", family.name());
             deviation = Some(test.deviation);
             passed = test.passed(fibre.len());

@@ -1,8 +1,9 @@
 //! `hc certify`, and `--certify` of `hc solve`.
 
-use crate::{input, points};
+use crate::{input, points, watch};
 use cli::{Failure, output};
-use hc::certify::{Certificate, Certificates, CertifyOptions, Obstacle, Reality, certify};
+use hc::Run;
+use hc::certify::{Certificate, Certificates, CertifyOptions, Obstacle, Reality};
 use hc::poly::{ComplexInterval, counted};
 use num_complex::Complex64;
 use serde::Serialize;
@@ -47,6 +48,8 @@ struct Output<'a> {
     n_certified: usize,
     n_distinct: usize,
     n_real: usize,
+    /// Whether the work was stopped before every point was tried.
+    partial: bool,
     /// Pairs of points proved neither the same solution nor different ones.
     unseparated: &'a [[usize; 2]],
     solutions: Vec<Point>,
@@ -77,8 +80,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let file = &arguments.system;
     let system = input::system(file)?;
     let points = points::read(&arguments.solutions, &system)?;
-    let found = cli::on_threads(arguments.threads, || certify(&system, &[], &points, &CertifyOptions::default()))?
-        .map_err(|e| Failure::in_file(file, e))?;
+    let monitor = watch::interruptible()?;
+    let (run, options) = (Run::new().watched(&monitor), CertifyOptions::default());
+    let prove = || run.certify(&system, &[], &points, &options);
+    let found = watch::watched(arguments.threads, &monitor, watch::stages, prove)?
+        .map_err(|error| Failure::in_file(file, error))?;
     let solutions = found.points.iter().zip(&found.duplicate_of).zip(&points);
     let report = Output {
         variables: system.variables(),
@@ -88,12 +94,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         n_certified: found.n_certified(),
         n_distinct: found.n_distinct(),
         n_real: found.n_real(),
+        partial: found.interrupted(),
         unseparated: &found.unseparated,
         solutions: solutions.map(|((result, &duplicate), point)| entry(result, duplicate, point)).collect(),
     };
     output::summary(arguments.json.as_deref(), || summary(&found))?;
     if let Some(out) = &arguments.json {
         output::json(out, &report)?;
+    }
+    if found.interrupted() {
+        return Err(Failure::Interrupted);
     }
     if found.complete() {
         return Ok(());

@@ -2,8 +2,8 @@
 
 use crate::{input, watch};
 use cli::{Failure, output};
-use hc::SolveOptions;
-use hc::witness::{Decomposition, decompose};
+use hc::witness::Decomposition;
+use hc::{Run, SolveOptions};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -45,7 +45,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let system = input::system(&arguments.file)?;
     let monitor = watch::interruptible()?;
     let options = SolveOptions::new().seed(arguments.seed).max_paths(arguments.max_paths);
-    let found = watch::watched(arguments.threads, &monitor, watch::stages, || decompose(&system, &options, &monitor))?;
+    let run = Run::new().watched(&monitor);
+    let found = watch::watched(arguments.threads, &monitor, watch::stages, || run.decompose(&system, &options))?;
     let found = found.map_err(|error| Failure::in_file(&arguments.file, error))?;
     let seconds = begun.elapsed().as_secs_f64();
     output::summary(arguments.json.as_deref(), || format!("{found}{seconds:.3} s\n"))?;

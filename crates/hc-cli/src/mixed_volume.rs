@@ -2,9 +2,10 @@
 
 use crate::{input, watch};
 use cli::{Failure, output};
+use hc::Run;
 use hc::poly::{Polynomial, counted};
 use hc::ranks::Ranks;
-use hc::start::{MixedError, mixed_volume_on_ranks, mixed_volume_watched};
+use hc::start::MixedError;
 use serde::Serialize;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -54,10 +55,8 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
     let unknowns = system.variables().len();
     let start = Instant::now();
     let monitor = watch::interruptible()?;
-    let found = watch::watched(arguments.threads, &monitor, watch::stages, || match ranks {
-        Some(ranks) => mixed_volume_on_ranks(unknowns, &supports, &monitor, ranks),
-        None => mixed_volume_watched(unknowns, &supports, &monitor).map(Some),
-    })?;
+    let run = Run::new().watched(&monitor).on_ranks(ranks);
+    let found = watch::watched(arguments.threads, &monitor, watch::stages, || run.mixed_volume(unknowns, &supports))?;
     let (mixed_volume, cells, partial) = match found {
         Ok(Some(found)) => (found.volume, found.cells as u64, false),
         // Rank 0 has the volume.

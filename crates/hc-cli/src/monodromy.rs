@@ -6,7 +6,7 @@ use cli::{Failure, output};
 use hc::family::Stopped;
 use hc::poly::counted;
 use hc::ranks::Ranks;
-use hc::{FamilyError, MonodromyOptions};
+use hc::{FamilyError, MonodromyOptions, Run};
 use std::path::PathBuf;
 
 /// Finds all solutions of a family for one generic parameter point, from a single one.
@@ -65,11 +65,8 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
     let options = MonodromyOptions::new().seed(arguments.seed).trace_test(!arguments.no_trace);
     let monitor = watch::interruptible()?;
     let checkpoint = if is_lead { arguments.checkpoint.open()? } else { None };
-    let found = watch::watched(arguments.threads, &monitor, watch::stages, || match (ranks, &checkpoint) {
-        (Some(ranks), checkpoint) => family.complete_on_ranks(&start, &options, &monitor, checkpoint.as_ref(), ranks),
-        (None, Some(checkpoint)) => family.complete_recorded(&start, &options, &monitor, checkpoint).map(Some),
-        (None, None) => family.complete(&start, &options, &monitor).map(Some),
-    })?;
+    let run = Run::new().watched(&monitor).recorded(checkpoint.as_ref()).on_ranks(ranks);
+    let found = watch::watched(arguments.threads, &monitor, watch::stages, || run.complete(&family, &start, &options))?;
     // Rank 0 has the fibre.
     let Some(found) = found.map_err(|error| family::failure(path, error))? else { return Ok(()) };
     let (count, file) = (found.fibre.len(), found.start_file());

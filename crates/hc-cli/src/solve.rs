@@ -6,7 +6,7 @@ use crate::{input, watch};
 use cli::{Failure, output};
 use hc::poly::counted;
 use hc::ranks::Ranks;
-use hc::{SolveError, SolveOptions, Start, solve_on_ranks, solve_recorded, solve_watched};
+use hc::{Run, SolveError, SolveOptions, Start};
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -98,11 +98,8 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
         .torus_only(arguments.torus_only)
         .certify(arguments.certify);
     let checkpoint = if is_lead { arguments.checkpoint.open()? } else { None };
-    let found = watch::watched(arguments.threads, &monitor, watch::stages, || match (ranks, &checkpoint) {
-        (Some(ranks), checkpoint) => solve_on_ranks(&system, &options, &monitor, checkpoint.as_ref(), ranks),
-        (None, Some(checkpoint)) => solve_recorded(&system, &options, &monitor, checkpoint).map(Some),
-        (None, None) => solve_watched(&system, &options, &monitor).map(Some),
-    })?;
+    let run = Run::new().watched(&monitor).recorded(checkpoint.as_ref()).on_ranks(ranks);
+    let found = watch::watched(arguments.threads, &monitor, watch::stages, || run.solve(&system, &options))?;
     let found = found.map_err(|error| match error {
         SolveError::Checkpoint(error) => Failure::unusable(error),
         SolveError::Ranks(error) => Failure::unusable(error),

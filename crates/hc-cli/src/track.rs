@@ -7,7 +7,7 @@ use crate::{family, watch};
 use cli::{Failure, output};
 use hc::poly::counted;
 use hc::ranks::Ranks;
-use hc::{Solutions, SolveOptions};
+use hc::{Run, Solutions, SolveOptions};
 use num_complex::Complex64;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -92,17 +92,9 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
     };
     let options = SolveOptions::new().seed(arguments.seed).certify(arguments.certify);
     let checkpoint = if is_lead { arguments.checkpoint.open()? } else { None };
+    let run = Run::new().watched(&monitor).recorded(checkpoint.as_ref()).on_ranks(ranks);
     let solved = watch::watched(arguments.threads, &monitor, describe, || {
-        let all = family.track(&fibre, &targets).options(&options).watched(&monitor);
-        let all = match &checkpoint {
-            Some(checkpoint) => all.recorded(checkpoint),
-            None => all,
-        };
-        let all = match ranks {
-            Some(ranks) => all.on_ranks(ranks),
-            None => all,
-        };
-        all.transform(|_, found| {
+        run.track(&family, &fibre, &targets).options(&options).transform(|_, found| {
             done.fetch_add(1, Ordering::Relaxed);
             (found, begun.elapsed().as_secs_f64())
         })

@@ -18,8 +18,8 @@
 //! component for each set of columns, no two neighbours, that are zero (Diaconis, Eisenbud & Sturmfels
 //! 1998), of the product of the numbers of columns between them.
 
-use hc::witness::{Decomposition, decompose};
-use hc::{Monitor, SolveOptions, System};
+use hc::witness::Decomposition;
+use hc::{Monitor, Run, SolveOptions, System};
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::time::{Duration, Instant};
@@ -141,7 +141,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         for seed in 0..seeds {
             let begun = Instant::now();
             let monitor = Monitor::asking(move |_| begun.elapsed() > Duration::from_secs(limit));
-            let found = decompose(&system, &SolveOptions::new().seed(seed), &monitor)?;
+            let found = Run::new().watched(&monitor).decompose(&system, &SolveOptions::new().seed(seed))?;
             seconds.push(begun.elapsed().as_secs_f64());
             let mut have: Vec<(usize, usize)> = found.components.iter().map(|c| (c.dimension, c.degree)).collect();
             have.sort_unstable();

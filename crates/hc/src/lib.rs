@@ -17,8 +17,8 @@
 //! * [`certify`](mod@certify): proofs that solutions exist, are distinct, and are real.
 //! * [`mixed_volume`](fn@mixed_volume): the number of solutions of a generic system with the same
 //!   terms.
-//! * [`Monitor`]: the progress of any of these, and a way to stop it. [`checkpoint`]: long runs
-//!   that continue after they were killed. [`ranks`]: work on several machines.
+//! * [`Run`]: any of these, watched and stopped by a [`Monitor`], on a number of threads, recorded
+//!   in a [`checkpoint`] from which it continues after it was killed, on several [`ranks`].
 //!
 //! [`witness`] decomposes solution sets of positive dimension.
 //!
@@ -75,6 +75,7 @@ mod monitor;
 pub mod random;
 pub mod ranks;
 pub mod refine;
+mod run;
 mod runner;
 mod singular;
 mod solve;
@@ -91,9 +92,9 @@ pub use monitor::{Monitor, Progress, Stage};
 pub use num_complex::Complex64;
 pub use poly;
 pub use poly::System;
+pub use run::{RanksRun, Run, ThreadsError};
 pub use solve::{
     Direction, Solution, Solutions, SolveError, SolveOptions, Start, Unresolved, Warning, coordinates, solve,
-    solve_on_ranks, solve_recorded, solve_watched,
 };
 pub use start::mixed_volume;
 pub use tracker::{OptionError, TrackerOptions};

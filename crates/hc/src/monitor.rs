@@ -24,11 +24,21 @@ pub enum Stage {
     Loop,
     /// A search goes from start to start.
     Search,
+    /// Points are certified.
+    Proofs,
 }
 
 /// In the order of their numbers.
-const STAGES: [Stage; 7] =
-    [Stage::Preparing, Stage::MixedCells, Stage::Start, Stage::Paths, Stage::Endgame, Stage::Loop, Stage::Search];
+const STAGES: [Stage; 8] = [
+    Stage::Preparing,
+    Stage::MixedCells,
+    Stage::Start,
+    Stage::Paths,
+    Stage::Endgame,
+    Stage::Loop,
+    Stage::Search,
+    Stage::Proofs,
+];
 
 /// The progress of the work.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -41,7 +51,8 @@ pub struct Progress {
     /// Paths of this stage; zero if their number is not known.
     pub total: u64,
     /// For mixed cells, their volume so far. For paths, the number that have ended at regular
-    /// points. For a search, the starts that agree on the best result so far.
+    /// points. For a search, the starts that agree on the best result so far. For proofs, the
+    /// points with a certificate.
     pub counted: u64,
 }
 
@@ -54,6 +65,7 @@ impl fmt::Display for Progress {
             Stage::Start => f.write_str("paths to generic coefficients"),
             Stage::Paths => write!(f, "paths, {} of them at regular solutions", self.counted),
             Stage::Endgame => f.write_str("paths through the endgame"),
+            Stage::Proofs => write!(f, "points, {} of them certified", self.counted),
             Stage::Search => write!(f, "starts, {} of them agree", self.counted),
             Stage::Loop => write!(f, "paths round a loop, {} so far", counted(self.total / 3, "solution")),
         }
@@ -85,13 +97,13 @@ struct Shared {
 /// nothing.
 ///
 /// ```
-/// use hc::{Monitor, SolveOptions, System, solve_watched};
+/// use hc::{Monitor, Run, SolveOptions, System};
 ///
 /// let system: System = "x^2 + y^2 - 5; x*y - 2".parse()?;
 /// let monitor = Monitor::watched();
 /// // From any thread, at any time:
 /// monitor.cancel();
-/// assert!(solve_watched(&system, &SolveOptions::default(), &monitor)?.interrupted);
+/// assert!(Run::new().watched(&monitor).solve(&system, &SolveOptions::default())?.interrupted);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Default)]

@@ -4,9 +4,10 @@ use crate::arrays::{array, rows};
 use crate::errors::{Failure, guarded};
 use crate::system::Given;
 use crate::work::{Done, How, run, whole};
-use hc::certify::{CertifyOptions, Reality, certify as prove};
+use hc::Run;
+use hc::certify::{CertifyOptions, Reality};
 use hc::poly::{ExpandLimits, Polynomial};
-use hc::start::{MixedError, mixed_volume_watched};
+use hc::start::MixedError;
 use num_complex::Complex64;
 use numpy::PyReadonlyArrayDyn;
 use pyo3::IntoPyObjectExt;
@@ -21,7 +22,7 @@ pub(crate) fn mixed_volume(py: Python<'_>, system: Given, how: How) -> PyResult<
         let Done { result: found, stopped, .. } = run(py, &how, move |monitor| {
             let polynomials = system.expand(&ExpandLimits::default()).map_err(Failure::input)?;
             let supports: Vec<Vec<Vec<i32>>> = polynomials.iter().map(Polynomial::support).collect();
-            match mixed_volume_watched(system.variables().len(), &supports, monitor) {
+            match Run::new().watched(monitor).mixed_volume(system.variables().len(), &supports) {
                 Ok(found) => Ok(found.volume),
                 Err(MixedError::Cancelled) => Ok(monitor.progress().counted),
                 Err(error) => Err(Failure::input(error)),
@@ -43,8 +44,9 @@ pub(crate) fn certify<'py>(
         let (system, points) = (system.system()?, rows(&points)?);
         let (k, n) = (points.len(), system.variables().len());
         let given = points.clone();
-        let Done { result: found, stopped, .. } =
-            run(py, &how, move |_| prove(&system, &[], &given, &CertifyOptions::default()))?;
+        let Done { result: found, stopped, .. } = run(py, &how, move |monitor| {
+            Run::new().watched(monitor).certify(&system, &[], &given, &CertifyOptions::default())
+        })?;
         let found = found.map_err(Failure::input)?;
         let nothing = [[[f64::NAN; 2]; 2]].repeat(n);
         let mut boxes: Vec<f64> = Vec::with_capacity(4 * k * n);

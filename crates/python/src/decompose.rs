@@ -3,8 +3,8 @@
 use crate::errors::{Failure, guarded};
 use crate::system::Given;
 use crate::work::{Done, How, run, whole};
-use hc::SolveOptions;
-use hc::witness::{Decomposition, decompose as find};
+use hc::witness::Decomposition;
+use hc::{Run, SolveOptions};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::Serialize;
@@ -30,7 +30,8 @@ pub(crate) fn decompose(
     guarded(|| {
         let system = system.system()?;
         let options = SolveOptions::new().seed(seed).max_paths(max_paths);
-        let Done { result: found, stopped, seconds } = run(py, &how, move |monitor| find(&system, &options, monitor))?;
+        let Done { result: found, stopped, seconds } =
+            run(py, &how, move |monitor| Run::new().watched(monitor).decompose(&system, &options))?;
         let found = found.map_err(Failure::input)?;
         let report = Report { variables: &found.variables, seed, found: &found };
         let result = PyDict::new(py);

@@ -4,7 +4,7 @@ use crate::arrays::{array, rows};
 use crate::errors::{Failure, guarded};
 use crate::work::{Done, How, run, whole};
 use hc::family::StartFile;
-use hc::{FamilyError, MonodromyOptions, Solutions, SolveOptions};
+use hc::{FamilyError, MonodromyOptions, Run, Solutions, SolveOptions};
 use num_complex::Complex64;
 use numpy::PyReadonlyArrayDyn;
 use pyo3::prelude::*;
@@ -97,7 +97,7 @@ impl Family {
                     Some(first) => hc::Fibre::clone(first),
                     None => family.find_pair(seed)?,
                 };
-                family.complete(&first, &options, monitor)
+                Run::new().watched(monitor).complete(&family, &first, &options)
             })?;
             let found = found.map_err(|error: FamilyError| match error {
                 FamilyError::NoPair => Failure::undetermined(error),
@@ -127,7 +127,7 @@ impl Family {
             let shown = fibre.representatives.as_ref().map_or(roots, Vec::len);
             let Done { result: found, stopped, seconds } = run(py, &how, move |monitor| {
                 let options = SolveOptions::new().certify(certify);
-                let tracking = family.track(&fibre, &targets).options(&options).watched(monitor);
+                let tracking = Run::new().watched(monitor).track(&family, &fibre, &targets).options(&options);
                 tracking.transform(|_, found| slots(&found, roots, shown, certify))
             })?;
             let found = found.map_err(Failure::input)?;

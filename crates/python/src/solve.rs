@@ -5,7 +5,7 @@ use crate::errors::{Failure, guarded};
 use crate::networks::numbers;
 use crate::system::Given;
 use crate::work::{Done, How, run, whole};
-use hc::{Solutions, SolveOptions, Start, solve_watched};
+use hc::{Run, Solutions, SolveOptions, Start};
 use num_complex::Complex64;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -56,7 +56,7 @@ pub(crate) fn solve(py: Python<'_>, system: Given, settings: Settings, how: How)
         options = options.torus_only(settings.torus_only).certify(settings.certify);
         options.max_paths = settings.max_paths.unwrap_or(options.max_paths);
         let Done { result: found, stopped, seconds } =
-            run(py, &how, move |monitor| solve_watched(&system, &options, monitor))?;
+            run(py, &how, move |monitor| Run::new().watched(monitor).solve(&system, &options))?;
         let result = solutions(py, &found.map_err(Failure::input)?)?;
         result.set_item("seed", settings.seed)?;
         result.set_item("seconds", seconds)?;

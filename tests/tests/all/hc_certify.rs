@@ -84,6 +84,7 @@ fn lists_of_points_are_read_in_the_order_of_the_unknowns() {
     assert_eq!(output.status.code(), Some(1));
     let proved = report(&output);
     assert_eq!((&proved["n_points"], &proved["n_certified"], &proved["n_distinct"]), (&json!(4), &json!(3), &json!(2)));
+    assert_eq!(proved["partial"], json!(false));
     assert_eq!(proved["solutions"][1]["duplicate_of"], 0);
     assert_eq!(proved["solutions"][3]["certified"], false);
     assert!(proved["solutions"][3]["reason"].is_string());

@@ -4,7 +4,7 @@ use cli::Failure;
 use experiments::scale::{Load, Portion};
 use hc::checkpoint::{Checkpoint, CheckpointOptions};
 use hc::ranks::{Local, Ranks, RanksOptions};
-use hc::{Monitor, SolveOptions, Stage, System, solve_on_ranks, solve_recorded};
+use hc::{Monitor, Run, SolveOptions, Stage, System};
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
@@ -43,7 +43,7 @@ fn load(name: &str, text: &str) -> Result<Load, Failure> {
     let begun = Instant::now();
     let checkpoint =
         Checkpoint::open(folder.path(), &CheckpointOptions::new().resume(true)).map_err(Failure::unusable)?;
-    let solved = cli::on_threads(Some(1), || solve_recorded(&system, &options, &Monitor::default(), &checkpoint))?;
+    let solved = Run::new().threads(1).map_err(Failure::unusable)?.recorded(&checkpoint).solve(&system, &options);
     let seconds = begun.elapsed().as_secs_f64();
     let found = solved.map_err(Failure::unusable)?;
     let (solutions, lost, systems) = (found.solutions.len(), found.paths.failed, found.start_systems);
@@ -70,7 +70,8 @@ fn portions(system: &System, options: &SolveOptions, folder: &Path) -> Result<(V
                 true => Some(Checkpoint::open(folder, &CheckpointOptions::new()).map_err(Failure::unusable)?),
                 false => None,
             };
-            let solved = solve_on_ranks(system, options, &monitor, checkpoint.as_ref(), &ranks);
+            let solved =
+                Run::new().watched(&monitor).recorded(checkpoint.as_ref()).on_ranks(&ranks).solve(system, options);
             solved.map(|_| ()).map_err(Failure::unusable)
         });
         let answered = ranks.answered();

@@ -60,4 +60,7 @@ pub enum Obstacle {
     /// No box around the point passes the test.
     #[error("no box about the point contracts: the solution is singular or nearly so, or there is none")]
     NoContraction,
+    /// The work was stopped before the point was tried.
+    #[error("not tried: the work was stopped before")]
+    Cancelled,
 }

@@ -57,6 +57,9 @@ mod tests;
 
 pub use certificate::{Certificate, CertifyOptions, Obstacle, Reality};
 
+use crate::checkpoint::CheckpointError;
+use crate::monitor::{Monitor, Stage};
+use crate::run::Run;
 use crate::threads::{IntoParallelRefIterator, ParallelIterator};
 use num_complex::Complex64;
 use poly::{CompileError, ComplexInterval, Evaluate, System, counted};
@@ -95,6 +98,9 @@ pub enum CertifyError {
         /// Number of parameters.
         expected: usize,
     },
+    /// A checkpoint, in which nothing would be recorded.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
 }
 
 /// What [`certify`] has proved.
@@ -133,6 +139,11 @@ impl Certificates {
         self.solutions().filter(|s| s.reality == Reality::Real).count()
     }
 
+    /// Whether the work was stopped before every point was tried.
+    pub fn interrupted(&self) -> bool {
+        self.points.contains(&Err(Obstacle::Cancelled))
+    }
+
     /// Whether every point is certified and every two are proved equal or different.
     pub fn complete(&self) -> bool {
         self.n_certified() == self.points.len() && self.unseparated.is_empty()
@@ -155,6 +166,34 @@ pub fn certify(
     points: &[Vec<Complex64>],
     options: &CertifyOptions,
 ) -> Result<Certificates, CertifyError> {
+    Run::new().certify(system, parameters, points, options)
+}
+
+impl Run {
+    /// [`certify`], run in this way. Points that are left when the monitor is cancelled are
+    /// [`Obstacle::Cancelled`].
+    ///
+    /// # Errors
+    /// Those of [`certify`]; also if there is a checkpoint, since proofs are not recorded.
+    pub fn certify(
+        &self,
+        system: &System,
+        parameters: &[ComplexInterval],
+        points: &[Vec<Complex64>],
+        options: &CertifyOptions,
+    ) -> Result<Certificates, CertifyError> {
+        self.unrecorded("a certification")?;
+        self.install(|| certify_watched(system, parameters, points, options, self.monitor()))
+    }
+}
+
+fn certify_watched(
+    system: &System,
+    parameters: &[ComplexInterval],
+    points: &[Vec<Complex64>],
+    options: &CertifyOptions,
+    monitor: &Monitor,
+) -> Result<Certificates, CertifyError> {
     let compiled = system.compile()?;
     let n = compiled.variables();
     if compiled.equations() != n {
@@ -168,8 +207,16 @@ pub fn certify(
     }
     let real = system.is_real() && parameters.iter().all(|p| p.im.low == 0.0 && p.im.high == 0.0);
     let target = Target { system: &compiled, parameters };
-    let proofs: Vec<_> =
-        points.par_iter().map_init(|| Prover::new(&target, options), |prover, point| prover.prove(point)).collect();
+    monitor.enter(Stage::Proofs, points.len() as u64);
+    let prove = |prover: &mut Prover<'_>, point: &Vec<Complex64>| {
+        if monitor.is_cancelled() {
+            return Err(Obstacle::Cancelled);
+        }
+        let proof = prover.prove(point);
+        monitor.add(1, u64::from(proof.is_ok()));
+        proof
+    };
+    let proofs: Vec<_> = points.par_iter().map_init(|| Prover::new(&target, options), prove).collect();
     let compared = same::compare(&proofs);
     let points = proofs.into_iter().map(|proof| proof.map(|p| p.certificate(real))).collect();
     Ok(Certificates { points, duplicate_of: compared.duplicate_of, unseparated: compared.unseparated })

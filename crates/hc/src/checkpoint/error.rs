@@ -44,6 +44,9 @@ pub enum CheckpointError {
     /// The same [`Checkpoint`](super::Checkpoint) was given to two runs.
     #[error("{}: this checkpoint has served a run already; open it again for the next", .0.display())]
     Used(PathBuf),
+    /// Work that does not record itself.
+    #[error("{0} is not recorded; run it without a checkpoint")]
+    Unrecorded(&'static str),
 }
 
 impl CheckpointError {

@@ -90,13 +90,13 @@ struct Keeper {
     notes: Vec<Note>,
     /// The header in the directory, with its bytes.
     header: Option<(Header, Vec<u8>)>,
-    run: Option<Run>,
+    recording: Option<Recording>,
     /// Why the run must end.
     failure: Option<CheckpointError>,
 }
 
 /// A run that has begun.
-struct Run {
+struct Recording {
     log: Log,
     places: BTreeMap<Key, Place>,
     begun: Instant,
@@ -169,7 +169,7 @@ impl Checkpoint {
         let header = if found { Some(Header::read(&path)?) } else { None };
         let notes = if options.resume && !found { vec![Note::Nothing] } else { Vec::new() };
         let options = options.clone();
-        let keeper = Keeper { options, _lock: lock, told: None, notes, header, run: None, failure: None };
+        let keeper = Keeper { options, _lock: lock, told: None, notes, header, recording: None, failure: None };
         Ok(Checkpoint { directory: directory.into(), keeper: Arc::new(Mutex::new(keeper)) })
     }
 
@@ -197,17 +197,17 @@ impl Checkpoint {
     /// written.
     pub(crate) fn begin(&self, job: Job) -> Result<(), CheckpointError> {
         let mut keeper = self.keeper();
-        if keeper.run.is_some() || keeper.failure.is_some() {
+        if keeper.recording.is_some() || keeper.failure.is_some() {
             return Err(CheckpointError::Used(self.directory.to_path_buf()));
         }
-        let run = Run::new(&self.directory, Header::new(job), keeper.header.as_ref(), &mut |note| {
+        let recording = Recording::new(&self.directory, Header::new(job), keeper.header.as_ref(), &mut |note| {
             match &keeper.told {
                 Some(told) => told(&note),
                 // Nobody will ask for it later.
                 None => drop(note),
             }
         })?;
-        keeper.run = Some(run);
+        keeper.recording = Some(recording);
         Ok(())
     }
 
@@ -239,13 +239,13 @@ impl Part<'_> {
     /// The recorded content for this key; `None` if nothing is recorded, or nothing that `fits`.
     pub(crate) fn take<T: DeserializeOwned>(self, key: Key, fits: impl FnOnce(&T) -> bool) -> Option<T> {
         let mut keeper = self.checkpoint.keeper();
-        let run = keeper.run.as_mut()?;
-        let place = *run.places.get(&key)?;
-        let content = run.log.read(place);
+        let recording = keeper.recording.as_mut()?;
+        let place = *recording.places.get(&key)?;
+        let content = recording.log.read(place);
         let of = |content: Vec<u8>| Head::of(&content).and_then(|(_, rest)| postcard::from_bytes(rest).ok());
         let found = content.and_then(of).filter(fits);
         if found.is_none() {
-            run.places.remove(&key);
+            recording.places.remove(&key);
             keeper.say(Note::Unfit);
         }
         found
@@ -264,8 +264,8 @@ impl Checkpoint {
     fn encoded<T: Serialize>(&self, key: Key, total: u64, solutions: u64, content: &T) -> Option<Vec<u8>> {
         let seconds = {
             let keeper = self.keeper();
-            let run = keeper.run.as_ref().filter(|run| !run.places.contains_key(&key))?;
-            run.before + run.begun.elapsed().as_secs_f64()
+            let recording = keeper.recording.as_ref().filter(|recording| !recording.places.contains_key(&key))?;
+            recording.before + recording.begun.elapsed().as_secs_f64()
         };
         let bytes = postcard::to_stdvec(&Head { key, total, solutions, seconds });
         bytes.and_then(|head| postcard::to_extend(content, head)).ok()
@@ -280,15 +280,15 @@ impl Keeper {
     }
 
     fn write(&mut self, key: Key, content: &[u8]) {
-        let Some(run) = &mut self.run else { return };
-        let written = run.log.append(content).and_then(|place| {
-            run.places.insert(key, place);
-            run.sync(self.options.interval)
+        let Some(recording) = &mut self.recording else { return };
+        let written = recording.log.append(content).and_then(|place| {
+            recording.places.insert(key, place);
+            recording.sync(self.options.interval)
         });
-        let before = std::mem::replace(&mut run.failing, written.is_err());
+        let before = std::mem::replace(&mut recording.failing, written.is_err());
         match written {
             Err(error) if self.options.required => {
-                self.failure = Some(CheckpointError::io(run.log.path(), &error));
+                self.failure = Some(CheckpointError::io(recording.log.path(), &error));
             }
             Err(error) if !before => self.say(Note::Unwritten(error.to_string())),
             Ok(()) if before => self.say(Note::WrittenAgain),
@@ -297,13 +297,13 @@ impl Keeper {
     }
 }
 
-impl Run {
+impl Recording {
     fn new(
         directory: &Path,
         header: Header,
         found: Option<&(Header, Vec<u8>)>,
         say: &mut dyn FnMut(Note),
-    ) -> Result<Run, CheckpointError> {
+    ) -> Result<Recording, CheckpointError> {
         let (log, path) = (directory.join(LOG), directory.join(HEADER));
         let mut places = BTreeMap::new();
         let mut before = 0.0;
@@ -336,7 +336,7 @@ impl Run {
             }
         };
         let now = Instant::now();
-        Ok(Run { log, places, begun: now, before, synced: now, pause: Duration::ZERO, failing: false })
+        Ok(Recording { log, places, begun: now, before, synced: now, pause: Duration::ZERO, failing: false })
     }
 
     /// Flushes what is written to disk, if that is due.

@@ -1,12 +1,13 @@
 //! Checkpoints: runs that continue after they were killed.
 //!
-//! A [`Checkpoint`] is a directory in which a run records its finished work: batches of paths with
-//! their ends ([`solve_recorded`](crate::solve_recorded)), targets of a family with their solutions
-//! ([`Targets::recorded`](crate::family::Targets::recorded)), loops of monodromy with the solutions
-//! that they find ([`Family::complete_recorded`](crate::Family::complete_recorded)). If it is
-//! opened again with [`resume`](CheckpointOptions::resume), the same run reads what is recorded and
-//! computes only what is missing. The result is the same to the bit as that of a run without
-//! interruption, on any number of threads.
+//! A [`Checkpoint`] is a directory in which a run records its finished work
+//! ([`Run::recorded`](crate::Run::recorded)): batches of paths with their ends
+//! ([`Run::solve`](crate::Run::solve)), targets of a family with their solutions
+//! ([`Run::track`](crate::Run::track)), loops of monodromy with the solutions that they find
+//! ([`Run::complete`](crate::Run::complete)). If it is opened again with
+//! [`resume`](CheckpointOptions::resume), the same run reads what is recorded and computes only
+//! what is missing. The result is the same to the bit as that of a run without interruption, on any
+//! number of threads.
 //!
 //! The directory has three files. `checkpoint.json` describes the run: the versions of records and
 //! of this crate, hashes of the system as it was read and of other input, and all options on which
@@ -22,18 +23,18 @@
 //!
 //! ```
 //! use hc::checkpoint::{Checkpoint, CheckpointOptions};
-//! use hc::{Monitor, SolveOptions, System, solve_recorded};
+//! use hc::{Run, SolveOptions, System};
 //!
 //! # let folder = tempfile::tempdir()?;
 //! # let directory = folder.path().join("run");
 //! let system: System = "x^2 + y^2 - 5; x*y - 2".parse()?;
-//! let (options, monitor) = (SolveOptions::new().seed(1), Monitor::default());
+//! let options = SolveOptions::new().seed(1);
 //! let checkpoint = Checkpoint::open(&directory, &CheckpointOptions::new())?;
-//! let found = solve_recorded(&system, &options, &monitor, &checkpoint)?;
+//! let found = Run::new().recorded(&checkpoint).solve(&system, &options)?;
 //! drop(checkpoint);
 //!
 //! let again = Checkpoint::open(&directory, &CheckpointOptions::new().resume(true))?;
-//! assert_eq!(solve_recorded(&system, &options, &monitor, &again)?, found);
+//! assert_eq!(Run::new().recorded(&again).solve(&system, &options)?, found);
 //! let status = hc::checkpoint::status(&directory)?;
 //! assert_eq!((status.done, status.total, status.running), (4, Some(4), true));
 //! # Ok::<(), Box<dyn std::error::Error>>(())

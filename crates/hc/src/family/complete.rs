@@ -11,7 +11,8 @@ use super::trace::{enlarge, trace_test};
 use super::trace_result::TraceTest;
 use crate::checkpoint::{Checkpoint, Job, Pieces};
 use crate::monitor::Monitor;
-use crate::ranks::{Lead, Ranks, Worker};
+use crate::ranks::{Lead, Worker};
+use crate::run::{RanksRun, Run};
 use num_complex::Complex64;
 use serde::Serialize;
 
@@ -31,75 +32,30 @@ impl Family {
     /// # Errors
     /// If no first solution is found.
     pub fn monodromy(&self, options: &MonodromyOptions) -> Result<Monodromy, FamilyError> {
-        let first = self.find_pair(options.seed)?;
-        self.complete(&first, options, &Monitor::default())
+        Run::new().monodromy(self, options)
     }
 
-    /// All solutions for the parameters of `first`, which has one or several of them. A cancelled
-    /// monitor ends the search. Where loops bring nothing new, solutions for other parameters are
-    /// tracked to these parameters.
+    /// All solutions for the parameters of `first`, which has one or several of them. Where loops
+    /// bring nothing new, solutions for other parameters are tracked to these parameters.
     ///
     /// # Errors
     /// If `first` belongs to another family, an option is out of range, a stated symmetry is not
     /// one, or the enlarged family of a requested [trace test](Self::trace_test) does not compile.
-    pub fn complete(
-        &self,
-        first: &Fibre,
-        options: &MonodromyOptions,
-        monitor: &Monitor,
-    ) -> Result<Monodromy, FamilyError> {
-        self.complete_anywhere(first, options, monitor, None, None)
+    pub fn complete(&self, first: &Fibre, options: &MonodromyOptions) -> Result<Monodromy, FamilyError> {
+        Run::new().complete(self, first, options)
     }
 
-    /// [`complete`](Self::complete), recorded in a [checkpoint](crate::checkpoint). Loops and steps
-    /// of the trace test that the checkpoint has are not repeated. The family, `first` and all
-    /// options except [`trace_test`](MonodromyOptions::trace_test) must be those of the run that
-    /// the checkpoint belongs to.
+    /// The trace test of a fibre: whether the fibre is whole. It takes several times as long as
+    /// finding the fibre. The option `patience` applies to the further points that the test needs.
     ///
     /// # Errors
-    /// As for [`complete`](Self::complete); also if the checkpoint belongs to another run, or
-    /// cannot be written.
-    pub fn complete_recorded(
-        &self,
-        first: &Fibre,
-        options: &MonodromyOptions,
-        monitor: &Monitor,
-        checkpoint: &Checkpoint,
-    ) -> Result<Monodromy, FamilyError> {
-        self.complete_anywhere(first, options, monitor, Some(checkpoint), None)
+    /// If the fibre belongs to another family, or the enlarged family of the test does not compile.
+    pub fn trace_test(&self, fibre: &Fibre, options: &MonodromyOptions) -> Result<TraceTest, FamilyError> {
+        Run::new().trace_test(self, fibre, options)
     }
 
-    /// [`complete`](Self::complete), or with a checkpoint
-    /// [`complete_recorded`](Self::complete_recorded), on several [ranks](crate::ranks) that all
-    /// get the same family, `first` and options. Only rank 0 heeds the monitor and has the
-    /// checkpoint, and only rank 0 gets what [`complete`](Self::complete) finds, to the bit. The
-    /// other ranks get `None` when they are no longer needed. The paths of loops and of the trace
-    /// test are divided; the work on their ends is not.
-    ///
-    /// # Errors
-    /// As for [`complete_recorded`](Self::complete_recorded); on rank 0 also if another rank fails
-    /// or has another job.
-    pub fn complete_on_ranks(
-        &self,
-        first: &Fibre,
-        options: &MonodromyOptions,
-        monitor: &Monitor,
-        checkpoint: Option<&Checkpoint>,
-        ranks: &Ranks<'_>,
-    ) -> Result<Option<Monodromy>, FamilyError> {
-        let fingerprint = self.search_job(first, &self.stated(options)).fingerprint();
-        if ranks.is_lead() {
-            return Lead::at(ranks, &fingerprint, |lead| {
-                self.complete_anywhere(first, options, monitor, checkpoint, Some(lead)).map(Some)
-            });
-        }
-        Worker::at(ranks, &fingerprint, |worker| {
-            self.check_search(first, options)?;
-            self.serve(worker).map(|()| None)
-        })
-    }
-
-    fn complete_anywhere(
+    /// The work at rank 0, or without others.
+    fn complete_led(
         &self,
         first: &Fibre,
         options: &MonodromyOptions,
@@ -188,20 +144,77 @@ impl Family {
         let pair = |k: u64| find_pair(self.system(), |p, x| self.accepts(p, x), seed.wrapping_add(k), FEW_TRIES);
         Ok((1..=PAIRS).map(pair).collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
     }
+}
 
-    /// The trace test of a fibre: whether the fibre is whole. It takes several times as long as
-    /// finding the fibre. The option `patience` applies to the further points that the test needs.
+impl Run {
+    /// [`Family::monodromy`], run in this way. Loops and steps of the trace test are recorded.
     ///
     /// # Errors
-    /// If the fibre belongs to another family, or the enlarged family of the test does not compile.
+    /// Those of [`Family::monodromy`] and [`complete`](Self::complete).
+    pub fn monodromy(&self, family: &Family, options: &MonodromyOptions) -> Result<Monodromy, FamilyError> {
+        self.install(|| self.complete(family, &family.find_pair(options.seed)?, options))
+    }
+
+    /// [`Family::complete`], run in this way. A monitor that is cancelled ends the search. Loops and
+    /// steps of the trace test are recorded. The family, `first` and all options except
+    /// [`trace_test`](MonodromyOptions::trace_test) must be those of the run that a checkpoint
+    /// belongs to.
+    ///
+    /// # Errors
+    /// As for [`Family::complete`]; also if the checkpoint belongs to another run, or cannot be
+    /// written.
+    pub fn complete(
+        &self,
+        family: &Family,
+        first: &Fibre,
+        options: &MonodromyOptions,
+    ) -> Result<Monodromy, FamilyError> {
+        self.install(|| family.complete_led(first, options, self.monitor(), self.checkpoint(), None))
+    }
+
+    /// [`Family::trace_test`], run in this way.
+    ///
+    /// # Errors
+    /// As for [`Family::trace_test`]; also if there is a checkpoint, since a trace test alone is not
+    /// recorded.
     pub fn trace_test(
         &self,
+        family: &Family,
         fibre: &Fibre,
         options: &MonodromyOptions,
-        monitor: &Monitor,
     ) -> Result<TraceTest, FamilyError> {
-        self.check(fibre)?;
-        Ok(trace_test(self.system(), fibre, options, Pieces::alone(monitor))?)
+        self.unrecorded("a trace test alone")?;
+        family.check(fibre)?;
+        self.install(|| Ok(trace_test(family.system(), fibre, options, Pieces::alone(self.monitor()))?))
+    }
+}
+
+impl RanksRun<'_> {
+    /// [`Family::complete`] on all ranks. The paths of loops and of the trace test are divided; the
+    /// work on their ends is not.
+    ///
+    /// # Errors
+    /// As for [`Run::complete`]; on rank 0 also if another rank fails or has another job.
+    pub fn complete(
+        &self,
+        family: &Family,
+        first: &Fibre,
+        options: &MonodromyOptions,
+    ) -> Result<Option<Monodromy>, FamilyError> {
+        let Some(ranks) = self.ranks else { return self.run.complete(family, first, options).map(Some) };
+        self.run.install(|| {
+            let fingerprint = family.search_job(first, &family.stated(options)).fingerprint();
+            if ranks.is_lead() {
+                let (monitor, checkpoint) = (self.run.monitor(), self.run.checkpoint());
+                return Lead::at(ranks, &fingerprint, |lead| {
+                    family.complete_led(first, options, monitor, checkpoint, Some(lead)).map(Some)
+                });
+            }
+            Worker::at(ranks, &fingerprint, |worker| {
+                family.check_search(first, options)?;
+                family.serve(worker).map(|()| None)
+            })
+        })
     }
 }
 

@@ -5,7 +5,7 @@ use super::{Family, FamilyError, Monodromy, MonodromyOptions, Stopped};
 use crate::checkpoint::{Checkpoint, CheckpointOptions, status};
 use crate::ranks::support::{Faulty, PATIENCE, on};
 use crate::ranks::{Exchange, Local, Ranks, RanksError};
-use crate::{Monitor, SolveOptions, Stage};
+use crate::{Monitor, RanksRun, Run, SolveOptions, Stage};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
@@ -18,8 +18,9 @@ fn any_number_of_ranks_tracks_to_the_same_bits() {
         let fibre = fibre(&family);
         let expected = family.track(&fibre, &targets).run().unwrap();
         for count in [1, 2, 4] {
-            let found =
-                on(&Local::ranks(count), PATIENCE, |ranks| family.track(&fibre, &targets).on_ranks(ranks).run());
+            let found = on(&Local::ranks(count), PATIENCE, |ranks| {
+                Run::new().on_ranks(ranks).track(&family, &fibre, &targets).run()
+            });
             assert_eq!(found[0].as_ref(), Ok(&expected), "{count} ranks");
             assert!(found[1..].iter().all(|other| other.as_ref().is_ok_and(Vec::is_empty)));
         }
@@ -34,23 +35,23 @@ fn any_number_of_ranks_tracks_to_the_same_bits() {
             false
         });
         let found = on(&exchanges, Duration::from_millis(150), |ranks| {
-            family.track(&fibre, &targets).watched(&monitor).on_ranks(ranks).run()
+            Run::new().watched(&monitor).on_ranks(ranks).track(&family, &fibre, &targets).run()
         });
         assert_eq!(found[0].as_ref(), Ok(&expected));
         assert!(exchanges[0].answers().load(Ordering::Relaxed) >= 4);
         // As far as was asked for, certified, with a checkpoint.
         let folder = tempfile::tempdir().unwrap();
         let options = SolveOptions::new().certify(true);
-        let first = || family.track(&fibre, &targets).options(&options).until(|k, _| k == 300);
-        let expected = first().run().unwrap();
+        let first =
+            |run: RanksRun<'_>| run.track(&family, &fibre, &targets).options(&options).until(|k, _| k == 300).run();
+        let expected = first(Run::new().on_ranks(None)).unwrap();
         for count in [3, 2] {
             let found = on(&Local::ranks(count), PATIENCE, |ranks| {
-                let all = first().on_ranks(ranks);
                 if !ranks.is_lead() {
-                    return all.run();
+                    return first(Run::new().on_ranks(ranks));
                 }
                 let checkpoint = Checkpoint::open(folder.path(), &CheckpointOptions::new().resume(true))?;
-                all.recorded(&checkpoint).run()
+                first(Run::new().recorded(&checkpoint).on_ranks(ranks))
             });
             assert_eq!((found[0].as_ref(), expected.len()), (Ok(&expected), 301));
         }
@@ -63,12 +64,13 @@ fn ranks_with_other_targets_are_refused() {
     let fibre = fibre(&family);
     let found = on(&Local::ranks(2), PATIENCE, |ranks| {
         let targets = targets(if ranks.is_lead() { 5000 } else { 4999 });
-        family.track(&fibre, &targets).on_ranks(ranks).run()
+        Run::new().on_ranks(ranks).track(&family, &fibre, &targets).run()
     });
     assert_eq!(found[0], Err(FamilyError::Ranks(RanksError::Differs { rank: 1 })));
     assert_eq!(found[1], Ok(Vec::new()));
     // A target that does not fit is refused by all.
-    let found = on(&Local::ranks(2), PATIENCE, |ranks| family.track(&fibre, &[[1.0, 2.0]]).on_ranks(ranks).run());
+    let found =
+        on(&Local::ranks(2), PATIENCE, |ranks| Run::new().on_ranks(ranks).track(&family, &fibre, &[[1.0, 2.0]]).run());
     assert!(found.iter().all(|found| *found == Err(FamilyError::Target { target: 1, parameters: 3 })), "{found:?}");
 }
 
@@ -89,7 +91,8 @@ fn searched<X: Exchange>(
 ) -> Monodromy {
     let first = family.find_pair(1).unwrap();
     let mut found =
-        on(exchanges, patience, |ranks| family.complete_on_ranks(&first, options, monitor, None, ranks)).into_iter();
+        on(exchanges, patience, |ranks| Run::new().watched(monitor).on_ranks(ranks).complete(family, &first, options))
+            .into_iter();
     let found_first = found.next().unwrap().unwrap().unwrap();
     assert!(found.all(|other| other == Ok(None)));
     found_first
@@ -100,7 +103,7 @@ fn any_number_of_ranks_fills_a_fibre_to_the_same_bits() {
     for (more, orbits) in [("", None), ("symmetry = [[\"-x\", \"-y\"]]", Some(32))] {
         let family = curves(more);
         let options = MonodromyOptions::new().seed(1);
-        let expected = family.complete(&family.find_pair(1).unwrap(), &options, &Monitor::default()).unwrap();
+        let expected = family.complete(&family.find_pair(1).unwrap(), &options).unwrap();
         assert_eq!((expected.fibre.len(), expected.stopped), (64, Stopped::Trace));
         assert_eq!(expected.fibre.representatives.as_ref().map(Vec::len), orbits);
         assert!(expected.trace.is_some_and(|test| test.passed(64)), "{:?}", expected.trace);
@@ -129,14 +132,18 @@ fn any_number_of_ranks_fills_a_fibre_to_the_same_bits() {
 fn checkpoints_of_searches_by_several_ranks_serve_any_number() {
     let (family, first) = pairs_of_roots();
     let options = MonodromyOptions::new().roots(65 * 65);
-    let expected = family.complete(&first, &options, &Monitor::default()).unwrap();
+    let expected = family.complete(&first, &options).unwrap();
     assert_eq!((expected.fibre.len(), expected.stopped), (4225, Stopped::RootsReached));
     let folder = tempfile::tempdir().unwrap();
     let run = |count: usize, monitor: &Monitor| {
         let found = on(&Local::ranks(count), PATIENCE, |ranks| {
             let open = || Checkpoint::open(folder.path(), &CheckpointOptions::new().resume(true));
             let checkpoint = if ranks.is_lead() { Some(open()?) } else { None };
-            family.complete_on_ranks(&first, &options, monitor, checkpoint.as_ref(), ranks)
+            Run::new()
+                .watched(monitor)
+                .recorded(checkpoint.as_ref())
+                .on_ranks(ranks)
+                .complete(&family, &first, &options)
         });
         assert!(found[1..].iter().all(|other| *other == Ok(None)));
         found[0].clone().unwrap().unwrap()
@@ -152,9 +159,8 @@ fn checkpoints_of_searches_by_several_ranks_serve_any_number() {
 #[test]
 fn ranks_with_another_search_are_refused() {
     let (family, first) = pairs_of_roots();
-    let search = |ranks: &Ranks<'_>, options: &MonodromyOptions| {
-        family.complete_on_ranks(&first, options, &Monitor::default(), None, ranks)
-    };
+    let search =
+        |ranks: &Ranks<'_>, options: &MonodromyOptions| Run::new().on_ranks(ranks).complete(&family, &first, options);
     let options = MonodromyOptions::new().roots(65 * 65);
     let found =
         on(&Local::ranks(2), PATIENCE, |ranks| search(ranks, &options.clone().seed(u64::from(!ranks.is_lead()))));

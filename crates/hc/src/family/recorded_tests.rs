@@ -3,7 +3,7 @@
 use super::{Family, FamilyError, Fibre, MonodromyOptions, Stopped};
 use crate::checkpoint::support::{goes_on_from_every_record, resumed};
 use crate::checkpoint::{Checkpoint, CheckpointError, CheckpointOptions, status};
-use crate::{Monitor, Solutions, SolveOptions};
+use crate::{Run, Solutions, SolveOptions};
 use num_complex::Complex64;
 
 /// Four solutions in two orbits; for `a = 0` two of them are at infinity.
@@ -34,7 +34,7 @@ fn tracked(
     options: &SolveOptions,
     checkpoint: &Checkpoint,
 ) -> Result<Vec<Solutions>, FamilyError> {
-    family.track(fibre, targets).options(options).recorded(checkpoint).run()
+    Run::new().recorded(checkpoint).track(family, fibre, targets).options(options).run()
 }
 
 #[test]
@@ -63,14 +63,15 @@ fn targets_go_on_from_every_record_to_the_same_bits() {
         assert_eq!(goes_on_from_every_record(&directory, &expected, work), 5);
         // What is recorded can be certified, and left out.
         let asked = |checkpoint: &Checkpoint| {
-            let all = family.track(&fibre, &targets).options(&SolveOptions::new().certify(true)).only_real(true);
-            all.recorded(checkpoint).run()
+            let all = Run::new().recorded(checkpoint).track(&family, &fibre, &targets);
+            all.options(&SolveOptions::new().certify(true)).only_real(true).run()
         };
         let (real, _) = resumed(&directory, 2, asked).unwrap();
         assert!(real.iter().flatten().all(|s| s.is_real && s.certified == Some(!s.singular)));
         // As far as was asked for.
-        let first =
-            |checkpoint: &Checkpoint| family.track(&fibre, &targets).recorded(checkpoint).until(|k, _| k == 300).run();
+        let first = |checkpoint: &Checkpoint| {
+            Run::new().recorded(checkpoint).track(&family, &fibre, &targets).until(|k, _| k == 300).run()
+        };
         assert_eq!(resumed(&directory, 1, first).unwrap().0, expected[..=300]);
     }
 }
@@ -125,13 +126,12 @@ fn searches_go_on_from_every_record_to_the_same_bits() {
         let options = MonodromyOptions::new().seed(1);
         let first = family.find_pair(1).unwrap();
         let directory = folder.path().join(name);
-        let expected = family.complete(&first, &options, &Monitor::default()).unwrap();
+        let expected = family.complete(&first, &options).unwrap();
         assert_eq!((expected.fibre.len(), expected.stopped), (count, Stopped::Trace));
-        let test = family.trace_test(&expected.fibre, &options, &Monitor::default()).unwrap();
+        let test = family.trace_test(&expected.fibre, &options).unwrap();
         assert!(test.passed(count) && expected.trace == Some(test), "{test:?}");
         assert_eq!(expected.start_file().stopped, "trace");
-        let work =
-            |checkpoint: &Checkpoint| family.complete_recorded(&first, &options, &Monitor::default(), checkpoint);
+        let work = |checkpoint: &Checkpoint| Run::new().recorded(checkpoint).complete(&family, &first, &options);
         let checkpoint = Checkpoint::open(&directory, &CheckpointOptions::new()).unwrap();
         assert_eq!(work(&checkpoint).unwrap(), expected);
         drop(checkpoint);
@@ -142,13 +142,11 @@ fn searches_go_on_from_every_record_to_the_same_bits() {
         assert!(goes_on_from_every_record(&directory, &expected, work) > expected.loops);
         // Neither the trace test nor threads are of the search.
         let untested = options.clone().trace_test(false);
-        let search =
-            |checkpoint: &Checkpoint| family.complete_recorded(&first, &untested, &Monitor::default(), checkpoint);
+        let search = |checkpoint: &Checkpoint| Run::new().recorded(checkpoint).complete(&family, &first, &untested);
         let (found, _) = resumed(&directory, 2, search).unwrap();
         assert_eq!((found.fibre, found.trace), (expected.fibre, None));
         for (options, differs) in [(options.clone().seed(2), "seed"), (options.clone().patience(9), "patience")] {
-            let work =
-                |checkpoint: &Checkpoint| family.complete_recorded(&first, &options, &Monitor::default(), checkpoint);
+            let work = |checkpoint: &Checkpoint| Run::new().recorded(checkpoint).complete(&family, &first, &options);
             let error = resumed(&directory, 1, work).unwrap_err();
             let FamilyError::Checkpoint(CheckpointError::Differs { name, .. }) = error else { panic!("{error}") };
             assert_eq!(name, differs);
@@ -168,10 +166,10 @@ pub(super) fn pairs_of_roots() -> (Family, Fibre) {
 fn sides_of_long_loops_are_recorded() {
     let (family, first) = pairs_of_roots();
     let options = MonodromyOptions::new().roots(65 * 65);
-    let expected = family.complete(&first, &options, &Monitor::default()).unwrap();
+    let expected = family.complete(&first, &options).unwrap();
     assert_eq!((expected.fibre.len(), expected.stopped), (4225, Stopped::RootsReached));
     let folder = tempfile::tempdir().unwrap();
-    let work = |checkpoint: &Checkpoint| family.complete_recorded(&first, &options, &Monitor::default(), checkpoint);
+    let work = |checkpoint: &Checkpoint| Run::new().recorded(checkpoint).complete(&family, &first, &options);
     let checkpoint = Checkpoint::open(folder.path(), &CheckpointOptions::new()).unwrap();
     assert_eq!(work(&checkpoint).unwrap(), expected);
     drop(checkpoint);

@@ -10,7 +10,8 @@ use super::track::move_fibre_watched;
 use crate::checkpoint::{Checkpoint, Job, Part, Recordable, Recorded};
 use crate::endgame::EndgameOptions;
 use crate::monitor::Monitor;
-use crate::ranks::{Lead, Ranks, Shareable, Shared, Worker};
+use crate::ranks::{Lead, Shareable, Shared, Worker};
+use crate::run::{RanksRun, Run};
 use crate::runner::{Flow, Policy, Round, Work, Workspace, run};
 use crate::solve::{Solutions, SolveOptions, solve_member};
 // One thread needs no trait for `map`.
@@ -37,7 +38,35 @@ impl Family {
         T: AsRef<[Z]>,
         Z: Copy + Into<Complex64>,
     {
-        Targets::new(self, fibre, targets.iter().map(|p| p.as_ref().iter().map(|&z| z.into()).collect()).collect())
+        Run::new().track(self, fibre, targets)
+    }
+}
+
+impl Run {
+    /// [`Family::track`], run in this way. Targets with their solutions are recorded. The family,
+    /// the fibre, the targets and all options except [`certify`](SolveOptions::certify) and
+    /// [`only_real`](Targets::only_real) must be those of the run that a checkpoint belongs to.
+    pub fn track<'a, T, Z>(&self, family: &'a Family, fibre: &'a Fibre, targets: &[T]) -> Targets<'a>
+    where
+        T: AsRef<[Z]>,
+        Z: Copy + Into<Complex64>,
+    {
+        self.clone().on_ranks(None).track(family, fibre, targets)
+    }
+}
+
+impl<'a> RanksRun<'a> {
+    /// [`Family::track`] on all ranks. The targets are divided. The other ranks get no results; they
+    /// return when they are no longer needed.
+    pub fn track<T, Z>(&self, family: &'a Family, fibre: &'a Fibre, targets: &[T]) -> Targets<'a>
+    where
+        T: AsRef<[Z]>,
+        Z: Copy + Into<Complex64>,
+    {
+        let monitor = self.run.monitor().clone();
+        let how = How { family, fibre, options: SolveOptions::default(), only_real: false, monitor };
+        let targets = targets.iter().map(|p| p.as_ref().iter().map(|&z| z.into()).collect()).collect();
+        Targets { how, targets, enough: None, run: self.clone() }
     }
 }
 
@@ -47,8 +76,7 @@ pub struct Targets<'a> {
     how: How<'a>,
     targets: Vec<Vec<Complex64>>,
     enough: Option<Box<Enough<'a>>>,
-    checkpoint: Option<Checkpoint>,
-    ranks: Option<&'a Ranks<'a>>,
+    run: RanksRun<'a>,
 }
 
 /// How each target is tracked.
@@ -61,12 +89,6 @@ struct How<'a> {
 }
 
 impl<'a> Targets<'a> {
-    pub(super) fn new(family: &'a Family, fibre: &'a Fibre, targets: Vec<Vec<Complex64>>) -> Targets<'a> {
-        let (options, monitor) = (SolveOptions::default(), Monitor::default());
-        let how = How { family, fibre, options, only_real: false, monitor };
-        Targets { how, targets, enough: None, checkpoint: None, ranks: None }
-    }
-
     /// Settings. Start systems are not used here. Default [`SolveOptions::default`].
     pub fn options(self, options: &SolveOptions) -> Self {
         Targets { how: How { options: options.clone(), ..self.how }, ..self }
@@ -77,31 +99,10 @@ impl<'a> Targets<'a> {
         Targets { how: How { only_real, ..self.how }, ..self }
     }
 
-    /// Lets this monitor watch and stop the work.
-    pub fn watched(self, monitor: &Monitor) -> Self {
-        Targets { how: How { monitor: monitor.clone(), ..self.how }, ..self }
-    }
-
     /// Stops after the first target, in their order, for which `enough` returns true. `enough` gets
     /// the number of the target, from 0, and its result.
     pub fn until(self, enough: impl FnMut(usize, &Solutions) -> bool + Send + 'a) -> Self {
         Targets { enough: Some(Box::new(enough)), ..self }
-    }
-
-    /// Records the work in a [checkpoint](crate::checkpoint). Targets that the checkpoint has are
-    /// not tracked again. The family, the fibre, the targets and all options except
-    /// [`certify`](SolveOptions::certify) and [`only_real`](Self::only_real) must be those of the
-    /// run that the checkpoint belongs to.
-    pub fn recorded(self, checkpoint: &Checkpoint) -> Self {
-        Targets { checkpoint: Some(checkpoint.clone()), ..self }
-    }
-
-    /// Lets several [ranks](crate::ranks) take part, which all get the same family, fibre, targets
-    /// and options. Only rank 0 heeds the monitor, has the checkpoint, and gets results, the same
-    /// to the bit as without other ranks. The other ranks get no results; they return when they are
-    /// no longer needed.
-    pub fn on_ranks(self, ranks: &'a Ranks<'a>) -> Self {
-        Targets { ranks: Some(ranks), ..self }
     }
 
     /// Tracks, and returns a result for each target, in order; fewer results if the work was
@@ -121,13 +122,17 @@ impl<'a> Targets<'a> {
     /// # Errors
     /// Those of [`run`](Self::run).
     pub fn transform<T: Send>(self, transform: impl Fn(usize, Solutions) -> T + Sync) -> Result<Vec<T>, FamilyError> {
-        let Some(ranks) = self.ranks else { return self.led(None, transform) };
-        let valid = self.validate();
-        let fingerprint = if valid.is_ok() { self.how.job(&self.targets).fingerprint() } else { String::new() };
-        if ranks.is_lead() {
-            return Lead::at(ranks, &fingerprint, |lead| self.led(Some(lead), transform));
-        }
-        Worker::at(ranks, &fingerprint, |worker| self.serve(worker)).map(|()| Vec::new())
+        let run = self.run.clone();
+        let transform = &transform;
+        run.run.install(|| {
+            let Some(ranks) = run.ranks else { return self.led(None, transform) };
+            let valid = self.validate();
+            let fingerprint = if valid.is_ok() { self.how.job(&self.targets).fingerprint() } else { String::new() };
+            if ranks.is_lead() {
+                return Lead::at(ranks, &fingerprint, |lead| self.led(Some(lead), transform));
+            }
+            Worker::at(ranks, &fingerprint, |worker| self.serve(worker)).map(|()| Vec::new())
+        })
     }
 
     fn validate(&self) -> Result<(), FamilyError> {
@@ -149,9 +154,10 @@ impl<'a> Targets<'a> {
         transform: impl Fn(usize, Solutions) -> T + Sync,
     ) -> Result<Vec<T>, FamilyError> {
         self.validate()?;
-        let Targets { how, targets, enough, checkpoint, .. } = self;
+        let Targets { how, targets, enough, run: RanksRun { run: circumstances, .. } } = self;
+        let checkpoint = circumstances.checkpoint();
         let orbits = Orbits::of(how.family, how.fibre)?;
-        if let Some(checkpoint) = &checkpoint {
+        if let Some(checkpoint) = checkpoint {
             checkpoint.begin(how.job(&targets))?;
         }
         if let Some(lead) = lead {
@@ -161,15 +167,15 @@ impl<'a> Targets<'a> {
         let (monitor, orbits) = (&how.monitor, orbits.as_ref());
         let results = Vec::with_capacity(count);
         let each = Each { how: &how, trackers, orbits, targets: &targets, enough, transform, results, solutions: 0 };
-        let block = match &checkpoint {
+        let block = match checkpoint {
             Some(_) => (RECORDED / how.fibre.len().max(1)).clamp(1, BLOCK),
             None => BLOCK,
         };
         let policy = Policy { retries: 0, charts: 1, first: block, batch: block };
-        let part = checkpoint.as_ref().map(|checkpoint| Part { checkpoint, number: 0 });
+        let part = checkpoint.map(|checkpoint| Part { checkpoint, number: 0 });
         let mut work = Recorded::new(Shared::new(each, lead, monitor), part, monitor);
         run(&mut work, count, &policy, &mut Workspace::default(), monitor);
-        if let Some(error) = checkpoint.as_ref().and_then(Checkpoint::failure) {
+        if let Some(error) = checkpoint.and_then(Checkpoint::failure) {
             return Err(error.into());
         }
         match lead.and_then(Lead::failure) {

@@ -6,6 +6,7 @@ use super::integer::Integer;
 use super::search::{Sink, search};
 use super::space::Space;
 use crate::monitor::{Monitor, Stage};
+use crate::run::Run;
 use std::cmp::Reverse;
 
 /// A fine mixed cell: the sum of one edge of each support.
@@ -30,8 +31,7 @@ pub struct MixedVolume {
 }
 
 /// The mixed volume of `n` supports in `n` unknowns. By Bernstein's theorem it is the number of
-/// solutions with all coordinates nonzero of a system with generic coefficients. Runs on the
-/// threads of the current rayon pool.
+/// solutions with all coordinates nonzero of a system with generic coefficients.
 ///
 /// ```
 /// use hc::mixed_volume;
@@ -45,15 +45,23 @@ pub struct MixedVolume {
 /// If the number of supports differs from the number of unknowns, an exponent vector has another
 /// length, or volumes exceed 64 bits.
 pub fn mixed_volume(unknowns: usize, supports: &[Vec<Vec<i32>>]) -> Result<MixedVolume, MixedError> {
-    mixed_volume_watched(unknowns, supports, &Monitor::default())
+    Run::new().mixed_volume(unknowns, supports)
 }
 
-/// [`mixed_volume`], watched: [`Progress`](crate::monitor::Progress) has the number of cells found
-/// so far and their volume, which is a lower bound.
-///
-/// # Errors
-/// Those of [`mixed_volume`], and [`MixedError::Cancelled`] after [`Monitor::cancel`].
-pub fn mixed_volume_watched(
+impl Run {
+    /// [`mixed_volume`], run in this way. [`Progress`](crate::Progress) has the number of cells found
+    /// so far and their volume, which is a lower bound.
+    ///
+    /// # Errors
+    /// Those of [`mixed_volume`], and [`MixedError::Cancelled`] after [`Monitor::cancel`]; also if
+    /// there is a checkpoint, since the search for mixed cells is not recorded.
+    pub fn mixed_volume(&self, unknowns: usize, supports: &[Vec<Vec<i32>>]) -> Result<MixedVolume, MixedError> {
+        self.unrecorded("a mixed volume")?;
+        self.install(|| mixed_volume_watched(unknowns, supports, self.monitor()))
+    }
+}
+
+fn mixed_volume_watched(
     unknowns: usize,
     supports: &[Vec<Vec<i32>>],
     monitor: &Monitor,

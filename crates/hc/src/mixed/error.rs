@@ -1,5 +1,6 @@
 //! Why there are no mixed cells.
 
+use crate::checkpoint::CheckpointError;
 use crate::ranks::RanksError;
 use poly::counted;
 
@@ -48,6 +49,9 @@ pub enum MixedError {
     /// Other processes cannot take part.
     #[error(transparent)]
     Ranks(#[from] RanksError),
+    /// A checkpoint, in which nothing would be recorded.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
     /// The work was cancelled by its [`Monitor`](crate::monitor::Monitor).
     #[error("cancelled before all mixed cells were found")]
     Cancelled,

@@ -12,9 +12,8 @@ mod subtrees;
 mod walk;
 
 pub(crate) use cells::{Keep, watched_cells};
-pub use cells::{MixedCell, MixedVolume, mixed_cells, mixed_volume, mixed_volume_watched};
+pub use cells::{MixedCell, MixedVolume, mixed_cells, mixed_volume};
 pub use error::MixedError;
-pub use subtrees::mixed_volume_on_ranks;
 
 #[cfg(all(test, feature = "threads"))]
 mod ranks_tests;

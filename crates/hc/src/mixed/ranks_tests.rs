@@ -1,9 +1,9 @@
 //! Mixed volumes by several ranks, which are threads here.
 
-use super::{MixedError, mixed_volume, mixed_volume_on_ranks};
-use crate::Monitor;
+use super::{MixedError, mixed_volume};
 use crate::ranks::support::{Faulty, PATIENCE, on};
 use crate::ranks::{Exchange, Local, Ranks, RanksError};
+use crate::{Monitor, Run};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
@@ -24,7 +24,7 @@ fn volume<X: Exchange>(
     supports: &[Vec<Vec<i32>>],
     monitor: &Monitor,
 ) -> (u64, usize) {
-    let each = |ranks: &Ranks<'_>| mixed_volume_on_ranks(supports.len(), supports, monitor, ranks);
+    let each = |ranks: &Ranks<'_>| Run::new().watched(monitor).on_ranks(ranks).mixed_volume(supports.len(), supports);
     let mut found = on(exchanges, patience, each).into_iter();
     let first = found.next().unwrap().unwrap().unwrap();
     assert!(found.all(|other| other == Ok(None)));
@@ -67,7 +67,7 @@ fn late_and_lost_answers_change_no_volume() {
 #[test]
 fn a_cancelled_search_has_a_lower_bound() {
     let (supports, monitor) = (cyclic(12, 1), Monitor::asking(|progress| progress.done >= 1000));
-    let each = |ranks: &Ranks<'_>| mixed_volume_on_ranks(12, &supports, &monitor, ranks);
+    let each = |ranks: &Ranks<'_>| Run::new().watched(&monitor).on_ranks(ranks).mixed_volume(12, &supports);
     assert_eq!(on(&Local::ranks(3), PATIENCE, each), [Err(MixedError::Cancelled), Ok(None), Ok(None)]);
     // Of 500,352.
     let found = monitor.progress();
@@ -78,17 +78,17 @@ fn a_cancelled_search_has_a_lower_bound() {
 fn ranks_that_do_not_fit_end_the_search_with_the_reason() {
     let each = |ranks: &Ranks<'_>| {
         let n = if ranks.is_lead() { 11 } else { 10 };
-        mixed_volume_on_ranks(n, &cyclic(n, 1), &Monitor::default(), ranks)
+        Run::new().on_ranks(ranks).mixed_volume(n, &cyclic(n, 1))
     };
     let differs = Err(MixedError::Ranks(RanksError::Differs { rank: 1 }));
     assert_eq!(on(&Local::ranks(2), PATIENCE, each), [differs, Ok(None)]);
     // The same error on all that come to it.
-    let not_square = |ranks: &Ranks<'_>| mixed_volume_on_ranks(3, &cyclic(2, 1), &Monitor::default(), ranks);
+    let not_square = |ranks: &Ranks<'_>| Run::new().on_ranks(ranks).mixed_volume(3, &cyclic(2, 1));
     let found = on(&Local::ranks(2), PATIENCE, not_square);
     assert_eq!(found[0], Err(MixedError::NotSquare { supports: 2, unknowns: 3 }));
     // Volumes of 2^64 and more.
     let cubes: Vec<Vec<Vec<i32>>> =
         (0..3).map(|k| [0, i32::MAX].map(|x| (0..3).map(|l| if l == k { x } else { 0 }).collect()).to_vec()).collect();
-    let large = |ranks: &Ranks<'_>| mixed_volume_on_ranks(3, &cubes, &Monitor::default(), ranks);
+    let large = |ranks: &Ranks<'_>| Run::new().on_ranks(ranks).mixed_volume(3, &cubes);
     assert_eq!(on(&Local::ranks(2), PATIENCE, large)[0], Err(MixedError::TooLarge));
 }

@@ -6,7 +6,8 @@ use super::search::{Task, divided, search_in};
 use super::space::Space;
 use crate::checkpoint::{Hash, Job, System};
 use crate::monitor::{Monitor, Stage};
-use crate::ranks::{Lead, Ranks, Shareable, Shared, Worker};
+use crate::ranks::{Lead, Shareable, Shared, Worker};
+use crate::run::RanksRun;
 use crate::runner::{Flow, Policy, Round, Work, Workspace, run};
 // One thread needs no trait for `map`.
 #[cfg_attr(not(feature = "threads"), allow(unused_imports))]
@@ -20,25 +21,25 @@ const BATCH: usize = 1 << 6;
 /// A subtree counts for so many paths where portions are made.
 const WEIGHT: usize = 1 << 5;
 
-/// [`mixed_volume_watched`](super::mixed_volume_watched) on several [ranks](crate::ranks) that all
-/// get the same supports. Every rank divides the search into the same subtrees. Rank 0 hands them
-/// out, and adds up what is found. Only rank 0 heeds the monitor and gets the mixed volume; the
-/// other ranks get `None` when they are no longer needed.
-///
-/// # Errors
-/// Those of [`mixed_volume_watched`](super::mixed_volume_watched); on rank 0 also if another rank
-/// fails or has other supports.
-pub fn mixed_volume_on_ranks(
-    unknowns: usize,
-    supports: &[Vec<Vec<i32>>],
-    monitor: &Monitor,
-    ranks: &Ranks<'_>,
-) -> Result<Option<MixedVolume>, MixedError> {
-    let fingerprint = job(unknowns, supports).fingerprint();
-    if ranks.is_lead() {
-        return Lead::at(ranks, &fingerprint, |lead| led(unknowns, supports, monitor, lead).map(Some));
+impl RanksRun<'_> {
+    /// [`mixed_volume`](fn@crate::mixed_volume) on all ranks. Every rank divides the search into
+    /// the same subtrees. Rank 0 hands them out, and adds up what is found.
+    ///
+    /// # Errors
+    /// Those of [`Run::mixed_volume`](crate::Run::mixed_volume); on rank 0 also if another rank
+    /// fails or has other supports.
+    pub fn mixed_volume(&self, unknowns: usize, supports: &[Vec<Vec<i32>>]) -> Result<Option<MixedVolume>, MixedError> {
+        let Some(ranks) = self.ranks else { return self.run.mixed_volume(unknowns, supports).map(Some) };
+        self.run.unrecorded("a mixed volume")?;
+        let monitor = self.run.monitor();
+        self.run.install(|| {
+            let fingerprint = job(unknowns, supports).fingerprint();
+            if ranks.is_lead() {
+                return Lead::at(ranks, &fingerprint, |lead| led(unknowns, supports, monitor, lead).map(Some));
+            }
+            Worker::at(ranks, &fingerprint, |worker| serve(unknowns, supports, worker).map(|()| None))
+        })
     }
-    Worker::at(ranks, &fingerprint, |worker| serve(unknowns, supports, worker).map(|()| None))
 }
 
 /// What all ranks do.

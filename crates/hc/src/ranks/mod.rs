@@ -1,22 +1,20 @@
 //! Work on several processes, which MPI calls ranks.
 //!
 //! All ranks run the same program on the same input and make the same start systems, which follow
-//! from the seed. With [`solve_on_ranks`](crate::solve_on_ranks), rank 0 does the same as in
-//! [`solve_watched`](crate::solve_watched). But it hands out paths in portions to the ranks that
-//! ask, tracks some itself, and puts the ends together in the order of their numbers. The result
-//! has the same bits on any number of ranks and threads, in whatever order the ends arrive: the end
-//! of a path depends only on its number and the round.
-//! [`Targets::on_ranks`](crate::family::Targets::on_ranks) does this for the targets of a family,
-//! [`Family::complete_on_ranks`](crate::Family::complete_on_ranks) for the loops of monodromy, and
-//! [`mixed_volume_on_ranks`](crate::start::mixed_volume_on_ranks) for the subtrees of the search
-//! for mixed cells. [`compute_on_ranks`] is for any other work in numbered items.
+//! from the seed. With [`Run::on_ranks`](crate::Run::on_ranks), rank 0 does the same as without
+//! other ranks. But it hands out paths in portions to the ranks that ask, tracks some itself, and
+//! puts the ends together in the order of their numbers. The result has the same bits on any number
+//! of ranks and threads, in whatever order the ends arrive: the end of a path depends only on its
+//! number and the round. A [`RanksRun`](crate::RanksRun) divides the paths of a solve and of the
+//! loops of monodromy, the targets of a family, and the subtrees of the search for mixed cells.
+//! [`compute_on_ranks`] is for any other work in numbered items.
 //!
 //! An [`Exchange`] carries the messages. [`Local`] is an exchange between threads. The programs
 //! `hc` and `tdoa` have one over MPI, behind their feature `mpi`.
 //!
 //! ```
 //! use hc::ranks::{Local, Ranks, RanksOptions};
-//! use hc::{Monitor, SolveOptions, System, solve, solve_on_ranks};
+//! use hc::{Run, SolveOptions, System, solve};
 //!
 //! let system: System = "x^2 + y^2 - 5; x*y - 2".parse()?;
 //! let options = SolveOptions::new().seed(1);
@@ -25,7 +23,7 @@
 //!         let (system, options) = (&system, &options);
 //!         scope.spawn(move || {
 //!             let ranks = Ranks::new(&exchange, &RanksOptions::new());
-//!             let found = solve_on_ranks(system, options, &Monitor::default(), None, &ranks);
+//!             let found = Run::new().on_ranks(&ranks).solve(system, options);
 //!             ranks.finish(None);
 //!             found
 //!         })

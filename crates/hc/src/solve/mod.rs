@@ -32,9 +32,10 @@ pub use solutions::{Direction, Solution, Solutions, Unresolved};
 pub use summary::coordinates;
 pub use warning::Warning;
 
-use crate::checkpoint::{Checkpoint, Hash, Job};
+use crate::checkpoint::{Hash, Job};
 use crate::monitor::Monitor;
-use crate::ranks::{Lead, Ranks, Worker};
+use crate::ranks::{Lead, Worker};
+use crate::run::{RanksRun, Run};
 use poly::{Exact, ExpandLimits, Polynomial, System};
 use solutions::Member;
 
@@ -61,70 +62,49 @@ use solutions::Member;
 /// If there are too few equations or too many paths, an equation has no unknowns, or a number or an
 /// option is out of range.
 pub fn solve(system: &System, options: &SolveOptions) -> Result<Solutions, SolveError> {
-    solve_watched(system, options, &Monitor::default())
+    Run::new().solve(system, options)
 }
 
-/// [`solve`], watched: once the monitor is cancelled, it returns what is found by then, marked as
-/// partial.
-///
-/// # Errors
-/// As [`solve`].
-pub fn solve_watched(system: &System, options: &SolveOptions, monitor: &Monitor) -> Result<Solutions, SolveError> {
-    solve_anywhere(system, options, monitor, None)
-}
-
-/// [`solve_watched`], recorded in a [checkpoint](crate::checkpoint). Batches of paths that the
-/// checkpoint has are not tracked again. All options except [`max_paths`](SolveOptions::max_paths)
-/// and [`certify`](SolveOptions::certify) must be those of the run that the checkpoint belongs to.
-///
-/// # Errors
-/// As for [`solve`]; also if the checkpoint belongs to another run, or cannot be written.
-pub fn solve_recorded(
-    system: &System,
-    options: &SolveOptions,
-    monitor: &Monitor,
-    checkpoint: &Checkpoint,
-) -> Result<Solutions, SolveError> {
-    solve_anywhere(system, options, monitor, Some(checkpoint))
-}
-
-/// [`solve_watched`], or with a checkpoint [`solve_recorded`], on several [ranks](crate::ranks)
-/// that all get the same system and options. Only rank 0 heeds the monitor and has the checkpoint,
-/// and only rank 0 gets the solutions, those of [`solve`] to the bit. The other ranks get `None`
-/// when they are no longer needed. Preparations and the work after the paths are not divided.
-///
-/// # Errors
-/// As for [`solve_recorded`]; on rank 0 also if another rank fails or has another job.
-pub fn solve_on_ranks(
-    system: &System,
-    options: &SolveOptions,
-    monitor: &Monitor,
-    checkpoint: Option<&Checkpoint>,
-    ranks: &Ranks<'_>,
-) -> Result<Option<Solutions>, SolveError> {
-    let polynomials = expanded(system, options);
-    let job = polynomials.as_ref().map(|polynomials| job(polynomials, system.variables(), options).fingerprint());
-    let fingerprint = job.unwrap_or_default();
-    if ranks.is_lead() {
-        return Lead::at(ranks, &fingerprint, |lead| {
-            let place = Place { checkpoint, lead: Some(lead), worker: None };
-            solve_expanded(system, &polynomials?, options, monitor, place).map(Some)
-        });
+impl Run {
+    /// [`solve`], run in this way. Batches of paths are recorded. All options except
+    /// [`max_paths`](SolveOptions::max_paths) and [`certify`](SolveOptions::certify) must be those
+    /// of the run that a checkpoint belongs to.
+    ///
+    /// # Errors
+    /// As for [`solve`]; also if the checkpoint belongs to another run, or cannot be written.
+    pub fn solve(&self, system: &System, options: &SolveOptions) -> Result<Solutions, SolveError> {
+        self.install(|| {
+            let place = Place { checkpoint: self.checkpoint(), ..Place::default() };
+            solve_expanded(system, &expanded(system, options)?, options, self.monitor(), place)
+        })
     }
-    Worker::at(ranks, &fingerprint, |worker| {
-        let place = Place { worker: Some(worker), ..Place::default() };
-        solve_polynomials(&polynomials?, system.variables(), options, worker.monitor(), place).map(|_| None)
-    })
 }
 
-fn solve_anywhere(
-    system: &System,
-    options: &SolveOptions,
-    monitor: &Monitor,
-    checkpoint: Option<&Checkpoint>,
-) -> Result<Solutions, SolveError> {
-    let place = Place { checkpoint, ..Place::default() };
-    solve_expanded(system, &expanded(system, options)?, options, monitor, place)
+impl RanksRun<'_> {
+    /// [`solve`] on all ranks. The paths are divided; preparations and the work after the paths are
+    /// not.
+    ///
+    /// # Errors
+    /// As for [`Run::solve`]; on rank 0 also if another rank fails or has another job.
+    pub fn solve(&self, system: &System, options: &SolveOptions) -> Result<Option<Solutions>, SolveError> {
+        let Some(ranks) = self.ranks else { return self.run.solve(system, options).map(Some) };
+        self.run.install(|| {
+            let polynomials = expanded(system, options);
+            let job =
+                polynomials.as_ref().map(|polynomials| job(polynomials, system.variables(), options).fingerprint());
+            let fingerprint = job.unwrap_or_default();
+            if ranks.is_lead() {
+                return Lead::at(ranks, &fingerprint, |lead| {
+                    let place = Place { checkpoint: self.run.checkpoint(), lead: Some(lead), worker: None };
+                    solve_expanded(system, &polynomials?, options, self.run.monitor(), place).map(Some)
+                });
+            }
+            Worker::at(ranks, &fingerprint, |worker| {
+                let place = Place { worker: Some(worker), ..Place::default() };
+                solve_polynomials(&polynomials?, system.variables(), options, worker.monitor(), place).map(|_| None)
+            })
+        })
+    }
 }
 
 /// The polynomials of a system that can be solved with these options.

@@ -4,7 +4,7 @@ use super::tests::quadrics;
 use crate::checkpoint::{Checkpoint, CheckpointOptions, status};
 use crate::ranks::support::{Faulty, PATIENCE, on};
 use crate::ranks::{Exchange, ExchangeError, Local, Ranks, RanksError, RanksOptions};
-use crate::{Monitor, Solutions, SolveError, SolveOptions, Stage, Start, System, solve, solve_on_ranks};
+use crate::{Monitor, Run, Solutions, SolveError, SolveOptions, Stage, Start, System, solve};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
@@ -36,7 +36,7 @@ fn cases() -> Vec<(&'static str, System, SolveOptions)> {
 
 /// Runs that solve alike, of which rank 0 has the solutions.
 fn solved<X: Exchange>(exchanges: &[X], patience: Duration, system: &System, options: &SolveOptions) -> Solutions {
-    let each = |ranks: &Ranks<'_>| solve_on_ranks(system, options, &Monitor::default(), None, ranks);
+    let each = |ranks: &Ranks<'_>| Run::new().on_ranks(ranks).solve(system, options);
     let mut found = on(exchanges, patience, each).into_iter();
     let first = found.next().unwrap().unwrap().unwrap();
     assert!(found.all(|other| other == Ok(None)));
@@ -73,7 +73,7 @@ fn late_and_lost_answers_change_nothing() {
             false
         });
         let found = on(&exchanges, Duration::from_millis(150), |ranks| {
-            solve_on_ranks(&system, &options, &monitor, None, ranks)
+            Run::new().watched(&monitor).on_ranks(ranks).solve(&system, &options)
         });
         assert_eq!(found, [Ok(Some(expected)), Ok(None), Ok(None)], "{name}");
         assert!(exchanges[0].answers().load(Ordering::Relaxed) >= enough, "{name}");
@@ -84,7 +84,7 @@ fn late_and_lost_answers_change_nothing() {
 fn ranks_that_never_answer_are_done_without() {
     let (system, options) = (cyclic(5), SolveOptions::new());
     let each = |ranks: &Ranks<'_>| match ranks.is_lead() {
-        true => solve_on_ranks(&system, &options, &Monitor::default(), None, ranks),
+        true => Run::new().on_ranks(ranks).solve(&system, &options),
         false => Ok(None),
     };
     let found = on(&Local::ranks(2), PATIENCE, each);
@@ -95,7 +95,7 @@ fn ranks_that_never_answer_are_done_without() {
 fn several_jobs_follow_each_other() {
     let (first, second, options) = (cyclic(5), quadrics(8), SolveOptions::new());
     let each = |ranks: &Ranks<'_>| {
-        let job = |system| solve_on_ranks(system, &options, &Monitor::default(), None, ranks);
+        let job = |system| Run::new().on_ranks(ranks).solve(system, &options);
         job(&first).and_then(|_| job(&second))
     };
     let found = on(&Local::ranks(3), PATIENCE, each);
@@ -115,7 +115,7 @@ fn checkpoints_of_several_ranks_serve_any_number() {
         let found = on(&Local::ranks(count), PATIENCE, |ranks| {
             let open = || Checkpoint::open(directory, &CheckpointOptions::new().resume(true));
             let checkpoint = if ranks.is_lead() { Some(open()?) } else { None };
-            solve_on_ranks(&system, &options, &monitor, checkpoint.as_ref(), ranks)
+            Run::new().watched(&monitor).recorded(checkpoint.as_ref()).on_ranks(ranks).solve(&system, &options)
         });
         (found[0].clone().unwrap().unwrap(), recorded())
     };
@@ -131,7 +131,8 @@ fn a_cancelled_run_ends_on_all_ranks_with_what_it_has() {
     let (system, options) = (quadrics(14), SolveOptions::new().start(Start::TotalDegree));
     let monitor = Monitor::asking(|progress| progress.done >= 100);
     let begun = Instant::now();
-    let found = on(&Local::ranks(3), PATIENCE, |ranks| solve_on_ranks(&system, &options, &monitor, None, ranks));
+    let found =
+        on(&Local::ranks(3), PATIENCE, |ranks| Run::new().watched(&monitor).on_ranks(ranks).solve(&system, &options));
     assert!(begun.elapsed() < Duration::from_secs(60));
     let partial = found[0].clone().unwrap().unwrap();
     assert!(partial.interrupted && (100..1 << 14).contains(&partial.len()), "{}", partial.len());
@@ -141,8 +142,7 @@ fn a_cancelled_run_ends_on_all_ranks_with_what_it_has() {
 #[test]
 fn ranks_that_do_not_fit_end_the_run_with_the_reason() {
     let (system, options) = (quadrics(12), SolveOptions::new().start(Start::TotalDegree));
-    let solved =
-        |options: &SolveOptions, ranks: &Ranks<'_>| solve_on_ranks(&system, options, &Monitor::default(), None, ranks);
+    let solved = |options: &SolveOptions, ranks: &Ranks<'_>| Run::new().on_ranks(ranks).solve(&system, options);
     // Another seed.
     let locals = Local::ranks(2);
     let found = on(&locals, PATIENCE, |ranks| solved(&options.clone().seed(u64::from(!ranks.is_lead())), ranks));
@@ -207,7 +207,7 @@ impl Exchange for Wrong {
 fn answers_about_other_paths_are_refused() {
     let (system, options) = (quadrics(13), SolveOptions::new().start(Start::TotalDegree));
     let exchanges: Vec<Wrong> = Local::ranks(2).into_iter().map(Wrong).collect();
-    let found = on(&exchanges, PATIENCE, |ranks| solve_on_ranks(&system, &options, &Monitor::default(), None, ranks));
+    let found = on(&exchanges, PATIENCE, |ranks| Run::new().on_ranks(ranks).solve(&system, &options));
     let Err(SolveError::Ranks(RanksError::Message { rank: 1, reason })) = &found[0] else { panic!("{found:?}") };
     assert!(!reason.is_empty());
 }
@@ -218,7 +218,7 @@ fn a_rank_that_comes_when_all_is_done_has_nothing_to_do() {
     let options = SolveOptions::new().seed(1);
     let job = |local: &Local| {
         let ranks = Ranks::new(local, &RanksOptions::new());
-        let found = solve_on_ranks(&system, &options, &Monitor::default(), None, &ranks);
+        let found = Run::new().on_ranks(&ranks).solve(&system, &options);
         ranks.finish(None);
         found
     };

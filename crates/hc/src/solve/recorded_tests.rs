@@ -2,7 +2,7 @@
 
 use crate::checkpoint::support::{goes_on_from_every_record, resumed};
 use crate::checkpoint::{Checkpoint, CheckpointError, CheckpointOptions, status};
-use crate::{Monitor, Progress, SolveError, SolveOptions, Stage, Start, System, solve, solve_recorded};
+use crate::{Monitor, Progress, Run, SolveError, SolveOptions, Stage, Start, System, solve};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -39,18 +39,18 @@ fn solves_go_on_from_every_record_to_the_same_bits() {
         let directory = folder.path().join("run");
         let checkpoint = Checkpoint::open(&directory, &CheckpointOptions::new()).unwrap();
         let (monitor, tracked) = counted();
-        assert_eq!(solve_recorded(&system, &options, &monitor, &checkpoint).unwrap(), expected);
+        assert_eq!(Run::new().watched(&monitor).recorded(&checkpoint).solve(&system, &options).unwrap(), expected);
         assert!(tracked.load(Ordering::Relaxed) > 0);
-        let again = solve_recorded(&system, &options, &monitor, &checkpoint);
+        let again = Run::new().watched(&monitor).recorded(&checkpoint).solve(&system, &options);
         assert_eq!(again, Err(SolveError::Checkpoint(CheckpointError::Used(directory.clone()))));
         drop(checkpoint);
 
-        let work = |checkpoint: &Checkpoint| solve_recorded(&system, &options, &Monitor::default(), checkpoint);
+        let work = |checkpoint: &Checkpoint| Run::new().recorded(checkpoint).solve(&system, &options);
         assert!(goes_on_from_every_record(&directory, &expected, work) >= 2);
         // Nothing is tracked any more.
         let checkpoint = Checkpoint::open(&directory, &CheckpointOptions::new().resume(true)).unwrap();
         let (monitor, tracked) = counted();
-        assert_eq!(solve_recorded(&system, &options, &monitor, &checkpoint).unwrap(), expected);
+        assert_eq!(Run::new().watched(&monitor).recorded(&checkpoint).solve(&system, &options).unwrap(), expected);
         assert_eq!(tracked.load(Ordering::Relaxed), 0);
     }
 }
@@ -61,12 +61,12 @@ fn other_runs_are_refused_with_the_difference() {
     let (system, options) = (quadrics(3), SolveOptions::new().seed(1));
     let record = || {
         let checkpoint = Checkpoint::open(folder.path(), &CheckpointOptions::new())?;
-        solve_recorded(&system, &options, &Monitor::default(), &checkpoint)
+        Run::new().recorded(&checkpoint).solve(&system, &options)
     };
     let found = record().unwrap();
     assert!(matches!(record(), Err(SolveError::Checkpoint(CheckpointError::Taken(_)))));
     let again = |system: &System, options: &SolveOptions| {
-        resumed(folder.path(), 1, |checkpoint| solve_recorded(system, options, &Monitor::default(), checkpoint))
+        resumed(folder.path(), 1, |checkpoint| Run::new().recorded(checkpoint).solve(system, options))
     };
     let differs = |system: &System, options: &SolveOptions| {
         let error = again(system, options).unwrap_err();
@@ -96,7 +96,7 @@ fn one_run_at_a_time_and_a_status_for_everybody() {
     let second = Checkpoint::open(folder.path(), &CheckpointOptions::new().resume(true));
     assert_eq!(second.map(|_| ()), Err(CheckpointError::InUse(folder.path().to_owned())));
     assert!(matches!(status(folder.path()), Err(CheckpointError::Io { .. })));
-    solve_recorded(&system, &options, &Monitor::default(), &checkpoint).unwrap();
+    Run::new().recorded(&checkpoint).solve(&system, &options).unwrap();
     let now = status(folder.path()).unwrap();
     assert_eq!((now.what.as_str(), now.running, now.part, now.round), ("solve", true, 1, 1));
     assert_eq!((now.done, now.total, now.solutions), (8, Some(8), 8));

@@ -13,9 +13,7 @@ mod reached;
 mod toric;
 mod total_degree;
 
-pub use crate::mixed::{
-    MixedCell, MixedError, MixedVolume, mixed_cells, mixed_volume, mixed_volume_on_ranks, mixed_volume_watched,
-};
+pub use crate::mixed::{MixedCell, MixedError, MixedVolume, mixed_cells, mixed_volume};
 pub(crate) use bezout::mixed_volume_is_bezout;
 pub(crate) use multihomogeneous::{Grouped, Multihomogeneous};
 pub(crate) use polyhedral::Polyhedral;

@@ -4,6 +4,7 @@ use super::irreducible::orbits;
 use super::set::WitnessSet;
 use super::slices::Slices;
 use crate::monitor::Monitor;
+use crate::run::Run;
 use crate::singular::{Given, is_missed};
 use crate::solve::{Solution, SolveError, SolveOptions, Unresolved, solve_sliced};
 use num_complex::Complex64;
@@ -72,7 +73,7 @@ pub struct Decomposition {
 /// ```
 /// // The twisted cubic.
 /// let system: hc::System = "y - x^2; z - x*y; x*z - y^2".parse()?;
-/// let found = hc::witness::decompose(&system, &hc::SolveOptions::new(), &hc::Monitor::default())?;
+/// let found = hc::witness::decompose(&system, &hc::SolveOptions::new())?;
 /// assert_eq!((found.components.len(), found.isolated.len(), found.failed), (1, 0, 0));
 /// let cubic = &found.components[0];
 /// assert_eq!((cubic.dimension, cubic.degree, cubic.multiplicity, cubic.irreducible), (1, 3, 1, true));
@@ -81,7 +82,22 @@ pub struct Decomposition {
 ///
 /// # Errors
 /// As for [`solve`](fn@crate::solve), but fewer equations than unknowns are not an error.
-pub fn decompose(system: &System, options: &SolveOptions, monitor: &Monitor) -> Result<Decomposition, SolveError> {
+pub fn decompose(system: &System, options: &SolveOptions) -> Result<Decomposition, SolveError> {
+    Run::new().decompose(system, options)
+}
+
+impl Run {
+    /// [`decompose`], run in this way.
+    ///
+    /// # Errors
+    /// As for [`decompose`]; also if there is a checkpoint, since a decomposition is not recorded.
+    pub fn decompose(&self, system: &System, options: &SolveOptions) -> Result<Decomposition, SolveError> {
+        self.unrecorded("a decomposition")?;
+        self.install(|| decompose_watched(system, options, self.monitor()))
+    }
+}
+
+fn decompose_watched(system: &System, options: &SolveOptions, monitor: &Monitor) -> Result<Decomposition, SolveError> {
     options.validate()?;
     if !system.parameters().is_empty() {
         return Err(SolveError::Parameters(system.parameters().join(", ")));

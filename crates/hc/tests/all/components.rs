@@ -1,12 +1,12 @@
 //! Solution sets of positive dimension, with dimensions and degrees from geometry or the
 //! literature.
 
+use hc::SolveOptions;
 use hc::witness::{Decomposition, decompose};
-use hc::{Monitor, SolveOptions};
 
 fn decomposed(text: &str, seed: u64) -> Decomposition {
     let system = hc::poly::parse::phcpack(text).unwrap();
-    decompose(&system, &SolveOptions::new().seed(seed), &Monitor::default()).unwrap()
+    decompose(&system, &SolveOptions::new().seed(seed)).unwrap()
 }
 
 /// Dimension, degree and multiplicity of each component, sorted, and the number of isolated
@@ -27,7 +27,7 @@ fn check(text: &str, seeds: u64, components: &[(usize, usize, usize)], isolated:
 fn few_paths() {
     let system =
         hc::poly::parse::phcpack("4\na+b+c+d;\na*b+b*c+c*d+d*a;\na*b*c+b*c*d+c*d*a+d*a*b;\na*b*c*d-1;").unwrap();
-    let found = decompose(&system, &SolveOptions::new().max_paths(3), &Monitor::default()).unwrap();
+    let found = decompose(&system, &SolveOptions::new().max_paths(3)).unwrap();
     assert_eq!(
         (&found.components[..], &found.unsearched[..], found.failed, found.partial),
         (&[][..], &[1, 0][..], 2, false)

@@ -6,7 +6,7 @@ use hc::certify::{CertifyOptions, certify};
 use hc::family::Stopped;
 use hc::poly::{Complex64, ComplexInterval, System};
 use hc::random::{Random, Stream};
-use hc::{Family, Fibre, Monitor, MonodromyOptions, Solutions, SolveOptions, solve};
+use hc::{Family, Fibre, MonodromyOptions, Solutions, SolveOptions, solve};
 
 fn fibre(family: &Family, count: usize) -> Fibre {
     let found = family.monodromy(&MonodromyOptions::new().roots(count)).unwrap();
@@ -28,7 +28,7 @@ fn through_points_and_tangent_to_up_to_three_conics() {
     for k in 0..=3 {
         let family = Family::new(tangent_conics(k)).unwrap();
         let fibre = fibre(&family, COUNTS[k]);
-        let test = || family.trace_test(&fibre, &MonodromyOptions::default(), &Monitor::default()).unwrap();
+        let test = || family.trace_test(&fibre, &MonodromyOptions::default()).unwrap();
         assert!(k > 2 || test().passed(COUNTS[k]), "{k} conics");
         for seed in 0..3 {
             let target = Random::new(seed, Stream::Other(9)).normals(fibre.parameters.len());

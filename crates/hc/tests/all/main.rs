@@ -7,6 +7,7 @@ mod components;
 mod conics;
 mod generators;
 mod mixed_volume;
+mod runs;
 mod scales;
 mod singular;
 mod small_systems;

@@ -264,14 +264,14 @@ fn jumped_paths_are_found_and_mended() {
 #[test]
 fn the_trace_test_tells_a_whole_fibre_from_one_with_a_hole() {
     let (family, _, fibre) = p3p_fibre();
-    let (options, monitor) = (MonodromyOptions::default(), Monitor::default());
-    let test = family.trace_test(&fibre, &options, &monitor).unwrap();
+    let options = MonodromyOptions::default();
+    let test = family.trace_test(&fibre, &options).unwrap();
     assert!(test.passed(8), "{test:?}");
     // The further points are found from the fibre, and with them the missing one: the count gives
     // it away.
     let mut hole = fibre.clone();
     hole.solutions.truncate(7 * 3);
-    let test = family.trace_test(&hole, &options, &monitor).unwrap();
+    let test = family.trace_test(&hole, &options).unwrap();
     assert!(!test.passed(7), "{test:?}");
 }
 
@@ -279,10 +279,9 @@ fn the_trace_test_tells_a_whole_fibre_from_one_with_a_hole() {
 fn monodromy_without_a_known_count_says_why_it_stopped() {
     let (family, _) = family("x y", "r a b", "x^2 + y^2 - r; y - a*x - b");
     let start = family.find_pair(3).unwrap();
-    let monitor = Monitor::default();
     for (trace_test, stopped) in [(true, Stopped::Trace), (false, Stopped::NoProgress)] {
         let options = MonodromyOptions::new().trace_test(trace_test);
-        let found = family.complete(&start, &options, &monitor).unwrap();
+        let found = family.complete(&start, &options).unwrap();
         assert_eq!((found.stopped, found.fibre.len(), found.trace.is_some()), (stopped, 2, trace_test));
         assert_eq!(found.stopped.is_complete(), trace_test);
         assert_eq!(found.start_file().stopped, stopped.to_string());
@@ -300,13 +299,12 @@ fn monodromy_finds_branch_points_at_any_scale() {
         ("x y", "a b r", "(x - a)^2 + (y - b)^2 - r^2; x^2 + y^2 - 1000000", 2),
         ("x", "a", "x^2 - a + 1/1000000", 2),
     ];
-    let monitor = Monitor::default();
     for (unknowns, parameters, equations, roots) in cases {
         let (family, _) = family(unknowns, parameters, equations);
         let mut whole = 0;
         for seed in 0..20 {
             let options = MonodromyOptions::new().seed(seed);
-            let found = family.complete(&family.find_pair(seed).unwrap(), &options, &monitor).unwrap();
+            let found = family.complete(&family.find_pair(seed).unwrap(), &options).unwrap();
             // Never more than there are, and never fewer that are said to be all.
             let (count, is_complete) = (found.fibre.len(), found.stopped.is_complete());
             assert!(count == roots || count < roots && !is_complete, "{equations} {seed}: {count} {:?}", found.trace);

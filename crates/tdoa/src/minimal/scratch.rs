@@ -9,7 +9,7 @@ use super::error::SolveError;
 use super::formulation::Formulation;
 use super::solution::PathCounts;
 use hc::random::{Random, Stream};
-use hc::{Fibre, Monitor, SolveOptions, Start, solve_watched};
+use hc::{Fibre, Monitor, Run, SolveOptions, Start};
 use num_complex::Complex64;
 
 /// So many random members are tried until all roots of one are found.
@@ -77,7 +77,7 @@ fn roots<F: Formulation>(
     options.paths.tracker.max_steps = 1_000;
     options.paths.retries = retries;
     options.restarts = 0;
-    let found = solve_watched(&system, &options, monitor).map_err(|e| refused(&e))?;
+    let found = Run::new().watched(monitor).solve(&system, &options).map_err(|e| refused(&e))?;
     if found.interrupted {
         return Err(SolveError::Cancelled);
     }
