@@ -240,19 +240,13 @@ fn step<S: Number>(local: &LocalEquations<'_, S>, x: &[S], order: usize, ranks: 
     let mut profile = Profile { ranks: vec![pivots.rank()], remaining: 0 };
     let mut accepted = pivots.smallest;
     if pivots.rank() == x.len() {
-        let mut point = x.to_vec();
-        for (&j, d) in pivots.columns.iter().zip(pivots.solve(&values)) {
-            point[j] = S::sub(&point[j], &d);
-        }
+        let point = pivots.newton_step(x, &values);
         return Some(Step { point, profile, accepted, rejected: f64::NEG_INFINITY });
     }
     let mut rejected = pivots.rest;
     if order == 1 {
         // Nothing but the linear part: what it does not determine stays.
-        let mut point = x.to_vec();
-        for (&j, d) in pivots.columns.iter().zip(pivots.solve(&values)) {
-            point[j] = S::sub(&point[j], &d);
-        }
+        let point = pivots.newton_step(x, &values);
         rejected = rejected.max(local.residual(&point));
         profile.remaining = x.len() - pivots.rank();
         return Some(Step { point, profile, accepted, rejected });

@@ -103,6 +103,16 @@ impl<S: Number> Elimination<S> {
         x
     }
 
+    /// Where Newton's method leads from a point with these values of the equations, if the matrix is
+    /// their Jacobian; the unknowns without a pivot stay.
+    pub(crate) fn newton_step(&self, point: &[S], values: &[S]) -> Vec<S> {
+        let mut point = point.to_vec();
+        for (&j, d) in self.columns.iter().zip(self.solve(values)) {
+            point[j] = S::sub(&point[j], &d);
+        }
+        point
+    }
+
     /// Solves with the upper triangle.
     fn back(&self, x: &mut [S]) {
         for k in (0..x.len()).rev() {

@@ -1,10 +1,13 @@
 //! Shows, by linear algebra modulo a prime, that a number of general hyperplanes meet no solution.
 
+use super::eliminant::trimmed;
 use super::equations::Given;
-use super::modular::{Echelon, PRIME, difference, inverse, sum, times, trim};
-use super::multiplicity::{Modular, Monomials};
+use super::modular::{Echelon, PRIME, Residue};
+use super::monomials::Monomials;
+use super::multiplicity::Modular;
 use crate::monitor::Monitor;
 use crate::random::{Random, Stream};
+use num_traits::Zero;
 
 /// Monomials at most: those up to a degree in the unknowns that the hyperplanes leave.
 const MONOMIALS: usize = 4_400;
@@ -33,28 +36,28 @@ pub(crate) fn is_missed(given: &Given, dimension: usize, monitor: &Monitor) -> b
 
 /// The unknowns as affine forms in those that linear equations and random hyperplanes leave: their
 /// coefficients, then the constant. `None` if these have no solution.
-fn affine(equations: &[Modular], unknowns: usize, dimension: usize) -> Option<Vec<Vec<u64>>> {
+fn affine(equations: &[Modular], unknowns: usize, dimension: usize) -> Option<Vec<Vec<Residue>>> {
     let mut rows = Echelon::new(unknowns + 1);
     for terms in equations {
         if terms.iter().all(|(powers, _)| powers.iter().map(|&(_, e)| e).sum::<u32>() <= 1) {
-            let mut row = vec![0; unknowns + 1];
+            let mut row = vec![Residue::zero(); unknowns + 1];
             for (powers, c) in terms {
                 let place = powers.first().map_or(unknowns, |&(j, _)| j);
-                row[place] = sum(row[place], *c);
+                row[place] += *c;
             }
             rows.add(row);
         }
     }
     let mut random = Random::new(0, Stream::Slice(dimension as u64));
     for _ in 0..dimension {
-        rows.add((0..=unknowns).map(|_| random.below(PRIME)).collect());
+        rows.add((0..=unknowns).map(|_| Residue::new(random.below(PRIME))).collect());
     }
     let free = rows.free();
     let (&constant, free) = free.split_last()?;
     if constant != unknowns {
         return None;
     }
-    let columns: Vec<Vec<u64>> = free.iter().chain([&constant]).map(|&k| rows.null_vector(k)).collect();
+    let columns: Vec<Vec<Residue>> = free.iter().chain([&constant]).map(|&k| rows.null_vector(k)).collect();
     Some((0..unknowns).map(|j| columns.iter().map(|column| column[j]).collect()).collect())
 }
 
@@ -64,7 +67,7 @@ struct Macaulay<'a> {
     monitor: &'a Monitor,
     equations: Vec<Equation>,
     /// By their highest monomials, which have the coefficient one and come last.
-    rows: Vec<Option<Vec<u64>>>,
+    rows: Vec<Option<Vec<Residue>>>,
     /// Whether no equation was left out since its degree is too high.
     is_whole: bool,
     work: u64,
@@ -72,20 +75,20 @@ struct Macaulay<'a> {
 
 struct Equation {
     /// Its coefficients, up to that of its highest monomial.
-    row: Vec<u64>,
+    row: Vec<Residue>,
     degree: usize,
     /// The degree of the multiples that are next.
     next: usize,
 }
 
 impl<'a> Macaulay<'a> {
-    fn new(equations: &[Modular], affine: &[Vec<u64>], highest: usize, monitor: &'a Monitor) -> Macaulay<'a> {
+    fn new(equations: &[Modular], affine: &[Vec<Residue>], highest: usize, monitor: &'a Monitor) -> Macaulay<'a> {
         let left = affine.first().map_or(0, |form| form.len() - 1);
         let monomials = Monomials::new(left, highest);
         let rows = vec![None; monomials.exponents.len()];
         let mut all = Macaulay { monomials, monitor, equations: Vec::new(), rows, is_whole: true, work: 0 };
         for terms in equations {
-            let degree = |(powers, _): &(Vec<(usize, u32)>, u64)| powers.iter().map(|&(_, e)| e as usize).sum();
+            let degree = |(powers, _): &(Vec<(usize, u32)>, Residue)| powers.iter().map(|&(_, e)| e as usize).sum();
             if terms.iter().map(degree).max().unwrap_or(0) > highest {
                 all.is_whole = false;
                 continue;
@@ -100,27 +103,26 @@ impl<'a> Macaulay<'a> {
     }
 
     /// An equation in the unknowns that are left.
-    fn substituted(&mut self, terms: &Modular, affine: &[Vec<u64>]) -> Vec<u64> {
-        let mut whole = vec![0; self.monomials.exponents.len()];
+    fn substituted(&mut self, terms: &Modular, affine: &[Vec<Residue>]) -> Vec<Residue> {
+        let mut whole = vec![Residue::zero(); self.monomials.exponents.len()];
         for (powers, c) in terms {
             let (mut product, mut degree) = (vec![*c], 0);
             for form in powers.iter().flat_map(|&(j, e)| std::iter::repeat_n(&affine[j], e as usize)) {
                 let Some((&constant, slopes)) = form.split_last() else { continue };
                 degree += 1;
-                let mut next: Vec<u64> = product.iter().map(|&c| times(c, constant)).collect();
-                next.resize(self.monomials.counts[degree], 0);
+                let mut next: Vec<Residue> = product.iter().map(|&c| c * constant).collect();
+                next.resize(self.monomials.counts[degree], Residue::zero());
                 for (k, &c) in product.iter().enumerate() {
                     for (&place, &slope) in self.monomials.raised[k].iter().zip(slopes) {
-                        next[place] = sum(next[place], times(c, slope));
+                        next[place] += c * slope;
                     }
                 }
                 self.work += (form.len() * product.len()) as u64;
                 product = next;
             }
-            whole.iter_mut().zip(&product).for_each(|(w, &c)| *w = sum(*w, c));
+            whole.iter_mut().zip(&product).for_each(|(w, &c)| *w += c);
         }
-        trim(&mut whole);
-        whole
+        trimmed(whole)
     }
 
     fn degree(&self, place: usize) -> usize {
@@ -164,32 +166,32 @@ impl<'a> Macaulay<'a> {
     }
 
     /// An equation times a monomial.
-    fn multiple(&self, which: usize, factor: usize) -> Vec<u64> {
+    fn multiple(&self, which: usize, factor: usize) -> Vec<Residue> {
         let (row, factor) = (&self.equations[which].row, &self.monomials.exponents[factor]);
         let raised = |place: usize| {
             let steps = factor.iter().enumerate().flat_map(|(i, &e)| std::iter::repeat_n(i, usize::from(e)));
             steps.fold(place, |place, i| self.monomials.raised[place][i])
         };
-        let mut multiple = vec![0; self.rows.len()];
-        row.iter().enumerate().filter(|(_, c)| **c != 0).for_each(|(k, &c)| multiple[raised(k)] = c);
+        let mut multiple = vec![Residue::zero(); self.rows.len()];
+        row.iter().enumerate().filter(|(_, c)| !c.is_zero()).for_each(|(k, &c)| multiple[raised(k)] = c);
         multiple
     }
 
     /// A row with a highest monomial that none before has; `None` inside if nothing is left of it.
-    fn reduced(&mut self, mut row: Vec<u64>) -> Option<Option<Vec<u64>>> {
+    fn reduced(&mut self, mut row: Vec<Residue>) -> Option<Option<Vec<Residue>>> {
         loop {
-            trim(&mut row);
+            row = trimmed(row);
             let Some(&leading) = row.last() else { return Some(None) };
             self.work += row.len() as u64;
             let Some(known) = &self.rows[row.len() - 1] else {
-                let factor = inverse(leading);
-                row.iter_mut().for_each(|c| *c = times(*c, factor));
+                let factor = leading.inverse();
+                row.iter_mut().for_each(|c| *c *= factor);
                 return Some(Some(row));
             };
             if self.work > WORK || self.monitor.is_cancelled() {
                 return None;
             }
-            row.iter_mut().zip(known).for_each(|(c, &k)| *c = difference(*c, times(leading, k)));
+            row.iter_mut().zip(known).for_each(|(c, &k)| *c -= leading * k);
         }
     }
 }

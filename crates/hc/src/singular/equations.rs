@@ -1,7 +1,7 @@
 //! The given equations with exact coefficients, and their values, derivatives and series near a
 //! point in numbers of any precision.
 
-use super::modular::image;
+use super::modular::Residue;
 use super::multiplicity::Modular;
 use super::number::{Number, largest};
 use super::series::Basis;
@@ -165,7 +165,7 @@ impl Given {
     pub(super) fn modular(&self, exponent: u32) -> Option<Vec<Modular>> {
         let term = |t: &Term| {
             let small = t.powers.iter().all(|&(_, e)| e <= exponent);
-            small.then(|| image(&t.coefficient).map(|c| (t.powers.clone(), c))).flatten()
+            small.then(|| Residue::image(&t.coefficient).map(|c| (t.powers.clone(), c))).flatten()
         };
         self.shared.equations.iter().map(|terms| terms.iter().map(term).collect()).collect()
     }

@@ -144,11 +144,7 @@ pub(crate) fn is_moved(given: &Given, point: &[Complex64]) -> bool {
 /// base 2).
 fn newton<S: Number>(x: &[S], values: &[S], jacobian: Vec<Vec<S>>, smallest: f64) -> Option<Vec<S>> {
     let pivots = Elimination::new(jacobian, x.len(), Stop::Below(f64::NEG_INFINITY));
-    let mut x = x.to_vec();
-    for (&j, d) in pivots.columns.iter().zip(pivots.solve(values)) {
-        x[j] = S::sub(&x[j], &d);
-    }
-    (pivots.rank() == x.len() && pivots.smallest > smallest).then_some(x)
+    (pivots.rank() == x.len() && pivots.smallest > smallest).then(|| pivots.newton_step(x, values))
 }
 
 /// The regular solution near a point, if there is one to one precision.

@@ -7,11 +7,14 @@
 mod cluster;
 mod deflate;
 mod dual;
+mod eliminant;
 mod eliminate;
 mod empty;
 mod equations;
+mod integers;
 mod judge;
 mod modular;
+mod monomials;
 mod multiplicity;
 mod number;
 mod rational;
@@ -23,6 +26,7 @@ mod univariate;
 mod verdict;
 
 pub(crate) use cluster::{ClusterSolution, Zoom};
+pub(crate) use eliminant::Eliminant;
 pub(crate) use eliminate::{Elimination, Stop};
 pub(crate) use empty::is_missed;
 pub(crate) use equations::Given;

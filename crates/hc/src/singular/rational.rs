@@ -2,14 +2,15 @@
 //! isolated, and with which multiplicity.
 
 use super::equations::Given;
-use super::modular::{difference, image, power, sum, times};
+use super::modular::Residue;
 use super::multiplicity::{Modular, Multiplicity, multiplicity};
 use super::verdict::{Verdict, residual};
 use num_bigint::BigInt;
 use num_complex::Complex64;
 use num_rational::BigRational;
-use num_traits::ToPrimitive;
+use num_traits::{ToPrimitive, Zero};
 use poly::Exact;
+use std::ops::Add;
 
 /// Ends may be this many times their error from the rational point, and are surely no nearer than
 /// the least; coordinates have denominators up to the last.
@@ -25,7 +26,7 @@ const SIZE: f64 = 1e9;
 /// As few functionals are those of an isolated solution however few the paths are.
 const FEW: usize = 12;
 /// A primitive root of the prime.
-const GENERATOR: u64 = 7;
+const GENERATOR: u32 = 7;
 /// Exponents at most: powers of exact numbers are as long.
 const EXPONENT: u32 = 512;
 /// The verdict on a rational point near the end of a path, where that is a solution; `most` paths
@@ -55,13 +56,13 @@ fn within(
 ) -> Option<Option<Verdict>> {
     let rational = |(z, &unit): (&Complex64, &i64)| rational(*z, unit, tolerance, denominator);
     let exact: Vec<Exact> = point.iter().zip(given.scales()).map(rational).collect::<Option<_>>()?;
-    let images: Vec<u64> = exact.iter().map(image).collect::<Option<_>>()?;
+    let images: Vec<Residue> = exact.iter().map(Residue::image).collect::<Option<_>>()?;
     let equations = given.modular(EXPONENT)?;
-    let term = |(powers, c): &(Vec<(usize, u32)>, u64)| {
-        powers.iter().fold(*c, |product, &(j, e)| times(product, power(images[j], u64::from(e))))
+    let term = |(powers, c): &(Vec<(usize, u32)>, Residue)| {
+        powers.iter().fold(*c, |product, &(j, e)| product * images[j].power(u64::from(e)))
     };
-    let value = |terms: &Modular| terms.iter().map(term).fold(0, sum);
-    if equations.iter().any(|terms| value(terms) != 0) || !given.vanish_at(&exact) {
+    let value = |terms: &Modular| terms.iter().map(term).fold(Residue::zero(), Residue::add);
+    if equations.iter().any(|terms| !value(terms).is_zero()) || !given.vanish_at(&exact) {
         return None;
     }
     let multiplicity = multiplicity(&equations, &images, most.max(FEW));
@@ -82,13 +83,14 @@ fn within(
 
 /// The local dimension at a point on a component, modulo the prime: the number of general hyperplanes
 /// through it in which it is isolated. Where that is not seen, one.
-fn dimension(mut equations: Vec<Modular>, point: &[u64], most: usize) -> usize {
+fn dimension(mut equations: Vec<Modular>, point: &[Residue], most: usize) -> usize {
     for dimension in 1..point.len() {
         // Coefficients without a pattern.
-        let coefficient = |j: usize| power(GENERATOR, ((dimension * point.len() + j) as u64).wrapping_pow(5));
-        let value = (0..point.len()).fold(0, |value, j| sum(value, times(coefficient(j), point[j])));
+        let coefficient =
+            |j: usize| Residue::from(GENERATOR).power(((dimension * point.len() + j) as u64).wrapping_pow(5));
+        let value = (0..point.len()).fold(Residue::zero(), |value, j| value + coefficient(j) * point[j]);
         let terms = (0..point.len()).map(|j| (vec![(j, 1)], coefficient(j)));
-        equations.push(terms.chain([(Vec::new(), difference(0, value))]).collect());
+        equations.push(terms.chain([(Vec::new(), -value)]).collect());
         if matches!(multiplicity(&equations, point, most.max(FEW)), Multiplicity::Finite(_)) {
             return dimension;
         }

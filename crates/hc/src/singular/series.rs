@@ -1,16 +1,15 @@
 //! Power series in a few variables, cut off at an order.
 
+use super::monomials::Monomials;
 use super::number::Number;
 use std::collections::HashMap;
 
-/// The monomials of some variables up to an order, by their order: a series of a lower order is a
+/// The monomials by which series are listed, with their products; a series of a lower order is a
 /// shorter list of coefficients.
 pub(crate) struct Basis {
     variables: usize,
     order: usize,
-    exponents: Vec<Vec<u16>>,
-    /// The number of monomials of each order or less.
-    counts: Vec<usize>,
+    monomials: Monomials,
     /// The places of the products of each monomial with those that leave it within the order.
     products: Vec<Vec<u32>>,
 }
@@ -29,23 +28,8 @@ impl Basis {
         if choices(variables) * choices(2 * variables) > MAX_STEPS || order > usize::from(u16::MAX) {
             return None;
         }
-        let mut exponents: Vec<Vec<u16>> = vec![vec![0; variables]];
-        let mut counts = vec![1];
-        let mut last = 0;
-        for _ in 0..order {
-            let to = exponents.len();
-            for k in last..to {
-                // Each monomial once: from the one without its last variable.
-                let from = exponents[k].iter().rposition(|&e| e > 0).unwrap_or(0);
-                for j in from..variables {
-                    let mut raised = exponents[k].clone();
-                    raised[j] += 1;
-                    exponents.push(raised);
-                }
-            }
-            last = to;
-            counts.push(exponents.len());
-        }
+        let monomials = Monomials::new(variables, order);
+        let Monomials { exponents, counts, .. } = &monomials;
         let places: HashMap<&[u16], u32> = exponents.iter().enumerate().map(|(k, e)| (&e[..], k as u32)).collect();
         let degree = |e: &[u16]| e.iter().map(|&e| usize::from(e)).sum::<usize>();
         let products = exponents.iter().map(|a| {
@@ -54,8 +38,7 @@ impl Basis {
             within.iter().filter_map(|b| places.get(&sum(b)[..]).copied()).collect()
         });
         let products = products.collect();
-        drop(places);
-        Some(Basis { variables, order, exponents, counts, products })
+        Some(Basis { variables, order, monomials, products })
     }
 
     pub(crate) fn variables(&self) -> usize {
@@ -68,7 +51,7 @@ impl Basis {
 
     /// Number of monomials of an order or less.
     pub(crate) fn count(&self, order: usize) -> usize {
-        self.counts[order.min(self.order)]
+        self.monomials.counts[order.min(self.order)]
     }
 
     /// Number of pairs of monomials whose product is of an order or less.
@@ -76,7 +59,7 @@ impl Basis {
         let mut pairs = 0;
         let mut degree = 0;
         for k in 0..self.count(order) {
-            while k >= self.counts[degree] {
+            while k >= self.monomials.counts[degree] {
                 degree += 1;
             }
             pairs += self.count(order.min(self.order) - degree);
@@ -85,12 +68,12 @@ impl Basis {
     }
 
     pub(crate) fn exponents(&self) -> &[Vec<u16>] {
-        &self.exponents
+        &self.monomials.exponents
     }
 
     /// The order of a series, by its length.
     fn order_of<S>(&self, series: &[S]) -> usize {
-        self.counts.iter().position(|&count| count == series.len()).unwrap_or(self.order)
+        self.monomials.counts.iter().position(|&count| count == series.len()).unwrap_or(self.order)
     }
 
     pub(crate) fn constant<S: Number>(&self, value: S, order: usize) -> Vec<S> {
@@ -106,7 +89,7 @@ impl Basis {
 
     /// The place of a monomial times a variable; its order must be below that of the basis.
     pub(crate) fn raised(&self, monomial: usize, variable: usize) -> usize {
-        self.products[monomial][self.variable(variable)] as usize
+        self.monomials.raised[monomial][variable]
     }
 
     /// The product up to an order; factors may be shorter.
@@ -114,7 +97,7 @@ impl Basis {
         let mut product = vec![S::zero(); self.count(order)];
         let mut degree = 0;
         for (i, x) in a.iter().enumerate().take(product.len()) {
-            while i >= self.counts[degree] {
+            while i >= self.monomials.counts[degree] {
                 degree += 1;
             }
             if x.vanishes() {
@@ -152,7 +135,7 @@ impl Basis {
         let raised = &self.products[self.variable(variable)];
         let term = |k: usize| {
             let place = raised[k] as usize;
-            S::scale(&a[place], f64::from(self.exponents[place][variable]))
+            S::scale(&a[place], f64::from(self.monomials.exponents[place][variable]))
         };
         (0..self.count(order - 1)).map(term).collect()
     }
@@ -160,12 +143,12 @@ impl Basis {
     /// The value of a series at a point.
     pub(crate) fn value<S: Number>(&self, a: &[S], point: &[S]) -> S {
         let mut monomials: Vec<S> = vec![S::one()];
-        for exponents in &self.exponents[1..a.len().max(1)] {
+        for exponents in &self.monomials.exponents[1..a.len().max(1)] {
             let j = exponents.iter().rposition(|&e| e > 0).unwrap_or(0);
             let mut lower = exponents.clone();
             lower[j] -= 1;
             // The monomial without its last variable stands before.
-            let place = self.exponents[..monomials.len()].iter().rposition(|e| *e == lower).unwrap_or(0);
+            let place = self.monomials.exponents[..monomials.len()].iter().rposition(|e| *e == lower).unwrap_or(0);
             monomials.push(S::mul(&monomials[place], &point[j]));
         }
         a.iter().zip(&monomials).fold(S::zero(), |sum, (a, m)| S::mul_add(a, m, &sum))
@@ -183,13 +166,13 @@ impl Basis {
         let length = all.iter().map(Vec::len).max().unwrap_or(0);
         let mut sums = vec![vec![S::zero(); inner.count(order)]; all.len()];
         let mut monomials: Vec<Vec<S>> = Vec::with_capacity(length);
-        for (k, exponents) in self.exponents[..length].iter().enumerate() {
+        for (k, exponents) in self.monomials.exponents[..length].iter().enumerate() {
             let monomial = match exponents.iter().rposition(|&e| e > 0) {
                 None => inner.constant(S::one(), order),
                 Some(j) => {
                     let mut lower = exponents.clone();
                     lower[j] -= 1;
-                    let place = self.exponents[..k].iter().rposition(|e| *e == lower).unwrap_or(0);
+                    let place = self.monomials.exponents[..k].iter().rposition(|e| *e == lower).unwrap_or(0);
                     inner.product(&monomials[place], &map[j], order)
                 }
             };

@@ -4,7 +4,8 @@
 //! are multiple roots, Yun's algorithm (1976) finds the factors by greatest common divisors of
 //! exact polynomials.
 
-use super::modular;
+use super::eliminant::trimmed;
+use super::modular::{self, Residue};
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, Zero};
@@ -52,13 +53,6 @@ fn dense(polynomial: &Polynomial<Exact>) -> Option<Dense> {
 fn sparse(coefficients: &[Exact]) -> Polynomial<Exact> {
     let terms = coefficients.iter().enumerate().map(|(e, c)| (Monomial::new([e as i32]), c.clone()));
     Polynomial::from_terms(1, terms.filter(|(_, c)| !c.is_zero()))
-}
-
-fn trimmed(mut coefficients: Dense) -> Dense {
-    while coefficients.last().is_some_and(Zero::is_zero) {
-        coefficients.pop();
-    }
-    coefficients
 }
 
 /// Yun's factors with their exponents, constants left out.
@@ -128,8 +122,8 @@ fn monic(a: Dense) -> Dense {
 /// Whether a polynomial has no multiple roots even modulo the prime. Where the coefficients have an
 /// image there and the degree stays, a square factor has one too.
 fn is_squarefree(whole: &[Exact]) -> bool {
-    let image = whole.iter().map(modular::image).collect::<Option<Vec<u64>>>();
-    image.is_some_and(|image| image.last() != Some(&0) && modular::is_squarefree(image))
+    let image = whole.iter().map(Residue::image).collect::<Option<Vec<Residue>>>();
+    image.is_some_and(|image| image.last().is_some_and(|c| !c.is_zero()) && modular::is_squarefree(image))
 }
 
 #[cfg(test)]

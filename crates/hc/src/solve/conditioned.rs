@@ -64,17 +64,20 @@ fn nearly_dependent(polynomials: &[Polynomial<Exact>], monomials: &BTreeMap<&Mon
         normalise(&mut row);
         // Twice, for what rounding leaves.
         for _ in 0..2 {
-            for known in &basis {
-                let product: Complex64 = known.iter().zip(&row).map(|(a, b)| a.conj() * b).sum();
-                for (z, a) in row.iter_mut().zip(known) {
-                    *z -= product * a;
-                }
-            }
+            make_orthogonal(&mut row, &basis);
         }
         nearly.push(normalise(&mut row) < DEPENDENT);
         basis.push(row);
     }
     nearly
+}
+
+/// Subtracts from a row its part along each vector of an orthonormal basis, one after the other.
+pub(super) fn make_orthogonal(row: &mut [Complex64], basis: &[Vec<Complex64>]) {
+    for known in basis {
+        let product: Complex64 = known.iter().zip(&*row).map(|(a, b)| a.conj() * b).sum();
+        row.iter_mut().zip(known).for_each(|(z, a)| *z -= product * a);
+    }
 }
 
 /// Divides a vector by its length, and returns the length.

@@ -1,6 +1,7 @@
 //! From polynomials to supports and coefficients: checked, scaled, as many as unknowns, with the
 //! terms that start systems need.
 
+use super::conditioned::make_orthogonal;
 use super::error::SolveError;
 use crate::linalg::Lu;
 use crate::random::{Random, Stream};
@@ -171,10 +172,7 @@ fn are_independent(rows: impl Iterator<Item = Vec<Complex64>>) -> bool {
     for mut row in rows {
         let size = |row: &[Complex64]| row.iter().map(|z| z.norm_sqr()).sum::<f64>().sqrt();
         let before = size(&row);
-        for known in &basis {
-            let product: Complex64 = known.iter().zip(&row).map(|(a, b)| a.conj() * b).sum();
-            row.iter_mut().zip(known).for_each(|(z, a)| *z -= product * a);
-        }
+        make_orthogonal(&mut row, &basis);
         let left = size(&row);
         let clear = left > INDEPENDENT * before;
         if !clear {

@@ -1,14 +1,13 @@
 //! Two equations in two unknowns by elimination, for use where paths fail: slower, but exact until
 //! the very end.
 //!
-//! After a change of coordinates `u = x + t y`, the roots of the resultant with respect to `y` are
-//! the `u` of all solutions, with their multiplicities (van der Waerden, Modern Algebra, section
-//! 83). Two such changes give both coordinates.
+//! The roots of an [eliminant](Eliminant) after a change of coordinates `u = x + t y` are the `u` of
+//! all solutions, with their multiplicities. Two such changes give both coordinates.
 
-use crate::singular;
+use crate::singular::{self, Eliminant};
 use num_bigint::BigInt;
 use num_rational::BigRational;
-use num_traits::{One, Zero, pow};
+use num_traits::{One, Zero};
 use poly::{ComplexMulti, Exact, Monomial, Polynomial, Scalar};
 
 /// Systems of more paths are left to these.
@@ -43,29 +42,22 @@ pub(super) fn roots(polynomial: &Polynomial<Exact>) -> Option<Vec<(Digits, usize
 /// All common roots of two polynomials in two unknowns to many digits, with their multiplicities, if
 /// they are few, isolated and clear.
 pub(super) fn points(polynomials: &[Polynomial<Exact>]) -> Option<Vec<(Vec<Digits>, usize)>> {
-    let [f, g] = polynomials else { return None };
-    let equations = [integers(f)?, integers(g)?];
+    let equations: Vec<Polynomial<Exact>> = polynomials.iter().map(without_denominators).collect();
     CHANGES.iter().find_map(|changes| changed(&equations, polynomials, changes))
 }
 
-/// A polynomial in two unknowns, times a common denominator; `None` if coefficients are not real or
-/// exponents negative.
-fn integers(polynomial: &Polynomial<Exact>) -> Option<Polynomial<BigInt>> {
+/// A polynomial times a common denominator of the real parts of its coefficients.
+fn without_denominators(polynomial: &Polynomial<Exact>) -> Polynomial<Exact> {
     let denominator = polynomial.terms().iter().fold(BigInt::one(), |product, (_, c)| {
         let next = BigRational::new(product.clone(), c.re.denom().clone());
         product * next.denom()
     });
-    let term = |(monomial, c): &(Monomial, Exact)| {
-        let polynomial = c.im.is_zero() && monomial.exponents().iter().all(|&e| e >= 0);
-        polynomial.then(|| (monomial.clone(), (&c.re * &denominator).to_integer()))
-    };
-    let terms: Vec<(Monomial, BigInt)> = polynomial.terms().iter().map(term).collect::<Option<_>>()?;
-    (polynomial.variables() == 2).then(|| Polynomial::from_terms(2, terms))
+    polynomial.scaled(&Exact { re: denominator.into(), im: BigRational::zero() })
 }
 
 /// The same by these changes of coordinates.
 fn changed(
-    equations: &[Polynomial<BigInt>; 2],
+    equations: &[Polynomial<Exact>],
     polynomials: &[Polynomial<Exact>],
     changes: &[i32; 2],
 ) -> Option<Vec<(Vec<Digits>, usize)>> {
@@ -110,137 +102,20 @@ fn left(polynomials: &[Polynomial<Exact>], point: &[Digits]) -> f64 {
     polynomials.iter().map(of).fold(f64::NEG_INFINITY, f64::max).max(-250.0)
 }
 
-/// The resultant with respect to `y` of the equations in `x = u - t y`; `None` where it is zero or too
-/// large, or the change of coordinates is not a general one.
-fn eliminated(equations: &[Polynomial<BigInt>; 2], t: i32) -> Option<Polynomial<Exact>> {
-    let degree = |equation: &Polynomial<BigInt>| usize::try_from(equation.degree()?).ok();
-    let [d, e] = [degree(&equations[0])?, degree(&equations[1])?];
-    let paths = d.checked_mul(e).filter(|paths| (1..=PATHS).contains(paths))?;
-    let [u, y]: [Polynomial<BigInt>; 2] = [0, 1].map(|k| Polynomial::variable(2, k));
-    let x = &u - &y.scaled(&BigInt::from(t));
-    let [f, g] = [equations[0].substitute(0, &x)?, equations[1].substitute(0, &x)?];
-    let mut values = Vec::with_capacity(paths + 1);
-    for u in 0..=paths {
-        let [f, g] = [line(&f, u, d), line(&g, u, e)];
-        if f.len() != d + 1 || g.len() != e + 1 {
-            return None;
-        }
-        values.push(resultant(f, g));
-    }
-    // Newton's divided differences at integers, of integers.
-    let mut whole = Polynomial::zero(1);
-    for order in 1..=paths {
-        for k in (order..=paths).rev() {
-            values[k] = &values[k] - &values[k - 1];
-        }
-    }
-    let real = |q: BigRational| Exact { re: q, im: BigRational::zero() };
-    let u: Polynomial<Exact> = Polynomial::variable(1, 0);
-    let mut factorial = (1..=paths).fold(BigInt::one(), |product, k| product * BigInt::from(k));
-    for k in (0..=paths).rev() {
-        let place = Polynomial::constant(1, real(BigRational::from_integer(BigInt::from(k))));
-        let value = BigRational::new(values[k].clone(), factorial.clone());
-        whole = &(&whole * &(&u - &place)) + &Polynomial::constant(1, real(value));
-        factorial /= BigInt::from(k.max(1));
-    }
-    (!whole.is_empty()).then_some(whole)
-}
-
-/// A polynomial of a degree in `u` and `y` at a value of `u`, by ascending powers of `y`, the last not
-/// zero.
-fn line(polynomial: &Polynomial<BigInt>, u: usize, degree: usize) -> Vec<BigInt> {
-    let powers: Vec<BigInt> = (0..=degree).map(|e| pow(BigInt::from(u), e)).collect();
-    let mut whole = vec![BigInt::zero(); degree + 1];
-    for (monomial, c) in polynomial.terms() {
-        if let [a, b] = *monomial.exponents() {
-            whole[b as usize] += c * &powers[a as usize];
-        }
-    }
-    trimmed(whole)
-}
-
-fn trimmed(mut a: Vec<BigInt>) -> Vec<BigInt> {
-    while a.last().is_some_and(Zero::is_zero) {
-        a.pop();
-    }
-    a
-}
-
-/// The resultant of two polynomials by subresultants (Cohen 1993, A Course in Computational Algebraic
-/// Number Theory, algorithm 3.3.7), which stay integers.
-fn resultant(mut a: Vec<BigInt>, mut b: Vec<BigInt>) -> BigInt {
-    let mut sign = BigInt::one();
-    if a.len() < b.len() {
-        if a.len().is_multiple_of(2) && b.len().is_multiple_of(2) {
-            sign = -sign;
-        }
-        std::mem::swap(&mut a, &mut b);
-    }
-    let (mut g, mut h) = (BigInt::one(), BigInt::one());
-    while b.len() > 1 {
-        let steps = a.len() - b.len();
-        if a.len().is_multiple_of(2) && b.len().is_multiple_of(2) {
-            sign = -sign;
-        }
-        let divisor = &g * pow(h.clone(), steps);
-        let rest = remainder(a, &b).into_iter().map(|c| c / &divisor).collect();
-        a = std::mem::replace(&mut b, rest);
-        g = a.last().cloned().unwrap_or_default();
-        if steps > 0 {
-            h = pow(g.clone(), steps) / pow(h, steps - 1);
-        }
-    }
-    let Some(last) = b.last() else { return BigInt::zero() };
-    match a.len() - 1 {
-        0 => sign,
-        degree => sign * pow(last.clone(), degree) / pow(h, degree - 1),
-    }
-}
-
-/// The remainder of `a`, times the leading coefficient of `b` to the power of one more than their
-/// degrees differ.
-fn remainder(mut a: Vec<BigInt>, b: &[BigInt]) -> Vec<BigInt> {
-    let Some(leading) = b.last() else { return a };
-    while a.len() >= b.len() {
-        let (place, Some(last)) = (a.len() - b.len(), a.pop()) else { break };
-        for c in &mut a {
-            *c *= leading;
-        }
-        for (c, d) in a[place..].iter_mut().zip(b) {
-            *c -= &last * d;
-        }
-    }
-    trimmed(a)
+/// The eliminant of the equations after the change of coordinates `x = u - t y`; `None` where it is
+/// zero or too large, or the change of coordinates is not a general one.
+fn eliminated(equations: &[Polynomial<Exact>], t: i32) -> Option<Polynomial<Exact>> {
+    let integer = |c: &Exact| (c.im.is_zero() && c.re.is_integer()).then(|| c.re.to_integer());
+    let Eliminant { coefficients, factor } = Eliminant::new(equations, &BigInt::from(t), PATHS, integer)?;
+    let exact = |c: BigInt| Exact { re: BigRational::new(c, factor.clone()), im: BigRational::zero() };
+    let terms = (0..).zip(coefficients).map(|(exponent, c)| (Monomial::new([exponent]), exact(c)));
+    Some(Polynomial::from_terms(1, terms))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{eliminated, integers, points, resultant};
-    use num_bigint::BigInt;
+    use super::{eliminated, points, without_denominators};
     use poly::parse::phcpack;
-    use proptest::prelude::{prop, prop_assert_eq, proptest};
-
-    proptest! {
-        /// The product of the differences of all roots.
-        #[test]
-        fn resultants_are_those_of_the_roots(
-            a in prop::collection::vec(-9i64..9, 0..5),
-            b in prop::collection::vec(-9i64..9, 0..5),
-            leading in (1i64..5, 1i64..5),
-        ) {
-            let with = |leading: i64, roots: &[i64]| roots.iter().fold(vec![BigInt::from(leading)], |p, &root| {
-                let below = p.iter().map(|c| -c * root).chain([BigInt::ZERO]);
-                below.zip(std::iter::once(BigInt::ZERO).chain(p.clone())).map(|(a, b)| a + b).collect()
-            });
-            let mut want = BigInt::from(leading.0).pow(b.len() as u32) * BigInt::from(leading.1).pow(a.len() as u32);
-            for x in &a {
-                for y in &b {
-                    want *= x - y;
-                }
-            }
-            prop_assert_eq!(resultant(with(leading.0, &a), with(leading.1, &b)), want);
-        }
-    }
 
     /// Real and imaginary parts of coordinates with multiplicities, sorted.
     fn found(text: &str) -> Option<Vec<(f64, f64, usize)>> {
@@ -266,7 +141,7 @@ mod tests {
     #[test]
     fn degrees_are_those_of_finite_solutions() {
         let polynomials = phcpack("2\nx*y-1;\nx+3/4;").unwrap().expand(&Default::default()).unwrap();
-        let equations = [integers(&polynomials[0]).unwrap(), integers(&polynomials[1]).unwrap()];
+        let equations: Vec<_> = polynomials.iter().map(without_denominators).collect();
         assert_eq!(eliminated(&equations, 3).unwrap().degree(), Some(1));
     }
 }
