@@ -3,13 +3,8 @@
 //! Points are sorted by a fixed real projection, so that only neighbours in that order are
 //! compared: N log N for N points in general position.
 
+use crate::tolerances::ENDS;
 use num_complex::Complex64;
-
-/// Components smaller than this share of the largest are compared on its scale.
-const FLOOR: f64 = 1e-4;
-
-/// Relative distance below which two singular ends are one point.
-pub(crate) const CLUSTER: f64 = 1e-6;
 
 /// Relative distance of two points: `max_j |a_j - b_j| / w_j`, where `w_j` is the size of the
 /// component, at least 1e-4 of the largest.
@@ -18,7 +13,7 @@ pub fn relative_distance(a: &[Complex64], b: &[Complex64]) -> f64 {
     if largest == 0.0 {
         return 0.0;
     }
-    a.iter().zip(b).map(|(a, b)| (a - b).norm() / a.norm().max(b.norm()).max(FLOOR * largest)).fold(0.0, f64::max)
+    a.iter().zip(b).map(|(a, b)| (a - b).norm() / a.norm().max(b.norm()).max(ENDS.floor * largest)).fold(0.0, f64::max)
 }
 
 /// Groups of two or more coinciding points among `points` (pairs of a label and `n` coordinates):

@@ -82,6 +82,7 @@ mod solve;
 pub mod start;
 mod store;
 mod threads;
+pub mod tolerances;
 pub mod tracker;
 pub mod witness;
 

@@ -3,6 +3,7 @@
 use crate::inverse;
 use crate::linalg::{Estimate, Lu};
 use crate::random::{Random, Stream};
+use crate::tolerances::REFINEMENT;
 use num_complex::Complex64;
 use poly::simd::Isa;
 use poly::{ComplexDd, Evaluate, Scalar};
@@ -52,33 +53,6 @@ pub struct Refiner<'a, E: Evaluate> {
     pub(crate) spare: Refined,
 }
 
-/// Iterations at most; quadratic convergence from a tracked end point needs two.
-const MAX_ITERATIONS: usize = 6;
-/// A Jacobian serves for the next correction too while corrections shrink by this factor: its error
-/// is about that large then.
-const STEADY: f64 = 1e-3;
-/// Corrections up to this size may shrink as fast.
-const NEAR: f64 = 1e-6;
-/// Relative distances from one of which a regular solution must attract Newton's method.
-const PERTURBATIONS: [f64; 2] = [1e-8, 1e-6];
-/// Such distances where Jacobians are in double-double.
-const PRECISE_PERTURBATIONS: [f64; 2] = [1e-14, 1e-12];
-/// Last correction and condition of solutions that are plainly regular. At a distance of `d` from a
-/// singular solution the condition is about `1 / d` or more, and corrections are about `d` or more.
-const TINY: f64 = 1e-12;
-const GOOD: f64 = 1e6;
-/// A row of the Jacobian below this share of the largest, or of one, may be what rounding left of a
-/// row that vanishes, as on a double component; the condition does not tell, since rows are scaled
-/// to equal size.
-const FAINT: f64 = 1e-10;
-/// How many random changes of all parameters show how a solution depends on them.
-const BLUR_DRAWS: usize = 3;
-/// Their relative size: it stands out from rounding errors.
-const BLUR_STEP: f64 = 1e-6;
-
-/// Corrections of an extended point; each gains about as many digits as the Jacobian is known to.
-const EXTENSIONS: usize = 4;
-
 impl<'a, E: Evaluate> Refiner<'a, E> {
     /// A refiner for a square system.
     pub fn new(system: &'a E) -> Self {
@@ -119,8 +93,11 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         let x = &mut refined.point;
         let (accuracy, steady) = self.polish(&exact, x);
         self.exact_p = exact;
-        let (residual, condition, smallest_row) = self.judge(p, x, steady && accuracy <= NEAR);
-        refined.plain = steady && accuracy <= TINY && condition <= GOOD && smallest_row > FAINT;
+        let (residual, condition, smallest_row) = self.judge(p, x, steady && accuracy <= REFINEMENT.near);
+        refined.plain = steady
+            && accuracy <= REFINEMENT.tiny
+            && condition <= REFINEMENT.good_condition
+            && smallest_row > REFINEMENT.faint;
         (refined.accuracy, refined.residual, refined.condition) = (accuracy, residual, condition);
     }
 
@@ -138,19 +115,20 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
     /// Jacobian is singular.
     pub fn polish_and_blur(&mut self, p: &[ComplexDd], x: &mut [Complex64]) -> (f64, Vec<f64>) {
         let (accuracy, steady) = self.polish(p, x);
-        (accuracy, self.blur(p, x, steady && accuracy <= NEAR))
+        (accuracy, self.blur(p, x, steady && accuracy <= REFINEMENT.near))
     }
 
     /// Returns the size of the last correction and whether one that was no rounding error led to
-    /// one a thousand times smaller, or the first one was [`TINY`]: near a solution of multiplicity
-    /// `k` at a distance `d` it would be `d / k`, and a row of the Jacobian about `d` or less,
-    /// which is [`FAINT`]. If so, and if it is at most [`NEAR`], the Jacobian and its factors are
-    /// those at `x`, or so near to it that Newton's method hardly noticed the difference.
+    /// one a thousand times smaller, or the first one was tiny: near a solution of multiplicity `k`
+    /// at a distance `d` it would be `d / k`, and a row of the Jacobian about `d` or less, which is
+    /// faint. If so, and if it is at most [`near`](crate::tolerances::RefinementTolerances::near),
+    /// the Jacobian and its factors are those at `x`, or so near to it that Newton's method hardly
+    /// noticed the difference.
     fn polish(&mut self, p: &[ComplexDd], x: &mut [Complex64]) -> (f64, bool) {
         let (mut accuracy, mut steady) = (f64::INFINITY, false);
         // Whether the last Jacobian serves for this correction.
         let mut serves = false;
-        for _ in 0..MAX_ITERATIONS {
+        for _ in 0..REFINEMENT.iterations {
             if !serves {
                 weights(x, &mut self.squares);
                 self.factor(p, x);
@@ -162,7 +140,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
             let relative = self.values.iter().zip(&self.squares).map(|(d, s)| (d.norm_sqr() / s[0]).sqrt());
             // Once NaN, always NaN.
             let size = relative.fold(0.0, |m: f64, d| if d <= m || m.is_nan() { m } else { d });
-            let shrinks = size <= f64::EPSILON || size < if serves { STEADY * accuracy } else { accuracy };
+            let shrinks = size <= f64::EPSILON || size < if serves { REFINEMENT.steady * accuracy } else { accuracy };
             if !shrinks {
                 if !serves {
                     break;
@@ -170,14 +148,14 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
                 serves = false;
                 continue;
             }
-            let shrunk = accuracy.is_finite() && accuracy > TINY && size <= STEADY * accuracy;
-            steady |= shrunk || (accuracy.is_infinite() && size <= TINY);
+            let shrunk = accuracy.is_finite() && accuracy > REFINEMENT.tiny && size <= REFINEMENT.steady * accuracy;
+            steady |= shrunk || (accuracy.is_infinite() && size <= REFINEMENT.tiny);
             accuracy = size;
             x.copy_from_slice(&self.next);
             if accuracy <= f64::EPSILON {
                 break;
             }
-            serves = accuracy <= NEAR;
+            serves = accuracy <= REFINEMENT.near;
         }
         (accuracy, steady)
     }
@@ -193,7 +171,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
     /// the first may drown in rounding errors, and the second may meet other solutions.
     pub fn contracts(&mut self, p: &[Complex64], x: &[Complex64]) -> bool {
         let exact = self.exact(p);
-        let contracts = PERTURBATIONS.iter().any(|&perturbation| self.comes_back(&exact, x, perturbation));
+        let contracts = REFINEMENT.perturbations.iter().any(|&perturbation| self.comes_back(&exact, x, perturbation));
         self.exact_p = exact;
         contracts
     }
@@ -212,7 +190,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
             }
         }
         let mut distances = y.iter().zip(x).zip(&self.squares).map(|((y, x), w)| (y - x).norm() / w[0].sqrt());
-        let comes_back = distances.all(|d| d <= 1e-3 * perturbation);
+        let comes_back = distances.all(|d| d <= REFINEMENT.returned * perturbation);
         self.next = y;
         comes_back
     }
@@ -231,14 +209,14 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         let sizes: Vec<f64> = self.squares.iter().map(|w| w[0].sqrt()).collect();
         let within = |a: &ComplexDd, b: &ComplexDd, limit: f64| ComplexDd::sub(a, b).high().norm() <= limit;
         // Written so that NaN is not near.
-        let stays = x.iter().zip(&centre).zip(&sizes).all(|((x, z), w)| within(&(*x).into(), z, NEAR * w));
+        let stays = x.iter().zip(&centre).zip(&sizes).all(|((x, z), w)| within(&(*x).into(), z, REFINEMENT.near * w));
         let contracts = stays
-            && PRECISE_PERTURBATIONS.iter().any(|&distance| {
+            && REFINEMENT.precise_perturbations.iter().any(|&distance| {
                 let mut random = Random::new(0, Stream::Perturbation);
                 let away = |(z, w): (&ComplexDd, &f64)| ComplexDd::add(z, &(random.unit() * (distance * w)).into());
                 let mut y: Vec<ComplexDd> = centre.iter().zip(&sizes).map(away).collect();
                 self.newton_precisely(&exact, &mut y, &mut scratch);
-                y.iter().zip(&centre).zip(&sizes).all(|((y, z), w)| within(y, z, 1e-3 * distance * w))
+                y.iter().zip(&centre).zip(&sizes).all(|((y, z), w)| within(y, z, REFINEMENT.returned * distance * w))
             });
         self.exact_p = exact;
         contracts
@@ -266,7 +244,8 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         }
         if self.changes.is_empty() {
             let mut random = Random::new(0, Stream::Rounding);
-            self.changes.extend((0..BLUR_DRAWS * p.len()).map(|_| 1.0 + BLUR_STEP * random.unit()));
+            self.changes
+                .extend((0..REFINEMENT.blur_draws * p.len()).map(|_| 1.0 + REFINEMENT.blur_step * random.unit()));
         }
         let mut blur = vec![0.0; x.len()];
         for changes in self.changes.chunks_exact(p.len().max(1)) {
@@ -276,7 +255,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
             self.system.values(&mut self.memory, x, &self.rounded_p, &mut self.values);
             self.lu.solve(&mut self.values);
             for (blur, d) in blur.iter_mut().zip(&self.values) {
-                let moved = d.norm_sqr().sqrt() * (f64::EPSILON / BLUR_STEP);
+                let moved = d.norm_sqr().sqrt() * (f64::EPSILON / REFINEMENT.blur_step);
                 *blur = if moved.is_nan() { f64::INFINITY } else { moved.max(*blur) };
             }
         }
@@ -319,7 +298,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         self.system.jacobian(&mut self.memory, point, p, &mut self.values, &mut self.jacobian);
         weights(point, &mut self.squares);
         self.lu.factor(&self.jacobian, &self.squares);
-        for _ in 0..EXTENSIONS {
+        for _ in 0..REFINEMENT.extensions {
             self.system.values(&mut self.precise, &x, &precise_p, &mut values);
             for (d, s) in self.values.iter_mut().zip(&values) {
                 *d = Complex64::from(*s);

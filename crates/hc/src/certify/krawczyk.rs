@@ -1,19 +1,10 @@
 //! Krawczyk's test at one point, in interval arithmetic of either precision.
 
 use super::proof::{Proof, shifted, symmetric};
+use crate::tolerances::PROOFS;
 use num_complex::Complex64;
 use poly::Interval;
 use poly::{ComplexBall, ComplexDd, ComplexInterval, Evaluate, Interpreter, Isa, Scalar};
-
-/// Boxes that are tried, each smaller than the one before by at least [`SHRINK`].
-const BOXES: usize = 16;
-const SHRINK: f64 = 1.0 / 64.0;
-/// How often a proved box is made smaller, as long as this at least halves it.
-const TIGHTER: usize = 6;
-/// Proved boxes that are this many times wider than the least are made smaller if possible.
-const WIDE: f64 = 16.0;
-/// A box is at least this many times the correction, so that the correction fits well inside.
-const ROOM: f64 = 4.0;
 
 /// Sets of complex numbers whose operations contain all exact results.
 pub(super) trait Enclosure: Scalar {
@@ -129,13 +120,14 @@ impl<'a, S: Enclosure> Krawczyk<'a, S> {
         self.newton = (0..n).map(product).collect();
         let correction = |z: &S| z.interval().magnitude();
         // Room for the correction, and for the doubles that bound the published box.
-        let least: Vec<f64> =
-            (self.newton.iter().zip(at.centre)).map(|(d, c)| (ROOM * correction(d)).max(spacing(c.high()))).collect();
+        let least: Vec<f64> = (self.newton.iter().zip(at.centre))
+            .map(|(d, c)| (PROOFS.room * correction(d)).max(spacing(c.high())))
+            .collect();
         if !least.iter().all(|size| size.is_finite()) {
             return None;
         }
         let mut share = largest;
-        for _ in 0..BOXES {
+        for _ in 0..PROOFS.boxes {
             let large: Vec<f64> = at.weights.iter().zip(&least).map(|(w, l)| (w * share).max(*l)).collect();
             let boxes = squares(&large);
             let (image, norm) = self.image(at.centre, &boxes);
@@ -148,7 +140,11 @@ impl<'a, S: Enclosure> Krawczyk<'a, S> {
             }
             // Beyond rounding, the norm is proportional to the size of small boxes; that of large
             // ones grows as a higher power.
-            share *= if norm.is_finite() { (0.25 / norm).clamp(SHRINK * SHRINK, SHRINK) } else { SHRINK * SHRINK };
+            share *= if norm.is_finite() {
+                (0.25 / norm).clamp(PROOFS.shrink * PROOFS.shrink, PROOFS.shrink)
+            } else {
+                PROOFS.shrink * PROOFS.shrink
+            };
         }
         None
     }
@@ -194,7 +190,7 @@ impl<'a, S: Enclosure> Krawczyk<'a, S> {
         least: &[f64],
     ) -> Vec<ComplexInterval> {
         let total = |boxes: &[ComplexInterval]| boxes.iter().map(ComplexInterval::radius).fold(0.0, f64::max);
-        for _ in 0..TIGHTER {
+        for _ in 0..PROOFS.tighter {
             let extended: Vec<ComplexInterval> = small.iter().map(with_zero).collect();
             let (image, _) = self.image(centre, &extended);
             let next: Vec<ComplexInterval> = small.iter().zip(&image).map(|(a, b)| intersection(a, b)).collect();
@@ -206,7 +202,7 @@ impl<'a, S: Enclosure> Krawczyk<'a, S> {
         }
         // Where rounding hinders that: the least box, if it holds a solution, which is this one.
         let boxes = squares(least);
-        if total(&small) > WIDE * total(&boxes) {
+        if total(&small) > PROOFS.wide * total(&boxes) {
             let (image, _) = self.image(centre, &boxes);
             if within(&image, &boxes) {
                 small = small.iter().zip(&image).map(|(a, b)| intersection(a, b)).collect();

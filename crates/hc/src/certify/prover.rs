@@ -6,20 +6,9 @@ use super::krawczyk::{Krawczyk, Place};
 use super::proof::Proof;
 use crate::inverse;
 use crate::linalg::Lu;
+use crate::tolerances::PROOFS;
 use num_complex::Complex64;
 use poly::{ComplexBall, ComplexDd, ComplexInterval, Evaluate, Interpreter, Isa, Scalar};
-
-/// Newton steps at most. From two digits on each step about doubles them; later steps gain as much
-/// as the inverse is good for.
-const NEWTON_STEPS: usize = 12;
-/// The second correction is at most this share of the first; near a double root it would be one
-/// half.
-const CONTRACTION: f64 = 0.25;
-/// First corrections this small, relative to the weights, are rounding errors; the second
-/// correction then means nothing.
-const ROUNDING: f64 = 1e-12;
-/// What is carried over from other unknowns stays below one part in this many of a box.
-const LEVEL: f64 = 16.0;
 
 /// What all points have in common.
 pub(super) struct Target<'a> {
@@ -145,14 +134,14 @@ impl<'a> Prover<'a> {
     fn refine(&mut self, mut centre: Vec<ComplexDd>, weights: &[f64]) -> Result<Vec<ComplexDd>, Obstacle> {
         let n = self.n;
         let mut last = f64::INFINITY;
-        for count in 0..NEWTON_STEPS {
+        for count in 0..PROOFS.newton_steps {
             self.invert(&centre)?;
             self.evaluate_residuals(&centre);
             let residuals: Vec<ComplexDd> =
                 self.residuals.iter().map(|r| ComplexDd { re: r.re.mid, im: r.im.mid }).collect();
             let step = inverse::product(n, &self.inverse, &residuals);
             let size = step.iter().zip(weights).map(|(d, w)| d.high().norm() / w).fold(0.0, f64::max);
-            if count == 1 && size > CONTRACTION * last && last > ROUNDING {
+            if count == 1 && size > PROOFS.contraction * last && last > PROOFS.rounding {
                 return Err(Obstacle::NoContraction);
             }
             if size.is_nan() || size >= last {
@@ -237,7 +226,7 @@ impl<'a> Prover<'a> {
             let carried: Vec<f64> =
                 errors.chunks(n).map(|row| row.iter().zip(&weights).map(|(e, w)| e * w).sum::<f64>()).collect();
             for (w, c) in weights.iter_mut().zip(carried) {
-                *w = w.max(LEVEL * c);
+                *w = w.max(PROOFS.level * c);
             }
         }
         weights

@@ -8,6 +8,7 @@
 //! 1991).
 
 use crate::refine;
+use crate::tolerances::{ENDGAME, LoopTolerances};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -42,35 +43,9 @@ pub(super) enum Reading {
     TooDeep,
 }
 
-/// How strictly a loop is read.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct View {
-    /// Fourier coefficients of the highest frequencies may reach this share of a coordinate.
-    tail: f64,
-    /// Fourier coefficients below this share of their coordinate count as zero.
-    zero: f64,
-    /// Where lower powers do not vanish, a coordinate is of the order of the lowest power that
-    /// makes up this share of it.
-    largest: f64,
-}
-
-/// A loop that leaves no doubt; aliasing is below 1e-13.
-pub(super) const CLEAR: View = View { tail: 1e-5, zero: 1e-9, largest: f64::INFINITY };
-/// For paths without a clear loop, because singularities lie so near to zero that double precision
-/// cannot go inside.
-pub(super) const VAGUE: View = View { tail: 1e-2, zero: 1e-5, largest: 0.35 };
-/// A loop on which rounded coefficients move a coordinate by this share of its size says nothing.
-const BLURRED: f64 = 1e-4;
-/// The worst rounding of all coefficients moves a coordinate this many times as far as a random
-/// one.
-const MARGIN: f64 = 256.0;
-/// The lowest power of a diverging coordinate must reach this share of it. A singularity inside the
-/// loop, unlike a pole at zero, leaves coefficients that fade towards the lower powers.
-const DOMINANT: f64 = 1e-2;
-
 impl Loop<'_> {
     /// Reads the loop.
-    pub(super) fn read(&self, view: View) -> Reading {
+    pub(super) fn read(&self, view: LoopTolerances) -> Reading {
         let (n, count) = (self.n, self.samples.len() / self.n);
         let winding = count / self.per_turn;
         let roots: Vec<Complex64> =
@@ -85,10 +60,10 @@ impl Loop<'_> {
             let size = size(j);
             let noise = self.noise * refine::size(size, largest);
             let blur = self.blur[j];
-            if blur > BLURRED * size.max(1e-4 * largest) {
+            if blur > ENDGAME.blurred * size.max(1e-4 * largest) {
                 return Reading::TooDeep;
             }
-            let significant = (view.zero * size).max(16.0 * noise).max(MARGIN * blur);
+            let significant = (view.zero * size).max(16.0 * noise).max(ENDGAME.blur_margin * blur);
             let coefficient = |power: i64| {
                 let sum: Complex64 = (0..count)
                     .map(|k| self.samples[k * n + j] * roots[(power.rem_euclid(count as i64) as usize * k) % count])
@@ -111,7 +86,7 @@ impl Loop<'_> {
                 valuations.push(0);
                 continue;
             };
-            let lowest = if lowest < 0 && share < DOMINANT * size {
+            let lowest = if lowest < 0 && share < ENDGAME.dominant * size {
                 impure = true;
                 match sizes.iter().find(|(_, c)| *c > view.largest * size) {
                     Some(&(power, _)) => power,
@@ -138,7 +113,7 @@ impl Loop<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::{CLEAR, Loop, Reading};
+    use super::{ENDGAME, Loop, Reading};
     use num_complex::Complex64;
     use std::f64::consts::TAU;
 
@@ -154,7 +129,7 @@ mod tests {
     }
 
     fn read(n: usize, per_turn: usize, samples: &[Complex64]) -> Reading {
-        Loop { n, per_turn, samples, noise: 1e-15, blur: &vec![0.0; n] }.read(CLEAR)
+        Loop { n, per_turn, samples, noise: 1e-15, blur: &vec![0.0; n] }.read(ENDGAME.clear)
     }
 
     #[test]

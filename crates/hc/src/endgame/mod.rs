@@ -25,14 +25,12 @@ use crate::homotopy::Segment;
 use crate::monitor::{Monitor, Stage};
 use crate::refine::Refiner;
 use crate::threads::{IntoParallelRefIterator, ParallelIterator};
+use crate::tolerances::ENDGAME;
 use crate::tracker::{PathEnd, PathResult, PathSet, TrackerOptions, Trackers};
 use legs::{Leg, Legs};
 use num_complex::Complex64;
 use poly::Evaluate;
 use walker::{Sample, Walker};
-
-/// Share of a leg to zero that may be left before it is given up.
-const HOME_MIN: f64 = 1e-7;
 
 /// A leg may take the steps of a path divided by this.
 const LEGS: usize = 20;
@@ -72,7 +70,7 @@ pub(crate) fn endgame<'a, E: Evaluate>(
     monitor.enter(Stage::Endgame, walkers.len() as u64);
     // Legs are no paths: they are not counted.
     let nobody = Monitor::default();
-    let to_zero = TrackerOptions { min_t: HOME_MIN, ..settings.clone() };
+    let to_zero = TrackerOptions { min_t: ENDGAME.left_of_leg, ..settings.clone() };
     let mut undecided = walkers.len();
     let mut starts: Vec<Complex64> = Vec::new();
     loop {

@@ -1,10 +1,8 @@
 //! Settings of the endgame.
 
+use crate::tolerances::ENDGAME;
 use crate::tracker::OptionError;
 use serde::Serialize;
-
-/// Each circle is at least this many times smaller than the one before.
-pub(super) const LEAST_SHRINK: f64 = 1.5;
 
 /// Settings of the endgame.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -42,7 +40,7 @@ impl EndgameOptions {
             ("endgame.min_radius", self.min_radius),
             ("endgame.shrink", self.shrink),
         ])?;
-        OptionError::at_least("endgame.shrink", self.shrink, LEAST_SHRINK, "at least 1.5")?;
+        OptionError::at_least("endgame.shrink", self.shrink, ENDGAME.least_shrink, "at least 1.5")?;
         OptionError::at_least("endgame.turns", self.turns as f64, 1.0, "at least 1")
     }
 }

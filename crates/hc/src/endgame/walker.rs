@@ -1,29 +1,13 @@
 //! One path in its endgame: which leg comes next, and when the endgame is over.
 
 use super::ending::{Ending, Handed, Verdict};
-use super::laurent::{CLEAR, Loop, Reading, VAGUE};
+use super::laurent::{Loop, Reading};
 use super::legs::Leg;
-use super::options::{EndgameOptions, LEAST_SHRINK};
+use super::options::EndgameOptions;
 use crate::refine;
+use crate::tolerances::ENDGAME;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
-
-/// Samples per turn if coordinates are of order between `t^(-5/4)` and `t^(5/4)`.
-const SAMPLES: usize = 4;
-/// Largest number of samples per turn: valuations up to 16.
-const MAX_SAMPLES: usize = 64;
-/// Largest number of samples if the radius cannot be made smaller.
-const MAX_SAMPLES_WIDE: usize = 16;
-/// If rounded coefficients move a coordinate by more than this share of its size, a wider circle is
-/// better.
-const SHARP: f64 = 1e-6;
-/// If they move it by more than this on the widest circle too, samples would tell nothing.
-const HOPELESS: f64 = 1e-2;
-/// Relative distance below which a loop counts as closed, unless the samples are less accurate.
-const CLOSED: f64 = 1e-10;
-
-/// After this many loops that were too wide, the path is tracked straight to zero.
-const TRY_HOME: u32 = 2;
 
 /// The end of a leg.
 pub(super) struct Sample {
@@ -74,7 +58,7 @@ impl Walker {
             origin: (-t.ln(), x.to_vec()),
             deepest: options.min_radius,
             samples: Vec::new(),
-            per_turn: SAMPLES,
+            per_turn: ENDGAME.samples,
             turns: options.turns.min(max_turns).max(1),
             max_turns,
             shrunk: 0,
@@ -153,11 +137,11 @@ impl Walker {
         }
         let largest = point.iter().map(|z| z.norm()).fold(0.0, f64::max);
         let blurred = |share: f64| point.iter().zip(&blur).any(|(z, b)| *b > share * z.norm().max(1e-4 * largest));
-        if blurred(SHARP) && self.widen_to().is_some_and(|wider| wider <= options.start) {
+        if blurred(ENDGAME.sharp) && self.widen_to().is_some_and(|wider| wider <= options.start) {
             self.widen();
             return;
         }
-        if blurred(HOPELESS) {
+        if blurred(ENDGAME.hopeless) {
             self.lose();
             return;
         }
@@ -199,13 +183,13 @@ impl Walker {
         if count.is_multiple_of(self.per_turn) {
             let gap = distance(first, end);
             let spread = self.samples.chunks(n).map(|x| distance(first, x)).fold(0.0, f64::max);
-            if gap <= CLOSED.max(100.0 * self.noise).max(1e-7 * spread) {
+            if gap <= ENDGAME.closed.max(100.0 * self.noise).max(1e-7 * spread) {
                 let winding = count / self.per_turn;
                 let all =
                     Loop { n, per_turn: self.per_turn, samples: &self.samples, noise: self.noise, blur: &self.blur };
-                let reading = all.read(CLEAR);
+                let reading = all.read(ENDGAME.clear);
                 if reading == Reading::TooWide {
-                    self.suppose(judged(all.read(VAGUE), winding).map(reduced));
+                    self.suppose(judged(all.read(ENDGAME.vague), winding).map(reduced));
                 }
                 match reading {
                     Reading::TooWide => self.shrink(options),
@@ -243,17 +227,17 @@ impl Walker {
         self.x.copy_from_slice(&self.samples[..n]);
         self.samples.clear();
         self.shrunk += 1;
-        self.going_home = self.shrunk == TRY_HOME;
+        self.going_home = self.shrunk == ENDGAME.straight_after;
         self.turns = self.turns.saturating_mul(2).min(self.max_turns).max(1);
         // Circles that never shrink would never end.
-        let shrink = options.shrink.max(LEAST_SHRINK);
+        let shrink = options.shrink.max(ENDGAME.least_shrink);
         // Where a deeper circle was too deep already: one halfway there.
         let halfway = (self.radius * self.deepest).sqrt();
         if self.radius / shrink > self.deepest {
             self.radius /= shrink;
         } else if self.deepest > options.min_radius && self.radius > 2.0 * halfway {
             self.radius = halfway;
-        } else if self.per_turn < MAX_SAMPLES_WIDE {
+        } else if self.per_turn < ENDGAME.most_samples_wide {
             // No smaller circle will do: once more with more samples, which may also stand a
             // singularity not far outside.
             self.per_turn *= 2;
@@ -327,8 +311,8 @@ fn steepest(from: &[Complex64], to: &[Complex64], ds: f64) -> f64 {
 /// Samples per turn that separate powers up to `steepest` from their aliases, with room for the
 /// decay beyond them.
 fn samples_for(steepest: f64) -> usize {
-    let mut samples = SAMPLES;
-    while samples < MAX_SAMPLES && steepest > 0.25 * samples as f64 + 0.25 {
+    let mut samples = ENDGAME.samples;
+    while samples < ENDGAME.most_samples && steepest > 0.25 * samples as f64 + 0.25 {
         samples *= 2;
     }
     samples

@@ -9,13 +9,9 @@ use crate::family::PathCounts;
 use crate::monitor::Monitor;
 use crate::refine::Refined;
 use crate::singular::Given;
+use crate::tolerances::ENDS;
 use num_complex::Complex64;
 use poly::{Exact, Polynomial, SparseSystem};
-
-/// Imaginary parts of regular solutions up to this share of the point count as zero.
-pub(super) const REAL: f64 = 1e-10;
-/// The same for singular solutions.
-pub(super) const REAL_SINGULAR: f64 = 1e-7;
 
 /// The result of all ends of paths.
 #[derive(Debug, Default)]
@@ -125,7 +121,7 @@ fn regular_solution(refined: &Refined) -> Solution {
         multiplicity: 1,
         winding_number: 1,
         singular: false,
-        is_real: is_real(&refined.point, REAL),
+        is_real: is_real(&refined.point, ENDS.real),
         residual: refined.residual,
         condition: refined.condition,
         certified: None,

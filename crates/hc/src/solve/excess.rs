@@ -1,10 +1,8 @@
 //! Solutions that were not requested.
 
 use crate::singular::{self, Given};
+use crate::tolerances::ENDS;
 use num_complex::Complex64;
-
-/// Coordinates up to this share of the largest count as zero.
-const TORUS: f64 = 1e-12;
 
 /// Which points were not requested.
 pub(super) struct Excess<'a> {
@@ -32,7 +30,7 @@ impl<'a> Excess<'a> {
     /// Whether a point has a zero coordinate although only the torus was requested.
     pub(super) fn outside(&self, point: &[Complex64]) -> bool {
         let largest = point.iter().map(|z| z.norm()).fold(0.0, f64::max);
-        self.torus_only && point.iter().any(|z| z.norm() <= TORUS * largest)
+        self.torus_only && point.iter().any(|z| z.norm() <= ENDS.torus * largest)
     }
 
     /// Whether there are more equations than unknowns.

@@ -2,11 +2,12 @@
 //! system may be one equation in one unknown, or two in two. For these there are other ways to all
 //! solutions than paths.
 
-use super::classify::{REAL, REAL_SINGULAR, Tracked};
+use super::classify::Tracked;
 use super::plane::{self, Digits, term};
 use super::solutions::{Solution, is_real};
 use crate::refine::Refiner;
 use crate::singular;
+use crate::tolerances::ENDS;
 use num_complex::Complex64;
 use num_traits::One;
 use poly::{Exact, Monomial, Polynomial, Scalar};
@@ -103,7 +104,7 @@ fn listed(points: impl Iterator<Item = (Vec<Digits>, usize)>, units: &[i64], tra
             multiplicity,
             winding_number: multiplicity,
             singular,
-            is_real: is_real(&value, if singular { REAL_SINGULAR } else { REAL }),
+            is_real: is_real(&value, if singular { ENDS.real_singular } else { ENDS.real }),
             residual: singular::residual(tracked.given, &value),
             condition: refiner.judged(tracked.target, &value).condition,
             certified: None,

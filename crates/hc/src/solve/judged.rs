@@ -1,19 +1,20 @@
 //! Ends that the tracker alone cannot judge: singular ends, and regular ends for coefficients that
 //! were rounded.
 
-use super::classify::{Classified, REAL, REAL_SINGULAR, Tracked};
+use super::classify::{Classified, Tracked};
 use super::cluster::{clustered, distributed, is_known, is_same};
 use super::ends::Ends;
 use super::excess::Excess;
 use super::graph::Graph;
 use super::record::SingularEnd;
 use super::solutions::{Solution, Unresolved, is_real};
-use crate::distinct::{CLUSTER, groups, relative_distance};
+use crate::distinct::{groups, relative_distance};
 use crate::refine::Refiner;
 use crate::singular::{self, Effort, Verdict, Why};
 use crate::threads::IntoParallelRefIterator;
 #[cfg(feature = "threads")]
 use crate::threads::ParallelIterator;
+use crate::tolerances::ENDS;
 use num_complex::Complex64;
 use poly::{Exact, Polynomial};
 
@@ -37,7 +38,7 @@ impl Classified {
     ) {
         let ends: Vec<&SingularEnd> = all.singular.values().chain(doubtful).collect();
         let points = ends.iter().enumerate().map(|(k, end)| (k, &end.point[..]));
-        let groups = groups(points, CLUSTER);
+        let groups = groups(points, ENDS.cluster);
         let spare = self.lost;
         let judged = judged_groups(tracked, &ends, &groups, &self.solutions, spare);
         let doubted = judged.iter().any(|(_, v)| matches!(v, Verdict::Isolated { .. } | Verdict::OnComponent { .. }));
@@ -68,7 +69,7 @@ impl Classified {
                         // A path that is counted as lost ends there.
                         further += usize::from(paths == 0);
                         let condition = refiner.judged(tracked.target, &point).condition;
-                        self.solutions.push(solution(&point, 1, 1, residual, condition, is_real(&point, REAL)));
+                        self.solutions.push(solution(&point, 1, 1, residual, condition, is_real(&point, ENDS.real)));
                     }
                 }
                 Verdict::OnComponent { point, .. } if simple => self.unresolved(&point, paths, Why::Unclear),
@@ -100,9 +101,9 @@ impl Classified {
             };
             if simple {
                 // As many solutions that are one point to all digits of a double.
-                self.solutions.extend((0..found.multiplicity).map(|_| one(1, 1, REAL)));
+                self.solutions.extend((0..found.multiplicity).map(|_| one(1, 1, ENDS.real)));
             } else {
-                let solution = one(found.multiplicity, found.winding, REAL_SINGULAR);
+                let solution = one(found.multiplicity, found.winding, ENDS.real_singular);
                 self.solutions.push(Solution { singular: true, ..solution });
             }
         }
@@ -187,7 +188,7 @@ impl Classified {
                 continue;
             };
             solution.residual = residual;
-            solution.is_real = is_real(&exact, REAL);
+            solution.is_real = is_real(&exact, ENDS.real);
             if is_known(tracked.given, &kept, &exact) {
                 self.lost += 1;
             } else {

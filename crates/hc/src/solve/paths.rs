@@ -6,7 +6,7 @@ use super::fingerprints::{Fingerprint, Fingerprints};
 use super::record::{Record, RecordEnd, SingularEnd};
 use crate::SolveOptions;
 use crate::checkpoint::{Part, Recordable, Recorded};
-use crate::distinct::{CLUSTER, coincidences, groups, relative_distance};
+use crate::distinct::{coincidences, groups, relative_distance};
 use crate::endgame::{EndgameOptions, Ending, Handed, Verdict, endgame};
 use crate::homotopy::Segment;
 use crate::monitor::{self, Monitor};
@@ -15,6 +15,7 @@ use crate::refine::{Refined, Refiner};
 use crate::runner::{Flow, Policy, Round, Work, Workspace, run};
 use crate::start::Source;
 use crate::threads::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
+use crate::tolerances::ENDS;
 use crate::tracker::{PathEnd, TrackerOptions, Trackers};
 use num_complex::Complex64;
 use poly::Evaluate;
@@ -27,9 +28,6 @@ pub(super) fn are_hopeless(lost: usize, count: usize) -> bool {
     lost >= HOPELESS && lost > count - count / 4
 }
 
-/// Relative distance below which two paths that have not yet ended are the same: only paths that
-/// have crossed come that near.
-const CROSSED: f64 = 1e-11;
 /// Number of paths under way at a time. It bounds the memory for their points, independently of the
 /// number of all paths.
 const CHUNK: usize = 1 << 11;
@@ -38,11 +36,6 @@ const CHUNK: usize = 1 << 11;
 const PORTION: usize = 1 << 9;
 /// Where the endgame begins, if early.
 const EARLY: f64 = 1e-3;
-/// The relative error of a singular end that the tracker reached without being sure of it.
-const REACHED: f64 = 1e-6;
-/// Largest relative distance by which refinement moves the end of a path: near a component,
-/// Newton's method leads away to regular solutions.
-const ARRIVED: f64 = 1e-5;
 /// Fewer lost paths are never given up.
 const HOPELESS: usize = 32;
 /// Least number of ends that one thread refines at a time.
@@ -255,7 +248,7 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
                     match result.end {
                         PathEnd::Success => {
                             let refined = refiner.refine(target, point);
-                            let near = relative_distance(&refined.point, point) < ARRIVED;
+                            let near = relative_distance(&refined.point, point) < ENDS.arrived;
                             if near && refiner.is_regular(target, &refined) {
                                 RecordEnd::Regular(refined)
                             } else {
@@ -423,7 +416,7 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
     /// incomplete cycle. If the stored data about paths cannot be read, all paths.
     fn doubts(&mut self) -> Vec<usize> {
         let mut which = self.jumped();
-        let crossed = [self.starts.met(self.route.options.paths.coincidence), self.middles.met(CROSSED)];
+        let crossed = [self.starts.met(self.route.options.paths.coincidence), self.middles.met(ENDS.crossed)];
         if crossed.iter().any(Result::is_err) {
             for path in 0..self.ends.count {
                 self.lose(path);
@@ -431,7 +424,7 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
         }
         which.extend(crossed.into_iter().flatten().flatten());
         let singular = self.singular.iter().map(|(&k, end)| (k, &end.point[..]));
-        for group in groups(singular, CLUSTER) {
+        for group in groups(singular, ENDS.cluster) {
             // Paths of winding number m come in cycles of m.
             let winding = |k: &usize| self.singular.get(k).map_or(1, |end| end.winding);
             for k in &group {
@@ -454,7 +447,7 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
 fn judged<E: Evaluate>(refiner: &mut Refiner<'_, E>, target: &[Complex64], ending: Ending, again: bool) -> RecordEnd {
     if matches!(ending.verdict, Verdict::Reached | Verdict::Finite { winding: 1, .. }) {
         let refined = refiner.refine(target, &ending.point);
-        let near = relative_distance(&refined.point, &ending.point) < CLUSTER;
+        let near = relative_distance(&refined.point, &ending.point) < ENDS.cluster;
         if near && refiner.is_regular(target, &refined) {
             return RecordEnd::Regular(refined);
         }
@@ -463,7 +456,7 @@ fn judged<E: Evaluate>(refiner: &mut Refiner<'_, E>, target: &[Complex64], endin
         Verdict::Finite { winding, error } => RecordEnd::Singular(SingularEnd { point: ending.point, winding, error }),
         Verdict::Infinite { winding, valuations } => RecordEnd::Infinite { valuations, winding },
         Verdict::Reached if again => {
-            RecordEnd::Singular(SingularEnd { point: ending.point, winding: 1, error: REACHED })
+            RecordEnd::Singular(SingularEnd { point: ending.point, winding: 1, error: ENDS.reached })
         }
         Verdict::Reached | Verdict::Lost => RecordEnd::Lost,
     }

@@ -16,11 +16,12 @@ use super::slack;
 use super::solutions::Solutions;
 use super::start::Starts;
 use crate::checkpoint::{Checkpoint, Part};
-use crate::distinct::{CLUSTER, Known};
+use crate::distinct::Known;
 use crate::monitor::Monitor;
 use crate::ranks::{Lead, Worker};
 use crate::singular::Given;
 use crate::start::MixedError;
+use crate::tolerances::ENDS;
 use crate::tracker::Trackers;
 use poly::{Exact, Polynomial};
 use std::borrow::Cow;
@@ -258,7 +259,7 @@ impl BestStart {
         }
         let known = Known::new(better.found.solutions.iter().map(|s| &s.value[..]));
         let mut new = other.found.solutions;
-        new.retain(|s| !s.singular && !known.has(&s.value, CLUSTER));
+        new.retain(|s| !s.singular && !known.has(&s.value, ENDS.cluster));
         let before = better.found.solutions.len();
         better.found.solutions.extend(new);
         // Each of them is the end of a path that was lost.

@@ -5,16 +5,9 @@
 //! root is taken per coordinate.
 
 use crate::homotopy::ParameterPath;
+use crate::tolerances::TRACKING;
 use poly::Lane;
 use poly::simd::{Isa, Kernel};
-
-/// Weights never fall below 1e-6: the square of that.
-const ABSOLUTE_FLOOR_SQR: f64 = 1e-12;
-/// Parts of a path below this share of the region in which Newton's method converges do not bound
-/// the step by their radius alone.
-const FAINT: f64 = 0.01;
-/// The radius of faint parts counts at most so many times.
-const MOST: f64 = 10.0;
 
 /// Pade predictor of type [2/1], coordinate by coordinate (Timme 2020, section 4):
 /// `x + d (x1 + d x2 / (1 - d x3 / x2))`, and the Taylor polynomial of order 2 where `x2` or `x3`
@@ -65,9 +58,11 @@ impl<S: Lane> Kernel for Predict<'_, S> {
 ///
 /// A part of the path that varies quickly but hardly at all, such as a term of a toric homotopy
 /// that is still fading in, must not hold up the rest: where `a_j = omega |x2_j| r_j^2` is less
-/// than [`FAINT`], `r_j` counts `1 + ln(FAINT / a_j) / 3` times, at most [`MOST`]. For `exp(c t)`,
-/// whose ratio is `3 / c`, that is where the part has grown to `FAINT / omega`, still far inside
-/// the region in which Newton's method converges to this path.
+/// than [`faint`](crate::tolerances::TrackingTolerances::faint), `r_j` counts
+/// `1 + ln(faint / a_j) / 3` times, at most
+/// [`faint_reach`](crate::tolerances::TrackingTolerances::faint_reach). For `exp(c t)`, whose ratio is
+/// `3 / c`, that is where the part has grown to `faint / omega`, still far inside the region in which
+/// Newton's method converges to this path.
 pub(crate) struct Radius<'a, S: Lane> {
     pub(crate) n: usize,
     pub(crate) taylor: &'a [S],
@@ -134,12 +129,12 @@ impl<S: Lane> Kernel for Radius<'_, S> {
 /// is that of the power of two below.
 #[inline(always)]
 fn reach_sqr(size_sqr: f64) -> f64 {
-    let faintness = (FAINT * FAINT) / size_sqr;
+    let faintness = (TRACKING.faint * TRACKING.faint) / size_sqr;
     let exponent = (faintness.to_bits() >> 52) as i64 - 1023;
     let factor = 1.0 + std::f64::consts::LN_2 / 6.0 * exponent as f64;
     // Not a number, where nothing is known, gives one.
     let factor = if faintness > 1.0 { factor } else { 1.0 };
-    let factor = if factor < MOST { factor } else { MOST };
+    let factor = if factor < TRACKING.faint_reach { factor } else { TRACKING.faint_reach };
     factor * factor
 }
 
@@ -175,7 +170,7 @@ impl<S: Lane> Kernel for Weigh<'_, S> {
                 let size = size.as_ref()[l];
                 let w = &mut self.weights_sqr[j].as_mut()[l];
                 let mean = if self.fresh >> l & 1 == 1 { size } else { 0.5 * (*w + size) };
-                let floor = (self.least_share_sqr * largest.as_ref()[l]).max(ABSOLUTE_FLOOR_SQR);
+                let floor = (self.least_share_sqr * largest.as_ref()[l]).max(TRACKING.least_weight_sqr);
                 let next = mean.max(floor);
                 // A point that is not finite keeps the old weights.
                 *w = if next < f64::INFINITY { next } else { *w };
@@ -306,19 +301,19 @@ fn grow<S: Lane>(norm: &mut S::Real, z: &S, inverse_weight_sqr: &S::Real) {
 
 #[cfg(test)]
 mod tests {
-    use super::{FAINT, MOST, reach_sqr};
+    use super::{TRACKING, reach_sqr};
 
     #[test]
     fn faint_parts_reach_farther_and_others_do_not() {
-        for size in [FAINT, 1.0, f64::INFINITY, f64::NAN] {
+        for size in [TRACKING.faint, 1.0, f64::INFINITY, f64::NAN] {
             assert_eq!(reach_sqr(size * size), 1.0, "{size}");
         }
         // The logarithm is that of the power of two below, at most ln 2 / 6 too small for a square.
         for size in [1e-3f64, 1e-7, 1e-12] {
-            let exact = 1.0 + (FAINT / size).ln() / 3.0;
+            let exact = 1.0 + (TRACKING.faint / size).ln() / 3.0;
             let found = reach_sqr(size * size).sqrt();
             assert!(found <= exact && found > exact - 0.12, "{size}: {found}, {exact}");
         }
-        assert_eq!(reach_sqr(0.0), MOST * MOST);
+        assert_eq!(reach_sqr(0.0), TRACKING.faint_reach * TRACKING.faint_reach);
     }
 }

@@ -5,25 +5,7 @@
 
 use super::options::TrackerOptions;
 use super::result::{PathEnd, PathResult};
-
-/// Newton iterations in one step, at most.
-pub(crate) const MAX_ITERATIONS: usize = 6;
-/// Share of a step that is left after a rejection without a usable contraction.
-const HARD_CUT: f64 = 0.25;
-/// After so many rejections in a row the steps may be held up by rounding errors of the parameters,
-/// which the corrector does not see.
-const RESISTANT: usize = 4;
-/// Assumed `omega` at the start of a path; the first steps replace it.
-const INITIAL_OMEGA: f64 = 10.0;
-const MIN_OMEGA: f64 = 0.1;
-/// Corrections up to this multiple of the noise are taken for noise.
-const NOISE_MARGIN: f64 = 16.0;
-/// Larger corrections are not taken for rounding error: they say that `omega` is larger than was
-/// thought.
-const MOST_NOISE: f64 = 1e-10;
-/// A closing correction above this share of the one before it, and above the noise, says that
-/// Newton's method has not converged yet: after quadratic convergence it is far smaller.
-const UNFINISHED: f64 = 0.05;
+use crate::tolerances::TRACKING;
 
 /// `h(a) = 2a (sqrt(4a^2 + 1) - 2a)` (Timme 2020, lemma 4.2).
 fn h(a: f64) -> f64 {
@@ -143,8 +125,8 @@ impl PathProgress {
             step: 0.0,
             failed_before: 0,
             local_error: f64::NAN,
-            omega: INITIAL_OMEGA,
-            omega_before: INITIAL_OMEGA,
+            omega: TRACKING.initial_omega,
+            omega_before: TRACKING.initial_omega,
             mu: f64::EPSILON,
             noise: f64::EPSILON,
             accepted: 0,
@@ -154,7 +136,7 @@ impl PathProgress {
             diverges_since: None,
             first: 0.0,
             last: 0.0,
-            omega_now: INITIAL_OMEGA,
+            omega_now: TRACKING.initial_omega,
             theta_bound: 0.0,
             iterations: 0,
             resumed: false,
@@ -261,7 +243,7 @@ impl PathProgress {
                 self.state = StepState::Rejected { theta: f64::INFINITY };
                 return;
             }
-        } else if norm > NOISE_MARGIN * self.noise {
+        } else if norm > TRACKING.noise_margin * self.noise {
             let theta = norm / self.last;
             if i == 1 && !self.resumed {
                 self.omega_now = 2.0 * norm / (self.last * self.last);
@@ -279,9 +261,9 @@ impl PathProgress {
             return;
         }
         self.last = norm;
-        if self.omega_now.max(MIN_OMEGA) * norm <= bounds.options.corrector_tolerance {
+        if self.omega_now.max(TRACKING.least_omega) * norm <= bounds.options.corrector_tolerance {
             self.state = StepState::Converged;
-        } else if i + 1 >= MAX_ITERATIONS {
+        } else if i + 1 >= TRACKING.iterations {
             self.state = StepState::Rejected { theta: f64::INFINITY };
         }
     }
@@ -297,23 +279,24 @@ impl PathProgress {
             self.state = StepState::Rejected { theta: f64::INFINITY };
             return;
         }
-        let matters = self.omega_now.max(1.0) * norm > 0.01 * bounds.leave_double && norm > NOISE_MARGIN * self.noise;
-        if matters && norm > UNFINISHED * self.last && self.iterations + 1 < MAX_ITERATIONS {
+        let matters =
+            self.omega_now.max(1.0) * norm > 0.01 * bounds.leave_double && norm > TRACKING.noise_margin * self.noise;
+        if matters && norm > TRACKING.unfinished * self.last && self.iterations + 1 < TRACKING.iterations {
             self.resume(norm, bounds);
             return;
         }
         if self.omega_now == self.omega && self.first == self.last {
             // One iteration only: the closing correction tells omega, unless it is rounding error.
-            self.omega_now = if norm > NOISE_MARGIN * self.noise {
+            self.omega_now = if norm > TRACKING.noise_margin * self.noise {
                 (2.0 * norm / (self.first * self.first)).min(self.omega)
             } else {
                 0.5 * self.omega
             };
         }
-        let mut omega = self.omega_now.max(0.5 * self.omega).max(MIN_OMEGA);
+        let mut omega = self.omega_now.max(0.5 * self.omega).max(TRACKING.least_omega);
         if norm <= omega * self.last * self.last {
             self.noise = self.noise.min(norm).max(self.rounding());
-        } else if norm <= MOST_NOISE {
+        } else if norm <= TRACKING.most_noise {
             // More than quadratic convergence leaves is rounding error, if it is small enough for
             // that.
             self.noise = norm.max(self.rounding());
@@ -321,8 +304,8 @@ impl PathProgress {
             // Newton's method converges more slowly than was thought. With a point in double-double it is
             // not for rounding errors of the point: it has not converged yet.
             omega = norm / (self.last * self.last);
-            let unfinished = norm > UNFINISHED * self.last || omega * norm > bounds.leave_double;
-            if self.wide && unfinished && self.iterations + 1 < MAX_ITERATIONS {
+            let unfinished = norm > TRACKING.unfinished * self.last || omega * norm > bounds.leave_double;
+            if self.wide && unfinished && self.iterations + 1 < TRACKING.iterations {
                 self.resume(norm, bounds);
                 return;
             }
@@ -401,12 +384,12 @@ impl PathProgress {
         self.failed_before += 1;
         let h_theta = if theta.is_finite() { h(theta) } else { 0.0 };
         let factor = if h_theta < bounds.h_half {
-            HARD_CUT
+            TRACKING.hard_cut
         } else {
-            (bounds.reach_half / ((1.0 + 2.0 * h_theta).sqrt() - 1.0)).sqrt().sqrt().max(HARD_CUT)
+            (bounds.reach_half / ((1.0 + 2.0 * h_theta).sqrt() - 1.0)).sqrt().sqrt().max(TRACKING.hard_cut)
         };
         self.step *= factor;
-        if self.failed_before >= RESISTANT && !self.extended && bounds.options.extended_precision {
+        if self.failed_before >= TRACKING.resistant && !self.extended && bounds.options.extended_precision {
             self.extended = true;
             self.used_extended = true;
         }

@@ -1,0 +1,267 @@
+//! The thresholds by which this crate decides, stage by stage.
+//!
+//! They are no settings: results rest on them together, and the tests hold them. What a user may
+//! choose is in [`TrackerOptions`](crate::TrackerOptions), [`EndgameOptions`](crate::EndgameOptions)
+//! and [`CertifyOptions`](crate::CertifyOptions). Each field says what its number decides, and from
+//! what it follows: a theorem, a paper, or the precision of the arithmetic. Where no source is
+//! named, the number was chosen by trial on the systems of the tests. Limits of work and memory
+//! stand beside the code that keeps them.
+//!
+//! ```
+//! // Imaginary parts below this share of a regular solution count as zero.
+//! assert_eq!(hc::tolerances::ENDS.real, 1e-10);
+//! ```
+
+/// Thresholds of the [path tracker](crate::tracker). Steps follow Timme 2020, *Mixed precision path
+/// tracking for polynomial homotopy continuation* (arXiv:1902.02968), with its `omega`, a Lipschitz
+/// constant of Newton's method, and `mu`, the error of a correction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct TrackingTolerances {
+    /// Newton iterations in one step, at most.
+    pub iterations: usize,
+    /// Share of a step that is left after a rejection without a contraction from which a better
+    /// share follows (Timme 2020, section 4).
+    pub hard_cut: f64,
+    /// Rejections in a row after which steps may be held up by rounding errors of the parameters,
+    /// which the corrector does not see.
+    pub resistant: usize,
+    /// `omega` at the start of a path; the first steps replace it.
+    pub initial_omega: f64,
+    /// Least `omega`.
+    pub least_omega: f64,
+    /// Corrections up to this multiple of the noise, the least correction seen, are noise.
+    pub noise_margin: f64,
+    /// Larger corrections are no rounding errors, whatever the noise: they say that `omega` is
+    /// larger than was assumed.
+    pub most_noise: f64,
+    /// A closing correction above this share of the one before it, and above the noise, says that
+    /// Newton's method has not converged yet: after quadratic convergence it is far smaller.
+    pub unfinished: f64,
+    /// Least weight of a coordinate, squared.
+    pub least_weight_sqr: f64,
+    /// Parts of a path below this share of the region in which Newton's method converges do not
+    /// bound the step by their radius alone.
+    pub faint: f64,
+    /// The radius of faint parts counts at most so many times.
+    pub faint_reach: f64,
+}
+
+/// The thresholds of the tracker.
+pub const TRACKING: TrackingTolerances = TrackingTolerances {
+    iterations: 6,
+    hard_cut: 0.25,
+    resistant: 4,
+    initial_omega: 10.0,
+    least_omega: 0.1,
+    noise_margin: 16.0,
+    most_noise: 1e-10,
+    unfinished: 0.05,
+    least_weight_sqr: 1e-12,
+    faint: 0.01,
+    faint_reach: 10.0,
+};
+
+/// Thresholds of [refinement](crate::refine): Newton's method with residuals in double-double.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct RefinementTolerances {
+    /// Iterations at most. Quadratic convergence from a tracked end takes two.
+    pub iterations: usize,
+    /// A Jacobian serves for the next correction too while corrections shrink by this factor: its
+    /// error is about that large then.
+    pub steady: f64,
+    /// Corrections up to this size may shrink as fast.
+    pub near: f64,
+    /// Relative distances from one of which a regular solution must attract Newton's method. The
+    /// first may drown in rounding errors, and from the second other solutions may attract.
+    pub perturbations: [f64; 2],
+    /// Such distances where Jacobians are in double-double.
+    pub precise_perturbations: [f64; 2],
+    /// Share of the distance that may be left after two corrections.
+    pub returned: f64,
+    /// Last correction of solutions that are plainly regular. At a distance of `d` from a singular
+    /// solution, corrections are about `d` or more.
+    pub tiny: f64,
+    /// Condition number of solutions that are plainly regular. At a distance of `d` from a singular
+    /// solution it is about `1 / d` or more.
+    pub good_condition: f64,
+    /// A row of the Jacobian below this share of the largest, or of one, may be what rounding left
+    /// of a row that vanishes, as on a double component. The condition does not tell, since rows
+    /// are scaled to equal size.
+    pub faint: f64,
+    /// Random changes of all parameters that show how a solution depends on them.
+    pub blur_draws: usize,
+    /// Relative size of these changes: it stands out from rounding errors.
+    pub blur_step: f64,
+    /// Corrections of a point that is extended to double-double; each gains about as many digits as
+    /// the Jacobian is known to.
+    pub extensions: usize,
+}
+
+/// The thresholds of refinement.
+pub const REFINEMENT: RefinementTolerances = RefinementTolerances {
+    iterations: 6,
+    steady: 1e-3,
+    near: 1e-6,
+    perturbations: [1e-8, 1e-6],
+    precise_perturbations: [1e-14, 1e-12],
+    returned: 1e-3,
+    tiny: 1e-12,
+    good_condition: 1e6,
+    faint: 1e-10,
+    blur_draws: 3,
+    blur_step: 1e-6,
+    extensions: 4,
+};
+
+/// Thresholds for reading a closed loop of the endgame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct LoopTolerances {
+    /// Fourier coefficients of the highest frequencies may reach this share of a coordinate.
+    pub tail: f64,
+    /// Fourier coefficients below this share of their coordinate count as zero.
+    pub zero: f64,
+    /// Where lower powers do not vanish, a coordinate is of the order of the lowest power that
+    /// makes up this share of it.
+    pub largest: f64,
+}
+
+/// Thresholds of the endgame: Cauchy's integral on circles about zero (Morgan, Sommese & Wampler
+/// 1991, *Computing singular solutions to nonlinear analytic systems*).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct EndgameTolerances {
+    /// A loop that leaves no doubt; aliasing is below 1e-13.
+    pub clear: LoopTolerances,
+    /// For paths without a clear loop, because singularities lie so near to zero that double
+    /// precision cannot go inside.
+    pub vague: LoopTolerances,
+    /// A loop on which rounded coefficients move a coordinate by this share of its size says
+    /// nothing.
+    pub blurred: f64,
+    /// The worst rounding of all coefficients moves a coordinate this many times as far as a random
+    /// one.
+    pub blur_margin: f64,
+    /// The lowest power of a diverging coordinate must reach this share of it. A singularity inside
+    /// the loop, unlike a pole at zero, leaves coefficients that fade towards the lower powers.
+    pub dominant: f64,
+    /// If rounded coefficients move a coordinate by more than this share of its size, a wider
+    /// circle is better.
+    pub sharp: f64,
+    /// If rounded coefficients move a coordinate by more than this on the widest circle too,
+    /// samples would tell nothing.
+    pub hopeless: f64,
+    /// Relative distance below which a loop counts as closed, unless the samples are less accurate.
+    pub closed: f64,
+    /// Samples per turn if coordinates are of order between `t^(-5/4)` and `t^(5/4)`.
+    pub samples: usize,
+    /// Largest number of samples per turn: valuations up to 16.
+    pub most_samples: usize,
+    /// Largest number of samples if the radius cannot be made smaller.
+    pub most_samples_wide: usize,
+    /// After this many loops that were too wide, the path is tracked straight to zero.
+    pub straight_after: u32,
+    /// Share of a leg to zero that may be left before it is given up.
+    pub left_of_leg: f64,
+    /// Each circle is at least this many times smaller than the one before.
+    pub least_shrink: f64,
+}
+
+/// The thresholds of the endgame.
+pub const ENDGAME: EndgameTolerances = EndgameTolerances {
+    clear: LoopTolerances { tail: 1e-5, zero: 1e-9, largest: f64::INFINITY },
+    vague: LoopTolerances { tail: 1e-2, zero: 1e-5, largest: 0.35 },
+    blurred: 1e-4,
+    blur_margin: 256.0,
+    dominant: 1e-2,
+    sharp: 1e-6,
+    hopeless: 1e-2,
+    closed: 1e-10,
+    samples: 4,
+    most_samples: 64,
+    most_samples_wide: 16,
+    straight_after: 2,
+    left_of_leg: 1e-7,
+    least_shrink: 1.5,
+};
+
+/// Thresholds by which ends of paths are compared and classified.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct EndTolerances {
+    /// Imaginary parts of regular solutions up to this share of the point count as zero.
+    pub real: f64,
+    /// Imaginary parts of singular solutions up to this share of the point count as zero: they are
+    /// known to fewer digits.
+    pub real_singular: f64,
+    /// Components smaller than this share of the largest are compared on its scale.
+    pub floor: f64,
+    /// Relative distance below which two singular ends are one point.
+    pub cluster: f64,
+    /// Coordinates up to this share of the largest count as zero where solutions with zero
+    /// coordinates are left out.
+    pub torus: f64,
+    /// Relative distance below which two paths that have not yet ended are the same: only paths
+    /// that have crossed come that near.
+    pub crossed: f64,
+    /// Relative error of a singular end that the tracker reached without being sure of it.
+    pub reached: f64,
+    /// Largest relative distance by which refinement moves the end of a path. Near a component,
+    /// Newton's method leads away to regular solutions.
+    pub arrived: f64,
+}
+
+/// The thresholds for ends of paths.
+pub const ENDS: EndTolerances = EndTolerances {
+    real: 1e-10,
+    real_singular: 1e-7,
+    floor: 1e-4,
+    cluster: 1e-6,
+    torus: 1e-12,
+    crossed: 1e-11,
+    reached: 1e-6,
+    arrived: 1e-5,
+};
+
+/// Thresholds of [proofs](mod@crate::certify). No proof rests on them: they choose the boxes that
+/// are tried.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ProofTolerances {
+    /// Newton steps at most. From two digits on each step about doubles them; later steps gain as
+    /// much as the inverse is good for.
+    pub newton_steps: usize,
+    /// The second correction is at most this share of the first; near a double root it would be one
+    /// half.
+    pub contraction: f64,
+    /// First corrections this small, relative to the weights, are rounding errors; the second
+    /// correction then means nothing.
+    pub rounding: f64,
+    /// What is carried over from other unknowns stays below one part in this many of a box.
+    pub level: f64,
+    /// Boxes that are tried.
+    pub boxes: usize,
+    /// Each box is smaller than the one before by at least this factor.
+    pub shrink: f64,
+    /// How often a proved box is made smaller, as long as this at least halves it.
+    pub tighter: usize,
+    /// Proved boxes that are this many times wider than the least are made smaller if possible.
+    pub wide: f64,
+    /// A box is at least this many times the correction, so that the correction fits well inside.
+    pub room: f64,
+}
+
+/// The thresholds of proofs.
+pub const PROOFS: ProofTolerances = ProofTolerances {
+    newton_steps: 12,
+    contraction: 0.25,
+    rounding: 1e-12,
+    level: 16.0,
+    boxes: 16,
+    shrink: 1.0 / 64.0,
+    tighter: 6,
+    wide: 16.0,
+    room: 4.0,
+};
