@@ -4,7 +4,7 @@
 use anyhow::{Context, Result, ensure};
 use hc::family::{StartFile, Stopped, move_fibre, track_fibre};
 use hc::poly::Interpreter;
-use hc::random::{Random, Stream};
+use hc::random::Random;
 use hc::{Family, Fibre, FibreOptions, MonodromyOptions};
 use num_complex::Complex64;
 
@@ -55,16 +55,12 @@ fn place(system: &Interpreter, fibre: &Fibre, seed: u64) -> Result<Fibre> {
     let m = fibre.parameters.len();
     let targets: Vec<Vec<Complex64>> = (0..TARGETS)
         .map(|k| {
-            Random::new(seed, Stream::Target(k))
-                .normals(m)
-                .iter()
-                .map(|z| Complex64::new(z.re * 2f64.sqrt(), 0.0))
-                .collect()
+            Random::new(seed, 1000 + k).normals(m).iter().map(|z| Complex64::new(z.re * 2f64.sqrt(), 0.0)).collect()
         })
         .collect();
     let mut best: Option<(usize, Fibre)> = None;
     for k in 0..PLACES {
-        let point = Random::new(seed, Stream::Place(k)).normals(m);
+        let point = Random::new(seed, 2000 + k).normals(m);
         let Some(moved) = move_fibre(system, fibre, &point, &FibreOptions::default()) else { continue };
         let mut steps = 0;
         for target in &targets {

@@ -6,7 +6,7 @@
 //!     cargo run --release -p hc --example p3p
 
 use hc::poly::Complex64;
-use hc::random::{Random, Stream};
+use hc::random::Random;
 use hc::{Family, MonodromyOptions};
 use std::time::Instant;
 
@@ -15,7 +15,7 @@ const PROBLEMS: usize = 1000;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let family: Family = include_str!("../../../examples/families/p3p.toml").parse()?;
     let fibre = family.monodromy(&MonodromyOptions::new())?.fibre;
-    let mut random = Random::new(0, Stream::Other(0));
+    let mut random = Random::new(0, 5);
     let (distances, targets): (Vec<_>, Vec<_>) = (0..PROBLEMS).map(|_| problem(&mut random)).unzip();
 
     let started = Instant::now();

@@ -1,4 +1,4 @@
-//! Random numbers: every stream has a seed and a purpose, and does not depend on threads.
+//! Random numbers: every stream has a seed and a number, and does not depend on threads.
 
 use num_complex::Complex64;
 use rand::{RngExt, SeedableRng};
@@ -7,8 +7,7 @@ use rand_pcg::Pcg64;
 /// The purpose of random numbers. Streams of one seed for different purposes, or attempts, share no
 /// numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum Stream {
+pub(crate) enum Stream {
     /// A random member of a family and a point, by attempt.
     Member(u64),
     /// Coefficients and lifting of a polyhedral start system, by attempt.
@@ -35,14 +34,8 @@ pub enum Stream {
     Trace,
     /// The parameters of a loop of monodromy, by number.
     Loop(u64),
-    /// A real target that serves to judge the place of a stored fibre, by number.
-    Target(u64),
-    /// A place that is tried for a stored fibre, by number.
-    Place(u64),
     /// A point of parameters through which a detour leads, by number.
     Detour(u64),
-    /// Any other purpose, by a number that the caller chooses.
-    Other(u64),
 }
 
 impl Stream {
@@ -56,7 +49,6 @@ impl Stream {
             Stream::Polyhedral(k) => between(1, k),
             Stream::TotalDegree(k) => between(2, k),
             Stream::Multihomogeneous(k) => between(3, k),
-            Stream::Other(k) => between(5, k),
             Stream::Slice(k) => between(7, k),
             Stream::Detour(k) => between(9, k),
             Stream::Rounding => 4,
@@ -66,8 +58,6 @@ impl Stream {
             Stream::Multipliers => 8,
             Stream::Through => 10,
             Stream::Trace => 0x7ACE,
-            Stream::Target(k) => from(1000, k),
-            Stream::Place(k) => from(2000, k),
             Stream::Loop(k) => from(1 << 32, k),
         }
     }
@@ -80,10 +70,23 @@ const SHORT: f64 = 16_777_216.0;
 pub struct Random(Pcg64);
 
 impl Random {
-    /// The stream of a seed for a purpose.
-    pub fn new(seed: u64, stream: Stream) -> Self {
-        let mixed = seed ^ stream.number().wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(17);
+    /// The stream of a seed with this number. Streams of one seed with different numbers share no
+    /// numbers. Take numbers below 2^32 that leave 5 when divided by 16: this crate has no such
+    /// stream of its own.
+    ///
+    /// ```
+    /// use hc::random::Random;
+    /// assert_eq!(Random::new(1, 5).normals(3), Random::new(1, 5).normals(3));
+    /// assert_ne!(Random::new(1, 5).unit(), Random::new(1, 21).unit());
+    /// ```
+    pub fn new(seed: u64, number: u64) -> Self {
+        let mixed = seed ^ number.wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(17);
         Random(Pcg64::seed_from_u64(mixed))
+    }
+
+    /// The stream of a seed for a purpose of this crate.
+    pub(crate) fn of(seed: u64, stream: Stream) -> Self {
+        Random::new(seed, stream.number())
     }
 
     /// A complex standard normal number: `E |z|^2 = 1`.
@@ -100,7 +103,7 @@ impl Random {
 
     /// A point near the unit circle whose coordinates have at most 24 digits: sums of several such
     /// points, and of their multiples, are exact.
-    pub fn short_unit(&mut self) -> Complex64 {
+    pub(crate) fn short_unit(&mut self) -> Complex64 {
         let Complex64 { re, im } = self.unit();
         let short = |x: f64| (x * SHORT).round() / SHORT;
         Complex64::new(short(re), short(im))
@@ -134,13 +137,13 @@ mod tests {
                 Stream::Multihomogeneous,
                 Stream::Slice,
                 Stream::Loop,
-                Stream::Target,
-                Stream::Place,
                 Stream::Detour,
-                Stream::Other,
             ];
             for purpose in purposes {
-                assert!(numbers.insert(purpose(attempt).number()), "{:?}", purpose(attempt));
+                let number = purpose(attempt).number();
+                assert!(numbers.insert(number), "{:?}", purpose(attempt));
+                // Those are left to others.
+                assert!(number >= 1 << 32 || number % 16 != 5, "{:?}", purpose(attempt));
             }
         }
         assert!((60..100_000).all(|k| numbers.insert(Stream::Loop(k).number())));

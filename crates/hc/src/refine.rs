@@ -113,7 +113,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
     /// correction, and how far rounding the parameters to double precision would move the point.
     /// This distance is absolute, to first order, for random roundings, and infinite where the
     /// Jacobian is singular.
-    pub fn polish_and_blur(&mut self, p: &[ComplexDd], x: &mut [Complex64]) -> (f64, Vec<f64>) {
+    pub(crate) fn polish_and_blur(&mut self, p: &[ComplexDd], x: &mut [Complex64]) -> (f64, Vec<f64>) {
         let (accuracy, steady) = self.polish(p, x);
         (accuracy, self.blur(p, x, steady && accuracy <= REFINEMENT.near))
     }
@@ -177,7 +177,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
     }
 
     fn comes_back(&mut self, p: &[ComplexDd], x: &[Complex64], perturbation: f64) -> bool {
-        let mut random = Random::new(0, Stream::Perturbation);
+        let mut random = Random::of(0, Stream::Perturbation);
         let mut y = std::mem::take(&mut self.next);
         y.clear();
         sizes(x, &mut self.squares);
@@ -212,7 +212,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         let stays = x.iter().zip(&centre).zip(&sizes).all(|((x, z), w)| within(&(*x).into(), z, REFINEMENT.near * w));
         let contracts = stays
             && REFINEMENT.precise_perturbations.iter().any(|&distance| {
-                let mut random = Random::new(0, Stream::Perturbation);
+                let mut random = Random::of(0, Stream::Perturbation);
                 let away = |(z, w): (&ComplexDd, &f64)| ComplexDd::add(z, &(random.unit() * (distance * w)).into());
                 let mut y: Vec<ComplexDd> = centre.iter().zip(&sizes).map(away).collect();
                 self.newton_precisely(&exact, &mut y, &mut scratch);
@@ -243,7 +243,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
             self.factor(p, x);
         }
         if self.changes.is_empty() {
-            let mut random = Random::new(0, Stream::Rounding);
+            let mut random = Random::of(0, Stream::Rounding);
             self.changes
                 .extend((0..REFINEMENT.blur_draws * p.len()).map(|_| 1.0 + REFINEMENT.blur_step * random.unit()));
         }

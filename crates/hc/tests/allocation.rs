@@ -2,7 +2,7 @@
 
 use hc::homotopy::Segment;
 use hc::poly::{Lanes8, parse};
-use hc::random::{Random, Stream};
+use hc::random::Random;
 use hc::tracker::{PathEnd, PathSet, Tracker, TrackerOptions};
 
 #[test]
@@ -21,7 +21,7 @@ fn a_second_call_allocates_nothing() {
             num_complex::Complex64::from_polar(1.0, (x.arg() + std::f64::consts::TAU * f64::from(k / 4)) / 3.0),
         ]);
     }
-    let target = Random::new(0, Stream::Member(0)).normals(2);
+    let target = Random::new(0, 0).normals(2);
     let path = Segment::new(&[1.0.into(), 1.0.into()], &target);
     let mut tracker = Tracker::<_, Lanes8>::new(&system, &TrackerOptions::default());
     let mut paths = PathSet::new(2);

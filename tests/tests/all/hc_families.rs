@@ -1,7 +1,7 @@
 //! The program `hc` on parameter families, as a user would run it.
 
 use end_to_end::{root, run};
-use hc::random::{Random, Stream};
+use hc::random::Random;
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -48,7 +48,7 @@ fn has(report: &Value, x: &[f64], tolerance: f64) -> bool {
 
 #[test]
 fn cameras_planted_before_three_points_are_found() {
-    let mut random = Random::new(1, Stream::Member(0));
+    let mut random = Random::new(1, 0);
     let mut uniform = |low: f64, high: f64| low + (high - low) * (random.unit().arg() / std::f64::consts::TAU + 0.5);
     let planted: Vec<([f64; 3], Vec<f64>)> = (0..1000)
         .map(|_| {
@@ -67,7 +67,7 @@ fn cameras_planted_before_three_points_are_found() {
 
 #[test]
 fn relative_poses_planted_behind_five_points_are_found_on_any_number_of_threads() {
-    let mut random = Random::new(2, Stream::Member(0));
+    let mut random = Random::new(2, 0);
     let mut normal = || random.normal().re * 2f64.sqrt();
     let planted: Vec<([f64; 5], Vec<f64>)> = (0..30)
         .map(|_| {

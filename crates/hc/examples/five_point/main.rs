@@ -12,7 +12,7 @@ mod generated;
 
 use hc::family::{FibreOptions, FibreTracker, OneChart};
 use hc::poly::Complex64;
-use hc::random::{Random, Stream};
+use hc::random::Random;
 use hc::refine::Refiner;
 use hc::tracker::PathEnd;
 use std::time::Instant;
@@ -26,7 +26,7 @@ fn main() {
     let (count, system, options) = (fibre.len(), generated::System, FibreOptions::default());
     let mut tracker = FibreTracker::new(&system, OneChart, &fibre);
     let mut refiner = Refiner::new(&system);
-    let mut random = Random::new(0, Stream::Other(0));
+    let mut random = Random::new(0, 5);
     let (mut found, mut lost, mut retracked, mut seconds) = (0, 0, 0, 0.0);
     for _ in 0..PROBLEMS {
         let (pose, points) = problem(&mut random);

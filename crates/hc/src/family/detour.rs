@@ -14,7 +14,7 @@ pub(super) const DETOURS: u64 = 2;
 /// stay on the straight way stay on the detour.
 pub(super) fn corner(fibre: &Fibre, target: &[Complex64], number: u64) -> Vec<Complex64> {
     let start = &fibre.parameters;
-    let normals = Random::new(0, Stream::Detour(number)).normals(start.len());
+    let normals = Random::of(0, Stream::Detour(number)).normals(start.len());
     let corner = |((a, b), z): ((&Complex64, &Complex64), Complex64)| (a + b) / 2.0 + z * (b - a).norm();
     start.iter().zip(target).zip(normals).map(corner).collect()
 }

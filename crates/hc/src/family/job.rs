@@ -39,7 +39,7 @@ pub(super) fn job(what: &str, given: &poly::Family, program: &Interpreter, setti
 
 /// The values of the equations somewhere: very long formulas are not shown in full.
 fn somewhere(program: &Interpreter) -> Vec<Complex64> {
-    let mut random = Random::new(0, Stream::Member(0));
+    let mut random = Random::of(0, Stream::Member(0));
     let (x, p) = (random.normals(program.variables()), random.normals(program.parameters()));
     let mut values = vec![Complex64::default(); program.equations()];
     program.values(&mut program.memory(Isa::Portable), &x, &p, &mut values);

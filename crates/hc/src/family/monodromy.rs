@@ -230,7 +230,7 @@ pub(super) fn fill<E: Evaluate>(
         if known > options.max_solutions {
             break Stopped::TooMany;
         }
-        let mut random = Random::new(options.seed, Stream::Loop(loops as u64));
+        let mut random = Random::of(options.seed, Stream::Loop(loops as u64));
         let scale = scale(turns, options.patience);
         let sizes = &sizes[loops % sizes.len()];
         let corner = |z: Complex64, size: f64| z * size * scale;

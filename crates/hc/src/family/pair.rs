@@ -41,7 +41,7 @@ pub(super) fn find_pair(
     let free = free.compile()?;
     let mut refiner = Refiner::new(&compiled);
     for k in 0..tries {
-        let mut z = Random::new(seed, Stream::Member(k)).normals(n + m);
+        let mut z = Random::of(seed, Stream::Member(k)).normals(n + m);
         if !gauss_newton(&free, &mut z) {
             continue;
         }

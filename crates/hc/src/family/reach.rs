@@ -59,7 +59,7 @@ impl Reach {
         }
         let hidden = parameters != natural.parameters && {
             let change = |sizes: &[f64]| -> Vec<Complex64> {
-                let random = Random::new(0, Stream::Trace).normals(sizes.len());
+                let random = Random::of(0, Stream::Trace).normals(sizes.len());
                 random.into_iter().zip(sizes).map(|(z, size)| z * (MIDDLE * size)).collect()
             };
             let (near, far) = (change(&natural.parameters), change(&parameters));

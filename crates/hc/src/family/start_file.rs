@@ -119,7 +119,7 @@ mod tests {
 
     #[test]
     fn is_read_back_bit_for_bit() {
-        let mut random = Random::new(3, Stream::Member(0));
+        let mut random = Random::of(3, Stream::Member(0));
         let fibre = Fibre::new(random.normals(5), 2, random.normals(14));
         let file = StartFile::new(&fibre, Some(1.5e-13), "roots reached");
         let again = StartFile::from_json(&file.to_json()).unwrap();

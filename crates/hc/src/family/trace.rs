@@ -72,7 +72,7 @@ fn on_sizes<E: Evaluate>(
     }
     let (n, m) = (fibre.dimension, fibre.parameters.len());
     // Parameters of the enlarged family: p, v, a, c, tau.
-    let mut random = Random::new(options.seed, Stream::Trace);
+    let mut random = Random::of(options.seed, Stream::Trace);
     let mut parameters = fibre.parameters.clone();
     let shares = sizes.unknowns.iter().map(|size| 1.0 / size);
     let scales = sizes.parameters.iter().copied().chain(shares).chain([1.0]);

@@ -48,7 +48,7 @@ fn affine(equations: &[Modular], unknowns: usize, dimension: usize) -> Option<Ve
             rows.add(row);
         }
     }
-    let mut random = Random::new(0, Stream::Slice(dimension as u64));
+    let mut random = Random::of(0, Stream::Slice(dimension as u64));
     for _ in 0..dimension {
         rows.add((0..=unknowns).map(|_| Residue::new(random.below(PRIME))).collect());
     }

@@ -340,7 +340,7 @@ fn structure<S: Number>(
 /// hyperplanes in which the solution is isolated. If this cannot be seen, the lower bound.
 fn dimension<S: Number>(reduced: &Reduced<S>, at_least: usize) -> usize {
     let variables = reduced.basis.variables();
-    let mut random = Random::new(0, Stream::Slice(0));
+    let mut random = Random::of(0, Stream::Slice(0));
     let mut equations = reduced.equations.clone();
     let mut plane = || {
         let mut form = reduced.basis.constant(S::zero(), 1);

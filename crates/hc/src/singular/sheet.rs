@@ -85,7 +85,7 @@ fn touched<S: Number>(local: &LocalEquations<'_, S>, point: &[S], paths: usize) 
         return None;
     }
     let variables = point.len();
-    let mut random = Random::new(0, Stream::Beside);
+    let mut random = Random::of(0, Stream::Beside);
     let mut is_beside = |dimension: usize, away: f64| {
         let profile = Profile { ranks: vec![variables - dimension], remaining: dimension };
         (0..STARTS).any(|_| {

@@ -24,7 +24,7 @@ pub(crate) fn finite_solutions(polynomials: &[Polynomial<Exact>]) -> Option<usiz
 
 /// The eliminant modulo the prime, after a random change of coordinates.
 fn eliminant(polynomials: &[Polynomial<Exact>]) -> Option<Eliminant<Residue>> {
-    let t = Residue::new(Random::new(0, Stream::Combinations).below(PRIME));
+    let t = Residue::new(Random::of(0, Stream::Combinations).below(PRIME));
     Eliminant::new(polynomials, &t, MAX_ROOTS, Residue::image)
 }
 

@@ -106,7 +106,7 @@ impl Equations {
         let mut order: Vec<usize> = (0..self.len()).filter(|i| !fixed.contains(i)).collect();
         order.sort_by_key(|&i| std::cmp::Reverse(self.degree(i)));
         let (kept, others) = order.split_at(self.unknowns - fixed.len());
-        let mut random = Random::new(seed, Stream::Combinations);
+        let mut random = Random::of(seed, Stream::Combinations);
         let mut squared = Equations { supports: Vec::new(), coefficients: Vec::new(), ..self.clone() };
         for &i in kept {
             let mut sum: BTreeMap<&[i32], Complex64> = BTreeMap::new();

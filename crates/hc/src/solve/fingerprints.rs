@@ -160,7 +160,7 @@ mod tests {
 
     #[test]
     fn points_of_any_size_are_told_apart() {
-        let mut random = crate::random::Random::new(0, crate::random::Stream::Member(0));
+        let mut random = crate::random::Random::new(0, 5);
         let mut fingerprints = Fingerprints::new(8_000);
         let mut last = Vec::new();
         for path in 0..7_999 {

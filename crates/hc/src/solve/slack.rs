@@ -96,7 +96,7 @@ fn widened(equations: &Equations, linear: &[usize], seed: u64) -> Option<Equatio
     if curved.len() < further {
         return None;
     }
-    let mut random = Random::new(seed, Stream::Combinations);
+    let mut random = Random::of(seed, Stream::Combinations);
     let mut wide = equations.widened(further);
     // The first ones have one further unknown each, the others all of them.
     for (place, i) in curved.into_iter().enumerate() {

@@ -50,7 +50,7 @@ mod tests {
 
     #[test]
     fn never_against_the_mixed_volume() {
-        let mut random = Random::new(0, Stream::Member(0));
+        let mut random = Random::of(0, Stream::Member(0));
         let mut draw = |below: f64| ((random.unit().arg() / std::f64::consts::TAU + 0.5) * below) as i32;
         let (mut yes, mut no) = (0, 0);
         for _ in 0..400 {

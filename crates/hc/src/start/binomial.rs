@@ -121,7 +121,7 @@ mod tests {
                 prop_assert_eq!(det, 0);
                 return Ok(());
             };
-            let mut random = Random::new(seed, Stream::Member(0));
+            let mut random = Random::of(seed, Stream::Member(0));
             let b = [random.unit(), random.unit() * 2.0, random.unit() * 0.5];
             let solutions: Vec<_> = (0..det.unsigned_abs() as u64).map(|k| binomials.solution(&b, k)).collect();
             for (k, x) in solutions.iter().enumerate() {

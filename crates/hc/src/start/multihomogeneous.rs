@@ -129,7 +129,7 @@ pub(crate) struct Multihomogeneous {
 impl Multihomogeneous {
     /// In coefficients of the supports, which must contain all [`Grouped::terms`].
     pub(crate) fn new(supports: &Supports, grouped: Grouped, seed: u64, attempt: u64) -> Multihomogeneous {
-        let mut random = Random::new(seed, Stream::Multihomogeneous(attempt));
+        let mut random = Random::of(seed, Stream::Multihomogeneous(attempt));
         let mut forms = Vec::new();
         let mut parameters = Vec::new();
         for (points, degrees) in supports.iter().zip(&grouped.degrees) {

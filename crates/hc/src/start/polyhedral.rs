@@ -59,7 +59,7 @@ impl Polyhedral {
         attempt: u64,
         monitor: &Monitor,
     ) -> Result<Polyhedral, MixedError> {
-        let mut random = Random::new(seed, Stream::Polyhedral(attempt));
+        let mut random = Random::of(seed, Stream::Polyhedral(attempt));
         let terms = supports.iter().map(Vec::len).sum();
         let coefficients: Vec<Complex64> = (0..terms).map(|_| random.unit() * (1.0 + 0.1 * random.unit().re)).collect();
         let (lifting, parts) = fine_cells(supports, &mut random, monitor)?;

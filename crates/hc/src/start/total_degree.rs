@@ -30,7 +30,7 @@ impl TotalDegree {
     /// In coefficients of the supports, which must contain `x_i^(d_i)` and the origin; the degrees
     /// are not zero.
     pub(crate) fn new(supports: &Supports, degrees: &[u64], seed: u64, attempt: u64) -> TotalDegree {
-        let mut random = Random::new(seed, Stream::TotalDegree(attempt));
+        let mut random = Random::of(seed, Stream::TotalDegree(attempt));
         let mut parameters = Vec::new();
         for (i, (points, &degree)) in supports.iter().zip(degrees).enumerate() {
             let factor = random.unit();

@@ -117,7 +117,7 @@ mod tests {
         for width in [4, 12, 100] {
             let (mut records, mut expected) = (Records::new(width), BTreeMap::new());
             let count = 4 * SLOTS * (BLOCK / width);
-            let mut random = Random::new(width as u64, Stream::Member(0));
+            let mut random = Random::of(width as u64, Stream::Member(0));
             for step in 0..20_000usize {
                 let number = ((random.unit().arg().abs() / 3.2 * count as f64) as usize).min(count - 1);
                 let record: Vec<u8> = (0..width).map(|k| (number ^ (step * 31 + k)) as u8).collect();

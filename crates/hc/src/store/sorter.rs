@@ -144,7 +144,7 @@ mod tests {
     #[test]
     fn all_records_come_back_in_order() {
         for (width, count) in [(20, 0), (20, 3), (20, 3 * BUFFER / 20), (96, 2 * BUFFER / 96 + 1)] {
-            let mut random = Random::new(count as u64, Stream::Member(0));
+            let mut random = Random::of(count as u64, Stream::Member(0));
             let mut sorters = vec![Sorter::new(width), Sorter::new(width)];
             let mut expected = Vec::new();
             for k in 0..count {

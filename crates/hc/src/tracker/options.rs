@@ -135,7 +135,7 @@ impl TrackerOptions {
 
     /// Shorter steps than these, for paths that are tracked again: at `level` 1 about half as long,
     /// at each further level half of that.
-    pub fn stricter(&self, level: u32) -> Self {
+    pub(crate) fn stricter(&self, level: u32) -> Self {
         let factor = 0.5f64.powi(level as i32);
         TrackerOptions {
             beta_omega: self.beta_omega / factor,

@@ -162,7 +162,7 @@ impl PathSet {
     }
 
     /// Replaces the `k`-th record, but not its point.
-    pub fn replace_record(&mut self, k: usize, result: PathResult) {
+    pub(crate) fn replace_record(&mut self, k: usize, result: PathResult) {
         self.results[k] = result;
     }
 

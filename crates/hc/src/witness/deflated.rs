@@ -83,7 +83,7 @@ impl Deflated {
     /// is larger than the dimension by `further`.
     fn with_multipliers(self, dimension: usize, further: usize, seed: u64) -> Deflated {
         let before = self.unknowns();
-        let mut random = Random::new(seed, Stream::Multipliers);
+        let mut random = Random::of(seed, Stream::Multipliers);
         // Across as many general hyperplanes as the dimension, and of a certain size.
         let forms: Vec<Vec<Complex64>> =
             (0..dimension + further).map(|_| (0..before).map(|_| random.short_unit()).collect()).collect();

@@ -120,7 +120,7 @@ impl Trace {
 
 /// Moves the hyperplanes of a fibre in parallel; `None` if a path was lost.
 fn trace<E: Evaluate>(family: &E, fibre: &Fibre, unknowns: usize, seed: u64, monitor: &Monitor) -> Option<Trace> {
-    let mut random = Random::new(seed, Stream::Trace);
+    let mut random = Random::of(seed, Stream::Trace);
     // The offsets move; slopes, as many as unknowns before each, stay. Steps and offsets have so few
     // digits that sums are exact.
     let step = |k: usize| if k % (unknowns + 1) == unknowns { random.short_unit() } else { Complex64::default() };

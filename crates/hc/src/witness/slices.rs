@@ -17,14 +17,14 @@ pub(super) struct Slices {
 impl Slices {
     /// As many in general position.
     pub(super) fn new(unknowns: usize, dimension: usize, seed: u64) -> Slices {
-        let mut random = Random::new(seed, Stream::Slice(dimension as u64));
+        let mut random = Random::of(seed, Stream::Slice(dimension as u64));
         let slopes = (0..dimension).map(|_| (0..unknowns).map(|_| random.unit()).collect()).collect();
         Slices { slopes, offsets: (0..dimension).map(|_| random.short_unit()).collect() }
     }
 
     /// In general position through a point.
     pub(super) fn through(point: &[Complex64], dimension: usize, seed: u64) -> Slices {
-        let mut random = Random::new(seed, Stream::Through);
+        let mut random = Random::of(seed, Stream::Through);
         let slopes: Vec<Vec<Complex64>> =
             (0..dimension).map(|_| (0..point.len()).map(|_| random.unit()).collect()).collect();
         let offsets = slopes.iter().map(|slopes| slopes.iter().zip(point).map(|(a, x)| a * x).sum()).collect();
@@ -64,7 +64,7 @@ impl Slices {
         let linear = System::from_polynomials(&names, &equations.linear).ok()?;
         let wanted = names.len().checked_sub(self.dimension() + linear.len())?;
         let given = self.slopes.first().map_or(0, Vec::len);
-        let mut random = Random::new(seed, Stream::Combinations);
+        let mut random = Random::of(seed, Stream::Combinations);
         System::build(|s| {
             let unknowns: Vec<_> = names.iter().map(|name| s.variable(name)).collect();
             let planes: Vec<(Vec<_>, _)> = (0..self.dimension())

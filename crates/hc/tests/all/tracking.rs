@@ -4,7 +4,7 @@ use hc::distinct::relative_distance;
 use hc::family::{Stopped, track_fibre};
 use hc::homotopy::Segment;
 use hc::poly::{Interpreter, Isa, Lane, Lanes8, parse};
-use hc::random::{Random, Stream};
+use hc::random::Random;
 use hc::refine::Refiner;
 use hc::tracker::{PathEnd, PathSet, Tracker, TrackerOptions, track};
 use hc::{Family, Fibre, FibreOptions, Monitor, MonodromyOptions, Solutions, SolveOptions};
@@ -181,7 +181,7 @@ fn paths_to_infinity_and_to_singular_ends_are_told_apart() {
 #[test]
 fn alone_and_in_lanes_on_any_instruction_set_the_same_bits() {
     let (_, system, fibre) = p3p_fibre();
-    let target = Random::new(5, Stream::Member(0)).normals(6);
+    let target = Random::new(5, 0).normals(6);
     let path = Segment::new(&fibre.parameters, &target);
     let run = |options: &TrackerOptions| {
         let mut out = PathSet::new(3);
@@ -206,7 +206,7 @@ fn any_number_of_threads_the_same_bits() {
     // The same eight start solutions many times, so that there is something to share out.
     let starts: Vec<Complex64> = (0..40).flat_map(|_| fibre.solutions.clone()).collect();
     let which: Vec<usize> = (0..320).collect();
-    let path = Segment::new(&fibre.parameters, &Random::new(6, Stream::Member(0)).normals(6));
+    let path = Segment::new(&fibre.parameters, &Random::new(6, 0).normals(6));
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| track(&system, &path, &starts, &which, &TrackerOptions::default()))
@@ -227,7 +227,7 @@ fn sorted(set: &PathSet) -> Vec<(usize, String)> {
 fn the_whole_fibre_reaches_a_hundred_targets() {
     let (_, system, fibre) = p3p_fibre();
     for seed in 0..100 {
-        let target = Random::new(seed, Stream::Polyhedral(0)).normals(6);
+        let target = Random::new(seed, 1).normals(6);
         let (_, counts) = track_fibre(&system, &fibre, &target, &FibreOptions::default());
         assert_eq!((counts.tracked, counts.finite, counts.failed), (8, 8, 0), "seed {seed}");
     }
@@ -247,7 +247,7 @@ fn jumped_paths_are_found_and_mended() {
     reckless.retries = 0;
     let mut jumped = 0;
     for seed in 0..200 {
-        let target = Random::new(seed, Stream::TotalDegree(0)).normals(6);
+        let target = Random::new(seed, 2).normals(6);
         reckless.retries = 0;
         let (_, counts) = track_fibre(&system, &fibre, &target, &reckless);
         if counts.failed > 0 {
@@ -318,7 +318,7 @@ fn monodromy_finds_branch_points_at_any_scale() {
 fn detours_find_what_a_path_has_lost() {
     // So few steps that some paths fail; another way is as short as the first.
     let (family, _, fibre) = p3p_fibre();
-    let targets: Vec<_> = (0..300).map(|seed| Random::new(seed, Stream::Polyhedral(0)).normals(6)).collect();
+    let targets: Vec<_> = (0..300).map(|seed| Random::new(seed, 1).normals(6)).collect();
     let run = |retries: u32| {
         let mut options = SolveOptions::default();
         options.paths.tracker.max_steps = 25;

@@ -91,7 +91,7 @@ mod tests {
     use crate::minimal::planar::four_five::FourFive;
     use crate::minimal::planar::three::{FiveFour, SixThree};
     use hc::poly::{Evaluate, Isa};
-    use hc::random::{Random, Stream};
+    use hc::random::Random;
     use num_complex::Complex64;
 
     /// Solutions stay solutions, and the distance to the data does not grow.
@@ -102,7 +102,7 @@ mod tests {
         let mut memory = F::system().memory(Isa::Portable);
         let (mut values, mut jacobian) = (vec![Complex64::new(0.0, 0.0); n], vec![Complex64::new(0.0, 0.0); n * n]);
         for seed in 0..5 {
-            let target = Random::new(seed, Stream::Member(0)).normals(stored.parameters.len());
+            let target = Random::new(seed, 0).normals(stored.parameters.len());
             for turn in [0.0, 1.0] {
                 nearest.find::<F>(&stored, &target, turn, &mut moved);
                 for x in moved.solutions.chunks_exact(n) {

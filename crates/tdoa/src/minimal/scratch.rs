@@ -8,7 +8,7 @@
 use super::error::SolveError;
 use super::formulation::Formulation;
 use super::solution::PathCounts;
-use hc::random::{Random, Stream};
+use hc::random::Random;
 use hc::{Fibre, Monitor, Run, SolveOptions, Start};
 use num_complex::Complex64;
 
@@ -39,7 +39,7 @@ pub(crate) fn at_random<F: Formulation>(
     let mut tracked = 0;
     for member in 0..MEMBERS {
         let seed = seed(target).wrapping_add(member);
-        let parameters = Random::new(seed, Stream::Member(0)).normals(target.len());
+        let parameters = Random::new(seed, 0).normals(target.len());
         let found = roots::<F>(&parameters, seed, 2, monitor)?;
         tracked += found.paths.tracked + found.paths.retracked;
         if found.whole {
