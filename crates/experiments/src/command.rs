@@ -45,7 +45,7 @@ enum Kind {
     Routes(routes::Arguments),
     /// Measures what the options for callers in a hurry save and lose.
     Hurry(checks::Arguments),
-    /// Measures what becomes of paths that fail.
+    /// Measures how paths that fail are recovered.
     Charts(checks::Arguments),
     Hard(hard::Arguments),
     Speed(speed::Arguments),

@@ -69,7 +69,7 @@ fn number(word: &str) -> Option<Complex64> {
     Some(found).filter(|z| z.is_finite())
 }
 
-/// Where the sign of the imaginary part stands, the last one that is not that of an exponent; zero
+/// The place of the sign of the imaginary part, the last sign that belongs to no exponent; zero
 /// where there is no real part before it.
 fn sign(parts: &str) -> usize {
     let is_one = |&(k, c): &(usize, char)| matches!(c, '+' | '-') && !parts[..k].ends_with(['e', 'E']);

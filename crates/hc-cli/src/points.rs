@@ -60,7 +60,7 @@ fn phcpack(text: &str) -> Result<Named, String> {
     let first = text[..start].matches('\n').count() + 1;
     let mut names: Option<Vec<String>> = None;
     let mut points = Vec::new();
-    // Of the solution that is being read.
+    // The solution that is being read.
     let mut open: Option<(Vec<String>, Vec<Complex64>)> = None;
     for (k, line) in text[start..].lines().enumerate() {
         let at = |message: &str| format!("line {}: {message}", first + k);

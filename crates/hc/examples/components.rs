@@ -30,7 +30,7 @@ struct Case {
     text: String,
     /// Dimension and degree of each component.
     components: Vec<(usize, usize)>,
-    /// The number of isolated solutions, or as often as they count.
+    /// The number of isolated solutions, with their multiplicities where so stated.
     isolated: usize,
 }
 

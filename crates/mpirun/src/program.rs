@@ -9,7 +9,7 @@ use std::process::ExitCode;
 pub trait Program: Parser {
     /// Name of the program, before its messages.
     const NAME: &'static str;
-    /// Which commands several ranks can do, as a sentence; the others are refused with it.
+    /// A sentence that names the commands several ranks can do; others are refused with it.
     const SHARED: &'static str;
 
     /// Options of work over several ranks, where the command has them.

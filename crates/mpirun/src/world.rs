@@ -26,7 +26,7 @@ const STACK: usize = 8 << 20;
 /// Exit status of a program that has panicked.
 const PANICKED: i32 = 101;
 
-/// Tags of messages: those of the work, and the last one of a rank.
+/// Tags of messages: one for the work, one for the last message of a rank.
 const WORK: i32 = 1;
 const LAST: i32 = 2;
 

@@ -30,13 +30,13 @@ mod end {
 
 #[pymethods]
 impl Family {
-    /// From TOML.
+    /// A family from TOML.
     #[staticmethod]
     fn from_text(text: &str) -> PyResult<Family> {
         guarded(|| Ok(Family(Arc::new(text.parse().map_err(|error: FamilyError| Failure::input(error))?))))
     }
 
-    /// From formulas, with factors that do not vanish and maps that take solutions to solutions.
+    /// A family from formulas, with factors that do not vanish and maps that take solutions to solutions.
     #[staticmethod]
     fn from_formulas(
         unknowns: Vec<String>,
@@ -155,7 +155,7 @@ impl Family {
 
 /// One target's solutions.
 struct Slots {
-    /// Coordinates, of a singular solution as often as it counts.
+    /// Coordinates; those of a singular solution are repeated as often as it counts.
     points: Vec<Complex64>,
     /// Whether each is real.
     real: Vec<bool>,
@@ -176,7 +176,7 @@ fn slots(found: &Solutions, roots: usize, tracked: usize, certify: bool) -> Slot
         }
     }
     let rest = roots.saturating_sub(ends.len());
-    // Of a symmetric family a path stands for an orbit whose size an end without a solution does
+    // In a symmetric family a path stands for an orbit, whose size an end without a solution does
     // not tell: one lost path leaves all the rest in doubt.
     let whole = |paths: usize| if tracked == roots || paths == 0 { paths.min(rest) } else { rest };
     let failed = whole(found.paths.failed);

@@ -110,7 +110,7 @@ enum Delays {
     All,
 }
 
-/// To which side measurements are wrong.
+/// The side to which measurements are wrong.
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum Side {
     Symmetric,

@@ -20,9 +20,9 @@ type Positions = Vec<Option<[f64; 2]>>;
 /// True positions, and what is to be said of them.
 #[derive(Default)]
 pub(crate) struct Truth {
-    /// Of the receivers, in their order; `None` if nothing is known.
+    /// Positions of the receivers, in their order; `None` if nothing is known.
     pub(crate) receivers: Option<Positions>,
-    /// Of the transmitters, in their order; none if nothing is known.
+    /// Positions of the transmitters, in their order; none if nothing is known.
     pub(crate) transmitters: Positions,
     /// What the user should know, of the file and not of the network.
     pub(crate) notes: Vec<String>,
@@ -31,7 +31,7 @@ pub(crate) struct Truth {
 }
 
 impl Truth {
-    /// The truth in the file given for it, else what a .mat file holds beside the measurements.
+    /// The truth in the file given for it, otherwise the one in the .mat file of the measurements.
     pub(crate) fn read(given: Option<&Path>, file: &Path, measured: &Pseudoranges) -> Result<Truth, Failure> {
         let mut truth = Truth::default();
         if let Some(path) = given {
@@ -180,7 +180,7 @@ pub(crate) fn anchors(path: &Path, measured: &Pseudoranges) -> Result<Anchors, F
     Ok(found)
 }
 
-/// That heights are left out, where there are any.
+/// Warns that heights are left out, where there are any.
 fn heights(path: &Path, nodes: &Nodes) -> Option<String> {
     let [low, high] = nodes.height_range().filter(|range| *range != [0.0; 2])?;
     let range = if low == high { length(low) } else { format!("{} to {}", length(low), length(high)) };

@@ -45,7 +45,7 @@ fn page(loads: &[Load], folder: &str, seed: u64) -> String {
     for load in loads {
         let (path, lead) = (load.path(), load.lead);
         text += &format!(
-            "\n## {}\n\nA path takes {:.2} ms, of rank 0 {:.1} us and {:.0} bytes: {:.0} ranks are as many as rank 0 can serve. Start system: \
+            "\n## {}\n\nA path takes {:.2} ms, and {:.1} us and {:.0} bytes of rank 0, which can serve {:.0} ranks. Start system: \
              {:.1} s.\n",
             load.system,
             1e3 * path,

@@ -134,7 +134,7 @@ pub(super) fn hurry(arguments: &Arguments) -> Result<(), Failure> {
     arguments.write(&text)
 }
 
-/// Measures what becomes of paths that fail.
+/// Measures how paths that fail are recovered.
 pub(super) fn charts(arguments: &Arguments) -> Result<(), Failure> {
     let mut text = format!(
         "# Paths that fail\n\n{}: each instance in one round at full steps and with four more rounds of shorter steps \

@@ -97,7 +97,7 @@ pub(super) fn normal(size: Size, noise: f64, seed: u64) -> Result<Simulation, Fa
     simulate(&options).map_err(Failure::unusable)
 }
 
-/// Processor seconds of this thread so far, where the system tells them (Linux); else seconds on
+/// Processor seconds of this thread so far, where the system tells them (Linux); otherwise seconds on
 /// the clock. Other programs on the same cores then do not count.
 pub(super) fn thread_seconds() -> f64 {
     let told = std::fs::read_to_string(Path::new("/proc/thread-self/schedstat")).ok();

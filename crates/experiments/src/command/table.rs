@@ -166,7 +166,7 @@ mod tests {
         let run = |name: &str, count: usize, stop: usize| {
             let one = |exchange: Local| {
                 let ranks = Ranks::new(&exchange, &RanksOptions::new());
-                // That of another machine.
+                // The time of another machine.
                 let output = if ranks.is_lead() { folder.path().to_owned() } else { folder.path().join("none") };
                 let common = Common { output, ..common(folder.path()) };
                 let cube = |(): &mut (), k: usize| match k == stop {

@@ -29,7 +29,7 @@ pub(super) struct Tools {
 
 /// What one run of a program took.
 pub(super) struct Run {
-    /// From the start of the process to its end.
+    /// Seconds from the start of the process to its end.
     pub(super) seconds: f64,
     /// Processor seconds, user and system, where the system tells them.
     pub(super) processor: Option<f64>,

@@ -263,7 +263,7 @@ mod tests {
         assert!(few.efficiency < 0.7, "{few:?}");
         let many = simulate(&load(1e-2, 1e-6), 1_000_000, &Machine::new(100), 1);
         assert!(many.efficiency > 0.9 && many.efficiency <= 1.0, "{many:?}");
-        // Of a path rank 0 takes a hundredth of what others take: a hundred ranks are as many as it serves.
+        // Rank 0 spends a hundredth of the time of the others on a path: it serves a hundred ranks at most.
         let limited = simulate(&load(1e-3, 1e-5), 1_000_000, &Machine::new(1000), 1);
         assert!(limited.seconds >= 1_000_000.0 * 1e-5 && limited.lead > 0.9, "{limited:?}");
         assert!(limited.efficiency < 0.11, "{limited:?}");

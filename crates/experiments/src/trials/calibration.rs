@@ -139,7 +139,7 @@ fn distance_from(receivers: &[Option<[f64; 2]>], truth: &Network) -> Option<f64>
     align(&found, &known, false).map(|alignment| alignment.rms)
 }
 
-/// In the gauge of the covariances the truth is aligned to the calibration by its receivers.
+/// The truth is aligned to the calibration by its receivers: that is the gauge of the covariances.
 fn coverage(calibration: &Calibration, truth: &Network) -> (usize, usize) {
     let pairs = calibration.receivers.iter().zip(&truth.receivers).filter_map(|(f, t)| Some(((*f)?, *t)));
     let (found, known): (Vec<_>, Vec<_>) = pairs.unzip();

@@ -105,7 +105,7 @@ pub struct HurryTrial {
     pub networks: usize,
     /// Whether the true network is among those of the full search.
     pub truth_full: bool,
-    /// Whether it is among those of the hurried one.
+    /// Whether the true network is among those of the hurried search.
     pub truth: bool,
 }
 

@@ -67,7 +67,7 @@ fn problem(random: &mut Random) -> ([f64; UNKNOWNS], Vec<f64>) {
         let (b, depth) = ([uniform(-0.5, 0.5), uniform(-0.5, 0.5), 1.0], uniform(2.0, 6.0));
         let [p, q, r]: [f64; 3] =
             std::array::from_fn(|i| depth * (0..3).map(|j| rotation[i][j] * b[j]).sum::<f64>() / norm + [1.0, u, v][i]);
-        // In front of both cameras.
+        // The points lie in front of both cameras.
         if r > 0.1 {
             points.extend([p / r, q / r, b[0], b[1]]);
         }

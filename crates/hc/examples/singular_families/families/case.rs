@@ -4,7 +4,7 @@ use hc::poly::Complex64;
 
 /// A system and what it has.
 pub(crate) struct Case {
-    /// In PHCpack's format.
+    /// The system in PHCpack's format.
     pub(crate) text: String,
     /// The isolated solutions, and their multiplicities.
     pub(crate) solutions: Vec<(Vec<Complex64>, usize)>,
