@@ -36,7 +36,7 @@ const SAME: f64 = -250.0;
 
 /// The equations near the centre of a cluster, without the unknowns that they determine at once, and
 /// in units of its size.
-pub(crate) struct Zoom<'a> {
+pub(crate) struct ClusterEquations<'a> {
     given: &'a Given,
     local: LocalEquations<'a, Digits>,
     reduced: Reduced<Digits>,
@@ -46,21 +46,21 @@ pub(crate) struct Zoom<'a> {
     pub(crate) polynomials: Vec<Polynomial<Exact>>,
 }
 
-/// What the given equations have at a solution of those of a [`Zoom`].
+/// What the given equations have at a solution of those of a [`ClusterEquations`].
 pub(crate) struct ClusterSolution {
     pub(crate) verdict: Verdict,
     /// A regular solution to all digits.
     point: Option<Vec<Digits>>,
 }
 
-impl<'a> Zoom<'a> {
+impl<'a> ClusterEquations<'a> {
     /// All ways to look at the cluster near a point, the simplest first: with each way to read off
     /// which unknowns are determined.
-    pub(crate) fn all(given: &'a Given, point: &[Complex64]) -> impl Iterator<Item = Zoom<'a>> {
+    pub(crate) fn all(given: &'a Given, point: &[Complex64]) -> impl Iterator<Item = ClusterEquations<'a>> {
         let mut tried: Vec<(Profile, usize)> = Vec::new();
         let ways = ORDERS.into_iter().flat_map(|order| TOLERANCES.map(|tolerance| (order, tolerance)));
         let point = point.to_vec();
-        ways.filter_map(move |(order, tolerance)| Zoom::new(given, &point, order, tolerance, &mut tried))
+        ways.filter_map(move |(order, tolerance)| ClusterEquations::new(given, &point, order, tolerance, &mut tried))
     }
 
     fn new(
@@ -69,7 +69,7 @@ impl<'a> Zoom<'a> {
         order: usize,
         tolerance: f64,
         tried: &mut Vec<(Profile, usize)>,
-    ) -> Option<Zoom<'a>> {
+    ) -> Option<ClusterEquations<'a>> {
         if given.is_exhausted() {
             return None;
         }
@@ -90,8 +90,8 @@ impl<'a> Zoom<'a> {
         let reduced = (left <= UNKNOWNS).then(|| Reduced::new(&local, &centre, &pivots, order)).flatten()?;
         let size = size(&reduced)?;
         let polynomials: Vec<Polynomial<Exact>> =
-            reduced.equations.iter().map(|series| zoomed(&reduced, series, size)).collect::<Option<_>>()?;
-        (polynomials.len() >= left).then_some(Zoom { given, local, reduced, size, polynomials })
+            reduced.equations.iter().map(|series| in_units(&reduced, series, size)).collect::<Option<_>>()?;
+        (polynomials.len() >= left).then_some(ClusterEquations { given, local, reduced, size, polynomials })
     }
 
     /// The number of unknowns that are left.
@@ -104,7 +104,7 @@ impl<'a> Zoom<'a> {
         self.given.spend(products);
     }
 
-    /// Adds what the given equations have at a solution of those of the zoom at which `paths` paths
+    /// Adds what the given equations have at a solution of those of the cluster at which `paths` paths
     /// end, if it is not found already.
     pub(crate) fn add(&self, found: &mut Vec<ClusterSolution>, solution: &[Complex64], paths: usize, most: usize) {
         let unit = |z: &Complex64| Digits::from_c64(*z).shifted(self.size);
@@ -124,7 +124,7 @@ impl<'a> Zoom<'a> {
             return;
         }
         let point: Vec<Complex64> = self.local.unscaled(&start).iter().map(Number::to_c64).collect();
-        // As accurate as the equations of the zoom are.
+        // As accurate as the equations of the cluster are.
         let verdict = judge(self.given, &point, paths, most, 2f64.powi(2 * self.size as i32), Effort::Little);
         if matches!(verdict, Verdict::Isolated { .. } | Verdict::OnComponent { .. }) {
             found.push(ClusterSolution { verdict, point: None });
@@ -155,7 +155,7 @@ fn size(reduced: &Reduced<Digits>) -> Option<i64> {
 }
 
 /// An equation in units of a size, without the terms that do not matter.
-fn zoomed(reduced: &Reduced<Digits>, series: &[Digits], size: i64) -> Option<Polynomial<Exact>> {
+fn in_units(reduced: &Reduced<Digits>, series: &[Digits], size: i64) -> Option<Polynomial<Exact>> {
     let exponents = reduced.basis.exponents();
     let degree = |k: usize| exponents[k].iter().map(|&e| i64::from(e)).sum::<i64>();
     let scaled: Vec<Digits> = series.iter().enumerate().map(|(k, c)| c.shifted(degree(k) * size)).collect();

@@ -25,7 +25,7 @@ mod squarefree;
 mod univariate;
 mod verdict;
 
-pub(crate) use cluster::{ClusterSolution, Zoom};
+pub(crate) use cluster::{ClusterEquations, ClusterSolution};
 pub(crate) use eliminant::Eliminant;
 pub(crate) use eliminate::{Elimination, Stop};
 pub(crate) use empty::is_missed;

@@ -76,13 +76,12 @@ pub(super) struct Tracked<'a> {
     /// Whether the coefficients that were tracked are exactly those that were given.
     pub(super) exact: bool,
     pub(super) monitor: &'a Monitor,
-    /// How to solve equations around ends that cannot be separated; `None` if the equations have
-    /// been zoomed often enough.
-    pub(super) zoomed: Option<&'a Zoomed<'a>>,
+    /// How to solve the equations of a cluster; `None` deep enough within such solves.
+    pub(super) solve_cluster: Option<&'a ClusterSolver<'a>>,
 }
 
-/// Solves as many polynomials as unknowns, as part of the work on the given equations.
-pub(super) type Zoomed<'a> = dyn Fn(&[Polynomial<Exact>], &Given) -> Option<Solutions> + Sync + 'a;
+/// Solves the equations of a cluster of ends, as part of the work on the given equations.
+pub(super) type ClusterSolver<'a> = dyn Fn(&[Polynomial<Exact>], &Given) -> Option<Solutions> + Sync + 'a;
 
 /// Sorts ends into solutions. Without `tracked`, singular ends are lost.
 pub(super) fn classify(tracked: Option<&Tracked<'_>>, all: &Ends, excess: &Excess<'_>, coincidence: f64) -> Classified {

@@ -3,7 +3,7 @@
 use super::classify::Tracked;
 use super::solutions::Solution;
 use crate::distinct::relative_distance;
-use crate::singular::{self, ClusterSolution, Effort, Given, Verdict, Zoom};
+use crate::singular::{self, ClusterEquations, ClusterSolution, Effort, Given, Verdict};
 use num_complex::Complex64;
 use poly::{Exact, Polynomial};
 
@@ -15,7 +15,7 @@ const EQUAL: f64 = 2e-15;
 
 /// Largest number of ways to look at a cluster.
 const WAYS: usize = 12;
-/// Largest Bezout number of the equations of a zoom; and about what a path costs per term, in
+/// Largest Bezout number of the equations of a cluster; and about what a path costs per term, in
 /// products of complex double-doubles.
 const PATHS: u64 = 600;
 const WORK: u64 = 20;
@@ -33,22 +33,22 @@ pub(super) fn clustered(
     most: usize,
     known: &[Solution],
 ) -> Vec<Verdict> {
-    let Some(solve) = tracked.zoomed else { return Vec::new() };
+    let Some(solve) = tracked.solve_cluster else { return Vec::new() };
     let mut best: Vec<Verdict> = Vec::new();
-    for zoom in Zoom::all(given, end).take(WAYS) {
+    for cluster in ClusterEquations::all(given, end).take(WAYS) {
         let degree = |p: &Polynomial<Exact>| p.degree().and_then(|d| u64::try_from(d).ok()).unwrap_or(0);
-        let bezout = zoom.polynomials.iter().take(zoom.unknowns()).map(degree).fold(1, u64::saturating_mul);
+        let bezout = cluster.polynomials.iter().take(cluster.unknowns()).map(degree).fold(1, u64::saturating_mul);
         if bezout > PATHS {
             continue;
         }
-        zoom.spend(bezout * zoom.polynomials.iter().map(|p| p.terms().len() as u64).sum::<u64>() * WORK);
-        let Some(solved) = solve(&zoom.polynomials, given) else { continue };
+        cluster.spend(bezout * cluster.polynomials.iter().map(|p| p.terms().len() as u64).sum::<u64>() * WORK);
+        let Some(solved) = solve(&cluster.polynomials, given) else { continue };
         let mut found: Vec<ClusterSolution> = Vec::new();
         let regular = solved.solutions.iter().map(|s| (&s.value, s.multiplicity));
         let components = solved.component_points.iter().map(|point| (point, 1));
         for (point, multiplicity) in regular.chain(components) {
             if point.iter().all(|z| z.norm() <= OUTSIDE) {
-                zoom.add(&mut found, point, multiplicity, most);
+                cluster.add(&mut found, point, multiplicity, most);
             }
         }
         let mut found: Vec<Verdict> = found.into_iter().map(|f| f.verdict).collect();

@@ -5,7 +5,7 @@ use super::excess::Excess;
 use super::judged::work;
 use super::options::SolveOptions;
 use super::paths::{Route, follow};
-use super::polynomials::solve_around;
+use super::polynomials::solve_cluster;
 use super::solutions::{Member, Solutions};
 use crate::family::Fibre;
 use crate::monitor::Monitor;
@@ -32,7 +32,7 @@ pub(crate) fn solve_member<E: Evaluate>(
         Route { trackers, start: fibre, count, target, excess: &excess, options, monitor, record: None, lead: None };
     let ends = follow(route, false);
     let expanded = if !ends.singular.is_empty() { expanded(family, target, monitor) } else { None };
-    let zoomed = |polynomials: &[Polynomial<Exact>], around: &Given| solve_around(polynomials, around, 0, monitor);
+    let solver = |polynomials: &[Polynomial<Exact>], outer: &Given| solve_cluster(polynomials, outer, 0, monitor);
     let tracked = expanded.as_ref().map(|(polynomials, given, system, target)| Tracked {
         given,
         work: work(given, fibre.len()),
@@ -42,7 +42,7 @@ pub(crate) fn solve_member<E: Evaluate>(
         line: None,
         exact: true,
         monitor,
-        zoomed: Some(&zoomed),
+        solve_cluster: Some(&solver),
     });
     let found = classify(tracked.as_ref(), &ends, &excess, options.paths.coincidence);
     let interrupted = monitor.is_cancelled() && found.lost > 0;

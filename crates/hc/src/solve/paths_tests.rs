@@ -18,19 +18,19 @@ const FAMILY: &str = "name = \"quartic\"\nunknowns = [\"x\"]\nparameters = [\"a\
 const TARGET: [f64; 5] = [0.0, 1.0, -2.0, 1.0, 0.0];
 
 /// What a route needs besides its paths.
-struct Around {
+struct Surroundings {
     excess: Excess<'static>,
     options: SolveOptions,
     monitor: Monitor,
 }
 
-impl Default for Around {
-    fn default() -> Around {
-        Around { excess: Excess::none(), options: SolveOptions::default(), monitor: Monitor::default() }
+impl Default for Surroundings {
+    fn default() -> Surroundings {
+        Surroundings { excess: Excess::none(), options: SolveOptions::default(), monitor: Monitor::default() }
     }
 }
 
-impl Around {
+impl Surroundings {
     /// From all points of a fibre.
     fn route<'a, 'e, E: Evaluate>(
         &'a self,
@@ -38,7 +38,7 @@ impl Around {
         start: &'a Fibre,
         target: &'a [Complex64],
     ) -> Route<'a, 'e, E, Fibre> {
-        let Around { excess, options, monitor } = self;
+        let Surroundings { excess, options, monitor } = self;
         let count = start.len();
         Route { trackers, start, count, target, excess, options, monitor, record: None, lead: None }
     }
@@ -59,9 +59,9 @@ fn batches_are_absorbed_in_any_order() {
     }
     let fibre = Fibre::new(coefficients, 1, roots.to_vec());
     let target = TARGET.map(Complex64::from);
-    let around = Around::default();
+    let surroundings = Surroundings::default();
     let trackers = Trackers::new(family.program());
-    let route = || around.route(&trackers, &fibre, &target);
+    let route = || surroundings.route(&trackers, &fibre, &target);
 
     // Records of batches of some paths, through the text that another machine would send.
     let batches = |cuts: &[&[usize]]| -> Vec<Vec<Record>> {
@@ -70,7 +70,7 @@ fn batches_are_absorbed_in_any_order() {
             let mut records = Vec::new();
             stage.batch(&mut (), numbers, Round::FIRST, &mut records);
             let open: Vec<Record> = records.extract_if(.., |record| record.is_open()).collect();
-            records.extend(stage.ended(&open, Round::FIRST, &around.monitor));
+            records.extend(stage.ended(&open, Round::FIRST, &surroundings.monitor));
             let text = serde_json::to_string(&records).unwrap();
             let back: Vec<Record> = serde_json::from_str(&text).unwrap();
             assert_eq!(back, records);
@@ -120,9 +120,9 @@ fn small_coordinates_tell_the_winding_number() {
     let (p, y) = (Complex64::i(), Complex64::from_polar(1.0, 0.75 * std::f64::consts::PI));
     let fibre = Fibre::new(vec![p], 2, vec![one / p, y, one / p, -y]);
     let target = [Complex64::from(0.0)];
-    let around = Around::default();
+    let surroundings = Surroundings::default();
     let trackers = Trackers::new(family.program());
-    let route = around.route(&trackers, &fibre, &target);
+    let route = surroundings.route(&trackers, &fibre, &target);
     let ends = super::follow(route, false);
     assert_eq!(ends.lost, 0);
     assert_eq!(ends.directions, [(vec![-2, 3], 2, 2)]);

@@ -1,8 +1,9 @@
 //! From expanded polynomials to solutions: start systems one after the other, as long as paths are
 //! lost.
 
-use super::classify::{Classified, Tracked, Zoomed, classify};
+use super::classify::{Classified, ClusterSolver, Tracked, classify};
 use super::conditioned::conditioned;
+use super::ends::Ends;
 use super::equations::Equations;
 use super::error::SolveError;
 use super::excess::Excess;
@@ -12,7 +13,7 @@ use super::judged;
 use super::options::{SolveOptions, Start};
 use super::paths::{Route, are_hopeless, follow};
 use super::portions::{Announced, serve};
-use super::slack;
+use super::slack::{self, Slack};
 use super::solutions::Solutions;
 use super::start::Starts;
 use crate::checkpoint::{Checkpoint, Part};
@@ -27,7 +28,7 @@ use poly::{Exact, Polynomial};
 use std::borrow::Cow;
 
 /// Clusters of solutions are looked at within clusters this often.
-const ZOOMS: usize = 3;
+const NESTED: usize = 3;
 
 /// Where a solve takes place.
 #[derive(Clone, Copy, Default)]
@@ -40,6 +41,24 @@ pub(crate) struct Place<'a> {
     pub(crate) worker: Option<&'a Worker<'a>>,
 }
 
+/// How a solve belongs to another one, the ends of which it tells apart.
+#[derive(Clone, Copy, Default)]
+struct Nesting<'a> {
+    /// How deep it is within others; from [`NESTED`] on its own ends are told apart no further.
+    level: usize,
+    /// The equations of the other one, to whose work that of this one is added.
+    outer: Option<&'a Given>,
+}
+
+/// How more equations than unknowns become as many.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Squaring {
+    /// Each is a combination of several.
+    Combinations,
+    /// Linear ones are kept; the others get slack [unknowns](slack) where these save paths.
+    SlackUnknowns,
+}
+
 /// The solutions of polynomials in unknowns of these names, which the result does not have.
 pub(crate) fn solve_polynomials(
     polynomials: &[Polynomial<Exact>],
@@ -48,57 +67,97 @@ pub(crate) fn solve_polynomials(
     monitor: &Monitor,
     place: Place<'_>,
 ) -> Result<Solutions, SolveError> {
-    solve_zoomed(polynomials, names, options, monitor, Zooms::default(), false, place)
+    solve_nested(polynomials, names, options, monitor, Squaring::Combinations, Nesting::default(), place)
 }
 
 /// [`solve_polynomials`] of equations that are too many, some of them general hyperplanes: linear ones
-/// are kept as they are, and the others may get further [unknowns](slack) instead of being combined.
+/// are kept as they are, and the others may get slack [unknowns](slack) instead of being combined.
 pub(crate) fn solve_sliced(
     polynomials: &[Polynomial<Exact>],
     names: &[String],
     options: &SolveOptions,
     monitor: &Monitor,
 ) -> Result<Solutions, SolveError> {
-    solve_zoomed(polynomials, names, options, monitor, Zooms::default(), true, Place::default())
+    let (nesting, place) = (Nesting::default(), Place::default());
+    solve_nested(polynomials, names, options, monitor, Squaring::SlackUnknowns, nesting, place)
 }
 
-/// [`solve_polynomials`] of equations around ends of others, whose work this is.
-pub(super) fn solve_around(
+/// [`solve_polynomials`] of the equations of a cluster, `level` deep within a solve of the `outer`
+/// equations, to whose work that of this one is added.
+pub(super) fn solve_cluster(
     polynomials: &[Polynomial<Exact>],
-    around: &Given,
-    zooms: usize,
+    outer: &Given,
+    level: usize,
     monitor: &Monitor,
 ) -> Option<Solutions> {
     let names: Vec<String> = (0..polynomials.first()?.variables()).map(|k| format!("x{k}")).collect();
-    let zooms = Zooms { depth: zooms, around: Some(around) };
+    let nesting = Nesting { level, outer: Some(outer) };
+    let options = SolveOptions::new();
     // Cancelled with the rest, but no progress that is to be told.
-    let found =
-        solve_zoomed(polynomials, &names, &SolveOptions::new(), &monitor.quiet(), zooms, false, Place::default())
-            .ok()?;
+    let monitor = monitor.quiet();
+    let (squaring, place) = (Squaring::Combinations, Place::default());
+    let found = solve_nested(polynomials, &names, &options, &monitor, squaring, nesting, place).ok()?;
     (!found.interrupted).then_some(found)
 }
 
-/// How often equations are zoomed, and around ends of which ones.
-#[derive(Clone, Copy, Default)]
-struct Zooms<'a> {
-    depth: usize,
-    around: Option<&'a Given>,
-}
-
-/// The same for equations that are zoomed.
-fn solve_zoomed(
+fn solve_nested(
     polynomials: &[Polynomial<Exact>],
     names: &[String],
     options: &SolveOptions,
     monitor: &Monitor,
-    zooms: Zooms<'_>,
-    sliced: bool,
+    squaring: Squaring,
+    nesting: Nesting<'_>,
     place: Place<'_>,
 ) -> Result<Solutions, SolveError> {
-    // The equations around ends that are not told apart.
-    let zoomed =
-        |polynomials: &[Polynomial<Exact>], around: &Given| solve_around(polynomials, around, zooms.depth + 1, monitor);
-    let zoomed: Option<&Zoomed<'_>> = if zooms.depth < ZOOMS { Some(&zoomed) } else { None };
+    let nothing = Solutions { interrupted: true, ..Solutions::default() };
+    let Some((problem, mut starts)) = unless_cancelled(prepared(polynomials, names, options, squaring, monitor))?
+    else {
+        return Ok(nothing);
+    };
+    let excess = Excess::new(&problem.given, options.torus_only);
+    if let Some(worker) = place.worker {
+        serve_all(&problem, starts, &excess, worker)?;
+        return Ok(nothing);
+    }
+    let attempts = attempted(&problem, &mut starts, &excess, nesting, place)?;
+    if let Some(outer) = nesting.outer {
+        outer.spend(problem.given.spent());
+    }
+    Ok(assembled(attempts, &starts, monitor))
+}
+
+/// The value, or `None` where mixed cells were cancelled.
+fn unless_cancelled<T>(result: Result<T, SolveError>) -> Result<Option<T>, SolveError> {
+    match result {
+        Err(SolveError::Mixed(MixedError::Cancelled)) => Ok(None),
+        other => other.map(Some),
+    }
+}
+
+/// The given equations, and how those that are tracked follow from them.
+struct Problem<'a> {
+    polynomials: &'a [Polynomial<Exact>],
+    given: Given,
+    /// Logarithms to base 2 of the units of the unknowns.
+    units: Vec<i64>,
+    /// Whether the coefficients that are tracked are exactly those that were given.
+    exact: bool,
+    /// The number of all roots, with their multiplicities, of a single equation in a single unknown.
+    roots: Option<usize>,
+    squaring: Squaring,
+    slack: Option<Slack>,
+    options: Cow<'a, SolveOptions>,
+    monitor: &'a Monitor,
+}
+
+/// Prepares equations, as many as unknowns, and their start systems.
+fn prepared<'a>(
+    polynomials: &'a [Polynomial<Exact>],
+    names: &[String],
+    options: &'a SolveOptions,
+    squaring: Squaring,
+    monitor: &'a Monitor,
+) -> Result<(Problem<'a>, Starts), SolveError> {
     let equations = Equations::new(polynomials, names)?;
     let equations = match conditioned(polynomials) {
         Cow::Borrowed(_) => equations,
@@ -108,117 +167,159 @@ fn solve_zoomed(
     let exact = equations.exact && (2..=names.len()).contains(&polynomials.len());
     let units = equations.units();
     let given = Given::new(polynomials, units.clone()).heeding(monitor);
-    let univariate = given.univariate_degrees().filter(|_| !options.torus_only);
-    let excess = Excess::new(&given, options.torus_only);
-    let nothing = Solutions { interrupted: true, ..Solutions::default() };
-    let square = match sliced.then(|| slack::squared(&equations, options, monitor)) {
-        Some(Err(SolveError::Mixed(MixedError::Cancelled))) => return Ok(nothing),
-        Some(other) => other?,
-        None => None,
+    let roots = given.univariate_degrees().filter(|_| !options.torus_only).map(|(_, degree)| degree);
+    let square = match squaring {
+        Squaring::Combinations => None,
+        Squaring::SlackUnknowns => slack::squared(&equations, options, monitor)?,
     };
-    let (equations, slack, own) = match square {
-        Some(square) => (square.equations, square.slack, Some(square.options)),
-        None => (equations, None, None),
+    let (equations, slack, options) = match square {
+        Some(square) => (square.equations, square.slack, Cow::Owned(square.options)),
+        None => (equations, None, Cow::Borrowed(options)),
     };
-    let options = own.as_ref().unwrap_or(options);
-    let mut starts = match Starts::new(equations, options, monitor) {
-        Err(SolveError::Mixed(MixedError::Cancelled)) => return Ok(nothing),
-        other => other?,
-    };
-    let mut retracked = 0;
-    let mut best = BestStart::default();
-    let mut start_systems = 0;
+    let starts = Starts::new(equations, &options, monitor)?;
+    Ok((Problem { polynomials, given, units, exact, roots, squaring, slack, options, monitor }, starts))
+}
+
+/// Tracks paths of all start systems for rank 0 as long as it sends any.
+fn serve_all(
+    problem: &Problem<'_>,
+    mut starts: Starts,
+    excess: &Excess<'_>,
+    worker: &Worker<'_>,
+) -> Result<(), SolveError> {
+    let options = &*problem.options;
+    let mut direct = starts.direct(options);
+    while let Some(task) = worker.next::<Announced>()? {
+        let monitor = &task.monitor;
+        let from = direct.as_mut().filter(|_| task.content.trial).unwrap_or(&mut starts);
+        let system = from.system(task.content.attempt, options, monitor);
+        let Some(start) = unless_cancelled(system)? else { continue };
+        let (count, target) = (from.paths, &from.target[..]);
+        let (trackers, start) = (&Trackers::new(&from.system), &start);
+        let route = Route { trackers, start, count, target, excess, options, monitor, record: None, lead: None };
+        serve(worker, &task, route)?;
+    }
+    Ok(())
+}
+
+/// What all start systems have given so far.
+#[derive(Default)]
+struct Attempts {
+    start_systems: u32,
+    retracked: usize,
+    best: BestStart,
+}
+
+/// Tracks the paths of one start system after the other until none are lost, or another start system
+/// would not help.
+fn attempted(
+    problem: &Problem<'_>,
+    starts: &mut Starts,
+    excess: &Excess<'_>,
+    nesting: Nesting<'_>,
+    place: Place<'_>,
+) -> Result<Attempts, SolveError> {
+    let (options, monitor) = (&*problem.options, problem.monitor);
+    let mut attempts = Attempts::default();
     // First, on trial, those of one stage.
     let mut direct = starts.direct(options);
-    let Place { checkpoint, lead, worker } = place;
-    if let Some(worker) = worker {
-        while let Some(task) = worker.next::<Announced>()? {
-            let monitor = &task.monitor;
-            let from = direct.as_mut().filter(|_| task.content.trial).unwrap_or(&mut starts);
-            let start = match from.system(task.content.attempt, options, monitor) {
-                Err(SolveError::Mixed(MixedError::Cancelled)) => continue,
-                other => other?,
-            };
-            let (count, target, trackers) = (from.paths, &from.target[..], &Trackers::new(&from.system));
-            let (start, excess) = (&start, &excess);
-            serve(
-                worker,
-                &task,
-                Route { trackers, start, count, target, excess, options, monitor, record: None, lead },
-            )?;
-        }
-        return Ok(nothing);
-    }
     for number in 0.. {
         let trial = direct.is_some();
-        let from = direct.as_mut().unwrap_or(&mut starts);
-        if let Some(lead) = lead {
-            lead.begin_part(&Announced { trial, attempt: u64::from(start_systems) }, 1);
+        let from = direct.as_mut().unwrap_or(&mut *starts);
+        let attempt = attempts.start_systems;
+        if let Some(lead) = place.lead {
+            lead.begin_part(&Announced { trial, attempt: u64::from(attempt) }, 1);
         }
-        let start = match from.system(u64::from(start_systems), options, monitor) {
-            Err(SolveError::Mixed(MixedError::Cancelled)) => break,
-            other => other?,
-        };
-        let (count, target) = (from.paths, &from.target[..]);
-        let mut ends = {
+        let system = from.system(u64::from(attempt), options, monitor);
+        let Some(start) = unless_cancelled(system)? else { break };
+        let ends = {
             // Their memory is given back before the ends are sorted.
-            let own = sliced.then(|| slack::of_attempt(options, start_systems));
-            let options = own.as_ref().unwrap_or(options);
-            let trackers = Trackers::new(&from.system);
-            let record = checkpoint.map(|checkpoint| Part { checkpoint, number });
-            let (trackers, start, excess) = (&trackers, &start, &excess);
+            let options = match problem.squaring {
+                Squaring::Combinations => Cow::Borrowed(options),
+                Squaring::SlackUnknowns => Cow::Owned(slack::of_attempt(options, attempt)),
+            };
+            let (trackers, start, lead) = (&Trackers::new(&from.system), &start, place.lead);
+            let record = place.checkpoint.map(|checkpoint| Part { checkpoint, number });
+            let (count, target, options) = (from.paths, &from.target[..], &*options);
             follow(Route { trackers, start, count, target, excess, options, monitor, record, lead }, trial)
         };
-        if let Some(error) = checkpoint.and_then(Checkpoint::failure) {
+        if let Some(error) = place.checkpoint.and_then(Checkpoint::failure) {
             return Err(error.into());
         }
-        if let Some(error) = lead.and_then(Lead::failure) {
+        if let Some(error) = place.lead.and_then(Lead::failure) {
             return Err(error.into());
         }
         if !ends.abandoned {
-            start_systems += 1;
-            retracked += ends.retracked;
-            let line = Line { supports: &from.equations.supports, target };
-            let work = judged::work(&given, count).min(zooms.around.map_or(u64::MAX, Given::left));
-            let (system, target) = match &slack {
-                Some(slack) => {
-                    slack.shorten(&mut ends);
-                    (&slack.combined.0, &slack.combined.1[..])
-                }
-                None => (&from.system, target),
-            };
-            let tracked =
-                Tracked { given: &given, work, polynomials, system, target, line: Some(line), exact, monitor, zoomed };
-            // For a polynomial in one unknown there is a better way to all roots than other paths.
-            let whole = univariate.is_none_or(|(_, degree)| ends.lost == 0 && ends.regular.len() == degree);
-            let graph = if whole || monitor.is_cancelled() { None } else { Graph::new(polynomials) };
-            let roots = graph.and_then(|graph| graph.solutions(&units, &tracked));
-            let found = match roots {
-                Some(roots) => Classified { solutions: roots, ..Classified::default() },
-                None => {
-                    let found = classify(Some(&tracked), &ends, &excess, options.paths.coincidence);
-                    // All paths end at roots, those that seem to go to infinity too.
-                    let astray = if univariate.is_some() { found.infinite } else { 0 };
-                    Classified { lost: found.lost + astray, infinite: found.infinite - astray, ..found }
-                }
-            };
-            let all = !options.torus_only && options.known.is_none() && !monitor.is_cancelled();
-            let found = if all { found.checked(polynomials, &units, &tracked, count) } else { found };
+            let hopeless = problem.roots.is_some() || are_hopeless(ends.lost, from.paths);
+            attempts.start_systems += 1;
+            attempts.retracked += ends.retracked;
+            let found = problem.solutions_at(ends, from, excess, nesting);
             let this = BestStart { start: Some(from.kind), tracked: from.paths, found };
-            best = if start_systems == 1 { this } else { best.joined(this) };
-            let hopeless = univariate.is_some() || are_hopeless(ends.lost, count);
-            let last = start_systems > options.restarts || hopeless;
-            if best.found.lost == 0 || last || monitor.is_cancelled() {
+            attempts.best = if attempt == 0 { this } else { attempts.best.joined(this) };
+            let last = attempts.start_systems > options.restarts || hopeless;
+            if attempts.best.found.lost == 0 || last || monitor.is_cancelled() {
                 break;
             }
         }
         direct = None;
     }
-    if let Some(around) = zooms.around {
-        around.spend(given.spent());
+    Ok(attempts)
+}
+
+impl Problem<'_> {
+    /// The solutions at the ends of all paths of a start system, and those that other methods find if
+    /// some are missing.
+    fn solutions_at(&self, mut ends: Ends, from: &Starts, excess: &Excess<'_>, nesting: Nesting<'_>) -> Classified {
+        let (given, monitor) = (&self.given, self.monitor);
+        let line = Line { supports: &from.equations.supports, target: &from.target };
+        let work = judged::work(given, from.paths).min(nesting.outer.map_or(u64::MAX, Given::left));
+        let (system, target) = match &self.slack {
+            Some(slack) => {
+                slack.shorten(&mut ends);
+                (&slack.combined.0, &slack.combined.1[..])
+            }
+            None => (&from.system, &from.target[..]),
+        };
+        let solver = |polynomials: &[Polynomial<Exact>], outer: &Given| {
+            solve_cluster(polynomials, outer, nesting.level + 1, monitor)
+        };
+        let tracked = Tracked {
+            given,
+            work,
+            polynomials: self.polynomials,
+            system,
+            target,
+            line: Some(line),
+            exact: self.exact,
+            monitor,
+            solve_cluster: (nesting.level < NESTED).then_some(&solver as &ClusterSolver<'_>),
+        };
+        let found = self.roots_at_once(&ends, &tracked).unwrap_or_else(|| {
+            let found = classify(Some(&tracked), &ends, excess, self.options.paths.coincidence);
+            // All paths end at roots, those that seem to go to infinity too.
+            let astray = if self.roots.is_some() { found.infinite } else { 0 };
+            Classified { lost: found.lost + astray, infinite: found.infinite - astray, ..found }
+        });
+        let all = !self.options.torus_only && self.options.known.is_none() && !monitor.is_cancelled();
+        if all { found.checked(self.polynomials, &self.units, &tracked, from.paths) } else { found }
     }
-    let whole = start_systems > 0 && best.found.lost == 0;
-    let BestStart { start, tracked, found } = best;
+
+    /// All roots of a polynomial in one unknown without paths, if these have not ended at as many: there
+    /// is a better way to them than other paths.
+    fn roots_at_once(&self, ends: &Ends, tracked: &Tracked<'_>) -> Option<Classified> {
+        let missing = self.roots.is_some_and(|degree| ends.lost > 0 || ends.regular.len() != degree);
+        if !missing || self.monitor.is_cancelled() {
+            return None;
+        }
+        let solutions = Graph::new(self.polynomials)?.solutions(&self.units, tracked)?;
+        Some(Classified { solutions, ..Classified::default() })
+    }
+}
+
+/// The solutions that all start systems have given, in the unknowns themselves.
+fn assembled(attempts: Attempts, starts: &Starts, monitor: &Monitor) -> Solutions {
+    let Attempts { start_systems, retracked, best: BestStart { start, tracked, found } } = attempts;
+    let whole = start_systems > 0 && found.lost == 0;
     let mut found = found.solutions(tracked, retracked);
     for solution in &mut found.solutions {
         starts.equations.unscale(&mut solution.value);
@@ -229,7 +330,7 @@ fn solve_zoomed(
     for end in &mut found.unresolved {
         starts.equations.unscale(&mut end.value);
     }
-    Ok(Solutions {
+    Solutions {
         start: start.or(Some(starts.kind)),
         mixed_volume: starts.numbers.mixed_volume,
         bezout_number: starts.numbers.bezout,
@@ -238,7 +339,7 @@ fn solve_zoomed(
         // Nothing is missing if the last path had ended already.
         interrupted: monitor.is_cancelled() && !whole,
         ..found
-    })
+    }
 }
 
 /// The best start system so far, and what all of them have given.
