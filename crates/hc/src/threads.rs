@@ -72,11 +72,11 @@ mod serial {
     impl<I: Iterator> IndexedParallelIterator for I {}
 
     /// A task that may leave others behind.
-    type Task<'s> = Box<dyn FnOnce(&Scope<'s>) + 's>;
+    type Spawned<'s> = Box<dyn FnOnce(&Scope<'s>) + 's>;
 
     /// Tasks that are still to be run.
     pub(crate) struct Scope<'s> {
-        tasks: RefCell<Vec<Task<'s>>>,
+        tasks: RefCell<Vec<Spawned<'s>>>,
     }
 
     impl<'s> Scope<'s> {

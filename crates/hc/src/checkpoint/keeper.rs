@@ -2,7 +2,7 @@
 
 use super::error::CheckpointError;
 use super::header::{FORMAT, Header, Job};
-use super::log::{Log, Place};
+use super::log::{Log, RecordSpan};
 use super::note::Note;
 use crate::runner::Round;
 use serde::de::DeserializeOwned;
@@ -98,7 +98,7 @@ struct Keeper {
 /// A run that has begun.
 struct Recording {
     log: Log,
-    places: BTreeMap<Key, Place>,
+    places: BTreeMap<Key, RecordSpan>,
     begun: Instant,
     /// Seconds of work in the records.
     before: f64,

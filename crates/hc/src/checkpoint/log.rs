@@ -22,7 +22,7 @@ const BEFORE: u64 = 8;
 
 /// Where the content of a record is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Place {
+pub(super) struct RecordSpan {
     number: u64,
     at: u64,
     length: u32,
@@ -67,7 +67,7 @@ impl Log {
         path: &Path,
         version: u32,
         header: u32,
-        seen: impl FnMut(Place, &[u8]) -> bool,
+        seen: impl FnMut(RecordSpan, &[u8]) -> bool,
     ) -> Result<(Log, Option<Note>), CheckpointError> {
         let failed = |error: io::Error| CheckpointError::io(path, &error);
         let mut file = File::options().read(true).write(true).open(path).map_err(failed)?;
@@ -83,9 +83,9 @@ impl Log {
     }
 
     /// Adds a record. After an error the log is as before.
-    pub(super) fn append(&mut self, content: &[u8]) -> io::Result<Place> {
+    pub(super) fn append(&mut self, content: &[u8]) -> io::Result<RecordSpan> {
         let length = u32::try_from(content.len()).map_err(|_| io::Error::from(io::ErrorKind::FileTooLarge))?;
-        let place = Place { number: self.records, at: self.end + BEFORE, length };
+        let place = RecordSpan { number: self.records, at: self.end + BEFORE, length };
         let mut record = Vec::with_capacity(content.len() + BEFORE as usize);
         record.extend(length.to_le_bytes());
         record.extend(place.checksum(content).to_le_bytes());
@@ -106,7 +106,7 @@ impl Log {
     }
 
     /// The content of a record; `None` if it no longer reads as it was written.
-    pub(super) fn read(&mut self, place: Place) -> Option<Vec<u8>> {
+    pub(super) fn read(&mut self, place: RecordSpan) -> Option<Vec<u8>> {
         let mut before = [0; BEFORE as usize];
         let mut content = vec![0; place.length as usize];
         let whole = read_at(&mut self.file, place.at - BEFORE, &mut before).ok()? == before.len()
@@ -115,7 +115,7 @@ impl Log {
     }
 }
 
-impl Place {
+impl RecordSpan {
     fn checksum(self, content: &[u8]) -> u32 {
         let mut sum = crc32fast::Hasher::new();
         sum.update(&self.number.to_le_bytes());
@@ -144,7 +144,7 @@ pub(super) fn scan(
     file: &mut File,
     version: u32,
     header: u32,
-    mut seen: impl FnMut(Place, &[u8]) -> bool,
+    mut seen: impl FnMut(RecordSpan, &[u8]) -> bool,
 ) -> Result<Scan, CheckpointError> {
     let failed = |error: io::Error| CheckpointError::io(path, &error);
     let size = file.metadata().map_err(failed)?.len();
@@ -170,7 +170,7 @@ pub(super) fn scan(
             scan.note = Some(Note::Torn { dropped: left });
             break;
         }
-        let place = Place { number: scan.records, at: scan.end + BEFORE, length };
+        let place = RecordSpan { number: scan.records, at: scan.end + BEFORE, length };
         content.resize(length as usize, 0);
         let whole = read_at(file, place.at, &mut content).map_err(failed)? == content.len();
         if !whole || before[4..] != place.checksum(&content).to_le_bytes() || !seen(place, &content) {

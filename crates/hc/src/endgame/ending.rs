@@ -5,7 +5,7 @@ use num_complex::Complex64;
 /// How a path ends, after its endgame.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub(crate) enum Verdict {
+pub(crate) enum EndKind {
     /// At a point; after `winding` turns round zero the path returns to its beginning.
     Finite {
         /// Winding number.
@@ -33,7 +33,7 @@ pub(crate) struct Ending {
     /// Index of the path, as given.
     pub(crate) path: usize,
     /// How it ends.
-    pub(crate) verdict: Verdict,
+    pub(crate) kind: EndKind,
     /// The end if it is finite, otherwise the last point.
     pub(crate) point: Vec<Complex64>,
     /// The point at the first radius, common to all paths: two that coincide here have crossed.

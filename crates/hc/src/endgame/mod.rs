@@ -18,7 +18,7 @@ mod legs;
 mod options;
 mod walker;
 
-pub(crate) use ending::{Ending, Handed, Verdict};
+pub(crate) use ending::{EndKind, Ending, Handed};
 pub use options::EndgameOptions;
 
 use crate::homotopy::Segment;

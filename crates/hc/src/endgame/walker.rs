@@ -1,6 +1,6 @@
 //! One path in its endgame: which leg comes next, and when the endgame is over.
 
-use super::ending::{Ending, Handed, Verdict};
+use super::ending::{EndKind, Ending, Handed};
 use super::laurent::{Loop, Reading};
 use super::legs::Leg;
 use super::options::EndgameOptions;
@@ -42,10 +42,10 @@ pub(super) struct Walker {
     going_home: bool,
     noise: f64,
     blur: Vec<f64>,
-    /// The verdict of a loop that was not quite clear, with the limit if it is finite.
-    vague: Option<(Verdict, Vec<Complex64>)>,
+    /// How the path ends by a loop that was not quite clear, with the limit if it is finite.
+    vague: Option<(EndKind, Vec<Complex64>)>,
     middle: Vec<Complex64>,
-    verdict: Option<Verdict>,
+    kind: Option<EndKind>,
 }
 
 impl Walker {
@@ -68,12 +68,12 @@ impl Walker {
             blur: Vec::new(),
             vague: None,
             middle: Vec::new(),
-            verdict: None,
+            kind: None,
         }
     }
 
     pub(super) fn is_live(&self) -> bool {
-        self.verdict.is_none()
+        self.kind.is_none()
     }
 
     /// Where the next leg starts.
@@ -101,7 +101,7 @@ impl Walker {
             self.going_home = false;
             if let Some(end) = end {
                 self.x = end.point;
-                self.verdict = Some(Verdict::Reached);
+                self.kind = Some(EndKind::Reached);
             }
             return;
         }
@@ -189,12 +189,12 @@ impl Walker {
                     Loop { n, per_turn: self.per_turn, samples: &self.samples, noise: self.noise, blur: &self.blur };
                 let reading = all.read(ENDGAME.clear);
                 if reading == Reading::TooWide {
-                    self.suppose(judged(all.read(ENDGAME.vague), winding).map(reduced));
+                    self.suppose(end_kind(all.read(ENDGAME.vague), winding).map(reduced));
                 }
                 match reading {
                     Reading::TooWide => self.shrink(options),
                     Reading::TooDeep => self.lose(),
-                    reading => self.settle(judged(reading, winding)),
+                    reading => self.settle(end_kind(reading, winding)),
                 }
                 return;
             }
@@ -207,17 +207,17 @@ impl Walker {
         self.x.copy_from_slice(end);
     }
 
-    /// Notes the verdict of a loop that is not quite clear. Of several verdicts the first counts,
+    /// Notes how the path ends by a loop that is not quite clear. If there are several, the first counts,
     /// but all loops must agree that a path diverges.
-    fn suppose(&mut self, vague: Option<(Verdict, Vec<Complex64>)>) {
-        let diverges = |vague: &Option<(Verdict, Vec<Complex64>)>| match vague {
-            Some((Verdict::Infinite { winding, valuations }, _)) => Some((*winding, valuations.clone())),
+    fn suppose(&mut self, vague: Option<(EndKind, Vec<Complex64>)>) {
+        let diverges = |vague: &Option<(EndKind, Vec<Complex64>)>| match vague {
+            Some((EndKind::Infinite { winding, valuations }, _)) => Some((*winding, valuations.clone())),
             _ => None,
         };
         if self.vague.is_none() && (self.shrunk == 0 || diverges(&vague).is_none()) {
             self.vague = vague;
         } else if diverges(&self.vague).is_some() && diverges(&self.vague) != diverges(&vague) {
-            self.vague = vague.filter(|(verdict, _)| matches!(verdict, Verdict::Finite { .. }));
+            self.vague = vague.filter(|(kind, _)| matches!(kind, EndKind::Finite { .. }));
         }
     }
 
@@ -246,46 +246,46 @@ impl Walker {
         }
     }
 
-    /// Ends without a clear verdict: with a vague one if there is one.
+    /// Ends the path without a clear loop, as a vague one says if there was one.
     fn lose(&mut self) {
         let vague = self.vague.take();
         self.settle(vague);
     }
 
-    fn settle(&mut self, judged: Option<(Verdict, Vec<Complex64>)>) {
+    fn settle(&mut self, found: Option<(EndKind, Vec<Complex64>)>) {
         self.going_home = false;
-        self.verdict = Some(match judged {
-            Some((verdict, limit)) => {
+        self.kind = Some(match found {
+            Some((kind, limit)) => {
                 if !limit.is_empty() {
                     self.x = limit;
                 }
-                verdict
+                kind
             }
-            None => Verdict::Lost,
+            None => EndKind::Lost,
         });
     }
 
     pub(super) fn ending(self) -> Ending {
-        let verdict = self.verdict.unwrap_or(Verdict::Lost);
-        Ending { path: self.path, verdict, point: self.x, middle: self.middle, radius: self.radius }
+        let kind = self.kind.unwrap_or(EndKind::Lost);
+        Ending { path: self.path, kind, point: self.x, middle: self.middle, radius: self.radius }
     }
 }
 
-fn judged(reading: Reading, winding: usize) -> Option<(Verdict, Vec<Complex64>)> {
+fn end_kind(reading: Reading, winding: usize) -> Option<(EndKind, Vec<Complex64>)> {
     match reading {
-        Reading::Finite { limit, error } => Some((Verdict::Finite { winding, error }, limit)),
-        Reading::Infinite { valuations } => Some((Verdict::Infinite { winding, valuations }, Vec::new())),
+        Reading::Finite { limit, error } => Some((EndKind::Finite { winding, error }, limit)),
+        Reading::Infinite { valuations } => Some((EndKind::Infinite { winding, valuations }, Vec::new())),
         Reading::TooWide | Reading::TooDeep => None,
     }
 }
 
 /// A direction to infinity in lowest terms. Branch points within a loop make it unclear. They can
 /// join cycles that go the same way, and only the winding number of one of these is of interest.
-fn reduced((verdict, limit): (Verdict, Vec<Complex64>)) -> (Verdict, Vec<Complex64>) {
-    let Verdict::Infinite { winding, valuations } = verdict else { return (verdict, limit) };
+fn reduced((kind, limit): (EndKind, Vec<Complex64>)) -> (EndKind, Vec<Complex64>) {
+    let EndKind::Infinite { winding, valuations } = kind else { return (kind, limit) };
     let common = valuations.iter().fold(winding as u64, |divisor, v| gcd(v.unsigned_abs(), divisor)).max(1);
     let valuations = valuations.into_iter().map(|v| v / common as i64).collect();
-    (Verdict::Infinite { winding: winding / common as usize, valuations }, limit)
+    (EndKind::Infinite { winding: winding / common as usize, valuations }, limit)
 }
 
 fn gcd(a: u64, b: u64) -> u64 {
@@ -320,16 +320,16 @@ fn samples_for(steepest: f64) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::{Verdict, distance, reduced};
+    use super::{EndKind, distance, reduced};
     use num_complex::Complex64;
 
     #[test]
     fn directions_in_lowest_terms() {
         let lowest = |winding, valuations: &[i64]| {
-            let (verdict, _) = reduced((Verdict::Infinite { winding, valuations: valuations.to_vec() }, Vec::new()));
-            verdict
+            let (kind, _) = reduced((EndKind::Infinite { winding, valuations: valuations.to_vec() }, Vec::new()));
+            kind
         };
-        let infinite = |winding, valuations: &[i64]| Verdict::Infinite { winding, valuations: valuations.to_vec() };
+        let infinite = |winding, valuations: &[i64]| EndKind::Infinite { winding, valuations: valuations.to_vec() };
         assert_eq!(lowest(12, &[2, 0, -2]), infinite(6, &[1, 0, -1]));
         assert_eq!(lowest(2, &[-2, 3]), infinite(2, &[-2, 3]));
         assert_eq!(lowest(1, &[-4, 2]), infinite(1, &[-4, 2]));

@@ -10,7 +10,7 @@ use super::track::move_fibre_watched;
 use crate::checkpoint::{Checkpoint, Job, Part, Recordable, Recorded};
 use crate::endgame::EndgameOptions;
 use crate::monitor::Monitor;
-use crate::ranks::{Lead, Shareable, Shared, Worker};
+use crate::ranks::{DividedWork, Lead, Shareable, Worker};
 use crate::run::{RanksRun, Run};
 use crate::runner::{Flow, Policy, Round, Work, Workspace, run};
 use crate::solve::{Solutions, SolveOptions, solve_member};
@@ -173,7 +173,7 @@ impl<'a> Targets<'a> {
         };
         let policy = Policy { retries: 0, charts: 1, first: block, batch: block };
         let part = checkpoint.map(|checkpoint| Part { checkpoint, number: 0 });
-        let mut work = Recorded::new(Shared::new(each, lead, monitor), part, monitor);
+        let mut work = Recorded::new(DividedWork::new(each, lead, monitor), part, monitor);
         run(&mut work, count, &policy, &mut Workspace::default(), monitor);
         if let Some(error) = checkpoint.and_then(Checkpoint::failure) {
             return Err(error.into());

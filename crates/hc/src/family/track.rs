@@ -5,7 +5,7 @@ use super::fibre::{Fibre, FibreOptions, PathCounts};
 use super::tracking::{FibreTracking, FibreWork, Lanes, Scratch, ends};
 use crate::homotopy::Segment;
 use crate::monitor::Monitor;
-use crate::ranks::{Lead, Shared};
+use crate::ranks::{DividedWork, Lead};
 use crate::refine::Refiner;
 use crate::runner::{Flow, Policy, Workspace, run};
 use crate::tracker::{PathEnd, PathSet, Tracker, TrackerOptions, Trackers};
@@ -204,7 +204,7 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
             steps: 0,
         };
         let policy = Policy { retries: options.retries, charts: C::COUNT, first: size, batch: size };
-        let mut work = Shared::new(FibreWork::new(tracking, self.system), lead, &self.monitor);
+        let mut work = DividedWork::new(FibreWork::new(tracking, self.system), lead, &self.monitor);
         let outcome = run(&mut work, fibre.len(), &policy, &mut self.workspace, &self.monitor);
         let found = outcome.flow == Flow::Found;
         let failed = if found { 0 } else { self.workspace.which.len() };

@@ -3,7 +3,7 @@
 
 use super::charts::{Charts, OneChart, Rests};
 use super::fibre::{Fibre, FibreOptions};
-use super::judge::{doubtful, ends_regularly, settle};
+use super::regular_ends::{doubtful, ends_regularly, settle};
 use crate::distinct::Coincidences;
 use crate::homotopy::{ParameterPath, Segment};
 use crate::monitor::Monitor;

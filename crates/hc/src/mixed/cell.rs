@@ -12,7 +12,7 @@ use super::points::{Column, LANES, Points};
 
 /// Which point of an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum EdgeEnd {
     First,
     Second,
 }
@@ -20,7 +20,7 @@ pub(super) enum Place {
 /// One point of an edge replaced by another of the same configuration.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Flip {
-    pub(super) place: Place,
+    pub(super) end: EdgeEnd,
     pub(super) column: Column,
 }
 
@@ -105,13 +105,13 @@ impl<T: Integer> Cell<T> {
         let zero = T::default();
         // With d the entry at the point that leaves: u'_j = (d u_j -/+ t_j u_i) / V, the dual u_i
         // stays.
-        let d = if flip.place == Place::First { circuit[i] } else { T::difference(self.volume, circuit[i]) };
+        let d = if flip.end == EdgeEnd::First { circuit[i] } else { T::difference(self.volume, circuit[i]) };
         if d.wide() >= T::HALF as i128 {
             return Err(Overflow);
         }
         let divisor = T::divisor(self.volume);
         let is_same = d == self.volume;
-        let factor = |j: usize| if flip.place == Place::First { circuit[j].negated() } else { circuit[j] };
+        let factor = |j: usize| if flip.end == EdgeEnd::First { circuit[j].negated() } else { circuit[j] };
         let touched = |j: usize| j != i && !(is_same && circuit[j] == zero);
         for j in (0..n).filter(|&j| touched(j)) {
             if T::surely_below(d, self.bounds[j], circuit[j].size(), self.bounds[i], &divisor, points.limit) {
@@ -140,7 +140,7 @@ impl<T: Integer> Cell<T> {
             self.bounds[j] = bound.iter().copied().fold(zero, T::max);
         }
         self.volume = d;
-        self.pairs[i][usize::from(flip.place == Place::Second)] = flip.column.point;
+        self.pairs[i][usize::from(flip.end == EdgeEnd::Second)] = flip.column.point;
         Ok(())
     }
 

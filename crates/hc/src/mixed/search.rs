@@ -4,7 +4,7 @@
 //! `A_0 .. A_k, Delta, ..`. Each of these is a start for the next stage. All stages make one tree,
 //! whose subtrees are tasks.
 
-use super::cell::{Cell, Flip, Place};
+use super::cell::{Cell, EdgeEnd, Flip};
 use super::error::{MixedError, Overflow};
 use super::integer::Integer;
 use super::points::Points;
@@ -42,9 +42,9 @@ enum Pending {
     Flip(Flip),
 }
 
-/// A subtree.
+/// A subtree that has still to be searched: what is to be done with the cell at its root.
 #[derive(Clone)]
-pub(super) struct Task {
+pub(super) struct SubtreeRoot {
     stage: usize,
     pending: Pending,
     cell: AnyCell,
@@ -55,17 +55,17 @@ const BUDGET: usize = 1 << 12;
 /// The same where the tree is divided, so that subtrees are of its upper part.
 const SMALL_BUDGET: usize = 1 << 5;
 
-impl Task {
+impl SubtreeRoot {
     /// The whole tree.
-    fn whole(space: &Space) -> Result<Task, Overflow> {
+    fn whole(space: &Space) -> Result<SubtreeRoot, Overflow> {
         let cell =
             Cell::<i64>::of_simplices(space.supports.len()).and_then(|cell| space.smallest(&cell)).ok_or(Overflow)?;
-        Ok(Task { stage: 0, pending: Pending::Enter, cell })
+        Ok(SubtreeRoot { stage: 0, pending: Pending::Enter, cell })
     }
 
     /// Visits so many cells. Returns the subtrees that are left.
-    fn run<S: Sink>(self, isa: Isa, space: &Space, budget: usize, sink: &mut S) -> Result<Vec<Task>, Overflow> {
-        let Task { stage, pending, cell } = self;
+    fn run<S: Sink>(self, isa: Isa, space: &Space, budget: usize, sink: &mut S) -> Result<Vec<SubtreeRoot>, Overflow> {
+        let SubtreeRoot { stage, pending, cell } = self;
         match cell {
             AnyCell::Small(cell) => Subtree::run(isa, space, stage, cell, sink, (pending, budget)),
             AnyCell::Medium(cell) => Subtree::run(isa, space, stage, cell, sink, (pending, budget)),
@@ -79,14 +79,18 @@ impl Task {
 /// # Errors
 /// If integers exceed all sizes, or the search has been cancelled before its end.
 pub(super) fn search<S: Sink>(space: &Space, sink: impl Fn() -> S + Sync) -> Result<Vec<S>, MixedError> {
-    search_in(space, Task::whole(space)?, sink)
+    search_in(space, SubtreeRoot::whole(space)?, sink)
 }
 
 /// [`search`] in a subtree.
 ///
 /// # Errors
 /// Those of [`search`].
-pub(super) fn search_in<S: Sink>(space: &Space, task: Task, sink: impl Fn() -> S + Sync) -> Result<Vec<S>, MixedError> {
+pub(super) fn search_in<S: Sink>(
+    space: &Space,
+    task: SubtreeRoot,
+    sink: impl Fn() -> S + Sync,
+) -> Result<Vec<S>, MixedError> {
     let state = State {
         space,
         sink,
@@ -110,9 +114,9 @@ pub(super) fn search_in<S: Sink>(space: &Space, task: Task, sink: impl Fn() -> S
 ///
 /// # Errors
 /// Those of [`search`].
-pub(super) fn divided<S: Sink>(space: &Space, least: usize, sink: &mut S) -> Result<Vec<Task>, MixedError> {
+pub(super) fn divided<S: Sink>(space: &Space, least: usize, sink: &mut S) -> Result<Vec<SubtreeRoot>, MixedError> {
     let isa = Isa::detect();
-    let mut tasks = VecDeque::from([Task::whole(space)?]);
+    let mut tasks = VecDeque::from([SubtreeRoot::whole(space)?]);
     while tasks.len() < least
         && let Some(task) = tasks.pop_front()
     {
@@ -140,7 +144,7 @@ impl<S: Sink, F: Fn() -> S + Sync> State<'_, S, F> {
         self.sinks.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn run<'s>(&'s self, scope: &Scope<'s>, task: Task) {
+    fn run<'s>(&'s self, scope: &Scope<'s>, task: SubtreeRoot) {
         if self.overflow.load(Ordering::Relaxed) {
             return;
         }
@@ -170,7 +174,7 @@ struct Subtree<'a, T> {
     /// Cells still to be visited, and memory for more.
     stack: Vec<(usize, Cell<T>)>,
     spare: Vec<Cell<T>>,
-    handed: Vec<Task>,
+    handed: Vec<SubtreeRoot>,
 }
 
 impl<'a, T: Size> Subtree<'a, T> {
@@ -181,7 +185,7 @@ impl<'a, T: Size> Subtree<'a, T> {
         cell: Cell<T>,
         sink: &'a mut dyn Take<T>,
         (pending, budget): (Pending, usize),
-    ) -> Result<Vec<Task>, Overflow> {
+    ) -> Result<Vec<SubtreeRoot>, Overflow> {
         let points = T::points(space).ok_or(Overflow)?;
         let scratch = Scratch::new(points);
         let (stack, spare, handed) = (Vec::new(), Vec::new(), Vec::new());
@@ -196,7 +200,7 @@ impl<'a, T: Size> Subtree<'a, T> {
         }
         let points = T::Next::points(self.space).ok_or(Overflow)?;
         let cell = T::Next::any(self.cell.converted(points).ok_or(Overflow)?);
-        self.handed.push(Task { stage: self.stage, pending, cell });
+        self.handed.push(SubtreeRoot { stage: self.stage, pending, cell });
         Ok(())
     }
 
@@ -253,7 +257,7 @@ impl<'a, T: Size> Subtree<'a, T> {
             }
             Ok(Step::Ends { column, children: [first, second] }) => {
                 if second {
-                    let flip = Flip { place: Place::Second, column };
+                    let flip = Flip { end: EdgeEnd::Second, column };
                     if first {
                         self.push(flip)?;
                     } else if self.cell.flip(self.points, flip, &self.scratch.circuit).is_ok() {
@@ -263,7 +267,7 @@ impl<'a, T: Size> Subtree<'a, T> {
                     }
                 }
                 if first {
-                    let flip = Flip { place: Place::First, column };
+                    let flip = Flip { end: EdgeEnd::First, column };
                     if self.cell.flip(self.points, flip, &self.scratch.circuit).is_ok() {
                         return Ok(true);
                     }
@@ -285,7 +289,7 @@ struct Search<'a, T> {
 }
 
 impl<T: Size> Kernel for Search<'_, T> {
-    type Output = Result<Vec<Task>, Overflow>;
+    type Output = Result<Vec<SubtreeRoot>, Overflow>;
     const WIDEST: Isa = T::WIDEST;
 
     #[inline(always)]
@@ -311,8 +315,11 @@ impl<T: Size> Kernel for Search<'_, T> {
         if more {
             tree.stack.push((tree.stage, tree.cell));
         }
-        let left =
-            tree.stack.into_iter().map(|(stage, cell)| Task { stage, pending: Pending::Nothing, cell: T::any(cell) });
+        let left = tree.stack.into_iter().map(|(stage, cell)| SubtreeRoot {
+            stage,
+            pending: Pending::Nothing,
+            cell: T::any(cell),
+        });
         tree.handed.extend(left);
         Ok(tree.handed)
     }

@@ -2,11 +2,11 @@
 
 use super::cells::{MixedVolume, Ordered, Total, total};
 use super::error::MixedError;
-use super::search::{Task, divided, search_in};
+use super::search::{SubtreeRoot, divided, search_in};
 use super::space::Space;
 use crate::checkpoint::{Hash, Job, System};
 use crate::monitor::{Monitor, Stage};
-use crate::ranks::{Lead, Shareable, Shared, Worker};
+use crate::ranks::{DividedWork, Lead, Shareable, Worker};
 use crate::run::RanksRun;
 use crate::runner::{Flow, Policy, Round, Work, Workspace, run};
 // One thread needs no trait for `map`.
@@ -73,7 +73,7 @@ fn led(
     let count = tasks.len();
     let mut sum = Sum { divided: Divided { space: &space, tasks }, monitor, volume: 0, cells: 0, done: 0, fits: true };
     sum.add(Some(total(vec![first])?));
-    let mut work = Shared::new(sum, Some(lead), monitor);
+    let mut work = DividedWork::new(sum, Some(lead), monitor);
     let policy = Policy { retries: 0, charts: 1, first: BATCH, batch: BATCH };
     run(&mut work, count, &policy, &mut Workspace::default(), monitor);
     if let Some(error) = lead.failure() {
@@ -109,7 +109,7 @@ type SubtreeVolume = (usize, Option<(u128, usize)>);
 /// A tree in subtrees, which all ranks number alike.
 struct Divided<'a> {
     space: &'a Space,
-    tasks: Vec<Task>,
+    tasks: Vec<SubtreeRoot>,
 }
 
 impl Divided<'_> {

@@ -55,5 +55,5 @@ pub use items::compute_on_ranks;
 pub(crate) use lead::Lead;
 pub use message::Portion;
 pub use run::{Answered, Ranks, RanksOptions};
-pub(crate) use shared::{Shareable, Shared};
+pub(crate) use shared::{DividedWork, Shareable};
 pub(crate) use worker::{Task, Worker};

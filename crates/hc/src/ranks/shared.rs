@@ -29,7 +29,7 @@ pub(crate) trait Shareable: Work {
 }
 
 /// Work whose batches are tracked by all ranks, from the view of rank 0; as it is without others.
-pub(crate) struct Shared<'a, W: Shareable> {
+pub(crate) struct DividedWork<'a, W: Shareable> {
     work: W,
     lead: Option<&'a Lead<'a>>,
     monitor: &'a Monitor,
@@ -39,9 +39,9 @@ pub(crate) struct Shared<'a, W: Shareable> {
     next: RefCell<Vec<usize>>,
 }
 
-impl<'a, W: Shareable> Shared<'a, W> {
+impl<'a, W: Shareable> DividedWork<'a, W> {
     pub(crate) fn new(work: W, lead: Option<&'a Lead<'a>>, monitor: &'a Monitor) -> Self {
-        Shared { work, lead, monitor, ends: RefCell::default(), next: RefCell::default() }
+        DividedWork { work, lead, monitor, ends: RefCell::default(), next: RefCell::default() }
     }
 
     pub(crate) fn into_inner(self) -> W {
@@ -89,7 +89,7 @@ impl<'a, W: Shareable> Shared<'a, W> {
     }
 }
 
-impl<W: Shareable> Work for Shared<'_, W> {
+impl<W: Shareable> Work for DividedWork<'_, W> {
     type Batch = W::Batch;
     type Memory = W::Memory;
 
@@ -136,13 +136,13 @@ impl<W: Shareable> Work for Shared<'_, W> {
     }
 }
 
-impl<W: Shareable> Shared<'_, W> {
+impl<W: Shareable> DividedWork<'_, W> {
     fn has_failed(&self) -> bool {
         self.lead.is_some_and(|lead| lead.failure().is_some())
     }
 }
 
-impl<W: Shareable + Recordable> Recordable for Shared<'_, W> {
+impl<W: Shareable + Recordable> Recordable for DividedWork<'_, W> {
     fn is_of(batch: &W::Batch, numbers: &[usize]) -> bool {
         W::is_of(batch, numbers)
     }

@@ -4,9 +4,9 @@
 use super::deflate::{Profile, Reduced, centred, deflated, distance};
 use super::eliminate::{Elimination, Stop};
 use super::equations::{Given, LocalEquations};
-use super::judge::{judge, rounded};
+use super::kinds::{Effort, LocalStructure};
+use super::local_structure::{local_structure, rounded};
 use super::number::{Number, largest};
-use super::verdict::{Effort, Verdict};
 use num_complex::Complex64;
 use num_rational::BigRational;
 use num_traits::Zero;
@@ -48,7 +48,7 @@ pub(crate) struct ClusterEquations<'a> {
 
 /// What the given equations have at a solution of those of a [`ClusterEquations`].
 pub(crate) struct ClusterSolution {
-    pub(crate) verdict: Verdict,
+    pub(crate) structure: LocalStructure,
     /// A regular solution to all digits.
     point: Option<Vec<Digits>>,
 }
@@ -117,7 +117,7 @@ impl<'a> ClusterEquations<'a> {
             if !found.iter().any(known) {
                 let (point, residual) = rounded(self.given, &self.local, &regular.point);
                 found.push(ClusterSolution {
-                    verdict: Verdict::Regular { point, residual },
+                    structure: LocalStructure::Regular { point, residual },
                     point: Some(regular.point),
                 });
             }
@@ -125,9 +125,10 @@ impl<'a> ClusterEquations<'a> {
         }
         let point: Vec<Complex64> = self.local.unscaled(&start).iter().map(Number::to_c64).collect();
         // As accurate as the equations of the cluster are.
-        let verdict = judge(self.given, &point, paths, most, 2f64.powi(2 * self.size as i32), Effort::Little);
-        if matches!(verdict, Verdict::Isolated { .. } | Verdict::OnComponent { .. }) {
-            found.push(ClusterSolution { verdict, point: None });
+        let structure =
+            local_structure(self.given, &point, paths, most, 2f64.powi(2 * self.size as i32), Effort::Little);
+        if matches!(structure, LocalStructure::Isolated { .. } | LocalStructure::OnComponent { .. }) {
+            found.push(ClusterSolution { structure, point: None });
         }
     }
 }

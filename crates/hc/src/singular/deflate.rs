@@ -16,9 +16,9 @@ use super::series::Basis;
 use num_complex::Complex64;
 
 /// Where the iteration ends.
-pub(crate) enum Ending<S> {
+pub(crate) enum NewtonEnd<S> {
     /// At a solution.
-    Solution(Deflated<S>),
+    Solution(DeflatedPoint<S>),
     /// At a point that is none, though it is determined: between several.
     Between,
     Nowhere,
@@ -41,7 +41,7 @@ impl Profile {
 }
 
 /// A solution to many digits.
-pub(crate) struct Deflated<S> {
+pub(crate) struct DeflatedPoint<S> {
     /// In the units of the local equations.
     pub(crate) point: Vec<S>,
     pub(crate) profile: Profile,
@@ -107,10 +107,10 @@ pub(crate) fn deflated<S: Number>(
     order: usize,
     tolerance: f64,
     tried: &mut Vec<Profile>,
-) -> Option<Deflated<S>> {
+) -> Option<DeflatedPoint<S>> {
     match ending(local, start, order, tolerance, tried) {
-        Ending::Solution(found) => Some(found),
-        Ending::Between | Ending::Nowhere => None,
+        NewtonEnd::Solution(found) => Some(found),
+        NewtonEnd::Between | NewtonEnd::Nowhere => None,
     }
 }
 
@@ -121,21 +121,21 @@ pub(crate) fn ending<S: Number>(
     order: usize,
     tolerance: f64,
     tried: &mut Vec<Profile>,
-) -> Ending<S> {
-    let Some(first) = step(local, start, order, RankRule::Tolerance(tolerance)) else { return Ending::Nowhere };
+) -> NewtonEnd<S> {
+    let Some(first) = step(local, start, order, RankRule::Tolerance(tolerance)) else { return NewtonEnd::Nowhere };
     let profile = first.profile;
     if tried.contains(&profile) {
-        return Ending::Nowhere;
+        return NewtonEnd::Nowhere;
     }
     tried.push(profile.clone());
     let before = distance(start, &first.point);
     match iterated(local, first.point, order, &profile, before) {
-        None => Ending::Nowhere,
+        None => NewtonEnd::Nowhere,
         Some(last) if last.is_solution(local) => {
-            Ending::Solution(Deflated { point: last.point, profile: last.profile })
+            NewtonEnd::Solution(DeflatedPoint { point: last.point, profile: last.profile })
         }
-        Some(_) if profile.remaining > 0 => Ending::Nowhere,
-        Some(_) => Ending::Between,
+        Some(_) if profile.remaining > 0 => NewtonEnd::Nowhere,
+        Some(_) => NewtonEnd::Between,
     }
 }
 
@@ -146,9 +146,9 @@ pub(crate) fn settled<S: Number>(
     order: usize,
     profile: &Profile,
     before: f64,
-) -> Option<Deflated<S>> {
+) -> Option<DeflatedPoint<S>> {
     let last = iterated(local, point, order, profile, before)?;
-    last.is_solution(local).then_some(Deflated { point: last.point, profile: last.profile })
+    last.is_solution(local).then_some(DeflatedPoint { point: last.point, profile: last.profile })
 }
 
 /// The point near `start` at which the equations of a deflation with a profile vanish: the centre of

@@ -19,7 +19,7 @@ use std::sync::{Arc, OnceLock};
 /// coordinates stay.
 #[derive(Clone)]
 pub(crate) struct Given {
-    shared: Arc<Shared>,
+    exact: Arc<ExactEquations>,
     /// Work done so far, in about as much as a product of complex double-doubles takes.
     spent: Arc<AtomicU64>,
     /// Work after which nothing more is done.
@@ -29,7 +29,7 @@ pub(crate) struct Given {
 }
 
 /// What does not change with the work.
-struct Shared {
+struct ExactEquations {
     unknowns: usize,
     /// Logarithms to base 2 of the units of the unknowns.
     scale: Vec<i64>,
@@ -63,22 +63,22 @@ pub(crate) trait Precision: Number {
 
 impl Precision for ComplexDd {
     fn kept(given: &Given) -> &OnceLock<Vec<Vec<Self>>> {
-        &given.shared.double_double
+        &given.exact.double_double
     }
 }
 impl Precision for ComplexMulti<4> {
     fn kept(given: &Given) -> &OnceLock<Vec<Vec<Self>>> {
-        &given.shared.four
+        &given.exact.four
     }
 }
 impl Precision for ComplexMulti<8> {
     fn kept(given: &Given) -> &OnceLock<Vec<Vec<Self>>> {
-        &given.shared.eight
+        &given.exact.eight
     }
 }
 impl Precision for ComplexMulti<16> {
     fn kept(given: &Given) -> &OnceLock<Vec<Vec<Self>>> {
-        &given.shared.sixteen
+        &given.exact.sixteen
     }
 }
 
@@ -111,7 +111,7 @@ impl Given {
             let place = |&(j, e): &(usize, u32)| exponents[j].partition_point(|&f| f < e);
             term.places = term.powers.iter().map(place).collect();
         }
-        let shared = Shared {
+        let exact = ExactEquations {
             unknowns,
             scale,
             equations,
@@ -121,7 +121,7 @@ impl Given {
             eight: OnceLock::new(),
             sixteen: OnceLock::new(),
         };
-        Given { shared: Arc::new(shared), spent: Arc::default(), limit: u64::MAX, monitor: Monitor::default() }
+        Given { exact: Arc::new(exact), spent: Arc::default(), limit: u64::MAX, monitor: Monitor::default() }
     }
 
     /// The same equations, about which nothing more is done once the monitor is cancelled.
@@ -131,7 +131,7 @@ impl Given {
 
     /// The same equations, with work of their own of which there may be so much.
     pub(crate) fn limited(&self, limit: u64) -> Given {
-        Given { shared: self.shared.clone(), spent: Arc::default(), limit, monitor: self.monitor.clone() }
+        Given { exact: self.exact.clone(), spent: Arc::default(), limit, monitor: self.monitor.clone() }
     }
 
     /// Whether all the work is done that may be done, or it is cancelled.
@@ -146,18 +146,18 @@ impl Given {
 
     /// Numbers of factors in all terms.
     pub(crate) fn factors(&self) -> usize {
-        self.shared.equations.iter().flatten().map(|t| t.powers.len() + 1).sum()
+        self.exact.equations.iter().flatten().map(|t| t.powers.len() + 1).sum()
     }
 
     /// The highest degree of an equation.
     pub(crate) fn degree(&self) -> u64 {
         let degree = |t: &Term| t.powers.iter().map(|&(_, e)| u64::from(e)).sum();
-        self.shared.equations.iter().flatten().map(degree).max().unwrap_or(0)
+        self.exact.equations.iter().flatten().map(degree).max().unwrap_or(0)
     }
 
     /// Logarithms to base 2 of the units of the unknowns.
     pub(crate) fn scales(&self) -> &[i64] {
-        &self.shared.scale
+        &self.exact.scale
     }
 
     /// The equations modulo a prime, in the unknowns themselves; `None` if exponents are larger than
@@ -167,23 +167,23 @@ impl Given {
             let small = t.powers.iter().all(|&(_, e)| e <= exponent);
             small.then(|| Residue::image(&t.coefficient).map(|c| (t.powers.clone(), c))).flatten()
         };
-        self.shared.equations.iter().map(|terms| terms.iter().map(term).collect()).collect()
+        self.exact.equations.iter().map(|terms| terms.iter().map(term).collect()).collect()
     }
 
     /// Whether all equations are exactly zero at these values of the unknowns themselves.
     pub(super) fn vanish_at(&self, point: &[Exact]) -> bool {
         let power = |&(j, e): &(usize, u32)| num_traits::pow(point[j].clone(), e as usize);
         let value = |t: &Term| t.powers.iter().map(power).fold(t.coefficient.clone(), |product, z| product * z);
-        self.shared.equations.iter().all(|terms| terms.iter().map(value).fold(Exact::zero(), |s, z| s + z).is_zero())
+        self.exact.equations.iter().all(|terms| terms.iter().map(value).fold(Exact::zero(), |s, z| s + z).is_zero())
     }
 
     /// Whether all points at which these unknowns are zero are solutions, whatever the others.
     pub(crate) fn vanish_where(&self, zero: &[bool]) -> bool {
-        self.shared.equations.iter().flatten().all(|term| term.powers.iter().any(|&(j, _)| zero[j]))
+        self.exact.equations.iter().flatten().all(|term| term.powers.iter().any(|&(j, _)| zero[j]))
     }
 
     pub(crate) fn unknowns(&self) -> usize {
-        self.shared.unknowns
+        self.exact.unknowns
     }
 
     /// The work done so far at all points, in products of complex double-doubles. It does not
@@ -198,25 +198,25 @@ impl Given {
     }
 
     pub(crate) fn len(&self) -> usize {
-        self.shared.equations.len()
+        self.exact.equations.len()
     }
 
     fn coefficients<S: Precision>(&self) -> &Vec<Vec<S>> {
         S::kept(self).get_or_init(|| {
             let numbers = |terms: &Vec<Term>| terms.iter().map(|t| S::from_exact(&t.coefficient)).collect();
-            self.shared.equations.iter().map(numbers).collect()
+            self.exact.equations.iter().map(numbers).collect()
         })
     }
 
     /// The terms of a single equation in a single unknown, by ascending exponent; `None` for any
     /// other equations.
     pub(crate) fn univariate<S: Precision>(&self) -> Option<Vec<(u32, S)>> {
-        let [terms] = &self.shared.equations[..] else { return None };
-        if self.shared.unknowns != 1 {
+        let [terms] = &self.exact.equations[..] else { return None };
+        if self.exact.unknowns != 1 {
             return None;
         }
         let exponent = |t: &Term| t.powers.first().map_or(0, |&(_, e)| e);
-        let scaled = |c: &S, e: u32| c.shifted(i64::from(e) * self.shared.scale[0]);
+        let scaled = |c: &S, e: u32| c.shifted(i64::from(e) * self.exact.scale[0]);
         let mut terms: Vec<(u32, S)> =
             terms.iter().map(exponent).zip(&self.coefficients::<S>()[0]).map(|(e, c)| (e, scaled(c, e))).collect();
         terms.sort_by_key(|&(e, _)| e);
@@ -226,9 +226,9 @@ impl Given {
     /// The multiplicity of zero and the number of all roots of a single equation in a single
     /// unknown, as often as they count; `None` for any other equations.
     pub(crate) fn univariate_degrees(&self) -> Option<(usize, usize)> {
-        let [terms] = &self.shared.equations[..] else { return None };
+        let [terms] = &self.exact.equations[..] else { return None };
         let exponents = || terms.iter().map(|t| t.powers.first().map_or(0, |&(_, e)| e as usize));
-        Some((exponents().min()?, exponents().max()?)).filter(|_| self.shared.unknowns == 1)
+        Some((exponents().min()?, exponents().max()?)).filter(|_| self.exact.unknowns == 1)
     }
 
     /// The equations in unknowns of about unit size near a point.
@@ -244,9 +244,9 @@ impl Given {
         let excess = |(z, &u): (&Complex64, &i64)| Some(z.norm().log2() - u as f64).filter(|&e| e > -0.75);
         let excess: Vec<f64> = point.iter().zip(&units).map(|both| excess(both).unwrap_or(0.0)).collect();
         let mut coefficients = Vec::with_capacity(self.len());
-        for (terms, numbers) in self.shared.equations.iter().zip(self.coefficients::<S>()) {
+        for (terms, numbers) in self.exact.equations.iter().zip(self.coefficients::<S>()) {
             let shift =
-                |t: &Term| t.powers.iter().map(|&(j, e)| i64::from(e) * (units[j] + self.shared.scale[j])).sum::<i64>();
+                |t: &Term| t.powers.iter().map(|&(j, e)| i64::from(e) * (units[j] + self.exact.scale[j])).sum::<i64>();
             let shifts: Vec<i64> = terms.iter().map(shift).collect();
             // Sizes of the terms at the point, small coordinates counted as one.
             let excess = |t: &Term| t.powers.iter().map(|&(j, e)| f64::from(e) * excess[j]).sum::<f64>();
@@ -319,7 +319,7 @@ impl<'a, S: Number> LocalEquations<'a, S> {
             };
             exponents.iter().map(|&e| power(e)).collect()
         };
-        self.given.shared.exponents.iter().zip(x).map(of).collect()
+        self.given.exact.exponents.iter().zip(x).map(of).collect()
     }
 
     /// Values of the equations, and their derivatives by rows.
@@ -328,7 +328,7 @@ impl<'a, S: Number> LocalEquations<'a, S> {
         let powers = self.powers(x);
         let (mut values, mut rows) = (Vec::new(), Vec::new());
         let mut before: Vec<S> = Vec::new();
-        for (terms, coefficients) in self.given.shared.equations.iter().zip(&self.coefficients) {
+        for (terms, coefficients) in self.given.exact.equations.iter().zip(&self.coefficients) {
             let (mut value, mut row) = (S::zero(), vec![S::zero(); x.len()]);
             for (term, c) in terms.iter().zip(coefficients) {
                 // Products of the powers before each, and then with those behind.
@@ -364,7 +364,7 @@ impl<'a, S: Number> LocalEquations<'a, S> {
         let value = |(terms, coefficients): (&Vec<Term>, &Vec<S>)| {
             terms.iter().zip(coefficients).map(product).fold(S::zero(), |sum, z| S::add(&sum, &z))
         };
-        self.given.shared.equations.iter().zip(&self.coefficients).map(value).collect()
+        self.given.exact.equations.iter().zip(&self.coefficients).map(value).collect()
     }
 
     /// The largest value of an equation at a point, as a logarithm to base 2: about that of its
@@ -377,7 +377,7 @@ impl<'a, S: Number> LocalEquations<'a, S> {
     pub(crate) fn series(&self, which: &[usize], basis: &Basis, x: &[Vec<S>], order: usize) -> Vec<Vec<S>> {
         self.spend((self.given.factors() * basis.pairs(order)) as f64);
         let mut powers: Vec<BTreeMap<u32, Vec<S>>> = vec![BTreeMap::new(); x.len()];
-        for &(j, e) in which.iter().flat_map(|&i| &self.given.shared.equations[i]).flat_map(|t| &t.powers) {
+        for &(j, e) in which.iter().flat_map(|&i| &self.given.exact.equations[i]).flat_map(|t| &t.powers) {
             powers[j].insert(e, Vec::new());
         }
         for (powers, x) in powers.iter_mut().zip(x) {
@@ -389,7 +389,7 @@ impl<'a, S: Number> LocalEquations<'a, S> {
         }
         let equation = |&i: &usize| {
             let mut sum = vec![S::zero(); basis.count(order)];
-            for (term, c) in self.given.shared.equations[i].iter().zip(&self.coefficients[i]) {
+            for (term, c) in self.given.exact.equations[i].iter().zip(&self.coefficients[i]) {
                 let mut product: Option<Vec<S>> = None;
                 for (j, e) in &term.powers {
                     let power = &powers[*j][e];

@@ -1,7 +1,7 @@
 //! The local structure of solutions: whether they are isolated, their multiplicity, and their
 //! digits by deflation.
 //!
-//! A point is judged by the given equations, with their exact coefficients, in numbers of 32 to 308
+//! It is found from the given equations, with their exact coefficients, in numbers of 32 to 308
 //! digits. The precision is the lowest in which zeros are clearly separated from other numbers.
 
 mod cluster;
@@ -12,7 +12,8 @@ mod eliminate;
 mod empty;
 mod equations;
 mod integers;
-mod judge;
+mod kinds;
+mod local_structure;
 mod modular;
 mod monomials;
 mod multiplicity;
@@ -23,15 +24,14 @@ mod sheet;
 mod simple;
 mod squarefree;
 mod univariate;
-mod verdict;
 
 pub(crate) use cluster::{ClusterEquations, ClusterSolution};
 pub(crate) use eliminant::Eliminant;
 pub(crate) use eliminate::{Elimination, Stop};
 pub(crate) use empty::is_missed;
 pub(crate) use equations::Given;
-pub(crate) use judge::{beside, is_moved, judge, solves};
+pub(crate) use kinds::{Effort, LocalStructure, Why, residual};
+pub(crate) use local_structure::{beside, is_moved, local_structure, solves};
 pub(crate) use number::Number;
 pub(crate) use simple::{all_simple, finite_solutions};
 pub(crate) use univariate::roots_with_multiplicities;
-pub(crate) use verdict::{Effort, Verdict, Why, residual};

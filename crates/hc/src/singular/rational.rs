@@ -1,10 +1,10 @@
-//! Ends at points with rational coordinates, judged exactly: whether they are solutions, regular or
+//! Ends at points with rational coordinates, examined exactly: whether they are solutions, regular or
 //! isolated, and with which multiplicity.
 
 use super::equations::Given;
+use super::kinds::{LocalStructure, residual};
 use super::modular::Residue;
 use super::multiplicity::{Modular, Multiplicity, multiplicity};
-use super::verdict::{Verdict, residual};
 use num_bigint::BigInt;
 use num_complex::Complex64;
 use num_rational::BigRational;
@@ -29,7 +29,7 @@ const FEW: usize = 12;
 const GENERATOR: u32 = 7;
 /// Exponents at most: powers of exact numbers are as long.
 const EXPONENT: u32 = 512;
-/// The verdict on a rational point near the end of a path, where that is a solution; `most` paths
+/// The local structure at a rational point near the end of a path, where that is a solution; `most` paths
 /// may end at any point.
 ///
 /// The dual space of the local ring is computed modulo a prime. Modulo a prime it is at least as
@@ -37,12 +37,12 @@ const EXPONENT: u32 = 512;
 /// and its multiplicity is at most that: less only if the prime divides one of the minors that
 /// matter. If it is larger than the number of paths, which is that of the solutions that an isolated one
 /// splits into, and grows on, the solution lies on a component, unless the prime divides such minors.
-pub(super) fn at_rational(given: &Given, point: &[Complex64], error: f64, most: usize) -> Option<Verdict> {
+pub(super) fn at_rational(given: &Given, point: &[Complex64], error: f64, most: usize) -> Option<LocalStructure> {
     let tolerance = (ERRORS * error).clamp(LEAST_ERROR, LARGEST_ERROR);
     let rough = || within(given, point, ROUGH_ERROR, ROUGH_DENOMINATOR, most);
     match within(given, point, tolerance, DENOMINATOR, most) {
-        Some(verdict) => verdict,
-        None => rough()?.filter(|verdict| matches!(verdict, Verdict::Isolated { .. })),
+        Some(structure) => structure,
+        None => rough()?.filter(|structure| matches!(structure, LocalStructure::Isolated { .. })),
     }
 }
 
@@ -53,7 +53,7 @@ fn within(
     tolerance: f64,
     denominator: f64,
     most: usize,
-) -> Option<Option<Verdict>> {
+) -> Option<Option<LocalStructure>> {
     let rational = |(z, &unit): (&Complex64, &i64)| rational(*z, unit, tolerance, denominator);
     let exact: Vec<Exact> = point.iter().zip(given.scales()).map(rational).collect::<Option<_>>()?;
     let images: Vec<Residue> = exact.iter().map(Residue::image).collect::<Option<_>>()?;
@@ -74,9 +74,11 @@ fn within(
         exact.iter().zip(given.scales()).map(|(z, &unit)| unscaled(z, unit)).collect::<Option<_>>()?;
     let residual = residual(given, &point);
     Some(match multiplicity {
-        Multiplicity::Finite(1) => Some(Verdict::Regular { point, residual }),
-        Multiplicity::Finite(multiplicity) => Some(Verdict::Isolated { multiplicity, point, residual }),
-        Multiplicity::More => Some(Verdict::OnComponent { dimension: dimension(equations, &images, most), point }),
+        Multiplicity::Finite(1) => Some(LocalStructure::Regular { point, residual }),
+        Multiplicity::Finite(multiplicity) => Some(LocalStructure::Isolated { multiplicity, point, residual }),
+        Multiplicity::More => {
+            Some(LocalStructure::OnComponent { dimension: dimension(equations, &images, most), point })
+        }
         Multiplicity::Unknown => None,
     })
 }
@@ -126,7 +128,7 @@ fn near(x: f64, tolerance: f64, denominator: f64) -> Option<BigRational> {
 #[cfg(test)]
 mod tests {
     use super::{at_rational, near};
-    use crate::singular::{Given, Verdict};
+    use crate::singular::{Given, LocalStructure};
     use num_complex::Complex64;
     use num_traits::ToPrimitive;
     use proptest::prelude::{prop_assert_eq, proptest};
@@ -140,15 +142,15 @@ mod tests {
         }
     }
 
-    fn verdict(text: &str, point: &[f64], most: usize) -> Option<Verdict> {
+    fn structure(text: &str, point: &[f64], most: usize) -> Option<LocalStructure> {
         let system = poly::parse::phcpack(text).unwrap();
         let given = Given::new(&system.expand(&Default::default()).unwrap(), vec![0; point.len()]);
         let point: Vec<Complex64> = point.iter().map(|&x| Complex64::new(x, 0.0)).collect();
         at_rational(&given, &point, 1e-9, most)
     }
 
-    fn is_isolated(found: Option<Verdict>, expected: usize) -> bool {
-        matches!(found, Some(Verdict::Isolated { multiplicity, .. }) if multiplicity == expected)
+    fn is_isolated(found: Option<LocalStructure>, expected: usize) -> bool {
+        matches!(found, Some(LocalStructure::Isolated { multiplicity, .. }) if multiplicity == expected)
     }
 
     /// The first: Dayton & Zeng 2005, multiplicity 131. Quadrics without common points at infinity
@@ -156,10 +158,10 @@ mod tests {
     #[test]
     fn multiplicities_at_rational_points() {
         let dz1 = "4\na^4-b*c*d;\nb^4-a*c*d;\nc^4-a*b*d;\nd^4-a*b*c;";
-        assert!(is_isolated(verdict(dz1, &[0.0, 1e-10, 0.0, 0.0], 131), 131));
+        assert!(is_isolated(structure(dz1, &[0.0, 1e-10, 0.0, 0.0], 131), 131));
         let quadrics = "5\na^2;\nb^2+a*b;\nc^2-3*a*c+b^2;\nd^2-a*b;\ne^2-c*d;";
-        assert!(is_isolated(verdict(quadrics, &[0.0; 5], 32), 32));
-        assert!(is_isolated(verdict("2\n(3*x-1)^3;\n(y-2)^2+(3*x-1);", &[1.0 / 3.0, 2.0], 6), 6));
+        assert!(is_isolated(structure(quadrics, &[0.0; 5], 32), 32));
+        assert!(is_isolated(structure("2\n(3*x-1)^3;\n(y-2)^2+(3*x-1);", &[1.0 / 3.0, 2.0], 6), 6));
         let gaussian = "2\n(x-y*i)^3;\n(y-2)^2+(x-2*i);";
         let system = poly::parse::phcpack(gaussian).unwrap();
         let given = Given::new(&system.expand(&Default::default()).unwrap(), vec![0; 2]);
@@ -170,11 +172,11 @@ mod tests {
 
     #[test]
     fn other_points() {
-        assert!(matches!(verdict("2\nx^2-1;\ny-2*x;", &[1.0, 2.0], 2), Some(Verdict::Regular { .. })));
+        assert!(matches!(structure("2\nx^2-1;\ny-2*x;", &[1.0, 2.0], 2), Some(LocalStructure::Regular { .. })));
         // No solution, an irrational one, ones on lines.
-        assert_eq!(verdict("2\nx^2-1;\ny-2*x;", &[1.0, 2.5], 2), None);
-        assert_eq!(verdict("2\nx^2-2;\ny-2*x;", &[2f64.sqrt(), 8f64.sqrt()], 2), None);
-        let is_on = |text: &str, point: &[f64], expected: usize| matches!(verdict(text, point, 8), Some(Verdict::OnComponent { dimension, .. }) if dimension == expected);
+        assert_eq!(structure("2\nx^2-1;\ny-2*x;", &[1.0, 2.5], 2), None);
+        assert_eq!(structure("2\nx^2-2;\ny-2*x;", &[2f64.sqrt(), 8f64.sqrt()], 2), None);
+        let is_on = |text: &str, point: &[f64], expected: usize| matches!(structure(text, point, 8), Some(LocalStructure::OnComponent { dimension, .. }) if dimension == expected);
         assert!(is_on("2\nx*y;\nx*(y-1);", &[0.0, 0.5], 1));
         // A plane and a double line, where they meet, and beside that.
         assert!(is_on("3\nx*y^2;\nx*z;\nx*(x-y);", &[0.0; 3], 2));

@@ -1,7 +1,7 @@
 //! Points on sets of positive dimension, recognised in little time: such a point can be moved along
 //! the set.
 
-use super::deflate::{CLEAR, Deflated, Profile, deflated, distance, moved, settled};
+use super::deflate::{CLEAR, DeflatedPoint, Profile, deflated, distance, moved, settled};
 use super::eliminate::{Elimination, Stop};
 use super::equations::LocalEquations;
 use super::number::Number;
@@ -31,7 +31,7 @@ pub(crate) fn on_sheet<S: Number>(
     paths: usize,
     near: f64,
 ) -> Option<(Vec<S>, usize)> {
-    let sheet = |found: &Deflated<S>, order: usize| {
+    let sheet = |found: &DeflatedPoint<S>, order: usize| {
         if found.profile.is_regular() || distance(start, &found.point) > near {
             return None;
         }
@@ -103,7 +103,7 @@ fn touched<S: Number>(local: &LocalEquations<'_, S>, point: &[S], paths: usize) 
 /// multiplicity, if it is.
 pub(crate) fn leads_on_somewhere<S: Number>(
     local: &LocalEquations<'_, S>,
-    found: &Deflated<S>,
+    found: &DeflatedPoint<S>,
     order: usize,
     multiplicity: usize,
 ) -> bool {
@@ -113,7 +113,7 @@ pub(crate) fn leads_on_somewhere<S: Number>(
 }
 
 /// Whether the point can be moved by some strides, each to another solution of the same ranks.
-fn leads_on<S: Number>(local: &LocalEquations<'_, S>, found: &Deflated<S>, order: usize, stride: f64) -> bool {
+fn leads_on<S: Number>(local: &LocalEquations<'_, S>, found: &DeflatedPoint<S>, order: usize, stride: f64) -> bool {
     let mut point = found.point.clone();
     for _ in 0..MOVES {
         let Some(next) = moved(local, &point, order, &found.profile, stride) else { return false };

@@ -3,7 +3,7 @@
 use super::classify::Tracked;
 use super::solutions::Solution;
 use crate::distinct::relative_distance;
-use crate::singular::{self, ClusterEquations, ClusterSolution, Effort, Given, Verdict};
+use crate::singular::{self, ClusterEquations, ClusterSolution, Effort, Given, LocalStructure};
 use num_complex::Complex64;
 use poly::{Exact, Polynomial};
 
@@ -32,9 +32,9 @@ pub(super) fn clustered(
     paths: usize,
     most: usize,
     known: &[Solution],
-) -> Vec<Verdict> {
+) -> Vec<LocalStructure> {
     let Some(solve) = tracked.solve_cluster else { return Vec::new() };
-    let mut best: Vec<Verdict> = Vec::new();
+    let mut best: Vec<LocalStructure> = Vec::new();
     for cluster in ClusterEquations::all(given, end).take(WAYS) {
         let degree = |p: &Polynomial<Exact>| p.degree().and_then(|d| u64::try_from(d).ok()).unwrap_or(0);
         let bezout = cluster.polynomials.iter().take(cluster.unknowns()).map(degree).fold(1, u64::saturating_mul);
@@ -51,9 +51,9 @@ pub(super) fn clustered(
                 cluster.add(&mut found, point, multiplicity, most);
             }
         }
-        let mut found: Vec<Verdict> = found.into_iter().map(|f| f.verdict).collect();
-        found.retain(|verdict| match verdict {
-            Verdict::Regular { point, .. } => !is_known(given, known, point),
+        let mut found: Vec<LocalStructure> = found.into_iter().map(|f| f.structure).collect();
+        found.retain(|structure| match structure {
+            LocalStructure::Regular { point, .. } => !is_known(given, known, point),
             _ => true,
         });
         if multiplicity(&found) > multiplicity(&best) {
@@ -77,16 +77,16 @@ pub(super) fn is_same(given: &Given, known: &[Complex64], point: &[Complex64]) -
     if distance <= EQUAL || distance > NEAR {
         return distance <= EQUAL;
     }
-    match singular::judge(given, known, 1, 1, NEAR, Effort::Little) {
-        Verdict::Regular { point: refined, .. } => relative_distance(&refined, point) <= EQUAL,
+    match singular::local_structure(given, known, 1, 1, NEAR, Effort::Little) {
+        LocalStructure::Regular { point: refined, .. } => relative_distance(&refined, point) <= EQUAL,
         _ => true,
     }
 }
 
 /// The least number of paths that end at these solutions.
-fn multiplicity(found: &[Verdict]) -> usize {
-    let paths = |verdict: &Verdict| match verdict {
-        Verdict::Isolated { multiplicity, .. } => *multiplicity,
+fn multiplicity(found: &[LocalStructure]) -> usize {
+    let paths = |structure: &LocalStructure| match structure {
+        LocalStructure::Isolated { multiplicity, .. } => *multiplicity,
         _ => 1,
     };
     found.iter().map(paths).sum()
@@ -94,21 +94,24 @@ fn multiplicity(found: &[Verdict]) -> usize {
 
 /// The ends of a group, distributed over the solutions that were found around them, and the ends
 /// for which no solution is left.
-pub(super) fn distributed(group: &[usize], found: Vec<Verdict>) -> (Vec<(Vec<usize>, Verdict)>, Vec<usize>) {
+pub(super) fn distributed(
+    group: &[usize],
+    found: Vec<LocalStructure>,
+) -> (Vec<(Vec<usize>, LocalStructure)>, Vec<usize>) {
     let mut left = group.to_vec();
-    let (components, points): (Vec<Verdict>, Vec<Verdict>) =
-        found.into_iter().partition(|verdict| matches!(verdict, Verdict::OnComponent { .. }));
+    let (components, points): (Vec<LocalStructure>, Vec<LocalStructure>) =
+        found.into_iter().partition(|structure| matches!(structure, LocalStructure::OnComponent { .. }));
     let mut all = Vec::new();
-    for verdict in points {
-        let paths = multiplicity(std::slice::from_ref(&verdict)).min(left.len());
+    for structure in points {
+        let paths = multiplicity(std::slice::from_ref(&structure)).min(left.len());
         // Regular solutions are listed, whether paths are left for them or not.
-        if paths > 0 || matches!(verdict, Verdict::Regular { .. }) {
-            all.push((left.drain(..paths).collect(), verdict));
+        if paths > 0 || matches!(structure, LocalStructure::Regular { .. }) {
+            all.push((left.drain(..paths).collect(), structure));
         }
     }
-    for verdict in components.into_iter().take(1) {
+    for structure in components.into_iter().take(1) {
         if !left.is_empty() {
-            all.push((std::mem::take(&mut left), verdict));
+            all.push((std::mem::take(&mut left), structure));
         }
     }
     (all, left)

@@ -2,10 +2,10 @@
 
 use super::classify::{Tracked, classify};
 use super::excess::Excess;
-use super::judged::work;
 use super::options::SolveOptions;
 use super::paths::{Route, follow};
 use super::polynomials::solve_cluster;
+use super::singular_ends::work;
 use super::solutions::{Member, Solutions};
 use crate::family::Fibre;
 use crate::monitor::Monitor;

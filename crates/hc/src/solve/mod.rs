@@ -10,7 +10,6 @@ mod excess;
 mod fingerprints;
 mod graph;
 mod infinity;
-mod judged;
 mod member;
 mod options;
 mod paths;
@@ -18,6 +17,7 @@ mod plane;
 mod polynomials;
 mod portions;
 mod record;
+mod singular_ends;
 mod slack;
 mod solutions;
 mod start;
@@ -27,7 +27,7 @@ mod warning;
 pub use error::SolveError;
 pub(crate) use member::{ends, solve_member};
 pub use options::{SolveOptions, Start};
-pub(crate) use polynomials::{Place, solve_polynomials, solve_sliced};
+pub(crate) use polynomials::{SolveContext, solve_polynomials, solve_sliced};
 pub use solutions::{Direction, Solution, Solutions, Unresolved};
 pub use summary::coordinates;
 pub use warning::Warning;
@@ -74,8 +74,8 @@ impl Run {
     /// As for [`solve`]; also if the checkpoint belongs to another run, or cannot be written.
     pub fn solve(&self, system: &System, options: &SolveOptions) -> Result<Solutions, SolveError> {
         self.install(|| {
-            let place = Place { checkpoint: self.checkpoint(), ..Place::default() };
-            solve_expanded(system, &expanded(system, options)?, options, self.monitor(), place)
+            let context = SolveContext { checkpoint: self.checkpoint(), ..SolveContext::default() };
+            solve_expanded(system, &expanded(system, options)?, options, self.monitor(), context)
         })
     }
 }
@@ -95,13 +95,13 @@ impl RanksRun<'_> {
             let fingerprint = job.unwrap_or_default();
             if ranks.is_lead() {
                 return Lead::at(ranks, &fingerprint, |lead| {
-                    let place = Place { checkpoint: self.run.checkpoint(), lead: Some(lead), worker: None };
-                    solve_expanded(system, &polynomials?, options, self.run.monitor(), place).map(Some)
+                    let context = SolveContext { checkpoint: self.run.checkpoint(), lead: Some(lead), worker: None };
+                    solve_expanded(system, &polynomials?, options, self.run.monitor(), context).map(Some)
                 });
             }
             Worker::at(ranks, &fingerprint, |worker| {
-                let place = Place { worker: Some(worker), ..Place::default() };
-                solve_polynomials(&polynomials?, system.variables(), options, worker.monitor(), place).map(|_| None)
+                let context = SolveContext { worker: Some(worker), ..SolveContext::default() };
+                solve_polynomials(&polynomials?, system.variables(), options, worker.monitor(), context).map(|_| None)
             })
         })
     }
@@ -121,12 +121,12 @@ fn solve_expanded(
     polynomials: &[Polynomial<Exact>],
     options: &SolveOptions,
     monitor: &Monitor,
-    place: Place<'_>,
+    context: SolveContext<'_>,
 ) -> Result<Solutions, SolveError> {
-    if let Some(checkpoint) = place.checkpoint {
+    if let Some(checkpoint) = context.checkpoint {
         checkpoint.begin(job(polynomials, system.variables(), options))?;
     }
-    let mut found = solve_polynomials(polynomials, system.variables(), options, monitor, place)?;
+    let mut found = solve_polynomials(polynomials, system.variables(), options, monitor, context)?;
     found.variables = system.variables().to_vec();
     found.member = Member::new(system, &[]);
     if options.certify {

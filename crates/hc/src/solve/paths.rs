@@ -7,10 +7,10 @@ use super::record::{Record, RecordEnd, SingularEnd};
 use crate::SolveOptions;
 use crate::checkpoint::{Part, Recordable, Recorded};
 use crate::distinct::{coincidences, groups, relative_distance};
-use crate::endgame::{EndgameOptions, Ending, Handed, Verdict, endgame};
+use crate::endgame::{EndKind, EndgameOptions, Ending, Handed, endgame};
 use crate::homotopy::Segment;
 use crate::monitor::{self, Monitor};
-use crate::ranks::{Lead, Shared};
+use crate::ranks::{DividedWork, Lead};
 use crate::refine::{Refined, Refiner};
 use crate::runner::{Flow, Policy, Round, Work, Workspace, run};
 use crate::start::Source;
@@ -70,7 +70,7 @@ pub(super) struct Route<'a, 'e, E: Evaluate, S> {
 /// another source may then be less work.
 pub(super) fn follow<E: Evaluate, S: Source<E>>(route: Route<'_, '_, E, S>, trial: bool) -> Ends {
     let Route { count, options, monitor, record, lead, .. } = route;
-    let mut work = Recorded::new(Shared::new(CoefficientStage::new(route, trial), lead, monitor), record, monitor);
+    let mut work = Recorded::new(DividedWork::new(CoefficientStage::new(route, trial), lead, monitor), record, monitor);
     let first = if trial { TRIAL } else { CHUNK };
     let policy = Policy { retries: options.paths.retries, charts: 1, first, batch: CHUNK };
     let mut workspace = Workspace::default();
@@ -308,7 +308,7 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
         for ending in endgame(trackers, &self.segment, handed, self.route.count, &tracker, &options, monitor) {
             let record = &mut records[ending.path];
             record.middle = (!ending.middle.is_empty()).then(|| Fingerprint::new(&ending.middle, !round.is_first()));
-            record.end = judged(&mut refiner, target, ending, !round.is_first());
+            record.end = end_of(&mut refiner, target, ending, !round.is_first());
         }
         records
     }
@@ -441,24 +441,24 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
     }
 }
 
-/// The verdict of the endgame on a path; if the end is regular after all, it is refined. A path
+/// The end of a path after its endgame; if it is regular after all, it is refined. A path
 /// that comes to the target along the radius `again`, although it is singular there, ends on a
 /// component.
-fn judged<E: Evaluate>(refiner: &mut Refiner<'_, E>, target: &[Complex64], ending: Ending, again: bool) -> RecordEnd {
-    if matches!(ending.verdict, Verdict::Reached | Verdict::Finite { winding: 1, .. }) {
+fn end_of<E: Evaluate>(refiner: &mut Refiner<'_, E>, target: &[Complex64], ending: Ending, again: bool) -> RecordEnd {
+    if matches!(ending.kind, EndKind::Reached | EndKind::Finite { winding: 1, .. }) {
         let refined = refiner.refine(target, &ending.point);
         let near = relative_distance(&refined.point, &ending.point) < ENDS.cluster;
         if near && refiner.is_regular(target, &refined) {
             return RecordEnd::Regular(refined);
         }
     }
-    match ending.verdict {
-        Verdict::Finite { winding, error } => RecordEnd::Singular(SingularEnd { point: ending.point, winding, error }),
-        Verdict::Infinite { winding, valuations } => RecordEnd::Infinite { valuations, winding },
-        Verdict::Reached if again => {
+    match ending.kind {
+        EndKind::Finite { winding, error } => RecordEnd::Singular(SingularEnd { point: ending.point, winding, error }),
+        EndKind::Infinite { winding, valuations } => RecordEnd::Infinite { valuations, winding },
+        EndKind::Reached if again => {
             RecordEnd::Singular(SingularEnd { point: ending.point, winding: 1, error: ENDS.reached })
         }
-        Verdict::Reached | Verdict::Lost => RecordEnd::Lost,
+        EndKind::Reached | EndKind::Lost => RecordEnd::Lost,
     }
 }
 

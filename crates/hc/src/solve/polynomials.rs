@@ -9,10 +9,10 @@ use super::error::SolveError;
 use super::excess::Excess;
 use super::graph::Graph;
 use super::infinity::Line;
-use super::judged;
 use super::options::{SolveOptions, Start};
 use super::paths::{Route, are_hopeless, follow};
 use super::portions::{Announced, serve};
+use super::singular_ends;
 use super::slack::{self, Slack};
 use super::solutions::Solutions;
 use super::start::Starts;
@@ -30,9 +30,9 @@ use std::borrow::Cow;
 /// Clusters of solutions are looked at within clusters this often.
 const NESTED: usize = 3;
 
-/// Where a solve takes place.
+/// Where a solve takes context.
 #[derive(Clone, Copy, Default)]
-pub(crate) struct Place<'a> {
+pub(crate) struct SolveContext<'a> {
     /// Where it is recorded.
     pub(crate) checkpoint: Option<&'a Checkpoint>,
     /// Among other ranks, of which this is the first.
@@ -65,9 +65,9 @@ pub(crate) fn solve_polynomials(
     names: &[String],
     options: &SolveOptions,
     monitor: &Monitor,
-    place: Place<'_>,
+    context: SolveContext<'_>,
 ) -> Result<Solutions, SolveError> {
-    solve_nested(polynomials, names, options, monitor, Squaring::Combinations, Nesting::default(), place)
+    solve_nested(polynomials, names, options, monitor, Squaring::Combinations, Nesting::default(), context)
 }
 
 /// [`solve_polynomials`] of equations that are too many, some of them general hyperplanes: linear ones
@@ -78,8 +78,8 @@ pub(crate) fn solve_sliced(
     options: &SolveOptions,
     monitor: &Monitor,
 ) -> Result<Solutions, SolveError> {
-    let (nesting, place) = (Nesting::default(), Place::default());
-    solve_nested(polynomials, names, options, monitor, Squaring::SlackUnknowns, nesting, place)
+    let (nesting, context) = (Nesting::default(), SolveContext::default());
+    solve_nested(polynomials, names, options, monitor, Squaring::SlackUnknowns, nesting, context)
 }
 
 /// [`solve_polynomials`] of the equations of a cluster, `level` deep within a solve of the `outer`
@@ -95,8 +95,8 @@ pub(super) fn solve_cluster(
     let options = SolveOptions::new();
     // Cancelled with the rest, but no progress that is to be told.
     let monitor = monitor.quiet();
-    let (squaring, place) = (Squaring::Combinations, Place::default());
-    let found = solve_nested(polynomials, &names, &options, &monitor, squaring, nesting, place).ok()?;
+    let (squaring, context) = (Squaring::Combinations, SolveContext::default());
+    let found = solve_nested(polynomials, &names, &options, &monitor, squaring, nesting, context).ok()?;
     (!found.interrupted).then_some(found)
 }
 
@@ -107,7 +107,7 @@ fn solve_nested(
     monitor: &Monitor,
     squaring: Squaring,
     nesting: Nesting<'_>,
-    place: Place<'_>,
+    context: SolveContext<'_>,
 ) -> Result<Solutions, SolveError> {
     let nothing = Solutions { interrupted: true, ..Solutions::default() };
     let Some((problem, mut starts)) = unless_cancelled(prepared(polynomials, names, options, squaring, monitor))?
@@ -115,11 +115,11 @@ fn solve_nested(
         return Ok(nothing);
     };
     let excess = Excess::new(&problem.given, options.torus_only);
-    if let Some(worker) = place.worker {
+    if let Some(worker) = context.worker {
         serve_all(&problem, starts, &excess, worker)?;
         return Ok(nothing);
     }
-    let attempts = attempted(&problem, &mut starts, &excess, nesting, place)?;
+    let attempts = attempted(&problem, &mut starts, &excess, nesting, context)?;
     if let Some(outer) = nesting.outer {
         outer.spend(problem.given.spent());
     }
@@ -217,7 +217,7 @@ fn attempted(
     starts: &mut Starts,
     excess: &Excess<'_>,
     nesting: Nesting<'_>,
-    place: Place<'_>,
+    context: SolveContext<'_>,
 ) -> Result<Attempts, SolveError> {
     let (options, monitor) = (&*problem.options, problem.monitor);
     let mut attempts = Attempts::default();
@@ -227,7 +227,7 @@ fn attempted(
         let trial = direct.is_some();
         let from = direct.as_mut().unwrap_or(&mut *starts);
         let attempt = attempts.start_systems;
-        if let Some(lead) = place.lead {
+        if let Some(lead) = context.lead {
             lead.begin_part(&Announced { trial, attempt: u64::from(attempt) }, 1);
         }
         let system = from.system(u64::from(attempt), options, monitor);
@@ -238,15 +238,15 @@ fn attempted(
                 Squaring::Combinations => Cow::Borrowed(options),
                 Squaring::SlackUnknowns => Cow::Owned(slack::of_attempt(options, attempt)),
             };
-            let (trackers, start, lead) = (&Trackers::new(&from.system), &start, place.lead);
-            let record = place.checkpoint.map(|checkpoint| Part { checkpoint, number });
+            let (trackers, start, lead) = (&Trackers::new(&from.system), &start, context.lead);
+            let record = context.checkpoint.map(|checkpoint| Part { checkpoint, number });
             let (count, target, options) = (from.paths, &from.target[..], &*options);
             follow(Route { trackers, start, count, target, excess, options, monitor, record, lead }, trial)
         };
-        if let Some(error) = place.checkpoint.and_then(Checkpoint::failure) {
+        if let Some(error) = context.checkpoint.and_then(Checkpoint::failure) {
             return Err(error.into());
         }
-        if let Some(error) = place.lead.and_then(Lead::failure) {
+        if let Some(error) = context.lead.and_then(Lead::failure) {
             return Err(error.into());
         }
         if !ends.abandoned {
@@ -272,7 +272,7 @@ impl Problem<'_> {
     fn solutions_at(&self, mut ends: Ends, from: &Starts, excess: &Excess<'_>, nesting: Nesting<'_>) -> Classified {
         let (given, monitor) = (&self.given, self.monitor);
         let line = Line { supports: &from.equations.supports, target: &from.target };
-        let work = judged::work(given, from.paths).min(nesting.outer.map_or(u64::MAX, Given::left));
+        let work = singular_ends::work(given, from.paths).min(nesting.outer.map_or(u64::MAX, Given::left));
         let (system, target) = match &self.slack {
             Some(slack) => {
                 slack.shorten(&mut ends);

@@ -182,7 +182,7 @@ impl Cells {
 }
 
 /// Some of the cells of a lifting.
-struct Part<'a> {
+struct FoundCells<'a> {
     supports: &'a Supports,
     lifting: &'a [Vec<i32>],
     /// Edges and volumes.
@@ -191,7 +191,7 @@ struct Part<'a> {
     is_fine: bool,
 }
 
-impl Keep for Part<'_> {
+impl Keep for FoundCells<'_> {
     fn keep(&mut self, edges: &[[u32; 2]], volume: u64, normal: &[i128]) {
         self.is_fine = self.is_fine && weights(self.supports, self.lifting, edges, volume, normal).is_some();
         let edges = edges.as_flattened().iter().flat_map(|p| p.to_be_bytes());
@@ -210,7 +210,7 @@ fn fine_cells(
         let lifting: Vec<Vec<i32>> =
             supports.iter().map(|a| a.iter().map(|_| (random.unit().arg() * lift) as i32).collect()).collect();
         let found = || Sorter::new(8 * supports.len() + 8);
-        let part = || Part { supports, lifting: &lifting, found: found(), is_fine: true };
+        let part = || FoundCells { supports, lifting: &lifting, found: found(), is_fine: true };
         let parts = watched_cells(supports.len(), supports, &lifting, monitor, part)?;
         if parts.iter().all(|part| part.is_fine) {
             let found = parts.into_iter().map(|part| part.found).collect();

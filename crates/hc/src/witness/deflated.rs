@@ -22,7 +22,7 @@ const UNKNOWNS: usize = 100;
 const ZERO: f64 = -27.0;
 
 /// Equations, mostly with multipliers, and points that solve them.
-pub(super) struct Deflated {
+pub(super) struct DeflatedEquations {
     /// The equations that are not linear.
     pub(super) curved: Vec<Polynomial<Exact>>,
     /// Those that are, in the multipliers alone.
@@ -31,15 +31,18 @@ pub(super) struct Deflated {
     pub(super) points: BTreeMap<usize, Vec<Complex64>>,
 }
 
-impl Deflated {
+impl DeflatedEquations {
     /// The points as solutions of the given equations.
-    pub(super) fn new(given: &[Polynomial<Exact>], points: impl Iterator<Item = (usize, Vec<Complex64>)>) -> Deflated {
-        Deflated { curved: given.to_vec(), linear: Vec::new(), points: points.collect() }
+    pub(super) fn new(
+        given: &[Polynomial<Exact>],
+        points: impl Iterator<Item = (usize, Vec<Complex64>)>,
+    ) -> DeflatedEquations {
+        DeflatedEquations { curved: given.to_vec(), linear: Vec::new(), points: points.collect() }
     }
 
     /// The points on components of this dimension, by the equations of which they are regular
     /// solutions. Left out are those that would need too many multipliers.
-    pub(super) fn regular(self, dimension: usize, seed: u64) -> Vec<Deflated> {
+    pub(super) fn regular(self, dimension: usize, seed: u64) -> Vec<DeflatedEquations> {
         let mut regular = Vec::new();
         let mut left = vec![self];
         for level in 0..=LEVELS {
@@ -67,13 +70,14 @@ impl Deflated {
     }
 
     /// The points by how much larger the null space of the Jacobian is than the dimension.
-    fn by_rank(self, dimension: usize) -> BTreeMap<usize, Deflated> {
+    fn by_rank(self, dimension: usize) -> BTreeMap<usize, DeflatedEquations> {
         let given = Given::new(&self.all(), vec![0; self.unknowns()]);
-        let mut groups: BTreeMap<usize, Deflated> = BTreeMap::new();
+        let mut groups: BTreeMap<usize, DeflatedEquations> = BTreeMap::new();
         for (k, point) in self.points {
             let further = (point.len() - null_space(&given, &point).1.rank()).saturating_sub(dimension);
             let (curved, linear) = (&self.curved, &self.linear);
-            let empty = || Deflated { curved: curved.clone(), linear: linear.clone(), points: BTreeMap::new() };
+            let empty =
+                || DeflatedEquations { curved: curved.clone(), linear: linear.clone(), points: BTreeMap::new() };
             groups.entry(further).or_insert_with(empty).points.insert(k, point);
         }
         groups
@@ -81,7 +85,7 @@ impl Deflated {
 
     /// The equations with a vector of the null space of their Jacobian as further unknowns, where that
     /// is larger than the dimension by `further`.
-    fn with_multipliers(self, dimension: usize, further: usize, seed: u64) -> Deflated {
+    fn with_multipliers(self, dimension: usize, further: usize, seed: u64) -> DeflatedEquations {
         let before = self.unknowns();
         let mut random = Random::of(seed, Stream::Multipliers);
         // Across as many general hyperplanes as the dimension, and of a certain size.
@@ -110,7 +114,7 @@ impl Deflated {
         };
         let mut linear = with(&self.linear);
         linear.extend(forms.iter().enumerate().map(condition));
-        Deflated { curved: with(&self.curved), linear, points }
+        DeflatedEquations { curved: with(&self.curved), linear, points }
     }
 }
 

@@ -138,7 +138,7 @@ fn trace<E: Evaluate>(family: &E, fibre: &Fibre, unknowns: usize, seed: u64, mon
 mod tests {
     use super::*;
     use crate::SolveOptions;
-    use crate::solve::{Place, solve_polynomials};
+    use crate::solve::{SolveContext, solve_polynomials};
     use crate::witness::slices::Slices;
 
     /// A circle of radius 1e6, on the scale of which the hyperplane hardly moves.
@@ -149,7 +149,8 @@ mod tests {
         let slices = Slices::new(2, 1, 0);
         let sliced = [given.clone(), slices.polynomials(2)].concat();
         let (options, monitor) = (SolveOptions::new(), Monitor::default());
-        let found = solve_polynomials(&sliced, system.variables(), &options, &monitor, Place::default()).unwrap();
+        let found =
+            solve_polynomials(&sliced, system.variables(), &options, &monitor, SolveContext::default()).unwrap();
         let points: Vec<Vec<Complex64>> = found.solutions.into_iter().map(|s| s.value).collect();
         assert_eq!(points.len(), 2);
         let [set] = &WitnessSet::all(&given, &slices, &points, 0)[..] else { panic!("one set") };

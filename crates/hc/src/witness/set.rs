@@ -1,6 +1,6 @@
 //! Witness points that can be tracked while their hyperplanes move.
 
-use super::deflated::Deflated;
+use super::deflated::DeflatedEquations;
 use super::slices::Slices;
 use crate::distinct::relative_distance;
 use crate::family::{Fibre, FibreOptions, track_fibre_watched};
@@ -41,14 +41,14 @@ impl WitnessSet {
         seed: u64,
     ) -> Vec<WitnessSet> {
         let Some(unknowns) = points.first().map(Vec::len) else { return Vec::new() };
-        let all = Deflated::new(given, points.iter().cloned().enumerate());
+        let all = DeflatedEquations::new(given, points.iter().cloned().enumerate());
         let sets = all.regular(slices.dimension(), seed).into_iter();
         sets.filter_map(|equations| WitnessSet::new(&equations, slices, unknowns, seed)).collect()
     }
 
     /// The points of some equations that are regular where as many equations are made of these as there
     /// are unknowns.
-    fn new(equations: &Deflated, slices: &Slices, unknowns: usize, seed: u64) -> Option<WitnessSet> {
+    fn new(equations: &DeflatedEquations, slices: &Slices, unknowns: usize, seed: u64) -> Option<WitnessSet> {
         let family = slices.family(equations, seed)?.compile().ok()?;
         let parameters = slices.parameters();
         let mut refiner = Refiner::new(&family);

@@ -1,6 +1,6 @@
 //! General hyperplanes, and the family of systems in which they move.
 
-use super::deflated::Deflated;
+use super::deflated::DeflatedEquations;
 use crate::random::{Random, Stream};
 use num_complex::Complex64;
 use num_traits::Zero;
@@ -57,7 +57,7 @@ impl Slices {
     /// As many equations as unknowns: the linear ones, combinations of the others, and hyperplanes with
     /// slopes and offsets as parameters. Offsets alone would have to move as far as branch points lie
     /// from them. `None` if that makes no system.
-    pub(super) fn family(&self, equations: &Deflated, seed: u64) -> Option<System> {
+    pub(super) fn family(&self, equations: &DeflatedEquations, seed: u64) -> Option<System> {
         let names: Vec<String> = (0..equations.unknowns()).map(|j| format!("x{j}")).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         let curved = System::from_polynomials(&names, &equations.curved).ok()?;

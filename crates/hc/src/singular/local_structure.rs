@@ -1,14 +1,14 @@
 //! What the end of a path is: a regular solution, an isolated multiple solution, a point on a set
 //! of positive dimension, or no solution.
 
-use super::deflate::{CLEAR, Deflated, Ending, Profile, Reduced, ZERO, deflated, distance, ending};
+use super::deflate::{CLEAR, DeflatedPoint, NewtonEnd, Profile, Reduced, ZERO, deflated, distance, ending};
 use super::dual::{Count, count};
 use super::eliminate::{Elimination, Stop};
 use super::equations::{Given, LocalEquations, Precision};
+use super::kinds::{Effort, LocalStructure, Why, residual};
 use super::number::Number;
 use super::rational::at_rational;
 use super::sheet::{leads_on_somewhere, on_sheet};
-use super::verdict::{Effort, Verdict, Why, residual};
 use crate::distinct::relative_distance;
 use crate::random::{Random, Stream};
 use num_complex::Complex64;
@@ -34,26 +34,26 @@ const NOT_ZERO: f64 = 1e-4;
 /// Coordinates below this share of the largest may really be zero, whatever their stated error.
 const SURELY_ZERO: f64 = 1e-5;
 
-/// Judges a point near which `paths` paths end. The relative error of the point is at most this, as
+/// The local structure at a point near which `paths` paths end. The relative error of the point is at most this, as
 /// far as is known. At most `most` paths may end at any one point.
-pub(crate) fn judge(
+pub(crate) fn local_structure(
     given: &Given,
     point: &[Complex64],
     paths: usize,
     most: usize,
     error: f64,
     effort: Effort,
-) -> Verdict {
+) -> LocalStructure {
     if point.iter().any(|z| !z.is_finite()) {
-        return Verdict::Unresolved(Why::NoSolution);
+        return LocalStructure::Unresolved(Why::NoSolution);
     }
     let error = if error.is_finite() { error.abs() } else { NEAR_SINGULAR };
     if is_no_solution(given, point, error) {
-        return Verdict::NotASolution;
+        return LocalStructure::NotASolution;
     }
     let regular_at_once = regular_from(&given.near_within::<ComplexDd>(point, OWN_UNITS), given, point, error);
     let (on_component, isolated) = match regular_at_once.or_else(|| at_rational(given, point, error, most)) {
-        found @ Some(Verdict::OnComponent { .. }) => (found, None),
+        found @ Some(LocalStructure::OnComponent { .. }) => (found, None),
         found => (None, found),
     };
     let at_once = isolated
@@ -61,11 +61,11 @@ pub(crate) fn judge(
         .or_else(|| sheet(given, point, paths, error))
         .or(on_component)
         .or_else(|| regular::<ComplexMulti<8>>(given, point, error));
-    if let Some(verdict) = at_once {
-        return verdict;
+    if let Some(structure) = at_once {
+        return structure;
     }
-    if let Some(verdict) = on_axes(given, point, error) {
-        return verdict;
+    if let Some(structure) = on_axes(given, point, error) {
+        return structure;
     }
     let mut why = Why::NoSolution;
     // Zeros of one precision may be small numbers of the next.
@@ -73,13 +73,13 @@ pub(crate) fn judge(
     let ways = [multiple::<ComplexDd>, multiple::<ComplexMulti<4>>, multiple::<ComplexMulti<8>>];
     for examine in &ways[..if effort == Effort::Little { 2 } else { 3 }] {
         if given.is_exhausted() {
-            return Verdict::Unresolved(Why::TooMuch);
+            return LocalStructure::Unresolved(Why::TooMuch);
         }
         match examine(given, point, paths, most, effort) {
-            Ok(Verdict::Isolated { multiplicity, .. }) if before != Some(multiplicity) => {
+            Ok(LocalStructure::Isolated { multiplicity, .. }) if before != Some(multiplicity) => {
                 (before, why) = (Some(multiplicity), Why::Unclear);
             }
-            Ok(verdict) => return verdict,
+            Ok(structure) => return structure,
             Err(reason) => why = reason,
         }
         if why == Why::TooLarge && point.len() > 1 {
@@ -87,10 +87,10 @@ pub(crate) fn judge(
         }
     }
     if effort == Effort::Little || given.is_exhausted() {
-        return Verdict::Unresolved(why);
+        return LocalStructure::Unresolved(why);
     }
     // What only very many digits tell.
-    regular::<ComplexMulti<16>>(given, point, error).unwrap_or(Verdict::Unresolved(why))
+    regular::<ComplexMulti<16>>(given, point, error).unwrap_or(LocalStructure::Unresolved(why))
 }
 
 /// Whether equations are too large at the end of a path for a solution nearby.
@@ -111,7 +111,8 @@ const MISSES: f64 = 1e-6;
 pub(crate) fn solves(given: &Given, point: &[Complex64]) -> bool {
     let residual = residual(given, point);
     residual <= SOLVES
-        || residual < MISSES && matches!(judge(given, point, 1, 1, 0.0, Effort::Little), Verdict::Regular { .. })
+        || residual < MISSES
+            && matches!(local_structure(given, point, 1, 1, 0.0, Effort::Little), LocalStructure::Regular { .. })
 }
 
 /// Relative corrections up to this size are due to rounding the point.
@@ -148,7 +149,7 @@ fn newton<S: Number>(x: &[S], values: &[S], jacobian: Vec<Vec<S>>, smallest: f64
 }
 
 /// The regular solution near a point, if there is one to one precision.
-fn regular<S: Precision>(given: &Given, point: &[Complex64], error: f64) -> Option<Verdict> {
+fn regular<S: Precision>(given: &Given, point: &[Complex64], error: f64) -> Option<LocalStructure> {
     regular_from(&given.near::<S>(point), given, point, error)
 }
 
@@ -161,19 +162,19 @@ fn regular_from<S: Precision>(
     given: &Given,
     point: &[Complex64],
     error: f64,
-) -> Option<Verdict> {
+) -> Option<LocalStructure> {
     let start = local.scaled(point);
     let found = deflated(local, &start, 1, f64::NEG_INFINITY, &mut Vec::new())?;
     if !found.profile.is_regular() || distance(&start, &found.point) > NEAR.max(NEAR_ERRORS * error).log2() {
         return None;
     }
     let (point, residual) = rounded(given, local, &found.point);
-    Some(Verdict::Regular { point, residual })
+    Some(LocalStructure::Regular { point, residual })
 }
 
 /// A point on a set of positive dimension at the end of a path. The path seemed to lead to a
 /// regular solution nearby, but another path leads to that solution.
-pub(crate) fn beside(given: &Given, point: &[Complex64], paths: usize, error: f64) -> Option<Verdict> {
+pub(crate) fn beside(given: &Given, point: &[Complex64], paths: usize, error: f64) -> Option<LocalStructure> {
     sheet(given, point, paths, error.max(NEAR_SHEET_AT_MOST / NEAR_SHEET_ERRORS))
 }
 
@@ -183,18 +184,18 @@ const NEAR_SHEET: f64 = 1e-11;
 const NEAR_SHEET_AT_MOST: f64 = 1e-8;
 const NEAR_SHEET_ERRORS: f64 = 10.0;
 
-/// The verdict on a point that can be moved along a set of solutions.
-fn sheet(given: &Given, point: &[Complex64], paths: usize, error: f64) -> Option<Verdict> {
+/// The local structure at a point that can be moved along a set of solutions.
+fn sheet(given: &Given, point: &[Complex64], paths: usize, error: f64) -> Option<LocalStructure> {
     if point.len() == 1 {
         return None;
     }
     let local = given.near::<ComplexDd>(point);
     let near = NEAR_SHEET.max(NEAR_SHEET_ERRORS * error).min(NEAR_SHEET_AT_MOST).log2();
     let (point, dimension) = on_sheet(&local, &local.scaled(point), paths, near)?;
-    Some(Verdict::OnComponent { dimension, point: rounded(given, &local, &point).0 })
+    Some(LocalStructure::OnComponent { dimension, point: rounded(given, &local, &point).0 })
 }
 
-/// The verdict on a point that is not a regular solution, in one precision. An error if the
+/// The local structure at a point that is not a regular solution, in one precision. An error if the
 /// precision is not enough, or, with little effort, if the point lies between several solutions.
 fn multiple<S: Precision>(
     given: &Given,
@@ -202,12 +203,12 @@ fn multiple<S: Precision>(
     paths: usize,
     most: usize,
     effort: Effort,
-) -> Result<Verdict, Why> {
+) -> Result<LocalStructure, Why> {
     let local = given.near::<S>(point);
     let start = local.scaled(point);
     let limit = (2 * paths + 2).max(FUNCTIONALS);
-    if let Some(verdict) = at_zeros(&local, &start, limit) {
-        return Ok(verdict);
+    if let Some(structure) = at_zeros(&local, &start, limit) {
+        return Ok(structure);
     }
     let mut why = Why::NoSolution;
     for order in ORDERS.into_iter().take_while(|&order| order <= 2 * limit) {
@@ -217,23 +218,23 @@ fn multiple<S: Precision>(
                 return Err(Why::TooMuch);
             }
             let found = match ending(&local, &start, order, tolerance, &mut tried) {
-                Ending::Solution(found) => found,
-                Ending::Between if effort == Effort::Little => return Err(Why::NoSolution),
-                Ending::Between | Ending::Nowhere => continue,
+                NewtonEnd::Solution(found) => found,
+                NewtonEnd::Between if effort == Effort::Little => return Err(Why::NoSolution),
+                NewtonEnd::Between | NewtonEnd::Nowhere => continue,
             };
             if found.profile.is_regular() || distance(&start, &found.point) > NEAR_SINGULAR.log2() {
                 continue;
             }
-            match structure(&local, &found, order, limit, most) {
-                Some(Structure::Isolated(multiplicity)) => {
+            match by_series(&local, &found, order, limit, most) {
+                Some(BySeries::Isolated(multiplicity)) => {
                     let (point, residual) = rounded(given, &local, &found.point);
-                    return Ok(Verdict::Isolated { multiplicity, point, residual });
+                    return Ok(LocalStructure::Isolated { multiplicity, point, residual });
                 }
-                Some(Structure::Component(dimension)) => {
+                Some(BySeries::Component(dimension)) => {
                     let (point, _) = rounded(given, &local, &found.point);
-                    return Ok(Verdict::OnComponent { dimension, point });
+                    return Ok(LocalStructure::OnComponent { dimension, point });
                 }
-                Some(Structure::Unfinished) => why = Why::TooLarge,
+                Some(BySeries::Unfinished) => why = Why::TooLarge,
                 None if why == Why::NoSolution => why = Why::Unclear,
                 None => {}
             }
@@ -242,9 +243,9 @@ fn multiple<S: Precision>(
     Err(why)
 }
 
-/// The verdict on a point with zeros in place of small coordinates, if one of them may take any
+/// The local structure at a point with zeros in place of small coordinates, if one of them may take any
 /// value whatever the nonzero coordinates are.
-fn on_axes(given: &Given, point: &[Complex64], error: f64) -> Option<Verdict> {
+fn on_axes(given: &Given, point: &[Complex64], error: f64) -> Option<LocalStructure> {
     let small = NEAR_SHEET_AT_MOST.max(NEAR_SHEET_ERRORS * error).min(NEAR_SINGULAR).log2();
     let local = given.near::<ComplexDd>(point);
     let start = local.scaled(point);
@@ -261,12 +262,12 @@ fn on_axes(given: &Given, point: &[Complex64], error: f64) -> Option<Verdict> {
         return None;
     }
     let kept = point.iter().zip(&zero).map(|(z, &zero)| if zero { Complex64::default() } else { *z });
-    Some(Verdict::OnComponent { dimension: zero.iter().filter(|z| !**z).count(), point: kept.collect() })
+    Some(LocalStructure::OnComponent { dimension: zero.iter().filter(|z| !**z).count(), point: kept.collect() })
 }
 
-/// The verdict if zeros in place of small coordinates give an exact solution; nothing needs to be
+/// The local structure if zeros in place of small coordinates give an exact solution; nothing needs to be
 /// refined there.
-fn at_zeros<S: Number>(local: &LocalEquations<'_, S>, start: &[S], limit: usize) -> Option<Verdict> {
+fn at_zeros<S: Number>(local: &LocalEquations<'_, S>, start: &[S], limit: usize) -> Option<LocalStructure> {
     let snapped: Vec<S> = start.iter().map(|z| if z.log2() < NEAR_SINGULAR.log2() { S::zero() } else { *z }).collect();
     let (values, jacobian) = local.jacobian(&snapped);
     if !values.iter().all(Number::vanishes) {
@@ -280,14 +281,17 @@ fn at_zeros<S: Number>(local: &LocalEquations<'_, S>, start: &[S], limit: usize)
         let reduced = Reduced::new(local, &snapped, &pivots, order)?;
         if let Count::All(multiplicity) = count(&reduced.basis, &reduced.equations, 4 * limit) {
             let point = local.unscaled(&snapped).iter().map(Number::to_c64).collect();
-            return Some(Verdict::Isolated { multiplicity, point, residual: 0.0 });
+            return Some(LocalStructure::Isolated { multiplicity, point, residual: 0.0 });
         }
     }
     None
 }
 
-enum Structure {
+/// What series up to an order tell of a solution.
+enum BySeries {
+    /// It is isolated, with this multiplicity.
     Isolated(usize),
+    /// It lies on a component of this dimension.
     Component(usize),
     /// More orders are needed.
     Unfinished,
@@ -295,17 +299,17 @@ enum Structure {
 
 /// The structure at a refined solution, as far as series up to an order tell; `None` if ranks are
 /// not clear.
-fn structure<S: Number>(
+fn by_series<S: Number>(
     local: &LocalEquations<'_, S>,
-    found: &Deflated<S>,
+    found: &DeflatedPoint<S>,
     order: usize,
     limit: usize,
     most: usize,
-) -> Option<Structure> {
+) -> Option<BySeries> {
     let (_, jacobian) = local.jacobian(&found.point);
     let pivots = Elimination::new(jacobian, found.point.len(), Stop::After(found.profile.ranks[0]));
     let Some(reduced) = Reduced::new(local, &found.point, &pivots, order) else {
-        return Some(Structure::Unfinished);
+        return Some(BySeries::Unfinished);
     };
     let regular_after = found.profile.remaining == 0;
     let counted = |bound: usize| {
@@ -316,7 +320,7 @@ fn structure<S: Number>(
         local.spend(order as f64 * (n * many).powi(2) * (0.5 * n + 1.0) * many / 3.0);
         functionals
     };
-    let component = || Structure::Component(dimension(&reduced, found.profile.remaining.max(1)));
+    let component = || BySeries::Component(dimension(&reduced, found.profile.remaining.max(1)));
     let mut functionals = counted(limit);
     if matches!(functionals, Count::More) {
         if leads_on_somewhere(local, found, order, limit) {
@@ -326,13 +330,13 @@ fn structure<S: Number>(
         let bound = most.saturating_add(1).clamp(limit, MANY_FUNCTIONALS.max(4 * limit));
         functionals = if bound > limit { counted(bound) } else { functionals };
         if matches!(functionals, Count::More) {
-            return Some(if bound > most { component() } else { Structure::Unfinished });
+            return Some(if bound > most { component() } else { BySeries::Unfinished });
         }
     }
     Some(match functionals {
         Count::Unclear => return None,
-        Count::All(multiplicity) if regular_after => Structure::Isolated(multiplicity),
-        Count::All(_) | Count::More | Count::Unfinished => Structure::Unfinished,
+        Count::All(multiplicity) if regular_after => BySeries::Isolated(multiplicity),
+        Count::All(_) | Count::More | Count::Unfinished => BySeries::Unfinished,
     })
 }
 
@@ -367,5 +371,5 @@ pub(super) fn rounded<S: Number>(given: &Given, local: &LocalEquations<'_, S>, p
 }
 
 #[cfg(test)]
-#[path = "judge_tests.rs"]
+#[path = "local_structure_tests.rs"]
 mod tests;

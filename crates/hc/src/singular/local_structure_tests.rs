@@ -1,11 +1,11 @@
 //! Points whose local structure is known by hand.
 
-use super::{Effort, Verdict, judge};
+use super::{Effort, LocalStructure, local_structure};
 use crate::singular::equations::Given;
 use num_complex::Complex64;
 use poly::parse::phcpack;
 
-fn judged(text: &str, point: &[f64], paths: usize, error: f64) -> Verdict {
+fn structure(text: &str, point: &[f64], paths: usize, error: f64) -> LocalStructure {
     let system = phcpack(text).unwrap();
     let given = Given::new(&system.expand(&Default::default()).unwrap(), vec![0; system.variables().len()]);
     // Beside the point by the error that is said.
@@ -14,12 +14,12 @@ fn judged(text: &str, point: &[f64], paths: usize, error: f64) -> Verdict {
         .enumerate()
         .map(|(j, &x)| Complex64::new(x, 0.0) + Complex64::from_polar(0.7 * error, 1.0 + j as f64))
         .collect();
-    judge(&given, &point, paths, paths, error, Effort::Much)
+    local_structure(&given, &point, paths, paths, error, Effort::Much)
 }
 
 fn isolated(text: &str, at: &[f64], paths: usize, error: f64) -> usize {
-    match judged(text, at, paths, error) {
-        Verdict::Isolated { multiplicity, point, residual } => {
+    match structure(text, at, paths, error) {
+        LocalStructure::Isolated { multiplicity, point, residual } => {
             for (z, x) in point.iter().zip(at) {
                 assert!((z - x).norm() < 1e-14, "{text}: {point:?}");
             }
@@ -67,8 +67,8 @@ fn regular_solutions_with_others_nearby() {
         ("3 2\nx*y;\nx-1;\ny*(x+2);", vec![1.0, 0.0], 1e-9),
         ("4 3\nx*y;\nx*z;\nx*(x-1);\ny*(y-z);", vec![1.0, 0.0, 0.0], 1e-9),
     ] {
-        let verdict = judged(text, &at, 1, error);
-        assert!(matches!(verdict, Verdict::Regular { .. }), "{text}: {verdict:?}");
+        let found = structure(text, &at, 1, error);
+        assert!(matches!(found, LocalStructure::Regular { .. }), "{text}: {found:?}");
     }
 }
 
@@ -82,24 +82,24 @@ fn points_on_sets_of_positive_dimension() {
             ("4 3\nx*y;\nx*z;\nx*(x-1);\ny*(y-z);", vec![0.0, 0.4, 0.4], 1),
             ("3\nx*(x^2+y+z);\nx*(y^2-3+z);\nx*(z-x*y+1);", vec![0.0, 0.4, 0.9], 2),
         ] {
-            let verdict = judged(text, &at, 1, error);
-            let Verdict::OnComponent { dimension: found, .. } = verdict else { panic!("{text}: {verdict:?}") };
-            assert_eq!(found, dimension, "{text} {error}");
+            let found = structure(text, &at, 1, error);
+            let LocalStructure::OnComponent { dimension: least, .. } = found else { panic!("{text}: {found:?}") };
+            assert_eq!(least, dimension, "{text} {error}");
         }
         // The axis of x, doubled, and what else ends at the origin.
-        let verdict =
-            judged("3\nx^3*z^2+x*y*z+y^3+z^5;\nx^2*z^3+x*y^2+y*z^3;\nx^2*y*z+x*z^4+y^2;", &[0.0; 3], 28, error);
-        assert!(matches!(verdict, Verdict::OnComponent { dimension: 1, .. }), "{verdict:?}");
+        let found =
+            structure("3\nx^3*z^2+x*y*z+y^3+z^5;\nx^2*z^3+x*y^2+y*z^3;\nx^2*y*z+x*z^4+y^2;", &[0.0; 3], 28, error);
+        assert!(matches!(found, LocalStructure::OnComponent { dimension: 1, .. }), "{found:?}");
         // Where two planes meet, one of them with an embedded line: the point is no general one,
         // and the bound may be that of the line.
-        let verdict = judged("3\nx^3*y;\nx*y^2;\nx*y*(x+y);", &[0.0, 0.0, 0.5], 1, error);
-        let Verdict::OnComponent { dimension, .. } = verdict else { panic!("{verdict:?}") };
+        let found = structure("3\nx^3*y;\nx*y^2;\nx*y*(x+y);", &[0.0, 0.0, 0.5], 1, error);
+        let LocalStructure::OnComponent { dimension, .. } = found else { panic!("{found:?}") };
         assert!(dimension == 1 || dimension == 2, "{error}: {dimension}");
     }
 }
 
 #[test]
 fn points_that_solve_nothing() {
-    assert_eq!(judged("2\nx*y-1;\nx+y-7;", &[1.0, 2.0], 2, 1e-9), Verdict::NotASolution);
-    assert_eq!(judged("3 2\nx^2+y^2-2;\nx-y;\nx*y+3;", &[1.0, 1.0], 2, 1e-9), Verdict::NotASolution);
+    assert_eq!(structure("2\nx*y-1;\nx+y-7;", &[1.0, 2.0], 2, 1e-9), LocalStructure::NotASolution);
+    assert_eq!(structure("3 2\nx^2+y^2-2;\nx-y;\nx*y+3;", &[1.0, 1.0], 2, 1e-9), LocalStructure::NotASolution);
 }

@@ -1,12 +1,12 @@
-//! Verdicts on the ends of paths.
+//! What a point near which paths end may be.
 
 use super::equations::Given;
 use num_complex::Complex64;
 use poly::ComplexDd;
 
-/// What a point near which paths end is, by the given equations.
+/// What a point near which paths end is by the given equations.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Verdict {
+pub(crate) enum LocalStructure {
     /// A solution at which the Jacobian has full rank, to all digits of a double.
     Regular {
         /// The solution.
@@ -37,7 +37,7 @@ pub(crate) enum Verdict {
     Unresolved(Why),
 }
 
-/// How much is done to judge an end.
+/// How much is done to find the local structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Effort {
     /// What tells nearly all ends, to 77 digits.

@@ -1,5 +1,5 @@
-//! Ends that the tracker alone cannot judge: singular ends, and regular ends for coefficients that
-//! were rounded.
+//! Ends that the tracker alone cannot tell: singular ends, and regular ends for coefficients that were
+//! rounded.
 
 use super::classify::{Classified, Tracked};
 use super::cluster::{clustered, distributed, is_known, is_same};
@@ -10,7 +10,7 @@ use super::record::SingularEnd;
 use super::solutions::{Solution, Unresolved, is_real};
 use crate::distinct::{groups, relative_distance};
 use crate::refine::Refiner;
-use crate::singular::{self, Effort, Verdict, Why};
+use crate::singular::{self, Effort, LocalStructure, Why};
 use crate::threads::IntoParallelRefIterator;
 #[cfg(feature = "threads")]
 use crate::threads::ParallelIterator;
@@ -28,7 +28,7 @@ struct Multiple {
 }
 
 impl Classified {
-    /// Judges the singular ends, and the doubtful ones among the regular ends.
+    /// Adds what the singular ends are, and the doubtful ones among the regular ends.
     pub(super) fn add_singular(
         &mut self,
         tracked: &Tracked<'_>,
@@ -40,18 +40,20 @@ impl Classified {
         let points = ends.iter().enumerate().map(|(k, end)| (k, &end.point[..]));
         let groups = groups(points, ENDS.cluster);
         let spare = self.lost;
-        let judged = judged_groups(tracked, &ends, &groups, &self.solutions, spare);
-        let doubted = judged.iter().any(|(_, v)| matches!(v, Verdict::Isolated { .. } | Verdict::OnComponent { .. }));
+        let structures = structures_of_ends(tracked, &ends, &groups, &self.solutions, spare);
+        let doubted = structures
+            .iter()
+            .any(|(_, s)| matches!(s, LocalStructure::Isolated { .. } | LocalStructure::OnComponent { .. }));
         let simple = doubted && singular::all_simple(tracked.polynomials);
         let mut multiple: Vec<Multiple> = Vec::new();
         let mut further = 0;
         let mut refiner = Refiner::new(tracked.system);
-        for (group, verdict) in judged {
+        for (group, structure) in structures {
             let paths = group.len();
-            match verdict {
-                Verdict::Isolated { point, .. } if excess.outside(&point) => self.excess += paths,
-                Verdict::Regular { point, .. } if excess.outside(&point) => self.excess += paths,
-                Verdict::Isolated { multiplicity, point, residual } => {
+            match structure {
+                LocalStructure::Isolated { point, .. } if excess.outside(&point) => self.excess += paths,
+                LocalStructure::Regular { point, .. } if excess.outside(&point) => self.excess += paths,
+                LocalStructure::Isolated { multiplicity, point, residual } => {
                     let winding = group.iter().map(|&k| ends[k].winding).max().unwrap_or(1);
                     match multiple.iter_mut().find(|m| relative_distance(&m.point, &point) <= ONE) {
                         Some(known) => {
@@ -61,7 +63,7 @@ impl Classified {
                         None => multiple.push(Multiple { point, multiplicity, residual, paths, winding }),
                     }
                 }
-                Verdict::Regular { point, residual } => {
+                LocalStructure::Regular { point, residual } => {
                     // One path ends at a regular solution; any other has jumped.
                     let known = is_known(tracked.given, &self.solutions, &point);
                     self.lost += paths.saturating_sub(usize::from(!known));
@@ -72,14 +74,14 @@ impl Classified {
                         self.solutions.push(solution(&point, 1, 1, residual, condition, is_real(&point, ENDS.real)));
                     }
                 }
-                Verdict::OnComponent { point, .. } if simple => self.unresolved(&point, paths, Why::Unclear),
-                Verdict::OnComponent { point, .. } => {
+                LocalStructure::OnComponent { point, .. } if simple => self.unresolved(&point, paths, Why::Unclear),
+                LocalStructure::OnComponent { point, .. } => {
                     self.on_components += paths;
                     self.component_points.push(point);
                 }
-                Verdict::NotASolution if excess.overdetermined() => self.excess += paths,
-                Verdict::NotASolution => self.lost += paths,
-                Verdict::Unresolved(why) => {
+                LocalStructure::NotASolution if excess.overdetermined() => self.excess += paths,
+                LocalStructure::NotASolution => self.lost += paths,
+                LocalStructure::Unresolved(why) => {
                     if let Some(&end) = group.first() {
                         self.unresolved(&ends[end].point, paths, why);
                     }
@@ -166,7 +168,7 @@ impl Classified {
 
     /// Replaces regular solutions by those of the given equations, if rounded coefficients move
     /// them or doubles have too few digits. Returns the solutions that are not clearly regular, to
-    /// be judged like singular ends.
+    /// be examined like singular ends.
     pub(super) fn correct_rounded(&mut self, tracked: &Tracked<'_>) -> Vec<SingularEnd> {
         let mut kept: Vec<Solution> = Vec::with_capacity(self.solutions.len());
         let mut doubtful = Vec::new();
@@ -181,8 +183,8 @@ impl Classified {
                 continue;
             }
             let point = std::mem::take(&mut solution.value);
-            let Verdict::Regular { point: exact, residual } =
-                singular::judge(tracked.given, &point, 1, 1, ROUNDED, Effort::Little)
+            let LocalStructure::Regular { point: exact, residual } =
+                singular::local_structure(tracked.given, &point, 1, 1, ROUNDED, Effort::Little)
             else {
                 doubtful.push(SingularEnd { point, winding: 1, error: ROUNDED });
                 continue;
@@ -208,7 +210,7 @@ const ACCURATE_RESIDUAL: f64 = 1e-14;
 /// others.
 const ROUNDED: f64 = 1e-4;
 
-/// Groups that are judged at a time.
+/// Groups that are examined at a time.
 const BATCH: usize = 16;
 /// One of several may take this share of the work that is left.
 const SHARE: usize = 4;
@@ -217,35 +219,35 @@ const SHARE: usize = 4;
 const WORK: u64 = 200_000_000;
 const WORK_OF_FACTORS: u64 = 100;
 
-/// Verdicts on all groups of ends, until the work that one solve may take is done, or the solve is
+/// The local structure at all groups of ends, until the work that one solve may take is done, or the solve is
 /// cancelled.
-fn judged_groups(
+fn structures_of_ends(
     tracked: &Tracked<'_>,
     ends: &[&SingularEnd],
     groups: &[Vec<usize>],
     known: &[Solution],
     spare: usize,
-) -> Vec<(Vec<usize>, Verdict)> {
-    let mut judged = Vec::new();
+) -> Vec<(Vec<usize>, LocalStructure)> {
+    let mut found = Vec::new();
     for batch in groups.chunks(BATCH) {
         let left = tracked.work.saturating_sub(tracked.given.spent());
         let stop =
             if tracked.monitor.is_cancelled() { Some(Why::Interrupted) } else { (left == 0).then_some(Why::TooMuch) };
         if let Some(why) = stop {
-            judged.extend(batch.iter().map(|group| (group.clone(), Verdict::Unresolved(why))));
+            found.extend(batch.iter().map(|group| (group.clone(), LocalStructure::Unresolved(why))));
             continue;
         }
         // Each has its own, so that it does not matter which is done first.
         let of = |group: &Vec<usize>| {
             let given = tracked.given.limited(left / groups.len().clamp(1, SHARE) as u64);
-            let verdicts = verdicts(tracked, &given, ends, group, known, spare);
+            let structures = structures_of_group(tracked, &given, ends, group, known, spare);
             tracked.given.spend(given.spent());
-            verdicts
+            structures
         };
-        let verdicts: Vec<Vec<_>> = batch.par_iter().map(of).collect();
-        judged.extend(verdicts.into_iter().flatten());
+        let structures: Vec<Vec<_>> = batch.par_iter().map(of).collect();
+        found.extend(structures.into_iter().flatten());
     }
-    judged
+    found
 }
 
 /// The work that a solve may spend on the ends of this many paths.
@@ -253,43 +255,44 @@ pub(super) fn work(given: &singular::Given, paths: usize) -> u64 {
     WORK.saturating_add(WORK_OF_FACTORS.saturating_mul(paths as u64).saturating_mul(given.factors() as u64))
 }
 
-/// Verdicts on ends that nearly coincide: on all at once, or on each if they are not a multiple
-/// solution. `spare` more paths may end there; other paths end at the `known` solutions.
-fn verdicts(
+/// The local structure at ends that nearly coincide: of all at once, or of each if they are not a
+/// multiple solution. `spare` more paths may end there; other paths end at the `known` solutions.
+fn structures_of_group(
     tracked: &Tracked<'_>,
     given: &singular::Given,
     ends: &[&SingularEnd],
     group: &[usize],
     known: &[Solution],
     spare: usize,
-) -> Vec<(Vec<usize>, Verdict)> {
+) -> Vec<(Vec<usize>, LocalStructure)> {
     let (paths, most) = (group.len() + spare, ends.len() + spare);
-    let verdict = |k: usize, effort: Effort| singular::judge(given, &ends[k].point, paths, most, ends[k].error, effort);
+    let structure =
+        |k: usize, effort: Effort| singular::local_structure(given, &ends[k].point, paths, most, ends[k].error, effort);
     // The most accurate of the ends stands for all.
     let Some(&best) = group.iter().min_by(|&&a, &&b| ends[a].error.total_cmp(&ends[b].error)) else {
         return Vec::new();
     };
     // Combinations of equations have higher multiplicities.
     let combined = given.len() > given.unknowns();
-    let own = verdict(best, Effort::Little);
+    let own = structure(best, Effort::Little);
     match own {
-        Verdict::Isolated { multiplicity, .. } if combined || multiplicity >= group.len() => {
+        LocalStructure::Isolated { multiplicity, .. } if combined || multiplicity >= group.len() => {
             return vec![(group.to_vec(), own)];
         }
-        Verdict::OnComponent { .. } => return vec![(group.to_vec(), own)],
-        Verdict::Regular { ref point, .. } if group.len() == 1 => {
+        LocalStructure::OnComponent { .. } => return vec![(group.to_vec(), own)],
+        LocalStructure::Regular { ref point, .. } if group.len() == 1 => {
             // Near a set of positive dimension Newton's method leads to a solution off it.
             let beside = || singular::beside(given, &ends[best].point, paths, ends[best].error);
             let other = if is_known(given, known, point) { beside() } else { None };
             return vec![(group.to_vec(), other.unwrap_or(own))];
         }
-        Verdict::NotASolution if group.len() == 1 => return vec![(group.to_vec(), own)],
+        LocalStructure::NotASolution if group.len() == 1 => return vec![(group.to_vec(), own)],
         _ => {}
     }
     let is_apart = |&k: &usize| k == best || relative_distance(&ends[k].point, &ends[best].point) > ONE;
-    if group.iter().all(is_apart) && !matches!(own, Verdict::Isolated { .. }) {
-        let each = |&k: &usize| (vec![k], if k == best { own.clone() } else { verdict(k, Effort::Little) });
-        let each: Vec<(Vec<usize>, Verdict)> = group.iter().map(each).collect();
+    if group.iter().all(is_apart) && !matches!(own, LocalStructure::Isolated { .. }) {
+        let each = |&k: &usize| (vec![k], if k == best { own.clone() } else { structure(k, Effort::Little) });
+        let each: Vec<(Vec<usize>, LocalStructure)> = group.iter().map(each).collect();
         if are_told_apart(given, &each, combined) {
             return each;
         }
@@ -299,18 +302,18 @@ fn verdicts(
     if left.is_empty() {
         return all;
     }
-    match if matches!(own, Verdict::Unresolved(_)) { verdict(best, Effort::Much) } else { own } {
-        whole @ (Verdict::Isolated { .. } | Verdict::OnComponent { .. }) => vec![(group.to_vec(), whole)],
-        regular @ Verdict::Regular { .. } if all.is_empty() => {
+    match if matches!(own, LocalStructure::Unresolved(_)) { structure(best, Effort::Much) } else { own } {
+        whole @ (LocalStructure::Isolated { .. } | LocalStructure::OnComponent { .. }) => vec![(group.to_vec(), whole)],
+        regular @ LocalStructure::Regular { .. } if all.is_empty() => {
             let others = group.iter().filter(|&&k| k != best).copied().collect();
-            vec![(vec![best], regular), (others, Verdict::Unresolved(Why::NoSolution))]
+            vec![(vec![best], regular), (others, LocalStructure::Unresolved(Why::NoSolution))]
         }
-        Verdict::Unresolved(why) => {
-            all.push((left, Verdict::Unresolved(why)));
+        LocalStructure::Unresolved(why) => {
+            all.push((left, LocalStructure::Unresolved(why)));
             all
         }
         _ => {
-            all.push((left, Verdict::Unresolved(Why::NoSolution)));
+            all.push((left, LocalStructure::Unresolved(Why::NoSolution)));
             all
         }
     }
@@ -319,18 +322,18 @@ fn verdicts(
 /// Relative distance up to which two ends, or two multiple solutions, are the same point.
 const ONE: f64 = 1e-13;
 
-/// Whether every end has a verdict of its own.
-fn are_told_apart(given: &singular::Given, each: &[(Vec<usize>, Verdict)], overdetermined: bool) -> bool {
+/// Whether every end has a structure of its own.
+fn are_told_apart(given: &singular::Given, each: &[(Vec<usize>, LocalStructure)], overdetermined: bool) -> bool {
     let mut regular: Vec<&[Complex64]> = Vec::new();
-    each.iter().all(|(_, verdict)| match verdict {
-        Verdict::Regular { point, .. } => {
+    each.iter().all(|(_, structure)| match structure {
+        LocalStructure::Regular { point, .. } => {
             let fresh = regular.iter().all(|known| !is_same(given, known, point));
             regular.push(point);
             fresh
         }
-        Verdict::Unresolved(_) => false,
-        Verdict::NotASolution => overdetermined,
-        Verdict::Isolated { .. } | Verdict::OnComponent { .. } => true,
+        LocalStructure::Unresolved(_) => false,
+        LocalStructure::NotASolution => overdetermined,
+        LocalStructure::Isolated { .. } | LocalStructure::OnComponent { .. } => true,
     })
 }
 
