@@ -40,8 +40,8 @@ impl Charts for OneChart {
     }
 }
 
-/// The rest of a segment, for each path from where it goes on: the tracker's time `1` is `t = from`
-/// there.
+/// The rest of a segment, for each path from the point where it goes on: time `1` of the tracker is
+/// `t = from`.
 pub(super) struct Rests<'a> {
     pub(super) segment: &'a Segment,
     pub(super) from: &'a [f64],

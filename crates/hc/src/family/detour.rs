@@ -1,4 +1,4 @@
-//! Detours: fibres of other parameters, from which a path reaches the target on another way.
+//! Detours: fibres for other parameters, from which paths reach the target by another way.
 //!
 //! A path that struggles passes close to a branch point. Paths from another fibre keep their
 //! distance from that point, and take as few steps as usual.
@@ -7,7 +7,7 @@ use super::fibre::Fibre;
 use crate::random::{Random, Stream};
 use num_complex::Complex64;
 
-/// Detours that are tried before paths get more steps.
+/// The number of detours that are tried before paths get more steps.
 pub(super) const DETOURS: u64 = 2;
 
 /// Parameters about as far from a fibre and a target as these are from each other; parameters that

@@ -7,7 +7,7 @@ use num_complex::Complex64;
 use poly::{Evaluate, Interpreter, Isa};
 use serde::Serialize;
 
-/// Many points in short.
+/// A short hash of many points.
 #[derive(Serialize)]
 pub(super) struct Points {
     count: usize,
@@ -27,7 +27,7 @@ impl Points {
     }
 }
 
-/// Work on a family, whose equations are this program, and settings on which its result depends.
+/// Work on a family whose equations are this program, with the settings on which the result depends.
 pub(super) fn job(what: &str, given: &poly::Family, program: &Interpreter, settings: &impl Serialize) -> Job {
     let systems = [&given.system, &given.nonzero].into_iter().chain(&given.symmetry);
     let mut parts: Vec<Vec<u8>> = systems.map(|system| system.to_string().into_bytes()).collect();
@@ -37,7 +37,8 @@ pub(super) fn job(what: &str, given: &poly::Family, program: &Interpreter, setti
     Job::new(what, system, settings)
 }
 
-/// The values of the equations somewhere: very long formulas are not shown in full.
+/// The values of the equations at one point. They tell equations apart whose formulas are too long to be
+/// shown in full.
 fn somewhere(program: &Interpreter) -> Vec<Complex64> {
     let mut random = Random::of(0, Stream::Member(0));
     let (x, p) = (random.normals(program.variables()), random.normals(program.parameters()));

@@ -160,7 +160,7 @@ impl Monodromy {
     }
 }
 
-/// [`fill`] of a program without symmetries, all of whose solutions are wanted.
+/// [`fill`] for a program without symmetries, all solutions of which are wanted.
 pub(crate) fn monodromy<E: Evaluate>(
     system: &E,
     start: &Fibre,
@@ -171,7 +171,7 @@ pub(crate) fn monodromy<E: Evaluate>(
     fill(searched, start, |_, _| true, &Symmetry::default(), options, Pieces::alone(monitor))
 }
 
-/// The fibre with the solutions to which others, for other parameters, lead; `None` if it has them all.
+/// The fibre with the solutions to which those of another fibre lead; `None` if it has them all.
 pub(super) fn joined<E: Evaluate>(
     searched: Searched<'_, E>,
     fibre: &Fibre,
@@ -246,7 +246,7 @@ pub(super) fn fill<E: Evaluate>(
 /// In loops with more paths than this, every side is recorded.
 const LONG: usize = 1 << 12;
 
-/// Loops times solutions at least, before a search ends without a new one.
+/// Least number of loops times solutions before a search ends for want of a new solution.
 const CHANCES: usize = 128;
 /// The ratio of one scale of loops to the next.
 const SCALE: f64 = 4.0;
@@ -254,8 +254,8 @@ const SCALE: f64 = 4.0;
 const LARGER: usize = 8;
 const SMALLER: usize = 12;
 
-/// The scale of the next loop: loops that keep to one scale may miss all branch points, so that of
-/// those after half the patience two are larger and one smaller in turn.
+/// The scale of the next loop. Loops of one scale may all miss the branch points; after half the
+/// patience, therefore, every two larger loops are followed by a smaller one.
 fn scale(idle: usize, patience: usize) -> f64 {
     let Some(k) = idle.checked_sub(patience.div_ceil(2)) else { return 1.0 };
     let turn = k / 3;
@@ -315,7 +315,7 @@ impl<E: Evaluate> Filling<'_, E> {
         paths
     }
 
-    /// Where the solutions come back to, that came round.
+    /// The points to which solutions come back after a loop.
     fn carried(&self, number: usize, corners: &[Vec<Complex64>; 2]) -> Vec<Complex64> {
         let n = self.fibre.dimension;
         let mut moving = self.fibre.tracked();
@@ -323,7 +323,7 @@ impl<E: Evaluate> Filling<'_, E> {
         for (side, corner) in [&corners[0], &corners[1], &self.fibre.parameters].into_iter().enumerate() {
             let step = Piece::Step(2 * number + side);
             let fits = |solutions: &Vec<Complex64>| solutions.len().is_multiple_of(n.max(1));
-            // What the last one brings is recorded with the loop.
+            // The solutions of the last side are recorded with the loop.
             let is_recorded = is_long && side < corners.len();
             let solutions = match is_recorded.then(|| self.pieces.take(step, fits)).flatten() {
                 Some(solutions) => solutions,
@@ -340,7 +340,7 @@ impl<E: Evaluate> Filling<'_, E> {
         moving.solutions
     }
 
-    /// Where solutions are for other parameters: those of paths that end well.
+    /// The solutions for other parameters at which paths end well.
     fn moved(&self, fibre: &Fibre, target: &[Complex64]) -> Vec<Complex64> {
         let options = &self.options.fibre;
         let (ends, _) = self.searched.track(fibre, target, options, self.pieces);
@@ -383,7 +383,7 @@ impl<E: Evaluate> Filling<'_, E> {
             first.push(self.fibre.len());
             self.fibre.solutions.extend_from_slice(x);
             for image in self.symmetry.orbit(&self.fibre.parameters, x, tolerance).into_iter().skip(1) {
-                // What is no solution is no image under a symmetry.
+                // A point that is no solution is no image under a symmetry.
                 let refined = refiner.refine(&self.fibre.parameters, &image);
                 if refined.accuracy < ACCURATE && relative_distance(&refined.point, &image) < tolerance {
                     self.fibre.solutions.extend(refined.point);

@@ -13,12 +13,12 @@ use num_complex::Complex64;
 pub(super) struct Orbits {
     /// The representatives as a fibre of their own.
     pub(super) tracked: Fibre,
-    /// The sizes of their orbits, ascending.
+    /// The sizes of the orbits, ascending.
     sizes: Vec<usize>,
 }
 
 impl Orbits {
-    /// Those of a fibre that notes them; `None` if it does not.
+    /// The orbits of a fibre that notes its representatives; `None` if it does not.
     ///
     /// # Errors
     /// If a map of the family takes one of its solutions to a point that is none.
@@ -53,7 +53,7 @@ impl Orbits {
             found.iter().map(|s| symmetry.orbit(target, &s.value, tolerance)).collect();
         let mut sizes: Vec<usize> = orbits.iter().map(Vec::len).collect();
         sizes.sort_unstable();
-        // With orbits of one size only, a path at infinity takes nothing from the comparison.
+        // If all orbits have one size, the comparison can do without the paths at infinity.
         let equal = self.sizes.first() == self.sizes.last();
         let generic = if equal { sizes.iter().all(|n| self.sizes.first() == Some(n)) } else { sizes == self.sizes };
         let points = || orbits.iter().flatten().map(Vec::as_slice).enumerate();

@@ -10,21 +10,21 @@ use poly::{ComplexDd, Evaluate, Scalar};
 
 /// Ratio of one scale that is tried to the next, and of the first to the natural size.
 const SCALE: f64 = 64.0;
-/// The square root of that ratio: between two scales.
+/// The square root of that ratio, which lies between two scales.
 const MIDDLE: f64 = 8.0;
-/// Scales tried; doubles hold no sums of numbers further apart.
+/// The number of scales that are tried; sums of numbers further apart do not fit in doubles.
 const SCALES: i32 = 9;
 /// A coordinate has left its tangent where the second of two equal steps differs from the first by
 /// this share.
 const BENT: f64 = 0.1;
 /// Steps by less than this share of a coordinate are rounding error of double-double.
 const STILL: f64 = 1e-24;
-/// Points of the fibre that are asked.
+/// The number of points of the fibre that are examined.
 const POINTS: usize = 8;
 
 /// The sizes on which parameters and unknowns vary about the points of a fibre.
 pub(super) struct Reach {
-    /// The sizes of parameters and points alone.
+    /// The natural sizes of parameters and points.
     pub(super) natural: Sizes,
     /// For each parameter, its natural size, or that size times 8 and a power of 64, such that half
     /// of the points are straight on an eighth of it, and not on eight times that. For each
@@ -74,7 +74,7 @@ impl Reach {
     }
 }
 
-/// Moves parameters, and points after them.
+/// Moves parameters, and points that follow them.
 struct Walker<'a, E: Evaluate> {
     refiner: Refiner<'a, E>,
     parameters: &'a [Complex64],
@@ -82,7 +82,7 @@ struct Walker<'a, E: Evaluate> {
 
 impl<E: Evaluate> Walker<'_, E> {
     /// The largest power of 64 up to which the `k`-th parameter may move, times its size, before the
-    /// last coordinate of the point has left its tangent, of those that ever do; `None` if none
+    /// last of the coordinates that ever leave their tangents has left its tangent; `None` if none
     /// does.
     fn scale(&mut self, k: usize, natural: f64, x: &[Complex64]) -> Option<i32> {
         let mut straight = vec![true; x.len()];
@@ -102,7 +102,7 @@ impl<E: Evaluate> Walker<'_, E> {
         last
     }
 
-    /// Which coordinates of the point keep to their tangents while the parameters move by that.
+    /// Which coordinates of the point stay on their tangents while the parameters move by this change.
     fn straight(&mut self, change: &[Complex64], x: &[Complex64]) -> Vec<bool> {
         let steps = self.steps(change, x);
         steps.iter().zip(x).map(|(step, x)| !leaves_its_tangent(step, x.norm())).collect()
@@ -113,7 +113,7 @@ impl<E: Evaluate> Walker<'_, E> {
         (0..self.parameters.len()).map(|j| Complex64::from(if j == k { size } else { 0.0 })).collect()
     }
 
-    /// What each coordinate moves by in two such steps of the parameters.
+    /// How far each coordinate moves in two such steps of the parameters.
     fn steps(&mut self, change: &[Complex64], x: &[Complex64]) -> Vec<[ComplexDd; 2]> {
         let [a, b, c] = [0.0, 1.0, 2.0].map(|s| {
             let moved: Vec<Complex64> = self.parameters.iter().zip(change).map(|(p, d)| p + d * s).collect();

@@ -10,7 +10,7 @@ use poly::Evaluate;
 /// remaining error is the square of the last correction, times the Lipschitz constant of Newton's
 /// method.
 const VAGUE: f64 = 1e-7;
-/// After that the last correction must be below this.
+/// After refinement the last correction must be below this.
 const SETTLED: f64 = 1e-10;
 
 /// Coordinates below this share of the largest, squared, are zero or suspicious.

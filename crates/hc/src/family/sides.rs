@@ -12,7 +12,7 @@ use poly::Evaluate;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// Fewer paths are done before other ranks are ready.
+/// Fewer paths than this are not shared out: they are done before other ranks are ready.
 const FEW: usize = 32;
 
 /// A system of a search, and which it is.
@@ -24,9 +24,9 @@ pub(super) struct Searched<'a, E> {
 /// The systems of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Which {
-    /// That of the family.
+    /// The system of the family.
     Given,
-    /// That of the trace test.
+    /// The system of the trace test.
     Enlarged,
 }
 

@@ -2,10 +2,10 @@
 
 use super::fibre::Fibre;
 
-/// Sizes that count as one.
+/// Sizes in this range count as one.
 const UNIT_SIZES: std::ops::RangeInclusive<f64> = 1.0 / 64.0..=64.0;
 
-/// The size on which random numbers are drawn beside numbers of that size: one unless they are much
+/// The natural size of numbers of this size, by which random numbers are drawn: one, unless they are much
 /// larger or smaller, as lengths in millimetres are.
 pub(super) fn natural_size(size: f64) -> f64 {
     if UNIT_SIZES.contains(&size) || !size.is_normal() { 1.0 } else { size }
@@ -19,7 +19,7 @@ pub(super) struct Sizes {
 }
 
 impl Sizes {
-    /// The natural ones of the parameters of a fibre, and of its largest solutions.
+    /// The natural sizes of the parameters of a fibre, and of its largest solutions.
     pub(super) fn natural(fibre: &Fibre) -> Sizes {
         Sizes {
             parameters: fibre.parameters.iter().map(|p| natural_size(p.norm())).collect(),

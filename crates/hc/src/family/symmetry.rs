@@ -5,7 +5,7 @@ use crate::refine::Refiner;
 use num_complex::Complex64;
 use poly::{CompileError, Evaluate, Interpreter, Isa, System};
 
-/// Points that an orbit may have; maps that make more are taken for no symmetry of finite order.
+/// Most points of an orbit; maps that make more are not taken for a symmetry of finite order.
 const LARGEST_ORBIT: usize = 10_000;
 
 /// Accuracy to which new solutions, and images of solutions, must be known.
@@ -21,7 +21,7 @@ pub(super) struct Symmetry {
 }
 
 impl Symmetry {
-    /// The group of maps that are given by one formula an unknown.
+    /// The group of maps, each given by one formula per unknown.
     pub(super) fn new(maps: &[System]) -> Result<Symmetry, CompileError> {
         Ok(Symmetry { maps: maps.iter().map(System::compile).collect::<Result<_, _>>()? })
     }

@@ -22,15 +22,15 @@ use crate::tracker::PathEnd;
 use num_complex::Complex64;
 use poly::{CompileError, ComplexDd, Evaluate, Interpreter, Scalar, System};
 
-/// A sum of points that moves off the straight by less than this share of their sizes moves straight:
-/// what is left is rounding error of double-double.
+/// A sum of points moves straight if it deviates from a straight line by less than this share of their
+/// sizes: the rest is rounding error of double-double.
 const STRAIGHT: f64 = 1e-26;
 
 /// The trace test of a fibre of `system`.
 ///
-/// The line and the hypersurface move on the natural sizes of parameters and unknowns, unless the
-/// family looks simpler there than it is; where that shows nothing, as far as single parameters
-/// have to move until they matter. Each of these has three parts of pieces.
+/// The line and the hypersurface move by the natural sizes of parameters and unknowns, unless the family
+/// looks simpler on that scale than it is. If the test shows nothing, they move as far as single
+/// parameters have to move until they matter. Each of the two tests has three parts of pieces.
 pub(super) fn trace_test(
     system: &System,
     fibre: &Fibre,
@@ -77,7 +77,7 @@ fn on_sizes<E: Evaluate>(
     let shares = sizes.unknowns.iter().map(|size| 1.0 / size);
     let scales = sizes.parameters.iter().copied().chain(shares).chain([1.0]);
     parameters.extend(random.normals(m + n + 1).into_iter().zip(scales).map(|(z, scale)| z * scale));
-    // It has so few digits that its multiples are equidistant to the last bit.
+    // The step has so few digits that its multiples are equidistant to the last bit.
     let tau = random.short_unit();
     let at = |factor: f64| {
         let mut p = parameters.clone();
@@ -123,7 +123,7 @@ fn on_sizes<E: Evaluate>(
     test
 }
 
-/// `F(x; p + lambda v) = 0`, `(a x - c) lambda = tau`; `None` where that is no system.
+/// `F(x; p + lambda v) = 0`, `(a x - c) lambda = tau`; `None` if this is no system.
 pub(super) fn enlarge(system: &System) -> Result<Option<Interpreter>, CompileError> {
     let enlarged = System::build(|s| {
         // Names cannot clash: those of the system are not used.
@@ -142,9 +142,9 @@ pub(super) fn enlarge(system: &System) -> Result<Option<Interpreter>, CompileErr
     enlarged.ok().map(|enlarged| enlarged.compile()).transpose()
 }
 
-/// How far the sum of the points of three fibres at equal distances, in the same order, moves off the
-/// straight: the largest of the first `n` coordinates', each relative to what the single points move
-/// off it. That does not depend on the scale, nor on how far the points move.
+/// How far the sum of the points of three fibres at equal distances, in the same order, deviates from a
+/// straight line: the largest deviation among the first `n` coordinates, each relative to the deviations
+/// of the single points. It depends neither on the scale nor on how far the points move.
 pub(crate) fn deviation<E: Evaluate>(system: &E, fibres: &[&Fibre; 3], n: usize) -> f64 {
     let zero = ComplexDd::from(Complex64::default());
     let mut refiner = Refiner::new(system);

@@ -41,7 +41,7 @@ pub(crate) fn track_fibre_watched<E: Evaluate>(
     track_fibre_led(system, fibre, target, options, monitor, None)
 }
 
-/// [`track_fibre_watched`], by all ranks if there is one who leads them.
+/// [`track_fibre_watched`], by all ranks if this one leads them.
 pub(super) fn track_fibre_led<E: Evaluate>(
     system: &E,
     fibre: &Fibre,
@@ -176,7 +176,7 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
         self.track_led(fibre, target, options, size, enough, None)
     }
 
-    /// [`track_until`](Self::track_until); in one chart by all ranks, if there is one who leads them.
+    /// [`track_until`](Self::track_until); in one chart by all ranks, if this one leads them.
     fn track_led(
         &mut self,
         fibre: &Fibre,
@@ -211,7 +211,7 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
         (PathCounts { retracked: outcome.retracked, ..self.counts(failed) }, found)
     }
 
-    /// How the paths of the last call ended, `failed` of which are lost.
+    /// How the paths of the last call ended; `failed` of them are lost.
     pub fn counts(&self, failed: usize) -> PathCounts {
         let (tracked, at_infinity) = (self.paths.len(), self.paths.count(PathEnd::AtInfinity));
         let finite = tracked.saturating_sub(at_infinity + failed);

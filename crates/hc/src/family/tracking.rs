@@ -21,8 +21,8 @@ const CARRIED: f64 = 1e-8;
 /// More lost paths than this tell of a degenerate member of the family rather than of bad luck.
 const BAD_LUCK: usize = 4;
 
-/// In several charts: of so many lost paths a level of more than [`LONG`] steps in all brings back
-/// one at least, or there is no other level; of fewer it may bring back none.
+/// In several charts, a level of more than [`LONG`] steps in all has to bring back at least one in so many
+/// lost paths, or no other level follows. If fewer paths are lost, it may bring back none.
 const WORTHWHILE: usize = 8;
 const LONG: usize = 100_000;
 
@@ -50,7 +50,7 @@ pub(super) struct Scratch<'a, E: Evaluate> {
 }
 
 impl<'a, E: Evaluate> Scratch<'a, E> {
-    /// For so many paths of a fibre.
+    /// Memory for so many paths of a fibre.
     pub(super) fn new(system: &'a E, lanes: Lanes<'a, E>, fibre: &Fibre, paths: usize) -> Self {
         let dimension = fibre.dimension;
         Scratch {
@@ -100,12 +100,12 @@ impl<E: Evaluate> Lanes<'_, E> {
 pub(super) struct FibreTracking<'r, C, U> {
     pub(super) charts: &'r C,
     pub(super) fibre: &'r Fibre,
-    /// The way from there to the target in chart 0.
+    /// The way from the fibre to the target in chart 0.
     pub(super) segment: &'r Segment,
     pub(super) target: &'r [Complex64],
     pub(super) options: &'r FibreOptions,
     pub(super) monitor: &'r Monitor,
-    /// The ends so far.
+    /// The ends that are known so far.
     pub(super) paths: &'r mut PathSet,
     pub(super) enough: U,
     /// Steps of all paths before the last level.
@@ -182,7 +182,7 @@ where
     }
 }
 
-/// In one chart: in several, rounds go on from where paths broke off.
+/// Only rounds in one chart are shared: in several charts, they go on from where paths broke off.
 impl<E, C, U> Shareable for FibreWork<'_, '_, E, C, U>
 where
     E: Evaluate,
@@ -261,7 +261,8 @@ fn is_broken_off(result: &PathResult) -> bool {
     matches!(result.end, PathEnd::MaxSteps | PathEnd::StepTooSmall | PathEnd::AccuracyLimit) && result.t > 0.0
 }
 
-/// The steps of a level; in several charts so many more that a path gets farther with shorter ones.
+/// The number of steps of a level; in several charts it grows so that a path gets farther with shorter
+/// steps.
 fn stricter<C: Charts>(settings: &TrackerOptions, level: u32) -> TrackerOptions {
     if level == 0 {
         return settings.clone();

@@ -70,7 +70,7 @@ impl<T: Integer> Cell<T> {
         self.bounds.copy_from_slice(&other.bounds);
     }
 
-    /// This cell in integers of another size, if they hold it.
+    /// This cell in integers of another size, if it fits.
     pub(super) fn converted<U: Integer>(&self, points: &Points<U>) -> Option<Cell<U>> {
         let convert = |v: &T| U::narrow(v.wide());
         let bounds = self.bounds.iter().map(convert).collect::<Option<Vec<U>>>()?;
@@ -163,8 +163,8 @@ impl<T: Integer> Cell<T> {
         Ok(())
     }
 
-    /// Renumbers the points of configuration `k`, all of its support, without the corners of the
-    /// simplex.
+    /// Renumbers the points of configuration `k`, all of which belong to its support, without the corners of
+    /// the simplex.
     pub(super) fn leave(&mut self, points: &Points<T>, k: usize) {
         let corners = points.n as u32 + 1;
         for p in self.pairs[k].iter_mut() {

@@ -26,7 +26,7 @@ pub(super) struct Points<T> {
     /// `coordinates[l * stride + p]`, the stride rounded up to whole vectors.
     coordinates: Vec<T>,
     pub(super) stride: usize,
-    /// Coordinates of each point that are not zero, and where those of each point begin.
+    /// The nonzero coordinates of each point, and where they begin.
     terms: Vec<(u32, T)>,
     first_term: Vec<usize>,
     /// Duals stay below this, so that their inner products with differences of points stay below
@@ -38,7 +38,7 @@ pub(super) struct Points<T> {
 }
 
 impl<T: Integer> Points<T> {
-    /// From supports whose least exponents are zero; `None` if they do not fit.
+    /// The points of supports whose least exponents are zero; `None` if the integers are too small.
     pub(super) fn new(supports: &[Vec<Vec<i64>>]) -> Option<Self> {
         let n = supports.len();
         let mut first = vec![0];

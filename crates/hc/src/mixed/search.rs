@@ -21,8 +21,8 @@ pub(super) trait Sink: Send {
     fn take<T: Integer>(&mut self, cell: &Cell<T>) -> Result<(), Overflow>;
 }
 
-/// A [`Sink`] for cells of one size of integers, of which the search need not know more: it is
-/// compiled once for each size.
+/// A [`Sink`] for cells of one size of integers. The search knows nothing else of its sink, so that it is
+/// compiled only once for each size.
 trait Take<T> {
     fn take_cell(&mut self, cell: &Cell<T>) -> Result<(), Overflow>;
 }
@@ -52,7 +52,7 @@ pub(super) struct SubtreeRoot {
 
 /// Cells that a task visits before it hands over what is left: about a millisecond.
 const BUDGET: usize = 1 << 12;
-/// The same where the tree is divided, so that subtrees are of its upper part.
+/// The same limit while the tree is divided, so that the subtrees begin high up.
 const SMALL_BUDGET: usize = 1 << 5;
 
 impl SubtreeRoot {
@@ -63,7 +63,7 @@ impl SubtreeRoot {
         Ok(SubtreeRoot { stage: 0, pending: Pending::Enter, cell })
     }
 
-    /// Visits so many cells. Returns the subtrees that are left.
+    /// Visits up to `budget` cells. Returns the subtrees that are left.
     fn run<S: Sink>(self, isa: Isa, space: &Space, budget: usize, sink: &mut S) -> Result<Vec<SubtreeRoot>, Overflow> {
         let SubtreeRoot { stage, pending, cell } = self;
         match cell {
@@ -110,7 +110,7 @@ pub(super) fn search_in<S: Sink>(
 }
 
 /// Divides the tree into at least so many subtrees, unless it is smaller; cells that are found on the way
-/// go to the sink. It is divided alike wherever this is done.
+/// go to the sink. The division is the same on every machine.
 ///
 /// # Errors
 /// Those of [`search`].
@@ -222,7 +222,7 @@ impl<'a, T: Size> Subtree<'a, T> {
         Ok(())
     }
 
-    /// Enters the stage; whether the cell is still this task's.
+    /// Enters the stage; returns whether the cell still belongs to this task.
     fn enter(&mut self) -> Result<bool, Overflow> {
         if self.cell.enter(self.points, self.stage).is_err() {
             self.promote(Pending::Enter)?;
@@ -231,7 +231,7 @@ impl<'a, T: Size> Subtree<'a, T> {
         Ok(true)
     }
 
-    /// One cell onwards; whether there is one.
+    /// Moves on to the next cell; returns whether there is one.
     #[inline(always)]
     fn step(&mut self) -> Result<bool, Overflow> {
         let n = self.points.n;

@@ -8,11 +8,11 @@ use crate::monitor::Monitor;
 use poly::simd::Isa;
 use std::sync::OnceLock;
 
-/// The supports in the sizes of integers that hold them, and where to go.
+/// The supports in the sizes of integers that hold them, and the lifting that is sought.
 pub(super) struct Space {
     pub(super) supports: Vec<Vec<Vec<i64>>>,
     small: Option<Points<i32>>,
-    /// Made when they are needed.
+    /// Made when it is needed.
     medium: OnceLock<Option<Points<i64>>>,
     large: OnceLock<Option<Points<i128>>>,
     /// The lifting of each point, negated; without one the cells of the last stage are what is
@@ -60,7 +60,7 @@ pub(super) enum AnyCell {
 
 /// One of the sizes; a cell that outgrows it goes on in the next.
 pub(super) trait Size: Integer {
-    /// The next size, of the last one itself.
+    /// The next size; the last size is its own next.
     type Next: Size;
     /// Whether there is no larger size.
     const LAST: bool;

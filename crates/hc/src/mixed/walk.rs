@@ -18,7 +18,7 @@ use std::cmp::Ordering;
 pub(super) enum Step {
     /// It arrives at infinity.
     Arrived,
-    /// At this column it ends, for these cells.
+    /// It ends at this column, with these of the two cells behind as its children.
     Ends { column: Column, children: [bool; 2] },
 }
 
@@ -237,8 +237,8 @@ fn entry<T: Integer>(points: &Points<T>, stage: usize, cell: &Cell<T>, column: C
     T::difference(points.value(dual, stage, column), points.value(dual, stage, base))
 }
 
-/// Order at the columns of configuration `j` of two circuits, at least one of them of a column of
-/// that configuration.
+/// Order of two circuits at the columns of configuration `j`, to which the column of at least one of
+/// them belongs.
 fn own_order<T: Integer>(
     cell: &Cell<T>,
     j: usize,

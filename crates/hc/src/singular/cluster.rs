@@ -19,12 +19,12 @@ type Digits = ComplexMulti<8>;
 /// are read off.
 const ORDERS: [usize; 6] = [2, 3, 4, 6, 8, 12];
 const TOLERANCES: [f64; 6] = [-40.0, -30.0, -20.0, -13.0, -10.0, -6.5];
-/// How many unknowns are left in these equations at most.
+/// Most unknowns that may be left in the equations of a cluster.
 const UNKNOWNS: usize = 5;
 /// A cluster is at most this far from the end of a path, a logarithm to base 2, and this wide.
 const NEAR: f64 = -10.0;
 const WIDEST: f64 = -7.0;
-/// Solutions in one unknown are sought by this many orders more than in several.
+/// The series has this many orders more where only one unknown is left.
 const SINGLE: usize = 24;
 /// Terms that are smaller than this share of the largest (a logarithm to base 2) do not matter for
 /// starts of Newton's method.
@@ -46,7 +46,7 @@ pub(crate) struct ClusterEquations<'a> {
     pub(crate) polynomials: Vec<Polynomial<Exact>>,
 }
 
-/// What the given equations have at a solution of those of a [`ClusterEquations`].
+/// What the given equations have at a solution of [`ClusterEquations`].
 pub(crate) struct ClusterSolution {
     pub(crate) structure: LocalStructure,
     /// A regular solution to all digits.
@@ -104,8 +104,8 @@ impl<'a> ClusterEquations<'a> {
         self.given.spend(products);
     }
 
-    /// Adds what the given equations have at a solution of those of the cluster at which `paths` paths
-    /// end, if it is not found already.
+    /// Adds what the given equations have at a `solution` of the equations of the cluster, at which
+    /// `paths` paths end, unless it is found already.
     pub(crate) fn add(&self, found: &mut Vec<ClusterSolution>, solution: &[Complex64], paths: usize, most: usize) {
         let unit = |z: &Complex64| Digits::from_c64(*z).shifted(self.size);
         let start = self.reduced.at(&solution.iter().map(unit).collect::<Vec<_>>());
@@ -133,9 +133,9 @@ impl<'a> ClusterEquations<'a> {
     }
 }
 
-/// The logarithm to base 2 of about how far the solutions around the centre are from it: where lower
-/// terms of some equation are as large as those that are largest further outside. `None` where there
-/// is no such place: the equations have a multiple solution, or no cluster.
+/// The logarithm to base 2 of about how far the solutions of the cluster are from its centre: at that
+/// distance, lower terms of some equation are as large as those that are largest further outside. `None`
+/// if there is no such distance: the equations have a multiple solution, or no cluster.
 fn size(reduced: &Reduced<Digits>) -> Option<i64> {
     let order = reduced.basis.order();
     let mut size = f64::NEG_INFINITY;

@@ -19,7 +19,7 @@ use num_complex::Complex64;
 pub(crate) enum NewtonEnd<S> {
     /// At a solution.
     Solution(DeflatedPoint<S>),
-    /// At a point that is none, though it is determined: between several.
+    /// At a point that the equations determine but that is no solution: it lies between several.
     Between,
     Nowhere,
 }
@@ -50,7 +50,7 @@ pub(crate) struct DeflatedPoint<S> {
 /// Numbers whose logarithm to base 2 is at most this share of the digits count as zero at a refined
 /// point.
 pub(crate) const ZERO: f64 = -0.5;
-/// Those from this share on do not; what lies between is not clear.
+/// Numbers from this share of the digits on count as nonzero; what lies between is not clear.
 pub(crate) const CLEAR: f64 = -0.27;
 /// Equations at a refined point are this small at most, relative to their terms.
 const SOLVED: f64 = -0.58;
@@ -86,7 +86,7 @@ struct Step<S> {
     point: Vec<S>,
     profile: Profile,
     accepted: f64,
-    /// The largest of what was taken as zero.
+    /// The logarithm to base 2 of the largest number that was taken as zero.
     rejected: f64,
 }
 
@@ -114,7 +114,7 @@ pub(crate) fn deflated<S: Number>(
     }
 }
 
-/// The same, with what else may be there.
+/// Where the iteration of [`deflated`] ends.
 pub(crate) fn ending<S: Number>(
     local: &LocalEquations<'_, S>,
     start: &[S],
@@ -353,7 +353,7 @@ impl<S: Number> Reduced<S> {
 }
 
 /// Solves equations in series over `basis` for the unknowns of the pivots of their linear part:
-/// those as series over `inner` in the others, and the equations that are left.
+/// these unknowns as series over `inner` in the others, and the equations that are left.
 fn implicit<S: Number>(
     basis: &Basis,
     equations: &[Vec<S>],
@@ -377,8 +377,8 @@ fn implicit<S: Number>(
     (map, others)
 }
 
-/// Takes from the unknowns of the pivots what solves the linear part for these values of the
-/// pivots' equations, a series each.
+/// Subtracts from the unknowns of the pivots the solution of the linear part for these values of the
+/// pivots' equations, each of which is a series.
 fn correct<S: Number>(unknowns: &mut [Vec<S>], values: &[Vec<S>], pivots: &Elimination<S>) {
     let length = values.first().map_or(0, Vec::len);
     let height = pivots.rows.iter().max().map_or(0, |m| m + 1);

@@ -16,13 +16,13 @@ use super::series::Basis;
 /// What the functionals up to an order tell.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Count {
-    /// There are so many in all; the solution is isolated.
+    /// The number of all functionals; the solution is isolated.
     All(usize),
-    /// There are more than the bound.
+    /// There are more functionals than the bound.
     More,
-    /// As many orders are not enough.
+    /// More orders are needed.
     Unfinished,
-    /// Numbers that are neither clearly zero nor clearly not.
+    /// Some numbers are neither clearly zero nor clearly nonzero.
     Unclear,
 }
 
@@ -45,7 +45,7 @@ pub(crate) fn count<S: Number>(basis: &Basis, equations: &[Vec<S>], bound: usize
 /// Functionals found so far.
 struct Space<'a, S> {
     basis: &'a Basis,
-    /// By their coefficients at the monomials of the basis; the first is the value at the origin.
+    /// Their coefficients at the monomials of the basis; the first functional is the value at the origin.
     functionals: Vec<Vec<S>>,
     /// `lowered[i][b]`: functional `b` with its exponents of variable `i` lowered, in terms of the
     /// functionals.
@@ -86,7 +86,7 @@ impl<S: Number> Space<'_, S> {
                 |integral: &Vec<S>| integral.iter().zip(equation).fold(S::zero(), |sum, (a, b)| S::mul_add(a, b, &sum));
             rows.push(integrals.iter().map(value).collect());
         }
-        // Those that are known already are left out.
+        // Functionals that are known already are left out.
         for b in 1..m {
             let known = |k: usize| self.lowered[k / m][b][k % m].conjugate();
             rows.push((0..n * m).map(known).collect());
@@ -128,8 +128,8 @@ impl<S: Number> Space<'_, S> {
         Some(vectors.len())
     }
 
-    /// What is lowered in variable `i` gives the functional, as far as monomials go whose last
-    /// variable is that one.
+    /// The functional that gives this one when its exponents of variable `i` are lowered, as far as
+    /// monomials go whose last variable is `i`.
     fn integral(&self, i: usize, functional: &[S], order: usize) -> Vec<S> {
         let mut integral = vec![S::zero(); self.basis.count(order)];
         for (k, c) in functional.iter().enumerate() {

@@ -19,9 +19,9 @@ pub(crate) struct Elimination<S> {
     pub(crate) columns: Vec<usize>,
     /// The logarithms to base 2 of the pivots, in their order.
     pub(crate) sizes: Vec<f64>,
-    /// The least of them.
+    /// The least of these logarithms.
     pub(crate) smallest: f64,
-    /// The same of the largest entry that is left.
+    /// The logarithm to base 2 of the largest entry that is left.
     pub(crate) rest: f64,
     /// The factors, by rows.
     factors: Vec<Vec<S>>,
@@ -29,8 +29,8 @@ pub(crate) struct Elimination<S> {
 }
 
 impl<S: Number> Elimination<S> {
-    /// Eliminates in a matrix by rows of `width` entries. What is no number ends it, with nothing
-    /// left that is clear.
+    /// Eliminates in a matrix that is given by rows of `width` entries. An entry that is not a number
+    /// ends the elimination, with [`rest`](Elimination::rest) not a number.
     pub(crate) fn new(mut matrix: Vec<Vec<S>>, width: usize, stop: Stop) -> Elimination<S> {
         let height = matrix.len();
         let (mut rows, mut columns) = (Vec::new(), Vec::new());

@@ -11,8 +11,8 @@ use num_traits::Zero;
 
 /// Monomials at most: those up to a degree in the unknowns that the hyperplanes leave.
 const MONOMIALS: usize = 4_400;
-/// Products modulo the prime at most: what shows that cyclic-9 has nothing of dimension three, in some
-/// seconds, is less.
+/// Products modulo the prime at most. The proof that cyclic-9 has nothing of dimension three needs
+/// fewer, and takes some seconds.
 const WORK: u64 = 4_000_000_000;
 /// Exponents at most.
 const EXPONENT: u32 = 64;
@@ -20,11 +20,11 @@ const EXPONENT: u32 = 64;
 /// Whether it is shown that the equations have no solution on `dimension` general hyperplanes: then
 /// no solution set has that dimension or a higher one.
 ///
-/// Multiples of the equations up to a degree are combined to the constant one, in as many unknowns
-/// fewer (Lazard 1983; with what falls in degree as further equations, Ding et al. 2008). It is done
-/// modulo a prime of 64 bits, with hyperplanes that are random there. What holds there holds for
-/// general hyperplanes unless the prime is one of the few that divide certain determinants: as with
-/// all that is random here, wrong with a probability that is nearly, not quite, zero.
+/// The hyperplanes eliminate `dimension` unknowns. Multiples of the equations up to a degree are then
+/// combined to the constant one (Lazard 1983; combinations that fall in degree are further equations,
+/// Ding et al. 2008). The arithmetic is modulo a prime of 64 bits, and the hyperplanes are random there.
+/// A proof modulo the prime is one for general hyperplanes, unless the prime is one of the few that
+/// divide certain determinants; the probability of this is tiny, but not zero.
 pub(crate) fn is_missed(given: &Given, dimension: usize, monitor: &Monitor) -> bool {
     let Some(equations) = given.modular(EXPONENT) else { return false };
     let Some(affine) = affine(&equations, given.unknowns(), dimension) else { return true };
@@ -34,8 +34,8 @@ pub(crate) fn is_missed(given: &Given, dimension: usize, monitor: &Monitor) -> b
     highest.is_some_and(|highest| Macaulay::new(&equations, &affine, highest, monitor).reaches_one().unwrap_or(false))
 }
 
-/// The unknowns as affine forms in those that linear equations and random hyperplanes leave: their
-/// coefficients, then the constant. `None` if these have no solution.
+/// The unknowns as affine forms in the unknowns that linear equations and random hyperplanes leave:
+/// the coefficients, then the constant. `None` if these equations and hyperplanes have no solution.
 fn affine(equations: &[Modular], unknowns: usize, dimension: usize) -> Option<Vec<Vec<Residue>>> {
     let mut rows = Echelon::new(unknowns + 1);
     for terms in equations {
@@ -66,15 +66,15 @@ struct Macaulay<'a> {
     monomials: Monomials,
     monitor: &'a Monitor,
     equations: Vec<Equation>,
-    /// By their highest monomials, which have the coefficient one and come last.
+    /// Rows by their highest monomials, which have the coefficient one and come last.
     rows: Vec<Option<Vec<Residue>>>,
-    /// Whether no equation was left out since its degree is too high.
+    /// Whether no equation was left out because its degree is too high.
     is_whole: bool,
     work: u64,
 }
 
 struct Equation {
-    /// Its coefficients, up to that of its highest monomial.
+    /// The coefficients, up to that of the highest monomial.
     row: Vec<Residue>,
     degree: usize,
     /// The degree of the multiples that are next.
@@ -132,7 +132,7 @@ impl<'a> Macaulay<'a> {
     /// Whether combinations of multiples are one; `None` where that takes too much work.
     fn reaches_one(mut self) -> Option<bool> {
         for degree in 0..=self.monomials.counts.len() - 1 {
-            // Those of the least degree first.
+            // Multiples of the least degree come first.
             while let Some(which) = (0..self.equations.len()).min_by_key(|&i| self.equations[i].next) {
                 let of = self.equations[which].next;
                 if of > degree {
@@ -147,7 +147,7 @@ impl<'a> Macaulay<'a> {
                     if place == 0 {
                         return Some(true);
                     }
-                    // What falls in degree is an equation of its own, with multiples of less degree.
+                    // A row that falls in degree is an equation of its own, with multiples of lower degree.
                     let degree = self.degree(place);
                     if degree < of {
                         self.equations.push(Equation { row: row.clone(), degree, next: degree + 1 });
@@ -155,7 +155,7 @@ impl<'a> Macaulay<'a> {
                     self.rows[place] = Some(row);
                 }
             }
-            // Where all monomials of a degree are leading ones so are all that are higher, and one is not.
+            // If all monomials of a degree are leading ones, so are all higher ones, but the constant one is not.
             let first = if degree == 0 { 0 } else { self.monomials.counts[degree - 1] };
             let full = self.rows[first..self.monomials.counts[degree]].iter().all(Option::is_some);
             if full && self.is_whole && self.equations.iter().all(|e| e.degree <= degree) {
@@ -177,7 +177,8 @@ impl<'a> Macaulay<'a> {
         multiple
     }
 
-    /// A row with a highest monomial that none before has; `None` inside if nothing is left of it.
+    /// The row, reduced until no row before has its highest monomial. The inner `None` means that nothing
+    /// is left of the row, the outer one that the reduction would take too much work.
     fn reduced(&mut self, mut row: Vec<Residue>) -> Option<Option<Vec<Residue>>> {
         loop {
             row = trimmed(row);

@@ -28,7 +28,7 @@ pub(crate) struct Given {
     monitor: Monitor,
 }
 
-/// What does not change with the work.
+/// The equations themselves, which clones of [`Given`] share.
 struct ExactEquations {
     unknowns: usize,
     /// Logarithms to base 2 of the units of the unknowns.
@@ -57,7 +57,7 @@ const SMALL: f64 = 1e-2;
 
 /// A precision that the equations can be had in.
 pub(crate) trait Precision: Number {
-    /// Where its coefficients are kept.
+    /// Where the coefficients in this precision are kept.
     fn kept(given: &Given) -> &OnceLock<Vec<Vec<Self>>>;
 }
 
@@ -129,12 +129,12 @@ impl Given {
         Given { monitor: monitor.quiet(), ..self }
     }
 
-    /// The same equations, with work of their own of which there may be so much.
+    /// The same equations, with a work count of their own and this limit.
     pub(crate) fn limited(&self, limit: u64) -> Given {
         Given { exact: self.exact.clone(), spent: Arc::default(), limit, monitor: self.monitor.clone() }
     }
 
-    /// Whether all the work is done that may be done, or it is cancelled.
+    /// Whether the limit of the work is reached, or the work is cancelled.
     pub(crate) fn is_exhausted(&self) -> bool {
         self.spent() > self.limit || self.monitor.is_cancelled()
     }
@@ -192,7 +192,7 @@ impl Given {
         self.spent.load(Ordering::Relaxed)
     }
 
-    /// Notes as much work.
+    /// Adds so many products of complex double-doubles to the work.
     pub(crate) fn spend(&self, products: u64) {
         self.spent.fetch_add(products, Ordering::Relaxed);
     }
@@ -236,7 +236,8 @@ impl Given {
         self.near_within(point, SMALL)
     }
 
-    /// The same where coordinates below this share of the largest, or of one, may be zero in truth.
+    /// [`near`](Given::near) a point of which coordinates below this share of the largest, or of one, may
+    /// be zero in truth.
     pub(crate) fn near_within<S: Precision>(&self, point: &[Complex64], small: f64) -> LocalEquations<'_, S> {
         let units = units(point, small);
         // By how much coordinates exceed their units, as logarithms to base 2. Half a unit is much in
@@ -275,7 +276,7 @@ pub(crate) struct LocalEquations<'a, S> {
 }
 
 impl<'a, S: Number> LocalEquations<'a, S> {
-    /// The same in doubles.
+    /// These equations in doubles.
     pub(crate) fn rounded(&self) -> LocalEquations<'a, Complex64> {
         let coefficients = self.coefficients.iter().map(|row| row.iter().map(S::to_c64).collect()).collect();
         LocalEquations { given: self.given, units: self.units.clone(), coefficients }
@@ -286,12 +287,12 @@ impl<'a, S: Number> LocalEquations<'a, S> {
         self.given.len()
     }
 
-    /// Whether all the work is done that may be done.
+    /// Whether the limit of the work is reached, or the work is cancelled.
     pub(super) fn is_exhausted(&self) -> bool {
         self.given.is_exhausted()
     }
 
-    /// Notes as much work, in products.
+    /// Adds so many products to the work.
     pub(crate) fn spend(&self, products: f64) {
         // As measured, up to 308 digits.
         let weight = (S::BITS / ComplexDd::BITS).powf(1.25);

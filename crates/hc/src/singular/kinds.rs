@@ -14,7 +14,7 @@ pub(crate) enum LocalStructure {
         /// The largest value of an equation there, relative to the sizes of its terms.
         residual: f64,
     },
-    /// An isolated solution at which the Jacobian has not full rank.
+    /// An isolated solution at which the Jacobian does not have full rank.
     Isolated {
         /// The dimension of the local ring.
         multiplicity: usize,
@@ -33,14 +33,14 @@ pub(crate) enum LocalStructure {
     },
     /// The given equations have no solution nearby.
     NotASolution,
-    /// None of these can be told.
+    /// It is not known which of these the point is.
     Unresolved(Why),
 }
 
 /// How much is done to find the local structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Effort {
-    /// What tells nearly all ends, to 77 digits.
+    /// To 77 digits, which is enough for nearly all ends.
     Little,
     /// To 308 digits.
     Much,

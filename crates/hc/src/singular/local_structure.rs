@@ -26,7 +26,7 @@ const MANY_FUNCTIONALS: usize = 80;
 /// the error of the end.
 const NEAR: f64 = 1e-7;
 const NEAR_ERRORS: f64 = 1e2;
-/// The same for singular ones, whose ends are less accurate.
+/// The same distance for singular solutions, whose ends are less accurate.
 const NEAR_SINGULAR: f64 = 1e-3;
 /// Relative values of equations from which on a point does not solve them.
 const NOT_ZERO: f64 = 1e-4;
@@ -34,8 +34,8 @@ const NOT_ZERO: f64 = 1e-4;
 /// Coordinates below this share of the largest may really be zero, whatever their stated error.
 const SURELY_ZERO: f64 = 1e-5;
 
-/// The local structure at a point near which `paths` paths end. The relative error of the point is at most this, as
-/// far as is known. At most `most` paths may end at any one point.
+/// The local structure at a point near which `paths` paths end. As far as is known, the relative error
+/// of the point is at most `error`. At most `most` paths may end at any one point.
 pub(crate) fn local_structure(
     given: &Given,
     point: &[Complex64],
@@ -89,7 +89,7 @@ pub(crate) fn local_structure(
     if effort == Effort::Little || given.is_exhausted() {
         return LocalStructure::Unresolved(why);
     }
-    // What only very many digits tell.
+    // Some regular solutions show only with very many digits.
     regular::<ComplexMulti<16>>(given, point, error).unwrap_or(LocalStructure::Unresolved(why))
 }
 
@@ -141,14 +141,14 @@ pub(crate) fn is_moved(given: &Given, point: &[Complex64]) -> bool {
     !corrected.is_some_and(|corrected| relative_distance(point, &corrected) <= STEADY)
 }
 
-/// A step of Newton's method, if all pivots of the Jacobian are larger than that (logarithm to
+/// A step of Newton's method, if all pivots of the Jacobian are larger than `smallest` (a logarithm to
 /// base 2).
 fn newton<S: Number>(x: &[S], values: &[S], jacobian: Vec<Vec<S>>, smallest: f64) -> Option<Vec<S>> {
     let pivots = Elimination::new(jacobian, x.len(), Stop::Below(f64::NEG_INFINITY));
     (pivots.rank() == x.len() && pivots.smallest > smallest).then(|| pivots.newton_step(x, values))
 }
 
-/// The regular solution near a point, if there is one to one precision.
+/// The regular solution near a point, if there is one that numbers of this precision show.
 fn regular<S: Precision>(given: &Given, point: &[Complex64], error: f64) -> Option<LocalStructure> {
     regular_from(&given.near::<S>(point), given, point, error)
 }
@@ -156,7 +156,7 @@ fn regular<S: Precision>(given: &Given, point: &[Complex64], error: f64) -> Opti
 /// Coordinates of regular solutions have units of their own down to this share of the largest.
 const OWN_UNITS: f64 = 1e-14;
 
-/// The same by the equations near the point.
+/// The regular solution near a point, by the equations near it.
 fn regular_from<S: Precision>(
     local: &LocalEquations<'_, S>,
     given: &Given,
@@ -243,8 +243,8 @@ fn multiple<S: Precision>(
     Err(why)
 }
 
-/// The local structure at a point with zeros in place of small coordinates, if one of them may take any
-/// value whatever the nonzero coordinates are.
+/// The local structure at a point with zeros in place of small coordinates, if one of the small ones may
+/// take any value, whatever the nonzero coordinates are.
 fn on_axes(given: &Given, point: &[Complex64], error: f64) -> Option<LocalStructure> {
     let small = NEAR_SHEET_AT_MOST.max(NEAR_SHEET_ERRORS * error).min(NEAR_SINGULAR).log2();
     let local = given.near::<ComplexDd>(point);
@@ -265,8 +265,8 @@ fn on_axes(given: &Given, point: &[Complex64], error: f64) -> Option<LocalStruct
     Some(LocalStructure::OnComponent { dimension: zero.iter().filter(|z| !**z).count(), point: kept.collect() })
 }
 
-/// The local structure if zeros in place of small coordinates give an exact solution; nothing needs to be
-/// refined there.
+/// The local structure if zeros in place of small coordinates give an exact solution, which needs no
+/// refinement.
 fn at_zeros<S: Number>(local: &LocalEquations<'_, S>, start: &[S], limit: usize) -> Option<LocalStructure> {
     let snapped: Vec<S> = start.iter().map(|z| if z.log2() < NEAR_SINGULAR.log2() { S::zero() } else { *z }).collect();
     let (values, jacobian) = local.jacobian(&snapped);

@@ -153,7 +153,7 @@ pub(super) fn is_squarefree(whole: Vec<Residue>) -> bool {
     euclid(whole, slope).0.len() == 1
 }
 
-/// A greatest common divisor, not zero, and the resultant, by Euclid's algorithm.
+/// A greatest common divisor, which is not zero, and the resultant, by Euclid's algorithm.
 fn euclid(mut a: Vec<Residue>, b: Vec<Residue>) -> (Vec<Residue>, Residue) {
     let mut b = trimmed(b);
     let mut resultant = Residue(1);
@@ -168,8 +168,8 @@ fn euclid(mut a: Vec<Residue>, b: Vec<Residue>) -> (Vec<Residue>, Residue) {
             }
         }
         a = trimmed(a);
-        // res(a, b) = (-1)^(deg a deg b) lead(b)^(deg a - deg r) res(b, r), r the remainder; that of
-        // a constant is its power.
+        // res(a, b) = (-1)^(deg a deg b) lead(b)^(deg a - deg r) res(b, r) with the remainder r; if b is
+        // constant, it is b^(deg a).
         if degree > 0 {
             let lost = before + 1 - a.len().max(1);
             resultant *= leading.power(lost as u64);
@@ -196,12 +196,12 @@ pub(super) struct Echelon {
 }
 
 impl Echelon {
-    /// Without rows.
+    /// The form without rows.
     pub(super) fn new(width: usize) -> Echelon {
         Echelon { width, rows: Vec::new() }
     }
 
-    /// Adds a row of that width.
+    /// Adds a row as wide as the matrix.
     pub(super) fn add(&mut self, mut row: Vec<Residue>) {
         for (column, known) in &self.rows {
             reduce(&mut row, *column, known);
@@ -222,7 +222,7 @@ impl Echelon {
         (0..self.width).filter(|&k| !taken[k]).collect()
     }
 
-    /// The vector that all rows map to zero with a one in this column and zeros in the others
+    /// The vector that all rows map to zero, with a one in column `free` and zeros in the other columns
     /// without a pivot.
     pub(super) fn null_vector(&self, free: usize) -> Vec<Residue> {
         let mut vector = vec![Residue(0); self.width];
@@ -234,7 +234,7 @@ impl Echelon {
     }
 }
 
-/// Takes from a row as much of another, with a one in this column, as leaves a zero there.
+/// Subtracts a multiple of `other`, which has a one in this column, so that the row has a zero there.
 fn reduce(row: &mut [Residue], column: usize, other: &[Residue]) {
     let factor = row[column];
     if !factor.is_zero() {

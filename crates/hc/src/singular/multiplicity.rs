@@ -9,7 +9,7 @@ use std::collections::HashMap;
 /// An equation modulo the prime: the powers of unknowns and the coefficient of each term.
 pub(super) type Modular = Vec<(Vec<(usize, u32)>, Residue)>;
 
-/// Orders up to which functionals are sought: first the lower one, for which less is to be prepared.
+/// Orders up to which functionals are sought: the lower one first, because it needs less preparation.
 const LOW_ORDER: usize = 8;
 const HIGH_ORDER: usize = 128;
 /// Monomials at most.
@@ -17,22 +17,22 @@ const MONOMIALS: f64 = 20_000.0;
 /// Unknowns of the linear equations for the functionals of an order at most.
 const WIDTH: usize = 3_000;
 
-/// Times as many functionals as are expected at most are not looked at.
+/// The search ends with this many times the number of functionals that are expected at most.
 const BEYOND: usize = 2;
 
 /// The dimension of the local ring at a point, modulo the prime.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Multiplicity {
     Finite(usize),
-    /// By far more than was asked for, or more in all orders that are looked at.
+    /// The dimension is far larger than was asked for, or grows beyond that in all orders that are looked at.
     More,
     /// It would take too much work to tell.
     Unknown,
 }
 
-/// Finds that dimension, and whether it is more than `most`.
+/// Finds the dimension of the local ring, and whether it is more than `most`.
 ///
-/// The dual space is found order by order as numerically (Dayton & Zeng 2005; Mourrain 1997).
+/// The dual space is found order by order, as in floating point (Dayton & Zeng 2005; Mourrain 1997).
 pub(super) fn multiplicity(equations: &[Modular], point: &[Residue], most: usize) -> Multiplicity {
     let count = |order: usize| (1..=order).map(|k| (point.len() + k) as f64 / k as f64).product::<f64>();
     let Some(highest) = (1..=HIGH_ORDER).rev().find(|&order| count(order) <= MONOMIALS) else {
@@ -90,7 +90,7 @@ fn expansion(monomials: &Monomials, terms: &Modular, point: &[Residue]) -> Vec<R
     whole
 }
 
-/// The terms up to an order of `(z + w)^exponent` as a polynomial in `w` that are not zero.
+/// The nonzero terms of `(z + w)^exponent` as a polynomial in `w`, up to an order.
 fn binomial(z: Residue, exponent: u32, order: usize) -> Vec<(usize, Residue)> {
     let (mut choices, mut terms) = (Residue::one(), Vec::new());
     for e in 0..=exponent.min(order as u32) {
@@ -109,7 +109,7 @@ fn binomial(z: Residue, exponent: u32, order: usize) -> Vec<(usize, Residue)> {
 /// Functionals found so far.
 struct Dual<'a> {
     monomials: &'a Monomials,
-    /// By their coefficients at the monomials; the first is the value at the point.
+    /// Their coefficients at the monomials; the first functional is the value at the point.
     functionals: Vec<Vec<Residue>>,
     /// `lowered[b]`: functional `b` with its exponents of a variable lowered, in terms of the
     /// functionals; that of variable `i` and functional `a` at `i * width + a`, as far as they were
@@ -171,8 +171,8 @@ impl<'a> Dual<'a> {
         }
     }
 
-    /// What is lowered in variable `i` gives the functional, as far as monomials go whose last
-    /// variable is that one.
+    /// The functional that gives this one when its exponents of variable `i` are lowered, as far as
+    /// monomials go whose last variable is `i`.
     fn integral(&self, i: usize, functional: &[Residue]) -> Vec<(usize, Residue)> {
         let ends = |k: usize| self.monomials.exponents[k][i + 1..].iter().all(|&e| e == 0);
         let terms = functional.iter().enumerate().filter(|&(k, c)| !c.is_zero() && ends(k));

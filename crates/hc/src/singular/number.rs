@@ -9,11 +9,11 @@ pub(crate) trait Number: Scalar + Copy {
     /// Binary digits that a product keeps.
     const BITS: f64;
 
-    /// The logarithm of the larger part's size to base 2: negative infinity for zero, not a number
-    /// for what is none.
+    /// The logarithm to base 2 of the size of the larger part: negative infinity for zero, NaN if the
+    /// number is NaN.
     fn log2(&self) -> f64;
 
-    /// Whether this is zero.
+    /// Whether the number is zero.
     fn vanishes(&self) -> bool;
 
     /// `self * 2^k`
@@ -108,8 +108,8 @@ impl<const LIMBS: usize> Number for ComplexMulti<LIMBS> {
     }
 }
 
-/// The largest [`log2`](Number::log2) of some numbers: negative infinity for none, not a number if
-/// one is none.
+/// The largest [`log2`](Number::log2) of some numbers: negative infinity if there are none, NaN if one
+/// of them is NaN.
 pub(crate) fn largest<'a, S: Number>(numbers: impl IntoIterator<Item = &'a S>) -> f64 {
     let mut largest = f64::NEG_INFINITY;
     for number in numbers {

@@ -12,31 +12,33 @@ use num_traits::{ToPrimitive, Zero};
 use poly::Exact;
 use std::ops::Add;
 
-/// Ends may be this many times their error from the rational point, and are surely no nearer than
-/// the least; coordinates have denominators up to the last.
+/// An end may be as far from the rational point as this many times its error, in any case as far as
+/// `LEAST_ERROR`, and never farther than `LARGEST_ERROR`. Denominators are at most `DENOMINATOR`.
 const ERRORS: f64 = 10.0;
 const LEAST_ERROR: f64 = 1e-12;
 const LARGEST_ERROR: f64 = 1e-6;
 const DENOMINATOR: f64 = 1e4;
-/// The same for solutions of high multiplicity, the ends at which are less accurate than they seem.
+/// Distance and denominator for solutions of high multiplicity, at which ends are less accurate than
+/// they seem.
 const ROUGH_ERROR: f64 = 1e-3;
 const ROUGH_DENOMINATOR: f64 = 12.0;
 /// Sizes of coordinates at most.
 const SIZE: f64 = 1e9;
-/// As few functionals are those of an isolated solution however few the paths are.
+/// The local ring of an isolated solution may have this dimension, however few the paths are.
 const FEW: usize = 12;
 /// A primitive root of the prime.
 const GENERATOR: u32 = 7;
-/// Exponents at most: powers of exact numbers are as long.
+/// Exponents at most: the length of powers of exact numbers grows with them.
 const EXPONENT: u32 = 512;
-/// The local structure at a rational point near the end of a path, where that is a solution; `most` paths
-/// may end at any point.
+/// The local structure at a rational point near the end of a path, if that point is a solution; at most
+/// `most` paths may end at any one point.
 ///
 /// The dual space of the local ring is computed modulo a prime. Modulo a prime it is at least as
 /// large, in every order, as it is with exact numbers. So if it is finite the solution is isolated,
-/// and its multiplicity is at most that: less only if the prime divides one of the minors that
-/// matter. If it is larger than the number of paths, which is that of the solutions that an isolated one
-/// splits into, and grows on, the solution lies on a component, unless the prime divides such minors.
+/// and its multiplicity is at most its dimension: less only if the prime divides one of the minors that
+/// matter. An isolated solution splits into as many solutions as paths end there. So if the dimension
+/// grows beyond the number of paths, the solution lies on a component, unless the prime divides such
+/// minors.
 pub(super) fn at_rational(given: &Given, point: &[Complex64], error: f64, most: usize) -> Option<LocalStructure> {
     let tolerance = (ERRORS * error).clamp(LEAST_ERROR, LARGEST_ERROR);
     let rough = || within(given, point, ROUGH_ERROR, ROUGH_DENOMINATOR, most);
@@ -46,7 +48,8 @@ pub(super) fn at_rational(given: &Given, point: &[Complex64], error: f64, most: 
     }
 }
 
-/// The same for a rational point with such denominators at most that far; `None` if none is a solution.
+/// [`at_rational`] for a rational point within `tolerance`, with denominators up to `denominator`; `None`
+/// if it is no solution. The inner `None` means that its local structure would take too much work.
 fn within(
     given: &Given,
     point: &[Complex64],
@@ -84,7 +87,7 @@ fn within(
 }
 
 /// The local dimension at a point on a component, modulo the prime: the number of general hyperplanes
-/// through it in which it is isolated. Where that is not seen, one.
+/// through the point in which it is isolated. If no such number is found, one.
 fn dimension(mut equations: Vec<Modular>, point: &[Residue], most: usize) -> usize {
     for dimension in 1..point.len() {
         // Coefficients without a pattern.
@@ -108,7 +111,7 @@ fn rational(z: Complex64, unit: i64, tolerance: f64, denominator: f64) -> Option
     Some(Exact { re: near(re, tolerance, denominator)?, im: near(im, tolerance, denominator)? })
 }
 
-/// The same of a real number, by its continued fraction.
+/// The rational with the least denominator near a real number, by its continued fraction.
 fn near(x: f64, tolerance: f64, denominator: f64) -> Option<BigRational> {
     if x.is_nan() || x.abs() > SIZE {
         return None;

@@ -126,7 +126,7 @@ impl Basis {
         power
     }
 
-    /// The derivative by a variable, of an order less; that of a constant is none.
+    /// The derivative by a variable, of an order less; a constant has none.
     pub(crate) fn derivative<S: Number>(&self, a: &[S], variable: usize) -> Vec<S> {
         let order = self.order_of(a);
         if order == 0 {
@@ -147,7 +147,7 @@ impl Basis {
             let j = exponents.iter().rposition(|&e| e > 0).unwrap_or(0);
             let mut lower = exponents.clone();
             lower[j] -= 1;
-            // The monomial without its last variable stands before.
+            // The monomial without its last variable comes earlier in the list.
             let place = self.monomials.exponents[..monomials.len()].iter().rposition(|e| *e == lower).unwrap_or(0);
             monomials.push(S::mul(&monomials[place], &point[j]));
         }

@@ -15,16 +15,17 @@ const DOUBTFUL: f64 = -4.0;
 /// How far a point is moved, in units of the coordinates, and how often.
 const STRIDES: [f64; 2] = [0.25, 0.0625];
 const MOVES: u32 = 3;
-/// Where a set ends after all, equations are this small at most relative to their terms.
+/// A moved point is still on the set if equations, relative to their terms, are at most this large (a
+/// logarithm to base 2).
 const UNSEEN: f64 = -80.0;
 
 /// A solution on a set of positive dimension near `start`, at a distance of at most `near` (a
 /// logarithm to base 2), and how many of its unknowns are free: the dimension of the set.
 ///
 /// The point is refined with the ranks that are seen there, and moved along the solutions of the
-/// same ranks. At an isolated solution at which not more than `paths` paths end the equations
-/// cannot be as small as they are required to be where it leads: they grow with that power of the
-/// distance at most. `None` tells nothing.
+/// same ranks. Near an isolated solution at which at most `paths` paths end, the equations are about as
+/// large as the power `paths` of the distance, or larger: too large for the moved point to count.
+/// `None` tells nothing.
 pub(crate) fn on_sheet<S: Number>(
     local: &LocalEquations<'_, S>,
     start: &[S],
@@ -67,18 +68,18 @@ fn ranks<S: Number>(local: &LocalEquations<'_, S>, start: &[S]) -> Vec<usize> {
     (1..=sizes.len().min(start.len() - 1)).rev().filter(|&rank| others(rank) <= DOUBTFUL).collect()
 }
 
-/// Paths at most that end at points for which [`touched`] tells something: of an isolated solution
-/// of a higher multiplicity equations are too small at the least distance.
+/// Most paths at a point for which [`touched`] tells something: near an isolated solution of higher
+/// multiplicity, the equations are too small at the least distance.
 const FEW: usize = 3;
-/// Logarithms to base 2 of distances at which solutions are sought, and points at each from which
-/// that is done.
+/// Logarithms to base 2 of the distances at which solutions are sought, and the number of points at
+/// each distance from which the search starts.
 const DISTANCES: [f64; 5] = [-4.0, -9.0, -14.0, -19.0, -24.0];
 const STARTS: usize = 20;
 /// Dimensions of sets that are sought.
 const DIMENSIONS: usize = 2;
 
-/// The dimension of a reduced set on which a solution lies though ranks are lower there than beside
-/// it, as where a curve crosses itself: at all distances there are solutions of a common rank.
+/// The dimension of a reduced set on which a solution lies although ranks are lower there than nearby,
+/// for example where a curve crosses itself: at all distances there are solutions of a common rank.
 /// `None` tells nothing.
 fn touched<S: Number>(local: &LocalEquations<'_, S>, point: &[S], paths: usize) -> Option<usize> {
     if paths > FEW {
@@ -99,8 +100,8 @@ fn touched<S: Number>(local: &LocalEquations<'_, S>, point: &[S], paths: usize) 
     (1..=DIMENSIONS.min(variables - 1)).find(|&d| DISTANCES.iter().all(|&away| is_beside(d, away)))
 }
 
-/// Whether solutions of the same ranks lead on from this one, which is isolated with at most that
-/// multiplicity, if it is.
+/// Whether solutions of the same ranks lead on from this one; if it is isolated, its multiplicity is at
+/// most `multiplicity`.
 pub(crate) fn leads_on_somewhere<S: Number>(
     local: &LocalEquations<'_, S>,
     found: &DeflatedPoint<S>,

@@ -16,11 +16,11 @@ use poly::{ComplexMulti, Exact, Polynomial};
 const MAX_DEGREE: usize = 3000;
 /// Rounds at most; near simple roots the error is cubed in each.
 const ROUNDS: usize = 300;
-/// Corrections that end the iteration for a root, relative to it and to the distance of the next, as
-/// a logarithm to base 2.
+/// The iteration ends for a root once its correction is this small relative to the root and to the
+/// distance of the next one (a logarithm to base 2).
 const SMALL: f64 = -50.0;
 
-/// A root to 45 digits: the sum of these.
+/// A root to 45 digits: the sum of three doubles.
 pub(crate) type Root = [Complex64; 3];
 
 /// All roots of a polynomial in one unknown in units of `2^unit`, with their multiplicities: those of
@@ -37,8 +37,8 @@ pub(crate) fn roots_with_multiplicities(polynomial: &Polynomial<Exact>, unit: i6
     Some(all)
 }
 
-/// All roots but zero; `None` for more than one equation or unknown, a
-/// degree too high, or if they cannot be told apart, as multiple ones.
+/// All roots but zero; `None` if there is more than one equation or unknown, the degree is too high, or
+/// the roots cannot be told apart because some are multiple.
 fn roots(given: &Given) -> Option<Vec<Root>> {
     settled::<ComplexMulti<4>>(given).or_else(|| settled::<ComplexMulti<16>>(given))
 }
@@ -95,8 +95,8 @@ fn parts<S: Number>(z: &S) -> Root {
     })
 }
 
-/// Evaluation errors are at most this share of the sizes of all terms, as a logarithm to base 2
-/// beside the digits of a number: of degrees to 3000.
+/// Evaluation errors are at most this share of the sizes of all terms (a logarithm to base 2, added to
+/// the digits of a number) for degrees up to 3000.
 const ERROR: f64 = 26.0;
 
 /// Whether discs about the points, each of which holds a root if it meets no other, are disjoint:

@@ -2,18 +2,18 @@
 
 use super::reached::Supports;
 
-/// Unknowns at most: all sets of them are looked at.
+/// Most unknowns, because all sets of unknowns are looked at.
 const MOST_UNKNOWNS: usize = 14;
 
-/// Whether the mixed volume of supports that all hold the origin is sure to be the product of the
-/// `degrees`; not seldom it is though this says no.
+/// Whether the mixed volume of supports that all hold the origin is certainly the product of the
+/// `degrees`; it often is even if this is false.
 ///
 /// A system with these supports and generic coefficients has as many zeros as the mixed volume (Li
 /// & Wang 1996), and as many as the product of the degrees if there are none at infinity. Zeros
-/// there solve the forms of highest degree. Where just the unknowns in a set `S` are not zero, the
-/// forms that do not vanish identically have generic coefficients and no common zeros on the torus,
-/// so that each lowers the dimension by one, which is `|S| - 1` at first: there is no zero if they
-/// are at least `|S|`.
+/// there solve the forms of highest degree. Where exactly the unknowns in a set `S` are nonzero, the
+/// dimension is `|S| - 1` at first. Each form that does not vanish identically there has generic
+/// coefficients and lowers the dimension on the torus by one. So there is no zero if there are at
+/// least `|S|` such forms.
 pub(crate) fn mixed_volume_is_bezout(supports: &Supports, degrees: &[u64]) -> bool {
     let n = supports.len();
     if n > MOST_UNKNOWNS || !supports.iter().all(|points| points.iter().any(|p| p.iter().all(|&e| e == 0))) {

@@ -13,7 +13,8 @@ pub(crate) struct Binomials {
 }
 
 impl Binomials {
-    /// From the exponents by rows; `None` if the determinant is zero or integers outgrow 127 bits.
+    /// The system with these exponents, by rows; `None` if the determinant is zero or integers outgrow 127
+    /// bits.
     pub(crate) fn new(exponents: &[Vec<i128>]) -> Option<Self> {
         let n = exponents.len();
         let mut h = exponents.to_vec();
@@ -65,8 +66,8 @@ impl Binomials {
         self.transform.iter().map(|row| sum(row, &y)).collect()
     }
 
-    /// The solution number `k` below the determinant, for the right-hand sides `b`, none of them
-    /// zero.
+    /// The `k`-th solution for the right-hand sides `b`, none of which is zero; `k` is below the
+    /// determinant.
     pub(crate) fn solution(&self, b: &[Complex64], mut k: u64) -> Vec<Complex64> {
         let n = b.len();
         // Logarithms of moduli, and angles in turns, of y with x = y^transform.

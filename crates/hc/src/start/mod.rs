@@ -35,11 +35,11 @@ pub(crate) enum StartSystem {
 
 /// Where the paths of a system `E` begin.
 pub(crate) trait Source<E: Evaluate>: Sync {
-    /// The parameters there.
+    /// The parameters at the start.
     fn parameters(&self) -> &[Complex64];
-    /// Whether start solutions are ends of paths themselves, which may be lost or jump.
+    /// Whether start solutions are themselves ends of paths, which may be lost or jump.
     fn is_tracked(&self) -> bool;
-    /// The start solutions with these numbers, which ascend; where they are tracked, some may be
+    /// The start solutions with these ascending numbers; if they have to be tracked, some may be
     /// missing.
     fn solutions(
         &self,

@@ -12,7 +12,7 @@ use num_complex::Complex64;
 use poly::simd::Isa;
 use std::collections::BTreeMap;
 
-/// Terms that an equation may have, and entries of the table of numbers of solutions.
+/// Most terms of an equation, and most entries of the table of numbers of solutions.
 const MAX_TERMS: usize = 1 << 16;
 const MAX_STATES: usize = 1 << 22;
 
@@ -127,7 +127,7 @@ pub(crate) struct Multihomogeneous {
 }
 
 impl Multihomogeneous {
-    /// In coefficients of the supports, which must contain all [`Grouped::terms`].
+    /// The start system as coefficients of the supports, which must contain all [`Grouped::terms`].
     pub(crate) fn new(supports: &Supports, grouped: Grouped, seed: u64, attempt: u64) -> Multihomogeneous {
         let mut random = Random::of(seed, Stream::Multihomogeneous(attempt));
         let mut forms = Vec::new();
@@ -155,7 +155,7 @@ impl Multihomogeneous {
         &self.parameters
     }
 
-    /// The solution with a number below that of the paths.
+    /// The solution with this number, which is below the number of paths.
     pub(crate) fn solution(&self, number: u64) -> Vec<Complex64> {
         let mut x = vec![Complex64::new(0.0, 0.0); self.forms.len()];
         let choice = self.grouped.choice(number);

@@ -13,8 +13,8 @@ use num_complex::Complex64;
 use poly::SparseSystem;
 use std::sync::{Mutex, PoisonError};
 
-/// The mixed cells of one lifting, each with its edges and the number of its first path. What
-/// belongs to a cell besides, its binomials, normal and weights, is made when its paths start.
+/// The mixed cells of one lifting, each with its edges and the number of its first path. The binomials,
+/// normal and weights of a cell are made when its paths start.
 pub(crate) struct Polyhedral {
     supports: Vec<Vec<Vec<i32>>>,
     lifting: Vec<Vec<i32>>,
@@ -35,10 +35,10 @@ struct Cells {
 
 /// A cell as it is stored.
 struct Stored {
-    /// Its place among the cells.
+    /// The place of the cell among all.
     place: usize,
     edges: Vec<[u32; 2]>,
-    /// Number of its first path.
+    /// The number of the first path of the cell.
     first: u64,
 }
 
@@ -86,7 +86,7 @@ impl Polyhedral {
         &self.coefficients
     }
 
-    /// Tracks roots of the binomials, by ascending numbers, to solutions for the generic
+    /// Tracks roots of the binomials, in ascending order of their numbers, to solutions for the generic
     /// coefficients.
     pub(crate) fn solutions(
         &self,

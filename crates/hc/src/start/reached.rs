@@ -8,14 +8,14 @@ pub(crate) type Supports = [Vec<Vec<i32>>];
 /// Solutions of a start system.
 #[derive(Default)]
 pub(crate) struct Reached {
-    /// Their numbers.
+    /// The numbers of the solutions.
     pub(crate) numbers: Vec<usize>,
-    /// Their coordinates, one solution after the other.
+    /// The coordinates, one solution after the other.
     pub(crate) points: Vec<Complex64>,
 }
 
 impl Reached {
-    /// The `k`-th of them.
+    /// The `k`-th solution.
     pub(crate) fn point(&self, k: usize) -> &[Complex64] {
         let n = self.points.len() / self.numbers.len().max(1);
         &self.points[k * n..(k + 1) * n]

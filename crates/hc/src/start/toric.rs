@@ -18,8 +18,8 @@ pub(crate) struct Toric<'a> {
     pub(crate) cells: &'a [usize],
 }
 
-/// `u0` times the least positive weight: what is not part of the binomials starts at `exp(-30)`,
-/// about 1e-13, of its size.
+/// `u0` times the least positive weight: terms outside the binomials start at `exp(-30)`, about 1e-13,
+/// of their size.
 const FADED: f64 = 30.0;
 
 /// The rates that belong to the weights of a cell, which are zero for its binomials.

@@ -27,8 +27,8 @@ pub(crate) struct TotalDegree {
 }
 
 impl TotalDegree {
-    /// In coefficients of the supports, which must contain `x_i^(d_i)` and the origin; the degrees
-    /// are not zero.
+    /// The start system as coefficients of the supports, which must contain `x_i^(d_i)` and the origin; no
+    /// degree is zero.
     pub(crate) fn new(supports: &Supports, degrees: &[u64], seed: u64, attempt: u64) -> TotalDegree {
         let mut random = Random::of(seed, Stream::TotalDegree(attempt));
         let mut parameters = Vec::new();
@@ -50,7 +50,7 @@ impl TotalDegree {
         &self.parameters
     }
 
-    /// The solution with a number below that of the paths: roots of unity.
+    /// The solution with this number, which is below the number of paths: roots of unity.
     pub(crate) fn solution(&self, mut number: u64) -> Vec<Complex64> {
         let root = |&degree: &u64| {
             let k = number % degree;

@@ -43,7 +43,7 @@ pub struct Tracker<'a, E: Evaluate, S: Lane> {
     point_low: Vec<S>,
     corrected_low: Vec<S>,
     taylor_low: Vec<S>,
-    /// What the closing correction starts from.
+    /// The point from which the closing correction starts.
     closing: Vec<S>,
     closing_low: Vec<S>,
     values: Vec<S>,
@@ -244,7 +244,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
     fn predict_precisely(&mut self, step: S::Real, radius_sqr: S::Real) {
         let n = self.n;
         self.point_low.fill(S::zero());
-        // What is added to the point: the prediction from zero with the same derivatives.
+        // The change of the point is the prediction from zero with the same derivatives.
         let (derivatives, from_point) = (&mut self.taylor_next, &mut self.closing);
         derivatives.copy_from_slice(&self.taylor);
         derivatives[..n].fill(S::zero());
@@ -258,7 +258,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         }
     }
 
-    /// Newton's method until every lane has converged or is rejected.
+    /// Runs Newton's method until every lane has converged or is rejected.
     fn correct(&mut self) {
         loop {
             let m = self.system.parameters();
@@ -272,7 +272,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             }
             self.lu.factor(&self.jacobian, &self.weights_sqr);
             self.lu.solve(&mut self.values);
-            // The lanes that have stopped keep what they have in `corrected`.
+            // Lanes that have stopped keep their points in `corrected`.
             let mut running = 0u8;
             for (l, lane) in self.lanes.iter().enumerate() {
                 running |= u8::from(lane.state == StepState::Iterating) << l;
@@ -300,7 +300,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         }
     }
 
-    /// Makes the corrected points of some lanes those where the Jacobian is evaluated.
+    /// Makes the corrected points of these lanes the points at which the Jacobian is evaluated.
     fn take_corrected(&mut self, mask: u8) {
         self.isa.run(Take { from: &self.corrected, mask, to: &mut self.point });
         if self.lanes.iter().any(|lane| lane.wide) {
@@ -308,8 +308,8 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         }
     }
 
-    /// One more correction with the last Jacobian: it makes the points accurate and measures how
-    /// accurate.
+    /// One more correction with the last Jacobian, which makes the points accurate and measures their
+    /// accuracy.
     fn close(&mut self) {
         if !self.lanes.iter().any(|lane| lane.state == StepState::Converged) {
             return;

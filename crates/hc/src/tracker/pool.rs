@@ -8,9 +8,9 @@ use num_complex::Complex64;
 use poly::{Evaluate, Lanes8};
 use std::sync::{Mutex, PoisonError};
 
-/// Paths that one thread takes at a time, at most: lanes run empty at the end of each part.
+/// Most paths that one thread takes at a time; at the end of each part lanes run empty.
 const CHUNK: usize = 256;
-/// Parts that each thread gets, if there are paths enough, so that none waits long for another.
+/// Parts for each thread, if there are enough paths, so that no thread waits long for another.
 const PARTS: usize = 4;
 
 /// Trackers of one system, as many as threads have asked for. The legs of an endgame are so short
@@ -33,7 +33,7 @@ impl<E: Evaluate> Drop for Borrowed<'_, '_, E> {
 }
 
 impl<'a, E: Evaluate> Trackers<'a, E> {
-    /// None yet, for a square system.
+    /// A pool without trackers yet, for a square system.
     pub(crate) fn new(system: &'a E) -> Self {
         Trackers { system, idle: Mutex::new(Vec::new()) }
     }

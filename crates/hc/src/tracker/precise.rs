@@ -58,12 +58,12 @@ impl<E: Evaluate> Precise<E> {
     }
 }
 
-/// A double-double from a double and what it leaves.
+/// A double-double from a double and its low part.
 fn joined(high: Complex64, low: Complex64) -> ComplexDd {
     ComplexDd { re: Dd { high: high.re, low: low.re }, im: Dd { high: high.im, low: low.im } }
 }
 
-/// In lane `l`, the points `x` (doubles and what these leave) less the corrections `dx`.
+/// Subtracts the corrections `dx` from the points `x`, which are doubles with low parts, in lane `l`.
 pub(super) fn subtract<S: Lane>(l: usize, x: [&[S]; 2], dx: &[S], to: [&mut [S]; 2]) {
     let [high, low] = to;
     for (j, dx) in dx.iter().enumerate() {

@@ -82,7 +82,7 @@ pub(crate) struct PathProgress {
     /// Whether the point is kept in double-double too: another path is so near that doubles hardly
     /// tell them apart.
     pub(crate) wide: bool,
-    /// Whether that of the last accepted step was kept with all of them.
+    /// Whether the point of the last accepted step was kept in double-double.
     pub(crate) kept: bool,
     step: f64,
     /// Rejections since the last accepted step.
@@ -98,7 +98,7 @@ pub(crate) struct PathProgress {
     rejected: usize,
     pub(crate) jacobians: usize,
     used_extended: bool,
-    /// `t` since when the valuations say that the path diverges.
+    /// The `t` from which on the valuations say that the path diverges.
     diverges_since: Option<f64>,
     first: f64,
     last: f64,
@@ -106,7 +106,7 @@ pub(crate) struct PathProgress {
     theta_bound: f64,
     /// Newton iterations of this step.
     iterations: usize,
-    /// Whether the closing correction after the first of them said that it takes more.
+    /// Whether the closing correction after the first iteration said that more are needed.
     resumed: bool,
 }
 
@@ -156,14 +156,14 @@ impl PathProgress {
         self.noise = self.rounding();
     }
 
-    /// Back to double precision, rounding errors included: corrections of size `double` have just been
+    /// Goes back to double precision and its rounding errors: corrections of size `double` have just been
     /// seen to be nothing else.
     fn narrow(&mut self, double: f64) {
         (self.extended, self.wide, self.kept) = (false, false, false);
         self.noise = self.noise.max(double).max(self.rounding());
     }
 
-    /// Relative size of what is less than the rounding error of a point.
+    /// Relative size below which a correction is less than the rounding error of the point.
     fn rounding(&self) -> f64 {
         if self.wide { f64::EPSILON * f64::EPSILON } else { f64::EPSILON }
     }
@@ -301,8 +301,8 @@ impl PathProgress {
             // that.
             self.noise = norm.max(self.rounding());
         } else {
-            // Newton's method converges more slowly than was thought. With a point in double-double it is
-            // not for rounding errors of the point: it has not converged yet.
+            // Newton's method converges more slowly than was estimated. With a point in double-double the
+            // cause is not the rounding of the point: Newton's method has not converged yet.
             omega = norm / (self.last * self.last);
             let unfinished = norm > TRACKING.unfinished * self.last || omega * norm > bounds.leave_double;
             if self.wide && unfinished && self.iterations + 1 < TRACKING.iterations {
@@ -395,7 +395,7 @@ impl PathProgress {
         }
         if self.t - self.step == self.t || self.step < 4.0 * f64::EPSILON * self.t {
             if !self.extended && bounds.options.extended_precision {
-                // The corrector may have failed for rounding errors alone: once more from a
+                // Rounding errors alone may have made the corrector fail: try once more from a
                 // workable step.
                 self.extended = true;
                 self.used_extended = true;
@@ -403,8 +403,8 @@ impl PathProgress {
                 return None;
             }
             if !self.wide && bounds.options.extended_precision {
-                // And once more, since the predictor may have failed for those of the point it
-                // starts from.
+                // And once more, because rounding errors of the point may have made the predictor
+                // fail.
                 self.widen();
                 self.step = 1e-3 * self.radius.min(self.t);
                 return None;

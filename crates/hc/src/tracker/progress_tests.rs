@@ -10,8 +10,8 @@ fn under_way(omega: f64, bounds: &Bounds) -> PathProgress {
     progress
 }
 
-/// With `omega = 2.5e5` corrections of 1.1e-6 and 1.6e-7 are what quadratic convergence gives, though
-/// the omega of the step before let expect that the first would do.
+/// With `omega = 2.5e5`, quadratic convergence gives corrections of 1.1e-6 and 1.6e-7, although by the
+/// omega of the step before, the first should have been enough.
 #[test]
 fn a_large_closing_correction_is_followed_by_more() {
     let bounds = Bounds::new(&TrackerOptions::fast());

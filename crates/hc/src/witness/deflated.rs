@@ -25,9 +25,9 @@ const ZERO: f64 = -27.0;
 pub(super) struct DeflatedEquations {
     /// The equations that are not linear.
     pub(super) curved: Vec<Polynomial<Exact>>,
-    /// Those that are, in the multipliers alone.
+    /// The linear equations, in the multipliers alone.
     pub(super) linear: Vec<Polynomial<Exact>>,
-    /// The points by their numbers; multipliers follow the given unknowns.
+    /// The points by their numbers; the multipliers come after the given unknowns.
     pub(super) points: BTreeMap<usize, Vec<Complex64>>,
 }
 
@@ -40,8 +40,8 @@ impl DeflatedEquations {
         DeflatedEquations { curved: given.to_vec(), linear: Vec::new(), points: points.collect() }
     }
 
-    /// The points on components of this dimension, by the equations of which they are regular
-    /// solutions. Left out are those that would need too many multipliers.
+    /// The points on components of this dimension, grouped by the equations of which they are regular
+    /// solutions. Points that would need too many multipliers are left out.
     pub(super) fn regular(self, dimension: usize, seed: u64) -> Vec<DeflatedEquations> {
         let mut regular = Vec::new();
         let mut left = vec![self];
@@ -69,7 +69,7 @@ impl DeflatedEquations {
         [&self.curved[..], &self.linear].concat()
     }
 
-    /// The points by how much larger the null space of the Jacobian is than the dimension.
+    /// The points, grouped by how much larger the null space of the Jacobian is than the dimension.
     fn by_rank(self, dimension: usize) -> BTreeMap<usize, DeflatedEquations> {
         let given = Given::new(&self.all(), vec![0; self.unknowns()]);
         let mut groups: BTreeMap<usize, DeflatedEquations> = BTreeMap::new();
@@ -83,12 +83,12 @@ impl DeflatedEquations {
         groups
     }
 
-    /// The equations with a vector of the null space of their Jacobian as further unknowns, where that
+    /// The equations with a vector of the null space of their Jacobian as further unknowns. The null space
     /// is larger than the dimension by `further`.
     fn with_multipliers(self, dimension: usize, further: usize, seed: u64) -> DeflatedEquations {
         let before = self.unknowns();
         let mut random = Random::of(seed, Stream::Multipliers);
-        // Across as many general hyperplanes as the dimension, and of a certain size.
+        // As many general forms as the dimension vanish on the vector; the others are one, which fixes it.
         let forms: Vec<Vec<Complex64>> =
             (0..dimension + further).map(|_| (0..before).map(|_| random.short_unit()).collect()).collect();
         let side = |form: usize| if form < dimension { 0.0 } else { 1.0 };

@@ -10,11 +10,11 @@ use crate::singular::Given;
 use num_complex::Complex64;
 use poly::{ComplexDd, Evaluate};
 
-/// Points whose relative distance is less are one.
+/// Points within this relative distance are the same.
 const SAME: f64 = 1e-8;
-/// Searches with other loops, while the trace test says that points are missing.
+/// Most searches with other loops while the trace test says that points are missing.
 const SEARCHES: u64 = 4;
-/// Directions in which hyperplanes are moved for a trace test, while paths are lost.
+/// Most directions in which hyperplanes are moved for a trace test while paths are lost.
 const DIRECTIONS: u64 = 4;
 
 /// Witness points of one component, by their indices.
@@ -35,8 +35,7 @@ impl Orbit {
 
 /// Groups the points of a witness set by component.
 ///
-/// Points are joined by loops until those that are joined pass the trace test: no part of a component
-/// does.
+/// Loops join points until every group passes the trace test, which no part of a component passes.
 pub(super) fn orbits(set: &WitnessSet, given: &Given, seed: u64, monitor: &Monitor) -> Vec<Orbit> {
     let WitnessSet { family, fibre: all, numbers, unknowns, .. } = set;
     let mut left: Vec<usize> = (0..all.len()).collect();
@@ -49,7 +48,7 @@ pub(super) fn orbits(set: &WitnessSet, given: &Given, seed: u64, monitor: &Monit
             let seed = seed.wrapping_add(round * DIRECTIONS);
             let of_direction = |k| trace(family, &fibre, *unknowns, seed.wrapping_add(k), monitor);
             let found = (0..DIRECTIONS).find_map(of_direction);
-            // A single point of a set that hardly bends seems to move straight: that tells nothing.
+            // A single point of a set that hardly bends seems to move straight, which tells nothing.
             let tells =
                 |trace: &Trace| trace.deviation >= PASSED || fibre.len() > 1 || trace.follows_a_plane(given, *unknowns);
             deviation = found.filter(tells).map(|trace| trace.deviation);
@@ -88,9 +87,9 @@ fn settled(mut fibre: Fibre) -> Fibre {
 
 /// Points while the hyperplanes move in parallel.
 struct Trace {
-    /// How far their sum is from moving linearly, relative to what the points bend: rounding error if
-    /// they are all of one or more components. Only coordinates do so; multipliers are rational
-    /// functions of the hyperplanes.
+    /// How far the sum of the points is from moving linearly, relative to how much the points bend. It is
+    /// rounding error if they are all points of one or more components. Only coordinates count, because
+    /// multipliers are rational functions of the hyperplanes.
     deviation: f64,
     /// The first of the points, before and after the first step.
     first: [Vec<Complex64>; 2],
@@ -98,14 +97,14 @@ struct Trace {
 
 /// How far, in steps of a trace, a plane is followed.
 const FAR: [i32; 4] = [6, 18, 36, 54];
-/// Coordinates below this share of the largest there may be rounding errors, and residuals are less
-/// where the plane solves the equations.
+/// At that distance, coordinates below this share of the largest may be rounding errors; the plane solves
+/// the equations if residuals are less than the second number.
 const SMALL: f64 = 1e-10;
 const SOLVED: f64 = 1e-4;
 
 impl Trace {
-    /// Whether the plane to which the first point keeps, by its first step, solves the equations as far
-    /// out as doubles tell.
+    /// Whether the plane in which the first point seems to stay, by its first step, solves the equations
+    /// as far out as doubles tell.
     fn follows_a_plane(&self, given: &Given, unknowns: usize) -> bool {
         let [before, after] = &self.first;
         FAR.iter().all(|&power| {

@@ -11,12 +11,12 @@ use crate::tracker::{PathEnd, PathResult};
 use num_complex::Complex64;
 use poly::{Exact, Interpreter, Polynomial};
 
-/// Relative distance to which witness points move at most where they are refined.
+/// Largest relative distance by which refinement moves a witness point.
 const NEAR: f64 = 1e-8;
-/// Relative distance from a witness point of hyperplanes through an end of paths at which that lies on
-/// the component: singular ends are known to as many digits.
+/// An end of paths lies on a component if a witness point, tracked to hyperplanes through that end,
+/// arrives within this relative distance: singular ends are known to about as many digits.
 const ON: f64 = 1e-6;
-/// Steps of a path at most: those that need more do not end at regular points.
+/// Most steps of a path: paths that need more do not end at regular points.
 const STEPS: usize = 500;
 
 /// Witness points of components of one dimension and one local structure, as regular solutions of a
@@ -25,7 +25,7 @@ pub(super) struct WitnessSet {
     pub(super) family: Interpreter,
     /// The points, with multipliers behind their coordinates.
     pub(super) fibre: Fibre,
-    /// Their numbers.
+    /// The numbers of the points.
     pub(super) numbers: Vec<usize>,
     /// The number of coordinates.
     pub(super) unknowns: usize,
@@ -33,7 +33,7 @@ pub(super) struct WitnessSet {
 }
 
 impl WitnessSet {
-    /// All that can be tracked of some witness points, which have one multiplicity.
+    /// The sets that can be tracked of some witness points, which all have the same multiplicity.
     pub(super) fn all(
         given: &[Polynomial<Exact>],
         slices: &Slices,
@@ -46,8 +46,8 @@ impl WitnessSet {
         sets.filter_map(|equations| WitnessSet::new(&equations, slices, unknowns, seed)).collect()
     }
 
-    /// The points of some equations that are regular where as many equations are made of these as there
-    /// are unknowns.
+    /// The points that are regular solutions once the equations are combined to as many as there are
+    /// unknowns.
     fn new(equations: &DeflatedEquations, slices: &Slices, unknowns: usize, seed: u64) -> Option<WitnessSet> {
         let family = slices.family(equations, seed)?.compile().ok()?;
         let parameters = slices.parameters();

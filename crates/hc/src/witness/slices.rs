@@ -15,14 +15,14 @@ pub(super) struct Slices {
 }
 
 impl Slices {
-    /// As many in general position.
+    /// So many hyperplanes in general position.
     pub(super) fn new(unknowns: usize, dimension: usize, seed: u64) -> Slices {
         let mut random = Random::of(seed, Stream::Slice(dimension as u64));
         let slopes = (0..dimension).map(|_| (0..unknowns).map(|_| random.unit()).collect()).collect();
         Slices { slopes, offsets: (0..dimension).map(|_| random.short_unit()).collect() }
     }
 
-    /// In general position through a point.
+    /// So many hyperplanes through a point, otherwise in general position.
     pub(super) fn through(point: &[Complex64], dimension: usize, seed: u64) -> Slices {
         let mut random = Random::of(seed, Stream::Through);
         let slopes: Vec<Vec<Complex64>> =
@@ -31,12 +31,12 @@ impl Slices {
         Slices { slopes, offsets }
     }
 
-    /// Their number.
+    /// The number of hyperplanes.
     pub(super) fn dimension(&self) -> usize {
         self.slopes.len()
     }
 
-    /// As polynomials, exactly.
+    /// The hyperplanes as polynomials, exactly.
     pub(super) fn polynomials(&self, unknowns: usize) -> Vec<Polynomial<Exact>> {
         let exact = |z: Complex64| z.to_exact().unwrap_or_else(Exact::zero);
         let plane = |(slopes, offset): (&Vec<Complex64>, &Complex64)| {
@@ -55,8 +55,8 @@ impl Slices {
     }
 
     /// As many equations as unknowns: the linear ones, combinations of the others, and hyperplanes with
-    /// slopes and offsets as parameters. Offsets alone would have to move as far as branch points lie
-    /// from them. `None` if that makes no system.
+    /// slopes and offsets as parameters. If only offsets moved, they would have to go as far as the branch
+    /// points are away. `None` if the equations make no system.
     pub(super) fn family(&self, equations: &DeflatedEquations, seed: u64) -> Option<System> {
         let names: Vec<String> = (0..equations.unknowns()).map(|j| format!("x{j}")).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
