@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Mutex, PoisonError};
 use tdoa::accuracy::cramer_rao as bound;
-use tdoa::minimal::{MinimalOptions, MinimalStart, SolveError, Solver};
+use tdoa::minimal::{MinimalError, MinimalOptions, MinimalStart, Solver};
 use tdoa::{Layout, MinimalSolution, Network, Pseudoranges, ReceiverFault, SimulateOptions};
 
 /// Solvers that are not in use; they keep their start solutions and their memory.
@@ -59,7 +59,7 @@ pub(crate) fn solve_network<'py>(
             // What was tracked until then is no list of networks.
             _ if stopped.is_some() => return whole(py, py.None().into_bound(py), stopped),
             Ok(found) => found,
-            Err(error @ SolveError::Option(_)) => return Err(Failure::input(error)),
+            Err(error @ MinimalError::Option(_)) => return Err(Failure::input(error)),
             Err(error) => return Err(Failure::undetermined(error)),
         };
         let result = solution(py, &found)?;

@@ -7,7 +7,7 @@ use cli::{Failure, output};
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 use std::fmt::Write;
 use std::path::PathBuf;
-use tdoa::minimal::{MinimalOptions, RootProofs, SolveError, Solver};
+use tdoa::minimal::{MinimalError, MinimalOptions, RootProofs, Solver};
 use tdoa::{Layout, SimulateOptions, Simulation, simulate};
 
 /// What all of them take.
@@ -35,7 +35,7 @@ impl Arguments {
     fn each<T: Send>(
         &self,
         (receivers, transmitters): (usize, usize),
-        one: impl Fn(&mut Solver, &Simulation) -> Result<T, SolveError> + Sync,
+        one: impl Fn(&mut Solver, &Simulation) -> Result<T, MinimalError> + Sync,
     ) -> Result<Vec<T>, Failure> {
         let bar = Bar::counted(self.instances);
         let seeds = self.seed..self.seed.saturating_add(self.instances);

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use tdoa::Pseudoranges;
-use tdoa::minimal::{MinimalOptions, SolveError, Solver};
+use tdoa::minimal::{MinimalError, MinimalOptions, Solver};
 
 use super::common::{Common, Size, normal};
 use super::statistics::short;
@@ -104,7 +104,7 @@ fn on_all(networks: &[Pseudoranges], threads: usize) -> Result<f64, Failure> {
         }
         Ok(())
     });
-    work.collect::<Result<(), SolveError>>().map_err(Failure::unusable)?;
+    work.collect::<Result<(), MinimalError>>().map_err(Failure::unusable)?;
     Ok(started.elapsed().as_secs_f64())
 }
 

@@ -6,7 +6,7 @@ use serde::Serialize;
 use std::time::Instant;
 use tdoa::Simulation;
 use tdoa::accuracy::position_error;
-use tdoa::minimal::{MinimalOptions, MinimalStart, RootProofs, SolveError, Solver};
+use tdoa::minimal::{MinimalError, MinimalOptions, MinimalStart, RootProofs, Solver};
 use tdoa::{MinimalSolution, PathCounts, RootCounts};
 
 /// A candidate this near the truth (relative to the network's size) is the truth.
@@ -17,7 +17,7 @@ const FOUND: f64 = 1e-4;
 ///
 /// # Errors
 /// If the solver refuses the instance.
-pub fn proof_trial(solver: &mut Solver, simulation: &Simulation) -> Result<(RootProofs, usize), SolveError> {
+pub fn proof_trial(solver: &mut Solver, simulation: &Simulation) -> Result<(RootProofs, usize), MinimalError> {
     let solution = solver.solve(&simulation.pseudoranges, &MinimalOptions::default())?;
     Ok((solver.prove().unwrap_or_default(), solution.counts.real))
 }
@@ -39,7 +39,7 @@ pub struct RouteTrial {
 ///
 /// # Errors
 /// If the solver refuses the instance.
-pub fn route_trial(solver: &mut Solver, simulation: &Simulation) -> Result<RouteTrial, SolveError> {
+pub fn route_trial(solver: &mut Solver, simulation: &Simulation) -> Result<RouteTrial, MinimalError> {
     let mut options = MinimalOptions::default();
     let stored = solver.solve(&simulation.pseudoranges, &options)?;
     options.start = MinimalStart::Polyhedral;
@@ -66,7 +66,7 @@ pub struct ChartTrial {
 ///
 /// # Errors
 /// If the solver refuses the instance.
-pub fn chart_trial(solver: &mut Solver, simulation: &Simulation, retries: u32) -> Result<ChartTrial, SolveError> {
+pub fn chart_trial(solver: &mut Solver, simulation: &Simulation, retries: u32) -> Result<ChartTrial, MinimalError> {
     let mut options = MinimalOptions::default();
     options.paths.retries = retries;
     let started = Instant::now();
@@ -117,7 +117,7 @@ pub fn hurry_trial(
     solver: &mut Solver,
     simulation: &Simulation,
     hurried: &MinimalOptions,
-) -> Result<HurryTrial, SolveError> {
+) -> Result<HurryTrial, MinimalError> {
     let mut timed = |options: &MinimalOptions| {
         let started = Instant::now();
         let solution = solver.solve(&simulation.pseudoranges, options)?;
@@ -127,7 +127,7 @@ pub fn hurry_trial(
             physical.any(|c| position_error(&c.network, &simulation.network) < FOUND)
         };
         let truth = near(&solution);
-        Ok::<_, SolveError>((solution, seconds, truth))
+        Ok::<_, MinimalError>((solution, seconds, truth))
     };
     let (full, seconds_full, truth_full) = timed(&MinimalOptions::default())?;
     let (fast, seconds, truth) = timed(hurried)?;

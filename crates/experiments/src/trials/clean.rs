@@ -4,7 +4,7 @@
 use serde::Serialize;
 use tdoa::Simulation;
 use tdoa::accuracy::{offset_error, position_error};
-use tdoa::minimal::{MinimalOptions, SolveError, Solver};
+use tdoa::minimal::{MinimalError, MinimalOptions, Solver};
 use tdoa::{PathCounts, RootCounts};
 
 /// A candidate this near the truth (relative, positions and offsets) is the truth.
@@ -40,7 +40,7 @@ pub fn clean_trial(
     solver: &mut Solver,
     simulation: &Simulation,
     options: &MinimalOptions,
-) -> Result<CleanTrial, SolveError> {
+) -> Result<CleanTrial, MinimalError> {
     let solution = solver.solve(&simulation.pseudoranges, options)?;
     let truth = &simulation.network;
     let mut errors = [f64::INFINITY; 2];

@@ -6,7 +6,7 @@ use serde::Serialize;
 use tdoa::Candidate;
 use tdoa::Simulation;
 use tdoa::accuracy::{offset_error, position_error};
-use tdoa::minimal::{MinimalOptions, SolveError, Solver};
+use tdoa::minimal::{MinimalError, MinimalOptions, Solver};
 
 /// One noisy instance, solved without and with refinement. Errors are infinite where no candidate
 /// was left.
@@ -28,13 +28,13 @@ pub struct NoiseTrial {
 ///
 /// # Errors
 /// If the solver refuses the instance.
-pub fn noise_trial(solver: &mut Solver, simulation: &Simulation, noise: f64) -> Result<NoiseTrial, SolveError> {
+pub fn noise_trial(solver: &mut Solver, simulation: &Simulation, noise: f64) -> Result<NoiseTrial, MinimalError> {
     // Noise makes pairs of real roots complex and small distances negative.
     let mut options = MinimalOptions::default();
     (options.near_real, options.tolerance) = (0.1, (5.0 * noise).clamp(1e-6, 0.05));
     let measured = &simulation.pseudoranges;
     let minimal = matches!((measured.receivers(), measured.transmitters()), (6, 3) | (4, 5));
-    let mut judge = |polish: bool| -> Result<[f64; 2], SolveError> {
+    let mut judge = |polish: bool| -> Result<[f64; 2], MinimalError> {
         options.polish = polish;
         let solution = solver.solve(measured, &options)?;
         let errors = |c: &Candidate| {

@@ -1,6 +1,6 @@
 //! What a matrix must satisfy before it is solved.
 
-use super::error::SolveError;
+use super::error::MinimalError;
 use crate::degeneracy::is_solvable;
 use crate::duplicates::{constant_difference, rounding};
 use crate::pseudoranges::Pseudoranges;
@@ -10,19 +10,19 @@ use crate::pseudoranges::Pseudoranges;
 const MAX_MEASUREMENTS: usize = 5_000;
 
 /// Refuses sizes that cannot be solved, missing measurements and nodes that coincide.
-pub(super) fn check(measured: &Pseudoranges) -> Result<(), SolveError> {
+pub(super) fn check(measured: &Pseudoranges) -> Result<(), MinimalError> {
     let (m, n) = (measured.receivers(), measured.transmitters());
     let (constraints, unknowns) = (m * n, (2 * m + 3 * n).saturating_sub(3));
     if !is_solvable(m, n) {
-        return Err(SolveError::Underdetermined { configuration: measured.configuration(), constraints, unknowns });
+        return Err(MinimalError::Underdetermined { configuration: measured.configuration(), constraints, unknowns });
     }
     if constraints > MAX_MEASUREMENTS {
-        return Err(SolveError::TooLarge { configuration: measured.configuration(), limit: MAX_MEASUREMENTS });
+        return Err(MinimalError::TooLarge { configuration: measured.configuration(), limit: MAX_MEASUREMENTS });
     }
     for i in 0..m {
         for j in 0..n {
             if measured.get(i, j).is_none() {
-                return Err(SolveError::Missing {
+                return Err(MinimalError::Missing {
                     receiver: measured.receiver_names()[i].clone(),
                     transmitter: measured.transmitter_names()[j].clone(),
                 });
@@ -37,7 +37,7 @@ pub(super) fn check(measured: &Pseudoranges) -> Result<(), SolveError> {
         for k in i + 1..m {
             if constant_difference((0..n).map(|j| (f(k, j), f(i, j))), tolerance).is_some() {
                 let names = measured.receiver_names();
-                return Err(SolveError::IdenticalReceivers { first: names[i].clone(), second: names[k].clone() });
+                return Err(MinimalError::IdenticalReceivers { first: names[i].clone(), second: names[k].clone() });
             }
         }
     }
@@ -45,7 +45,7 @@ pub(super) fn check(measured: &Pseudoranges) -> Result<(), SolveError> {
         for k in j + 1..n {
             if constant_difference((0..m).map(|i| (f(i, k), f(i, j))), tolerance).is_some() {
                 let names = measured.transmitter_names();
-                return Err(SolveError::IdenticalTransmitters { first: names[j].clone(), second: names[k].clone() });
+                return Err(MinimalError::IdenticalTransmitters { first: names[j].clone(), second: names[k].clone() });
             }
         }
     }

@@ -1,9 +1,9 @@
 //! Whether the networks found are complete and can be told apart.
 
-use super::nodes::Nodes;
+use super::node_kind::NodeKind;
 use super::planar::collinear::Collinear;
 use super::solution::{Candidate, PathCounts};
-use super::warning::SolveWarning;
+use super::warning::MinimalWarning;
 use crate::plane::flatness;
 use crate::pseudoranges::Pseudoranges;
 
@@ -17,17 +17,17 @@ pub(super) fn warnings(
     paths: &PathCounts,
     candidates: &[Candidate],
     line: Option<&Collinear>,
-) -> Vec<SolveWarning> {
+) -> Vec<MinimalWarning> {
     let mut warnings = Vec::new();
     if paths.failed > 0 {
-        warnings.push(SolveWarning::PathsLost { lost: paths.failed, tracked: paths.tracked });
+        warnings.push(MinimalWarning::PathsLost { lost: paths.failed, tracked: paths.tracked });
     }
-    for kind in [Nodes::Receivers, Nodes::Transmitters] {
+    for kind in [NodeKind::Receivers, NodeKind::Transmitters] {
         let flat = |c: &Candidate| c.physical && flatness(kind.positions(&c.network)) < FLAT;
         if let Some(line) = line.filter(|line| line.kind == kind) {
-            warnings.push(SolveWarning::InOneLine { kind, names: kind.names(measured), listed: line.all_listed() });
+            warnings.push(MinimalWarning::InOneLine { kind, names: kind.names(measured), listed: line.all_listed() });
         } else if candidates.iter().any(flat) {
-            warnings.push(SolveWarning::NearlyInOneLine { kind, names: kind.names(measured) });
+            warnings.push(MinimalWarning::NearlyInOneLine { kind, names: kind.names(measured) });
         }
     }
     warnings

@@ -1,7 +1,7 @@
 //! From measurements to all networks that explain them, for any [`Formulation`]: tracks the stored
 //! fibre to the data, accounts for every path, and turns real solutions into networks.
 
-use super::error::SolveError;
+use super::error::MinimalError;
 use super::formulation::Formulation;
 use super::linear::LeastSquares;
 use super::nearest::Nearest;
@@ -72,7 +72,7 @@ impl<F: Formulation> Engine<F> {
         measured: &Pseudoranges,
         options: &MinimalOptions,
         monitor: &Monitor,
-    ) -> Result<MinimalSolution, SolveError> {
+    ) -> Result<MinimalSolution, MinimalError> {
         let size = (measured.receivers(), measured.transmitters());
         assert_eq!(size, (F::RECEIVERS, F::TRANSMITTERS), "size of the matrix");
         self.data.take(measured);
@@ -164,7 +164,7 @@ impl<F: Formulation> RootFinder<F> {
         &mut self,
         found: &mut RootNetworks<'_, F>,
         monitor: &Monitor,
-    ) -> Result<(PathCounts, bool), SolveError> {
+    ) -> Result<(PathCounts, bool), MinimalError> {
         let direct = scratch::at_data::<F>(found.target, monitor)?;
         let mut spent = direct.paths.retracked;
         if !direct.whole {
@@ -176,7 +176,7 @@ impl<F: Formulation> RootFinder<F> {
                 let (paths, stopped_early) = self.run(found);
                 self.stored = member;
                 if monitor.is_cancelled() {
-                    return Err(SolveError::Cancelled);
+                    return Err(MinimalError::Cancelled);
                 }
                 return Ok((PathCounts { retracked: spent + paths.retracked, ..paths }, stopped_early));
             }

@@ -7,7 +7,7 @@ use thiserror::Error;
 /// Why a matrix cannot be solved.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
-pub enum SolveError {
+pub enum MinimalError {
     /// A setting of the tracker is out of range.
     #[error(transparent)]
     Option(#[from] OptionError),

@@ -5,7 +5,7 @@
 //! leaves roots missing, a member at random complex parameters, whose roots are of ordinary size,
 //! is solved by a polyhedral start system too, and its roots are tracked to the data.
 
-use super::error::SolveError;
+use super::error::MinimalError;
 use super::formulation::Formulation;
 use super::solution::PathCounts;
 use hc::random::Random;
@@ -26,7 +26,7 @@ pub(crate) struct Roots {
 }
 
 /// The roots at the data, from a polyhedral start system, which heeds the monitor.
-pub(crate) fn at_data<F: Formulation>(target: &[Complex64], monitor: &Monitor) -> Result<Roots, SolveError> {
+pub(crate) fn at_data<F: Formulation>(target: &[Complex64], monitor: &Monitor) -> Result<Roots, MinimalError> {
     roots::<F>(target, seed(target), 0, monitor)
 }
 
@@ -35,7 +35,7 @@ pub(crate) fn at_data<F: Formulation>(target: &[Complex64], monitor: &Monitor) -
 pub(crate) fn at_random<F: Formulation>(
     target: &[Complex64],
     monitor: &Monitor,
-) -> Result<(Option<Fibre>, usize), SolveError> {
+) -> Result<(Option<Fibre>, usize), MinimalError> {
     let mut tracked = 0;
     for member in 0..MEMBERS {
         let seed = seed(target).wrapping_add(member);
@@ -59,8 +59,8 @@ fn roots<F: Formulation>(
     seed: u64,
     retries: u32,
     monitor: &Monitor,
-) -> Result<Roots, SolveError> {
-    let refused = |error: &dyn std::fmt::Display| SolveError::Polyhedral(error.to_string());
+) -> Result<Roots, MinimalError> {
+    let refused = |error: &dyn std::fmt::Display| MinimalError::Polyhedral(error.to_string());
     let family = hc::poly::parse::family(F::FAMILY).map_err(|e| refused(&e))?;
     let system = family.system.at(parameters).map_err(|e| refused(&e))?;
     let mut options = SolveOptions::default();
@@ -79,7 +79,7 @@ fn roots<F: Formulation>(
     options.restarts = 0;
     let found = Run::new().watched(monitor).solve(&system, &options).map_err(|e| refused(&e))?;
     if found.interrupted {
-        return Err(SolveError::Cancelled);
+        return Err(MinimalError::Cancelled);
     }
     let solutions = found.nonsingular().flat_map(|s| s.value.iter().copied()).collect();
     let fibre = Fibre::new(parameters.to_vec(), F::WEIGHTS.len(), solutions);

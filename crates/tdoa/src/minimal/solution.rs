@@ -1,6 +1,6 @@
 //! The result of a minimal solver.
 
-use super::warning::SolveWarning;
+use super::warning::MinimalWarning;
 use crate::network::Network;
 pub use hc::family::PathCounts;
 use serde::Serialize;
@@ -48,7 +48,7 @@ pub struct MinimalSolution {
     /// cover the search up to that point.
     pub stopped_early: bool,
     /// What makes the result doubtful: lost paths, networks that the data cannot tell apart.
-    pub warnings: Vec<SolveWarning>,
+    pub warnings: Vec<MinimalWarning>,
     /// The candidates, best first.
     #[serde(rename = "solutions")]
     pub candidates: Vec<Candidate>,

@@ -3,7 +3,7 @@
 use super::check::check;
 use super::doubts::warnings;
 use super::engine::Engine;
-use super::error::SolveError;
+use super::error::MinimalError;
 use super::formulation::Formulation;
 use super::linear::LeastSquares;
 use super::normalised::{Normalised, rank};
@@ -25,7 +25,7 @@ use hc::tracker::PathResult;
 ///
 /// # Errors
 /// If the matrix is too small, a measurement is missing, or two nodes coincide.
-pub fn solve(measured: &Pseudoranges, options: &MinimalOptions) -> Result<MinimalSolution, SolveError> {
+pub fn solve(measured: &Pseudoranges, options: &MinimalOptions) -> Result<MinimalSolution, MinimalError> {
     Solver::new().solve(measured, options)
 }
 
@@ -92,20 +92,24 @@ impl Solver {
     /// # Errors
     /// If the matrix is too small or too large, a measurement is missing, two nodes coincide, or a
     /// setting of the tracker is out of range.
-    pub fn solve(&mut self, measured: &Pseudoranges, options: &MinimalOptions) -> Result<MinimalSolution, SolveError> {
+    pub fn solve(
+        &mut self,
+        measured: &Pseudoranges,
+        options: &MinimalOptions,
+    ) -> Result<MinimalSolution, MinimalError> {
         self.solve_watched(measured, options, &Monitor::default())
     }
 
     /// [`solve`](Self::solve), watched: a cancelled monitor ends it.
     ///
     /// # Errors
-    /// Those of [`solve`](Self::solve), and [`SolveError::Cancelled`] for the polyhedral route.
+    /// Those of [`solve`](Self::solve), and [`MinimalError::Cancelled`] for the polyhedral route.
     pub fn solve_watched(
         &mut self,
         measured: &Pseudoranges,
         options: &MinimalOptions,
         monitor: &Monitor,
-    ) -> Result<MinimalSolution, SolveError> {
+    ) -> Result<MinimalSolution, MinimalError> {
         options.paths.validate()?;
         let (m, n) = (measured.receivers(), measured.transmitters());
         check(measured)?;
@@ -172,7 +176,7 @@ impl Solver {
         measured: &Pseudoranges,
         options: &MinimalOptions,
         monitor: &Monitor,
-    ) -> Result<MinimalSolution, SolveError> {
+    ) -> Result<MinimalSolution, MinimalError> {
         self.last = Some(method);
         let records = &mut self.records;
         match method {
@@ -195,7 +199,7 @@ fn through<F: Formulation>(
     options: &MinimalOptions,
     monitor: &Monitor,
     records: &mut Vec<PathResult>,
-) -> Result<MinimalSolution, SolveError> {
+) -> Result<MinimalSolution, MinimalError> {
     let engine = engine.get_or_insert_with(Engine::new);
     let solution = if (measured.receivers(), measured.transmitters()) == (F::RECEIVERS, F::TRANSMITTERS) {
         engine.solve(measured, options, monitor)?

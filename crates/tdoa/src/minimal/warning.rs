@@ -1,6 +1,6 @@
 //! What makes the networks of a minimal solver doubtful.
 
-use super::nodes::Nodes;
+use super::node_kind::NodeKind;
 use crate::degeneracy::list;
 use hc::poly::{counted, one_or};
 use serde::{Serialize, Serializer};
@@ -10,7 +10,7 @@ use thiserror::Error;
 /// be told apart. In JSON a warning is its text.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
-pub enum SolveWarning {
+pub enum MinimalWarning {
     /// Some paths were lost.
     #[error(
         "{lost} of {} {} lost: the list of networks may not be whole; nodes may lie in one line, nearly coincide or be placed \
@@ -32,7 +32,7 @@ pub enum SolveWarning {
     )]
     InOneLine {
         /// The kind of these nodes.
-        kind: Nodes,
+        kind: NodeKind,
         /// Their names.
         names: Vec<String>,
         /// Whether all mirror images are among the candidates; for many nodes there would be too
@@ -47,13 +47,13 @@ pub enum SolveWarning {
     )]
     NearlyInOneLine {
         /// The kind of these nodes.
-        kind: Nodes,
+        kind: NodeKind,
         /// Their names.
         names: Vec<String>,
     },
 }
 
-impl Serialize for SolveWarning {
+impl Serialize for MinimalWarning {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)
     }

@@ -2,7 +2,7 @@
 
 use crate::common::clean;
 use tdoa::accuracy::position_error;
-use tdoa::minimal::{MinimalOptions, Nodes, SolveWarning, Solver};
+use tdoa::minimal::{MinimalOptions, MinimalWarning, NodeKind, Solver};
 use tdoa::{Candidate, MinimalSolution, Network, Pseudoranges};
 
 /// Solves networks of 6 receivers and 3 transmitters made hard: the truth is found in each.
@@ -69,23 +69,23 @@ fn flatness(points: &[[f64; 2]]) -> f64 {
 
 #[test]
 fn nodes_in_one_line_are_found_and_named() {
-    for (kind, nodes, others) in [(Nodes::Receivers, 6, 3), (Nodes::Transmitters, 3, 6)] {
+    for (kind, nodes, others) in [(NodeKind::Receivers, 6, 3), (NodeKind::Transmitters, 3, 6)] {
         let solutions = all_found(4, |network| {
-            let line = if kind == Nodes::Receivers { &mut network.receivers } else { &mut network.transmitters };
+            let line = if kind == NodeKind::Receivers { &mut network.receivers } else { &mut network.transmitters };
             for p in line {
                 p[1] = 0.0;
             }
         });
         for solution in solutions {
             let in_line = solution.warnings.iter().find_map(|warning| match warning {
-                SolveWarning::InOneLine { kind, names, listed: true } => Some((*kind, names.len())),
+                MinimalWarning::InOneLine { kind, names, listed: true } => Some((*kind, names.len())),
                 _ => None,
             });
             assert_eq!(in_line, Some((kind, nodes)), "{:?}", solution.warnings);
             // Every mirror image fits as well, and no network stands there twice.
             let flat = |c: &&Candidate| {
                 let network = &c.network;
-                let line = if kind == Nodes::Receivers { &network.receivers } else { &network.transmitters };
+                let line = if kind == NodeKind::Receivers { &network.receivers } else { &network.transmitters };
                 c.physical && c.residual < 1e-12 && flatness(line) < 1e-9
             };
             assert_eq!(solution.candidates.iter().filter(flat).count(), 1 << (others - 1), "{kind}");
@@ -110,7 +110,7 @@ fn a_symmetric_network_ends_in_time_and_says_what_is_lost() {
     let mut solver = Solver::new();
     let solution = solver.solve(&measured, &MinimalOptions::default()).unwrap();
     let lost = solution.paths.failed;
-    assert!(lost > 0 && solution.warnings.contains(&SolveWarning::PathsLost { lost, tracked: 180 }), "{solution:?}");
+    assert!(lost > 0 && solution.warnings.contains(&MinimalWarning::PathsLost { lost, tracked: 180 }), "{solution:?}");
     // About 64 paths with six charts of 1,600 steps in the last round, not four rounds of up to
     // 102,400.
     let steps: usize = solver.records().iter().map(|r| r.accepted + r.rejected).sum();

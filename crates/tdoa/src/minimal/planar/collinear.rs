@@ -10,7 +10,7 @@
 
 use super::rank::differences;
 use crate::minimal::linear::LeastSquares;
-use crate::minimal::nodes::Nodes;
+use crate::minimal::node_kind::NodeKind;
 use crate::network::Network;
 use crate::plane::flatness;
 use smallvec::SmallVec;
@@ -26,7 +26,7 @@ const LISTED: usize = 7;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Collinear {
     /// Which nodes lie in one line.
-    pub(crate) kind: Nodes,
+    pub(crate) kind: NodeKind,
     /// The network with all other nodes on one side of the line, which is the first axis; offsets
     /// are `p_j`.
     network: Network,
@@ -77,8 +77,8 @@ impl Collinear {
         (0..count).map(|sides| {
             let mut network = self.network.clone();
             let others = match self.kind {
-                Nodes::Receivers => &mut network.transmitters,
-                Nodes::Transmitters => &mut network.receivers,
+                NodeKind::Receivers => &mut network.transmitters,
+                NodeKind::Transmitters => &mut network.receivers,
             };
             for (k, node) in others.iter_mut().skip(1).enumerate() {
                 if sides >> k & 1 == 1 {
@@ -100,8 +100,8 @@ impl Collinear {
     /// The nodes off the line.
     fn others(&self) -> &[[f64; 2]] {
         match self.kind {
-            Nodes::Receivers => Nodes::Transmitters.positions(&self.network),
-            Nodes::Transmitters => Nodes::Receivers.positions(&self.network),
+            NodeKind::Receivers => NodeKind::Transmitters.positions(&self.network),
+            NodeKind::Transmitters => NodeKind::Receivers.positions(&self.network),
         }
     }
 }
@@ -135,7 +135,7 @@ impl RankOne<'_> {
             self.along.iter().zip(self.p).map(|(along, p)| off_line(foot(along), p * p)).collect::<Option<_>>()?;
         let receivers = std::iter::once(0.0).chain(x).map(|x| [c * x, 0.0]).collect();
         Some(Collinear {
-            kind: Nodes::Receivers,
+            kind: NodeKind::Receivers,
             network: Network { receivers, transmitters, offsets: self.p.to_vec() },
         })
     }
@@ -159,7 +159,10 @@ impl RankOne<'_> {
         });
         let receivers = std::iter::once(off_line(first, fit[2])).chain(rest).collect::<Option<_>>()?;
         let transmitters = y.iter().map(|y| [c * y, 0.0]).collect();
-        Some(Collinear { kind: Nodes::Transmitters, network: Network { receivers, transmitters, offsets: p.to_vec() } })
+        Some(Collinear {
+            kind: NodeKind::Transmitters,
+            network: Network { receivers, transmitters, offsets: p.to_vec() },
+        })
     }
 }
 
@@ -229,7 +232,7 @@ mod tests {
     use super::Collinear;
     use crate::accuracy::position_error;
     use crate::minimal::linear::LeastSquares;
-    use crate::minimal::nodes::Nodes;
+    use crate::minimal::node_kind::NodeKind;
     use crate::minimal::normalised::Normalised;
     use crate::pseudoranges::Pseudoranges;
     use crate::simulate::{Layout, SimulateOptions, simulate};
@@ -246,12 +249,12 @@ mod tests {
                 options.layout = Layout::Normal;
                 let plain = simulate(&options).unwrap().network;
                 for distance in [1.0, 1e-3, 0.0] {
-                    for kind in [Nodes::Receivers, Nodes::Transmitters] {
+                    for kind in [NodeKind::Receivers, NodeKind::Transmitters] {
                         let name = format!("{receivers}r/{transmitters}s, seed {seed}, {kind}, {distance}");
                         let mut network = plain.clone();
                         let (nodes, others) = match kind {
-                            Nodes::Receivers => (&mut network.receivers, transmitters),
-                            Nodes::Transmitters => (&mut network.transmitters, receivers),
+                            NodeKind::Receivers => (&mut network.receivers, transmitters),
+                            NodeKind::Transmitters => (&mut network.transmitters, receivers),
                         };
                         for x in nodes.iter_mut() {
                             x[1] *= distance;

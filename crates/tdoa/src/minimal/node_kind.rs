@@ -6,44 +6,44 @@ use std::fmt::{self, Display, Formatter};
 
 /// One of the two kinds of nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Nodes {
+pub enum NodeKind {
     /// Receivers.
     Receivers,
     /// Transmitters.
     Transmitters,
 }
 
-impl Display for Nodes {
+impl Display for NodeKind {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Nodes::Receivers => "receivers",
-            Nodes::Transmitters => "transmitters",
+            NodeKind::Receivers => "receivers",
+            NodeKind::Transmitters => "transmitters",
         })
     }
 }
 
-impl Nodes {
+impl NodeKind {
     /// Where they are.
     pub(crate) fn positions(self, network: &Network) -> &[[f64; 2]] {
         match self {
-            Nodes::Receivers => &network.receivers,
-            Nodes::Transmitters => &network.transmitters,
+            NodeKind::Receivers => &network.receivers,
+            NodeKind::Transmitters => &network.transmitters,
         }
     }
 
     /// Their names.
     pub(super) fn names(self, measured: &Pseudoranges) -> Vec<String> {
         match self {
-            Nodes::Receivers => measured.receiver_names().to_vec(),
-            Nodes::Transmitters => measured.transmitter_names().to_vec(),
+            NodeKind::Receivers => measured.receiver_names().to_vec(),
+            NodeKind::Transmitters => measured.transmitter_names().to_vec(),
         }
     }
 
     /// One of the other kind, in words.
     pub(super) fn others(self) -> &'static str {
         match self {
-            Nodes::Receivers => "transmitter",
-            Nodes::Transmitters => "receiver",
+            NodeKind::Receivers => "transmitter",
+            NodeKind::Transmitters => "receiver",
         }
     }
 }
