@@ -6,17 +6,11 @@
 use crate::distinct::{coincidences, relative_distance};
 use crate::family::{Family, FamilyError, StartFile, StartFileError};
 use crate::refine::Refiner;
+use crate::tolerances::FAMILIES;
 use poly::counted;
 use poly::program::{EmitError, EmitOptions, emit};
 use std::fmt::Write;
 use thiserror::Error;
-
-/// If refinement changes a stored solution by this relative amount or more, it is not a solution.
-const MOVED: f64 = 1e-12;
-/// Condition number from which on a stored solution counts as singular.
-const SINGULAR: f64 = 1e12;
-/// Relative distance below which two stored solutions are the same.
-const SAME: f64 = 1e-8;
 
 /// Why no source is written.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -114,17 +108,17 @@ fn verify(family: &Family, start: &StartFile) -> Result<(), CodegenError> {
         let refined = refiner.refine(&fibre.parameters, x);
         let distance = relative_distance(x, &refined.point);
         // What is not a number is no solution either.
-        if !distance.lt(&MOVED) {
+        if !distance.lt(&FAMILIES.stored_moved) {
             return Err(CodegenError::Inaccurate { index, distance });
         }
-        if !refined.condition.lt(&SINGULAR) {
+        if !refined.condition.lt(&FAMILIES.stored_condition) {
             return Err(CodegenError::Singular { index, condition: refined.condition });
         }
         if !family.accepts(&fibre.parameters, x) {
             return Err(CodegenError::Degenerate { index });
         }
     }
-    let same = coincidences((0..fibre.len()).map(|k| (k, fibre.solution(k))), SAME);
+    let same = coincidences((0..fibre.len()).map(|k| (k, fibre.solution(k))), FAMILIES.stored_same);
     match same.first() {
         Some(group) => Err(CodegenError::Coincident { solutions: group.iter().map(|k| k + 1).collect() }),
         None => Ok(()),

@@ -3,15 +3,12 @@
 use super::error::FamilyError;
 use super::fibre::Fibre;
 use super::pair::{TRIES, find_pair};
-use super::symmetry::{SAME, Symmetry};
+use super::symmetry::Symmetry;
 use crate::distinct::relative_distance;
+use crate::tolerances::FAMILIES;
 use num_complex::Complex64;
 use poly::{Evaluate, Interpreter, Isa, System};
 use std::str::FromStr;
-
-/// Values of this size and below count as zero where a family demands that something does not
-/// vanish.
-const VANISHES: f64 = 1e-9;
 
 /// A compiled parameter family: its equations, the factors that must not vanish at its solutions,
 /// and its symmetries.
@@ -103,7 +100,7 @@ impl Family {
         let mut memory = self.nonzero.memory(Isa::Portable);
         let mut values = vec![Complex64::new(0.0, 0.0); self.nonzero.equations()];
         self.nonzero.values(&mut memory, x, p, &mut values);
-        values.iter().all(|z| z.norm() > VANISHES)
+        values.iter().all(|z| z.norm() > FAMILIES.vanishes)
     }
 
     /// Checks that a fibre has the family's numbers of parameters and unknowns.
@@ -143,9 +140,9 @@ impl Family {
                 continue;
             }
             representatives.push(k);
-            let orbit = self.symmetry.orbit(&fibre.parameters, fibre.solution(k), SAME);
+            let orbit = self.symmetry.orbit(&fibre.parameters, fibre.solution(k), FAMILIES.same);
             for (j, known) in known.iter_mut().enumerate() {
-                *known |= orbit.iter().any(|x| relative_distance(x, fibre.solution(j)) <= SAME);
+                *known |= orbit.iter().any(|x| relative_distance(x, fibre.solution(j)) <= FAMILIES.same);
             }
         }
         Fibre { representatives: Some(representatives), ..fibre }

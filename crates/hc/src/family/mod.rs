@@ -36,7 +36,6 @@ pub use monodromy::{Monodromy, MonodromyOptions, Stopped};
 pub use start_file::{StartFile, StartFileError};
 pub use targets::Targets;
 pub(crate) use trace::deviation;
-pub(crate) use trace_result::PASSED;
 pub use trace_result::TraceTest;
 pub use track::{FibreTracker, move_fibre, track_fibre};
 pub(crate) use track::{move_fibre_watched, track_fibre_watched};

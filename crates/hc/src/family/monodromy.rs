@@ -10,13 +10,14 @@ use super::fibre::{Fibre, FibreOptions};
 use super::reach::Reach;
 use super::sides::{Searched, Which};
 use super::start_file::StartFile;
-use super::symmetry::{ACCURATE, Symmetry};
+use super::symmetry::Symmetry;
 use super::trace_result::TraceTest;
 use crate::checkpoint::{Piece, Pieces};
 use crate::distinct::{coincidences, relative_distance};
 use crate::monitor::{Monitor, Stage};
 use crate::random::{Random, Stream};
 use crate::refine::Refiner;
+use crate::tolerances::FAMILIES;
 use crate::tracker::PathEnd;
 use num_complex::Complex64;
 use poly::Evaluate;
@@ -248,8 +249,6 @@ const LONG: usize = 1 << 12;
 
 /// Least number of loops times solutions before a search ends for want of a new solution.
 const CHANCES: usize = 128;
-/// The ratio of one scale of loops to the next.
-const SCALE: f64 = 4.0;
 /// Scales above one, and below: branch points may lie close together about zero.
 const LARGER: usize = 8;
 const SMALLER: usize = 12;
@@ -260,7 +259,7 @@ fn scale(idle: usize, patience: usize) -> f64 {
     let Some(k) = idle.checked_sub(patience.div_ceil(2)) else { return 1.0 };
     let turn = k / 3;
     let steps = if k % 3 < 2 { (turn % LARGER + 1) as i32 } else { -((turn % SMALLER + 1) as i32) };
-    SCALE.powi(steps)
+    FAMILIES.loop_scale.powi(steps)
 }
 
 /// A fibre that is being filled.
@@ -363,7 +362,7 @@ impl<E: Evaluate> Filling<'_, E> {
         let mut new = Vec::new();
         for x in points {
             let refined = refiner.refine(&self.fibre.parameters, x);
-            if refined.accuracy < ACCURATE && accept(&self.fibre.parameters, &refined.point) {
+            if refined.accuracy < FAMILIES.accurate && accept(&self.fibre.parameters, &refined.point) {
                 new.push(refined.point);
             }
         }
@@ -385,7 +384,7 @@ impl<E: Evaluate> Filling<'_, E> {
             for image in self.symmetry.orbit(&self.fibre.parameters, x, tolerance).into_iter().skip(1) {
                 // A point that is no solution is no image under a symmetry.
                 let refined = refiner.refine(&self.fibre.parameters, &image);
-                if refined.accuracy < ACCURATE && relative_distance(&refined.point, &image) < tolerance {
+                if refined.accuracy < FAMILIES.accurate && relative_distance(&refined.point, &image) < tolerance {
                     self.fibre.solutions.extend(refined.point);
                 }
             }

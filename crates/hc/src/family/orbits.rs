@@ -4,9 +4,10 @@
 use super::compiled::Family;
 use super::error::FamilyError;
 use super::fibre::Fibre;
-use super::symmetry::{SAME, Symmetry};
+use super::symmetry::Symmetry;
 use crate::distinct::coincidences;
 use crate::solve::{Solution, Solutions};
+use crate::tolerances::FAMILIES;
 use num_complex::Complex64;
 
 /// The representatives of a fibre, and how many solutions each stands for.
@@ -28,7 +29,7 @@ impl Orbits {
         }
         family.check_symmetry(fibre)?;
         let tracked = fibre.tracked();
-        let size = |x| family.symmetry.orbit(&fibre.parameters, x, SAME).len();
+        let size = |x| family.symmetry.orbit(&fibre.parameters, x, FAMILIES.same).len();
         let mut sizes: Vec<usize> = tracked.iter().map(size).collect();
         sizes.sort_unstable();
         Ok(Some(Orbits { tracked, sizes }))

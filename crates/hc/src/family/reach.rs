@@ -5,20 +5,12 @@ use super::fibre::Fibre;
 use super::size::{Sizes, largest, natural_size};
 use crate::random::{Random, Stream};
 use crate::refine::Refiner;
+use crate::tolerances::FAMILIES;
 use num_complex::Complex64;
 use poly::{ComplexDd, Evaluate, Scalar};
 
-/// Ratio of one scale that is tried to the next, and of the first to the natural size.
-const SCALE: f64 = 64.0;
-/// The square root of that ratio, which lies between two scales.
-const MIDDLE: f64 = 8.0;
 /// The number of scales that are tried; sums of numbers further apart do not fit in doubles.
 const SCALES: i32 = 9;
-/// A coordinate has left its tangent where the second of two equal steps differs from the first by
-/// this share.
-const BENT: f64 = 0.1;
-/// Steps by less than this share of a coordinate are rounding error of double-double.
-const STILL: f64 = 1e-24;
 /// The number of points of the fibre that are examined.
 const POINTS: usize = 8;
 
@@ -47,20 +39,20 @@ impl Reach {
             scales.sort_unstable();
             let scale = scales.get(scales.len() / 2).map_or(0, |&scale| scale);
             if scale > 0 {
-                let straight = *size * SCALE.powi(scale);
+                let straight = *size * FAMILIES.reach_scale.powi(scale);
                 for x in &points {
                     let steps = walker.steps(&walker.only(k, straight), x);
                     for (unknown, step) in unknowns.iter_mut().zip(steps) {
-                        *unknown = unknown.max(MIDDLE * Complex64::from(step[0]).norm());
+                        *unknown = unknown.max(FAMILIES.reach_middle * Complex64::from(step[0]).norm());
                     }
                 }
-                *size = MIDDLE * straight;
+                *size = FAMILIES.reach_middle * straight;
             }
         }
         let hidden = parameters != natural.parameters && {
             let change = |sizes: &[f64]| -> Vec<Complex64> {
                 let random = Random::of(0, Stream::Trace).normals(sizes.len());
-                random.into_iter().zip(sizes).map(|(z, size)| z * (MIDDLE * size)).collect()
+                random.into_iter().zip(sizes).map(|(z, size)| z * (FAMILIES.reach_middle * size)).collect()
             };
             let (near, far) = (change(&natural.parameters), change(&parameters));
             let mut hides = |x: &&[Complex64]| {
@@ -88,7 +80,7 @@ impl<E: Evaluate> Walker<'_, E> {
         let mut straight = vec![true; x.len()];
         let mut last = None;
         for scale in 0..SCALES {
-            let change = self.only(k, natural * SCALE.powi(scale + 1));
+            let change = self.only(k, natural * FAMILIES.reach_scale.powi(scale + 1));
             for (before, now) in straight.iter_mut().zip(self.straight(&change, x)) {
                 if *before && !now {
                     *before = false;
@@ -129,7 +121,7 @@ fn leaves_its_tangent(steps: &[ComplexDd; 2], size: f64) -> bool {
     let bend = Complex64::from(ComplexDd::sub(&steps[1], &steps[0])).norm();
     let step = Complex64::from(steps[0]).norm();
     // Written so that NaN is bent.
-    !(step <= STILL * size || bend <= BENT * step)
+    !(step <= FAMILIES.still * size || bend <= FAMILIES.bent * step)
 }
 
 #[cfg(test)]

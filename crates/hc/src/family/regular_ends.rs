@@ -2,19 +2,10 @@
 
 use crate::distinct::Coincidences;
 use crate::refine::Refiner;
+use crate::tolerances::FAMILIES;
 use crate::tracker::{PathEnd, PathResult, PathSet};
 use num_complex::Complex64;
 use poly::Evaluate;
-
-/// Ends that are known to fewer digits than this are refined before they are compared. The
-/// remaining error is the square of the last correction, times the Lipschitz constant of Newton's
-/// method.
-const VAGUE: f64 = 1e-7;
-/// After refinement the last correction must be below this.
-const SETTLED: f64 = 1e-10;
-
-/// Coordinates below this share of the largest, squared, are zero or suspicious.
-const VANISHED_SQR: f64 = 1e-32;
 
 /// Whether a path with this record has reached a regular solution `x` (one entry per unknown) for
 /// the parameters `target` (one entry per parameter).
@@ -30,7 +21,7 @@ pub(super) fn ends_regularly<E: Evaluate>(
     x: &[Complex64],
 ) -> bool {
     let largest = x.iter().map(|z| z.norm_sqr()).fold(0.0, f64::max);
-    let plain = || result.pivot > f64::EPSILON && x.iter().all(|z| z.norm_sqr() > VANISHED_SQR * largest);
+    let plain = || result.pivot > f64::EPSILON && x.iter().all(|z| z.norm_sqr() > FAMILIES.vanished_sqr * largest);
     let mut attracts = || refiner.contracts(target, x) || refiner.contracts_precisely(target, x);
     result.end == PathEnd::Success && (plain() || attracts())
 }
@@ -47,9 +38,9 @@ pub(super) fn settle<E: Evaluate>(refiner: &mut Refiner<'_, E>, target: &[Comple
         }
         if !ends_regularly(refiner, target, &result, paths.point(k)) {
             paths.replace_record(k, PathResult { end: PathEnd::Singular, ..result });
-        } else if result.accuracy > VAGUE {
+        } else if result.accuracy > FAMILIES.vague {
             refiner.refine_into(target, paths.point(k), &mut refined);
-            let end = if refined.accuracy <= SETTLED { PathEnd::Success } else { PathEnd::Singular };
+            let end = if refined.accuracy <= FAMILIES.settled { PathEnd::Success } else { PathEnd::Singular };
             paths.replace(k, PathResult { end, accuracy: refined.accuracy, ..result }, &refined.point);
         }
     }

@@ -2,17 +2,12 @@
 
 use crate::distinct::relative_distance;
 use crate::refine::Refiner;
+use crate::tolerances::FAMILIES;
 use num_complex::Complex64;
 use poly::{CompileError, Evaluate, Interpreter, Isa, System};
 
 /// Most points of an orbit; maps that make more are not taken for a symmetry of finite order.
 const LARGEST_ORBIT: usize = 10_000;
-
-/// Accuracy to which new solutions, and images of solutions, must be known.
-pub(super) const ACCURATE: f64 = 1e-12;
-
-/// Relative distance below which the image of a solution is taken for a solution.
-pub(super) const SAME: f64 = 1e-8;
 
 /// The group that some maps of the unknowns generate, compiled.
 #[derive(Debug, Default)]
@@ -61,7 +56,7 @@ impl Symmetry {
             let keeps = |map: &Interpreter, refiner: &mut Refiner<'_, Interpreter>| {
                 let image = image(map, p, x);
                 let refined = refiner.refine(p, &image);
-                refined.accuracy < ACCURATE && relative_distance(&refined.point, &image) <= SAME
+                refined.accuracy < FAMILIES.accurate && relative_distance(&refined.point, &image) <= FAMILIES.same
             };
             if let Some(k) = self.maps.iter().position(|map| !keeps(map, &mut refiner)) {
                 return Some(k);

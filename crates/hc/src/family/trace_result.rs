@@ -1,10 +1,7 @@
 //! What a trace test found.
 
+use crate::tolerances::FAMILIES;
 use serde::{Deserialize, Serialize};
-
-/// Deviations below this pass. Those of whole fibres are rounding errors of double-double, some 1e-30;
-/// a missing point of another size than the others deviates by little more.
-pub(crate) const PASSED: f64 = 1e-18;
 
 /// What the trace test found.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -26,7 +23,7 @@ impl TraceTest {
     /// Whether the test shows that a fibre of `len` points is whole: it has a
     /// [result](Self::result), and the result is below 1e-18.
     pub fn passed(&self, len: usize) -> bool {
-        self.result(len).is_some_and(|deviation| deviation < PASSED)
+        self.result(len).is_some_and(|deviation| deviation < FAMILIES.trace_passed)
     }
 
     /// The deviation for a fibre of `len` points, if it means something: every path ended well, and

@@ -10,13 +10,11 @@ use crate::monitor::Monitor;
 use crate::ranks::{RanksError, Shareable, Task, Worker};
 use crate::refine::{Refined, Refiner};
 use crate::runner::{Flow, Round, Work};
+use crate::tolerances::FAMILIES;
 use crate::tracker::{PathEnd, PathResult, PathSet, Tracker, TrackerOptions, Trackers};
 use num_complex::Complex64;
 use poly::{Evaluate, Lanes8};
 use std::cell::Cell;
-
-/// Accuracy to which the end of a path that is carried back from another chart must be known.
-const CARRIED: f64 = 1e-8;
 
 /// More lost paths than this tell of a degenerate member of the family rather than of bad luck.
 const BAD_LUCK: usize = 4;
@@ -336,7 +334,7 @@ impl<C: Charts, U> FibreTracking<'_, C, U> {
                 if regular {
                     refiner.refine_into(self.target, back, refined);
                 }
-                if regular && refined.accuracy < CARRIED {
+                if regular && refined.accuracy < FAMILIES.carried {
                     back.copy_from_slice(&refined.point);
                 } else {
                     record.end = PathEnd::Singular;

@@ -7,6 +7,7 @@ use super::equations::{Given, LocalEquations};
 use super::kinds::{Effort, LocalStructure};
 use super::local_structure::{local_structure, rounded};
 use super::number::{Number, largest};
+use crate::tolerances::CLUSTERS;
 use num_complex::Complex64;
 use num_rational::BigRational;
 use num_traits::Zero;
@@ -18,21 +19,10 @@ type Digits = ComplexMulti<8>;
 /// Orders of the series that are tried, with logarithms to base 2 of the tolerances at which ranks
 /// are read off.
 const ORDERS: [usize; 6] = [2, 3, 4, 6, 8, 12];
-const TOLERANCES: [f64; 6] = [-40.0, -30.0, -20.0, -13.0, -10.0, -6.5];
 /// Most unknowns that may be left in the equations of a cluster.
 const UNKNOWNS: usize = 5;
-/// A cluster is at most this far from the end of a path, a logarithm to base 2, and this wide.
-const NEAR: f64 = -10.0;
-const WIDEST: f64 = -7.0;
 /// The series has this many orders more where only one unknown is left.
 const SINGLE: usize = 24;
-/// Terms that are smaller than this share of the largest (a logarithm to base 2) do not matter for
-/// starts of Newton's method.
-const SMALL: f64 = -90.0;
-/// Coefficients that are smaller are rounding errors.
-const NOISE: f64 = -400.0;
-/// Solutions nearer to each other (a logarithm to base 2) are the same.
-const SAME: f64 = -250.0;
 
 /// The equations near the centre of a cluster, without the unknowns that they determine at once, and
 /// in units of its size.
@@ -58,7 +48,7 @@ impl<'a> ClusterEquations<'a> {
     /// which unknowns are determined.
     pub(crate) fn all(given: &'a Given, point: &[Complex64]) -> impl Iterator<Item = ClusterEquations<'a>> {
         let mut tried: Vec<(Profile, usize)> = Vec::new();
-        let ways = ORDERS.into_iter().flat_map(|order| TOLERANCES.map(|tolerance| (order, tolerance)));
+        let ways = ORDERS.into_iter().flat_map(|order| CLUSTERS.ranks.map(|tolerance| (order, tolerance)));
         let point = point.to_vec();
         ways.filter_map(move |(order, tolerance)| ClusterEquations::new(given, &point, order, tolerance, &mut tried))
     }
@@ -80,7 +70,7 @@ impl<'a> ClusterEquations<'a> {
             tried.push((profile.clone(), order));
             fresh
         })?;
-        if distance(&start, &centre) > NEAR {
+        if distance(&start, &centre) > CLUSTERS.near {
             return None;
         }
         let (_, jacobian) = local.jacobian(&centre);
@@ -113,7 +103,8 @@ impl<'a> ClusterEquations<'a> {
             .filter(|solution| solution.profile.is_regular())
             .filter(|solution| distance(&start, &solution.point) <= self.size as f64 + 1.0);
         if let Some(regular) = regular {
-            let known = |f: &ClusterSolution| f.point.as_ref().is_some_and(|p| distance(p, &regular.point) <= SAME);
+            let known =
+                |f: &ClusterSolution| f.point.as_ref().is_some_and(|p| distance(p, &regular.point) <= CLUSTERS.same);
             if !found.iter().any(known) {
                 let (point, residual) = rounded(self.given, &self.local, &regular.point);
                 found.push(ClusterSolution {
@@ -143,16 +134,18 @@ fn size(reduced: &Reduced<Digits>) -> Option<i64> {
         let sizes: Vec<f64> = (0..=order)
             .map(|k| {
                 let from = if k == 0 { 0 } else { reduced.basis.count(k - 1) };
-                Some(largest(&series[from..reduced.basis.count(k)])).filter(|&s| s > NOISE).unwrap_or(f64::NEG_INFINITY)
+                Some(largest(&series[from..reduced.basis.count(k)]))
+                    .filter(|&s| s > CLUSTERS.noise)
+                    .unwrap_or(f64::NEG_INFINITY)
             })
             .collect();
-        let outside = |k: &usize| sizes[*k] + *k as f64 * WIDEST;
+        let outside = |k: &usize| sizes[*k] + *k as f64 * CLUSTERS.widest;
         let leading = (0..=order).max_by(|a, b| outside(a).total_cmp(&outside(b)))?;
         for k in 0..leading {
             size = size.max((sizes[k] - sizes[leading]) / (leading - k) as f64);
         }
     }
-    (size.is_finite() && size <= WIDEST).then(|| size.round() as i64)
+    (size.is_finite() && size <= CLUSTERS.widest).then(|| size.round() as i64)
 }
 
 /// An equation in units of a size, without the terms that do not matter.
@@ -161,7 +154,7 @@ fn in_units(reduced: &Reduced<Digits>, series: &[Digits], size: i64) -> Option<P
     let degree = |k: usize| exponents[k].iter().map(|&e| i64::from(e)).sum::<i64>();
     let scaled: Vec<Digits> = series.iter().enumerate().map(|(k, c)| c.shifted(degree(k) * size)).collect();
     let top = largest(&scaled);
-    let kept = scaled.iter().enumerate().filter(|(_, c)| c.log2() > top + SMALL);
+    let kept = scaled.iter().enumerate().filter(|(_, c)| c.log2() > top + CLUSTERS.small_term);
     let term = |(k, c): (usize, &Digits)| {
         let monomial = Monomial::new(exponents[k].iter().map(|&e| i32::from(e)));
         Some((monomial, exact(&c.shifted(-top.round() as i64))?))

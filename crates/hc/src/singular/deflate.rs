@@ -13,6 +13,7 @@ use super::eliminate::{Elimination, Stop};
 use super::equations::LocalEquations;
 use super::number::{Number, largest};
 use super::series::Basis;
+use crate::tolerances::LOCAL;
 use num_complex::Complex64;
 
 /// Where the iteration ends.
@@ -47,15 +48,6 @@ pub(crate) struct DeflatedPoint<S> {
     pub(crate) profile: Profile,
 }
 
-/// Numbers whose logarithm to base 2 is at most this share of the digits count as zero at a refined
-/// point.
-pub(crate) const ZERO: f64 = -0.5;
-/// Numbers from this share of the digits on count as nonzero; what lies between is not clear.
-pub(crate) const CLEAR: f64 = -0.27;
-/// Equations at a refined point are this small at most, relative to their terms.
-const SOLVED: f64 = -0.58;
-/// Corrections up to this size end the iteration.
-const CONVERGED: f64 = -0.7;
 /// Iterations at most; corrections of an iteration that converges get small at once.
 const ITERATIONS: usize = 14;
 /// As many corrections may shrink by less than a factor of four.
@@ -93,8 +85,8 @@ struct Step<S> {
 impl<S: Number> Step<S> {
     /// Whether the point solves the equations and what was taken as zero is clearly zero.
     fn is_solution(&self, local: &LocalEquations<'_, S>) -> bool {
-        let clear = self.accepted >= CLEAR * S::BITS && self.rejected <= ZERO * S::BITS;
-        clear && local.residual(&self.point) <= SOLVED * S::BITS
+        let clear = self.accepted >= LOCAL.clear * S::BITS && self.rejected <= LOCAL.zero * S::BITS;
+        clear && local.residual(&self.point) <= LOCAL.solved * S::BITS
     }
 }
 
@@ -192,7 +184,7 @@ fn iterated<S: Number>(
             return None;
         }
         before = correction;
-        if correction <= CONVERGED * S::BITS {
+        if correction <= LOCAL.converged * S::BITS {
             return step(local, &point, order, RankRule::Known(profile));
         }
     }

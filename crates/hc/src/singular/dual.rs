@@ -8,10 +8,10 @@
 //! solution is isolated. If there are more functionals than paths that can end at an isolated
 //! solution, it is not isolated (Bates, Hauenstein, Peterson & Sommese 2009).
 
-use super::deflate::{CLEAR, ZERO};
 use super::eliminate::{Elimination, Stop};
 use super::number::{Number, largest};
 use super::series::Basis;
+use crate::tolerances::LOCAL;
 
 /// What the functionals up to an order tell.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -93,16 +93,16 @@ impl<S: Number> Space<'_, S> {
         }
         for row in &mut rows {
             let size = largest(row.iter());
-            if size > ZERO * S::BITS && size < CLEAR * S::BITS {
+            if size > LOCAL.zero * S::BITS && size < LOCAL.clear * S::BITS {
                 return None;
             }
             // Rows of rounding errors stay as small as they are.
-            if size.is_finite() && size >= CLEAR * S::BITS {
+            if size.is_finite() && size >= LOCAL.clear * S::BITS {
                 row.iter_mut().for_each(|z| *z = z.shifted(-(size.round() as i64)));
             }
         }
-        let found = Elimination::new(rows, n * m, Stop::Below(0.5 * (ZERO + CLEAR) * S::BITS));
-        if !(found.rest <= ZERO * S::BITS && found.smallest >= CLEAR * S::BITS) {
+        let found = Elimination::new(rows, n * m, Stop::Below(0.5 * (LOCAL.zero + LOCAL.clear) * S::BITS));
+        if !(found.rest <= LOCAL.zero * S::BITS && found.smallest >= LOCAL.clear * S::BITS) {
             return None;
         }
         let vectors = found.null_space();

@@ -6,6 +6,7 @@ use super::multiplicity::Modular;
 use super::number::{Number, largest};
 use super::series::Basis;
 use crate::monitor::Monitor;
+use crate::tolerances::LOCAL;
 use num_complex::Complex64;
 use num_traits::Zero;
 use poly::{ComplexDd, ComplexMulti, Exact, Polynomial};
@@ -50,10 +51,6 @@ struct Term {
     places: Vec<usize>,
     coefficient: Exact,
 }
-
-/// Coordinates below this share of the largest, or of one, may be zero in truth where nothing is
-/// known of their error: ends at multiple solutions are not accurate.
-const SMALL: f64 = 1e-2;
 
 /// A precision that the equations can be had in.
 pub(crate) trait Precision: Number {
@@ -233,7 +230,7 @@ impl Given {
 
     /// The equations in unknowns of about unit size near a point.
     pub(crate) fn near<S: Precision>(&self, point: &[Complex64]) -> LocalEquations<'_, S> {
-        self.near_within(point, SMALL)
+        self.near_within(point, LOCAL.small)
     }
 
     /// [`near`](Given::near) a point of which coordinates below this share of the largest, or of one, may

@@ -1,7 +1,7 @@
 //! What the end of a path is: a regular solution, an isolated multiple solution, a point on a set
 //! of positive dimension, or no solution.
 
-use super::deflate::{CLEAR, DeflatedPoint, NewtonEnd, Profile, Reduced, ZERO, deflated, distance, ending};
+use super::deflate::{DeflatedPoint, NewtonEnd, Profile, Reduced, deflated, distance, ending};
 use super::dual::{Count, count};
 use super::eliminate::{Elimination, Stop};
 use super::equations::{Given, LocalEquations, Precision};
@@ -11,28 +11,16 @@ use super::rational::at_rational;
 use super::sheet::{leads_on_somewhere, on_sheet};
 use crate::distinct::relative_distance;
 use crate::random::{Random, Stream};
+use crate::tolerances::LOCAL;
 use num_complex::Complex64;
 use poly::{ComplexDd, ComplexMulti};
 
 /// Orders of the series that are tried.
 const ORDERS: [usize; 16] = [2, 3, 4, 5, 6, 7, 8, 11, 16, 23, 32, 45, 64, 90, 128, 180];
-/// Logarithms to base 2 of the tolerances at which ranks are read off near a solution.
-const TOLERANCES: [f64; 7] = [-40.0, -30.0, -20.0, -13.0, -10.0, -6.5, -3.5];
 /// Functionals are counted up to at least this number, whatever the number of paths, and up to the
 /// second number where the point may be isolated with more functionals.
 const FUNCTIONALS: usize = 12;
 const MANY_FUNCTIONALS: usize = 80;
-/// A regular solution is at most this far from the end of a path, relatively, or this many times
-/// the error of the end.
-const NEAR: f64 = 1e-7;
-const NEAR_ERRORS: f64 = 1e2;
-/// The same distance for singular solutions, whose ends are less accurate.
-const NEAR_SINGULAR: f64 = 1e-3;
-/// Relative values of equations from which on a point does not solve them.
-const NOT_ZERO: f64 = 1e-4;
-
-/// Coordinates below this share of the largest may really be zero, whatever their stated error.
-const SURELY_ZERO: f64 = 1e-5;
 
 /// The local structure at a point near which `paths` paths end. As far as is known, the relative error
 /// of the point is at most `error`. At most `most` paths may end at any one point.
@@ -47,11 +35,11 @@ pub(crate) fn local_structure(
     if point.iter().any(|z| !z.is_finite()) {
         return LocalStructure::Unresolved(Why::NoSolution);
     }
-    let error = if error.is_finite() { error.abs() } else { NEAR_SINGULAR };
+    let error = if error.is_finite() { error.abs() } else { LOCAL.near_singular };
     if is_no_solution(given, point, error) {
         return LocalStructure::NotASolution;
     }
-    let regular_at_once = regular_from(&given.near_within::<ComplexDd>(point, OWN_UNITS), given, point, error);
+    let regular_at_once = regular_from(&given.near_within::<ComplexDd>(point, LOCAL.own_units), given, point, error);
     let (on_component, isolated) = match regular_at_once.or_else(|| at_rational(given, point, error, most)) {
         found @ Some(LocalStructure::OnComponent { .. }) => (found, None),
         found => (None, found),
@@ -97,31 +85,18 @@ pub(crate) fn local_structure(
 fn is_no_solution(given: &Given, point: &[Complex64], error: f64) -> bool {
     // Relative changes of a point are as large in terms as their degrees.
     let degree = given.degree() as f64;
-    let local = given.near_within::<ComplexDd>(point, (1e3 * error).clamp(SURELY_ZERO, NEAR_SINGULAR));
-    local.residual(&local.scaled(point)).exp2() > NOT_ZERO.max(1e3 * degree * error).min(0.5)
+    let local = given.near_within::<ComplexDd>(point, (1e3 * error).clamp(LOCAL.surely_zero, LOCAL.near_singular));
+    local.residual(&local.scaled(point)).exp2() > LOCAL.not_zero.max(1e3 * degree * error).min(0.5)
 }
-
-/// Relative values of equations up to which a regular solution of combinations of them surely
-/// solves all, and from which it does not; between them it is refined.
-const SOLVES: f64 = 1e-13;
-const MISSES: f64 = 1e-6;
 
 /// Whether a regular solution of combinations of the equations, to all digits of a double, solves
 /// them all.
 pub(crate) fn solves(given: &Given, point: &[Complex64]) -> bool {
     let residual = residual(given, point);
-    residual <= SOLVES
-        || residual < MISSES
+    residual <= LOCAL.solves
+        || residual < LOCAL.misses
             && matches!(local_structure(given, point, 1, 1, 0.0, Effort::Little), LocalStructure::Regular { .. })
 }
-
-/// Relative corrections up to this size are due to rounding the point.
-const STEADY: f64 = 1e-13;
-/// Pivots of the Jacobian, as logarithms to base 2, that may be due to that as well.
-const FAINT: f64 = -36.0;
-
-/// Such pivots that are clear in doubles already.
-const PLAIN: f64 = -20.0;
 
 /// Whether the given equations move a regular solution of rounded ones by more than its own
 /// rounding error, or do not determine it.
@@ -132,13 +107,14 @@ pub(crate) fn is_moved(given: &Given, point: &[Complex64]) -> bool {
     let rough = near.rounded();
     let (_, jacobian) = rough.jacobian(&rough.scaled(point));
     let values: Vec<Complex64> = near.values(&x).iter().map(Number::to_c64).collect();
-    let corrected = newton(&rough.scaled(point), &values, jacobian, PLAIN).map(|x| rough.unscaled(&x)).or_else(|| {
-        let (values, jacobian) = near.jacobian(&x);
-        let x = newton(&x, &values, jacobian, FAINT)?;
-        Some(near.unscaled(&x).iter().map(Number::to_c64).collect())
-    });
+    let corrected =
+        newton(&rough.scaled(point), &values, jacobian, LOCAL.plain_pivot).map(|x| rough.unscaled(&x)).or_else(|| {
+            let (values, jacobian) = near.jacobian(&x);
+            let x = newton(&x, &values, jacobian, LOCAL.faint_pivot)?;
+            Some(near.unscaled(&x).iter().map(Number::to_c64).collect())
+        });
     // Written so that what is no number is moved.
-    !corrected.is_some_and(|corrected| relative_distance(point, &corrected) <= STEADY)
+    !corrected.is_some_and(|corrected| relative_distance(point, &corrected) <= LOCAL.steady)
 }
 
 /// A step of Newton's method, if all pivots of the Jacobian are larger than `smallest` (a logarithm to
@@ -153,9 +129,6 @@ fn regular<S: Precision>(given: &Given, point: &[Complex64], error: f64) -> Opti
     regular_from(&given.near::<S>(point), given, point, error)
 }
 
-/// Coordinates of regular solutions have units of their own down to this share of the largest.
-const OWN_UNITS: f64 = 1e-14;
-
 /// The regular solution near a point, by the equations near it.
 fn regular_from<S: Precision>(
     local: &LocalEquations<'_, S>,
@@ -165,7 +138,8 @@ fn regular_from<S: Precision>(
 ) -> Option<LocalStructure> {
     let start = local.scaled(point);
     let found = deflated(local, &start, 1, f64::NEG_INFINITY, &mut Vec::new())?;
-    if !found.profile.is_regular() || distance(&start, &found.point) > NEAR.max(NEAR_ERRORS * error).log2() {
+    if !found.profile.is_regular() || distance(&start, &found.point) > LOCAL.near.max(LOCAL.near_errors * error).log2()
+    {
         return None;
     }
     let (point, residual) = rounded(given, local, &found.point);
@@ -175,14 +149,8 @@ fn regular_from<S: Precision>(
 /// A point on a set of positive dimension at the end of a path. The path seemed to lead to a
 /// regular solution nearby, but another path leads to that solution.
 pub(crate) fn beside(given: &Given, point: &[Complex64], paths: usize, error: f64) -> Option<LocalStructure> {
-    sheet(given, point, paths, error.max(NEAR_SHEET_AT_MOST / NEAR_SHEET_ERRORS))
+    sheet(given, point, paths, error.max(LOCAL.near_sheet_at_most / LOCAL.near_sheet_errors))
 }
-
-/// A point on a set of positive dimension is at most this far from the end of a path, relatively,
-/// or this many times the error of the end.
-const NEAR_SHEET: f64 = 1e-11;
-const NEAR_SHEET_AT_MOST: f64 = 1e-8;
-const NEAR_SHEET_ERRORS: f64 = 10.0;
 
 /// The local structure at a point that can be moved along a set of solutions.
 fn sheet(given: &Given, point: &[Complex64], paths: usize, error: f64) -> Option<LocalStructure> {
@@ -190,7 +158,7 @@ fn sheet(given: &Given, point: &[Complex64], paths: usize, error: f64) -> Option
         return None;
     }
     let local = given.near::<ComplexDd>(point);
-    let near = NEAR_SHEET.max(NEAR_SHEET_ERRORS * error).min(NEAR_SHEET_AT_MOST).log2();
+    let near = LOCAL.near_sheet.max(LOCAL.near_sheet_errors * error).min(LOCAL.near_sheet_at_most).log2();
     let (point, dimension) = on_sheet(&local, &local.scaled(point), paths, near)?;
     Some(LocalStructure::OnComponent { dimension, point: rounded(given, &local, &point).0 })
 }
@@ -213,7 +181,7 @@ fn multiple<S: Precision>(
     let mut why = Why::NoSolution;
     for order in ORDERS.into_iter().take_while(|&order| order <= 2 * limit) {
         let mut tried: Vec<Profile> = Vec::new();
-        for tolerance in TOLERANCES {
+        for tolerance in LOCAL.ranks {
             if given.is_exhausted() {
                 return Err(Why::TooMuch);
             }
@@ -222,7 +190,7 @@ fn multiple<S: Precision>(
                 NewtonEnd::Between if effort == Effort::Little => return Err(Why::NoSolution),
                 NewtonEnd::Between | NewtonEnd::Nowhere => continue,
             };
-            if found.profile.is_regular() || distance(&start, &found.point) > NEAR_SINGULAR.log2() {
+            if found.profile.is_regular() || distance(&start, &found.point) > LOCAL.near_singular.log2() {
                 continue;
             }
             match by_series(&local, &found, order, limit, most) {
@@ -246,7 +214,7 @@ fn multiple<S: Precision>(
 /// The local structure at a point with zeros in place of small coordinates, if one of the small ones may
 /// take any value, whatever the nonzero coordinates are.
 fn on_axes(given: &Given, point: &[Complex64], error: f64) -> Option<LocalStructure> {
-    let small = NEAR_SHEET_AT_MOST.max(NEAR_SHEET_ERRORS * error).min(NEAR_SINGULAR).log2();
+    let small = LOCAL.near_sheet_at_most.max(LOCAL.near_sheet_errors * error).min(LOCAL.near_singular).log2();
     let local = given.near::<ComplexDd>(point);
     let start = local.scaled(point);
     let mut zero: Vec<bool> = start.iter().map(|z| z.log2() < small).collect();
@@ -268,13 +236,14 @@ fn on_axes(given: &Given, point: &[Complex64], error: f64) -> Option<LocalStruct
 /// The local structure if zeros in place of small coordinates give an exact solution, which needs no
 /// refinement.
 fn at_zeros<S: Number>(local: &LocalEquations<'_, S>, start: &[S], limit: usize) -> Option<LocalStructure> {
-    let snapped: Vec<S> = start.iter().map(|z| if z.log2() < NEAR_SINGULAR.log2() { S::zero() } else { *z }).collect();
+    let snapped: Vec<S> =
+        start.iter().map(|z| if z.log2() < LOCAL.near_singular.log2() { S::zero() } else { *z }).collect();
     let (values, jacobian) = local.jacobian(&snapped);
     if !values.iter().all(Number::vanishes) {
         return None;
     }
-    let pivots = Elimination::new(jacobian, snapped.len(), Stop::Below(ZERO * S::BITS));
-    if pivots.smallest < CLEAR * S::BITS || pivots.rank() == snapped.len() {
+    let pivots = Elimination::new(jacobian, snapped.len(), Stop::Below(LOCAL.zero * S::BITS));
+    if pivots.smallest < LOCAL.clear * S::BITS || pivots.rank() == snapped.len() {
         return None;
     }
     for order in ORDERS {

@@ -5,6 +5,7 @@ use super::equations::Given;
 use super::kinds::{LocalStructure, residual};
 use super::modular::Residue;
 use super::multiplicity::{Modular, Multiplicity, multiplicity};
+use crate::tolerances::LOCAL;
 use num_bigint::BigInt;
 use num_complex::Complex64;
 use num_rational::BigRational;
@@ -12,18 +13,6 @@ use num_traits::{ToPrimitive, Zero};
 use poly::Exact;
 use std::ops::Add;
 
-/// An end may be as far from the rational point as this many times its error, in any case as far as
-/// `LEAST_ERROR`, and never farther than `LARGEST_ERROR`. Denominators are at most `DENOMINATOR`.
-const ERRORS: f64 = 10.0;
-const LEAST_ERROR: f64 = 1e-12;
-const LARGEST_ERROR: f64 = 1e-6;
-const DENOMINATOR: f64 = 1e4;
-/// Distance and denominator for solutions of high multiplicity, at which ends are less accurate than
-/// they seem.
-const ROUGH_ERROR: f64 = 1e-3;
-const ROUGH_DENOMINATOR: f64 = 12.0;
-/// Sizes of coordinates at most.
-const SIZE: f64 = 1e9;
 /// The local ring of an isolated solution may have this dimension, however few the paths are.
 const FEW: usize = 12;
 /// A primitive root of the prime.
@@ -40,9 +29,9 @@ const EXPONENT: u32 = 512;
 /// grows beyond the number of paths, the solution lies on a component, unless the prime divides such
 /// minors.
 pub(super) fn at_rational(given: &Given, point: &[Complex64], error: f64, most: usize) -> Option<LocalStructure> {
-    let tolerance = (ERRORS * error).clamp(LEAST_ERROR, LARGEST_ERROR);
-    let rough = || within(given, point, ROUGH_ERROR, ROUGH_DENOMINATOR, most);
-    match within(given, point, tolerance, DENOMINATOR, most) {
+    let tolerance = (LOCAL.rational_errors * error).clamp(LOCAL.rational_least, LOCAL.rational_most);
+    let rough = || within(given, point, LOCAL.rough_rational, LOCAL.rough_denominator, most);
+    match within(given, point, tolerance, LOCAL.denominator, most) {
         Some(structure) => structure,
         None => rough()?.filter(|structure| matches!(structure, LocalStructure::Isolated { .. })),
     }
@@ -113,7 +102,7 @@ fn rational(z: Complex64, unit: i64, tolerance: f64, denominator: f64) -> Option
 
 /// The rational with the least denominator near a real number, by its continued fraction.
 fn near(x: f64, tolerance: f64, denominator: f64) -> Option<BigRational> {
-    if x.is_nan() || x.abs() > SIZE {
+    if x.is_nan() || x.abs() > LOCAL.rational_size {
         return None;
     }
     let (mut rest, mut last, mut this) = (x, (1.0, 0.0), (x.floor(), 1.0));

@@ -1,23 +1,14 @@
 //! Points on sets of positive dimension, recognised in little time: such a point can be moved along
 //! the set.
 
-use super::deflate::{CLEAR, DeflatedPoint, Profile, deflated, distance, moved, settled};
+use super::deflate::{DeflatedPoint, Profile, deflated, distance, moved, settled};
 use super::eliminate::{Elimination, Stop};
 use super::equations::LocalEquations;
 use super::number::Number;
 use crate::random::{Random, Stream};
+use crate::tolerances::LOCAL;
 
-/// Deflations that are tried where sets are not reduced: orders of the series, with logarithms to
-/// base 2 of the tolerances at which ranks are read off.
-const TRIED: [(usize, f64); 4] = [(2, -20.0), (2, -12.0), (3, -20.0), (3, -12.0)];
-/// Pivots up to this size (logarithm to base 2) may be zero on a reduced set.
-const DOUBTFUL: f64 = -4.0;
-/// How far a point is moved, in units of the coordinates, and how often.
-const STRIDES: [f64; 2] = [0.25, 0.0625];
 const MOVES: u32 = 3;
-/// A moved point is still on the set if equations, relative to their terms, are at most this large (a
-/// logarithm to base 2).
-const UNSEEN: f64 = -80.0;
 
 /// A solution on a set of positive dimension near `start`, at a distance of at most `near` (a
 /// logarithm to base 2), and how many of its unknowns are free: the dimension of the set.
@@ -50,7 +41,7 @@ pub(crate) fn on_sheet<S: Number>(
         }
     }
     let mut tried = Vec::new();
-    for (order, tolerance) in TRIED {
+    for (order, tolerance) in LOCAL.sheet_ranks {
         if let Some(found) = deflated(local, start, order, tolerance, &mut tried)
             && let Some(dimension) = sheet(&found, order)
         {
@@ -63,17 +54,14 @@ pub(crate) fn on_sheet<S: Number>(
 /// Ranks that the Jacobian may have at a point of a reduced set nearby, the highest first.
 fn ranks<S: Number>(local: &LocalEquations<'_, S>, start: &[S]) -> Vec<usize> {
     let (_, jacobian) = local.jacobian(start);
-    let sizes = Elimination::new(jacobian, start.len(), Stop::Below(CLEAR * S::BITS)).sizes;
+    let sizes = Elimination::new(jacobian, start.len(), Stop::Below(LOCAL.clear * S::BITS)).sizes;
     let others = |rank: usize| sizes.get(rank).copied().unwrap_or(f64::NEG_INFINITY);
-    (1..=sizes.len().min(start.len() - 1)).rev().filter(|&rank| others(rank) <= DOUBTFUL).collect()
+    (1..=sizes.len().min(start.len() - 1)).rev().filter(|&rank| others(rank) <= LOCAL.doubtful_pivot).collect()
 }
 
 /// Most paths at a point for which [`touched`] tells something: near an isolated solution of higher
 /// multiplicity, the equations are too small at the least distance.
 const FEW: usize = 3;
-/// Logarithms to base 2 of the distances at which solutions are sought, and the number of points at
-/// each distance from which the search starts.
-const DISTANCES: [f64; 5] = [-4.0, -9.0, -14.0, -19.0, -24.0];
 const STARTS: usize = 20;
 /// Dimensions of sets that are sought.
 const DIMENSIONS: usize = 2;
@@ -93,11 +81,11 @@ fn touched<S: Number>(local: &LocalEquations<'_, S>, point: &[S], paths: usize) 
             let start: Vec<S> = point.iter().map(|z| S::add(z, &S::from_c64(random.unit() * away.exp2()))).collect();
             settled(local, start, 1, &profile, f64::INFINITY).is_some_and(|found| {
                 let reached = distance(point, &found.point);
-                (away - 5.0..away + 3.0).contains(&reached) && local.residual(&found.point) <= UNSEEN
+                (away - 5.0..away + 3.0).contains(&reached) && local.residual(&found.point) <= LOCAL.unseen
             })
         })
     };
-    (1..=DIMENSIONS.min(variables - 1)).find(|&d| DISTANCES.iter().all(|&away| is_beside(d, away)))
+    (1..=DIMENSIONS.min(variables - 1)).find(|&d| LOCAL.distances.iter().all(|&away| is_beside(d, away)))
 }
 
 /// Whether solutions of the same ranks lead on from this one; if it is isolated, its multiplicity is at
@@ -109,8 +97,8 @@ pub(crate) fn leads_on_somewhere<S: Number>(
     multiplicity: usize,
 ) -> bool {
     // The distance that is reached, to the power of the multiplicity, must be visible.
-    let is_visible = |stride: f64| multiplicity as f64 * stride.log2() > 0.5 * UNSEEN;
-    STRIDES.iter().any(|&stride| is_visible(stride) && leads_on(local, found, order, stride))
+    let is_visible = |stride: f64| multiplicity as f64 * stride.log2() > 0.5 * LOCAL.unseen;
+    LOCAL.strides.iter().any(|&stride| is_visible(stride) && leads_on(local, found, order, stride))
 }
 
 /// Whether the point can be moved by some strides, each to another solution of the same ranks.
@@ -119,7 +107,7 @@ fn leads_on<S: Number>(local: &LocalEquations<'_, S>, found: &DeflatedPoint<S>, 
     for _ in 0..MOVES {
         let Some(next) = moved(local, &point, order, &found.profile, stride) else { return false };
         let way = distance(&point, &next);
-        if !(way >= stride.log2() - 3.0 && way <= stride.log2() + 3.0) || local.residual(&next) > UNSEEN {
+        if !(way >= stride.log2() - 3.0 && way <= stride.log2() + 3.0) || local.residual(&next) > LOCAL.unseen {
             return false;
         }
         point = next;

@@ -9,6 +9,7 @@
 use super::equations::{Given, Precision};
 use super::number::Number;
 use super::squarefree::squarefree;
+use crate::tolerances::LOCAL;
 use num_complex::Complex64;
 use poly::{ComplexMulti, Exact, Polynomial};
 
@@ -16,9 +17,6 @@ use poly::{ComplexMulti, Exact, Polynomial};
 const MAX_DEGREE: usize = 3000;
 /// Rounds at most; near simple roots the error is cubed in each.
 const ROUNDS: usize = 300;
-/// The iteration ends for a root once its correction is this small relative to the root and to the
-/// distance of the next one (a logarithm to base 2).
-const SMALL: f64 = -50.0;
 
 /// A root to 45 digits: the sum of three doubles.
 pub(crate) type Root = [Complex64; 3];
@@ -77,7 +75,7 @@ fn settled<S: Precision>(given: &Given) -> Option<Vec<Root>> {
                 return None;
             }
             points[k] = S::sub(&z, &step);
-            settled[k] = size < SMALL;
+            settled[k] = size < LOCAL.root_correction;
         }
         if settled.iter().all(|&s| s) {
             return are_apart(&terms, &points).then(|| points.iter().map(parts).collect());
@@ -95,10 +93,6 @@ fn parts<S: Number>(z: &S) -> Root {
     })
 }
 
-/// Evaluation errors are at most this share of the sizes of all terms (a logarithm to base 2, added to
-/// the digits of a number) for degrees up to 3000.
-const ERROR: f64 = 26.0;
-
 /// Whether discs about the points, each of which holds a root if it meets no other, are disjoint:
 /// their radii are the degree times what is left of the polynomial there, divided by the distances
 /// from the other points and by the leading coefficient (Smith 1970, J. ACM 17, theorem 1).
@@ -109,7 +103,7 @@ fn are_apart<S: Precision>(terms: &[(u32, S)], points: &[S]) -> bool {
     let radius = |k: usize| {
         let z = &points[k];
         let size = terms.iter().map(|(e, c)| c.log2() + f64::from(*e) * z.log2()).fold(f64::NEG_INFINITY, f64::max);
-        let value = values(terms, z).0.log2().max(size + ERROR - S::BITS);
+        let value = values(terms, z).0.log2().max(size + LOCAL.root_error - S::BITS);
         let others: f64 = (0..points.len()).filter(|&j| j != k).map(|j| distance(j, k)).sum();
         1.0 + degree + value - leading.log2() - others
     };

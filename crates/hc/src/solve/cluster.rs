@@ -4,14 +4,9 @@ use super::classify::Tracked;
 use super::solutions::Solution;
 use crate::distinct::relative_distance;
 use crate::singular::{self, ClusterEquations, ClusterSolution, Effort, Given, LocalStructure};
+use crate::tolerances::CLUSTERS;
 use num_complex::Complex64;
 use poly::{Exact, Polynomial};
-
-/// Relative distance below which two refined solutions are the same if none of their correct digits
-/// differ. The first is for regular solutions from doubles, the second for solutions with more
-/// digits.
-const NEAR: f64 = 1e-12;
-const EQUAL: f64 = 2e-15;
 
 /// Largest number of ways to look at a cluster.
 const WAYS: usize = 12;
@@ -19,9 +14,6 @@ const WAYS: usize = 12;
 /// products of complex double-doubles.
 const PATHS: u64 = 600;
 const WORK: u64 = 20;
-/// Solutions that are this many times further from the centre than the cluster is wide do not
-/// belong to it.
-const OUTSIDE: f64 = 4096.0;
 
 /// The solutions around the end of `paths` paths that are not among the `known` ones: all, or as
 /// many as are found. At most `most` paths may end at any one point.
@@ -47,7 +39,7 @@ pub(super) fn clustered(
         let regular = solved.solutions.iter().map(|s| (&s.value, s.multiplicity));
         let components = solved.component_points.iter().map(|point| (point, 1));
         for (point, multiplicity) in regular.chain(components) {
-            if point.iter().all(|z| z.norm() <= OUTSIDE) {
+            if point.iter().all(|z| z.norm() <= CLUSTERS.outside) {
                 cluster.add(&mut found, point, multiplicity, most);
             }
         }
@@ -74,11 +66,11 @@ pub(super) fn is_known(given: &Given, known: &[Solution], point: &[Complex64]) -
 /// Whether two regular solutions are the same, the second rounded from many digits.
 pub(super) fn is_same(given: &Given, known: &[Complex64], point: &[Complex64]) -> bool {
     let distance = relative_distance(known, point);
-    if distance <= EQUAL || distance > NEAR {
-        return distance <= EQUAL;
+    if distance <= CLUSTERS.same_precise || distance > CLUSTERS.same_regular {
+        return distance <= CLUSTERS.same_precise;
     }
-    match singular::local_structure(given, known, 1, 1, NEAR, Effort::Little) {
-        LocalStructure::Regular { point: refined, .. } => relative_distance(&refined, point) <= EQUAL,
+    match singular::local_structure(given, known, 1, 1, CLUSTERS.same_regular, Effort::Little) {
+        LocalStructure::Regular { point: refined, .. } => relative_distance(&refined, point) <= CLUSTERS.same_precise,
         _ => true,
     }
 }

@@ -1,14 +1,12 @@
 //! Nearly dependent equations, rewritten as equations that are not.
 
+use crate::tolerances::EQUATIONS;
 use num_complex::Complex64;
 use num_traits::{ToPrimitive, Zero};
 use poly::{Exact, Monomial, Polynomial};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-/// If at least this much of an equation of size one is left beside combinations of the equations
-/// before it, it stays as it is.
-const DEPENDENT: f64 = 1e-5;
 /// Systems with more coefficients than this, zeros included, are not examined.
 const MAX_SIZE: usize = 1 << 20;
 
@@ -66,7 +64,7 @@ fn nearly_dependent(polynomials: &[Polynomial<Exact>], monomials: &BTreeMap<&Mon
         for _ in 0..2 {
             make_orthogonal(&mut row, &basis);
         }
-        nearly.push(normalise(&mut row) < DEPENDENT);
+        nearly.push(normalise(&mut row) < EQUATIONS.dependent);
         basis.push(row);
     }
     nearly

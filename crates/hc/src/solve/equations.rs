@@ -5,6 +5,7 @@ use super::conditioned::make_orthogonal;
 use super::error::SolveError;
 use crate::linalg::Lu;
 use crate::random::{Random, Stream};
+use crate::tolerances::EQUATIONS;
 use num_complex::Complex64;
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
@@ -58,7 +59,7 @@ impl Equations {
         for (i, (support, coefficients)) in supports.iter().zip(&mut coefficients).enumerate() {
             *coefficients = scaled(support, coefficients, &exponents);
             let decades = decades(coefficients);
-            if coefficients.len() > DENSE && decades > SPREAD {
+            if coefficients.len() > DENSE && decades > EQUATIONS.spread {
                 let (terms, decades) = (coefficients.len(), decades.min(600.0) as usize);
                 return Err(SolveError::Spread { equation: i + 1, terms, decades });
             }
@@ -174,7 +175,7 @@ fn are_independent(rows: impl Iterator<Item = Vec<Complex64>>) -> bool {
         let before = size(&row);
         make_orthogonal(&mut row, &basis);
         let left = size(&row);
-        let clear = left > INDEPENDENT * before;
+        let clear = left > EQUATIONS.independent * before;
         if !clear {
             return false;
         }
@@ -183,9 +184,6 @@ fn are_independent(rows: impl Iterator<Item = Vec<Complex64>>) -> bool {
     }
     true
 }
-
-/// The least part of a row that must be left beside the rows before it.
-const INDEPENDENT: f64 = 1e-6;
 
 /// Whether a rational is a double exactly.
 fn is_double(q: &BigRational) -> bool {
@@ -207,19 +205,12 @@ fn scaled(support: &[Vec<i32>], coefficients: &[Complex64], exponents: &[i32]) -
 /// Equations with more terms than this are refused if their scaled coefficients differ by more
 /// decades than this.
 const DENSE: usize = 1000;
-const SPREAD: f64 = 30.0;
 
 /// The decimal logarithm of the quotient of the largest and the smallest size.
 fn decades(coefficients: &[Complex64]) -> f64 {
     let sizes = || coefficients.iter().map(|c| c.norm().log10());
     sizes().fold(f64::NEG_INFINITY, f64::max) - sizes().fold(f64::INFINITY, f64::min)
 }
-
-/// Spread of the logarithms (base 2) of coefficients in an equation below which unknowns are left
-/// as they are.
-const MILD: f64 = 14.0;
-/// Scales beyond this are not used.
-const MAX_EXPONENT: f64 = 200.0;
 
 /// Powers of two for the unknowns that bring coefficients of each equation near to each other:
 /// least squares in their logarithms (Meintjes & Morgan 1987, ACM TOMS 16:143), with a small
@@ -229,7 +220,7 @@ fn unknown_scales(n: usize, supports: &[Vec<Vec<i32>>], coefficients: &[Vec<Comp
         logs.iter().copied().fold(f64::NEG_INFINITY, f64::max) - logs.iter().copied().fold(f64::INFINITY, f64::min)
     };
     let logs: Vec<Vec<f64>> = coefficients.iter().map(|c| c.iter().map(|c| c.norm().log2()).collect()).collect();
-    if logs.iter().all(|l| spread(l) < MILD) {
+    if logs.iter().all(|l| spread(l) < EQUATIONS.mild) {
         return vec![0; n];
     }
     let mut matrix = vec![Complex64::new(0.0, 0.0); n * n];
@@ -252,7 +243,9 @@ fn unknown_scales(n: usize, supports: &[Vec<Vec<i32>>], coefficients: &[Vec<Comp
     let mut lu = Lu::new(n, Isa::Portable);
     lu.factor(&matrix, &vec![[1.0]; n]);
     lu.solve(&mut side);
-    let exponent = |y: f64| if y.is_finite() { y.clamp(-MAX_EXPONENT, MAX_EXPONENT).round() as i32 } else { 0 };
+    let exponent = |y: f64| {
+        if y.is_finite() { y.clamp(-EQUATIONS.most_exponent, EQUATIONS.most_exponent).round() as i32 } else { 0 }
+    };
     side.iter().map(|y| exponent(y.re)).collect()
 }
 

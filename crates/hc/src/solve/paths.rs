@@ -34,8 +34,6 @@ const CHUNK: usize = 1 << 11;
 /// Number of paths that go through the endgame at a time, because each takes more memory there than
 /// before.
 const PORTION: usize = 1 << 9;
-/// Where the endgame begins, if early.
-const EARLY: f64 = 1e-3;
 /// Fewer lost paths are never given up.
 const HOPELESS: usize = 32;
 /// Least number of ends that one thread refines at a time.
@@ -216,7 +214,7 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
     fn endgame(&self, round: Round) -> EndgameOptions {
         let options = self.route.options.endgame.clone();
         let early = round.level > 0 && round.level.is_multiple_of(2);
-        let start = if early { options.start.max(EARLY) } else { options.start };
+        let start = if early { options.start.max(ENDS.early) } else { options.start };
         EndgameOptions { start, ..options }
     }
 

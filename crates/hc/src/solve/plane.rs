@@ -5,6 +5,7 @@
 //! all solutions, with their multiplicities. Two such changes give both coordinates.
 
 use crate::singular::{self, Eliminant};
+use crate::tolerances::LOCAL;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, Zero};
@@ -14,10 +15,6 @@ use poly::{ComplexMulti, Exact, Monomial, Polynomial, Scalar};
 const PATHS: usize = 150;
 /// Pairs of changes of coordinates, the next where one does not tell all solutions apart.
 const CHANGES: [[i32; 2]; 3] = [[3, -5], [7, -4], [11, -9]];
-/// What is left of an equation at a solution, relative to its terms, at most, and how much more it is
-/// at any other pair of roots: logarithms to base 2.
-const SOLVES: f64 = -100.0;
-const CLEARER: f64 = 16.0;
 
 /// Numbers of 77 digits, for solutions that paths do not tell.
 pub(super) type Digits = ComplexMulti<4>;
@@ -82,7 +79,7 @@ fn changed(
         ways.sort_by(|a, b| a.0.total_cmp(&b.0));
         let next = ways.get(1).map_or(f64::INFINITY, |way| way.0);
         let (size, k, point) = ways.into_iter().next()?;
-        if size > SOLVES || next < size + CLEARER || std::mem::replace(&mut taken[k], true) {
+        if size > LOCAL.plane_solves || next < size + LOCAL.plane_clearer || std::mem::replace(&mut taken[k], true) {
             return None;
         }
         points.push((point, multiplicity));

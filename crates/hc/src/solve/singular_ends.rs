@@ -55,7 +55,7 @@ impl Classified {
                 LocalStructure::Regular { point, .. } if excess.outside(&point) => self.excess += paths,
                 LocalStructure::Isolated { multiplicity, point, residual } => {
                     let winding = group.iter().map(|&k| ends[k].winding).max().unwrap_or(1);
-                    match multiple.iter_mut().find(|m| relative_distance(&m.point, &point) <= ONE) {
+                    match multiple.iter_mut().find(|m| relative_distance(&m.point, &point) <= ENDS.one_point) {
                         Some(known) => {
                             known.paths += paths;
                             known.winding = known.winding.max(winding);
@@ -174,9 +174,10 @@ impl Classified {
         let mut doubtful = Vec::new();
         for mut solution in std::mem::take(&mut self.solutions) {
             // The condition does not tell of rounded coefficients: it is that of scaled rows.
-            let steady = tracked.exact && solution.condition < STEADY && solution.residual < ACCURATE_RESIDUAL;
+            let steady =
+                tracked.exact && solution.condition < ENDS.exact_condition && solution.residual < ENDS.exact_residual;
             if steady || !singular::is_moved(tracked.given, &solution.value) {
-                if solution.residual >= ACCURATE_RESIDUAL {
+                if solution.residual >= ENDS.exact_residual {
                     solution.residual = singular::residual(tracked.given, &solution.value);
                 }
                 kept.push(solution);
@@ -184,9 +185,9 @@ impl Classified {
             }
             let point = std::mem::take(&mut solution.value);
             let LocalStructure::Regular { point: exact, residual } =
-                singular::local_structure(tracked.given, &point, 1, 1, ROUNDED, Effort::Little)
+                singular::local_structure(tracked.given, &point, 1, 1, ENDS.rounded, Effort::Little)
             else {
-                doubtful.push(SingularEnd { point, winding: 1, error: ROUNDED });
+                doubtful.push(SingularEnd { point, winding: 1, error: ENDS.rounded });
                 continue;
             };
             solution.residual = residual;
@@ -201,14 +202,6 @@ impl Classified {
         doubtful
     }
 }
-
-/// Condition numbers below which solutions for exact coefficients have all their digits.
-const STEADY: f64 = 1e8;
-/// Residuals of such solutions; for a single equation the condition number says nothing.
-const ACCURATE_RESIDUAL: f64 = 1e-14;
-/// How far rounded coefficients may move a regular solution that can still be separated from
-/// others.
-const ROUNDED: f64 = 1e-4;
 
 /// Groups that are examined at a time.
 const BATCH: usize = 16;
@@ -289,7 +282,7 @@ fn structures_of_group(
         LocalStructure::NotASolution if group.len() == 1 => return vec![(group.to_vec(), own)],
         _ => {}
     }
-    let is_apart = |&k: &usize| k == best || relative_distance(&ends[k].point, &ends[best].point) > ONE;
+    let is_apart = |&k: &usize| k == best || relative_distance(&ends[k].point, &ends[best].point) > ENDS.one_point;
     if group.iter().all(is_apart) && !matches!(own, LocalStructure::Isolated { .. }) {
         let each = |&k: &usize| (vec![k], if k == best { own.clone() } else { structure(k, Effort::Little) });
         let each: Vec<(Vec<usize>, LocalStructure)> = group.iter().map(each).collect();
@@ -318,9 +311,6 @@ fn structures_of_group(
         }
     }
 }
-
-/// Relative distance up to which two ends, or two multiple solutions, are the same point.
-const ONE: f64 = 1e-13;
 
 /// Whether every end has a structure of its own.
 fn are_told_apart(given: &singular::Given, each: &[(Vec<usize>, LocalStructure)], overdetermined: bool) -> bool {

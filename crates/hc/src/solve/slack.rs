@@ -12,6 +12,7 @@ use super::options::SolveOptions;
 use crate::monitor::Monitor;
 use crate::random::{Random, Stream};
 use crate::start::{MixedError, Polyhedral, bezout_number, degrees};
+use crate::tolerances::ENDS;
 use num_complex::Complex64;
 use poly::SparseSystem;
 
@@ -24,8 +25,6 @@ const STEPS: usize = 1_000;
 const RETRIES: u32 = 2;
 /// Start systems more for that.
 const RESTARTS: u32 = 4;
-/// Radius of the first circle of the endgame in every second attempt, at least.
-const RADIUS: f64 = 1e-4;
 
 /// Further unknowns, the last ones of the equations that are tracked.
 pub(super) struct Slack {
@@ -82,8 +81,8 @@ pub(super) fn squared(
 pub(super) fn of_attempt(options: &SolveOptions, attempt: u32) -> SolveOptions {
     let mut options = options.clone();
     if attempt % 2 == 1 {
-        options.endgame.radius = options.endgame.radius.max(RADIUS);
-        options.endgame.start = options.endgame.start.max(10.0 * RADIUS);
+        options.endgame.radius = options.endgame.radius.max(ENDS.least_circle);
+        options.endgame.start = options.endgame.start.max(10.0 * ENDS.least_circle);
     }
     options
 }

@@ -1,6 +1,7 @@
 //! The toric homotopy: from the binomials of mixed cells to generic coefficients.
 
 use crate::homotopy::ParameterPath;
+use crate::tolerances::EQUATIONS;
 use num_complex::Complex64;
 use poly::Lane;
 
@@ -18,14 +19,10 @@ pub(crate) struct Toric<'a> {
     pub(crate) cells: &'a [usize],
 }
 
-/// `u0` times the least positive weight: terms outside the binomials start at `exp(-30)`, about 1e-13,
-/// of their size.
-const FADED: f64 = 30.0;
-
 /// The rates that belong to the weights of a cell, which are zero for its binomials.
 pub(crate) fn rates(weights: &[f64]) -> impl Iterator<Item = f64> {
     let least = weights.iter().copied().filter(|&w| w > 0.0).fold(f64::INFINITY, f64::min);
-    weights.iter().map(move |w| if *w > 0.0 { FADED * (w / least) } else { 0.0 })
+    weights.iter().map(move |w| if *w > 0.0 { EQUATIONS.faded * (w / least) } else { 0.0 })
 }
 
 impl ParameterPath for Toric<'_> {

@@ -9,6 +9,7 @@
 
 use crate::random::{Random, Stream};
 use crate::singular::{Elimination, Given, Number, Stop};
+use crate::tolerances::WITNESS;
 use num_complex::Complex64;
 use num_traits::Zero;
 use poly::{ComplexDd, Exact, Monomial, Polynomial, Scalar, ToExact};
@@ -18,8 +19,6 @@ use std::collections::BTreeMap;
 const LEVELS: u64 = 3;
 /// Unknowns at most, multipliers included.
 const UNKNOWNS: usize = 100;
-/// The logarithm to base 2 of pivots of a Jacobian that count as zero: points are known to some 50 bits.
-const ZERO: f64 = -27.0;
 
 /// Equations, mostly with multipliers, and points that solve them.
 pub(super) struct DeflatedEquations {
@@ -123,7 +122,10 @@ fn null_space(given: &Given, point: &[Complex64]) -> (Vec<f64>, Elimination<Comp
     let local = given.near::<ComplexDd>(point);
     let (_, jacobian) = local.jacobian(&local.scaled(point));
     let units = local.unscaled(&vec![ComplexDd::one(); point.len()]);
-    (units.iter().map(|unit| unit.to_c64().re).collect(), Elimination::new(jacobian, point.len(), Stop::Below(ZERO)))
+    (
+        units.iter().map(|unit| unit.to_c64().re).collect(),
+        Elimination::new(jacobian, point.len(), Stop::Below(WITNESS.zero_pivot)),
+    )
 }
 
 /// The vector of the null space at a point on which the forms have the values of `side`; `None` if

@@ -3,15 +3,14 @@
 
 use super::set::WitnessSet;
 use crate::distinct::relative_distance;
-use crate::family::{Fibre, FibreOptions, MonodromyOptions, PASSED, deviation, monodromy, move_fibre_watched};
+use crate::family::{Fibre, FibreOptions, MonodromyOptions, deviation, monodromy, move_fibre_watched};
 use crate::monitor::Monitor;
 use crate::random::{Random, Stream};
 use crate::singular::Given;
+use crate::tolerances::{FAMILIES, WITNESS};
 use num_complex::Complex64;
 use poly::{ComplexDd, Evaluate};
 
-/// Points within this relative distance are the same.
-const SAME: f64 = 1e-8;
 /// Most searches with other loops while the trace test says that points are missing.
 const SEARCHES: u64 = 4;
 /// Most directions in which hyperplanes are moved for a trace test while paths are lost.
@@ -29,7 +28,7 @@ pub(super) struct Orbit {
 impl Orbit {
     /// Whether these are shown to be all points of one irreducible component.
     pub(super) fn is_whole(&self) -> bool {
-        self.further == 0 && self.trace.is_some_and(|deviation| deviation < PASSED)
+        self.further == 0 && self.trace.is_some_and(|deviation| deviation < FAMILIES.trace_passed)
     }
 }
 
@@ -49,10 +48,11 @@ pub(super) fn orbits(set: &WitnessSet, given: &Given, seed: u64, monitor: &Monit
             let of_direction = |k| trace(family, &fibre, *unknowns, seed.wrapping_add(k), monitor);
             let found = (0..DIRECTIONS).find_map(of_direction);
             // A single point of a set that hardly bends seems to move straight, which tells nothing.
-            let tells =
-                |trace: &Trace| trace.deviation >= PASSED || fibre.len() > 1 || trace.follows_a_plane(given, *unknowns);
+            let tells = |trace: &Trace| {
+                trace.deviation >= FAMILIES.trace_passed || fibre.len() > 1 || trace.follows_a_plane(given, *unknowns)
+            };
             deviation = found.filter(tells).map(|trace| trace.deviation);
-            if deviation.is_some_and(|deviation| deviation < PASSED) || monitor.is_cancelled() {
+            if deviation.is_some_and(|deviation| deviation < FAMILIES.trace_passed) || monitor.is_cancelled() {
                 break;
             }
             let known = fibre.len();
@@ -63,7 +63,7 @@ pub(super) fn orbits(set: &WitnessSet, given: &Given, seed: u64, monitor: &Monit
                 break;
             }
         }
-        let is_found = |k: &usize| fibre.iter().any(|x| relative_distance(x, all.solution(*k)) < SAME);
+        let is_found = |k: &usize| fibre.iter().any(|x| relative_distance(x, all.solution(*k)) < WITNESS.same);
         let (here, others): (Vec<usize>, Vec<usize>) = left.iter().copied().partition(|k| *k == first || is_found(k));
         let further = fibre.len().saturating_sub(here.len());
         orbits.push(Orbit { points: here.iter().map(|&k| numbers[k]).collect(), trace: deviation, further });
@@ -72,15 +72,11 @@ pub(super) fn orbits(set: &WitnessSet, given: &Given, seed: u64, monitor: &Monit
     orbits
 }
 
-/// Coordinates below this share of the largest are zero: Newton's method leaves ever smaller numbers in
-/// their place, and squares of these underflow.
-const NOTHING: f64 = 1e-40;
-
 /// A fibre with zeros in place of such coordinates.
 fn settled(mut fibre: Fibre) -> Fibre {
     for point in fibre.solutions.chunks_exact_mut(fibre.dimension.max(1)) {
         let largest = point.iter().map(|z| z.norm()).fold(0.0, f64::max);
-        point.iter_mut().filter(|z| z.norm() < NOTHING * largest).for_each(|z| *z = Complex64::default());
+        point.iter_mut().filter(|z| z.norm() < WITNESS.nothing * largest).for_each(|z| *z = Complex64::default());
     }
     fibre
 }
@@ -97,10 +93,6 @@ struct Trace {
 
 /// How far, in steps of a trace, a plane is followed.
 const FAR: [i32; 4] = [6, 18, 36, 54];
-/// At that distance, coordinates below this share of the largest may be rounding errors; the plane solves
-/// the equations if residuals are less than the second number.
-const SMALL: f64 = 1e-10;
-const SOLVED: f64 = 1e-4;
 
 impl Trace {
     /// Whether the plane in which the first point seems to stay, by its first step, solves the equations
@@ -111,8 +103,8 @@ impl Trace {
             let far = 2f64.powi(power);
             let point: Vec<Complex64> =
                 before.iter().zip(after).take(unknowns).map(|(a, b)| a + (b - a) * far).collect();
-            let local = given.near_within::<ComplexDd>(&point, SMALL);
-            local.residual(&local.scaled(&point)).exp2() < SOLVED
+            let local = given.near_within::<ComplexDd>(&point, WITNESS.far_small);
+            local.residual(&local.scaled(&point)).exp2() < WITNESS.far_solved
         })
     }
 }
@@ -158,7 +150,7 @@ mod tests {
                 .unwrap()
                 .deviation
         };
-        assert!(deviation(&points) < PASSED);
+        assert!(deviation(&points) < FAMILIES.trace_passed);
         assert!(deviation(&points[..1]) > 0.1);
     }
 

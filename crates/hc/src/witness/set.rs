@@ -7,15 +7,11 @@ use crate::family::{Fibre, FibreOptions, track_fibre_watched};
 use crate::monitor::Monitor;
 use crate::refine::Refiner;
 use crate::solve::{SolveOptions, ends};
+use crate::tolerances::WITNESS;
 use crate::tracker::{PathEnd, PathResult};
 use num_complex::Complex64;
 use poly::{Exact, Interpreter, Polynomial};
 
-/// Largest relative distance by which refinement moves a witness point.
-const NEAR: f64 = 1e-8;
-/// An end of paths lies on a component if a witness point, tracked to hyperplanes through that end,
-/// arrives within this relative distance: singular ends are known to about as many digits.
-const ON: f64 = 1e-6;
 /// Most steps of a path: paths that need more do not end at regular points.
 const STEPS: usize = 500;
 
@@ -56,7 +52,7 @@ impl WitnessSet {
         for (&k, point) in &equations.points {
             let refined = refiner.refine(&parameters, point);
             let (before, after) = (&point[..unknowns], &refined.point[..unknowns]);
-            if refiner.is_regular(&parameters, &refined) && relative_distance(before, after) < NEAR {
+            if refiner.is_regular(&parameters, &refined) && relative_distance(before, after) < WITNESS.near {
                 numbers.push(k);
                 solutions.extend(refined.point);
             }
@@ -72,7 +68,7 @@ impl WitnessSet {
     pub(super) fn contains(&self, point: &[Complex64], seed: u64, monitor: &Monitor) -> bool {
         let slices = Slices::through(point, self.dimension, seed);
         let target = slices.parameters();
-        let is_there = |end: &[Complex64]| relative_distance(&end[..self.unknowns], point) < ON;
+        let is_there = |end: &[Complex64]| relative_distance(&end[..self.unknowns], point) < WITNESS.on;
         let mut options = FibreOptions { retries: 0, ..FibreOptions::default() };
         options.tracker.max_steps = STEPS;
         let (found, _) = track_fibre_watched(&self.family, &self.fibre, &target, &options, monitor);

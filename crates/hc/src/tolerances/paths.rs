@@ -1,16 +1,4 @@
-//! The thresholds by which this crate decides, stage by stage.
-//!
-//! They are no settings: results rest on them together, and the tests hold them. What a user may
-//! choose is in [`TrackerOptions`](crate::TrackerOptions), [`EndgameOptions`](crate::EndgameOptions)
-//! and [`CertifyOptions`](crate::CertifyOptions). Each field says what its number decides, and from
-//! what it follows: a theorem, a paper, or the precision of the arithmetic. Where no source is
-//! named, the number was chosen by trial on the systems of the tests. Limits of work and memory
-//! stand beside the code that keeps them.
-//!
-//! ```
-//! // Imaginary parts below this share of a regular solution count as zero.
-//! assert_eq!(hc::tolerances::ENDS.real, 1e-10);
-//! ```
+//! Thresholds of tracking, refinement, the endgame, ends and proofs.
 
 /// Thresholds of the [path tracker](crate::tracker). Steps follow Timme 2020, *Mixed precision path
 /// tracking for polynomial homotopy continuation* (arXiv:1902.02968), with its `omega`, a Lipschitz
@@ -211,6 +199,20 @@ pub struct EndTolerances {
     /// Largest relative distance by which refinement moves the end of a path. Near a component,
     /// Newton's method leads away to regular solutions.
     pub arrived: f64,
+    /// Where the endgame begins, if early.
+    pub early: f64,
+    /// Least radius of the first circle of the endgame in every second attempt, on paths with
+    /// further unknowns.
+    pub least_circle: f64,
+    /// Condition numbers below which solutions for exact coefficients have all their digits.
+    pub exact_condition: f64,
+    /// Residuals of such solutions; for a single equation the condition number says nothing.
+    pub exact_residual: f64,
+    /// How far rounded coefficients may move a regular solution that can still be separated from
+    /// others.
+    pub rounded: f64,
+    /// Relative distance up to which two ends, or two multiple solutions, are the same point.
+    pub one_point: f64,
 }
 
 /// The thresholds for ends of paths.
@@ -223,6 +225,12 @@ pub const ENDS: EndTolerances = EndTolerances {
     crossed: 1e-11,
     reached: 1e-6,
     arrived: 1e-5,
+    early: 1e-3,
+    least_circle: 1e-4,
+    exact_condition: 1e8,
+    exact_residual: 1e-14,
+    rounded: 1e-4,
+    one_point: 1e-13,
 };
 
 /// Thresholds of [proofs](mod@crate::certify). No proof rests on them: they choose the boxes that
