@@ -392,7 +392,7 @@ impl<E: Evaluate> Filling<'_, E> {
         let drop = repeated(&self.fibre.solutions, n, known, tolerance);
         remove(&mut self.fibre.solutions, n, &drop);
         if let Some(representatives) = &mut self.fibre.representatives {
-            // Numbers after those before them that are dropped.
+            // Numbers once the points that are dropped before them are left out.
             let before = |k: usize| drop[..k].iter().filter(|&&dropped| dropped).count();
             representatives.extend(first.into_iter().filter(|&k| !drop[k]).map(|k| k - before(k)));
         }

@@ -81,7 +81,7 @@ fn curves(more: &str) -> Family {
     format!("{text}{more}").parse().unwrap()
 }
 
-/// A search by these ranks, of which rank 0 has what it found.
+/// A search by these ranks, with the result of rank 0.
 fn searched<X: Exchange>(
     exchanges: &[X],
     patience: Duration,
@@ -115,7 +115,7 @@ fn any_number_of_ranks_fills_a_fibre_to_the_same_bits() {
         let exchanges: Vec<Faulty> = Local::ranks(3).into_iter().map(|local| Faulty::new(local, 2)).collect();
         let (answers, begun) = (Arc::clone(exchanges[0].answers()), Instant::now());
         let monitor = Monitor::asking(move |progress| {
-            // Three sides of paths enough for all.
+            // Three sides, with enough paths for all ranks.
             let waits = || progress.total >= 3 * 64 && answers.load(Ordering::Relaxed) == 0;
             while waits() && begun.elapsed() < Duration::from_secs(120) {
                 std::thread::sleep(Duration::from_millis(1));
@@ -165,7 +165,7 @@ fn ranks_with_another_search_are_refused() {
     let found =
         on(&Local::ranks(2), PATIENCE, |ranks| search(ranks, &options.clone().seed(u64::from(!ranks.is_lead()))));
     assert_eq!(found, [Err(FamilyError::Ranks(RanksError::Differs { rank: 1 })), Ok(None)]);
-    // What is no search is refused by all.
+    // Other work than a search is refused by all.
     let mut wrong = options.clone();
     wrong.fibre.coincidence = -1.0;
     let found = on(&Local::ranks(2), PATIENCE, |ranks| search(ranks, &wrong));

@@ -140,7 +140,7 @@ fn searches_go_on_from_every_record_to_the_same_bits() {
         assert_eq!((now.what.as_str(), now.part, now.round, now.done, now.total), ("monodromy", 5, 1, 3, None));
         assert_eq!(now.solutions, (count + test.further) as u64);
         assert!(goes_on_from_every_record(&directory, &expected, work) > expected.loops);
-        // Neither the trace test nor threads are of the search.
+        // Neither the trace test nor threads belong to the search.
         let untested = options.clone().trace_test(false);
         let search = |checkpoint: &Checkpoint| Run::new().recorded(checkpoint).complete(&family, &first, &untested);
         let (found, _) = resumed(&directory, 2, search).unwrap();
@@ -173,11 +173,11 @@ fn sides_of_long_loops_are_recorded() {
     let checkpoint = Checkpoint::open(folder.path(), &CheckpointOptions::new()).unwrap();
     assert_eq!(work(&checkpoint).unwrap(), expected);
     drop(checkpoint);
-    // Of each loop two sides and the end.
+    // Two sides and the end of each loop.
     assert_eq!(goes_on_from_every_record(folder.path(), &expected, work), 3 * expected.loops);
     let now = status(folder.path()).unwrap();
     assert_eq!((now.done, now.solutions), (expected.loops as u64, 4225));
-    // Two complex numbers a solution and side.
+    // Two complex numbers for each solution and side.
     let bytes = now.bytes / (2 * expected.loops as u64);
     assert!(bytes < 4225 * 32 + 1000, "{bytes}");
 }

@@ -69,7 +69,7 @@ fn a_cancelled_search_has_a_lower_bound() {
     let (supports, monitor) = (cyclic(12, 1), Monitor::asking(|progress| progress.done >= 1000));
     let each = |ranks: &Ranks<'_>| Run::new().watched(&monitor).on_ranks(ranks).mixed_volume(12, &supports);
     assert_eq!(on(&Local::ranks(3), PATIENCE, each), [Err(MixedError::Cancelled), Ok(None), Ok(None)]);
-    // Of 500,352.
+    // The whole volume is 500,352.
     let found = monitor.progress();
     assert!(found.done >= 1000 && (found.done..500_352).contains(&found.counted), "{found:?}");
 }
@@ -82,7 +82,7 @@ fn ranks_that_do_not_fit_end_the_search_with_the_reason() {
     };
     let differs = Err(MixedError::Ranks(RanksError::Differs { rank: 1 }));
     assert_eq!(on(&Local::ranks(2), PATIENCE, each), [differs, Ok(None)]);
-    // The same error on all that come to it.
+    // All ranks that get so far have the same error.
     let not_square = |ranks: &Ranks<'_>| Run::new().on_ranks(ranks).mixed_volume(3, &cyclic(2, 1));
     let found = on(&Local::ranks(2), PATIENCE, not_square);
     assert_eq!(found[0], Err(MixedError::NotSquare { supports: 2, unknowns: 3 }));

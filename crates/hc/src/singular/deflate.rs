@@ -48,9 +48,9 @@ pub(crate) struct DeflatedPoint<S> {
     pub(crate) profile: Profile,
 }
 
-/// Iterations at most; corrections of an iteration that converges get small at once.
+/// Most iterations; if they converge, corrections get small at once.
 const ITERATIONS: usize = 14;
-/// As many corrections may shrink by less than a factor of four.
+/// So many corrections may shrink by less than a factor of four.
 const SLOW: usize = 4;
 /// More equations than this are replaced by a basis of the space they span.
 const MANY: usize = 24;

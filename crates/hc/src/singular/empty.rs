@@ -9,12 +9,12 @@ use crate::monitor::Monitor;
 use crate::random::{Random, Stream};
 use num_traits::Zero;
 
-/// Monomials at most: those up to a degree in the unknowns that the hyperplanes leave.
+/// Most monomials up to a degree in the unknowns that the hyperplanes leave.
 const MONOMIALS: usize = 4_400;
 /// Products modulo the prime at most. The proof that cyclic-9 has nothing of dimension three needs
 /// fewer, and takes some seconds.
 const WORK: u64 = 4_000_000_000;
-/// Exponents at most.
+/// Largest exponent.
 const EXPONENT: u32 = 64;
 
 /// Whether it is shown that the equations have no solution on `dimension` general hyperplanes: then

@@ -21,7 +21,7 @@ use std::sync::{Arc, OnceLock};
 #[derive(Clone)]
 pub(crate) struct Given {
     exact: Arc<ExactEquations>,
-    /// Work done so far, in about as much as a product of complex double-doubles takes.
+    /// Work done so far; the unit is about a product of complex double-doubles.
     spent: Arc<AtomicU64>,
     /// Work after which nothing more is done.
     limit: u64,
@@ -52,7 +52,7 @@ struct Term {
     coefficient: Exact,
 }
 
-/// A precision that the equations can be had in.
+/// A precision in which the equations are available.
 pub(crate) trait Precision: Number {
     /// Where the coefficients in this precision are kept.
     fn kept(given: &Given) -> &OnceLock<Vec<Vec<Self>>>;
@@ -141,7 +141,7 @@ impl Given {
         self.limit.saturating_sub(self.spent())
     }
 
-    /// Numbers of factors in all terms.
+    /// Number of factors in all terms.
     pub(crate) fn factors(&self) -> usize {
         self.exact.equations.iter().flatten().map(|t| t.powers.len() + 1).sum()
     }

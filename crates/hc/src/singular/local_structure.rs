@@ -83,7 +83,7 @@ pub(crate) fn local_structure(
 
 /// Whether equations are too large at the end of a path for a solution nearby.
 fn is_no_solution(given: &Given, point: &[Complex64], error: f64) -> bool {
-    // Relative changes of a point are as large in terms as their degrees.
+    // A term changes by as many times the relative change of a point as its degree.
     let degree = given.degree() as f64;
     let local = given.near_within::<ComplexDd>(point, (1e3 * error).clamp(LOCAL.surely_zero, LOCAL.near_singular));
     local.residual(&local.scaled(point)).exp2() > LOCAL.not_zero.max(1e3 * degree * error).min(0.5)
@@ -219,7 +219,7 @@ fn on_axes(given: &Given, point: &[Complex64], error: f64) -> Option<LocalStruct
     let start = local.scaled(point);
     let mut zero: Vec<bool> = start.iter().map(|z| z.log2() < small).collect();
     for j in 0..zero.len() {
-        // Freed for good where that can be done.
+        // A coordinate stays free if the other zeros suffice.
         zero[j] = zero[j] && {
             zero[j] = false;
             !given.vanish_where(&zero)

@@ -12,9 +12,9 @@ pub(super) type Modular = Vec<(Vec<(usize, u32)>, Residue)>;
 /// Orders up to which functionals are sought: the lower one first, because it needs less preparation.
 const LOW_ORDER: usize = 8;
 const HIGH_ORDER: usize = 128;
-/// Monomials at most.
+/// Most monomials.
 const MONOMIALS: f64 = 20_000.0;
-/// Unknowns of the linear equations for the functionals of an order at most.
+/// Most unknowns of the linear equations for the functionals of an order.
 const WIDTH: usize = 3_000;
 
 /// The search ends with this many times the number of functionals that are expected at most.

@@ -15,7 +15,7 @@ use poly::{ComplexMulti, Exact, Polynomial};
 
 /// Polynomials of a higher degree are left to paths.
 const MAX_DEGREE: usize = 3000;
-/// Rounds at most; near simple roots the error is cubed in each.
+/// Most rounds; near simple roots each cubes the error.
 const ROUNDS: usize = 300;
 
 /// A root to 45 digits: the sum of three doubles.

@@ -16,7 +16,7 @@ impl End {
     pub(super) const REGULAR: End = End(1);
     /// At a solution at which the Jacobian is singular.
     pub(super) const SINGULAR: End = End(2);
-    /// No longer sought, because all solutions are known ([`SolveOptions::known`]).
+    /// No longer sought, because all solutions are known ([`SolveOptions::known`](crate::SolveOptions::known)).
     pub(super) const DROPPED: End = End(3);
 
     /// At infinity, in the direction of this number.

@@ -94,7 +94,7 @@ impl Grouped {
         Some(terms)
     }
 
-    /// For solution `number` the group and the factor of each equation.
+    /// The group and the factor of each equation for solution `number`.
     fn choice(&self, mut number: u64) -> Vec<(usize, usize)> {
         let mut state = self.counts[0].len() - 1;
         let mut chosen = Vec::with_capacity(self.degrees.len());
