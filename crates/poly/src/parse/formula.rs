@@ -127,7 +127,7 @@ impl<'a> FormulaParser<'a> {
                 exponent(tokens)?
             }
             Token::Superscript(exponent) => {
-                let bounded = i32::try_from(exponent).ok().filter(|k| k.abs_diff(0) < i32::MAX.unsigned_abs());
+                let bounded = i32::try_from(exponent).ok().filter(|k| k.unsigned_abs() < i32::MAX.unsigned_abs());
                 let exponent = bounded.ok_or_else(|| tokens.error("an exponent beyond 2^31"))?;
                 tokens.advance()?;
                 exponent
