@@ -3,7 +3,7 @@
 use crate::align::align;
 use crate::network::Network;
 use crate::observations::Observations;
-use crate::plane::spread;
+use crate::points::spread;
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::{Projection, covariance, dot, gram};
 use faer::Mat;

@@ -47,6 +47,7 @@
 
 pub mod accuracy;
 pub mod align;
+mod bordered;
 pub mod calibrate;
 mod cells;
 pub mod degeneracy;
@@ -65,6 +66,7 @@ mod observations;
 #[cfg(feature = "pictures")]
 pub mod picture;
 mod plane;
+mod points;
 pub mod pseudoranges;
 pub mod quantity;
 #[cfg(feature = "csv")]

@@ -2,22 +2,23 @@
 
 use serde::Serialize;
 
-use crate::plane::{distance, spread};
+use crate::points::{distance, spread};
 use crate::pseudoranges::Pseudoranges;
 
-/// A complete network in the plane: every receiver, every transmitter and its offset, all in
-/// metres.
+/// A complete network in the plane, or in space with `D` = 3: every receiver, every transmitter and
+/// its offset, all in metres.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct Network {
+#[serde(bound = "[f64; D]: Serialize")]
+pub struct Network<const D: usize = 2> {
     /// Positions of the receivers.
-    pub receivers: Vec<[f64; 2]>,
+    pub receivers: Vec<[f64; D]>,
     /// Positions of the transmitters.
-    pub transmitters: Vec<[f64; 2]>,
+    pub transmitters: Vec<[f64; D]>,
     /// Offsets o_j of the transmitters: send time times propagation speed.
     pub offsets: Vec<f64>,
 }
 
-impl Network {
+impl<const D: usize> Network<D> {
     /// Distance between receiver `i` and transmitter `j`.
     pub fn distance(&self, i: usize, j: usize) -> f64 {
         distance(self.receivers[i], self.transmitters[j])
@@ -92,8 +93,22 @@ impl Network {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_distr::StandardNormal;
+    use rand_pcg::Pcg64Mcg;
+    use std::array::from_fn;
+
+    /// Coordinates and offsets are standard normal.
+    pub(crate) fn random<const D: usize>(receivers: usize, transmitters: usize, seed: u64) -> Network<D> {
+        let mut rng = Pcg64Mcg::seed_from_u64(seed);
+        let mut point = || from_fn(|_| rng.sample(StandardNormal));
+        let receivers = (0..receivers).map(|_| point()).collect();
+        let positions: Vec<[f64; D]> = (0..transmitters).map(|_| point()).collect();
+        let offsets = positions.iter().map(|_| rng.sample(StandardNormal)).collect();
+        Network { receivers, transmitters: positions, offsets }
+    }
 
     fn square() -> Network {
         Network {
@@ -111,6 +126,22 @@ mod tests {
         assert_eq!(residuals[..4], [0.0, 0.0, 0.0, 0.5]);
         assert!(residuals[4].is_nan());
         assert_eq!(square().rms(&f), (0.25f64 / 5.0).sqrt());
+    }
+
+    #[test]
+    fn residuals_in_space() {
+        // By hand: distances 3, 7 and 0, 2.
+        let network = Network {
+            receivers: vec![[1.0, 2.0, 2.0], [-1.0, 1.0, 4.0]],
+            transmitters: vec![[0.0, 0.0, 0.0], [3.0, 5.0, -4.0]],
+            offsets: vec![0.5, -1.0],
+        };
+        let f = Pseudoranges::new(2, 2, vec![3.5, 6.25, 18f64.sqrt() + 0.5, 12.0]).unwrap();
+        let residuals = network.residuals(&f);
+        assert_eq!(residuals[..3], [0.0, 0.25, 0.0]);
+        assert!((residuals[3] - (13.0 - 96f64.sqrt())).abs() < 1e-14);
+        // The receivers are 3 apart.
+        assert_eq!(network.size(), 1.5);
     }
 
     #[test]

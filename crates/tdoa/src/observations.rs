@@ -1,7 +1,7 @@
 //! The measured cells as flat lists, for the inner loops.
 
 use crate::network::Network;
-use crate::plane::distance;
+use crate::points::distance;
 use crate::pseudoranges::Pseudoranges;
 
 /// One measured cell.

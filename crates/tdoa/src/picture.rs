@@ -7,7 +7,7 @@ mod canvas;
 mod histogram;
 
 use crate::calibrate::Calibration;
-use crate::plane::{centroid, distance, spread};
+use crate::points::{centroid, distance, spread};
 use crate::quantity::{length, number};
 use crate::summary::deviation;
 pub use canvas::Canvas;

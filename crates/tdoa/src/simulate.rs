@@ -7,7 +7,7 @@ use rand_pcg::Pcg64Mcg;
 use thiserror::Error;
 
 use crate::network::Network;
-use crate::plane::distance;
+use crate::points::distance;
 use crate::pseudoranges::{PseudorangeError, Pseudoranges};
 
 /// Where the nodes of a random network lie.

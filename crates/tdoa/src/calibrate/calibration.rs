@@ -6,7 +6,7 @@ use super::receiver_errors::ReceiverError;
 use super::residuals::{Residual, Residuals};
 use super::truth::Truth;
 use crate::align::{Transform, align};
-use crate::plane::distance;
+use crate::points::distance;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 

@@ -4,7 +4,7 @@ use super::calibration::Calibration;
 use super::truth::Truth;
 use crate::align::align;
 use crate::median::median;
-use crate::plane::distance;
+use crate::points::distance;
 
 impl Calibration {
     /// Compares with the true positions of receivers, in the order of the receivers, as far as they

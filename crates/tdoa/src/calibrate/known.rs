@@ -9,7 +9,8 @@ use crate::align::{Alignment, align};
 use crate::degeneracy::Usable;
 use crate::network::Network;
 use crate::observations::Pin;
-use crate::plane::{centroid, distance, flatness};
+use crate::plane::flatness;
+use crate::points::{centroid, distance};
 use crate::pseudoranges::{MAX_MAGNITUDE, Pseudoranges};
 use crate::refine::RefinedNetwork;
 

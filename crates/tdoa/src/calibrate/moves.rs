@@ -11,7 +11,7 @@ use crate::loss::{Loss, SEARCH_NU};
 use crate::median::median;
 use crate::multilateration::{Sight, receiver as locate};
 use crate::network::Network;
-use crate::plane::distance;
+use crate::points::distance;
 use hc::Monitor;
 
 /// Transmitters from which on a receiver may stand elsewhere, that are tried.

@@ -17,7 +17,7 @@ use crate::loss::Loss;
 use crate::multilateration::solve3;
 use crate::network::Network;
 use crate::observations::{Observation, Observations};
-use crate::plane::distance;
+use crate::points::distance;
 use crate::refine::{NetworkRefiner, Projection, RefineOptions, SEARCH, dot};
 use hc::Monitor;
 

@@ -2,7 +2,7 @@
 
 use crate::align::align;
 use crate::network::Network;
-use crate::plane::{centroid, distance};
+use crate::points::{centroid, distance};
 use crate::refine::RefinedNetwork;
 
 /// Two networks are the same if their nodes differ by less than this share of the network's size,

@@ -3,7 +3,8 @@
 use crate::degeneracy::list;
 use crate::network::Network;
 use crate::observations::Observations;
-use crate::plane::{distance, flatness};
+use crate::plane::flatness;
+use crate::points::distance;
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::Covariance;
 

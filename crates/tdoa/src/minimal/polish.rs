@@ -2,7 +2,7 @@
 
 use super::linear::LeastSquares;
 use crate::network::Network;
-use crate::plane::centroid;
+use crate::points::centroid;
 
 /// Iterations at most; candidates come with about ten digits and gain the rest in two.
 const MAX_ITERATIONS: usize = 8;

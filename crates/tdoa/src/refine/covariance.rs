@@ -185,7 +185,7 @@ pub(crate) fn covariance(
 /// Coordinate `axis` of receiver `i` in the orthonormal rigid motions: two translations and the
 /// rotation about the centroid.
 pub(super) fn rigid_motion(network: &Network) -> impl Fn(usize, usize) -> [f64; 3] {
-    let centre = crate::plane::centroid(network.receivers.iter());
+    let centre = crate::points::centroid(network.receivers.iter());
     let root = (network.receivers.len() as f64).sqrt();
     let spread = network.size().max(f64::MIN_POSITIVE) * root;
     move |i: usize, axis: usize| {

@@ -151,7 +151,7 @@ mod tests {
             // A node seen by as few as determine it may be its mirror image: most, not all, must be
             // right.
             let wrong =
-                nodes(&found).iter().zip(nodes(truth)).filter(|(a, b)| crate::plane::distance(**a, *b) > 1e-4).count();
+                nodes(&found).iter().zip(nodes(truth)).filter(|(a, b)| crate::points::distance(**a, *b) > 1e-4).count();
             assert!(wrong <= 1, "seed {seed}: {wrong} nodes");
             assert!(wrong > 0 || align(&found.receivers, &truth.receivers, false).unwrap().rms < 1e-4);
         }
