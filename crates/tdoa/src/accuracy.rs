@@ -20,7 +20,7 @@ use hc::Monitor;
 ///
 /// # Panics
 /// If the sizes of network, measurements and outliers differ.
-pub fn cramer_rao(measured: &Pseudoranges, outliers: &[bool], truth: &Network, noise: f64) -> f64 {
+pub fn cramer_rao<const D: usize>(measured: &Pseudoranges, outliers: &[bool], truth: &Network<D>, noise: f64) -> f64 {
     bound(&without(measured, outliers), truth, noise)
 }
 
@@ -33,10 +33,10 @@ pub fn cramer_rao(measured: &Pseudoranges, outliers: &[bool], truth: &Network, n
 ///
 /// # Panics
 /// If the sizes of network, measurements and outliers differ.
-pub fn cramer_rao_with_delays(
+pub fn cramer_rao_with_delays<const D: usize>(
     measured: &Pseudoranges,
     outliers: &[bool],
-    truth: &Network,
+    truth: &Network<D>,
     noise: f64,
     receivers: &[usize],
 ) -> f64 {
@@ -67,12 +67,12 @@ pub fn cramer_rao_with_delays(
 }
 
 /// The measurements that are no outliers.
-fn without(measured: &Pseudoranges, outliers: &[bool]) -> Observations {
+fn without<const D: usize>(measured: &Pseudoranges, outliers: &[bool]) -> Observations<D> {
     let n = measured.transmitters();
     Observations::new(measured, |i, j| !outliers[i * n + j])
 }
 
-fn bound(observations: &Observations, truth: &Network, noise: f64) -> f64 {
+fn bound<const D: usize>(observations: &Observations<D>, truth: &Network<D>, noise: f64) -> f64 {
     let Some(found) = covariance(observations, truth, noise, &Monitor::default())
         .ok()
         .flatten()
@@ -80,23 +80,23 @@ fn bound(observations: &Observations, truth: &Network, noise: f64) -> f64 {
     else {
         return f64::INFINITY;
     };
-    let trace: f64 = found.receivers.iter().map(|c| c[0][0] + c[1][1]).sum();
+    let trace: f64 = found.receivers.iter().map(|c| (0..D).map(|k| c[k][k]).sum::<f64>()).sum();
     (trace / found.receivers.len() as f64).sqrt()
 }
 
 /// The relative error `|X^ - X| / |X - mean X|` of the positions X of all nodes, after the best
 /// rigid alignment (reflection allowed). Infinite for networks of different sizes.
-pub fn position_error(found: &Network, truth: &Network) -> f64 {
+pub fn position_error<const D: usize>(found: &Network<D>, truth: &Network<D>) -> f64 {
     if found.receivers.len() != truth.receivers.len() {
         return f64::INFINITY;
     }
-    let nodes = |n: &Network| n.receivers.iter().chain(&n.transmitters).copied().collect::<Vec<_>>();
+    let nodes = |n: &Network<D>| n.receivers.iter().chain(&n.transmitters).copied().collect::<Vec<_>>();
     let (found, truth) = (nodes(found), nodes(truth));
     align(&found, &truth, false).map_or(f64::INFINITY, |alignment| alignment.rms / spread(truth.iter()))
 }
 
 /// The relative error `|o^ - o| / |o|` of the offsets o. Infinite for networks of different sizes.
-pub fn offset_error(found: &Network, truth: &Network) -> f64 {
+pub fn offset_error<const D: usize>(found: &Network<D>, truth: &Network<D>) -> f64 {
     if found.offsets.len() != truth.offsets.len() {
         return f64::INFINITY;
     }
@@ -107,6 +107,13 @@ pub fn offset_error(found: &Network, truth: &Network) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::{cramer_rao, cramer_rao_with_delays, offset_error, position_error};
+    use crate::align::align;
+    use crate::network::Network;
+    use crate::network::tests::random;
+    use crate::observations::Observations;
+    use crate::points::distance;
+    use crate::pseudoranges::Pseudoranges;
+    use crate::refine::{NetworkRefiner, RefineOptions, SEARCH};
     use crate::simulate::{SimulateOptions, simulate};
 
     #[test]
@@ -124,6 +131,50 @@ mod tests {
         // A receiver that hears nothing may be anywhere.
         fewer[..12].fill(true);
         assert_eq!(bound(&fewer, 0.01), f64::INFINITY);
+    }
+
+    /// Deviations of exact data's own estimate: each measurement is changed by a little, the network
+    /// adjusted by least squares and aligned with the truth. The bound is the square root of the sum of
+    /// squares of what all these changes do to the receivers, per receiver.
+    fn is_what_least_squares_makes_of_noise<const D: usize>(m: usize, n: usize) {
+        let truth: Network<D> = random(m, n, 11);
+        let step = 1e-4;
+        let options = RefineOptions { scale: Some(1.0), rounds: 0, steps: 100, tolerance: 0.0, ..SEARCH };
+        let mut sum = 0.0;
+        for k in 0..m * n {
+            let [above, below] = [step, -step].map(|by| {
+                let mut values = truth.pseudoranges();
+                values[k] += by;
+                let observations = Observations::new(&Pseudoranges::new(m, n, values).unwrap(), |_, _| true);
+                let mut refiner = NetworkRefiner::new(&observations, f64::INFINITY);
+                let found = refiner.refine(truth.clone(), &options).network.receivers;
+                let map = align(&found, &truth.receivers, false).unwrap().transform;
+                found.into_iter().map(|p| map.apply(p)).collect::<Vec<_>>()
+            });
+            sum += above.iter().zip(&below).map(|(p, q)| (distance(*p, *q) / (2.0 * step)).powi(2)).sum::<f64>();
+        }
+        let measured = Pseudoranges::new(m, n, truth.pseudoranges()).unwrap();
+        let bound = cramer_rao(&measured, &vec![false; m * n], &truth, 0.01);
+        let expected = 0.01 * (sum / m as f64).sqrt();
+        assert!((bound / expected - 1.0).abs() < 1e-3, "{bound} {expected}");
+    }
+
+    #[test]
+    fn the_bound_is_what_least_squares_makes_of_noise() {
+        is_what_least_squares_makes_of_noise::<2>(7, 8);
+        is_what_least_squares_makes_of_noise::<3>(9, 10);
+    }
+
+    #[test]
+    fn delays_cost_certainty_in_space() {
+        let truth: Network<3> = random(9, 10, 11);
+        let measured = Pseudoranges::new(9, 10, truth.pseudoranges()).unwrap();
+        let outliers = vec![false; 90];
+        let plain = cramer_rao(&measured, &outliers, &truth, 0.01);
+        let with = |receivers: &[usize]| cramer_rao_with_delays(&measured, &outliers, &truth, 0.01, receivers);
+        assert!(with(&[0]) > plain && with(&[0, 4]) > with(&[0]) && with(&[0, 4]).is_finite());
+        let but = |one: usize| -> Vec<usize> { (0..9).filter(|&i| i != one).collect() };
+        assert!((with(&but(0)) / with(&but(5)) - 1.0).abs() < 1e-6);
     }
 
     #[test]

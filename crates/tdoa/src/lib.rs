@@ -16,6 +16,8 @@
 //! * [`summary`], [`picture`] and [`html`]: the result as text, picture and report.
 //! * [`simulate()`] and [`accuracy`]: networks with a known truth, how near an estimate comes to
 //!   it, and how near any estimate can come.
+//! * [`Network`], [`align`](mod@align), [`multilateration`] and [`accuracy`] are for networks in space
+//!   too, `Network<3>`; all else is for those in the plane.
 //!
 //! All features are on by default: `csv` ([`read`], [`node_table`]), `mat` (compressed MATLAB
 //! files), `pictures` ([`picture`], [`html`]) and `threads` (all threads of rayon; results are the

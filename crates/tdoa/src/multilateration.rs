@@ -96,8 +96,7 @@ fn each_transmitter<const D: usize>(sights: &[Sight<D>], mut visit: impl FnMut([
 }
 
 /// Receivers that small subsets of the sights give.
-fn each_receiver<const D: usize>(sights: &[Sight<D>], visit: impl FnMut([f64; D])) {
-    let mut visit = visit;
+fn each_receiver<const D: usize>(sights: &[Sight<D>], mut visit: impl FnMut([f64; D])) {
     for_subsets(sights.len(), D, D + 1, |subset| {
         let at = |k: usize| (sights[subset[k]].position, sights[subset[k]].length);
         closed::receiver(at).into_iter().flatten().for_each(&mut visit);
@@ -218,7 +217,7 @@ fn polish<const D: usize>(sights: &[Sight<D>], start: Located<D>, with_offset: b
 /// Solves symmetric positive definite equations; `None` if they are singular.
 fn solve<const D: usize>(h: &Bordered<D>, (g, last): Placed<D>) -> Option<Placed<D>> {
     if D != 2 {
-        return Some(h.cholesky()?.solve((g, last)));
+        return Some(h.cholesky(1.0, 0.0)?.solve((g, last)));
     }
     // Three equations by their cofactors.
     let (rows, [x, y]) = (&h.rows, [h.border[0], h.border[1]]);

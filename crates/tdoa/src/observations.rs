@@ -18,7 +18,7 @@ pub(crate) struct Observation {
 impl Observation {
     /// Residual divided by the cell's standard deviation.
     #[inline]
-    pub(crate) fn residual(&self, network: &Network) -> f64 {
+    pub(crate) fn residual<const D: usize>(&self, network: &Network<D>) -> f64 {
         let (i, j) = (self.receiver, self.transmitter);
         let d = distance(network.receivers[i], network.transmitters[j]);
         (self.value - network.offsets[j] - d) * self.precision
@@ -29,7 +29,7 @@ impl Observation {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pin {
     pub(crate) receiver: usize,
-    /// 0 for x, 1 for y.
+    /// 0 for x, 1 for y, 2 for z.
     pub(crate) axis: usize,
     /// Metres.
     pub(crate) value: f64,
@@ -41,14 +41,15 @@ pub(crate) struct Pin {
 impl Pin {
     /// Residual, comparable with those of the measurements.
     #[inline]
-    pub(crate) fn residual(&self, network: &Network) -> f64 {
+    pub(crate) fn residual<const D: usize>(&self, network: &Network<D>) -> f64 {
         (self.value - network.receivers[self.receiver][self.axis]) * self.precision
     }
 }
 
-/// All measured cells, transmitter by transmitter, and the same cells receiver by receiver.
+/// All measured cells, transmitter by transmitter, and the same cells receiver by receiver: of nodes
+/// in the plane, or in space with `D` = 3.
 #[derive(Debug, Clone)]
-pub(crate) struct Observations {
+pub(crate) struct Observations<const D: usize = 2> {
     pub(crate) receivers: usize,
     pub(crate) transmitters: usize,
     entries: Vec<Observation>,
@@ -60,7 +61,7 @@ pub(crate) struct Observations {
     others: usize,
 }
 
-impl Observations {
+impl<const D: usize> Observations<D> {
     /// The measured cells for which `keep(receiver, transmitter)` holds.
     pub(crate) fn new(measured: &Pseudoranges, keep: impl Fn(usize, usize) -> bool) -> Self {
         let observe = |(i, j, value): (usize, usize, &f64)| {
@@ -195,13 +196,14 @@ impl Observations {
         self.entries.len()
     }
 
-    /// Number of unknowns of the network: positions and offsets, up to a rigid motion of the plane
-    /// or without the receivers that are held and less the coordinates that were measured. One held
-    /// receiver leaves the rotation about it.
+    /// Number of unknowns of the network: positions and offsets, up to a rigid motion or without the
+    /// receivers that are held and less the coordinates that were measured. Held receivers leave the
+    /// rotations about them: one of them one in the plane and three in space, two one in space.
     pub(crate) fn unknowns(&self) -> usize {
         let held = self.held.iter().filter(|&&held| held).count();
-        let known = (2 * held + self.pins.len()).max(3);
-        (2 * self.receivers + 3 * self.transmitters).saturating_sub(known) + self.others
+        let loose = D.saturating_sub(held);
+        let known = D * held + self.pins.len().max(loose * (loose + 1) / 2);
+        (D * self.receivers + (D + 1) * self.transmitters).saturating_sub(known) + self.others
     }
 }
 
@@ -213,19 +215,35 @@ mod tests {
     fn rows_and_columns_list_the_same_cells() {
         let nan = f64::NAN;
         let f = Pseudoranges::new(3, 2, vec![1.0, nan, 3.0, 4.0, nan, 6.0]).unwrap();
-        let observations = Observations::new(&f, |i, _| i != 1 || f.observed() == 4);
+        let observations = Observations::<2>::new(&f, |i, _| i != 1 || f.observed() == 4);
         assert_eq!(observations.len(), 4);
         let column: Vec<_> = observations.of_transmitter(1).iter().map(|o| (o.receiver, o.value)).collect();
         assert_eq!(column, [(1, 4.0), (2, 6.0)]);
         let row: Vec<_> = observations.of_receiver(1).map(|o| (o.transmitter, o.value)).collect();
         assert_eq!(row, [(0, 3.0), (1, 4.0)]);
-        assert_eq!(Observations::new(&f, |i, _| i != 2).len(), 3);
+        assert_eq!(Observations::<2>::new(&f, |i, _| i != 2).len(), 3);
+    }
+
+    #[test]
+    fn unknowns_are_positions_and_offsets_less_what_is_given() {
+        let f = Pseudoranges::new(4, 2, vec![1.0; 8]).unwrap();
+        let pin = |receiver, axis| Pin { receiver, axis, value: 0.0, precision: 1.0 };
+        fn left<const D: usize>(f: &Pseudoranges, held: usize, pins: &[Pin]) -> usize {
+            let held: Vec<bool> = (0..4).map(|i| i < held).collect();
+            Observations::<D>::new(f, |_, _| true).holding(&held).pinned(pins).unknowns()
+        }
+        // 14 in the plane; rigid motions have three dimensions there, one of which a held point leaves.
+        assert_eq!([0, 1, 2, 3].map(|held| left::<2>(&f, held, &[])), [11, 11, 10, 8]);
+        assert_eq!(left::<2>(&f, 1, &[pin(2, 0), pin(3, 1)]), 10);
+        // 20 in space; six, of which one point leaves three and two points one.
+        assert_eq!([0, 1, 2, 3, 4].map(|held| left::<3>(&f, held, &[])), [14, 14, 13, 11, 8]);
+        assert_eq!(left::<3>(&f, 2, &[pin(2, 2), pin(3, 1)]), 12);
     }
 
     #[test]
     fn a_split_receiver_is_two() {
         let f = Pseudoranges::new(2, 3, vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]).unwrap();
-        let observations = Observations::new(&f, |_, _| true);
+        let observations = Observations::<2>::new(&f, |_, _| true);
         let split = observations.split(0, 1);
         let row = |i: usize| -> Vec<_> { split.of_receiver(i).map(|o| (o.transmitter, o.value)).collect() };
         assert_eq!((split.receivers, row(0), row(2)), (3, vec![(0, 1.0)], vec![(1, 2.0), (2, 3.0)]));

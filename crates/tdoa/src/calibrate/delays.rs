@@ -250,7 +250,7 @@ impl Clearing<'_> {
         };
         let gives_up = |(faults, refined, _): &Estimated| {
             let reach = self.options.inlier_threshold * deviation;
-            let observations = Observations::new(&self.corrected(faults), |_, _| true);
+            let observations = Observations::<2>::new(&self.corrected(faults), |_, _| true);
             observations.all().iter().any(|o| o.residual(&refined.network).abs() > reach)
         };
         let mut best = near.clone();
@@ -290,7 +290,7 @@ impl Clearing<'_> {
 
     /// Whether a network has more inliers than unknowns.
     fn is_left_over(&self, (faults, refined, deviation): &Estimated) -> bool {
-        let observations = Observations::new(&self.corrected(faults), |_, _| true).beside(linear(faults).count());
+        let observations = Observations::<2>::new(&self.corrected(faults), |_, _| true).beside(linear(faults).count());
         let reach = self.options.inlier_threshold * deviation;
         let inliers = observations.all().iter().filter(|o| o.residual(&refined.network).abs() <= reach).count();
         refined.network.is_finite() && inliers > observations.unknowns()

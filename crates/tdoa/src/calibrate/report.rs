@@ -218,9 +218,8 @@ impl Solved<'_> {
         }
         let sure =
             settled && fits && planar && placed && determined && self.contradiction.is_none() && self.left.is_empty();
-        let located = |c: &Option<[[f64; 3]; 3]>| c.map(|c| [[c[0][0], c[0][1]], [c[1][0], c[1][1]]]);
-        let transmitters: Vec<_> = uncertainty.transmitters.iter().map(located).collect();
-        let offset_std: Vec<_> = uncertainty.transmitters.iter().map(|c| c.map(|c| c[2][2].max(0.0).sqrt())).collect();
+        let transmitters: Vec<_> = uncertainty.transmitters.iter().map(|c| c.map(|c| c.rows)).collect();
+        let offset_std: Vec<_> = uncertainty.transmitters.iter().map(|c| c.map(|c| c.corner.max(0.0).sqrt())).collect();
         let mut calibration = Calibration {
             configuration: self.measured.configuration(),
             receiver_names: self.measured.receiver_names().to_vec(),

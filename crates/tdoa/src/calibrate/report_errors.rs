@@ -23,10 +23,8 @@ fn add(covariance: &mut Covariance, factor: f64, p: &Motion, q: &Motion) {
         }
     }
     for (covariance, (s, t)) in covariance.transmitters.iter_mut().zip(p.transmitters.iter().zip(&q.transmitters)) {
-        for (row, s) in covariance.iter_mut().flatten().zip(s) {
-            for (entry, t) in row.iter_mut().zip(t) {
-                *entry += factor * s * t;
-            }
+        if let Some(covariance) = covariance {
+            covariance.add_product(factor, s, t);
         }
     }
 }
@@ -77,7 +75,7 @@ impl Solved<'_> {
                 // Its place is somewhere between the two.
                 let mut motion = Motion {
                     receivers: vec![0.0; 2 * kept.receivers],
-                    transmitters: vec![[0.0; 3]; kept.transmitters],
+                    transmitters: vec![([0.0; 2], 0.0); kept.transmitters],
                 };
                 motion.receivers[2 * fault.receiver..2 * fault.receiver + 2].copy_from_slice(&fault.size);
                 add(&mut found, 1.0, &motion, &motion);

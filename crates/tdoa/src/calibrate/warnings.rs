@@ -95,7 +95,11 @@ pub(super) fn warn_of_nodes(
     let receivers =
         weak(names, &|i| uncertainty.receivers.get(i).map_or(f64::INFINITY, |c| (c[0][0] + c[1][1]).max(0.0).sqrt()));
     let transmitters = weak(measured.transmitter_names(), &|j| {
-        uncertainty.transmitters.get(j).and_then(|c| *c).map_or(f64::INFINITY, |c| (c[0][0] + c[1][1]).max(0.0).sqrt())
+        uncertainty
+            .transmitters
+            .get(j)
+            .and_then(|c| *c)
+            .map_or(f64::INFINITY, |c| (c.rows[0][0] + c.rows[1][1]).max(0.0).sqrt())
     });
     let determined = !noise_known || 2 * receivers.len() <= names.len();
     if !determined {

@@ -1,6 +1,6 @@
 //! Covariance of all nodes.
 //!
-//! Arrival times leave a rigid motion of the plane open, so that a covariance needs a gauge. Here
+//! Arrival times leave a rigid motion open, so that a covariance needs a gauge. Here
 //! the gauge is the inner constraint over the receivers: among all covariances that explain the
 //! same data, the one with the smallest trace over the receivers. It is sigma^2 times the
 //! pseudo-inverse of the normal equations reduced to the receivers. It says how well the nodes lie
@@ -12,12 +12,15 @@ use faer::Mat;
 use faer::Side;
 
 use super::cancel::{Cancelled, apart, check};
-use super::normal::{Normal, backward, forward};
+use super::normal::Normal;
 use super::refiner::NetworkRefiner;
+use super::rigid::rigid_motion;
+use crate::bordered::{Bordered, Placed};
 use crate::loss::Loss;
 use crate::network::Network;
 use crate::observations::Observations;
 use hc::Monitor;
+use std::array::from_fn;
 
 /// Eigenvalues of the reduced normal equations below this share of the largest count as zero.
 pub(super) const RANK_TOLERANCE: f64 = 1e-11;
@@ -30,22 +33,22 @@ const LONG: usize = 200;
 
 /// Covariances of the nodes, metres squared.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Covariance {
+pub(crate) struct Covariance<const D: usize = 2> {
     /// Per receiver.
-    pub(crate) receivers: Vec<[[f64; 2]; 2]>,
-    /// The covariance of all coordinates of the receivers, 2m x 2m by rows.
+    pub(crate) receivers: Vec<[[f64; D]; D]>,
+    /// The covariance of all coordinates of the receivers, Dm x Dm by rows.
     pub(crate) joint: Vec<f64>,
-    /// Per transmitter: x, y, offset; `None` where its own measurements do not determine it.
-    pub(crate) transmitters: Vec<Option<[[f64; 3]; 3]>>,
+    /// Per transmitter, position and offset; `None` where its own measurements do not determine it.
+    pub(crate) transmitters: Vec<Option<Bordered<D>>>,
     /// Receivers that could move without a change of the measurements (to first order) beyond a
     /// rigid motion.
     pub(crate) loose: Vec<usize>,
 }
 
 /// The normal equations reduced to the receivers, inverted.
-pub(super) struct Reduced<'a> {
-    refiner: NetworkRefiner<'a>,
-    /// The inverse for all coordinates of the receivers, 2m x 2m.
+pub(super) struct Reduced<'a, const D: usize> {
+    refiner: NetworkRefiner<'a, D>,
+    /// The inverse for all coordinates of the receivers, Dm x Dm.
     inverse: Mat<f64>,
     /// Eigenvectors of the normal equations of the free coordinates, by ascending eigenvalue.
     modes: Mat<f64>,
@@ -57,17 +60,17 @@ pub(super) struct Reduced<'a> {
 }
 
 /// `None` if the decomposition fails.
-pub(super) fn reduced<'a>(
-    observations: &'a Observations,
-    network: &Network,
+pub(super) fn reduced<'a, const D: usize>(
+    observations: &'a Observations<D>,
+    network: &Network<D>,
     sigma: f64,
     monitor: &Monitor,
-) -> Result<Option<Reduced<'a>>, Cancelled> {
+) -> Result<Option<Reduced<'a, D>>, Cancelled> {
     let mut refiner = NetworkRefiner::new(observations, f64::INFINITY).heeding(monitor);
     let normal = refiner.normal_at(network, &Loss { nu: f64::INFINITY, scale: 1.0 })?;
-    let size = 2 * observations.receivers;
+    let size = D * observations.receivers;
     let lower = normal.schur();
-    let free: Vec<usize> = (0..size).filter(|&k| !observations.held()[k / 2]).collect();
+    let free: Vec<usize> = (0..size).filter(|&k| !observations.held()[k / D]).collect();
     let schur = Mat::from_fn(free.len(), free.len(), |a, b| {
         let (a, b) = (free[a], free[b]);
         lower[a.min(b) * size + a.max(b)]
@@ -84,8 +87,8 @@ pub(super) fn reduced<'a>(
     if !(largest.is_finite() && largest > 0.0) {
         return Ok(None);
     }
-    // Eigenvalues ascend; the three smallest belong to the rigid motions.
-    let rigid = if observations.leave_rigid_motions() { 3 } else { 0 };
+    // Eigenvalues ascend; the smallest, three or in space six, belong to the rigid motions.
+    let rigid = if observations.leave_rigid_motions() { D * (D + 1) / 2 } else { 0 };
     let zero = (0..free.len()).filter(|&k| values[k] < RANK_TOLERANCE * largest).count().max(rigid);
     let mut scaled = modes.clone();
     for (k, value) in values.iter().enumerate().skip(zero) {
@@ -111,14 +114,14 @@ pub(super) fn reduced<'a>(
     Ok(Some(Reduced { refiner, inverse, modes, free, zero, rigid }))
 }
 
-impl Reduced<'_> {
-    /// The covariance of all coordinates of the receivers, 2m x 2m by rows.
+impl<const D: usize> Reduced<'_, D> {
+    /// The covariance of all coordinates of the receivers, Dm x Dm by rows.
     pub(super) fn joint(&self) -> Vec<f64> {
         let size = self.inverse.nrows();
         (0..size * size).map(|k| self.inverse[(k / size, k % size)]).collect()
     }
 
-    pub(super) fn normal(&self) -> &Normal {
+    pub(super) fn normal(&self) -> &Normal<D> {
         self.refiner.normal()
     }
 }
@@ -126,18 +129,18 @@ impl Reduced<'_> {
 /// The covariance at `network` of least squares over `observations` with deviation `sigma` (a
 /// factor on the deviations of the measurements where they have their own). `None` if the
 /// decomposition fails.
-pub(crate) fn covariance(
-    observations: &Observations,
-    network: &Network,
+pub(crate) fn covariance<const D: usize>(
+    observations: &Observations<D>,
+    network: &Network<D>,
     sigma: f64,
     monitor: &Monitor,
-) -> Result<Option<Covariance>, Cancelled> {
+) -> Result<Option<Covariance<D>>, Cancelled> {
     let m = observations.receivers;
     let Some(reduced) = reduced(observations, network, sigma, monitor)? else { return Ok(None) };
     let (normal, joint) = (reduced.normal(), reduced.joint());
     let Reduced { inverse, modes, free, zero, rigid, .. } = &reduced;
     let zero = *zero;
-    let receivers = (0..m).map(|i| [0, 1].map(|a| [0, 1].map(|b| inverse[(2 * i + a, 2 * i + b)]))).collect();
+    let receivers = (0..m).map(|i| from_fn(|a| from_fn(|b| inverse[(D * i + a, D * i + b)]))).collect();
     let mut first = 0;
     let mut transmitters = Vec::with_capacity(observations.transmitters);
     for j in 0..observations.transmitters {
@@ -148,63 +151,51 @@ pub(crate) fn covariance(
         transmitters.push(normal.inverse_factor(j).map(|factor| {
             // dt = C^-1 (own noise + sum_i w g u^T dr_i), so Cov = sigma^2 C^-1 + K Cov_r K^T with
             // K_i = C^-1 g w u^T.
-            let gains: Vec<([f64; 3], [f64; 2], usize)> = column
+            let gains: Vec<(Placed<D>, [f64; D], usize)> = column
                 .iter()
                 .zip(rays)
-                .map(|(o, (u, w))| (backward(factor, forward(factor, [w * u[0], w * u[1], *w])), *u, 2 * o.receiver))
+                .map(|(o, (u, w))| (factor.invert((u.map(|u| w * u), *w)), *u, D * o.receiver))
                 .collect();
-            let mut sum = [[0.0; 3]; 3];
+            let mut sum = Bordered::ZERO;
             for (a, u, i) in &gains {
                 for (b, v, k) in &gains {
-                    let between = (0..2)
-                        .map(|p| u[p] * (inverse[(i + p, *k)] * v[0] + inverse[(i + p, k + 1)] * v[1]))
-                        .sum::<f64>();
-                    for x in 0..3 {
-                        for y in 0..3 {
-                            sum[x][y] += between * a[x] * b[y];
-                        }
-                    }
+                    let row = |p: usize| (0..D).map(|q| inverse[(i + p, k + q)] * v[q]).sum::<f64>();
+                    let between = (0..D).map(|p| u[p] * row(p)).sum::<f64>();
+                    sum.add_product(between, a, b);
                 }
             }
-            for y in 0..3 {
-                let mut unit = [0.0; 3];
+            for y in 0..D {
+                let mut unit = [0.0; D];
                 unit[y] = sigma * sigma;
-                let column = backward(factor, forward(factor, unit));
-                for x in 0..3 {
-                    sum[x][y] += column[x];
+                let (column, last) = factor.invert((unit, 0.0));
+                for x in 0..D {
+                    sum.rows[x][y] += column[x];
                 }
+                sum.border[y] += last;
             }
+            sum.corner += factor.invert(([0.0; D], sigma * sigma)).1;
             sum
         }));
     }
-    let loose =
-        if *rigid > 0 { loose(&modes.as_ref(), zero, network) } else { loose_beside_held(&modes.as_ref(), zero, free) };
+    let loose = if *rigid > 0 {
+        loose(&modes.as_ref(), zero, network)
+    } else {
+        loose_beside_held::<D>(&modes.as_ref(), zero, free)
+    };
     Ok(Some(Covariance { receivers, joint, transmitters, loose }))
 }
 
-/// Coordinate `axis` of receiver `i` in the orthonormal rigid motions: two translations and the
-/// rotation about the centroid.
-pub(super) fn rigid_motion(network: &Network) -> impl Fn(usize, usize) -> [f64; 3] {
-    let centre = crate::points::centroid(network.receivers.iter());
-    let root = (network.receivers.len() as f64).sqrt();
-    let spread = network.size().max(f64::MIN_POSITIVE) * root;
-    move |i: usize, axis: usize| {
-        let r = [network.receivers[i][0] - centre[0], network.receivers[i][1] - centre[1]];
-        if axis == 0 { [1.0 / root, 0.0, -r[1] / spread] } else { [0.0, 1.0 / root, r[0] / spread] }
-    }
-}
-
 /// Receivers that take part in the zero modes beyond the rigid motions.
-fn loose(modes: &faer::MatRef<'_, f64>, zero: usize, network: &Network) -> Vec<usize> {
-    if zero <= 3 {
+fn loose<const D: usize>(modes: &faer::MatRef<'_, f64>, zero: usize, network: &Network<D>) -> Vec<usize> {
+    if zero <= D * (D + 1) / 2 {
         return Vec::new();
     }
     let m = network.receivers.len();
     let rigid = rigid_motion(network);
     let freedom = |i: usize| -> f64 {
-        (0..2)
+        (0..D)
             .map(|axis| {
-                let all: f64 = (0..zero).map(|k| modes[(2 * i + axis, k)].powi(2)).sum();
+                let all: f64 = (0..zero).map(|k| modes[(D * i + axis, k)].powi(2)).sum();
                 all - rigid(i, axis).iter().map(|x| x * x).sum::<f64>()
             })
             .sum()
@@ -213,83 +204,111 @@ fn loose(modes: &faer::MatRef<'_, f64>, zero: usize, network: &Network) -> Vec<u
 }
 
 /// Loose nodes where receivers are held, which leaves no rigid motion.
-fn loose_beside_held(modes: &faer::MatRef<'_, f64>, zero: usize, free: &[usize]) -> Vec<usize> {
-    let freedom = |at: usize| (0..zero).map(|k| modes[(at, k)].powi(2) + modes[(at + 1, k)].powi(2)).sum::<f64>();
-    (0..free.len()).step_by(2).filter(|&at| freedom(at) > 0.01).map(|at| free[at] / 2).collect()
+fn loose_beside_held<const D: usize>(modes: &faer::MatRef<'_, f64>, zero: usize, free: &[usize]) -> Vec<usize> {
+    let square = |at: usize, k: usize| (0..D).map(|axis| modes[(at + axis, k)].powi(2)).sum::<f64>();
+    let freedom = |at: usize| (0..zero).map(|k| square(at, k)).sum::<f64>();
+    (0..free.len()).step_by(D).filter(|&at| freedom(at) > 0.01).map(|at| free[at] / D).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::network::tests::random;
+    use crate::pseudoranges::Pseudoranges;
     use crate::simulate::{SimulateOptions, simulate};
 
     #[test]
     fn receivers_that_are_all_held_have_no_error() {
         let simulation = simulate(&SimulateOptions::default()).unwrap();
         let held = vec![true; simulation.pseudoranges.receivers()];
-        let observations = Observations::new(&simulation.pseudoranges, |_, _| true).holding(&held);
+        let observations = Observations::<2>::new(&simulation.pseudoranges, |_, _| true).holding(&held);
         let found = covariance(&observations, &simulation.network, 0.1, &Monitor::default()).unwrap().unwrap();
         assert!(found.loose.is_empty() && found.receivers.iter().flatten().flatten().all(|&c| c == 0.0));
-        assert!(found.transmitters.iter().all(|c| c.is_some_and(|c| c[0][0] > 0.0 && c[1][1] > 0.0)));
+        assert!(found.transmitters.iter().all(|c| c.is_some_and(|c| c.rows[0][0] > 0.0 && c.rows[1][1] > 0.0)));
     }
 
-    /// The covariance from the full normal equations with the inner constraint as a border, by
-    /// dense algebra.
-    #[test]
-    fn agrees_with_the_bordered_normal_equations() {
-        let mut options = SimulateOptions { receivers: 6, transmitters: 5, ..Default::default() };
-        options.missing = 0.05;
-        let simulation = simulate(&options).unwrap();
-        let network = &simulation.network;
-        let observations = Observations::new(&simulation.pseudoranges, |_, _| true);
-        let (m, n) = (6, 5);
-        let size = 2 * m + 3 * n;
-        let mut bordered = Mat::<f64>::zeros(size + 3, size + 3);
-        for o in observations.all() {
+    /// The covariance from the full normal equations with the inner constraint as a border, by dense
+    /// algebra.
+    fn agrees_with_bordered_equations<const D: usize>(m: usize, n: usize) {
+        let network: Network<D> = random(m, n, 5);
+        let mut values = network.pseudoranges();
+        values[3] = f64::NAN;
+        let observations = Observations::new(&Pseudoranges::new(m, n, values).unwrap(), |_, _| true);
+        let (size, motions) = (D * m + (D + 1) * n, D * (D + 1) / 2);
+        let mut jacobian = Mat::<f64>::zeros(observations.len(), size);
+        for (k, o) in observations.all().iter().enumerate() {
             let (r, s) = (network.receivers[o.receiver], network.transmitters[o.transmitter]);
-            let d = network.distance(o.receiver, o.transmitter);
-            let u = [(s[0] - r[0]) / d, (s[1] - r[1]) / d];
-            let at = 2 * m + 3 * o.transmitter;
-            let row = [(2 * o.receiver, -u[0]), (2 * o.receiver + 1, -u[1]), (at, u[0]), (at + 1, u[1]), (at + 2, 1.0)];
-            for (a, x) in row {
-                for (b, y) in row {
-                    bordered[(a, b)] += x * y;
-                }
+            let at = D * m + (D + 1) * o.transmitter;
+            for axis in 0..D {
+                let u = (s[axis] - r[axis]) / network.distance(o.receiver, o.transmitter);
+                (jacobian[(k, D * o.receiver + axis)], jacobian[(k, at + axis)]) = (-u, u);
             }
+            jacobian[(k, at + D)] = 1.0;
         }
+        let mut bordered = Mat::<f64>::zeros(size + motions, size + motions);
+        bordered.submatrix_mut(0, 0, size, size).copy_from(jacobian.transpose() * &jacobian);
         for (i, r) in network.receivers.iter().enumerate() {
-            for (k, g) in [[1.0, 0.0], [0.0, 1.0], [-r[1], r[0]]].iter().enumerate() {
-                for axis in 0..2 {
-                    bordered[(2 * i + axis, size + k)] = g[axis];
-                    bordered[(size + k, 2 * i + axis)] = g[axis];
+            let mut next = size;
+            for k in 0..D {
+                (bordered[(D * i + k, next)], bordered[(next, D * i + k)]) = (1.0, 1.0);
+                next += 1;
+                for l in 0..k {
+                    (bordered[(D * i + k, next)], bordered[(next, D * i + k)]) = (r[l], r[l]);
+                    (bordered[(D * i + l, next)], bordered[(next, D * i + l)]) = (-r[k], -r[k]);
+                    next += 1;
                 }
             }
         }
         use faer::linalg::solvers::DenseSolveCore;
         let expected = bordered.partial_piv_lu().inverse();
         let sigma = 0.02;
-        let found = covariance(&observations, network, sigma, &Monitor::default()).unwrap().unwrap();
+        let found = covariance(&observations, &network, sigma, &Monitor::default()).unwrap().unwrap();
         assert!(found.loose.is_empty());
-        for a in 0..2 {
-            for b in 0..2 {
-                for i in 0..m {
-                    let want = sigma * sigma * expected[(2 * i + a, 2 * i + b)];
-                    assert!(
-                        (found.receivers[i][a][b] - want).abs() < 1e-8 * want.abs().max(sigma * sigma),
-                        "receiver {i}"
-                    );
+        let close = |found: f64, a: usize, b: usize| {
+            let want = sigma * sigma * expected[(a, b)];
+            assert!((found - want).abs() < 1e-8 * want.abs().max(sigma * sigma), "{a} {b}: {found} {want}");
+        };
+        for a in 0..D * m {
+            for b in 0..D * m {
+                close(found.joint[a * D * m + b], a, b);
+                if a / D == b / D {
+                    close(found.receivers[a / D][a % D][b % D], a, b);
                 }
             }
         }
-        for j in 0..n {
-            let at = 2 * m + 3 * j;
-            let found = found.transmitters[j].unwrap();
-            for a in 0..3 {
-                for b in 0..3 {
-                    let want = sigma * sigma * expected[(at + a, at + b)];
-                    assert!((found[a][b] - want).abs() < 1e-8 * want.abs().max(sigma * sigma), "transmitter {j}");
+        for (j, found) in found.transmitters.iter().enumerate() {
+            let (at, found) = (D * m + (D + 1) * j, found.unwrap());
+            for a in 0..D {
+                for b in 0..D {
+                    close(found.rows[a][b], at + a, at + b);
                 }
+                close(found.border[a], at + D, at + a);
             }
+            close(found.corner, at + D, at + D);
         }
+    }
+
+    #[test]
+    fn agrees_with_the_bordered_normal_equations() {
+        agrees_with_bordered_equations::<2>(6, 5);
+        agrees_with_bordered_equations::<3>(8, 9);
+    }
+
+    #[test]
+    fn a_receiver_that_may_move_in_space_is_loose() {
+        let network: Network<3> = random(24, 9, 6);
+        let mut values = network.pseudoranges();
+        // Two measurements of the third receiver are left.
+        values[2 * 9 + 2..3 * 9].fill(f64::NAN);
+        let measured = Pseudoranges::new(24, 9, values).unwrap();
+        let loose = |held: &[usize]| {
+            let held: Vec<bool> = (0..24).map(|i| held.contains(&i)).collect();
+            let observations = Observations::new(&measured, |_, _| true).holding(&held);
+            covariance(&observations, &network, 0.1, &Monitor::default()).unwrap().unwrap().loose
+        };
+        // Where nothing is held, others move a little against it.
+        assert!(loose(&[]).contains(&2));
+        assert_eq!(loose(&[0, 1, 3]), [2]);
+        assert!(loose(&[0, 1, 2, 3]).is_empty());
     }
 }

@@ -10,21 +10,21 @@ use hc::Monitor;
 
 /// A network in which some nodes are known.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct PartialNetwork {
+pub struct PartialNetwork<const D: usize = 2> {
     /// Positions of receivers, metres.
-    pub receivers: Vec<Option<[f64; 2]>>,
+    pub receivers: Vec<Option<[f64; D]>>,
     /// Positions of transmitters, metres, with their offsets.
-    pub transmitters: Vec<Option<([f64; 2], f64)>>,
+    pub transmitters: Vec<Option<([f64; D], f64)>>,
 }
 
-impl PartialNetwork {
+impl<const D: usize> PartialNetwork<D> {
     /// A network with these numbers of receivers and transmitters, none of them known.
     pub fn unknown(receivers: usize, transmitters: usize) -> Self {
         PartialNetwork { receivers: vec![None; receivers], transmitters: vec![None; transmitters] }
     }
 
     /// Enters a network for the nodes with these indices.
-    pub fn place(&mut self, network: &Network, receivers: &[usize], transmitters: &[usize]) {
+    pub fn place(&mut self, network: &Network<D>, receivers: &[usize], transmitters: &[usize]) {
         for (&i, &position) in receivers.iter().zip(&network.receivers) {
             self.receivers[i] = Some(position);
         }
@@ -35,20 +35,20 @@ impl PartialNetwork {
 }
 
 /// Locates all unknown nodes, best observed ones first: transmitters from at least four known
-/// receivers, receivers from at least three known transmitters, and with one less of them when
-/// nothing else is left. `None` if some node cannot be located at all.
-pub(crate) fn extend(
-    observations: &Observations,
-    part: &PartialNetwork,
+/// receivers, receivers from at least three known transmitters (one more of each in space), and with
+/// one less of them when nothing else is left. `None` if some node cannot be located at all.
+pub(crate) fn extend<const D: usize>(
+    observations: &Observations<D>,
+    part: &PartialNetwork<D>,
     loss: &Loss,
     monitor: &Monitor,
-) -> Result<Option<Network>, Cancelled> {
+) -> Result<Option<Network<D>>, Cancelled> {
     let mut part = part.clone();
     let mut sights = Vec::new();
     for spare in [1, 0] {
         loop {
-            let transmitters = locate_transmitters(observations, &mut part, 3 + spare, loss, &mut sights, monitor)?;
-            let receivers = locate_receivers(observations, &mut part, 2 + spare, loss, &mut sights, monitor)?;
+            let transmitters = locate_transmitters(observations, &mut part, D + 1 + spare, loss, &mut sights, monitor)?;
+            let receivers = locate_receivers(observations, &mut part, D + spare, loss, &mut sights, monitor)?;
             if transmitters + receivers == 0 {
                 break;
             }
@@ -63,12 +63,12 @@ pub(crate) fn extend(
     }))
 }
 
-fn locate_transmitters(
-    observations: &Observations,
-    part: &mut PartialNetwork,
+fn locate_transmitters<const D: usize>(
+    observations: &Observations<D>,
+    part: &mut PartialNetwork<D>,
     least: usize,
     loss: &Loss,
-    sights: &mut Vec<Sight>,
+    sights: &mut Vec<Sight<D>>,
     monitor: &Monitor,
 ) -> Result<usize, Cancelled> {
     let mut found = 0;
@@ -93,12 +93,12 @@ fn locate_transmitters(
     Ok(found)
 }
 
-fn locate_receivers(
-    observations: &Observations,
-    part: &mut PartialNetwork,
+fn locate_receivers<const D: usize>(
+    observations: &Observations<D>,
+    part: &mut PartialNetwork<D>,
     least: usize,
     loss: &Loss,
-    sights: &mut Vec<Sight>,
+    sights: &mut Vec<Sight<D>>,
     monitor: &Monitor,
 ) -> Result<usize, Cancelled> {
     let mut found = 0;
@@ -160,7 +160,7 @@ mod tests {
     #[test]
     fn nothing_grows_from_nothing() {
         let simulation = simulate(&SimulateOptions::default()).unwrap();
-        let observations = Observations::new(&simulation.pseudoranges, |_, _| true);
+        let observations = Observations::<2>::new(&simulation.pseudoranges, |_, _| true);
         let (none, loss) = (PartialNetwork::unknown(8, 12), Loss { nu: 2.0, scale: 1.0 });
         assert_eq!(extend(&observations, &none, &loss, &Monitor::default()), Ok(None));
     }

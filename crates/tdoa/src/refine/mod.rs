@@ -17,6 +17,7 @@ mod predicted;
 mod projection;
 mod refiner;
 mod reseed;
+mod rigid;
 mod solver;
 mod weighing;
 

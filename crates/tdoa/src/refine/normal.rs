@@ -3,7 +3,7 @@
 //!
 //! The residual is e = f - o - |r - s|. With u the unit vector from receiver to transmitter and g =
 //! (u, 1), its derivatives are u by the receiver and -g by transmitter and offset. Each transmitter
-//! j has a 3x3 block C_j = sum w g g^T and couples to its receivers by -w u g^T. Eliminating it
+//! j has a 3x3 block (4x4 in space) C_j = sum w g g^T and couples to its receivers by -w u g^T. Eliminating it
 //! therefore subtracts w_i w_k (g_i^T C_j^-1 g_k) u_i u_k^T from block (i, k): with C_j = L L^T,
 //! this is the product B^T B of the columns w_i (L^-1 g_i) u_i^T.
 
@@ -14,11 +14,14 @@ use faer::prelude::default;
 use faer::{MatMut, MatRef};
 use hc::Monitor;
 use hc::poly::simd::{Isa, Kernel};
+use std::array::from_fn;
 
 use super::cancel::{Cancelled, apart, check};
+use crate::bordered::{Bordered, Placed};
 use crate::loss::Loss;
 use crate::network::Network;
 use crate::observations::Observations;
+use crate::points::{dot, minus};
 
 /// A transmitter that at most one in this many receivers hear is eliminated from their blocks alone.
 const SPARSE: usize = 4;
@@ -31,45 +34,45 @@ const LONG: usize = 1000;
 const LOOK: usize = 64;
 
 /// Buffers for one problem size; nothing is allocated after `new`, but for very many receivers.
-pub(crate) struct Normal {
+pub(crate) struct Normal<const D: usize = 2> {
     receivers: usize,
     /// Per observation: unit vector and weight.
-    rays: Vec<([f64; 2], f64)>,
-    /// Per receiver: xx, xy, yy of its block, and its gradient.
-    receiver_blocks: Vec<([f64; 3], [f64; 2])>,
-    /// Per transmitter: lower triangle of its block by rows, and its gradient.
-    transmitter_blocks: Vec<([f64; 6], [f64; 3])>,
-    /// Inverse Cholesky factors of the damped transmitter blocks, by rows.
-    inverse_factors: Vec<Option<[f64; 6]>>,
+    rays: Vec<([f64; D], f64)>,
+    /// Per receiver: the lower triangle of its block by rows, and its gradient.
+    receiver_blocks: Vec<([[f64; D]; D], [f64; D])>,
+    /// Per transmitter: its block and its gradient.
+    transmitter_blocks: Vec<(Bordered<D>, Placed<D>)>,
+    /// Inverse Cholesky factors of the damped transmitter blocks.
+    inverse_factors: Vec<Option<Bordered<D>>>,
     schur: Vec<f64>,
     receiver_steps: Vec<f64>,
-    transmitter_steps: Vec<[f64; 3]>,
-    /// Three rows: what a transmitter couples to the receivers, in the frame in which its block is
+    transmitter_steps: Vec<Placed<D>>,
+    /// D + 1 rows: what a transmitter couples to the receivers, in the frame in which its block is
     /// the identity.
     coupling: Vec<f64>,
     /// The same for a transmitter that few receivers hear: coordinates in ascending order, and their
     /// columns.
-    few: Vec<(usize, [f64; 3])>,
+    few: Vec<(usize, Placed<D>)>,
     isa: Isa,
     scratch: MemBuffer,
 }
 
-impl Normal {
-    pub(crate) fn new(observations: &Observations) -> Self {
+impl<const D: usize> Normal<D> {
+    pub(crate) fn new(observations: &Observations<D>) -> Self {
         let (m, n) = (observations.receivers, observations.transmitters);
-        let factor = llt::factor::cholesky_in_place_scratch::<f64>(2 * m, Par::Seq, default());
-        let solve = llt::solve::solve_in_place_scratch::<f64>(2 * m, 1, Par::Seq);
+        let factor = llt::factor::cholesky_in_place_scratch::<f64>(D * m, Par::Seq, default());
+        let solve = llt::solve::solve_in_place_scratch::<f64>(D * m, 1, Par::Seq);
         Normal {
             receivers: m,
-            rays: vec![([0.0; 2], 0.0); observations.len()],
-            receiver_blocks: vec![([0.0; 3], [0.0; 2]); m],
-            transmitter_blocks: vec![([0.0; 6], [0.0; 3]); n],
+            rays: vec![([0.0; D], 0.0); observations.len()],
+            receiver_blocks: vec![([[0.0; D]; D], [0.0; D]); m],
+            transmitter_blocks: vec![(Bordered::ZERO, ([0.0; D], 0.0)); n],
             inverse_factors: vec![None; n],
-            schur: vec![0.0; 4 * m * m],
-            receiver_steps: vec![0.0; 2 * m],
-            transmitter_steps: vec![[0.0; 3]; n],
-            coupling: vec![0.0; 6 * m],
-            few: Vec::with_capacity(2 * m / SPARSE),
+            schur: vec![0.0; D * D * m * m],
+            receiver_steps: vec![0.0; D * m],
+            transmitter_steps: vec![([0.0; D], 0.0); n],
+            coupling: vec![0.0; (D + 1) * D * m],
+            few: Vec::with_capacity(D * m / SPARSE),
             isa: Isa::detect(),
             scratch: MemBuffer::new(factor.or(solve)),
         }
@@ -77,7 +80,13 @@ impl Normal {
 
     /// Takes the derivatives at `network`; `residuals` are those of `observations.all()`, over
     /// their deviations, and of its pins.
-    pub(crate) fn linearise(&mut self, observations: &Observations, network: &Network, residuals: &[f64], loss: &Loss) {
+    pub(crate) fn linearise(
+        &mut self,
+        observations: &Observations<D>,
+        network: &Network<D>,
+        residuals: &[f64],
+        loss: &Loss,
+    ) {
         self.linearise_by(observations, network, residuals, |_, e| (loss.weight(e), e), |e| (loss.weight(e), e));
     }
 
@@ -87,37 +96,43 @@ impl Normal {
     #[inline]
     pub(crate) fn linearise_by(
         &mut self,
-        observations: &Observations,
-        network: &Network,
+        observations: &Observations<D>,
+        network: &Network<D>,
         residuals: &[f64],
         terms: impl Fn(usize, f64) -> (f64, f64),
         pin_terms: impl Fn(f64) -> (f64, f64),
     ) {
-        self.receiver_blocks.fill(([0.0; 3], [0.0; 2]));
-        self.transmitter_blocks.fill(([0.0; 6], [0.0; 3]));
+        self.receiver_blocks.fill(([[0.0; D]; D], [0.0; D]));
+        self.transmitter_blocks.fill((Bordered::ZERO, ([0.0; D], 0.0)));
         for (k, ((o, ray), &e)) in observations.all().iter().zip(&mut self.rays).zip(residuals).enumerate() {
-            let (r, s) = (network.receivers[o.receiver], network.transmitters[o.transmitter]);
-            let (dx, dy) = (s[0] - r[0], s[1] - r[1]);
-            let d = (dx * dx + dy * dy).sqrt();
-            let u = if d > 0.0 { [dx / d, dy / d] } else { [0.0; 2] };
+            let between = minus(network.transmitters[o.transmitter], network.receivers[o.receiver]);
+            let d = dot(between, between).sqrt();
+            let u = if d > 0.0 { between.map(|x| x / d) } else { [0.0; D] };
             let (weight, e) = terms(k, e);
             let we = weight * o.precision;
             let w = we * o.precision;
             *ray = (u, w);
-            let (h, g) = &mut self.receiver_blocks[o.receiver];
-            let (xx, xy, yy) = (w * u[0] * u[0], w * u[0] * u[1], w * u[1] * u[1]);
-            *h = [h[0] + xx, h[1] + xy, h[2] + yy];
-            *g = [g[0] - we * e * u[0], g[1] - we * e * u[1]];
-            let (h, g) = &mut self.transmitter_blocks[o.transmitter];
-            *h = [h[0] + xx, h[1] + xy, h[2] + yy, h[3] + w * u[0], h[4] + w * u[1], h[5] + w];
-            *g = [g[0] + we * e * u[0], g[1] + we * e * u[1], g[2] + we * e];
+            let (rows, gradient) = &mut self.receiver_blocks[o.receiver];
+            let (block, placed) = &mut self.transmitter_blocks[o.transmitter];
+            for a in 0..D {
+                for b in 0..=a {
+                    let square = w * u[b] * u[a];
+                    rows[a][b] += square;
+                    block.rows[a][b] += square;
+                }
+                gradient[a] -= we * e * u[a];
+                block.border[a] += w * u[a];
+                placed.0[a] += we * e * u[a];
+            }
+            block.corner += w;
+            placed.1 += we * e;
         }
         for (pin, &e) in observations.pins().iter().zip(&residuals[observations.len()..]) {
             let (weight, e) = pin_terms(e);
             let we = weight * pin.precision;
-            let (h, g) = &mut self.receiver_blocks[pin.receiver];
-            h[2 * pin.axis] += we * pin.precision;
-            g[pin.axis] += we * e;
+            let (rows, gradient) = &mut self.receiver_blocks[pin.receiver];
+            rows[pin.axis][pin.axis] += we * pin.precision;
+            gradient[pin.axis] += we * e;
         }
     }
 
@@ -125,7 +140,7 @@ impl Normal {
     /// singular.
     pub(crate) fn solve(
         &mut self,
-        observations: &Observations,
+        observations: &Observations<D>,
         damping: f64,
         monitor: &Monitor,
     ) -> Result<bool, Cancelled> {
@@ -133,7 +148,7 @@ impl Normal {
         if !self.factor(monitor)? {
             return Ok(false);
         }
-        let size = 2 * self.receivers;
+        let size = D * self.receivers;
         let schur = MatRef::from_column_major_slice(&self.schur, size, size);
         let rhs = MatMut::from_column_major_slice_mut(&mut self.receiver_steps, size, 1);
         llt::solve::solve_in_place(schur, rhs, Par::Seq, MemStack::new(&mut self.scratch));
@@ -143,7 +158,7 @@ impl Normal {
 
     /// Replaces the Schur complement by its Cholesky factor; false if there is none.
     fn factor(&mut self, monitor: &Monitor) -> Result<bool, Cancelled> {
-        let size = 2 * self.receivers;
+        let size = D * self.receivers;
         if size < LONG {
             return Ok(cholesky(&mut self.schur, size, &mut self.scratch));
         }
@@ -164,17 +179,16 @@ impl Normal {
     /// motions, that of `damping` times the diagonal counts. `None` if they are singular.
     pub(crate) fn log_determinant(
         &mut self,
-        observations: &Observations,
+        observations: &Observations<D>,
         damping: f64,
         monitor: &Monitor,
     ) -> Result<Option<f64>, Cancelled> {
         if !self.solve(observations, damping, monitor)? {
             return Ok(None);
         }
-        let size = 2 * self.receivers;
+        let size = D * self.receivers;
         let receivers: f64 = (0..size).map(|k| self.schur[k * size + k].ln()).sum();
-        let transmitters: f64 =
-            self.inverse_factors.iter().flatten().map(|inverse| (inverse[0] * inverse[2] * inverse[5]).ln()).sum();
+        let transmitters: f64 = self.inverse_factors.iter().flatten().map(|inverse| inverse.determinant().ln()).sum();
         Ok(Some(2.0 * (receivers - transmitters)))
     }
 
@@ -182,22 +196,25 @@ impl Normal {
     /// block is singular takes no part: it stays where it is and its measurements hold nothing.
     pub(crate) fn reduce(
         &mut self,
-        observations: &Observations,
+        observations: &Observations<D>,
         damping: f64,
         monitor: &Monitor,
     ) -> Result<(), Cancelled> {
-        let size = 2 * self.receivers;
+        let size = D * self.receivers;
         let grow = 1.0 + damping;
         // A node without usable measurements keeps a regular block and does not move.
-        let floor = 1e-12 * self.receiver_blocks.iter().map(|(h, _)| h[0] + h[2]).fold(1e-300, f64::max);
+        let trace = |rows: &[[f64; D]; D]| (0..D).map(|k| rows[k][k]).sum::<f64>();
+        let floor = 1e-12 * self.receiver_blocks.iter().map(|(rows, _)| trace(rows)).fold(1e-300, f64::max);
         self.schur.fill(0.0);
-        for (i, (h, g)) in self.receiver_blocks.iter().enumerate() {
-            let at = 2 * i * size + 2 * i;
-            self.schur[at] = h[0] * grow + floor * damping;
-            self.schur[at + 1] = h[1];
-            self.schur[at + size + 1] = h[2] * grow + floor * damping;
-            self.receiver_steps[2 * i] = g[0];
-            self.receiver_steps[2 * i + 1] = g[1];
+        for (i, (rows, gradient)) in self.receiver_blocks.iter().enumerate() {
+            let at = D * i;
+            for a in 0..D {
+                for b in 0..a {
+                    self.schur[(at + b) * size + at + a] = rows[a][b];
+                }
+                self.schur[(at + a) * size + at + a] = rows[a][a] * grow + floor * damping;
+                self.receiver_steps[at + a] = gradient[a];
+            }
         }
         let mut first = 0;
         for j in 0..observations.transmitters {
@@ -207,33 +224,35 @@ impl Normal {
             }
             let rays = &self.rays[first..first + column.len()];
             first += column.len();
-            let (h, g) = &self.transmitter_blocks[j];
-            self.inverse_factors[j] = inverse_factor(h, grow, floor * damping);
+            let (block, gradient) = &self.transmitter_blocks[j];
+            self.inverse_factors[j] = block.inverse_cholesky(grow, floor * damping);
             let Some(inverse) = self.inverse_factors[j] else {
                 for (o, (u, w)) in column.iter().zip(rays) {
-                    let at = 2 * o.receiver * size + 2 * o.receiver;
-                    self.schur[at] -= w * u[0] * u[0];
-                    self.schur[at + 1] -= w * u[0] * u[1];
-                    self.schur[at + size + 1] -= w * u[1] * u[1];
+                    let at = D * o.receiver;
+                    for a in 0..D {
+                        for b in 0..=a {
+                            self.schur[(at + b) * size + at + a] -= w * u[b] * u[a];
+                        }
+                    }
                 }
                 continue;
             };
-            let z = forward(&inverse, *g);
-            let coupled = |(u, w): &([f64; 2], f64)| (forward(&inverse, [w * u[0], w * u[1], *w]), *u);
+            let z = inverse.forward(*gradient);
+            let coupled = |(u, w): &([f64; D], f64)| (inverse.forward((u.map(|u| w * u), *w)), *u);
             if SPARSE * column.len() <= self.receivers {
                 // Few receivers: their blocks alone.
                 self.few.clear();
                 for (o, ray) in column.iter().zip(rays) {
-                    let (y, u) = coupled(ray);
-                    let at = 2 * o.receiver;
-                    self.few.extend((0..2).map(|axis| (at + axis, y.map(|y| y * u[axis]))));
+                    let ((y, last), u) = coupled(ray);
+                    let at = D * o.receiver;
+                    self.few.extend((0..D).map(|axis| (at + axis, (y.map(|y| y * u[axis]), last * u[axis]))));
                 }
-                for (a, &(column, [p, q, r])) in self.few.iter().enumerate() {
-                    for (g, z) in [p, q, r].into_iter().zip(z) {
+                for (a, &(column, (p, last))) in self.few.iter().enumerate() {
+                    for (g, z) in p.into_iter().chain([last]).zip(z.0.into_iter().chain([z.1])) {
                         self.receiver_steps[column] += g * z;
                     }
-                    for &(row, [x, y, z]) in &self.few[a..] {
-                        self.schur[column * size + row] -= p * x + q * y + r * z;
+                    for &(row, (x, end)) in &self.few[a..] {
+                        self.schur[column * size + row] -= dot(p, x) + last * end;
                     }
                 }
                 continue;
@@ -241,19 +260,18 @@ impl Normal {
             let rows = &mut self.coupling;
             rows.fill(0.0);
             for (o, ray) in column.iter().zip(rays) {
-                let (y, u) = coupled(ray);
-                let at = 2 * o.receiver;
-                for (row, y) in rows.chunks_exact_mut(size).zip(y) {
-                    row[at] = y * u[0];
-                    row[at + 1] = y * u[1];
+                let ((y, last), u) = coupled(ray);
+                let at = D * o.receiver;
+                for (row, y) in rows.chunks_exact_mut(size).zip(y.into_iter().chain([last])) {
+                    row[at..at + D].copy_from_slice(&u.map(|u| y * u));
                 }
             }
-            for (row, z) in rows.chunks_exact(size).zip(z) {
+            for (row, z) in rows.chunks_exact(size).zip(z.0.into_iter().chain([z.1])) {
                 for (g, b) in self.receiver_steps.iter_mut().zip(row) {
                     *g += b * z;
                 }
             }
-            self.isa.run(Eliminate { schur: &mut self.schur, rows });
+            self.isa.run(Eliminate::<D> { schur: &mut self.schur, rows });
         }
         self.hold(observations.held());
         Ok(())
@@ -261,8 +279,8 @@ impl Normal {
 
     /// Makes the equations of held receivers say that they do not move.
     fn hold(&mut self, held: &[bool]) {
-        let size = 2 * self.receivers;
-        for at in (0..size).filter(|&k| held[k / 2]) {
+        let size = D * self.receivers;
+        for at in (0..size).filter(|&k| held[k / D]) {
             for column in 0..at {
                 self.schur[column * size + at] = 0.0;
             }
@@ -272,49 +290,50 @@ impl Normal {
         }
     }
 
-    fn substitute_back(&mut self, observations: &Observations) {
+    fn substitute_back(&mut self, observations: &Observations<D>) {
         let mut first = 0;
         for j in 0..observations.transmitters {
             let column = observations.of_transmitter(j);
-            let mut rhs = self.transmitter_blocks[j].1;
+            let (mut rhs, mut last) = self.transmitter_blocks[j].1;
             for (o, (u, w)) in column.iter().zip(&self.rays[first..]) {
-                let i = 2 * o.receiver;
-                let along = w * (u[0] * self.receiver_steps[i] + u[1] * self.receiver_steps[i + 1]);
-                rhs = [rhs[0] + along * u[0], rhs[1] + along * u[1], rhs[2] + along];
+                let at = D * o.receiver;
+                let along = w * (0..D).map(|k| u[k] * self.receiver_steps[at + k]).sum::<f64>();
+                rhs = from_fn(|k| rhs[k] + along * u[k]);
+                last += along;
             }
             first += column.len();
             self.transmitter_steps[j] = match &self.inverse_factors[j] {
-                Some(inverse) => backward(inverse, forward(inverse, rhs)),
-                None => [0.0; 3],
+                Some(inverse) => inverse.invert((rhs, last)),
+                None => ([0.0; D], 0.0),
             };
         }
     }
 
     /// `target` = `network` + step.
-    pub(crate) fn step(&self, network: &Network, target: &mut Network) {
-        for (k, (to, from)) in target.receivers.iter_mut().zip(&network.receivers).enumerate() {
-            *to = [from[0] + self.receiver_steps[2 * k], from[1] + self.receiver_steps[2 * k + 1]];
+    pub(crate) fn step(&self, network: &Network<D>, target: &mut Network<D>) {
+        for (i, (to, from)) in target.receivers.iter_mut().zip(&network.receivers).enumerate() {
+            *to = from_fn(|k| from[k] + self.receiver_steps[D * i + k]);
         }
-        for (j, step) in self.transmitter_steps.iter().enumerate() {
+        for (j, (position, offset)) in self.transmitter_steps.iter().enumerate() {
             let from = network.transmitters[j];
-            target.transmitters[j] = [from[0] + step[0], from[1] + step[1]];
-            target.offsets[j] = network.offsets[j] + step[2];
+            target.transmitters[j] = from_fn(|k| from[k] + position[k]);
+            target.offsets[j] = network.offsets[j] + offset;
         }
     }
 
-    /// The Schur complement of the last `reduce`, lower triangle, column-major, 2m x 2m.
+    /// The Schur complement of the last `reduce`, lower triangle, column-major, Dm x Dm.
     pub(crate) fn schur(&self) -> &[f64] {
         &self.schur
     }
 
     /// Inverse Cholesky factor of a transmitter's block, of the last `reduce`; `None` if the block
     /// is singular.
-    pub(crate) fn inverse_factor(&self, j: usize) -> Option<&[f64; 6]> {
+    pub(crate) fn inverse_factor(&self, j: usize) -> Option<&Bordered<D>> {
         self.inverse_factors[j].as_ref()
     }
 
     /// Unit vectors and weights of the last `linearise`, in the order of the observations.
-    pub(crate) fn rays(&self) -> &[([f64; 2], f64)] {
+    pub(crate) fn rays(&self) -> &[([f64; D], f64)] {
         &self.rays
     }
 }
@@ -326,129 +345,93 @@ fn cholesky(matrix: &mut [f64], size: usize, scratch: &mut MemBuffer) -> bool {
     llt::factor::cholesky_in_place(matrix, default(), Par::Seq, MemStack::new(scratch), default()).is_ok()
 }
 
-/// Subtracts `B^T B` from the lower triangle of a column-major matrix; `B` has three rows, one
-/// after the other.
-struct Eliminate<'a> {
+/// Subtracts `B^T B` from the lower triangle of a column-major matrix; `B` has D + 1 rows, one after
+/// the other.
+struct Eliminate<'a, const D: usize> {
     schur: &'a mut [f64],
     rows: &'a [f64],
 }
 
-impl Kernel for Eliminate<'_> {
+impl<const D: usize> Kernel for Eliminate<'_, D> {
     type Output = ();
     const WIDEST: Isa = Isa::Avx512;
 
     #[inline(always)]
     fn run(self) {
-        let size = self.rows.len() / 3;
-        let (first, rest) = self.rows.split_at(size);
-        let (second, third) = rest.split_at(size);
+        let size = self.rows.len() / (D + 1);
+        let (positions, last) = self.rows.split_at(D * size);
         for (k, column) in self.schur.chunks_exact_mut(size).enumerate() {
-            let (a, b, c) = (first[k], second[k], third[k]);
+            let (lead, end) = (from_fn::<f64, D, _>(|a| positions[a * size + k]), last[k]);
             // Receivers that have no measurement.
-            if a == 0.0 && b == 0.0 && c == 0.0 {
+            if end == 0.0 && lead.iter().all(|&x| x == 0.0) {
                 continue;
             }
-            for (((entry, x), y), z) in column[k..].iter_mut().zip(&first[k..]).zip(&second[k..]).zip(&third[k..]) {
-                *entry -= a * x + b * y + c * z;
+            let column = &mut column[k..];
+            let count = column.len();
+            let rows: [&[f64]; D] = from_fn(|a| &positions[a * size + k..][..count]);
+            for ((l, entry), y) in column.iter_mut().enumerate().zip(&last[k..]) {
+                let mut sum = lead[0] * rows[0][l];
+                for a in 1..D {
+                    sum += lead[a] * rows[a][l];
+                }
+                *entry -= sum + end * y;
             }
         }
     }
-}
-
-/// Inverse of the Cholesky factor of a 3x3 block with its diagonal times `grow` plus `floor`.
-fn inverse_factor(h: &[f64; 6], grow: f64, floor: f64) -> Option<[f64; 6]> {
-    let a = h[0] * grow + floor;
-    let l0 = a.sqrt();
-    let l1 = h[1] / l0;
-    let b = h[2] * grow + floor - l1 * l1;
-    let l2 = b.sqrt();
-    let l3 = h[3] / l0;
-    let l4 = (h[4] - l1 * l3) / l2;
-    let c = h[5] * grow + floor - l3 * l3 - l4 * l4;
-    let l5 = c.sqrt();
-    if !(a > 0.0 && b > 0.0 && c > 0.0 && (1.0 / (l0 * l2 * l5)).is_finite()) {
-        return None;
-    }
-    let (i0, i2, i5) = (1.0 / l0, 1.0 / l2, 1.0 / l5);
-    let i1 = -l1 * i0 * i2;
-    let i4 = -l4 * i2 * i5;
-    let i3 = -(l3 * i0 + l4 * i1) * i5;
-    Some([i0, i1, i2, i3, i4, i5])
-}
-
-/// Lower triangular times vector.
-pub(crate) fn forward(l: &[f64; 6], x: [f64; 3]) -> [f64; 3] {
-    [l[0] * x[0], l[1] * x[0] + l[2] * x[1], l[3] * x[0] + l[4] * x[1] + l[5] * x[2]]
-}
-
-/// Its transpose times vector.
-pub(crate) fn backward(l: &[f64; 6], x: [f64; 3]) -> [f64; 3] {
-    [l[0] * x[0] + l[1] * x[1] + l[3] * x[2], l[2] * x[1] + l[4] * x[2], l[5] * x[2]]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::network::tests::random;
+    use crate::pseudoranges::Pseudoranges;
     use crate::refine::NetworkRefiner;
-    use crate::simulate::{SimulateOptions, simulate};
-
-    #[test]
-    fn inverse_factor_inverts_the_block() {
-        let h = [4.0, 1.0, 3.0, -0.5, 0.7, 2.0];
-        let inverse = inverse_factor(&h, 1.0, 0.0).unwrap();
-        let x = [0.3, -1.2, 0.8];
-        let hx = [
-            h[0] * x[0] + h[1] * x[1] + h[3] * x[2],
-            h[1] * x[0] + h[2] * x[1] + h[4] * x[2],
-            h[3] * x[0] + h[4] * x[1] + h[5] * x[2],
-        ];
-        let back = backward(&inverse, forward(&inverse, hx));
-        for k in 0..3 {
-            assert!((back[k] - x[k]).abs() < 1e-14);
-        }
-        assert!(inverse_factor(&[1.0, 2.0, 1.0, 0.0, 0.0, 1.0], 1.0, 0.0).is_none());
-    }
 
     /// The Schur complement block by block, as the front of this module gives it.
-    #[test]
-    fn transmitters_that_few_or_many_hear_are_eliminated_as_defined() {
-        for hearing in [None, Some(6)] {
-            let options = SimulateOptions { receivers: 30, transmitters: 20, hearing, ..Default::default() };
-            let simulation = simulate(&options).unwrap();
-            let network = &simulation.network;
-            let observations = Observations::new(&simulation.pseudoranges, |_, _| true);
-            let mut refiner = NetworkRefiner::new(&observations, f64::INFINITY);
-            let normal = refiner.normal_at(network, &Loss { nu: f64::INFINITY, scale: 1.0 }).unwrap();
-            let size = 60;
-            let mut expected = vec![0.0; size * size];
-            for j in 0..observations.transmitters {
-                let factor = normal.inverse_factor(j).unwrap();
-                let rays: Vec<(usize, [f64; 2])> = (observations.of_transmitter(j).iter())
-                    .map(|o| {
-                        let (r, s) = (network.receivers[o.receiver], network.transmitters[j]);
-                        let d = network.distance(o.receiver, j);
-                        (2 * o.receiver, [(s[0] - r[0]) / d, (s[1] - r[1]) / d])
-                    })
-                    .collect();
-                for &(i, u) in &rays {
-                    for &(k, v) in &rays {
-                        let solved = backward(factor, forward(factor, [v[0], v[1], 1.0]));
-                        let own = if i == k { 1.0 } else { 0.0 };
-                        let between = own - (u[0] * solved[0] + u[1] * solved[1] + solved[2]);
-                        for (a, u) in u.iter().enumerate() {
-                            for (b, v) in v.iter().enumerate() {
-                                expected[(k + b) * size + i + a] += between * u * v;
-                            }
+    fn is_eliminated_as_defined<const D: usize>(hearing: usize) {
+        let network: Network<D> = random(30, 20, 1);
+        let heard = |i: usize, j: usize| (i + 7 * j) % 30 < hearing;
+        let values = network.pseudoranges();
+        let measured = (0..600).map(|k| if heard(k / 20, k % 20) { values[k] } else { f64::NAN }).collect();
+        let observations = Observations::new(&Pseudoranges::new(30, 20, measured).unwrap(), |_, _| true);
+        let mut refiner = NetworkRefiner::new(&observations, f64::INFINITY);
+        let normal = refiner.normal_at(&network, &Loss { nu: f64::INFINITY, scale: 1.0 }).unwrap();
+        let size = D * 30;
+        let mut expected = vec![0.0; size * size];
+        for j in 0..observations.transmitters {
+            let factor = normal.inverse_factor(j).unwrap();
+            let rays: Vec<(usize, [f64; D])> = (observations.of_transmitter(j).iter())
+                .map(|o| {
+                    let d = network.distance(o.receiver, j);
+                    (D * o.receiver, minus(network.transmitters[j], network.receivers[o.receiver]).map(|x| x / d))
+                })
+                .collect();
+            for &(i, u) in &rays {
+                for &(k, v) in &rays {
+                    let (solved, last) = factor.invert((v, 1.0));
+                    let own = if i == k { 1.0 } else { 0.0 };
+                    let between = own - (dot(u, solved) + last);
+                    for (a, u) in u.iter().enumerate() {
+                        for (b, v) in v.iter().enumerate() {
+                            expected[(k + b) * size + i + a] += between * u * v;
                         }
                     }
                 }
             }
-            for column in 0..size {
-                for row in column..size {
-                    let at = column * size + row;
-                    assert!((normal.schur()[at] - expected[at]).abs() < 1e-10, "{hearing:?} {row} {column}");
-                }
+        }
+        for column in 0..size {
+            for row in column..size {
+                let at = column * size + row;
+                assert!((normal.schur()[at] - expected[at]).abs() < 1e-10, "{hearing} {row} {column}");
             }
+        }
+    }
+
+    #[test]
+    fn transmitters_that_few_or_many_hear_are_eliminated_as_defined() {
+        for hearing in [30, 6] {
+            is_eliminated_as_defined::<2>(hearing);
+            is_eliminated_as_defined::<3>(hearing);
         }
     }
 }

@@ -42,8 +42,8 @@ pub(crate) struct RefineOptions {
 
 /// A refined network.
 #[derive(Debug, Clone)]
-pub(crate) struct RefinedNetwork {
-    pub(crate) network: Network,
+pub(crate) struct RefinedNetwork<const D: usize = 2> {
+    pub(crate) network: Network<D>,
     /// Scale of the residuals.
     pub(crate) scale: f64,
     /// The negative log-likelihood, up to a constant: comparable between networks for the same
@@ -54,22 +54,22 @@ pub(crate) struct RefinedNetwork {
 }
 
 /// Refines networks for one set of measurements; holds the buffers.
-pub(crate) struct NetworkRefiner<'a> {
-    observations: &'a Observations,
+pub(crate) struct NetworkRefiner<'a, const D: usize = 2> {
+    observations: &'a Observations<D>,
     nu: f64,
     /// Redundancy: share of the measurements that is left over when the unknowns are determined.
     share: f64,
-    normal: Normal,
+    normal: Normal<D>,
     residuals: Vec<f64>,
     trial_residuals: Vec<f64>,
-    trial: Network,
+    trial: Network<D>,
     monitor: Monitor,
 }
 
-impl<'a> NetworkRefiner<'a> {
+impl<'a, const D: usize> NetworkRefiner<'a, D> {
     /// With these degrees of freedom of the loss; infinite for least squares, which needs the scale
     /// to be given.
-    pub(crate) fn new(observations: &'a Observations, nu: f64) -> Self {
+    pub(crate) fn new(observations: &'a Observations<D>, nu: f64) -> Self {
         NetworkRefiner {
             observations,
             nu,
@@ -89,7 +89,7 @@ impl<'a> NetworkRefiner<'a> {
     }
 
     /// The best network near `start`, which must be complete and finite.
-    pub(crate) fn refine(&mut self, start: Network, options: &RefineOptions) -> RefinedNetwork {
+    pub(crate) fn refine(&mut self, start: Network<D>, options: &RefineOptions) -> RefinedNetwork<D> {
         let mut best = self.minimise(start, options);
         let again = RefineOptions { anneal_from: None, ..*options };
         for _ in 0..options.rounds {
@@ -113,7 +113,7 @@ impl<'a> NetworkRefiner<'a> {
         best
     }
 
-    fn minimise(&mut self, mut network: Network, options: &RefineOptions) -> RefinedNetwork {
+    fn minimise(&mut self, mut network: Network<D>, options: &RefineOptions) -> RefinedNetwork<D> {
         self.trial.clone_from(&network);
         let observations = self.observations;
         residuals(observations, &network, &mut self.residuals);
@@ -178,7 +178,7 @@ impl<'a> NetworkRefiner<'a> {
     }
 
     /// The normal equations at `network`, undamped, with the weights of `loss`.
-    pub(crate) fn normal_at(&mut self, network: &Network, loss: &Loss) -> Result<&Normal, Cancelled> {
+    pub(crate) fn normal_at(&mut self, network: &Network<D>, loss: &Loss) -> Result<&Normal<D>, Cancelled> {
         residuals(self.observations, network, &mut self.residuals);
         self.normal.linearise(self.observations, network, &self.residuals, loss);
         self.normal.reduce(self.observations, 0.0, &self.monitor)?;
@@ -186,14 +186,14 @@ impl<'a> NetworkRefiner<'a> {
     }
 
     /// Those equations again.
-    pub(crate) fn normal(&self) -> &Normal {
+    pub(crate) fn normal(&self) -> &Normal<D> {
         &self.normal
     }
 }
 
 /// Residuals over their deviations, in the order of the observations, then those of coordinates as
 /// far as there is room for them.
-pub(crate) fn residuals(observations: &Observations, network: &Network, out: &mut [f64]) {
+pub(crate) fn residuals<const D: usize>(observations: &Observations<D>, network: &Network<D>, out: &mut [f64]) {
     let (cells, pins) = out.split_at_mut(observations.len());
     for (o, e) in observations.all().iter().zip(cells) {
         *e = o.residual(network);
@@ -230,8 +230,38 @@ fn mean_size(residuals: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::align::align;
     use crate::loss::SEARCH_NU;
+    use crate::network::tests::random;
+    use crate::pseudoranges::Pseudoranges;
     use crate::simulate::{SimulateOptions, simulate};
+
+    /// Exact data, from places a tenth of the network's size away: the truth is the only network whose
+    /// residuals are all zero near it.
+    fn the_truth_is_found_from_near_it<const D: usize>(receivers: usize, transmitters: usize) {
+        for seed in 0..20 {
+            let truth: Network<D> = random(receivers, transmitters, seed);
+            let measured = Pseudoranges::new(receivers, transmitters, truth.pseudoranges()).unwrap();
+            let observations = Observations::<D>::new(&measured, |_, _| true);
+            let by: Network<D> = random(receivers, transmitters, 1000 + seed);
+            let mut start = truth.clone();
+            let points = start.receivers.iter_mut().chain(&mut start.transmitters);
+            for (p, by) in points.zip(by.receivers.iter().chain(&by.transmitters)) {
+                p.iter_mut().zip(by).for_each(|(x, by)| *x += 0.1 * by);
+            }
+            let options =
+                RefineOptions { scale: Some(1e-3), anneal_from: Some(0.3), steps: 60, tolerance: 1e-12, ..SEARCH };
+            let found = NetworkRefiner::new(&observations, SEARCH_NU).refine(start, &options);
+            let error = align(&found.network.receivers, &truth.receivers, false).unwrap().rms;
+            assert!(found.network.rms(&measured) < 1e-7 && error < 1e-5, "seed {seed}: {error}");
+        }
+    }
+
+    #[test]
+    fn the_truth_is_found_from_near_it_in_plane_and_space() {
+        the_truth_is_found_from_near_it::<2>(8, 10);
+        the_truth_is_found_from_near_it::<3>(10, 12);
+    }
 
     #[test]
     fn a_cancelled_refinement_goes_no_further() {

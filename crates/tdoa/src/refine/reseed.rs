@@ -14,7 +14,11 @@ const GAIN: f64 = 0.01;
 
 /// Locates every transmitter from the receivers, which alone of `network` are used. Transmitters
 /// that cannot be located keep their place; their number is returned.
-pub(crate) fn place_transmitters(observations: &Observations, network: &mut Network, loss: &Loss) -> usize {
+pub(crate) fn place_transmitters<const D: usize>(
+    observations: &Observations<D>,
+    network: &mut Network<D>,
+    loss: &Loss,
+) -> usize {
     let mut sights = Vec::new();
     let mut kept = 0;
     for j in 0..observations.transmitters {
@@ -32,9 +36,9 @@ pub(crate) fn place_transmitters(observations: &Observations, network: &mut Netw
 
 /// Locates every transmitter, then every receiver that is not held, from all other nodes and moves
 /// those whose measurements then fit better. Returns how many moved.
-pub(crate) fn reseed(
-    observations: &Observations,
-    network: &mut Network,
+pub(crate) fn reseed<const D: usize>(
+    observations: &Observations<D>,
+    network: &mut Network<D>,
     loss: &Loss,
     monitor: &Monitor,
 ) -> Result<usize, Cancelled> {
@@ -63,41 +67,51 @@ pub(crate) fn reseed(
 }
 
 /// Places of a transmitter that all others leave it, whatever they cost.
-pub(crate) fn places_of_transmitter(
-    observations: &Observations,
-    network: &Network,
+pub(crate) fn places_of_transmitter<const D: usize>(
+    observations: &Observations<D>,
+    network: &Network<D>,
     j: usize,
     loss: &Loss,
-) -> Vec<Located> {
+) -> Vec<Located<D>> {
     let mut sights = Vec::new();
     sights_of_transmitter(observations, network, j, &mut sights);
     multilateration::transmitters(&sights, loss)
 }
 
 /// Places of a receiver that all others leave it, whatever they cost.
-pub(crate) fn places_of_receiver(
-    observations: &Observations,
-    network: &Network,
+pub(crate) fn places_of_receiver<const D: usize>(
+    observations: &Observations<D>,
+    network: &Network<D>,
     i: usize,
     loss: &Loss,
-) -> Vec<Located> {
+) -> Vec<Located<D>> {
     let mut sights = Vec::new();
     sights_of_receiver(observations, network, i, &mut sights);
     multilateration::receivers(&sights, loss)
 }
 
-fn better(found: Option<Located>, now: f64) -> Option<Located> {
+fn better<const D: usize>(found: Option<Located<D>>, now: f64) -> Option<Located<D>> {
     found.filter(|f| f.cost < now - GAIN)
 }
 
-fn sights_of_transmitter(observations: &Observations, network: &Network, j: usize, sights: &mut Vec<Sight>) {
+fn sights_of_transmitter<const D: usize>(
+    observations: &Observations<D>,
+    network: &Network<D>,
+    j: usize,
+    sights: &mut Vec<Sight<D>>,
+) {
     let sight =
         |o: &Observation| Sight { position: network.receivers[o.receiver], length: o.value, precision: o.precision };
     sights.clear();
     sights.extend(observations.of_transmitter(j).iter().map(sight));
 }
 
-fn sights_of_receiver(observations: &Observations, network: &Network, i: usize, sights: &mut Vec<Sight>) {
+fn sights_of_receiver<const D: usize>(
+    observations: &Observations<D>,
+    network: &Network<D>,
+    i: usize,
+    sights: &mut Vec<Sight<D>>,
+) {
     let sight = |o: &Observation| Sight {
         position: network.transmitters[o.transmitter],
         length: o.value - network.offsets[o.transmitter],

@@ -4,9 +4,10 @@ use faer::prelude::Solve;
 use faer::{Mat, MatMut, Side, linalg::solvers::Llt};
 
 use super::cancel::{Cancelled, apart};
-use super::covariance::{RANK_TOLERANCE, reduced, rigid_motion};
+use super::covariance::{RANK_TOLERANCE, reduced};
 use super::normal::Normal;
 use super::refiner::NetworkRefiner;
+use super::rigid::{Motions, rigid_motion};
 use crate::loss::Loss;
 use crate::network::Network;
 use crate::observations::Observations;
@@ -18,7 +19,7 @@ const MANY: usize = 200;
 /// Equations of all coordinates of the receivers, with the motion of least size where they leave one
 /// open.
 pub(super) enum ReceiverEquations {
-    /// The inverse, 2m x 2m by rows.
+    /// The inverse, Dm x Dm by rows.
     Inverse(Vec<f64>),
     /// The Cholesky factor, rigid motions made to cost something.
     Factor(Llt<f64>),
@@ -26,11 +27,11 @@ pub(super) enum ReceiverEquations {
 
 impl ReceiverEquations {
     /// `None` where the network cannot be linearised; with the normal equations it comes from.
-    pub(super) fn new<T>(
-        observations: &Observations,
-        network: &Network,
+    pub(super) fn new<T, const D: usize>(
+        observations: &Observations<D>,
+        network: &Network<D>,
         monitor: &Monitor,
-        use_normal: impl FnOnce(&Normal) -> T,
+        use_normal: impl FnOnce(&Normal<D>) -> T,
     ) -> Result<Option<(ReceiverEquations, T)>, Cancelled> {
         if observations.receivers >= MANY {
             let mut refiner = NetworkRefiner::new(observations, f64::INFINITY).heeding(monitor);
@@ -62,19 +63,19 @@ impl ReceiverEquations {
 }
 
 /// `None` where the equations leave more open than a rigid motion.
-fn factor(
-    observations: &Observations,
-    network: &Network,
-    normal: &Normal,
+fn factor<const D: usize>(
+    observations: &Observations<D>,
+    network: &Network<D>,
+    normal: &Normal<D>,
     monitor: &Monitor,
 ) -> Result<Option<Llt<f64>>, Cancelled> {
-    let size = 2 * observations.receivers;
+    let size = D * observations.receivers;
     let lower = normal.schur();
     let mut square = Mat::from_fn(size, size, |a, b| lower[a.min(b) * size + a.max(b)]);
     if observations.leave_rigid_motions() {
         let cost = (0..size).map(|k| square[(k, k)]).sum::<f64>() / size as f64;
         let of = rigid_motion(network);
-        let rigid: Vec<[f64; 3]> = (0..size).map(|k| of(k / 2, k % 2)).collect();
+        let rigid: Vec<Motions> = (0..size).map(|k| of(k / D, k % D)).collect();
         for (b, to) in rigid.iter().enumerate() {
             for (a, from) in rigid.iter().enumerate() {
                 square[(a, b)] += cost * from.iter().zip(to).map(|(x, y)| x * y).sum::<f64>();

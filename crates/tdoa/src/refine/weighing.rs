@@ -22,18 +22,18 @@ pub(crate) trait Cost {
 }
 
 /// Refines networks for one set of measurements; holds the buffers.
-pub(crate) struct Weighing<'a> {
-    observations: &'a Observations,
-    normal: Normal,
+pub(crate) struct Weighing<'a, const D: usize = 2> {
+    observations: &'a Observations<D>,
+    normal: Normal<D>,
     residuals: Vec<f64>,
     trial_residuals: Vec<f64>,
-    trial: Network,
+    trial: Network<D>,
     monitor: &'a Monitor,
 }
 
-impl<'a> Weighing<'a> {
+impl<'a, const D: usize> Weighing<'a, D> {
     /// Fails in all it does once the monitor is cancelled.
-    pub(crate) fn new(observations: &'a Observations, monitor: &'a Monitor) -> Self {
+    pub(crate) fn new(observations: &'a Observations<D>, monitor: &'a Monitor) -> Self {
         let count = observations.len() + observations.pins().len();
         Weighing {
             observations,
@@ -49,10 +49,10 @@ impl<'a> Weighing<'a> {
     /// The residuals of the measurements where it ends are left in [`Weighing::residuals`].
     pub(crate) fn descend(
         &mut self,
-        mut network: Network,
+        mut network: Network<D>,
         steps: usize,
         cost: &impl Cost,
-    ) -> Result<Network, Cancelled> {
+    ) -> Result<Network<D>, Cancelled> {
         let observations = self.observations;
         let precision = 1.0 / (cost.deviation() * cost.deviation());
         let total = |residuals: &[f64]| -> f64 {
@@ -95,10 +95,10 @@ impl<'a> Weighing<'a> {
     /// `None` where it is not determined.
     pub(crate) fn step(
         &mut self,
-        network: &Network,
+        network: &Network<D>,
         weights: &[f64],
         targets: &[f64],
-    ) -> Result<Option<Network>, Cancelled> {
+    ) -> Result<Option<Network<D>>, Cancelled> {
         let observations = self.observations;
         residuals(observations, network, &mut self.residuals);
         let terms = |k: usize, e: f64| (weights[k], e - targets[k]);
@@ -112,7 +112,7 @@ impl<'a> Weighing<'a> {
 
     /// Logarithm of the determinant of the normal equations at a network, in units of the deviation;
     /// `None` where they are singular.
-    pub(crate) fn log_determinant(&mut self, network: &Network, cost: &impl Cost) -> Result<Option<f64>, Cancelled> {
+    pub(crate) fn log_determinant(&mut self, network: &Network<D>, cost: &impl Cost) -> Result<Option<f64>, Cancelled> {
         let observations = self.observations;
         residuals(observations, network, &mut self.residuals);
         let square = cost.deviation() * cost.deviation();
