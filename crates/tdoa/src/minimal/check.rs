@@ -19,6 +19,12 @@ pub(super) fn check(measured: &Pseudoranges) -> Result<(), MinimalError> {
     if constraints > MAX_MEASUREMENTS {
         return Err(MinimalError::TooLarge { configuration: measured.configuration(), limit: MAX_MEASUREMENTS });
     }
+    check_nodes(measured)
+}
+
+/// Refuses missing measurements, and nodes that coincide.
+pub(super) fn check_nodes(measured: &Pseudoranges) -> Result<(), MinimalError> {
+    let (m, n) = (measured.receivers(), measured.transmitters());
     for i in 0..m {
         for j in 0..n {
             if measured.get(i, j).is_none() {

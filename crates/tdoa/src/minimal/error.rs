@@ -71,4 +71,19 @@ pub enum MinimalError {
         /// Name of the other.
         second: String,
     },
+    /// Another size than a solver in space takes.
+    #[error("{configuration}: five transmitters and nine receivers or more are needed; select such nodes")]
+    NotFiveTransmitters {
+        /// Size, such as `8r/5s`.
+        configuration: String,
+    },
+    /// Nodes in special position, so that linear equations do not determine them.
+    #[error(
+        "linear equations in space do not determine the nodes, as far as the measurements tell: all receivers or four of the transmitters \
+         lie in one plane, or the receivers are the corners of a box or on another surface of degree two; select other nodes"
+    )]
+    SpecialPosition,
+    /// Measurements that are not those of a network.
+    #[error("no network in space explains the measurements; look for wrong ones, or select other nodes")]
+    NoNetwork,
 }

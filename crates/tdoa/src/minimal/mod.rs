@@ -11,6 +11,8 @@
 //! | 5r/6s, and more of both | offsets by rank | 5 |
 //! | 7r/4s, and more of both | offsets by rank, linear | 0 |
 //!
+//! These are the sizes in the plane. [`spatial`] has a solver in space.
+//!
 //! A solver that is used again keeps 0.2 to 0.5 MB of start solutions and workspace. A solve then
 //! allocates only its result, a few kilobytes (`cargo run --release -p tdoa --example memory`).
 //! Exceptions are the few networks with roots whose Jacobians are singular as far as doubles can
@@ -34,6 +36,7 @@ mod recharted;
 mod scratch;
 mod solution;
 mod solver;
+pub mod spatial;
 pub(crate) mod subset;
 mod warning;
 
