@@ -39,8 +39,6 @@ use upgrade::positions;
 const FEWEST: usize = 9;
 /// Most receivers: the adjustment takes memory for the square of the number of unknowns.
 const MOST: usize = 1_000;
-/// Singular values below this share of the largest are zero: what they belong to is not determined.
-const DEGENERATE: f64 = 1e-12;
 /// Steps of the adjustment: quadratic convergence from the linear solution takes a few.
 const ADJUSTMENT: RefineOptions = RefineOptions {
     scale: Some(1.0),

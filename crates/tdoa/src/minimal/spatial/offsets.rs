@@ -1,8 +1,10 @@
 //! Offsets of five transmitters from nine receivers or more.
 
-use super::DEGENERATE;
 use faer::Mat;
 use std::array::from_fn;
+
+/// Singular values below this share of the largest are zero: what they belong to is not determined.
+pub(super) const DEGENERATE: f64 = 1e-12;
 
 /// The offsets of measurements about zero and of size one, a row for each receiver; `None` where
 /// they are not determined.

@@ -1,6 +1,6 @@
 //! Positions from squared distances of known offsets.
 
-use super::DEGENERATE;
+use super::offsets::DEGENERATE;
 use super::polynomial::{Polynomial, common_root};
 use crate::minimal::error::MinimalError;
 use faer::{Mat, Side};
