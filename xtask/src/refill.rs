@@ -12,6 +12,9 @@ use num_complex::Complex64;
 /// by.
 const PLACES: u64 = 24;
 const TARGETS: u64 = 12;
+/// The numbers of their random streams. Others would give other fibres.
+const FIRST_TARGET: u64 = 1000;
+const FIRST_PLACE: u64 = 2000;
 
 /// Trace tests on different lines until one confirms the fibre.
 const TRACES: u64 = 4;
@@ -55,12 +58,16 @@ fn place(system: &Interpreter, fibre: &Fibre, seed: u64) -> Result<Fibre> {
     let m = fibre.parameters.len();
     let targets: Vec<Vec<Complex64>> = (0..TARGETS)
         .map(|k| {
-            Random::new(seed, 1000 + k).normals(m).iter().map(|z| Complex64::new(z.re * 2f64.sqrt(), 0.0)).collect()
+            Random::new(seed, FIRST_TARGET + k)
+                .normals(m)
+                .iter()
+                .map(|z| Complex64::new(z.re * 2f64.sqrt(), 0.0))
+                .collect()
         })
         .collect();
     let mut best: Option<(usize, Fibre)> = None;
     for k in 0..PLACES {
-        let point = Random::new(seed, 2000 + k).normals(m);
+        let point = Random::new(seed, FIRST_PLACE + k).normals(m);
         let Some(moved) = move_fibre(system, fibre, &point, &FibreOptions::default()) else { continue };
         let mut steps = 0;
         for target in &targets {

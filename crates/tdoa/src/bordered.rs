@@ -94,7 +94,7 @@ impl<const D: usize> Bordered<D> {
         self.corner += factor * last * end;
     }
 
-    /// Of a triangular matrix.
+    /// The determinant of a triangular matrix.
     pub(crate) fn determinant(&self) -> f64 {
         (0..D).map(|k| self.rows[k][k]).product::<f64>() * self.corner
     }

@@ -30,12 +30,15 @@ impl RanksRun<'_> {
     /// fails or has other supports.
     pub fn mixed_volume(&self, unknowns: usize, supports: &[Vec<Vec<i32>>]) -> Result<Option<MixedVolume>, MixedError> {
         let Some(ranks) = self.ranks else { return self.run.mixed_volume(unknowns, supports).map(Some) };
-        self.run.unrecorded("a mixed volume")?;
         let monitor = self.run.monitor();
         self.run.install(|| {
             let fingerprint = job(unknowns, supports).fingerprint();
             if ranks.is_lead() {
-                return Lead::at(ranks, &fingerprint, |lead| led(unknowns, supports, monitor, lead).map(Some));
+                return Lead::at(ranks, &fingerprint, |lead| {
+                    // Here, so that the other ranks hear of it.
+                    self.run.unrecorded("a mixed volume")?;
+                    led(unknowns, supports, monitor, lead).map(Some)
+                });
             }
             Worker::at(ranks, &fingerprint, |worker| serve(unknowns, supports, worker).map(|()| None))
         })

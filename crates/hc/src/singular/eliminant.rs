@@ -9,7 +9,7 @@ use num_traits::{One, Zero};
 use poly::{Exact, Polynomial};
 use std::ops::Sub;
 
-/// Coefficients of which resultants are computed without rounding.
+/// Coefficients whose resultants are computed without rounding.
 pub(crate) trait Domain: Clone + Zero + One + Sub<Output = Self> + From<u32> {
     /// The resultant of two polynomials by ascending powers, their last coefficients not zero.
     fn resultant(a: Vec<Self>, b: Vec<Self>) -> Self;
@@ -22,7 +22,7 @@ type Term<T> = ([usize; 2], T);
 pub(crate) struct Eliminant<T> {
     /// The coefficients times [`factor`](Eliminant::factor), by ascending powers, the last not zero.
     pub(crate) coefficients: Vec<T>,
-    /// The factorial of the product of the degrees: by it the coefficients can be divided.
+    /// The factorial of the product of the degrees; the coefficients are divided by it.
     pub(crate) factor: T,
 }
 

@@ -30,7 +30,7 @@ use std::borrow::Cow;
 /// Clusters of solutions are looked at within clusters this often.
 const NESTED: usize = 3;
 
-/// Where a solve takes context.
+/// Where a solve takes place.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct SolveContext<'a> {
     /// Where it is recorded.

@@ -19,7 +19,7 @@ pub struct EquationTolerances {
     /// Scales with a larger exponent (base 2) are not used.
     pub most_exponent: f64,
     /// In a toric homotopy, terms outside the binomials start at `exp` of minus this number, about
-    /// 1e-13, of their size: the precision of doubles.
+    /// 1e-13, of their size.
     pub faded: f64,
 }
 
@@ -40,7 +40,7 @@ pub const EQUATIONS: EquationTolerances = EquationTolerances {
 #[non_exhaustive]
 pub struct LocalTolerances {
     /// Logarithms of the tolerances at which ranks are read off near a solution, the strictest
-    /// first; each gives a hypothesis, which deflation then proves or refutes.
+    /// first; each gives a hypothesis, which deflation then tests.
     pub ranks: [f64; 7],
     /// Orders of series with such tolerances that are tried on sets that are not reduced.
     pub sheet_ranks: [(usize, f64); 4],
@@ -76,8 +76,7 @@ pub struct LocalTolerances {
     /// Coordinates below this share of the largest, or of one, may be zero in truth where nothing
     /// is known of their error: ends at multiple solutions are not accurate.
     pub small: f64,
-    /// Numbers whose logarithm is at most this share of the digits count as zero at a refined point:
-    /// half the digits are wrong at most.
+    /// Numbers whose logarithm is at most this share of the digits count as zero at a refined point.
     pub zero: f64,
     /// Numbers from this share of the digits on count as nonzero; what lies between is not clear.
     pub clear: f64,

@@ -38,7 +38,8 @@ pub(crate) struct Covariance<const D: usize = 2> {
     pub(crate) receivers: Vec<[[f64; D]; D]>,
     /// The covariance of all coordinates of the receivers, Dm x Dm by rows.
     pub(crate) joint: Vec<f64>,
-    /// Per transmitter, position and offset; `None` where its own measurements do not determine it.
+    /// Per transmitter, position (all rows, above the diagonal too) and offset; `None` where its own
+    /// measurements do not determine it.
     pub(crate) transmitters: Vec<Option<Bordered<D>>>,
     /// Receivers that could move without a change of the measurements (to first order) beyond a
     /// rigid motion.
