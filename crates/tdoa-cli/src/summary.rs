@@ -20,14 +20,14 @@ pub(crate) struct Context {
 }
 
 /// A calibration in words and two tables.
-pub(crate) fn text(calibration: &Calibration, context: &Context) -> String {
+pub(crate) fn text<const D: usize>(calibration: &Calibration<D>, context: &Context) -> String {
     let mut text = heading(calibration, Some(context.time));
     for warning in &calibration.warnings {
         text += &format!("\nwarning: {warning}\n");
     }
     let extent = calibration.extent().unwrap_or(0.0);
     let digits = decimals(extent);
-    text += "\nlengths in metres\nreceiver                 x            y      std x      std y\n";
+    text += &format!("\nlengths in metres\n{:<12} {}\n", "receiver", axes::<D>());
     let rows = calibration.receiver_names.iter().zip(&calibration.receivers).zip(&calibration.receiver_std);
     for ((name, position), std) in rows.take(LISTED) {
         text += &row(name, *position, *std, digits);
@@ -35,7 +35,7 @@ pub(crate) fn text(calibration: &Calibration, context: &Context) -> String {
     }
     text += &more(calibration.receivers.len());
     let unit = context.unit.map_or_else(String::new, |unit| format!(" {:>14}", format!("offset {}", unit.name)));
-    text += &format!("\ntransmitter              x            y      std x      std y       offset{unit}\n");
+    text += &format!("\n{:<12} {} {:>12}{unit}\n", "transmitter", axes::<D>(), "offset");
     let rows = calibration.transmitter_names.iter().zip(&calibration.transmitters);
     let rows = rows.zip(&calibration.transmitter_std).zip(&calibration.offsets);
     for (((name, position), std), offset) in rows.take(LISTED) {
@@ -60,7 +60,7 @@ pub(crate) fn text(calibration: &Calibration, context: &Context) -> String {
     text
 }
 
-fn outliers(calibration: &Calibration) -> Vec<String> {
+fn outliers<const D: usize>(calibration: &Calibration<D>) -> Vec<String> {
     let name = |(i, j, residual): (usize, usize, f64)| {
         let (receiver, transmitter) = (&calibration.receiver_names[i], &calibration.transmitter_names[j]);
         let sign = if residual > 0.0 { "+" } else { "" };
@@ -69,19 +69,20 @@ fn outliers(calibration: &Calibration) -> Vec<String> {
     calibration.residuals.outliers().map(name).collect()
 }
 
+/// The headings of a position and its standard deviations.
+fn axes<const D: usize>() -> String {
+    let names = ["x", "y", "z"];
+    let positions = names.iter().take(D).map(|name| format!("{name:>13}"));
+    positions.chain(names.iter().take(D).map(|name| format!(" {:>10}", format!("std {name}")))).collect()
+}
+
 /// A node, without the end of its line.
-fn row(name: &str, position: Option<[f64; 2]>, std: Option<[f64; 2]>, digits: usize) -> String {
-    let Some([x, y]) = position.map(|position| position.map(|value| coordinate(value, digits))) else {
-        return format!("{name:<12} not determined");
-    };
-    let std = std.map_or_else(
-        || format!("{:>10} {:>10}", "-", "-"),
-        |std| {
-            let [sx, sy] = std.map(|value| number(value, 2));
-            format!("{sx:>10} {sy:>10}")
-        },
-    );
-    format!("{name:<12} {x:>13}{y:>13} {std}")
+fn row<const D: usize>(name: &str, position: Option<[f64; D]>, std: Option<[f64; D]>, digits: usize) -> String {
+    let Some(position) = position else { return format!("{name:<12} not determined") };
+    let position = position.map(|value| format!("{:>13}", coordinate(value, digits)));
+    let std: Vec<String> = (0..D).map(|k| std.map_or_else(|| "-".to_string(), |std| number(std[k], 2))).collect();
+    let std: String = std.iter().map(|std| format!(" {std:>10}")).collect();
+    format!("{name:<12} {}{std}", position.concat())
 }
 
 fn more(count: usize) -> String {

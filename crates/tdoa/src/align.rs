@@ -7,7 +7,7 @@ use serde::Serialize;
 use std::array::from_fn;
 
 use crate::network::Network;
-use crate::points::{centroid, distance, dot, minus};
+use crate::points::{centroid, distance, dot, minus, off};
 
 /// The map p -> scale * rotation * p + translation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -22,6 +22,17 @@ pub struct Transform<const D: usize = 2> {
 }
 
 impl<const D: usize> Transform<D> {
+    /// The map that leaves every point where it is.
+    pub const IDENTITY: Self = {
+        let mut rotation = [[0.0; D]; D];
+        let mut k = 0;
+        while k < D {
+            rotation[k][k] = 1.0;
+            k += 1;
+        }
+        Transform { rotation, scale: 1.0, translation: [0.0; D] }
+    };
+
     /// The image of a point.
     pub fn apply(&self, p: [f64; D]) -> [f64; D] {
         let q = self.turn(p);
@@ -122,21 +133,75 @@ fn turn_by_svd<const D: usize>(pairs: impl Iterator<Item = ([f64; D], [f64; D])>
     Some((from_fn(|k| from_fn(|l| turn[(k, l)])), (0..D).map(|k| svd.S()[k]).sum()))
 }
 
-/// The map that puts the point `origin` at (0, 0), `x_axis` on the positive x axis and `up` above
-/// it. `None` if the three do not fix a frame (coincident or collinear points).
-pub fn frame(origin: [f64; 2], x_axis: [f64; 2], up: [f64; 2]) -> Option<Transform> {
+/// The map that puts the point `origin` at zero, the first of `axes` on the positive x axis, the
+/// second above it (y > 0) and, in space, the third above the plane of these (z > 0). `None` if the
+/// points do not fix a frame (coincident, in one line, in space in one plane).
+pub fn frame<const D: usize>(origin: [f64; D], axes: [[f64; D]; D]) -> Option<Transform<D>> {
+    let rotation = if D == 2 { frame_in_plane(origin, axes)? } else { orthonormal(origin, axes)? };
+    let mut transform = Transform { rotation, scale: 1.0, translation: [0.0; D] };
+    transform.translation = transform.apply(origin).map(|x| -x);
+    Some(transform)
+}
+
+/// A height above an axis, as a share of the first axis, that is rounding.
+const FLAT: f64 = 1e-9;
+
+fn frame_in_plane<const D: usize>(origin: [f64; D], axes: [[f64; D]; D]) -> Option<[[f64; D]; D]> {
+    let (x_axis, up) = (axes[0], axes[1]);
     let length = distance(origin, x_axis);
     let (cos, sin) = ((x_axis[0] - origin[0]) / length, (x_axis[1] - origin[1]) / length);
     let height = cos * (up[1] - origin[1]) - sin * (up[0] - origin[0]);
-    if !(length > 0.0 && height.abs() > 1e-9 * length) {
+    if !(length > 0.0 && height.abs() > FLAT * length) {
         return None;
     }
     let flip = height.signum();
     let rotation = [[cos, sin], [-sin * flip, cos * flip]];
-    let mut transform = Transform { rotation, scale: 1.0, translation: [0.0; 2] };
-    let image = transform.apply(origin);
-    transform.translation = [-image[0], -image[1]];
-    Some(transform)
+    Some(from_fn(|k| from_fn(|l| rotation[k][l])))
+}
+
+/// The axes to these points, each made orthogonal to those before it (Gram and Schmidt).
+fn orthonormal<const D: usize>(origin: [f64; D], axes: [[f64; D]; D]) -> Option<[[f64; D]; D]> {
+    let mut rotation = [[0.0; D]; D];
+    let length = distance(origin, axes[0]);
+    for k in 0..D {
+        let (axis, height) = off(minus(axes[k], origin), &rotation[..k]);
+        if !(height > 0.0 && (k == 0 || height > FLAT * length)) {
+            return None;
+        }
+        rotation[k] = axis;
+    }
+    Some(rotation)
+}
+
+/// The first of these points that fix a frame with the first of all as its origin: axes as [`frame`]
+/// takes them. `None` if they lie in one line, in space in one plane.
+pub(crate) fn first_axes<const D: usize>(points: &[[f64; D]]) -> Option<[[f64; D]; D]> {
+    let (axes, found) = axes(points);
+    (found == D).then_some(axes)
+}
+
+/// How many dimensions the differences of these points have.
+pub(crate) fn spanned<const D: usize>(points: &[[f64; D]]) -> usize {
+    axes(points).1
+}
+
+/// The first points of a list that are off the point, line or plane of those before, seen from the
+/// first of all, and how many there are.
+fn axes<const D: usize>(points: &[[f64; D]]) -> ([[f64; D]; D], usize) {
+    let (mut axes, mut basis) = ([[0.0; D]; D], [[0.0; D]; D]);
+    let (mut found, mut length) = (0, 0.0);
+    for &point in points {
+        let (axis, height) = off(minus(point, points[0]), &basis[..found]);
+        if height > FLAT * length {
+            length = if found == 0 { height } else { length };
+            (axes[found], basis[found]) = (point, axis);
+            found += 1;
+            if found == D {
+                break;
+            }
+        }
+    }
+    (axes, found)
 }
 
 #[cfg(test)]
@@ -233,8 +298,17 @@ mod tests {
         }
 
         #[test]
+        fn the_plane_has_the_frame_of_any_dimension(points in points()) {
+            let (origin, axes) = (points[0], [points[1], points[2]]);
+            let (plane, general) = (frame_in_plane(origin, axes), orthonormal(origin, axes));
+            prop_assert!(plane.is_some() == general.is_some());
+            let pairs = plane.iter().flatten().flatten().zip(general.iter().flatten().flatten());
+            prop_assert!(pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) < 1e-6);
+        }
+
+        #[test]
         fn frame_places_its_three_points(points in points()) {
-            if let Some(map) = frame(points[0], points[1], points[2]) {
+            if let Some(map) = frame(points[0], [points[1], points[2]]) {
                 let [a, b, c] = [0, 1, 2].map(|k| map.apply(points[k]));
                 prop_assert!(a[0].abs() + a[1].abs() < 1e-9);
                 prop_assert!(b[0] > 0.0 && b[1].abs() < 1e-9);
@@ -268,8 +342,17 @@ mod tests {
 
     #[test]
     fn no_frame_from_collinear_points() {
-        assert!(frame([0.0, 0.0], [1.0, 1.0], [2.0, 2.0]).is_none());
-        assert!(frame([0.0, 0.0], [0.0, 0.0], [2.0, 2.0]).is_none());
+        assert!(frame([0.0, 0.0], [[1.0, 1.0], [2.0, 2.0]]).is_none());
+        assert!(frame([0.0, 0.0], [[0.0, 0.0], [2.0, 2.0]]).is_none());
+        let [origin, x, on_it, up, above] =
+            [[1.0, 1.0, 1.0], [3.0, 1.0, 1.0], [6.0, 1.0, 1.0], [2.0, 1.0, 4.0], [0.0, 3.0, 0.0]];
+        assert!(frame(origin, [x, on_it, up]).is_none() && frame(origin, [x, up, [4.0, 1.0, 7.0]]).is_none());
+        let axes = first_axes(&[origin, origin, x, on_it, up, above]).unwrap();
+        assert_eq!(axes, [x, up, above]);
+        assert_eq!([spanned(&[origin; 3]), spanned(&[origin, x, on_it]), spanned(&[x, up, on_it])], [0, 1, 2]);
+        // Distances to the axes: 3 above x, 2 off the plane.
+        let map = frame(origin, axes).unwrap();
+        assert_eq!(axes.map(|p| map.apply(p)), [[2.0, 0.0, 0.0], [1.0, 3.0, 0.0], [-1.0, -1.0, 2.0]]);
         assert!(align::<2>(&[], &[], true).is_none() && align::<3>(&[], &[], true).is_none());
     }
 }

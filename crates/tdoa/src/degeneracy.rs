@@ -6,29 +6,48 @@ use thiserror::Error;
 use crate::duplicates::{constant_difference, copied_transmitters, printed};
 use crate::pseudoranges::Pseudoranges;
 
-/// The smallest configurations that determine a network: the minimal ones 6r/3s and 4r/5s, and
-/// 5r/4s, which has one constraint to spare. A matrix is solvable if it holds one of them.
-pub(crate) const SMALLEST: &str = "6 receivers and 3 transmitters, 5 and 4, or 4 and 5";
+/// A transmitter needs this many measurements to be kept: as many as its position and offset have
+/// numbers, and one to fix which of two solutions is meant.
+pub(crate) const fn least_per_transmitter<const D: usize>() -> usize {
+    D + 2
+}
 
-/// A node needs this many measurements to be kept: a transmitter three for its position and offset
-/// and one to fix which of two solutions is meant, a receiver two and one.
-pub(crate) const LEAST_PER_TRANSMITTER: usize = 4;
-const LEAST_PER_RECEIVER: usize = 3;
+/// The same of a receiver, whose position alone is unknown.
+const fn least_per_receiver<const D: usize>() -> usize {
+    D + 1
+}
 
 /// Receivers at most: the normal equations are dense in their coordinates.
 const MAX_RECEIVERS: usize = 2_000;
 
-/// Number of equations minus number of unknowns of m receivers and n transmitters, all measured:
-/// mn - 2m - 3n + 3.
-pub(crate) fn excess(receivers: usize, transmitters: usize) -> i64 {
-    let (m, n) = (receivers as i64, transmitters as i64);
-    m * n - 2 * m - 3 * n + 3
+/// Number of equations minus number of unknowns of m receivers and n transmitters, all measured: mn -
+/// dm - (d + 1)n + d(d + 1)/2, of which the last are the motions of a network as a whole.
+pub(crate) fn excess<const D: usize>(receivers: usize, transmitters: usize) -> i64 {
+    let (m, n, d) = (receivers as i64, transmitters as i64, D as i64);
+    m * n - d * m - (d + 1) * n + d * (d + 1) / 2
 }
 
-/// Whether a complete matrix of this size has finitely many solutions: at least four receivers,
-/// three transmitters, and no more unknowns than equations.
-pub(crate) fn is_solvable(receivers: usize, transmitters: usize) -> bool {
-    receivers >= 4 && transmitters >= 3 && excess(receivers, transmitters) >= 0
+/// Whether a complete matrix of this size has finitely many solutions: receivers that determine a
+/// transmitter with one to spare, transmitters that determine a receiver likewise, and no more
+/// unknowns than equations.
+pub(crate) fn is_solvable<const D: usize>(receivers: usize, transmitters: usize) -> bool {
+    receivers >= D + 2 && transmitters > D && excess::<D>(receivers, transmitters) >= 0
+}
+
+/// The smallest solvable sizes, fewest transmitters first, in words. A matrix is solvable if it holds
+/// one of them.
+fn smallest<const D: usize>() -> String {
+    let most = (D + 1) * (D + 2);
+    let sizes = (D + 1..=most).flat_map(|n| (D + 2..=most).map(move |m| (m, n)));
+    let is_smallest =
+        |&(m, n): &(usize, usize)| is_solvable::<D>(m, n) && !is_solvable::<D>(m - 1, n) && !is_solvable::<D>(m, n - 1);
+    let all: Vec<(usize, usize)> = sizes.filter(is_smallest).collect();
+    let name = |(k, (m, n)): (usize, &(usize, usize))| match k {
+        0 => format!("{m} receivers and {n} transmitters"),
+        _ if k + 1 == all.len() => format!("or {m} and {n}"),
+        _ => format!("{m} and {n}"),
+    };
+    all.iter().enumerate().map(name).collect::<Vec<_>>().join(", ")
 }
 
 /// Why measurements cannot determine a network.
@@ -48,17 +67,22 @@ pub enum Degeneracy {
     },
     /// Too few nodes.
     #[error(
-        "{} and {} cannot be calibrated{left}: the smallest solvable sizes are {SMALLEST}; add {remedy}",
+        "{} and {} cannot be calibrated{left}: the smallest solvable sizes {} are {smallest}; add {remedy}",
         counted(*.receivers, "receiver"),
-        counted(*.transmitters, "transmitter")
+        counted(*.transmitters, "transmitter"),
+        space(*.dimensions)
     )]
     TooSmall {
+        /// 2 in the plane, 3 in space.
+        dimensions: usize,
         /// Number of usable receivers.
         receivers: usize,
         /// Number of usable transmitters.
         transmitters: usize,
         /// Which nodes were left out, or empty.
         left: String,
+        /// The smallest solvable sizes.
+        smallest: String,
         /// The remedy.
         remedy: String,
     },
@@ -127,7 +151,7 @@ pub(crate) struct Usable {
 ///
 /// # Errors
 /// When nothing solvable is left, or receivers coincide.
-pub(crate) fn usable(measured: &Pseudoranges) -> Result<Usable, Degeneracy> {
+pub(crate) fn usable<const D: usize>(measured: &Pseudoranges) -> Result<Usable, Degeneracy> {
     if measured.observed() == 0 {
         return Err(Degeneracy::NothingMeasured(measured.receivers() * measured.transmitters()));
     }
@@ -135,17 +159,19 @@ pub(crate) fn usable(measured: &Pseudoranges) -> Result<Usable, Degeneracy> {
     if m > MAX_RECEIVERS {
         return Err(Degeneracy::TooManyReceivers { receivers: m });
     }
-    if !is_solvable(m, n) {
-        return Err(Degeneracy::TooSmall { receivers: m, transmitters: n, left: String::new(), remedy: remedy(m, n) });
+    if !is_solvable::<D>(m, n) {
+        return Err(too_small::<D>(m, n, String::new()));
     }
     let mut kept = Kept { measured, receivers: vec![true; m], transmitters: vec![true; n] };
     let mut warnings = Vec::new();
-    kept.drop_sparse();
+    kept.drop_sparse(least_per_transmitter::<D>(), least_per_receiver::<D>());
     let dropped = kept.names(false);
     if !dropped.is_empty() {
         warnings.push(format!(
-            "left out for too few measurements: {dropped}; a transmitter needs at least {LEAST_PER_TRANSMITTER} receivers \
-             that hear it, a receiver {LEAST_PER_RECEIVER} transmitters"
+            "left out for too few measurements: {dropped}; a transmitter needs at least {} receivers \
+             that hear it, a receiver {} transmitters",
+            least_per_transmitter::<D>(),
+            least_per_receiver::<D>()
         ));
     }
     if let Some(rest) = kept.largest_component() {
@@ -173,12 +199,11 @@ pub(crate) fn usable(measured: &Pseudoranges) -> Result<Usable, Degeneracy> {
         });
     }
     let distinct = transmitters.len() - repeated_transmitters(measured, &receivers, &transmitters);
-    if !is_solvable(receivers.len(), distinct) {
-        let remedy = remedy(receivers.len(), distinct);
-        return Err(Degeneracy::TooSmall { receivers: receivers.len(), transmitters: distinct, left, remedy });
+    if !is_solvable::<D>(receivers.len(), distinct) {
+        return Err(too_small::<D>(receivers.len(), distinct, left));
     }
     let measurements = measured.select(&receivers, &transmitters).observed();
-    let unknowns = 2 * receivers.len() + 3 * transmitters.len() - 3;
+    let unknowns = D * receivers.len() + (D + 1) * transmitters.len() - D * (D + 1) / 2;
     if measurements < unknowns {
         return Err(Degeneracy::TooFew {
             receivers: receivers.len(),
@@ -192,10 +217,21 @@ pub(crate) fn usable(measured: &Pseudoranges) -> Result<Usable, Degeneracy> {
     Ok(Usable { receivers, transmitters, warnings })
 }
 
+/// Where networks of so many dimensions lie, in words that follow a noun.
+pub(crate) fn space(dimensions: usize) -> &'static str {
+    if dimensions == 2 { "in the plane" } else { "in space" }
+}
+
+fn too_small<const D: usize>(receivers: usize, transmitters: usize, left: String) -> Degeneracy {
+    let remedy = remedy::<D>(receivers, transmitters);
+    Degeneracy::TooSmall { dimensions: D, receivers, transmitters, left, smallest: smallest::<D>(), remedy }
+}
+
 /// The fewest nodes to add, receivers or transmitters, in words.
-fn remedy(receivers: usize, transmitters: usize) -> String {
-    let more_receivers = (0..=6).find(|k| is_solvable(receivers + k, transmitters));
-    let more_transmitters = (0..=6).find(|k| is_solvable(receivers, transmitters + k));
+fn remedy<const D: usize>(receivers: usize, transmitters: usize) -> String {
+    let most = D * (D + 1);
+    let more_receivers = (0..=most).find(|k| is_solvable::<D>(receivers + k, transmitters));
+    let more_transmitters = (0..=most).find(|k| is_solvable::<D>(receivers, transmitters + k));
     let count = |k: usize, what: &str| format!("{k} {what}{}", if k == 1 { "" } else { "s" });
     match (more_receivers, more_transmitters) {
         (Some(a), Some(b)) => format!("{} or {}", count(a, "receiver"), count(b, "transmitter")),
@@ -216,18 +252,19 @@ impl Kept<'_> {
         self.receivers[i] && self.transmitters[j] && self.measured.get(i, j).is_some()
     }
 
-    fn drop_sparse(&mut self) {
+    /// Leaves out nodes with fewer measurements than these.
+    fn drop_sparse(&mut self, per_transmitter: usize, per_receiver: usize) {
         let (m, n) = (self.receivers.len(), self.transmitters.len());
         loop {
             let mut dropped = false;
             for j in 0..n {
-                if self.transmitters[j] && (0..m).filter(|&i| self.links(i, j)).count() < LEAST_PER_TRANSMITTER {
+                if self.transmitters[j] && (0..m).filter(|&i| self.links(i, j)).count() < per_transmitter {
                     self.transmitters[j] = false;
                     dropped = true;
                 }
             }
             for i in 0..m {
-                if self.receivers[i] && (0..n).filter(|&j| self.links(i, j)).count() < LEAST_PER_RECEIVER {
+                if self.receivers[i] && (0..n).filter(|&j| self.links(i, j)).count() < per_receiver {
                     self.receivers[i] = false;
                     dropped = true;
                 }
@@ -363,21 +400,33 @@ mod tests {
     fn smallest_sizes_are_the_named_ones() {
         // From the excess formula: (m-3)(n-2) - 3.
         for (m, n) in [(6, 3), (5, 4), (4, 5), (100, 3), (4, 100)] {
-            assert!(is_solvable(m, n), "{m}r/{n}s");
-            assert_eq!(excess(m, n), (m as i64 - 3) * (n as i64 - 2) - 3);
+            assert!(is_solvable::<2>(m, n), "{m}r/{n}s");
+            assert_eq!(excess::<2>(m, n), (m as i64 - 3) * (n as i64 - 2) - 3);
         }
         for (m, n) in [(5, 3), (4, 4), (3, 100), (100, 2), (2, 2), (0, 0)] {
-            assert!(!is_solvable(m, n), "{m}r/{n}s");
+            assert!(!is_solvable::<2>(m, n), "{m}r/{n}s");
         }
     }
 
     #[test]
+    fn smallest_sizes_in_space() {
+        // (m - 4)(n - 3) >= 6.
+        assert_eq!(smallest::<2>(), "6 receivers and 3 transmitters, 5 and 4, or 4 and 5");
+        assert_eq!(smallest::<3>(), "10 receivers and 4 transmitters, 7 and 5, 6 and 6, or 5 and 9");
+        for (m, n) in [(9, 4), (6, 5), (5, 8), (4, 100), (100, 3)] {
+            let error = usable::<3>(&measured(m, n)).unwrap_err().to_string();
+            assert!(error.contains("in space are 10 receivers and 4 transmitters"), "{error}");
+        }
+        assert!(usable::<3>(&measured(5, 9)).is_ok());
+    }
+
+    #[test]
     fn too_small_says_what_to_add() {
-        let error = usable(&measured(5, 3)).unwrap_err();
+        let error = usable::<2>(&measured(5, 3)).unwrap_err();
         assert!(error.to_string().contains("add 1 receiver or 1 transmitter"), "{error}");
-        let error = usable(&measured(4, 2)).unwrap_err();
+        let error = usable::<2>(&measured(4, 2)).unwrap_err();
         assert!(error.to_string().contains("6 receivers and 3 transmitters"), "{error}");
-        assert!(usable(&measured(6, 3)).is_ok());
+        assert!(usable::<2>(&measured(6, 3)).is_ok());
     }
 
     #[test]
@@ -387,18 +436,18 @@ mod tests {
         for i in 0..4 {
             values[i * 8 + 5] = f64::NAN;
         }
-        let found = usable(&Pseudoranges::new(7, 8, values).unwrap()).unwrap();
+        let found = usable::<2>(&Pseudoranges::new(7, 8, values).unwrap()).unwrap();
         assert_eq!(found.transmitters, [0, 1, 2, 3, 4, 6, 7]);
         assert!(found.warnings[0].contains("s6"), "{:?}", found.warnings);
         let nothing = Pseudoranges::new(7, 8, vec![f64::NAN; 56]).unwrap();
-        assert_eq!(usable(&nothing), Err(Degeneracy::NothingMeasured(56)));
+        assert_eq!(usable::<2>(&nothing), Err(Degeneracy::NothingMeasured(56)));
     }
 
     #[test]
     fn parts_that_share_no_node_are_told_apart() {
         let full = measured(12, 12);
         let block = |k: usize| (k / 12 < 7) == (k % 12 < 7);
-        let found = usable(&full.filter(|i, j, _| block(12 * i + j))).unwrap();
+        let found = usable::<2>(&full.filter(|i, j, _| block(12 * i + j))).unwrap();
         assert_eq!((found.receivers.len(), found.transmitters.len()), (7, 7));
         let without = "without receivers r8, r9, r10, r11, r12, and transmitters s8, s9, s10, s11, s12;";
         assert!(found.warnings[0].contains(without), "{:?}", found.warnings);
@@ -411,7 +460,7 @@ mod tests {
         for j in 0..6 {
             values[4 * 6 + j] = values[6 + j] + 0.25;
         }
-        let error = usable(&Pseudoranges::new(7, 6, values).unwrap()).unwrap_err();
+        let error = usable::<2>(&Pseudoranges::new(7, 6, values).unwrap()).unwrap_err();
         assert!(error.to_string().contains("receivers r2 and r5"), "{error}");
     }
 
@@ -423,11 +472,11 @@ mod tests {
             values[i * 5 + 1] = values[i * 5] + 3.0;
             values[i * 5 + 2] = values[i * 5] - 1.0;
         }
-        let copied = usable(&Pseudoranges::new(5, 5, values.clone()).unwrap()).unwrap_err();
+        let copied = usable::<2>(&Pseudoranges::new(5, 5, values.clone()).unwrap()).unwrap_err();
         assert!(copied.to_string().contains("one is a copy of the other"), "{copied}");
         // With gaps they are no copies, but as good as.
         (values[1], values[7]) = (f64::NAN, f64::NAN);
-        let error = usable(&Pseudoranges::new(5, 5, values).unwrap()).unwrap_err();
+        let error = usable::<2>(&Pseudoranges::new(5, 5, values).unwrap()).unwrap_err();
         assert!(matches!(error, Degeneracy::TooSmall { transmitters: 3, .. }), "{error}");
     }
 }

@@ -1,9 +1,9 @@
-//! Calibration of sensor networks in the plane from arrival times alone.
+//! Calibration of sensor networks in the plane and in space from arrival times alone.
 //!
 //! Synchronised receivers hear transmitters whose send times are unknown. With all times multiplied
 //! by the propagation speed, receiver i measures the pseudorange f_ij = |r_i - s_j| + o_j of
 //! transmitter j. This crate finds the positions r_i and s_j and the offsets o_j, up to a rotation,
-//! reflection and translation of the plane.
+//! reflection and translation.
 //!
 //! Where to look first:
 //!
@@ -16,8 +16,9 @@
 //! * [`summary`], [`picture`] and [`html`]: the result as text, picture and report.
 //! * [`simulate()`] and [`accuracy`]: networks with a known truth, how near an estimate comes to
 //!   it, and how near any estimate can come.
-//! * [`Network`], [`align`](mod@align), [`multilateration`] and [`accuracy`] are for networks in space
-//!   too, `Network<3>`; all else is for those in the plane.
+//! * In space: `CalibrateOptions::<3>::new()` in place of `CalibrateOptions::default()` makes
+//!   [`calibrate()`] look for a network in space, a `Calibration<3>`. Pictures and exact solutions are
+//!   of the plane, but for [`minimal::spatial`].
 //!
 //! All features are on by default: `csv` ([`read`], [`node_table`]), `mat` (compressed MATLAB
 //! files), `pictures` ([`picture`], [`html`]) and `threads` (all threads of rayon; results are the
@@ -54,6 +55,7 @@ pub mod calibrate;
 mod cells;
 pub mod degeneracy;
 mod duplicates;
+mod flatness;
 mod generated;
 #[cfg(feature = "pictures")]
 pub mod html;
@@ -67,7 +69,7 @@ pub mod node_table;
 mod observations;
 #[cfg(feature = "pictures")]
 pub mod picture;
-mod plane;
+
 mod points;
 pub mod pseudoranges;
 pub mod quantity;

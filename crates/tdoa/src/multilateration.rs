@@ -215,7 +215,7 @@ fn polish<const D: usize>(sights: &[Sight<D>], start: Located<D>, with_offset: b
 }
 
 /// Solves symmetric positive definite equations; `None` if they are singular.
-fn solve<const D: usize>(h: &Bordered<D>, (g, last): Placed<D>) -> Option<Placed<D>> {
+pub(crate) fn solve<const D: usize>(h: &Bordered<D>, (g, last): Placed<D>) -> Option<Placed<D>> {
     if D != 2 {
         return Some(h.cholesky(1.0, 0.0)?.solve((g, last)));
     }
@@ -226,8 +226,20 @@ fn solve<const D: usize>(h: &Bordered<D>, (g, last): Placed<D>) -> Option<Placed
     Some((from_fn(|k| step[k]), step[2]))
 }
 
+/// Solves symmetric positive definite equations, of which the upper half counts; `None` if they are
+/// singular.
+pub(crate) fn solve_symmetric<const D: usize>(h: &[[f64; D]; D], g: [f64; D]) -> Option<[f64; D]> {
+    if D != 2 {
+        let rows = from_fn(|a| from_fn(|b| if a < b { h[a][b] } else { h[b][a] }));
+        let matrix = Bordered { rows, border: [0.0; D], corner: 1.0 };
+        return Some(matrix.cholesky(1.0, 0.0)?.solve((g, 0.0)).0);
+    }
+    let solved = solve2([h[0][0], h[0][1], h[1][1]], [g[0], g[1]])?;
+    Some(from_fn(|k| solved[k]))
+}
+
 /// Solves the symmetric system with the matrix xx, xy, yy; `None` if it is singular.
-pub(crate) fn solve2(h: [f64; 3], g: [f64; 2]) -> Option<[f64; 2]> {
+fn solve2(h: [f64; 3], g: [f64; 2]) -> Option<[f64; 2]> {
     let det = h[0] * h[2] - h[1] * h[1];
     if det > 1e-12 * h[0] * h[2] {
         Some([(h[2] * g[0] - h[1] * g[1]) / det, (h[0] * g[1] - h[1] * g[0]) / det])
@@ -237,7 +249,7 @@ pub(crate) fn solve2(h: [f64; 3], g: [f64; 2]) -> Option<[f64; 2]> {
 }
 
 /// Solves a symmetric positive definite 3x3 system; `None` if it is singular.
-pub(crate) fn solve3(h: &[[f64; 3]; 3], g: &[f64; 3]) -> Option<[f64; 3]> {
+fn solve3(h: &[[f64; 3]; 3], g: &[f64; 3]) -> Option<[f64; 3]> {
     let cross =
         |a: &[f64; 3], b: &[f64; 3]| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
     let cofactors = [cross(&h[1], &h[2]), cross(&h[2], &h[0]), cross(&h[0], &h[1])];

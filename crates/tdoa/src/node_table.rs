@@ -3,31 +3,36 @@
 use crate::calibrate::Calibration;
 
 /// The table `kind,name,x,y,std_x,std_y,cov_xy,offset,std_offset,measurements,outliers`, with
-/// receivers first, in metres, empty where nothing could be determined. [`crate::read::read_nodes`]
-/// reads its receivers back.
-pub fn node_table(calibration: &Calibration) -> String {
+/// receivers first, in metres, empty where nothing could be determined. In space it has `z`, `std_z`,
+/// `cov_xz` and `cov_yz` too. [`crate::read::read_nodes`] reads its receivers back.
+pub fn node_table<const D: usize>(calibration: &Calibration<D>) -> String {
     let mut table = Table(csv::Writer::from_writer(Vec::new()));
-    table.row(
-        ["kind", "name", "x", "y", "std_x", "std_y", "cov_xy", "offset", "std_offset", "measurements", "outliers"]
-            .map(str::to_string),
-    );
+    let axes = &["x", "y", "z"][..D];
+    let pairs = || (0..D).flat_map(|a| (a + 1..D).map(move |b| (a, b)));
+    let mut heading = vec!["kind".to_string(), "name".to_string()];
+    heading.extend(axes.iter().map(|axis| axis.to_string()));
+    heading.extend(axes.iter().map(|axis| format!("std_{axis}")));
+    heading.extend(pairs().map(|(a, b)| format!("cov_{}{}", axes[a], axes[b])));
+    heading.extend(["offset", "std_offset", "measurements", "outliers"].map(str::to_string));
+    table.row(heading);
+    let place = |position: Option<[f64; D]>, std: Option<[f64; D]>, covariance: Option<[[f64; D]; D]>| {
+        let numbers = (0..D).map(|k| position.map(|p| p[k])).chain((0..D).map(|k| std.map(|std| std[k])));
+        numbers.chain(pairs().map(|(a, b)| covariance.map(|c| c[a][b]))).map(text).collect::<Vec<_>>()
+    };
     for (i, name) in calibration.receiver_names.iter().enumerate() {
-        let [x, y] = both(calibration.receivers[i]);
-        let [std_x, std_y] = both(calibration.receiver_std[i]);
-        let covariance = text(calibration.receiver_covariance[i].map(|c| c[0][1]));
-        let [count, outliers] = calibration.counts_of_receiver(i).map(|count| count.to_string());
-        let kind = "receiver".to_string();
-        let none = String::new;
-        table.row([kind, name.clone(), x, y, std_x, std_y, covariance, none(), none(), count, outliers]);
+        let mut row = vec!["receiver".to_string(), name.clone()];
+        row.extend(place(calibration.receivers[i], calibration.receiver_std[i], calibration.receiver_covariance[i]));
+        row.extend([String::new(), String::new()]);
+        row.extend(calibration.counts_of_receiver(i).map(|count| count.to_string()));
+        table.row(row);
     }
     for (j, name) in calibration.transmitter_names.iter().enumerate() {
-        let [x, y] = both(calibration.transmitters[j]);
-        let [std_x, std_y] = both(calibration.transmitter_std[j]);
-        let covariance = text(calibration.transmitter_covariance[j].map(|c| c[0][1]));
-        let (offset, std_offset) = (text(calibration.offsets[j]), text(calibration.offset_std[j]));
-        let [count, outliers] = calibration.counts_of_transmitter(j).map(|count| count.to_string());
-        let kind = "transmitter".to_string();
-        table.row([kind, name.clone(), x, y, std_x, std_y, covariance, offset, std_offset, count, outliers]);
+        let mut row = vec!["transmitter".to_string(), name.clone()];
+        let (position, std) = (calibration.transmitters[j], calibration.transmitter_std[j]);
+        row.extend(place(position, std, calibration.transmitter_covariance[j]));
+        row.extend([text(calibration.offsets[j]), text(calibration.offset_std[j])]);
+        row.extend(calibration.counts_of_transmitter(j).map(|count| count.to_string()));
+        table.row(row);
     }
     table.finish()
 }
@@ -35,7 +40,7 @@ pub fn node_table(calibration: &Calibration) -> String {
 struct Table(csv::Writer<Vec<u8>>);
 
 impl Table {
-    fn row(&mut self, cells: [String; 11]) {
+    fn row(&mut self, cells: Vec<String>) {
         // Writing to memory does not fail, and all rows are of one length.
         let _ = self.0.write_record(cells);
     }
@@ -49,10 +54,6 @@ impl Table {
 
 fn text(value: Option<f64>) -> String {
     value.map(|value| value.to_string()).unwrap_or_default()
-}
-
-fn both(values: Option<[f64; 2]>) -> [String; 2] {
-    values.map_or_else(|| [String::new(), String::new()], |values| values.map(|value| value.to_string()))
 }
 
 #[cfg(test)]

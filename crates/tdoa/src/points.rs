@@ -18,6 +18,25 @@ pub(crate) fn dot<const D: usize>(a: [f64; D], b: [f64; D]) -> f64 {
     (0..D).map(|k| a[k] * b[k]).sum()
 }
 
+/// The trace of a covariance: the mean square of the distance from where a point is expected.
+pub(crate) fn trace<const D: usize>(covariance: &[[f64; D]; D]) -> f64 {
+    (0..D).map(|k| covariance[k][k]).sum()
+}
+
+/// The direction of the part of a vector that is orthogonal to these orthonormal ones, and the
+/// length of that part.
+pub(crate) fn off<const D: usize>(mut u: [f64; D], basis: &[[f64; D]]) -> ([f64; D], f64) {
+    // Twice is enough (Kahan; Parlett 1980).
+    for _ in 0..2 {
+        for e in basis {
+            let along = dot(u, *e);
+            u = from_fn(|k| u[k] - along * e[k]);
+        }
+    }
+    let size = dot(u, u).sqrt();
+    (u.map(|x| x / size), size)
+}
+
 /// The centroid of some points; the origin if there are none.
 pub(crate) fn centroid<'a, const D: usize>(points: impl Iterator<Item = &'a [f64; D]> + Clone) -> [f64; D] {
     let count = points.clone().count().max(1) as f64;

@@ -7,6 +7,8 @@
 //! on the estimates and in a random displacement of the positions. The transmitters are then
 //! located by multilateration.
 
+use std::array::from_fn;
+
 use faer::Mat;
 use faer::Side;
 use rand::RngExt;
@@ -30,7 +32,7 @@ pub(crate) struct Restarts {
 }
 
 impl Restarts {
-    pub(crate) fn new(observations: &Observations) -> Self {
+    pub(crate) fn new<const D: usize>(observations: &Observations<D>) -> Self {
         let m = observations.receivers;
         let mut differences = vec![Vec::new(); m * m];
         for j in 0..observations.transmitters {
@@ -67,7 +69,12 @@ impl Restarts {
 
     /// One start; `spread` says how far it may be from the plain guess (0: the guess itself, 1:
     /// anywhere).
-    pub(crate) fn draw(&self, observations: &Observations, spread: f64, rng: &mut Pcg64Mcg) -> Network {
+    pub(crate) fn draw<const D: usize>(
+        &self,
+        observations: &Observations<D>,
+        spread: f64,
+        rng: &mut Pcg64Mcg,
+    ) -> Network<D> {
         let mut normal = || -> f64 { rng.sample(StandardNormal) };
         let m = self.receivers;
         let mut squares = Mat::<f64>::zeros(m, m);
@@ -78,21 +85,21 @@ impl Restarts {
                 squares[(k, i)] = d * d;
             }
         }
-        let mut receivers = scaled(&squares).unwrap_or_else(|| vec![[0.0; 2]; m]);
+        let mut receivers = scaled(&squares).unwrap_or_else(|| vec![[0.0; D]; m]);
         let jitter = 0.3 * spread * self.diameter;
         for r in &mut receivers {
-            *r = [r[0] + jitter * normal(), r[1] + jitter * normal()];
+            *r = r.map(|x| x + jitter * normal());
         }
         let n = observations.transmitters;
-        let transmitters = (0..n).map(|_| [self.diameter * normal() / 2.0, self.diameter * normal() / 2.0]).collect();
+        let transmitters = (0..n).map(|_| from_fn(|_| self.diameter * normal() / 2.0)).collect();
         let mut network = Network { receivers, transmitters, offsets: vec![0.0; n] };
         place_transmitters(observations, &mut network, &Loss { nu: SEARCH_NU, scale: 0.1 * self.diameter });
         network
     }
 }
 
-/// Classical multidimensional scaling: positions in the plane for squared distances.
-fn scaled(squares: &Mat<f64>) -> Option<Vec<[f64; 2]>> {
+/// Classical multidimensional scaling: positions for squared distances.
+fn scaled<const D: usize>(squares: &Mat<f64>) -> Option<Vec<[f64; D]>> {
     let m = squares.nrows();
     let mean_of = |i: usize| (0..m).map(|k| squares[(i, k)]).sum::<f64>() / m as f64;
     let means: Vec<f64> = (0..m).map(mean_of).collect();
@@ -104,5 +111,5 @@ fn scaled(squares: &Mat<f64>) -> Option<Vec<[f64; 2]>> {
         let k = m - back;
         eigen.S()[k].max(0.0).sqrt() * eigen.U()[(i, k)]
     };
-    if m < 2 { None } else { Some((0..m).map(|i| [axis(1, i), axis(2, i)]).collect()) }
+    if m < D { None } else { Some((0..m).map(|i| from_fn(|k| axis(k + 1, i))).collect()) }
 }

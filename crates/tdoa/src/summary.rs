@@ -11,7 +11,7 @@ use crate::quantity::{length, number};
 const SMALL: f64 = 0.2;
 
 /// What was found, one line for each item, and how long it took, if that is known.
-pub fn heading(calibration: &Calibration, time: Option<Duration>) -> String {
+pub fn heading<const D: usize>(calibration: &Calibration<D>, time: Option<Duration>) -> String {
     let (measured, outliers) = (calibration.residuals.len(), calibration.residuals.outliers().count());
     let mut text = format!(
         "{}: {}, {outliers} of them outliers, {}\n",
@@ -50,7 +50,7 @@ pub fn heading(calibration: &Calibration, time: Option<Duration>) -> String {
 }
 
 /// The [`heading`] and the warnings.
-pub fn summary(calibration: &Calibration) -> String {
+pub fn summary<const D: usize>(calibration: &Calibration<D>) -> String {
     let warnings = calibration.warnings.iter().map(|warning| format!("warning: {warning}\n"));
     heading(calibration, None) + &warnings.collect::<String>()
 }
@@ -86,7 +86,7 @@ pub fn networks(solution: &MinimalSolution, time: Option<Duration>) -> String {
 }
 
 /// The standard deviation of the measurements, and where it comes from.
-pub fn deviation(calibration: &Calibration) -> String {
+pub fn deviation<const D: usize>(calibration: &Calibration<D>) -> String {
     let sigma = calibration.sigma;
     match (calibration.sigma_estimated, calibration.redundancy) {
         (true, 0) => "as many as unknowns: their standard deviation is not known".to_string(),
@@ -98,7 +98,7 @@ pub fn deviation(calibration: &Calibration) -> String {
 }
 
 /// How many starts agree.
-pub(crate) fn agreement(calibration: &Calibration) -> String {
+pub(crate) fn agreement<const D: usize>(calibration: &Calibration<D>) -> String {
     let (agreeing, starts) = (calibration.agreeing, calibration.starts);
     if calibration.laid_together {
         format!("{agreeing} of {} of neighbours {}", counted(starts, "small network"), one_or(agreeing, "fits", "fit"))
@@ -108,7 +108,7 @@ pub(crate) fn agreement(calibration: &Calibration) -> String {
 }
 
 /// Whether the network is the only one, for receivers and transmitters.
-pub(crate) fn uniqueness(calibration: &Calibration) -> &'static str {
+pub(crate) fn uniqueness<const D: usize>(calibration: &Calibration<D>) -> &'static str {
     match (calibration.unique, calibration.unique_receivers, calibration.unique_transmitters) {
         (true, ..) => "unique: no other places of receivers or transmitters were found that fit as well",
         (_, true, false) => "the receivers are unique; SOME TRANSMITTERS MAY LIE ELSEWHERE, see the warnings",
@@ -130,7 +130,7 @@ pub(crate) fn uniqueness(calibration: &Calibration) -> &'static str {
 
 /// A warning about a network so small that its measurements may be times, if nobody has said that
 /// they are lengths.
-pub fn doubt_of_units(calibration: &Calibration) -> Option<String> {
+pub fn doubt_of_units<const D: usize>(calibration: &Calibration<D>) -> Option<String> {
     let extent = calibration.extent().filter(|&extent| extent < SMALL)?;
     Some(format!(
         "the network is {} across; if the measurements are times and not metres, give the propagation speed (343 m/s for sound in air: \

@@ -5,14 +5,22 @@ use super::known::{Anchors, SpeedEstimate};
 use super::receiver_errors::ReceiverError;
 use super::residuals::{Residual, Residuals};
 use super::truth::Truth;
-use crate::align::{Transform, align};
-use crate::points::distance;
+use crate::align::{Transform, align, spanned};
+use crate::points::{distance, minus};
 use serde::{Deserialize, Serialize};
+use std::array::from_fn;
 use std::borrow::Cow;
 
 /// A calibrated network. Lengths are in metres; `None` marks what could not be determined.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Calibration {
+#[serde(bound(
+    serialize = "[f64; D]: Serialize, [[f64; D]; D]: Serialize",
+    deserialize = "[f64; D]: Deserialize<'de>, [[f64; D]; D]: Deserialize<'de>"
+))]
+pub struct Calibration<const D: usize = 2> {
+    /// Numbers of a position: 2 in the plane, 3 in space.
+    #[serde(default = "plane")]
+    pub dimensions: usize,
     /// Size of the matrix, such as `6r/46s`.
     pub configuration: String,
     /// Names of the receivers.
@@ -21,11 +29,11 @@ pub struct Calibration {
     pub transmitter_names: Vec<String>,
     /// Positions of the receivers. A receiver most of whose measurements are outliers also has
     /// `None`, if the remaining measurements may agree by chance. Unless another frame is
-    /// requested, the first receiver is the origin, the second lies on the positive x axis and the
-    /// third above it.
-    pub receivers: Vec<Option<[f64; 2]>>,
+    /// requested, the first receiver is the origin, the second lies on the positive x axis, the
+    /// third above it and, in space, the fourth above the plane of these.
+    pub receivers: Vec<Option<[f64; D]>>,
     /// Positions of the transmitters.
-    pub transmitters: Vec<Option<[f64; 2]>>,
+    pub transmitters: Vec<Option<[f64; D]>>,
     /// Offsets of the transmitters.
     pub offsets: Vec<Option<f64>>,
     /// The residuals of the measurements, and which measurements agree with the network.
@@ -47,13 +55,13 @@ pub struct Calibration {
     /// to estimate `sigma`.
     pub ellipse_radius: Option<f64>,
     /// Standard deviations of the receivers' coordinates in the gauge.
-    pub receiver_std: Vec<Option<[f64; 2]>>,
+    pub receiver_std: Vec<Option<[f64; D]>>,
     /// Covariances of the receivers in the gauge.
-    pub receiver_covariance: Vec<Option<[[f64; 2]; 2]>>,
+    pub receiver_covariance: Vec<Option<[[f64; D]; D]>>,
     /// Standard deviations of the transmitters' coordinates in the gauge.
-    pub transmitter_std: Vec<Option<[f64; 2]>>,
+    pub transmitter_std: Vec<Option<[f64; D]>>,
     /// Covariances of the transmitters in the gauge.
-    pub transmitter_covariance: Vec<Option<[[f64; 2]; 2]>>,
+    pub transmitter_covariance: Vec<Option<[[f64; D]; D]>>,
     /// Standard deviations of the offsets.
     pub offset_std: Vec<Option<f64>>,
     /// Which receivers were held at known positions.
@@ -75,8 +83,11 @@ pub struct Calibration {
     /// Whether the transmitters are unique; one in ten of them may lie elsewhere.
     pub unique_transmitters: bool,
     /// Other networks that explain the measurements about as well, best first.
-    pub alternatives: Vec<Alternative>,
-    /// Whether the measurements fit a network in the plane.
+    pub alternatives: Vec<Alternative<D>>,
+    /// Whether the measurements fit a network of these dimensions.
+    #[serde(default = "agree")]
+    pub fits: bool,
+    /// Whether the measurements fit a network in the plane; false in space, where that is not asked.
     pub planar: bool,
     /// Whether the measurements determine at least half of the receivers to a tenth of the
     /// network's size; true if the noise is not known. This is false, for instance, for a table
@@ -105,7 +116,7 @@ pub struct Calibration {
     pub confidence: f64,
     /// Comparison with the truth, if it was given.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub truth: Option<Truth>,
+    pub truth: Option<Truth<D>>,
 }
 
 fn counts<'a>(residuals: impl Iterator<Item = &'a Residual>) -> [usize; 2] {
@@ -117,13 +128,19 @@ fn agree() -> bool {
     true
 }
 
+/// Results that were written before they could be in space.
+fn plane() -> usize {
+    2
+}
+
 /// Another network that explains the measurements.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Alternative {
+#[serde(bound(serialize = "[f64; D]: Serialize", deserialize = "[f64; D]: Deserialize<'de>"))]
+pub struct Alternative<const D: usize = 2> {
     /// Positions of the receivers.
-    pub receivers: Vec<Option<[f64; 2]>>,
+    pub receivers: Vec<Option<[f64; D]>>,
     /// Positions of the transmitters.
-    pub transmitters: Vec<Option<[f64; 2]>>,
+    pub transmitters: Vec<Option<[f64; D]>>,
     /// Offsets of the transmitters.
     pub offsets: Vec<Option<f64>>,
     /// Root mean square of the residuals of this network's own inliers.
@@ -139,11 +156,15 @@ pub struct Alternative {
     pub receiver_error: Option<ReceiverError>,
 }
 
-impl Calibration {
+impl<const D: usize> Calibration<D> {
     /// Why the result cannot be trusted; `None` if it can.
     pub fn distrust(&self) -> Option<&'static str> {
-        if !self.planar {
-            Some("the measurements do not fit a network in the plane")
+        if !self.fits {
+            Some(if D == 2 {
+                "the measurements do not fit a network in the plane"
+            } else {
+                "the measurements do not fit a network in space"
+            })
         } else if !self.determined {
             Some("the measurements do not determine where most receivers are")
         } else if !self.anchors_agree {
@@ -156,7 +177,7 @@ impl Calibration {
     /// The largest distance between two receivers in metres; `None` if fewer than two could be
     /// located.
     pub fn extent(&self) -> Option<f64> {
-        let located: Vec<[f64; 2]> = self.receivers.iter().flatten().copied().collect();
+        let located: Vec<[f64; D]> = self.receivers.iter().flatten().copied().collect();
         let pairs = located.iter().enumerate().flat_map(|(k, a)| located[..k].iter().map(|b| distance(*a, *b)));
         pairs.reduce(f64::max)
     }
@@ -177,8 +198,8 @@ impl Calibration {
     }
 
     /// Moves the whole result into another frame.
-    pub fn transform(&mut self, map: &Transform) {
-        let point = |p: &mut Option<[f64; 2]>| *p = p.map(|p| map.apply(p));
+    pub fn transform(&mut self, map: &Transform<D>) {
+        let point = |p: &mut Option<[f64; D]>| *p = p.map(|p| map.apply(p));
         self.receivers.iter_mut().chain(&mut self.transmitters).for_each(point);
         for other in &mut self.alternatives {
             other.receivers.iter_mut().chain(&mut other.transmitters).for_each(point);
@@ -186,10 +207,10 @@ impl Calibration {
         if let Some(truth) = &mut self.truth {
             truth.points().for_each(point);
         }
-        let turn = |c: &mut Option<[[f64; 2]; 2]>| *c = c.map(|c| map.apply_covariance(c));
+        let turn = |c: &mut Option<[[f64; D]; D]>| *c = c.map(|c| map.apply_covariance(c));
         self.receiver_covariance.iter_mut().chain(&mut self.transmitter_covariance).for_each(turn);
-        let std = |all: &[Option<[[f64; 2]; 2]>]| -> Vec<Option<[f64; 2]>> {
-            all.iter().map(|c| c.map(|c| [c[0][0].max(0.0).sqrt(), c[1][1].max(0.0).sqrt()])).collect()
+        let std = |all: &[Option<[[f64; D]; D]>]| -> Vec<Option<[f64; D]>> {
+            all.iter().map(|c| c.map(|c| from_fn(|k| c[k][k].max(0.0).sqrt()))).collect()
         };
         self.receiver_std = std(&self.receiver_covariance);
         self.transmitter_std = std(&self.transmitter_covariance);
@@ -199,8 +220,7 @@ impl Calibration {
     /// that factor. A comparison with the truth keeps its figures.
     pub fn rescale(&mut self, factor: f64) {
         let positions = self.truth.as_ref().map(|truth| [truth.positions.clone(), truth.transmitter_positions.clone()]);
-        let map = Transform { rotation: [[1.0, 0.0], [0.0, 1.0]], scale: factor, translation: [0.0; 2] };
-        self.transform(&map);
+        self.transform(&Transform { scale: factor, ..Transform::IDENTITY });
         let lengths = self.offsets.iter_mut().chain(&mut self.offset_std);
         self.residuals.0.for_each(|residual| residual.length *= factor);
         for x in lengths.chain(self.alternatives.iter_mut().flat_map(|a| &mut a.offsets)).flatten() {
@@ -216,7 +236,7 @@ impl Calibration {
         self.residual_rms *= factor;
         // The truth stays as large as it is, about the middle of the scaled network.
         if let (Some([positions, transmitters]), Some(truth)) = (positions, &mut self.truth) {
-            let known: Vec<[f64; 2]> = positions.iter().flatten().copied().collect();
+            let known: Vec<[f64; D]> = positions.iter().flatten().copied().collect();
             let pairs = positions.iter().zip(&self.receivers).filter_map(|(p, r)| Some(((*p)?, (*r)?)));
             let (from, to): (Vec<_>, Vec<_>) = pairs.unzip();
             if !known.is_empty()
@@ -231,13 +251,19 @@ impl Calibration {
         }
     }
 
-    /// Moves the result to where the anchors are: held ones are about their centroid so far, a
-    /// single one is anywhere.
-    pub(super) fn put_on(&mut self, anchors: &Anchors, rows: &[usize], held: bool) {
-        let first = anchors.positions.iter().position(Option::is_some).and_then(|a| self.receivers[rows[a]]);
-        let [x, y] = if held { [0.0; 2] } else { first.unwrap_or([0.0; 2]) };
-        let mut map = Transform { rotation: [[1.0, 0.0], [0.0, 1.0]], scale: 1.0, translation: [0.0; 2] };
-        map.translation = [anchors.centre[0] - x, anchors.centre[1] - y];
-        self.transform(&map);
+    /// Moves the result to where the anchors are: held ones are about their centroid so far, those that
+    /// fix no frame are anywhere.
+    pub(super) fn put_on(&mut self, anchors: &Anchors<D>, rows: &[usize], held: bool) {
+        let known = anchors.positions.iter().enumerate().filter_map(|(a, p)| Some((self.receivers[rows[a]]?, (*p)?)));
+        let (found, known): (Vec<_>, Vec<_>) = known.unzip();
+        match align(&found, &known, false) {
+            Some(alignment) if !held && spanned(&known) > 0 => self.transform(&alignment.transform),
+            _ => {
+                let from = if held { [0.0; D] } else { found.first().copied().unwrap_or([0.0; D]) };
+                self.transform(&Transform { translation: minus(anchors.centre, from), ..Transform::IDENTITY });
+                return;
+            }
+        }
+        self.transform(&Transform { translation: anchors.centre, ..Transform::IDENTITY });
     }
 }

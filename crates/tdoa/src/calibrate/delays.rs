@@ -44,37 +44,41 @@ const WIDER: [f64; 5] = [100.0, 30.0, 10.0, 3.0, 1.0];
 const COARSE: usize = 24;
 
 /// What the measurements are and how they are refined.
-pub(super) struct Clearing<'a> {
+pub(super) struct Clearing<'a, const D: usize> {
     /// The measurements as they are.
     pub(super) measured: &'a Pseudoranges,
     pub(super) known: Option<f64>,
     pub(super) floor: f64,
-    pub(super) options: &'a CalibrateOptions,
+    pub(super) options: &'a CalibrateOptions<D>,
     pub(super) monitor: &'a Monitor,
 }
 
 /// Networks for the measurements without the errors of receivers.
-pub(super) struct Cleared {
+pub(super) struct Cleared<const D: usize> {
     /// The measurements without the errors that were taken out.
     pub(super) measured: Pseudoranges,
-    pub(super) observations: Observations,
-    pub(super) ranked: Vec<RefinedNetwork>,
+    pub(super) observations: Observations<D>,
+    pub(super) ranked: Vec<RefinedNetwork<D>>,
     pub(super) deviation: f64,
     /// Errors that were taken out.
-    pub(super) taken: Vec<Fault>,
+    pub(super) taken: Vec<Fault<D>>,
     /// Errors that were found and left in.
-    pub(super) left: Vec<Fault>,
+    pub(super) left: Vec<Fault<D>>,
     /// Networks with an error that is worth a doubt.
-    pub(super) doubted: Vec<Neighbour>,
+    pub(super) doubted: Vec<Neighbour<D>>,
 }
 
 /// Errors with their sizes, the network beside them, and the deviation that is left.
-type Estimated = (Vec<Fault>, RefinedNetwork, f64);
+type Estimated<const D: usize> = (Vec<Fault<D>>, RefinedNetwork<D>, f64);
 
-impl Clearing<'_> {
+impl<const D: usize> Clearing<'_, D> {
     /// Looks for errors of receivers in the best of some networks and takes them out as the options
     /// say.
-    pub(super) fn clear(&self, ranked: Vec<RefinedNetwork>, deviation: f64) -> Result<Cleared, CalibrateError> {
+    pub(super) fn clear(
+        &self,
+        ranked: Vec<RefinedNetwork<D>>,
+        deviation: f64,
+    ) -> Result<Cleared<D>, CalibrateError<D>> {
         let observations = Observations::new(self.measured, |_, _| true);
         let mut now = Cleared {
             measured: self.measured.clone(),
@@ -92,13 +96,13 @@ impl Clearing<'_> {
             }
             ReceiverDelays::Auto => {
                 // Errors that were none once others were taken out.
-                let mut none: Vec<Fault> = Vec::new();
+                let mut none: Vec<Fault<D>> = Vec::new();
                 let mut rivals = Vec::new();
                 for _ in 0..ROUNDS {
                     let shown = self.look(&now)?;
-                    let known = |f: &Fault, t: &Fault| t.receiver == f.receiver && t.kind == f.kind;
-                    let fresh = |f: &&Fault| !now.taken.iter().chain(&none).any(|t| known(f, t));
-                    let fresh: Vec<Fault> = shown.found.iter().filter(fresh).copied().collect();
+                    let known = |f: &Fault<D>, t: &Fault<D>| t.receiver == f.receiver && t.kind == f.kind;
+                    let fresh = |f: &&Fault<D>| !now.taken.iter().chain(&none).any(|t| known(f, t));
+                    let fresh: Vec<Fault<D>> = shown.found.iter().filter(fresh).copied().collect();
                     if fresh.is_empty() {
                         now.doubted = now.doubts(shown.doubted.into_iter().chain(rivals));
                         now.left = shown.found;
@@ -123,7 +127,7 @@ impl Clearing<'_> {
     }
 
     /// Errors that the best network shows.
-    fn look(&self, now: &Cleared) -> Result<Shown, CalibrateError> {
+    fn look(&self, now: &Cleared<D>) -> Result<Shown<D>, CalibrateError<D>> {
         let (best, least) = (&now.ranked[0].network, self.least_size(now.deviation));
         look(&now.observations, best, now.deviation, least, self.options, self.monitor)
     }
@@ -134,7 +138,7 @@ impl Clearing<'_> {
     }
 
     /// The smallest of the errors taken out, in its own deviations, if it is none.
-    fn negligible(&self, now: &Cleared) -> Result<Option<usize>, CalibrateError> {
+    fn negligible(&self, now: &Cleared<D>) -> Result<Option<usize>, CalibrateError<D>> {
         let network = &now.ranked[0].network;
         let kept =
             now.observations.subset(|o| o.residual(network).abs() <= self.options.inlier_threshold * now.deviation);
@@ -153,7 +157,7 @@ impl Clearing<'_> {
     }
 
     /// The networks again with the errors in `taken` estimated for the best of them.
-    fn without(&self, mut now: Cleared) -> Result<Cleared, CalibrateError> {
+    fn without(&self, mut now: Cleared<D>) -> Result<Cleared<D>, CalibrateError<D>> {
         let best = now.ranked[0].clone();
         let (taken, _, _) = self.estimate(best, now.deviation, now.taken)?;
         now.taken = taken;
@@ -167,15 +171,16 @@ impl Clearing<'_> {
 
     /// A delay for every receiver, for each of the best networks on its own; relative to their
     /// mean.
-    fn all(&self, now: Cleared) -> Result<Cleared, CalibrateError> {
+    fn all(&self, now: Cleared<D>) -> Result<Cleared<D>, CalibrateError<D>> {
         let receivers = self.measured.receivers();
         let middle = middle_delays(self.measured);
-        let delay = |receiver: usize, size: f64| Fault {
-            size: [size, 0.0],
-            ..Fault::new(receiver, ReceiverErrorKind::Delay, 0)
+        let delay = |receiver: usize, size: f64| {
+            let mut fault = Fault::new(receiver, ReceiverErrorKind::Delay, 0);
+            fault.size[0] = size;
+            fault
         };
         // The mean of all delays cannot be told from the offsets.
-        let unknown: Vec<Fault> = (1..receivers).map(|i| delay(i, middle[i] - middle[0])).collect();
+        let unknown: Vec<Fault<D>> = (1..receivers).map(|i| delay(i, middle[i] - middle[0])).collect();
         // The search took the first receiver's too: what it says of offsets lacks that.
         let networks = now.ranked.into_iter().map(|mut refined| {
             refined.network.offsets.iter_mut().for_each(|offset| *offset += middle[0]);
@@ -209,7 +214,7 @@ impl Clearing<'_> {
         }
         let measured = self.corrected(&taken);
         let observations = Observations::new(&measured, |_, _| true).beside(unknown.len());
-        let mut ranked: Vec<RefinedNetwork> = all.into_iter().map(|(_, refined, _)| refined).collect();
+        let mut ranked: Vec<RefinedNetwork<D>> = all.into_iter().map(|(_, refined, _)| refined).collect();
         for refined in &mut ranked {
             for offset in refined.network.offsets.iter_mut() {
                 *offset += mean;
@@ -220,7 +225,11 @@ impl Clearing<'_> {
 
     /// Sizes of errors and a network brought near their best fit, with the deviation that is left:
     /// the loss is as wide as the residuals, which are those of wrong sizes at first.
-    fn approach(&self, mut best: RefinedNetwork, mut faults: Vec<Fault>) -> Result<Estimated, CalibrateError> {
+    fn approach(
+        &self,
+        mut best: RefinedNetwork<D>,
+        mut faults: Vec<Fault<D>>,
+    ) -> Result<Estimated<D>, CalibrateError<D>> {
         let count = linear(&faults).count();
         let least = self.known.unwrap_or(self.floor);
         let mut deviation = least;
@@ -242,13 +251,13 @@ impl Clearing<'_> {
 
     /// The same by least squares, at first over measurements that were given up too: a network may
     /// have bent itself to a wrong delay. What it was, where that costs less.
-    fn relaxed(&self, near: Estimated) -> Result<Estimated, CalibrateError> {
+    fn relaxed(&self, near: Estimated<D>) -> Result<Estimated<D>, CalibrateError<D>> {
         let deviation = near.2;
-        let cost = |(faults, refined, _): &Estimated| {
+        let cost = |(faults, refined, _): &Estimated<D>| {
             let observations = Observations::new(&self.corrected(faults), |_, _| true);
             truncated_cost(&observations, &refined.network, deviation)
         };
-        let gives_up = |(faults, refined, _): &Estimated| {
+        let gives_up = |(faults, refined, _): &Estimated<D>| {
             let reach = self.options.inlier_threshold * deviation;
             let observations = Observations::<2>::new(&self.corrected(faults), |_, _| true);
             observations.all().iter().any(|o| o.residual(&refined.network).abs() > reach)
@@ -266,7 +275,7 @@ impl Clearing<'_> {
 
     /// Least squares over the inliers of so many deviations one after the other; `None` where the
     /// errors are not determined.
-    fn narrowed(&self, from: Estimated, factors: &[f64]) -> Result<Option<Estimated>, CalibrateError> {
+    fn narrowed(&self, from: Estimated<D>, factors: &[f64]) -> Result<Option<Estimated<D>>, CalibrateError<D>> {
         let (mut faults, mut refined, deviation) = from;
         let count = linear(&faults).count();
         for factor in factors {
@@ -289,7 +298,7 @@ impl Clearing<'_> {
     }
 
     /// Whether a network has more inliers than unknowns.
-    fn is_left_over(&self, (faults, refined, deviation): &Estimated) -> bool {
+    fn is_left_over(&self, (faults, refined, deviation): &Estimated<D>) -> bool {
         let observations = Observations::<2>::new(&self.corrected(faults), |_, _| true).beside(linear(faults).count());
         let reach = self.options.inlier_threshold * deviation;
         let inliers = observations.all().iter().filter(|o| o.residual(&refined.network).abs() <= reach).count();
@@ -298,7 +307,7 @@ impl Clearing<'_> {
 
     /// Sorts networks, each with its errors, by the truncated cost with the smallest deviation that
     /// one of them leaves: with deviations of their own the one that fits worst would look best.
-    fn rank_by_cost(&self, all: &mut [Estimated]) {
+    fn rank_by_cost(&self, all: &mut [Estimated<D>]) {
         let least = all.iter().map(|(.., deviation)| *deviation).fold(f64::INFINITY, f64::min);
         let deviation = self.known.unwrap_or(least).max(self.floor);
         for (faults, refined, _) in all.iter_mut() {
@@ -312,10 +321,10 @@ impl Clearing<'_> {
     /// and the robust refinement of the network at these sizes, in turns.
     fn estimate(
         &self,
-        mut best: RefinedNetwork,
+        mut best: RefinedNetwork<D>,
         mut deviation: f64,
-        mut faults: Vec<Fault>,
-    ) -> Result<Estimated, CalibrateError> {
+        mut faults: Vec<Fault<D>>,
+    ) -> Result<Estimated<D>, CalibrateError<D>> {
         let count = linear(&faults).count();
         for step in 0..STEPS {
             check(self.monitor)?;
@@ -345,11 +354,11 @@ impl Clearing<'_> {
     /// `None` if it is not determined.
     fn step(
         &self,
-        observations: &Observations,
-        network: &Network,
+        observations: &Observations<D>,
+        network: &Network<D>,
         wide: f64,
-        faults: &[Fault],
-    ) -> Result<Option<Vec<f64>>, CalibrateError> {
+        faults: &[Fault<D>],
+    ) -> Result<Option<Vec<f64>>, CalibrateError<D>> {
         let kept = observations.subset(|o| o.residual(network).abs() <= self.options.inlier_threshold * wide);
         let Some(projection) = Projection::new(&kept, network, self.monitor)? else { return Ok(None) };
         let residuals: Vec<f64> = kept.all().iter().map(|o| o.residual(network)).collect();
@@ -361,25 +370,26 @@ impl Clearing<'_> {
         Ok(Some(steps).filter(|steps| steps.iter().all(|x| x.is_finite())))
     }
 
-    fn corrected(&self, faults: &[Fault]) -> Pseudoranges {
+    fn corrected(&self, faults: &[Fault<D>]) -> Pseudoranges {
         without_errors(self.measured, faults)
     }
 }
 
-impl Cleared {
+impl<const D: usize> Cleared<D> {
     /// Errors that are worth a doubt, as neighbours of the best network.
-    pub(super) fn doubts(&self, doubted: impl IntoIterator<Item = Refit>) -> Vec<Neighbour> {
-        let is_new = |f: &Refit| !self.taken.iter().any(|t| t.receiver == f.fault.receiver && t.kind == f.fault.kind);
-        let of = |f: Refit| Neighbour::new(&f.network, -f.lead, Reason::Error(f.fault), &self.ranked[0].network);
+    pub(super) fn doubts(&self, doubted: impl IntoIterator<Item = Refit<D>>) -> Vec<Neighbour<D>> {
+        let is_new =
+            |f: &Refit<D>| !self.taken.iter().any(|t| t.receiver == f.fault.receiver && t.kind == f.fault.kind);
+        let of = |f: Refit<D>| Neighbour::new(&f.network, -f.lead, Reason::Error(f.fault), &self.ranked[0].network);
         doubted.into_iter().filter(is_new).filter_map(of).collect()
     }
 }
 
 /// The measurements without these errors: the shorter part of a receiver that was moved is missing.
-pub(super) fn without_errors(measured: &Pseudoranges, faults: &[Fault]) -> Pseudoranges {
+pub(super) fn without_errors<const D: usize>(measured: &Pseudoranges, faults: &[Fault<D>]) -> Pseudoranges {
     let n = measured.transmitters();
     let mut kept = measured.clone();
-    let mut shifts: Vec<Vec<&Fault>> = vec![Vec::new(); measured.receivers()];
+    let mut shifts: Vec<Vec<&Fault<D>>> = vec![Vec::new(); measured.receivers()];
     for fault in faults {
         if fault.kind == ReceiverErrorKind::Move {
             let (before, after): (Vec<usize>, Vec<usize>) =
@@ -394,12 +404,12 @@ pub(super) fn without_errors(measured: &Pseudoranges, faults: &[Fault]) -> Pseud
 }
 
 /// Errors that are unknowns beside the network; of a move measurements are left out instead.
-fn linear(faults: &[Fault]) -> impl Iterator<Item = &Fault> {
+fn linear<const D: usize>(faults: &[Fault<D>]) -> impl Iterator<Item = &Fault<D>> {
     faults.iter().filter(|fault| fault.kind != ReceiverErrorKind::Move)
 }
 
 /// Changes the sizes of the errors that have one by these steps; the largest step.
-fn moved(faults: &mut [Fault], steps: Vec<f64>) -> f64 {
+fn moved<const D: usize>(faults: &mut [Fault<D>], steps: Vec<f64>) -> f64 {
     let mut largest = 0.0f64;
     for (fault, step) in linear_mut(faults).zip(steps) {
         fault.size[0] += step;
@@ -408,20 +418,20 @@ fn moved(faults: &mut [Fault], steps: Vec<f64>) -> f64 {
     largest
 }
 
-fn linear_mut(faults: &mut [Fault]) -> impl Iterator<Item = &mut Fault> {
+fn linear_mut<const D: usize>(faults: &mut [Fault<D>]) -> impl Iterator<Item = &mut Fault<D>> {
     faults.iter_mut().filter(|fault| fault.kind != ReceiverErrorKind::Move)
 }
 
 /// What errors of size 1 add to the residuals, less what motions of the nodes make of it, with
 /// those motions.
-pub(super) fn columns(
-    kept: &Observations,
-    projection: &Projection<'_>,
-    faults: &[Fault],
+pub(super) fn columns<const D: usize>(
+    kept: &Observations<D>,
+    projection: &Projection<'_, D>,
+    faults: &[Fault<D>],
     monitor: &Monitor,
-) -> Result<Vec<(Vec<f64>, Motion)>, Cancelled> {
+) -> Result<Vec<(Vec<f64>, Motion<D>)>, Cancelled> {
     let n = kept.transmitters;
-    let column = |fault: &Fault| -> Vec<f64> {
+    let column = |fault: &Fault<D>| -> Vec<f64> {
         let part = |o: &crate::observations::Observation| {
             if o.receiver == fault.receiver { o.precision * fault.shape(o.transmitter, n) } else { 0.0 }
         };

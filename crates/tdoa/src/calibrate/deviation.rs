@@ -13,7 +13,12 @@ pub(super) fn typical_deviation(measured: &Pseudoranges) -> f64 {
 
 /// Deviation of the residuals that are within `threshold` of it, corrected for the unknowns,
 /// repeated until it stays the same.
-pub(super) fn inlier_deviation(observations: &Observations, network: &Network, first: f64, threshold: f64) -> f64 {
+pub(super) fn inlier_deviation<const D: usize>(
+    observations: &Observations<D>,
+    network: &Network<D>,
+    first: f64,
+    threshold: f64,
+) -> f64 {
     let mut deviation = first;
     for _ in 0..20 {
         let (mut sum, mut count) = (0.0, 0usize);
@@ -40,12 +45,12 @@ pub(super) fn inlier_deviation(observations: &Observations, network: &Network, f
 }
 
 /// Median magnitude of the residuals.
-pub(super) fn median_size(observations: &Observations, network: &Network) -> f64 {
+pub(super) fn median_size<const D: usize>(observations: &Observations<D>, network: &Network<D>) -> f64 {
     median(observations.all().iter().map(|o| o.residual(network).abs()).collect()).unwrap_or(0.0)
 }
 
 /// A guess of the deviation from the middle half of the residuals, corrected for the unknowns.
-pub(super) fn spread_of_residuals(observations: &Observations, network: &Network) -> f64 {
+pub(super) fn spread_of_residuals<const D: usize>(observations: &Observations<D>, network: &Network<D>) -> f64 {
     let (count, unknowns) = (observations.len() as f64, observations.unknowns() as f64);
     // The median magnitude of a normal variable is 0.6745 deviations.
     median_size(observations, network) / 0.6745 * (count / (count - unknowns).max(1.0)).sqrt()

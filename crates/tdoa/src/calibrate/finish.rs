@@ -18,15 +18,15 @@ pub(super) const CAUCHY: f64 = 2.385;
 /// truncated cost. The deviation behind the loss is the given one or that of the inliers of the
 /// best network, in turns with the refinement: the search's own scale is too small where few
 /// measurements are left over and too large where many are outliers.
-pub(super) fn finish(
-    observations: &Observations,
-    mut networks: Vec<RefinedNetwork>,
+pub(super) fn finish<const D: usize>(
+    observations: &Observations<D>,
+    mut networks: Vec<RefinedNetwork<D>>,
     first: f64,
     known: bool,
     floor: f64,
-    options: &CalibrateOptions,
+    options: &CalibrateOptions<D>,
     monitor: &Monitor,
-) -> Result<(Vec<RefinedNetwork>, f64), CalibrateError> {
+) -> Result<(Vec<RefinedNetwork<D>>, f64), CalibrateError<D>> {
     if options.errors == Errors::OneSided {
         return finish_one_sided(observations, networks, first, known.then_some(first), floor, monitor);
     }

@@ -14,19 +14,19 @@ use crate::refine::{RefinedNetwork, covariance};
 use hc::Monitor;
 
 /// What is known when the network has been refined from the measurements alone.
-pub(super) struct Free<'a> {
-    pub(super) observations: Observations,
+pub(super) struct Free<'a, const D: usize> {
+    pub(super) observations: Observations<D>,
     pub(super) centred: &'a Pseudoranges,
     pub(super) known: Option<f64>,
     pub(super) floor: f64,
 }
 
 /// A network after receivers of known position were put in their places.
-pub(super) struct Held {
-    pub(super) observations: Observations,
-    pub(super) ranked: Vec<RefinedNetwork>,
+pub(super) struct Held<const D: usize> {
+    pub(super) observations: Observations<D>,
+    pub(super) ranked: Vec<RefinedNetwork<D>>,
     pub(super) deviation: f64,
-    pub(super) anchors: Option<Anchors>,
+    pub(super) anchors: Option<Anchors<D>>,
     pub(super) speed: Option<SpeedEstimate>,
     pub(super) warnings: Vec<String>,
     /// How far the known positions are from where the measurements put these receivers, root mean
@@ -34,16 +34,16 @@ pub(super) struct Held {
     pub(super) contradiction: Option<f64>,
 }
 
-impl Free<'_> {
+impl<const D: usize> Free<'_, D> {
     /// Estimates the propagation speed, then refines with the anchors held.
     pub(super) fn hold(
         self,
-        mut ranked: Vec<RefinedNetwork>,
+        mut ranked: Vec<RefinedNetwork<D>>,
         deviation: f64,
         usable: &Usable,
-        options: &CalibrateOptions,
+        options: &CalibrateOptions<D>,
         monitor: &Monitor,
-    ) -> Result<Held, CalibrateError> {
+    ) -> Result<Held<D>, CalibrateError<D>> {
         let Free { observations, centred, known, floor } = self;
         let mut anchors = Anchors::new(usable, options)?;
         let mut warnings = Vec::new();
@@ -98,11 +98,11 @@ impl Free<'_> {
             contradiction = Some(misfit[0]);
         }
         if places.leave_mirror() {
-            warnings.push(
-                "the known positions lie in one line, so that the mirror image of the network fits as well; give one \
-                 off the line"
-                    .to_string(),
-            );
+            let what = if D == 2 { "line" } else { "plane" };
+            warnings.push(format!(
+                "the known positions lie in one {what}, so that the mirror image of the network fits as well; give one \
+                 off the {what}"
+            ));
         }
         let observations = observations.holding(&held);
         let observations = observations.pinned(&places.pins(sigma));

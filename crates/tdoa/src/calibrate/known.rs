@@ -5,12 +5,12 @@ use hc::poly::counted;
 use serde::{Deserialize, Serialize};
 
 use super::options::{CalibrateError, CalibrateOptions, KnownDistance, MeasuredPosition};
-use crate::align::{Alignment, align};
+use crate::align::{Alignment, align, spanned};
 use crate::degeneracy::Usable;
+use crate::flatness::flatness;
 use crate::network::Network;
 use crate::observations::Pin;
-use crate::plane::flatness;
-use crate::points::{centroid, distance};
+use crate::points::{centroid, distance, minus, trace};
 use crate::pseudoranges::{MAX_MAGNITUDE, Pseudoranges};
 use crate::refine::RefinedNetwork;
 
@@ -35,18 +35,21 @@ pub struct SpeedEstimate {
 const EXACT: f64 = 1e-6;
 
 /// Known positions among the usable receivers, about their centroid.
-pub(super) struct Anchors {
-    /// Those known in both coordinates, exactly or not.
-    pub(super) positions: Vec<Option<[f64; 2]>>,
-    pub(super) centre: [f64; 2],
+pub(super) struct Anchors<const D: usize> {
+    /// Those known in all coordinates, exactly or not.
+    pub(super) positions: Vec<Option<[f64; D]>>,
+    pub(super) centre: [f64; D],
     /// Which are exact.
     exact: Vec<bool>,
     /// Those that are not, about the centroid.
-    measured: Vec<MeasuredPosition>,
+    measured: Vec<MeasuredPosition<D>>,
 }
 
 /// Checks what is known against the size of the matrix.
-pub(super) fn validate(measured: &Pseudoranges, options: &CalibrateOptions) -> Result<(), CalibrateError> {
+pub(super) fn validate<const D: usize>(
+    measured: &Pseudoranges,
+    options: &CalibrateOptions<D>,
+) -> Result<(), CalibrateError<D>> {
     let m = measured.receivers();
     let bad = |problem: String| Err(CalibrateError::Known(problem));
     if !options.anchors.is_empty() && options.anchors.len() != m {
@@ -82,12 +85,15 @@ pub(super) fn validate(measured: &Pseudoranges, options: &CalibrateOptions) -> R
         }
     }
     if !options.positions.is_empty() {
-        let whole = options.positions.iter().filter_map(|p| Some([p.position[0]?, p.position[1]?]));
-        let whole: Vec<[f64; 2]> = whole.chain(options.anchors.iter().flatten().copied()).collect();
-        if !whole.iter().any(|p| *p != whole[0]) {
-            return bad(
-                "both coordinates of two receivers in different places are needed; single coordinates come beside these".to_string()
-            );
+        let whole = options.positions.iter().filter_map(MeasuredPosition::whole);
+        let whole: Vec<[f64; D]> = whole.chain(options.anchors.iter().flatten().copied()).collect();
+        if !fix_a_frame(&whole) {
+            return bad(if D == 2 {
+                "both coordinates of two receivers in different places are needed; single coordinates come beside these"
+                    .to_string()
+            } else {
+                "all coordinates of three receivers that are not in one line are needed; single coordinates come beside these".to_string()
+            });
         }
     }
     for known in &options.distances {
@@ -113,7 +119,7 @@ pub(super) fn validate(measured: &Pseudoranges, options: &CalibrateOptions) -> R
 }
 
 /// All known distances: the given ones and those between anchors.
-fn distances(options: &CalibrateOptions) -> Vec<KnownDistance> {
+fn distances<const D: usize>(options: &CalibrateOptions<D>) -> Vec<KnownDistance> {
     let mut all = options.distances.clone();
     for (a, p) in options.anchors.iter().enumerate() {
         for (b, q) in options.anchors.iter().enumerate().skip(a + 1) {
@@ -130,12 +136,12 @@ fn distances(options: &CalibrateOptions) -> Vec<KnownDistance> {
 /// The factor that brings found distances closest to known ones, sum d D / sum d^2 for found d and
 /// known D; its deviation from the joint covariance (row-major) of the receivers by its derivative,
 /// -factor d / sum d^2 for each d.
-pub(super) fn speed(
-    network: &Network,
+pub(super) fn speed<const D: usize>(
+    network: &Network<D>,
     usable: &Usable,
     joint: Option<&[f64]>,
-    options: &CalibrateOptions,
-) -> Result<SpeedEstimate, CalibrateError> {
+    options: &CalibrateOptions<D>,
+) -> Result<SpeedEstimate, CalibrateError<D>> {
     let place = |i: usize| usable.receivers.iter().position(|&other| other == i);
     let pairs: Vec<(usize, usize, f64)> = distances(options)
         .iter()
@@ -149,13 +155,13 @@ pub(super) fn speed(
             "the receivers whose distance is known cannot be located; give the distance of others".to_string(),
         ));
     }
-    let mut gradient = vec![0.0; 2 * network.receivers.len()];
+    let mut gradient = vec![0.0; D * network.receivers.len()];
     for &(a, b, _) in &pairs {
-        for k in 0..2 {
+        for k in 0..D {
             // d times the derivative of d by a coordinate is the difference of the coordinates.
             let step = -factor / squares * (network.receivers[a][k] - network.receivers[b][k]);
-            gradient[2 * a + k] += step;
-            gradient[2 * b + k] -= step;
+            gradient[D * a + k] += step;
+            gradient[D * b + k] -= step;
         }
     }
     let size = gradient.len();
@@ -173,23 +179,29 @@ pub(super) fn speed(
     })
 }
 
-impl Anchors {
+/// Whether points leave a network no motion but a mirror image: two places in the plane, three that are
+/// not in one line in space.
+fn fix_a_frame<const D: usize>(points: &[[f64; D]]) -> bool {
+    spanned(points) + 1 >= D
+}
+
+impl<const D: usize> Anchors<D> {
     /// The anchors among the usable receivers; `None` if none are asked for.
-    pub(super) fn new(usable: &Usable, options: &CalibrateOptions) -> Result<Option<Anchors>, CalibrateError> {
+    pub(super) fn new(usable: &Usable, options: &CalibrateOptions<D>) -> Result<Option<Anchors<D>>, CalibrateError<D>> {
         if options.anchors.iter().all(Option::is_none) && options.positions.is_empty() {
             return Ok(None);
         }
         let exact = |i: &usize| options.anchors.get(*i).copied().flatten();
         let place = |i: usize| usable.receivers.iter().position(|&other| other == i);
-        let mut measured: Vec<MeasuredPosition> = (options.positions.iter())
+        let mut measured: Vec<MeasuredPosition<D>> = (options.positions.iter())
             .filter_map(|known| Some(MeasuredPosition { receiver: place(known.receiver)?, ..*known }))
             .collect();
-        let mut positions: Vec<Option<[f64; 2]>> = usable.receivers.iter().map(exact).collect();
+        let mut positions: Vec<Option<[f64; D]>> = usable.receivers.iter().map(exact).collect();
         let mut exact: Vec<bool> = positions.iter().map(Option::is_some).collect();
         for known in &measured {
-            if let [Some(x), Some(y)] = known.position {
-                positions[known.receiver] = Some([x, y]);
-                exact[known.receiver] = known.sigma == [0.0; 2];
+            if let Some(whole) = known.whole() {
+                positions[known.receiver] = Some(whole);
+                exact[known.receiver] = known.sigma == [0.0; D];
             }
         }
         measured.retain(|known| !exact[known.receiver]);
@@ -200,9 +212,9 @@ impl Anchors {
         }
         let centre = centroid(positions.iter().flatten());
         for p in positions.iter_mut().flatten() {
-            *p = [p[0] - centre[0], p[1] - centre[1]];
+            *p = minus(*p, centre);
         }
-        let size = positions.iter().flatten().map(|p| distance(*p, [0.0; 2])).fold(0.0, f64::max);
+        let size = positions.iter().flatten().map(|p| distance(*p, [0.0; D])).fold(0.0, f64::max);
         for known in &mut measured {
             // What can be held are whole positions.
             known.sigma = known.sigma.map(|sigma| sigma.max(EXACT * size));
@@ -222,7 +234,7 @@ impl Anchors {
     /// Changes to units of which `factor` metres are one.
     pub(super) fn divide(&mut self, factor: f64) {
         for p in self.positions.iter_mut().flatten() {
-            *p = [p[0] / factor, p[1] / factor];
+            *p = p.map(|x| x / factor);
         }
         for known in &mut self.measured {
             known.sigma = known.sigma.map(|sigma| sigma / factor);
@@ -230,20 +242,18 @@ impl Anchors {
         }
     }
 
-    /// Whether they are in two places at least.
+    /// Whether they leave no motion but a mirror image.
     pub(super) fn fix(&self) -> bool {
-        let mut all = self.positions.iter().flatten();
-        let first = all.next();
-        first.is_some_and(|p| all.any(|q| distance(*p, *q) > 0.0))
+        let all: Vec<[f64; D]> = self.positions.iter().flatten().copied().collect();
+        fix_a_frame(&all)
     }
 
-    /// How many positions are known in both coordinates.
+    /// How many positions are known in all coordinates.
     pub(super) fn count(&self) -> usize {
         self.positions.iter().flatten().count()
     }
 
-    /// Which receivers are held: all exact anchors, if the known positions are in two places at
-    /// least.
+    /// Which receivers are held: all exact anchors, if the known positions leave no motion.
     pub(super) fn held(&self) -> Vec<bool> {
         let fix = self.fix();
         self.exact.iter().map(|exact| fix && *exact).collect()
@@ -256,7 +266,7 @@ impl Anchors {
                 let (value, precision) = (known.position[axis]?, deviation / known.sigma[axis]);
                 Some(Pin { receiver: known.receiver, axis, value, precision })
             };
-            (0..2).filter_map(pin)
+            (0..D).filter_map(pin)
         });
         pins.collect()
     }
@@ -268,17 +278,17 @@ impl Anchors {
     }
 
     /// The one known position that the network and the others contradict, and by how much: without it
-    /// the others, three or more and not in one line, lie within `limit` (root mean square) of where the
+    /// the others, enough and spread enough to fix a frame without its mirror image, lie within `limit` (root mean square) of where the
     /// network has these receivers, and it lies beyond.
-    pub(super) fn culprit(&self, network: &Network, limit: f64) -> Option<(usize, f64)> {
-        let known: Vec<(usize, [f64; 2])> =
+    pub(super) fn culprit(&self, network: &Network<D>, limit: f64) -> Option<(usize, f64)> {
+        let known: Vec<(usize, [f64; D])> =
             self.positions.iter().enumerate().filter_map(|(i, p)| Some((i, (*p)?))).collect();
-        let rest = |left: Option<usize>| -> Option<Alignment> {
+        let rest = |left: Option<usize>| -> Option<Alignment<D>> {
             let pairs = known.iter().filter(|(i, _)| Some(*i) != left);
             let (from, to): (Vec<_>, Vec<_>) = pairs.map(|&(i, p)| (network.receivers[i], p)).unzip();
-            if from.len() < 3 || flatness(&to) < 0.02 { None } else { align(&from, &to, false) }
+            if from.len() <= D || flatness(&to) < 0.02 { None } else { align(&from, &to, false) }
         };
-        if known.len() < 4 || rest(None).is_none_or(|all| all.rms <= limit) {
+        if known.len() < D + 2 || rest(None).is_none_or(|all| all.rms <= limit) {
             return None;
         }
         let mut found = known.iter().filter_map(|&(i, p)| {
@@ -297,16 +307,16 @@ impl Anchors {
         self.measured.retain(|known| known.receiver != i);
     }
 
-    /// Whether the network's mirror image fits the anchors as well: they lie in one line (by a
-    /// thousandth of its length).
+    /// Whether the network's mirror image fits the anchors as well: they lie in one line, in space in one
+    /// plane (by a thousandth of its length).
     pub(super) fn leave_mirror(&self) -> bool {
-        let all: Vec<[f64; 2]> = self.positions.iter().flatten().copied().collect();
-        flatness(&all) < 1e-3 || all.len() < 3
+        let all: Vec<[f64; D]> = self.positions.iter().flatten().copied().collect();
+        flatness(&all) < 1e-3 || all.len() <= D
     }
 
     /// Moves a network onto the anchors and puts exact ones in their places; root mean square of the
     /// distances that remain before.
-    pub(super) fn place(&self, refined: &mut RefinedNetwork) -> f64 {
+    pub(super) fn place(&self, refined: &mut RefinedNetwork<D>) -> f64 {
         let pairs = refined.network.receivers.iter().zip(&self.positions);
         let (from, to): (Vec<_>, Vec<_>) = pairs.filter_map(|(r, p)| Some((*r, (*p)?))).unzip();
         let Some(alignment) = align(&from, &to, false) else { return 0.0 };
@@ -319,9 +329,9 @@ impl Anchors {
 
     /// Root mean square distance by which the anchors would be missed by chance, from the
     /// covariances of the receivers and their own deviations.
-    pub(super) fn expected(&self, covariance: &[[[f64; 2]; 2]]) -> f64 {
+    pub(super) fn expected(&self, covariance: &[[[f64; D]; D]]) -> f64 {
         let known = covariance.iter().zip(&self.positions).enumerate().filter(|(_, (_, p))| p.is_some());
-        let traces = known.map(|(i, (c, _))| c[0][0] + c[1][1] + self.variance(i));
+        let traces = known.map(|(i, (c, _))| trace(c) + self.variance(i));
         let (sum, count) = traces.fold((0.0, 0.0), |(sum, count), trace| (sum + trace, count + 1.0));
         (sum / f64::max(count, 1.0)).sqrt()
     }

@@ -16,9 +16,9 @@ const CHANCE: f64 = 1.0 / 8.0;
 const MOST_LEFT_OVER: usize = 100;
 
 /// What the best network is compared with.
-pub(super) struct Symmetric<'a> {
-    pub(super) observations: &'a Observations,
-    pub(super) best: &'a RefinedNetwork,
+pub(super) struct Symmetric<'a, const D: usize> {
+    pub(super) observations: &'a Observations<D>,
+    pub(super) best: &'a RefinedNetwork<D>,
     pub(super) deviation: f64,
     pub(super) known: Option<f64>,
     pub(super) floor: f64,
@@ -26,9 +26,9 @@ pub(super) struct Symmetric<'a> {
     pub(super) limit: f64,
 }
 
-impl Symmetric<'_> {
+impl<const D: usize> Symmetric<'_, D> {
     /// The network that one-sided errors lead to from the best one, if outliers are nearly all late.
-    pub(super) fn under_one_sided(&self, monitor: &Monitor) -> Result<Option<Neighbour>, CalibrateError> {
+    pub(super) fn under_one_sided(&self, monitor: &Monitor) -> Result<Option<Neighbour<D>>, CalibrateError<D>> {
         let (late, all) = self.late();
         let left_over = (self.observations.len() - all).saturating_sub(self.observations.unknowns());
         if left_over > MOST_LEFT_OVER || as_often(late, all) > CHANCE {
@@ -37,7 +37,7 @@ impl Symmetric<'_> {
         let networks = vec![self.best.clone()];
         let (ranked, deviation) =
             finish_one_sided(self.observations, networks, self.deviation, self.known, self.floor, monitor)?;
-        let of = |network: &Network| Neighbour::new(network, 0.0, Reason::Late { late, all }, &self.best.network);
+        let of = |network: &Network<D>| Neighbour::new(network, 0.0, Reason::Late { late, all }, &self.best.network);
         let share = deviation / self.deviation;
         Ok(ranked.first().and_then(|refined| of(&refined.network)).map(|neighbour| neighbour.narrowed(share)))
     }

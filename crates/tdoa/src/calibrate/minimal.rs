@@ -1,6 +1,7 @@
 //! Starting networks from the minimal solvers on subsets of the measurements.
 
-use std::sync::Mutex;
+use std::array::from_fn;
+use std::sync::{Mutex, PoisonError};
 
 use hc::Monitor;
 use rand::RngExt;
@@ -10,8 +11,10 @@ use rand_pcg::Pcg64Mcg;
 use super::hypotheses::{Hypotheses, generator};
 use crate::duplicates::step;
 use crate::median::median;
+use crate::minimal::spatial::five_transmitters;
 use crate::minimal::subset::spread;
 use crate::minimal::{MinimalOptions, Solver};
+use crate::network::Network;
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::PartialNetwork;
 
@@ -19,8 +22,22 @@ use crate::refine::PartialNetwork;
 const DRAWS: usize = 12;
 
 /// Sizes of the subsets, receivers and transmitters, which take turns as far as the measurements
-/// have them.
-const SHAPES: [(usize, usize); 3] = [(6, 3), (5, 4), (4, 5)];
+/// have them; in space where offsets are linear.
+const fn shapes<const D: usize>() -> &'static [(usize, usize)] {
+    match D {
+        2 => &[(6, 3), (5, 4), (4, 5)],
+        3 => &[(9, 5), (10, 5)],
+        _ => &[],
+    }
+}
+
+/// Subsets that are solved for one call in space, where one takes a hundredth of a millisecond to a
+/// tenth and few are right.
+const SAMPLES: usize = 32;
+
+/// Networks of which more than one in so many distances is negative by more than the tolerance are
+/// left out.
+const NEGATIVE: usize = 10;
 
 /// Measurements of one transmitter that differ by more than this many times what nine tenths of all
 /// do: no network of a usual shape has them.
@@ -29,8 +46,9 @@ const FAR: f64 = 4.0;
 /// Measurements that are rounded to more than this share of what they differ by.
 const COARSE: f64 = 1e-3;
 
-/// Proposes every candidate of a minimal solver (6r/3s, 5r/4s or 4r/5s), each call on one random,
-/// spread-out, completely measured subset.
+/// Proposes every candidate of a minimal solver, each call on one random, spread-out, completely
+/// measured subset: 6r/3s, 5r/4s or 4r/5s in the plane. In space a call proposes the networks of
+/// several subsets of 9r/5s or 10r/5s ([`crate::minimal::spatial`]).
 pub struct MinimalHypotheses {
     options: MinimalOptions,
     solvers: Mutex<Vec<Solver>>,
@@ -65,8 +83,33 @@ impl MinimalHypotheses {
     }
 
     /// Whether the subsets of some solver fit into a matrix of this size.
-    pub fn fit(receivers: usize, transmitters: usize) -> bool {
-        SHAPES.iter().any(|&(m, n)| receivers >= m && transmitters >= n)
+    pub fn fit<const D: usize>(receivers: usize, transmitters: usize) -> bool {
+        shapes::<D>().iter().any(|&(m, n)| receivers >= m && transmitters >= n)
+    }
+
+    /// Networks that explain a small matrix and have hardly a negative distance.
+    fn networks<const D: usize>(&self, part: &Pseudoranges) -> Vec<Network<D>> {
+        match D {
+            2 => self.in_plane(part).iter().map(cast).collect(),
+            3 => self.in_space(part).iter().map(cast).collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    fn in_plane(&self, part: &Pseudoranges) -> Vec<Network> {
+        let spare = self.solvers.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        let mut solver = spare.unwrap_or_default();
+        let solution = solver.solve_watched(part, &self.options, &self.monitor);
+        self.solvers.lock().unwrap_or_else(PoisonError::into_inner).push(solver);
+        let candidates = solution.map_or_else(|_| Vec::new(), |solution| solution.candidates);
+        candidates.into_iter().filter(|candidate| candidate.physical).map(|candidate| candidate.network).collect()
+    }
+
+    fn in_space(&self, part: &Pseudoranges) -> Vec<Network<3>> {
+        let Ok(network) = five_transmitters(part) else { return Vec::new() };
+        let least = -self.options.tolerance * network.size();
+        let negative = part.cells().iter().filter(|&(_, j, f)| f - network.offsets[j] < least).count();
+        if NEGATIVE * negative > part.observed() { Vec::new() } else { vec![network] }
     }
 
     /// The subset of one call: `m` receivers and `n` transmitters, `None` if no draw is complete.
@@ -92,6 +135,16 @@ impl MinimalHypotheses {
             }
         }
         best.map(|(_, receivers, transmitters)| (receivers, transmitters))
+    }
+}
+
+/// A network as one of its own dimension, which the compiler does not know to be that.
+fn cast<const A: usize, const B: usize>(network: &Network<A>) -> Network<B> {
+    let point = |p: &[f64; A]| from_fn(|k| p.get(k).copied().unwrap_or(0.0));
+    Network {
+        receivers: network.receivers.iter().map(point).collect(),
+        transmitters: network.transmitters.iter().map(point).collect(),
+        offsets: network.offsets.clone(),
     }
 }
 
@@ -123,33 +176,31 @@ fn dithered(measured: &Pseudoranges, part: Pseudoranges, rng: &mut Pcg64Mcg) -> 
     part.map(|_, _, value| value + step * (rng.random::<f64>() - 0.5))
 }
 
-impl Hypotheses for MinimalHypotheses {
-    fn propose(&self, measured: &Pseudoranges, index: usize, seed: u64) -> Vec<PartialNetwork> {
+impl<const D: usize> Hypotheses<D> for MinimalHypotheses {
+    fn propose(&self, measured: &Pseudoranges, index: usize, seed: u64) -> Vec<PartialNetwork<D>> {
         let (receivers, transmitters) = (measured.receivers(), measured.transmitters());
         let shapes: Vec<(usize, usize)> =
-            SHAPES.into_iter().filter(|&(m, n)| receivers >= m && transmitters >= n).collect();
+            shapes::<D>().iter().copied().filter(|&(m, n)| receivers >= m && transmitters >= n).collect();
         // A matrix of a solver's own size has but one subset.
         let only = shapes.contains(&(receivers, transmitters));
         if shapes.is_empty() || index >= if only { 1.min(self.most) } else { self.most } {
             return Vec::new();
         }
         let mut rng = generator(seed ^ 0x6c62_272e_07bb_0142, index);
-        let Some((receivers, transmitters)) = Self::subset(measured, shapes[index % shapes.len()], &mut rng) else {
-            return Vec::new();
-        };
-        let spare = self.solvers.lock().unwrap_or_else(std::sync::PoisonError::into_inner).pop();
-        let mut solver = spare.unwrap_or_default();
-        let part = dithered(measured, measured.select(&receivers, &transmitters), &mut rng);
-        let solution = solver.solve_watched(&part, &self.options, &self.monitor);
-        self.solvers.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push(solver);
-        let Ok(solution) = solution else { return Vec::new() };
-        let physical = solution.candidates.iter().filter(|candidate| candidate.physical);
-        physical
-            .map(|candidate| {
-                let mut part = PartialNetwork::unknown(measured.receivers(), measured.transmitters());
-                part.place(&candidate.network, &receivers, &transmitters);
-                part
-            })
-            .collect()
+        let shape = shapes[index % shapes.len()];
+        let mut proposals = Vec::new();
+        for _ in 0..if D == 2 || only { 1 } else { SAMPLES } {
+            if self.monitor.is_cancelled() {
+                break;
+            }
+            let Some((receivers, transmitters)) = Self::subset(measured, shape, &mut rng) else { break };
+            let part = dithered(measured, measured.select(&receivers, &transmitters), &mut rng);
+            for network in self.networks(&part) {
+                let mut proposal = PartialNetwork::unknown(measured.receivers(), measured.transmitters());
+                proposal.place(&network, &receivers, &transmitters);
+                proposals.push(proposal);
+            }
+        }
+        proposals
     }
 }

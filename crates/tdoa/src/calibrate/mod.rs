@@ -48,7 +48,7 @@ pub use same::SAME_NETWORK;
 pub use truth::Truth;
 pub use unfinished::Unfinished;
 
-use crate::degeneracy::{LEAST_PER_TRANSMITTER, Usable, list, usable};
+use crate::degeneracy::{Usable, least_per_transmitter, list, usable};
 use crate::median::median;
 use crate::pseudoranges::Pseudoranges;
 use clocks::{on_a_grid, without_middle_delays};
@@ -77,7 +77,10 @@ use whole::{Sought, search_whole};
 ///
 /// # Errors
 /// If the data cannot determine a network, an option is out of range, or no network is found.
-pub fn calibrate(measured: &Pseudoranges, options: &CalibrateOptions) -> Result<Calibration, CalibrateError> {
+pub fn calibrate<const D: usize>(
+    measured: &Pseudoranges,
+    options: &CalibrateOptions<D>,
+) -> Result<Calibration<D>, CalibrateError<D>> {
     calibrate_with(measured, options, &[], &Monitor::default())
 }
 
@@ -86,18 +89,18 @@ pub fn calibrate(measured: &Pseudoranges, options: &CalibrateOptions) -> Result<
 ///
 /// # Errors
 /// Those of [`calibrate`], and [`CalibrateError::Cancelled`].
-pub fn calibrate_with(
+pub fn calibrate_with<const D: usize>(
     measured: &Pseudoranges,
-    options: &CalibrateOptions,
-    sources: &[&dyn Hypotheses],
+    options: &CalibrateOptions<D>,
+    sources: &[&dyn Hypotheses<D>],
     monitor: &Monitor,
-) -> Result<Calibration, CalibrateError> {
+) -> Result<Calibration<D>, CalibrateError<D>> {
     options.validate()?;
     known::validate(measured, options)?;
     let (measured, impossible) = without_impossible(measured);
     options::check(monitor)?;
     let measured = measured.as_ref();
-    let mut usable = usable(measured)?;
+    let mut usable = usable::<D>(measured)?;
     options::check(monitor)?;
     usable.warnings.extend(impossible);
     let known = options.sigma.or(if measured.has_sigmas() { Some(1.0) } else { None });
@@ -127,7 +130,7 @@ pub fn calibrate_with(
         None => search_whole(&sought, noise, options, sources, monitor),
     };
     let (m, n) = (measured.receivers(), measured.transmitters());
-    let place = |best: Unfinished| best.shifted(&shifts).among(m, &usable.receivers, n, &usable.transmitters);
+    let place = |best: Unfinished<D>| best.shifted(&shifts).among(m, &usable.receivers, n, &usable.transmitters);
     let Sought { ranked, neighbours, deviation, floor, starts, weak } = found.map_err(|error| error.placing(place))?;
     let so_far = place(Unfinished::of(&ranked[0].network, starts, ranked[0].starts));
     let clearing = Clearing { measured: &centred, known, floor, options, monitor };
@@ -173,20 +176,20 @@ pub fn calibrate_with(
 
 /// Where hearing is local: the layout of the usable receivers by submaps, and which of them it
 /// places. Nodes that do not hang together with these are left out of `usable`, with a warning.
-fn local_layout(
+fn local_layout<const D: usize>(
     measured: &Pseudoranges,
     usable: &mut Usable,
     known: Option<f64>,
-    options: &CalibrateOptions,
-    sources: &[&dyn Hypotheses],
+    options: &CalibrateOptions<D>,
+    sources: &[&dyn Hypotheses<D>],
     monitor: &Monitor,
-) -> Result<Option<(ReceiverLayout, Vec<usize>)>, CalibrateError> {
+) -> Result<Option<(ReceiverLayout<D>, Vec<usize>)>, CalibrateError<D>> {
     let (centred, _) = centre(&measured.select(&usable.receivers, &usable.transmitters));
     if !hearing_is_local(&centred) {
         return Ok(None);
     }
     let (m, n) = (measured.receivers(), measured.transmitters());
-    let place = |best: Unfinished| best.among(m, &usable.receivers, n, &usable.transmitters);
+    let place = |best: Unfinished<D>| best.among(m, &usable.receivers, n, &usable.transmitters);
     let mut layout = match sources.first() {
         None => lay_out(&centred, known, options, monitor).map_err(|error| error.placing(place))?,
         Some(source) => match ReceiverLayout::proposed(&centred, *source, options.seed) {
@@ -197,7 +200,8 @@ fn local_layout(
     let placed = layout.place_strays(&centred, monitor);
     placed.map_err(|error| error.leaving(&layout.unfinished(&centred)).placing(place))?;
     let places: Vec<usize> = (0..centred.receivers()).filter(|&i| layout.positions[i].is_some()).collect();
-    let heard = |&j: &usize| places.iter().filter(|&&i| centred.get(i, j).is_some()).count() >= LEAST_PER_TRANSMITTER;
+    let heard =
+        |&j: &usize| places.iter().filter(|&&i| centred.get(i, j).is_some()).count() >= least_per_transmitter::<D>();
     let columns: Vec<usize> = (0..centred.transmitters()).filter(heard).collect();
     let gone: Vec<String> =
         (0..centred.receivers()).filter(|i| !places.contains(i)).map(|i| centred.receiver_names()[i].clone()).collect();

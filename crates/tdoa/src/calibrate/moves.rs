@@ -11,46 +11,46 @@ use crate::loss::{Loss, SEARCH_NU};
 use crate::median::median;
 use crate::multilateration::{Sight, receiver as locate};
 use crate::network::Network;
-use crate::points::distance;
+use crate::points::{distance, minus};
 use hc::Monitor;
 
 /// Transmitters from which on a receiver may stand elsewhere, that are tried.
 const TRIED: usize = 24;
 
 /// What a receiver measured, as distances from the transmitters, in their order.
-struct Sights {
+struct Sights<const D: usize> {
     transmitters: Vec<usize>,
-    all: Vec<Sight>,
+    all: Vec<Sight<D>>,
     deviation: f64,
 }
 
 /// Two places of a receiver.
-struct Split {
+struct Split<const D: usize> {
     /// Place in the list of its measurements of the first after the move.
     at: usize,
-    places: [[f64; 2]; 2],
+    places: [[f64; D]; 2],
     cost: f64,
 }
 
-impl Sights {
+impl<const D: usize> Sights<D> {
     /// Where a part of the measurements puts the receiver, and their truncated cost there.
-    fn place(&self, part: &[Sight]) -> Option<([f64; 2], f64)> {
+    fn place(&self, part: &[Sight<D>]) -> Option<([f64; D], f64)> {
         let loss = Loss { nu: SEARCH_NU, scale: 3.0 * self.deviation };
         let position = locate(part, &loss)?.position;
-        let cost = |s: &Sight| {
+        let cost = |s: &Sight<D>| {
             let e = (s.length - distance(s.position, position)) * s.precision;
             (0.5 * (e / self.deviation).powi(2)).min(OUTLIER_COST)
         };
         Some((position, part.iter().map(cost).sum()))
     }
 
-    fn split(&self, at: usize) -> Option<Split> {
+    fn split(&self, at: usize) -> Option<Split<D>> {
         let (before, after) = (self.place(&self.all[..at])?, self.place(&self.all[at..])?);
         Some(Split { at, places: [before.0, after.0], cost: before.1 + after.1 })
     }
 
     /// The best split: of some evenly spaced ones, and of those around the best of these.
-    fn best(&self, monitor: &Monitor) -> Result<Option<Split>, CalibrateError> {
+    fn best(&self, monitor: &Monitor) -> Result<Option<Split<D>>, CalibrateError<D>> {
         let (first, last) = (SIDE, (self.all.len() + 1).saturating_sub(SIDE));
         let step = last.saturating_sub(first).div_ceil(TRIED).max(1);
         let coarse = self.best_of((first..last).step_by(step), monitor)?;
@@ -58,8 +58,12 @@ impl Sights {
         self.best_of((at + 1).saturating_sub(step).max(first)..(at + step).min(last), monitor)
     }
 
-    fn best_of(&self, all: impl Iterator<Item = usize>, monitor: &Monitor) -> Result<Option<Split>, CalibrateError> {
-        let mut best: Option<Split> = None;
+    fn best_of(
+        &self,
+        all: impl Iterator<Item = usize>,
+        monitor: &Monitor,
+    ) -> Result<Option<Split<D>>, CalibrateError<D>> {
+        let mut best: Option<Split<D>> = None;
         for at in all {
             check(monitor)?;
             let split = self.split(at).filter(|split| best.as_ref().is_none_or(|other| split.cost < other.cost));
@@ -69,10 +73,10 @@ impl Sights {
     }
 }
 
-impl Fitting<'_> {
+impl<const D: usize> Fitting<'_, D> {
     /// The move of a receiver that fits best, as two receivers beside the network of all others.
     /// `None` where one of its places may be chance.
-    pub(super) fn moved(&self, receiver: usize, alone: &Network) -> Result<Option<Refit>, CalibrateError> {
+    pub(super) fn moved(&self, receiver: usize, alone: &Network<D>) -> Result<Option<Refit<D>>, CalibrateError<D>> {
         let own: Vec<_> = self.observations.of_receiver(receiver).collect();
         let sights = Sights {
             transmitters: own.iter().map(|o| o.transmitter).collect(),
@@ -104,7 +108,7 @@ impl Fitting<'_> {
             let part = observations.of_receiver(row);
             let all = part.len();
             let inliers = part.filter(|o| o.residual(&network).abs() <= self.limit * self.deviation).count();
-            self.observations.receivers as f64 * agree_by_chance(all, inliers, width) > BY_CHANCE
+            self.observations.receivers as f64 * agree_by_chance::<D>(all, inliers, width) > BY_CHANCE
         };
         if rows.iter().any(may_be_chance) {
             return Ok(None);
@@ -116,7 +120,7 @@ impl Fitting<'_> {
         if 2 * split.at < sights.all.len() {
             network.receivers[receiver] = after;
         }
-        let size = [after[0] - before[0], after[1] - before[1]];
+        let size = minus(after, before);
         let fault = Fault { size, gain, ..Fault::new(receiver, ReceiverErrorKind::Move, from) };
         Ok(Some(Refit { fault, network, freedom, lead: 0.0 }))
     }

@@ -6,6 +6,7 @@ use super::receiver_errors::Fault;
 use crate::align::align;
 use crate::network::Network;
 use crate::observations::Observations;
+use crate::points::{dot, minus, trace};
 use crate::refine::{Cancelled, Covariance, RefinedNetwork};
 use hc::Monitor;
 
@@ -26,35 +27,35 @@ const LIKELY: f64 = 0.02;
 
 /// Why a network is a neighbour of the best one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Reason {
+pub(super) enum Reason<const D: usize> {
     /// The search ended there too.
     Found,
     /// An error of a receiver, without which the measurements fit it.
-    Error(Fault),
+    Error(Fault<D>),
     /// So many of all outliers are late: it is the one of one-sided errors.
     Late { late: usize, all: usize },
 }
 
 /// A neighbour of the best network.
-pub(super) struct Neighbour {
-    pub(super) network: Network,
+pub(super) struct Neighbour<const D: usize> {
+    pub(super) network: Network<D>,
     /// By how much the measurements are less likely than under the best network, natural logarithm; where
     /// it is without an error, by how much less they tell of that than they had to. Not negative.
     pub(super) loss: f64,
-    pub(super) reason: Reason,
+    pub(super) reason: Reason<D>,
     /// Deviation of the measurements as a share of that under the best network, at most 1.
     pub(super) narrow: f64,
     /// Where its receivers lie from those of the best network.
-    shifts: Vec<[f64; 2]>,
+    shifts: Vec<[f64; D]>,
 }
 
 /// One network of each minimum among those that the search counted as the best one, the best itself
 /// left out.
-pub(super) fn minima(best: &Network, same: impl Iterator<Item = Network>) -> Vec<Network> {
+pub(super) fn minima<const D: usize>(best: &Network<D>, same: impl Iterator<Item = Network<D>>) -> Vec<Network<D>> {
     let mut kept = vec![best.clone()];
     for network in same {
         let limit = ONE_MINIMUM * best.size();
-        let known = |k: &Network| align(&network.receivers, &k.receivers, false).is_none_or(|a| a.rms <= limit);
+        let known = |k: &Network<D>| align(&network.receivers, &k.receivers, false).is_none_or(|a| a.rms <= limit);
         if kept.len() <= MOST && !kept.iter().any(known) {
             kept.push(network);
         }
@@ -64,24 +65,25 @@ pub(super) fn minima(best: &Network, same: impl Iterator<Item = Network>) -> Vec
 
 /// Neighbours that least squares over the inliers leaves apart, with what they cost more than the
 /// best.
-pub(super) fn neighbours(
-    observations: &Observations,
-    best: &RefinedNetwork,
-    near: Vec<Network>,
+pub(super) fn neighbours<const D: usize>(
+    observations: &Observations<D>,
+    best: &RefinedNetwork<D>,
+    near: Vec<Network<D>>,
     deviation: f64,
     monitor: &Monitor,
-) -> Result<Vec<Neighbour>, Cancelled> {
+) -> Result<Vec<Neighbour<D>>, Cancelled> {
     if near.is_empty() {
         return Ok(Vec::new());
     }
     let (centre, least) = refit(observations, &best.network, deviation, monitor)?;
-    let mut found: Vec<Neighbour> = Vec::new();
+    let mut found: Vec<Neighbour<D>> = Vec::new();
     for network in near {
         let (network, cost) = refit(observations, &network, deviation, monitor)?;
         let Some(next) = Neighbour::new(&network, (cost - least).max(0.0), Reason::Found, &centre) else { continue };
         let limit = ONE_MINIMUM * centre.size();
-        let known =
-            |k: &Neighbour| align(&next.network.receivers, &k.network.receivers, false).is_none_or(|a| a.rms <= limit);
+        let known = |k: &Neighbour<D>| {
+            align(&next.network.receivers, &k.network.receivers, false).is_none_or(|a| a.rms <= limit)
+        };
         if next.rms() > limit && !found.iter().any(known) {
             found.push(next);
         }
@@ -89,16 +91,16 @@ pub(super) fn neighbours(
     Ok(found)
 }
 
-impl Neighbour {
+impl<const D: usize> Neighbour<D> {
     /// A network as a neighbour of this one; `None` where receivers coincide.
-    pub(super) fn new(network: &Network, loss: f64, reason: Reason, centre: &Network) -> Option<Neighbour> {
+    pub(super) fn new(network: &Network<D>, loss: f64, reason: Reason<D>, centre: &Network<D>) -> Option<Neighbour<D>> {
         let network = align(&network.receivers, &centre.receivers, false)?.transform.apply_network(network);
-        let shifts = network.receivers.iter().zip(&centre.receivers).map(|(p, q)| [p[0] - q[0], p[1] - q[1]]).collect();
+        let shifts = network.receivers.iter().zip(&centre.receivers).map(|(&p, &q)| minus(p, q)).collect();
         Some(Neighbour { network, loss, reason, narrow: 1.0, shifts })
     }
 
     /// This one with a deviation of so many of that under the best network.
-    pub(super) fn narrowed(self, share: f64) -> Neighbour {
+    pub(super) fn narrowed(self, share: f64) -> Neighbour<D> {
         Neighbour { narrow: share.min(1.0), ..self }
     }
 
@@ -108,20 +110,20 @@ impl Neighbour {
     }
 
     fn square(&self) -> f64 {
-        self.shifts.iter().map(|s| s[0] * s[0] + s[1] * s[1]).sum()
+        self.shifts.iter().map(|&s| dot(s, s)).sum()
     }
 
     /// How far its receivers lie from those of the best network, in the smaller of both standard
     /// deviations, root mean square.
-    pub(super) fn distance(&self, uncertainty: &Covariance) -> f64 {
-        let variance: f64 = uncertainty.receivers.iter().map(|c| c[0][0] + c[1][1]).sum();
+    pub(super) fn distance(&self, uncertainty: &Covariance<D>) -> f64 {
+        let variance: f64 = uncertainty.receivers.iter().map(trace).sum();
         (self.square() / variance).sqrt() / self.narrow
     }
 }
 
 /// Adds what likely neighbours add to the covariance of the receivers: that of the mixture of both,
 /// and enough for the ellipse to reach the other.
-pub(super) fn widen(uncertainty: &mut Covariance, neighbours: &[Neighbour], radius: f64) {
+pub(super) fn widen<const D: usize>(uncertainty: &mut Covariance<D>, neighbours: &[Neighbour<D>], radius: f64) {
     let total: f64 = 1.0 + neighbours.iter().map(|n| (-n.loss).exp()).sum::<f64>();
     let distances: Vec<f64> = neighbours.iter().map(|n| n.distance(uncertainty)).collect();
     for (neighbour, distance) in neighbours.iter().zip(distances) {
@@ -131,8 +133,8 @@ pub(super) fn widen(uncertainty: &mut Covariance, neighbours: &[Neighbour], radi
         }
         let factor = share + 1.0 / (radius * radius);
         for (c, s) in uncertainty.receivers.iter_mut().zip(&neighbour.shifts) {
-            for a in 0..2 {
-                for b in 0..2 {
+            for a in 0..D {
+                for b in 0..D {
                     c[a][b] += factor * s[a] * s[b];
                 }
             }

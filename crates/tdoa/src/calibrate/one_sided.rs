@@ -55,17 +55,22 @@ impl Cost for Mixture {
     }
 }
 
-fn residuals(observations: &Observations, network: &Network) -> Vec<f64> {
+fn residuals<const D: usize>(observations: &Observations<D>, network: &Network<D>) -> Vec<f64> {
     observations.all().iter().map(|o| o.residual(network)).collect()
 }
 
 /// The mixture that the residuals of a network have; `first` is near its deviation.
-pub(super) fn mixture_of(observations: &Observations, network: &Network, first: f64) -> Mixture {
+pub(super) fn mixture_of<const D: usize>(observations: &Observations<D>, network: &Network<D>, first: f64) -> Mixture {
     Mixture::first(first).fitted(&residuals(observations, network), observations.unknowns(), 0.1 * first)
 }
 
 /// Deviation of the measurements at a network, beside what is wrong with them; `first` is near it.
-pub(super) fn noise(observations: &Observations, network: &Network, first: f64, options: &CalibrateOptions) -> f64 {
+pub(super) fn noise<const D: usize>(
+    observations: &Observations<D>,
+    network: &Network<D>,
+    first: f64,
+    options: &CalibrateOptions<D>,
+) -> f64 {
     match options.errors {
         Errors::Symmetric => inlier_deviation(observations, network, first, options.inlier_threshold),
         Errors::OneSided => mixture_of(observations, network, first).deviation,
@@ -74,17 +79,17 @@ pub(super) fn noise(observations: &Observations, network: &Network, first: f64, 
 
 /// Refines networks with the loss of one-sided errors, and puts the most likely first; and the
 /// deviation of the noise. Objectives are differences of log-likelihood.
-pub(super) fn finish_one_sided(
-    observations: &Observations,
-    networks: Vec<RefinedNetwork>,
+pub(super) fn finish_one_sided<const D: usize>(
+    observations: &Observations<D>,
+    networks: Vec<RefinedNetwork<D>>,
     first: f64,
     known: Option<f64>,
     floor: f64,
     monitor: &Monitor,
-) -> Result<(Vec<RefinedNetwork>, f64), CalibrateError> {
+) -> Result<(Vec<RefinedNetwork<D>>, f64), CalibrateError<D>> {
     let least = known.unwrap_or(floor).max(floor);
     let mut fitting = Fitting { observations, weighing: Weighing::new(observations, monitor), least, known, monitor };
-    let mut ranked: Vec<RefinedNetwork> = Vec::new();
+    let mut ranked: Vec<RefinedNetwork<D>> = Vec::new();
     // The widest is the same for all, so that gross errors have one density.
     let wide = networks.iter().map(|refined| spread_of_residuals(observations, &refined.network));
     let wide = wide.fold(f64::INFINITY, f64::min).max(first).max(least);
@@ -119,26 +124,26 @@ pub(super) fn finish_one_sided(
 }
 
 /// A network with the mixture that its residuals have.
-type Fit = (Network, Mixture);
+type Fit<const D: usize> = (Network<D>, Mixture);
 
 /// Refines networks and mixtures in turns; holds the buffers.
-struct Fitting<'a> {
-    observations: &'a Observations,
-    weighing: Weighing<'a>,
+struct Fitting<'a, const D: usize> {
+    observations: &'a Observations<D>,
+    weighing: Weighing<'a, D>,
     /// Smallest deviation.
     least: f64,
     known: Option<f64>,
     monitor: &'a Monitor,
 }
 
-impl Fitting<'_> {
+impl<const D: usize> Fitting<'_, D> {
     /// The fits from a wide deviation and from the best of narrower ones: late measurements have bent
     /// a network, and count as noise for as long as the deviation is as wide as they are late.
-    fn narrowed(&mut self, wide: Fit) -> Result<Vec<Fit>, CalibrateError> {
+    fn narrowed(&mut self, wide: Fit<D>) -> Result<Vec<Fit<D>>, CalibrateError<D>> {
         let mut found = vec![self.settled(wide.clone())?];
         let (mut network, mut mixture) = wide;
         let end = (NARROWEST * mixture.deviation).max(self.least);
-        let mut narrow: Option<(Fit, f64)> = None;
+        let mut narrow: Option<(Fit<D>, f64)> = None;
         while mixture.deviation > end {
             mixture.deviation = (NARROWING * mixture.deviation).max(end);
             for _ in 0..NARROW_TURNS {
@@ -162,7 +167,7 @@ impl Fitting<'_> {
     }
 
     /// The fit near this one in which both are stationary.
-    fn settled(&mut self, (mut network, mut mixture): Fit) -> Result<Fit, CalibrateError> {
+    fn settled(&mut self, (mut network, mut mixture): Fit<D>) -> Result<Fit<D>, CalibrateError<D>> {
         for turn in 0..TURNS {
             check(self.monitor)?;
             network = self.weighing.descend(network, STEPS, &mixture)?;
@@ -184,7 +189,7 @@ impl Fitting<'_> {
     }
 
     /// The mean of the networks about a likely one, and the deviation. `None` where it is not near.
-    fn mean(&mut self, network: &Network, mixture: Mixture) -> Result<Option<Propagated>, CalibrateError> {
+    fn mean(&mut self, network: &Network<D>, mixture: Mixture) -> Result<Option<Propagated<D>>, CalibrateError<D>> {
         let least = self.least.max(LEAST_LEFT * mixture.deviation);
         let mut found = propagated(self.observations, network, mixture, None, least, true, self.monitor)?;
         // A given deviation is for networks that are near.
@@ -201,7 +206,7 @@ impl Fitting<'_> {
 
     /// Negative log-likelihood of the measurements with the unknowns integrated out (Laplace's
     /// approximation), but for what all fits have in common.
-    fn objective(&mut self, network: &Network, mixture: &Mixture) -> Result<f64, CalibrateError> {
+    fn objective(&mut self, network: &Network<D>, mixture: &Mixture) -> Result<f64, CalibrateError<D>> {
         let observations = self.observations;
         let pins = observations.pins().iter().map(|pin| 0.5 * (pin.residual(network) / mixture.deviation).powi(2));
         let cells = observations.all().iter().map(|o| mixture.cost(o.residual(network)));
@@ -212,22 +217,22 @@ impl Fitting<'_> {
 }
 
 /// What the measurements say of a network while it is not known which of them are late.
-pub(super) struct Information {
+pub(super) struct Information<const D: usize> {
     /// The measurements with the share of their information that is left.
-    pub(super) trusted: Observations,
+    pub(super) trusted: Observations<D>,
     /// The mixture that they are, its deviation estimated.
     pub(super) mixture: Mixture,
 }
 
-impl Information {
+impl<const D: usize> Information<D> {
     /// At a network with measurements of about this deviation, which may be known.
     pub(super) fn new(
-        observations: &Observations,
-        network: &Network,
+        observations: &Observations<D>,
+        network: &Network<D>,
         first: f64,
         known: Option<f64>,
         monitor: &Monitor,
-    ) -> Result<Information, CalibrateError> {
+    ) -> Result<Information<D>, CalibrateError<D>> {
         let mixture = mixture_of(observations, network, first);
         let shares = match propagated(observations, network, mixture, known, LEAST_LEFT * first, false, monitor)? {
             Some(found) => found.weights,

@@ -39,7 +39,7 @@ pub enum Errors {
 /// Options of a calibration. All fields have defaults; start from `CalibrateOptions::default()`.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct CalibrateOptions {
+pub struct CalibrateOptions<const D: usize = 2> {
     /// Standard deviation of the measurements in metres. If measurements carry their own
     /// deviations, a factor on those. Default `None`: estimated, or 1 if measurements carry their
     /// own.
@@ -79,11 +79,11 @@ pub struct CalibrateOptions {
     /// Known positions of receivers in metres, in the order of the receivers, `None` if unknown.
     /// They fix the frame. If they are in at least two places, the receivers are held there in the
     /// last refinement. Default empty: none are known.
-    pub anchors: Vec<Option<[f64; 2]>>,
+    pub anchors: Vec<Option<[f64; D]>>,
     /// Positions of receivers that were measured by other means, with an error or in only one
     /// coordinate. Two or more receivers must have both coordinates, here or among the anchors.
     /// Default empty.
-    pub positions: Vec<MeasuredPosition>,
+    pub positions: Vec<MeasuredPosition<D>>,
     /// How to treat receivers whose measurements are all too long or too short. Default
     /// [`ReceiverDelays::None`]: a warning names the receivers that show such an error.
     pub receiver_delays: ReceiverDelays,
@@ -98,8 +98,44 @@ pub struct CalibrateOptions {
     pub estimate_speed: bool,
 }
 
+/// A distance between two receivers that is known beforehand.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KnownDistance {
+    /// Indices of the two receivers.
+    pub receivers: [usize; 2],
+    /// Metres.
+    pub distance: f64,
+}
+
+/// A position of a receiver that was measured by other means.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeasuredPosition<const D: usize = 2> {
+    /// Index of the receiver.
+    pub receiver: usize,
+    /// x and y in metres, `None` if unknown.
+    pub position: [Option<f64>; D],
+    /// Standard deviations of x and y, metres; both zero if they are exact.
+    pub sigma: [f64; D],
+}
+
 impl Default for CalibrateOptions {
     fn default() -> Self {
+        CalibrateOptions::new()
+    }
+}
+
+impl<const D: usize> MeasuredPosition<D> {
+    /// The position, if all coordinates are known.
+    pub(super) fn whole(&self) -> Option<[f64; D]> {
+        let position = self.position.map(|x| x.unwrap_or(f64::NAN));
+        self.position.iter().all(Option::is_some).then_some(position)
+    }
+}
+
+impl<const D: usize> CalibrateOptions<D> {
+    /// The defaults. `CalibrateOptions::default()` are those of the plane, `CalibrateOptions::<3>::new()`
+    /// those of space.
+    pub fn new() -> Self {
         CalibrateOptions {
             sigma: None,
             seed: 0,
@@ -121,34 +157,12 @@ impl Default for CalibrateOptions {
             estimate_speed: false,
         }
     }
-}
 
-/// A distance between two receivers that is known beforehand.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct KnownDistance {
-    /// Indices of the two receivers.
-    pub receivers: [usize; 2],
-    /// Metres.
-    pub distance: f64,
-}
-
-/// A position of a receiver that was measured by other means.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MeasuredPosition {
-    /// Index of the receiver.
-    pub receiver: usize,
-    /// x and y in metres, `None` if unknown.
-    pub position: [Option<f64>; 2],
-    /// Standard deviations of x and y, metres; both zero if they are exact.
-    pub sigma: [f64; 2],
-}
-
-impl CalibrateOptions {
     /// Checks the numbers.
     ///
     /// # Errors
     /// The first option that is outside its range.
-    pub fn validate(&self) -> Result<(), CalibrateError> {
+    pub fn validate(&self) -> Result<(), CalibrateError<D>> {
         let positive = |name, value: f64| {
             if value > 0.0 && value.is_finite() {
                 Ok(())
@@ -181,11 +195,11 @@ impl CalibrateOptions {
 }
 
 /// Ends the calibration if it has been cancelled.
-pub(super) fn check(monitor: &Monitor) -> Result<(), CalibrateError> {
+pub(super) fn check<const D: usize>(monitor: &Monitor) -> Result<(), CalibrateError<D>> {
     Ok(crate::refine::check(monitor)?)
 }
 
-impl From<Cancelled> for CalibrateError {
+impl<const D: usize> From<Cancelled> for CalibrateError<D> {
     fn from(_: Cancelled) -> Self {
         CalibrateError::Cancelled(None)
     }
@@ -194,7 +208,7 @@ impl From<Cancelled> for CalibrateError {
 /// Why there is no calibration.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
-pub enum CalibrateError {
+pub enum CalibrateError<const D: usize = 2> {
     /// The data cannot determine a network.
     #[error(transparent)]
     Degenerate(#[from] Degeneracy),
@@ -242,12 +256,12 @@ pub enum CalibrateError {
     /// The calibration was stopped through its [`Monitor`]; with the best network so far, if there
     /// was one.
     #[error("calibration was cancelled")]
-    Cancelled(Option<Box<Unfinished>>),
+    Cancelled(Option<Box<Unfinished<D>>>),
 }
 
-impl CalibrateError {
+impl<const D: usize> CalibrateError<D> {
     /// Changes the network that a stopped calibration leaves.
-    pub(super) fn placing(self, place: impl FnOnce(Unfinished) -> Unfinished) -> CalibrateError {
+    pub(super) fn placing(self, place: impl FnOnce(Unfinished<D>) -> Unfinished<D>) -> CalibrateError<D> {
         match self {
             CalibrateError::Cancelled(Some(best)) => CalibrateError::Cancelled(Some(Box::new(place(*best)))),
             other => other,
@@ -255,7 +269,7 @@ impl CalibrateError {
     }
 
     /// Leaves this network where a stopped calibration leaves none.
-    pub(super) fn leaving(self, best: &Unfinished) -> CalibrateError {
+    pub(super) fn leaving(self, best: &Unfinished<D>) -> CalibrateError<D> {
         match self {
             CalibrateError::Cancelled(None) => CalibrateError::Cancelled(Some(Box::new(best.clone()))),
             other => other,

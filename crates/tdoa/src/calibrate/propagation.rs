@@ -27,23 +27,23 @@ const OWN: f64 = 0.999;
 
 /// A network, its mixture, and what share of its information each measurement has.
 #[derive(Debug, Clone)]
-pub(super) struct Propagated {
-    pub(super) network: Network,
+pub(super) struct Propagated<const D: usize> {
+    pub(super) network: Network<D>,
     pub(super) mixture: Mixture,
     pub(super) weights: Vec<f64>,
 }
 
 /// From a network and a mixture near. The network stays where it is unless it `moves`. `None` where
 /// nothing comes of it.
-pub(super) fn propagated(
-    observations: &Observations,
-    network: &Network,
+pub(super) fn propagated<const D: usize>(
+    observations: &Observations<D>,
+    network: &Network<D>,
     mixture: Mixture,
     known: Option<f64>,
     least: f64,
     moves: bool,
     monitor: &Monitor,
-) -> Result<Option<Propagated>, CalibrateError> {
+) -> Result<Option<Propagated<D>>, CalibrateError<D>> {
     let mut weighing = Weighing::new(observations, monitor);
     let (mut network, mut mixture) = (network.clone(), mixture);
     mixture.deviation = known.unwrap_or(mixture.deviation);

@@ -25,20 +25,24 @@ const ROUNDS: usize = 8;
 
 /// Sum of min(e^2/2, h) over the residuals e of a network in standard deviations; `deviation` is
 /// that of the measurements.
-pub(super) fn truncated_cost(observations: &Observations, network: &Network, deviation: f64) -> f64 {
+pub(super) fn truncated_cost<const D: usize>(
+    observations: &Observations<D>,
+    network: &Network<D>,
+    deviation: f64,
+) -> f64 {
     let cost = |e: f64| (0.5 * (e / deviation).powi(2)).min(OUTLIER_COST);
     observations.all().iter().map(|o| cost(o.residual(network))).sum()
 }
 
 /// The networks with truncated costs as objectives, least first. The best ones are refitted to
 /// their inliers. If the refit carries several networks to the same one, the first is kept.
-pub(super) fn rank(
-    observations: &Observations,
-    mut networks: Vec<RefinedNetwork>,
+pub(super) fn rank<const D: usize>(
+    observations: &Observations<D>,
+    mut networks: Vec<RefinedNetwork<D>>,
     deviation: f64,
     margin: f64,
     monitor: &Monitor,
-) -> Result<Vec<RefinedNetwork>, Cancelled> {
+) -> Result<Vec<RefinedNetwork<D>>, Cancelled> {
     let mut least = f64::INFINITY;
     for refined in &mut networks {
         refined.objective = truncated_cost(observations, &refined.network, deviation);
@@ -47,7 +51,7 @@ pub(super) fn rank(
     if networks.len() < 2 {
         return Ok(networks);
     }
-    let mut kept: Vec<(Network, RefinedNetwork)> = Vec::new();
+    let mut kept: Vec<(Network<D>, RefinedNetwork<D>)> = Vec::new();
     for mut refined in networks.into_iter().filter(|refined| refined.objective <= least + 4.0 * margin) {
         let (network, cost) = refit(observations, &refined.network, deviation, monitor)?;
         refined.objective = cost;
@@ -56,19 +60,19 @@ pub(super) fn rank(
             None => kept.push((network, refined)),
         }
     }
-    let mut ranked: Vec<RefinedNetwork> = kept.into_iter().map(|(_, refined)| refined).collect();
+    let mut ranked: Vec<RefinedNetwork<D>> = kept.into_iter().map(|(_, refined)| refined).collect();
     ranked.sort_by(|a, b| a.objective.total_cmp(&b.objective));
     Ok(ranked)
 }
 
 /// The network of least truncated cost near a given one, with that cost: least squares over the
 /// inliers until they stay the same.
-pub(super) fn refit(
-    observations: &Observations,
-    network: &Network,
+pub(super) fn refit<const D: usize>(
+    observations: &Observations<D>,
+    network: &Network<D>,
     deviation: f64,
     monitor: &Monitor,
-) -> Result<(Network, f64), Cancelled> {
+) -> Result<(Network<D>, f64), Cancelled> {
     let limit = (2.0 * OUTLIER_COST).sqrt() * deviation;
     let options = RefineOptions { scale: Some(deviation), steps: 20, rounds: 0, tolerance: 1e-9, ..SEARCH };
     let mut best = (network.clone(), truncated_cost(observations, network, deviation));

@@ -7,13 +7,15 @@
 //! on with what remains.
 
 use serde::{Deserialize, Serialize};
+use std::array::from_fn;
 
 use super::deviation::{inlier_deviation, spread_of_residuals};
 use super::mixture::Mixture;
 use super::significance::{doubt, least_surprise, surprise};
-use crate::multilateration::solve2;
+use crate::multilateration::solve_symmetric;
 use crate::network::Network;
 use crate::observations::Observations;
+use crate::points;
 use crate::refine::{Cancelled, Projection, check, dot};
 use hc::Monitor;
 
@@ -76,24 +78,28 @@ pub struct ReceiverError {
 
 /// An error of one receiver, by indices.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Fault {
+pub(super) struct Fault<const D: usize> {
     pub(super) receiver: usize,
     pub(super) kind: ReceiverErrorKind,
     /// First transmitter that has it; 0 for delay and drift.
     pub(super) from: usize,
-    /// Metres; of a move in x and y, otherwise the first alone.
-    pub(super) size: [f64; 2],
+    /// Metres; of a move in each coordinate, otherwise the first alone.
+    pub(super) size: [f64; D],
     pub(super) gain: f64,
 }
 
-impl Fault {
+impl<const D: usize> Fault<D> {
     /// One of no size yet.
-    pub(super) fn new(receiver: usize, kind: ReceiverErrorKind, from: usize) -> Fault {
-        Fault { receiver, kind, from, size: [0.0; 2], gain: 0.0 }
+    pub(super) fn new(receiver: usize, kind: ReceiverErrorKind, from: usize) -> Fault<D> {
+        Fault { receiver, kind, from, size: [0.0; D], gain: 0.0 }
     }
 
     pub(super) fn length(&self) -> f64 {
-        if self.kind == ReceiverErrorKind::Move { self.size[0].hypot(self.size[1]) } else { self.size[0] }
+        if self.kind == ReceiverErrorKind::Move {
+            self.size.iter().copied().fold(0.0, f64::hypot)
+        } else {
+            self.size[0]
+        }
     }
 
     /// What the error adds to a measurement of transmitter `j` of `n`, for a size of 1; a move is
@@ -109,22 +115,22 @@ impl Fault {
 
 /// What a score test tells.
 #[derive(Default)]
-pub(super) struct Told {
+pub(super) struct Told<const D: usize> {
     /// Errors of single receivers, most telling first.
-    pub(super) found: Vec<Fault>,
+    pub(super) found: Vec<Fault<D>>,
     /// Those beside that are worth a doubt.
-    pub(super) doubted: Vec<Fault>,
+    pub(super) doubted: Vec<Fault<D>>,
 }
 
 /// Errors of single receivers that the residuals at a network show. `deviation` is that of the measurements; receivers in `unmoved` are known not to have been moved.
-pub(super) fn find(
-    observations: &Observations,
-    network: &Network,
+pub(super) fn find<const D: usize>(
+    observations: &Observations<D>,
+    network: &Network<D>,
     deviation: f64,
     threshold: f64,
     unmoved: &[usize],
     monitor: &Monitor,
-) -> Result<Told, Cancelled> {
+) -> Result<Told<D>, Cancelled> {
     // An error of one receiver makes residuals larger than the noise: the test takes the deviation
     // that they have.
     let wide = spread_of_residuals(observations, network).max(deviation);
@@ -139,25 +145,25 @@ pub(super) fn find(
 
 /// The same where errors are one-sided. The test takes what each measurement says of its length (the
 /// scores of the mixture), in which late ones hardly count, in place of residuals.
-pub(super) fn find_one_sided(
-    observations: &Observations,
-    network: &Network,
+pub(super) fn find_one_sided<const D: usize>(
+    observations: &Observations<D>,
+    network: &Network<D>,
     mixture: &Mixture,
     monitor: &Monitor,
-) -> Result<Told, Cancelled> {
+) -> Result<Told<D>, Cancelled> {
     let step = mixture.deviation / mixture.information();
     let scores: Vec<f64> = observations.all().iter().map(|o| step * mixture.score(o.residual(network))).collect();
     told(observations, network, &scores, &[], monitor)
 }
 
 /// Errors that values tell of, one for each measurement.
-fn told(
-    kept: &Observations,
-    network: &Network,
+fn told<const D: usize>(
+    kept: &Observations<D>,
+    network: &Network<D>,
     values: &[f64],
     unmoved: &[usize],
     monitor: &Monitor,
-) -> Result<Told, Cancelled> {
+) -> Result<Told<D>, Cancelled> {
     let redundancy = kept.len().saturating_sub(kept.unknowns());
     if redundancy < 4 {
         return Ok(Told::default());
@@ -168,7 +174,11 @@ fn told(
 }
 
 /// Spread of the residuals of one receiver about zero, from the smaller seven tenths of them.
-pub(super) fn spread_of_receiver(observations: &Observations, network: &Network, receiver: usize) -> f64 {
+pub(super) fn spread_of_receiver<const D: usize>(
+    observations: &Observations<D>,
+    network: &Network<D>,
+    receiver: usize,
+) -> f64 {
     let mut sizes: Vec<f64> = observations.of_receiver(receiver).map(|o| o.residual(network).abs()).collect();
     sizes.sort_by(f64::total_cmp);
     // Seven tenths of a normal variable are within 1.0364 deviations.
@@ -183,9 +193,9 @@ pub(super) fn tests(kind: ReceiverErrorKind, receivers: usize, measurements: usi
     }
 }
 
-struct Test<'a> {
-    kept: &'a Observations,
-    projection: Projection<'a>,
+struct Test<'a, const D: usize> {
+    kept: &'a Observations<D>,
+    projection: Projection<'a, D>,
     /// What neither the network nor the errors found so far explain.
     rest: Vec<f64>,
     /// Orthonormal parts of the columns of these, that no motion makes.
@@ -195,12 +205,12 @@ struct Test<'a> {
     monitor: &'a Monitor,
 }
 
-impl Test<'_> {
-    fn run(mut self) -> Result<Told, Cancelled> {
-        let (mut found, mut doubted) = (Vec::<Fault>::new(), Vec::new());
+impl<const D: usize> Test<'_, D> {
+    fn run(mut self) -> Result<Told<D>, Cancelled> {
+        let (mut found, mut doubted) = (Vec::<Fault<D>>::new(), Vec::new());
         let rows = self.rows();
         while found.len() < self.kept.receivers / 2 {
-            let known = |fault: &Fault| {
+            let known = |fault: &Fault<D>| {
                 found.iter().any(|f| f.receiver == fault.receiver && f.kind == fault.kind)
                     || fault.kind == ReceiverErrorKind::Move && self.unmoved.contains(&fault.receiver)
             };
@@ -242,8 +252,8 @@ impl Test<'_> {
     }
 
     /// The most promising error of each kind and receiver, by the residuals alone.
-    fn candidates(&self, rows: &[Vec<usize>]) -> Result<Vec<Fault>, Cancelled> {
-        let mut all: Vec<(f64, Fault)> = Vec::new();
+    fn candidates(&self, rows: &[Vec<usize>]) -> Result<Vec<Fault<D>>, Cancelled> {
+        let mut all: Vec<(f64, Fault<D>)> = Vec::new();
         for (receiver, row) in rows.iter().enumerate() {
             if row.len() < 3 {
                 continue;
@@ -278,20 +288,20 @@ impl Test<'_> {
     /// How much of the squares of the residuals in some cells of a receiver one length explains, or
     /// a motion of the receiver.
     fn score(&self, row: &[usize], power: usize) -> f64 {
-        let (mut sum, mut square, mut g, mut h) = (0.0, 0.0, [0.0; 2], [0.0; 3]);
+        let (mut sum, mut square, mut g, mut h) = (0.0, 0.0, [0.0; D], [[0.0; D]; D]);
         for &k in row {
             let (p, u) = (self.kept.all()[k].precision, self.projection.rays()[k]);
             let v = self.rest[k] * p;
             (sum, square) = (sum + v, square + p * p);
-            g = [g[0] + u[0] * v, g[1] + u[1] * v];
-            h = [h[0] + p * p * u[0] * u[0], h[1] + p * p * u[0] * u[1], h[2] + p * p * u[1] * u[1]];
+            g = from_fn(|a| g[a] + u[a] * v);
+            h = from_fn(|a| from_fn(|b| h[a][b] + p * p * u[a] * u[b]));
         }
-        if power == 0 { sum * sum / square } else { solve2(h, g).map_or(0.0, |s| s[0] * g[0] + s[1] * g[1]) }
+        if power == 0 { sum * sum / square } else { solve_symmetric(&h, g).map_or(0.0, |s| points::dot(s, g)) }
     }
 
     /// The gain of taking an error into the model, with its size, and the parts of its columns that
     /// nothing else explains. `None` where it explains nothing.
-    fn judge(&self, fault: Fault, rows: &[Vec<usize>]) -> Option<(f64, Fault, Vec<Vec<f64>>)> {
+    fn judge(&self, fault: Fault<D>, rows: &[Vec<usize>]) -> Option<(f64, Fault<D>, Vec<Vec<f64>>)> {
         let n = self.kept.transmitters;
         let is_move = fault.kind == ReceiverErrorKind::Move;
         let column = |axis: usize| -> Vec<f64> {
@@ -312,39 +322,43 @@ impl Test<'_> {
             // What the network or another error absorbs to rounding cannot be told.
             if dot(&left, &left) < 1e-6 * plain { Vec::new() } else { left }
         };
-        let columns: Vec<Vec<f64>> = (0..if is_move { 2 } else { 1 }).map(column).collect();
-        let (a, b) = (columns.first()?, columns.get(1));
+        let columns: Vec<Vec<f64>> = (0..if is_move { D } else { 1 }).map(column).collect();
         if columns.iter().any(Vec::is_empty) {
             return None;
         }
-        let solve = |h: [f64; 3], g: [f64; 2]| -> Option<[f64; 2]> {
-            if b.is_some() { solve2(h, g) } else { Some([g[0] / h[0], 0.0]) }
+        let solve = |h: &[[f64; D]; D], g: [f64; D]| -> Option<[f64; D]> {
+            if is_move { solve_symmetric(h, g) } else { Some(from_fn(|a| if a == 0 { g[0] / h[0][0] } else { 0.0 })) }
         };
-        let products = |weight: &dyn Fn(usize) -> f64| -> [f64; 3] {
-            let mut h = [0.0; 3];
-            for k in 0..a.len() {
-                let (x, y, w) = (a[k], b.map_or(0.0, |b| b[k]), weight(k));
-                h = [h[0] + w * x * x, h[1] + w * x * y, h[2] + w * y * y];
+        let products = |weight: &dyn Fn(usize) -> f64| -> [[f64; D]; D] {
+            let mut h = [[0.0; D]; D];
+            for k in 0..self.kept.len() {
+                let w = weight(k);
+                for (row, x) in h.iter_mut().zip(&columns) {
+                    for (entry, y) in row.iter_mut().zip(&columns) {
+                        *entry += w * x[k] * y[k];
+                    }
+                }
             }
             h
         };
-        let g = [dot(a, &self.rest), b.map_or(0.0, |b| dot(b, &self.rest))];
-        let size = solve(products(&|_| 1.0), g)?;
-        let explained = size[0] * g[0] + size[1] * g[1];
+        let g = from_fn(|a| columns.get(a).map_or(0.0, |column| dot(column, &self.rest)));
+        let size = solve(&products(&|_| 1.0), g)?;
+        let explained = points::dot(size, g);
         let total = dot(&self.rest, &self.rest);
         let count = columns.len() as f64;
-        // Under normal noise explained / total follows Beta(q/2, (k-q)/2), whose tail is at most
-        // (1 - x)^((k - q)/2).
+        // Under normal noise explained / total follows Beta(q/2, (k-q)/2), whose tail for one or two
+        // columns is at most (1 - x)^((k - q)/2).
         let tail = |x: f64| -0.5 * (self.redundancy - count) * (-x.min(1.0)).ln_1p();
         // Receivers of uneven noise: with the spread of the residuals that the column meets. The
         // smaller gain counts.
-        let left = |k: usize| self.rest[k] - size[0] * a[k] - b.map_or(0.0, |b| size[1] * b[k]);
+        let left =
+            |k: usize| columns.iter().zip(size).fold(self.rest[k], |rest, (column, size)| rest - size * column[k]);
         let correction = self.kept.len() as f64 / (self.redundancy - count).max(1.0);
-        let s = solve(products(&|k| correction * left(k).powi(2)), g)?;
-        let squared = s[0] * g[0] + s[1] * g[1];
+        let s = solve(&products(&|k| correction * left(k).powi(2)), g)?;
+        let squared = points::dot(s, g);
         let uneven = squared / (squared + self.redundancy - count);
         let gain = tail(explained / total).min(tail(uneven));
-        Some((gain, Fault { size, gain, ..fault }, columns.clone()))
+        Some((gain, Fault { size, gain, ..fault }, columns))
     }
 
     /// Takes a column into the model.

@@ -13,13 +13,15 @@ use super::options::{CalibrateError, check};
 use super::ranking::{OUTLIER_COST, refit, truncated_cost};
 use super::receiver_errors::{Fault, ReceiverErrorKind, SIDE, spread_of_receiver, tests};
 use super::significance::{doubt, least_gain, least_surprise, surprise};
+use crate::bordered::{Bordered, Placed};
 use crate::loss::Loss;
-use crate::multilateration::solve3;
+use crate::multilateration::solve;
 use crate::network::Network;
 use crate::observations::{Observation, Observations};
-use crate::points::distance;
+use crate::points::{distance, minus};
 use crate::refine::{NetworkRefiner, Projection, RefineOptions, SEARCH, dot};
 use hc::Monitor;
+use std::array::from_fn;
 
 /// Jumps of one receiver that are tried.
 const JUMPS: usize = 24;
@@ -39,22 +41,23 @@ const ROUNDS: usize = 10;
 const RELAXED: [f64; 3] = [10.0, 3.0, 1.0];
 
 /// An error of a receiver and the network that goes with it.
-pub(super) struct Refit {
-    pub(super) fault: Fault,
-    pub(super) network: Network,
+pub(super) struct Refit<const D: usize> {
+    pub(super) fault: Fault<D>,
+    pub(super) network: Network<D>,
     /// Measurements left over.
     pub(super) freedom: f64,
     /// How much more it explains than chance would; of a doubt not positive.
     pub(super) lead: f64,
 }
 
-impl Refit {
-    fn leading(self, observations: &Observations, kept: usize) -> Refit {
+impl<const D: usize> Refit<D> {
+    fn leading(self, observations: &Observations<D>, kept: usize) -> Refit<D> {
         let is_move = self.fault.kind == ReceiverErrorKind::Move;
-        let told = surprise(self.fault.gain, self.freedom, if is_move { 2 } else { 1 });
+        let told = surprise(self.fault.gain, self.freedom, if is_move { D } else { 1 });
         let tested = told - least_surprise(tests(self.fault.kind, observations.receivers, kept));
-        // A move has one more unknown than other errors (Schwarz 1978).
-        Refit { lead: tested - if is_move { 0.5 * (kept as f64).ln() } else { 0.0 }, ..self }
+        // A move has more unknowns than other errors (Schwarz 1978).
+        let more = if is_move { (D - 1) as f64 } else { 0.0 };
+        Refit { lead: tested - 0.5 * more * (kept as f64).ln(), ..self }
     }
 }
 
@@ -62,14 +65,14 @@ impl Refit {
 /// those that are worth a doubt.
 /// Receivers are those whose measurements were given up, and `suspects`: where nothing was given up,
 /// the score test has seen all other errors. Those of `suspects` are fitted from the best network too.
-pub(super) fn refits(
-    observations: &Observations,
-    best: &Network,
+pub(super) fn refits<const D: usize>(
+    observations: &Observations<D>,
+    best: &Network<D>,
     deviation: f64,
     limit: f64,
-    suspects: &[Fault],
+    suspects: &[Fault<D>],
     monitor: &Monitor,
-) -> Result<Vec<Refit>, CalibrateError> {
+) -> Result<Vec<Refit<D>>, CalibrateError<D>> {
     let mut given_up = vec![0usize; observations.receivers];
     for o in observations.all().iter().filter(|o| o.residual(best).abs() > limit * deviation) {
         given_up[o.receiver] += 1;
@@ -84,7 +87,7 @@ pub(super) fn refits(
     let of = |i: usize| suspects.iter().filter(move |suspect| suspect.receiver == i);
     order.sort_by_key(|&i| (of(i).count() == 0, std::cmp::Reverse(given_up[i])));
     order.truncate(tried);
-    let mut found: Vec<Refit> = Vec::new();
+    let mut found: Vec<Refit<D>> = Vec::new();
     let fitting = Fitting { observations, base: &base, cost, deviation, limit, monitor };
     for receiver in order {
         check(monitor)?;
@@ -92,7 +95,7 @@ pub(super) fn refits(
         let may_have_moved = given_up[receiver] > 1 || of(receiver).count() > 0;
         let mut fits = fitting.receiver(receiver, may_have_moved)?;
         for suspect in of(receiver).filter(|suspect| suspect.kind != ReceiverErrorKind::Move) {
-            fits.extend(fitting.joint(base.clone(), Fault { size: [0.0; 2], ..*suspect })?);
+            fits.extend(fitting.joint(base.clone(), Fault { size: [0.0; D], ..*suspect })?);
         }
         let fits = fits.into_iter().map(|next| next.leading(observations, kept));
         found.extend(fits.filter(|next| next.lead > -doubt()).max_by(|a, b| a.lead.total_cmp(&b.lead)));
@@ -102,10 +105,10 @@ pub(super) fn refits(
 }
 
 /// What errors are fitted to.
-pub(super) struct Fitting<'a> {
-    pub(super) observations: &'a Observations,
+pub(super) struct Fitting<'a, const D: usize> {
+    pub(super) observations: &'a Observations<D>,
     /// The network of least squares without the error, and its truncated cost.
-    base: &'a Network,
+    base: &'a Network<D>,
     cost: f64,
     pub(super) deviation: f64,
     /// Measurements farther off than this many deviations are outliers.
@@ -115,19 +118,19 @@ pub(super) struct Fitting<'a> {
 
 /// A network and an error on the way to their best fit.
 #[derive(Clone)]
-struct Joint {
+struct Joint<const D: usize> {
     /// The measurements without the error.
-    observations: Observations,
-    network: Network,
-    fault: Fault,
+    observations: Observations<D>,
+    network: Network<D>,
+    fault: Fault<D>,
     /// The square of what one metre of the error adds to the residuals, motions taken off.
     square: f64,
     cost: f64,
 }
 
-impl Fitting<'_> {
+impl<const D: usize> Fitting<'_, D> {
     /// Fits of one receiver with an error of each kind, as far as they are worth a look.
-    fn receiver(&self, receiver: usize, may_have_moved: bool) -> Result<Vec<Refit>, CalibrateError> {
+    fn receiver(&self, receiver: usize, may_have_moved: bool) -> Result<Vec<Refit<D>>, CalibrateError<D>> {
         let others = self.observations.subset(|o| o.receiver != receiver);
         let options = RefineOptions { scale: Some(CAUCHY * self.deviation), rounds: 0, steps: 30, ..SEARCH };
         let bent = NetworkRefiner::new(&others, 1.0).heeding(self.monitor).refine(self.base.clone(), &options).network;
@@ -155,13 +158,13 @@ impl Fitting<'_> {
                 network.receivers[receiver] = located.position;
                 self.joint(network, located.fault)
             });
-        let fitted: Vec<Option<Refit>> = fitted.collect::<Result<_, CalibrateError>>()?;
+        let fitted: Vec<Option<Refit<D>>> = fitted.collect::<Result<_, CalibrateError<D>>>()?;
         Ok(fitted.into_iter().flatten().chain(moved).collect())
     }
 
     /// Least squares of all nodes and the error over the inliers, from here; `None` where the error
     /// cannot be told from a motion of the nodes.
-    fn joint(&self, network: Network, fault: Fault) -> Result<Option<Refit>, CalibrateError> {
+    fn joint(&self, network: Network<D>, fault: Fault<D>) -> Result<Option<Refit<D>>, CalibrateError<D>> {
         let start = Joint { observations: self.corrected(&fault), network, fault, square: 0.0, cost: f64::INFINITY };
         let Some(mut fitted) = self.descend(start, 1.0)? else { return Ok(None) };
         // A network that is still bent gives up measurements that the error would explain.
@@ -186,15 +189,15 @@ impl Fitting<'_> {
 
     /// Whether a fit costs less than another, with the smaller of the deviations that they leave: with
     /// that of a bent network, measurements given up look cheap.
-    fn is_better(&self, fit: &Joint, other: &Joint) -> bool {
-        let left = |fit: &Joint| inlier_deviation(&fit.observations, &fit.network, self.deviation, self.limit);
+    fn is_better(&self, fit: &Joint<D>, other: &Joint<D>) -> bool {
+        let left = |fit: &Joint<D>| inlier_deviation(&fit.observations, &fit.network, self.deviation, self.limit);
         let deviation = left(fit).min(left(other)).min(self.deviation);
-        let cost = |fit: &Joint| truncated_cost(&fit.observations, &fit.network, deviation);
+        let cost = |fit: &Joint<D>| truncated_cost(&fit.observations, &fit.network, deviation);
         cost(fit) < cost(other)
     }
 
     /// The measurements without an error.
-    fn corrected(&self, fault: &Fault) -> Observations {
+    fn corrected(&self, fault: &Fault<D>) -> Observations<D> {
         let n = self.observations.transmitters;
         let of = |o: &Observation| {
             if o.receiver == fault.receiver { fault.size[0] * fault.shape(o.transmitter, n) } else { 0.0 }
@@ -208,7 +211,7 @@ impl Fitting<'_> {
     }
 
     /// Lowers the truncated cost with so many times the deviation.
-    fn descend(&self, from: Joint, factor: f64) -> Result<Option<Joint>, CalibrateError> {
+    fn descend(&self, from: Joint<D>, factor: f64) -> Result<Option<Joint<D>>, CalibrateError<D>> {
         let n = self.observations.transmitters;
         let (reach, deviation) = (factor * self.reach(), factor * self.deviation);
         let mut now = from;
@@ -233,7 +236,8 @@ impl Fitting<'_> {
             let mut share = 1.0;
             let better = loop {
                 let network = motion.applied(&now.network, -share);
-                let fault = Fault { size: [fault.size[0] + share * step, 0.0], ..fault };
+                let mut fault = fault;
+                fault.size[0] += share * step;
                 let observations = self.corrected(&fault);
                 let cost = truncated_cost(&observations, &network, deviation);
                 if cost < now.cost {
@@ -260,11 +264,11 @@ impl Fitting<'_> {
     /// `None` where few measurements are left over, otherwise with their number.
     pub(super) fn gain(
         &self,
-        with_error: &Observations,
-        network: &Network,
+        with_error: &Observations<D>,
+        network: &Network<D>,
         rows: &[usize],
         explained: Option<f64>,
-    ) -> Result<Option<(f64, f64)>, CalibrateError> {
+    ) -> Result<Option<(f64, f64)>, CalibrateError<D>> {
         let deviation = inlier_deviation(with_error, network, self.deviation, self.limit).min(self.deviation);
         let before = refit(self.observations, self.base, deviation, self.monitor)?.1;
         let fall = before - truncated_cost(with_error, network, deviation);
@@ -281,25 +285,25 @@ impl Fitting<'_> {
 }
 
 /// One receiver against all transmitters.
-struct Local {
+struct Local<const D: usize> {
     /// Transmitter, its position, the distance measured, one over its deviation.
-    sights: Vec<(usize, [f64; 2], f64, f64)>,
+    sights: Vec<(usize, [f64; D], f64, f64)>,
     receiver: usize,
-    start: [f64; 2],
+    start: [f64; D],
     transmitters: usize,
     deviation: f64,
 }
 
 /// A receiver located with its error.
-struct LocatedFault {
-    position: [f64; 2],
-    fault: Fault,
+struct LocatedFault<const D: usize> {
+    position: [f64; D],
+    fault: Fault<D>,
     /// Truncated cost of its measurements.
     cost: f64,
 }
 
-impl Local {
-    fn new(observations: &Observations, network: &Network, receiver: usize, deviation: f64) -> Local {
+impl<const D: usize> Local<D> {
+    fn new(observations: &Observations<D>, network: &Network<D>, receiver: usize, deviation: f64) -> Local<D> {
         let sight = |o: &Observation| {
             let j = o.transmitter;
             (j, network.transmitters[j], o.value - network.offsets[j], o.precision)
@@ -314,7 +318,7 @@ impl Local {
     }
 
     /// The jump that fits best.
-    fn jump(&self) -> Option<LocatedFault> {
+    fn jump(&self) -> Option<LocatedFault<D>> {
         let last = self.sights.len().checked_sub(SIDE).filter(|&last| last > SIDE)?;
         let tried = (last - SIDE + 1).min(JUMPS);
         let at = |k: usize| SIDE + k * (last - SIDE) / tried.max(2).saturating_sub(1);
@@ -330,15 +334,15 @@ impl Local {
         near.chain([coarse]).min_by(|a, b| a.cost.total_cmp(&b.cost))
     }
 
-    fn fault_at(&self, k: usize) -> Fault {
+    fn fault_at(&self, k: usize) -> Fault<D> {
         Fault::new(self.receiver, ReceiverErrorKind::Jump, self.sights[k].0)
     }
 
     /// Position and size of the error together: reweighted least squares whose loss starts as wide as
     /// the residuals.
-    fn locate(&self, mut fault: Fault) -> Option<LocatedFault> {
+    fn locate(&self, mut fault: Fault<D>) -> Option<LocatedFault<D>> {
         let shapes: Vec<f64> = self.sights.iter().map(|s| fault.shape(s.0, self.transmitters)).collect();
-        let residual = |k: usize, at: [f64; 2], size: f64| {
+        let residual = |k: usize, at: [f64; D], size: f64| {
             let (_, s, length, precision) = self.sights[k];
             (length - size * shapes[k] - distance(at, s)) * precision
         };
@@ -349,28 +353,32 @@ impl Local {
         let mut scale = sizes.get(sizes.len() * 7 / 10)?.max(least);
         for _ in 0..STEPS {
             let loss = Loss { nu: 1.0, scale };
-            let (mut h, mut g) = ([[0.0; 3]; 3], [0.0; 3]);
+            let (mut h, mut g) = (Bordered::ZERO, ([0.0; D], 0.0));
             for (k, &shape) in shapes.iter().enumerate() {
                 let (_, s, _, precision) = self.sights[k];
                 let d = distance(at, s).max(1e-300);
                 let e = residual(k, at, size);
                 let w = loss.weight(e);
                 // Derivatives of the residual's opposite.
-                let c = [(at[0] - s[0]) / d * precision, (at[1] - s[1]) / d * precision, shape * precision];
-                for a in 0..3 {
-                    g[a] += w * e * c[a];
-                    for b in 0..3 {
-                        h[a][b] += w * c[a] * c[b];
+                let (c, last): Placed<D> = (minus(at, s).map(|x| x / d * precision), shape * precision);
+                for a in 0..D {
+                    g.0[a] += w * e * c[a];
+                    for b in 0..D {
+                        h.rows[a][b] += w * c[a] * c[b];
                     }
+                    h.border[a] += w * c[a] * last;
                 }
+                g.1 += w * e * last;
+                h.corner += w * last * last;
             }
-            for (a, row) in h.iter_mut().enumerate() {
+            for (a, row) in h.rows.iter_mut().enumerate() {
                 row[a] *= 1.0 + 1e-6;
             }
-            let step = solve3(&h, &g)?;
-            at = [at[0] + step[0], at[1] + step[1]];
-            size += step[2];
-            let moved = step.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+            h.corner *= 1.0 + 1e-6;
+            let step = solve(&h, g)?;
+            at = from_fn(|k| at[k] + step.0[k]);
+            size += step.1;
+            let moved = step.0.iter().fold(step.1.abs(), |a, b| a.max(b.abs()));
             if scale == least && moved < 1e-3 * self.deviation {
                 break;
             }
@@ -378,11 +386,7 @@ impl Local {
         }
         let cost = |e: f64| (0.5 * (e / self.deviation).powi(2)).min(OUTLIER_COST);
         let cost = (0..shapes.len()).map(|k| cost(residual(k, at, size))).sum();
-        fault.size = [size, 0.0];
-        (at[0].is_finite() && at[1].is_finite() && size.is_finite()).then_some(LocatedFault {
-            position: at,
-            fault,
-            cost,
-        })
+        fault.size[0] = size;
+        (at.iter().all(|x| x.is_finite()) && size.is_finite()).then_some(LocatedFault { position: at, fault, cost })
     }
 }

@@ -14,16 +14,18 @@ use super::residuals::{Residual, Residuals};
 use super::same::{same_receivers, same_transmitters};
 use super::submaps::OVERLAP;
 use super::warnings::{doubtful_receivers, warn_of_nodes};
-use crate::align::{Transform, align, frame};
+use crate::align::{Transform, align, first_axes, frame};
 use crate::cells::Cells;
-use crate::degeneracy::{Usable, list};
+use crate::degeneracy::{Usable, list, space};
 use crate::network::Network;
 use crate::observations::Observations;
+use crate::points::trace;
 use crate::pseudoranges::Pseudoranges;
 use crate::quantity::length;
 use crate::refine::{Covariance, RefinedNetwork};
 use hc::Monitor;
 use hc::poly::{counted, one_or};
+use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
 use std::borrow::Cow;
 
 /// Starts that must end in the best network before it is called unique: one or two may have found
@@ -31,36 +33,40 @@ use std::borrow::Cow;
 const SETTLED: usize = 3;
 
 /// What the search and the refinement leave to report.
-pub(super) struct Solved<'a> {
+pub(super) struct Solved<'a, const D: usize> {
     pub(super) measured: &'a Pseudoranges,
     pub(super) usable: &'a Usable,
-    pub(super) observations: &'a Observations,
+    pub(super) observations: &'a Observations<D>,
     pub(super) centred: &'a Pseudoranges,
     pub(super) shifts: &'a [f64],
     /// At least one network.
-    pub(super) ranked: Vec<RefinedNetwork>,
+    pub(super) ranked: Vec<RefinedNetwork<D>>,
     /// Neighbours of the best network.
-    pub(super) neighbours: Vec<Neighbour>,
+    pub(super) neighbours: Vec<Neighbour<D>>,
     pub(super) deviation: f64,
     pub(super) known: Option<f64>,
     pub(super) starts: usize,
     /// Where small networks were laid together, receivers whose place no overlap of them supports.
     pub(super) weak: Option<Vec<usize>>,
-    pub(super) anchors: Option<Anchors>,
+    pub(super) anchors: Option<Anchors<D>>,
     pub(super) speed: Option<SpeedEstimate>,
     /// Errors of receivers that were taken out of the measurements, and those that were left in.
-    pub(super) taken: &'a [Fault],
-    pub(super) left: &'a [Fault],
+    pub(super) taken: &'a [Fault<D>],
+    pub(super) left: &'a [Fault<D>],
     /// Warnings of the steps before.
     pub(super) warnings: Vec<String>,
     /// How far known positions are from where the measurements put them, where that is no chance.
     pub(super) contradiction: Option<f64>,
 }
 
-impl Solved<'_> {
+impl<const D: usize> Solved<'_, D> {
     /// # Errors
     /// Cancelled.
-    pub(super) fn report(&self, options: &CalibrateOptions, monitor: &Monitor) -> Result<Calibration, CalibrateError> {
+    pub(super) fn report(
+        &self,
+        options: &CalibrateOptions<D>,
+        monitor: &Monitor,
+    ) -> Result<Calibration<D>, CalibrateError<D>> {
         let best = &self.ranked[0].network;
         let one_sided = (options.errors == Errors::OneSided)
             .then(|| Information::new(self.observations, best, self.deviation, self.known, monitor))
@@ -71,7 +77,7 @@ impl Solved<'_> {
             None => inlier_deviation(self.observations, best, self.deviation, options.inlier_threshold),
         };
         let sigma = self.known.unwrap_or(estimated);
-        let inlier = |measured: &Pseudoranges, network: &Network, i: usize, j: usize| -> bool {
+        let inlier = |measured: &Pseudoranges, network: &Network<D>, i: usize, j: usize| -> bool {
             let residual = measured.get(i, j).map(|f| f - network.pseudorange(i, j));
             let deviation = sigma * self.centred.sigma(i, j).unwrap_or(1.0);
             residual.is_some_and(|e| e.abs() <= options.inlier_threshold * deviation)
@@ -84,7 +90,7 @@ impl Solved<'_> {
             .beside(self.observations.others());
         let mut warnings = [self.usable.warnings.as_slice(), &self.warnings].concat();
         let redundancy = kept.len().saturating_sub(kept.unknowns());
-        let ellipse_radius = radius_95(redundancy, self.known.is_some());
+        let ellipse_radius = radius_95::<D>(redundancy, self.known.is_some());
         let mut uncertainty = match ellipse_radius {
             Some(_) => match &one_sided {
                 Some(information) => self.covariance(&information.trusted, sigma, monitor)?,
@@ -100,13 +106,13 @@ impl Solved<'_> {
                 Covariance::default()
             }
         };
-        let mut apart: Vec<&Neighbour> = Vec::new();
+        let mut apart: Vec<&Neighbour<D>> = Vec::new();
         if let Some(radius) = ellipse_radius {
             let likely = self.neighbours.iter().filter(|n| n.loss <= options.alternative_margin);
             apart.extend(likely.filter(|n| n.distance(&uncertainty) >= BEYOND));
             widen(&mut uncertainty, &self.neighbours, radius);
         }
-        let planar = self.planar(best, estimated, redundancy, options, &mut warnings);
+        let fits = self.fits(best, estimated, redundancy, options, &mut warnings);
         let noise_known = ellipse_radius.is_some();
         let band = 2.0 * options.inlier_threshold * sigma * typical_deviation(self.centred);
         let doubtful = doubtful_receivers(self.centred, &kept, band / best.size());
@@ -126,9 +132,9 @@ impl Solved<'_> {
 
         let (m, n) = (self.measured.receivers(), self.measured.transmitters());
         let (rows, columns) = (&self.usable.receivers, &self.usable.transmitters);
-        let spread_rows = |all: &[[f64; 2]]| scatter(m, rows, all);
-        let spread_columns = |all: &[[f64; 2]]| scatter(n, columns, all);
-        let offsets = |network: &Network| -> Vec<Option<f64>> {
+        let spread_rows = |all: &[[f64; D]]| scatter(m, rows, all);
+        let spread_columns = |all: &[[f64; D]]| scatter(n, columns, all);
+        let offsets = |network: &Network<D>| -> Vec<Option<f64>> {
             let moved: Vec<f64> = network.offsets.iter().zip(self.shifts).map(|(o, shift)| o + shift).collect();
             scatter(n, columns, &moved)
         };
@@ -137,18 +143,18 @@ impl Solved<'_> {
             (rows[a], columns[b], Residual { length, inlier: inlier(self.centred, best, a, b) })
         };
         let residuals = Cells::new(m, n, self.centred.cells().iter().map(residual));
-        let rms = |measured: &Pseudoranges, network: &Network| -> f64 {
+        let rms = |measured: &Pseudoranges, network: &Network<D>| -> f64 {
             let cells = measured.cells().iter().filter(|&(a, b, _)| inlier(measured, network, a, b));
             let squares: Vec<f64> = cells.map(|(a, b, f)| (f - network.pseudorange(a, b)).powi(2)).collect();
             (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
         };
         let best_cost = self.ranked[0].objective;
         let others = self.ranked[1..].iter().map(|other| (&other.network, other.objective - best_cost, Reason::Found));
-        let mut others: Vec<(&Network, f64, Reason)> =
+        let mut others: Vec<(&Network<D>, f64, Reason<D>)> =
             others.chain(apart.iter().map(|other| (&other.network, other.loss, other.reason))).collect();
         others.retain(|(_, loss, _)| *loss <= options.alternative_margin);
         others.sort_by(|a, b| a.1.total_cmp(&b.1));
-        let alternatives: Vec<Alternative> = others
+        let alternatives: Vec<Alternative<D>> = others
             .iter()
             .filter_map(|&(other, loss, reason)| {
                 let error = if let Reason::Error(fault) = reason { Some(fault) } else { None };
@@ -184,7 +190,7 @@ impl Solved<'_> {
             ));
         }
         let size = best.size();
-        let placed = uncertainty.receivers.iter().all(|c| (c[0][0] + c[1][1]).max(0.0).sqrt() <= size);
+        let placed = uncertainty.receivers.iter().all(|c| trace(c).max(0.0).sqrt() <= size);
         let agreeing = self.ranked[0].starts;
         self.warn_of_receivers(options, &mut warnings);
         let settled = match &self.weak {
@@ -208,7 +214,7 @@ impl Solved<'_> {
             ));
         }
         let as_given = self.known.is_none_or(|sigma| !too_large(estimated / sigma, redundancy));
-        let fits = as_given && one_sided.as_ref().is_none_or(|information| information.fits(redundancy));
+        let as_likely = as_given && one_sided.as_ref().is_none_or(|information| information.fits(redundancy));
         if let Some(information) = one_sided.as_ref().filter(|information| !information.fits(redundancy)) {
             warnings.push(format!(
                 "which measurements are late cannot be told for sure: {:.0} % seem late or wrong, and {redundancy} of the others are left over \
@@ -216,8 +222,13 @@ impl Solved<'_> {
                 100.0 * (information.mixture.share + information.mixture.gross)
             ));
         }
-        let sure =
-            settled && fits && planar && placed && determined && self.contradiction.is_none() && self.left.is_empty();
+        let sure = settled
+            && as_likely
+            && fits
+            && placed
+            && determined
+            && self.contradiction.is_none()
+            && self.left.is_empty();
         let transmitters: Vec<_> = uncertainty.transmitters.iter().map(|c| c.map(|c| c.rows)).collect();
         let offset_std: Vec<_> = uncertainty.transmitters.iter().map(|c| c.map(|c| c.corner.max(0.0).sqrt())).collect();
         let mut calibration = Calibration {
@@ -255,7 +266,9 @@ impl Solved<'_> {
             unique_receivers: receivers_agree && sure,
             unique_transmitters: transmitters_agree && sure,
             alternatives,
-            planar,
+            dimensions: D,
+            fits,
+            planar: fits && D == 2,
             determined,
             anchors_agree,
             receiver_errors: self.receiver_errors(),
@@ -288,19 +301,20 @@ impl Solved<'_> {
 
     /// Whether rows have the offsets of transmitters, and the network that was found leaves residuals
     /// beyond a hundredth of its size.
-    fn seems_transposed(&self, estimated: f64, options: &CalibrateOptions) -> bool {
+    fn seems_transposed(&self, estimated: f64, options: &CalibrateOptions<D>) -> bool {
         let misfit = estimated * typical_deviation(self.centred);
         options.receiver_delays != ReceiverDelays::All
             && misfit > 0.01 * self.ranked[0].network.size()
             && looks_transposed(&self.measured.select(&self.usable.receivers, &self.usable.transmitters))
     }
 
-    fn planar(
+    /// Whether the measurements fit a network in the plane, or in space.
+    fn fits(
         &self,
-        best: &Network,
+        best: &Network<D>,
         estimated: f64,
         redundancy: usize,
-        options: &CalibrateOptions,
+        options: &CalibrateOptions<D>,
         warnings: &mut Vec<String>,
     ) -> bool {
         // In metres also where measurements carry their own deviations.
@@ -312,18 +326,21 @@ impl Solved<'_> {
         {
             warnings.push(format!(
                 "the residuals are {:.1} times as large as the given standard deviation, and standard deviations of the nodes are too small by \
-                 that factor: give a larger --sigma, or none; or the network is not planar, or the measurements have errors beside noise",
-                estimated / sigma
+                 that factor: give a larger --sigma, or none; or {}the measurements have errors beside noise",
+                estimated / sigma,
+                if D == 2 { "the network is not planar, or " } else { "" }
             ));
         }
         if misfit > options.planar_limit * size {
             warnings.push(format!(
-                "the measurements do not fit a network in the plane: the residuals' deviation is {}, {:.1} % of \
-                 the network's size {}; receivers and transmitters must lie in one plane, and at most about a \
+                "the measurements do not fit a network {}: the residuals' deviation is {}, {:.1} % of \
+                 the network's size {}; {}at most about a \
                  third of the measurements may be wrong",
+                space(D),
                 length(misfit),
                 100.0 * misfit / size,
-                length(size)
+                length(size),
+                if D == 2 { "receivers and transmitters must lie in one plane, and " } else { "" }
             ));
             return false;
         }
@@ -350,18 +367,22 @@ fn exceeds_chance(ratio: f64, redundancy: usize) -> bool {
 /// Efficiency of the last refinement's Cauchy loss on normal noise.
 const EFFICIENCY: f64 = 0.95;
 
-/// Radius of the 95 % ellipse in standard deviations. With the deviation known its square is the 95
-/// % quantile of chi-squared with two degrees of freedom, -2 ln 0.05; with one estimated from k
-/// residuals left over it is twice that of F(2, k), which is k (0.05^(-2/k) - 1).
-fn radius_95(redundancy: usize, known: bool) -> Option<f64> {
+/// Radius of the 95 % ellipse, in space of the ellipsoid, in standard deviations. With the deviation
+/// known its square is the 95 % quantile of chi-squared with D degrees of freedom, in the plane -2 ln
+/// 0.05; with one estimated from k residuals left over it is D times that of F(D, k), in the plane k
+/// (0.05^(-2/k) - 1).
+fn radius_95<const D: usize>(redundancy: usize, known: bool) -> Option<f64> {
     let k = redundancy as f64;
-    if known {
-        Some((-2.0 * 0.05f64.ln()).sqrt())
-    } else if redundancy == 0 {
-        None
-    } else {
-        Some((k * (0.05f64.powf(-2.0 / k) - 1.0)).sqrt())
+    if !known && redundancy == 0 {
+        return None;
     }
+    let square = match (D, known) {
+        (2, true) => -2.0 * 0.05f64.ln(),
+        (2, false) => k * (0.05f64.powf(-2.0 / k) - 1.0),
+        (_, true) => ChiSquared::new(D as f64).ok()?.inverse_cdf(0.95),
+        (_, false) => D as f64 * FisherSnedecor::new(D as f64, k).ok()?.inverse_cdf(0.95),
+    };
+    Some(square.sqrt())
 }
 
 /// Values at these indices of a longer list.
@@ -373,13 +394,10 @@ fn scatter<T: Copy>(length: usize, at: &[usize], values: &[T]) -> Vec<Option<T>>
     all
 }
 
-/// First receiver at the origin, second on the x axis, third above; other receivers take their
-/// place where these coincide or are in line.
-fn default_frame(receivers: &[[f64; 2]]) -> Transform {
-    let identity = Transform { rotation: [[1.0, 0.0], [0.0, 1.0]], scale: 1.0, translation: [0.0; 2] };
-    let origin = receivers[0];
-    let candidates = receivers[1..].iter().flat_map(|&x| receivers[1..].iter().map(move |&up| (x, up)));
-    candidates.filter_map(|(x, up)| frame(origin, x, up)).next().unwrap_or(identity)
+/// First receiver at the origin, second on the x axis, third above it, in space the fourth above the
+/// plane of these; other receivers take their place where these coincide or are in line.
+fn default_frame<const D: usize>(receivers: &[[f64; D]]) -> Transform<D> {
+    first_axes(receivers).and_then(|axes| frame(receivers[0], axes)).unwrap_or(Transform::IDENTITY)
 }
 
 #[cfg(test)]
@@ -401,10 +419,18 @@ mod tests {
     fn radius_of_ellipses() {
         // Tables: the 95 % quantile of chi-squared with 2 degrees of freedom is 5.991; of F(2, 1)
         // 199.5, F(2, 10) 4.103.
+        let radius_95 = radius_95::<2>;
         assert!((radius_95(7, true).unwrap().powi(2) - 5.991).abs() < 1e-3);
         assert!((radius_95(1, false).unwrap().powi(2) - 2.0 * 199.5).abs() < 0.1);
         assert!((radius_95(10, false).unwrap().powi(2) - 2.0 * 4.103).abs() < 1e-3);
         assert!((radius_95(1_000_000, false).unwrap().powi(2) - 5.991).abs() < 1e-3);
+        assert_eq!(radius_95(0, false), None);
+        // In space: 7.815 with 3 degrees of freedom; of F(3, 1) 215.7, F(3, 10) 3.708.
+        let radius_95 = super::radius_95::<3>;
+        assert!((radius_95(7, true).unwrap().powi(2) - 7.815).abs() < 1e-3);
+        assert!((radius_95(1, false).unwrap().powi(2) - 3.0 * 215.7).abs() < 0.2);
+        assert!((radius_95(10, false).unwrap().powi(2) - 3.0 * 3.708).abs() < 2e-3);
+        assert!((radius_95(1_000_000, false).unwrap().powi(2) - 7.815).abs() < 1e-3);
         assert_eq!(radius_95(0, false), None);
     }
 }

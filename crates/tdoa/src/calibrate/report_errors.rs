@@ -13,9 +13,10 @@ use crate::refine::{Cancelled, Covariance, Motion, Projection, check, covariance
 use faer::Mat;
 use faer::prelude::Solve;
 use hc::Monitor;
+use std::array::from_fn;
 
 /// Adds the product of two motions to a covariance, but for the single receivers.
-fn add(covariance: &mut Covariance, factor: f64, p: &Motion, q: &Motion) {
+fn add<const D: usize>(covariance: &mut Covariance<D>, factor: f64, p: &Motion<D>, q: &Motion<D>) {
     let size = p.receivers.len();
     for x in 0..size {
         for y in 0..size {
@@ -43,15 +44,15 @@ fn what_is_wrong(error: &ReceiverError, metre: f64) -> String {
     }
 }
 
-impl Solved<'_> {
+impl<const D: usize> Solved<'_, D> {
     /// The covariance of all nodes, with what the uncertainty of errors that were taken out adds, and
     /// how far errors that were left in may have moved them.
     pub(super) fn covariance(
         &self,
-        kept: &Observations,
+        kept: &Observations<D>,
         sigma: f64,
         monitor: &Monitor,
-    ) -> Result<Covariance, Cancelled> {
+    ) -> Result<Covariance<D>, Cancelled> {
         let best = &self.ranked[0].network;
         let mut found = covariance(kept, best, sigma, monitor)?.unwrap_or_default();
         if self.taken.is_empty() && self.left.is_empty() || found.receivers.is_empty() {
@@ -75,7 +76,7 @@ impl Solved<'_> {
                 // Its place is somewhere between the two.
                 let mut motion = Motion {
                     receivers: vec![0.0; 2 * kept.receivers],
-                    transmitters: vec![([0.0; 2], 0.0); kept.transmitters],
+                    transmitters: vec![([0.0; D], 0.0); kept.transmitters],
                 };
                 motion.receivers[2 * fault.receiver..2 * fault.receiver + 2].copy_from_slice(&fault.size);
                 add(&mut found, 1.0, &motion, &motion);
@@ -87,7 +88,7 @@ impl Solved<'_> {
         }
         let size = 2 * kept.receivers;
         for (i, receiver) in found.receivers.iter_mut().enumerate() {
-            *receiver = [0, 1].map(|x| [0, 1].map(|y| found.joint[(2 * i + x) * size + 2 * i + y]));
+            *receiver = from_fn(|x| from_fn(|y| found.joint[(D * i + x) * size + D * i + y]));
         }
         Ok(found)
     }
@@ -97,7 +98,7 @@ impl Solved<'_> {
         taken.chain(self.left.iter().map(|fault| self.receiver_error(fault, false))).collect()
     }
 
-    pub(super) fn receiver_error(&self, fault: &Fault, taken_out: bool) -> ReceiverError {
+    pub(super) fn receiver_error(&self, fault: &Fault<D>, taken_out: bool) -> ReceiverError {
         let later = matches!(fault.kind, ReceiverErrorKind::Jump | ReceiverErrorKind::Move);
         ReceiverError {
             receiver: self.centred.receiver_names()[fault.receiver].clone(),
@@ -111,7 +112,7 @@ impl Solved<'_> {
     }
 
     /// What to do about a neighbour that the search has not ended in.
-    pub(super) fn doubt(&self, other: &Neighbour) -> Option<String> {
+    pub(super) fn doubt(&self, other: &Neighbour<D>) -> Option<String> {
         let apart = length(self.metre() * other.rms());
         let fault = match other.reason {
             Reason::Found => return None,
@@ -139,23 +140,24 @@ impl Solved<'_> {
 
     /// Which place of a receiver that was moved is in the result: what it measured at the other one was
     /// left out.
-    fn place_of(&self, fault: &Fault) -> MovedPlace {
+    fn place_of(&self, fault: &Fault<D>) -> MovedPlace {
         let is_before = (0..fault.from).any(|j| self.centred.get(fault.receiver, j).is_some());
         if is_before { MovedPlace::Before } else { MovedPlace::After }
     }
 
     /// Warnings that name the receivers, what is wrong with them, by how much, and what to do.
-    pub(super) fn warn_of_receivers(&self, options: &CalibrateOptions, warnings: &mut Vec<String>) {
+    pub(super) fn warn_of_receivers(&self, options: &CalibrateOptions<D>, warnings: &mut Vec<String>) {
         let all = options.receiver_delays == ReceiverDelays::All;
         let metre = self.metre();
-        let delays = |f: &&Fault| f.kind == ReceiverErrorKind::Delay;
+        let delays = |f: &&Fault<D>| f.kind == ReceiverErrorKind::Delay;
         if self.left.iter().filter(delays).count() > 4 {
             let names: Vec<String> =
                 self.left.iter().map(|f| self.centred.receiver_names()[f.receiver].clone()).collect();
             warnings.push(format!(
-                "many receivers seem to have errors of their own ({}): are their clocks synchronised, and do all nodes lie in one plane? \
+                "many receivers seem to have errors of their own ({}): are their clocks synchronised{}? \
                  --receiver-delays all estimates a delay for each",
-                list(&names)
+                list(&names),
+                if D == 2 { ", and do all nodes lie in one plane" } else { "" }
             ));
             return;
         }

@@ -26,13 +26,13 @@ const MOST_LEFT_OVER: usize = 20;
 const ANNEALED: [f64; 2] = [3.0, 1.0];
 
 /// The networks with their rivals, best first. `deviation` is that of the measurements.
-pub(super) fn with_rivals(
-    observations: &Observations,
-    mut ranked: Vec<RefinedNetwork>,
+pub(super) fn with_rivals<const D: usize>(
+    observations: &Observations<D>,
+    mut ranked: Vec<RefinedNetwork<D>>,
     deviation: f64,
-    options: &CalibrateOptions,
+    options: &CalibrateOptions<D>,
     monitor: &Monitor,
-) -> Result<Vec<RefinedNetwork>, CalibrateError> {
+) -> Result<Vec<RefinedNetwork<D>>, CalibrateError<D>> {
     let limit = options.inlier_threshold * deviation;
     let (best, cost) = refit(observations, &ranked[0].network, deviation, monitor)?;
     let suspected = observations.all().iter().filter(|o| o.residual(&best).abs() > limit).count();
@@ -41,7 +41,7 @@ pub(super) fn with_rivals(
         return Ok(ranked);
     }
     let loss = Loss { nu: SEARCH_NU, scale: 3.0 * deviation };
-    let mut starts: Vec<Network> = Vec::new();
+    let mut starts: Vec<Network<D>> = Vec::new();
     for i in (0..observations.receivers).filter(|&i| !observations.held()[i]) {
         check(monitor)?;
         // What its measurements have bent the others to is undone first.
@@ -61,7 +61,7 @@ pub(super) fn with_rivals(
             starts.push(network);
         }
     }
-    let carried = |network: Network| -> Result<(Network, f64), CalibrateError> {
+    let carried = |network: Network<D>| -> Result<(Network<D>, f64), CalibrateError<D>> {
         let mut now = (network, f64::INFINITY);
         for factor in ANNEALED {
             now = refit(observations, &now.0, factor * deviation, monitor)?;
@@ -69,7 +69,7 @@ pub(super) fn with_rivals(
         Ok(now)
     };
     let carried = starts.into_iter().filter(Network::is_finite).map(carried);
-    let mut found: Vec<(Network, f64)> = carried.collect::<Result<_, CalibrateError>>()?;
+    let mut found: Vec<(Network<D>, f64)> = carried.collect::<Result<_, CalibrateError<D>>>()?;
     found.retain(|(network, new)| *new <= cost + options.alternative_margin && network.is_finite());
     found.sort_by(|a, b| a.1.total_cmp(&b.1));
     // Costs are put on the scale of the last refinement's objectives.

@@ -11,8 +11,8 @@ pub const SAME_NETWORK: f64 = 0.02;
 
 /// The first of each kind of network in a list sorted by objective, at most `most` of them, with
 /// the starts of the one that most ended in.
-pub(super) fn distinct(sorted: Vec<RefinedNetwork>, most: usize) -> Vec<RefinedNetwork> {
-    let mut kept: Vec<RefinedNetwork> = Vec::new();
+pub(super) fn distinct<const D: usize>(sorted: Vec<RefinedNetwork<D>>, most: usize) -> Vec<RefinedNetwork<D>> {
+    let mut kept: Vec<RefinedNetwork<D>> = Vec::new();
     for candidate in sorted {
         if kept.len() == most {
             break;
@@ -27,7 +27,7 @@ pub(super) fn distinct(sorted: Vec<RefinedNetwork>, most: usize) -> Vec<RefinedN
 }
 
 /// The first of each kind of network in a sorted list, with the starts of all of its kind.
-pub(super) fn merged<T>(sorted: Vec<T>, of: impl Fn(&mut T) -> &mut RefinedNetwork) -> Vec<T> {
+pub(super) fn merged<T, const D: usize>(sorted: Vec<T>, of: impl Fn(&mut T) -> &mut RefinedNetwork<D>) -> Vec<T> {
     let mut kept: Vec<T> = Vec::new();
     for mut next in sorted {
         let this = of(&mut next);
@@ -41,18 +41,18 @@ pub(super) fn merged<T>(sorted: Vec<T>, of: impl Fn(&mut T) -> &mut RefinedNetwo
 
 /// Whether two networks agree up to a rigid motion or reflection. Transmitters far outside count in
 /// proportion to their distance, since their range is hardly determined.
-pub(super) fn same(a: &Network, b: &Network) -> bool {
+pub(super) fn same<const D: usize>(a: &Network<D>, b: &Network<D>) -> bool {
     same_receivers(a, b) && same_transmitters(a, b)
 }
 
 /// Whether the receivers of two networks agree.
-pub(super) fn same_receivers(a: &Network, b: &Network) -> bool {
+pub(super) fn same_receivers<const D: usize>(a: &Network<D>, b: &Network<D>) -> bool {
     let size = a.size().max(b.size());
     align(&b.receivers, &a.receivers, false).is_none_or(|alignment| alignment.rms <= SAME_NETWORK * size)
 }
 
 /// Whether the transmitters of two networks agree once the receivers lie on each other.
-pub(super) fn same_transmitters(a: &Network, b: &Network) -> bool {
+pub(super) fn same_transmitters<const D: usize>(a: &Network<D>, b: &Network<D>) -> bool {
     let size = a.size().max(b.size());
     let Some(alignment) = align(&b.receivers, &a.receivers, false) else { return true };
     let centre = centroid(a.receivers.iter());

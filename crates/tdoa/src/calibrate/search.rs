@@ -34,22 +34,22 @@ const AS_GOOD: f64 = 4.0;
 const SAME_BASIN: f64 = 20.0;
 
 /// What the search found.
-pub(crate) struct SearchOutcome {
+pub(crate) struct SearchOutcome<const D: usize> {
     /// Different networks, best objective first, each with the starts that ended in it.
-    pub(crate) networks: Vec<RefinedNetwork>,
+    pub(crate) networks: Vec<RefinedNetwork<D>>,
     /// Networks that count as the best one and end in other minima.
-    pub(crate) near: Vec<Network>,
+    pub(crate) near: Vec<Network<D>>,
     /// Starts that were made.
     pub(crate) starts: usize,
 }
 
 /// The measurements to search and how.
-pub(crate) struct Search<'a> {
+pub(crate) struct Search<'a, const D: usize> {
     pub(crate) measured: &'a Pseudoranges,
-    pub(crate) observations: &'a Observations,
+    pub(crate) observations: &'a Observations<D>,
     pub(crate) refine: RefineOptions,
     /// Sources of starts, which take turns.
-    pub(crate) sources: Vec<&'a dyn Hypotheses>,
+    pub(crate) sources: Vec<&'a dyn Hypotheses<D>>,
     /// Loss with which proposals are completed and ranked.
     pub(crate) wide: Loss,
     /// Deviation of the measurements if it is known: networks are then ranked by what they explain.
@@ -59,22 +59,26 @@ pub(crate) struct Search<'a> {
 /// Number of the first call of a source in another's turn; far above the numbers of its own turns.
 const EXTRA_TURNS: usize = 1 << 24;
 
-impl Search<'_> {
-    pub(crate) fn run(&self, options: &CalibrateOptions, monitor: &Monitor) -> Result<SearchOutcome, CalibrateError> {
-        let mut refined: Vec<RefinedNetwork> = Vec::new();
+impl<const D: usize> Search<'_, D> {
+    pub(crate) fn run(
+        &self,
+        options: &CalibrateOptions<D>,
+        monitor: &Monitor,
+    ) -> Result<SearchOutcome<D>, CalibrateError<D>> {
+        let mut refined: Vec<RefinedNetwork<D>> = Vec::new();
         let mut starts = 0;
         monitor.enter(Stage::Search, options.max_starts as u64);
         loop {
             let batch = BATCH.min(options.max_starts - starts);
             let refiner = || NetworkRefiner::new(self.observations, SEARCH_NU).heeding(monitor);
-            let start = |refiner: &mut NetworkRefiner<'_>, index| {
+            let start = |refiner: &mut NetworkRefiner<'_, D>, index| {
                 if monitor.is_cancelled() { Vec::new() } else { self.start(refiner, index, options.seed, monitor) }
             };
             let batch = starts..starts + batch;
             #[cfg(feature = "threads")]
-            let ended: Vec<Vec<RefinedNetwork>> = batch.clone().into_par_iter().map_init(refiner, start).collect();
+            let ended: Vec<Vec<RefinedNetwork<D>>> = batch.clone().into_par_iter().map_init(refiner, start).collect();
             #[cfg(not(feature = "threads"))]
-            let ended: Vec<Vec<RefinedNetwork>> = {
+            let ended: Vec<Vec<RefinedNetwork<D>>> = {
                 let mut refiner = refiner();
                 batch.clone().map(|index| start(&mut refiner, index)).collect()
             };
@@ -114,11 +118,11 @@ impl Search<'_> {
 
     fn start(
         &self,
-        refiner: &mut NetworkRefiner<'_>,
+        refiner: &mut NetworkRefiner<'_, D>,
         index: usize,
         seed: u64,
         monitor: &Monitor,
-    ) -> Vec<RefinedNetwork> {
+    ) -> Vec<RefinedNetwork<D>> {
         let source = self.sources[index % self.sources.len()];
         let mut proposals = source.propose(self.measured, index / self.sources.len(), seed);
         if proposals.is_empty() && self.sources.len() > 1 {
@@ -126,7 +130,7 @@ impl Search<'_> {
             // that no other call has.
             proposals = self.sources[0].propose(self.measured, EXTRA_TURNS + index, seed);
         }
-        let mut ranked: Vec<(f64, Network)> = proposals
+        let mut ranked: Vec<(f64, Network<D>)> = proposals
             .iter()
             .filter_map(|part| extend(self.observations, part, &self.wide, monitor).ok().flatten())
             .filter(|network| network.is_finite())
@@ -135,7 +139,7 @@ impl Search<'_> {
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
         let limit = ranked.first().map_or(0.0, |best| best.0 + AS_GOOD);
         let promising = ranked.iter().take(MOST_REFINED).filter(|(cost, _)| *cost <= limit).count();
-        let mut refined: Vec<RefinedNetwork> = ranked
+        let mut refined: Vec<RefinedNetwork<D>> = ranked
             .into_iter()
             .take(promising.max(REFINED))
             .map(|(_, network)| refiner.refine(network, &self.refine))
@@ -147,7 +151,7 @@ impl Search<'_> {
     }
 
     /// Replaces the objective by the truncated cost where the noise is known.
-    fn judge(&self, refined: RefinedNetwork) -> RefinedNetwork {
+    fn judge(&self, refined: RefinedNetwork<D>) -> RefinedNetwork<D> {
         match self.deviation {
             Some(deviation) => {
                 let objective = truncated_cost(self.observations, &refined.network, deviation);
@@ -157,7 +161,7 @@ impl Search<'_> {
         }
     }
 
-    fn rank(&self, network: &Network) -> f64 {
+    fn rank(&self, network: &Network<D>) -> f64 {
         let mut all = vec![0.0; self.observations.len()];
         residuals(self.observations, network, &mut all);
         self.wide.total(all.into_iter())
@@ -165,7 +169,7 @@ impl Search<'_> {
 }
 
 /// How many of `all` ended in the basin of `best`.
-fn starts_in(best: &RefinedNetwork, all: &[RefinedNetwork]) -> usize {
-    let agrees = |r: &&RefinedNetwork| r.objective < best.objective + SAME_BASIN && same(&r.network, &best.network);
+fn starts_in<const D: usize>(best: &RefinedNetwork<D>, all: &[RefinedNetwork<D>]) -> usize {
+    let agrees = |r: &&RefinedNetwork<D>| r.objective < best.objective + SAME_BASIN && same(&r.network, &best.network);
     all.iter().filter(agrees).count()
 }

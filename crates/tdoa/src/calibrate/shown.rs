@@ -15,24 +15,24 @@ const MISJUDGED: f64 = 0.2;
 
 /// Errors of receivers that a network shows.
 #[derive(Default)]
-pub(super) struct Shown {
+pub(super) struct Shown<const D: usize> {
     /// One of each receiver, or the one that it hides if that tells more.
-    pub(super) found: Vec<Fault>,
+    pub(super) found: Vec<Fault<D>>,
     /// The network without the first of them, where the present one is bent by it.
-    pub(super) hidden: Option<Network>,
+    pub(super) hidden: Option<Network<D>>,
     /// Further errors that are worth a doubt, with the networks without them.
-    pub(super) doubted: Vec<Refit>,
+    pub(super) doubted: Vec<Refit<D>>,
     /// Errors that may be there in the place of the first, likewise.
-    pub(super) rivals: Vec<Refit>,
+    pub(super) rivals: Vec<Refit<D>>,
 }
 
-impl Shown {
+impl<const D: usize> Shown<D> {
     /// With those of these fits that tell about as much as the first error, of other receivers.
-    fn beside(mut self, fitted: Vec<Refit>, margin: f64) -> Shown {
-        let of = |fault: &Fault| fitted.iter().find(|other| other.fault.receiver == fault.receiver);
+    fn beside(mut self, fitted: Vec<Refit<D>>, margin: f64) -> Shown<D> {
+        let of = |fault: &Fault<D>| fitted.iter().find(|other| other.fault.receiver == fault.receiver);
         let Some(lead) = self.found.first().and_then(of).map(|other| other.lead) else { return self };
         let behind = fitted.into_iter().map(|other| Refit { lead: other.lead - lead, ..other });
-        let is_other = |other: &Refit| self.found.iter().all(|fault| fault.receiver != other.fault.receiver);
+        let is_other = |other: &Refit<D>| self.found.iter().all(|fault| fault.receiver != other.fault.receiver);
         self.rivals = behind.filter(|other| other.lead > -margin && is_other(other)).collect();
         self
     }
@@ -40,14 +40,14 @@ impl Shown {
 
 /// What a network shows. `deviation` is that of the measurements, and errors of less than `least_size`
 /// metres are none.
-pub(super) fn look(
-    observations: &Observations,
-    best: &Network,
+pub(super) fn look<const D: usize>(
+    observations: &Observations<D>,
+    best: &Network<D>,
     deviation: f64,
     least_size: f64,
-    options: &CalibrateOptions,
+    options: &CalibrateOptions<D>,
     monitor: &Monitor,
-) -> Result<Shown, CalibrateError> {
+) -> Result<Shown<D>, CalibrateError<D>> {
     if options.errors == Errors::OneSided {
         let mixture = mixture_of(observations, best, deviation);
         let found = find_one_sided(observations, best, &mixture, monitor)?.found;
@@ -59,9 +59,9 @@ pub(super) fn look(
         let Told { found, doubted } = find(observations, best, deviation, limit, &unmoved, monitor)?;
         let mut found = one_of_each(found);
         found.retain(|fault| fault.length().abs() >= least_size);
-        let is_move = |fault: &Fault| fault.kind == ReceiverErrorKind::Move;
+        let is_move = |fault: &Fault<D>| fault.kind == ReceiverErrorKind::Move;
         let unsure = found.iter().enumerate().filter(|(k, fault)| *k == 0 || is_move(fault));
-        let suspects: Vec<Fault> = unsure.map(|(_, fault)| *fault).chain(one_of_each(doubted)).collect();
+        let suspects: Vec<Fault<D>> = unsure.map(|(_, fault)| *fault).chain(one_of_each(doubted)).collect();
         let mut fitted = refits(observations, best, deviation, limit, &suspects, monitor)?;
         let doubted = fitted.split_off(fitted.partition_point(|other| other.lead > 0.0));
         let of = |receiver: usize| fitted.iter().find(|other| other.fault.receiver == receiver);
@@ -71,7 +71,7 @@ pub(super) fn look(
             continue;
         }
         let Some(hidden) = fitted.first() else { return Ok(Shown { found, doubted, ..Shown::default() }) };
-        let alone = |hidden: &Refit| (vec![hidden.fault], Some(hidden.network.clone()));
+        let alone = |hidden: &Refit<D>| (vec![hidden.fault], Some(hidden.network.clone()));
         let (found, hidden) = match found.first().copied() {
             None => alone(hidden),
             Some(first) => {
@@ -102,7 +102,7 @@ pub(super) fn look(
 }
 
 /// The first error of each receiver: what remains beside it may be its own.
-fn one_of_each(mut found: Vec<Fault>) -> Vec<Fault> {
+fn one_of_each<const D: usize>(mut found: Vec<Fault<D>>) -> Vec<Fault<D>> {
     let mut seen = Vec::new();
     found.retain(|fault| {
         !seen.contains(&fault.receiver) && {

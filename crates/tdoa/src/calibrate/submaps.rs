@@ -9,11 +9,11 @@ use super::unfinished::Unfinished;
 use super::whole::{Sought, search_whole};
 use crate::align::{Transform, align};
 use crate::degeneracy::usable;
+use crate::flatness::flatness;
 use crate::loss::{Loss, SEARCH_NU, normal_deviation};
 use crate::multilateration::{self, Sight};
 use crate::network::Network;
 use crate::observations::Observations;
-use crate::plane::flatness;
 use crate::points::{distance, spread};
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::{NetworkRefiner, PartialNetwork, RefineOptions, SEARCH, extend};
@@ -45,19 +45,19 @@ pub(super) const OVERLAP: usize = 4;
 const FIT: f64 = 0.04;
 
 /// A network of a few receivers.
-struct Submap {
+struct Submap<const D: usize> {
     /// Their indices.
     receivers: Vec<usize>,
     /// Their positions, in a frame of its own and perhaps reflected.
-    positions: Vec<[f64; 2]>,
+    positions: Vec<[f64; D]>,
     size: f64,
 }
 
 /// What the submaps say of the receivers: those that hang together.
-pub(super) struct ReceiverLayout {
-    submaps: Vec<Submap>,
+pub(super) struct ReceiverLayout<const D: usize> {
+    submaps: Vec<Submap<D>>,
     /// Positions in one frame; `None` where no submap ties a receiver to the others.
-    pub(super) positions: Vec<Option<[f64; 2]>>,
+    pub(super) positions: Vec<Option<[f64; D]>>,
     /// How many submaps were solved.
     pub(super) solved: usize,
     /// Size of the largest submap, metres.
@@ -95,12 +95,12 @@ fn common_transmitters(measured: &Pseudoranges) -> Vec<usize> {
 ///
 /// # Errors
 /// Cancelled, or no neighbourhood could be solved.
-pub(super) fn lay_out(
+pub(super) fn lay_out<const D: usize>(
     measured: &Pseudoranges,
     known: Option<f64>,
-    options: &CalibrateOptions,
+    options: &CalibrateOptions<D>,
     monitor: &Monitor,
-) -> Result<ReceiverLayout, CalibrateError> {
+) -> Result<ReceiverLayout<D>, CalibrateError<D>> {
     let m = measured.receivers();
     let common = common_transmitters(measured);
     let options = &CalibrateOptions {
@@ -109,11 +109,11 @@ pub(super) fn lay_out(
         agreeing: options.agreeing.min(AGREEING),
         ..options.clone()
     };
-    let mut submaps: Vec<Submap> = Vec::new();
+    let mut submaps: Vec<Submap<D>> = Vec::new();
     let mut tried: Vec<Vec<usize>> = Vec::new();
     monitor.enter(Stage::Search, m as u64);
     // Receivers alone, as far as they are laid together.
-    let leaving = |error: CalibrateError, submaps: &[Submap]| match submaps {
+    let leaving = |error: CalibrateError<D>, submaps: &[Submap<D>]| match submaps {
         [] => error,
         _ => error.leaving(&Unfinished::laid(largest(submaps, m), measured.transmitters(), submaps.len())),
     };
@@ -144,20 +144,20 @@ pub(super) fn lay_out(
 
 /// The network of some receivers if their transmitters determine it and no other network fits about
 /// as well.
-fn solve(
+fn solve<const D: usize>(
     measured: &Pseudoranges,
     receivers: &[usize],
     known: Option<f64>,
-    options: &CalibrateOptions,
+    options: &CalibrateOptions<D>,
     monitor: &Monitor,
-) -> Result<Option<Submap>, CalibrateError> {
+) -> Result<Option<Submap<D>>, CalibrateError<D>> {
     let heard = |j: usize| receivers.iter().filter(|&&i| measured.get(i, j).is_some()).count();
     let mut transmitters: Vec<usize> = (0..measured.transmitters()).filter(|&j| heard(j) >= HEARD).collect();
     transmitters.sort_by_key(|&j| std::cmp::Reverse(heard(j)));
     transmitters.truncate(TRANSMITTERS);
     transmitters.sort_unstable();
     let part = measured.select(receivers, &transmitters);
-    let Ok(kept) = usable(&part) else { return Ok(None) };
+    let Ok(kept) = usable::<D>(&part) else { return Ok(None) };
     let part = part.select(&kept.receivers, &kept.transmitters);
     let found = match search_whole(&part, known, options, &[], monitor) {
         Ok(found) => found,
@@ -178,7 +178,7 @@ fn solve(
 }
 
 /// Positions of the receivers of the largest part that hangs together.
-fn largest(submaps: &[Submap], receivers: usize) -> Vec<Option<[f64; 2]>> {
+fn largest<const D: usize>(submaps: &[Submap<D>], receivers: usize) -> Vec<Option<[f64; D]>> {
     let mut best = vec![None; receivers];
     let mut used = vec![false; submaps.len()];
     // Each part begins with the unused submap of the most receivers.
@@ -186,7 +186,7 @@ fn largest(submaps: &[Submap], receivers: usize) -> Vec<Option<[f64; 2]>> {
         (0..submaps.len()).filter(|&k| !used[k]).max_by_key(|&k| (submaps[k].receivers.len(), usize::MAX - k))
     {
         let part = grow(submaps, first, receivers, &mut used);
-        let placed = |part: &[Option<[f64; 2]>]| part.iter().flatten().count();
+        let placed = |part: &[Option<[f64; D]>]| part.iter().flatten().count();
         if placed(&part) > placed(&best) {
             best = part;
         }
@@ -196,14 +196,19 @@ fn largest(submaps: &[Submap], receivers: usize) -> Vec<Option<[f64; 2]>> {
 }
 
 /// A part from one submap on: the submap that fits in the most receivers is always the next.
-fn grow(submaps: &[Submap], first: usize, receivers: usize, used: &mut [bool]) -> Vec<Option<[f64; 2]>> {
+fn grow<const D: usize>(
+    submaps: &[Submap<D>],
+    first: usize,
+    receivers: usize,
+    used: &mut [bool],
+) -> Vec<Option<[f64; D]>> {
     let mut placed = vec![None; receivers];
     for (&i, &p) in submaps[first].receivers.iter().zip(&submaps[first].positions) {
         placed[i] = Some(p);
     }
     used[first] = true;
     // How submaps fit, which changes for those that have one of the receivers placed last.
-    let mut fits: Vec<Option<(usize, Transform)>> = vec![None; submaps.len()];
+    let mut fits: Vec<Option<(usize, Transform<D>)>> = vec![None; submaps.len()];
     let mut fresh = submaps[first].receivers.clone();
     loop {
         for (k, submap) in submaps.iter().enumerate().filter(|&(k, _)| !used[k]) {
@@ -226,7 +231,7 @@ fn grow(submaps: &[Submap], first: usize, receivers: usize, used: &mut [bool]) -
 
 /// The map that lays a submap on placed receivers, with how many of the common ones it fits: at
 /// least four that are not in one line, and more than half of those in common.
-fn fit(submap: &Submap, placed: &[Option<[f64; 2]>]) -> Option<(usize, Transform)> {
+fn fit<const D: usize>(submap: &Submap<D>, placed: &[Option<[f64; D]>]) -> Option<(usize, Transform<D>)> {
     let pairs = submap.receivers.iter().zip(&submap.positions).filter_map(|(&i, &p)| Some((p, placed[i]?)));
     let (mut from, mut to): (Vec<_>, Vec<_>) = pairs.unzip();
     let common = from.len();
@@ -244,24 +249,28 @@ fn fit(submap: &Submap, placed: &[Option<[f64; 2]>]) -> Option<(usize, Transform
     None
 }
 
-impl ReceiverLayout {
+impl<const D: usize> ReceiverLayout<D> {
     /// The places that a source of networks proposes first, if it has receivers for all.
-    pub(super) fn proposed(measured: &Pseudoranges, source: &dyn Hypotheses, seed: u64) -> Option<ReceiverLayout> {
+    pub(super) fn proposed(
+        measured: &Pseudoranges,
+        source: &dyn Hypotheses<D>,
+        seed: u64,
+    ) -> Option<ReceiverLayout<D>> {
         let positions = source.propose(measured, 0, seed).into_iter().next()?.receivers;
-        let placed: Vec<[f64; 2]> = positions.iter().copied().collect::<Option<_>>()?;
+        let placed: Vec<[f64; D]> = positions.iter().copied().collect::<Option<_>>()?;
         // As much as ten neighbours would take of it.
         let share = (RECEIVERS as f64 / placed.len() as f64).sqrt();
         Some(ReceiverLayout { submaps: Vec::new(), positions, solved: 1, size: share * spread(placed.iter()) })
     }
 
     /// The receivers alone.
-    pub(super) fn unfinished(&self, measured: &Pseudoranges) -> Unfinished {
+    pub(super) fn unfinished(&self, measured: &Pseudoranges) -> Unfinished<D> {
         Unfinished::laid(self.positions.clone(), measured.transmitters(), self.solved)
     }
 
     /// How many submaps fit a network of these receivers, and the places of receivers among them that
     /// are in none of these, or only in such as share fewer than four receivers with others.
-    fn support(&self, network: &Network, receivers: &[usize]) -> (usize, Vec<usize>) {
+    fn support(&self, network: &Network<D>, receivers: &[usize]) -> (usize, Vec<usize>) {
         let mut placed = vec![None; self.positions.len()];
         for (&i, &p) in receivers.iter().zip(&network.receivers) {
             placed[i] = Some(p);
@@ -269,7 +278,7 @@ impl ReceiverLayout {
         let mut fitting: Vec<Vec<usize>> = Vec::new();
         for submap in &self.submaps {
             let Some((_, map)) = fit(submap, &placed) else { continue };
-            let near = |(&i, &p): (&usize, &[f64; 2])| {
+            let near = |(&i, &p): (&usize, &[f64; D])| {
                 let limit = 3.0 * FIT * submap.size;
                 placed[i].is_some_and(|q| distance(map.apply(p), q) <= limit).then_some(i)
             };
@@ -293,9 +302,9 @@ impl ReceiverLayout {
         measured: &Pseudoranges,
         receivers: &[usize],
         known: Option<f64>,
-        options: &CalibrateOptions,
+        options: &CalibrateOptions<D>,
         monitor: &Monitor,
-    ) -> Result<Sought, CalibrateError> {
+    ) -> Result<Sought<D>, CalibrateError<D>> {
         let observations = Observations::new(measured, |_, _| true);
         let unit = typical_deviation(measured);
         let size = self.size / unit;
@@ -330,11 +339,11 @@ impl ReceiverLayout {
     ///
     /// # Errors
     /// Cancelled; no further receiver is then placed.
-    pub(super) fn place_strays(&mut self, measured: &Pseudoranges, monitor: &Monitor) -> Result<(), CalibrateError> {
+    pub(super) fn place_strays(&mut self, measured: &Pseudoranges, monitor: &Monitor) -> Result<(), CalibrateError<D>> {
         let size = self.size / typical_deviation(measured);
         let loss = Loss { nu: SEARCH_NU, scale: FIT * size };
         let precision = |i: usize, j: usize| measured.sigma(i, j).map_or(1.0, |sigma| 1.0 / sigma);
-        let located: Vec<Option<multilateration::Located>> = (0..measured.transmitters())
+        let located: Vec<Option<multilateration::Located<D>>> = (0..measured.transmitters())
             .map(|j| {
                 check(monitor)?;
                 let sight = |i: usize| {
@@ -344,21 +353,21 @@ impl ReceiverLayout {
                         precision: precision(i, j),
                     })
                 };
-                let sights: Vec<Sight> = (0..measured.receivers()).filter_map(sight).collect();
+                let sights: Vec<Sight<D>> = (0..measured.receivers()).filter_map(sight).collect();
                 Ok((sights.len() >= HEARD).then(|| multilateration::transmitter(&sights, &loss)).flatten())
             })
-            .collect::<Result<_, CalibrateError>>()?;
+            .collect::<Result<_, CalibrateError<D>>>()?;
         for i in 0..measured.receivers() {
             if self.positions[i].is_some() {
                 continue;
             }
-            let sight = |(j, found): (usize, &Option<multilateration::Located>)| {
+            let sight = |(j, found): (usize, &Option<multilateration::Located<D>>)| {
                 let found = found.as_ref()?;
                 let length = measured.get(i, j)? - found.offset;
                 Some(Sight { position: found.position, length, precision: precision(i, j) })
             };
-            let sights: Vec<Sight> = located.iter().enumerate().filter_map(sight).collect();
-            let around: Vec<[f64; 2]> = sights.iter().map(|s| s.position).collect();
+            let sights: Vec<Sight<D>> = located.iter().enumerate().filter_map(sight).collect();
+            let around: Vec<[f64; D]> = sights.iter().map(|s| s.position).collect();
             if sights.len() >= 2 * OVERLAP && flatness(&around) > 0.05 {
                 self.positions[i] = multilateration::receiver(&sights, &loss).map(|found| found.position);
             }

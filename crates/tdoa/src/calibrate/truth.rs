@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 /// Comparison with known positions of receivers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Truth {
+#[serde(bound(serialize = "[f64; D]: Serialize", deserialize = "[f64; D]: Deserialize<'de>"))]
+pub struct Truth<const D: usize = 2> {
     /// Root mean square distance of the receivers after the best rigid alignment (reflection
     /// allowed).
     pub receiver_rms: f64,
@@ -16,7 +17,7 @@ pub struct Truth {
     pub receivers: usize,
     /// The true positions in the frame of the calibration (rigid alignment), in the order of the
     /// receivers.
-    pub positions: Vec<Option<[f64; 2]>>,
+    pub positions: Vec<Option<[f64; D]>>,
     /// Median distance of the transmitters from the truth after the alignment of the receivers, if
     /// true transmitters were given.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -24,11 +25,11 @@ pub struct Truth {
     /// The true positions of the transmitters in the frame of the calibration, in the order of the
     /// transmitters; empty if none were given.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub transmitter_positions: Vec<Option<[f64; 2]>>,
+    pub transmitter_positions: Vec<Option<[f64; D]>>,
 }
 
-impl Truth {
-    pub(super) fn points(&mut self) -> impl Iterator<Item = &mut Option<[f64; 2]>> {
+impl<const D: usize> Truth<D> {
+    pub(super) fn points(&mut self) -> impl Iterator<Item = &mut Option<[f64; D]>> {
         self.positions.iter_mut().chain(&mut self.transmitter_positions)
     }
 }

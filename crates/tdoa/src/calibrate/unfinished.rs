@@ -7,13 +7,14 @@ use serde::{Deserialize, Serialize};
 /// search may find a better network, outliers may have bent this one, and its uncertainty is not
 /// known.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(bound(serialize = "[f64; D]: Serialize", deserialize = "[f64; D]: Deserialize<'de>"))]
 #[non_exhaustive]
-pub struct Unfinished {
+pub struct Unfinished<const D: usize = 2> {
     /// Positions of the receivers in metres; `None` for receivers that the search had not placed
     /// yet.
-    pub receivers: Vec<Option<[f64; 2]>>,
+    pub receivers: Vec<Option<[f64; D]>>,
     /// Positions of the transmitters in metres, as for receivers.
-    pub transmitters: Vec<Option<[f64; 2]>>,
+    pub transmitters: Vec<Option<[f64; D]>>,
     /// Offsets of the transmitters in metres.
     pub offsets: Vec<Option<f64>>,
     /// Number of starts of the search that had ended.
@@ -22,8 +23,8 @@ pub struct Unfinished {
     pub agreeing: usize,
 }
 
-impl Unfinished {
-    pub(super) fn of(network: &Network, starts: usize, agreeing: usize) -> Unfinished {
+impl<const D: usize> Unfinished<D> {
+    pub(super) fn of(network: &Network<D>, starts: usize, agreeing: usize) -> Unfinished<D> {
         Unfinished {
             receivers: network.receivers.iter().copied().map(Some).collect(),
             transmitters: network.transmitters.iter().copied().map(Some).collect(),
@@ -34,14 +35,14 @@ impl Unfinished {
     }
 
     /// Receivers alone, from small networks laid together, beside so many transmitters.
-    pub(super) fn laid(receivers: Vec<Option<[f64; 2]>>, transmitters: usize, starts: usize) -> Unfinished {
+    pub(super) fn laid(receivers: Vec<Option<[f64; D]>>, transmitters: usize, starts: usize) -> Unfinished<D> {
         let (nowhere, never) = (vec![None; transmitters], vec![None; transmitters]);
         Unfinished { receivers, transmitters: nowhere, offsets: never, starts, agreeing: 0 }
     }
 
     /// The same network among `m` receivers and `n` transmitters; its own nodes are those at `rows`
     /// and `columns`.
-    pub(super) fn among(self, m: usize, rows: &[usize], n: usize, columns: &[usize]) -> Unfinished {
+    pub(super) fn among(self, m: usize, rows: &[usize], n: usize, columns: &[usize]) -> Unfinished<D> {
         Unfinished {
             receivers: scatter(m, rows, self.receivers),
             transmitters: scatter(n, columns, self.transmitters),
@@ -51,7 +52,7 @@ impl Unfinished {
     }
 
     /// Undoes the centring of the measurements: `shifts` were taken from those of the transmitters.
-    pub(super) fn shifted(mut self, shifts: &[f64]) -> Unfinished {
+    pub(super) fn shifted(mut self, shifts: &[f64]) -> Unfinished<D> {
         for (offset, shift) in self.offsets.iter_mut().zip(shifts) {
             *offset = offset.map(|offset| offset + shift);
         }

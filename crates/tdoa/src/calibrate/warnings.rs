@@ -1,18 +1,22 @@
 //! Warnings about the geometry of a result, with the names of the nodes and a remedy.
 
-use crate::degeneracy::list;
+use crate::degeneracy::{least_per_transmitter, list};
+use crate::flatness::{flatness, slenderness};
 use crate::network::Network;
 use crate::observations::Observations;
-use crate::plane::flatness;
-use crate::points::distance;
+use crate::points::{distance, trace};
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::Covariance;
 
 /// Receivers whose inliers may agree by chance are expected less often than this in a calibration.
 pub(super) const BY_CHANCE: f64 = 0.01;
 
+/// Ratio of the standard deviations of nodes across and along, below which they lie nearly in one line, or
+/// in space in one plane.
+const FLAT: f64 = 0.02;
+
 /// Receivers most of whose measurements are outliers.
-fn mostly_wrong(measured: &Pseudoranges, kept: &Observations) -> Vec<usize> {
+fn mostly_wrong<const D: usize>(measured: &Pseudoranges, kept: &Observations<D>) -> Vec<usize> {
     let is_mostly_wrong = |i: &usize| 2 * kept.of_receiver(*i).len() < count(measured, *i);
     (0..measured.receivers()).filter(is_mostly_wrong).collect()
 }
@@ -25,19 +29,23 @@ fn count(measured: &Pseudoranges, i: usize) -> usize {
 /// Receivers most of whose measurements are outliers, and whose inliers may agree by chance: the
 /// network of the others does not tell where they are. `width` is the width of the band of an
 /// inlier as a share of the network's size.
-pub(super) fn doubtful_receivers(measured: &Pseudoranges, kept: &Observations, width: f64) -> Vec<usize> {
+pub(super) fn doubtful_receivers<const D: usize>(
+    measured: &Pseudoranges,
+    kept: &Observations<D>,
+    width: f64,
+) -> Vec<usize> {
     let by_chance = |i: &usize| {
-        measured.receivers() as f64 * agree_by_chance(count(measured, *i), kept.of_receiver(*i).len(), width)
+        measured.receivers() as f64 * agree_by_chance::<D>(count(measured, *i), kept.of_receiver(*i).len(), width)
             > BY_CHANCE
     };
     mostly_wrong(measured, kept).into_iter().filter(by_chance).collect()
 }
 
-/// How many of the places that two of `all` measurements give a receiver are expected to have
-/// `inliers` of them by chance, those two included, where one is an inlier by chance with probability
-/// `width`: two places for each pair, and the tail of a binomial distribution.
-pub(super) fn agree_by_chance(all: usize, inliers: usize, width: f64) -> f64 {
-    let (others, least) = (all.saturating_sub(2), inliers.saturating_sub(2));
+/// How many of the places that two of `all` measurements give a receiver, in space three, are expected
+/// to have `inliers` of them by chance, those included, where one is an inlier by chance with
+/// probability `width`: two places for each two (three), and the tail of a binomial distribution.
+pub(super) fn agree_by_chance<const D: usize>(all: usize, inliers: usize, width: f64) -> f64 {
+    let (others, least) = (all.saturating_sub(D), inliers.saturating_sub(D));
     let p = width.clamp(0.0, 1.0);
     let mut term = (1.0 - p).powi(others as i32);
     let mut below = 0.0;
@@ -52,28 +60,33 @@ pub(super) fn agree_by_chance(all: usize, inliers: usize, width: f64) -> f64 {
         term *= (others - k) as f64 / (k + 1) as f64 * p / (1.0 - p).max(f64::MIN_POSITIVE);
     }
     let tail = if p == 1.0 || !(below + tail).is_finite() { 1.0 } else { tail };
-    (all * all.saturating_sub(1)) as f64 * tail
+    let subsets = (0..D).map(|k| all.saturating_sub(k)).product::<usize>() / (1..=D).product::<usize>();
+    (2 * subsets) as f64 * tail
 }
 
 /// Warnings about the geometry: in line, in one place, poorly tied down. Returns whether most
 /// receivers are determined, as far as the noise is known.
-pub(super) fn warn_of_nodes(
+pub(super) fn warn_of_nodes<const D: usize>(
     measured: &Pseudoranges,
-    network: &Network,
-    kept: &Observations,
-    uncertainty: &Covariance,
+    network: &Network<D>,
+    kept: &Observations<D>,
+    uncertainty: &Covariance<D>,
     noise_known: bool,
     doubtful: &[usize],
     warnings: &mut Vec<String>,
 ) -> bool {
     let size = network.size();
     for (kind, points) in [("receivers", &network.receivers), ("transmitters", &network.transmitters)] {
-        let flat = flatness(points);
-        if flat < 0.02 {
+        // In one line of space they are in a plane too, which is the lesser evil.
+        let (thin, what, width) = match (slenderness(points), flatness(points)) {
+            (thin, _) if thin < FLAT => (thin, "line", "width"),
+            (_, thin) => (thin, "plane", "height"),
+        };
+        if thin < FLAT {
             warnings.push(format!(
-                "the {kind} lie nearly in one line (width {:.1} % of length): on which side of it the other nodes lie is \
-                 poorly determined; move some {kind} off the line",
-                100.0 * flat
+                "the {kind} lie nearly in one {what} ({width} {:.1} % of length): on which side of it the other nodes lie is \
+                 poorly determined; move some {kind} off the {what}",
+                100.0 * thin
             ));
         }
     }
@@ -92,14 +105,9 @@ pub(super) fn warn_of_nodes(
     let weak = |names: &[String], std: &dyn Fn(usize) -> f64| -> Vec<String> {
         (0..names.len()).filter(|&k| std(k) > 0.1 * size).map(|k| names[k].clone()).collect()
     };
-    let receivers =
-        weak(names, &|i| uncertainty.receivers.get(i).map_or(f64::INFINITY, |c| (c[0][0] + c[1][1]).max(0.0).sqrt()));
+    let receivers = weak(names, &|i| uncertainty.receivers.get(i).map_or(f64::INFINITY, |c| trace(c).max(0.0).sqrt()));
     let transmitters = weak(measured.transmitter_names(), &|j| {
-        uncertainty
-            .transmitters
-            .get(j)
-            .and_then(|c| *c)
-            .map_or(f64::INFINITY, |c| (c.rows[0][0] + c.rows[1][1]).max(0.0).sqrt())
+        uncertainty.transmitters.get(j).and_then(|c| *c).map_or(f64::INFINITY, |c| trace(&c.rows).max(0.0).sqrt())
     });
     let determined = !noise_known || 2 * receivers.len() <= names.len();
     if !determined {
@@ -121,7 +129,7 @@ pub(super) fn warn_of_nodes(
         .filter(|&j| {
             let all = (0..measured.receivers()).filter(|&i| measured.get(i, j).is_some()).count();
             let good = kept.of_transmitter(j).len();
-            good < 4 || 2 * good < all
+            good < least_per_transmitter::<D>() || 2 * good < all
         })
         .map(|j| measured.transmitter_names()[j].clone())
         .collect();
@@ -155,11 +163,13 @@ mod tests {
     #[test]
     fn chance_is_that_of_a_binomial_distribution() {
         // By hand: 2 places for each of 6 pairs, and both others, or one of them at least.
-        assert!((agree_by_chance(4, 4, 0.1) - 12.0 * 0.01).abs() < 1e-12);
-        assert!((agree_by_chance(4, 3, 0.1) - 12.0 * 0.19).abs() < 1e-12);
-        assert_eq!([agree_by_chance(4, 2, 0.1), agree_by_chance(3, 3, 1.0)], [12.0, 6.0]);
+        assert!((agree_by_chance::<2>(4, 4, 0.1) - 12.0 * 0.01).abs() < 1e-12);
+        assert!((agree_by_chance::<2>(4, 3, 0.1) - 12.0 * 0.19).abs() < 1e-12);
+        assert_eq!([agree_by_chance::<2>(4, 2, 0.1), agree_by_chance::<2>(3, 3, 1.0)], [12.0, 6.0]);
+        // In space: 2 places for each of 10 threes, and both others.
+        assert!((agree_by_chance::<3>(5, 5, 0.1) - 20.0 * 0.01).abs() < 1e-12);
         // Eight of twenty with a band of 7 cm in 10 m: beyond chance; five: not.
-        assert!(agree_by_chance(20, 8, 0.007) < 1e-6 && agree_by_chance(20, 4, 0.02) > 1.0);
+        assert!(agree_by_chance::<2>(20, 8, 0.007) < 1e-6 && agree_by_chance::<2>(20, 4, 0.02) > 1.0);
     }
 
     #[test]

@@ -20,15 +20,15 @@ use hc::Monitor;
 const RESOLUTION: f64 = 1e-9;
 
 /// Networks for all nodes.
-pub(super) struct Sought {
+pub(super) struct Sought<const D: usize> {
     /// At least one network, best first.
-    pub(super) ranked: Vec<RefinedNetwork>,
+    pub(super) ranked: Vec<RefinedNetwork<D>>,
     /// Deviation of the measurements.
     pub(super) deviation: f64,
     /// No measurement is trusted beyond this.
     pub(super) floor: f64,
     /// Neighbours of the best network, where the search had all nodes.
-    pub(super) neighbours: Vec<Neighbour>,
+    pub(super) neighbours: Vec<Neighbour<D>>,
     /// Starts of the search; small networks that were laid together.
     pub(super) starts: usize,
     /// Where small networks were laid together, receivers whose place no overlap of them supports.
@@ -36,13 +36,13 @@ pub(super) struct Sought {
 }
 
 /// Searches networks for these measurements, whose deviation may be known.
-pub(super) fn search_whole(
+pub(super) fn search_whole<const D: usize>(
     measured: &Pseudoranges,
     known: Option<f64>,
-    options: &CalibrateOptions,
-    sources: &[&dyn Hypotheses],
+    options: &CalibrateOptions<D>,
+    sources: &[&dyn Hypotheses<D>],
     monitor: &Monitor,
-) -> Result<Sought, CalibrateError> {
+) -> Result<Sought<D>, CalibrateError<D>> {
     let observations = Observations::new(measured, |_, _| true);
 
     let part = search_part(measured, options);
@@ -60,11 +60,11 @@ pub(super) fn search_whole(
         floor: RESOLUTION * diameter / unit,
         ..SEARCH
     };
-    let mut all: Vec<&dyn Hypotheses> = sources.to_vec();
+    let mut all: Vec<&dyn Hypotheses<D>> = sources.to_vec();
     let minimal = MinimalHypotheses::at_most(options.minimal_subsets).heeding(monitor);
     if options.restarts || all.is_empty() {
         all.insert(0, &restarts);
-        if options.minimal_subsets > 0 && MinimalHypotheses::fit(small.receivers(), small.transmitters()) {
+        if options.minimal_subsets > 0 && MinimalHypotheses::fit::<D>(small.receivers(), small.transmitters()) {
             all.push(&minimal);
         }
     }
@@ -77,14 +77,14 @@ pub(super) fn search_whole(
         deviation: known.map(|sigma| sigma.max(refine.floor)),
     };
     let (m, n) = (measured.receivers(), measured.transmitters());
-    let place = |best: Unfinished| best.among(m, &part.receivers, n, &part.transmitters);
+    let place = |best: Unfinished<D>| best.among(m, &part.receivers, n, &part.transmitters);
     let found = search.run(options, monitor).map_err(|error| error.placing(place))?;
     let so_far = place(Unfinished::of(&found.networks[0].network, found.starts, found.networks[0].starts));
 
     let best = found.networks[0].objective;
     let close = found.networks.into_iter().filter(|r| r.objective <= best + 4.0 * options.alternative_margin);
     let complete_part = part.receivers.len() == m && part.transmitters.len() == n;
-    let whole: Vec<RefinedNetwork> = if complete_part {
+    let whole: Vec<RefinedNetwork<D>> = if complete_part {
         close.collect()
     } else {
         complete(&observations, &part, close.take(4), &refine, monitor).map_err(|error| error.leaving(&so_far))?
@@ -116,7 +116,7 @@ pub(super) fn search_whole(
 
 /// The nodes that the search works on: where there are many, some of the better observed half,
 /// evenly spaced, because neighbours in a recording are often neighbours in the plane.
-fn search_part(measured: &Pseudoranges, options: &CalibrateOptions) -> Usable {
+fn search_part<const D: usize>(measured: &Pseudoranges, options: &CalibrateOptions<D>) -> Usable {
     let (m, n) = (measured.receivers(), measured.transmitters());
     let pick = |total: usize, most: usize, count: &dyn Fn(usize) -> usize| -> Vec<usize> {
         if total <= most {
@@ -133,7 +133,7 @@ fn search_part(measured: &Pseudoranges, options: &CalibrateOptions) -> Usable {
     let heard = |j: usize| receivers.iter().filter(|&&i| measured.get(i, j).is_some()).count();
     let transmitters = pick(n, options.search_transmitters, &heard);
     // A part that cannot be solved on its own is no help.
-    match usable(&measured.select(&receivers, &transmitters)) {
+    match usable::<D>(&measured.select(&receivers, &transmitters)) {
         Ok(part) => Usable {
             receivers: part.receivers.iter().map(|&i| receivers[i]).collect(),
             transmitters: part.transmitters.iter().map(|&j| transmitters[j]).collect(),
@@ -144,13 +144,13 @@ fn search_part(measured: &Pseudoranges, options: &CalibrateOptions) -> Usable {
 }
 
 /// Extends networks of a part of the nodes to all of them and refines them.
-fn complete(
-    observations: &Observations,
+fn complete<const D: usize>(
+    observations: &Observations<D>,
     part: &Usable,
-    networks: impl Iterator<Item = RefinedNetwork>,
+    networks: impl Iterator<Item = RefinedNetwork<D>>,
     refine: &RefineOptions,
     monitor: &Monitor,
-) -> Result<Vec<RefinedNetwork>, CalibrateError> {
+) -> Result<Vec<RefinedNetwork<D>>, CalibrateError<D>> {
     let mut refiner = NetworkRefiner::new(observations, SEARCH_NU).heeding(monitor);
     let refine = RefineOptions { anneal_from: None, ..*refine };
     let mut all = Vec::new();

@@ -13,7 +13,7 @@ const MAX_MEASUREMENTS: usize = 5_000;
 pub(super) fn check(measured: &Pseudoranges) -> Result<(), MinimalError> {
     let (m, n) = (measured.receivers(), measured.transmitters());
     let (constraints, unknowns) = (m * n, (2 * m + 3 * n).saturating_sub(3));
-    if !is_solvable(m, n) {
+    if !is_solvable::<2>(m, n) {
         return Err(MinimalError::Underdetermined { configuration: measured.configuration(), constraints, unknowns });
     }
     if constraints > MAX_MEASUREMENTS {

@@ -4,7 +4,7 @@ use super::node_kind::NodeKind;
 use super::planar::collinear::Collinear;
 use super::solution::{Candidate, PathCounts};
 use super::warning::MinimalWarning;
-use crate::plane::flatness;
+use crate::flatness::flatness;
 use crate::pseudoranges::Pseudoranges;
 
 /// Physical candidates flatter than this are said to lie in one line; exact data tell no more of

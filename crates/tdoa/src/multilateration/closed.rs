@@ -3,7 +3,7 @@
 
 use std::array::from_fn;
 
-use crate::points::{dot, minus};
+use crate::points::{dot, minus, off};
 
 /// A transmitter and its offset from D + 1 receivers; lengths are pseudoranges.
 ///
@@ -80,20 +80,6 @@ fn receiver_off_hyperplane<const D: usize>(at: impl Fn(usize) -> ([f64; D], f64)
 
 /// Share of a vector's length below which what is left of it is rounding.
 const FLAT: f64 = 1e-9;
-
-/// The direction of the part of a vector that is orthogonal to these orthonormal ones, and the
-/// length of that part.
-fn off<const D: usize>(mut u: [f64; D], basis: &[[f64; D]]) -> ([f64; D], f64) {
-    // Twice is enough (Kahan; Parlett 1980).
-    for _ in 0..2 {
-        for e in basis {
-            let along = dot(u, *e);
-            u = from_fn(|k| u[k] - along * e[k]);
-        }
-    }
-    let size = dot(u, u).sqrt();
-    (u.map(|x| x / size), size)
-}
 
 /// Solves for two right-hand sides; `None` if the rows hardly differ.
 fn solve<const D: usize>(rows: [[f64; D]; D], right: [[f64; D]; 2]) -> Option<[[f64; D]; 2]> {

@@ -9,10 +9,10 @@
 //! distances from it.
 
 use super::rank::differences;
+use crate::flatness::flatness;
 use crate::minimal::linear::LeastSquares;
 use crate::minimal::node_kind::NodeKind;
 use crate::network::Network;
-use crate::plane::flatness;
 use smallvec::SmallVec;
 
 /// Rank one to this precision (minors relative to the square of the largest entry) counts as exact.
