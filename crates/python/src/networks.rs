@@ -126,8 +126,9 @@ pub(crate) fn numbers<'py>(py: Python<'py>, all: &[(&str, usize)]) -> PyResult<B
 pub(crate) struct Wanted {
     receivers: usize,
     transmitters: usize,
+    dimensions: usize,
     layout: String,
-    size: [f64; 2],
+    size: Option<Vec<f64>>,
     noise: f64,
     outliers: f64,
     outlier_size: f64,
@@ -143,40 +144,50 @@ pub(crate) struct Wanted {
 /// A random network and its measurements: a dict of arrays.
 #[pyfunction]
 pub(crate) fn simulate(py: Python<'_>, wanted: Wanted) -> PyResult<Bound<'_, PyDict>> {
-    guarded(|| {
-        let mut options = SimulateOptions::default();
-        let [width, height] = wanted.size;
-        options.layout = match wanted.layout.as_str() {
-            "room" => Layout::Room { width, height },
-            "chain" => Layout::Chain { length: width, width: height },
-            "grid" => Layout::Grid { width, height },
-            "normal" => Layout::Normal,
-            other => return Err(Failure::Input(format!("layout must be room, chain, grid or normal, not {other:?}"))),
-        };
-        options.fault = match &wanted.fault {
-            None => None,
-            Some((kind, size)) => Some(match kind.as_str() {
-                "delay" => ReceiverFault::Delay(*size),
-                "drift" => ReceiverFault::Drift(*size),
-                "move" => ReceiverFault::Move(*size),
-                other => return Err(Failure::Input(format!("fault must be delay, drift or move, not {other:?}"))),
-            }),
-        };
-        (options.receivers, options.transmitters, options.seed) = (wanted.receivers, wanted.transmitters, wanted.seed);
-        (options.noise, options.missing, options.hearing) = (wanted.noise, wanted.missing, wanted.hearing);
-        (options.outliers, options.outlier_size) = (wanted.outliers, wanted.outlier_size);
-        (options.detours, options.detour_size, options.delays) = (wanted.detours, wanted.detour_size, wanted.delays);
-        let made = py.detach(|| tdoa::simulate(&options)).map_err(Failure::input)?;
-        let (m, n) = (options.receivers, options.transmitters);
-        let result = PyDict::new(py);
-        let flat = |points: &[[f64; 2]]| points.iter().flatten().copied().collect();
-        result.set_item("pseudoranges", array(py, made.pseudoranges.dense(), &[m, n])?)?;
-        result.set_item("receivers", array(py, flat(&made.network.receivers), &[m, 2])?)?;
-        result.set_item("transmitters", array(py, flat(&made.network.transmitters), &[n, 2])?)?;
-        result.set_item("offsets", array(py, made.network.offsets, &[n])?)?;
-        result.set_item("outliers", array(py, made.outliers, &[m, n])?)?;
-        Ok(result)
+    guarded(|| match wanted.dimensions {
+        2 => made::<2>(py, &wanted),
+        3 => made::<3>(py, &wanted),
+        other => Err(Failure::Input(format!("dimensions must be 2 or 3, not {other}"))),
     })
+}
+
+fn made<'py, const D: usize>(py: Python<'py>, wanted: &Wanted) -> Result<Bound<'py, PyDict>, Failure> {
+    let mut options = SimulateOptions::<D>::new();
+    let extent = match &wanted.size {
+        None => options.layout.extent(),
+        Some(size) => <[f64; D]>::try_from(size.as_slice())
+            .map_err(|_| Failure::Input(format!("size must be {D} lengths, not {}", size.len())))?,
+    };
+    options.layout = match wanted.layout.as_str() {
+        "room" => Layout::Room { extent },
+        "chain" => Layout::Chain { extent },
+        "grid" => Layout::Grid { extent },
+        "normal" => Layout::Normal,
+        other => return Err(Failure::Input(format!("layout must be room, chain, grid or normal, not {other:?}"))),
+    };
+    options.fault = match &wanted.fault {
+        None => None,
+        Some((kind, size)) => Some(match kind.as_str() {
+            "delay" => ReceiverFault::Delay(*size),
+            "drift" => ReceiverFault::Drift(*size),
+            "move" => ReceiverFault::Move(*size),
+            other => return Err(Failure::Input(format!("fault must be delay, drift or move, not {other:?}"))),
+        }),
+    };
+    (options.receivers, options.transmitters, options.seed) = (wanted.receivers, wanted.transmitters, wanted.seed);
+    (options.noise, options.missing, options.hearing) = (wanted.noise, wanted.missing, wanted.hearing);
+    (options.outliers, options.outlier_size) = (wanted.outliers, wanted.outlier_size);
+    (options.detours, options.detour_size, options.delays) = (wanted.detours, wanted.detour_size, wanted.delays);
+    let made = py.detach(|| tdoa::simulate(&options)).map_err(Failure::input)?;
+    let (m, n) = (options.receivers, options.transmitters);
+    let result = PyDict::new(py);
+    let flat = |points: &[[f64; D]]| points.iter().flatten().copied().collect();
+    result.set_item("pseudoranges", array(py, made.pseudoranges.dense(), &[m, n])?)?;
+    result.set_item("receivers", array(py, flat(&made.network.receivers), &[m, D])?)?;
+    result.set_item("transmitters", array(py, flat(&made.network.transmitters), &[n, D])?)?;
+    result.set_item("offsets", array(py, made.network.offsets, &[n])?)?;
+    result.set_item("outliers", array(py, made.outliers, &[m, n])?)?;
+    Ok(result)
 }
 
 /// The Cramer-Rao bound of the receivers, metres: positions of shape (m, 2) and (n, 2), used

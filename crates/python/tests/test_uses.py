@@ -222,6 +222,36 @@ def test_anchors_have_standard_deviations():
             tdoa.calibrate(made.pseudoranges, **arguments)
 
 
+def test_simulations_in_the_plane_and_in_space():
+    for arguments, extent in (
+        (dict(), (10, 10)),
+        (dict(dimensions=2, layout="chain"), (10, 10)),
+        (dict(size=(30, 20)), (30, 20)),
+        (dict(dimensions=3), (10, 10, 3)),
+        (dict(size=np.array([30, 20, 2]), layout="grid"), (30, 20, 2)),
+        (dict(dimensions=3, layout="normal"), (np.inf, np.inf, np.inf)),
+    ):
+        made = tdoa.simulate(5, 6, seed=1, **arguments)
+        assert made.receivers.shape == (5, len(extent)) and made.transmitters.shape == (6, len(extent))
+        if np.isfinite(extent).all():
+            nodes = np.concatenate([made.receivers, made.transmitters])
+            assert (nodes >= 0).all() and (nodes <= extent).all()
+        distances = np.linalg.norm(made.receivers[:, None] - made.transmitters, axis=2)
+        assert np.allclose(made.pseudoranges, distances + made.offsets, rtol=0, atol=1e-12)
+    for arguments in (
+        dict(dimensions=4),
+        dict(dimensions="3"),
+        dict(dimensions=2, size=(10, 10, 3)),
+        dict(dimensions=3, size=(10, 10)),
+        dict(size=(10,)),
+        dict(size=10),
+        dict(size=(10, None)),
+        dict(size=(10, 10, 0)),
+    ):
+        with pytest.raises(hc.InputError):
+            tdoa.simulate(**arguments)
+
+
 def test_bounds():
     square = np.array([[0.0, 0], [1, 0], [0, 1], [1, 1], [0.4, 0.3], [0.2, 0.9]])
     others = np.array([[0.5, 2.0], [3, 1], [-1, -1], [0.3, 0.6], [2, -2], [-2, 3], [1.5, 0.2], [0.1, -1.2]])

@@ -34,12 +34,16 @@ pub(crate) struct Arguments {
     /// Share of missing measurements, 0 to 1; their number is rounded.
     #[arg(long, default_value_t = 0.0)]
     missing: f64,
-    /// Positions uniform in a room of WIDTHxHEIGHT metres, or `normal` for standard normal
-    /// positions and offsets.
-    #[arg(long, default_value = "10x10")]
-    layout: String,
-    /// How receivers stand in the room: anywhere, one after the other along WIDTH, or at the points
-    /// of a grid.
+    /// Whether the network is in the plane or in space; by default what --layout says, else the
+    /// plane.
+    #[arg(long, value_name = "2|3", value_parser = clap::value_parser!(u8).range(2..=3))]
+    dimensions: Option<u8>,
+    /// Positions uniform in a room of WIDTHxHEIGHT metres, in space of LENGTHxWIDTHxHEIGHT, or
+    /// `normal` for standard normal positions and offsets. 10x10 by default, in space 10x10x3.
+    #[arg(long)]
+    layout: Option<String>,
+    /// How receivers stand in the room: anywhere, one after the other along its first side, or at
+    /// the points of a grid over its first two.
     #[arg(long, value_enum, default_value = "anywhere")]
     shape: Shape,
     /// Each transmitter is heard by this many receivers, the nearest ones; by all if not given.
@@ -80,14 +84,31 @@ enum Shape {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let mut options = SimulateOptions::default();
+    let sides = arguments.layout.as_deref().and_then(sides);
+    match (sides.map(|sides| sides.len()), arguments.dimensions) {
+        (None | Some(3), Some(3)) | (Some(3), None) => make::<3>(arguments),
+        (Some(3), Some(_)) => Err(contradiction("three sides", "3")),
+        (Some(2), Some(3)) => Err(contradiction("two sides", "2")),
+        _ => make::<2>(arguments),
+    }
+}
+
+fn contradiction(has: &str, dimensions: &str) -> Failure {
+    Failure::Unusable(format!(
+        "--layout has {has}, which is --dimensions {dimensions}; change one of them, or leave out --dimensions"
+    ))
+}
+
+/// Makes a network of `D` dimensions and its files.
+fn make<const D: usize>(arguments: &Arguments) -> Result<(), Failure> {
+    let mut options = SimulateOptions::<D>::new();
     options.receivers = arguments.receivers;
     options.transmitters = arguments.transmitters;
     options.noise = arguments.noise;
     options.outliers = arguments.outliers;
     options.outlier_size = arguments.outlier_size;
     options.missing = arguments.missing;
-    options.layout = layout(&arguments.layout, arguments.shape)?;
+    options.layout = layout(arguments.layout.as_deref(), arguments.shape)?;
     options.hearing = arguments.hearing;
     options.detours = arguments.detours;
     options.detour_size = arguments.detour_size;
@@ -159,19 +180,30 @@ fn unit_of(arguments: &UnitArguments) -> Result<Option<Unit>, Failure> {
     }
 }
 
-fn layout(text: &str, shape: Shape) -> Result<Layout, Failure> {
-    if text == "normal" && shape == Shape::Anywhere {
+/// The sides of a room, metres.
+fn sides(text: &str) -> Option<Vec<f64>> {
+    text.split('x').map(|side| side.parse().ok()).collect()
+}
+
+fn layout<const D: usize>(text: Option<&str>, shape: Shape) -> Result<Layout<D>, Failure> {
+    if text == Some("normal") && shape == Shape::Anywhere {
         return Ok(Layout::Normal);
     }
-    let sides = text.split_once('x').and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
-    match (sides, shape) {
-        (Some((width, height)), Shape::Anywhere) => Ok(Layout::Room { width, height }),
-        (Some((length, width)), Shape::Chain) => Ok(Layout::Chain { length, width }),
-        (Some((width, height)), Shape::Grid) => Ok(Layout::Grid { width, height }),
-        (None, Shape::Anywhere) => {
-            Err(Failure::Unusable(format!("--layout must be normal or WIDTHxHEIGHT in metres, not {text:?}")))
-        }
-        (None, _) => Err(Failure::Unusable(format!("--shape needs --layout WIDTHxHEIGHT in metres, not {text:?}"))),
+    let extent = match text {
+        None => Some(SimulateOptions::<D>::new().layout.extent()),
+        Some(text) => sides(text).and_then(|sides| sides.try_into().ok()),
+    };
+    let text = text.unwrap_or_default();
+    match (extent, shape) {
+        (Some(extent), Shape::Anywhere) => Ok(Layout::Room { extent }),
+        (Some(extent), Shape::Chain) => Ok(Layout::Chain { extent }),
+        (Some(extent), Shape::Grid) => Ok(Layout::Grid { extent }),
+        (None, Shape::Anywhere) => Err(Failure::Unusable(format!(
+            "--layout must be normal, WIDTHxHEIGHT or LENGTHxWIDTHxHEIGHT in metres, not {text:?}"
+        ))),
+        (None, _) => Err(Failure::Unusable(format!(
+            "--shape needs --layout WIDTHxHEIGHT or LENGTHxWIDTHxHEIGHT in metres, not {text:?}"
+        ))),
     }
 }
 
@@ -185,7 +217,9 @@ fn fault(text: &str) -> Result<ReceiverFault, Failure> {
     }
 }
 
-fn positions(names: &[String], positions: &[[f64; 2]]) -> String {
-    let rows: String = names.iter().zip(positions).map(|(name, p)| format!("{name},{},{}\n", p[0], p[1])).collect();
-    format!("id,x,y\n{rows}")
+/// A table of nodes: `id,x,y`, in space `id,x,y,z`.
+fn positions<const D: usize>(names: &[String], positions: &[[f64; D]]) -> String {
+    let row = |(name, p): (&String, &[f64; D])| format!("{name},{}\n", p.map(|x| x.to_string()).join(","));
+    let rows: String = names.iter().zip(positions).map(row).collect();
+    format!("id,{}\n{rows}", ["x", "y", "z"].into_iter().take(D).collect::<Vec<_>>().join(","))
 }

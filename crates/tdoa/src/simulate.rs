@@ -1,56 +1,20 @@
 //! Random networks and their measurements.
 
+mod layout;
+
+use std::array::from_fn;
+
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Exp1, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 use thiserror::Error;
 
+pub use layout::Layout;
+
 use crate::network::Network;
 use crate::points::distance;
 use crate::pseudoranges::{PseudorangeError, Pseudoranges};
-
-/// Where the nodes of a random network lie.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum Layout {
-    /// Coordinates and offsets are standard normal, as in the paper's experiments.
-    Normal,
-    /// Positions are uniform in a rectangle, offsets uniform in plus or minus its diagonal.
-    Room {
-        /// Extent in x, metres.
-        width: f64,
-        /// Extent in y, metres.
-        height: f64,
-    },
-    /// Receivers stand evenly along a road, displaced by up to a third of their spacing, and
-    /// anywhere across it; transmitters are uniform on the road.
-    Chain {
-        /// Its length, metres.
-        length: f64,
-        /// Its width, metres.
-        width: f64,
-    },
-    /// Receivers stand at the points of a square grid over a rectangle, displaced by up to a third
-    /// of their spacing; transmitters are uniform in the rectangle.
-    Grid {
-        /// Extent in x, metres.
-        width: f64,
-        /// Extent in y, metres.
-        height: f64,
-    },
-}
-
-impl Layout {
-    /// Extent in x and y, metres; that of standard normal positions is 1.
-    fn extent(self) -> [f64; 2] {
-        match self {
-            Layout::Normal => [1.0, 1.0],
-            Layout::Room { width, height } | Layout::Grid { width, height } => [width, height],
-            Layout::Chain { length, width } => [length, width],
-        }
-    }
-}
 
 /// An error that all measurements of one receiver have in common.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,16 +29,16 @@ pub enum ReceiverFault {
     Move(f64),
 }
 
-/// Options of a simulation.
+/// Options of a simulation. `Default` is the plane; `SimulateOptions::<3>::new()` is space.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct SimulateOptions {
+pub struct SimulateOptions<const D: usize = 2> {
     /// Number of receivers. Default 8.
     pub receivers: usize,
     /// Number of transmitters. Default 12.
     pub transmitters: usize,
-    /// Where the nodes lie. Default: a room of 10 m by 10 m.
-    pub layout: Layout,
+    /// Where the nodes lie. Default: a room of 10 m by 10 m, in space 3 m high.
+    pub layout: Layout<D>,
     /// Standard deviation of the normal noise on every measurement, metres. Default 0.
     pub noise: f64,
     /// Share of the measurements, 0 to 1, that are outliers; their number is rounded. Default 0.
@@ -99,10 +63,17 @@ pub struct SimulateOptions {
 
 impl Default for SimulateOptions {
     fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<const D: usize> SimulateOptions<D> {
+    /// The defaults, in the plane or in space.
+    pub fn new() -> Self {
         SimulateOptions {
             receivers: 8,
             transmitters: 12,
-            layout: Layout::Room { width: 10.0, height: 10.0 },
+            layout: Layout::Room { extent: from_fn(|k| if k < 2 { 10.0 } else { 3.0 }) },
             noise: 0.0,
             outliers: 0.0,
             outlier_size: 10.0,
@@ -119,9 +90,9 @@ impl Default for SimulateOptions {
 
 /// A simulated network with its measurements.
 #[derive(Debug, Clone)]
-pub struct Simulation {
+pub struct Simulation<const D: usize = 2> {
     /// The true network.
-    pub network: Network,
+    pub network: Network<D>,
     /// The measurements.
     pub pseudoranges: Pseudoranges,
     /// Which cells are outliers, row-major.
@@ -147,7 +118,8 @@ pub enum SimulateError {
     Matrix(#[from] PseudorangeError),
 }
 
-/// A random network and its measurements. The same options give the same result on any machine.
+/// A random network in the plane (`D` = 2) or in space (`D` = 3) and its measurements. The same
+/// options give the same result on any machine.
 ///
 /// # Errors
 /// If an option is out of range, or there are too many cells.
@@ -159,7 +131,24 @@ pub enum SimulateError {
 /// assert!(simulation.network.rms(&simulation.pseudoranges) < 0.02);
 /// # Ok::<(), tdoa::SimulateError>(())
 /// ```
-pub fn simulate(options: &SimulateOptions) -> Result<Simulation, SimulateError> {
+///
+/// In space:
+///
+/// ```
+/// let mut options = tdoa::SimulateOptions::<3>::new();
+/// options.layout = tdoa::Layout::Room { extent: [20.0, 10.0, 4.0] };
+/// let [x, y, z] = tdoa::simulate(&options)?.network.receivers[0];
+/// assert!(x <= 20.0 && y <= 10.0 && z <= 4.0);
+/// # Ok::<(), tdoa::SimulateError>(())
+/// ```
+///
+/// No other dimension compiles:
+///
+/// ```compile_fail,E0080
+/// let _ = tdoa::simulate(&tdoa::SimulateOptions::<4>::new());
+/// ```
+pub fn simulate<const D: usize>(options: &SimulateOptions<D>) -> Result<Simulation<D>, SimulateError> {
+    const { assert!(D == 2 || D == 3, "networks are in the plane (D = 2) or in space (D = 3)") }
     check(options)?;
     let (m, n) = (options.receivers, options.transmitters);
     // The size is checked before anything of that size is made.
@@ -170,7 +159,7 @@ pub fn simulate(options: &SimulateOptions) -> Result<Simulation, SimulateError> 
         return Err(PseudorangeError::Empty { receivers: m, transmitters: n }.into());
     }
     let mut rng = Pcg64Mcg::seed_from_u64(options.seed);
-    let network = random_network(m, n, options.layout, &mut rng);
+    let network = options.layout.network(m, n, &mut rng);
     let mut values = network.pseudoranges();
     for value in &mut values {
         *value += options.noise * rng.sample::<f64, _>(StandardNormal);
@@ -204,35 +193,8 @@ pub fn simulate(options: &SimulateOptions) -> Result<Simulation, SimulateError> 
     Ok(Simulation { network, pseudoranges: Pseudoranges::new(m, n, values)?, outliers })
 }
 
-fn random_network(m: usize, n: usize, layout: Layout, rng: &mut Pcg64Mcg) -> Network {
-    let [width, height] = layout.extent();
-    // The grid's points a row and rows.
-    let across = ((m as f64 * width / height).sqrt().round() as usize).clamp(1, m);
-    let rows = m.div_ceil(across);
-    let point = |rng: &mut Pcg64Mcg| match layout {
-        Layout::Normal => [rng.sample(StandardNormal), rng.sample(StandardNormal)],
-        _ => [width * rng.random::<f64>(), height * rng.random::<f64>()],
-    };
-    let off = |rng: &mut Pcg64Mcg| 0.5 + rng.random_range(-1.0 / 3.0..=1.0 / 3.0);
-    let receiver = |i: usize, rng: &mut Pcg64Mcg| match layout {
-        Layout::Normal | Layout::Room { .. } => point(rng),
-        Layout::Chain { .. } => [width * (i as f64 + off(rng)) / m as f64, height * rng.random::<f64>()],
-        Layout::Grid { .. } => {
-            let (column, row) = ((i % across) as f64, (i / across) as f64);
-            [width * (column + off(rng)) / across as f64, height * (row + off(rng)) / rows as f64]
-        }
-    };
-    let receivers = (0..m).map(|i| receiver(i, rng)).collect();
-    let transmitters = (0..n).map(|_| point(rng)).collect();
-    let offsets = (0..n).map(|_| match layout {
-        Layout::Normal => rng.sample(StandardNormal),
-        _ => width.hypot(height) * rng.random_range(-1.0..=1.0),
-    });
-    Network { receivers, transmitters, offsets: offsets.collect() }
-}
-
 /// Adds the errors that whole receivers have.
-fn spoil(values: &mut [f64], network: &Network, options: &SimulateOptions, rng: &mut Pcg64Mcg) {
+fn spoil<const D: usize>(values: &mut [f64], network: &Network<D>, options: &SimulateOptions<D>, rng: &mut Pcg64Mcg) {
     let n = network.transmitters.len();
     for j in 0..n {
         values[j] += match options.fault {
@@ -241,8 +203,9 @@ fn spoil(values: &mut [f64], network: &Network, options: &SimulateOptions, rng: 
             Some(ReceiverFault::Drift(total)) => total * j as f64 / (n.max(2) - 1) as f64,
             Some(ReceiverFault::Move(_)) if j < n / 2 => 0.0,
             Some(ReceiverFault::Move(by)) => {
-                let [x, y] = network.receivers[0];
-                distance([x + by, y], network.transmitters[j]) - network.distance(0, j)
+                let mut moved = network.receivers[0];
+                moved[0] += by;
+                distance(moved, network.transmitters[j]) - network.distance(0, j)
             }
         };
     }
@@ -257,7 +220,7 @@ fn spoil(values: &mut [f64], network: &Network, options: &SimulateOptions, rng: 
 }
 
 /// The cells, row-major, of transmitters and the receivers that hear them, in ascending order.
-fn audible(network: &Network, hearing: Option<usize>) -> Vec<usize> {
+fn audible<const D: usize>(network: &Network<D>, hearing: Option<usize>) -> Vec<usize> {
     let (m, n) = (network.receivers.len(), network.transmitters.len());
     let Some(hearing) = hearing.filter(|&hearing| hearing < m) else { return (0..m * n).collect() };
     let mut cells = Vec::with_capacity(hearing * n);
@@ -270,10 +233,9 @@ fn audible(network: &Network, hearing: Option<usize>) -> Vec<usize> {
     cells
 }
 
-fn check(options: &SimulateOptions) -> Result<(), SimulateError> {
+fn check<const D: usize>(options: &SimulateOptions<D>) -> Result<(), SimulateError> {
     let fraction = "between 0 and 1";
     let size = "finite and not negative";
-    let [width, height] = options.layout.extent();
     let fault = match options.fault {
         None => 0.0,
         Some(ReceiverFault::Delay(size) | ReceiverFault::Drift(size) | ReceiverFault::Move(size)) => size,
@@ -287,10 +249,11 @@ fn check(options: &SimulateOptions) -> Result<(), SimulateError> {
         ("the size of detours", size, options.detour_size, (0.0..1e9).contains(&options.detour_size)),
         ("the deviation of delays", size, options.delays, (0.0..1e9).contains(&options.delays)),
         ("the first receiver's error", "finite and below 1e9 m", fault, fault.abs() < 1e9),
-        ("the room's width", "positive and at most 1e9 m", width, width > 0.0 && width <= 1e9),
-        ("the room's height", "positive and at most 1e9 m", height, height > 0.0 && height <= 1e9),
     ];
-    match checks.into_iter().find(|(.., good)| !good) {
+    let names = ["the extent in x", "the extent in y", "the extent in z"];
+    let extents = names.into_iter().zip(options.layout.extent());
+    let extents = extents.map(|(name, side)| (name, "positive and at most 1e9 m", side, side > 0.0 && side <= 1e9));
+    match checks.into_iter().chain(extents).find(|(.., good)| !good) {
         None => Ok(()),
         Some((name, range, value, _)) => Err(SimulateError::Range { name, range, value }),
     }
@@ -314,34 +277,57 @@ mod tests {
         }
     }
 
+    fn assert_nearest_hear<const D: usize>(layout: Layout<D>) {
+        let options =
+            SimulateOptions { receivers: 17, transmitters: 30, hearing: Some(6), layout, ..SimulateOptions::new() };
+        let simulation = simulate(&options).unwrap();
+        let (network, measured) = (&simulation.network, &simulation.pseudoranges);
+        for j in 0..30 {
+            let (heard, silent): (Vec<usize>, Vec<usize>) = (0..17).partition(|&i| measured.get(i, j).is_some());
+            let farthest = heard.iter().map(|&i| network.distance(i, j)).fold(0.0, f64::max);
+            assert_eq!(heard.len(), 6);
+            assert!(silent.iter().all(|&i| network.distance(i, j) >= farthest));
+        }
+    }
+
     #[test]
     fn a_transmitter_is_heard_by_the_nearest_receivers() {
-        for layout in [
-            Layout::Chain { length: 1000.0, width: 50.0 },
-            Layout::Grid { width: 1000.0, height: 1000.0 },
-            SimulateOptions::default().layout,
-        ] {
-            let options =
-                SimulateOptions { receivers: 17, transmitters: 30, hearing: Some(6), layout, ..Default::default() };
-            let simulation = simulate(&options).unwrap();
-            let (network, measured) = (&simulation.network, &simulation.pseudoranges);
-            for j in 0..30 {
-                let (heard, silent): (Vec<usize>, Vec<usize>) = (0..17).partition(|&i| measured.get(i, j).is_some());
-                let farthest = heard.iter().map(|&i| network.distance(i, j)).fold(0.0, f64::max);
-                assert_eq!(heard.len(), 6);
-                assert!(silent.iter().all(|&i| network.distance(i, j) >= farthest));
+        assert_nearest_hear(Layout::Chain { extent: [1000.0, 50.0] });
+        assert_nearest_hear(Layout::Grid { extent: [1000.0, 1000.0] });
+        assert_nearest_hear(SimulateOptions::default().layout);
+        assert_nearest_hear(Layout::Chain { extent: [1000.0, 50.0, 200.0] });
+        assert_nearest_hear(Layout::Grid { extent: [100.0, 100.0, 100.0] });
+        assert_nearest_hear(SimulateOptions::<3>::new().layout);
+    }
+
+    #[test]
+    fn networks_in_space_have_no_residuals_without_noise() {
+        let extent = [30.0, 20.0, 10.0];
+        for layout in [Layout::Normal, Layout::Room { extent }, Layout::Chain { extent }, Layout::Grid { extent }] {
+            let simulation = simulate(&SimulateOptions { layout, ..SimulateOptions::new() }).unwrap();
+            let measured = &simulation.pseudoranges;
+            assert_eq!((measured.receivers(), measured.transmitters(), measured.observed()), (8, 12, 96));
+            for (i, j, value) in measured.cells().iter() {
+                let [[a, b, c], [x, y, z]] = [simulation.network.receivers[i], simulation.network.transmitters[j]];
+                let distance = ((a - x).powi(2) + (b - y).powi(2) + (c - z).powi(2)).sqrt();
+                assert!((value - distance - simulation.network.offsets[j]).abs() < 1e-12, "{layout:?}");
             }
         }
     }
 
     #[test]
     fn faults_are_those_of_the_first_receiver() {
+        assert_faults(&SimulateOptions::default());
+        assert_faults(&SimulateOptions::<3>::new());
+    }
+
+    fn assert_faults<const D: usize>(options: &SimulateOptions<D>) {
         for (fault, first, last) in [
             (ReceiverFault::Delay(0.3), Some(0.3), Some(0.3)),
             (ReceiverFault::Drift(0.4), Some(0.0), Some(0.4)),
             (ReceiverFault::Move(1.0), Some(0.0), None),
         ] {
-            let simulation = simulate(&SimulateOptions { fault: Some(fault), ..Default::default() }).unwrap();
+            let simulation = simulate(&SimulateOptions { fault: Some(fault), ..options.clone() }).unwrap();
             let residuals = simulation.network.residuals(&simulation.pseudoranges);
             assert!(residuals[12..].iter().all(|e| e.abs() < 1e-12));
             for (found, expected) in [(residuals[0], first), (residuals[11], last)] {
@@ -361,13 +347,20 @@ mod tests {
         assert!(residuals.iter().all(|e| *e > -1e-9));
     }
 
-    #[test]
-    fn same_seed_same_network() {
-        let mut options = SimulateOptions { noise: 0.1, layout: Layout::Normal, ..Default::default() };
+    fn assert_seed_decides<const D: usize>(mut options: SimulateOptions<D>) {
+        options.noise = 0.1;
         let first = simulate(&options).unwrap();
-        assert_eq!(first.pseudoranges.dense(), simulate(&options).unwrap().pseudoranges.dense());
+        let again = simulate(&options).unwrap();
+        assert_eq!(first.network, again.network);
+        assert_eq!(first.pseudoranges.dense(), again.pseudoranges.dense());
         options.seed = 1;
         assert_ne!(first.pseudoranges.dense(), simulate(&options).unwrap().pseudoranges.dense());
+    }
+
+    #[test]
+    fn same_seed_same_network() {
+        assert_seed_decides(SimulateOptions { layout: Layout::Normal, ..Default::default() });
+        assert_seed_decides(SimulateOptions::<3>::new());
     }
 
     #[test]
@@ -378,5 +371,23 @@ mod tests {
         }
         let options = SimulateOptions { receivers: usize::MAX, ..Default::default() };
         assert!(simulate(&options).is_err());
+    }
+
+    #[test]
+    fn refuses_extents_out_of_range_by_name() {
+        for (k, name) in ["x", "y", "z"].into_iter().enumerate() {
+            for side in [0.0, -1.0, 2e9, f64::INFINITY, f64::NAN] {
+                let mut extent = [5.0; 3];
+                extent[k] = side;
+                for layout in [Layout::Room { extent }, Layout::Chain { extent }, Layout::Grid { extent }] {
+                    let error = simulate(&SimulateOptions { layout, ..SimulateOptions::new() }).unwrap_err();
+                    let expected = format!("the extent in {name} must be positive and at most 1e9 m, not {side}");
+                    assert_eq!(error.to_string(), expected);
+                }
+            }
+        }
+        let layout = Layout::Room { extent: [5.0, 0.0] };
+        let error = simulate(&SimulateOptions { layout, ..Default::default() }).unwrap_err();
+        assert!(error.to_string().starts_with("the extent in y"));
     }
 }

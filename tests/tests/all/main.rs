@@ -31,4 +31,5 @@ mod tdoa_mat;
 mod tdoa_mpi;
 mod tdoa_real;
 mod tdoa_report;
+mod tdoa_simulate;
 mod tdoa_solve;

@@ -55,9 +55,9 @@ impl Condition {
     fn all() -> Vec<Condition> {
         let mut all = Vec::new();
         for (name, receivers, transmitters, layout) in [
-            ("chain 60r over 1 km", 60, 300, Layout::Chain { length: 1000.0, width: 50.0 }),
-            ("chain 30r over 500 m", 30, 150, Layout::Chain { length: 500.0, width: 50.0 }),
-            ("grid 8 x 8 over 1 km", 64, 400, Layout::Grid { width: 1000.0, height: 1000.0 }),
+            ("chain 60r over 1 km", 60, 300, Layout::Chain { extent: [1000.0, 50.0] }),
+            ("chain 30r over 500 m", 30, 150, Layout::Chain { extent: [500.0, 50.0] }),
+            ("grid 8 x 8 over 1 km", 64, 400, Layout::Grid { extent: [1000.0, 1000.0] }),
         ] {
             let mut condition = Condition::new(name, receivers, transmitters);
             condition.simulate.layout = layout;

@@ -325,8 +325,8 @@ class Simulation(NamedTuple):
     ----------
     pseudoranges : ndarray of float, shape (m, n)
         The measurements; NaN where one is missing.
-    receivers, transmitters : ndarray of float, shapes (m, 2) and (n, 2)
-        True positions.
+    receivers, transmitters : ndarray of float, shapes (m, d) and (n, d)
+        True positions, d = 2 in the plane and 3 in space.
     offsets : ndarray of float, shape (n,)
         True offsets.
     outliers : ndarray of bool, shape (m, n)
@@ -344,8 +344,9 @@ def simulate(
     receivers=8,
     transmitters=12,
     *,
+    dimensions=None,
     layout="room",
-    size=(10.0, 10.0),
+    size=None,
     noise=0.0,
     outliers=0.0,
     outlier_size=10.0,
@@ -357,16 +358,18 @@ def simulate(
     delays=0.0,
     seed=0,
 ):
-    """A random network in the plane and its measurements, the same for the same arguments on any machine.
+    """A random network in the plane or in space and its measurements, the same for the same arguments on any machine.
 
     Parameters
     ----------
     receivers, transmitters : int
         Numbers of nodes.
+    dimensions : {2, 3}, optional
+        Whether the network is in the plane or in space; by default what `size` says, else the plane.
     layout : {"room", "chain", "grid", "normal"}
         Where they lie: anywhere in a room, receivers along a road or on a grid, or all coordinates and offsets standard normal.
-    size : (float, float)
-        Extent in x and y, metres.
+    size : (float, float) or (float, float, float), optional
+        Extent in x, y and in space z, metres. (10, 10) by default, in space (10, 10, 3).
     noise : float
         Standard deviation of the normal noise, metres.
     outliers, outlier_size : float
@@ -389,17 +392,25 @@ def simulate(
     Simulation
     """
     try:
-        width, height = size
+        size = None if size is None else [number("size", side) for side in size]
         kind = None if fault is None else (text("fault", fault[0]), number("fault", fault[1]))
     except (TypeError, ValueError, IndexError) as error:
         if isinstance(error, InputError):
             raise
-        raise InputError("size must be two lengths, and fault a kind and a length") from None
+        raise InputError("size must be two or three lengths, and fault a kind and a length") from None
+    if size is not None and (len(size) not in (2, 3) or None in size):
+        raise InputError("size must be two or three lengths")
+    dimensions = integer("dimensions", dimensions, 2, 3)
+    if dimensions is None:
+        dimensions = 2 if size is None else len(size)
+    elif size is not None and len(size) != dimensions:
+        raise InputError(f"size has {len(size)} lengths, but dimensions is {dimensions}; change one of them, or leave out dimensions")
     wanted = {
         "receivers": integer("receivers", receivers),
         "transmitters": integer("transmitters", transmitters),
+        "dimensions": dimensions,
         "layout": text("layout", layout),
-        "size": [number("size", width), number("size", height)],
+        "size": size,
         "noise": number("noise", noise),
         "outliers": number("outliers", outliers),
         "outlier_size": number("outlier_size", outlier_size),
@@ -411,7 +422,7 @@ def simulate(
         "delays": number("delays", delays),
         "seed": seeded(seed),
     }
-    missing_ones = [name for name, value in wanted.items() if value is None and name not in ("hearing", "fault")]
+    missing_ones = [name for name, value in wanted.items() if value is None and name not in ("size", "hearing", "fault")]
     if missing_ones:
         raise InputError(f"{missing_ones[0]} must be a number, not None")
     return Simulation(**_native.simulate(wanted))

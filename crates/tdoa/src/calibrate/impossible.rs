@@ -112,7 +112,7 @@ mod tests {
     #[test]
     fn gross_errors_and_far_receivers_stay() {
         for seed in 0..100 {
-            let layout = if seed % 2 == 0 { Layout::Normal } else { Layout::Chain { length: 2000.0, width: 20.0 } };
+            let layout = if seed % 2 == 0 { Layout::Normal } else { Layout::Chain { extent: [2000.0, 20.0] } };
             let options = SimulateOptions {
                 layout,
                 noise: 0.01,

@@ -51,7 +51,7 @@ mod tests {
 
     #[test]
     fn offsets_in_the_rows_are_told() {
-        let chain = Layout::Chain { length: 400.0, width: 50.0 };
+        let chain = Layout::Chain { extent: [400.0, 50.0] };
         let room = SimulateOptions::default().layout;
         let (mut told, mut all) = (0, 0);
         for (receivers, transmitters, hearing, layout) in [

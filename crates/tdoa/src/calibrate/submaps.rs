@@ -382,7 +382,7 @@ mod tests {
     use crate::{CalibrateOptions, Layout, Pseudoranges, SimulateOptions, Simulation, calibrate, simulate};
 
     fn chain(seed: u64) -> Simulation {
-        let layout = Layout::Chain { length: 400.0, width: 50.0 };
+        let layout = Layout::Chain { extent: [400.0, 50.0] };
         let options = SimulateOptions {
             receivers: 20,
             transmitters: 120,

@@ -117,7 +117,7 @@ mod tests {
         let made = simulate(&SimulateOptions {
             receivers: 20,
             transmitters: 60,
-            layout: crate::Layout::Chain { length: 400.0, width: 50.0 },
+            layout: crate::Layout::Chain { extent: [400.0, 50.0] },
             hearing: Some(8),
             noise: 0.1,
             ..SimulateOptions::default()
