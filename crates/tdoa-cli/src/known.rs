@@ -36,7 +36,9 @@ impl Truth {
         let mut truth = Truth::default();
         if let Some(path) = given {
             let nodes = read_nodes(path).map_err(Failure::unusable)?;
-            if let Some((name, ..)) = nodes.partial.first() {
+            // A node without a name is whole.
+            let partial = nodes.nodes.iter().find(|node| node.whole::<2>().is_none());
+            if let Some(name) = partial.and_then(|node| node.name.as_deref()) {
                 return Err(Failure::in_file(path, format!("{name} has one coordinate alone; a truth needs both")));
             }
             truth.receivers = Some(truth.place(path, &nodes, measured)?);
@@ -50,14 +52,14 @@ impl Truth {
                 None => Some(format!(
                     "{}: rgt has {} for {}, so that nothing is compared with it",
                     file.display(),
-                    counted(nodes.positions.len(), "position"),
+                    counted(nodes.nodes.len(), "position"),
                     counted(measured.receivers(), "receiver")
                 )),
             });
         }
         let file = given.unwrap_or(file);
         if is_mat(file) {
-            let all = read_mat_transmitters(file).map_err(Failure::unusable)?.unwrap_or_default();
+            let all = read_mat_transmitters(file).map_err(Failure::unusable)?.unwrap_or_default().positions();
             truth.transmitters = if all.len() == measured.transmitters() { all } else { Vec::new() };
         }
         Ok(truth)
@@ -70,7 +72,7 @@ impl Truth {
         let unusable = |problem: String| Err(Failure::in_file(path, problem));
         let unknown = nodes.unknown(receivers);
         let matched = nodes.names_any(receivers);
-        let is_named = nodes.names.is_some();
+        let is_named = nodes.is_named();
         if is_named && !matched && measured.receivers_named() {
             return unusable(format!(
                 "no receiver is named {}; the receivers are {}: use their names, or leave out the names (lines x,y) to give the \
@@ -83,7 +85,7 @@ impl Truth {
             return unusable(format!(
                 "has {} for {}, and no name in common; give one line id,x,y for each receiver, in order \
                  or with its name",
-                counted(nodes.positions.len(), "position"),
+                counted(nodes.nodes.len(), "position"),
                 counted(measured.receivers(), "receiver")
             ));
         };
@@ -123,13 +125,10 @@ pub(crate) struct Anchors {
 pub(crate) fn anchors(path: &Path, measured: &Pseudoranges) -> Result<Anchors, Failure> {
     let nodes = read_nodes(path).map_err(Failure::unusable)?;
     let receivers = measured.receiver_names();
-    let Some(names) = &nodes.names else {
+    if !nodes.is_named() {
         return Err(Failure::in_file(path, "names no receivers; expected lines name,x,y"));
-    };
-    let mut unknown = nodes.unknown(receivers);
-    unknown.extend(
-        nodes.partial.iter().map(|(name, ..)| name.as_str()).filter(|name| !receivers.iter().any(|r| r == name)),
-    );
+    }
+    let unknown = nodes.unknown(receivers);
     if !unknown.is_empty() {
         return Err(Failure::in_file(
             path,
@@ -137,7 +136,7 @@ pub(crate) fn anchors(path: &Path, measured: &Pseudoranges) -> Result<Anchors, F
         ));
     }
     if let Some([low, high]) = nodes.height_range()
-        && high - low > FLAT * extent(&nodes.positions)
+        && high - low > FLAT * extent(&nodes)
     {
         return Err(Failure::in_file(
             path,
@@ -148,17 +147,20 @@ pub(crate) fn anchors(path: &Path, measured: &Pseudoranges) -> Result<Anchors, F
             ),
         ));
     }
-    let find = |receiver: &String| names.iter().position(|name| name == receiver);
-    let sigma_of = |k: usize| nodes.sigmas.as_ref().map_or([0.0; 2], |sigmas| sigmas[k]);
-    let has_sigmas =
-        nodes.sigmas.is_some() || nodes.partial.iter().any(|(.., sigma)| !sigma.iter().all(|x| x.is_nan()));
     let mut found = Anchors { exact: vec![None; receivers.len()], measured: Vec::new(), note: heights(path, &nodes) };
     for (i, receiver) in receivers.iter().enumerate() {
-        let whole = find(receiver).map(|k| (nodes.positions[k].map(Some), sigma_of(k)));
-        let partial = nodes.partial.iter().find(|(name, ..)| name == receiver);
-        // Without a column sigma all positions are exact.
-        let partial = partial.map(|&(_, position, sigma)| (position, if has_sigmas { sigma } else { [0.0; 2] }));
-        let Some((position, sigma)) = whole.or(partial) else { continue };
+        let Some(node) = nodes.named(receiver) else { continue };
+        let [x, y, _] = node.position;
+        let position = [x, y];
+        if position == [None; 2] {
+            return Err(Failure::in_file(
+                path,
+                format!("{receiver} has neither x nor y; give one of them, or leave it out"),
+            ));
+        }
+        // Without standard deviations all positions are exact.
+        let [of_x, of_y, _] = node.sigma;
+        let sigma = if nodes.has_sigmas { [of_x, of_y] } else { [0.0; 2] };
         let is_missing = |k: usize| position[k].is_some() && (sigma[k].is_nan() || sigma[k] < 0.0);
         if is_missing(0) || is_missing(1) {
             return Err(Failure::in_file(
@@ -184,7 +186,7 @@ pub(crate) fn anchors(path: &Path, measured: &Pseudoranges) -> Result<Anchors, F
 fn heights(path: &Path, nodes: &Nodes) -> Option<String> {
     let [low, high] = nodes.height_range().filter(|range| *range != [0.0; 2])?;
     let range = if low == high { length(low) } else { format!("{} to {}", length(low), length(high)) };
-    let flat = high - low <= FLAT * extent(&nodes.positions);
+    let flat = high - low <= FLAT * extent(nodes);
     let advice = if flat { "" } else { "; receivers at such different heights form no plane" };
     Some(format!(
         "{}: the heights (z, {range}) are left out: the network is taken to be a plane{advice}",
@@ -193,7 +195,8 @@ fn heights(path: &Path, nodes: &Nodes) -> Option<String> {
 }
 
 /// The largest distance along x or y.
-fn extent(positions: &[[f64; 2]]) -> f64 {
+fn extent(nodes: &Nodes) -> f64 {
+    let positions: Vec<[f64; 2]> = nodes.positions().into_iter().flatten().collect();
     let range = |k: usize| {
         let all = || positions.iter().map(|p| p[k]);
         all().fold(f64::NEG_INFINITY, f64::max) - all().fold(f64::INFINITY, f64::min)

@@ -19,7 +19,7 @@ use std::path::Path;
 pub use distances::{read_distances, read_distances_from};
 pub use error::{MAX_BYTES, ReadError};
 pub use heading::heads_list;
-pub use nodes::{Nodes, read_mat_nodes, read_mat_transmitters, read_nodes, read_nodes_from};
+pub use nodes::{Node, Nodes, read_mat_nodes, read_mat_transmitters, read_nodes, read_nodes_from};
 pub use source::is_mat;
 pub use units::{ReadOptions, Units};
 

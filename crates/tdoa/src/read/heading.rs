@@ -106,14 +106,15 @@ impl Heading {
         self.is(SIGMA)
     }
 
-    /// Of which coordinate standard deviations stand below this, if of one: 0 for x, 1 for y.
+    /// Of which coordinate standard deviations stand below this, if of one: 0 for x, 1 for y, 2
+    /// for z.
     pub(super) fn coordinate_of_sigma(&self) -> Option<usize> {
         let of = |axis: &str| {
             let name = self.name.as_str();
             let stem = name.strip_suffix(axis).and_then(|stem| stem.strip_suffix('_'));
             stem.or_else(|| name.strip_prefix(axis)?.strip_prefix('_')).is_some_and(|stem| SIGMA.contains(&stem))
         };
-        ["x", "y"].iter().position(|axis| of(axis))
+        ["x", "y", "z"].iter().position(|axis| of(axis))
     }
 
     /// Which coordinate stands below this, if one does: 0 for x, 1 for y, 2 for z.

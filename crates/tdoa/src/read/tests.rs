@@ -349,7 +349,7 @@ proptest! {
 
     #[test]
     fn random_cells_in_all_separators_never_panic(
-        cells in proptest::collection::vec("[a-z]{0,3}|-?[0-9]{0,2}[.,]?[0-9]{0,2}|time_ms|receiver|event|x|y|z|\"", 0..40),
+        cells in proptest::collection::vec("[a-z]{0,3}|-?[0-9]{0,2}[.,]?[0-9]{0,2}|time_ms|receiver|event|x|y|z|sigma|std_[xyz]|\"", 0..40),
         separator in "[,; \t]",
         width in 1usize..6,
         wide: bool,
