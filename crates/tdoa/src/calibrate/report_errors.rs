@@ -75,10 +75,10 @@ impl<const D: usize> Solved<'_, D> {
             if fault.kind == ReceiverErrorKind::Move {
                 // Its place is somewhere between the two.
                 let mut motion = Motion {
-                    receivers: vec![0.0; 2 * kept.receivers],
+                    receivers: vec![0.0; D * kept.receivers],
                     transmitters: vec![([0.0; D], 0.0); kept.transmitters],
                 };
-                motion.receivers[2 * fault.receiver..2 * fault.receiver + 2].copy_from_slice(&fault.size);
+                motion.receivers[D * fault.receiver..D * (fault.receiver + 1)].copy_from_slice(&fault.size);
                 add(&mut found, 1.0, &motion, &motion);
             } else {
                 for (_, motion) in columns(kept, &projection, &[*fault], monitor)? {
@@ -86,7 +86,7 @@ impl<const D: usize> Solved<'_, D> {
                 }
             }
         }
-        let size = 2 * kept.receivers;
+        let size = D * kept.receivers;
         for (i, receiver) in found.receivers.iter_mut().enumerate() {
             *receiver = from_fn(|x| from_fn(|y| found.joint[(D * i + x) * size + D * i + y]));
         }
