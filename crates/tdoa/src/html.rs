@@ -2,6 +2,7 @@
 //! of nodes and measurements. It refers to nothing outside itself.
 
 use hc::poly::{counted, one_or};
+use std::array::from_fn;
 use std::fmt::Write;
 
 use crate::calibrate::Calibration;
@@ -18,27 +19,13 @@ const SORT: &str = include_str!("html/sort.js");
 /// A column of a table: its heading, and whether it holds text instead of numbers.
 type Column = (&'static str, bool);
 
-const RECEIVERS: [Column; 7] = [
-    ("receiver", true),
-    ("x", false),
-    ("y", false),
-    ("std x", false),
-    ("std y", false),
-    ("measured", false),
-    ("outliers", false),
-];
+/// The coordinates of a position, and what their deviations are called.
+const AXES: [[Column; 3]; 2] =
+    [[("x", false), ("y", false), ("z", false)], [("std x", false), ("std y", false), ("std z", false)]];
 
-const TRANSMITTERS: [Column; 9] = [
-    ("transmitter", true),
-    ("x", false),
-    ("y", false),
-    ("std x", false),
-    ("std y", false),
-    ("offset", false),
-    ("std offset", false),
-    ("measured", false),
-    ("outliers", false),
-];
+const OFFSET: [Column; 2] = [("offset", false), ("std offset", false)];
+
+const COUNTS: [Column; 2] = [("measured", false), ("outliers", false)];
 
 const MEASUREMENTS: [Column; 5] = [
     ("receiver", true),
@@ -49,7 +36,7 @@ const MEASUREMENTS: [Column; 5] = [
 ];
 
 /// The report as HTML text.
-pub fn html(calibration: &Calibration) -> String {
+pub fn html<const D: usize>(calibration: &Calibration<D>) -> String {
     let title = format!("Calibration of {}", escape(&calibration.configuration));
     let mut page = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
@@ -66,9 +53,9 @@ pub fn html(calibration: &Calibration) -> String {
     page += &format!("<figure>\n{}</figure>\n", picture(calibration));
     page += &format!("<p class=\"note\">Lengths in metres. Standard deviations: {}.</p>\n", escape(&calibration.gauge));
     page += "<h2>Receivers</h2>\n";
-    page += &table("receivers", &RECEIVERS, receivers(calibration));
+    page += &table("receivers", &columns::<D>("receiver", &[]), receivers(calibration));
     page += "<h2>Transmitters</h2>\n";
-    page += &table("transmitters", &TRANSMITTERS, transmitters(calibration));
+    page += &table("transmitters", &columns::<D>("transmitter", &OFFSET), transmitters(calibration));
     page += "<h2>Measurements</h2>\n";
     let (rows, left_out) = measurements(calibration);
     if left_out > 0 {
@@ -84,7 +71,7 @@ pub fn html(calibration: &Calibration) -> String {
 }
 
 /// What the summary says, as a list of terms and values.
-fn facts(calibration: &Calibration) -> String {
+fn facts<const D: usize>(calibration: &Calibration<D>) -> String {
     let (measured, outliers) = (calibration.residuals.len(), calibration.residuals.outliers().count());
     let mut list = vec![
         ("Measurements", format!("{measured}, outliers among them: {outliers}")),
@@ -139,6 +126,12 @@ fn facts(calibration: &Calibration) -> String {
     format!("<dl>\n{}</dl>\n", entries.collect::<String>())
 }
 
+/// The columns of a table of nodes; some stand after the deviations.
+fn columns<const D: usize>(kind: &'static str, after: &[Column]) -> Vec<Column> {
+    let axes = AXES.iter().flat_map(|axes| axes.iter().take(D));
+    [(kind, true)].iter().chain(axes).chain(after).chain(&COUNTS).copied().collect()
+}
+
 /// A table with a heading that sorts; cells are escaped here.
 fn table(id: &str, columns: &[Column], rows: impl IntoIterator<Item = Vec<String>>) -> String {
     let class = |text: bool| if text { " class=\"text\"" } else { "" };
@@ -159,26 +152,26 @@ fn table(id: &str, columns: &[Column], rows: impl IntoIterator<Item = Vec<String
     html + "</tbody>\n</table></div>\n"
 }
 
-fn receivers(calibration: &Calibration) -> Vec<Vec<String>> {
+fn receivers<const D: usize>(calibration: &Calibration<D>) -> Vec<Vec<String>> {
     let position = position(calibration);
     let rows = calibration.receiver_names.iter().enumerate();
     rows.map(|(i, name)| {
         let mut row = vec![name.clone()];
-        row.extend(pair(calibration.receivers[i], &position));
-        row.extend(pair(calibration.receiver_std[i], small));
+        row.extend(cells(calibration.receivers[i], &position));
+        row.extend(cells(calibration.receiver_std[i], small));
         row.extend(calibration.counts_of_receiver(i).map(|count| count.to_string()));
         row
     })
     .collect()
 }
 
-fn transmitters(calibration: &Calibration) -> Vec<Vec<String>> {
+fn transmitters<const D: usize>(calibration: &Calibration<D>) -> Vec<Vec<String>> {
     let position = position(calibration);
     let rows = calibration.transmitter_names.iter().enumerate();
     rows.map(|(j, name)| {
         let mut row = vec![name.clone()];
-        row.extend(pair(calibration.transmitters[j], &position));
-        row.extend(pair(calibration.transmitter_std[j], small));
+        row.extend(cells(calibration.transmitters[j], &position));
+        row.extend(cells(calibration.transmitter_std[j], small));
         row.push(calibration.offsets[j].map(&position).unwrap_or_default());
         row.push(calibration.offset_std[j].map(small).unwrap_or_default());
         row.extend(calibration.counts_of_transmitter(j).map(|count| count.to_string()));
@@ -188,7 +181,7 @@ fn transmitters(calibration: &Calibration) -> Vec<Vec<String>> {
 }
 
 /// One row a measurement in the order of the matrix, and how many were left out.
-fn measurements(calibration: &Calibration) -> (Vec<Vec<String>>, usize) {
+fn measurements<const D: usize>(calibration: &Calibration<D>) -> (Vec<Vec<String>>, usize) {
     let mut all: Vec<(usize, usize, f64, bool)> =
         calibration.residuals.iter().map(|(i, j, residual)| (i, j, residual.length, !residual.inlier)).collect();
     let left_out = all.len().saturating_sub(LISTED);
@@ -210,12 +203,13 @@ fn measurements(calibration: &Calibration) -> (Vec<Vec<String>>, usize) {
     (rows.collect(), left_out)
 }
 
-fn pair(values: Option<[f64; 2]>, show: impl Fn(f64) -> String) -> [String; 2] {
-    values.map_or_else(|| [String::new(), String::new()], |values| values.map(show))
+/// The numbers of a position or its deviations, empty if there is none.
+fn cells<const D: usize>(values: Option<[f64; D]>, show: impl Fn(f64) -> String) -> [String; D] {
+    from_fn(|k| values.map(|values| show(values[k])).unwrap_or_default())
 }
 
 /// Coordinates with decimals that suit the network's size.
-fn position(calibration: &Calibration) -> impl Fn(f64) -> String + use<> {
+fn position<const D: usize>(calibration: &Calibration<D>) -> impl Fn(f64) -> String + use<D> {
     let decimals = decimals(calibration.extent().unwrap_or(0.0));
     move |value| coordinate(value, decimals)
 }
@@ -255,5 +249,34 @@ mod tests {
         let addresses = page.matches("://").count();
         assert_eq!(addresses, page.matches("xmlns=\"http://www.w3.org/2000/svg\"").count());
         assert!(!page.contains(" src=") && !page.contains("url(") && !page.contains("NaN"));
+    }
+
+    /// The headings of a table.
+    fn headings<'a>(page: &'a str, id: &str) -> Vec<&'a str> {
+        let table = page.split_once(&format!("<table id=\"{id}\">")).unwrap().1;
+        let buttons = table.split_once("</thead>").unwrap().0.split("<button type=\"button\">").skip(1);
+        buttons.map(|rest| rest.split('<').next().unwrap()).collect()
+    }
+
+    #[test]
+    fn tables_have_the_coordinates_of_the_plane_or_of_space() {
+        let plane = html(&calibration());
+        assert_eq!(headings(&plane, "receivers"), ["receiver", "x", "y", "std x", "std y", "measured", "outliers"]);
+        let transmitters = ["transmitter", "x", "y", "std x", "std y", "offset", "std offset", "measured", "outliers"];
+        assert_eq!(headings(&plane, "transmitters"), transmitters);
+
+        let simulation = simulate(&SimulateOptions::<3> { noise: 0.01, ..SimulateOptions::new() }).unwrap();
+        let calibration = calibrate(&simulation.pseudoranges, &CalibrateOptions::<3>::new()).unwrap();
+        let page = html(&calibration);
+        let columns = headings(&page, "receivers");
+        assert_eq!(columns, ["receiver", "x", "y", "z", "std x", "std y", "std z", "measured", "outliers"]);
+        assert_eq!(
+            headings(&page, "transmitters")[4..],
+            ["std x", "std y", "std z", "offset", "std offset", "measured", "outliers"]
+        );
+        // As many cells in a row as headings.
+        let row = page.split_once("<table id=\"receivers\">").unwrap().1.split("<tr>").nth(2).unwrap();
+        assert_eq!(row.split("</tr>").next().unwrap().matches("<td").count(), columns.len());
+        assert!(page.contains("from the side") && !page.contains("NaN"));
     }
 }

@@ -1,89 +1,49 @@
-//! A calibration as an SVG picture: the network with 95 % ellipses, names, a scale bar, outliers, a
-//! histogram of the residuals and, if the truth is given, the truth and error vectors.
+//! A calibration as an SVG picture: the network with 95 % ellipses, names, a scale, outliers, a
+//! histogram of the residuals and, if the truth is given, the truth and error vectors. A network in
+//! space has two views: from above, with x to the right and y upwards, and from the side, with x to the
+//! right and z upwards.
 
 use hc::poly::{counted, one_or};
 
 mod canvas;
 mod histogram;
+mod labels;
+mod layout;
+mod view;
 
 use crate::calibrate::Calibration;
-use crate::points::{centroid, distance, spread};
 use crate::quantity::{length, number};
 use crate::summary::deviation;
 pub use canvas::Canvas;
 pub(crate) use canvas::escape;
-use canvas::{Map, nice};
+use layout::Layout;
+use view::{BLUE, ORANGE, PINK, WIDTH};
 
-const WIDTH: f64 = 900.0;
-const MAP_HEIGHT: f64 = 620.0;
-const FOOT_HEIGHT: f64 = 230.0;
+/// Height of the histogram and the legend.
+const FOOT: f64 = 190.0;
 
-/// Transmitters farther than this many network sizes from the centre are left out of the picture.
-const REACH: f64 = 5.0;
-
-/// Most nodes of a kind that get their names.
-const NAMED: usize = 80;
-
-/// Most outliers that are drawn as lines.
-const OUTLIERS: usize = 200;
-
-/// The picture as SVG text.
-pub fn picture(calibration: &Calibration) -> String {
-    let mut canvas = Canvas::new(WIDTH, MAP_HEIGHT + FOOT_HEIGHT);
-    let (map, outside) = map_of(calibration);
-    let visible = |p: &[f64; 2]| map.shows(*p);
+/// The picture as SVG text: one view of a network in the plane, two at one scale of one in space.
+pub fn picture<const D: usize>(calibration: &Calibration<D>) -> String {
+    let layout = Layout::of(calibration);
+    let mut canvas = Canvas::new(WIDTH, layout.foot + FOOT);
     canvas.text([20.0, 28.0], "start", 16.0, &title(calibration));
-
-    outliers(&mut canvas, calibration, &map);
-    let magnified = magnification(calibration, &map);
+    let magnified = layout.magnification(calibration);
     let radius = magnified * calibration.ellipse_radius.unwrap_or(0.0);
-    let blue = "#0072B2";
-    let orange = "#D55E00";
-    let nodes = calibration.transmitters.iter().zip(&calibration.transmitter_covariance);
-    for (position, covariance) in nodes {
-        if let Some(p) = position.filter(visible) {
-            ellipse(&mut canvas, &map, p, *covariance, radius, orange);
-            canvas.circle(map.to(p), 3.0, orange);
-        }
+    for view in &layout.views {
+        view.draw(&mut canvas, calibration, |p| layout.shows(p), radius);
     }
-    let nodes = calibration.receivers.iter().zip(&calibration.receiver_covariance).zip(&calibration.anchored);
-    for ((position, covariance), anchored) in nodes {
-        if let Some(p) = position.filter(visible) {
-            ellipse(&mut canvas, &map, p, *covariance, radius, blue);
-            canvas.triangle(map.to(p), 6.0, blue);
-            if *anchored {
-                canvas.square(map.to(p), 9.0);
-            }
-        }
-    }
-    if let Some(truth) = &calibration.truth {
-        let receivers = calibration.receivers.iter().zip(&truth.positions);
-        let transmitters = calibration.transmitters.iter().zip(&truth.transmitter_positions);
-        for (found, known) in receivers.chain(transmitters.filter(|(p, _)| p.as_ref().is_some_and(visible))) {
-            if let (Some(found), Some(known)) = (found, known) {
-                canvas.line(map.to(*found), map.to(*known), "#000", 1.5, "");
-                canvas.cross(map.to(*known), 5.0);
-            }
-        }
-    }
-    let named = |names: &[String], positions: &[Option<[f64; 2]>]| -> Vec<([f64; 2], String)> {
-        let nodes = names.iter().zip(positions).filter_map(|(name, p)| Some(((*p)?, name.clone())));
-        nodes.filter(|(p, _)| visible(p)).map(|(p, name)| (map.to(p), name)).collect()
-    };
-    let receivers = named(&calibration.receiver_names, &calibration.receivers);
-    let transmitters = named(&calibration.transmitter_names, &calibration.transmitters);
-    let points: Vec<[f64; 2]> = receivers.iter().chain(&transmitters).map(|(p, _)| *p).collect();
-    canvas.labels(&receivers[..receivers.len().min(NAMED)], &points, blue);
-    if transmitters.len() <= NAMED {
-        canvas.labels(&transmitters, &points, orange);
-    }
-    scale_bar(&mut canvas, &map);
-    histogram::draw(&mut canvas, calibration, [60.0, MAP_HEIGHT + 40.0], [480.0, 130.0]);
-    legend(&mut canvas, calibration, magnified, outside, [600.0, MAP_HEIGHT + 40.0]);
+    histogram::draw(&mut canvas, calibration, [60.0, layout.foot], [480.0, 130.0]);
+    legend(&mut canvas, calibration, &layout, magnified, [600.0, layout.foot]);
     canvas.finish()
 }
 
-fn title(calibration: &Calibration) -> String {
+/// By what factor ellipses are enlarged, so that they stand out from the dots: 1 if half of them do
+/// so already, otherwise a round number.
+pub fn ellipse_magnification<const D: usize>(calibration: &Calibration<D>) -> f64 {
+    Layout::of(calibration).magnification(calibration)
+}
+
+fn title<const D: usize>(calibration: &Calibration<D>) -> String {
     let mut title = format!("{}, {}", calibration.configuration, deviation(calibration));
     if let Some(truth) = &calibration.truth {
         title += &format!(", receivers {} from the truth (rms)", length(truth.receiver_rms));
@@ -94,82 +54,13 @@ fn title(calibration: &Calibration) -> String {
     title
 }
 
-/// The map from metres to the picture, and how many transmitters lie outside it.
-fn map_of(calibration: &Calibration) -> (Map, usize) {
-    let receivers: Vec<[f64; 2]> = calibration.receivers.iter().flatten().copied().collect();
-    let (centre, size) = (centroid(receivers.iter()), spread(receivers.iter()));
-    let near = |p: &&[f64; 2]| distance(**p, centre) <= REACH * size;
-    let transmitters: Vec<[f64; 2]> = calibration.transmitters.iter().flatten().copied().collect();
-    let shown: Vec<[f64; 2]> = receivers
-        .iter()
-        .chain(transmitters.iter().filter(near))
-        .chain(calibration.truth.iter().flat_map(|truth| truth.positions.iter().flatten()))
-        .copied()
-        .collect();
-    let outside = transmitters.iter().filter(|p| !near(p)).count();
-    (Map::fit(&shown, [20.0, 50.0], [WIDTH - 40.0, MAP_HEIGHT - 60.0]), outside)
-}
-
-fn ellipse(canvas: &mut Canvas, map: &Map, at: [f64; 2], covariance: Option<[[f64; 2]; 2]>, radius: f64, colour: &str) {
-    let Some([[xx, xy], [_, yy]]) = covariance else { return };
-    let axes = axes([[xx, xy], [xy, yy]]).map(|variance| radius * variance.sqrt() * map.scale);
-    let angle = 0.5 * (2.0 * xy).atan2(xx - yy);
-    // Beyond the picture it would be a wash of colour; below a pixel nothing is seen.
-    if axes[0] < 2.0 * WIDTH && axes[0] > 0.5 {
-        canvas.ellipse(map.to(at), axes, -angle.to_degrees(), colour);
-    }
-}
-
-fn outliers(canvas: &mut Canvas, calibration: &Calibration, map: &Map) {
-    let mut drawn = 0;
-    for (i, j, _) in calibration.residuals.outliers() {
-        if let (Some(r), Some(s)) = (calibration.receivers[i], calibration.transmitters[j])
-            && map.shows(s)
-            && drawn < OUTLIERS
-        {
-            canvas.line(map.to(r), map.to(s), "#CC79A7", 1.0, "5 3");
-            drawn += 1;
-        }
-    }
-}
-
-fn scale_bar(canvas: &mut Canvas, map: &Map) {
-    let metres = nice(150.0 / map.scale);
-    let [x, y] = [20.0, MAP_HEIGHT + 8.0];
-    let end = x + metres * map.scale;
-    canvas.line([x, y], [end, y], "#000", 2.0, "");
-    canvas.line([x, y - 4.0], [x, y + 4.0], "#000", 2.0, "");
-    canvas.line([end, y - 4.0], [end, y + 4.0], "#000", 2.0, "");
-    canvas.text([end + 8.0, y + 4.0], "start", 12.0, &length(metres));
-}
-
-/// By what factor ellipses are enlarged, so that they stand out from the dots: 1 if half of them do
-/// so already, otherwise a round number.
-pub fn ellipse_magnification(calibration: &Calibration) -> f64 {
-    magnification(calibration, &map_of(calibration).0)
-}
-
-fn magnification(calibration: &Calibration, map: &Map) -> f64 {
-    let radius = calibration.ellipse_radius.unwrap_or(0.0);
-    let receivers = calibration.receivers.iter().zip(&calibration.receiver_covariance);
-    let nodes = receivers.chain(calibration.transmitters.iter().zip(&calibration.transmitter_covariance));
-    let shown = nodes.filter(|(position, _)| position.is_some_and(|p| map.shows(p)));
-    let mut axes: Vec<f64> =
-        shown.filter_map(|(_, covariance)| Some(radius * map.scale * axes((*covariance)?)[0].sqrt())).collect();
-    axes.sort_by(f64::total_cmp);
-    let (Some(middle), Some(large)) = (axes.get(axes.len() / 2), axes.get(axes.len() * 9 / 10)) else { return 1.0 };
-    // Twice the size of the triangles; the largest ones must not cover the picture.
-    let factor = (20.0 / middle).min(60.0 / large);
-    if *middle > 10.0 || !factor.is_finite() { 1.0 } else { nice(factor.max(1.0)) }
-}
-
-/// The variances along the axes of an ellipse, the larger one first.
-fn axes([[xx, xy], [_, yy]]: [[f64; 2]; 2]) -> [f64; 2] {
-    let root = (0.25 * (xx - yy).powi(2) + xy * xy).sqrt();
-    [0.5 * (xx + yy) + root, 0.5 * (xx + yy) - root].map(|variance| variance.max(0.0))
-}
-
-fn legend(canvas: &mut Canvas, calibration: &Calibration, magnified: f64, outside: usize, at: [f64; 2]) {
+fn legend<const D: usize>(
+    canvas: &mut Canvas,
+    calibration: &Calibration<D>,
+    layout: &Layout,
+    magnified: f64,
+    at: [f64; 2],
+) {
     let mut y = at[1];
     let mut row = |canvas: &mut Canvas, text: &str| {
         canvas.text([at[0] + 20.0, y + 4.0], "start", 12.0, text);
@@ -177,13 +68,23 @@ fn legend(canvas: &mut Canvas, calibration: &Calibration, magnified: f64, outsid
         y - 22.0
     };
     let times = if magnified > 1.0 { format!(", {} times as large", number(magnified, 3)) } else { String::new() };
-    let h = row(canvas, &format!("receiver, with 95 % ellipse{times}"));
-    canvas.triangle([at[0], h], 6.0, "#0072B2");
-    let h = row(canvas, &format!("transmitter, with 95 % ellipse{times}"));
-    canvas.circle([at[0], h], 3.0, "#D55E00");
+    // What several views show are shadows. That takes more words, so it has rows of its own.
+    let shadows = layout.views.len() > 1;
+    let with = if shadows { String::new() } else { format!(", with 95 % ellipse{times}") };
+    let h = row(canvas, &format!("receiver{with}"));
+    canvas.triangle([at[0], h], 6.0, BLUE);
+    let h = row(canvas, &format!("transmitter{with}"));
+    canvas.circle([at[0], h], 3.0, ORANGE);
+    if shadows {
+        let h = row(canvas, "shadow of the 95 % ellipsoid");
+        canvas.ellipse([at[0], h], [11.0, 6.0], 0.0, BLUE);
+        if magnified > 1.0 {
+            row(canvas, &format!("(drawn {} times as large)", number(magnified, 3)));
+        }
+    }
     let (measured, outlying) = (calibration.residuals.len(), calibration.residuals.outliers().count());
     let h = row(canvas, &format!("outliers: {outlying} of {}", counted(measured, "measurement")));
-    canvas.line([at[0] - 10.0, h], [at[0] + 12.0, h], "#CC79A7", 1.0, "5 3");
+    canvas.line([at[0] - 10.0, h], [at[0] + 12.0, h], PINK, 1.0, "5 3");
     if calibration.truth.is_some() {
         let h = row(canvas, "true position, and the error");
         canvas.cross([at[0], h], 5.0);
@@ -192,6 +93,7 @@ fn legend(canvas: &mut Canvas, calibration: &Calibration, magnified: f64, outsid
         let h = row(canvas, "receiver held at its known position");
         canvas.square([at[0], h], 9.0);
     }
+    let outside = layout.outside;
     if outside > 0 {
         row(
             canvas,
@@ -269,5 +171,98 @@ mod tests {
         // Three anchors and one in the legend; eight receivers, eleven transmitters and the legend.
         assert_eq!(svg.matches("class=\"anchor\"").count(), 4);
         assert_eq!(svg.matches("class=\"truth\"").count(), 20);
+    }
+
+    /// What the picture was when all networks were in the plane.
+    #[test]
+    fn pictures_of_the_plane_stay_as_they_were() {
+        let calibration: Calibration = serde_json::from_str(include_str!("picture/plane.json")).unwrap();
+        assert_eq!(picture(&calibration), include_str!("picture/plane.svg"));
+    }
+
+    fn in_space() -> Calibration<3> {
+        let simulation = simulate(&SimulateOptions::<3> { noise: 0.01, ..SimulateOptions::new() }).unwrap();
+        let names = |kind: &str, count: usize| (0..count).map(|k| format!("{kind}<{k}&\"")).collect();
+        let measured = simulation.pseudoranges.with_names(names("r", 8), names("s", 12)).unwrap();
+        let mut calibration = calibrate(&measured, &CalibrateOptions::<3>::new()).unwrap();
+        let truth: Vec<_> = simulation.network.receivers.iter().copied().map(Some).collect();
+        calibration.compare(&truth);
+        calibration
+    }
+
+    #[test]
+    fn two_views_show_every_node_in_space() {
+        let mut calibration = in_space();
+        calibration.anchored[4] = true;
+        let svg = picture(&calibration);
+        // Each of the eight receivers and twelve transmitters in both views, and one in the legend.
+        assert_eq!(svg.matches("class=\"receiver\"").count(), 17);
+        assert_eq!(svg.matches("class=\"transmitter\"").count(), 25);
+        assert_eq!(svg.matches("class=\"truth\"").count(), 17);
+        assert_eq!(svg.matches("class=\"anchor\"").count(), 3);
+        assert_eq!(svg.matches("r&lt;7&amp;&quot;<").count(), 2);
+        for once in ["from above", "from the side", "shadow of the 95 % ellipsoid", ">y (m)<", ">z (m)<"] {
+            assert_eq!(svg.matches(once).count(), 1, "{once}");
+        }
+        assert_eq!(svg.matches(">x (m)<").count(), 2);
+        assert!(!svg.contains("NaN") && !svg.contains("inf") && !svg.contains("r<7"));
+    }
+
+    /// The numbers of an attribute, of all elements that contain a text, up to the end of the attribute.
+    fn numbers(svg: &str, element: &str, attribute: &str) -> Vec<Vec<f64>> {
+        let lines = svg.lines().filter(|line| line.contains(element));
+        let values = lines.filter_map(|line| line.split_once(attribute)?.1.split('"').next());
+        let split =
+            |text: &str| text.split(|c: char| !"-.0123456789".contains(c)).filter_map(|n| n.parse().ok()).collect();
+        values.map(split).collect()
+    }
+
+    #[test]
+    fn ellipses_in_space_are_shadows_of_ellipsoids() {
+        let mut calibration = in_space();
+        calibration.truth = None;
+        calibration.transmitters.fill(None);
+        calibration.receiver_covariance.fill(None);
+        calibration.receivers.fill(None);
+        calibration.receivers[0] = Some([0.0, 0.0, 0.0]);
+        calibration.receivers[1] = Some([10.0, 4.0, 2.0]);
+        // Seen from above, eigenvalues 8 and 2 along the diagonals; from the side, 5 and 1 along the axes.
+        calibration.receiver_covariance[0] = Some([[5.0, 3.0, 0.0], [3.0, 5.0, 0.0], [0.0, 0.0, 1.0]]);
+        calibration.ellipse_radius = Some(0.5);
+        let svg = picture(&calibration);
+        assert!(!svg.contains("times as large"));
+        // Two receivers a view, and the legend.
+        let markers = numbers(&svg, "class=\"receiver\"", " d=\"M");
+        let [above, other, side, last] = [0, 1, 2, 3].map(|k| &markers[k]);
+        let scale = (other[0] - above[0]) / 10.0;
+        let near = |a: f64, b: f64| (a - b).abs() < 0.02;
+        // One scale; what is in both views is on one vertical line.
+        assert!(near(above[1] - other[1], 4.0 * scale) && near(side[1] - last[1], 2.0 * scale));
+        assert!(near(above[0], side[0]) && near(other[0], last[0]) && above[1] < side[1]);
+        // Semi-axes and their directions; y is downwards in SVG.
+        let places = numbers(&svg, "<ellipse", "transform=\"");
+        let radii = [numbers(&svg, "<ellipse", " rx=\""), numbers(&svg, "<ellipse", " ry=\"")];
+        assert_eq!(places.len(), 3);
+        for (k, [long, short, angle]) in [(0, [8.0, 2.0, -45.0]), (1, [5.0, 1.0, 0.0])] {
+            let [long, short] = [long, short].map(|variance: f64| 0.5 * variance.sqrt() * scale);
+            assert!(near(radii[0][k][0], long) && near(radii[1][k][0], short) && places[k][2] == angle, "{places:?}");
+        }
+        // A marker is drawn from six pixels above its point.
+        assert!(near(places[0][0], above[0]) && near(places[0][1], above[1] + 6.0));
+        assert!(near(places[1][0], side[0]) && near(places[1][1], side[1] + 6.0));
+    }
+
+    #[test]
+    fn pictures_of_little_or_nothing_in_space() {
+        let mut calibration = in_space();
+        calibration.truth = None;
+        for kept in [[Some([1.0, 2.0, 3.0]), None], [Some([1.0, 2.0, 3.0]), Some([1e9, 2.0, 3.0])], [None, None]] {
+            calibration.receivers.fill(None);
+            calibration.receivers[..2].copy_from_slice(&kept);
+            calibration.transmitters.fill(None);
+            let svg = picture(&calibration);
+            assert_eq!(svg.matches("class=\"receiver\"").count(), 1 + 2 * kept.iter().flatten().count());
+            assert!(!svg.contains("NaN") && !svg.contains("inf") && svg.len() < 100_000);
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-/// From metres to the picture, y upwards.
+/// From metres to a box of the picture, y upwards.
 pub(super) struct Map {
     pub(super) scale: f64,
     centre: [f64; 2],
@@ -11,19 +11,20 @@ pub(super) struct Map {
 }
 
 impl Map {
-    /// The largest scale at which all points fit into the box, with a margin for names.
-    pub(super) fn fit(points: &[[f64; 2]], corner: [f64; 2], size: [f64; 2]) -> Map {
-        let bound = |k: usize| {
-            let low = points.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min);
-            let high = points.iter().map(|p| p[k]).fold(f64::NEG_INFINITY, f64::max);
-            if low <= high { (low, high) } else { (0.0, 0.0) }
-        };
-        let (x, y) = (bound(0), bound(1));
-        let margin = [50.0, 25.0];
-        let fits = |range: (f64, f64), k: usize| (size[k] - 2.0 * margin[k]) / (range.1 - range.0).max(1e-9);
+    /// Room for names between the outermost points and the edges of the box.
+    pub(super) const MARGIN: [f64; 2] = [50.0, 25.0];
+
+    /// The largest scale at which these lengths, to the right and upwards, fit into a box.
+    pub(super) fn scale_to_fit(lengths: [f64; 2], size: [f64; 2]) -> f64 {
+        let fits = |k: usize| (size[k] - 2.0 * Self::MARGIN[k]) / lengths[k].max(1e-9);
+        fits(0).min(fits(1)).min(1e9)
+    }
+
+    /// At this scale, the middle of these ranges, to the right and upwards, in the middle of a box.
+    pub(super) fn new(scale: f64, ranges: [(f64, f64); 2], corner: [f64; 2], size: [f64; 2]) -> Map {
         Map {
-            scale: fits(x, 0).min(fits(y, 1)).min(1e9),
-            centre: [0.5 * (x.0 + x.1), 0.5 * (y.0 + y.1)],
+            scale,
+            centre: ranges.map(|(low, high)| 0.5 * (low + high)),
             middle: [corner[0] + 0.5 * size[0], corner[1] + 0.5 * size[1]],
             half: [0.5 * size[0], 0.5 * size[1]],
         }
@@ -37,6 +38,39 @@ impl Map {
     pub(super) fn shows(&self, p: [f64; 2]) -> bool {
         let at = self.to(p);
         (0..2).all(|k| (at[k] - self.middle[k]).abs() <= self.half[k])
+    }
+
+    /// The metres that the box shows to the right (0) or upwards (1).
+    pub(super) fn range(&self, k: usize) -> (f64, f64) {
+        let reach = self.half[k] / self.scale;
+        (self.centre[k] - reach, self.centre[k] + reach)
+    }
+
+    /// The box.
+    pub(super) fn frame(&self) -> Rectangle {
+        let [[x, y], [dx, dy]] = [self.middle, self.half];
+        Rectangle { left: x - dx, top: y - dy, right: x + dx, bottom: y + dy }
+    }
+}
+
+/// A rectangle of the picture.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Rectangle {
+    pub(super) left: f64,
+    pub(super) top: f64,
+    pub(super) right: f64,
+    pub(super) bottom: f64,
+}
+
+impl Rectangle {
+    /// Whether two rectangles have an area in common.
+    pub(super) fn meets(&self, other: &Rectangle) -> bool {
+        self.left < other.right && other.left < self.right && self.top < other.bottom && other.top < self.bottom
+    }
+
+    /// Whether the other one lies within this one.
+    pub(super) fn holds(&self, other: &Rectangle) -> bool {
+        self.left <= other.left && other.right <= self.right && self.top <= other.top && other.bottom <= self.bottom
     }
 }
 
@@ -151,7 +185,7 @@ impl Canvas {
         self.coloured(at, anchor, size, "#222", text);
     }
 
-    fn coloured(&mut self, at: [f64; 2], anchor: &str, size: f64, colour: &str, text: &str) {
+    pub(super) fn coloured(&mut self, at: [f64; 2], anchor: &str, size: f64, colour: &str, text: &str) {
         let text = escape(text);
         self.add(format_args!(
             r#"<text x="{:.2}" y="{:.2}" text-anchor="{anchor}" font-size="{size}" fill="{colour}">{text}</text>"#,
@@ -159,31 +193,31 @@ impl Canvas {
         ));
     }
 
-    /// Names beside their points, on the side where the fewest points are close.
-    pub(super) fn labels(&mut self, nodes: &[([f64; 2], String)], points: &[[f64; 2]], colour: &str) {
-        for (at, name) in nodes {
-            let width = 6.2 * name.chars().count() as f64;
-            let sides = [(8.0, 4.0, "start"), (-8.0, 4.0, "end"), (0.0, -9.0, "middle"), (0.0, 17.0, "middle")];
-            let crowd = |(dx, dy, anchor): (f64, f64, &str)| -> usize {
-                let left = at[0] + dx
-                    - if anchor == "end" {
-                        width
-                    } else if anchor == "middle" {
-                        0.5 * width
-                    } else {
-                        0.0
-                    };
-                let covers = |p: &&[f64; 2]| {
-                    p[0] > left - 6.0
-                        && p[0] < left + width + 6.0
-                        && p[1] > at[1] + dy - 15.0
-                        && p[1] < at[1] + dy + 7.0
-                };
-                points.iter().filter(covers).count()
-            };
-            let Some((dx, dy, anchor)) = sides.into_iter().min_by_key(|&side| crowd(side)) else { continue };
-            self.coloured([at[0] + dx, at[1] + dy], anchor, 11.0, colour, name);
-        }
+    /// The outline of a rectangle.
+    pub(super) fn outline(&mut self, r: &Rectangle, colour: &str) {
+        self.add(format_args!(
+            r#"<rect x="{:.2}" y="{:.2}" width="{:.2}" height="{:.2}" fill="none" stroke="{colour}"/>"#,
+            r.left,
+            r.top,
+            r.right - r.left,
+            r.bottom - r.top
+        ));
+    }
+
+    /// Cuts off what lies outside a rectangle, up to [`Canvas::whole`].
+    pub(super) fn within(&mut self, r: &Rectangle) {
+        let [x, y, width, height] = [r.left, r.top, r.right - r.left, r.bottom - r.top].map(f64::round);
+        // Pictures in one page share their names; under this one all have the same rectangle.
+        let name = format!("tdoa-{x}-{y}-{width}-{height}");
+        self.add(format_args!(
+            r##"<clipPath id="{name}"><rect x="{x}" y="{y}" width="{width}" height="{height}"/></clipPath>
+<g clip-path="url(#{name})">"##
+        ));
+    }
+
+    /// Ends what [`Canvas::within`] began.
+    pub(super) fn whole(&mut self) {
+        self.add(format_args!("</g>"));
     }
 
     /// The whole text of the picture.
@@ -220,10 +254,19 @@ mod tests {
 
     #[test]
     fn map_fits_and_turns_y_up() {
-        let map = Map::fit(&[[0.0, 0.0], [4.0, 2.0]], [0.0, 0.0], [500.0, 250.0]);
+        let size = [500.0, 250.0];
+        let map = Map::new(Map::scale_to_fit([4.0, 2.0], size), [(0.0, 4.0), (0.0, 2.0)], [0.0, 0.0], size);
         assert!(map.shows([0.0, 0.0]) && map.shows([4.0, 2.0]) && !map.shows([9.0, 0.0]));
         assert!(map.to([0.0, 2.0])[1] < map.to([0.0, 0.0])[1]);
         assert!((map.scale - 100.0).abs() < 1e-9);
+        assert_eq!([map.range(0), map.range(1)], [(-0.5, 4.5), (-0.25, 2.25)]);
+    }
+
+    #[test]
+    fn rectangles_that_touch_have_no_area_in_common() {
+        let at = |left: f64| Rectangle { left, top: 0.0, right: left + 2.0, bottom: 1.0 };
+        assert!(at(0.0).meets(&at(1.0)) && at(1.0).meets(&at(0.0)) && !at(0.0).meets(&at(2.0)));
+        assert!(at(0.0).holds(&at(0.0)) && !at(0.0).holds(&at(0.5)));
     }
 
     #[test]

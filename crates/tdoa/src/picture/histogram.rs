@@ -9,7 +9,12 @@ const BINS: usize = 32;
 
 /// Bars of the residuals in metres over plus and minus about four standard deviations; what lies
 /// beyond is counted at the ends.
-pub(super) fn draw(canvas: &mut Canvas, calibration: &Calibration, corner: [f64; 2], size: [f64; 2]) {
+pub(super) fn draw<const D: usize>(
+    canvas: &mut Canvas,
+    calibration: &Calibration<D>,
+    corner: [f64; 2],
+    size: [f64; 2],
+) {
     // Measurements with their own deviations make sigma a factor, so the spread of the inliers sets
     // the scale.
     let reach = 4.0 * calibration.residual_rms.max(1e-12);
