@@ -1,18 +1,22 @@
 //! `tdoa calibrate`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use serde::Serialize;
+use tdoa::calibrate::{Calibrated, CalibratedError, calibrate_either};
 use tdoa::html::html;
 use tdoa::node_table::node_table;
 use tdoa::picture::picture;
-use tdoa::read::{read, read_distances};
+use tdoa::read::{Nodes, Units, read, read_distances, read_nodes};
 use tdoa::summary::doubt_of_units;
-use tdoa::{CalibrateError, CalibrateOptions, Calibration, Errors, Monitor, ReceiverDelays, calibrate_with};
+use tdoa::{
+    CalibrateError, CalibrateOptions, Calibration, Errors, Monitor, Pseudoranges, ReceiverDelays, Unfinished,
+    calibrate_with,
+};
 
-use crate::frame::Frame;
-use crate::known::{Truth, anchors};
+use crate::frame::{self, Frame};
+use crate::known::{self, Truth};
 use crate::partial;
 use crate::summary::{self, Context};
 use crate::units::Unit;
@@ -38,14 +42,19 @@ pub(crate) struct Arguments {
     /// Standard deviation of the measurements in metres; estimated if not given.
     #[arg(long, allow_negative_numbers = true)]
     sigma: Option<f64>,
+    /// Whether the network is sought in the plane or in space. `auto`: in space where anchors have a z
+    /// that is not zero or --frame names four nodes; without these, where the measurements support a
+    /// third coordinate (likelihood ratio), and says so.
+    #[arg(long, value_enum, default_value = "auto")]
+    dimensions: Dimensions,
     /// Fits a common scale when comparing with --truth and presents the network with it (the
     /// propagation speed is then wrong by that factor).
     #[arg(long)]
     scale: bool,
-    /// Known positions of some receivers (columns name, x and y in any order, metres): they fix the
-    /// frame, and two or more are held there, which sharpens the rest. With a column sigma (or std_x
-    /// and std_y) they are measurements with that standard deviation, exact where it is 0; x or y
-    /// may be empty.
+    /// Known positions of some receivers (columns name, x, y and, in space, z in any order, metres):
+    /// they fix the frame, and two or more (three) are held there, which sharpens the rest. With a
+    /// column sigma (or std_x and std_y, std_z) they are measurements with that standard deviation,
+    /// exact where it is 0; coordinates may be empty.
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["frame", "scale"])]
     anchors: Option<PathBuf>,
     /// What is done about receivers whose measurements are all too long or too short, as by a
@@ -66,10 +75,11 @@ pub(crate) struct Arguments {
     /// otherwise as a factor on the one that made the measurements metres.
     #[arg(long)]
     estimate_speed: bool,
-    /// Puts the node ORIGIN at (0, 0), XAXIS on the positive x axis and UP above it.
+    /// Puts the node ORIGIN at (0, 0), XAXIS on the positive x axis and UP above it; in space
+    /// ORIGIN,XAXIS,YSIDE,UP, with YSIDE in the plane of x and y.
     #[arg(long, value_name = "ORIGIN,XAXIS,UP")]
     frame: Option<String>,
-    /// True positions of receivers (columns name, x and y, or rgt in a .mat file) to compare with:
+    /// True positions of receivers (columns name, x, y and, in space, z, or rgt in a .mat file) to compare with:
     /// by name, or in the order of the receivers where one side has no names.
     #[arg(long, value_name = "RECEIVERS.csv")]
     truth: Option<PathBuf>,
@@ -102,6 +112,16 @@ pub(crate) struct Arguments {
     nodes: Option<PathBuf>,
 }
 
+/// Where the network is sought.
+#[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
+enum Dimensions {
+    #[value(name = "2")]
+    Plane,
+    #[value(name = "3")]
+    Space,
+    Auto,
+}
+
 /// What is done about errors of whole receivers.
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum Delays {
@@ -119,17 +139,18 @@ enum Side {
 
 /// The JSON form: offsets in the unit of the input too, where that is not the metre.
 #[derive(Serialize)]
-struct Report<'a> {
+#[serde(bound = "Calibration<D>: Serialize")]
+struct Report<'a, const D: usize> {
     #[serde(flatten)]
-    calibration: &'a Calibration,
+    calibration: &'a Calibration<D>,
     #[serde(skip_serializing_if = "Option::is_none")]
     units: Option<Unit>,
     #[serde(skip_serializing_if = "Option::is_none")]
     offsets_in_units: Option<Vec<Option<f64>>>,
 }
 
-impl Report<'_> {
-    fn new(calibration: &Calibration, units: Option<Unit>) -> Report<'_> {
+impl<const D: usize> Report<'_, D> {
+    fn new(calibration: &Calibration<D>, units: Option<Unit>) -> Report<'_, D> {
         let converted =
             |unit: Unit| calibration.offsets.iter().map(|offset| offset.map(|offset| unit.of(offset))).collect();
         Report { calibration, units, offsets_in_units: units.map(converted) }
@@ -146,91 +167,198 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let input = arguments.input.options(arguments.estimate_speed)?;
     let (units, said) = (input.units.unwrap_or_default(), input.units.is_some());
     let measured = read(&arguments.file, input).map_err(Failure::unusable)?;
-    let truth = Truth::read(arguments.truth.as_deref(), &arguments.file, &measured)?;
-    if arguments.scale && truth.receivers.is_none() {
-        return Err(Failure::Unusable("--scale needs --truth with the true positions".to_string()));
-    }
-    let frame = arguments.frame.as_deref().map(|text| Frame::parse(text, &measured)).transpose()?;
-    let mut notes = truth.notes;
-    let mut options = CalibrateOptions::default();
-    if let Some(path) = &arguments.anchors {
-        let known = anchors(path, &measured)?;
-        (options.anchors, options.positions) = (known.exact, known.measured);
-        notes.extend(known.note);
-    }
-    if let Some(path) = &arguments.distances {
-        options.distances = read_distances(path, measured.receiver_names()).map_err(Failure::unusable)?;
-    }
-    options.receiver_delays = match arguments.receiver_delays {
-        Delays::None => ReceiverDelays::None,
-        Delays::Auto => ReceiverDelays::Auto,
-        Delays::All => ReceiverDelays::All,
+    let anchors = match &arguments.anchors {
+        Some(path) => Some((path.as_path(), read_nodes(path).map_err(Failure::unusable)?)),
+        None => None,
     };
-    options.errors = match arguments.errors {
-        Side::Symmetric => Errors::Symmetric,
-        Side::OneSided => Errors::OneSided,
+    let task = Task { arguments, measured: &measured, units, said };
+    let given = match (arguments.dimensions, &anchors, &arguments.frame) {
+        (Dimensions::Plane, ..) => Some(2),
+        (Dimensions::Space, ..) => Some(3),
+        (Dimensions::Auto, Some((_, nodes)), _) => Some(nodes.dimensions()),
+        (Dimensions::Auto, None, Some(names)) => Some(frame::dimensions(names)),
+        (Dimensions::Auto, None, None) => None,
     };
-    options.estimate_speed = arguments.estimate_speed;
-    options.sigma = arguments.sigma;
-    options.seed = arguments.seed;
-    options.max_starts = arguments.max_starts;
-    options.agreeing = arguments.agreeing;
-    options.min_starts = options.min_starts.min(arguments.max_starts);
-    for note in notes {
-        eprintln!("note: {note}");
+    match given {
+        Some(3) => task.given::<3>(anchors),
+        Some(_) => task.given::<2>(anchors),
+        None => task.chosen(),
+    }
+}
+
+/// What is to be calibrated, and how.
+struct Task<'a> {
+    arguments: &'a Arguments,
+    measured: &'a Pseudoranges,
+    units: Units,
+    /// Whether the unit was said.
+    said: bool,
+}
+
+impl Task<'_> {
+    /// Calibrates in the plane or in space.
+    fn given<const D: usize>(&self, anchors: Option<(&Path, Nodes)>) -> Result<(), Failure>
+    where
+        Calibration<D>: Serialize,
+        Unfinished<D>: Serialize,
+    {
+        let mut truth = self.truth::<D>()?;
+        let frame = self.frame::<D>()?;
+        let mut options = self.options::<D>()?;
+        if let Some((path, nodes)) = anchors {
+            let known = known::anchors(path, &nodes, self.measured)?;
+            (options.anchors, options.positions) = (known.exact, known.measured);
+            truth.notes.extend(known.note);
+        }
+        tell(&truth.notes);
+        let started = Instant::now();
+        let solved = self.watched(|monitor| calibrate_with(self.measured, &options, &[], monitor))?;
+        let calibration = solved.map_err(|error| self.failure(error))?;
+        self.finish(calibration, truth, frame, started)
     }
 
-    let monitor = Monitor::heeding(interrupt::watch()?);
-    let started = Instant::now();
-    let describe = || {
-        let progress = monitor.progress();
-        (progress.done, progress.total, progress.to_string())
-    };
-    let solved =
-        cli::bar::while_shown(arguments.threads, describe, || calibrate_with(&measured, &options, &[], &monitor))?;
-    let mut calibration = solved.map_err(|error| match error {
-        CalibrateError::Degenerate(_) | CalibrateError::NotFound(_) | CalibrateError::Delays { .. } => {
-            Failure::Undetermined(format!("{}: {error}", arguments.file.display()))
-        }
-        CalibrateError::Cancelled(Some(best)) => partial::write(&best, &measured, arguments.json.as_deref()),
-        CalibrateError::Cancelled(None) => Failure::Interrupted,
-        other => Failure::unusable(other),
-    })?;
-    if let (Some(speed), Some(found)) = (units.speed(), &mut calibration.speed) {
-        found.metres_per_second = Some(speed * found.factor);
-    }
-    let mut unit = Unit::new(units).map(|unit| unit.stretched(calibration.speed.map_or(1.0, |speed| speed.factor)));
-    calibration.warnings.extend(truth.warnings);
-    calibration.warnings.extend(doubt_of_units(&calibration).filter(|_| !said));
-    if let Some(receivers) = &truth.receivers {
-        calibration.compare_all(receivers, &truth.transmitters);
-        if let Some(scale) = calibration.truth.as_ref().map(|found| found.scale).filter(|_| arguments.scale) {
-            calibration.rescale(scale);
-            unit = unit.map(|unit| unit.stretched(scale));
+    /// Calibrates in the plane or in space, as the measurements have it.
+    fn chosen(&self) -> Result<(), Failure> {
+        let truth = self.truth::<2>()?;
+        let options = self.options::<3>()?;
+        let started = Instant::now();
+        let solved = self.watched(|monitor| calibrate_either(self.measured, &options, monitor))?;
+        match solved {
+            Ok(Calibrated::Plane(calibration)) => {
+                tell(&truth.notes);
+                self.finish(calibration, truth, None, started)
+            }
+            Ok(Calibrated::Space(calibration)) => {
+                let truth = self.truth::<3>().unwrap_or_else(|failure| Truth {
+                    warnings: vec![format!("nothing is compared with the truth: {failure}")],
+                    ..Truth::default()
+                });
+                tell(&truth.notes);
+                self.finish(calibration, truth, None, started)
+            }
+            Err(CalibratedError::Plane(error)) => Err(self.failure(error)),
+            Err(CalibratedError::Space(error)) => Err(self.failure(error)),
         }
     }
-    if let Some(frame) = frame {
-        frame.apply(&mut calibration)?;
+
+    fn truth<const D: usize>(&self) -> Result<Truth<D>, Failure> {
+        let truth = Truth::read(self.arguments.truth.as_deref(), &self.arguments.file, self.measured)?;
+        if self.arguments.scale && truth.receivers.is_none() {
+            return Err(Failure::Unusable("--scale needs --truth with the true positions".to_string()));
+        }
+        Ok(truth)
     }
-    if let Some(path) = &arguments.svg {
-        output::file(path, picture(&calibration).as_bytes())?;
+
+    fn frame<const D: usize>(&self) -> Result<Option<Frame<D>>, Failure> {
+        self.arguments.frame.as_deref().map(|text| Frame::parse(text, self.measured)).transpose()
     }
-    if let Some(path) = &arguments.html {
-        output::file(path, html(&calibration).as_bytes())?;
+
+    /// The options but for known positions.
+    fn options<const D: usize>(&self) -> Result<CalibrateOptions<D>, Failure> {
+        let arguments = self.arguments;
+        let mut options = CalibrateOptions::new();
+        if let Some(path) = &arguments.distances {
+            options.distances = read_distances(path, self.measured.receiver_names()).map_err(Failure::unusable)?;
+        }
+        options.receiver_delays = match arguments.receiver_delays {
+            Delays::None => ReceiverDelays::None,
+            Delays::Auto => ReceiverDelays::Auto,
+            Delays::All => ReceiverDelays::All,
+        };
+        options.errors = match arguments.errors {
+            Side::Symmetric => Errors::Symmetric,
+            Side::OneSided => Errors::OneSided,
+        };
+        options.estimate_speed = arguments.estimate_speed;
+        options.sigma = arguments.sigma;
+        options.seed = arguments.seed;
+        options.max_starts = arguments.max_starts;
+        options.agreeing = arguments.agreeing;
+        options.min_starts = options.min_starts.min(arguments.max_starts);
+        Ok(options)
     }
-    if let Some(path) = &arguments.nodes {
-        output::file(path, node_table(&calibration).as_bytes())?;
+
+    /// Calibrates with a progress bar; an interrupt ends it.
+    fn watched<T: Send>(&self, work: impl FnOnce(&Monitor) -> T + Send) -> Result<T, Failure> {
+        let monitor = Monitor::heeding(interrupt::watch()?);
+        let describe = || {
+            let progress = monitor.progress();
+            (progress.done, progress.total, progress.to_string())
+        };
+        cli::bar::while_shown(self.arguments.threads, describe, || work(&monitor))
     }
-    if let Some(path) = &arguments.json {
-        output::json(path, &Report::new(&calibration, unit))?;
+
+    fn failure<const D: usize>(&self, error: CalibrateError<D>) -> Failure
+    where
+        Unfinished<D>: Serialize,
+    {
+        match error {
+            CalibrateError::Degenerate(_) | CalibrateError::NotFound(_) | CalibrateError::Delays { .. } => {
+                Failure::Undetermined(format!("{}: {error}", self.arguments.file.display()))
+            }
+            CalibrateError::Cancelled(Some(best)) => {
+                partial::write(&best, self.measured, self.arguments.json.as_deref())
+            }
+            CalibrateError::Cancelled(None) => Failure::Interrupted,
+            other => Failure::unusable(other),
+        }
     }
-    let context = Context { time: started.elapsed(), unit };
-    output::summary(arguments.json.as_deref(), || summary::text(&calibration, &context))?;
-    match calibration.distrust() {
-        None => Ok(()),
-        Some(why) => Err(Failure::Undetermined(format!(
-            "{}: {why} (see the warnings); the network is not to be trusted",
-            arguments.file.display()
-        ))),
+
+    /// Compares a calibration with the truth, puts it in its frame, writes it and says what it is.
+    fn finish<const D: usize>(
+        &self,
+        mut calibration: Calibration<D>,
+        truth: Truth<D>,
+        frame: Option<Frame<D>>,
+        started: Instant,
+    ) -> Result<(), Failure>
+    where
+        Calibration<D>: Serialize,
+    {
+        let (arguments, units) = (self.arguments, self.units);
+        if let (Some(speed), Some(found)) = (units.speed(), &mut calibration.speed) {
+            found.metres_per_second = Some(speed * found.factor);
+        }
+        let mut unit = Unit::new(units).map(|unit| unit.stretched(calibration.speed.map_or(1.0, |speed| speed.factor)));
+        calibration.warnings.extend(truth.warnings);
+        calibration.warnings.extend(doubt_of_units(&calibration).filter(|_| !self.said));
+        if let Some(receivers) = &truth.receivers {
+            calibration.compare_all(receivers, &truth.transmitters);
+            if let Some(scale) = calibration.truth.as_ref().map(|found| found.scale).filter(|_| arguments.scale) {
+                calibration.rescale(scale);
+                unit = unit.map(|unit| unit.stretched(scale));
+            }
+        }
+        if let Some(frame) = frame {
+            frame.apply(&mut calibration)?;
+        }
+        if let Some(path) = &arguments.svg {
+            output::file(path, picture(&calibration).as_bytes())?;
+        }
+        if let Some(path) = &arguments.html {
+            output::file(path, html(&calibration).as_bytes())?;
+        }
+        if let Some(path) = &arguments.nodes {
+            output::file(path, node_table(&calibration).as_bytes())?;
+        }
+        if let Some(path) = &arguments.json {
+            output::json(path, &Report::new(&calibration, unit))?;
+        }
+        let context = Context { time: started.elapsed(), unit };
+        output::summary(arguments.json.as_deref(), || summary::text(&calibration, &context))?;
+        match calibration.distrust() {
+            None => Ok(()),
+            Some(why) => Err(Failure::Undetermined(format!(
+                "{}: {why} (see the warnings); the network is not to be trusted",
+                arguments.file.display()
+            ))),
+        }
+    }
+}
+
+/// Writes notes to the error output.
+fn tell(notes: &[String]) {
+    for note in notes {
+        eprintln!("note: {note}");
     }
 }

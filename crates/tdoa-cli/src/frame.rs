@@ -11,6 +11,11 @@ pub(crate) struct Frame<const D: usize> {
     axes: [Node; D],
 }
 
+/// The dimensions of the frame that the nodes of these names fix, with commas between them.
+pub(crate) fn dimensions(text: &str) -> usize {
+    if text.split(',').count() > 3 { 3 } else { 2 }
+}
+
 /// A node by its place among the receivers or the transmitters.
 #[derive(Clone, Copy)]
 enum Node {

@@ -15,31 +15,34 @@ const LISTED: usize = 8;
 /// Heights that differ by more than this share of the extent are no plane.
 const FLAT: f64 = 0.1;
 
-type Positions = Vec<Option<[f64; 2]>>;
+type Positions<const D: usize> = Vec<Option<[f64; D]>>;
 
 /// True positions, and what is to be said of them.
 #[derive(Default)]
-pub(crate) struct Truth {
+pub(crate) struct Truth<const D: usize> {
     /// Positions of the receivers, in their order; `None` if nothing is known.
-    pub(crate) receivers: Option<Positions>,
+    pub(crate) receivers: Option<Positions<D>>,
     /// Positions of the transmitters, in their order; none if nothing is known.
-    pub(crate) transmitters: Positions,
+    pub(crate) transmitters: Positions<D>,
     /// What the user should know, of the file and not of the network.
     pub(crate) notes: Vec<String>,
     /// What may be wrong with the comparison.
     pub(crate) warnings: Vec<String>,
 }
 
-impl Truth {
+impl<const D: usize> Truth<D> {
     /// The truth in the file given for it, otherwise the one in the .mat file of the measurements.
-    pub(crate) fn read(given: Option<&Path>, file: &Path, measured: &Pseudoranges) -> Result<Truth, Failure> {
+    pub(crate) fn read(given: Option<&Path>, file: &Path, measured: &Pseudoranges) -> Result<Truth<D>, Failure> {
         let mut truth = Truth::default();
         if let Some(path) = given {
             let nodes = read_nodes(path).map_err(Failure::unusable)?;
-            // A node without a name is whole.
-            let partial = nodes.nodes.iter().find(|node| node.whole::<2>().is_none());
-            if let Some(name) = partial.and_then(|node| node.name.as_deref()) {
-                return Err(Failure::in_file(path, format!("{name} has one coordinate alone; a truth needs both")));
+            if let Some(k) = nodes.positions::<D>().iter().position(Option::is_none) {
+                let name = nodes.nodes[k].name.clone().unwrap_or_else(|| format!("position {}", k + 1));
+                let lacks = match nodes.nodes[k].whole::<2>() {
+                    Some(_) => "has no z; a truth in space needs x, y and z",
+                    None => "has one coordinate alone; a truth needs both",
+                };
+                return Err(Failure::in_file(path, format!("{name} {lacks}")));
             }
             truth.receivers = Some(truth.place(path, &nodes, measured)?);
         } else if is_mat(file)
@@ -48,7 +51,7 @@ impl Truth {
             // What stands beside the measurements may be of other receivers.
             truth.receivers = nodes.in_order(measured.receiver_names());
             truth.notes.extend(match truth.receivers {
-                Some(_) => heights(file, &nodes),
+                Some(_) => heights::<D>(file, &nodes),
                 None => Some(format!(
                     "{}: rgt has {} for {}, so that nothing is compared with it",
                     file.display(),
@@ -67,7 +70,7 @@ impl Truth {
 
     /// The positions in the order of the receivers: by name, or by order where one side has no
     /// names.
-    fn place(&mut self, path: &Path, nodes: &Nodes, measured: &Pseudoranges) -> Result<Positions, Failure> {
+    fn place(&mut self, path: &Path, nodes: &Nodes, measured: &Pseudoranges) -> Result<Positions<D>, Failure> {
         let receivers = measured.receiver_names();
         let unusable = |problem: String| Err(Failure::in_file(path, problem));
         let unknown = nodes.unknown(receivers);
@@ -75,18 +78,20 @@ impl Truth {
         let is_named = nodes.is_named();
         if is_named && !matched && measured.receivers_named() {
             return unusable(format!(
-                "no receiver is named {}; the receivers are {}: use their names, or leave out the names (lines x,y) to give the \
+                "no receiver is named {}; the receivers are {}: use their names, or leave out the names (lines {}) to give the \
                  positions in the order of the receivers",
                 quoted(&unknown),
-                some(receivers)
+                some(receivers),
+                axes::<D>()
             ));
         }
         let Some(found) = nodes.in_order(receivers) else {
             return unusable(format!(
-                "has {} for {}, and no name in common; give one line id,x,y for each receiver, in order \
+                "has {} for {}, and no name in common; give one line id,{} for each receiver, in order \
                  or with its name",
                 counted(nodes.nodes.len(), "position"),
-                counted(measured.receivers(), "receiver")
+                counted(measured.receivers(), "receiver"),
+                axes::<D>()
             ));
         };
         if found.iter().flatten().count() < 2 {
@@ -106,27 +111,30 @@ impl Truth {
         } else if !is_named {
             self.notes.push(format!("{file}: has no names, so that {by_order}"));
         }
-        self.notes.extend(heights(path, nodes));
+        self.notes.extend(heights::<D>(path, nodes));
         Ok(found)
     }
 }
 
 /// Known positions of receivers, and what is to be said of them.
-pub(crate) struct Anchors {
+pub(crate) struct Anchors<const D: usize> {
     /// Exact ones, in the order of the receivers.
-    pub(crate) exact: Positions,
-    /// Those with a standard deviation or with one coordinate alone.
-    pub(crate) measured: Vec<MeasuredPosition>,
+    pub(crate) exact: Positions<D>,
+    /// Those with a standard deviation or without some coordinate.
+    pub(crate) measured: Vec<MeasuredPosition<D>>,
     pub(crate) note: Option<String>,
 }
 
 /// Known positions in a file. Where it has a column sigma, or std_x and std_y, each has standard
 /// deviations, 0 for an exact one. A name that no receiver has is more likely a mistake than meant.
-pub(crate) fn anchors(path: &Path, measured: &Pseudoranges) -> Result<Anchors, Failure> {
-    let nodes = read_nodes(path).map_err(Failure::unusable)?;
+pub(crate) fn anchors<const D: usize>(
+    path: &Path,
+    nodes: &Nodes,
+    measured: &Pseudoranges,
+) -> Result<Anchors<D>, Failure> {
     let receivers = measured.receiver_names();
     if !nodes.is_named() {
-        return Err(Failure::in_file(path, "names no receivers; expected lines name,x,y"));
+        return Err(Failure::in_file(path, format!("names no receivers; expected lines name,{}", axes::<D>())));
     }
     let unknown = nodes.unknown(receivers);
     if !unknown.is_empty() {
@@ -135,34 +143,39 @@ pub(crate) fn anchors(path: &Path, measured: &Pseudoranges) -> Result<Anchors, F
             format!("no receiver is named {}; they are {}", quoted(&unknown), some(receivers)),
         ));
     }
-    if let Some([low, high]) = nodes.height_range()
-        && high - low > FLAT * extent(&nodes)
+    if let Some([low, high]) = nodes.height_range().filter(|_| D == 2)
+        && high - low > FLAT * extent(nodes)
     {
         return Err(Failure::in_file(
             path,
             format!(
-                "the heights (z) of the anchors differ by {}, but the calibration is in a plane; give anchors at one height, or \
-                 leave out the column z if the differences do not matter",
+                "the heights (z) of the anchors differ by {}, but the calibration is in a plane; give anchors at one height, leave out \
+                 the column z if the differences do not matter, or calibrate in space (--dimensions 3)",
                 length(high - low)
             ),
         ));
     }
-    let mut found = Anchors { exact: vec![None; receivers.len()], measured: Vec::new(), note: heights(path, &nodes) };
+    if D == 3 && nodes.nodes.iter().all(|node| node.position[2].is_none()) {
+        return Err(Failure::in_file(path, "has no z, which anchors in space need; add a column z"));
+    }
+    let note = heights::<D>(path, nodes);
+    let mut found = Anchors { exact: vec![None; receivers.len()], measured: Vec::new(), note };
     for (i, receiver) in receivers.iter().enumerate() {
         let Some(node) = nodes.named(receiver) else { continue };
-        let [x, y, _] = node.position;
-        let position = [x, y];
-        if position == [None; 2] {
+        let (mut position, mut sigma) = ([None; D], [0.0; D]);
+        position.copy_from_slice(&node.position[..D]);
+        // Without standard deviations all positions are exact.
+        if nodes.has_sigmas {
+            sigma.copy_from_slice(&node.sigma[..D]);
+        }
+        if position.iter().all(Option::is_none) {
             return Err(Failure::in_file(
                 path,
                 format!("{receiver} has neither x nor y; give one of them, or leave it out"),
             ));
         }
-        // Without standard deviations all positions are exact.
-        let [of_x, of_y, _] = node.sigma;
-        let sigma = if nodes.has_sigmas { [of_x, of_y] } else { [0.0; 2] };
         let is_missing = |k: usize| position[k].is_some() && (sigma[k].is_nan() || sigma[k] < 0.0);
-        if is_missing(0) || is_missing(1) {
+        if (0..D).any(is_missing) {
             return Err(Failure::in_file(
                 path,
                 format!(
@@ -170,11 +183,13 @@ pub(crate) fn anchors(path: &Path, measured: &Pseudoranges) -> Result<Anchors, F
                 ),
             ));
         }
-        match position {
-            [Some(x), Some(y)] if sigma == [0.0; 2] => found.exact[i] = Some([x, y]),
-            _ => {
-                // A coordinate that is not known has no deviation.
-                let sigma = [0, 1].map(|k| if position[k].is_some() { sigma[k] } else { 0.0 });
+        match node.whole().filter(|_| sigma == [0.0; D]) {
+            Some(whole) => found.exact[i] = Some(whole),
+            None => {
+                for (sigma, position) in sigma.iter_mut().zip(position) {
+                    // A coordinate that is not known has no deviation.
+                    *sigma = if position.is_some() { *sigma } else { 0.0 };
+                }
                 found.measured.push(MeasuredPosition { receiver: i, position, sigma });
             }
         }
@@ -182,9 +197,14 @@ pub(crate) fn anchors(path: &Path, measured: &Pseudoranges) -> Result<Anchors, F
     Ok(found)
 }
 
-/// Warns that heights are left out, where there are any.
-fn heights(path: &Path, nodes: &Nodes) -> Option<String> {
-    let [low, high] = nodes.height_range().filter(|range| *range != [0.0; 2])?;
+/// The columns of a position.
+fn axes<const D: usize>() -> &'static str {
+    if D == 2 { "x,y" } else { "x,y,z" }
+}
+
+/// Warns that heights are left out of the plane, where there are any.
+fn heights<const D: usize>(path: &Path, nodes: &Nodes) -> Option<String> {
+    let [low, high] = nodes.height_range().filter(|range| D == 2 && *range != [0.0; 2])?;
     let range = if low == high { length(low) } else { format!("{} to {}", length(low), length(high)) };
     let flat = high - low <= FLAT * extent(nodes);
     let advice = if flat { "" } else { "; receivers at such different heights form no plane" };

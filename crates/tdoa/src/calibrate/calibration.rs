@@ -1,6 +1,7 @@
 //! The result of a calibration: the network in a frame, its uncertainty, and what may be wrong with
 //! it.
 
+use super::dimensions::DimensionTest;
 use super::known::{Anchors, SpeedEstimate};
 use super::receiver_errors::ReceiverError;
 use super::residuals::{Residual, Residuals};
@@ -89,6 +90,9 @@ pub struct Calibration<const D: usize = 2> {
     pub fits: bool,
     /// Whether the measurements fit a network in the plane; false in space, where that is not asked.
     pub planar: bool,
+    /// What the measurements say of a third coordinate, where it was theirs to decide.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dimension_test: Option<DimensionTest>,
     /// Whether the measurements determine at least half of the receivers to a tenth of the
     /// network's size; true if the noise is not known. This is false, for instance, for a table
     /// with receivers as columns.

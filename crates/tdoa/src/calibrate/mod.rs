@@ -6,6 +6,7 @@ mod clocks;
 mod compare;
 mod delays;
 mod deviation;
+mod dimensions;
 mod finish;
 mod hold;
 mod hypotheses;
@@ -38,6 +39,7 @@ mod warnings;
 mod whole;
 
 pub use calibration::{Alternative, Calibration};
+pub use dimensions::{Calibrated, CalibratedError, DimensionTest, calibrate_either};
 pub use hypotheses::{Hypotheses, KnownReceivers, generator};
 pub use known::SpeedEstimate;
 pub use minimal::MinimalHypotheses;

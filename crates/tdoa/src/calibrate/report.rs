@@ -269,6 +269,7 @@ impl<const D: usize> Solved<'_, D> {
             dimensions: D,
             fits,
             planar: fits && D == 2,
+            dimension_test: None,
             determined,
             anchors_agree,
             receiver_errors: self.receiver_errors(),
