@@ -1,9 +1,12 @@
 //! A calibration as one self-contained HTML report: the picture, the warnings, and sortable tables
-//! of nodes and measurements. It refers to nothing outside itself.
+//! of nodes and measurements, and for a network in space a view that turns under the mouse. It refers
+//! to nothing outside itself.
 
 use hc::poly::{counted, one_or};
 use std::array::from_fn;
 use std::fmt::Write;
+
+mod turn;
 
 use crate::calibrate::Calibration;
 use crate::picture::{escape, picture};
@@ -38,10 +41,12 @@ const MEASUREMENTS: [Column; 5] = [
 /// The report as HTML text.
 pub fn html<const D: usize>(calibration: &Calibration<D>) -> String {
     let title = format!("Calibration of {}", escape(&calibration.configuration));
+    // A network in the plane is all in the picture.
+    let (view_style, view) = if D == 3 { (turn::STYLE, turn::view(calibration)) } else { ("", String::new()) };
     let mut page = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{title}</title>\n\
-         <style>\n{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n"
+         <style>\n{STYLE}{view_style}</style>\n</head>\n<body>\n<h1>{title}</h1>\n"
     );
     if let Some(why) = calibration.distrust() {
         page += &format!("<p class=\"wrong\">Not to be trusted: {why}.</p>\n");
@@ -50,6 +55,7 @@ pub fn html<const D: usize>(calibration: &Calibration<D>) -> String {
         page += &format!("<p class=\"warning\">{}</p>\n", escape(warning));
     }
     page += &facts(calibration);
+    page += &view;
     page += &format!("<figure>\n{}</figure>\n", picture(calibration));
     page += &format!("<p class=\"note\">Lengths in metres. Standard deviations: {}.</p>\n", escape(&calibration.gauge));
     page += "<h2>Receivers</h2>\n";
@@ -266,7 +272,8 @@ mod tests {
         assert_eq!(headings(&plane, "transmitters"), transmitters);
 
         let simulation = simulate(&SimulateOptions::<3> { noise: 0.01, ..SimulateOptions::new() }).unwrap();
-        let calibration = calibrate(&simulation.pseudoranges, &CalibrateOptions::<3>::new()).unwrap();
+        let mut calibration = calibrate(&simulation.pseudoranges, &CalibrateOptions::<3>::new()).unwrap();
+        calibration.receiver_names[2] = "</script><b>".to_string();
         let page = html(&calibration);
         let columns = headings(&page, "receivers");
         assert_eq!(columns, ["receiver", "x", "y", "z", "std x", "std y", "std z", "measured", "outliers"]);
@@ -278,5 +285,11 @@ mod tests {
         let row = page.split_once("<table id=\"receivers\">").unwrap().1.split("<tr>").nth(2).unwrap();
         assert_eq!(row.split("</tr>").next().unwrap().matches("<td").count(), columns.len());
         assert!(page.contains("from the side") && !page.contains("NaN"));
+        // The view that turns: its data, its script, and the one that sorts.
+        assert_eq!((page.matches("<script").count(), page.matches("</script>").count()), (3, 3));
+        assert!(!page.contains("<b>") && !plane.contains("id=\"turn\""));
+        // Nothing is fetched: the only address is the name of SVG, and clips are within the page.
+        assert_eq!(page.matches("://").count(), page.matches("http://www.w3.org/2000/svg\"").count());
+        assert!(!page.contains(" src=") && page.matches("url(").count() == page.matches("url(#").count());
     }
 }

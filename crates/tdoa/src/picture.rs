@@ -16,7 +16,7 @@ use crate::quantity::{length, number};
 use crate::summary::deviation;
 pub use canvas::Canvas;
 pub(crate) use canvas::escape;
-use layout::Layout;
+pub(crate) use layout::Layout;
 use view::{BLUE, ORANGE, PINK, WIDTH};
 
 /// Height of the histogram and the legend.
