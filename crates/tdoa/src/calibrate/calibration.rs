@@ -1,7 +1,7 @@
 //! The result of a calibration: the network in a frame, its uncertainty, and what may be wrong with
 //! it.
 
-use super::dimensions::DimensionTest;
+use super::dimension_test::DimensionTest;
 use super::known::{Anchors, SpeedEstimate};
 use super::receiver_errors::ReceiverError;
 use super::residuals::{Residual, Residuals};

@@ -55,3 +55,15 @@ pub(super) fn spread_of_residuals<const D: usize>(observations: &Observations<D>
     // The median magnitude of a normal variable is 0.6745 deviations.
     median_size(observations, network) / 0.6745 * (count / (count - unknowns).max(1.0)).sqrt()
 }
+
+/// Spread of the residuals of one receiver about zero, from the smaller seven tenths of them.
+pub(super) fn spread_of_receiver<const D: usize>(
+    observations: &Observations<D>,
+    network: &Network<D>,
+    receiver: usize,
+) -> f64 {
+    let mut sizes: Vec<f64> = observations.of_receiver(receiver).map(|o| o.residual(network).abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    // Seven tenths of a normal variable are within 1.0364 deviations.
+    sizes.get(sizes.len() * 7 / 10).map_or(0.0, |size| size / 1.0364)
+}

@@ -2,10 +2,12 @@
 //! the measurements.
 
 use super::calibration::Calibration;
+use super::dimension_test::DimensionTest;
 use super::hypotheses::{Hypotheses, generator};
+use super::known;
 use super::options::{CalibrateError, CalibrateOptions, MeasuredPosition};
 use super::ranking::OUTLIER_COST;
-use super::{calibrate_with, known};
+use super::steps::calibrate_with;
 use crate::points::spread;
 use crate::pseudoranges::Pseudoranges;
 use crate::quantity::number;
@@ -13,7 +15,6 @@ use crate::refine::PartialNetwork;
 use hc::Monitor;
 use rand::RngExt;
 use rand_distr::StandardNormal;
-use serde::{Deserialize, Serialize};
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
 use thiserror::Error;
 
@@ -56,26 +57,6 @@ pub enum CalibratedError {
     /// The one in space did.
     #[error(transparent)]
     Space(#[from] CalibrateError<3>),
-}
-
-/// What the measurements say of a third coordinate.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct DimensionTest {
-    /// How much more likely the measurements are in space than in the plane (natural logarithm); `None`
-    /// where space could not be tried, for instance because there are too few measurements.
-    pub gain: Option<f64>,
-    /// The gain that was needed for space; `None` where none would do, for lack of measurements beyond the
-    /// unknowns in space.
-    pub needed: Option<f64>,
-}
-
-impl DimensionTest {
-    const UNTRIED: DimensionTest = DimensionTest { gain: None, needed: None };
-
-    /// Whether the gain is so many times what is needed.
-    fn supports(&self, factor: f64) -> bool {
-        self.gain.zip(self.needed).is_some_and(|(gain, needed)| gain >= factor * needed)
-    }
 }
 
 /// Calibrates in the plane, or in space where the measurements support a third coordinate.

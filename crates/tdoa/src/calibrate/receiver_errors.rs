@@ -9,7 +9,7 @@
 use serde::{Deserialize, Serialize};
 use std::array::from_fn;
 
-use super::deviation::{inlier_deviation, spread_of_residuals};
+use super::deviation::{inlier_deviation, spread_of_receiver, spread_of_residuals};
 use super::mixture::Mixture;
 use super::significance::{doubt, least_surprise, surprise};
 use crate::multilateration::solve_symmetric;
@@ -171,18 +171,6 @@ fn told<const D: usize>(
     let Some(projection) = Projection::new(kept, network, monitor)? else { return Ok(Told::default()) };
     let (rest, _) = projection.off(values);
     Test { kept, projection, rest, taken: Vec::new(), redundancy: redundancy as f64, unmoved, monitor }.run()
-}
-
-/// Spread of the residuals of one receiver about zero, from the smaller seven tenths of them.
-pub(super) fn spread_of_receiver<const D: usize>(
-    observations: &Observations<D>,
-    network: &Network<D>,
-    receiver: usize,
-) -> f64 {
-    let mut sizes: Vec<f64> = observations.of_receiver(receiver).map(|o| o.residual(network).abs()).collect();
-    sizes.sort_by(f64::total_cmp);
-    // Seven tenths of a normal variable are within 1.0364 deviations.
-    sizes.get(sizes.len() * 7 / 10).map_or(0.0, |size| size / 1.0364)
 }
 
 /// How many errors of a kind are tested among these receivers and measurements.

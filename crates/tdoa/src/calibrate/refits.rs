@@ -7,11 +7,11 @@
 //! are refined without the receiver, the receiver is located from them together with the size of
 //! its error, and the whole is refitted. What counts is the decrease of the truncated cost.
 
-use super::deviation::inlier_deviation;
+use super::deviation::{inlier_deviation, spread_of_receiver};
 use super::finish::CAUCHY;
 use super::options::{CalibrateError, check};
 use super::ranking::{OUTLIER_COST, refit, truncated_cost};
-use super::receiver_errors::{Fault, ReceiverErrorKind, SIDE, spread_of_receiver, tests};
+use super::receiver_errors::{Fault, ReceiverErrorKind, SIDE, tests};
 use super::significance::{doubt, least_gain, least_surprise, surprise};
 use crate::bordered::{Bordered, Placed};
 use crate::loss::Loss;
