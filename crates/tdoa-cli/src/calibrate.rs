@@ -42,8 +42,8 @@ pub(crate) struct Arguments {
     /// Standard deviation of the measurements in metres; estimated if not given.
     #[arg(long, allow_negative_numbers = true)]
     sigma: Option<f64>,
-    /// Whether the network is sought in the plane or in space. `auto`: in space where anchors have a z
-    /// that is not zero or --frame names four nodes; without these, where the measurements support a
+    /// Whether the network is sought in the plane or in space. `auto`: in space where anchors have
+    /// different heights or --frame names four nodes; without these, where the measurements support a
     /// third coordinate (likelihood ratio), and says so.
     #[arg(long, value_enum, default_value = "auto")]
     dimensions: Dimensions,

@@ -353,7 +353,7 @@ fn heights_are_never_dropped_without_a_word() {
     said("--truth", &steep, &["the heights (z, 0 m to 7 m) are left out", "form no plane"]);
     said("--anchors", &level, &["level.csv: the heights (z, 1.2 m) are left out"]);
     refused(
-        &["calibrate", text(&table), "--anchors", text(&steep)],
+        &["calibrate", text(&table), "--dimensions", "2", "--anchors", text(&steep)],
         &["steep.csv", "differ by 7 m", "one height", "leave out the column z"],
     );
     let file = folder.write("numbers.csv", "1,2,3\n4,5,6\n");

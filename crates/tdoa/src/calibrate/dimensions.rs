@@ -5,7 +5,7 @@ use super::calibration::Calibration;
 use super::dimension_test::DimensionTest;
 use super::hypotheses::{Hypotheses, generator};
 use super::known;
-use super::options::{CalibrateError, CalibrateOptions, MeasuredPosition};
+use super::options::{CalibrateError, CalibrateOptions, Errors, MeasuredPosition, ReceiverDelays};
 use super::ranking::OUTLIER_COST;
 use super::steps::calibrate_with;
 use crate::points::spread;
@@ -26,8 +26,8 @@ const QUANTILE: f64 = 1.0 - 1e-4;
 /// (measured; results/space.md has the false alarms).
 const BENT: f64 = 2.0;
 
-/// A network in space that is not unique takes the place of a planar one that fits only if it gains so many
-/// times what is needed.
+/// A network in space takes the place of a planar one that fits only if it gains so many times what is
+/// needed: heights explain late measurements too.
 const OVERWHELMING: f64 = 4.0;
 
 /// Starts of the search in the plane, before one in space tells whether more are worth it.
@@ -61,11 +61,12 @@ pub enum CalibratedError {
 
 /// Calibrates in the plane, or in space where the measurements support a third coordinate.
 ///
-/// Known positions decide: with a z that is not zero the network is in space, else in the plane. Without
-/// any, it is in space if the planar network does not fit and one in space does, or if the measurements
-/// are more likely in space by twice the 99.99 % quantile of what as many unknowns of a linear model gain
-/// by chance (likelihood ratio; of F, or of chi-squared where the deviation is given), and the receivers
-/// are unique in space or the gain is four times that.
+/// Known positions decide: where their heights differ the network is in space, else in the plane. Without
+/// any, it is in space if one there fits and the planar network does not, or if the measurements are far
+/// more likely in space. What is needed is twice the 99.99 % quantile of what as many unknowns of a linear
+/// model gain by chance (likelihood ratio; of F, or of chi-squared where the deviation is given). A gain of
+/// that much is told in a warning, one of four times that takes the place of a planar network that fits.
+/// Errors of receivers that the planar network shows are no reason for heights.
 /// [`Calibration::dimension_test`] has the numbers. `options.seed` and the rest are for both.
 ///
 /// ```
@@ -112,9 +113,9 @@ pub fn calibrate_either(
     };
     let mut test = DimensionTest::UNTRIED;
     if let Some(mut whole) = whole {
-        test = compare(measured, &flat, &whole, options);
-        let sure = test.supports(if whole.unique_receivers { 1.0 } else { OVERWHELMING });
-        if whole.fits && (sure || !flat.fits) {
+        let cleared = cleared(measured, &first, &flat, monitor)?;
+        test = compare(measured, cleared.as_ref().unwrap_or(&flat), &whole, options);
+        if whole.fits && (test.supports(OVERWHELMING) || !flat.fits) {
             whole.dimension_test = Some(test);
             return Ok(Calibrated::Space(whole));
         }
@@ -124,8 +125,8 @@ pub fn calibrate_either(
     }
     if let (true, Some(gain)) = (test.supports(1.0), test.gain) {
         flat.warnings.push(format!(
-            "the measurements are more likely in space (logarithm {}), but do not determine the network there; --dimensions 3 gives it, \
-             with what is unsure",
+            "the measurements are more likely in space (by {} in the natural logarithm), which heights may explain or errors that nearly \
+             all lengthen; --dimensions 3 gives the network there",
             number(gain, 3)
         ));
     }
@@ -133,11 +134,32 @@ pub fn calibrate_either(
     Ok(Calibrated::Plane(flat))
 }
 
-/// Whether a known position has a height.
+/// The planar network without the errors that receivers show in it; `None` if it shows none or they are
+/// taken out already.
+fn cleared(
+    measured: &Pseudoranges,
+    options: &CalibrateOptions,
+    flat: &Calibration,
+    monitor: &Monitor,
+) -> Result<Option<Calibration>, CalibrateError> {
+    if flat.receiver_errors.iter().all(|error| error.taken_out) || options.errors == Errors::OneSided {
+        return Ok(None);
+    }
+    let options = CalibrateOptions { receiver_delays: ReceiverDelays::Auto, ..options.clone() };
+    match calibrate_with(measured, &options, &[], monitor) {
+        Ok(found) => Ok(Some(found)),
+        Err(error @ CalibrateError::Cancelled(_)) => Err(error),
+        Err(_) => Ok(None),
+    }
+}
+
+/// Whether known positions have different heights.
 fn has_heights(options: &CalibrateOptions<3>) -> bool {
     let exact = options.anchors.iter().flatten().map(|p| Some(p[2]));
     let measured = options.positions.iter().map(|known| known.position[2]);
-    exact.chain(measured).flatten().any(|z| z != 0.0)
+    let mut all = exact.chain(measured).flatten();
+    let first = all.next();
+    all.any(|z| Some(z) != first)
 }
 
 /// The same options in the plane.
@@ -271,7 +293,7 @@ fn compare(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Layout, SimulateOptions, simulate};
+    use crate::{Layout, ReceiverFault, SimulateOptions, simulate};
 
     fn chosen(measured: &Pseudoranges, options: &CalibrateOptions<3>) -> Calibrated {
         calibrate_either(measured, options, &Monitor::default()).unwrap()
@@ -291,6 +313,19 @@ mod tests {
             let plain = crate::calibrate(&made.pseudoranges, &in_plane(&options)).unwrap();
             assert_eq!(Calibration { dimension_test: None, ..found }, plain);
         }
+    }
+
+    #[test]
+    fn a_delay_is_no_height() {
+        for (seed, size) in [(5, 0.3), (6, 1.0), (7, 3.0)] {
+            let made = SimulateOptions { noise: 0.01, fault: Some(ReceiverFault::Delay(size)), seed, ..room() };
+            let found = chosen(&simulate(&made).unwrap().pseudoranges, &CalibrateOptions::new());
+            assert!(matches!(found, Calibrated::Plane(_)), "{size} m late");
+        }
+    }
+
+    fn room() -> SimulateOptions {
+        SimulateOptions { receivers: 10, transmitters: 20, ..Default::default() }
     }
 
     #[test]
@@ -317,8 +352,16 @@ mod tests {
         assert!(
             matches!(chosen(&made.pseudoranges, &options), Calibrated::Plane(found) if found.dimension_test.is_none())
         );
+        // All at one height, which fixes nothing in space.
         options.anchors = anchors(1.5);
-        assert!(matches!(chosen(&made.pseudoranges, &options), Calibrated::Space(found) if found.dimensions == 3));
+        assert!(matches!(chosen(&made.pseudoranges, &options), Calibrated::Plane(_)));
+        let mut made = SimulateOptions::<3>::new();
+        (made.receivers, made.transmitters, made.noise) = (10, 20, 0.01);
+        let made = simulate(&made).unwrap();
+        options.anchors = made.network.receivers.iter().copied().map(Some).collect();
+        assert!(
+            matches!(chosen(&made.pseudoranges, &options), Calibrated::Space(found) if found.dimension_test.is_none())
+        );
     }
 
     #[test]

@@ -47,9 +47,9 @@ pub struct Nodes {
 }
 
 impl Nodes {
-    /// 3 if a z is known that is not zero, else 2.
+    /// 3 if nodes of different heights are known, else 2.
     pub fn dimensions(&self) -> usize {
-        if self.nodes.iter().any(|node| node.position[2].is_some_and(|z| z != 0.0)) { 3 } else { 2 }
+        if self.height_range().is_some_and(|[low, high]| low < high) { 3 } else { 2 }
     }
 
     /// Whether every node has a name.
