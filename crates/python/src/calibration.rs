@@ -1,4 +1,4 @@
-//! `tdoa.calibrate`.
+//! `tdoa.calibrate`, in the plane and in space.
 
 use crate::arrays::array;
 use crate::errors::{Failure, guarded};
@@ -7,7 +7,9 @@ use crate::work::{Done, How, run, whole};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use tdoa::calibrate::{Calibrated, CalibratedError, calibrate_either};
 use tdoa::{
     CalibrateError, CalibrateOptions, Calibration, Errors, KnownDistance, MeasuredPosition, ReceiverDelays, Unfinished,
     calibrate_with,
@@ -17,10 +19,13 @@ use tdoa::{
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Settings {
+    /// 2 or 3; the measurements decide where there is neither.
+    dimensions: Option<usize>,
     sigma: Option<f64>,
-    anchors: Vec<Option<[f64; 2]>>,
-    /// Receiver, x and y, standard deviation.
-    positions: Vec<(usize, [Option<f64>; 2], f64)>,
+    /// Of as many coordinates as there are dimensions; none where the measurements decide.
+    anchors: Vec<Option<Vec<f64>>>,
+    /// Receiver, coordinates, standard deviation.
+    positions: Vec<(usize, Vec<Option<f64>>, f64)>,
     distances: Vec<(usize, usize, f64)>,
     receiver_delays: String,
     errors: String,
@@ -31,13 +36,16 @@ pub(crate) struct Settings {
 }
 
 impl Settings {
-    fn options(self) -> Result<CalibrateOptions, Failure> {
-        let mut options = CalibrateOptions::default();
+    fn options<const D: usize>(self) -> Result<CalibrateOptions<D>, Failure> {
+        let mut options = CalibrateOptions::new();
         options.sigma = self.sigma;
         options.seed = self.seed;
-        options.anchors = self.anchors;
-        let measured = |(receiver, position, sigma)| MeasuredPosition { receiver, position, sigma: [sigma; 2] };
-        options.positions = self.positions.into_iter().map(measured).collect();
+        let exact = self.anchors.into_iter().map(|position| position.map(coordinates).transpose());
+        options.anchors = exact.collect::<Result<_, _>>()?;
+        let measured = |(receiver, position, sigma)| {
+            Ok(MeasuredPosition { receiver, position: coordinates(position)?, sigma: [sigma; D] })
+        };
+        options.positions = self.positions.into_iter().map(measured).collect::<Result<_, Failure>>()?;
         options.estimate_speed = self.estimate_speed;
         let known = |(a, b, distance)| KnownDistance { receivers: [a, b], distance };
         options.distances = self.distances.into_iter().map(known).collect();
@@ -61,11 +69,16 @@ impl Settings {
     }
 }
 
+fn coordinates<T, const D: usize>(all: Vec<T>) -> Result<[T; D], Failure> {
+    all.try_into().map_err(|all: Vec<T>| Failure::Input(format!("a position has {D} coordinates, not {}", all.len())))
+}
+
 /// The JSON of the program: offsets in seconds too, where the measurements were times.
 #[derive(Serialize)]
-struct Report<'a> {
+#[serde(bound = "Calibration<D>: Serialize")]
+struct Report<'a, const D: usize> {
     #[serde(flatten)]
-    calibration: &'a Calibration,
+    calibration: &'a Calibration<D>,
     #[serde(skip_serializing_if = "Option::is_none")]
     units: Option<Unit>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -90,46 +103,74 @@ pub(crate) fn calibrate<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     guarded(|| {
         let measured = table.measured()?;
-        let options = settings.options()?;
-        let Done { result: found, stopped, .. } =
-            run(py, &how, move |monitor| calibrate_with(&measured, &options, &[], monitor))?;
-        let mut calibration = match found {
-            Ok(calibration) => calibration,
-            Err(CalibrateError::Cancelled(best)) => {
-                let best = best.map(|best| unfinished(py, &best)).transpose()?;
-                return whole(py, best.into_bound_py_any(py)?, stopped);
+        let done = match settings.dimensions {
+            Some(2) => {
+                let options = settings.options()?;
+                run(py, &how, move |monitor| Ok(Calibrated::Plane(calibrate_with(&measured, &options, &[], monitor)?)))?
             }
-            Err(
-                error @ (CalibrateError::Degenerate(_) | CalibrateError::NotFound(_) | CalibrateError::Delays { .. }),
-            ) => {
-                return Err(Failure::undetermined(error));
+            Some(3) => {
+                let options = settings.options()?;
+                run(py, &how, move |monitor| Ok(Calibrated::Space(calibrate_with(&measured, &options, &[], monitor)?)))?
             }
-            Err(error) => return Err(Failure::input(error)),
+            None => {
+                let options = settings.options()?;
+                run(py, &how, move |monitor| calibrate_either(&measured, &options, monitor))?
+            }
+            Some(other) => return Err(Failure::Input(format!("dimensions must be 2, 3 or auto, not {other}"))),
         };
-        if speed.is_none() {
-            calibration.warnings.extend(tdoa::summary::doubt_of_units(&calibration));
-        }
-        if let (Some(speed), Some(found)) = (speed, &mut calibration.speed) {
-            found.metres_per_second = Some(speed * found.factor);
-        }
-        let metres = speed.map(|speed| speed * calibration.speed.map_or(1.0, |found| found.factor));
-        let offsets = |metres: f64| calibration.offsets.iter().map(|o| o.map(|o| o / metres)).collect();
-        let report = Report {
-            calibration: &calibration,
-            units: metres.map(|metres| Unit { name: "s", metres }),
-            offsets_in_units: metres.map(offsets),
+        let Done { result: found, stopped, .. } = done;
+        let ended = match found {
+            Ok(Calibrated::Plane(calibration)) => report(calibration, speed)?.into_bound_py_any(py)?,
+            Ok(Calibrated::Space(calibration)) => report(calibration, speed)?.into_bound_py_any(py)?,
+            Err(CalibratedError::Plane(error)) => partial(py, error)?,
+            Err(CalibratedError::Space(error)) => partial(py, error)?,
         };
-        let mut json = serde_json::to_string_pretty(&report).map_err(Failure::input)?;
-        json.push('\n');
-        whole(py, json.into_bound_py_any(py)?, stopped)
+        whole(py, ended, stopped)
     })
 }
 
-fn unfinished<'py>(py: Python<'py>, best: &Unfinished) -> Result<Bound<'py, PyDict>, Failure> {
+/// The JSON of a calibration.
+fn report<const D: usize>(mut calibration: Calibration<D>, speed: Option<f64>) -> Result<String, Failure>
+where
+    Calibration<D>: Serialize,
+{
+    if speed.is_none() {
+        calibration.warnings.extend(tdoa::summary::doubt_of_units(&calibration));
+    }
+    if let (Some(speed), Some(found)) = (speed, &mut calibration.speed) {
+        found.metres_per_second = Some(speed * found.factor);
+    }
+    let metres = speed.map(|speed| speed * calibration.speed.map_or(1.0, |found| found.factor));
+    let offsets = |metres: f64| calibration.offsets.iter().map(|o| o.map(|o| o / metres)).collect();
+    let report = Report {
+        calibration: &calibration,
+        units: metres.map(|metres| Unit { name: "s", metres }),
+        offsets_in_units: metres.map(offsets),
+    };
+    let mut json = serde_json::to_string_pretty(&report).map_err(Failure::input)?;
+    json.push('\n');
+    Ok(json)
+}
+
+/// What a calibration leaves that was stopped; why there is none, for all others.
+fn partial<const D: usize>(py: Python<'_>, error: CalibrateError<D>) -> Result<Bound<'_, PyAny>, Failure> {
+    match error {
+        CalibrateError::Cancelled(best) => {
+            let best = best.map(|best| unfinished(py, &best)).transpose()?;
+            Ok(best.into_bound_py_any(py)?)
+        }
+        CalibrateError::Degenerate(_) | CalibrateError::NotFound(_) | CalibrateError::Delays { .. } => {
+            Err(Failure::undetermined(error))
+        }
+        error => Err(Failure::input(error)),
+    }
+}
+
+fn unfinished<'py, const D: usize>(py: Python<'py>, best: &Unfinished<D>) -> Result<Bound<'py, PyDict>, Failure> {
     let found = PyDict::new(py);
     for (name, points) in [("receivers", &best.receivers), ("transmitters", &best.transmitters)] {
-        let numbers: Vec<f64> = points.iter().flat_map(|point| point.unwrap_or([f64::NAN; 2])).collect();
-        found.set_item(name, array(py, numbers, &[points.len(), 2])?)?;
+        let numbers: Vec<f64> = points.iter().flat_map(|point| point.unwrap_or([f64::NAN; D])).collect();
+        found.set_item(name, array(py, numbers, &[points.len(), D])?)?;
     }
     let offsets: Vec<f64> = best.offsets.iter().map(|offset| offset.unwrap_or(f64::NAN)).collect();
     found.set_item("offsets", array(py, offsets, &[best.offsets.len()])?)?;
@@ -138,26 +179,71 @@ fn unfinished<'py>(py: Python<'py>, best: &Unfinished) -> Result<Bound<'py, PyDi
     Ok(found)
 }
 
-fn parsed(json: &str) -> Result<Calibration, Failure> {
+/// How calibrations of any dimension are shown.
+trait Shown {
+    fn html(&self) -> String;
+    fn picture(&self) -> String;
+    fn summary(&self) -> String;
+    fn deviation(&self) -> String;
+    fn magnification(&self) -> f64;
+}
+
+impl<const D: usize> Shown for Calibration<D> {
+    fn html(&self) -> String {
+        tdoa::html::html(self)
+    }
+
+    fn picture(&self) -> String {
+        tdoa::picture::picture(self)
+    }
+
+    fn summary(&self) -> String {
+        tdoa::summary::summary(self)
+    }
+
+    fn deviation(&self) -> String {
+        tdoa::summary::deviation(self)
+    }
+
+    fn magnification(&self) -> f64 {
+        tdoa::picture::ellipse_magnification(self)
+    }
+}
+
+/// What JSON says of its dimensions; without a word it is of the plane.
+#[derive(Deserialize)]
+struct Head {
+    dimensions: Option<usize>,
+}
+
+fn parsed(json: &str) -> Result<Box<dyn Shown>, Failure> {
+    match read::<Head>(json)?.dimensions {
+        None | Some(2) => Ok(Box::new(read::<Calibration>(json)?)),
+        Some(3) => Ok(Box::new(read::<Calibration<3>>(json)?)),
+        Some(other) => Err(Failure::Input(format!("no calibration: its dimensions are {other}, not 2 or 3"))),
+    }
+}
+
+fn read<T: DeserializeOwned>(json: &str) -> Result<T, Failure> {
     serde_json::from_str(json).map_err(|error| Failure::Input(format!("no calibration: {error}")))
 }
 
 /// The report of a calibration for a browser, from its JSON.
 #[pyfunction]
 pub(crate) fn calibration_html(json: &str) -> PyResult<String> {
-    guarded(|| Ok(tdoa::html::html(&parsed(json)?)))
+    guarded(|| Ok(parsed(json)?.html()))
 }
 
 /// The picture of a calibration as SVG, from its JSON.
 #[pyfunction]
 pub(crate) fn calibration_svg(json: &str) -> PyResult<String> {
-    guarded(|| Ok(tdoa::picture::picture(&parsed(json)?)))
+    guarded(|| Ok(parsed(json)?.picture()))
 }
 
 /// The words of the program on a calibration, from its JSON.
 #[pyfunction]
 pub(crate) fn calibration_summary(json: &str) -> PyResult<String> {
-    guarded(|| Ok(tdoa::summary::summary(&parsed(json)?)))
+    guarded(|| Ok(parsed(json)?.summary()))
 }
 
 /// The standard deviation of the measurements in words, and by how much ellipses are to be drawn
@@ -166,6 +252,6 @@ pub(crate) fn calibration_summary(json: &str) -> PyResult<String> {
 pub(crate) fn calibration_style(json: &str) -> PyResult<(String, f64)> {
     guarded(|| {
         let calibration = parsed(json)?;
-        Ok((tdoa::summary::deviation(&calibration), tdoa::picture::ellipse_magnification(&calibration)))
+        Ok((calibration.deviation(), calibration.magnification()))
     })
 }

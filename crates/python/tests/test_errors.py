@@ -78,9 +78,17 @@ def test_memory_layouts_give_the_same_bits():
 @pytest.mark.parametrize(
     "arguments, words",
     [
-        (dict(dimensions=3), "this version calibrates in the plane"),
-        (dict(dimensions=4), "dimensions must be"),
+        (dict(dimensions=4), 'dimensions must be 2, 3 or "auto", not 4'),
         (dict(dimensions="two"), "dimensions must be"),
+        (dict(dimensions="3"), "dimensions must be"),
+        (dict(dimensions=True), "dimensions must be"),
+        (dict(dimensions=None), "dimensions must be"),
+        (dict(dimensions=[2]), "dimensions must be"),
+        (dict(dimensions=2.5), "dimensions must be"),
+        (dict(dimensions=3, anchors={"r1": (0, 0), "r2": (1, 0)}), "need x, y and z"),
+        (dict(dimensions=2, anchors={"r1": (0, 0, 0), "r2": (1, 0, 1)}), "differ by 1 m, but dimensions=2 is the plane"),
+        (dict(anchors={"r1": (0, 0, 0, 1)}), "the anchor r1 must be x and y, in space z too"),
+        (dict(anchors=np.zeros((8, 4))), r"\(8, 2\) or, in space, \(8, 3\)"),
         (dict(sigma=-1), "option sigma must be positive and finite, not -1"),
         (dict(sigma="x"), "sigma must be a number"),
         (dict(sigma=np.ones((3, 3))), "shape of the pseudoranges"),
@@ -110,6 +118,12 @@ def test_memory_layouts_give_the_same_bits():
 def test_arguments(arguments, words):
     with pytest.raises(hc.InputError, match=words):
         tdoa.calibrate(TABLE, **arguments)
+
+
+def test_exact_solutions_are_planar():
+    for dimensions, words in ((3, "solve finds networks in the plane"), ("three", "dimensions must be")):
+        with pytest.raises(hc.InputError, match=words):
+            tdoa.solve(TABLE[:6, :3], dimensions=dimensions)
 
 
 @pytest.mark.parametrize(

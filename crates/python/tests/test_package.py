@@ -35,6 +35,7 @@ points: np.ndarray = hc.solve("x - 1").real_points
 number: int = hc.solve("x - 1").n_real
 table = tdoa.simulate(layout="grid", fault=("move", 0.1)).pseudoranges
 tdoa.calibrate(table, receiver_delays="auto", dimensions=2)
+test: dict[str, float | None] | None = tdoa.calibrate(table, dimensions=3, anchors={"r1": (0, 0, 2.5)}).dimension_test
 tdoa.calibrate([[1.0, None], [2.0, 3.0]])
 tdoa.calibrate(tdoa.read("table.csv", units="ms", speed=343.0))
 with open("table.csv") as file:
@@ -52,7 +53,9 @@ tdoa.calibrate(table, errors="late")
 # wrong
 tdoa.calibrate(table, receiver_delays="some")
 # wrong
-tdoa.calibrate(table, dimensions=3)
+tdoa.calibrate(table, dimensions=4)
+# wrong
+tdoa.solve(table, dimensions=3)
 # wrong
 tdoa.solve(table, start="auto")
 # wrong

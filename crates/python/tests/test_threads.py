@@ -53,7 +53,17 @@ assert len(hc.solve(["x^2 - 2"])) == 2
         ("hc.decompose(LONG, max_paths=10**9, {how})", "Decomposition", "assert found.partial and not found.complete"),
         ("hc.mixed_volume(CYCLIC, {how})", "int", "assert found >= 0"),
         ("family.track(targets, {how})", "Tracked", "assert 0 < len(found.points) < 200_000 and found.complete[:-256].all()"),
-        ("tdoa.calibrate(table, max_starts=10**9, agreeing=10**9, {how})", "Unfinished", "assert found.receivers.shape == (40, 2)"),
+        (
+            "tdoa.calibrate(table, dimensions=2, max_starts=10**9, agreeing=10**9, {how})",
+            "Unfinished",
+            "assert found.receivers.shape == (40, 2)",
+        ),
+        (
+            "tdoa.calibrate(table, dimensions=3, max_starts=10**9, agreeing=10**9, {how})",
+            "Unfinished",
+            "assert found.receivers.shape == (40, 3) and found.transmitters.shape[1] == 3",
+        ),
+        ("tdoa.calibrate(table, max_starts=10**9, agreeing=10**9, {how})", "Unfinished", "assert found.receivers.shape[1] in (2, 3)"),
     ],
 )
 @pytest.mark.parametrize("threads", [None, 1])

@@ -2,7 +2,7 @@
 
 Synchronised receivers hear transmitters whose send times are unknown. With all times multiplied by the propagation speed, receiver i
 measures of transmitter j the pseudorange |r_i - s_j| + o_j. From these alone come the positions r and s and the offsets o, up to
-a rotation, reflection and translation of the plane.
+a rotation, reflection and translation of the plane, or of space.
 
 * `calibrate`: any network from measurements as they come, with outliers, gaps and noise.
 * `solve`: every network that explains a small complete table exactly.

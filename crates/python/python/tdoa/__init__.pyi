@@ -84,7 +84,7 @@ class Alternative:
     residual: float
     log_likelihood_loss: float
     receiver_error: dict[str, Any] | None
-    def __init__(self, data: dict[str, Any]) -> None: ...
+    def __init__(self, data: dict[str, Any], dimensions: int = 2) -> None: ...
 
 class Calibration:
     data: dict[str, Any]
@@ -95,6 +95,7 @@ class Calibration:
     sigma: float
     gauge: str
     dimensions: int
+    dimension_test: dict[str, float | None] | None
     def __init__(self, text: str) -> None: ...
     @classmethod
     def from_json(cls, text: str) -> Calibration: ...
@@ -119,7 +120,7 @@ class Calibration:
     @property
     def trusted(self) -> bool: ...
     # An Axes of matplotlib, which need not be installed.
-    def plot(self, ax: Any = None, *, names: bool = True) -> Any: ...
+    def plot(self, ax: Any = None, *, names: bool = True, view: Literal["xy", "xz", "yz"] = "xy") -> Any: ...
     def to_json(self) -> str: ...
     def to_svg(self) -> str: ...
     def save_html(self, path: _Path) -> None: ...
@@ -162,7 +163,7 @@ def calibrate(
     *,
     sigma: ArrayLike | None = None,
     speed: float | None = None,
-    dimensions: Literal["auto", 2] = "auto",
+    dimensions: Literal["auto", 2, 3] = "auto",
     anchors: ArrayLike | Mapping[str, ArrayLike] | None = None,
     anchor_sigma: ArrayLike | Mapping[str, float] | None = None,
     names: _Names | None = None,

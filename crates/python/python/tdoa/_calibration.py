@@ -29,9 +29,9 @@ class Alternative:
         too weakly for the result to have it.
     """
 
-    def __init__(self, data):
-        self.receivers = _rows(data["receivers"], (2,))
-        self.transmitters = _rows(data["transmitters"], (2,))
+    def __init__(self, data, dimensions=2):
+        self.receivers = _rows(data["receivers"], (dimensions,))
+        self.transmitters = _rows(data["transmitters"], (dimensions,))
         self.offsets = _rows(data["offsets"], ())
         self.residual = data["residual"]
         self.log_likelihood_loss = data["log_likelihood_loss"]
@@ -47,8 +47,8 @@ class Calibration:
     Attributes
     ----------
     receivers : ndarray of float, shape (m, d)
-        Positions of the receivers. Without anchors the first is the origin, the second lies on the positive x axis and the third
-        above it.
+        Positions of the receivers. Without anchors the first is the origin, the second lies on the positive x axis, the third
+        above it and, in space, the fourth above the plane of these.
     transmitters : ndarray of float, shape (n, d)
         Positions of the transmitters.
     offsets : ndarray of float, shape (n,)
@@ -76,7 +76,11 @@ class Calibration:
     receiver_names, transmitter_names : list of str
         Names of the nodes.
     dimensions : int
-        d: 2, for this version calibrates in the plane.
+        d: 2 in the plane, 3 in space.
+    dimension_test : dict or None
+        Where the measurements decided between plane and space: `gain`, by how much they are more likely in space (natural
+        logarithm), and `needed`, the gain that space needed; None in place of a number that there is not, as where the measurements
+        are too few for space. None where dimensions or anchors decided.
     data : dict
         Everything that the JSON holds, under the same keys.
     """
@@ -91,9 +95,12 @@ class Calibration:
             self.unique = self.data["unique"]
             self.sigma = self.data["sigma"]
             self.gauge = self.data["gauge"]
+            self.dimensions = self.data.get("dimensions", 2)
+            self.dimension_test = self.data.get("dimension_test")
         except (TypeError, ValueError, KeyError) as error:
             raise InputError(f"no calibration: {error}") from None
-        self.dimensions = 2
+        if self.dimensions not in (2, 3):
+            raise InputError(f"no calibration: its dimensions are {self.dimensions!r}, not 2 or 3")
 
     @classmethod
     def from_json(cls, text):
@@ -102,11 +109,11 @@ class Calibration:
 
     @cached_property
     def receivers(self):
-        return _rows(self.data["receivers"], (2,))
+        return _rows(self.data["receivers"], (self.dimensions,))
 
     @cached_property
     def transmitters(self):
-        return _rows(self.data["transmitters"], (2,))
+        return _rows(self.data["transmitters"], (self.dimensions,))
 
     @cached_property
     def offsets(self):
@@ -114,11 +121,11 @@ class Calibration:
 
     @cached_property
     def covariance(self):
-        return _rows(self.data["receiver_covariance"], (2, 2))
+        return _rows(self.data["receiver_covariance"], (self.dimensions, self.dimensions))
 
     @cached_property
     def transmitter_covariance(self):
-        return _rows(self.data["transmitter_covariance"], (2, 2))
+        return _rows(self.data["transmitter_covariance"], (self.dimensions, self.dimensions))
 
     @cached_property
     def offset_std(self):
@@ -134,15 +141,15 @@ class Calibration:
 
     @cached_property
     def alternatives(self):
-        return [Alternative(each) for each in self.data["alternatives"]]
+        return [Alternative(each, self.dimensions) for each in self.data["alternatives"]]
 
     @property
     def trusted(self):
-        """Whether the measurements fit a network in the plane and the known positions, and determine where most receivers are."""
-        return self.data["planar"] and self.data["determined"] and self.data.get("anchors_agree", True)
+        """Whether the measurements fit a network of these dimensions and the known positions, and determine where most receivers are."""
+        return self.data.get("fits", self.data["planar"]) and self.data["determined"] and self.data.get("anchors_agree", True)
 
-    def plot(self, ax=None, *, names=True):
-        """Draw the network as the report does: nodes with 95 % ellipses, outliers as lines.
+    def plot(self, ax=None, *, names=True, view="xy"):
+        """Draw the network as the report does: nodes with 95 % ellipses, outliers as lines. In space, one view of it.
 
         Parameters
         ----------
@@ -150,6 +157,9 @@ class Calibration:
             Where; a new figure by default.
         names : bool
             Whether nodes get their names.
+        view : {"xy", "xz", "yz"}
+            The coordinates to the right and upwards: from above by default, "xz" and "yz" from the side. Ellipses are the shadows
+            of 95 % ellipsoids. In the plane there is "xy" alone.
 
         Returns
         -------
@@ -157,7 +167,7 @@ class Calibration:
         """
         from ._plot import draw
 
-        return draw(self, ax, names)
+        return draw(self, ax, names, view)
 
     def to_json(self):
         """The text that `tdoa calibrate --json` writes, to the last bit of every number."""

@@ -1,5 +1,6 @@
 """Calibration, exact solution and simulation of networks."""
 
+from numbers import Real
 from typing import NamedTuple
 
 import numpy as np
@@ -12,38 +13,73 @@ from ._calibration import Calibration
 from ._tables import real_matrix, table
 
 
+# Heights that differ by more than this share of the extent are no plane.
+_FLAT = 0.1
+
+
+def _is(dimensions, value):
+    """Whether dimensions are these; True is not 1."""
+    kind = str if isinstance(value, str) else Real
+    return isinstance(dimensions, kind) and not isinstance(dimensions, bool) and dimensions == value
+
+
 def _plane(dimensions):
-    if isinstance(dimensions, str):
-        if dimensions == "auto":
-            return
-    elif not isinstance(dimensions, bool) and dimensions == 2:
+    if _is(dimensions, "auto") or _is(dimensions, 2):
         return
-    elif not isinstance(dimensions, bool) and dimensions == 3:
-        raise InputError('this version calibrates in the plane: dimensions must be "auto" or 2, not 3')
+    if _is(dimensions, 3):
+        raise InputError('solve finds networks in the plane: dimensions must be "auto" or 2, not 3; calibrate finds them in space too')
     raise InputError(f'dimensions must be "auto" or 2, not {dimensions!r}')
 
 
 def _anchors(anchors, names, count):
-    """Known positions in the order of the receivers."""
+    """Known positions in the order of the receivers: x, y and z, NaN where unknown."""
+    rows = np.full((count, 3), np.nan)
     if anchors is None:
-        return []
+        return rows
     if hasattr(anchors, "keys"):
         names = names if names is not None else [f"r{i + 1}" for i in range(count)]
         unknown = [str(name) for name in anchors.keys() if str(name) not in names]
         if unknown:
             raise InputError(f"no receiver is named {', '.join(unknown[:8])}; they are {', '.join(names[:8])}")
-        rows = np.full((count, 2), np.nan)
         for name in anchors.keys():
-            rows[names.index(str(name))] = _position(name, anchors[name])
+            position = _position(name, anchors[name])
+            rows[names.index(str(name)), : len(position)] = position
     else:
-        rows = real_matrix("anchors", anchors)
-        if rows.shape != (count, 2):
-            raise InputError(f"anchors must have shape ({count}, 2), NaN where unknown, or be a dict by name, not {rows.shape}")
+        given = real_matrix("anchors", anchors)
+        if given.shape not in ((count, 2), (count, 3)):
+            shapes = f"({count}, 2) or, in space, ({count}, 3)"
+            raise InputError(f"anchors must have shape {shapes}, NaN where unknown, or be a dict by name, not {given.shape}")
+        rows[:, : given.shape[1]] = given
     return rows
 
 
-def _known(rows, sigma, names, count):
+def _dimensions(dimensions, rows):
+    """2 or 3, as asked for or as known positions have it; None where the measurements are to decide."""
+    heights = rows[~np.isnan(rows[:, 2]), 2]
+    if _is(dimensions, "auto"):
+        if np.isnan(rows).all():
+            return None
+        return 3 if (heights != heights[:1]).any() else 2
+    if _is(dimensions, 3):
+        if len(heights) == 0 and not np.isnan(rows).all():
+            raise InputError("anchors in space need x, y and z, not x and y alone; add z, or leave out dimensions=3")
+        return 3
+    if not _is(dimensions, 2):
+        raise InputError(f'dimensions must be 2, 3 or "auto", not {dimensions!r}')
+    if np.isfinite(heights).all() and len(heights) > 1:
+        flat = rows[np.isfinite(rows[:, :2]).all(axis=1), :2]
+        extent = np.ptp(flat, axis=0).max() if len(flat) else 0.0
+        if np.ptp(heights) > _FLAT * extent:
+            raise InputError(
+                f"the heights (z) of the anchors differ by {np.ptp(heights):.3g} m, but dimensions=2 is the plane; give anchors at one "
+                "height, leave out z if the differences do not matter, or calibrate in space (dimensions=3)"
+            )
+    return 2
+
+
+def _known(rows, sigma, names, anchored):
     """Exact positions in the order of the receivers, and measured ones: receiver, coordinates, standard deviation."""
+    count = len(rows)
     sigmas = np.zeros(count)
     if hasattr(sigma, "keys"):
         names = names if names is not None else [f"r{i + 1}" for i in range(count)]
@@ -56,17 +92,17 @@ def _known(rows, sigma, names, count):
             sigmas[:] = np.asarray(sigma, dtype=float)
         except (TypeError, ValueError):
             raise InputError(f"anchor_sigma must be a number, {count} numbers, or a dict by name, not {sigma!r}") from None
-    if len(rows) == 0:
+    if not anchored:
         if sigma is not None:
             raise InputError("anchor_sigma needs anchors")
         return [], []
     exact, measured = [None] * count, []
     for i, (row, sigma) in enumerate(zip(rows, sigmas)):
-        x, y = (None if np.isnan(value) else float(value) for value in row)
-        if sigma == 0 and x is not None and y is not None:
-            exact[i] = (x, y)
-        elif x is not None or y is not None:
-            measured.append((i, (x, y), float(sigma)))
+        position = [None if np.isnan(value) else float(value) for value in row]
+        if sigma == 0 and None not in position:
+            exact[i] = position
+        elif any(value is not None for value in position):
+            measured.append((i, position, float(sigma)))
     return exact, measured
 
 
@@ -75,8 +111,8 @@ def _position(name, given):
         point = np.asarray(given, dtype=float)
     except (TypeError, ValueError):
         point = np.empty(0)
-    if point.shape != (2,):
-        raise InputError(f"the anchor {name} must be x and y in metres, not {given!r}")
+    if point.shape not in ((2,), (3,)):
+        raise InputError(f"the anchor {name} must be x and y, in space z too, in metres, not {given!r}")
     return point
 
 
@@ -111,11 +147,14 @@ def calibrate(
         Standard deviation of the measurements in metres; an array has one for each. Estimated by default.
     speed : float, optional
         Propagation speed in metres a second that makes metres of times in seconds; sound in air: 343, radio: 299792458.
-    dimensions : {"auto", 2}
-        This version calibrates in the plane.
-    anchors : array_like of shape (m, 2), or dict of name to (x, y), optional
-        Known positions of some receivers in metres, NaN where unknown: they fix the frame, and two or more are held there. One
-        coordinate may be NaN, beside two receivers with both.
+    dimensions : {"auto", 2, 3}
+        Whether the network is sought in the plane (d = 2) or in space (d = 3). "auto": in space where anchors have different
+        heights, in the plane with other anchors; without anchors where the measurements support a third coordinate, and
+        `dimension_test` of the result says how clearly.
+    anchors : array_like of shape (m, 2) or (m, 3), or dict of name to (x, y) or (x, y, z), optional
+        Known positions of some receivers in metres, NaN where unknown: they fix the frame, and two or more, in space three or more,
+        are held there. Some coordinates may be NaN, beside two (three) receivers with all. In the plane z is left out; heights
+        that differ by more than a tenth of the extent are refused.
     anchor_sigma : float, array_like of shape (m,), or dict of name to float, optional
         Standard deviations of the anchors in metres, which are then measurements; 0, the default, for exact ones.
     names : list of str, or (list of str, list of str), or dict with receivers and transmitters, optional
@@ -142,7 +181,8 @@ def calibrate(
     Returns
     -------
     Calibration
-        With `receivers`, `transmitters`, `offsets`, `covariance`, `inliers`, `residuals`, `unique`, `alternatives`, `warnings`.
+        With `receivers`, `transmitters`, `offsets`, `covariance`, `inliers`, `residuals`, `unique`, `alternatives`, `warnings`,
+        `dimensions`. Positions have d coordinates.
 
     Raises
     ------
@@ -151,7 +191,8 @@ def calibrate(
     UndeterminedError
         If the measurements do not determine a network.
     KeyboardInterrupt
-        On Ctrl-C; `partial` is the best network so far, an `Unfinished`, or None if there was none yet.
+        On Ctrl-C; `partial` is the best network so far, an `Unfinished`, or None if there was none yet. With "auto" it is in
+        the plane or in space, whichever the search was in.
 
     Examples
     --------
@@ -160,16 +201,25 @@ def calibrate(
     >>> found = tdoa.calibrate(made.pseudoranges)
     >>> found.unique, found.receivers.shape
     (True, (8, 2))
+
+    A room of 10 m x 10 m x 3 m:
+
+    >>> made = tdoa.simulate(10, 20, dimensions=3, noise=0.01, seed=1)
+    >>> found = tdoa.calibrate(made.pseudoranges)
+    >>> found.dimensions, found.receivers.shape, found.covariance.shape
+    (3, (10, 3), (10, 3, 3))
     """
-    _plane(dimensions)
     given, single, factor = table(pseudoranges, names, sigma, speed)
-    count = len(given["values"])
-    exact, measured = _known(_anchors(anchors, given["receivers"], count), anchor_sigma, given["receivers"], count)
+    receivers, count = given["receivers"], len(given["values"])
+    rows = _anchors(anchors, receivers, count)
+    d = _dimensions(dimensions, rows)
+    exact, measured = _known(rows[:, : d or 3], anchor_sigma, receivers, anchors is not None and d is not None)
     settings = {
+        "dimensions": d,
         "sigma": single,
         "anchors": exact,
         "positions": measured,
-        "distances": _distances(distances, given["receivers"], count),
+        "distances": _distances(distances, receivers, count),
         "receiver_delays": text("receiver_delays", receiver_delays),
         "errors": text("errors", errors),
         "estimate_speed": bool(estimate_speed),
@@ -283,8 +333,10 @@ def solve(
 
     Parameters
     ----------
-    pseudoranges, speed, dimensions, names, threads, progress
+    pseudoranges, speed, names, threads, progress
         As in `calibrate`; no measurement may be missing.
+    dimensions : {"auto", 2}
+        Networks are those of the plane.
     tolerance : float, optional
         How far below zero a distance may lie for a network to count as physical, as a share of the size of the data. Default 1e-6.
     start : {"stored", "polyhedral"}

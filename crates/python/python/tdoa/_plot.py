@@ -11,7 +11,10 @@ _BLUE, _ORANGE, _PINK = "#0072B2", "#D55E00", "#CC79A7"
 _REACH, _NAMED, _OUTLIERS = 5.0, 80, 200
 
 
-def draw(calibration, ax, names):
+def draw(calibration, ax, names, view):
+    views = ("xy",) if calibration.dimensions == 2 else ("xy", "xz", "yz")
+    if view not in views:
+        raise InputError(f"view must be {' or '.join(views)} of a network of {calibration.dimensions} dimensions, not {view!r}")
     try:
         import matplotlib.pyplot as pyplot
         from matplotlib.patches import Ellipse
@@ -25,7 +28,11 @@ def draw(calibration, ax, names):
     if len(located):
         centre = located.mean(axis=0)
         size = np.sqrt(((located - centre) ** 2).sum(axis=1).mean())
-        near &= np.hypot(*(np.nan_to_num(transmitters) - centre).T) <= _REACH * size
+        near &= np.linalg.norm(np.nan_to_num(transmitters) - centre, axis=1) <= _REACH * size
+    # Transmitters are near by all coordinates; two of them are drawn.
+    axes = ["xyz".index(letter) for letter in view]
+    receivers, transmitters = receivers[:, axes], transmitters[:, axes]
+    shadows = [each[:, axes][:, :, axes] for each in (calibration.covariance, calibration.transmitter_covariance)]
     outlying = np.argwhere(np.isfinite(calibration.residuals) & ~calibration.inliers)
     lines = [(i, j) for i, j in outlying if near[j] and np.isfinite(receivers[i]).all()]
     for i, j in lines[:_OUTLIERS]:
@@ -33,6 +40,7 @@ def draw(calibration, ax, names):
         ax.plot(*ends.T, color=_PINK, linewidth=1, linestyle=(0, (5, 3)), zorder=1)
     deviation, magnified = _native.calibration_style(calibration.to_json())
     radius = magnified * (calibration.data["ellipse_radius"] or 0.0)
+    shape = "95 % ellipse" if calibration.dimensions == 2 else "shadow of its 95 % ellipsoid"
     times = f", {magnified:g} times as large" if magnified > 1 else ""
 
     def ellipses(points, covariances, colour, shown):
@@ -45,10 +53,10 @@ def draw(calibration, ax, names):
                 face.set_clip_on(True)
 
     seen = np.isfinite(receivers).all(axis=1)
-    ellipses(transmitters, calibration.transmitter_covariance, _ORANGE, near)
-    ellipses(receivers, calibration.covariance, _BLUE, seen)
-    ax.plot(*transmitters[near].T, "o", color=_ORANGE, markersize=4, label=f"transmitter, with 95 % ellipse{times}", zorder=3)
-    ax.plot(*receivers[seen].T, "^", color=_BLUE, markersize=8, label=f"receiver, with 95 % ellipse{times}", zorder=4)
+    ellipses(transmitters, shadows[1], _ORANGE, near)
+    ellipses(receivers, shadows[0], _BLUE, seen)
+    ax.plot(*transmitters[near].T, "o", color=_ORANGE, markersize=4, label=f"transmitter, with {shape}{times}", zorder=3)
+    ax.plot(*receivers[seen].T, "^", color=_BLUE, markersize=8, label=f"receiver, with {shape}{times}", zorder=4)
     held = np.array(calibration.data["anchored"], dtype=bool) & seen
     if held.any():
         label = "receiver held at its known position"
@@ -65,7 +73,7 @@ def draw(calibration, ax, names):
     title = f"{calibration.data['configuration']}, {deviation}"
     ax.set_title(title if calibration.trusted else f"{title}, NOT TO BE TRUSTED")
     ax.set_aspect("equal", adjustable="datalim")
-    ax.set_xlabel("x, m")
-    ax.set_ylabel("y, m")
+    ax.set_xlabel(f"{view[0]}, m")
+    ax.set_ylabel(f"{view[1]}, m")
     ax.legend(fontsize=8)
     return ax

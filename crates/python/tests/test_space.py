@@ -1,0 +1,105 @@
+"""Calibration in the plane and in space."""
+
+import json
+
+import hc
+import numpy as np
+import pytest
+import tdoa
+
+
+def error(found, truth):
+    """Largest distance after the best rotation, reflection and translation."""
+    a, b = found - found.mean(axis=0), truth - truth.mean(axis=0)
+    u, _, v = np.linalg.svd(a.T @ b)
+    return np.linalg.norm(a @ u @ v - b, axis=1).max()
+
+
+def room(**options):
+    return tdoa.simulate(12, 30, dimensions=3, size=(10, 8, 4), noise=0.005, seed=3, **options)
+
+
+@pytest.mark.parametrize("dimensions", ["auto", 3])
+def test_a_room(dimensions, tmp_path):
+    made = room(outliers=0.03)
+    found = tdoa.calibrate(made.pseudoranges, dimensions=dimensions)
+    assert found.dimensions == 3 and found.trusted and found.unique
+    assert found.receivers.shape == (12, 3) and found.transmitters.shape == (30, 3) and found.offsets.shape == (30,)
+    assert found.covariance.shape == (12, 3, 3) and found.transmitter_covariance.shape == (30, 3, 3)
+    assert found.inliers.shape == found.residuals.shape == (12, 30)
+    assert error(found.receivers, made.receivers) < 0.05
+    test = found.dimension_test
+    assert (test is None) if dimensions == 3 else (test["gain"] > test["needed"] > 0)
+    assert all(other.receivers.shape == (12, 3) for other in found.alternatives)
+    # All that shows it.
+    assert found.to_svg().count("class=\"receiver\"") > 24
+    found.save_html(tmp_path / "room.html")
+    assert "r12" in (tmp_path / "room.html").read_text()
+    assert repr(found).startswith("12r/30s") and "<svg" in found._repr_html_()
+    assert tdoa.Calibration.from_json(found.to_json()) == found
+    for axes in ("xy", "xz", "yz"):
+        ax = pytest.importorskip("matplotlib.pyplot").subplots()[1]
+        found.plot(ax, view=axes)
+        assert (ax.get_xlabel(), ax.get_ylabel()) == (f"{axes[0]}, m", f"{axes[1]}, m")
+    with pytest.raises(hc.InputError, match="view must be xy or xz or yz"):
+        found.plot(view="zz")
+
+
+def test_planar_networks_stay_planar():
+    made = tdoa.simulate(8, 14, noise=0.01, seed=6)
+    flat = tdoa.calibrate(made.pseudoranges, dimensions=2)
+    auto = tdoa.calibrate(made.pseudoranges)
+    assert auto.dimensions == flat.dimensions == 2 and flat.dimension_test is None
+    test = auto.dimension_test
+    assert test["gain"] < test["needed"] and list(test) == ["gain", "needed"]
+    data = json.loads(auto.to_json())
+    assert data.pop("dimension_test") == test and data == json.loads(flat.to_json())
+    with pytest.raises(hc.InputError, match="view must be xy of"):
+        flat.plot(view="xz")
+
+
+def test_anchors_in_space():
+    made = room()
+    anchors = np.full((12, 3), np.nan)
+    anchors[[0, 3, 5, 8]] = made.receivers[[0, 3, 5, 8]]
+    found = tdoa.calibrate(made.pseudoranges, anchors=anchors)
+    assert found.dimensions == 3 and found.dimension_test is None and found.trusted
+    assert found.data["anchored"] == [k in (0, 3, 5, 8) for k in range(12)]
+    assert np.linalg.norm(found.receivers - made.receivers, axis=1).max() < 0.05
+    by_name = {f"r{k + 1}": made.receivers[k] for k in (0, 3, 5, 8)}
+    assert tdoa.calibrate(made.pseudoranges, anchors=by_name, dimensions=3) == found
+    # A height that is not known, beside those that are; and measured positions.
+    by_name["r10"] = made.receivers[9, :2]
+    mixed = tdoa.calibrate(made.pseudoranges, anchors=by_name, anchor_sigma={"r4": 0.02})
+    assert mixed.dimensions == 3 and mixed.data["anchored"] == [k in (0, 5, 8) for k in range(12)]
+    assert np.linalg.norm(mixed.receivers - made.receivers, axis=1).max() < 0.05
+
+
+def test_anchors_of_one_height_mean_the_plane():
+    made = tdoa.simulate(8, 14, noise=0.01, seed=6)
+    anchors = np.full((8, 2), np.nan)
+    anchors[[0, 2, 5]] = made.receivers[[0, 2, 5]]
+    flat = tdoa.calibrate(made.pseudoranges, anchors=anchors)
+    assert flat.dimensions == 2 and flat.dimension_test is None
+    heights = np.column_stack([anchors, np.where(np.isnan(anchors[:, 0]), np.nan, 0.0)])
+    assert tdoa.calibrate(made.pseudoranges, anchors=heights) == flat
+    # One height for all is left out; so are small differences, where the plane is asked for.
+    assert tdoa.calibrate(made.pseudoranges, anchors=heights + [0, 0, 1.5]) == flat
+    heights[2, 2] = 0.1
+    assert tdoa.calibrate(made.pseudoranges, anchors=heights, dimensions=2) == flat
+    # Nothing is known: the measurements decide.
+    assert tdoa.calibrate(made.pseudoranges, anchors=np.full((8, 3), np.nan)).dimension_test is not None
+
+
+def test_the_program_finds_the_same(run_json, tmp_path):
+    made = room()
+    path = tmp_path / "room.csv"
+    path.write_text("\n".join(",".join(map(repr, row)) for row in made.pseudoranges.tolist()) + "\n")
+    expected = run_json("tdoa", "calibrate", path)
+    assert json.loads(tdoa.calibrate(made.pseudoranges).to_json()) == expected and expected["dimensions"] == 3
+
+
+def test_json_of_other_dimensions_is_refused():
+    text = tdoa.calibrate(tdoa.simulate(8, 10, noise=0.01, seed=1).pseudoranges, dimensions=2).to_json()
+    with pytest.raises(hc.InputError, match="its dimensions are 4, not 2 or 3"):
+        tdoa.Calibration.from_json(text.replace('"dimensions": 2', '"dimensions": 4'))
