@@ -19,6 +19,9 @@ pub fn heading<const D: usize>(calibration: &Calibration<D>, time: Option<Durati
         counted(measured, "measurement"),
         deviation(calibration),
     );
+    if let Some(choice) = choice(calibration) {
+        text += &format!("{choice}\n");
+    }
     if let Some(extent) = calibration.extent() {
         text += &format!("size: {} across (receivers)\n", length(extent));
     }
@@ -95,6 +98,22 @@ pub fn deviation<const D: usize>(calibration: &Calibration<D>) -> String {
         (false, _) if sigma == 1.0 => "each with its own standard deviation (given)".to_string(),
         (false, _) => format!("standard deviations {} times those of each (given)", number(sigma, 3)),
     }
+}
+
+/// Whether the network is in space, and what the measurements said of it where they chose; `None` for one
+/// in the plane of which nothing was asked.
+pub(crate) fn choice<const D: usize>(calibration: &Calibration<D>) -> Option<String> {
+    let place = if D == 2 { "in the plane" } else { "in space" };
+    let Some(test) = calibration.dimension_test else { return (D > 2).then(|| place.to_string()) };
+    Some(match (test.gain, test.needed) {
+        (Some(gain), Some(needed)) => format!(
+            "{place}: heights make the measurements more likely by {} (natural logarithm), chance by up to {}",
+            number(gain, 3),
+            number(needed, 3)
+        ),
+        (Some(_), None) => format!("{place}: too few measurements are left over in space to tell heights from chance"),
+        (None, _) => format!("{place}: too few measurements to look for heights"),
+    })
 }
 
 /// How many starts agree.
@@ -176,6 +195,7 @@ mod tests {
         let found = calibrate(&simulation.pseudoranges, &CalibrateOptions::default()).unwrap();
         assert_eq!(doubt_of_units(&found), None);
         let text = summary(&found);
+        assert!(!text.contains("in the plane") && !text.contains("in space"), "{text}");
         assert!(text.contains("size: ") && text.contains("unique: no other places"), "{text}");
     }
 

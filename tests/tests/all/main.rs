@@ -33,3 +33,4 @@ mod tdoa_real;
 mod tdoa_report;
 mod tdoa_simulate;
 mod tdoa_solve;
+mod tdoa_space;
