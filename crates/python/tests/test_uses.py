@@ -183,7 +183,7 @@ def test_summaries_are_those_of_the_program(programs, tmp_path):
         command = [programs["tdoa"], "calibrate", path]
         printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
         shown = repr(tdoa.calibrate(table)).splitlines()
-        assert shown[0].startswith("8r/12s: 96 measurements") and shown[1].startswith("size: ")
+        assert shown[0].startswith("8r/12s: 96 measurements") and shown[1].startswith("in the plane: ") and shown[2].startswith("size: ")
         assert all(line in printed for line in shown if "starts agree" not in line)
         assert any("if the measurements are times" in line for line in shown) == (k == 1)
     assert "if the measurements are times" not in repr(tdoa.calibrate(made.pseudoranges / 343, speed=343))
