@@ -22,8 +22,8 @@ use thiserror::Error;
 const QUANTILE: f64 = 1.0 - 1e-4;
 
 /// Heights enter distances by their squares, and the search takes the best of many networks: gains of
-/// planar networks have about twice the mean that as many unknowns of a linear model would give
-/// (measured; results/space.md has the false alarms).
+/// planar networks have about twice the mean that as many unknowns of a linear model would give (measured
+/// on 20 to 30 planar networks of six kinds; `choice` of the example `space` of the experiments counts).
 const BENT: f64 = 2.0;
 
 /// A network in space takes the place of a planar one that fits only if it gains so many times what is
