@@ -24,6 +24,21 @@ pub fn run(name: &str, arguments: &[&str]) -> Output {
     Command::new(program(name)).args(arguments).output().expect("the program starts")
 }
 
+/// A recording that `tdoa simulate` makes with these options, in a new directory, and the file of its
+/// measurements.
+///
+/// # Panics
+/// If the program refuses.
+pub fn simulated(options: &str) -> (tempfile::TempDir, PathBuf) {
+    let directory = tempfile::tempdir().expect("directory");
+    let mut arguments = vec!["simulate", "--output", directory.path().to_str().expect("UTF-8 path")];
+    arguments.extend(options.split_whitespace());
+    let output = run("tdoa", &arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let file = directory.path().join("pseudoranges.csv");
+    (directory, file)
+}
+
 /// Runs a program of the workspace to its end, with this text as its standard input.
 ///
 /// # Panics

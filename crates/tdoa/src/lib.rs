@@ -69,7 +69,6 @@ pub mod node_table;
 mod observations;
 #[cfg(feature = "pictures")]
 pub mod picture;
-
 mod points;
 pub mod pseudoranges;
 pub mod quantity;

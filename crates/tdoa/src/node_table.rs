@@ -6,6 +6,7 @@ use crate::calibrate::Calibration;
 /// receivers first, in metres, empty where nothing could be determined. In space it has `z`, `std_z`,
 /// `cov_xz` and `cov_yz` too. [`crate::read::read_nodes`] reads its receivers back.
 pub fn node_table<const D: usize>(calibration: &Calibration<D>) -> String {
+    const { assert!(D == 2 || D == 3, "a network is in the plane or in space") }
     let mut table = Table(csv::Writer::from_writer(Vec::new()));
     let axes = &["x", "y", "z"][..D];
     let pairs = || (0..D).flat_map(|a| (a + 1..D).map(move |b| (a, b)));

@@ -4,6 +4,7 @@ use hc::poly::{counted, one_or};
 use std::time::Duration;
 
 use crate::calibrate::{Calibration, SpeedEstimate};
+use crate::degeneracy::space;
 use crate::minimal::MinimalSolution;
 use crate::quantity::{length, number};
 
@@ -103,7 +104,7 @@ pub fn deviation<const D: usize>(calibration: &Calibration<D>) -> String {
 /// Whether the network is in space, and what the measurements said of it where they chose; `None` for one
 /// in the plane of which nothing was asked.
 pub(crate) fn choice<const D: usize>(calibration: &Calibration<D>) -> Option<String> {
-    let place = if D == 2 { "in the plane" } else { "in space" };
+    let place = space(D);
     let Some(test) = calibration.dimension_test else { return (D > 2).then(|| place.to_string()) };
     Some(match (test.gain, test.needed) {
         (Some(gain), Some(needed)) => format!(

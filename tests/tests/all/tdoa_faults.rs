@@ -1,23 +1,13 @@
 //! `tdoa calibrate` of networks as deployments bring them: receivers with errors of their own, and
 //! networks that nobody hears whole.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use end_to_end::run;
+use end_to_end::{run, simulated};
 use serde_json::Value;
 
 fn text(path: &Path) -> &str {
     path.to_str().expect("UTF-8 path")
-}
-
-/// A simulated recording in a new directory.
-fn recording(words: &str) -> (tempfile::TempDir, PathBuf) {
-    let directory = tempfile::tempdir().expect("directory");
-    let words: Vec<&str> = words.split(' ').collect();
-    let output = run("tdoa", &[&["simulate"], &words[..], &["--output", text(directory.path())]].concat());
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let file = directory.path().join("pseudoranges.csv");
-    (directory, file)
 }
 
 fn calibrate(folder: &Path, file: &Path, words: &[&str]) -> Value {
@@ -35,7 +25,7 @@ fn warned(found: &Value, part: &str) -> bool {
 
 #[test]
 fn a_delayed_receiver_is_named_and_mended() {
-    let (directory, file) = recording("--receivers 10 --transmitters 20 --noise 0.01 --fault delay=0.3 --seed 5");
+    let (directory, file) = simulated("--receivers 10 --transmitters 20 --noise 0.01 --fault delay=0.3 --seed 5");
     let told = calibrate(directory.path(), &file, &[]);
     assert!(warned(&told, "receiver r1 seems to have a delay of 0.3"), "{}", told["warnings"]);
     assert_eq!((&told["unique"], &told["receiver_errors"][0]["receiver"]), (&Value::Bool(false), &"r1".into()));
@@ -47,7 +37,7 @@ fn a_delayed_receiver_is_named_and_mended() {
 
 #[test]
 fn clean_networks_are_called_unique_without_a_word() {
-    let (directory, file) = recording("--receivers 10 --transmitters 20 --noise 0.01 --seed 6");
+    let (directory, file) = simulated("--receivers 10 --transmitters 20 --noise 0.01 --seed 6");
     let found = calibrate(directory.path(), &file, &["--sigma", "0.01"]);
     for name in ["unique", "unique_receivers", "unique_transmitters"] {
         assert_eq!(found[name], Value::Bool(true), "{name}: {}", found["warnings"]);
@@ -61,7 +51,7 @@ fn clean_networks_are_called_unique_without_a_word() {
 #[test]
 fn a_road_that_nobody_hears_whole_is_found() {
     let words = "--receivers 16 --transmitters 90 --layout 320x50 --shape chain --hearing 8 --noise 0.1 --seed 3";
-    let (directory, file) = recording(words);
+    let (directory, file) = simulated(words);
     let found = calibrate(directory.path(), &file, &[]);
     assert_eq!(found["unique"], Value::Bool(true), "{}", found["warnings"]);
     assert!(found["truth"]["receiver_rms"].as_f64().expect("number") < 3.0, "{}", found["truth"]);

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use end_to_end::run;
+use end_to_end::{run, simulated};
 use serde_json::Value;
 
 fn text(path: &Path) -> &str {
@@ -11,12 +11,8 @@ fn text(path: &Path) -> &str {
 
 /// A simulated recording in a new directory, and the true positions of its receivers.
 fn recording() -> (tempfile::TempDir, PathBuf, Vec<[f64; 2]>) {
-    let directory = tempfile::tempdir().expect("directory");
-    let size = ["--receivers", "9", "--transmitters", "14", "--noise", "0.01", "--seed", "2"];
-    let output = run("tdoa", &[&["simulate"], &size[..], &["--output", text(directory.path())]].concat());
-    assert!(output.status.success());
+    let (directory, file) = simulated("--receivers 9 --transmitters 14 --noise 0.01 --seed 2");
     let nodes = tdoa::read::read_nodes(&directory.path().join("receivers.csv")).expect("positions");
-    let file = directory.path().join("pseudoranges.csv");
     (directory, file, nodes.positions().into_iter().flatten().collect())
 }
 

@@ -1,22 +1,12 @@
 //! `tdoa calibrate` in space.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use end_to_end::{recording, run};
+use end_to_end::{recording, run, simulated};
 use serde_json::Value;
 
 fn text(path: &Path) -> &str {
     path.to_str().expect("UTF-8 path")
-}
-
-/// A simulated recording in a new directory.
-fn made(words: &str) -> (tempfile::TempDir, PathBuf) {
-    let directory = tempfile::tempdir().expect("directory");
-    let words: Vec<&str> = words.split(' ').collect();
-    let output = run("tdoa", &[&["simulate"], &words[..], &["--output", text(directory.path())]].concat());
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let file = directory.path().join("pseudoranges.csv");
-    (directory, file)
 }
 
 fn calibrate(file: &Path, words: &[&str]) -> Value {
@@ -35,7 +25,7 @@ const ROOM: &str = "--receivers 10 --transmitters 20 --layout 10x8x3 --noise 0.0
 
 #[test]
 fn a_room_is_found_and_drawn() {
-    let (directory, file) = made(ROOM);
+    let (directory, file) = simulated(ROOM);
     let truth = directory.path().join("receivers.csv");
     let [svg, html, nodes] = ["n.svg", "n.html", "n.csv"].map(|name| directory.path().join(name));
     let words = ["--truth", text(&truth), "--svg", text(&svg), "--html", text(&html), "--nodes", text(&nodes)];
@@ -63,7 +53,7 @@ fn a_room_is_found_and_drawn() {
 
 #[test]
 fn anchors_at_different_heights_hold_a_network_in_space() {
-    let (directory, file) = made(ROOM);
+    let (directory, file) = simulated(ROOM);
     let known = std::fs::read_to_string(directory.path().join("receivers.csv")).expect("receivers");
     let rows: Vec<&str> = known.lines().collect();
     let anchors = directory.path().join("anchors.csv");
@@ -84,7 +74,7 @@ fn anchors_at_different_heights_hold_a_network_in_space() {
 
 #[test]
 fn what_cannot_be_in_space_says_why() {
-    let (directory, file) = made("--receivers 9 --transmitters 14 --noise 0.01 --seed 2");
+    let (directory, file) = simulated("--receivers 9 --transmitters 14 --noise 0.01 --seed 2");
     let planar = directory.path().join("receivers.csv");
     let file = text(&file);
     refused(&["calibrate", file, "--dimensions", "3", "--truth", text(&planar)], 2, "has no z");
@@ -94,7 +84,7 @@ fn what_cannot_be_in_space_says_why() {
     // Flat as it is, it stays in the plane.
     let found = calibrate(Path::new(file), &["--truth", text(&planar)]);
     assert_eq!((&found["dimensions"], &found["planar"]), (&2.into(), &true.into()));
-    let (_directory, few) = made("--receivers 6 --transmitters 5");
+    let (_directory, few) = simulated("--receivers 6 --transmitters 5");
     refused(
         &["calibrate", text(&few), "--dimensions", "3"],
         1,

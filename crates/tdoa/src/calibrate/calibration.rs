@@ -6,7 +6,7 @@ use super::known::{Anchors, SpeedEstimate};
 use super::receiver_errors::ReceiverError;
 use super::residuals::{Residual, Residuals};
 use super::truth::Truth;
-use crate::align::{Transform, align, spanned};
+use crate::align::{Alignment, Transform, align, spanned};
 use crate::points::{distance, minus};
 use serde::{Deserialize, Serialize};
 use std::array::from_fn;
@@ -260,14 +260,17 @@ impl<const D: usize> Calibration<D> {
     pub(super) fn put_on(&mut self, anchors: &Anchors<D>, rows: &[usize], held: bool) {
         let known = anchors.positions.iter().enumerate().filter_map(|(a, p)| Some((self.receivers[rows[a]]?, (*p)?)));
         let (found, known): (Vec<_>, Vec<_>) = known.unzip();
-        match align(&found, &known, false) {
-            Some(alignment) if !held && spanned(&known) > 0 => self.transform(&alignment.transform),
-            _ => {
-                let from = if held { [0.0; D] } else { found.first().copied().unwrap_or([0.0; D]) };
-                self.transform(&Transform { translation: minus(anchors.centre, from), ..Transform::IDENTITY });
-                return;
+        let aligned = align(&found, &known, false).filter(|_| !held && spanned(&known) > 0);
+        let map = match aligned {
+            Some(Alignment { transform, .. }) => {
+                let translation = from_fn(|k| transform.translation[k] + anchors.centre[k]);
+                Transform { translation, ..transform }
             }
-        }
-        self.transform(&Transform { translation: anchors.centre, ..Transform::IDENTITY });
+            None => {
+                let from = if held { [0.0; D] } else { found.first().copied().unwrap_or([0.0; D]) };
+                Transform { translation: minus(anchors.centre, from), ..Transform::IDENTITY }
+            }
+        };
+        self.transform(&map);
     }
 }

@@ -92,7 +92,7 @@ pub fn calibrate_either(
     if has_heights(options) {
         return Ok(Calibrated::Space(calibrate_with(measured, options, &[], monitor)?));
     }
-    if !options.anchors.is_empty() || !options.positions.is_empty() {
+    if options.anchors.iter().any(Option::is_some) || !options.positions.is_empty() {
         return Ok(Calibrated::Plane(calibrate_with(measured, &plane, &[], monitor)?));
     }
     let first =
@@ -106,16 +106,13 @@ pub fn calibrate_either(
             return Ok(Calibrated::Plane(flat));
         }
     }
-    let whole = match calibrate_with(measured, options, &[], monitor) {
-        Ok(found) => Some(found),
-        Err(error @ CalibrateError::Cancelled(_)) => return Err(error.into()),
-        Err(_) => None,
-    };
+    let whole = unless_stopped(calibrate_with(measured, options, &[], monitor))?;
     let mut test = DimensionTest::UNTRIED;
     if let Some(mut whole) = whole {
         let cleared = cleared(measured, &first, &flat, monitor)?;
-        test = compare(measured, cleared.as_ref().unwrap_or(&flat), &whole, options);
-        if whole.fits && (test.supports(OVERWHELMING) || !flat.fits) {
+        let judged = cleared.as_ref().unwrap_or(&flat);
+        test = compare(measured, judged, &whole, options);
+        if whole.fits && (test.supports(OVERWHELMING) || !judged.fits) {
             whole.dimension_test = Some(test);
             return Ok(Calibrated::Space(whole));
         }
@@ -146,7 +143,14 @@ fn cleared(
         return Ok(None);
     }
     let options = CalibrateOptions { receiver_delays: ReceiverDelays::Auto, ..options.clone() };
-    match calibrate_with(measured, &options, &[], monitor) {
+    unless_stopped(calibrate_with(measured, &options, &[], monitor))
+}
+
+/// A calibration if there is one; stopping is an error, failing is none.
+fn unless_stopped<const D: usize>(
+    ended: Result<Calibration<D>, CalibrateError<D>>,
+) -> Result<Option<Calibration<D>>, CalibrateError<D>> {
+    match ended {
         Ok(found) => Ok(Some(found)),
         Err(error @ CalibrateError::Cancelled(_)) => Err(error),
         Err(_) => Ok(None),
@@ -162,51 +166,31 @@ fn has_heights(options: &CalibrateOptions<3>) -> bool {
     all.any(|z| Some(z) != first)
 }
 
-/// The same options in the plane.
+/// The same options in the plane. All fields are named, so that none is forgotten.
 fn in_plane(options: &CalibrateOptions<3>) -> CalibrateOptions {
-    let CalibrateOptions {
-        sigma,
-        seed,
-        min_starts,
-        max_starts,
-        agreeing,
-        restarts,
-        minimal_subsets,
-        search_transmitters,
-        search_receivers,
-        inlier_threshold,
-        alternative_margin,
-        planar_limit,
-        ref anchors,
-        ref positions,
-        receiver_delays,
-        errors,
-        ref distances,
-        estimate_speed,
-    } = *options;
     let position = |known: &MeasuredPosition<3>| {
         let ([x, y, _], [of_x, of_y, _]) = (known.position, known.sigma);
         MeasuredPosition { receiver: known.receiver, position: [x, y], sigma: [of_x, of_y] }
     };
     CalibrateOptions {
-        sigma,
-        seed,
-        min_starts,
-        max_starts,
-        agreeing,
-        restarts,
-        minimal_subsets,
-        search_transmitters,
-        search_receivers,
-        inlier_threshold,
-        alternative_margin,
-        planar_limit,
-        anchors: anchors.iter().map(|p| p.map(|[x, y, _]| [x, y])).collect(),
-        positions: positions.iter().map(position).collect(),
-        receiver_delays,
-        errors,
-        distances: distances.clone(),
-        estimate_speed,
+        sigma: options.sigma,
+        seed: options.seed,
+        min_starts: options.min_starts,
+        max_starts: options.max_starts,
+        agreeing: options.agreeing,
+        restarts: options.restarts,
+        minimal_subsets: options.minimal_subsets,
+        search_transmitters: options.search_transmitters,
+        search_receivers: options.search_receivers,
+        inlier_threshold: options.inlier_threshold,
+        alternative_margin: options.alternative_margin,
+        planar_limit: options.planar_limit,
+        anchors: options.anchors.iter().map(|p| p.map(|[x, y, _]| [x, y])).collect(),
+        positions: options.positions.iter().map(position).collect(),
+        receiver_delays: options.receiver_delays,
+        errors: options.errors,
+        distances: options.distances.clone(),
+        estimate_speed: options.estimate_speed,
     }
 }
 
@@ -247,11 +231,7 @@ fn lifted(
         ..options.clone()
     };
     let source = Lifted { flat, size: spread(flat.receivers.iter().flatten()) };
-    match calibrate_with(measured, &options, &[&source], monitor) {
-        Ok(found) => Ok(Some(found)),
-        Err(error @ CalibrateError::Cancelled(_)) => Err(error),
-        Err(_) => Ok(None),
-    }
+    unless_stopped(calibrate_with(measured, &options, &[&source], monitor))
 }
 
 /// The likelihood ratio of space and plane, over the measurements that both have, with the deviation that

@@ -83,9 +83,11 @@ impl<const D: usize> Free<'_, D> {
         let mut contradiction = None;
         if let Some(expected) = expected.filter(|expected| misfit.iter().all(|misfit| *misfit > 4.0 * expected)) {
             let count = places.count();
-            let few = match count {
-                ..3 => "",
-                3 => " (one of the three may be wrong; which one can be told with a fourth)",
+            // As many as fix a frame and its side can contradict, one more can tell.
+            let few = match (count, D) {
+                (3, 2) => " (one of the three may be wrong; which one can be told with a fourth)",
+                (4, 3) => " (one of the four may be wrong; which one can be told with a fifth)",
+                _ if count <= D => "",
                 _ => " (more than one, or names exchanged)",
             };
             warnings.push(format!(
@@ -230,6 +232,24 @@ mod tests {
         assert!(!one.anchored.contains(&true));
         let two = calibrate(&simulation.pseudoranges, &options(&simulation, &[4, 5])).unwrap();
         assert!(two.warnings.iter().any(|warning| warning.contains("mirror image")), "{:?}", two.warnings);
+    }
+
+    #[test]
+    fn two_anchors_in_space_are_met_and_hold_nothing() {
+        let mut made = SimulateOptions::<3>::new();
+        (made.receivers, made.transmitters, made.noise, made.seed) = (10, 20, SIGMA, 3);
+        let made = simulate(&made).unwrap();
+        let truth = &made.network.receivers;
+        let mut options = CalibrateOptions::<3>::new();
+        options.sigma = Some(SIGMA);
+        options.anchors = (0..10).map(|i| (i == 2 || i == 6).then_some(truth[i])).collect();
+        let found = calibrate(&made.pseudoranges, &options).unwrap();
+        // The network still turns about the line through both.
+        assert!(!found.anchored.contains(&true));
+        for i in [2, 6] {
+            let off = crate::points::distance(found.receivers[i].unwrap(), truth[i]);
+            assert!(off < 0.1, "{off}");
+        }
     }
 
     #[test]

@@ -22,18 +22,15 @@ use crate::refine::PartialNetwork;
 const DRAWS: usize = 12;
 
 /// Sizes of the subsets, receivers and transmitters, which take turns as far as the measurements
-/// have them; in space where offsets are linear.
-const fn shapes<const D: usize>() -> &'static [(usize, usize)] {
+/// have them, and how many subsets are solved for one call. In space offsets are linear: a subset takes
+/// a hundredth of a millisecond to a tenth, and few are right.
+const fn shapes<const D: usize>() -> (&'static [(usize, usize)], usize) {
     match D {
-        2 => &[(6, 3), (5, 4), (4, 5)],
-        3 => &[(9, 5), (10, 5)],
-        _ => &[],
+        2 => (&[(6, 3), (5, 4), (4, 5)], 1),
+        3 => (&[(9, 5), (10, 5)], 32),
+        _ => (&[], 0),
     }
 }
-
-/// Subsets that are solved for one call in space, where one takes a hundredth of a millisecond to a
-/// tenth and few are right.
-const SAMPLES: usize = 32;
 
 /// Networks of which more than one in so many distances is negative by more than the tolerance are
 /// left out.
@@ -84,7 +81,7 @@ impl MinimalHypotheses {
 
     /// Whether the subsets of some solver fit into a matrix of this size.
     pub fn fit<const D: usize>(receivers: usize, transmitters: usize) -> bool {
-        shapes::<D>().iter().any(|&(m, n)| receivers >= m && transmitters >= n)
+        shapes::<D>().0.iter().any(|&(m, n)| receivers >= m && transmitters >= n)
     }
 
     /// Networks that explain a small matrix and have hardly a negative distance.
@@ -179,8 +176,9 @@ fn dithered(measured: &Pseudoranges, part: Pseudoranges, rng: &mut Pcg64Mcg) -> 
 impl<const D: usize> Hypotheses<D> for MinimalHypotheses {
     fn propose(&self, measured: &Pseudoranges, index: usize, seed: u64) -> Vec<PartialNetwork<D>> {
         let (receivers, transmitters) = (measured.receivers(), measured.transmitters());
+        let (shapes, most) = shapes::<D>();
         let shapes: Vec<(usize, usize)> =
-            shapes::<D>().iter().copied().filter(|&(m, n)| receivers >= m && transmitters >= n).collect();
+            shapes.iter().copied().filter(|&(m, n)| receivers >= m && transmitters >= n).collect();
         // A matrix of a solver's own size has but one subset.
         let only = shapes.contains(&(receivers, transmitters));
         if shapes.is_empty() || index >= if only { 1.min(self.most) } else { self.most } {
@@ -189,7 +187,7 @@ impl<const D: usize> Hypotheses<D> for MinimalHypotheses {
         let mut rng = generator(seed ^ 0x6c62_272e_07bb_0142, index);
         let shape = shapes[index % shapes.len()];
         let mut proposals = Vec::new();
-        for _ in 0..if D == 2 || only { 1 } else { SAMPLES } {
+        for _ in 0..if only { 1 } else { most } {
             if self.monitor.is_cancelled() {
                 break;
             }

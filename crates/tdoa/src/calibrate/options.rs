@@ -73,7 +73,7 @@ pub struct CalibrateOptions<const D: usize = 2> {
     /// Another network is an alternative if the data are less likely under it by at most this much
     /// (natural logarithm). Default 8.
     pub alternative_margin: f64,
-    /// The data are called not planar above this ratio of the residuals' deviation to the network's
+    /// The data are said not to fit a network in the plane, or in space, above this ratio of the residuals' deviation to the network's
     /// size (root mean square distance of the receivers from their centroid). Default 0.04.
     pub planar_limit: f64,
     /// Known positions of receivers in metres, in the order of the receivers, `None` if unknown.

@@ -12,7 +12,7 @@ use super::orientation::looks_transposed;
 use super::receiver_errors::Fault;
 use super::residuals::{Residual, Residuals};
 use super::same::{same_receivers, same_transmitters};
-use super::submaps::OVERLAP;
+use super::submaps::overlap;
 use super::warnings::{doubtful_receivers, warn_of_nodes};
 use crate::align::{Transform, align, first_axes, frame};
 use crate::cells::Cells;
@@ -201,10 +201,11 @@ impl<const D: usize> Solved<'_, D> {
             let names: Vec<String> = weak.iter().map(|&i| self.centred.receiver_names()[i].clone()).collect();
             warnings.push(format!(
                 "{agreeing} of {} of neighbours {} the whole, but none that overlaps with others places {}; measure \
-                 transmitters that these receivers and at least {OVERLAP} of their neighbours hear",
+                 transmitters that these receivers and at least {} of their neighbours hear",
                 counted(self.starts, "small network"),
                 one_or(agreeing, "fits", "fit"),
-                list(&names)
+                list(&names),
+                overlap::<D>()
             ));
         } else if !settled {
             warnings.push(format!(

@@ -10,7 +10,7 @@ use super::known;
 use super::late::Symmetric;
 use super::options::{CalibrateError, CalibrateOptions, Errors, ReceiverDelays, check};
 use super::report::Solved;
-use super::submaps::{OVERLAP, ReceiverLayout, hearing_is_local, lay_out};
+use super::submaps::{ReceiverLayout, hearing_is_local, lay_out, overlap};
 use super::unfinished::Unfinished;
 use super::whole::{Sought, search_whole};
 use crate::degeneracy::{Usable, least_per_transmitter, list, usable};
@@ -18,7 +18,7 @@ use crate::median::median;
 use crate::pseudoranges::Pseudoranges;
 use hc::Monitor;
 
-/// Calibrates a network from its pseudoranges, by restarts of the robust refinement and from the
+/// Calibrates a network in the plane or in space (`CalibrateOptions::<3>::new()`) from its pseudoranges, by restarts of the robust refinement and from the
 /// networks that the minimal solvers find for subsets.
 ///
 /// ```
@@ -52,6 +52,7 @@ pub fn calibrate_with<const D: usize>(
     sources: &[&dyn Hypotheses<D>],
     monitor: &Monitor,
 ) -> Result<Calibration<D>, CalibrateError<D>> {
+    const { assert!(D == 2 || D == 3, "a network is in the plane or in space") }
     options.validate()?;
     known::validate(measured, options)?;
     let (measured, impossible) = without_impossible(measured);
@@ -165,8 +166,9 @@ fn local_layout<const D: usize>(
     if !gone.is_empty() {
         usable.warnings.push(format!(
             "the measurements tie the receivers together in parts only; the largest part is calibrated, without {}; measure transmitters \
-             between the parts that at least {OVERLAP} receivers of each hear",
-            list(&gone)
+             between the parts that at least {} receivers of each hear",
+            list(&gone),
+            overlap::<D>()
         ));
     }
     usable.receivers = places.iter().map(|&i| usable.receivers[i]).collect();

@@ -29,16 +29,20 @@ const STARTS: usize = 16;
 const MOST_STARTS: usize = 128;
 const AGREEING: usize = 5;
 
-/// Receivers that must hear a transmitter of a submap.
-const HEARD: usize = 5;
+/// Receivers that must hear a transmitter of a submap: two more than locate it, or nearly so.
+const fn heard_by<const D: usize>() -> usize {
+    D + 3
+}
 
 /// Pairs of receivers with fewer common transmitters say nothing of their distance; where they are
 /// more than this share of all, hearing is local.
 const COMMON: usize = 3;
 const LOCAL: f64 = 0.2;
 
-/// Receivers that two networks must share to be laid together.
-pub(super) const OVERLAP: usize = 4;
+/// Receivers that two networks must share to be laid together: one more than fix a frame.
+pub(super) const fn overlap<const D: usize>() -> usize {
+    D + 2
+}
 
 /// Submaps fit where common receivers lie within this share of the submap's size (root mean
 /// square).
@@ -152,7 +156,7 @@ fn solve<const D: usize>(
     monitor: &Monitor,
 ) -> Result<Option<Submap<D>>, CalibrateError<D>> {
     let heard = |j: usize| receivers.iter().filter(|&&i| measured.get(i, j).is_some()).count();
-    let mut transmitters: Vec<usize> = (0..measured.transmitters()).filter(|&j| heard(j) >= HEARD).collect();
+    let mut transmitters: Vec<usize> = (0..measured.transmitters()).filter(|&j| heard(j) >= heard_by::<D>()).collect();
     transmitters.sort_by_key(|&j| std::cmp::Reverse(heard(j)));
     transmitters.truncate(TRANSMITTERS);
     transmitters.sort_unstable();
@@ -230,12 +234,12 @@ fn grow<const D: usize>(
 }
 
 /// The map that lays a submap on placed receivers, with how many of the common ones it fits: at
-/// least four that are not in one line, and more than half of those in common.
+/// least [`overlap`] that are not in one line, in space not in one plane, and more than half of those in common.
 fn fit<const D: usize>(submap: &Submap<D>, placed: &[Option<[f64; D]>]) -> Option<(usize, Transform<D>)> {
     let pairs = submap.receivers.iter().zip(&submap.positions).filter_map(|(&i, &p)| Some((p, placed[i]?)));
     let (mut from, mut to): (Vec<_>, Vec<_>) = pairs.unzip();
     let common = from.len();
-    while from.len() >= OVERLAP && 2 * from.len() > common {
+    while from.len() >= overlap::<D>() && 2 * from.len() > common {
         let alignment = align(&from, &to, false)?;
         if alignment.rms <= FIT * submap.size {
             // Receivers in one line leave open on which side of it the others lie.
@@ -269,7 +273,7 @@ impl<const D: usize> ReceiverLayout<D> {
     }
 
     /// How many submaps fit a network of these receivers, and the places of receivers among them that
-    /// are in none of these, or only in such as share fewer than four receivers with others.
+    /// are in none of these, or only in such as share too few receivers with others.
     fn support(&self, network: &Network<D>, receivers: &[usize]) -> (usize, Vec<usize>) {
         let mut placed = vec![None; self.positions.len()];
         for (&i, &p) in receivers.iter().zip(&network.receivers) {
@@ -286,7 +290,7 @@ impl<const D: usize> ReceiverLayout<D> {
         }
         let mut counts = vec![0; self.positions.len()];
         fitting.iter().flatten().for_each(|&i| counts[i] += 1);
-        let overlaps = |submap: &&Vec<usize>| submap.iter().filter(|&&i| counts[i] > 1).count() >= OVERLAP;
+        let overlaps = |submap: &&Vec<usize>| submap.iter().filter(|&&i| counts[i] > 1).count() >= overlap::<D>();
         let sure: Vec<&Vec<usize>> = fitting.iter().filter(overlaps).collect();
         let weak = (0..receivers.len()).filter(|&k| !sure.iter().any(|submap| submap.contains(&receivers[k])));
         (fitting.len(), weak.collect())
@@ -354,7 +358,7 @@ impl<const D: usize> ReceiverLayout<D> {
                     })
                 };
                 let sights: Vec<Sight<D>> = (0..measured.receivers()).filter_map(sight).collect();
-                Ok((sights.len() >= HEARD).then(|| multilateration::transmitter(&sights, &loss)).flatten())
+                Ok((sights.len() >= heard_by::<D>()).then(|| multilateration::transmitter(&sights, &loss)).flatten())
             })
             .collect::<Result<_, CalibrateError<D>>>()?;
         for i in 0..measured.receivers() {
@@ -368,7 +372,7 @@ impl<const D: usize> ReceiverLayout<D> {
             };
             let sights: Vec<Sight<D>> = located.iter().enumerate().filter_map(sight).collect();
             let around: Vec<[f64; D]> = sights.iter().map(|s| s.position).collect();
-            if sights.len() >= 2 * OVERLAP && flatness(&around) > 0.05 {
+            if sights.len() >= 2 * overlap::<D>() && flatness(&around) > 0.05 {
                 self.positions[i] = multilateration::receiver(&sights, &loss).map(|found| found.position);
             }
         }
@@ -379,7 +383,7 @@ impl<const D: usize> ReceiverLayout<D> {
 #[cfg(test)]
 mod tests {
     use crate::align::align;
-    use crate::{CalibrateOptions, Layout, Pseudoranges, SimulateOptions, Simulation, calibrate, simulate};
+    use crate::{CalibrateOptions, Layout, Pseudoranges, SimulateOptions, Simulation, calibrate, points, simulate};
 
     fn chain(seed: u64) -> Simulation {
         let layout = Layout::Chain { extent: [400.0, 50.0] };
@@ -408,6 +412,23 @@ mod tests {
         let expected = (variance / 20.0).sqrt();
         assert!(error < 3.0 * expected && expected < 5.0, "{error} {expected}");
         assert!(found.unique, "{:?}", found.warnings);
+    }
+
+    #[test]
+    fn a_chain_in_space_is_found() {
+        let mut options = SimulateOptions::<3>::new();
+        (options.receivers, options.transmitters, options.hearing) = (20, 160, Some(9));
+        (options.noise, options.seed) = (0.05, 1);
+        options.layout = Layout::Chain { extent: [300.0, 60.0, 40.0] };
+        let simulation = simulate(&options).unwrap();
+        let found = calibrate(&simulation.pseudoranges, &CalibrateOptions::<3>::new()).unwrap();
+        assert!(found.laid_together && found.unique, "{:?}", found.warnings);
+        let receivers: Vec<[f64; 3]> = found.receivers.iter().map(|p| p.unwrap()).collect();
+        let error = align(&receivers, &simulation.network.receivers, false).unwrap().rms;
+        let variance: f64 =
+            found.receiver_std.iter().map(|std| std.map_or(f64::NAN, |std| points::dot(std, std))).sum();
+        let expected = (variance / 20.0).sqrt();
+        assert!(error < 3.0 * expected && expected < 5.0, "{error} {expected}");
     }
 
     #[test]
