@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use serde::Serialize;
-use tdoa::calibrate::{Calibrated, CalibratedError, calibrate_either};
+use tdoa::calibrate::{Calibrated, CalibratedError, Calibrates, Dimension, calibrate_either};
 use tdoa::html::html;
 use tdoa::node_table::node_table;
 use tdoa::picture::picture;
@@ -201,6 +201,7 @@ impl Task<'_> {
     where
         Calibration<D>: Serialize,
         Unfinished<D>: Serialize,
+        Dimension<D>: Calibrates<D>,
     {
         let mut truth = self.truth::<D>()?;
         let frame = self.frame::<D>()?;

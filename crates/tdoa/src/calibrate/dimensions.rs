@@ -3,11 +3,11 @@
 
 use super::calibration::Calibration;
 use super::dimension_test::DimensionTest;
+use super::entry::calibrate_with;
 use super::hypotheses::{Hypotheses, generator};
 use super::known;
 use super::options::{CalibrateError, CalibrateOptions, Errors, MeasuredPosition, ReceiverDelays};
 use super::ranking::OUTLIER_COST;
-use super::steps::calibrate_with;
 use crate::points::spread;
 use crate::pseudoranges::Pseudoranges;
 use crate::quantity::number;
@@ -23,7 +23,7 @@ const QUANTILE: f64 = 1.0 - 1e-4;
 
 /// Heights enter distances by their squares, and the search takes the best of many networks: gains of
 /// planar networks have about twice the mean that as many unknowns of a linear model would give (measured
-/// on 20 to 30 planar networks of six kinds; `choice` of the example `space` of the experiments counts).
+/// on 20 to 30 planar networks of six kinds; `tdoa experiment dimension` counts).
 const BENT: f64 = 2.0;
 
 /// A network in space takes the place of a planar one that fits only if it gains so many times what is

@@ -18,41 +18,13 @@ use crate::median::median;
 use crate::pseudoranges::Pseudoranges;
 use hc::Monitor;
 
-/// Calibrates a network in the plane or in space (`CalibrateOptions::<3>::new()`) from its pseudoranges, by restarts of the robust refinement and from the
-/// networks that the minimal solvers find for subsets.
-///
-/// ```
-/// let mut options = tdoa::SimulateOptions::default();
-/// options.noise = 0.01;
-/// let simulation = tdoa::simulate(&options)?;
-/// let calibration = tdoa::calibrate(&simulation.pseudoranges, &tdoa::CalibrateOptions::default())?;
-/// let receivers: Vec<[f64; 2]> = calibration.receivers.iter().flatten().copied().collect();
-/// let alignment = tdoa::align::align(&receivers, &simulation.network.receivers, false).unwrap();
-/// assert!(alignment.rms < 0.1);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-///
-/// # Errors
-/// If the data cannot determine a network, an option is out of range, or no network is found.
-pub fn calibrate<const D: usize>(
-    measured: &Pseudoranges,
-    options: &CalibrateOptions<D>,
-) -> Result<Calibration<D>, CalibrateError<D>> {
-    calibrate_with(measured, options, &[], &Monitor::default())
-}
-
-/// [`calibrate`] with further sources of starts besides the restarts, which take turns, and with
-/// progress and cancellation.
-///
-/// # Errors
-/// Those of [`calibrate`], and [`CalibrateError::Cancelled`].
-pub fn calibrate_with<const D: usize>(
+/// What `calibrate_with` does, for any number of coordinates.
+pub(super) fn calibrate_with<const D: usize>(
     measured: &Pseudoranges,
     options: &CalibrateOptions<D>,
     sources: &[&dyn Hypotheses<D>],
     monitor: &Monitor,
 ) -> Result<Calibration<D>, CalibrateError<D>> {
-    const { assert!(D == 2 || D == 3, "a network is in the plane or in space") }
     options.validate()?;
     known::validate(measured, options)?;
     let (measured, impossible) = without_impossible(measured);
