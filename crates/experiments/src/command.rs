@@ -9,6 +9,7 @@ mod common;
 mod conditions;
 mod crew;
 mod damaged;
+mod dimension;
 mod growth;
 mod hard;
 mod noise;
@@ -54,12 +55,13 @@ enum Kind {
     Conditions(conditions::Arguments),
     Growth(growth::Arguments),
     Damaged(damaged::Arguments),
+    Dimension(dimension::Arguments),
 }
 
 impl Arguments {
     /// Which experiments several ranks can do.
-    pub const SHARED: &str = "only `tdoa experiment calibrate`, `clean`, `conditions`, `coverage`, `damaged`, `noise`, `routes` and \
-                              `table2` run on several ranks";
+    pub const SHARED: &str = "only `tdoa experiment calibrate`, `clean`, `conditions`, `coverage`, `damaged`, `dimension`, `noise`, \
+                              `routes` and `table2` run on several ranks";
 
     /// Options of work over several ranks, where the experiment has them.
     pub fn sharing(&self) -> Option<&Sharing> {
@@ -75,7 +77,8 @@ impl Arguments {
             | Kind::Calibrate(_)
             | Kind::Coverage(_)
             | Kind::Conditions(_)
-            | Kind::Damaged(_) => Some(&self.ranks),
+            | Kind::Damaged(_)
+            | Kind::Dimension(_) => Some(&self.ranks),
         }
     }
 }
@@ -101,5 +104,6 @@ pub fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<(), Failu
         Kind::Conditions(arguments) => conditions::run(arguments, ranks),
         Kind::Growth(arguments) => growth::run(arguments),
         Kind::Damaged(arguments) => damaged::run(arguments, ranks),
+        Kind::Dimension(arguments) => dimension::run(arguments, ranks),
     }
 }

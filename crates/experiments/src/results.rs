@@ -36,8 +36,8 @@ pub struct ExperimentsArguments {
     /// Threads; all cores if not given.
     #[arg(long)]
     threads: Option<usize>,
-    /// Folder of the recordings h40, h50 and h60; by default data/lund_floor_planar in the folder
-    /// that SHARED_DIR names. Without them the experiment on recordings is left out.
+    /// Folder of the recordings, with lund_floor_planar and others in it; by default data in the
+    /// folder that SHARED_DIR names. Without them the experiments on recordings are left out.
     #[arg(long)]
     recordings: Option<PathBuf>,
 }
@@ -74,7 +74,7 @@ fn run_all(arguments: &ExperimentsArguments, root: &Path) -> Result<()> {
     ensure!(arguments.share > 0.0 && arguments.share <= 1.0, "--share must be above 0 and at most 1");
     let recordings = arguments.recordings.clone().or_else(|| {
         let shared = std::env::var_os("SHARED_DIR").map_or_else(|| root.join("../shared"), PathBuf::from);
-        Some(shared.join("data/lund_floor_planar")).filter(|folder| folder.exists())
+        Some(shared.join("data")).filter(|folder| folder.exists())
     });
     let tdoa = workspace::program(&workspace::build(&["tdoa-cli"])?, "tdoa");
     let work = workspace::target().join(if arguments.quick { "experiments-quick" } else { "experiments" });
@@ -88,13 +88,13 @@ fn run_all(arguments: &ExperimentsArguments, root: &Path) -> Result<()> {
         }
         let share = if arguments.quick { None } else { Some(arguments.share) };
         let mut words = experiment.words(share);
-        if experiment.recordings {
+        if !experiment.recordings.is_empty() {
             let Some(folder) = &recordings else {
                 eprintln!("{}: left out, the recordings are not there (--recordings, SHARED_DIR)", experiment.name);
                 continue;
             };
-            let folders = ["h40", "h50", "h60"].map(|name| folder.join(name).display().to_string());
-            words.extend(["--recordings".to_owned(), folders.join(",")]);
+            let folders = experiment.recordings.iter().map(|name| folder.join(name).display().to_string());
+            words.extend(["--recordings".to_owned(), folders.collect::<Vec<_>>().join(",")]);
         }
         println!("{}", experiment.name);
         let output = work.join(experiment.name);

@@ -121,6 +121,38 @@ fn damaged_recordings_beside_the_oracle() {
 }
 
 #[test]
+#[cfg_attr(not(recordings), ignore = "needs the recordings: SHARED_DIR names their folder")]
+fn parts_of_a_recording_in_space_beside_the_oracle() {
+    let folder = recording("lund_tdoa_real/data3");
+    let directory = tempfile::tempdir().expect("directory");
+    let words = format!("damaged --dimensions 3 --recordings {} --instances 1 --transmitters 24", folder.display());
+    let lines = experiment(&words, directory.path(), "2");
+    // As it is, damaged, and 24 of the 97 chirps.
+    assert_eq!(lines.len(), 4);
+    for line in &lines[1..] {
+        assert_eq!(cell(&lines[0], line, "within_1.1_of_oracle"), "1", "{line}");
+        assert_eq!(cell(&lines[0], line, "unique_and_wrong"), "0", "{line}");
+    }
+    assert_eq!(cell(&lines[0], &lines[3], "transmitters"), "24");
+}
+
+#[test]
+fn rooms_in_space_and_the_choice_of_the_dimension() {
+    let directory = tempfile::tempdir().expect("directory");
+    let words = "calibrate --dimensions 3 --configuration 12r/20s --outliers 0 --instances 2";
+    let lines = experiment(words, directory.path(), "2");
+    assert_eq!(cell(&lines[0], &lines[1], "success"), "1", "{}", lines[1]);
+    assert!((0.5..2.0).contains(&number(&lines[0], &lines[1], "rms_over_bound")));
+    // 240 measurements without the missing tenth, 36 coordinates of receivers and 80 of transmitters with offsets but for six of the frame.
+    assert_eq!(cell(&lines[0], &lines[1], "redundancy"), "106");
+    let words = "dimension --configuration 10r/20s --outliers 0 --instances 1";
+    let lines = experiment(words, &directory.path().join("dimension"), "2");
+    let of = |line: usize, column: &str| cell(&lines[0], &lines[line], column);
+    assert_eq!((of(1, "height"), of(1, "in_the_plane"), of(1, "in_space")), ("0".into(), "1".into(), "0".into()));
+    assert_eq!((of(2, "height"), of(2, "in_the_plane"), of(2, "in_space")), ("3".into(), "0".into(), "1".into()));
+}
+
+#[test]
 fn another_table_in_the_folder_is_left_alone() {
     let directory = tempfile::tempdir().expect("directory");
     std::fs::write(directory.path().join("trials.csv"), "a,b\n1,2\n").expect("written");

@@ -3,8 +3,8 @@
 
 use crate::trials::calibration::{Trial, judge};
 use tdoa::Monitor;
-use tdoa::calibrate::{MinimalHypotheses, calibrate_with};
-use tdoa::{CalibrateOptions, SimulateOptions, Simulation, simulate};
+use tdoa::calibrate::{Calibrates, Dimension, MinimalHypotheses, calibrate_with};
+use tdoa::{CalibrateOptions, Layout, SimulateOptions, Simulation, simulate};
 
 use super::book::Rows;
 use super::common::{Common, Size, thread_seconds};
@@ -35,13 +35,16 @@ impl Method {
     }
 }
 
-/// Calibrates random networks in a room of 10 m by 10 m and compares the errors with the Cramer-Rao
-/// bound.
+/// Calibrates random networks in a room of 10 m by 10 m, in space of 10 m by 8 m by 3 m, and compares
+/// the errors with the Cramer-Rao bound.
 #[derive(clap::Args)]
 pub(super) struct Arguments {
     /// The configurations.
     #[arg(long, default_value = "6r/10s,8r/12s,10r/20s,25r/20s", value_delimiter = ',')]
     configuration: Vec<Size>,
+    /// Coordinates of a position: 2 or 3.
+    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u8).range(2..=3))]
+    dimensions: u8,
     /// Number of networks of each kind.
     #[arg(long, default_value_t = 500)]
     instances: u64,
@@ -94,26 +97,31 @@ struct Case {
     method: Method,
     starts: Option<usize>,
     size: Size,
+    dimensions: u8,
     noise: f64,
     outliers: f64,
     missing: f64,
     known_sigma: bool,
 }
 
-const HEADER: &str = "method,starts,configuration,noise,outliers,missing,known_sigma,seed,determined,success,among_alternatives,unique,\
-                      receiver_rms,bound,sigma,covered,ellipses,starts_made,processor_seconds";
+const HEADER: &str = "method,starts,configuration,dimensions,noise,outliers,missing,known_sigma,seed,determined,success,\
+                      among_alternatives,unique,receiver_rms,bound,sigma,covered,ellipses,redundancy,starts_made,processor_seconds";
+
+/// The room in space, metres.
+const ROOM: [f64; 3] = [10.0, 8.0, 3.0];
 
 impl Case {
     /// The columns before the seed.
     fn key(&self) -> String {
         let starts = self.starts.map_or("default".into(), |starts| starts.to_string());
-        let Case { method, size, noise, outliers, missing, known_sigma, .. } = self;
-        format!("{},{starts},{size},{noise},{outliers},{missing},{known_sigma}", method.name())
+        let Case { method, size, dimensions, noise, outliers, missing, known_sigma, .. } = self;
+        format!("{},{starts},{size},{dimensions},{noise},{outliers},{missing},{known_sigma}", method.name())
     }
 
-    fn simulate(&self, seed: u64) -> Result<Simulation, Failure> {
-        let mut options = SimulateOptions::default();
+    fn simulate<const D: usize>(&self, layout: Layout<D>, seed: u64) -> Result<Simulation<D>, Failure> {
+        let mut options = SimulateOptions::new();
         (options.receivers, options.transmitters) = (self.size.receivers, self.size.transmitters);
+        options.layout = layout;
         options.noise = self.noise;
         options.outliers = self.outliers;
         options.missing = self.missing;
@@ -122,15 +130,24 @@ impl Case {
     }
 
     fn trial(&self, seed: u64) -> Result<Trial, Failure> {
-        let simulation = self.simulate(seed)?;
-        let mut options = CalibrateOptions::default();
+        match self.dimensions {
+            3 => self.judged(&self.simulate(Layout::Room { extent: ROOM }, seed)?, seed),
+            _ => self.judged(&self.simulate(SimulateOptions::default().layout, seed)?, seed),
+        }
+    }
+
+    fn judged<const D: usize>(&self, simulation: &Simulation<D>, seed: u64) -> Result<Trial, Failure>
+    where
+        Dimension<D>: Calibrates<D>,
+    {
+        let mut options = CalibrateOptions::new();
         options.seed = seed;
         options.sigma = Some(self.noise).filter(|_| self.known_sigma);
         if let Some(starts) = self.starts {
             (options.min_starts, options.max_starts) = (starts, starts);
         }
         let exact = MinimalHypotheses::new();
-        let mut sources: Vec<&dyn tdoa::Hypotheses> = Vec::new();
+        let mut sources: Vec<&dyn tdoa::Hypotheses<D>> = Vec::new();
         match self.method {
             Method::Portfolio => {}
             Method::Restarts => options.minimal_subsets = 0,
@@ -141,7 +158,7 @@ impl Case {
         }
         let started = thread_seconds();
         let found = calibrate_with(&simulation.pseudoranges, &options, &sources, &Monitor::default());
-        Ok(judge(&simulation, self.noise, seed, thread_seconds() - started, &found))
+        Ok(judge(simulation, self.noise, seed, thread_seconds() - started, &found))
     }
 }
 
@@ -160,7 +177,7 @@ fn trials(common: &Common, cases: &[Case], instances: u64, ranks: Option<&Ranks<
             let t = case.trial(seed)?;
             let number = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.4e}"));
             Ok(format!(
-                "{},{},{},{},{},{:.4e},{},{},{},{},{:.4}",
+                "{},{},{},{},{},{:.4e},{},{},{},{},{},{:.4}",
                 t.bound.is_finite(),
                 t.success(),
                 t.among_alternatives(),
@@ -170,6 +187,7 @@ fn trials(common: &Common, cases: &[Case], instances: u64, ranks: Option<&Ranks<
                 number(t.sigma),
                 t.covered,
                 t.ellipses,
+                t.redundancy,
                 t.starts,
                 t.seconds
             ))
@@ -192,7 +210,8 @@ pub(super) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
             for &noise in &arguments.noise {
                 for &outliers in &arguments.outliers {
                     let (missing, known_sigma, starts) = (arguments.missing, arguments.known_sigma, starts.next());
-                    cases.push(Case { method, starts, size, noise, outliers, missing, known_sigma });
+                    let dimensions = arguments.dimensions;
+                    cases.push(Case { method, starts, size, dimensions, noise, outliers, missing, known_sigma });
                 }
             }
         }
@@ -207,6 +226,7 @@ pub(super) fn run_coverage(arguments: &CoverageArguments, ranks: Option<&Ranks<'
         method: Method::Portfolio,
         starts: None,
         size,
+        dimensions: 2,
         noise: arguments.noise,
         outliers: 0.0,
         missing: 0.1,
@@ -219,8 +239,8 @@ pub(super) fn run_coverage(arguments: &CoverageArguments, ranks: Option<&Ranks<'
 
 fn report(common: &Common, rows: &Rows, cases: &[Case], each: usize) -> Result<(), Failure> {
     let mut summary = String::from(
-        "method,starts,configuration,noise,outliers,missing,known_sigma,networks,undetermined,success,among_alternatives,unique,\
-         unique_and_wrong,rms_over_bound,coverage_95,processor_seconds_median,processor_seconds_90\n",
+        "method,starts,configuration,dimensions,noise,outliers,missing,known_sigma,networks,undetermined,success,among_alternatives,\
+         unique,unique_and_wrong,rms_over_bound,coverage_95,redundancy,processor_seconds_median,processor_seconds_90\n",
     );
     for (g, case) in cases.iter().enumerate() {
         let of = |column: &str| rows.numbers(column, g * each..(g + 1) * each);
@@ -234,7 +254,7 @@ fn report(common: &Common, rows: &Rows, cases: &[Case], each: usize) -> Result<(
         // Relative to the bound of each network, so that networks of poor geometry do not drown the
         // others.
         let good = |k: &usize| success[*k] * determined[*k] > 0.0;
-        let (rms, bound) = (of("receiver_rms"), of("bound"));
+        let (rms, bound, redundancy) = (of("receiver_rms"), of("bound"), of("redundancy"));
         let squares: Vec<f64> = (0..each).filter(good).map(|k| (rms[k] / bound[k]).powi(2)).collect();
         let held = |column: &str| {
             let all = of(column);
@@ -251,6 +271,7 @@ fn report(common: &Common, rows: &Rows, cases: &[Case], each: usize) -> Result<(
             short(share(&wrong)),
             short(mean(&squares).sqrt()),
             short(held("covered") / held("ellipses")),
+            short(mean(&(0..each).filter(good).map(|k| redundancy[k]).collect::<Vec<_>>())),
             short(median(&seconds)),
             short(quantile(&seconds, 0.9)),
         ];

@@ -1,6 +1,7 @@
 //! docs/results.md from the tables in results/, byte for byte the same from the same tables.
 
 mod solvers;
+mod space;
 
 use super::plan::PLAN;
 use super::table::{Row, Table, head, line, record, summary};
@@ -42,6 +43,9 @@ const SECTIONS: &[Section] = &[
     ("coverage", "Cramer-Rao bound and ellipses", coverage),
     ("growth", "Large networks", growth),
     ("damaged", "Recordings, as they are and damaged", recordings),
+    ("rooms", "In space: rooms", space::rooms),
+    ("recordings", "In space: recordings, as they are, damaged and in parts", space::recordings),
+    ("dimension", "Plane or space", space::dimension),
 ];
 
 fn calibration(results: &Path) -> Result<String> {

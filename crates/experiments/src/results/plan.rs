@@ -10,8 +10,8 @@ pub(super) struct Experiment {
     full: Option<u64>,
     /// Networks of each kind in the quick run, and what else is then said.
     quick: (u64, &'static str),
-    /// Whether it needs the recordings.
-    pub(super) recordings: bool,
+    /// The recordings that it needs, folders in that of all of them.
+    pub(super) recordings: &'static [&'static str],
 }
 
 impl Experiment {
@@ -30,7 +30,7 @@ impl Experiment {
 }
 
 const fn plain(name: &'static str, command: &'static str, full: u64, quick: u64) -> Experiment {
-    Experiment { name, command, full: Some(full), quick: (quick, ""), recordings: false }
+    Experiment { name, command, full: Some(full), quick: (quick, ""), recordings: &[] }
 }
 
 /// All of them, in the order of the page.
@@ -49,7 +49,7 @@ pub(super) const PLAN: &[Experiment] = &[
         command: "routes",
         full: Some(100),
         quick: (2, "--configuration 6r/3s,5r/6s"),
-        recordings: false,
+        recordings: &[],
     },
     plain("noise", "noise", 1000, 5),
     plain("calibrate", "calibrate", 500, 2),
@@ -73,7 +73,44 @@ pub(super) const PLAN: &[Experiment] = &[
         command: "growth",
         full: None,
         quick: (0, "--configuration 10r/20s,20r/50s,30r/100s"),
-        recordings: false,
+        recordings: &[],
     },
-    Experiment { name: "damaged", command: "damaged", full: Some(20), quick: (1, "--triples 20"), recordings: true },
+    Experiment {
+        name: "damaged",
+        command: "damaged",
+        full: Some(20),
+        quick: (1, "--triples 20"),
+        recordings: &["lund_floor_planar/h40", "lund_floor_planar/h50", "lund_floor_planar/h60"],
+    },
+    plain(
+        "rooms",
+        "calibrate --dimensions 3 --configuration 8r/12s,10r/20s,12r/60s,30r/100s --outliers 0,0.1,0.2",
+        100,
+        1,
+    ),
+    Experiment {
+        name: "recordings",
+        command: "damaged --dimensions 3 --transmitters 8,12,24 --receivers 7,8",
+        full: Some(20),
+        quick: (1, ""),
+        recordings: &[
+            "lund_tdoa_real/data1",
+            "lund_tdoa_real/data2",
+            "lund_tdoa_real/data3",
+            "lund_tdoa_real/data4",
+            "lund_tdoa_real/data5",
+            "lund_tdoa_real/data6",
+            "lund_tdoa_real/data7",
+            "xtdoa_real",
+        ],
+    },
+    Experiment {
+        name: "ranges",
+        command: "damaged --dimensions 3",
+        full: Some(20),
+        quick: (1, ""),
+        recordings: &["lps_uwb/data4", "lps_uwb/data5", "lps_uwb/data7"],
+    },
+    plain("dimension", "dimension", 167, 1),
+    plain("low", "dimension --height 0.5,1", 20, 1),
 ];

@@ -14,7 +14,8 @@ use tdoa::Simulation;
 use tdoa::accuracy::cramer_rao;
 use tdoa::align::align;
 use tdoa::calibrate::{
-    CalibrateError, CalibrateOptions, Calibration, KnownReceivers, SAME_NETWORK, calibrate, calibrate_with,
+    CalibrateError, CalibrateOptions, Calibrates, Calibration, Dimension, KnownReceivers, SAME_NETWORK, calibrate,
+    calibrate_with,
 };
 use tdoa::{PseudorangeError, Pseudoranges};
 
@@ -30,10 +31,12 @@ pub struct Trial {
     pub bound: f64,
     /// Size of the true network, metres.
     pub size: f64,
-    /// Receivers whose truth lies in the 95 % ellipse.
+    /// Receivers whose truth lies in the 95 % ellipse, in space the ellipsoid.
     pub covered: usize,
     /// Receivers with an ellipse.
     pub ellipses: usize,
+    /// Measurements more than unknowns.
+    pub redundancy: usize,
     /// Whether the calibration said that the network is unique.
     pub unique: bool,
     /// Smallest receiver error (as `receiver_rms`) over the calibration and its alternatives.
@@ -73,12 +76,12 @@ pub fn trial(simulation: &Simulation, noise: f64, seed: u64, options: &Calibrate
 
 /// Compares a calibration, or why there is none, with the truth of the simulated network; `noise`
 /// is the standard deviation of the measurements in metres, `seconds` what the calibration took.
-pub fn judge(
-    simulation: &Simulation,
+pub fn judge<const D: usize>(
+    simulation: &Simulation<D>,
     noise: f64,
     seed: u64,
     seconds: f64,
-    result: &Result<Calibration, CalibrateError>,
+    result: &Result<Calibration<D>, CalibrateError<D>>,
 ) -> Trial {
     let truth = &simulation.network;
     let bound = cramer_rao(&simulation.pseudoranges, &simulation.outliers, truth, noise);
@@ -89,6 +92,7 @@ pub fn judge(
         size: truth.size(),
         covered: 0,
         ellipses: 0,
+        redundancy: 0,
         unique: false,
         best_of_alternatives: None,
         sigma: None,
@@ -109,7 +113,9 @@ pub fn judge(
     trial.unique = calibration.unique;
     trial.sigma = Some(calibration.sigma);
     trial.starts = calibration.starts;
-    (trial.covered, trial.ellipses) = coverage(calibration, truth);
+    trial.redundancy = calibration.redundancy;
+    let known: Vec<Option<[f64; D]>> = truth.receivers.iter().copied().map(Some).collect();
+    (trial.covered, trial.ellipses) = coverage(calibration, &known);
     trial
 }
 
@@ -118,11 +124,14 @@ pub fn judge(
 ///
 /// # Errors
 /// Those of [`calibrate`].
-pub fn oracle(
+pub fn oracle<const D: usize>(
     measured: &Pseudoranges,
-    truth: &[Option<[f64; 2]>],
-    options: &CalibrateOptions,
-) -> Result<Calibration, CalibrateError> {
+    truth: &[Option<[f64; D]>],
+    options: &CalibrateOptions<D>,
+) -> Result<Calibration<D>, CalibrateError<D>>
+where
+    Dimension<D>: Calibrates<D>,
+{
     let named = measured.receiver_names().iter().cloned().zip(truth.iter().copied());
     let positions = named.filter_map(|(name, position)| Some((name, position?))).collect();
     let mut options = options.clone();
@@ -133,29 +142,54 @@ pub fn oracle(
     Ok(calibration)
 }
 
-fn distance_from(receivers: &[Option<[f64; 2]>], truth: &Network) -> Option<f64> {
-    let pairs = receivers.iter().zip(&truth.receivers).filter_map(|(found, known)| Some(((*found)?, *known)));
-    let (found, known): (Vec<_>, Vec<_>) = pairs.unzip();
+fn distance_from<const D: usize>(receivers: &[Option<[f64; D]>], truth: &Network<D>) -> Option<f64> {
+    let known: Vec<Option<[f64; D]>> = truth.receivers.iter().copied().map(Some).collect();
+    apart(receivers, &known)
+}
+
+/// Root mean square distance of some positions from others after the best rigid alignment, over those
+/// that are known in both, metres.
+pub fn apart<const D: usize>(found: &[Option<[f64; D]>], known: &[Option<[f64; D]>]) -> Option<f64> {
+    let (found, known) = both(found, known);
     align(&found, &known, false).map(|alignment| alignment.rms)
 }
 
+/// The positions that are known in both.
+fn both<const D: usize>(found: &[Option<[f64; D]>], known: &[Option<[f64; D]>]) -> (Vec<[f64; D]>, Vec<[f64; D]>) {
+    found.iter().zip(known).filter_map(|(found, known)| Some(((*found)?, (*known)?))).unzip()
+}
+
+/// How many of the 95 % ellipses (ellipsoids) of the receivers hold the truth, and how many there are.
 /// The truth is aligned to the calibration by its receivers: that is the gauge of the covariances.
-fn coverage(calibration: &Calibration, truth: &Network) -> (usize, usize) {
-    let pairs = calibration.receivers.iter().zip(&truth.receivers).filter_map(|(f, t)| Some(((*f)?, *t)));
-    let (found, known): (Vec<_>, Vec<_>) = pairs.unzip();
+pub fn coverage<const D: usize>(calibration: &Calibration<D>, truth: &[Option<[f64; D]>]) -> (usize, usize) {
+    let (found, known) = both(&calibration.receivers, truth);
     let Some(alignment) = align(&known, &found, false) else { return (0, 0) };
     let Some(radius) = calibration.ellipse_radius else { return (0, 0) };
-    let nodes = calibration.receivers.iter().zip(&truth.receivers).zip(&calibration.receiver_covariance);
+    let nodes = calibration.receivers.iter().zip(truth).zip(&calibration.receiver_covariance);
     let (mut covered, mut ellipses) = (0, 0);
     for ((found, known), covariance) in nodes {
-        let (Some(found), Some([[xx, xy], [_, yy]])) = (found, covariance) else { continue };
+        let (Some(found), Some(known), Some(covariance)) = (found, known, covariance) else { continue };
         let at = alignment.transform.apply(*known);
-        let (dx, dy) = (at[0] - found[0], at[1] - found[1]);
-        let squared = (dx * dx * yy - 2.0 * dx * dy * xy + dy * dy * xx) / (xx * yy - xy * xy);
         ellipses += 1;
-        covered += usize::from(squared <= radius * radius);
+        covered += usize::from(squared(*covariance, std::array::from_fn(|k| at[k] - found[k])) <= radius * radius);
     }
     (covered, ellipses)
+}
+
+/// d' C^-1 d, by elimination in the positive definite matrix C.
+fn squared<const D: usize>(mut c: [[f64; D]; D], mut d: [f64; D]) -> f64 {
+    let mut sum = 0.0;
+    for k in 0..D {
+        sum += d[k] * d[k] / c[k][k];
+        for i in k + 1..D {
+            let factor = c[i][k] / c[k][k];
+            d[i] -= factor * d[k];
+            for j in k..D {
+                c[i][j] -= factor * c[k][j];
+            }
+        }
+    }
+    sum
 }
 
 /// The measurements with this share of the cells removed and then this share of the rest replaced
@@ -198,4 +232,17 @@ pub fn damage(
     // Those of missing cells are ignored.
     let sigmas = (0..m * n).map(|k| measured.sigma(k / n, k % n).unwrap_or(1.0)).collect();
     damaged.with_sigmas(sigmas)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_distance_in_standard_deviations() {
+        // C = [[4, 2], [2, 2]] has the inverse [[0.5, -0.5], [-0.5, 1]].
+        assert_eq!(squared([[4.0, 2.0], [2.0, 2.0]], [1.0, 3.0]), 0.5 - 3.0 + 9.0);
+        let axes = [[4.0, 0.0, 0.0], [0.0, 9.0, 0.0], [0.0, 0.0, 16.0]];
+        assert_eq!(squared(axes, [2.0, 3.0, 8.0]), 1.0 + 1.0 + 4.0);
+    }
 }
