@@ -1,11 +1,11 @@
 //! `tdoa calibrate`.
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use serde::Serialize;
 use tdoa::calibrate::{Calibrated, CalibratedError, Calibrates, Dimension, calibrate_either};
-use tdoa::html::html;
+use tdoa::html::{Provenance, html_with};
 use tdoa::node_table::node_table;
 use tdoa::picture::picture;
 use tdoa::read::{Nodes, Units, read, read_distances, read_nodes};
@@ -18,6 +18,7 @@ use tdoa::{
 use crate::frame::{self, Frame};
 use crate::known::{self, Truth};
 use crate::partial;
+use crate::provenance::{self, named, said};
 use crate::summary::{self, Context};
 use crate::units::Unit;
 use crate::{Failure, interrupt, output};
@@ -102,8 +103,9 @@ pub(crate) struct Arguments {
     /// Writes a picture of the network.
     #[arg(long)]
     svg: Option<PathBuf>,
-    /// Writes a report for a browser and for paper: the picture, and tables of nodes and
-    /// measurements that sort by a click. One file, without references to others.
+    /// Writes a report for a browser and for paper: the picture, tables of nodes and measurements that
+    /// sort by a click, and where they come from. One file, without references to others. Where
+    /// SOURCE_DATE_EPOCH is set, its date is that one and no time is told: the same bytes each time.
     #[arg(long)]
     html: Option<PathBuf>,
     /// Writes the nodes as a CSV table: kind, name, position, standard deviations, offset, numbers
@@ -137,6 +139,30 @@ enum Side {
     OneSided,
 }
 
+impl Arguments {
+    /// Names and values of the options that shape the result: those that have a value, by default too.
+    fn settings(&self) -> Vec<(String, String)> {
+        let path = |path: &Option<PathBuf>| path.as_ref().map(|path| path.display().to_string());
+        let switch = |given: bool| given.then_some("yes");
+        let own = [
+            named("dimensions", Some(said(self.dimensions))),
+            named("sigma", self.sigma),
+            named("anchors", path(&self.anchors)),
+            named("receiver-delays", Some(said(self.receiver_delays))),
+            named("errors", Some(said(self.errors))),
+            named("distances", path(&self.distances)),
+            named("estimate-speed", switch(self.estimate_speed)),
+            named("frame", self.frame.as_ref()),
+            named("truth", path(&self.truth)),
+            named("scale", switch(self.scale)),
+            named("seed", Some(self.seed)),
+            named("max-starts", Some(self.max_starts)),
+            named("agreeing", Some(self.agreeing)),
+        ];
+        self.input.settings().into_iter().chain(own.into_iter().flatten()).collect()
+    }
+}
+
 /// The JSON form: offsets in the unit of the input too, where that is not the metre.
 #[derive(Serialize)]
 #[serde(bound = "Calibration<D>: Serialize")]
@@ -164,6 +190,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         ("--html", arguments.html.as_deref()),
         ("--nodes", arguments.nodes.as_deref()),
     ])?;
+    let date = arguments.html.as_ref().map(|_| provenance::Date::read()).transpose()?;
     let input = arguments.input.options(arguments.estimate_speed)?;
     let (units, said) = (input.units.unwrap_or_default(), input.units.is_some());
     let measured = read(&arguments.file, input).map_err(Failure::unusable)?;
@@ -171,15 +198,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Some(path) => Some((path.as_path(), read_nodes(path).map_err(Failure::unusable)?)),
         None => None,
     };
-    let task = Task { arguments, measured: &measured, units, said };
     let given = match (arguments.dimensions, &anchors, &arguments.frame) {
-        (Dimensions::Plane, ..) => Some(2),
-        (Dimensions::Space, ..) => Some(3),
-        (Dimensions::Auto, Some((_, nodes)), _) => Some(nodes.dimensions()),
-        (Dimensions::Auto, None, Some(names)) => Some(frame::dimensions(names)),
+        (Dimensions::Plane, ..) => Some((2, "as --dimensions says")),
+        (Dimensions::Space, ..) => Some((3, "as --dimensions says")),
+        (Dimensions::Auto, Some((_, nodes)), _) => Some((nodes.dimensions(), "as the anchors have it")),
+        (Dimensions::Auto, None, Some(names)) => Some((frame::dimensions(names), "as --frame has it")),
         (Dimensions::Auto, None, None) => None,
     };
-    match given {
+    let chosen = given.map(|(_, by)| by);
+    let task = Task { arguments, measured: &measured, units, said, date, chosen };
+    match given.map(|(dimensions, _)| dimensions) {
         Some(3) => task.given::<3>(anchors),
         Some(_) => task.given::<2>(anchors),
         None => task.chosen(),
@@ -193,6 +221,10 @@ struct Task<'a> {
     units: Units,
     /// Whether the unit was said.
     said: bool,
+    /// The date of the report, if one is asked for.
+    date: Option<provenance::Date>,
+    /// Who chose between the plane and space, if not the measurements.
+    chosen: Option<&'static str>,
 }
 
 impl Task<'_> {
@@ -305,6 +337,21 @@ impl Task<'_> {
         }
     }
 
+    /// Where the result comes from, which took so long.
+    fn provenance(&self, time: Duration) -> Provenance {
+        let mut provenance = Provenance::default();
+        provenance.program = Some(concat!("tdoa ", env!("CARGO_PKG_VERSION")).to_string());
+        provenance.file = Some(self.arguments.file.display().to_string());
+        provenance.command = Some(provenance::command());
+        provenance.settings = self.arguments.settings();
+        provenance.dimensions = self.chosen.map(str::to_string);
+        if let Some(date) = &self.date {
+            provenance.date = Some(date.moment);
+            provenance.time = Some(time).filter(|_| !date.fixed);
+        }
+        provenance
+    }
+
     /// Compares a calibration with the truth, puts it in its frame, writes it and says what it is.
     fn finish<const D: usize>(
         &self,
@@ -337,7 +384,7 @@ impl Task<'_> {
             output::file(path, picture(&calibration).as_bytes())?;
         }
         if let Some(path) = &arguments.html {
-            output::file(path, html(&calibration).as_bytes())?;
+            output::file(path, html_with(&calibration, &self.provenance(started.elapsed())).as_bytes())?;
         }
         if let Some(path) = &arguments.nodes {
             output::file(path, node_table(&calibration).as_bytes())?;

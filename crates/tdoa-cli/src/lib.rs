@@ -4,6 +4,7 @@ mod calibrate;
 mod frame;
 mod known;
 mod partial;
+mod provenance;
 mod simulate;
 mod solve;
 mod summary;

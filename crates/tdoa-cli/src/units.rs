@@ -3,6 +3,7 @@
 use tdoa::read::{ReadOptions, Units};
 
 use crate::Failure;
+use crate::provenance::{named, said};
 
 /// Unit of the measurements.
 #[derive(clap::Args)]
@@ -128,5 +129,19 @@ impl InputArguments {
         options.units = self.units.units(estimate_speed)?;
         options.variable.clone_from(&self.variable);
         Ok(options)
+    }
+
+    /// Names and values of the options that were given.
+    pub(crate) fn settings(&self) -> Vec<(String, String)> {
+        let units = &self.units;
+        [
+            named("units", units.units.map(said)),
+            named("speed", units.speed),
+            named("rate", units.rate),
+            named("variable", self.variable.as_ref()),
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
     }
 }

@@ -6,12 +6,15 @@ use hc::poly::{counted, one_or};
 use std::array::from_fn;
 use std::fmt::Write;
 
+mod provenance;
 mod turn;
 
 use crate::calibrate::Calibration;
+use crate::degeneracy::space;
 use crate::picture::{escape, picture};
 use crate::quantity::{coordinate, decimals, length, number};
-use crate::summary::{agreement, deviation, uniqueness};
+use crate::summary::{agreement, choice, deviation, uniqueness};
+pub use provenance::Provenance;
 
 /// Most measurements that the report lists; of more, the outliers and those of largest residual.
 const LISTED: usize = 20_000;
@@ -40,6 +43,11 @@ const MEASUREMENTS: [Column; 5] = [
 
 /// The report as HTML text.
 pub fn html<const D: usize>(calibration: &Calibration<D>) -> String {
+    html_with(calibration, &Provenance::default())
+}
+
+/// The report as HTML text, with where the result comes from.
+pub fn html_with<const D: usize>(calibration: &Calibration<D>, provenance: &Provenance) -> String {
     let title = format!("Calibration of {}", escape(&calibration.configuration));
     // A network in the plane is all in the picture.
     let (view_style, view) = if D == 3 { (turn::STYLE, turn::view(calibration)) } else { ("", String::new()) };
@@ -54,7 +62,8 @@ pub fn html<const D: usize>(calibration: &Calibration<D>) -> String {
     for warning in &calibration.warnings {
         page += &format!("<p class=\"warning\">{}</p>\n", escape(warning));
     }
-    page += &facts(calibration);
+    page += &facts(calibration, provenance);
+    page += &provenance::list(provenance);
     page += &view;
     page += &format!("<figure>\n{}</figure>\n", picture(calibration));
     page += &format!("<p class=\"note\">Lengths in metres. Standard deviations: {}.</p>\n", escape(&calibration.gauge));
@@ -77,12 +86,19 @@ pub fn html<const D: usize>(calibration: &Calibration<D>) -> String {
 }
 
 /// What the summary says, as a list of terms and values.
-fn facts<const D: usize>(calibration: &Calibration<D>) -> String {
+fn facts<const D: usize>(calibration: &Calibration<D>, provenance: &Provenance) -> String {
     let (measured, outliers) = (calibration.residuals.len(), calibration.residuals.outliers().count());
+    // Where the measurements chose, they say more than the one who let them.
+    let dimensions = choice(calibration).filter(|_| calibration.dimension_test.is_some());
+    let dimensions = dimensions.unwrap_or_else(|| match &provenance.dimensions {
+        Some(by) => format!("{}, {by}", space(D)),
+        None => space(D).to_string(),
+    });
     let mut list = vec![
         ("Measurements", format!("{measured}, outliers among them: {outliers}")),
         ("Noise", deviation(calibration)),
         ("Residuals of inliers", format!("{} root mean square", length(calibration.residual_rms))),
+        ("Dimensions", dimensions),
         ("Size", calibration.extent().map_or_else(String::new, |size| format!("{} across", length(size)))),
         ("Redundancy", counted(calibration.redundancy, "measurement") + " more than unknowns"),
         ("Uniqueness", uniqueness(calibration).to_string()),

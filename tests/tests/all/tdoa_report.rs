@@ -4,7 +4,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use end_to_end::{root, run};
+use end_to_end::{program, root, run};
 
 fn text(path: &Path) -> &str {
     path.to_str().expect("UTF-8 path")
@@ -69,6 +69,53 @@ fn the_report_works_in_a_browser() {
     let title = title.unwrap_or_else(|| panic!("no page: {}", String::from_utf8_lossy(&browser.stderr))).0;
     // Eight receivers and one in the legend; the example has an outlier.
     assert_eq!(title, "ascending; descending; names in order; outlier first; 9 triangles; 0 injected; 0 fetched");
+}
+
+/// The definition of a term in a report.
+fn entry<'a>(page: &'a str, term: &str) -> &'a str {
+    let rest = page.split_once(&format!("<dt>{term}</dt><dd>")).unwrap_or_else(|| panic!("{term} in {page}")).1;
+    rest.split_once("</dd>").expect("end of the entry").0
+}
+
+#[test]
+fn the_report_says_where_it_comes_from() {
+    let directory = tempfile::tempdir().expect("directory");
+    let table = std::fs::read(root().join("examples/network/pseudoranges.csv")).expect("example");
+    std::fs::write(directory.path().join("a & b's.csv"), table).expect("written");
+    let report = |words: &[&str], date: Option<&str>| {
+        let mut command = Command::new(program("tdoa"));
+        command.current_dir(directory.path()).args(["calibrate", "a & b's.csv", "--html", "r.html"]).args(words);
+        match date {
+            Some(date) => command.env("SOURCE_DATE_EPOCH", date),
+            None => command.env_remove("SOURCE_DATE_EPOCH"),
+        };
+        let output = command.output().expect("the program starts");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        (output.status.code(), said, std::fs::read_to_string(directory.path().join("r.html")).unwrap_or_default())
+    };
+    let (status, said, page) = report(&["--sigma", "0.02", "--dimensions", "2"], Some("1000000000"));
+    assert_eq!(status, Some(0), "{said}");
+    assert_eq!(entry(&page, "File"), "a &amp; b&#39;s.csv");
+    assert_eq!(entry(&page, "Date"), "2001-09-09 01:46:40 UTC");
+    assert_eq!(entry(&page, "Program"), concat!("tdoa ", env!("CARGO_PKG_VERSION")));
+    let words = r"tdoa calibrate 'a & b'\''s.csv' --html r.html --sigma 0.02 --dimensions 2";
+    let escaped = words.replace('&', "&amp;").replace('\'', "&#39;");
+    assert_eq!(entry(&page, "Command"), format!("<code>{escaped}</code>"));
+    let settings = entry(&page, "Settings").replace('\u{a0}', " ");
+    assert!(settings.contains("dimensions 2, sigma 0.02, ") && settings.contains("seed 0"), "{settings}");
+    assert_eq!(entry(&page, "Dimensions"), "in the plane, as --dimensions says");
+    // No time is told that would differ, and the same command writes the same bytes.
+    assert!(!page.contains("Time taken"));
+    assert!(report(&["--sigma", "0.02", "--dimensions", "2"], Some("1000000000")).2 == page);
+    // Without a given date it is the present one, with the time taken; the measurements chose the plane.
+    let (_, _, page) = report(&[], None);
+    let year: i32 = entry(&page, "Date")[..4].parse().expect("year");
+    assert!(year >= 2024 && entry(&page, "Time taken").ends_with(" s"), "{year}");
+    let chosen = entry(&page, "Dimensions");
+    assert!(chosen.starts_with("in the plane: heights make the measurements more likely by "), "{chosen}");
+    // A date that is none is refused before the work begins.
+    let (status, said, _) = report(&[], Some("yesterday"));
+    assert!(status == Some(2) && said.contains("SOURCE_DATE_EPOCH"), "{said}");
 }
 
 #[test]
