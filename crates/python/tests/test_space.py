@@ -26,6 +26,9 @@ def test_a_room(dimensions, tmp_path):
     assert found.dimensions == 3 and found.trusted and found.unique
     assert found.receivers.shape == (12, 3) and found.transmitters.shape == (30, 3) and found.offsets.shape == (30,)
     assert found.covariance.shape == (12, 3, 3) and found.transmitter_covariance.shape == (30, 3, 3)
+    assert found.systematic["factor"] >= 1.0 and found.systematic_transmitter_covariance.shape == (30, 3, 3)
+    added = found.systematic_covariance - found.covariance
+    assert added.shape == (12, 3, 3) and (np.trace(added, axis1=1, axis2=2) >= 0.0).all()
     assert found.inliers.shape == found.residuals.shape == (12, 30)
     assert error(found.receivers, made.receivers) < 0.05
     test = found.dimension_test

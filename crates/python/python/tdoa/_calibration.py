@@ -81,6 +81,12 @@ class Calibration:
         Where the measurements decided between plane and space: `gain`, by how much they are more likely in space (natural
         logarithm), and `needed`, the gain that space needed; None in place of a number that there is not, as where the measurements
         are too few for space. None where dimensions or anchors decided.
+    systematic : dict or None
+        Systematic errors, which all measurements of a receiver share: `deviation` in metres, `gain` (natural logarithm), whether they are
+        `significant`, and the `factor` by which standard deviations of the receivers grow. None where fewer than ten measurements
+        are left over, there are more than 100 receivers, or errors are one-sided.
+    systematic_covariance, systematic_transmitter_covariance : ndarray of float, shapes (m, d, d) and (n, d, d)
+        Covariances with these errors, those of noise included; NaN where `systematic` is None.
     data : dict
         Everything that the JSON holds, under the same keys.
     """
@@ -97,6 +103,7 @@ class Calibration:
             self.gauge = self.data["gauge"]
             self.dimensions = self.data.get("dimensions", 2)
             self.dimension_test = self.data.get("dimension_test")
+            self.systematic = self.data.get("systematic")
         except (TypeError, ValueError, KeyError) as error:
             raise InputError(f"no calibration: {error}") from None
         if self.dimensions not in (2, 3):
@@ -126,6 +133,18 @@ class Calibration:
     @cached_property
     def transmitter_covariance(self):
         return _rows(self.data["transmitter_covariance"], (self.dimensions, self.dimensions))
+
+    @cached_property
+    def systematic_covariance(self):
+        return self._systematic("receiver_covariance", len(self.receiver_names))
+
+    @cached_property
+    def systematic_transmitter_covariance(self):
+        return self._systematic("transmitter_covariance", len(self.transmitter_names))
+
+    def _systematic(self, key, count):
+        rows = [None] * count if self.systematic is None else self.systematic[key]
+        return _rows(rows, (self.dimensions, self.dimensions))
 
     @cached_property
     def offset_std(self):

@@ -5,6 +5,7 @@ use super::dimension_test::DimensionTest;
 use super::known::{Anchors, SpeedEstimate};
 use super::receiver_errors::ReceiverError;
 use super::residuals::{Residual, Residuals};
+use super::systematic::SystematicErrors;
 use super::truth::Truth;
 use crate::align::{Alignment, Transform, align, spanned};
 use crate::points::{distance, minus};
@@ -105,6 +106,10 @@ pub struct Calibration<const D: usize = 2> {
     /// all receivers, relative to their mean.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub receiver_errors: Vec<ReceiverError>,
+    /// Systematic errors of the receivers, and the covariances with them. `None` where fewer than ten
+    /// measurements are left over, there are more than 100 receivers, or errors are one-sided.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub systematic: Option<SystematicErrors<D>>,
     /// What may be wrong, with names and a remedy.
     pub warnings: Vec<String>,
     /// Seed of the search.
@@ -216,6 +221,9 @@ impl<const D: usize> Calibration<D> {
         let std = |all: &[Option<[[f64; D]; D]>]| -> Vec<Option<[f64; D]>> {
             all.iter().map(|c| c.map(|c| from_fn(|k| c[k][k].max(0.0).sqrt()))).collect()
         };
+        if let Some(systematic) = &mut self.systematic {
+            systematic.transform(map);
+        }
         self.receiver_std = std(&self.receiver_covariance);
         self.transmitter_std = std(&self.transmitter_covariance);
     }
@@ -235,6 +243,9 @@ impl<const D: usize> Calibration<D> {
         }
         for error in self.receiver_errors.iter_mut() {
             error.size *= factor;
+        }
+        if let Some(systematic) = &mut self.systematic {
+            systematic.rescale(factor);
         }
         self.sigma *= factor;
         self.residual_rms *= factor;

@@ -274,6 +274,7 @@ impl<const D: usize> Solved<'_, D> {
             determined,
             anchors_agree,
             receiver_errors: self.receiver_errors(),
+            systematic: None,
             warnings,
             seed: options.seed,
             starts: self.starts,
@@ -288,6 +289,10 @@ impl<const D: usize> Solved<'_, D> {
         for &i in doubtful.iter().filter(|&&i| !held[i]) {
             calibration.receivers[rows[i]] = None;
             calibration.receiver_covariance[rows[i]] = None;
+        }
+        // Residuals that may be late do not have the covariance that systematic errors are told by.
+        if noise_known && one_sided.is_none() {
+            calibration.systematic = self.systematic(&kept, &calibration, monitor)?;
         }
         if !is_held {
             calibration.transform(&default_frame(&best.receivers));

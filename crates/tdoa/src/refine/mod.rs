@@ -19,6 +19,7 @@ mod refiner;
 mod reseed;
 mod rigid;
 mod solver;
+mod systematic;
 mod weighing;
 
 pub(crate) use cancel::{Cancelled, check};
@@ -29,4 +30,5 @@ pub(crate) use predicted::predicted_variances;
 pub(crate) use projection::{Motion, Projection, dot, gram};
 pub(crate) use refiner::{NetworkRefiner, RefineOptions, RefinedNetwork, SEARCH, residuals};
 pub(crate) use reseed::{place_transmitters, places_of_receiver, places_of_transmitter};
+pub(crate) use systematic::{Systematic, can_be_estimated, systematic};
 pub(crate) use weighing::{Cost, Weighing};
