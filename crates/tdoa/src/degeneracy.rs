@@ -3,7 +3,7 @@
 use hc::poly::{counted, one_or};
 use thiserror::Error;
 
-use crate::duplicates::{constant_difference, copied_transmitters, printed};
+use crate::duplicates::{Copied, constant_difference, copied_transmitters, printed};
 use crate::pseudoranges::Pseudoranges;
 
 /// A transmitter needs this many measurements to be kept: as many as its position and offset have
@@ -191,12 +191,17 @@ pub(crate) fn usable<const D: usize>(measured: &Pseudoranges) -> Result<Usable, 
             constant: crate::quantity::length(constant),
         });
     }
-    if let Some((a, b, constant)) = copied_transmitters(measured, &receivers, &transmitters) {
-        return Err(Degeneracy::IdenticalTransmitters {
-            first: measured.transmitter_names()[a].clone(),
-            second: measured.transmitter_names()[b].clone(),
-            constant: crate::quantity::length(constant),
-        });
+    if let Some(Copied { first, second, constant, certain }) = copied_transmitters(measured, &receivers, &transmitters)
+    {
+        let [first, second] = [first, second].map(|j| measured.transmitter_names()[j].clone());
+        let constant = crate::quantity::length(constant);
+        if certain {
+            return Err(Degeneracy::IdenticalTransmitters { first, second, constant });
+        }
+        warnings.push(format!(
+            "transmitters {first} and {second} measure the same up to a constant ({constant}): they stand in one place, or one is a copy of \
+             the other, which counts twice; if it is a copy, remove it"
+        ));
     }
     let distinct = transmitters.len() - repeated_transmitters(measured, &receivers, &transmitters);
     if !is_solvable::<D>(receivers.len(), distinct) {
