@@ -255,7 +255,13 @@ where
     let truth: Vec<Option<[f64; D]>> = receivers.iter().map(|&i| recording.truth[i]).collect();
     let mut options = CalibrateOptions::new();
     options.seed = seed;
-    let oracle = oracle(&measured, &truth, &options).map_err(Failure::unusable)?;
+    let oracle = match oracle(&measured, &truth, &options) {
+        // What is left of the recording determines nothing.
+        Err(CalibrateError::Degenerate(_) | CalibrateError::NotFound(_)) => {
+            return Ok("inf,inf,inf,inf,inf,false,false,false,0,0,0,0".to_string());
+        }
+        result => result.map_err(Failure::unusable)?,
+    };
     let best = oracle.truth.as_ref().map_or(f64::NAN, |truth| truth.receiver_rms);
     let started = thread_seconds();
     let found = calibrate(&measured, &options);

@@ -88,6 +88,13 @@ pub(super) const PLAN: &[Experiment] = &[
         100,
         1,
     ),
+    plain(
+        "small-rooms",
+        "calibrate --dimensions 3 --configuration 6r/6s,7r/5s,6r/7s,7r/6s,8r/5s,5r/10s,6r/8s,5r/12s,6r/12s,12r/5s,12r/6s,7r/12s \
+         --noise 1e-2 --outliers 0 --missing 0 --known-sigma",
+        100,
+        1,
+    ),
     Experiment {
         name: "recordings",
         command: "damaged --dimensions 3 --transmitters 8,12,24 --receivers 7,8",
