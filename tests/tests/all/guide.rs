@@ -55,6 +55,7 @@ fn run(command: &str, folder: &Path) -> Output {
         "five_point.rs" | "solver.rs" => folder.join(word).to_string_lossy().into_owned(),
         // Where a command makes an example, a copy is made.
         "examples/network" => folder.join("network").to_string_lossy().into_owned(),
+        "examples/room" => folder.join("room").to_string_lossy().into_owned(),
         word if word.starts_with("examples/") => root().join(word).to_string_lossy().into_owned(),
         // A file that an earlier command of the page made; xtask runs in the repository.
         word if word.ends_with(".start.json") => folder.join(word).to_string_lossy().into_owned(),
@@ -253,8 +254,11 @@ fn readme_and_contributing() {
     }
     run_page("README.md", folder.path());
     run_page("CONTRIBUTING.md", folder.path());
-    run_page("examples/network/README.md", folder.path());
-    // The example is what its page says it is.
-    let made = std::fs::read(folder.path().join("network/pseudoranges.csv")).expect("made");
-    assert!(made == std::fs::read(root().join("examples/network/pseudoranges.csv")).expect("example"));
+    // The examples are what their pages say they are.
+    for name in ["network", "room"] {
+        run_page(&format!("examples/{name}/README.md"), folder.path());
+        let made = std::fs::read(folder.path().join(name).join("pseudoranges.csv")).expect("made");
+        let file = root().join("examples").join(name).join("pseudoranges.csv");
+        assert!(made == std::fs::read(file).expect("example"), "{name}");
+    }
 }
