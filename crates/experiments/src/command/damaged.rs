@@ -100,7 +100,7 @@ impl Kind {
 }
 
 const HEADER: &str = "recording,receivers,transmitters,missing,outliers,seed,receiver_rms,oracle_rms,ratio,receiver_rms_scaled,from_oracle,\
-                      oracle_listed,unique,trusted,covered,ellipses,starts,processor_seconds";
+                      oracle_listed,unique,trusted,covered,covered_systematic,ellipses,starts,processor_seconds";
 const CANDIDATES: &str = "recording,triple,candidates,nearest";
 
 /// A candidate is near the truth if its receivers are within this share of the network's size.
@@ -175,7 +175,7 @@ where
     let mut summary = String::from(
         "recording,receivers,transmitters,missing,outliers,runs,within_1.1_of_oracle,receiver_rms_median,oracle_rms_median,ratio_median,\
          ratio_max,receiver_rms_scaled_median,oracle_found,oracle_among_alternatives,trusted,unique,unique_and_wrong,trusted_and_unlisted,\
-         coverage_95,processor_seconds_median\n",
+         coverage_95,coverage_95_systematic,processor_seconds_median\n",
     );
     let each = arguments.instances as usize;
     let mut first = 0;
@@ -215,6 +215,7 @@ fn sums(rows: &Rows, range: std::ops::Range<usize>) -> Vec<String> {
         count(both(&unique, &wrong)),
         count(both(&both(&trusted, &wrong), &not(&listed))),
         short(total("covered") / total("ellipses")),
+        short(total("covered_systematic") / total("ellipses")),
         typical("processor_seconds"),
     ]
 }
@@ -258,7 +259,7 @@ where
     let oracle = match oracle(&measured, &truth, &options) {
         // What is left of the recording determines nothing.
         Err(CalibrateError::Degenerate(_) | CalibrateError::NotFound(_)) => {
-            return Ok("inf,inf,inf,inf,inf,false,false,false,0,0,0,0".to_string());
+            return Ok("inf,inf,inf,inf,inf,false,false,false,0,0,0,0,0".to_string());
         }
         result => result.map_err(Failure::unusable)?,
     };
@@ -271,12 +272,16 @@ where
             found.compare(&truth);
             let (rms, scaled) =
                 found.truth.as_ref().map_or((f64::NAN, f64::NAN), |t| (t.receiver_rms, t.receiver_rms_scaled));
-            let (covered, ellipses) = coverage(&found, &truth);
+            let (covered, ellipses) = coverage(&found, &found.receiver_covariance, &truth);
+            // Where these are not estimated, the usual ones are all there is.
+            let wider =
+                found.systematic.as_ref().map_or(&found.receiver_covariance, |errors| &errors.receiver_covariance);
+            let (wider, _) = coverage(&found, wider, &truth);
             let from = apart(&found.receivers, &oracle.receivers).unwrap_or(f64::INFINITY);
             let near = |other: &[Option<[f64; D]>]| apart(other, &oracle.receivers).is_some_and(|rms| rms <= SAME);
             let listed = found.alternatives.iter().any(|other| near(&other.receivers));
             Ok(format!(
-                "{rms:.5},{best:.5},{:.4},{scaled:.5},{from:.5},{listed},{},{},{covered},{ellipses},{},{seconds:.4}",
+                "{rms:.5},{best:.5},{:.4},{scaled:.5},{from:.5},{listed},{},{},{covered},{wider},{ellipses},{},{seconds:.4}",
                 rms / best,
                 found.unique,
                 found.distrust().is_none(),
@@ -285,7 +290,7 @@ where
         }
         // No network is a failure of the run, not of the experiment.
         Err(CalibrateError::Degenerate(_) | CalibrateError::NotFound(_)) => {
-            Ok(format!("inf,{best:.5},inf,inf,inf,false,false,false,0,0,0,{seconds:.4}"))
+            Ok(format!("inf,{best:.5},inf,inf,inf,false,false,false,0,0,0,0,{seconds:.4}"))
         }
         Err(error) => Err(Failure::unusable(error)),
     }

@@ -115,7 +115,7 @@ pub fn judge<const D: usize>(
     trial.starts = calibration.starts;
     trial.redundancy = calibration.redundancy;
     let known: Vec<Option<[f64; D]>> = truth.receivers.iter().copied().map(Some).collect();
-    (trial.covered, trial.ellipses) = coverage(calibration, &known);
+    (trial.covered, trial.ellipses) = coverage(calibration, &calibration.receiver_covariance, &known);
     trial
 }
 
@@ -159,13 +159,18 @@ fn both<const D: usize>(found: &[Option<[f64; D]>], known: &[Option<[f64; D]>]) 
     found.iter().zip(known).filter_map(|(found, known)| Some(((*found)?, (*known)?))).unzip()
 }
 
-/// How many of the 95 % ellipses (ellipsoids) of the receivers hold the truth, and how many there are.
-/// The truth is aligned to the calibration by its receivers: that is the gauge of the covariances.
-pub fn coverage<const D: usize>(calibration: &Calibration<D>, truth: &[Option<[f64; D]>]) -> (usize, usize) {
+/// How many of the 95 % ellipses (ellipsoids) of the receivers hold the truth, and how many there are, by
+/// these covariances. The truth is aligned to the calibration by its receivers: that is the gauge of the
+/// covariances.
+pub fn coverage<const D: usize>(
+    calibration: &Calibration<D>,
+    covariances: &[Option<[[f64; D]; D]>],
+    truth: &[Option<[f64; D]>],
+) -> (usize, usize) {
     let (found, known) = both(&calibration.receivers, truth);
     let Some(alignment) = align(&known, &found, false) else { return (0, 0) };
     let Some(radius) = calibration.ellipse_radius else { return (0, 0) };
-    let nodes = calibration.receivers.iter().zip(truth).zip(&calibration.receiver_covariance);
+    let nodes = calibration.receivers.iter().zip(truth).zip(covariances);
     let (mut covered, mut ellipses) = (0, 0);
     for ((found, known), covariance) in nodes {
         let (Some(found), Some(known), Some(covariance)) = (found, known, covariance) else { continue };
