@@ -16,7 +16,7 @@ pub struct SystematicErrors<const D: usize = 2> {
     pub deviation: f64,
     /// How much more likely the measurements are with such errors (natural logarithm).
     pub gain: f64,
-    /// Whether noise alone gains as much in less than one network of a thousand.
+    /// Whether noise alone gains as much in about one network of a thousand at most.
     pub significant: bool,
     /// How many times as large the standard deviation of a receiver becomes, median of the receivers.
     pub factor: f64,
