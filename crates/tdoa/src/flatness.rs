@@ -1,10 +1,14 @@
-//! How flat a set of points is.
+//! How flat a set of points is, and the plane in which it nearly lies.
 
 use std::array::from_fn;
 
-use faer::Mat;
+use faer::{Mat, Side};
 
-use crate::points::{centroid, minus};
+use crate::points::{centroid, dot, minus};
+
+/// Ratio of the standard deviations of nodes across and along, below which they lie nearly in one line, or
+/// in space in one plane.
+pub(crate) const FLAT: f64 = 0.02;
 
 /// Ratio of the standard deviations of points along the axis on which they lie closest and the one on
 /// which they stretch farthest: 0 for points in one line, in space in one plane. 1 for so few that they
@@ -27,6 +31,40 @@ pub(crate) fn slenderness<const D: usize>(points: &[[f64; D]]) -> f64 {
     if large > 0.0 { (next.max(0.0) / large).sqrt() } else { 0.0 }
 }
 
+/// The plane of best fit of points in space.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Plane<const D: usize> {
+    centre: [f64; D],
+    /// Of length one.
+    pub(crate) normal: [f64; D],
+}
+
+impl<const D: usize> Plane<D> {
+    /// The plane nearest to these points; `None` if they lie nearly in one line, and in the plane.
+    pub(crate) fn through(points: &[[f64; D]]) -> Option<Plane<D>> {
+        if D != 3 || points.len() < 3 || slenderness(points) < FLAT {
+            return None;
+        }
+        let centre = centroid(points.iter());
+        let moment = |a: usize, b: usize| points.iter().map(|p| (p[a] - centre[a]) * (p[b] - centre[b])).sum::<f64>();
+        // Eigenvalues ascend.
+        let axes = Mat::from_fn(D, D, moment).self_adjoint_eigen(Side::Lower).ok()?;
+        let normal = from_fn(|k| axes.U()[(k, 0)]);
+        normal.iter().all(|x| x.is_finite()).then_some(Plane { centre, normal })
+    }
+
+    /// How far a point lies above the plane, which is the side that the normal shows.
+    pub(crate) fn height(&self, p: [f64; D]) -> f64 {
+        dot(minus(p, self.centre), self.normal)
+    }
+
+    /// The mirror image of a point in the plane.
+    pub(crate) fn mirrored(&self, p: [f64; D]) -> [f64; D] {
+        let height = self.height(p);
+        from_fn(|k| p[k] - 2.0 * height * self.normal[k])
+    }
+}
+
 /// Second moments of points along their principal axes, the largest first.
 fn variances<const D: usize>(points: &[[f64; D]]) -> [f64; D] {
     let centre = centroid(points.iter());
@@ -45,7 +83,8 @@ fn variances<const D: usize>(points: &[[f64; D]]) -> [f64; D] {
 
 #[cfg(test)]
 mod tests {
-    use super::{flatness, slenderness};
+    use super::{Plane, flatness, slenderness};
+    use crate::points::distance;
 
     #[test]
     fn flat_sets_of_points() {
@@ -62,5 +101,16 @@ mod tests {
         let plane = [[0.0, 0.0, 0.0], [side, 0.0, side], [0.0, 4.0, 0.0], [side, 4.0, side]];
         assert!(flatness(&plane) < 1e-15 && (slenderness(&plane) - 0.5).abs() < 1e-14);
         assert_eq!(flatness(&line[..3]), 1.0);
+    }
+    #[test]
+    fn points_are_mirrored_in_the_plane_of_others() {
+        // In the plane x + y + z = 6, whose normal is (1, 1, 1) / sqrt 3.
+        let plane = Plane::through(&[[6.0, 0.0, 0.0], [0.0, 6.0, 0.0], [0.0, 0.0, 6.0], [2.0, 2.0, 2.0]]).unwrap();
+        assert!((plane.height([0.0; 3]).abs() - 12f64.sqrt()).abs() < 1e-12);
+        assert!(distance(plane.mirrored([0.0; 3]), [4.0; 3]) < 1e-12);
+        assert!(distance(plane.mirrored([1.0, 2.0, 3.0]), [1.0, 2.0, 3.0]) < 1e-12);
+        let line = [[0.0; 3], [1.0; 3], [2.0; 3], [3.0; 3]];
+        assert!(Plane::through(&line).is_none() && Plane::through(&line[..2]).is_none());
+        assert!(Plane::through(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]).is_none());
     }
 }

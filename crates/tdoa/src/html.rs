@@ -112,6 +112,10 @@ fn facts<const D: usize>(calibration: &Calibration<D>, provenance: &Provenance) 
         ),
         ("Search", agreement(calibration)),
     ];
+    if !calibration.mirror_images.is_empty() {
+        let nodes: Vec<&str> = calibration.mirror_images.iter().map(|image| image.node.as_str()).collect();
+        list.push(("Mirror images", format!("of {}, hollow in the picture", nodes.join(", "))));
+    }
     if let Some(speed) = &calibration.speed {
         let value = speed.metres_per_second.map_or_else(
             || format!("{} times the assumed one", number(speed.factor, 6)),

@@ -158,7 +158,12 @@ impl<const D: usize> BestTwo<D> {
 }
 
 /// Damped Gauss-Newton steps with the weights of the loss, for position and (if asked) offset.
-fn polish<const D: usize>(sights: &[Sight<D>], start: Located<D>, with_offset: bool, loss: &Loss) -> Located<D> {
+pub(crate) fn polish<const D: usize>(
+    sights: &[Sight<D>],
+    start: Located<D>,
+    with_offset: bool,
+    loss: &Loss,
+) -> Located<D> {
     let mut best = start;
     let mut damping = 1e-3;
     for _ in 0..STEPS {

@@ -89,6 +89,10 @@ fn legend<const D: usize>(
         let h = row(canvas, "true position, and the error");
         canvas.cross([at[0], h], 5.0);
     }
+    if !calibration.mirror_images.is_empty() {
+        let h = row(canvas, "mirror image that fits as well");
+        canvas.ring([at[0], h], 3.5, ORANGE);
+    }
     if calibration.anchored.contains(&true) {
         let h = row(canvas, "receiver held at its known position");
         canvas.square([at[0], h], 9.0);
@@ -114,6 +118,7 @@ fn legend<const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::minimal::NodeKind;
     use crate::{CalibrateOptions, SimulateOptions, calibrate, simulate};
 
     #[test]
@@ -250,6 +255,29 @@ mod tests {
         // A marker is drawn from six pixels above its point.
         assert!(near(places[0][0], above[0]) && near(places[0][1], above[1] + 6.0));
         assert!(near(places[1][0], side[0]) && near(places[1][1], side[1] + 6.0));
+    }
+
+    #[test]
+    fn mirror_images_are_hollow() {
+        let mut calibration = in_space();
+        assert!(!picture(&calibration).contains("mirror"));
+        let image = |node: &str, kind, position| crate::MirrorImage {
+            node: node.to_string(),
+            kind,
+            position,
+            distance_from_plane: 1.0,
+            log_likelihood_loss: 0.0,
+        };
+        let near = calibration.receivers[0].unwrap();
+        calibration.mirror_images = vec![
+            image("s", NodeKind::Transmitters, near),
+            image("r", NodeKind::Receivers, near),
+            image("s", NodeKind::Transmitters, [1e9, f64::NAN, 0.0]),
+        ];
+        let svg = picture(&calibration);
+        // Two in both views, and one in the legend; the one that is nowhere is left out.
+        assert_eq!(svg.matches("class=\"mirror\"").count(), 5);
+        assert!(svg.contains("mirror image that fits as well") && !svg.contains("NaN"));
     }
 
     #[test]

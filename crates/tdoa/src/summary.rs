@@ -147,6 +147,9 @@ pub(crate) fn uniqueness<const D: usize>(calibration: &Calibration<D>) -> &'stat
         _ if !calibration.alternatives.is_empty() => {
             "NOT UNIQUE: receivers and transmitters may lie elsewhere, OTHER NETWORKS FIT AS WELL, see the warnings"
         }
+        _ if !calibration.mirror_images.is_empty() => {
+            "NOT UNIQUE: SOME NODES MAY LIE ON THE OTHER SIDE OF A PLANE, see the warnings"
+        }
         _ if !calibration.receiver_errors.is_empty() => {
             "NOT UNIQUE: A RECEIVER HAS ERRORS OF ITS OWN, see the warnings"
         }

@@ -27,6 +27,7 @@ mod tdoa_input;
 mod tdoa_interrupt;
 mod tdoa_known;
 mod tdoa_mat;
+mod tdoa_mirror;
 #[cfg(unix)]
 mod tdoa_mpi;
 mod tdoa_real;

@@ -90,6 +90,7 @@ class Calibration:
     data: dict[str, Any]
     receiver_names: list[str]
     transmitter_names: list[str]
+    mirror_images: list[dict[str, Any]]
     warnings: list[str]
     unique: bool
     sigma: float

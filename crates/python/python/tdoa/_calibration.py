@@ -68,6 +68,9 @@ class Calibration:
         shows an error of its own.
     alternatives : list of Alternative
         Other networks that do, best first.
+    mirror_images : list of dict
+        In space, places of single nodes on the other side of a plane that explain the measurements as well: `node`, `kind`
+        ("receiver" or "transmitter"), `position`, `distance_from_plane`, `log_likelihood_loss`.
     warnings : list of str
         What may be wrong, with names and a remedy.
     sigma : float
@@ -97,6 +100,7 @@ class Calibration:
             self.data = json.loads(text)
             self.receiver_names = self.data["receiver_names"]
             self.transmitter_names = self.data["transmitter_names"]
+            self.mirror_images = self.data.get("mirror_images", [])
             self.warnings = self.data["warnings"]
             self.unique = self.data["unique"]
             self.sigma = self.data["sigma"]

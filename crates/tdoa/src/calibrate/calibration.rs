@@ -3,6 +3,7 @@
 
 use super::dimension_test::DimensionTest;
 use super::known::{Anchors, SpeedEstimate};
+use super::mirror::MirrorImage;
 use super::receiver_errors::ReceiverError;
 use super::residuals::{Residual, Residuals};
 use super::systematic::SystematicErrors;
@@ -75,7 +76,7 @@ pub struct Calibration<const D: usize = 2> {
     /// What the covariances are relative to.
     pub gauge: Cow<'static, str>,
     /// Whether the network is unique. This means that no other network that was found explains the
-    /// measurements about as well, more than one or two starts of the search found this one, and
+    /// measurements about as well, nor a mirror image of a node, more than one or two starts of the search found this one, and
     /// the data fit. Also, the receivers are determined, none with a deviation larger than the
     /// network; known positions do not contradict the measurements; and no receiver shows an error
     /// of its own that was left in.
@@ -86,6 +87,13 @@ pub struct Calibration<const D: usize = 2> {
     pub unique_transmitters: bool,
     /// Other networks that explain the measurements about as well, best first.
     pub alternatives: Vec<Alternative<D>>,
+    /// In space, places of single nodes on the other side of a plane that explain the measurements as well:
+    /// transmitters where the receivers that hear them lie in one plane, receivers likewise. Each node has
+    /// its side for itself, relative to all others, so that k of them leave 2^k networks, or 2^(k-1) where
+    /// the frame does not tell the sides of the plane. Networks that differ in these sides alone are no
+    /// alternatives. None in the plane.
+    #[serde(default = "Vec::new", skip_serializing_if = "Vec::is_empty")]
+    pub mirror_images: Vec<MirrorImage<D>>,
     /// Whether the measurements fit a network of these dimensions.
     #[serde(default = "agree")]
     pub fits: bool,
@@ -213,6 +221,7 @@ impl<const D: usize> Calibration<D> {
         for other in &mut self.alternatives {
             other.receivers.iter_mut().chain(&mut other.transmitters).for_each(point);
         }
+        self.mirror_images.iter_mut().for_each(|image| image.position = map.apply(image.position));
         if let Some(truth) = &mut self.truth {
             truth.points().for_each(point);
         }
@@ -246,6 +255,9 @@ impl<const D: usize> Calibration<D> {
         }
         if let Some(systematic) = &mut self.systematic {
             systematic.rescale(factor);
+        }
+        for image in self.mirror_images.iter_mut() {
+            image.distance_from_plane *= factor;
         }
         self.sigma *= factor;
         self.residual_rms *= factor;

@@ -4,6 +4,7 @@
 use super::deviation::median_size;
 use super::finish::finish;
 use super::known::{Anchors, SpeedEstimate};
+use super::mirror::put_on_known_sides;
 use super::one_sided::noise;
 use super::options::{CalibrateError, CalibrateOptions};
 use crate::degeneracy::Usable;
@@ -108,6 +109,7 @@ impl<const D: usize> Free<'_, D> {
         }
         let observations = observations.holding(&held);
         let observations = observations.pinned(&places.pins(sigma));
+        ranked.iter_mut().for_each(|refined| put_on_known_sides(&observations, &mut refined.network));
         // Where few measurements were left over, the free network took up most of the noise.
         let first = known.unwrap_or_else(|| deviation.max(median_size(&observations, &ranked[0].network) / 0.6745));
         let (ranked, deviation) = finish(&observations, ranked, first, known.is_some(), floor, options, monitor)?;

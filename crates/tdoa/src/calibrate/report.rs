@@ -5,6 +5,7 @@ use super::calibration::{Alternative, Calibration};
 use super::delays::without_errors;
 use super::deviation::{inlier_deviation, typical_deviation};
 use super::known::{Anchors, SpeedEstimate};
+use super::mirror::{MirrorImage, Mirrored, Sides, differs_in_sides};
 use super::near::{BEYOND, Neighbour, Reason, widen};
 use super::one_sided::{Information, LEAST_REDUNDANCY};
 use super::options::{CalibrateError, CalibrateOptions, Errors, ReceiverDelays};
@@ -12,11 +13,13 @@ use super::orientation::looks_transposed;
 use super::receiver_errors::Fault;
 use super::residuals::{Residual, Residuals};
 use super::same::{same_receivers, same_transmitters};
+use super::sides::warn_of_sides;
 use super::submaps::overlap;
 use super::warnings::{doubtful_receivers, warn_of_nodes};
 use crate::align::{Transform, align, first_axes, frame};
 use crate::cells::Cells;
 use crate::degeneracy::{Usable, list, space};
+use crate::minimal::NodeKind;
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::points::trace;
@@ -125,6 +128,18 @@ impl<const D: usize> Solved<'_, D> {
                     .to_string(),
             );
         }
+        let sides = Sides {
+            observations: self.observations,
+            kept: &kept,
+            network: best,
+            deviation: sigma,
+            uncertainty: &uncertainty,
+            margin: options.alternative_margin,
+        };
+        let mut mirrored = sides.mirror_images(monitor)?;
+        let placeless = |i: &usize| doubtful.contains(i) || uncertainty.loose.contains(i);
+        mirrored.retain(|image| image.kind == NodeKind::Transmitters || !placeless(&image.index));
+        warn_of_sides(self.centred, best, &uncertainty, &mirrored, &mut warnings);
         let determined = warn_of_nodes(self.centred, best, &kept, &uncertainty, noise_known, &doubtful, &mut warnings)
             && !transposed
             && 2 * doubtful.len() < best.receivers.len();
@@ -153,6 +168,7 @@ impl<const D: usize> Solved<'_, D> {
         let mut others: Vec<(&Network<D>, f64, Reason<D>)> =
             others.chain(apart.iter().map(|other| (&other.network, other.loss, other.reason))).collect();
         others.retain(|(_, loss, _)| *loss <= options.alternative_margin);
+        others.retain(|&(other, _, reason)| reason != Reason::Found || !differs_in_sides(best, other, &mirrored));
         others.sort_by(|a, b| a.1.total_cmp(&b.1));
         let alternatives: Vec<Alternative<D>> = others
             .iter()
@@ -230,6 +246,7 @@ impl<const D: usize> Solved<'_, D> {
             && determined
             && self.contradiction.is_none()
             && self.left.is_empty();
+        let of_kind = |kind: NodeKind| mirrored.iter().filter(|image| image.kind == kind).count();
         let transmitters: Vec<_> = uncertainty.transmitters.iter().map(|c| c.map(|c| c.rows)).collect();
         let offset_std: Vec<_> = uncertainty.transmitters.iter().map(|c| c.map(|c| c.corner.max(0.0).sqrt())).collect();
         let mut calibration = Calibration {
@@ -263,10 +280,11 @@ impl<const D: usize> Solved<'_, D> {
                     "relative to the receivers of known position, which have no error, at the estimated propagation speed"
                 }
             }),
-            unique: alternatives.is_empty() && sure,
-            unique_receivers: receivers_agree && sure,
-            unique_transmitters: transmitters_agree && sure,
+            unique: alternatives.is_empty() && mirrored.is_empty() && sure,
+            unique_receivers: receivers_agree && of_kind(NodeKind::Receivers) == 0 && sure,
+            unique_transmitters: transmitters_agree && 10 * of_kind(NodeKind::Transmitters) <= columns.len() && sure,
             alternatives,
+            mirror_images: mirrored.iter().map(|image| self.mirror_image(image)).collect(),
             dimensions: D,
             fits,
             planar: fits && D == 2,
@@ -304,6 +322,20 @@ impl<const D: usize> Solved<'_, D> {
             calibration.put_on(anchors, rows, is_held);
         }
         Ok(calibration)
+    }
+
+    fn mirror_image(&self, image: &Mirrored<D>) -> MirrorImage<D> {
+        let names = match image.kind {
+            NodeKind::Receivers => self.centred.receiver_names(),
+            NodeKind::Transmitters => self.centred.transmitter_names(),
+        };
+        MirrorImage {
+            node: names[image.index].clone(),
+            kind: image.kind,
+            position: image.position,
+            distance_from_plane: image.height,
+            log_likelihood_loss: image.loss,
+        }
     }
 
     /// Whether rows have the offsets of transmitters, and the network that was found leaves residuals

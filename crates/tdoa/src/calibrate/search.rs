@@ -8,7 +8,7 @@ use super::hypotheses::Hypotheses;
 use super::near::minima;
 use super::options::{CalibrateError, CalibrateOptions};
 use super::ranking::truncated_cost;
-use super::same::{distinct, same};
+use super::same::{distinct, same, same_but_for_sides};
 use super::unfinished::Unfinished;
 use crate::loss::{Loss, SEARCH_NU};
 use crate::network::Network;
@@ -168,8 +168,9 @@ impl<const D: usize> Search<'_, D> {
     }
 }
 
-/// How many of `all` ended in the basin of `best`.
+/// How many of `all` ended in the basin of `best`. Where receivers lie in one plane, transmitters have mirror
+/// images, and hardly two starts choose the same side for all of them.
 fn starts_in<const D: usize>(best: &RefinedNetwork<D>, all: &[RefinedNetwork<D>]) -> usize {
-    let agrees = |r: &&RefinedNetwork<D>| r.objective < best.objective + SAME_BASIN && same(&r.network, &best.network);
-    all.iter().filter(agrees).count()
+    let near = all.iter().filter(|r| r.objective < best.objective + SAME_BASIN);
+    near.filter(|r| same_but_for_sides(&r.network, &best.network)).count()
 }

@@ -1,7 +1,6 @@
 //! Warnings about the geometry of a result, with the names of the nodes and a remedy.
 
 use crate::degeneracy::{least_per_transmitter, list};
-use crate::flatness::{flatness, slenderness};
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::points::{distance, trace};
@@ -10,10 +9,6 @@ use crate::refine::Covariance;
 
 /// Receivers whose inliers may agree by chance are expected less often than this in a calibration.
 pub(super) const BY_CHANCE: f64 = 0.01;
-
-/// Ratio of the standard deviations of nodes across and along, below which they lie nearly in one line, or
-/// in space in one plane.
-const FLAT: f64 = 0.02;
 
 /// Receivers most of whose measurements are outliers.
 fn mostly_wrong<const D: usize>(measured: &Pseudoranges, kept: &Observations<D>) -> Vec<usize> {
@@ -64,7 +59,7 @@ pub(super) fn agree_by_chance<const D: usize>(all: usize, inliers: usize, width:
     (2 * subsets) as f64 * tail
 }
 
-/// Warnings about the geometry: in line, in one place, poorly tied down. Returns whether most
+/// Warnings about the geometry: in one place, poorly tied down. Returns whether most
 /// receivers are determined, as far as the noise is known.
 pub(super) fn warn_of_nodes<const D: usize>(
     measured: &Pseudoranges,
@@ -76,20 +71,6 @@ pub(super) fn warn_of_nodes<const D: usize>(
     warnings: &mut Vec<String>,
 ) -> bool {
     let size = network.size();
-    for (kind, points) in [("receivers", &network.receivers), ("transmitters", &network.transmitters)] {
-        // In one line of space they are in a plane too, which is the lesser evil.
-        let (thin, what, width) = match (slenderness(points), flatness(points)) {
-            (thin, _) if thin < FLAT => (thin, "line", "width"),
-            (_, thin) => (thin, "plane", "height"),
-        };
-        if thin < FLAT {
-            warnings.push(format!(
-                "the {kind} lie nearly in one {what} ({width} {:.1} % of length): on which side of it the other nodes lie is \
-                 poorly determined; move some {kind} off the {what}",
-                100.0 * thin
-            ));
-        }
-    }
     let names = measured.receiver_names();
     for (a, p) in network.receivers.iter().enumerate() {
         for (b, q) in network.receivers.iter().enumerate().skip(a + 1) {

@@ -2,14 +2,17 @@
 
 use crate::network::Network;
 use crate::pseudoranges::Pseudoranges;
+use serde::{Deserialize, Serialize};
 use std::fmt::{self, Display, Formatter};
 
-/// One of the two kinds of nodes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+/// One of the two kinds of nodes; of a single node in JSON, `"receiver"` or `"transmitter"`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum NodeKind {
     /// Receivers.
+    #[serde(rename = "receiver")]
     Receivers,
     /// Transmitters.
+    #[serde(rename = "transmitter")]
     Transmitters,
 }
 

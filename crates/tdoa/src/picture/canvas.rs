@@ -133,6 +133,14 @@ impl Canvas {
         ));
     }
 
+    /// The outline of a circle about a point.
+    pub(super) fn ring(&mut self, at: [f64; 2], radius: f64, colour: &str) {
+        self.add(format_args!(
+            r#"<circle class="mirror" cx="{:.2}" cy="{:.2}" r="{radius}" fill="none" stroke="{colour}"/>"#,
+            at[0], at[1]
+        ));
+    }
+
     pub(super) fn triangle(&mut self, at: [f64; 2], radius: f64, colour: &str) {
         let (dx, dy) = (0.866 * radius, 0.5 * radius);
         self.add(format_args!(

@@ -34,6 +34,7 @@ impl Layout {
         let shown: Vec<[f64; D]> = receivers
             .iter()
             .chain(transmitters.iter().filter(near))
+            .chain(calibration.mirror_images.iter().map(|image| &image.position).filter(near))
             .chain(calibration.truth.iter().flat_map(|truth| truth.positions.iter().flatten()))
             .copied()
             .collect();

@@ -4,6 +4,7 @@
 use super::canvas::{Canvas, Map, nice};
 use super::labels::Labels;
 use crate::calibrate::Calibration;
+use crate::minimal::NodeKind;
 use crate::quantity::{coordinate, length};
 
 /// Width of the picture.
@@ -101,6 +102,10 @@ impl View {
         shows: impl Fn(&[f64; D]) -> bool,
         radius: f64,
     ) {
+        for image in calibration.mirror_images.iter().filter(|image| shows(&image.position)) {
+            let colour = if image.kind == NodeKind::Receivers { BLUE } else { ORANGE };
+            canvas.ring(self.to(image.position), 3.5, colour);
+        }
         let nodes = calibration.transmitters.iter().zip(&calibration.transmitter_covariance);
         for (position, covariance) in nodes {
             if let Some(p) = position.filter(&shows) {

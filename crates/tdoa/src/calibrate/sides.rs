@@ -1,0 +1,89 @@
+//! Warnings about nodes in one line or one plane: the sides on which others lie, and heights that are less
+//! certain than the rest.
+
+use super::mirror::Mirrored;
+use crate::degeneracy::list;
+use crate::flatness::{FLAT, Plane, flatness, slenderness};
+use crate::median::median;
+use crate::minimal::NodeKind;
+use crate::network::Network;
+use crate::points::{dot, trace};
+use crate::pseudoranges::Pseudoranges;
+use crate::quantity::{length, number};
+use crate::refine::Covariance;
+
+/// Ratio of the standard deviations across a plane and along it from which on it is worth a word.
+const LESS_CERTAIN: f64 = 1.5;
+
+/// Warns of receivers and of transmitters in one line, in space in one plane, and of mirror images.
+pub(super) fn warn_of_sides<const D: usize>(
+    measured: &Pseudoranges,
+    network: &Network<D>,
+    uncertainty: &Covariance<D>,
+    images: &[Mirrored<D>],
+    warnings: &mut Vec<String>,
+) {
+    let (receivers, transmitters) = (NodeKind::Receivers, NodeKind::Transmitters);
+    for (kind, points, other, names) in [
+        (receivers, &network.receivers, transmitters, measured.transmitter_names()),
+        (transmitters, &network.transmitters, receivers, measured.receiver_names()),
+    ] {
+        let mirrored: Vec<String> =
+            images.iter().filter(|image| image.kind == other).map(|image| names[image.index].clone()).collect();
+        let sides = (!mirrored.is_empty()).then(|| format!("{} of {} {other}", mirrored.len(), names.len()));
+        let named = list(&mirrored);
+        // In one line of space they are in a plane too, which is the lesser evil.
+        let (thin, what, width) = match (slenderness(points), flatness(points)) {
+            (thin, _) if thin < FLAT => (thin, "line", "width"),
+            (_, thin) => (thin, "plane", "height"),
+        };
+        let flat = format!("the {kind} lie nearly in one {what} ({width} {:.1} % of length)", 100.0 * thin);
+        let across = if what == "plane" { across(points, network, uncertainty) } else { None };
+        let uncertain = across.map(|[across, along]| {
+            format!(
+                "standard deviations across it are {} times those along it (medians {} and {})",
+                number(across / along, 2),
+                length(across),
+                length(along)
+            )
+        });
+        let remedy = format!("move some {kind} off the {what}");
+        match (thin < FLAT, sides, uncertain) {
+            (true, Some(sides), uncertain) => {
+                let uncertain = uncertain.map_or_else(String::new, |uncertain| format!("; {uncertain}"));
+                warnings.push(format!(
+                    "{flat}: {sides} may lie on the other side of it, {named}, where they fit as well (see mirror_images)\
+                     {uncertain}; {remedy}"
+                ));
+            }
+            (false, Some(sides), _) => warnings.push(format!(
+                "{sides} may lie on the other side of the plane of the {kind} that they were measured with, {named}: they fit as well there \
+                 (see mirror_images); measure them with {kind} off that plane"
+            )),
+            (true, None, Some(uncertain)) => warnings.push(format!("{flat}: {uncertain}; {remedy}")),
+            // Where the deviations are known, no side that is open would have been missed.
+            (true, None, None) if D == 3 && what == "plane" && !uncertainty.receivers.is_empty() => {}
+            (true, None, None) => warnings.push(format!(
+                "{flat}: on which side of it the other nodes lie is poorly determined; {remedy}"
+            )),
+            (false, None, _) => {}
+        }
+    }
+}
+
+/// Standard deviations of all nodes across the plane of these points and along it, medians; `None` if they
+/// are not known, there is no plane, or they hardly differ.
+fn across<const D: usize>(points: &[[f64; D]], network: &Network<D>, uncertainty: &Covariance<D>) -> Option<[f64; 2]> {
+    let plane = Plane::through(points)?;
+    let all = uncertainty.transmitters.iter().flatten().map(|c| &c.rows).chain(&uncertainty.receivers);
+    let (across, along) = all
+        .map(|c| {
+            let square = dot(plane.normal, c.map(|row| dot(row, plane.normal)));
+            (square.max(0.0).sqrt(), (0.5 * (trace(c) - square)).max(0.0).sqrt())
+        })
+        .unzip();
+    let [across, along] = [median(across)?, median(along)?];
+    // Exact measurements leave nothing but rounding.
+    let told = across > LESS_CERTAIN * along && along > 1e-9 * network.size();
+    told.then_some([across, along])
+}
