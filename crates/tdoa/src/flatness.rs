@@ -65,6 +65,21 @@ impl<const D: usize> Plane<D> {
     }
 }
 
+/// Standard deviation of points along the axis on which they stretch second farthest, and that axis. `None`
+/// for fewer than three points.
+pub(crate) fn breadth<const D: usize>(points: &[[f64; D]]) -> Option<(f64, [f64; D])> {
+    if points.len() <= 2 {
+        return None;
+    }
+    let centre = centroid(points.iter());
+    let moment = |a: usize, b: usize| points.iter().map(|p| (p[a] - centre[a]) * (p[b] - centre[b])).sum::<f64>();
+    // Eigenvalues ascend.
+    let axes = Mat::from_fn(D, D, moment).self_adjoint_eigen(Side::Lower).ok()?;
+    let second = D - 2;
+    let width = (axes.S()[second].max(0.0) / points.len() as f64).sqrt();
+    width.is_finite().then(|| (width, from_fn(|k| axes.U()[(k, second)])))
+}
+
 /// Second moments of points along their principal axes, the largest first.
 fn variances<const D: usize>(points: &[[f64; D]]) -> [f64; D] {
     let centre = centroid(points.iter());
@@ -83,7 +98,7 @@ fn variances<const D: usize>(points: &[[f64; D]]) -> [f64; D] {
 
 #[cfg(test)]
 mod tests {
-    use super::{Plane, flatness, slenderness};
+    use super::{Plane, breadth, flatness, slenderness};
     use crate::points::distance;
 
     #[test]
@@ -102,6 +117,16 @@ mod tests {
         assert!(flatness(&plane) < 1e-15 && (slenderness(&plane) - 0.5).abs() < 1e-14);
         assert_eq!(flatness(&line[..3]), 1.0);
     }
+    #[test]
+    fn the_second_axis_of_a_box() {
+        // Corners of a box of 6 by 4 by 2, whose sides are along y, z and x.
+        let corner = |k: usize| [[-1.0, 1.0][k % 2], [-3.0, 3.0][k / 2 % 2], [-2.0, 2.0][k / 4]];
+        let corners: Vec<[f64; 3]> = (0..8).map(corner).collect();
+        let (width, axis) = breadth(&corners).unwrap();
+        assert!((width - 2.0).abs() < 1e-12 && (axis[2].abs() - 1.0).abs() < 1e-12, "{width} {axis:?}");
+        assert_eq!(breadth(&corners[..2]), None);
+    }
+
     #[test]
     fn points_are_mirrored_in_the_plane_of_others() {
         // In the plane x + y + z = 6, whose normal is (1, 1, 1) / sqrt 3.

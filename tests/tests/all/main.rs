@@ -35,3 +35,4 @@ mod tdoa_report;
 mod tdoa_simulate;
 mod tdoa_solve;
 mod tdoa_space;
+mod tdoa_space_input;

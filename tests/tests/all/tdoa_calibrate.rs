@@ -129,7 +129,7 @@ fn a_transposed_table_is_refused() {
     let output = run("tdoa", &["calibrate", text(&file)]);
     assert_eq!(output.status.code(), Some(1));
     let error = String::from_utf8_lossy(&output.stderr);
-    assert!(error.contains("do not determine where most receivers are"), "{error}");
+    assert!(error.contains("do not determine where most nodes are"), "{error}");
     let summary = String::from_utf8_lossy(&output.stdout);
     assert!(summary.contains("NOT TO BE TRUSTED") && summary.contains("are receivers the rows"), "{summary}");
 }

@@ -168,7 +168,7 @@ class Calibration:
 
     @property
     def trusted(self):
-        """Whether the measurements fit a network of these dimensions and the known positions, and determine where most receivers are."""
+        """Whether the measurements fit a network of these dimensions and the known positions, and determine where most nodes are."""
         return self.data.get("fits", self.data["planar"]) and self.data["determined"] and self.data.get("anchors_agree", True)
 
     def plot(self, ax=None, *, names=True, view="xy"):

@@ -104,7 +104,8 @@ pub struct Calibration<const D: usize = 2> {
     pub dimension_test: Option<DimensionTest>,
     /// Whether the measurements determine at least half of the receivers to a tenth of the
     /// network's size; true if the noise is not known. This is false, for instance, for a table
-    /// with receivers as columns.
+    /// with receivers as columns. It is false, too, where receivers or transmitters lie in one line of
+    /// space, about which the others may turn.
     pub determined: bool,
     /// Whether the known positions agree with the measurements, to the same share of the network's
     /// size to which the measurements have to agree with a plane; true if no positions are known.
@@ -183,7 +184,7 @@ impl<const D: usize> Calibration<D> {
                 "the measurements do not fit a network in space"
             })
         } else if !self.determined {
-            Some("the measurements do not determine where most receivers are")
+            Some("the measurements do not determine where most nodes are")
         } else if !self.anchors_agree {
             Some("the known positions contradict the measurements")
         } else {

@@ -139,8 +139,9 @@ impl<const D: usize> Solved<'_, D> {
         let mut mirrored = sides.mirror_images(monitor)?;
         let placeless = |i: &usize| doubtful.contains(i) || uncertainty.loose.contains(i);
         mirrored.retain(|image| image.kind == NodeKind::Transmitters || !placeless(&image.index));
-        warn_of_sides(self.centred, best, &uncertainty, &mirrored, &mut warnings);
+        let turn = warn_of_sides(self.centred, best, &uncertainty, &mirrored, &mut warnings);
         let determined = warn_of_nodes(self.centred, best, &kept, &uncertainty, noise_known, &doubtful, &mut warnings)
+            && !turn
             && !transposed
             && 2 * doubtful.len() < best.receivers.len();
         let anchors_agree = self.contradiction.is_none_or(|off| off <= options.planar_limit * best.size());

@@ -3,7 +3,7 @@
 
 use super::mirror::Mirrored;
 use crate::degeneracy::list;
-use crate::flatness::{FLAT, Plane, flatness, slenderness};
+use crate::flatness::{FLAT, Plane, breadth, flatness, slenderness};
 use crate::median::median;
 use crate::minimal::NodeKind;
 use crate::network::Network;
@@ -15,19 +15,35 @@ use crate::refine::Covariance;
 /// Ratio of the standard deviations across a plane and along it from which on it is worth a word.
 const LESS_CERTAIN: f64 = 1.5;
 
-/// Warns of receivers and of transmitters in one line, in space in one plane, and of mirror images.
+/// Points lie in one line, as far as is known, if their width is less than so many of its standard deviations.
+const WIDE: f64 = 4.0;
+
+/// Warns of receivers and of transmitters in one line, in space in one plane, and of mirror images. Returns
+/// whether nodes may turn about a line of space, so that nothing tells where they are.
 pub(super) fn warn_of_sides<const D: usize>(
     measured: &Pseudoranges,
     network: &Network<D>,
     uncertainty: &Covariance<D>,
     images: &[Mirrored<D>],
     warnings: &mut Vec<String>,
-) {
+) -> bool {
+    let mut turn = false;
+    let of_receivers: Vec<&[[f64; D]; D]> = uncertainty.receivers.iter().collect();
+    let of_transmitters: Vec<&[[f64; D]; D]> = uncertainty.transmitters.iter().flatten().map(|c| &c.rows).collect();
     let (receivers, transmitters) = (NodeKind::Receivers, NodeKind::Transmitters);
-    for (kind, points, other, names) in [
-        (receivers, &network.receivers, transmitters, measured.transmitter_names()),
-        (transmitters, &network.transmitters, receivers, measured.receiver_names()),
+    for (kind, points, covariances, other, names) in [
+        (receivers, &network.receivers, of_receivers, transmitters, measured.transmitter_names()),
+        (transmitters, &network.transmitters, of_transmitters, receivers, measured.receiver_names()),
     ] {
+        // In the plane, a line leaves mirror images alone.
+        if D > 2 && in_line(points, &covariances) {
+            turn = true;
+            warnings.push(format!(
+                "the {kind} lie in one line, as far as the measurements tell: the {other} may be anywhere around it, and the places given for \
+                 them are some of many; move some {kind} off the line"
+            ));
+            continue;
+        }
         let mirrored: Vec<String> =
             images.iter().filter(|image| image.kind == other).map(|image| names[image.index].clone()).collect();
         let sides = (!mirrored.is_empty()).then(|| format!("{} of {} {other}", mirrored.len(), names.len()));
@@ -69,6 +85,16 @@ pub(super) fn warn_of_sides<const D: usize>(
             (false, None, _) => {}
         }
     }
+    turn
+}
+
+/// Whether the width of points is zero, or not known to be more.
+fn in_line<const D: usize>(points: &[[f64; D]], covariances: &[&[[f64; D]; D]]) -> bool {
+    let Some((width, axis)) = breadth(points) else { return false };
+    // Of most of them: far nodes have errors of any size.
+    let squares = covariances.iter().map(|c| dot(axis, c.map(|row| dot(row, axis))).max(0.0));
+    let error = median(squares.collect()).map_or(0.0, f64::sqrt);
+    slenderness(points) < FLAT || width < WIDE * error
 }
 
 /// Standard deviations of all nodes across the plane of these points and along it, medians; `None` if they
