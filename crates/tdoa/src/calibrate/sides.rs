@@ -88,13 +88,16 @@ pub(super) fn warn_of_sides<const D: usize>(
     turn
 }
 
-/// Whether the width of points is zero, or not known to be more.
+/// Whether the width of points is not known to be more than zero; by its share of the length alone where
+/// errors are not known.
 fn in_line<const D: usize>(points: &[[f64; D]], covariances: &[&[[f64; D]; D]]) -> bool {
+    if covariances.is_empty() {
+        return slenderness(points) < FLAT;
+    }
     let Some((width, axis)) = breadth(points) else { return false };
-    // Of most of them: far nodes have errors of any size.
+    // Of most of them: a few far nodes have errors of any size, and make the others look slender.
     let squares = covariances.iter().map(|c| dot(axis, c.map(|row| dot(row, axis))).max(0.0));
-    let error = median(squares.collect()).map_or(0.0, f64::sqrt);
-    slenderness(points) < FLAT || width < WIDE * error
+    width < WIDE * median(squares.collect()).map_or(0.0, f64::sqrt)
 }
 
 /// Standard deviations of all nodes across the plane of these points and along it, medians; `None` if they
@@ -112,4 +115,30 @@ fn across<const D: usize>(points: &[[f64; D]], network: &Network<D>, uncertainty
     // Exact measurements leave nothing but rounding.
     let told = across > LESS_CERTAIN * along && along > 1e-9 * network.size();
     told.then_some([across, along])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::in_line;
+
+    #[test]
+    fn a_line_is_one_as_far_as_its_errors_go() {
+        let points: Vec<[f64; 3]> = (0..12).map(|k| [k as f64, [0.0, 0.05][k % 2], 0.0]).collect();
+        let errors = |deviation: f64| {
+            let square = deviation * deviation;
+            [[square, 0.0, 0.0], [0.0, square, 0.0], [0.0, 0.0, square]]
+        };
+        // Half of the points are 5 cm beside the others: a width of 2.5 cm.
+        for (deviation, expected) in [(0.002, false), (0.006, false), (0.007, true), (0.1, true)] {
+            let error = errors(deviation);
+            assert_eq!(in_line(&points, &vec![&error; 12]), expected, "{deviation}");
+        }
+        // A far point of uncertain place makes no line of the rest.
+        let mut far: Vec<[f64; 3]> = points.iter().map(|p| [p[0], 40.0 * p[1], p[0] % 3.0]).collect();
+        far.push([0.0, 0.0, 3000.0]);
+        let (near, wide) = (errors(0.01), errors(500.0));
+        let all: Vec<_> = (0..13).map(|k| if k < 12 { &near } else { &wide }).collect();
+        assert!(!in_line(&far, &all));
+        assert!(in_line(&points[..3].repeat(2).iter().map(|p| [p[0], 0.0, 0.0]).collect::<Vec<_>>(), &[]));
+    }
 }
