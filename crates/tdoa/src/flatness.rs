@@ -45,11 +45,8 @@ impl<const D: usize> Plane<D> {
         if D != 3 || points.len() < 3 || slenderness(points) < FLAT {
             return None;
         }
-        let centre = centroid(points.iter());
-        let moment = |a: usize, b: usize| points.iter().map(|p| (p[a] - centre[a]) * (p[b] - centre[b])).sum::<f64>();
-        // Eigenvalues ascend.
-        let axes = Mat::from_fn(D, D, moment).self_adjoint_eigen(Side::Lower).ok()?;
-        let normal = from_fn(|k| axes.U()[(k, 0)]);
+        let (centre, axes) = axes(points)?;
+        let normal = axes[0];
         normal.iter().all(|x| x.is_finite()).then_some(Plane { centre, normal })
     }
 
@@ -71,13 +68,21 @@ pub(crate) fn breadth<const D: usize>(points: &[[f64; D]]) -> Option<(f64, [f64;
     if points.len() <= 2 {
         return None;
     }
+    let (centre, axes) = axes(points)?;
+    let axis = axes[D - 2];
+    // By the points and not by the moments, which lose half of the digits.
+    let squares = points.iter().map(|p| dot(minus(*p, centre), axis).powi(2));
+    let width = (squares.sum::<f64>() / points.len() as f64).sqrt();
+    width.is_finite().then_some((width, axis))
+}
+
+/// The centroid of points and their principal axes, of length one, the one on which they lie closest first.
+fn axes<const D: usize>(points: &[[f64; D]]) -> Option<([f64; D], [[f64; D]; D])> {
     let centre = centroid(points.iter());
     let moment = |a: usize, b: usize| points.iter().map(|p| (p[a] - centre[a]) * (p[b] - centre[b])).sum::<f64>();
     // Eigenvalues ascend.
     let axes = Mat::from_fn(D, D, moment).self_adjoint_eigen(Side::Lower).ok()?;
-    let second = D - 2;
-    let width = (axes.S()[second].max(0.0) / points.len() as f64).sqrt();
-    width.is_finite().then(|| (width, from_fn(|k| axes.U()[(k, second)])))
+    Some((centre, from_fn(|k| from_fn(|a| axes.U()[(a, k)]))))
 }
 
 /// Second moments of points along their principal axes, the largest first.

@@ -81,12 +81,12 @@ fn five_receivers_in_space() {
     assert!(status == Some(1) || found["unique"] == false, "{said}");
 }
 
-/// Exact pseudoranges with a small error by a fixed pattern, as CSV.
-fn matrix(receivers: &[[f64; 3]], transmitters: &[[f64; 3]]) -> String {
+/// Pseudoranges with errors of this size by a fixed pattern, as CSV.
+fn matrix(receivers: &[[f64; 3]], transmitters: &[[f64; 3]], size: f64) -> String {
     let row = |(i, r): (usize, &[f64; 3])| {
         let cell = |(j, s): (usize, &[f64; 3])| {
             let distance = (0..3).map(|k| (r[k] - s[k]).powi(2)).sum::<f64>().sqrt();
-            let error = 0.02 * ((0.618 * (17 * i + 5 * j + i * j) as f64).fract() - 0.5);
+            let error = 2.0 * size * ((0.618 * (17 * i + 5 * j + i * j) as f64).fract() - 0.5);
             (distance + error + j as f64).to_string()
         };
         transmitters.iter().enumerate().map(cell).collect::<Vec<String>>().join(",") + "\n"
@@ -108,7 +108,10 @@ fn nodes_in_one_line_of_space_leave_the_others_to_turn_about_it() {
         [("receivers", line(10), spread(20, 0.1)), ("transmitters", spread(12, 0.3), line(14))]
     {
         let file = directory.path().join(format!("{kind}.csv"));
-        std::fs::write(&file, matrix(&receivers, &transmitters)).expect("written");
+        std::fs::write(&file, matrix(&receivers, &transmitters, 0.0)).expect("written");
+        let (found, said, status) = calibrate(&file, &["--dimensions", "3"]);
+        assert_eq!((status, &found["unique"]), (Some(1), &false.into()), "{kind}: {said}");
+        std::fs::write(&file, matrix(&receivers, &transmitters, 0.01)).expect("written");
         let (found, said, status) = calibrate(&file, &["--dimensions", "3"]);
         assert_eq!((status, &found["unique"]), (Some(1), &false.into()), "{kind}: {said}");
         assert!(said.contains(&format!("the {kind} lie in one line")), "{kind}: {said}");

@@ -156,6 +156,17 @@ where
     Dimension<D>: Calibrates<D>,
 {
     let common = &arguments.common;
+    for recording in recordings {
+        let (m, n) = (recording.measured.receivers(), recording.measured.transmitters());
+        for (option, counts, all) in
+            [("--receivers", &arguments.receivers, m), ("--transmitters", &arguments.transmitters, n)]
+        {
+            if let Some(count) = counts.iter().find(|count| !(1..=all).contains(*count)) {
+                let name = &recording.name;
+                return Err(Failure::Unusable(format!("{option} {count}: {name} has {all}; give 1 to {all}")));
+            }
+        }
+    }
     let Arguments { missing, outliers, .. } = *arguments;
     let mut kinds = vec![Kind::WHOLE, Kind { missing, outliers, ..Kind::WHOLE }];
     kinds.extend(arguments.transmitters.iter().map(|&count| Kind { transmitters: Some(count), ..Kind::WHOLE }));

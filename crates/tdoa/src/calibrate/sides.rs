@@ -18,6 +18,9 @@ const LESS_CERTAIN: f64 = 1.5;
 /// Points lie in one line, as far as is known, if their width is less than so many of its standard deviations.
 const WIDE: f64 = 4.0;
 
+/// Lengths below this share of the network's size are rounding.
+const ROUNDING: f64 = 1e-9;
+
 /// Warns of receivers and of transmitters in one line, in space in one plane, and of mirror images. Returns
 /// whether nodes may turn about a line of space, so that nothing tells where they are.
 pub(super) fn warn_of_sides<const D: usize>(
@@ -36,7 +39,7 @@ pub(super) fn warn_of_sides<const D: usize>(
         (transmitters, &network.transmitters, of_transmitters, receivers, measured.receiver_names()),
     ] {
         // In the plane, a line leaves mirror images alone.
-        if D > 2 && in_line(points, &covariances) {
+        if D > 2 && in_line(points, &covariances, network.size()) {
             turn = true;
             warnings.push(format!(
                 "the {kind} lie in one line, as far as the measurements tell: the {other} may be anywhere around it, and the places given for \
@@ -90,14 +93,14 @@ pub(super) fn warn_of_sides<const D: usize>(
 
 /// Whether the width of points is not known to be more than zero; by its share of the length alone where
 /// errors are not known.
-fn in_line<const D: usize>(points: &[[f64; D]], covariances: &[&[[f64; D]; D]]) -> bool {
+fn in_line<const D: usize>(points: &[[f64; D]], covariances: &[&[[f64; D]; D]], size: f64) -> bool {
     if covariances.is_empty() {
         return slenderness(points) < FLAT;
     }
     let Some((width, axis)) = breadth(points) else { return false };
     // Of most of them: a few far nodes have errors of any size, and make the others look slender.
     let squares = covariances.iter().map(|c| dot(axis, c.map(|row| dot(row, axis))).max(0.0));
-    width < WIDE * median(squares.collect()).map_or(0.0, f64::sqrt)
+    width < (WIDE * median(squares.collect()).map_or(0.0, f64::sqrt)).max(ROUNDING * size)
 }
 
 /// Standard deviations of all nodes across the plane of these points and along it, medians; `None` if they
@@ -113,7 +116,7 @@ fn across<const D: usize>(points: &[[f64; D]], network: &Network<D>, uncertainty
         .unzip();
     let [across, along] = [median(across)?, median(along)?];
     // Exact measurements leave nothing but rounding.
-    let told = across > LESS_CERTAIN * along && along > 1e-9 * network.size();
+    let told = across > LESS_CERTAIN * along && along > ROUNDING * network.size();
     told.then_some([across, along])
 }
 
@@ -131,14 +134,18 @@ mod tests {
         // Half of the points are 5 cm beside the others: a width of 2.5 cm.
         for (deviation, expected) in [(0.002, false), (0.006, false), (0.007, true), (0.1, true)] {
             let error = errors(deviation);
-            assert_eq!(in_line(&points, &vec![&error; 12]), expected, "{deviation}");
+            assert_eq!(in_line(&points, &[&error; 12], 11.0), expected, "{deviation}");
         }
         // A far point of uncertain place makes no line of the rest.
         let mut far: Vec<[f64; 3]> = points.iter().map(|p| [p[0], 40.0 * p[1], p[0] % 3.0]).collect();
         far.push([0.0, 0.0, 3000.0]);
         let (near, wide) = (errors(0.01), errors(500.0));
         let all: Vec<_> = (0..13).map(|k| if k < 12 { &near } else { &wide }).collect();
-        assert!(!in_line(&far, &all));
-        assert!(in_line(&points[..3].repeat(2).iter().map(|p| [p[0], 0.0, 0.0]).collect::<Vec<_>>(), &[]));
+        assert!(!in_line(&far, &all, 11.0));
+        // An exact line is one whether errors are unknown or as small as rounding.
+        let line: Vec<[f64; 3]> = points.iter().map(|p| [p[0], 2.0 * p[0], -p[0]]).collect();
+        let none = errors(0.0);
+        assert!(in_line(&line, &[], 11.0) && in_line(&line, &[&none; 12], 11.0));
+        assert!(!in_line(&points, &[&none; 12], 11.0));
     }
 }

@@ -90,7 +90,8 @@ pub(super) fn warn_of_nodes<const D: usize>(
     let transmitters = weak(measured.transmitter_names(), &|j| {
         uncertainty.transmitters.get(j).and_then(|c| *c).map_or(f64::INFINITY, |c| trace(&c.rows).max(0.0).sqrt())
     });
-    let determined = !noise_known || 2 * receivers.len() <= names.len();
+    let open = (0..names.len()).filter(|&i| uncertainty.loose.contains(&i) || receivers.contains(&names[i])).count();
+    let determined = !noise_known || 2 * open <= names.len();
     if !determined {
         warnings.push(
             "most receivers are poorly determined: are receivers the rows of the table, and transmitters its columns? else measure more"

@@ -4,6 +4,26 @@ use super::super::table::{Row, head, line, summary};
 use anyhow::Result;
 use std::path::Path;
 
+/// The lines of the tables of some experiments, one below the other; in words, which were not run yet.
+fn lines(results: &Path, names: &[&str], cells: impl Fn(&Row<'_>) -> Result<Vec<String>>) -> Result<String> {
+    let (mut text, mut missing) = (String::new(), String::new());
+    for name in names {
+        if !results.join(name).join("summary.csv").exists() {
+            missing += &format!("\nNot run yet: `cargo xtask experiments --only {name}`.\n");
+            continue;
+        }
+        for row in summary(results, name)?.rows() {
+            text += &line(&cells(&row)?);
+        }
+    }
+    Ok(text + &missing)
+}
+
+/// The cells of some columns as they stand.
+fn cells(row: &Row<'_>, columns: &[&str]) -> Result<Vec<String>> {
+    columns.iter().map(|column| Ok(row.get(column)?.to_owned())).collect()
+}
+
 /// Rooms beside the Cramer-Rao bound.
 pub(super) fn rooms(results: &Path) -> Result<String> {
     let mut text = String::from(
@@ -26,26 +46,23 @@ pub(super) fn rooms(results: &Path) -> Result<String> {
         "redundancy",
         "s",
     ]);
-    for name in ["rooms", "small-rooms"] {
-        let Ok(table) = summary(results, name) else { continue };
-        for row in table.rows() {
-            text += &line(&[
-                row.get("configuration")?.to_owned(),
-                format!("{:.0} %", 100.0 * row.number("outliers")?),
-                row.get("networks")?.to_owned(),
-                row.get("undetermined")?.to_owned(),
-                row.percent("success")?,
-                row.percent("among_alternatives")?,
-                row.percent("unique")?,
-                row.percent("unique_and_wrong")?,
-                row.get("rms_over_bound")?.to_owned(),
-                row.percent("coverage_95")?,
-                row.get("redundancy")?.to_owned(),
-                row.get("processor_seconds_median")?.to_owned(),
-            ]);
-        }
-    }
-    Ok(text)
+    let room = |row: &Row<'_>| {
+        Ok(vec![
+            row.get("configuration")?.to_owned(),
+            format!("{:.0} %", 100.0 * row.number("outliers")?),
+            row.get("networks")?.to_owned(),
+            row.get("undetermined")?.to_owned(),
+            row.percent("success")?,
+            row.percent("among_alternatives")?,
+            row.percent("unique")?,
+            row.percent("unique_and_wrong")?,
+            row.get("rms_over_bound")?.to_owned(),
+            row.percent("coverage_95")?,
+            row.get("redundancy")?.to_owned(),
+            row.get("processor_seconds_median")?.to_owned(),
+        ])
+    };
+    Ok(text + &lines(results, &["rooms", "small-rooms"], room)?)
 }
 
 /// Real recordings beside the oracle.
@@ -77,17 +94,11 @@ pub(super) fn recordings(results: &Path) -> Result<String> {
         "with systematic errors",
         "s",
     ]);
-    for name in ["recordings", "ranges"] {
-        let Ok(table) = summary(results, name) else { continue };
-        for row in table.rows() {
-            text += &line(&recording(&row)?);
-        }
-    }
-    Ok(text)
+    Ok(text + &lines(results, &["recordings", "ranges"], recording)?)
 }
 
 fn recording(row: &Row<'_>) -> Result<Vec<String>> {
-    let mut cells = vec![
+    let mut all = vec![
         row.get("recording")?.to_owned(),
         format!("{}r/{}s", row.get("receivers")?, row.get("transmitters")?),
         format!("{:.0} %, {:.0} %", 100.0 * row.number("missing")?, 100.0 * row.number("outliers")?),
@@ -104,12 +115,10 @@ fn recording(row: &Row<'_>) -> Result<Vec<String>> {
         "unique",
         "unique_and_wrong",
     ];
-    for column in columns {
-        cells.push(row.get(column)?.to_owned());
-    }
-    cells.extend([row.percent("coverage_95")?, row.percent("coverage_95_systematic")?]);
-    cells.push(row.get("processor_seconds_median")?.to_owned());
-    Ok(cells)
+    all.extend(cells(row, &columns)?);
+    all.extend([row.percent("coverage_95")?, row.percent("coverage_95_systematic")?]);
+    all.push(row.get("processor_seconds_median")?.to_owned());
+    Ok(all)
 }
 
 /// The choice between plane and space.
@@ -142,20 +151,15 @@ pub(super) fn dimension(results: &Path) -> Result<String> {
         "gain_over_needed_99",
         "processor_seconds_median",
     ];
-    for name in ["dimension", "low"] {
-        let Ok(table) = summary(results, name) else { continue };
-        for row in table.rows() {
-            let height = row.get("height")?;
-            let mut cells = vec![
-                row.get("configuration")?.to_owned(),
-                if height == "0" { "plane".to_owned() } else { height.to_owned() },
-                format!("{:.0} %", 100.0 * row.number("outliers")?),
-            ];
-            for column in columns {
-                cells.push(row.get(column)?.to_owned());
-            }
-            text += &line(&cells);
-        }
-    }
-    Ok(text)
+    let kind = |row: &Row<'_>| {
+        let height = row.get("height")?;
+        let mut all = vec![
+            row.get("configuration")?.to_owned(),
+            if height == "0" { "plane".to_owned() } else { height.to_owned() },
+            format!("{:.0} %", 100.0 * row.number("outliers")?),
+        ];
+        all.extend(cells(row, &columns)?);
+        Ok(all)
+    };
+    Ok(text + &lines(results, &["dimension", "low"], kind)?)
 }
