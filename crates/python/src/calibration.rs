@@ -186,6 +186,7 @@ trait Shown {
     fn summary(&self) -> String;
     fn deviation(&self) -> String;
     fn magnification(&self) -> f64;
+    fn has_systematic_errors(&self) -> bool;
 }
 
 impl<const D: usize> Shown for Calibration<D> {
@@ -207,6 +208,10 @@ impl<const D: usize> Shown for Calibration<D> {
 
     fn magnification(&self) -> f64 {
         tdoa::picture::ellipse_magnification(self)
+    }
+
+    fn has_systematic_errors(&self) -> bool {
+        self.mattering().is_some()
     }
 }
 
@@ -246,12 +251,12 @@ pub(crate) fn calibration_summary(json: &str) -> PyResult<String> {
     guarded(|| Ok(parsed(json)?.summary()))
 }
 
-/// The standard deviation of the measurements in words, and by how much ellipses are to be drawn
-/// larger than they are, from the JSON.
+/// The standard deviation of the measurements in words, by how much ellipses are to be drawn larger
+/// than they are, and whether they are those with systematic errors, from the JSON.
 #[pyfunction]
-pub(crate) fn calibration_style(json: &str) -> PyResult<(String, f64)> {
+pub(crate) fn calibration_style(json: &str) -> PyResult<(String, f64, bool)> {
     guarded(|| {
         let calibration = parsed(json)?;
-        Ok((calibration.deviation(), calibration.magnification()))
+        Ok((calibration.deviation(), calibration.magnification(), calibration.has_systematic_errors()))
     })
 }

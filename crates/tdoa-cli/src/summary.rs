@@ -28,7 +28,8 @@ pub(crate) fn text<const D: usize>(calibration: &Calibration<D>, context: &Conte
     let extent = calibration.extent().unwrap_or(0.0);
     let digits = decimals(extent);
     text += &format!("\nlengths in metres\n{:<12} {}\n", "receiver", axes::<D>());
-    let rows = calibration.receiver_names.iter().zip(&calibration.receivers).zip(&calibration.receiver_std);
+    let [of_receivers, of_transmitters] = calibration.trusted_deviations();
+    let rows = calibration.receiver_names.iter().zip(&calibration.receivers).zip(&of_receivers);
     for ((name, position), std) in rows.take(LISTED) {
         text += &row(name, *position, *std, digits);
         text += "\n";
@@ -37,7 +38,7 @@ pub(crate) fn text<const D: usize>(calibration: &Calibration<D>, context: &Conte
     let unit = context.unit.map_or_else(String::new, |unit| format!(" {:>14}", format!("offset {}", unit.name)));
     text += &format!("\n{:<12} {} {:>12}{unit}\n", "transmitter", axes::<D>(), "offset");
     let rows = calibration.transmitter_names.iter().zip(&calibration.transmitters);
-    let rows = rows.zip(&calibration.transmitter_std).zip(&calibration.offsets);
+    let rows = rows.zip(&of_transmitters).zip(&calibration.offsets);
     for (((name, position), std), offset) in rows.take(LISTED) {
         text += &row(name, *position, *std, digits);
         if let Some(offset) = offset.filter(|_| position.is_some()) {

@@ -66,7 +66,11 @@ pub fn html_with<const D: usize>(calibration: &Calibration<D>, provenance: &Prov
     page += &provenance::list(provenance);
     page += &view;
     page += &format!("<figure>\n{}</figure>\n", picture(calibration));
-    page += &format!("<p class=\"note\">Lengths in metres. Standard deviations: {}.</p>\n", escape(&calibration.gauge));
+    page += &format!(
+        "<p class=\"note\">Lengths in metres. Standard deviations: {}{}.</p>\n",
+        escape(&calibration.gauge),
+        if calibration.mattering().is_some() { ", with systematic errors of the receivers" } else { "" }
+    );
     page += "<h2>Receivers</h2>\n";
     page += &table("receivers", &columns::<D>("receiver", &[]), receivers(calibration));
     page += "<h2>Transmitters</h2>\n";
@@ -115,6 +119,11 @@ fn facts<const D: usize>(calibration: &Calibration<D>, provenance: &Provenance) 
     if !calibration.mirror_images.is_empty() {
         let nodes: Vec<&str> = calibration.mirror_images.iter().map(|image| image.node.as_str()).collect();
         list.push(("Mirror images", format!("of {}, hollow in the picture", nodes.join(", "))));
+    }
+    if let Some(errors) = calibration.mattering() {
+        let times = number(errors.factor, 2);
+        let size = length(errors.deviation);
+        list.push(("Systematic errors", format!("of the receivers, {size}: positions {times} times as uncertain")));
     }
     if let Some(speed) = &calibration.speed {
         let value = speed.metres_per_second.map_or_else(
@@ -180,11 +189,12 @@ fn table(id: &str, columns: &[Column], rows: impl IntoIterator<Item = Vec<String
 
 fn receivers<const D: usize>(calibration: &Calibration<D>) -> Vec<Vec<String>> {
     let position = position(calibration);
+    let [deviations, _] = calibration.trusted_deviations();
     let rows = calibration.receiver_names.iter().enumerate();
     rows.map(|(i, name)| {
         let mut row = vec![name.clone()];
         row.extend(cells(calibration.receivers[i], &position));
-        row.extend(cells(calibration.receiver_std[i], small));
+        row.extend(cells(deviations[i], small));
         row.extend(calibration.counts_of_receiver(i).map(|count| count.to_string()));
         row
     })
@@ -193,11 +203,12 @@ fn receivers<const D: usize>(calibration: &Calibration<D>) -> Vec<Vec<String>> {
 
 fn transmitters<const D: usize>(calibration: &Calibration<D>) -> Vec<Vec<String>> {
     let position = position(calibration);
+    let [_, deviations] = calibration.trusted_deviations();
     let rows = calibration.transmitter_names.iter().enumerate();
     rows.map(|(j, name)| {
         let mut row = vec![name.clone()];
         row.extend(cells(calibration.transmitters[j], &position));
-        row.extend(cells(calibration.transmitter_std[j], small));
+        row.extend(cells(deviations[j], small));
         row.push(calibration.offsets[j].map(&position).unwrap_or_default());
         row.push(calibration.offset_std[j].map(small).unwrap_or_default());
         row.extend(calibration.counts_of_transmitter(j).map(|count| count.to_string()));

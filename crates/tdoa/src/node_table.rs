@@ -4,7 +4,8 @@ use crate::calibrate::Calibration;
 
 /// The table `kind,name,x,y,std_x,std_y,cov_xy,offset,std_offset,measurements,outliers`, with
 /// receivers first, in metres, empty where nothing could be determined. In space it has `z`, `std_z`,
-/// `cov_xz` and `cov_yz` too. [`crate::read::read_nodes`] reads its receivers back.
+/// `cov_xz` and `cov_yz` too. Deviations and covariances are those
+/// [to trust](Calibration::trusted_covariances). [`crate::read::read_nodes`] reads its receivers back.
 pub fn node_table<const D: usize>(calibration: &Calibration<D>) -> String {
     const { assert!(D == 2 || D == 3, "a network is in the plane or in space") }
     let mut table = Table(csv::Writer::from_writer(Vec::new()));
@@ -20,17 +21,17 @@ pub fn node_table<const D: usize>(calibration: &Calibration<D>) -> String {
         let numbers = (0..D).map(|k| position.map(|p| p[k])).chain((0..D).map(|k| std.map(|std| std[k])));
         numbers.chain(pairs().map(|(a, b)| covariance.map(|c| c[a][b]))).map(text).collect::<Vec<_>>()
     };
+    let (covariances, deviations) = (calibration.trusted_covariances(), calibration.trusted_deviations());
     for (i, name) in calibration.receiver_names.iter().enumerate() {
         let mut row = vec!["receiver".to_string(), name.clone()];
-        row.extend(place(calibration.receivers[i], calibration.receiver_std[i], calibration.receiver_covariance[i]));
+        row.extend(place(calibration.receivers[i], deviations[0][i], covariances[0][i]));
         row.extend([String::new(), String::new()]);
         row.extend(calibration.counts_of_receiver(i).map(|count| count.to_string()));
         table.row(row);
     }
     for (j, name) in calibration.transmitter_names.iter().enumerate() {
         let mut row = vec!["transmitter".to_string(), name.clone()];
-        let (position, std) = (calibration.transmitters[j], calibration.transmitter_std[j]);
-        row.extend(place(position, std, calibration.transmitter_covariance[j]));
+        row.extend(place(calibration.transmitters[j], deviations[1][j], covariances[1][j]));
         row.extend([text(calibration.offsets[j]), text(calibration.offset_std[j])]);
         row.extend(calibration.counts_of_transmitter(j).map(|count| count.to_string()));
         table.row(row);

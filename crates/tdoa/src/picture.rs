@@ -82,6 +82,9 @@ fn legend<const D: usize>(
             row(canvas, &format!("(drawn {} times as large)", number(magnified, 3)));
         }
     }
+    if calibration.mattering().is_some() {
+        row(canvas, "(with systematic errors of the receivers)");
+    }
     let (measured, outlying) = (calibration.residuals.len(), calibration.residuals.outliers().count());
     let h = row(canvas, &format!("outliers: {outlying} of {}", counted(measured, "measurement")));
     canvas.line([at[0] - 10.0, h], [at[0] + 12.0, h], PINK, 1.0, "5 3");

@@ -31,10 +31,10 @@ pub fn heading<const D: usize>(calibration: &Calibration<D>, time: Option<Durati
     if let Some(why) = calibration.distrust() {
         text += &format!("NOT TO BE TRUSTED: {why}, see the warnings\n");
     }
-    if let Some(errors) = calibration.systematic.as_ref().filter(|errors| errors.matter()) {
+    if let Some(errors) = calibration.mattering() {
         text += &format!(
-            "systematic errors of the receivers, standard deviation {}: their positions are {} times as uncertain as by noise alone, see \
-             systematic in the JSON\n",
+            "systematic errors of the receivers, standard deviation {}: their positions are {} times as uncertain as by noise alone, \
+             which tables and pictures show\n",
             length(errors.deviation),
             number(errors.factor, 2)
         );

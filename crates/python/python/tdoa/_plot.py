@@ -32,13 +32,16 @@ def draw(calibration, ax, names, view):
     # Transmitters are near by all coordinates; two of them are drawn.
     axes = ["xyz".index(letter) for letter in view]
     receivers, transmitters = receivers[:, axes], transmitters[:, axes]
-    shadows = [each[:, axes][:, :, axes] for each in (calibration.covariance, calibration.transmitter_covariance)]
     outlying = np.argwhere(np.isfinite(calibration.residuals) & ~calibration.inliers)
     lines = [(i, j) for i, j in outlying if near[j] and np.isfinite(receivers[i]).all()]
     for i, j in lines[:_OUTLIERS]:
         ends = np.array([receivers[i], transmitters[j]])
         ax.plot(*ends.T, color=_PINK, linewidth=1, linestyle=(0, (5, 3)), zorder=1)
-    deviation, magnified = _native.calibration_style(calibration.to_json())
+    deviation, magnified, systematic = _native.calibration_style(calibration.to_json())
+    covariances = (calibration.covariance, calibration.transmitter_covariance)
+    if systematic:
+        covariances = (calibration.systematic_covariance, calibration.systematic_transmitter_covariance)
+    shadows = [each[:, axes][:, :, axes] for each in covariances]
     radius = magnified * (calibration.data["ellipse_radius"] or 0.0)
     shape = "95 % ellipse" if calibration.dimensions == 2 else "shadow of its 95 % ellipsoid"
     times = f", {magnified:g} times as large" if magnified > 1 else ""
@@ -61,6 +64,8 @@ def draw(calibration, ax, names, view):
     if held.any():
         label = "receiver held at its known position"
         ax.plot(*receivers[held].T, "s", color="none", markeredgecolor="#000", markersize=12, label=label, zorder=5)
+    if systematic:
+        ax.plot([], [], " ", label="(with systematic errors of the receivers)")
     if len(lines):
         ax.plot([], [], color=_PINK, linestyle=(0, (5, 3)), label=f"{len(outlying)} outliers")
     if names:

@@ -141,6 +141,11 @@ fn counts<'a>(residuals: impl Iterator<Item = &'a Residual>) -> [usize; 2] {
     residuals.fold([0, 0], |[all, outliers], residual| [all + 1, outliers + usize::from(!residual.inlier)])
 }
 
+/// Standard deviations of the coordinates.
+fn deviations<const D: usize>(covariances: &[Option<[[f64; D]; D]>]) -> Vec<Option<[f64; D]>> {
+    covariances.iter().map(|c| c.map(|c| from_fn(|k| c[k][k].max(0.0).sqrt()))).collect()
+}
+
 /// Results that were written before they said so.
 fn agree() -> bool {
     true
@@ -200,6 +205,26 @@ impl<const D: usize> Calibration<D> {
         pairs.reduce(f64::max)
     }
 
+    /// Systematic errors of the receivers, if they matter: the covariances with them are then those to
+    /// trust.
+    pub fn mattering(&self) -> Option<&SystematicErrors<D>> {
+        self.systematic.as_ref().filter(|errors| errors.matter())
+    }
+
+    /// The covariances to trust, which tables and pictures show: of the receivers, then of the
+    /// transmitters. They include systematic errors of the receivers where these matter.
+    pub fn trusted_covariances(&self) -> [&[Option<[[f64; D]; D]>]; 2] {
+        match self.mattering() {
+            Some(errors) => [&errors.receiver_covariance, &errors.transmitter_covariance],
+            None => [&self.receiver_covariance, &self.transmitter_covariance],
+        }
+    }
+
+    /// The square roots of the diagonals of [`trusted_covariances`](Self::trusted_covariances).
+    pub fn trusted_deviations(&self) -> [Vec<Option<[f64; D]>>; 2] {
+        self.trusted_covariances().map(deviations)
+    }
+
     /// Number of measurements of a receiver, and how many of them are outliers.
     pub fn counts_of_receiver(&self, i: usize) -> [usize; 2] {
         counts(self.residuals.row(i).map(|(_, residual)| residual))
@@ -228,14 +253,11 @@ impl<const D: usize> Calibration<D> {
         }
         let turn = |c: &mut Option<[[f64; D]; D]>| *c = c.map(|c| map.apply_covariance(c));
         self.receiver_covariance.iter_mut().chain(&mut self.transmitter_covariance).for_each(turn);
-        let std = |all: &[Option<[[f64; D]; D]>]| -> Vec<Option<[f64; D]>> {
-            all.iter().map(|c| c.map(|c| from_fn(|k| c[k][k].max(0.0).sqrt()))).collect()
-        };
         if let Some(systematic) = &mut self.systematic {
             systematic.transform(map);
         }
-        self.receiver_std = std(&self.receiver_covariance);
-        self.transmitter_std = std(&self.transmitter_covariance);
+        self.receiver_std = deviations(&self.receiver_covariance);
+        self.transmitter_std = deviations(&self.transmitter_covariance);
     }
 
     /// Multiplies all lengths of the result by a factor, as if the propagation speed were larger by

@@ -69,6 +69,9 @@ impl<const D: usize> Solved<'_, D> {
 #[cfg(test)]
 mod tests {
     use crate::align::Transform;
+    use crate::html::html;
+    use crate::node_table::node_table;
+    use crate::picture::picture;
     use crate::points::trace;
     use crate::summary::summary;
     use crate::{
@@ -99,6 +102,32 @@ mod tests {
                 assert!(trace(&new.unwrap()) >= trace(&usual.unwrap()));
             }
         }
+    }
+
+    #[test]
+    fn tables_and_pictures_show_the_deviations_to_trust() {
+        // The same network with and without the mark that its systematic errors matter.
+        let mut with = run(0.02, 0, &CalibrateOptions::default());
+        // Far larger than those of noise, and the same for all nodes, so that they are told at sight.
+        let errors = with.systematic.as_mut().unwrap();
+        errors.receiver_covariance.fill(Some([[0.0625, 0.0], [0.0, 0.25]]));
+        errors.transmitter_covariance.fill(Some([[0.0625, 0.0], [0.0, 0.25]]));
+        let mut without = with.clone();
+        without.systematic.as_mut().unwrap().significant = false;
+        assert_eq!(with.trusted_deviations().map(|all| all[3].unwrap()), [[0.25, 0.5]; 2]);
+        assert_eq!(without.trusted_deviations(), [with.receiver_std.clone(), with.transmitter_std.clone()]);
+        let held = |text: &str, deviations: &str| text.matches(deviations).count();
+        // All ten receivers and forty transmitters.
+        for (calibration, nodes) in [(&with, 50), (&without, 0)] {
+            assert_eq!(held(&node_table(calibration), ",0.25,0.5,0,"), nodes);
+            assert_eq!(held(&html(calibration), "<td>0.25</td><td>0.5</td>"), nodes);
+            let words = "with systematic errors of the receivers";
+            assert_eq!(held(&html(calibration), words) == 2, nodes > 0);
+            assert_eq!(held(&picture(calibration), words) == 1, nodes > 0);
+        }
+        // Their ellipses stand upright, whatever the scale of the picture.
+        let upright = |svg: &str| svg.matches("rotate(-90.00)").count();
+        assert!(upright(&picture(&with)) > 40 && upright(&picture(&without)) == 0);
     }
 
     #[test]

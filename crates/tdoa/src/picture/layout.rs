@@ -50,8 +50,9 @@ impl Layout {
 
     /// By what factor ellipses are enlarged.
     pub(super) fn magnification<const D: usize>(&self, calibration: &Calibration<D>) -> f64 {
-        let receivers = calibration.receivers.iter().zip(&calibration.receiver_covariance);
-        let nodes = receivers.chain(calibration.transmitters.iter().zip(&calibration.transmitter_covariance));
+        let [of_receivers, of_transmitters] = calibration.trusted_covariances();
+        let receivers = calibration.receivers.iter().zip(of_receivers);
+        let nodes = receivers.chain(calibration.transmitters.iter().zip(of_transmitters));
         let shown = nodes.filter(|(position, _)| position.as_ref().is_some_and(|p| self.shows(p)));
         let covariances: Vec<_> = shown.filter_map(|(_, covariance)| *covariance).collect();
         let radius = calibration.ellipse_radius.unwrap_or(0.0);

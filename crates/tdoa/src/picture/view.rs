@@ -106,14 +106,15 @@ impl View {
             let colour = if image.kind == NodeKind::Receivers { BLUE } else { ORANGE };
             canvas.ring(self.to(image.position), 3.5, colour);
         }
-        let nodes = calibration.transmitters.iter().zip(&calibration.transmitter_covariance);
+        let [of_receivers, of_transmitters] = calibration.trusted_covariances();
+        let nodes = calibration.transmitters.iter().zip(of_transmitters);
         for (position, covariance) in nodes {
             if let Some(p) = position.filter(&shows) {
                 self.ellipse(canvas, p, covariance, radius, ORANGE);
                 canvas.circle(self.to(p), 3.0, ORANGE);
             }
         }
-        let nodes = calibration.receivers.iter().zip(&calibration.receiver_covariance).zip(&calibration.anchored);
+        let nodes = calibration.receivers.iter().zip(of_receivers).zip(&calibration.anchored);
         for ((position, covariance), anchored) in nodes {
             if let Some(p) = position.filter(&shows) {
                 self.ellipse(canvas, p, covariance, radius, BLUE);
