@@ -9,8 +9,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Mutex, PoisonError};
 use tdoa::accuracy::cramer_rao as bound;
-use tdoa::minimal::{MinimalError, MinimalOptions, MinimalStart, Solver};
-use tdoa::{Layout, MinimalSolution, Network, Pseudoranges, ReceiverFault, SimulateOptions};
+use tdoa::minimal::{MinimalError, MinimalOptions, MinimalStart, Solver, spatial};
+use tdoa::{Layout, MinimalSolution, Monitor, Network, Pseudoranges, ReceiverFault, SimulateOptions};
 
 /// Solvers that are not in use; they keep their start solutions and their memory.
 static SOLVERS: Mutex<Vec<Solver>> = Mutex::new(Vec::new());
@@ -26,6 +26,7 @@ pub(crate) fn solve_network<'py>(
     tolerance: Option<f64>,
     start: &str,
     first_under: Option<f64>,
+    dimensions: usize,
     how: How,
 ) -> PyResult<Bound<'py, PyAny>> {
     guarded(|| {
@@ -43,44 +44,67 @@ pub(crate) fn solve_network<'py>(
             }
         }
         let measured = table.measured()?;
-        let names = [measured.receiver_names().to_vec(), measured.transmitter_names().to_vec()];
-        let Done { result: solved, stopped, seconds } = run(py, &how, move |monitor| {
-            let kept = || SOLVERS.lock().unwrap_or_else(PoisonError::into_inner);
-            let solver = kept().pop();
-            let mut solver = solver.unwrap_or_default();
-            let solved = solver.solve_watched(&measured, &options, monitor);
-            let mut solvers = kept();
-            if solvers.len() < MOST_SOLVERS {
-                solvers.push(solver);
-            }
-            solved
-        })?;
-        let found = match solved {
-            // What was tracked until then is no list of networks.
-            _ if stopped.is_some() => return whole(py, py.None().into_bound(py), stopped),
-            Ok(found) => found,
-            Err(error @ MinimalError::Option(_)) => return Err(Failure::input(error)),
-            Err(error) => return Err(Failure::undetermined(error)),
-        };
-        let result = solution(py, &found)?;
-        result.set_item("seconds", seconds)?;
-        let [receivers, transmitters] = names;
-        result.set_item("receiver_names", receivers)?;
-        result.set_item("transmitter_names", transmitters)?;
-        whole(py, result.into_any(), None)
+        match dimensions {
+            2 => answer(py, measured, options, &how, solve_in_plane),
+            3 => answer(py, measured, options, &how, |measured, options, _| spatial::solve(measured, options)),
+            other => Err(Failure::Input(format!("dimensions must be 2 or 3, not {other}"))),
+        }
     })
 }
 
-fn solution<'py>(py: Python<'py>, found: &MinimalSolution) -> Result<Bound<'py, PyDict>, Failure> {
+/// By a solver that is kept.
+fn solve_in_plane(
+    measured: &Pseudoranges,
+    options: &MinimalOptions,
+    monitor: &Monitor,
+) -> Result<MinimalSolution, MinimalError> {
+    let kept = || SOLVERS.lock().unwrap_or_else(PoisonError::into_inner);
+    let solver = kept().pop();
+    let mut solver = solver.unwrap_or_default();
+    let solved = solver.solve_watched(measured, options, monitor);
+    let mut solvers = kept();
+    if solvers.len() < MOST_SOLVERS {
+        solvers.push(solver);
+    }
+    solved
+}
+
+/// Solves, and makes a dict of what was found.
+fn answer<'py, const D: usize>(
+    py: Python<'py>,
+    measured: Pseudoranges,
+    options: MinimalOptions,
+    how: &How,
+    solve: fn(&Pseudoranges, &MinimalOptions, &Monitor) -> Result<MinimalSolution<D>, MinimalError>,
+) -> Result<Bound<'py, PyAny>, Failure> {
+    let [receivers, transmitters] = [measured.receiver_names().to_vec(), measured.transmitter_names().to_vec()];
+    let work = move |monitor: &Monitor| solve(&measured, &options, monitor);
+    let Done { result: solved, stopped, seconds } = run(py, how, work)?;
+    let found = match solved {
+        // What was tracked until then is no list of networks.
+        _ if stopped.is_some() => return whole(py, py.None().into_bound(py), stopped),
+        Ok(found) => found,
+        Err(error @ MinimalError::Option(_)) => return Err(Failure::input(error)),
+        Err(error) => return Err(Failure::undetermined(error)),
+    };
+    let result = solution(py, &found)?;
+    result.set_item("seconds", seconds)?;
+    result.set_item("receiver_names", receivers)?;
+    result.set_item("transmitter_names", transmitters)?;
+    whole(py, result.into_any(), None)
+}
+
+fn solution<'py, const D: usize>(py: Python<'py>, found: &MinimalSolution<D>) -> Result<Bound<'py, PyDict>, Failure> {
     let all = &found.candidates;
     let first = all.first().map(|candidate| &candidate.network);
     let (k, m, n) = (all.len(), first.map_or(0, |f| f.receivers.len()), first.map_or(0, |f| f.transmitters.len()));
-    let points = |pick: fn(&Network) -> &Vec<[f64; 2]>| {
+    let points = |pick: fn(&Network<D>) -> &Vec<[f64; D]>| {
         all.iter().flat_map(|c| pick(&c.network)).flatten().copied().collect::<Vec<f64>>()
     };
     let result = PyDict::new(py);
-    result.set_item("receivers", array(py, points(|network| &network.receivers), &[k, m, 2])?)?;
-    result.set_item("transmitters", array(py, points(|network| &network.transmitters), &[k, n, 2])?)?;
+    result.set_item("dimensions", D)?;
+    result.set_item("receivers", array(py, points(|network| &network.receivers), &[k, m, D])?)?;
+    result.set_item("transmitters", array(py, points(|network| &network.transmitters), &[k, n, D])?)?;
     let offsets = all.iter().flat_map(|c| &c.network.offsets).copied().collect();
     result.set_item("offsets", array::<f64>(py, offsets, &[k, n])?)?;
     result.set_item("residuals", array(py, all.iter().map(|c| c.residual).collect(), &[k])?)?;

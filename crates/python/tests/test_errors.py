@@ -120,10 +120,17 @@ def test_arguments(arguments, words):
         tdoa.calibrate(TABLE, **arguments)
 
 
-def test_exact_solutions_are_planar():
-    for dimensions, words in ((3, "solve finds networks in the plane"), ("three", "dimensions must be")):
-        with pytest.raises(hc.InputError, match=words):
-            tdoa.solve(TABLE[:6, :3], dimensions=dimensions)
+@pytest.mark.parametrize("dimensions", [4, "three", True, None])
+def test_exact_solutions_are_in_the_plane_or_in_space(dimensions):
+    with pytest.raises(hc.InputError, match="dimensions must be 2, 3 or"):
+        tdoa.solve(TABLE[:6, :3], dimensions=dimensions)
+
+
+def test_sizes_that_are_not_solved_in_space():
+    with pytest.raises(hc.UndeterminedError, match="6r/3s is underdetermined in space"):
+        tdoa.solve(TABLE[:6, :3], dimensions=3)
+    with pytest.raises(hc.UndeterminedError, match="that takes nine receivers or more and five transmitters or more"):
+        tdoa.solve(tdoa.simulate(8, 6, dimensions=3).pseudoranges, dimensions=3)
 
 
 @pytest.mark.parametrize(

@@ -40,6 +40,7 @@ tdoa.calibrate([[1.0, None], [2.0, 3.0]])
 tdoa.calibrate(tdoa.read("table.csv", units="ms", speed=343.0))
 with open("table.csv") as file:
     tdoa.read(file)
+dimensions: int = tdoa.solve(table, dimensions=3).dimensions
 # wrong
 hc.solve("x^2 - 1", start="foo")
 # wrong
@@ -55,7 +56,7 @@ tdoa.calibrate(table, receiver_delays="some")
 # wrong
 tdoa.calibrate(table, dimensions=4)
 # wrong
-tdoa.solve(table, dimensions=3)
+tdoa.solve(table, dimensions="space")
 # wrong
 tdoa.solve(table, start="auto")
 # wrong

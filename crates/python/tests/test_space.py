@@ -106,3 +106,11 @@ def test_json_of_other_dimensions_is_refused():
     text = tdoa.calibrate(tdoa.simulate(8, 10, noise=0.01, seed=1).pseudoranges, dimensions=2).to_json()
     with pytest.raises(hc.InputError, match="its dimensions are 4, not 2 or 3"):
         tdoa.Calibration.from_json(text.replace('"dimensions": 2', '"dimensions": 4'))
+
+
+def test_exact_solutions():
+    made = tdoa.simulate(10, 6, dimensions=3, seed=2)
+    found = tdoa.solve(made.pseudoranges, dimensions=3)
+    assert len(found) == 1 and found.dimensions == 3 and found.physical[0] and not found.warnings
+    assert found.receivers.shape == (1, 10, 3) and found.transmitters.shape == (1, 6, 3) and found.offsets.shape == (1, 6)
+    assert error(found.receivers[0], made.receivers) < 1e-9 and np.abs(found.offsets[0] - made.offsets).max() < 1e-9

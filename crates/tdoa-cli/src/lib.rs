@@ -17,7 +17,7 @@ use cli::{Failure, interrupt, on_threads, output};
 use hc::ranks::Ranks;
 use mpirun::{Program, Sharing};
 
-/// Calibrates sensor networks in the plane from arrival times alone.
+/// Calibrates sensor networks in the plane and in space from arrival times alone.
 ///
 /// Exit status: 0 success, 1 no solution or data that cannot determine the network, 2 unusable
 /// input or arguments, 130 interrupted.

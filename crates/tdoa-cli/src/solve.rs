@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
-use tdoa::minimal::{MinimalOptions, MinimalStart, Solver};
+use tdoa::minimal::{MinimalError, MinimalOptions, MinimalStart, Solver, spatial};
 use tdoa::quantity::{coordinate, decimals};
 use tdoa::read::read;
 use tdoa::summary::networks;
@@ -13,20 +13,24 @@ use tdoa::{MinimalSolution, Monitor, Pseudoranges};
 use crate::units::Unit;
 use crate::{Failure, interrupt, output};
 
-/// Finds every network that explains pseudoranges without errors, best first: 6r/3s, 4r/5s, 5r/4s
-/// and all larger sizes.
+/// Finds every network that explains pseudoranges without errors, best first: in the plane 6r/3s,
+/// 4r/5s, 5r/4s and all larger sizes, in space (--dimensions 3) 9r/5s and all larger sizes.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The measurements, in the forms that `calibrate` takes; none may be missing.
     file: PathBuf,
     #[command(flatten)]
     input: crate::units::InputArguments,
-    /// How far below zero a distance may lie for a network to count as physical, as a share of the
-    /// size of the data; for noisy data the noise.
+    /// Whether the network is sought in the plane or in space, which must be asked for: small
+    /// tables of measurements in space may fit networks in the plane too.
+    #[arg(long, value_name = "2|3", default_value_t = 2, value_parser = clap::value_parser!(u8).range(2..=3))]
+    dimensions: u8,
+    /// How far below zero a distance may lie for a network to count as physical, and in space how
+    /// large residuals may be, as a share of the size of the data; for noisy data the noise.
     #[arg(long, default_value_t = MinimalOptions::default().tolerance)]
     tolerance: f64,
     /// Where paths start: at the stored solutions of a generic instance, or at a polyhedral start
-    /// system computed for these data.
+    /// system computed for these data. Sizes in space are solved without paths.
     #[arg(long, value_enum, default_value = "stored")]
     start: StartArgument,
     /// Stops at the first physical network with a residual (root mean square, metres) below this;
@@ -49,9 +53,12 @@ enum StartArgument {
 
 /// The JSON form.
 #[derive(Serialize)]
-struct Report<'a> {
+#[serde(bound = "[f64; D]: Serialize")]
+struct Report<'a, const D: usize> {
+    /// 2 in the plane, 3 in space.
+    dimensions: usize,
     #[serde(flatten)]
-    solution: &'a MinimalSolution,
+    solution: &'a MinimalSolution<D>,
     receiver_names: &'a [String],
     transmitter_names: &'a [String],
     seconds: f64,
@@ -80,20 +87,37 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         StartArgument::Stored => MinimalStart::Stored,
         StartArgument::Polyhedral => MinimalStart::Polyhedral,
     };
+    let solve_in_plane = |monitor: &Monitor| Solver::new().solve_watched(&measured, &options, monitor);
+    let solve_in_space = |_: &Monitor| spatial::solve(&measured, &options);
+    match arguments.dimensions {
+        2 => answer(arguments, unit, &measured, solve_in_plane),
+        _ => answer(arguments, unit, &measured, solve_in_space),
+    }
+}
+
+/// Solves and reports.
+fn answer<const D: usize>(
+    arguments: &Arguments,
+    unit: Option<Unit>,
+    measured: &Pseudoranges,
+    solve: impl FnOnce(&Monitor) -> Result<MinimalSolution<D>, MinimalError> + Send,
+) -> Result<(), Failure>
+where
+    [f64; D]: Serialize,
+{
     let monitor = Monitor::heeding(interrupt::watch()?);
     let progress = || {
         let progress = monitor.progress();
         (progress.done, progress.total, progress.to_string())
     };
     let started = Instant::now();
-    let solved = cli::bar::while_shown(arguments.threads, progress, || {
-        Solver::new().solve_watched(&measured, &options, &monitor)
-    })?;
+    let solved = cli::bar::while_shown(arguments.threads, progress, || solve(&monitor))?;
     interrupt::check()?;
     let solution = solved.map_err(|error| Failure::Undetermined(format!("{}: {error}", arguments.file.display())))?;
     let seconds = started.elapsed().as_secs_f64();
     if let Some(path) = &arguments.json {
         let report = Report {
+            dimensions: D,
             solution: &solution,
             receiver_names: measured.receiver_names(),
             transmitter_names: measured.transmitter_names(),
@@ -106,7 +130,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     for warning in &solution.warnings {
         eprintln!("warning: {warning}");
     }
-    output::summary(arguments.json.as_deref(), || summary(&solution, &measured, unit, seconds))?;
+    output::summary(arguments.json.as_deref(), || summary(&solution, measured, unit, seconds))?;
     if !solution.warnings.is_empty() {
         return Err(Failure::Undetermined(format!(
             "{}: the data do not determine the network, or the result is not whole; see the warnings",
@@ -116,14 +140,20 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if solution.candidates.iter().any(|candidate| candidate.physical) {
         return Ok(());
     }
+    let in_space = if D == 2 { "; if they are of space, --dimensions 3 looks there" } else { "" };
     Err(Failure::Undetermined(format!(
         "{}: no physical network explains the measurements exactly; if they are noisy, give the noise as --tolerance or use \
-         `tdoa calibrate`",
+         `tdoa calibrate`{in_space}",
         arguments.file.display()
     )))
 }
 
-fn summary(solution: &MinimalSolution, measured: &Pseudoranges, unit: Option<Unit>, seconds: f64) -> String {
+fn summary<const D: usize>(
+    solution: &MinimalSolution<D>,
+    measured: &Pseudoranges,
+    unit: Option<Unit>,
+    seconds: f64,
+) -> String {
     let mut text = networks(solution, Some(Duration::from_secs_f64(seconds)));
     text += &format!("\n{:>4} {:>12} {:>10} {:>10}\n", "rank", "residual m", "physical", "condition");
     for (k, candidate) in solution.candidates.iter().take(20).enumerate() {
@@ -138,16 +168,16 @@ fn summary(solution: &MinimalSolution, measured: &Pseudoranges, unit: Option<Uni
         text += "\nbest network, metres\n";
         let digits = decimals(best.network.size()) + 2;
         let shown = |value: f64| coordinate(value, digits);
+        let place = |p: &[f64; D]| p.iter().map(|&x| format!(" {:>13}", shown(x))).collect::<String>();
         for (name, p) in measured.receiver_names().iter().zip(&best.network.receivers) {
-            text += &format!("receiver    {name:>5} {:>13} {:>13}\n", shown(p[0]), shown(p[1]));
+            text += &format!("receiver    {name:>5}{}\n", place(p));
         }
         let transmitters = best.network.transmitters.iter().zip(&best.network.offsets);
         for (name, (p, o)) in measured.transmitter_names().iter().zip(transmitters) {
-            let [x, y, offset] = [p[0], p[1], *o].map(shown);
             let in_unit = unit.map_or_else(String::new, |unit| {
                 format!(" = {} {}", coordinate(unit.of(*o), unit.decimals(digits)), unit.name)
             });
-            text += &format!("transmitter {name:>5} {x:>13} {y:>13}   offset {offset:>13}{in_unit}\n");
+            text += &format!("transmitter {name:>5}{}   offset {:>13}{in_unit}\n", place(p), shown(*o));
         }
     }
     text

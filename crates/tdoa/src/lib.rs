@@ -17,8 +17,8 @@
 //! * [`simulate()`] and [`accuracy`]: networks with a known truth, how near an estimate comes to
 //!   it, and how near any estimate can come.
 //! * In space: `CalibrateOptions::<3>::new()` in place of `CalibrateOptions::default()` makes
-//!   [`calibrate()`] look for a network in space, a `Calibration<3>`. Exact solutions are of the plane,
-//!   but for [`minimal::spatial`].
+//!   [`calibrate()`] look for a network in space, a `Calibration<3>`. [`minimal::spatial::solve()`] is
+//!   [`minimal::solve()`] in space, a `MinimalSolution<3>`.
 //!
 //! All features are on by default: `csv` ([`read`], [`node_table`]), `mat` (compressed MATLAB
 //! files), `pictures` ([`picture`], [`html`]) and `threads` (all threads of rayon; results are the

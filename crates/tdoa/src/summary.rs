@@ -68,7 +68,7 @@ pub fn summary<const D: usize>(calibration: &Calibration<D>) -> String {
 }
 
 /// What an exact solution has found, one line for each item, and how long it took, if that is known.
-pub fn networks(solution: &MinimalSolution, time: Option<Duration>) -> String {
+pub fn networks<const D: usize>(solution: &MinimalSolution<D>, time: Option<Duration>) -> String {
     let (paths, counts) = (solution.paths, solution.counts);
     let time = time.map_or_else(String::new, |time| format!(" in {:.1} ms", 1e3 * time.as_secs_f64()));
     let mut text = format!(

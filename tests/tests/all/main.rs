@@ -34,5 +34,6 @@ mod tdoa_real;
 mod tdoa_report;
 mod tdoa_simulate;
 mod tdoa_solve;
+mod tdoa_solve_space;
 mod tdoa_space;
 mod tdoa_space_input;

@@ -145,6 +145,7 @@ class Networks:
     counts: dict[str, int]
     paths: dict[str, int]
     summary: str
+    dimensions: int
     configuration: str
     solver: str
     stopped_early: bool
@@ -187,7 +188,7 @@ def solve(
     pseudoranges: _Table,
     *,
     speed: float | None = None,
-    dimensions: Literal["auto", 2] = "auto",
+    dimensions: Literal["auto", 2, 3] = "auto",
     tolerance: float | None = None,
     start: Literal["stored", "polyhedral"] = "stored",
     first_under: float | None = None,

@@ -23,12 +23,12 @@ def _is(dimensions, value):
     return isinstance(dimensions, kind) and not isinstance(dimensions, bool) and dimensions == value
 
 
-def _plane(dimensions):
+def _plane_or_space(dimensions):
     if _is(dimensions, "auto") or _is(dimensions, 2):
-        return
+        return 2
     if _is(dimensions, 3):
-        raise InputError('solve finds networks in the plane: dimensions must be "auto" or 2, not 3; calibrate finds them in space too')
-    raise InputError(f'dimensions must be "auto" or 2, not {dimensions!r}')
+        return 3
+    raise InputError(f'dimensions must be 2, 3 or "auto", not {dimensions!r}')
 
 
 def _anchors(anchors, names, count):
@@ -298,8 +298,10 @@ class Networks(Result):
         How the paths ended.
     summary : str
         The lines that `tdoa solve` prints above its table.
+    dimensions : int
+        d: 2 in the plane, 3 in space.
     configuration, solver : str
-        The size of the table, and of what was solved by paths.
+        The size of the table, and of what was solved of it.
     stopped_early : bool
         Whether the search was stopped at the first network that fits.
     warnings : list of str
@@ -329,16 +331,17 @@ def solve(
     threads=None,
     progress=True,
 ):
-    """Find every network that explains pseudoranges without errors: 6r/3s, 4r/5s, 5r/4s and all larger sizes.
+    """Find every network that explains pseudoranges without errors: 6r/3s, 4r/5s, 5r/4s and all larger sizes, in space from 9r/5s up.
 
     Parameters
     ----------
     pseudoranges, speed, names, threads, progress
         As in `calibrate`; no measurement may be missing.
-    dimensions : {"auto", 2}
-        Networks are those of the plane.
+    dimensions : {"auto", 2, 3}
+        2 for the plane, which is also what "auto" means, 3 for space.
     tolerance : float, optional
-        How far below zero a distance may lie for a network to count as physical, as a share of the size of the data. Default 1e-6.
+        How far below zero a distance may lie for a network to count as physical, and in space how large residuals may be without a
+        warning, as a share of the size of the data. Default 1e-6.
     start : {"stored", "polyhedral"}
         Where paths start: at stored solutions of a generic instance, or at a start system computed for these data.
     first_under : float, optional
@@ -364,9 +367,9 @@ def solve(
     >>> bool(found.residuals[0] < 1e-9), bool(found.physical[0])
     (True, True)
     """
-    _plane(dimensions)
+    d = _plane_or_space(dimensions)
     given, _, _ = table(pseudoranges, names, None, speed)
-    arguments = given, number("tolerance", tolerance), text("start", start), number("first_under", first_under)
+    arguments = given, number("tolerance", tolerance), text("start", start), number("first_under", first_under), d
     return call(_native.solve_network, *arguments, threads=threads, progress=progress, wrap=Networks)
 
 

@@ -10,11 +10,12 @@ use crate::pseudoranges::Pseudoranges;
 const MAX_MEASUREMENTS: usize = 5_000;
 
 /// Refuses sizes that cannot be solved, missing measurements and nodes that coincide.
-pub(super) fn check(measured: &Pseudoranges) -> Result<(), MinimalError> {
+pub(super) fn check<const D: usize>(measured: &Pseudoranges) -> Result<(), MinimalError> {
     let (m, n) = (measured.receivers(), measured.transmitters());
-    let (constraints, unknowns) = (m * n, (2 * m + 3 * n).saturating_sub(3));
-    if !is_solvable::<2>(m, n) {
-        return Err(MinimalError::Underdetermined { configuration: measured.configuration(), constraints, unknowns });
+    let (constraints, unknowns) = (m * n, (D * m + (D + 1) * n).saturating_sub(D * (D + 1) / 2));
+    if !is_solvable::<D>(m, n) {
+        let configuration = measured.configuration();
+        return Err(MinimalError::Underdetermined { dimensions: D, configuration, constraints, unknowns });
     }
     if constraints > MAX_MEASUREMENTS {
         return Err(MinimalError::TooLarge { configuration: measured.configuration(), limit: MAX_MEASUREMENTS });

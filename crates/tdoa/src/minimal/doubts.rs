@@ -1,14 +1,17 @@
 //! Whether the networks found are complete and can be told apart.
 
 use super::node_kind::NodeKind;
+use super::normalised::Normalised;
+use super::options::MinimalOptions;
 use super::planar::collinear::Collinear;
 use super::solution::{Candidate, PathCounts};
 use super::warning::MinimalWarning;
+use crate::duplicates::rounding;
 use crate::flatness::flatness;
 use crate::pseudoranges::Pseudoranges;
 
-/// Physical candidates flatter than this are said to lie in one line; exact data tell no more of
-/// them.
+/// Physical candidates flatter than this are said to lie in one line, in space in one plane; exact data
+/// tell no more of them.
 const FLAT: f64 = 1e-4;
 
 /// What there is to say of the candidates; `line` is what the data show to lie exactly in one line.
@@ -31,4 +34,30 @@ pub(super) fn warnings(
         }
     }
     warnings
+}
+
+/// What there is to say of the candidate of a network in space with more measurements than unknowns.
+pub(super) fn warnings_in_space(
+    measured: &Pseudoranges,
+    best: &Candidate<3>,
+    options: &MinimalOptions,
+) -> Vec<MinimalWarning> {
+    let mut warnings = Vec::new();
+    let tolerance = allowed(measured, options);
+    let explained = best.residual <= tolerance;
+    if !explained {
+        warnings.push(MinimalWarning::NotExplained { residual: best.residual, tolerance });
+    }
+    for kind in [NodeKind::Receivers, NodeKind::Transmitters] {
+        if flatness(kind.positions(&best.network)) < FLAT {
+            warnings.push(MinimalWarning::NearlyInOnePlane { kind, names: kind.names(measured) });
+        }
+    }
+    warnings
+}
+
+/// Residuals up to this, in metres, are the noise that the options allow, or rounding.
+pub(super) fn allowed(measured: &Pseudoranges, options: &MinimalOptions) -> f64 {
+    let largest = measured.cells().values().iter().fold(0.0f64, |a, v| a.max(v.abs()));
+    (options.tolerance * Normalised::new(measured).size()).max(rounding(largest))
 }

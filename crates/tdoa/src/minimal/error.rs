@@ -1,5 +1,6 @@
 //! Why a matrix cannot be solved.
 
+use crate::degeneracy::list;
 use hc::poly::counted;
 use hc::tracker::OptionError;
 use thiserror::Error;
@@ -13,12 +14,16 @@ pub enum MinimalError {
     Option(#[from] OptionError),
     /// Fewer constraints than unknowns.
     #[error(
-        "{configuration} is underdetermined: {} for {} (positions up to a rigid motion, offsets); the smallest solvable networks are \
-         6 receivers with 3 transmitters, 5 with 4, and 4 with 5",
+        "{configuration} is underdetermined{}: {} for {} (positions up to a rigid motion, offsets); the smallest solvable networks are \
+         {}",
+        if *.dimensions == 2 { "" } else { " in space" },
         counted(*.constraints, "measurement"),
-        counted(*.unknowns, "unknown")
+        counted(*.unknowns, "unknown"),
+        smallest(*.dimensions)
     )]
     Underdetermined {
+        /// 2 in the plane, 3 in space.
+        dimensions: usize,
         /// Size, such as `4r/4s`.
         configuration: String,
         /// Number of measurements.
@@ -71,19 +76,49 @@ pub enum MinimalError {
         /// Name of the other.
         second: String,
     },
-    /// Another size than a solver in space takes.
-    #[error("{configuration}: five transmitters and nine receivers or more are needed; select such nodes")]
-    NotFiveTransmitters {
+    /// A size that has finitely many networks in space, but is none of those that are solved.
+    #[error(
+        "{configuration} is not solved exactly in space: that takes nine receivers or more and five transmitters or more; add nodes, or use \
+         `calibrate --dimensions 3`, which searches and takes noisy measurements"
+    )]
+    NotSolvedInSpace {
         /// Size, such as `8r/5s`.
         configuration: String,
     },
-    /// Nodes in special position, so that linear equations do not determine them.
+    /// Nodes in space that lie in one plane or line.
     #[error(
-        "linear equations in space do not determine the nodes, as far as the measurements tell: all receivers or four of the transmitters \
-         lie in one plane, or the receivers are the corners of a box or on another surface of degree two; select other nodes"
+        "all receivers or all transmitters lie in one plane (or line), as far as the measurements tell: which side of it the other nodes \
+         are on is not determined in space; move a node of each kind off it, or if all nodes lie in one plane, solve in the plane"
+    )]
+    InOnePlane,
+    /// Four of five transmitters in space that lie in one plane, or three in one line.
+    #[error(
+        "transmitters {} lie in one {}, as far as the measurements tell: linear equations in space need five transmitters of which no four \
+         lie in one plane; move one of these, or add a transmitter elsewhere",
+        list(names),
+        if names.len() > 3 { "plane" } else { "line" }
+    )]
+    TransmittersInOnePlane {
+        /// Their names.
+        names: Vec<String>,
+    },
+    /// Receivers in special position, so that linear equations do not determine them.
+    #[error(
+        "linear equations in space do not determine the nodes, as far as the measurements tell: all receivers or all but one lie in one plane, \
+         or they are the corners of a box or on another surface of degree two; move or add a receiver"
     )]
     SpecialPosition,
     /// Measurements that are not those of a network.
-    #[error("no network in space explains the measurements; look for wrong ones, or select other nodes")]
+    #[error(
+        "no network in space explains the measurements; look for wrong ones or, if they are noisy, use `calibrate --dimensions 3`"
+    )]
     NoNetwork,
+}
+
+/// The smallest solvable sizes, in words.
+fn smallest(dimensions: usize) -> &'static str {
+    match dimensions {
+        2 => "6 receivers with 3 transmitters, 5 with 4, and 4 with 5",
+        _ => "10 receivers with 4 transmitters, 7 with 5, 6 with 6, and 5 with 9",
+    }
 }

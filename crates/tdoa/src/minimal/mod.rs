@@ -11,7 +11,11 @@
 //! | 5r/6s, and more of both | offsets by rank | 5 |
 //! | 7r/4s, and more of both | offsets by rank, linear | 0 |
 //!
-//! These are the sizes in the plane. [`spatial`] has a solver in space.
+//! These are the sizes in the plane. In space ([`spatial::solve()`]):
+//!
+//! | size | method | paths |
+//! |---|---|---|
+//! | 9r/5s, and more of both | offsets by rank, linear | 0 |
 //!
 //! A solver that is used again keeps 0.2 to 0.5 MB of start solutions and workspace. A solve then
 //! allocates only its result, a few kilobytes (`cargo run --release -p tdoa --example memory`).
@@ -23,6 +27,7 @@ mod doubts;
 mod engine;
 mod error;
 mod formulation;
+mod larger;
 mod linear;
 mod nearest;
 mod node_kind;

@@ -27,7 +27,7 @@ impl Display for NodeKind {
 
 impl NodeKind {
     /// Where they are.
-    pub(crate) fn positions(self, network: &Network) -> &[[f64; 2]] {
+    pub(crate) fn positions<const D: usize>(self, network: &Network<D>) -> &[[f64; D]] {
         match self {
             NodeKind::Receivers => &network.receivers,
             NodeKind::Transmitters => &network.transmitters,

@@ -38,6 +38,11 @@ impl Normalised {
         self.size = size;
     }
 
+    /// The unit in metres: the root mean square of `f_ij - f_1j`.
+    pub(crate) fn size(&self) -> f64 {
+        self.size
+    }
+
     /// Number of transmitters.
     pub(crate) fn transmitters(&self) -> usize {
         self.first.len()
@@ -49,12 +54,12 @@ impl Normalised {
     }
 
     /// A network in these units, polished over all measurements and judged.
-    pub(crate) fn candidate(
+    pub(crate) fn candidate<const D: usize>(
         &self,
-        mut network: Network,
+        mut network: Network<D>,
         options: &MinimalOptions,
-        polisher: &mut Polisher,
-    ) -> Candidate {
+        polisher: &mut Polisher<D>,
+    ) -> Candidate<D> {
         let condition = if options.polish { polisher.polish(&self.matrix, &mut network) } else { f64::NAN };
         let n = self.transmitters();
         let physical = (self.matrix.iter().enumerate()).all(|(k, f)| f - network.offsets[k % n] >= -options.tolerance);
@@ -65,7 +70,7 @@ impl Normalised {
     }
 
     /// Back to metres and to the offsets of the data.
-    pub(crate) fn restore(&self, network: &mut Network) {
+    pub(crate) fn restore<const D: usize>(&self, network: &mut Network<D>) {
         for x in network.receivers.iter_mut().chain(&mut network.transmitters).flatten() {
             *x *= self.size;
         }
@@ -75,7 +80,7 @@ impl Normalised {
     }
 
     /// From metres to these units; the inverse of [`Normalised::restore`].
-    pub(crate) fn enter(&self, network: &mut Network) {
+    pub(crate) fn enter<const D: usize>(&self, network: &mut Network<D>) {
         for x in network.receivers.iter_mut().chain(&mut network.transmitters).flatten() {
             *x /= self.size;
         }
@@ -86,6 +91,6 @@ impl Normalised {
 }
 
 /// Physical candidates first, then by residual.
-pub(crate) fn rank(candidates: &mut [Candidate]) {
+pub(crate) fn rank<const D: usize>(candidates: &mut [Candidate<D>]) {
     candidates.sort_unstable_by(|a, b| b.physical.cmp(&a.physical).then(a.residual.total_cmp(&b.residual)));
 }

@@ -8,7 +8,7 @@ use hc::family::FibreOptions;
 pub struct MinimalOptions {
     /// How far below zero a distance f_ij - o_j may lie if a candidate is to count as physical,
     /// relative to the size of the data (root mean square of f_ij - f_1j). Default 1e-6; for noisy
-    /// data, use the noise.
+    /// data, use the noise. In space residuals (root mean square) above it make a warning.
     pub tolerance: f64,
     /// Roots whose imaginary parts are at most this share of the size of the data are also tried as
     /// real roots, because noise can make two real roots complex. Default 0: real roots only.

@@ -9,20 +9,20 @@ const MAX_ITERATIONS: usize = 8;
 
 /// Scratch space; keeps its memory from call to call.
 #[derive(Default)]
-pub(crate) struct Polisher {
+pub(crate) struct Polisher<const D: usize = 2> {
     squares: LeastSquares,
     signs: Vec<f64>,
-    next: Network,
+    next: Network<D>,
 }
 
-impl Polisher {
+impl<const D: usize> Polisher<D> {
     /// Moves the network to the least-squares solution of `|r_i - s_j| = +-(f_ij - o_j)`, signs as
     /// they are at the start, and returns the condition number of that problem (columns of unit
-    /// length, the three rigid motions excluded).
+    /// length, rigid motions excluded).
     ///
     /// `f` is row-major, receivers in rows. The network stays as it is where a step would not bring
     /// it nearer.
-    pub(crate) fn polish(&mut self, f: &[f64], network: &mut Network) -> f64 {
+    pub(crate) fn polish(&mut self, f: &[f64], network: &mut Network<D>) -> f64 {
         let n = network.transmitters.len();
         self.signs.clear();
         self.signs.extend((0..f.len()).map(|k| if f[k] < network.offsets[k % n] { -1.0 } else { 1.0 }));
@@ -51,37 +51,41 @@ impl Polisher {
         if condition.is_nan() { f64::INFINITY } else { condition }
     }
 
-    /// Sets up the linear problem of a step: residuals and their Jacobian, and three rows that hold
+    /// Sets up the linear problem of a step: residuals and their Jacobian, and rows that hold
     /// position and rotation fixed.
-    fn linearise(&mut self, f: &[f64], network: &Network) {
+    fn linearise(&mut self, f: &[f64], network: &Network<D>) {
         let (m, n) = (network.receivers.len(), network.transmitters.len());
-        let (rows, unknowns) = (m * n + 3, 2 * m + 3 * n);
+        let (rows, unknowns) = (m * n + D * (D + 1) / 2, D * m + (D + 1) * n);
         let (jacobian, values) = self.squares.start(rows, unknowns);
         let at = |row: usize, column: usize| column * rows + row;
         for i in 0..m {
             for j in 0..n {
                 let (r, s) = (network.receivers[i], network.transmitters[j]);
                 let (row, d, sign) = (i * n + j, network.distance(i, j), self.signs[i * n + j]);
-                for k in 0..2 {
+                for k in 0..D {
                     let u = if d > 0.0 { (r[k] - s[k]) / d } else { 0.0 };
-                    jacobian[at(row, 2 * i + k)] = u;
-                    jacobian[at(row, 2 * m + 2 * j + k)] = -u;
+                    jacobian[at(row, D * i + k)] = u;
+                    jacobian[at(row, D * (m + j) + k)] = -u;
                 }
-                jacobian[at(row, 2 * m + 2 * n + j)] = sign;
+                jacobian[at(row, D * (m + n) + j)] = sign;
                 values[row] = residual(f, &self.signs, network, row);
             }
         }
-        // Translations and the rotation about the centroid of all nodes: steps are orthogonal to
-        // them.
+        // Translations and the rotations about the centroid of all nodes, one in each plane of two
+        // axes: steps are orthogonal to them.
         let nodes = || network.receivers.iter().chain(&network.transmitters);
         let centre = centroid(nodes());
         for (a, p) in nodes().enumerate() {
-            jacobian[at(m * n, 2 * a)] = 1.0;
-            jacobian[at(m * n + 1, 2 * a + 1)] = 1.0;
-            jacobian[at(m * n + 2, 2 * a)] = -(p[1] - centre[1]);
-            jacobian[at(m * n + 2, 2 * a + 1)] = p[0] - centre[0];
+            for k in 0..D {
+                jacobian[at(m * n + k, D * a + k)] = 1.0;
+            }
+            let planes = (0..D).flat_map(|k| (k + 1..D).map(move |l| (k, l)));
+            for (row, (k, l)) in planes.enumerate() {
+                jacobian[at(m * n + D + row, D * a + k)] = -(p[l] - centre[l]);
+                jacobian[at(m * n + D + row, D * a + l)] = p[k] - centre[k];
+            }
         }
-        for row in m * n..m * n + 3 {
+        for row in m * n..rows {
             let length = (0..unknowns).map(|j| jacobian[at(row, j)].powi(2)).sum::<f64>().sqrt();
             if length > 0.0 {
                 for j in 0..unknowns {
@@ -93,31 +97,31 @@ impl Polisher {
 }
 
 /// `|r_i - s_j| - sign (f_ij - o_j)` of entry `k` of the matrix.
-fn residual(f: &[f64], signs: &[f64], network: &Network, k: usize) -> f64 {
+fn residual<const D: usize>(f: &[f64], signs: &[f64], network: &Network<D>, k: usize) -> f64 {
     let n = network.transmitters.len();
     network.distance(k / n, k % n) - signs[k] * (f[k] - network.offsets[k % n])
 }
 
 /// The Euclidean norm of all residuals.
-fn norm(f: &[f64], signs: &[f64], network: &Network) -> f64 {
+fn norm<const D: usize>(f: &[f64], signs: &[f64], network: &Network<D>) -> f64 {
     (0..f.len()).map(|k| residual(f, signs, network, k).powi(2)).sum::<f64>().sqrt()
 }
 
 /// Makes `next` the network less a step.
-fn move_by(step: &[f64], network: &Network, next: &mut Network) {
+fn move_by<const D: usize>(step: &[f64], network: &Network<D>, next: &mut Network<D>) {
     let (m, n) = (network.receivers.len(), network.transmitters.len());
     next.receivers.clone_from(&network.receivers);
     next.transmitters.clone_from(&network.transmitters);
     next.offsets.clone_from(&network.offsets);
     for (i, r) in next.receivers.iter_mut().enumerate() {
-        for k in 0..2 {
-            r[k] -= step[2 * i + k];
+        for k in 0..D {
+            r[k] -= step[D * i + k];
         }
     }
     for j in 0..n {
-        for k in 0..2 {
-            next.transmitters[j][k] -= step[2 * m + 2 * j + k];
+        for k in 0..D {
+            next.transmitters[j][k] -= step[D * (m + j) + k];
         }
-        next.offsets[j] -= step[2 * m + 2 * n + j];
+        next.offsets[j] -= step[D * (m + n) + j];
     }
 }

@@ -5,12 +5,13 @@ use crate::network::Network;
 pub use hc::family::PathCounts;
 use serde::Serialize;
 
-/// One network that a minimal solver proposes.
+/// One network that a minimal solver proposes, in the plane or, with `D` = 3, in space.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Candidate {
+#[serde(bound = "[f64; D]: Serialize")]
+pub struct Candidate<const D: usize = 2> {
     /// The network.
     #[serde(flatten)]
-    pub network: Network,
+    pub network: Network<D>,
     /// Root mean square of the unsquared residuals, in metres.
     pub residual: f64,
     /// Whether every f_ij - o_j is at least minus the tolerance.
@@ -32,9 +33,10 @@ pub struct RootCounts {
     pub physical: usize,
 }
 
-/// Everything that a minimal solver finds for one matrix.
+/// Everything that a minimal solver finds for one matrix, in the plane or, with `D` = 3, in space.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct MinimalSolution {
+#[serde(bound = "[f64; D]: Serialize")]
+pub struct MinimalSolution<const D: usize = 2> {
     /// The size of the matrix, such as `6r/3s`.
     pub configuration: String,
     /// The solver that was used, such as `6r/3s` on a larger matrix.
@@ -51,5 +53,5 @@ pub struct MinimalSolution {
     pub warnings: Vec<MinimalWarning>,
     /// The candidates, best first.
     #[serde(rename = "solutions")]
-    pub candidates: Vec<Candidate>,
+    pub candidates: Vec<Candidate<D>>,
 }

@@ -5,12 +5,12 @@ use super::doubts::warnings;
 use super::engine::Engine;
 use super::error::MinimalError;
 use super::formulation::Formulation;
+use super::larger::extend;
 use super::linear::LeastSquares;
 use super::normalised::{Normalised, rank};
 use super::options::MinimalOptions;
 use super::planar::collinear::Collinear;
 use super::planar::four_five::FourFive;
-use super::planar::larger::extend;
 use super::planar::rank::{FiveSix, by_receivers, offsets_of_four};
 use super::planar::three::{FiveFour, SixThree};
 use super::polish::Polisher;
@@ -112,7 +112,7 @@ impl Solver {
     ) -> Result<MinimalSolution, MinimalError> {
         options.paths.validate()?;
         let (m, n) = (measured.receivers(), measured.transmitters());
-        check(measured)?;
+        check::<2>(measured)?;
         let method = Method::pick(m, n);
         let mut solution = self.solve_by(method, measured, options, monitor)?;
         if let Some(other) = method.fallback()

@@ -36,7 +36,7 @@ pub(crate) fn best(measured: &Pseudoranges, m: usize, n: usize) -> Subset {
 
 /// Subsets of `size` out of `count`, each ascending: all of them in lexicographic order if there
 /// are at most [`LOOKED_AT`], otherwise that many, drawn at random, the same for the same sizes.
-fn combinations(count: usize, size: usize) -> Vec<Vec<usize>> {
+pub(crate) fn combinations(count: usize, size: usize) -> Vec<Vec<usize>> {
     let total = (0..size).try_fold(1usize, |t, k| Some(t.checked_mul(count - k)? / (k + 1)));
     if total.is_none_or(|t| t > LOOKED_AT) {
         let mut rng = Pcg64Mcg::seed_from_u64(count as u64);

@@ -2,13 +2,14 @@
 
 use super::node_kind::NodeKind;
 use crate::degeneracy::list;
+use crate::quantity::length;
 use hc::poly::{counted, one_or};
 use serde::{Serialize, Serializer};
 use thiserror::Error;
 
 /// Why the networks of a [`MinimalSolution`](super::MinimalSolution) may be incomplete, or cannot
 /// be told apart. In JSON a warning is its text.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum MinimalWarning {
     /// Some paths were lost.
@@ -50,6 +51,31 @@ pub enum MinimalWarning {
         kind: NodeKind,
         /// Their names.
         names: Vec<String>,
+    },
+    /// The nodes of one kind lie in one plane in the network in space, as far as the data tell.
+    #[error(
+        "in the network that fits, the {kind} {} lie in one plane: the data cannot tell on which side of it the other nodes lie; move some \
+         {kind} off the plane or, if all nodes lie in one, solve in the plane",
+        list(names)
+    )]
+    NearlyInOnePlane {
+        /// The kind of these nodes.
+        kind: NodeKind,
+        /// Their names.
+        names: Vec<String>,
+    },
+    /// More measurements than unknowns contradict each other.
+    #[error(
+        "the best network leaves residuals of {} (root mean square), and the tolerance is {}: some measurements are wrong, or the nodes do \
+         not lie as the solver needs them; use `calibrate`, or give the noise as the tolerance",
+        length(*residual),
+        length(*tolerance)
+    )]
+    NotExplained {
+        /// Root mean square of the residuals, metres.
+        residual: f64,
+        /// What [`MinimalOptions::tolerance`](super::MinimalOptions::tolerance) allows, metres.
+        tolerance: f64,
     },
 }
 

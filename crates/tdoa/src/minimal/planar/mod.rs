@@ -4,6 +4,5 @@ pub(super) mod chart;
 pub(super) mod collinear;
 pub(super) mod dual;
 pub(super) mod four_five;
-pub(super) mod larger;
 pub(super) mod rank;
 pub(super) mod three;

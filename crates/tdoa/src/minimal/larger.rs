@@ -5,10 +5,12 @@ use crate::minimal::linear::LeastSquares;
 use crate::minimal::normalised::{Normalised, rank};
 use crate::minimal::options::MinimalOptions;
 use crate::minimal::polish::Polisher;
-use crate::minimal::solution::MinimalSolution;
+use crate::minimal::solution::{Candidate, MinimalSolution};
 use crate::minimal::subset::Subset;
 use crate::network::Network;
+use crate::points::{dot, minus};
 use crate::pseudoranges::Pseudoranges;
+use std::array::from_fn;
 
 /// Extends the candidates of a part, the receivers and transmitters `part` of `measured`, to the
 /// whole.
@@ -18,30 +20,48 @@ pub(crate) fn extend(
     mut solution: MinimalSolution,
     options: &MinimalOptions,
 ) -> MinimalSolution {
-    let data = Normalised::new(measured);
-    let (mut squares, mut polisher) = (LeastSquares::default(), Polisher::default());
-    let mut whole = |network: &Network| {
-        let mut network = spread_out(measured, part, network, &mut squares)?;
-        data.enter(&mut network);
-        Some(data.candidate(network, options, &mut polisher))
-    };
-    solution.candidates = solution.candidates.iter().filter_map(|c| whole(&c.network)).collect();
+    let networks = solution.candidates.iter().map(|candidate| &candidate.network);
+    solution.candidates = candidates_of_whole(measured, part, networks, options);
     solution.counts.physical = solution.candidates.iter().filter(|c| c.physical).count();
-    rank(&mut solution.candidates);
-    for candidate in &mut solution.candidates {
-        data.restore(&mut candidate.network);
-        candidate.residual = candidate.network.rms(measured);
-    }
     solution.configuration = measured.configuration();
     solution
 }
 
+/// Networks of a part, extended to the whole and refined, best first; those that do not determine a
+/// node are left out.
+pub(crate) fn candidates_of_whole<'a, const D: usize>(
+    measured: &Pseudoranges,
+    part: &Subset,
+    networks: impl Iterator<Item = &'a Network<D>>,
+    options: &MinimalOptions,
+) -> Vec<Candidate<D>> {
+    let data = Normalised::new(measured);
+    let (mut squares, mut polisher) = (LeastSquares::default(), Polisher::default());
+    let mut whole = |network: &Network<D>| {
+        let mut network = spread_out(measured, part, network, &mut squares)?;
+        data.enter(&mut network);
+        Some(data.candidate(network, options, &mut polisher))
+    };
+    let mut candidates: Vec<Candidate<D>> = networks.filter_map(&mut whole).collect();
+    rank(&mut candidates);
+    for candidate in &mut candidates {
+        data.restore(&mut candidate.network);
+        candidate.residual = candidate.network.rms(measured);
+    }
+    candidates
+}
+
 /// The network of all nodes from that of a part; `None` where a node cannot be determined.
-fn spread_out(measured: &Pseudoranges, part: &Subset, known: &Network, squares: &mut LeastSquares) -> Option<Network> {
+fn spread_out<const D: usize>(
+    measured: &Pseudoranges,
+    part: &Subset,
+    known: &Network<D>,
+    squares: &mut LeastSquares,
+) -> Option<Network<D>> {
     let (m, n) = (measured.receivers(), measured.transmitters());
     let f = |i: usize, j: usize| measured.get(i, j).unwrap_or(f64::NAN);
     let mut network =
-        Network { receivers: vec![[f64::NAN; 2]; m], transmitters: vec![[f64::NAN; 2]; n], offsets: vec![f64::NAN; n] };
+        Network { receivers: vec![[f64::NAN; D]; m], transmitters: vec![[f64::NAN; D]; n], offsets: vec![f64::NAN; n] };
     for (k, &i) in part.receivers.iter().enumerate() {
         network.receivers[i] = known.receivers[k];
     }
@@ -50,59 +70,59 @@ fn spread_out(measured: &Pseudoranges, part: &Subset, known: &Network, squares: 
         network.offsets[j] = known.offsets[k];
     }
     for j in (0..n).filter(|j| !part.transmitters.contains(j)) {
-        let sights: Vec<([f64; 2], f64)> = part.receivers.iter().map(|&i| (network.receivers[i], f(i, j))).collect();
+        let sights: Vec<([f64; D], f64)> = part.receivers.iter().map(|&i| (network.receivers[i], f(i, j))).collect();
         let (position, offset) = transmitter(&sights, squares)?;
         network.transmitters[j] = position;
         network.offsets[j] = offset;
     }
     for i in (0..m).filter(|i| !part.receivers.contains(i)) {
-        let sights: Vec<([f64; 2], f64)> =
+        let sights: Vec<([f64; D], f64)> =
             (0..n).map(|j| (network.transmitters[j], f(i, j) - network.offsets[j])).collect();
         network.receivers[i] = receiver(&sights, squares)?;
     }
     network.is_finite().then_some(network)
 }
 
-/// A transmitter from four or more receivers: `|r_i - s|^2 = (f_i - o)^2`, the first subtracted, is
+/// A transmitter from D + 2 or more receivers: `|r_i - s|^2 = (f_i - o)^2`, the first subtracted, is
 /// linear in `s` and `o`.
-fn transmitter(sights: &[([f64; 2], f64)], squares: &mut LeastSquares) -> Option<([f64; 2], f64)> {
+fn transmitter<const D: usize>(sights: &[([f64; D], f64)], squares: &mut LeastSquares) -> Option<([f64; D], f64)> {
     let (origin, first) = sights[0];
     let at = |i: usize| {
         let (r, f) = sights[i + 1];
-        ([r[0] - origin[0], r[1] - origin[1]], f - first)
+        (minus(r, origin), f - first)
     };
     let x = squares.fit(
         sights.len() - 1,
-        3,
+        D + 1,
         |i, c| {
             let (r, f) = at(i);
-            [2.0 * r[0], 2.0 * r[1], -2.0 * f][c]
+            r.get(c).map_or(-2.0 * f, |r| 2.0 * r)
         },
         |i| {
             let (r, f) = at(i);
-            r[0] * r[0] + r[1] * r[1] - f * f
+            dot(r, r) - f * f
         },
     )?;
-    Some(([origin[0] + x[0], origin[1] + x[1]], first + x[2]))
+    Some((from_fn(|k| origin[k] + x[k]), first + x[D]))
 }
 
-/// A receiver from its distances to three or more transmitters.
-fn receiver(sights: &[([f64; 2], f64)], squares: &mut LeastSquares) -> Option<[f64; 2]> {
+/// A receiver from its distances to D + 1 or more transmitters.
+fn receiver<const D: usize>(sights: &[([f64; D], f64)], squares: &mut LeastSquares) -> Option<[f64; D]> {
     let (origin, first) = sights[0];
     let at = |i: usize| {
         let (s, d) = sights[i + 1];
-        ([s[0] - origin[0], s[1] - origin[1]], d)
+        (minus(s, origin), d)
     };
     let x = squares.fit(
         sights.len() - 1,
-        2,
+        D,
         |i, c| 2.0 * at(i).0[c],
         |i| {
             let (s, d) = at(i);
-            s[0] * s[0] + s[1] * s[1] - d * d + first * first
+            dot(s, s) - d * d + first * first
         },
     )?;
-    Some([origin[0] + x[0], origin[1] + x[1]])
+    Some(from_fn(|k| origin[k] + x[k]))
 }
 
 #[cfg(test)]
