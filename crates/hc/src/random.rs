@@ -30,6 +30,8 @@ pub(crate) enum Stream {
     Perturbation,
     /// Changes of the parameters, to see how far rounding them moves a solution.
     Rounding,
+    /// Points at which the sizes of formulas are measured.
+    Sizes,
     /// The line of a trace test.
     Trace,
     /// The parameters of a loop of monodromy, by number.
@@ -57,6 +59,7 @@ impl Stream {
             Stream::Beside => 13,
             Stream::Multipliers => 8,
             Stream::Through => 10,
+            Stream::Sizes => 12,
             Stream::Trace => 0x7ACE,
             Stream::Loop(k) => from(1 << 32, k),
         }

@@ -49,6 +49,7 @@ mod display;
 mod exact;
 mod expand;
 mod expression;
+mod factors;
 mod formula;
 mod graph;
 mod instantiate;

@@ -9,9 +9,10 @@ use crate::family::PathCounts;
 use crate::monitor::Monitor;
 use crate::refine::Refined;
 use crate::singular::Given;
+use crate::start::Traced;
 use crate::tolerances::ENDS;
 use num_complex::Complex64;
-use poly::{Exact, Polynomial, SparseSystem};
+use poly::{Exact, Polynomial};
 
 /// The result of all ends of paths.
 #[derive(Debug, Default)]
@@ -68,8 +69,8 @@ pub(super) struct Tracked<'a> {
     pub(super) work: u64,
     /// The same equations as polynomials.
     pub(super) polynomials: &'a [Polynomial<Exact>],
-    /// As many equations as unknowns, with their coefficients as parameters.
-    pub(super) system: &'a SparseSystem,
+    /// As many equations as unknowns, with their parameters.
+    pub(super) system: &'a Traced,
     pub(super) target: &'a [Complex64],
     /// The same as supports and coefficients, where these move along a straight line.
     pub(super) line: Option<Line<'a>>,

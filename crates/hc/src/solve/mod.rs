@@ -23,6 +23,7 @@ mod solutions;
 mod start;
 mod summary;
 mod warning;
+mod written;
 
 pub use error::SolveError;
 pub(crate) use member::{ends, solve_member};
@@ -74,7 +75,8 @@ impl Run {
     /// As for [`solve`]; also if the checkpoint belongs to another run, or cannot be written.
     pub fn solve(&self, system: &System, options: &SolveOptions) -> Result<Solutions, SolveError> {
         self.install(|| {
-            let context = SolveContext { checkpoint: self.checkpoint(), ..SolveContext::default() };
+            let (checkpoint, written) = (self.checkpoint(), written::worth_tracking(system));
+            let context = SolveContext { checkpoint, written, ..SolveContext::default() };
             solve_expanded(system, &expanded(system, options)?, options, self.monitor(), context)
         })
     }
@@ -90,17 +92,18 @@ impl RanksRun<'_> {
         let Some(ranks) = self.ranks else { return self.run.solve(system, options).map(Some) };
         self.run.install(|| {
             let polynomials = expanded(system, options);
-            let job =
-                polynomials.as_ref().map(|polynomials| job(polynomials, system.variables(), options).fingerprint());
+            let job = polynomials.as_ref().map(|polynomials| job(polynomials, system, options).fingerprint());
             let fingerprint = job.unwrap_or_default();
             if ranks.is_lead() {
                 return Lead::at(ranks, &fingerprint, |lead| {
-                    let context = SolveContext { checkpoint: self.run.checkpoint(), lead: Some(lead), worker: None };
+                    let (checkpoint, written) = (self.run.checkpoint(), written::worth_tracking(system));
+                    let context = SolveContext { checkpoint, lead: Some(lead), worker: None, written };
                     solve_expanded(system, &polynomials?, options, self.run.monitor(), context).map(Some)
                 });
             }
             Worker::at(ranks, &fingerprint, |worker| {
-                let context = SolveContext { worker: Some(worker), ..SolveContext::default() };
+                let written = written::worth_tracking(system);
+                let context = SolveContext { worker: Some(worker), written, ..SolveContext::default() };
                 solve_polynomials(&polynomials?, system.variables(), options, worker.monitor(), context).map(|_| None)
             })
         })
@@ -124,7 +127,7 @@ fn solve_expanded(
     context: SolveContext<'_>,
 ) -> Result<Solutions, SolveError> {
     if let Some(checkpoint) = context.checkpoint {
-        checkpoint.begin(job(polynomials, system.variables(), options))?;
+        checkpoint.begin(job(polynomials, system, options))?;
     }
     let mut found = solve_polynomials(polynomials, system.variables(), options, monitor, context)?;
     found.variables = system.variables().to_vec();
@@ -136,10 +139,13 @@ fn solve_expanded(
 }
 
 /// The job: what a checkpoint of this work describes, and what all ranks do.
-fn job(polynomials: &[Polynomial<Exact>], variables: &[String], options: &SolveOptions) -> Job {
-    let names: Vec<&str> = variables.iter().map(String::as_str).collect();
-    let hash = Hash::of(polynomials.iter().map(|polynomial| polynomial.display(&names).to_string()));
-    let system = crate::checkpoint::System { unknowns: variables.to_vec(), equations: polynomials.len(), hash };
+fn job(polynomials: &[Polynomial<Exact>], system: &System, options: &SolveOptions) -> Job {
+    let unknowns = system.variables().to_vec();
+    let names: Vec<&str> = unknowns.iter().map(String::as_str).collect();
+    let expanded = polynomials.iter().map(|polynomial| polynomial.display(&names).to_string());
+    // The same polynomials are tracked in another way where they are written in another way.
+    let hash = Hash::of(expanded.chain(written::worth_tracking(system).map(System::to_string)));
+    let system = crate::checkpoint::System { unknowns, equations: polynomials.len(), hash };
     Job::new("solve", system, options)
 }
 

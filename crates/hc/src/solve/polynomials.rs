@@ -16,6 +16,7 @@ use super::singular_ends;
 use super::slack::{self, Slack};
 use super::solutions::Solutions;
 use super::start::Starts;
+use super::written;
 use crate::checkpoint::{Checkpoint, Part};
 use crate::distinct::Known;
 use crate::monitor::Monitor;
@@ -24,7 +25,7 @@ use crate::singular::Given;
 use crate::start::MixedError;
 use crate::tolerances::ENDS;
 use crate::tracker::Trackers;
-use poly::{Exact, Polynomial};
+use poly::{Exact, Polynomial, System};
 use std::borrow::Cow;
 
 /// Clusters of solutions are looked at within clusters this often.
@@ -39,6 +40,8 @@ pub(crate) struct SolveContext<'a> {
     pub(crate) lead: Option<&'a Lead<'a>>,
     /// Among other ranks, of which this is not the first: there are no solutions here.
     pub(crate) worker: Option<&'a Worker<'a>>,
+    /// The formulas, where these are to be tracked as they were written.
+    pub(crate) written: Option<&'a System>,
 }
 
 /// How a solve belongs to another one, the ends of which it tells apart.
@@ -110,7 +113,8 @@ fn solve_nested(
     context: SolveContext<'_>,
 ) -> Result<Solutions, SolveError> {
     let nothing = Solutions { interrupted: true, ..Solutions::default() };
-    let Some((problem, mut starts)) = unless_cancelled(prepared(polynomials, names, options, squaring, monitor))?
+    let Some((problem, mut starts)) =
+        unless_cancelled(prepared(polynomials, names, context.written, options, squaring, monitor))?
     else {
         return Ok(nothing);
     };
@@ -154,14 +158,18 @@ struct Problem<'a> {
 fn prepared<'a>(
     polynomials: &'a [Polynomial<Exact>],
     names: &[String],
+    written: Option<&System>,
     options: &'a SolveOptions,
     squaring: Squaring,
     monitor: &'a Monitor,
 ) -> Result<(Problem<'a>, Starts), SolveError> {
+    // Combinations of formulas are made of their terms.
+    let written = written.filter(|_| polynomials.len() == names.len());
     let equations = Equations::new(polynomials, names)?;
-    let equations = match conditioned(polynomials) {
-        Cow::Borrowed(_) => equations,
-        Cow::Owned(rewritten) => Equations::new(&rewritten, names)?,
+    let program = written.and_then(|system| written::program(system, &equations.units(), options.seed));
+    let (equations, program) = match conditioned(polynomials) {
+        Cow::Borrowed(_) => (equations, program),
+        Cow::Owned(rewritten) => (Equations::new(&rewritten, names)?, None),
     };
     // A single equation has no condition number to tell, and combinations are rounded.
     let exact = equations.exact && (2..=names.len()).contains(&polynomials.len());
@@ -176,7 +184,7 @@ fn prepared<'a>(
         Some(square) => (square.equations, square.slack, Cow::Owned(square.options)),
         None => (equations, None, Cow::Borrowed(options)),
     };
-    let starts = Starts::new(equations, &options, monitor)?;
+    let starts = Starts::new(equations, program, &options, monitor)?;
     Ok((Problem { polynomials, given, units, exact, roots, squaring, slack, options, monitor }, starts))
 }
 
@@ -271,7 +279,7 @@ impl Problem<'_> {
     /// some are missing.
     fn solutions_at(&self, mut ends: Ends, from: &Starts, excess: &Excess<'_>, nesting: Nesting<'_>) -> Classified {
         let (given, monitor) = (&self.given, self.monitor);
-        let line = Line { supports: &from.equations.supports, target: &from.target };
+        let line = Line { supports: &from.equations.supports, target: &from.coefficients };
         let work = singular_ends::work(given, from.paths).min(nesting.outer.map_or(u64::MAX, Given::left));
         let (system, target) = match &self.slack {
             Some(slack) => {

@@ -5,11 +5,11 @@ use super::error::SolveError;
 use super::options::{SolveOptions, Start};
 use crate::monitor::Monitor;
 use crate::start::{
-    Grouped, MixedError, Multihomogeneous, Polyhedral, StartSystem, TotalDegree, bezout_number, degrees,
+    Grouped, MixedError, Multihomogeneous, Polyhedral, StartSystem, TotalDegree, Traced, bezout_number, degrees,
     mixed_volume_is_bezout,
 };
 use num_complex::Complex64;
-use poly::SparseSystem;
+use poly::{Interpreter, SparseSystem};
 
 /// Polyhedral paths take two stages, the others one: up to this part of the paths more are worth a
 /// trial.
@@ -18,11 +18,15 @@ const HARDLY_MORE: u64 = 8;
 /// A source of start systems for given equations.
 pub(super) struct Starts {
     /// The system of the coefficient stage.
-    pub(super) system: SparseSystem,
+    pub(super) system: Traced,
     /// As many equations as unknowns, with all terms of the system.
     pub(super) equations: Equations,
     /// Their coefficients in one row.
+    pub(super) coefficients: Vec<Complex64>,
+    /// The parameters of the system at which paths end.
     pub(super) target: Vec<Complex64>,
+    /// The same equations as they were written, times a parameter, where they are tracked so.
+    written: Option<Interpreter>,
     pub(super) kind: Start,
     pub(super) numbers: Numbers,
     /// Number of paths.
@@ -52,7 +56,12 @@ impl Numbers {
 }
 
 impl Starts {
-    pub(super) fn new(given: Equations, options: &SolveOptions, monitor: &Monitor) -> Result<Starts, SolveError> {
+    pub(super) fn new(
+        given: Equations,
+        written: Option<Interpreter>,
+        options: &SolveOptions,
+        monitor: &Monitor,
+    ) -> Result<Starts, SolveError> {
         let n = given.unknowns;
         let mut equations = if given.len() > n { given.squared(options.seed, &[]) } else { given };
         let laurent = equations.is_laurent();
@@ -94,7 +103,7 @@ impl Starts {
                 }
             }
         };
-        Starts::with(kind, paths, equations, numbers, degrees, grouped, options)
+        Starts::with(kind, paths, equations, written, numbers, degrees, grouped, options)
             .map(|starts| Starts { first, ..starts })
     }
 
@@ -103,6 +112,7 @@ impl Starts {
         kind: Start,
         paths: u64,
         mut equations: Equations,
+        written: Option<Interpreter>,
         numbers: Numbers,
         degrees: Vec<u64>,
         grouped: Option<Grouped>,
@@ -124,9 +134,18 @@ impl Starts {
                 _ => {}
             }
         }
-        let system = SparseSystem::new(n, &equations.supports)?;
-        let target = equations.coefficients.concat();
-        Ok(Starts { system, equations, target, kind, numbers, paths, degrees, grouped, first: None })
+        let terms = SparseSystem::new(n, &equations.supports)?;
+        let coefficients = equations.coefficients.concat();
+        let (system, target) = match &written {
+            None => (Traced::terms(terms), coefficients.clone()),
+            Some(program) => {
+                let mut target = vec![Complex64::new(0.0, 0.0); coefficients.len()];
+                target.push(Complex64::new(1.0, 0.0));
+                (Traced::with_written(terms, program.clone()), target)
+            }
+        };
+        let first = None;
+        Ok(Starts { system, equations, coefficients, target, written, kind, numbers, paths, degrees, grouped, first })
     }
 
     /// Instead of these polyhedral ones, and only for [`Start::Auto`]: those of one stage that have
@@ -136,7 +155,8 @@ impl Starts {
         let volume = self.numbers.mixed_volume.filter(|_| options.start == Start::Auto && !options.torus_only)?;
         let (kind, paths) = self.numbers.of_one_stage().filter(|(_, paths)| *paths <= volume + volume / HARDLY_MORE)?;
         let (degrees, grouped) = (self.degrees.clone(), self.grouped.clone());
-        Starts::with(kind, paths, self.equations.clone(), self.numbers, degrees, grouped, options).ok()
+        let (equations, written) = (self.equations.clone(), self.written.clone());
+        Starts::with(kind, paths, equations, written, self.numbers, degrees, grouped, options).ok()
     }
 
     /// A start system, another one for every attempt.
@@ -147,7 +167,7 @@ impl Starts {
         monitor: &Monitor,
     ) -> Result<StartSystem, SolveError> {
         let supports = &self.equations.supports;
-        Ok(match (self.kind, &self.grouped) {
+        let start = match (self.kind, &self.grouped) {
             (Start::TotalDegree, _) => {
                 StartSystem::TotalDegree(TotalDegree::new(supports, &self.degrees, options.seed, attempt))
             }
@@ -158,7 +178,8 @@ impl Starts {
                 Some(cells) => cells,
                 None => Polyhedral::new(supports, options.seed, attempt, monitor)?,
             }),
-        })
+        };
+        Ok(start.with_further(self.system.further()))
     }
 }
 

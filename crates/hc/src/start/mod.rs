@@ -12,6 +12,7 @@ mod polyhedral;
 mod reached;
 mod toric;
 mod total_degree;
+mod traced;
 
 pub use crate::mixed::{MixedCell, MixedError, MixedVolume, mixed_cells, mixed_volume};
 pub(crate) use bezout::mixed_volume_is_bezout;
@@ -19,12 +20,13 @@ pub(crate) use multihomogeneous::{Grouped, Multihomogeneous};
 pub(crate) use polyhedral::Polyhedral;
 pub(crate) use reached::Reached;
 pub(crate) use total_degree::{TotalDegree, bezout_number, degrees};
+pub(crate) use traced::Traced;
 
 use crate::family::Fibre;
 use crate::monitor::Monitor;
 use crate::tracker::{TrackerOptions, Trackers};
 use num_complex::Complex64;
-use poly::{Evaluate, SparseSystem};
+use poly::Evaluate;
 
 /// A start system whose solutions are made by their numbers, when they are needed.
 pub(crate) enum StartSystem {
@@ -50,7 +52,20 @@ pub(crate) trait Source<E: Evaluate>: Sync {
     ) -> Reached;
 }
 
-impl Source<SparseSystem> for StartSystem {
+impl StartSystem {
+    /// With as many further parameters, which are zero.
+    pub(crate) fn with_further(mut self, count: usize) -> StartSystem {
+        let parameters = match &mut self {
+            StartSystem::Polyhedral(start) => start.parameters_mut(),
+            StartSystem::Multihomogeneous(start) => start.parameters_mut(),
+            StartSystem::TotalDegree(start) => start.parameters_mut(),
+        };
+        parameters.resize(parameters.len() + count, Complex64::new(0.0, 0.0));
+        self
+    }
+}
+
+impl Source<Traced> for StartSystem {
     fn parameters(&self) -> &[Complex64] {
         match self {
             StartSystem::Polyhedral(start) => start.parameters(),
@@ -65,7 +80,7 @@ impl Source<SparseSystem> for StartSystem {
 
     fn solutions(
         &self,
-        trackers: &Trackers<'_, SparseSystem>,
+        trackers: &Trackers<'_, Traced>,
         numbers: &[usize],
         settings: &TrackerOptions,
         monitor: &Monitor,

@@ -155,6 +155,11 @@ impl Multihomogeneous {
         &self.parameters
     }
 
+    /// The same, to be followed by parameters that are not coefficients.
+    pub(super) fn parameters_mut(&mut self) -> &mut Vec<Complex64> {
+        &mut self.parameters
+    }
+
     /// The solution with this number, which is below the number of paths.
     pub(crate) fn solution(&self, number: u64) -> Vec<Complex64> {
         let mut x = vec![Complex64::new(0.0, 0.0); self.forms.len()];

@@ -4,13 +4,13 @@
 use super::binomial::Binomials;
 use super::reached::{Reached, Supports};
 use super::toric::{Toric, rates};
+use super::traced::Traced;
 use crate::mixed::{Keep, MixedError, watched_cells};
 use crate::monitor::Monitor;
 use crate::random::{Random, Stream};
 use crate::store::{Records, Sorter};
 use crate::tracker::{PathEnd, TrackerOptions, Trackers};
 use num_complex::Complex64;
-use poly::SparseSystem;
 use std::sync::{Mutex, PoisonError};
 
 /// The mixed cells of one lifting, each with its edges and the number of its first path. The binomials,
@@ -86,11 +86,16 @@ impl Polyhedral {
         &self.coefficients
     }
 
+    /// The same, to be followed by parameters that are not coefficients.
+    pub(super) fn parameters_mut(&mut self) -> &mut Vec<Complex64> {
+        &mut self.coefficients
+    }
+
     /// Tracks roots of the binomials, in ascending order of their numbers, to solutions for the generic
     /// coefficients.
     pub(crate) fn solutions(
         &self,
-        trackers: &Trackers<'_, SparseSystem>,
+        trackers: &Trackers<'_, Traced>,
         numbers: &[usize],
         settings: &TrackerOptions,
         monitor: &Monitor,
@@ -124,6 +129,8 @@ impl Polyhedral {
             let volume = end.checked_sub(cell.first).filter(|&volume| volume > 0);
             let Some((binomials, sides, weights)) = volume.and_then(|v| self.cell(&cell.edges, v)) else { continue };
             starts.rates.extend(rates(&weights));
+            // Parameters that are not coefficients stay as they are.
+            starts.rates.resize((place + 1) * self.coefficients.len(), 0.0);
             for &number in own {
                 starts.numbers.push(number);
                 starts.cells.push(place);

@@ -50,6 +50,11 @@ impl TotalDegree {
         &self.parameters
     }
 
+    /// The same, to be followed by parameters that are not coefficients.
+    pub(super) fn parameters_mut(&mut self) -> &mut Vec<Complex64> {
+        &mut self.parameters
+    }
+
     /// The solution with this number, which is below the number of paths: roots of unity.
     pub(crate) fn solution(&self, mut number: u64) -> Vec<Complex64> {
         let root = |&degree: &u64| {

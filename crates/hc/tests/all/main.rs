@@ -14,3 +14,4 @@ mod small_systems;
 mod solving;
 mod symmetry;
 mod tracking;
+mod written;
