@@ -14,7 +14,8 @@ use crate::units::Unit;
 use crate::{Failure, interrupt, output};
 
 /// Finds every network that explains pseudoranges without errors, best first: in the plane 6r/3s,
-/// 4r/5s, 5r/4s and all larger sizes, in space (--dimensions 3) 9r/5s and all larger sizes.
+/// 4r/5s, 5r/4s and all larger sizes, in space (--dimensions 3) 9r/5s, 7r/6s, 6r/8s and all larger
+/// sizes.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// The measurements, in the forms that `calibrate` takes; none may be missing.

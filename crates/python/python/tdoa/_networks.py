@@ -331,7 +331,7 @@ def solve(
     threads=None,
     progress=True,
 ):
-    """Find every network that explains pseudoranges without errors: 6r/3s, 4r/5s, 5r/4s and all larger sizes, in space from 9r/5s up.
+    """Find every network that explains pseudoranges without errors: 6r/3s, 4r/5s, 5r/4s and up, in space 9r/5s, 7r/6s, 6r/8s and up.
 
     Parameters
     ----------

@@ -78,8 +78,8 @@ pub enum MinimalError {
     },
     /// A size that has finitely many networks in space, but is none of those that are solved.
     #[error(
-        "{configuration} is not solved exactly in space: that takes nine receivers or more and five transmitters or more; add nodes, or use \
-         `calibrate --dimensions 3`, which searches and takes noisy measurements"
+        "{configuration} is not solved exactly in space: that takes nine receivers with five transmitters, seven with six, six with eight, or \
+         more of both; add nodes, or use `calibrate --dimensions 3`, which searches and takes noisy measurements"
     )]
     NotSolvedInSpace {
         /// Size, such as `8r/5s`.
@@ -102,10 +102,10 @@ pub enum MinimalError {
         /// Their names.
         names: Vec<String>,
     },
-    /// Receivers in special position, so that linear equations do not determine them.
+    /// Nodes in special position, so that the equations of the solver do not determine them.
     #[error(
-        "linear equations in space do not determine the nodes, as far as the measurements tell: all receivers or all but one lie in one plane, \
-         or they are the corners of a box or on another surface of degree two; move or add a receiver"
+        "the equations do not determine the nodes in space, as far as the measurements tell: all receivers, all transmitters, or all but one \
+         lie in one plane, or the receivers are the corners of a box or on another surface of degree two; move or add nodes"
     )]
     SpecialPosition,
     /// Measurements that are not those of a network.

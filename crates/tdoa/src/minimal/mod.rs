@@ -16,6 +16,8 @@
 //! | size | method | paths |
 //! |---|---|---|
 //! | 9r/5s, and more of both | offsets by rank, linear | 0 |
+//! | 7r/6s, and more of both | offsets by rank, 5 eigenvalues | 0 |
+//! | 6r/8s, and more of both | offsets by rank, 14 eigenvalues | 0 |
 //!
 //! A solver that is used again keeps 0.2 to 0.5 MB of start solutions and workspace. A solve then
 //! allocates only its result, a few kilobytes (`cargo run --release -p tdoa --example memory`).

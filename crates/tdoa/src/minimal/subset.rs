@@ -19,19 +19,26 @@ pub(crate) struct Subset {
 /// The part of `m` receivers and `n` transmitters with the largest [`spread`]; the whole where it
 /// has that size.
 pub(crate) fn best(measured: &Pseudoranges, m: usize, n: usize) -> Subset {
+    ranked(measured, m, n, 1).remove(0)
+}
+
+/// As many parts as [`best`] would be if the ones before were not there, one at least.
+pub(crate) fn ranked(measured: &Pseudoranges, m: usize, n: usize, most: usize) -> Vec<Subset> {
     let all = combinations(measured.receivers(), m);
     let others = combinations(measured.transmitters(), n);
     let total = all.len() * others.len();
-    let mut best = (f64::NEG_INFINITY, 0);
-    for step in 0..total.min(LOOKED_AT) {
-        // A stride over all pairs, in exact integers.
-        let k = (step as u128 * total as u128 / total.min(LOOKED_AT) as u128) as usize;
-        let apart = spread(measured, &all[k / others.len()], &others[k % others.len()]);
-        if apart > best.0 {
-            best = (apart, k);
-        }
-    }
-    Subset { receivers: all[best.1 / others.len()].clone(), transmitters: others[best.1 % others.len()].clone() }
+    // A stride over all pairs, in exact integers.
+    let pair = |step: usize| (step as u128 * total as u128 / total.min(LOOKED_AT) as u128) as usize;
+    let apart = |k: usize| spread(measured, &all[k / others.len()], &others[k % others.len()]);
+    let mut parts: Vec<(f64, usize)> = (0..total.min(LOOKED_AT)).map(pair).map(|k| (apart(k), k)).collect();
+    // The sort keeps the order of equal ones.
+    parts.sort_by(|a, b| b.0.total_cmp(&a.0));
+    parts.truncate(most);
+    let part = |&(_, k): &(f64, usize)| Subset {
+        receivers: all[k / others.len()].clone(),
+        transmitters: others[k % others.len()].clone(),
+    };
+    parts.iter().map(part).collect()
 }
 
 /// Subsets of `size` out of `count`, each ascending: all of them in lexicographic order if there

@@ -1,10 +1,10 @@
 //! Networks in space.
 //!
-//! [`solve()`] takes nine receivers or more and five transmitters or more. Such a network has four
-//! measurements or more than unknowns, and a generic one is the only solution. It needs no paths:
-//! offsets of five transmitters come from one singular value decomposition, positions from another and,
-//! with exactly nine receivers, from polynomials in one unknown. The other transmitters follow
-//! linearly from squared distances.
+//! [`solve()`] takes nine receivers and five transmitters, seven and six, six and eight, and more of both.
+//! Such a network has three measurements or more than unknowns, and a generic one is the only solution. It
+//! needs no paths. Offsets of five transmitters come from one singular value decomposition, those of six
+//! or eight, of which there are 5 or 14 sets, from eigenvalues. Positions follow linearly or from polynomials
+//! that have but one common root, and other nodes linearly from squared distances.
 //!
 //! ```
 //! use tdoa::minimal::{MinimalOptions, spatial};
@@ -25,10 +25,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod bilinear;
 mod five;
+mod grassmannian;
+mod monomials;
 mod offsets;
 mod planes;
 mod polynomial;
+mod rank;
 mod solve;
 mod upgrade;
 

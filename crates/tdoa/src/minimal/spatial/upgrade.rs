@@ -7,10 +7,10 @@ use faer::{Mat, Side};
 use std::array::from_fn;
 
 /// Rows and columns of the six entries of a symmetric matrix.
-const ENTRIES: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [0, 1], [0, 2], [1, 2]];
+pub(super) const ENTRIES: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [0, 1], [0, 2], [1, 2]];
 
 /// The place of an entry in [`ENTRIES`].
-fn entry(row: usize, column: usize) -> usize {
+pub(super) fn entry(row: usize, column: usize) -> usize {
     if row == column { row } else { row + column + 2 }
 }
 
@@ -22,9 +22,9 @@ pub(super) struct Positions {
 
 /// Vectors u_i for all receivers but the first, and v_j for all transmitters but the first, with
 /// u_i . v_j = (r_i - r_1) . (s_j - s_1).
-struct Factors {
-    u: Vec<[f64; 3]>,
-    v: [[f64; 3]; 4],
+pub(super) struct Factors {
+    pub(super) u: Vec<[f64; 3]>,
+    pub(super) v: Vec<[f64; 3]>,
 }
 
 /// The positions, from the squared distances of at least nine
@@ -34,11 +34,16 @@ struct Factors {
 /// s_j - s_1 = A^-T v_j. With H = A^T A and b = A^T (s_1 - r_1), the squared distances to the first
 /// transmitter give u_i^T H u_i - 2 u_i^T b.
 pub(super) fn positions(squared: &[[f64; 5]]) -> Result<Positions, MinimalError> {
-    let factors = factors(squared).ok_or(MinimalError::SpecialPosition)?;
+    let factors = factors(squared.len(), 5, |i, j| squared[i][j]).ok_or(MinimalError::SpecialPosition)?;
     let unknowns = gram(squared, &factors).ok_or(MinimalError::SpecialPosition)?;
+    place(&unknowns, &factors).ok_or(MinimalError::NoNetwork)
+}
+
+/// Positions by the entries of H and b; `None` unless they are real.
+pub(super) fn place(unknowns: &[f64; 9], factors: &Factors) -> Option<Positions> {
     let h = Mat::from_fn(3, 3, |row, column| unknowns[entry(row, column)]);
     // H is not positive definite where the measurements are not those of a network.
-    let factor = h.llt(Side::Lower).map_err(|_| MinimalError::NoNetwork)?;
+    let factor = h.llt(Side::Lower).ok()?;
     let l = factor.L();
     // H = L L^T, and A = L^T.
     let receiver = |u: &[f64; 3]| from_fn(|k| (k..3).map(|a| l[(a, k)] * u[a]).sum::<f64>());
@@ -51,37 +56,36 @@ pub(super) fn positions(squared: &[[f64; 5]]) -> Result<Positions, MinimalError>
     let transmitter = |v: &[f64; 3]| dual(from_fn(|k| b[k] + v[k]));
     let receivers = std::iter::once([0.0; 3]).chain(factors.u.iter().map(receiver)).collect();
     let transmitters = std::iter::once(dual(b)).chain(factors.v.iter().map(transmitter)).collect();
-    Ok(Positions { receivers, transmitters })
+    Some(Positions { receivers, transmitters })
 }
 
-/// The factors; `None` if they lie in a plane.
-fn factors(squared: &[[f64; 5]]) -> Option<Factors> {
-    let first = &squared[0];
-    let product = |i: usize, j: usize| {
-        let row = &squared[i + 1];
-        -0.5 * (row[j + 1] - first[j + 1] - row[0] + first[0])
-    };
-    let svd = Mat::from_fn(squared.len() - 1, 4, product).svd().ok()?;
+/// The factors of the squared distances of `m` receivers to `n` transmitters; `None` if they lie in a
+/// plane.
+pub(super) fn factors(m: usize, n: usize, squared: impl Fn(usize, usize) -> f64) -> Option<Factors> {
+    let product =
+        |i: usize, j: usize| -0.5 * (squared(i + 1, j + 1) - squared(0, j + 1) - squared(i + 1, 0) + squared(0, 0));
+    let svd = Mat::from_fn(m - 1, n - 1, product).svd().ok()?;
     // Written so that NaN is refused.
     let spans_space = svd.S()[2] > DEGENERATE * svd.S()[0];
     let roots: [f64; 3] = from_fn(|k| svd.S()[k].sqrt());
     spans_space.then(|| Factors {
-        u: (0..squared.len() - 1).map(|i| from_fn(|k| roots[k] * svd.U()[(i, k)])).collect(),
-        v: from_fn(|j| from_fn(|k| roots[k] * svd.V()[(j, k)])),
+        u: (0..m - 1).map(|i| from_fn(|k| roots[k] * svd.U()[(i, k)])).collect(),
+        v: (0..n - 1).map(|j| from_fn(|k| roots[k] * svd.V()[(j, k)])).collect(),
     })
+}
+
+/// The coefficients of u^T H u - 2 u^T b in the entries of H and b.
+pub(super) fn equation(u: &[f64; 3], column: usize) -> f64 {
+    match ENTRIES.get(column) {
+        Some(&[row, column]) => (if row == column { 1.0 } else { 2.0 }) * u[row] * u[column],
+        None => -2.0 * u[column - 6],
+    }
 }
 
 /// The entries of H and b. Eight equations leave a line, on which the squared distances of the first
 /// receiver decide. `None` where they are not determined.
 fn gram(squared: &[[f64; 5]], Factors { u, v }: &Factors) -> Option<[f64; 9]> {
-    let equation = |i: usize, column: usize| {
-        let u = &u[i];
-        match ENTRIES.get(column) {
-            Some(&[row, column]) => (if row == column { 1.0 } else { 2.0 }) * u[row] * u[column],
-            None => -2.0 * u[column - 6],
-        }
-    };
-    let svd = Mat::from_fn(u.len(), 9, equation).svd().ok()?;
+    let svd = Mat::from_fn(u.len(), 9, |i, column| equation(&u[i], column)).svd().ok()?;
     let rank = u.len().min(9);
     let determined = svd.S()[rank - 1] > DEGENERATE * svd.S()[0];
     if !determined {
@@ -104,7 +108,7 @@ fn gram(squared: &[[f64; 5]], Factors { u, v }: &Factors) -> Option<[f64; 9]> {
 /// What vanishes where |s_j - r_1| has the squares `first`: for j = 1 the quartic
 /// b^T adj(H) b - first_1 det H, for the others the cubics
 /// v_j^T adj(H) (v_j + 2 b) - (first_j - first_1) det H.
-fn conditions(solution: &[f64; 9], direction: &[f64; 9], v: &[[f64; 3]; 4], first: &[f64; 5]) -> [Polynomial; 5] {
+fn conditions(solution: &[f64; 9], direction: &[f64; 9], v: &[[f64; 3]], first: &[f64; 5]) -> [Polynomial; 5] {
     let line = |k: usize| Polynomial::line(solution[k], direction[k]);
     let h = |row: usize, column: usize| line(entry(row % 3, column % 3));
     // Cyclic minors have their signs.
