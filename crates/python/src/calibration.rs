@@ -211,7 +211,7 @@ impl<const D: usize> Shown for Calibration<D> {
     }
 
     fn has_systematic_errors(&self) -> bool {
-        self.mattering().is_some()
+        self.relevant_systematic().is_some()
     }
 }
 

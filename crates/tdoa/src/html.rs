@@ -69,7 +69,7 @@ pub fn html_with<const D: usize>(calibration: &Calibration<D>, provenance: &Prov
     page += &format!(
         "<p class=\"note\">Lengths in metres. Standard deviations: {}{}.</p>\n",
         escape(&calibration.gauge),
-        if calibration.mattering().is_some() { ", with systematic errors of the receivers" } else { "" }
+        if calibration.relevant_systematic().is_some() { ", with systematic errors of the receivers" } else { "" }
     );
     page += "<h2>Receivers</h2>\n";
     page += &table("receivers", &columns::<D>("receiver", &[]), receivers(calibration));
@@ -120,7 +120,7 @@ fn facts<const D: usize>(calibration: &Calibration<D>, provenance: &Provenance) 
         let nodes: Vec<&str> = calibration.mirror_images.iter().map(|image| image.node.as_str()).collect();
         list.push(("Mirror images", format!("of {}, hollow in the picture", nodes.join(", "))));
     }
-    if let Some(errors) = calibration.mattering() {
+    if let Some(errors) = calibration.relevant_systematic() {
         let times = number(errors.factor, 2);
         let size = length(errors.deviation);
         list.push(("Systematic errors", format!("of the receivers, {size}: positions {times} times as uncertain")));

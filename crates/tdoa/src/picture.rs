@@ -82,7 +82,7 @@ fn legend<const D: usize>(
             row(canvas, &format!("(drawn {} times as large)", number(magnified, 3)));
         }
     }
-    if calibration.mattering().is_some() {
+    if calibration.relevant_systematic().is_some() {
         row(canvas, "(with systematic errors of the receivers)");
     }
     let (measured, outlying) = (calibration.residuals.len(), calibration.residuals.outliers().count());

@@ -31,7 +31,7 @@ pub fn heading<const D: usize>(calibration: &Calibration<D>, time: Option<Durati
     if let Some(why) = calibration.distrust() {
         text += &format!("NOT TO BE TRUSTED: {why}, see the warnings\n");
     }
-    if let Some(errors) = calibration.mattering() {
+    if let Some(errors) = calibration.relevant_systematic() {
         text += &format!(
             "systematic errors of the receivers, standard deviation {}: their positions are {} times as uncertain as by noise alone, \
              which tables and pictures show\n",

@@ -9,7 +9,7 @@ use crate::family::PathCounts;
 use crate::monitor::Monitor;
 use crate::refine::Refined;
 use crate::singular::Given;
-use crate::start::Traced;
+use crate::start::PathSystem;
 use crate::tolerances::ENDS;
 use num_complex::Complex64;
 use poly::{Exact, Polynomial};
@@ -70,7 +70,7 @@ pub(super) struct Tracked<'a> {
     /// The same equations as polynomials.
     pub(super) polynomials: &'a [Polynomial<Exact>],
     /// As many equations as unknowns, with their parameters.
-    pub(super) system: &'a Traced,
+    pub(super) system: &'a PathSystem,
     pub(super) target: &'a [Complex64],
     /// The same as supports and coefficients, where these move along a straight line.
     pub(super) line: Option<Line<'a>>,

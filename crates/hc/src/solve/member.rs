@@ -10,7 +10,7 @@ use super::solutions::{Member, Solutions};
 use crate::family::Fibre;
 use crate::monitor::Monitor;
 use crate::singular::Given;
-use crate::start::Traced;
+use crate::start::PathSystem;
 use crate::tracker::Trackers;
 use num_complex::Complex64;
 use num_traits::ToPrimitive;
@@ -75,7 +75,7 @@ pub(crate) fn ends<E: Evaluate>(
     regular.chain(ends.singular.into_values().map(|end| end.point))
 }
 
-type Expanded = (Vec<Polynomial<Exact>>, Given, Traced, Vec<Complex64>);
+type Expanded = (Vec<Polynomial<Exact>>, Given, PathSystem, Vec<Complex64>);
 
 /// The polynomials of a member, and the same as supports and coefficients.
 fn expanded(family: &System, target: &[Complex64], monitor: &Monitor) -> Option<Expanded> {
@@ -84,7 +84,7 @@ fn expanded(family: &System, target: &[Complex64], monitor: &Monitor) -> Option<
     let supports: Vec<Vec<Vec<i32>>> = polynomials.iter().map(Polynomial::support).collect();
     let terms = polynomials.iter().flat_map(|p| p.terms());
     let numbers = terms.map(|(_, c)| Some(Complex64::new(c.re.to_f64()?, c.im.to_f64()?)).filter(|z| z.is_finite()));
-    let system = Traced::terms(SparseSystem::new(unknowns, &supports).ok()?);
+    let system = PathSystem::of_terms(SparseSystem::new(unknowns, &supports).ok()?);
     let target = numbers.collect::<Option<_>>()?;
     let given = Given::new(&polynomials, vec![0; unknowns]).heeding(monitor);
     Some((polynomials, given, system, target))

@@ -94,15 +94,15 @@ impl RanksRun<'_> {
             let polynomials = expanded(system, options);
             let job = polynomials.as_ref().map(|polynomials| job(polynomials, system, options).fingerprint());
             let fingerprint = job.unwrap_or_default();
+            let written = written::worth_tracking(system);
             if ranks.is_lead() {
                 return Lead::at(ranks, &fingerprint, |lead| {
-                    let (checkpoint, written) = (self.run.checkpoint(), written::worth_tracking(system));
+                    let checkpoint = self.run.checkpoint();
                     let context = SolveContext { checkpoint, lead: Some(lead), worker: None, written };
                     solve_expanded(system, &polynomials?, options, self.run.monitor(), context).map(Some)
                 });
             }
             Worker::at(ranks, &fingerprint, |worker| {
-                let written = written::worth_tracking(system);
                 let context = SolveContext { worker: Some(worker), written, ..SolveContext::default() };
                 solve_polynomials(&polynomials?, system.variables(), options, worker.monitor(), context).map(|_| None)
             })

@@ -11,7 +11,7 @@ use super::error::SolveError;
 use super::options::SolveOptions;
 use crate::monitor::Monitor;
 use crate::random::{Random, Stream};
-use crate::start::{MixedError, Polyhedral, Traced, bezout_number, degrees};
+use crate::start::{MixedError, PathSystem, Polyhedral, bezout_number, degrees};
 use crate::tolerances::ENDS;
 use num_complex::Complex64;
 use poly::SparseSystem;
@@ -32,7 +32,7 @@ pub(super) struct Slack {
     given: usize,
     /// Combinations in the given unknowns alone, with their coefficients: by these the Jacobian at a
     /// solution is judged.
-    pub(super) combined: (Traced, Vec<Complex64>),
+    pub(super) combined: (PathSystem, Vec<Complex64>),
 }
 
 /// As many equations as unknowns, and how they are tracked.
@@ -70,7 +70,7 @@ pub(super) fn squared(
     options.paths.tracker.max_steps = options.paths.tracker.max_steps.min(STEPS);
     options.paths.retries = options.paths.retries.min(RETRIES);
     options.restarts = options.restarts.max(RESTARTS);
-    let system = Traced::terms(SparseSystem::new(combined.unknowns, &combined.supports)?);
+    let system = PathSystem::of_terms(SparseSystem::new(combined.unknowns, &combined.supports)?);
     let slack = Slack { given: equations.unknowns, combined: (system, combined.coefficients.concat()) };
     Ok(Some(Square { equations: wide, slack: Some(slack), options }))
 }

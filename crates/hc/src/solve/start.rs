@@ -5,7 +5,7 @@ use super::error::SolveError;
 use super::options::{SolveOptions, Start};
 use crate::monitor::Monitor;
 use crate::start::{
-    Grouped, MixedError, Multihomogeneous, Polyhedral, StartSystem, TotalDegree, Traced, bezout_number, degrees,
+    Grouped, MixedError, Multihomogeneous, PathSystem, Polyhedral, StartSystem, TotalDegree, bezout_number, degrees,
     mixed_volume_is_bezout,
 };
 use num_complex::Complex64;
@@ -18,7 +18,7 @@ const HARDLY_MORE: u64 = 8;
 /// A source of start systems for given equations.
 pub(super) struct Starts {
     /// The system of the coefficient stage.
-    pub(super) system: Traced,
+    pub(super) system: PathSystem,
     /// As many equations as unknowns, with all terms of the system.
     pub(super) equations: Equations,
     /// Their coefficients in one row.
@@ -137,11 +137,11 @@ impl Starts {
         let terms = SparseSystem::new(n, &equations.supports)?;
         let coefficients = equations.coefficients.concat();
         let (system, target) = match &written {
-            None => (Traced::terms(terms), coefficients.clone()),
+            None => (PathSystem::of_terms(terms), coefficients.clone()),
             Some(program) => {
                 let mut target = vec![Complex64::new(0.0, 0.0); coefficients.len()];
                 target.push(Complex64::new(1.0, 0.0));
-                (Traced::with_written(terms, program.clone()), target)
+                (PathSystem::with_written(terms, program.clone()), target)
             }
         };
         let first = None;

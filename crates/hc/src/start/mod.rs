@@ -8,19 +8,19 @@
 mod bezout;
 mod binomial;
 mod multihomogeneous;
+mod path_system;
 mod polyhedral;
 mod reached;
 mod toric;
 mod total_degree;
-mod traced;
 
 pub use crate::mixed::{MixedCell, MixedError, MixedVolume, mixed_cells, mixed_volume};
 pub(crate) use bezout::mixed_volume_is_bezout;
 pub(crate) use multihomogeneous::{Grouped, Multihomogeneous};
+pub(crate) use path_system::PathSystem;
 pub(crate) use polyhedral::Polyhedral;
 pub(crate) use reached::Reached;
 pub(crate) use total_degree::{TotalDegree, bezout_number, degrees};
-pub(crate) use traced::Traced;
 
 use crate::family::Fibre;
 use crate::monitor::Monitor;
@@ -65,7 +65,7 @@ impl StartSystem {
     }
 }
 
-impl Source<Traced> for StartSystem {
+impl Source<PathSystem> for StartSystem {
     fn parameters(&self) -> &[Complex64] {
         match self {
             StartSystem::Polyhedral(start) => start.parameters(),
@@ -80,7 +80,7 @@ impl Source<Traced> for StartSystem {
 
     fn solutions(
         &self,
-        trackers: &Trackers<'_, Traced>,
+        trackers: &Trackers<'_, PathSystem>,
         numbers: &[usize],
         settings: &TrackerOptions,
         monitor: &Monitor,

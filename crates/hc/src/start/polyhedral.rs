@@ -2,9 +2,9 @@
 //! cells of a lifting.
 
 use super::binomial::Binomials;
+use super::path_system::PathSystem;
 use super::reached::{Reached, Supports};
 use super::toric::{Toric, rates};
-use super::traced::Traced;
 use crate::mixed::{Keep, MixedError, watched_cells};
 use crate::monitor::Monitor;
 use crate::random::{Random, Stream};
@@ -95,7 +95,7 @@ impl Polyhedral {
     /// coefficients.
     pub(crate) fn solutions(
         &self,
-        trackers: &Trackers<'_, Traced>,
+        trackers: &Trackers<'_, PathSystem>,
         numbers: &[usize],
         settings: &TrackerOptions,
         monitor: &Monitor,

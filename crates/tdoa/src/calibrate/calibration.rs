@@ -205,22 +205,22 @@ impl<const D: usize> Calibration<D> {
         pairs.reduce(f64::max)
     }
 
-    /// Systematic errors of the receivers, if they matter: the covariances with them are then those to
-    /// trust.
-    pub fn mattering(&self) -> Option<&SystematicErrors<D>> {
+    /// Systematic errors of the receivers, if they [matter](SystematicErrors::matter): the covariances
+    /// with them are then those to trust.
+    pub fn relevant_systematic(&self) -> Option<&SystematicErrors<D>> {
         self.systematic.as_ref().filter(|errors| errors.matter())
     }
 
-    /// The covariances to trust, which tables and pictures show: of the receivers, then of the
-    /// transmitters. They include systematic errors of the receivers where these matter.
+    /// The covariances to trust, in square metres, which tables and pictures show: of the receivers, then of
+    /// the transmitters. They include systematic errors of the receivers where these matter.
     pub fn trusted_covariances(&self) -> [&[Option<[[f64; D]; D]>]; 2] {
-        match self.mattering() {
+        match self.relevant_systematic() {
             Some(errors) => [&errors.receiver_covariance, &errors.transmitter_covariance],
             None => [&self.receiver_covariance, &self.transmitter_covariance],
         }
     }
 
-    /// The square roots of the diagonals of [`trusted_covariances`](Self::trusted_covariances).
+    /// The square roots of the diagonals of [`trusted_covariances`](Self::trusted_covariances), in metres.
     pub fn trusted_deviations(&self) -> [Vec<Option<[f64; D]>>; 2] {
         self.trusted_covariances().map(deviations)
     }

@@ -4,7 +4,8 @@
 //! the squared distances, and `q_ij - q_i1` has rank three. Of seven receivers and six transmitters two
 //! combinations of the columns vanish: the vectors `(g_j, g_j p_j)` of such combinations are a plane in a
 //! linear space of dimension five, and the `p_j` are the same for all of them. Of six receivers and eight
-//! transmitters two combinations of the rows are constant.
+//! transmitters two combinations of the rows are constant. The numbers of planes, 5 and 14, are the degrees
+//! of the Grassmannians G(2, 5) and G(2, 6).
 
 use super::bilinear::positions;
 use super::grassmannian::{Form, IN_FIVE, IN_SIX, Shape, planes};

@@ -29,6 +29,10 @@ const SAME: f64 = 1e-6;
 /// far apart. The other nodes follow linearly, and all measurements are refined together. Any rotation or
 /// reflection of the result fits as well.
 ///
+/// Offsets come first, by the rank of the squared distances, then positions, the stratified approach of
+/// Ask, Kuang & Astrom, *A unifying approach to minimal problems in collinear and planar TDOA sensor
+/// network self-calibration*.
+///
 /// Of the options, `tolerance` and `polish` matter. Measurements with more errors than `tolerance`
 /// allows make a warning: the network is then not to be relied upon, and need not be that of least
 /// squares.

@@ -8,13 +8,13 @@ use poly::{Evaluate, Interpreter, Scalar, SparseMemory, SparseSystem};
 /// written, times one more parameter `s`, the last one: the terms are then those of the start system,
 /// and a path leads from its coefficients and `s = 0` to no terms and `s = 1`.
 #[derive(Clone, Debug)]
-pub(crate) struct Traced {
+pub(crate) struct PathSystem {
     terms: SparseSystem,
     written: Option<Interpreter>,
 }
 
-/// Scratch space of a [`Traced`] system.
-pub(crate) struct TracedMemory<S> {
+/// Scratch space of a [`PathSystem`] system.
+pub(crate) struct PathMemory<S> {
     isa: Isa,
     terms: SparseMemory<S>,
     written: Option<WrittenMemory<S>>,
@@ -29,19 +29,19 @@ struct WrittenMemory<S> {
     share: Vec<S>,
 }
 
-impl Traced {
+impl PathSystem {
     /// A system of terms alone.
-    pub(crate) fn terms(terms: SparseSystem) -> Traced {
-        Traced { terms, written: None }
+    pub(crate) fn of_terms(terms: SparseSystem) -> PathSystem {
+        PathSystem { terms, written: None }
     }
 
     /// Terms and formulas as they were written, as many, in the same unknowns, that are multiplied by
     /// their only parameter.
-    pub(crate) fn with_written(terms: SparseSystem, written: Interpreter) -> Traced {
+    pub(crate) fn with_written(terms: SparseSystem, written: Interpreter) -> PathSystem {
         debug_assert_eq!(terms.equations(), written.equations());
         debug_assert_eq!(terms.variables(), written.variables());
         debug_assert_eq!(written.parameters(), 1);
-        Traced { terms, written: Some(written) }
+        PathSystem { terms, written: Some(written) }
     }
 
     /// Parameters that are not coefficients of terms.
@@ -50,8 +50,8 @@ impl Traced {
     }
 }
 
-impl Evaluate for Traced {
-    type Memory<S: Scalar> = TracedMemory<S>;
+impl Evaluate for PathSystem {
+    type Memory<S: Scalar> = PathMemory<S>;
 
     fn equations(&self) -> usize {
         self.terms.equations()
@@ -63,7 +63,7 @@ impl Evaluate for Traced {
         self.terms.parameters() + self.further()
     }
 
-    fn memory<S: Scalar>(&self, isa: Isa) -> TracedMemory<S> {
+    fn memory<S: Scalar>(&self, isa: Isa) -> PathMemory<S> {
         let written = self.written.as_ref().map(|program| {
             let zeros = |count: usize| vec![S::zero(); count];
             let rows = program.equations();
@@ -75,10 +75,10 @@ impl Evaluate for Traced {
                 share: zeros(ORDERS),
             }
         });
-        TracedMemory { isa, terms: self.terms.memory(isa), written }
+        PathMemory { isa, terms: self.terms.memory(isa), written }
     }
 
-    fn values<S: Scalar>(&self, memory: &mut TracedMemory<S>, x: &[S], p: &[S], values: &mut [S]) {
+    fn values<S: Scalar>(&self, memory: &mut PathMemory<S>, x: &[S], p: &[S], values: &mut [S]) {
         let (coefficients, share) = p.split_at(self.terms.parameters());
         self.terms.values(&mut memory.terms, x, coefficients, values);
         if let (Some(program), Some(own)) = (&self.written, &mut memory.written) {
@@ -87,14 +87,7 @@ impl Evaluate for Traced {
         }
     }
 
-    fn jacobian<S: Scalar>(
-        &self,
-        memory: &mut TracedMemory<S>,
-        x: &[S],
-        p: &[S],
-        values: &mut [S],
-        jacobian: &mut [S],
-    ) {
+    fn jacobian<S: Scalar>(&self, memory: &mut PathMemory<S>, x: &[S], p: &[S], values: &mut [S], jacobian: &mut [S]) {
         let (coefficients, share) = p.split_at(self.terms.parameters());
         self.terms.jacobian(&mut memory.terms, x, coefficients, values, jacobian);
         if let (Some(program), Some(own)) = (&self.written, &mut memory.written) {
@@ -104,7 +97,7 @@ impl Evaluate for Traced {
         }
     }
 
-    fn taylor<S: Scalar>(&self, memory: &mut TracedMemory<S>, order: usize, x: &[S], p: &[S], out: &mut [S]) {
+    fn taylor<S: Scalar>(&self, memory: &mut PathMemory<S>, order: usize, x: &[S], p: &[S], out: &mut [S]) {
         let (Some(program), Some(own)) = (&self.written, &mut memory.written) else {
             return self.terms.taylor(&mut memory.terms, order, x, p, out);
         };
@@ -144,7 +137,7 @@ impl<S: Scalar> Kernel for Add<'_, S> {
 
 #[cfg(test)]
 mod tests {
-    use super::Traced;
+    use super::PathSystem;
     use num_complex::Complex64;
     use poly::{Evaluate, Isa, SparseSystem, parse};
 
@@ -159,29 +152,29 @@ mod tests {
             );
             parse::family(&text).unwrap().system.compile().unwrap()
         };
-        let traced = Traced::with_written(terms, family(["s*((x + y)^2 - 3)", "s*(x*y - 1)"], "'s'"));
+        let system = PathSystem::with_written(terms, family(["s*((x + y)^2 - 3)", "s*(x*y - 1)"], "'s'"));
         let whole =
             family(["c0*x^2 + c1 + s*x^2 + 2*s*x*y + s*y^2 - 3*s", "c2*y + s*x*y - s"], "'c0', 'c1', 'c2', 's'");
-        assert_eq!((traced.equations(), traced.variables(), traced.parameters()), (2, 2, 4));
+        assert_eq!((system.equations(), system.variables(), system.parameters()), (2, 2, 4));
         let number = |k: usize| Complex64::new((k * k % 7) as f64 - 2.5, (k * 5 % 11) as f64 - 4.0);
         let p: Vec<Complex64> = (0..16).map(number).collect();
         let x: Vec<Complex64> = (20..28).map(number).collect();
-        let (mut a, mut b) = (traced.memory(Isa::detect()), whole.memory(Isa::detect()));
+        let (mut a, mut b) = (system.memory(Isa::detect()), whole.memory(Isa::detect()));
         let near = |a: &[Complex64], b: &[Complex64]| a.iter().zip(b).all(|(a, b)| (a - b).norm() < 1e-9);
         let zeros = |count: usize| vec![Complex64::default(); count];
         let (mut values, mut expected) = (zeros(2), zeros(2));
         let (mut jacobian, mut derivatives) = (zeros(4), zeros(4));
-        traced.values(&mut a, &x, &p[..4], &mut values);
+        system.values(&mut a, &x, &p[..4], &mut values);
         whole.values(&mut b, &x, &p[..4], &mut expected);
         assert!(near(&values, &expected));
-        traced.jacobian(&mut a, &x, &p[..4], &mut values, &mut jacobian);
+        system.jacobian(&mut a, &x, &p[..4], &mut values, &mut jacobian);
         whole.jacobian(&mut b, &x, &p[..4], &mut expected, &mut derivatives);
         assert!(near(&values, &expected) && near(&jacobian, &derivatives));
         // On a straight line of the parameters, and on a curve.
         for straight in [true, false] {
             for order in 1..4 {
                 let orders = if straight { 2 } else { order + 1 };
-                traced.taylor(&mut a, order, &x[..2 * order], &p[..4 * orders], &mut values);
+                system.taylor(&mut a, order, &x[..2 * order], &p[..4 * orders], &mut values);
                 whole.taylor(&mut b, order, &x[..2 * order], &p[..4 * orders], &mut expected);
                 assert!(near(&values, &expected), "{straight} {order}");
             }
