@@ -4,7 +4,7 @@
 //! generated module depends only on this crate.
 
 use crate::distinct::{coincidences, relative_distance};
-use crate::family::{Family, FamilyError, StartFile, StartFileError};
+use crate::family::{Family, FamilyError, Fibre, StartFile, StartFileError};
 use crate::refine::Refiner;
 use crate::tolerances::FAMILIES;
 use poly::counted;
@@ -84,7 +84,7 @@ pub enum CodegenError {
 /// # Errors
 /// If the stored solutions fail a check.
 pub fn generate(family: &Family, start: &StartFile, source: &str) -> Result<String, CodegenError> {
-    verify(family, start)?;
+    verify(family, &start.fibre()?)?;
     let mut options = EmitOptions::default();
     options.crate_path = "hc::poly".to_owned();
     options.source = one_line(source);
@@ -94,11 +94,13 @@ pub fn generate(family: &Family, start: &StartFile, source: &str) -> Result<Stri
     Ok(text)
 }
 
-/// Checks that the stored solutions solve the equations, are distinct and regular, and are as many
-/// as stated.
-fn verify(family: &Family, start: &StartFile) -> Result<(), CodegenError> {
-    let fibre = start.fibre()?;
-    family.check(&fibre)?;
+/// Checks that stored solutions solve the equations, are distinct, regular and not degenerate, and are
+/// as many as the family states.
+///
+/// # Errors
+/// If they fail a check.
+pub fn verify(family: &Family, fibre: &Fibre) -> Result<(), CodegenError> {
+    family.check(fibre)?;
     if let Some(stated) = family.roots().filter(|&stated| stated != fibre.len()) {
         return Err(CodegenError::Count { found: fibre.len(), stated });
     }

@@ -94,8 +94,8 @@ pub(super) fn moved<E: Evaluate>(
     (counts.finite == fibre.len()).then(|| Fibre::new(target.to_vec(), fibre.dimension, solutions.collect()))
 }
 
-/// Tracks fibres of one family again and again, on one thread. It keeps its memory from call to
-/// call.
+/// Tracks fibres of one family again and again, on one thread or on all. It keeps its memory from
+/// call to call.
 ///
 /// In several [`Charts`], a lost path continues in the next chart from where it broke off. At
 /// stricter levels it starts again in all charts.
@@ -110,13 +110,22 @@ pub struct FibreTracker<'a, E: Evaluate, C: Charts = OneChart> {
 }
 
 impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
-    /// A tracker for a square system, with room for fibres of the size of `fibre`.
+    /// A tracker for a square system, with room for fibres of the size of `fibre`, on one thread.
     ///
     /// # Panics
     /// If the system does not have as many equations as unknowns.
     pub fn new(system: &'a E, charts: C, fibre: &Fibre) -> Self {
         let tracker = Tracker::new(system, &TrackerOptions::default());
         FibreTracker::over(system, charts, Lanes::One(Box::new(tracker)), fibre)
+    }
+
+    /// [`new`](Self::new), with the paths on the threads of the current rayon pool. The results do not
+    /// depend on them.
+    ///
+    /// # Panics
+    /// If the system does not have as many equations as unknowns.
+    pub fn on_all_threads(system: &'a E, charts: C, fibre: &Fibre) -> Self {
+        FibreTracker::over(system, charts, Lanes::Threads(Trackers::new(system)), fibre)
     }
 
     fn over(system: &'a E, charts: C, lanes: Lanes<'a, E>, fibre: &Fibre) -> Self {

@@ -24,6 +24,11 @@ const BAD_LUCK: usize = 4;
 const WORTHWHILE: usize = 8;
 const LONG: usize = 100_000;
 
+/// If after the first level more than one path in so many is lost, and that took more than [`VERY_LONG`]
+/// steps, no other level follows: the member is degenerate, and what is lost is at infinity or singular.
+const MANY: usize = 16;
+const VERY_LONG: usize = 500_000;
+
 /// Where paths are tracked.
 pub(super) enum Lanes<'a, E: Evaluate> {
     /// In the lanes of one tracker.
@@ -176,7 +181,9 @@ where
         let tracking = &mut self.tracking;
         let steps: usize = tracking.paths.results().iter().map(|r| r.accepted + r.rejected).sum();
         let spent = steps.saturating_sub(std::mem::replace(&mut tracking.steps, steps));
-        C::COUNT > 1 && level > 0 && after > BAD_LUCK && after > before - before / WORTHWHILE && spent > LONG
+        let useless = level > 0 && after > BAD_LUCK && after > before - before / WORTHWHILE && spent > LONG;
+        let degenerate = level == 0 && after > tracking.fibre.len() / MANY && spent > VERY_LONG;
+        C::COUNT > 1 && (useless || degenerate)
     }
 }
 
