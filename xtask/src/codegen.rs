@@ -2,14 +2,17 @@
 //!
 //! A generated module holds the evaluator of a family and the solutions for one generic parameter point. Both come from
 //! committed inputs alone (`NAME.toml` and `NAME.start.json`), so that the bytes are the same on any machine.
+//!
+//! Families with thousands of solutions are interpreted, and their fibres packed in a binary file (`NAME.fibre`), which
+//! `--check` unpacks and verifies.
 
 use crate::refill;
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use experiments::workspace;
 use hc::Family;
-use hc::codegen::generate;
-use hc::family::StartFile;
+use hc::codegen::{generate, verify};
+use hc::family::{StartFile, pack_fibre, unpack_fibre};
 use std::path::{Path, PathBuf};
 
 /// A family of this workspace, and where its files are, from the root of the repository.
@@ -53,6 +56,14 @@ const FAMILIES: &[Known] = &[
     ),
 ];
 
+/// Families whose fibres are packed, and where both are.
+const PACKED: &[(&str, &str, &str)] = &[
+    ("10r4s", "crates/tdoa/families/10r4s.toml", "crates/tdoa/families/10r4s.fibre"),
+    ("8r5s", "crates/tdoa/families/8r5s.toml", "crates/tdoa/families/8r5s.fibre"),
+    ("7r5s", "crates/tdoa/families/7r5s.toml", "crates/tdoa/families/7r5s.fibre"),
+    ("6r6s", "crates/tdoa/families/6r6s.toml", "crates/tdoa/families/6r6s.fibre"),
+];
+
 const fn known(name: &'static str, family: &'static str, start: &'static str, output: &'static str) -> Known {
     Known { name, family, start, output }
 }
@@ -80,13 +91,16 @@ pub(crate) struct CodegenArguments {
     /// Its stored fibre (the JSON of `hc monodromy`).
     #[arg(long, requires = "family")]
     start: Option<PathBuf>,
-    /// The Rust file to write.
+    /// The Rust file to write; a packed fibre if its name ends in `.fibre`.
     #[arg(long, requires = "family")]
     output: Option<PathBuf>,
 }
 
 pub(crate) fn run(arguments: &CodegenArguments) -> Result<()> {
     if let (Some(family), Some(start), Some(output)) = (&arguments.family, &arguments.start, &arguments.output) {
+        if output.extension().is_some_and(|extension| extension == "fibre") {
+            return pack(arguments.check, family, start, output);
+        }
         let name = family.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let stale = write_or_check(arguments, &name, family, start, output)?;
         ensure!(!stale, "stale: {}; run the same command without --check", output.display());
@@ -95,9 +109,21 @@ pub(crate) fn run(arguments: &CodegenArguments) -> Result<()> {
     let root = workspace::root();
     let chosen: Vec<&Known> =
         FAMILIES.iter().filter(|known| arguments.only.as_deref().is_none_or(|only| only == known.name)).collect();
-    let names: Vec<&str> = FAMILIES.iter().map(|known| known.name).collect();
-    ensure!(!chosen.is_empty(), "no family of that name; there are: {}", names.join(", "));
+    let packed: Vec<_> =
+        PACKED.iter().filter(|(name, ..)| arguments.only.as_deref().is_none_or(|only| only == *name)).collect();
+    let names: Vec<&str> =
+        FAMILIES.iter().map(|known| known.name).chain(PACKED.iter().map(|(name, ..)| *name)).collect();
+    ensure!(!chosen.is_empty() || !packed.is_empty(), "no family of that name; there are: {}", names.join(", "));
     let mut stale = Vec::new();
+    for (_, family, fibre) in packed {
+        let [family, fibre] = [family, fibre].map(|path| root.join(path));
+        if arguments.refill {
+            let file = refill::refill(&read_family(&family)?, arguments.seed, !arguments.no_trace)?;
+            write_packed(&read_family(&family)?, &file, &fibre)?;
+        } else {
+            check_packed(&read_family(&family)?, &fibre)?;
+        }
+    }
     for known in chosen {
         let [family, start, output] = [known.family, known.start, known.output].map(|path| root.join(path));
         if arguments.refill {
@@ -116,6 +142,34 @@ pub(crate) fn run(arguments: &CodegenArguments) -> Result<()> {
 
 fn read_family(path: &Path) -> Result<Family> {
     workspace::read(path)?.parse::<Family>().with_context(|| format!("{} is not a family", path.display()))
+}
+
+/// Writes the fibre of a start file as a packed one, or with `check` verifies the one on disk.
+fn pack(check: bool, family: &Path, start: &Path, output: &Path) -> Result<()> {
+    let family = read_family(family)?;
+    if check {
+        return check_packed(&family, output);
+    }
+    let start_file = StartFile::from_json(&workspace::read(start)?).with_context(|| start.display().to_string())?;
+    write_packed(&family, &start_file, output)
+}
+
+fn write_packed(family: &Family, start: &StartFile, output: &Path) -> Result<()> {
+    let fibre = start.fibre()?;
+    verify(family, &fibre)?;
+    let bytes = pack_fibre(family.program(), &fibre)?;
+    std::fs::write(output, &bytes).with_context(|| format!("cannot write {}", output.display()))?;
+    eprintln!("wrote {}: {} solutions in {} bytes", output.display(), fibre.len(), bytes.len());
+    Ok(())
+}
+
+/// Unpacks a fibre and puts its solutions to the tests of generated ones.
+fn check_packed(family: &Family, path: &Path) -> Result<()> {
+    let bytes = std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+    let fibre = unpack_fibre(family.program(), &bytes).with_context(|| path.display().to_string())?;
+    verify(family, &fibre).with_context(|| path.display().to_string())?;
+    eprintln!("{} is whole: {} solutions", path.display(), fibre.len());
+    Ok(())
 }
 
 /// Writes the module of a family, or with `--check` says whether the one on disk is stale.

@@ -46,7 +46,7 @@ pub(crate) fn solve_network<'py>(
         let measured = table.measured()?;
         match dimensions {
             2 => answer(py, measured, options, &how, solve_in_plane),
-            3 => answer(py, measured, options, &how, |measured, options, _| spatial::solve(measured, options)),
+            3 => answer(py, measured, options, &how, spatial::solve_watched),
             other => Err(Failure::Input(format!("dimensions must be 2 or 3, not {other}"))),
         }
     })

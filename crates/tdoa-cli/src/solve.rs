@@ -14,7 +14,7 @@ use crate::units::Unit;
 use crate::{Failure, interrupt, output};
 
 /// Finds every network that explains pseudoranges without errors, best first: in the plane 6r/3s,
-/// 4r/5s, 5r/4s and all larger sizes, in space (--dimensions 3) 9r/5s, 7r/6s, 6r/8s and all larger
+/// 4r/5s, 5r/4s and all larger sizes, in space (--dimensions 3) 10r/4s, 7r/5s, 6r/6s and all larger
 /// sizes.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
@@ -30,12 +30,12 @@ pub(crate) struct Arguments {
     /// large residuals may be, as a share of the size of the data; for noisy data the noise.
     #[arg(long, default_value_t = MinimalOptions::default().tolerance)]
     tolerance: f64,
-    /// Where paths start: at the stored solutions of a generic instance, or at a polyhedral start
-    /// system computed for these data. Sizes in space are solved without paths.
+    /// Where paths start: at the stored solutions of a generic instance, or, in the plane, at a
+    /// polyhedral start system computed for these data.
     #[arg(long, value_enum, default_value = "stored")]
     start: StartArgument,
     /// Stops at the first physical network with a residual (root mean square, metres) below this;
-    /// 6r/3s, 5r/4s, 4r/5s and 5r/6s only.
+    /// 6r/3s, 5r/4s, 4r/5s and 5r/6s only, in space 8r/5s, 7r/5s, 6r/6s and 10r/4s.
     #[arg(long, value_name = "METRES")]
     first_under: Option<f64>,
     /// Threads; all cores if not given. The result does not depend on it.
@@ -89,7 +89,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         StartArgument::Polyhedral => MinimalStart::Polyhedral,
     };
     let solve_in_plane = |monitor: &Monitor| Solver::new().solve_watched(&measured, &options, monitor);
-    let solve_in_space = |_: &Monitor| spatial::solve(&measured, &options);
+    let solve_in_space = |monitor: &Monitor| spatial::solve_watched(&measured, &options, monitor);
     match arguments.dimensions {
         2 => answer(arguments, unit, &measured, solve_in_plane),
         _ => answer(arguments, unit, &measured, solve_in_space),

@@ -59,9 +59,15 @@ const TRANSMITTERS: [[f64; 3]; 5] =
 
 #[test]
 fn the_network_is_found_with_three_coordinates() {
-    for (receivers, transmitters, solver) in
-        [(9, 5, "9r/5s"), (10, 8, "9r/5s"), (15, 30, "9r/5s"), (7, 6, "7r/6s"), (6, 8, "6r/8s"), (8, 12, "7r/6s")]
-    {
+    for (receivers, transmitters, solver) in [
+        (9, 5, "9r/5s"),
+        (10, 8, "9r/5s"),
+        (15, 30, "9r/5s"),
+        (7, 6, "7r/6s"),
+        (6, 8, "6r/8s"),
+        (8, 12, "7r/6s"),
+        (8, 5, "8r/5s"),
+    ] {
         let size = format!("--receivers {receivers} --transmitters {transmitters}");
         let (directory, file) = simulated(&format!("{size} --dimensions 3 --seed 7"));
         let (found, message, status) = solve(&file, &[]);
@@ -82,6 +88,30 @@ fn the_network_is_found_with_three_coordinates() {
     }
 }
 
+/// One of the networks of a smallest size is the true one, and only physical ones with real positions fit.
+#[test]
+fn all_networks_of_a_smallest_size_are_listed() {
+    let (directory, file) = simulated("--receivers 7 --transmitters 5 --dimensions 3 --seed 7");
+    let (found, message, status) = solve(&file, &[]);
+    assert_eq!(
+        (status, &found["solver"], &found["paths"]["finite"]),
+        (Some(0), &"7r/5s".into(), &2321.into()),
+        "{message}"
+    );
+    let truth = positions(&directory.path().join("receivers.csv"));
+    let distance = |a: [f64; 3], b: [f64; 3]| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
+    let is_true = |solution: &&Value| {
+        let place = |i: usize| [0, 1, 2].map(|k| solution["receivers"][i][k].as_f64().expect("three coordinates"));
+        (0..7).all(|i| (distance(place(i), place(0)) - distance(truth[i], truth[0])).abs() < 1e-7)
+    };
+    let solutions = found["solutions"].as_array().expect("solutions");
+    assert_eq!(solutions.iter().filter(is_true).count(), 1, "{found}");
+    // They come in pairs.
+    assert_eq!(found["counts"]["positive_definite"].as_u64().map(|count| count % 2), Some(0), "{found}");
+    let (_, message, status) = solve(&file, &["--start", "polyhedral"]);
+    assert!(status == Some(1) && message.contains("leave out the polyhedral start"), "{message}");
+}
+
 #[test]
 fn the_plane_is_the_default_and_says_where_space_is() {
     let (_directory, file) = simulated("--receivers 9 --transmitters 5 --dimensions 3 --seed 3");
@@ -100,11 +130,11 @@ fn nodes_in_special_position_are_named() {
     let in_plane = "all receivers or all transmitters lie in one plane (or line)";
     let mut four = TRANSMITTERS;
     four[1..].iter_mut().for_each(|s| s[2] = 0.7);
-    let [mut twin, mut twins] = [RECEIVERS.to_vec(), RECEIVERS.to_vec()];
+    let mut twin = RECEIVERS.to_vec();
     twin[6] = twin[2];
-    twins.truncate(8);
+    let nine = RECEIVERS.map(|p| [p[1], p[2] + 0.3, p[0]]);
     let nearly = RECEIVERS.iter().enumerate().map(|(i, p)| [p[0], p[1], 1.0 + 1e-6 * i as f64]).collect::<Vec<_>>();
-    let cases: [(Nodes, Nodes, &str); 10] = [
+    let cases: [(Nodes, Nodes, &str); 12] = [
         (&flat(&RECEIVERS), &TRANSMITTERS, in_plane),
         (&RECEIVERS, &flat(&TRANSMITTERS), in_plane),
         (&flat(&RECEIVERS), &flat(&TRANSMITTERS), in_plane),
@@ -112,7 +142,9 @@ fn nodes_in_special_position_are_named() {
         (&RECEIVERS, &line(&TRANSMITTERS), in_plane),
         (&RECEIVERS, &four, "transmitters s2, s3, s4, s5 lie in one plane"),
         (&twin, &TRANSMITTERS, "receivers r3 and r7 measure the same"),
-        (&twins, &TRANSMITTERS, "8r/5s is not solved exactly in space"),
+        (&RECEIVERS[..5], &nine, "5r/9s is not solved exactly in space"),
+        (&flat(&RECEIVERS)[..8], &TRANSMITTERS, in_plane),
+        (&[&RECEIVERS[..], &[[1.1, 3.3, 1.9]]].concat(), &flat(&TRANSMITTERS[..4]), in_plane),
         (&RECEIVERS[..6], &TRANSMITTERS, "6r/5s is underdetermined in space"),
         (&nearly, &TRANSMITTERS, "lie in one plane"),
     ];

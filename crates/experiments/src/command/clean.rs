@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use crate::trials::clean::clean_trial;
-use tdoa::minimal::{MinimalOptions, Solver};
+use crate::trials::clean::{CleanTrial, clean_trial, clean_trial_in_space};
+use tdoa::minimal::{MinimalError, MinimalOptions, Solver};
 
 use super::book::Rows;
 use super::chart::{Labels, Series, histogram};
@@ -21,6 +21,9 @@ pub(super) struct Arguments {
     /// The configurations, such as 6r/3s, 4r/5s or 9r/4s.
     #[arg(long, default_value = "6r/4s,7r/3s,5r/4s,5r/5s,6r/3s,4r/5s,4r/6s", value_delimiter = ',')]
     configuration: Vec<Size>,
+    /// Coordinates of a position: 2 or 3. Times in space are those of all threads with --threads 1 alone.
+    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u8).range(2..=3))]
+    dimensions: u8,
     /// Number of networks a configuration.
     #[arg(long, default_value_t = 1000)]
     instances: u64,
@@ -37,13 +40,17 @@ pub(super) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
     let table = Table::new(common, "trials.csv", HEADER, &keys, ranks);
     let rows = table.resume(Solver::new, |solver, k| {
         let (size, seed) = trials[k];
-        let simulation = normal(size, 0.0, seed)?;
+        let options = MinimalOptions::default();
         let started = thread_seconds();
-        let t = clean_trial(solver, &simulation, &MinimalOptions::default()).map_err(Failure::unusable)?;
+        let t: Result<CleanTrial, MinimalError> = match arguments.dimensions {
+            3 => clean_trial_in_space(&normal(size, 0.0, seed)?, &options),
+            _ => clean_trial(solver, &normal(size, 0.0, seed)?, &options),
+        };
+        let t = t.map_err(Failure::unusable)?;
         let milliseconds = 1e3 * (thread_seconds() - started);
         let (p, c) = (&t.paths, &t.counts);
         Ok(format!(
-            "{},{},{},{},{},{},{},{},{},{},{:.2e},{:.2e},{},{},{},{milliseconds:.2}",
+            "{},{},{},{},{},{},{},{},{},{},{:.2e},{:.2e},{},{milliseconds:.2}",
             p.tracked,
             p.finite,
             p.at_infinity,
@@ -56,9 +63,8 @@ pub(super) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
             t.found,
             t.position_error,
             t.offset_error,
-            t.steps,
-            t.rejected,
-            t.jacobians
+            t.steps
+                .map_or(",,".to_owned(), |steps| format!("{},{},{}", steps.accepted, steps.rejected, steps.jacobians))
         ))
     })?;
     let Some(rows) = rows else { return Ok(()) };

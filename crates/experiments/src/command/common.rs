@@ -88,8 +88,8 @@ pub(super) fn configuration(text: &str) -> Result<(usize, usize), String> {
 }
 
 /// A network as in the paper: positions and offsets standard normal.
-pub(super) fn normal(size: Size, noise: f64, seed: u64) -> Result<Simulation, Failure> {
-    let mut options = SimulateOptions::default();
+pub(super) fn normal<const D: usize>(size: Size, noise: f64, seed: u64) -> Result<Simulation<D>, Failure> {
+    let mut options = SimulateOptions::new();
     (options.receivers, options.transmitters) = (size.receivers, size.transmitters);
     options.layout = Layout::Normal;
     options.noise = noise;

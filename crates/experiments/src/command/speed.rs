@@ -35,7 +35,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
          microseconds_a_path,solves_a_second,threads,solves_a_second_on_all\n",
     );
     for &size in &arguments.configuration {
-        let networks = common.seeds(arguments.instances).map(|seed| Ok(normal(size, 0.0, seed)?.pseudoranges));
+        let networks = common.seeds(arguments.instances).map(|seed| Ok(normal::<2>(size, 0.0, seed)?.pseudoranges));
         let networks = networks.collect::<Result<Vec<Pseudoranges>, Failure>>()?;
         let (one, counts) = on_one(&networks)?;
         let (threads, all) = cli::on_threads(common.threads, || {

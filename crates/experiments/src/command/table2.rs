@@ -36,7 +36,7 @@ pub(super) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
     let keys: Vec<String> = seeds.clone().map(|seed| seed.to_string()).collect();
     let table = Table::new(common, "trials.csv", HEADER, &keys, ranks);
     let rows = table.resume(Solver::new, |solver, k| {
-        let simulation = normal(size, 0.0, seeds.start + k as u64)?;
+        let simulation = normal::<2>(size, 0.0, seeds.start + k as u64)?;
         let solution = solver.solve(&simulation.pseudoranges, &MinimalOptions::default()).map_err(Failure::unusable)?;
         let c = solution.counts;
         Ok(format!("{},{},{},{},{}", c.complex, c.real, c.positive_definite, c.physical, solution.paths.failed))

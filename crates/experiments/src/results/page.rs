@@ -6,7 +6,7 @@ mod space;
 use super::plan::PLAN;
 use super::table::{Row, Table, head, line, record, summary};
 use anyhow::Result;
-use solvers::{clean, noise, routes, speed, table2};
+use solvers::{clean, clean_space, noise, routes, speed, table2};
 use std::path::Path;
 
 /// The whole page.
@@ -35,6 +35,7 @@ type Section = (&'static str, &'static str, fn(&Path) -> Result<String>);
 const SECTIONS: &[Section] = &[
     ("table2", "Solutions of 6r/3s (the paper's Table 2)", table2),
     ("clean", "Clean data (the paper's figure 1, upper row)", clean),
+    ("clean-space", "Clean data in space", clean_space),
     ("speed", "Speed of the exact solvers", speed),
     ("routes", "The same networks from a polyhedral start system", routes),
     ("noise", "Noise (the paper's figure 1, lower row)", noise),

@@ -43,6 +43,14 @@ pub(super) const PLAN: &[Experiment] = &[
     plain("clean", "clean --configuration 6r/4s,5r/4s,4r/5s", 20_000, 10),
     plain("clean-larger", "clean --configuration 7r/3s,5r/5s,4r/6s", 20_000, 10),
     plain("clean-others", "clean --configuration 9r/3s,7r/4s,5r/6s", 20_000, 10),
+    plain("clean-space", "clean --dimensions 3 --configuration 10r/4s,7r/5s,6r/6s --threads 1", 1_000, 1),
+    plain("clean-space-eight", "clean --dimensions 3 --configuration 8r/5s --threads 1", 10_000, 2),
+    plain(
+        "clean-space-others",
+        "clean --dimensions 3 --configuration 9r/5s,10r/5s,7r/6s,6r/8s,6r/7s,8r/6s,11r/4s,12r/4s --threads 1",
+        200,
+        1,
+    ),
     plain("speed", "speed", 300, 10),
     Experiment {
         name: "routes",

@@ -4,8 +4,8 @@
 use serde::Serialize;
 use tdoa::Simulation;
 use tdoa::accuracy::{offset_error, position_error};
-use tdoa::minimal::{MinimalError, MinimalOptions, Solver};
-use tdoa::{PathCounts, RootCounts};
+use tdoa::minimal::{Candidate, MinimalError, MinimalOptions, Solver, spatial};
+use tdoa::{Network, PathCounts, RootCounts};
 
 /// A candidate this near the truth (relative, positions and offsets) is the truth.
 const FOUND: f64 = 1e-4;
@@ -24,11 +24,18 @@ pub struct CleanTrial {
     pub position_error: f64,
     /// `|o^ - o| / |o|` of the same candidate.
     pub offset_error: f64,
-    /// Accepted steps over all paths.
-    pub steps: usize,
-    /// Rejected steps over all paths.
+    /// The steps of all paths; `None` where solvers keep no records.
+    pub steps: Option<Steps>,
+}
+
+/// Work, summed over paths.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Steps {
+    /// Accepted steps.
+    pub accepted: usize,
+    /// Rejected steps.
     pub rejected: usize,
-    /// Evaluations of the Jacobian over all paths.
+    /// Evaluations of the Jacobian.
     pub jacobians: usize,
 }
 
@@ -42,24 +49,53 @@ pub fn clean_trial(
     options: &MinimalOptions,
 ) -> Result<CleanTrial, MinimalError> {
     let solution = solver.solve(&simulation.pseudoranges, options)?;
+    let records = solver.records();
+    let steps = Steps {
+        accepted: records.iter().map(|r| r.accepted).sum(),
+        rejected: records.iter().map(|r| r.rejected).sum(),
+        jacobians: records.iter().map(|r| r.jacobians).sum(),
+    };
+    Ok(CleanTrial {
+        steps: Some(steps),
+        ..judged(&solution.candidates, solution.paths, solution.counts, &simulation.network)
+    })
+}
+
+/// Solves one clean instance in space. If no network is found, the truth is not.
+///
+/// # Errors
+/// If the solver refuses the instance.
+pub fn clean_trial_in_space(simulation: &Simulation<3>, options: &MinimalOptions) -> Result<CleanTrial, MinimalError> {
     let truth = &simulation.network;
+    match spatial::solve(&simulation.pseudoranges, options) {
+        Ok(solution) => Ok(judged(&solution.candidates, solution.paths, solution.counts, truth)),
+        Err(MinimalError::NoNetwork | MinimalError::SpecialPosition | MinimalError::InOnePlane) => {
+            Ok(judged(&[], PathCounts::default(), RootCounts::default(), truth))
+        }
+        Err(error) => Err(error),
+    }
+}
+
+fn judged<const D: usize>(
+    candidates: &[Candidate<D>],
+    paths: PathCounts,
+    counts: RootCounts,
+    truth: &Network<D>,
+) -> CleanTrial {
     let mut errors = [f64::INFINITY; 2];
-    for candidate in solution.candidates.iter().filter(|c| c.physical) {
+    for candidate in candidates.iter().filter(|c| c.physical) {
         let position = position_error(&candidate.network, truth);
         if position < errors[0] {
             errors = [position, offset_error(&candidate.network, truth)];
         }
     }
     let [position_error, offset_error] = errors;
-    let records = solver.records();
-    Ok(CleanTrial {
-        paths: solution.paths,
-        counts: solution.counts,
+    CleanTrial {
+        paths,
+        counts,
         found: position_error < FOUND && offset_error < FOUND,
         position_error,
         offset_error,
-        steps: records.iter().map(|r| r.accepted).sum(),
-        rejected: records.iter().map(|r| r.rejected).sum(),
-        jacobians: records.iter().map(|r| r.jacobians).sum(),
-    })
+        steps: None,
+    }
 }

@@ -331,7 +331,7 @@ def solve(
     threads=None,
     progress=True,
 ):
-    """Find every network that explains pseudoranges without errors: 6r/3s, 4r/5s, 5r/4s and up, in space 9r/5s, 7r/6s, 6r/8s and up.
+    """Find every network that explains pseudoranges without errors: 6r/3s, 4r/5s, 5r/4s and up, in space 10r/4s, 7r/5s, 6r/6s and up.
 
     Parameters
     ----------
@@ -343,7 +343,7 @@ def solve(
         How far below zero a distance may lie for a network to count as physical, and in space how large residuals may be without a
         warning, as a share of the size of the data. Default 1e-6.
     start : {"stored", "polyhedral"}
-        Where paths start: at stored solutions of a generic instance, or at a start system computed for these data.
+        Where paths start: at stored solutions of a generic instance, or, in the plane, at a start system computed for these data.
     first_under : float, optional
         Stops at the first physical network with a residual (metres) below this.
 

@@ -36,13 +36,20 @@ pub(super) fn warnings(
     warnings
 }
 
-/// What there is to say of the candidate of a network in space with more measurements than unknowns.
+/// What there is to say of the best candidate in space, and of the paths to all.
 pub(super) fn warnings_in_space(
     measured: &Pseudoranges,
+    paths: &PathCounts,
     best: &Candidate<3>,
     options: &MinimalOptions,
 ) -> Vec<MinimalWarning> {
     let mut warnings = Vec::new();
+    if paths.failed > 0 {
+        warnings.push(MinimalWarning::PathsLost { lost: paths.failed, tracked: paths.tracked });
+    }
+    if paths.at_infinity > 0 {
+        warnings.push(MinimalWarning::PathsDiverge { diverged: paths.at_infinity, tracked: paths.tracked });
+    }
     let tolerance = allowed(measured, options);
     let explained = best.residual <= tolerance;
     if !explained {

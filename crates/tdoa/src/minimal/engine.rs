@@ -2,7 +2,7 @@
 //! fibre to the data, accounts for every path, and turns real solutions into networks.
 
 use super::error::MinimalError;
-use super::formulation::Formulation;
+use super::formulation::{Formulation, FormulationIn};
 use super::linear::LeastSquares;
 use super::nearest::Nearest;
 use super::normalised::{Normalised, rank};
@@ -35,21 +35,22 @@ const PART: usize = 32;
 const CANDIDATES: usize = 64;
 
 /// A solver of one configuration; keeps its memory from call to call.
-pub(crate) struct Engine<F: Formulation> {
+pub(crate) struct Engine<F: Formulation, const D: usize = 2> {
     finder: RootFinder<F>,
-    roots: Roots<F>,
+    roots: Roots<F, D>,
     data: Normalised,
     /// The parameters of the last call.
     target: Vec<Complex64>,
 }
 
-impl<F: Formulation> Engine<F> {
+impl<F: FormulationIn<D>, const D: usize> Engine<F, D> {
     /// A solver with its start solutions.
     pub(crate) fn new() -> Self {
         let stored = F::fibre();
         let start = stored.clone();
+        let make = if F::MANY { FibreTracker::on_all_threads } else { FibreTracker::new };
         let finder = RootFinder {
-            tracker: FibreTracker::new(F::system(), Recharted::default(), &stored),
+            tracker: make(F::system(), Recharted::default(), &stored),
             stored,
             nearest: Nearest::default(),
             start,
@@ -72,7 +73,7 @@ impl<F: Formulation> Engine<F> {
         measured: &Pseudoranges,
         options: &MinimalOptions,
         monitor: &Monitor,
-    ) -> Result<MinimalSolution, MinimalError> {
+    ) -> Result<MinimalSolution<D>, MinimalError> {
         let size = (measured.receivers(), measured.transmitters());
         assert_eq!(size, (F::RECEIVERS, F::TRANSMITTERS), "size of the matrix");
         self.data.take(measured);
@@ -81,7 +82,7 @@ impl<F: Formulation> Engine<F> {
         let (data, target, roots) = (&self.data, &self.target[..], &mut self.roots);
         let candidates = Vec::with_capacity(CANDIDATES);
         let mut found =
-            RootNetworks::<F> { measured, data, options, target, roots, counts: RootCounts::default(), candidates };
+            RootNetworks::<F, D> { measured, data, options, target, roots, counts: RootCounts::default(), candidates };
         self.finder.tracker.set_monitor(monitor);
         let (paths, stopped_early) = match options.start {
             MinimalStart::Stored => self.finder.run(&mut found),
@@ -118,7 +119,10 @@ impl<F: Formulation> RootFinder<F> {
     /// Tracks all paths, again from a turned fibre where some stay lost, keeps the most complete
     /// set and adds its roots to `found`. Returns the counts and whether the search stopped at a
     /// network that fits.
-    fn run(&mut self, found: &mut RootNetworks<'_, F>) -> (PathCounts, bool) {
+    fn run<const D: usize>(&mut self, found: &mut RootNetworks<'_, F, D>) -> (PathCounts, bool)
+    where
+        F: FormulationIn<D>,
+    {
         let (target, options) = (found.target, found.options);
         let mut retracked = 0;
         let mut best: Option<(PathCounts, PathSet)> = None;
@@ -160,11 +164,14 @@ impl<F: Formulation> RootFinder<F> {
 
     /// Candidates from a polyhedral start system: for the data, and where that leaves roots missing
     /// through a random member.
-    fn run_polyhedral(
+    fn run_polyhedral<const D: usize>(
         &mut self,
-        found: &mut RootNetworks<'_, F>,
+        found: &mut RootNetworks<'_, F, D>,
         monitor: &Monitor,
-    ) -> Result<(PathCounts, bool), MinimalError> {
+    ) -> Result<(PathCounts, bool), MinimalError>
+    where
+        F: FormulationIn<D>,
+    {
         let direct = scratch::at_data::<F>(found.target, monitor)?;
         let mut spent = direct.paths.retracked;
         if !direct.whole {
@@ -191,25 +198,25 @@ impl<F: Formulation> RootFinder<F> {
 }
 
 /// What makes networks of roots; keeps its memory.
-struct Roots<F: Formulation> {
+struct Roots<F: Formulation, const D: usize> {
     refiner: Refiner<'static, F::System>,
     refined: Refined,
     squares: LeastSquares,
-    polisher: Polisher,
+    polisher: Polisher<D>,
 }
 
 /// The networks of the real roots found so far.
-struct RootNetworks<'a, F: Formulation> {
+struct RootNetworks<'a, F: Formulation, const D: usize> {
     measured: &'a Pseudoranges,
     data: &'a Normalised,
     options: &'a MinimalOptions,
     target: &'a [Complex64],
-    roots: &'a mut Roots<F>,
+    roots: &'a mut Roots<F, D>,
     counts: RootCounts,
-    candidates: Vec<Candidate>,
+    candidates: Vec<Candidate<D>>,
 }
 
-impl<F: Formulation> RootNetworks<'_, F> {
+impl<F: FormulationIn<D>, const D: usize> RootNetworks<'_, F, D> {
     fn clear(&mut self) {
         self.counts = RootCounts::default();
         self.candidates.clear();

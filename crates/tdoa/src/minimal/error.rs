@@ -44,7 +44,13 @@ pub enum MinimalError {
     /// The polyhedral route failed before any path was tracked.
     #[error("the polyhedral start system: {0}")]
     Polyhedral(String),
-    /// The polyhedral route was stopped through its [`Monitor`](hc::Monitor).
+    /// A start that the size does not have.
+    #[error("{configuration} in space is solved from stored solutions alone; leave out the polyhedral start")]
+    StoredOnly {
+        /// Size, such as `7r/5s`.
+        configuration: String,
+    },
+    /// The solve was stopped through its [`Monitor`](hc::Monitor).
     #[error("the solve was cancelled")]
     Cancelled,
     /// A missing measurement.
@@ -78,11 +84,11 @@ pub enum MinimalError {
     },
     /// A size that has finitely many networks in space, but is none of those that are solved.
     #[error(
-        "{configuration} is not solved exactly in space: that takes nine receivers with five transmitters, seven with six, six with eight, or \
-         more of both; add nodes, or use `calibrate --dimensions 3`, which searches and takes noisy measurements"
+        "{configuration} is not solved exactly in space: with five receivers it has tens of thousands of solutions; add a receiver, or use \
+         `calibrate --dimensions 3`, which searches and takes noisy measurements"
     )]
     NotSolvedInSpace {
-        /// Size, such as `8r/5s`.
+        /// Size, such as `5r/9s`.
         configuration: String,
     },
     /// Nodes in space that lie in one plane or line.

@@ -1,4 +1,4 @@
-//! What distinguishes one generated solver from another; [`super::engine`] does everything else.
+//! What distinguishes one solver with paths from another; [`super::engine`] does everything else.
 
 use super::linear::LeastSquares;
 use crate::network::Network;
@@ -15,11 +15,11 @@ pub(crate) type Parameters = SmallVec<[Complex64; 24]>;
 /// A square family whose parameters are the differences `f_ij - f_1j`, rows `i = 2..m`, row-major,
 /// in any unit of length.
 pub(crate) trait Formulation {
-    /// The generated evaluator.
+    /// The evaluator of the equations.
     type System: Evaluate + 'static;
     /// The configuration, such as `6r/3s`.
     const NAME: &'static str;
-    /// The family (TOML) behind the generated module.
+    /// The family (TOML).
     const FAMILY: &'static str;
     /// Receivers `m`.
     const RECEIVERS: usize;
@@ -32,8 +32,10 @@ pub(crate) trait Formulation {
     const CHARTS: usize;
     /// What can be permuted in the data without changing a solution.
     const FREE: Free;
+    /// Whether there are so many paths that they are tracked on all threads.
+    const MANY: bool = false;
 
-    /// The generated evaluator.
+    /// The evaluator.
     fn system() -> &'static Self::System;
 
     /// The stored solutions for one generic parameter point.
@@ -50,10 +52,13 @@ pub(crate) trait Formulation {
 
     /// `p_j = o_j - f_1j` of a solution, one for each transmitter.
     fn offsets(f: &[Complex64], x: &[Complex64]) -> Point;
+}
 
+/// A formulation of networks in the plane or, with `D` = 3, in space.
+pub(crate) trait FormulationIn<const D: usize = 2>: Formulation {
     /// The network of a real solution, its first receiver in the origin, its offsets `p_j`; `None`
     /// unless the positions are real.
-    fn network(f: &[f64], x: &[f64], squares: &mut LeastSquares) -> Option<Network>;
+    fn network(f: &[f64], x: &[f64], squares: &mut LeastSquares) -> Option<Network<D>>;
 }
 
 /// Nodes that the unknowns do not tell apart.

@@ -18,8 +18,12 @@
 //! | 9r/5s, and more of both | offsets by rank, linear | 0 |
 //! | 7r/6s, and more of both | offsets by rank, 5 eigenvalues | 0 |
 //! | 6r/8s, and more of both | offsets by rank, 14 eigenvalues | 0 |
+//! | 8r/5s | the dual equations but two | 256 |
+//! | 7r/5s | the dual equations of the paper, one dimension more | 2321 |
+//! | 6r/6s, 6r/7s | Gram matrix of three receivers | 3920 |
+//! | 10r/4s, and more receivers | the dual equations on four transmitters | 6148 |
 //!
-//! A solver that is used again keeps 0.2 to 0.5 MB of start solutions and workspace. A solve then
+//! A solver in the plane that is used again keeps 0.2 to 0.5 MB of start solutions and workspace. A solve then
 //! allocates only its result, a few kilobytes (`cargo run --release -p tdoa --example memory`).
 //! Exceptions are the few networks with roots whose Jacobians are singular as far as doubles can
 //! tell.

@@ -17,9 +17,9 @@ pub struct MinimalOptions {
     pub polish: bool,
     /// Stops at the first physical candidate whose residual (root mean square, metres) is below
     /// this, for callers in a hurry. Only sizes that are solved by paths without a smaller part
-    /// (6r/3s, 5r/4s, 4r/5s, 5r/6s) stop early. In 6r/3s and 4r/5s every candidate fits exactly;
-    /// the first physical one is then returned, which need not be the true one. Default `None`: all
-    /// networks.
+    /// (6r/3s, 5r/4s, 4r/5s, 5r/6s; in space 8r/5s, 7r/5s, 6r/6s, 10r/4s) stop early. In 6r/3s and
+    /// 4r/5s, and in 7r/5s, 6r/6s and 10r/4s in space, every candidate fits exactly; the first
+    /// physical one is then returned, which need not be the true one. Default `None`: all networks.
     pub first_under: Option<f64>,
     /// Settings for the paths.
     pub paths: FibreOptions,
@@ -37,7 +37,7 @@ pub enum MinimalStart {
     /// From a polyhedral start system that is computed for the data, as in the paper: slower, and
     /// independent of the stored solutions. If this leaves roots missing, all roots of a random
     /// member of the family are found in this way and tracked to the data. The paths for this count
-    /// as tracked again.
+    /// as tracked again. In the plane only.
     Polyhedral,
 }
 

@@ -4,7 +4,7 @@ use super::check::check;
 use super::doubts::warnings;
 use super::engine::Engine;
 use super::error::MinimalError;
-use super::formulation::Formulation;
+use super::formulation::FormulationIn;
 use super::larger::extend;
 use super::linear::LeastSquares;
 use super::normalised::{Normalised, rank};
@@ -193,7 +193,7 @@ impl Solver {
 }
 
 /// Solves a part of the formulation's size, and the rest from there.
-fn through<F: Formulation>(
+fn through<F: FormulationIn>(
     engine: &mut Option<Engine<F>>,
     measured: &Pseudoranges,
     options: &MinimalOptions,

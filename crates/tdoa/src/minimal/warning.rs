@@ -14,7 +14,7 @@ use thiserror::Error;
 pub enum MinimalWarning {
     /// Some paths were lost.
     #[error(
-        "{lost} of {} {} lost: the list of networks may not be whole; nodes may lie in one line, nearly coincide or be placed \
+        "{lost} of {} {} lost: the list of networks may not be whole; nodes may lie in one line or plane, nearly coincide or be placed \
          symmetrically",
         counted(*.tracked, "path"),
         one_or(*.lost, "was", "were")
@@ -22,6 +22,18 @@ pub enum MinimalWarning {
     PathsLost {
         /// Number of lost paths.
         lost: usize,
+        /// Number of tracked paths.
+        tracked: usize,
+    },
+    /// Solutions in space that generic data have are at infinity here.
+    #[error(
+        "{diverged} of {} {} to infinity: four transmitters or all receivers may lie in one plane, and the network be none of these",
+        counted(*.tracked, "path"),
+        one_or(*.diverged, "goes", "go")
+    )]
+    PathsDiverge {
+        /// Number of paths that diverge.
+        diverged: usize,
         /// Number of tracked paths.
         tracked: usize,
     },

@@ -56,38 +56,7 @@ pub(super) fn clean(results: &Path) -> Result<String> {
          \"Found\" means within 1e-4. The paper gives errors \"in the order of magnitude 1e-12\" and about 10 s per solve. It has no figures for \
          6r/3s, and leaves 4r/5s and 4r/6s unsolved.\n\n",
     );
-    text += &head(&[
-        "",
-        "instances",
-        "found",
-        "positions: median",
-        "90 %",
-        "99 %",
-        "offsets: median",
-        "90 %",
-        "99 %",
-        "paths lost",
-        "tracked again",
-        "odd numbers of real networks",
-        "ms a solve (one thread)",
-    ]);
-    for row in tables.iter().filter_map(|(_, table)| table.as_ref()).flat_map(Table::rows) {
-        let mut cells = Vec::new();
-        for column in ["configuration", "instances", "found"] {
-            cells.push(row.get(column)?.to_owned());
-        }
-        for column in ["position_median", "position_90", "position_99", "offset_median", "offset_90", "offset_99"] {
-            cells.push(row.get(column)?.to_owned());
-        }
-        cells.push(format!("{} of {}", row.get("paths_lost")?, row.get("paths")?));
-        cells.push(row.get("retracked")?.to_owned());
-        // Where offsets come from ranks, networks do not come in pairs.
-        let paired = !matches!(row.get("configuration")?, "7r/4s" | "5r/6s");
-        cells.push(if paired { row.get("odd")?.to_owned() } else { "-".to_owned() });
-        let milliseconds = row.get("milliseconds_median")?;
-        cells.push(if milliseconds == "0" { "below 0.01" } else { milliseconds }.to_owned());
-        text += &line(&cells);
-    }
+    text += &clean_rows(tables.iter().filter_map(|(_, table)| table.as_ref()))?;
     text += "\nThe errors are smaller than the paper's because every candidate is polished after its path has ended. This is done in the positions \
              themselves, in which the problem is far better conditioned than in H. The remaining error is due to the condition of the instance. \
              Milliseconds are processor time, on a machine with other work on the same cores. The one root of 7r/4s and the five of 5r/6s, from ranks, \
@@ -206,5 +175,55 @@ pub(super) fn noise(results: &Path) -> Result<String> {
              refinement uses the measurements that the solver left over. The 90 % columns show near-degenerate networks, where a little noise moves \
              the nodes far. The more noise there is, the more often small networks also prefer a wrong candidate.\n\n";
     text += &figures(table.rows(), "noise")?;
+    Ok(text)
+}
+
+/// Clean networks in space.
+pub(super) fn clean_space(results: &Path) -> Result<String> {
+    let tables = ["clean-space", "clean-space-eight", "clean-space-others"].map(|name| summary(results, name).ok());
+    let mut text = String::from(
+        "As above, in space. 10r/4s, 7r/5s and 6r/6s are the smallest sizes and have several networks each; of the others the true one is the only \
+         one. 9r/5s, 10r/5s, 7r/6s, 8r/6s and 6r/8s take no paths.\n\n",
+    );
+    text += &clean_rows(tables.iter().flatten())?;
+    Ok(text)
+}
+
+/// The rows of tables of clean networks.
+fn clean_rows<'a>(tables: impl Iterator<Item = &'a Table>) -> Result<String> {
+    let mut text = head(&[
+        "",
+        "instances",
+        "found",
+        "positions: median",
+        "90 %",
+        "99 %",
+        "offsets: median",
+        "90 %",
+        "99 %",
+        "paths lost",
+        "tracked again",
+        "odd numbers of real networks",
+        "ms a solve (one thread)",
+    ]);
+    for row in tables.flat_map(Table::rows) {
+        let mut cells = Vec::new();
+        for column in ["configuration", "instances", "found"] {
+            cells.push(row.get(column)?.to_owned());
+        }
+        for column in ["position_median", "position_90", "position_99", "offset_median", "offset_90", "offset_99"] {
+            cells.push(row.get(column)?.to_owned());
+        }
+        cells.push(format!("{} of {}", row.get("paths_lost")?, row.get("paths")?));
+        cells.push(row.get("retracked")?.to_owned());
+        // Only sizes without a measurement to spare have networks in pairs.
+        let size = row.get("configuration")?;
+        let paired =
+            !matches!(size, "7r/4s" | "5r/6s" | "8r/5s" | "6r/7s" | "11r/4s" | "12r/4s") && row.get("paths")? != "0";
+        cells.push(if paired { row.get("odd")?.to_owned() } else { "-".to_owned() });
+        let milliseconds = row.get("milliseconds_median")?;
+        cells.push(if milliseconds == "0" { "below 0.01" } else { milliseconds }.to_owned());
+        text += &line(&cells);
+    }
     Ok(text)
 }

@@ -65,41 +65,7 @@ pub(crate) fn leave(chart: &[usize; COLUMNS], x: &[Complex64]) -> [Complex64; UN
 #[cfg(test)]
 mod tests {
     use super::{CHARTS, UNKNOWNS, enter, leave};
-    use crate::minimal::formulation::Formulation;
-    use crate::minimal::planar::four_five::FourFive;
-    use crate::minimal::planar::three::{FiveFour, SixThree};
-    use hc::poly::{Evaluate, Isa};
     use hc::random::Random;
-    use num_complex::Complex64;
-
-    /// Solutions of the stored fibre solve the equations of every chart, and come back from there
-    /// as they were.
-    fn solutions_stay_solutions<F: Formulation>() {
-        let fibre = F::fibre();
-        let n = fibre.dimension;
-        let mut memory = F::system().memory(Isa::Portable);
-        let (mut values, mut jacobian) = (vec![Complex64::new(0.0, 0.0); n], vec![Complex64::new(0.0, 0.0); n * n]);
-        for chart in 0..F::CHARTS {
-            let p = F::parameters(chart, &fibre.parameters);
-            for x in fibre.solutions.chunks_exact(n) {
-                let y = F::enter(chart, x);
-                F::system().jacobian(&mut memory, &y, &p, &mut values, &mut jacobian);
-                for i in 0..n {
-                    let scale: f64 = (0..n).map(|j| (jacobian[j * n + i] * y[j]).norm()).sum();
-                    let error = values[i].norm() / scale;
-                    assert!(error < 1e-9, "{}, chart {chart}, equation {i}: {error:.1e}", F::NAME);
-                }
-                assert!(hc::distinct::relative_distance(&F::leave(chart, &y), x) < 1e-9);
-            }
-        }
-    }
-
-    #[test]
-    fn charts_of_the_stored_fibres() {
-        solutions_stay_solutions::<SixThree>();
-        solutions_stay_solutions::<FiveFour>();
-        solutions_stay_solutions::<FourFive>();
-    }
 
     #[test]
     fn charts_there_and_back() {

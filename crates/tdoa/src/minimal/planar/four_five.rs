@@ -1,7 +1,7 @@
 //! Four receivers, five transmitters: 344 paths, in the Gram matrix of the receivers.
 
 use crate::generated::four_five as generated;
-use crate::minimal::formulation::{Formulation, Free, Parameters, Point};
+use crate::minimal::formulation::{Formulation, FormulationIn, Free, Parameters, Point};
 use crate::minimal::linear::LeastSquares;
 use crate::network::Network;
 use hc::Fibre;
@@ -63,7 +63,9 @@ impl Formulation for FourFive {
     fn offsets(f: &[Complex64], x: &[Complex64]) -> Point {
         (0..COLUMNS).map(|j| Sight::new(f, x, j).p()).collect()
     }
+}
 
+impl FormulationIn for FourFive {
     fn network(f: &[f64], x: &[f64], _: &mut LeastSquares) -> Option<Network> {
         let &[alpha, beta, e, l, h, _] = x else { return None };
         if !(e > 0.0 && h > 0.0) {

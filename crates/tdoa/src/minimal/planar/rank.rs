@@ -6,7 +6,7 @@
 //! fixes the offsets, the rest is linear.
 
 use crate::generated::five_six;
-use crate::minimal::formulation::{Formulation, Free, Parameters, Point};
+use crate::minimal::formulation::{Formulation, FormulationIn, Free, Parameters, Point};
 use crate::minimal::linear::LeastSquares;
 use crate::network::Network;
 use hc::Fibre;
@@ -66,7 +66,9 @@ impl Formulation for FiveSix {
             })
             .collect()
     }
+}
 
+impl FormulationIn for FiveSix {
     fn network(f: &[f64], x: &[f64], squares: &mut LeastSquares) -> Option<Network> {
         let complex = |v: &[f64]| v.iter().map(|&v| v.into()).collect::<Parameters>();
         let p: SmallVec<[f64; 8]> = Self::offsets(&complex(f), &complex(x)).iter().map(|z| z.re).collect();

@@ -4,7 +4,7 @@
 use super::chart::{CHARTS, COLUMNS, enter, leave, permute_columns};
 use super::dual;
 use crate::generated::{five_four, six_three};
-use crate::minimal::formulation::{Formulation, Free, Parameters, Point};
+use crate::minimal::formulation::{Formulation, FormulationIn, Free, Parameters, Point};
 use crate::minimal::linear::LeastSquares;
 use crate::network::Network;
 use hc::Fibre;
@@ -50,7 +50,9 @@ impl Formulation for SixThree {
     fn offsets(_: &[Complex64], x: &[Complex64]) -> Point {
         Point::from_slice(&x[..COLUMNS])
     }
+}
 
+impl FormulationIn for SixThree {
     fn network(f: &[f64], x: &[f64], _: &mut LeastSquares) -> Option<Network> {
         dual::network(f, COLUMNS, x)
     }
@@ -96,7 +98,9 @@ impl Formulation for FiveFour {
         // The fourth is a rational function of the others.
         Point::from_slice(&x[..COLUMNS])
     }
+}
 
+impl FormulationIn for FiveFour {
     fn network(f: &[f64], x: &[f64], squares: &mut LeastSquares) -> Option<Network> {
         let mut network = dual::network(f, FOUR, x)?;
         let (transmitter, offset) = dual::further_transmitter(f, FOUR, COLUMNS, x, &network, squares)?;

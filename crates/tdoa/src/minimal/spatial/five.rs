@@ -23,22 +23,22 @@ const ADJUSTMENT: RefineOptions = RefineOptions {
     tolerance: 1e-14,
 };
 
-/// Five columns of squared distances, and how they were made: in units of `unit`, less `means`.
-pub(super) struct Scaled {
+/// Columns of measurements, and how they were made: in units of `unit`, less `means`.
+pub(super) struct Scaled<const N: usize = 5> {
     pub(super) unit: f64,
-    means: [f64; 5],
+    means: [f64; N],
     /// `f_ij - means_j` in units, a row for each receiver.
-    pub(super) values: Vec<[f64; 5]>,
+    pub(super) values: Vec<[f64; N]>,
 }
 
-impl Scaled {
+impl<const N: usize> Scaled<N> {
     /// `None` if the measurements do not differ, or overflow.
-    pub(super) fn new(measured: &Pseudoranges) -> Option<Scaled> {
-        let values: Vec<[f64; 5]> = measured.cells().values().as_chunks().0.to_vec();
+    pub(super) fn new(measured: &Pseudoranges) -> Option<Scaled<N>> {
+        let values: Vec<[f64; N]> = measured.cells().values().as_chunks().0.to_vec();
         let count = values.len() as f64;
-        let means: [f64; 5] = from_fn(|j| values.iter().map(|row| row[j]).sum::<f64>() / count);
-        let values: Vec<[f64; 5]> = values.iter().map(|row| from_fn(|j| row[j] - means[j])).collect();
-        let unit = (values.iter().flatten().map(|v| v * v).sum::<f64>() / (5.0 * count)).sqrt();
+        let means: [f64; N] = from_fn(|j| values.iter().map(|row| row[j]).sum::<f64>() / count);
+        let values: Vec<[f64; N]> = values.iter().map(|row| from_fn(|j| row[j] - means[j])).collect();
+        let unit = (values.iter().flatten().map(|v| v * v).sum::<f64>() / (N as f64 * count)).sqrt();
         let usable = unit > 0.0 && unit.is_finite();
         usable.then(|| Scaled { unit, means, values: values.iter().map(|row| row.map(|v| v / unit)).collect() })
     }

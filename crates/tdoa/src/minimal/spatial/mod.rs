@@ -1,10 +1,17 @@
 //! Networks in space.
 //!
-//! [`solve()`] takes nine receivers and five transmitters, seven and six, six and eight, and more of both.
-//! Such a network has three measurements or more than unknowns, and a generic one is the only solution. It
-//! needs no paths. Offsets of five transmitters come from one singular value decomposition, those of six
-//! or eight, of which there are 5 or 14 sets, from eigenvalues. Positions follow linearly or from polynomials
-//! that have but one common root, and other nodes linearly from squared distances.
+//! [`solve()`] takes every size that has finitely many networks, but for five receivers.
+//!
+//! Nine receivers and five transmitters, seven and six, six and eight, and more of both, have three
+//! measurements or more than unknowns, and a generic network is the only solution. It needs no paths.
+//! Offsets of five transmitters come from one singular value decomposition, those of six or eight, of which
+//! there are 5 or 14 sets, from eigenvalues. Positions follow linearly or from polynomials that have but one
+//! common root, and other nodes linearly from squared distances.
+//!
+//! Ten receivers and four transmitters, seven and five, and six and six, have as many measurements as
+//! unknowns, and several networks. All of them are found by homotopy continuation from a stored fibre of
+//! 6148, 2321 and 3920 solutions, in seconds; a trace test showed each to be whole. Larger ones go through
+//! one of these sizes, or from eight receivers and five transmitters on through 256 paths.
 //!
 //! ```
 //! use tdoa::minimal::{MinimalOptions, spatial};
@@ -26,7 +33,9 @@
 //! ```
 
 mod bilinear;
+mod dual;
 mod five;
+mod gram;
 mod grassmannian;
 mod monomials;
 mod offsets;
@@ -34,10 +43,16 @@ mod planes;
 mod polynomial;
 mod rank;
 mod solve;
+mod stored;
+mod symmetric;
 mod upgrade;
 
+#[cfg(test)]
+pub(super) use dual::{Dual, EightFive, SevenFive, TenFour};
 pub(crate) use five::five_transmitters;
-pub use solve::solve;
+#[cfg(test)]
+pub(super) use gram::SixSix;
+pub use solve::{solve, solve_watched};
 
 #[cfg(test)]
 mod tests;

@@ -28,8 +28,15 @@ pub(super) fn in_one_plane(values: &[[f64; COUNT]], precision: f64, names: &[Str
 
 /// Whether the four other transmitters look as if they were in one plane.
 fn others_are_flat(values: &[[f64; COUNT]], precision: f64, left_out: usize) -> bool {
+    let others = |row: &[f64; COUNT]| from_fn(|k| row[if k < left_out { k } else { k + 1 }]);
+    are_flat(&values.iter().map(others).collect::<Vec<_>>(), precision)
+}
+
+/// Whether four transmitters look as if they were in one plane, or all receivers, of which there are eight
+/// at least; the measurements are as above.
+pub(super) fn are_flat(values: &[[f64; 4]], precision: f64) -> bool {
     let entry = |i: usize, column: usize| {
-        let row: [f64; 4] = from_fn(|k| values[i][if k < left_out { k } else { k + 1 }]);
+        let row = values[i];
         match column {
             0..3 => row[column + 1] * row[column + 1] - row[0] * row[0],
             3..6 => row[column - 2],

@@ -13,14 +13,24 @@ use super::monomials::of_unit_length;
 use super::offsets::DEGENERATE;
 use crate::minimal::error::MinimalError;
 use crate::minimal::normalised::Normalised;
-use crate::minimal::solution::RootCounts;
+use crate::minimal::solution::{PathCounts, RootCounts};
 use crate::network::Network;
 use crate::pseudoranges::Pseudoranges;
 
-/// Networks from the offsets, in metres, and the numbers of roots behind them.
+/// Networks in metres, and the numbers of paths and roots behind them.
 pub(super) struct Found {
     pub(super) networks: Vec<Network<3>>,
+    pub(super) paths: PathCounts,
     pub(super) counts: RootCounts,
+    /// Whether the search was stopped at the first network that fits.
+    pub(super) stopped_early: bool,
+}
+
+impl Found {
+    /// What was found without paths.
+    pub(super) fn directly(networks: Vec<Network<3>>, counts: RootCounts) -> Found {
+        Found { networks, paths: PathCounts::default(), counts, stopped_early: false }
+    }
 }
 
 /// Networks of seven receivers and six transmitters: five roots for the offsets.
@@ -75,7 +85,7 @@ fn networks(
     let networks: Vec<Network<3>> = planes.iter().filter_map(network).collect();
     let counts =
         RootCounts { complex: shape.planes, real: planes.len(), positive_definite: networks.len(), physical: 0 };
-    Ok(Found { networks, counts })
+    Ok(Found::directly(networks, counts))
 }
 
 /// The quotient of two linear forms on a plane on which it is the same everywhere.

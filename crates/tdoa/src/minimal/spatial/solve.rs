@@ -1,81 +1,137 @@
 //! The entry point for all sizes in space.
 
+use super::dual::{Dual, EightFive, SevenFive, TenFour};
 use super::five::{FEWEST, Scaled, five_transmitters};
+use super::gram::SixSix;
 use super::offsets::{DEGENERATE, offsets};
-use super::planes::in_one_plane;
+use super::planes::{are_flat, in_one_plane};
 use super::rank::{Found, seven_six, six_eight};
+use crate::accuracy::position_error;
 use crate::duplicates::rounding;
 use crate::minimal::check::check;
 use crate::minimal::doubts::{allowed, warnings_in_space};
+use crate::minimal::engine::Engine;
 use crate::minimal::error::MinimalError;
+use crate::minimal::formulation::FormulationIn;
 use crate::minimal::larger::candidates_of_whole;
 use crate::minimal::normalised::rank;
-use crate::minimal::options::MinimalOptions;
-use crate::minimal::solution::{Candidate, MinimalSolution, PathCounts, RootCounts};
+use crate::minimal::options::{MinimalOptions, MinimalStart};
+use crate::minimal::solution::{Candidate, MinimalSolution, RootCounts};
 use crate::minimal::subset::{Subset, combinations, ranked};
 use crate::pseudoranges::Pseudoranges;
+use hc::Monitor;
 
-/// Parts of the measurements that a method tries at most.
+/// Parts of the measurements that a method without paths tries at most.
 const TRIED: usize = 4;
-/// Networks whose offsets differ by less than this share of their size are one.
+/// Networks whose offsets and positions differ by less than this share of their size are one.
 const SAME: f64 = 1e-6;
+/// Receivers from which on equations that are linear show four transmitters in one plane.
+const SHOWING: usize = 8;
 
-/// Every network in space that explains the measurements, best first: of nine receivers and five
-/// transmitters, seven and six, six and eight, and more of both. A generic network of these sizes is the
-/// only one.
+/// Every network in space that explains the measurements, best first: [`solve_watched`] without a monitor.
 ///
-/// From nine receivers on, the five transmitters of which linear equations are conditioned best are solved
-/// together with all receivers; otherwise seven receivers and six transmitters, or six and eight, that are
-/// far apart. The other nodes follow linearly, and all measurements are refined together. Any rotation or
-/// reflection of the result fits as well.
+/// # Errors
+/// Those of [`solve_watched`].
+pub fn solve(measured: &Pseudoranges, options: &MinimalOptions) -> Result<MinimalSolution<3>, MinimalError> {
+    solve_watched(measured, options, &Monitor::default())
+}
+
+/// Every network in space that explains the measurements, best first; a cancelled monitor ends it. Any
+/// rotation or reflection of the result fits as well.
 ///
+/// Sizes with three measurements or more than unknowns are solved without paths, and a generic network is
+/// the only one. From nine receivers on, the five transmitters of which linear equations are conditioned
+/// best are solved together with all receivers; otherwise seven receivers and six transmitters, or six and
+/// eight, that are far apart. The other nodes follow linearly, and all measurements are refined together.
 /// Offsets come first, by the rank of the squared distances, then positions, the stratified approach of
 /// Ask, Kuang & Astrom, *A unifying approach to minimal problems in collinear and planar TDOA sensor
 /// network self-calibration*.
 ///
-/// Of the options, `tolerance` and `polish` matter. Measurements with more errors than `tolerance`
-/// allows make a warning: the network is then not to be relied upon, and need not be that of least
-/// squares.
+/// Of smaller sizes a part of eight receivers and five transmitters, seven and five, six and six, or ten and
+/// four is solved by homotopy continuation from a stored fibre, on the threads of the current rayon pool, and
+/// extended in the same way. The equations are those of the paper, one dimension more.
+///
+/// Measurements with more errors than `tolerance` allows make a warning: the network is then not to be
+/// relied upon, and need not be that of least squares.
 ///
 /// # Errors
 /// If the matrix is too small or too large, a measurement is missing, two nodes coincide, nodes are in
-/// special position, no network in space explains the measurements, or a setting of the tracker is out
-/// of range.
-pub fn solve(measured: &Pseudoranges, options: &MinimalOptions) -> Result<MinimalSolution<3>, MinimalError> {
+/// special position, no network in space explains the measurements, a setting of the tracker is out of
+/// range, a size that takes paths is asked for from a polyhedral start, or the monitor is cancelled.
+pub fn solve_watched(
+    measured: &Pseudoranges,
+    options: &MinimalOptions,
+    monitor: &Monitor,
+) -> Result<MinimalSolution<3>, MinimalError> {
     options.paths.validate()?;
     check::<3>(measured)?;
     let fits =
         |method: &&Method| measured.receivers() >= method.receivers && measured.transmitters() >= method.transmitters;
+    if DIRECT.iter().any(|method| fits(&method)) {
+        return among(&mut DIRECT.iter().filter(fits), measured, options, monitor);
+    }
+    let Some(method) = WITH_PATHS.iter().find(fits) else {
+        return Err(MinimalError::NotSolvedInSpace { configuration: measured.configuration() });
+    };
+    if options.start != MinimalStart::Stored {
+        return Err(MinimalError::StoredOnly { configuration: measured.configuration() });
+    }
+    match plane(measured) {
+        Some(plane) => Err(plane),
+        None => among(&mut std::iter::once(method), measured, options, monitor),
+    }
+}
+
+/// What the first method finds that explains the measurements, or the one that comes nearest.
+fn among(
+    methods: &mut dyn Iterator<Item = &Method>,
+    measured: &Pseudoranges,
+    options: &MinimalOptions,
+    monitor: &Monitor,
+) -> Result<MinimalSolution<3>, MinimalError> {
     let enough = allowed(measured, options);
     let (mut best, mut failure) = (None::<MinimalSolution<3>>, None);
-    for method in METHODS.iter().filter(fits) {
+    for method in methods {
         for part in (method.parts)(measured) {
-            let found = match (method.solve)(&measured.select(&part.receivers, &part.transmitters)) {
+            let selected = measured.select(&part.receivers, &part.transmitters);
+            // Only all measurements together tell which candidate of a part is the network.
+            let is_whole = selected.cells().values().len() == measured.cells().values().len();
+            let first_under = options.first_under.filter(|_| is_whole);
+            let settings = MinimalOptions { first_under, ..options.clone() };
+            let found = match (method.solve)(&selected, &settings, monitor) {
                 Ok(found) => found,
                 Err(error) => {
                     failure = failure.or(Some(error));
                     continue;
                 }
             };
+            if monitor.is_cancelled() {
+                return Err(MinimalError::Cancelled);
+            }
             let mut candidates = candidates_of_whole(measured, &part, found.networks.iter(), options);
             candidates.sort_by(|a, b| a.residual.total_cmp(&b.residual));
             let explaining = candidates.iter().filter(|candidate| candidate.residual <= enough).count();
             // Of measurements that no network explains, the one that comes nearest.
             candidates.truncate(explaining.max(1));
             leave_out_copies(&mut candidates);
-            let Some(first) = candidates.first() else { continue };
+            let Some(first) = candidates.first() else {
+                // Solutions that generic data have are missing, perhaps the network among them.
+                let special = found.paths.failed + found.paths.at_infinity > 0;
+                failure = failure.or(special.then_some(MinimalError::SpecialPosition));
+                continue;
+            };
             if best.as_ref().is_some_and(|best| best.candidates[0].residual <= first.residual) {
                 continue;
             }
             let physical = candidates.iter().filter(|candidate| candidate.physical).count();
-            let warnings = warnings_in_space(measured, first, options);
+            let warnings = warnings_in_space(measured, &found.paths, first, options);
             rank(&mut candidates);
             let solution = MinimalSolution {
                 configuration: measured.configuration(),
                 solver: method.name,
-                paths: PathCounts::default(),
+                paths: found.paths,
                 counts: RootCounts { physical, ..found.counts },
-                stopped_early: false,
+                stopped_early: found.stopped_early,
                 warnings,
                 candidates,
             };
@@ -89,14 +145,10 @@ pub fn solve(measured: &Pseudoranges, options: &MinimalOptions) -> Result<Minima
             return Err(MinimalError::InOnePlane);
         }
     }
-    if let Some(plane) = plane(measured) {
-        return Err(plane);
-    }
-    match (best, failure) {
-        (Some(best), _) => Ok(best),
-        (None, Some(failure)) => Err(failure),
-        (None, None) if METHODS.iter().any(|method| fits(&method)) => Err(MinimalError::NoNetwork),
-        (None, None) => Err(MinimalError::NotSolvedInSpace { configuration: measured.configuration() }),
+    match (plane(measured), best, failure) {
+        (Some(plane), ..) => Err(plane),
+        (None, Some(best), _) => Ok(best),
+        (None, None, failure) => Err(failure.unwrap_or(MinimalError::NoNetwork)),
     }
 }
 
@@ -107,19 +159,60 @@ struct Method {
     transmitters: usize,
     /// Parts of its size that are tried, the most promising first; some take all receivers.
     parts: fn(&Pseudoranges) -> Vec<Subset>,
-    solve: fn(&Pseudoranges) -> Result<Found, MinimalError>,
+    solve: fn(&Pseudoranges, &MinimalOptions, &Monitor) -> Result<Found, MinimalError>,
 }
 
-/// Linear equations first.
-const METHODS: [Method; 3] = [
+/// Methods without paths, linear equations first.
+const DIRECT: [Method; 3] = [
     Method { name: "9r/5s", receivers: FEWEST, transmitters: 5, parts: fives, solve: five },
-    Method { name: "7r/6s", receivers: 7, transmitters: 6, parts: |f| ranked(f, 7, 6, TRIED), solve: seven_six },
-    Method { name: "6r/8s", receivers: 6, transmitters: 8, parts: |f| ranked(f, 6, 8, TRIED), solve: six_eight },
+    Method {
+        name: "7r/6s",
+        receivers: 7,
+        transmitters: 6,
+        parts: |f| ranked(f, 7, 6, TRIED),
+        solve: |f, _, _| seven_six(f),
+    },
+    Method {
+        name: "6r/8s",
+        receivers: 6,
+        transmitters: 8,
+        parts: |f| ranked(f, 6, 8, TRIED),
+        solve: |f, _, _| six_eight(f),
+    },
 ];
 
-fn five(measured: &Pseudoranges) -> Result<Found, MinimalError> {
+/// Methods with paths, those with few first.
+const WITH_PATHS: [Method; 4] =
+    [tracked::<Dual<EightFive>>(), tracked::<Dual<SevenFive>>(), tracked::<SixSix>(), tracked::<Dual<TenFour>>()];
+
+/// The method of a formulation, for the part whose nodes are farthest apart.
+const fn tracked<F: FormulationIn<3>>() -> Method {
+    Method {
+        name: F::NAME,
+        receivers: F::RECEIVERS,
+        transmitters: F::TRANSMITTERS,
+        parts: |f| ranked(f, F::RECEIVERS, F::TRANSMITTERS, 1),
+        solve: by_paths::<F>,
+    }
+}
+
+fn five(measured: &Pseudoranges, _: &MinimalOptions, _: &Monitor) -> Result<Found, MinimalError> {
     let counts = RootCounts { complex: 1, real: 1, positive_definite: 1, physical: 0 };
-    Ok(Found { networks: vec![five_transmitters(measured)?], counts })
+    Ok(Found::directly(vec![five_transmitters(measured)?], counts))
+}
+
+fn by_paths<F: FormulationIn<3>>(
+    measured: &Pseudoranges,
+    options: &MinimalOptions,
+    monitor: &Monitor,
+) -> Result<Found, MinimalError> {
+    let solution = Engine::<F, 3>::new().solve(measured, options, monitor)?;
+    Ok(Found {
+        networks: solution.candidates.into_iter().map(|candidate| candidate.network).collect(),
+        paths: solution.paths,
+        counts: solution.counts,
+        stopped_early: solution.stopped_early,
+    })
 }
 
 /// Leaves out networks that the refinement led to one before.
@@ -128,7 +221,10 @@ fn leave_out_copies(candidates: &mut Vec<Candidate<3>>) {
     for candidate in candidates.drain(..) {
         let near = |other: &Candidate<3>| {
             let pairs = other.network.offsets.iter().zip(&candidate.network.offsets);
-            pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) < SAME * candidate.network.size()
+            let apart = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            // Mirror images of single nodes have the same offsets.
+            let places = || position_error(&other.network, &candidate.network);
+            apart < SAME * candidate.network.size() && places() < SAME
         };
         if !kept.iter().any(near) {
             kept.push(candidate);
@@ -154,7 +250,13 @@ fn fives(measured: &Pseudoranges) -> Vec<Subset> {
 
 /// Which nodes lie in one plane, if the best five transmitters tell.
 fn plane(measured: &Pseudoranges) -> Option<MinimalError> {
-    if measured.receivers() < FEWEST || measured.transmitters() < 5 {
+    let (m, n) = (measured.receivers(), measured.transmitters());
+    if n == 4 && m >= SHOWING {
+        let scaled = Scaled::<4>::new(measured)?;
+        return are_flat(&scaled.values, precision(measured, scaled.unit)).then_some(MinimalError::InOnePlane);
+    }
+    // Fives of eight receivers are not ranked.
+    if n < 5 || m < SHOWING || (n > 5 && m < FEWEST) {
         return None;
     }
     let part = fives(measured).into_iter().next()?;
@@ -164,7 +266,11 @@ fn plane(measured: &Pseudoranges) -> Option<MinimalError> {
 /// Which nodes lie in one plane, if that is why five transmitters cannot be solved.
 fn cause(five: &Pseudoranges) -> Option<MinimalError> {
     let scaled = Scaled::new(five)?;
-    let largest = five.cells().values().iter().fold(0.0f64, |a, v| a.max(v.abs()));
-    let precision = DEGENERATE.max(rounding(largest) / scaled.unit);
-    in_one_plane(&scaled.values, precision, five.transmitter_names())
+    in_one_plane(&scaled.values, precision(five, scaled.unit), five.transmitter_names())
+}
+
+/// How well measurements are known in units of this many metres.
+fn precision(measured: &Pseudoranges, unit: f64) -> f64 {
+    let largest = measured.cells().values().iter().fold(0.0f64, |a, v| a.max(v.abs()));
+    DEGENERATE.max(rounding(largest) / unit)
 }

@@ -1,10 +1,11 @@
-use super::{five_transmitters, solve};
+use super::{five_transmitters, solve, solve_watched};
 use crate::accuracy::{cramer_rao, position_error};
 use crate::align::align;
-use crate::minimal::{MinimalError, MinimalOptions, MinimalSolution, MinimalWarning};
+use crate::minimal::{Candidate, MinimalError, MinimalOptions, MinimalSolution, MinimalStart, MinimalWarning};
 use crate::network::Network;
 use crate::network::tests::random;
 use crate::pseudoranges::Pseudoranges;
+use hc::Monitor;
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
@@ -83,19 +84,72 @@ fn networks_of_all_sizes_are_found() {
     }
 }
 
+/// The truth is among the networks of the smallest sizes, and the only one of the others. The numbers of
+/// solutions are those of families whose trace tests passed; none of their paths is lost.
+#[test]
+fn the_truth_is_found_by_paths() {
+    let sizes = [(8, 5, 256, 10), (7, 5, 2321, 1), (6, 6, 3920, 1), (6, 7, 3920, 1), (10, 4, 6148, 1)];
+    for (receivers, transmitters, paths, instances) in sizes.into_iter().chain([(11, 4, 6148, 1)]) {
+        for seed in 0..instances {
+            let truth: Network<3> = random(receivers, transmitters, seed);
+            let exact = measured(&truth);
+            let found = solve(&exact, &MinimalOptions::default()).unwrap();
+            let said = format!("{receivers}r/{transmitters}s, seed {seed}: {found:?}");
+            assert!(found.warnings.is_empty() && found.candidates.iter().all(|c| c.residual < 1e-10), "{said}");
+            assert_eq!((found.paths.tracked, found.paths.finite), (paths, paths), "{said}");
+            let error = |c: &Candidate<3>| position_error(&c.network, &truth) / truth.size();
+            let near = |c: &&Candidate<3>| error(c) < 1e4 * f64::EPSILON * c.condition;
+            assert_eq!(found.candidates.iter().filter(near).count(), 1, "{said}");
+            assert!(found.candidates.iter().find(near).is_some_and(|c| c.physical), "{said}");
+            let spare = receivers * transmitters > 3 * receivers + 4 * transmitters - 6;
+            assert!(!spare || found.candidates.len() == 1, "{said}");
+            // Real networks come in pairs.
+            assert!(spare || found.counts.positive_definite.is_multiple_of(2), "{said}");
+        }
+    }
+}
+
+/// Special positions that leave solutions at infinity, or are told from the measurements.
+#[test]
+fn planes_in_small_networks_are_named() {
+    let floor = |p: &mut [f64; 3]| p[2] = 0.5 * p[0] - 1.0;
+    for (m, n) in [(8, 5), (10, 4), (11, 4)] {
+        let mut low: Network<3> = random(m, n, 5);
+        low.transmitters.iter_mut().for_each(floor);
+        let mut flat: Network<3> = random(m, n, 5);
+        flat.receivers.iter_mut().for_each(floor);
+        for network in [low, flat] {
+            assert_eq!(solve(&measured(&network), &MinimalOptions::default()), Err(MinimalError::InOnePlane));
+        }
+    }
+    let mut low: Network<3> = random(7, 5, 5);
+    low.transmitters.iter_mut().for_each(floor);
+    // One level, so that the many paths to infinity are not tracked again and again.
+    let mut options = MinimalOptions::default();
+    options.paths.retries = 1;
+    let found = solve(&measured(&low), &options).unwrap();
+    let diverges =
+        |w: &MinimalWarning| matches!(w, MinimalWarning::PathsDiverge { .. } | MinimalWarning::PathsLost { .. });
+    assert!(found.warnings.iter().any(diverges), "{:?} {:?}", found.paths, found.warnings);
+}
+
 #[test]
 fn what_cannot_be_solved_is_named() {
     let truth: Network<3> = random(9, 5, 1);
     let error = |network: &Network<3>| solve(&measured(network), &MinimalOptions::default()).unwrap_err();
     let size = |m: usize, n: usize| error(&random(m, n, 2)).to_string();
-    // The smallest sizes with finitely many networks, and those with one measurement less.
-    for (m, n) in [(10, 4), (7, 5), (6, 6), (6, 7), (5, 9), (8, 5), (5, 30), (20, 4)] {
-        let said = size(m, n);
-        assert!(
-            said.starts_with(&format!("{m}r/{n}s is not solved exactly in space: that takes nine receivers")),
-            "{said}"
-        );
+    // Five receivers have finitely many networks with nine transmitters and more, too many to be tracked.
+    for n in [9, 30] {
+        let said = size(5, n);
+        assert!(said.starts_with(&format!("5r/{n}s is not solved exactly in space: with five receivers")), "{said}");
     }
+    let polyhedral = MinimalOptions { start: MinimalStart::Polyhedral, ..MinimalOptions::default() };
+    let found = solve(&measured(&random(7, 5, 1)), &polyhedral);
+    assert_eq!(found, Err(MinimalError::StoredOnly { configuration: "7r/5s".into() }));
+    let monitor = Monitor::watched();
+    monitor.cancel();
+    let found = solve_watched(&measured(&random(8, 5, 1)), &MinimalOptions::default(), &monitor);
+    assert_eq!(found, Err(MinimalError::Cancelled));
     for (m, n) in [(9, 4), (6, 5), (5, 8), (4, 30), (30, 3)] {
         let said = size(m, n);
         assert!(said.contains("underdetermined in space") && said.contains("7 with 5, 6 with 6"), "{said}");
