@@ -1,5 +1,7 @@
 //! LU factorisation of small complex matrices, one or several at once.
 //!
+//! Entries that are zero whatever the input are left out, with those that the elimination leaves zero.
+//!
 //! Threshold pivoting is done lane by lane with implicitly scaled rows (Skeel 1979). The measure of
 //! a row is `|a_ik| / max_j |a_ij| w_j`, where `w` are the weights of the unknowns. The row on the
 //! diagonal stays if its measure is at least [`THRESHOLD`] of the largest. Lanes therefore never
@@ -7,8 +9,8 @@
 //! are moved only where it matters, because moving them costs time in lanes.
 
 use num_complex::Complex64;
-use poly::Lane;
 use poly::simd::{Isa, Kernel, across_lanes};
+use poly::{Evaluate, Lane};
 
 /// Share of the largest candidate from which on the diagonal is kept as the pivot.
 pub(crate) const THRESHOLD: f64 = 0.1;
@@ -26,7 +28,16 @@ pub(crate) struct Lu<S: Lane> {
     pivots: Vec<u32>,
     /// Whether any lane exchanges rows in step `k`.
     moved: Vec<bool>,
+    /// The rows of each column that are not always zero, a bit for each; empty if nothing is known.
+    structure: Vec<u64>,
+    /// The same of the factors.
+    pattern: Vec<u64>,
 }
+
+/// Largest order of matrices whose zeros are left out.
+const SPARSE_ORDER: usize = u64::BITS as usize;
+/// If more than this share of a matrix may be other than zero, all of it is treated alike.
+const DENSE_SHARE: f64 = 0.9;
 
 impl<S: Lane> Lu<S> {
     /// Workspace for matrices of order `n`.
@@ -38,7 +49,25 @@ impl<S: Lane> Lu<S> {
             row_scale: vec![S::real(0.0); n],
             pivots: vec![0; n * S::LANES],
             moved: vec![false; n],
+            structure: Vec::new(),
+            pattern: Vec::new(),
         }
+    }
+
+    /// Workspace for the Jacobians of a square system.
+    pub(crate) fn of_jacobian<E: Evaluate>(system: &E, isa: Isa) -> Self {
+        let n = system.variables();
+        let mut lu = Lu::new(n, isa);
+        if n > SPARSE_ORDER {
+            return lu;
+        }
+        let rows = |j: usize| (0..n).filter(move |&i| !system.vanishes(i, j));
+        let filled: usize = (0..n).map(|j| rows(j).count()).sum();
+        if (filled as f64) < DENSE_SHARE * (n * n) as f64 {
+            lu.structure = (0..n).map(|j| rows(j).fold(0, |mask, i| mask | 1 << i)).collect();
+            lu.pattern.clone_from(&lu.structure);
+        }
+        lu
     }
 
     /// Factors the column-major matrix `a` (`n * n` entries); `weights_sqr[j]` is the square of the
@@ -47,7 +76,11 @@ impl<S: Lane> Lu<S> {
     /// A singular matrix is not an error: its solutions are not finite.
     pub(crate) fn factor(&mut self, a: &[S], weights_sqr: &[S::Real]) {
         let isa = self.isa;
-        isa.run(Factor { lu: self, a, weights_sqr });
+        if self.structure.is_empty() {
+            isa.run(Factor::<S, false> { lu: self, a, weights_sqr });
+        } else {
+            isa.run(Factor::<S, true> { lu: self, a, weights_sqr });
+        }
     }
 
     /// The smallest pivot of lane `l`, each relative to the largest entry of its row of the matrix
@@ -64,7 +97,11 @@ impl<S: Lane> Lu<S> {
 
     /// Replaces the right-hand side `b` (`n` entries) by the solution.
     pub(crate) fn solve(&self, b: &mut [S]) {
-        self.isa.run(Solve { lu: self, b });
+        if self.structure.is_empty() {
+            self.isa.run(Solve::<S, false> { lu: self, b });
+        } else {
+            self.isa.run(Solve::<S, true> { lu: self, b });
+        }
     }
 }
 
@@ -167,27 +204,72 @@ impl Lu<Complex64> {
     }
 }
 
-struct Factor<'a, S: Lane> {
+/// Rows of a column: all of a range, or those with a bit in a mask.
+#[derive(Clone, Copy)]
+struct Rows<const SPARSE: bool> {
+    mask: u64,
+    next: usize,
+    end: usize,
+}
+
+impl<const SPARSE: bool> Rows<SPARSE> {
+    /// The rows below `k` of `n`.
+    #[inline(always)]
+    fn below(k: usize, n: usize, pattern: &[u64]) -> Self {
+        let mask = if SPARSE { pattern[k] & !(u64::MAX >> (63 - k)) } else { 0 };
+        Rows { mask, next: k + 1, end: n }
+    }
+
+    /// The rows above `k`.
+    #[inline(always)]
+    fn above(k: usize, pattern: &[u64]) -> Self {
+        Rows { mask: if SPARSE { pattern[k] & ((1 << k) - 1) } else { 0 }, next: 0, end: k }
+    }
+}
+
+impl<const SPARSE: bool> Iterator for Rows<SPARSE> {
+    type Item = usize;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<usize> {
+        let row = if SPARSE { self.mask.trailing_zeros() as usize } else { self.next };
+        if row >= self.end {
+            return None;
+        }
+        self.mask &= self.mask.wrapping_sub(1);
+        self.next = row + 1;
+        Some(row)
+    }
+}
+
+struct Factor<'a, S: Lane, const SPARSE: bool> {
     lu: &'a mut Lu<S>,
     a: &'a [S],
     weights_sqr: &'a [S::Real],
 }
 
-impl<S: Lane> Kernel for Factor<'_, S> {
+impl<S: Lane, const SPARSE: bool> Kernel for Factor<'_, S, SPARSE> {
     type Output = ();
     const WIDEST: Isa = S::WIDEST;
 
     #[inline(always)]
     fn run(self) {
-        let Lu { n, factors, row_scale, pivots, moved, .. } = self.lu;
+        let Lu { n, factors, row_scale, pivots, moved, structure, pattern, .. } = self.lu;
         let n = *n;
         let f = &mut factors[..n * n];
         f.copy_from_slice(&self.a[..n * n]);
+
+        if SPARSE {
+            pattern.copy_from_slice(structure);
+        }
 
         let scale = &mut row_scale[..n];
         for i in 0..n {
             let mut largest = S::real(0.0);
             for j in 0..n {
+                if SPARSE && pattern[j] >> i & 1 == 0 {
+                    continue;
+                }
                 across_lanes();
                 largest = S::real_max(&S::real_mul(&f[j * n + i].norm_sqr(), &self.weights_sqr[j]), &largest);
             }
@@ -195,19 +277,28 @@ impl<S: Lane> Kernel for Factor<'_, S> {
         }
 
         for k in 0..n {
-            moved[k] = exchange_rows::<S>(n, k, f, scale, &mut pivots[k * S::LANES..(k + 1) * S::LANES]);
+            let candidates = Rows::<SPARSE>::below(k, n, pattern);
+            let pivots = &mut pivots[k * S::LANES..(k + 1) * S::LANES];
+            moved[k] = exchange_rows::<S, SPARSE>(n, k, candidates, f, scale, pivots, pattern);
+            let below = Rows::<SPARSE>::below(k, n, pattern);
             let inverse = S::inv(&f[k * n + k]);
             f[k * n + k] = inverse;
-            for i in k + 1..n {
+            for i in below {
                 across_lanes();
                 f[k * n + i] = S::mul(&f[k * n + i], &inverse);
             }
             for j in k + 1..n {
+                if SPARSE {
+                    if pattern[j] >> k & 1 == 0 {
+                        continue;
+                    }
+                    pattern[j] |= below.mask;
+                }
                 let (left, right) = f.split_at_mut(j * n);
                 let pivot_column = &left[k * n..(k + 1) * n];
                 let column = &mut right[..n];
                 let top = column[k];
-                for i in k + 1..n {
+                for i in below {
                     across_lanes();
                     column[i] = S::sub_mul(&pivot_column[i], &top, &column[i]);
                 }
@@ -216,13 +307,21 @@ impl<S: Lane> Kernel for Factor<'_, S> {
     }
 }
 
-/// Finds the pivot row of column `k` in every lane and exchanges it with row `k` where the diagonal
-/// is too small.
+/// Finds the pivot row of column `k` in every lane, among `candidates`, and exchanges it with row `k` where
+/// the diagonal is too small.
 #[inline(always)]
-fn exchange_rows<S: Lane>(n: usize, k: usize, f: &mut [S], scale: &mut [S::Real], pivots: &mut [u32]) -> bool {
+fn exchange_rows<S: Lane, const SPARSE: bool>(
+    n: usize,
+    k: usize,
+    candidates: Rows<SPARSE>,
+    f: &mut [S],
+    scale: &mut [S::Real],
+    pivots: &mut [u32],
+    pattern: &mut [u64],
+) -> bool {
     let diagonal = S::real_mul(&f[k * n + k].norm_sqr(), &scale[k]);
     let (mut best, mut row) = (diagonal, S::real(k as f64));
-    for i in k + 1..n {
+    for i in candidates {
         let score = S::real_mul(&f[k * n + i].norm_sqr(), &scale[i]);
         row = S::real_where_less(&best, &score, &S::real(i as f64), &row);
         best = S::real_max(&score, &best);
@@ -231,12 +330,20 @@ fn exchange_rows<S: Lane>(n: usize, k: usize, f: &mut [S], scale: &mut [S::Real]
     // The row to exchange with; -1 where the diagonal stays.
     let row = S::real_where_less(&diagonal, &limit, &row, &S::real(-1.0));
     let mut moved = false;
-    for i in k + 1..n {
+    for i in candidates {
         if !S::any_equal(&row, i as f64) {
             continue;
         }
         moved = true;
         for j in 0..n {
+            if SPARSE {
+                // Other lanes may keep the rows where they are.
+                let either = (pattern[j] >> k | pattern[j] >> i) & 1;
+                if either == 0 {
+                    continue;
+                }
+                pattern[j] |= 1 << k | 1 << i;
+            }
             let (upper, lower) = (f[j * n + k], f[j * n + i]);
             f[j * n + k] = S::select_equal(&upper, &lower, &row, i as f64);
             f[j * n + i] = S::select_equal(&lower, &upper, &row, i as f64);
@@ -268,12 +375,12 @@ fn reciprocal<S: Lane>(a: &S::Real) -> S::Real {
     out
 }
 
-struct Solve<'a, S: Lane> {
+struct Solve<'a, S: Lane, const SPARSE: bool> {
     lu: &'a Lu<S>,
     b: &'a mut [S],
 }
 
-impl<S: Lane> Kernel for Solve<'_, S> {
+impl<S: Lane, const SPARSE: bool> Kernel for Solve<'_, S, SPARSE> {
     type Output = ();
     const WIDEST: Isa = S::WIDEST;
 
@@ -294,7 +401,7 @@ impl<S: Lane> Kernel for Solve<'_, S> {
         }
         for k in 0..n {
             let top = b[k];
-            for i in k + 1..n {
+            for i in Rows::<SPARSE>::below(k, n, &self.lu.pattern) {
                 across_lanes();
                 b[i] = S::sub_mul(&f[k * n + i], &top, &b[i]);
             }
@@ -302,7 +409,7 @@ impl<S: Lane> Kernel for Solve<'_, S> {
         for k in (0..n).rev() {
             b[k] = S::mul(&b[k], &f[k * n + k]);
             let bottom = b[k];
-            for i in 0..k {
+            for i in Rows::<SPARSE>::above(k, &self.lu.pattern) {
                 across_lanes();
                 b[i] = S::sub_mul(&f[k * n + i], &bottom, &b[i]);
             }
@@ -315,7 +422,7 @@ mod tests {
     use super::Lu;
     use num_complex::Complex64;
     use poly::simd::Isa;
-    use poly::{Lane, Lanes8, Scalar};
+    use poly::{Evaluate, Lane, Lanes8, Scalar};
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;
 
@@ -369,6 +476,66 @@ mod tests {
                 lu.solve_adjoint(&mut y);
                 let adjoint: Vec<_> = (0..n * n).map(|e| a[(e % n) * n + e / n].conj()).collect();
                 assert!(residual(n, &adjoint, &y, &b) < 1e-11, "order {n}");
+            }
+        }
+    }
+
+    /// A system whose Jacobian is zero where a mask says so; nothing else of it is used.
+    struct Structure(Vec<u64>);
+
+    impl Evaluate for Structure {
+        type Memory<S: Scalar> = ();
+
+        fn equations(&self) -> usize {
+            self.0.len()
+        }
+        fn variables(&self) -> usize {
+            self.0.len()
+        }
+        fn parameters(&self) -> usize {
+            0
+        }
+        fn memory<S: Scalar>(&self, _: Isa) {}
+        fn values<S: Scalar>(&self, (): &mut (), _: &[S], _: &[S], _: &mut [S]) {}
+        fn jacobian<S: Scalar>(&self, (): &mut (), _: &[S], _: &[S], _: &mut [S], _: &mut [S]) {}
+        fn taylor<S: Scalar>(&self, (): &mut (), _: usize, _: &[S], _: &[S], _: &mut [S]) {}
+        fn vanishes(&self, row: usize, column: usize) -> bool {
+            self.0[column] >> row & 1 == 0
+        }
+    }
+
+    /// Factors without the zeros and with them give the same solutions and pivots, whatever rows are
+    /// exchanged.
+    #[test]
+    fn zeros_left_out_change_nothing() {
+        let mut rng = Pcg64::seed_from_u64(2);
+        for (n, filled) in [(1, 0.5), (5, 0.4), (8, 0.5), (17, 0.3), (40, 0.1), (64, 0.1)] {
+            for _ in 0..20 {
+                // A permutation of the diagonal makes the matrix regular.
+                let shift = rng.random_range(0..n);
+                let column = |rng: &mut Pcg64, j: usize| {
+                    (0..n).fold(1u64 << ((j + shift) % n), |m, i| m | u64::from(rng.random_bool(filled)) << i)
+                };
+                let structure = Structure((0..n).map(|j| column(&mut rng, j)).collect());
+                let mut a = vec![Lanes8::zero(); n * n];
+                for (e, a) in a.iter_mut().enumerate().filter(|(e, _)| !structure.vanishes(e % n, e / n)) {
+                    let size = if rng.random_bool(0.3) || (e / n + shift) % n == e % n { 1.0 } else { 1e-3 };
+                    (0..8).for_each(|l| a.set(l, random(&mut rng) * size));
+                }
+                let mut b = vec![Lanes8::zero(); n];
+                b.iter_mut().for_each(|b| (0..8).for_each(|l| b.set(l, random(&mut rng))));
+                let weights = vec![Lanes8::real(1.0); n];
+                let [mut sparse, mut dense] = [Lu::of_jacobian(&structure, Isa::detect()), Lu::new(n, Isa::detect())];
+                assert!(n < 5 || !sparse.structure.is_empty());
+                let [mut x, mut y] = [b.clone(), b];
+                for _ in 0..2 {
+                    sparse.factor(&a, &weights);
+                    dense.factor(&a, &weights);
+                    sparse.solve(&mut x);
+                    dense.solve(&mut y);
+                    assert_eq!(x, y, "order {n}");
+                    assert_eq!((&sparse.moved, &sparse.row_scale), (&dense.moved, &dense.row_scale));
+                }
             }
         }
     }

@@ -32,6 +32,12 @@ pub trait Evaluate: Send + Sync {
     /// Every entry is written, structural zeros too.
     fn jacobian<S: Scalar>(&self, memory: &mut Self::Memory<S>, x: &[S], p: &[S], values: &mut [S], jacobian: &mut [S]);
 
+    /// Whether `dF_row/dx_column` is zero whatever the input, as far as the system knows. By default nothing
+    /// is known.
+    fn vanishes(&self, _row: usize, _column: usize) -> bool {
+        false
+    }
+
     /// The Taylor coefficient of `F(x(t); p(t))` of order 1, 2 or 3.
     ///
     /// `x` holds the path's coefficients of orders `0 .. order`: the coefficient of order `k` for

@@ -97,6 +97,11 @@ impl Evaluate for PathSystem {
         }
     }
 
+    fn vanishes(&self, row: usize, column: usize) -> bool {
+        let written = self.written.as_ref().is_none_or(|program| program.vanishes(row, column));
+        self.terms.vanishes(row, column) && written
+    }
+
     fn taylor<S: Scalar>(&self, memory: &mut PathMemory<S>, order: usize, x: &[S], p: &[S], out: &mut [S]) {
         let (Some(program), Some(own)) = (&self.written, &mut memory.written) else {
             return self.terms.taylor(&mut memory.terms, order, x, p, out);

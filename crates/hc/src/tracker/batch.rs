@@ -89,7 +89,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             closing_low: zeros(n),
             values: zeros(n),
             jacobian: zeros(n * n),
-            lu: Lu::new(n, isa),
+            lu: Lu::of_jacobian(system, isa),
             rough: zeros(n),
             weights_sqr: vec![S::real(1.0); n],
             inverse_weights_sqr: vec![S::real(1.0); n],

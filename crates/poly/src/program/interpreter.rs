@@ -91,6 +91,13 @@ impl Evaluate for Interpreter {
         compiled.tables.jacobian.run(memory.isa, &mut memory.jacobian, x, p, values, jacobian);
     }
 
+    fn vanishes(&self, row: usize, column: usize) -> bool {
+        let compiled = &*self.compiled;
+        // Values come before the entries; both are in ascending order.
+        let slot = compiled.program.equations * (column + 1) + row;
+        compiled.tables.jacobian.zeros.binary_search(&(slot as u32)).is_ok()
+    }
+
     fn taylor<S: Scalar>(&self, memory: &mut InterpreterMemory<S>, order: usize, x: &[S], p: &[S], out: &mut [S]) {
         let compiled = &*self.compiled;
         compiled.tables.taylor.run(memory.isa, &mut memory.taylor, order, x, p, out);

@@ -137,6 +137,11 @@ impl Evaluate for SparseSystem {
         memory.isa.run(Jacobian { plan, memory, x, p, values, jacobian });
     }
 
+    fn vanishes(&self, row: usize, column: usize) -> bool {
+        // Entries are in ascending order.
+        self.plan.zeros.binary_search(&((column * self.equations() + row) as u32)).is_ok()
+    }
+
     fn taylor<S: Scalar>(&self, memory: &mut SparseMemory<S>, order: usize, x: &[S], p: &[S], out: &mut [S]) {
         self.plan.taylor.run(memory.isa, &mut memory.taylor, order, x, p, out);
     }
