@@ -52,7 +52,7 @@ fn run(command: &str, folder: &Path) -> Output {
         // Placeholders of the README.
         "FAMILY.toml" => root().join("examples/families/five_point.toml").to_string_lossy().into_owned(),
         "START.json" => root().join("examples/families/five_point.start.json").to_string_lossy().into_owned(),
-        "five_point.rs" | "solver.rs" => folder.join(word).to_string_lossy().into_owned(),
+        "five_point.rs" | "five_point.fibre" | "solver.rs" => folder.join(word).to_string_lossy().into_owned(),
         // Where a command makes an example, a copy is made.
         "examples/network" => folder.join("network").to_string_lossy().into_owned(),
         "examples/room" => folder.join("room").to_string_lossy().into_owned(),
@@ -206,9 +206,9 @@ fn minimal_problems() {
     std::fs::write(folder.path().join("TARGET.json"), target).expect("written");
     let page = "docs/guide/minimal-problem.md";
     let printed = run_page(page, folder.path());
-    assert_eq!(printed.len(), 4, "{printed:?}");
-    assert!(folder.path().join("five_point.rs").exists());
-    assert!(printed[3].1.contains("planted poses found: 1000 of 1000"), "{}", printed[3].1);
+    assert_eq!(printed.len(), 5, "{printed:?}");
+    assert!(folder.path().join("five_point.rs").exists() && folder.path().join("five_point.fibre").exists());
+    assert!(printed[4].1.contains("planted poses found: 1000 of 1000"), "{}", printed[4].1);
     // A module is up to date, or stale and named.
     let check = format!("{} --check", printed[2].0);
     assert!(run(&check, folder.path()).status.success());

@@ -130,6 +130,29 @@ fn the_solver_of_a_family_is_written_as_rust() {
     assert!(status == Some(2) && message.contains("the family has 6 parameters and 3 unknowns"), "{message}");
 }
 
+/// A fibre is packed where the file's name says so, and checked as the source is.
+#[test]
+fn the_solutions_of_a_family_are_packed() {
+    let directory = tempfile::tempdir().expect("directory");
+    let packed = directory.path().join("five_point.fibre");
+    let start = family("five_point").replace(".toml", ".start.json");
+    let pack = |more: &[&str]| {
+        let output = run("hc", &[&["codegen", &family("five_point"), &start, "-o", text(&packed)], more].concat());
+        (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    assert_eq!(pack(&[]), (Some(0), format!("wrote {}\n", packed.display())));
+    // Header, parameters in full, twenty solutions of five bytes a coordinate.
+    let bytes = std::fs::read(&packed).expect("written");
+    let given: Value = serde_json::from_str(&std::fs::read_to_string(&start).expect("start")).expect("JSON");
+    let count = |value: &Value| value.as_array().expect("list").len();
+    let (parameters, unknowns) = (count(&given["parameters"]), count(&given["solutions"][0]));
+    assert_eq!(bytes.len(), 20 + 16 * parameters + 20 * 5 * unknowns);
+    assert_eq!(pack(&["--check"]).0, Some(0));
+    std::fs::write(&packed, &bytes[..100]).expect("written");
+    let (status, message) = pack(&["--check"]);
+    assert!(status == Some(2) && message.contains("not a packed fibre"), "{message}");
+}
+
 /// The common point of a double root, and roots at infinity, as in `hc solve`; regular roots are
 /// certified.
 #[test]
