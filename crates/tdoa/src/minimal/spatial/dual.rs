@@ -26,8 +26,8 @@ const CHARTS: [[usize; BASIS]; 8] =
 
 /// By which power of the unit of length the unknowns `p k z u`, without fifth transmitter, grow.
 const WEIGHTS: [i32; 13] = [1, 1, 1, 1, -2, -2, -2, 0, 0, 0, 0, 0, 0];
-/// The same for `p k z u g`, with a fifth transmitter.
-const WEIGHTS_OF_FIVE: [i32; 17] = [1, 1, 1, 1, 1, -2, -2, -2, 0, 0, 0, 0, 0, 0, 0, 0, 0];
+/// The same for `g p5` of a fifth transmitter before these.
+const WEIGHTS_OF_FIVE: [i32; 17] = [0, 0, 0, 1, 1, 1, 1, 1, -2, -2, -2, 0, 0, 0, 0, 0, 0];
 
 /// What distinguishes the sizes.
 pub(crate) trait Size {
@@ -37,6 +37,11 @@ pub(crate) trait Size {
     const TRANSMITTERS: usize;
     const WEIGHTS: &'static [i32];
     fn stored() -> &'static LazyLock<Stored>;
+
+    /// Unknowns of the fifth transmitter, if there is one.
+    fn further() -> usize {
+        if Self::TRANSMITTERS > BASIS { 4 } else { 0 }
+    }
 }
 
 /// Ten receivers, four transmitters: 6148 paths.
@@ -129,7 +134,7 @@ impl<S: Size> Formulation for Dual<S> {
     }
 
     fn offsets(_: &[Complex64], x: &[Complex64]) -> Point {
-        Point::from_slice(&x[..S::TRANSMITTERS])
+        Unknowns::new::<S>(x).p
     }
 }
 
@@ -137,8 +142,9 @@ impl<S: Size> FormulationIn<3> for Dual<S> {
     /// With `E_i` and `H = G^-1` as in the family, `r_i = diag(sqrt k) E_i`, `s_1 = diag(1 / sqrt k) u` and
     /// `s_j = s_1 - diag(1 / sqrt k) Z' e / 2`: real if every `k` is positive.
     fn network(f: &[f64], x: &[f64], _: &mut LeastSquares) -> Option<Network<3>> {
-        let (p, rest) = x.split_at(S::TRANSMITTERS);
-        let &[k1, k2, k3, z21, z31, z32, u1, u2, u3, ref g @ ..] = rest else { return None };
+        let (fifth, rest) = x.split_at_checked(S::further())?;
+        let &[p1, p2, p3, p4, k1, k2, k3, z21, z31, z32, u1, u2, u3] = rest else { return None };
+        let p = [p1, p2, p3, p4];
         if !(k1 > 0.0 && k2 > 0.0 && k3 > 0.0) {
             return None;
         }
@@ -157,10 +163,12 @@ impl<S: Size> FormulationIn<3> for Dual<S> {
         let plus = |a: [f64; 3], b: [f64; 3], factor: f64| from_fn(|k| a[k] + factor * b[k]);
         let mut transmitters = vec![first];
         transmitters.extend(sides.iter().map(|&side| plus(first, side, 1.0)));
-        if let &[g2, g3, g4] = g {
+        let mut offsets = p.to_vec();
+        if let &[g2, g3, g4, p5] = fifth {
+            offsets.push(p5);
             transmitters.push(plus(plus(plus(first, sides[0], g2), sides[1], g3), sides[2], g4));
         }
-        let network = Network { receivers, transmitters, offsets: p.to_vec() };
+        let network = Network { receivers, transmitters, offsets };
         network.is_finite().then_some(network)
     }
 }
@@ -177,15 +185,17 @@ struct Unknowns {
 
 impl Unknowns {
     fn new<S: Size>(x: &[Complex64]) -> Unknowns {
-        let (p, rest) = x.split_at(S::TRANSMITTERS);
-        let three = |at: usize| from_fn(|i| rest[at + i]);
-        let g = (S::TRANSMITTERS > BASIS).then(|| three(9));
-        Unknowns { p: Point::from_slice(p), k: three(0), z: three(3), u: three(6), g }
+        let (fifth, rest) = x.split_at(S::further());
+        let three = |from: &[Complex64], at: usize| from_fn(|i| from[at + i]);
+        let p = rest[..BASIS].iter().chain(fifth.get(3)).copied().collect();
+        let g = (!fifth.is_empty()).then(|| three(fifth, 0));
+        Unknowns { p, k: three(rest, 4), z: three(rest, 7), u: three(rest, 10), g }
     }
 
     fn point(&self) -> Point {
-        let parts = self.k.iter().chain(&self.z).chain(&self.u).chain(self.g.iter().flatten());
-        self.p.iter().chain(parts).copied().collect()
+        let (p, fifth) = self.p.split_at(BASIS);
+        let parts = self.k.iter().chain(&self.z).chain(&self.u);
+        self.g.iter().flatten().chain(fifth).chain(p).chain(parts).copied().collect()
     }
 
     /// The same network with the first four transmitters in this order.

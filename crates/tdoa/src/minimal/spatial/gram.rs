@@ -83,6 +83,7 @@ impl FormulationIn<3> for SixSix {
     /// gives the transmitters.
     fn network(f: &[f64], x: &[f64], _: &mut LeastSquares) -> Option<Network<3>> {
         let (combinations, gram) = x.split_at_checked(8)?;
+        let [sixth, fifth] = [&combinations[..4], &combinations[4..]];
         let &[e1, e2, e3, l21, l31, l32] = gram else { return None };
         if !(e1 > 0.0 && e2 > 0.0 && e3 > 0.0) {
             return None;
@@ -92,11 +93,11 @@ impl FormulationIn<3> for SixSix {
             [[1.0, 0.0, 0.0], [l21, 1.0, 0.0], [l31, l32, 1.0]].map(|row| from_fn(|k| row[k] * lengths[k]));
         let mut receivers = vec![[0.0; 3]];
         receivers.extend(basis);
-        receivers.extend(combinations.chunks_exact(4).map(|v| from_fn(|k| (0..3).map(|t| v[t] * basis[t][k]).sum())));
+        receivers.extend([fifth, sixth].map(|v| from_fn(|k| (0..3).map(|t| v[t] * basis[t][k]).sum())));
         let (mut transmitters, mut offsets) = (Vec::with_capacity(COLUMNS), Vec::with_capacity(COLUMNS));
         for j in 0..COLUMNS {
-            let sum = |power: i32| (0..3).map(|t| combinations[t] * at(t, j).powi(power)).sum::<f64>();
-            let p = (sum(2) - at(3, j).powi(2) + combinations[3]) / (2.0 * (sum(1) - at(3, j)));
+            let sum = |power: i32| (0..3).map(|t| fifth[t] * at(t, j).powi(power)).sum::<f64>();
+            let p = (sum(2) - at(3, j).powi(2) + fifth[3]) / (2.0 * (sum(1) - at(3, j)));
             let product = |t: usize| {
                 let square = basis[t].iter().map(|x| x * x).sum::<f64>();
                 0.5 * (square - at(t, j) * (at(t, j) - 2.0 * p))
@@ -124,14 +125,14 @@ impl Unknowns {
     fn new(x: &[Complex64]) -> Unknowns {
         let three = |at: usize| from_fn(|k| x[at + k]);
         Unknowns {
-            coordinates: [three(0), three(4)],
-            rest: [x[3], x[7]],
+            coordinates: [three(4), three(0)],
+            rest: [x[7], x[3]],
             gram: Factored { diagonal: three(8), below: three(11) },
         }
     }
 
     fn point(&self) -> Point {
-        let receivers = self.coordinates.iter().zip(&self.rest).flat_map(|(v, c)| v.iter().chain([c]));
+        let receivers = self.coordinates.iter().zip(&self.rest).rev().flat_map(|(v, c)| v.iter().chain([c]));
         receivers.chain(&self.gram.diagonal).chain(&self.gram.below).copied().collect()
     }
 
