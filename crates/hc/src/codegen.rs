@@ -66,7 +66,7 @@ pub enum CodegenError {
 /// Writes a family and its solutions for a generic parameter point as a Rust module.
 ///
 /// The module has a unit struct `System` that implements [`Evaluate`](poly::Evaluate), and a
-/// function `fibre()` that returns the stored solutions as a [`Fibre`](crate::Fibre). Its header
+/// function `fibre()` that returns the stored solutions as a [`Fibre`]. Its header
 /// names the `source`. Only the arguments determine the bytes.
 ///
 /// The stored solutions are checked first: they must solve the equations, be regular, distinct and
