@@ -129,8 +129,8 @@ def test_exact_solutions_are_in_the_plane_or_in_space(dimensions):
 def test_sizes_that_are_not_solved_in_space():
     with pytest.raises(hc.UndeterminedError, match="6r/3s is underdetermined in space"):
         tdoa.solve(TABLE[:6, :3], dimensions=3)
-    with pytest.raises(hc.UndeterminedError, match="that takes nine receivers"):
-        tdoa.solve(tdoa.simulate(8, 5, dimensions=3).pseudoranges, dimensions=3)
+    with pytest.raises(hc.UndeterminedError, match="with five receivers"):
+        tdoa.solve(tdoa.simulate(5, 9, dimensions=3).pseudoranges, dimensions=3)
 
 
 @pytest.mark.parametrize(

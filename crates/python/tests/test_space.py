@@ -114,3 +114,8 @@ def test_exact_solutions():
     assert len(found) == 1 and found.dimensions == 3 and found.physical[0] and not found.warnings
     assert found.receivers.shape == (1, 10, 3) and found.transmitters.shape == (1, 6, 3) and found.offsets.shape == (1, 6)
     assert error(found.receivers[0], made.receivers) < 1e-9 and np.abs(found.offsets[0] - made.offsets).max() < 1e-9
+    # By paths.
+    made = tdoa.simulate(8, 5, dimensions=3, seed=2)
+    found = tdoa.solve(made.pseudoranges, dimensions=3, progress=False)
+    assert len(found) == 1 and found.physical[0] and not found.warnings
+    assert error(found.receivers[0], made.receivers) < 1e-8
