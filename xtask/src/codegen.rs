@@ -11,8 +11,8 @@ use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use experiments::workspace;
 use hc::Family;
-use hc::codegen::{generate, verify};
-use hc::family::{StartFile, pack_fibre, unpack_fibre};
+use hc::codegen::{self, generate, verify};
+use hc::family::{StartFile, unpack_fibre};
 use std::path::{Path, PathBuf};
 
 /// A family of this workspace, and where its files are, from the root of the repository.
@@ -155,11 +155,9 @@ fn pack(check: bool, family: &Path, start: &Path, output: &Path) -> Result<()> {
 }
 
 fn write_packed(family: &Family, start: &StartFile, output: &Path) -> Result<()> {
-    let fibre = start.fibre()?;
-    verify(family, &fibre)?;
-    let bytes = pack_fibre(family.program(), &fibre)?;
+    let bytes = codegen::pack(family, start)?;
     std::fs::write(output, &bytes).with_context(|| format!("cannot write {}", output.display()))?;
-    eprintln!("wrote {}: {} solutions in {} bytes", output.display(), fibre.len(), bytes.len());
+    eprintln!("wrote {}: {} solutions in {} bytes", output.display(), start.solutions.len(), bytes.len());
     Ok(())
 }
 

@@ -3,9 +3,9 @@
 use crate::{family, input};
 use cli::{Failure, output};
 use hc::Family;
-use hc::codegen::{generate, verify};
-use hc::family::{StartFile, pack_fibre, unpack_fibre};
-use std::path::{Path, PathBuf};
+use hc::codegen;
+use hc::family::{StartFile, unpack_fibre};
+use std::path::PathBuf;
 
 /// Writes a Rust module that solves a family: its equations as straight-line code, and its stored
 /// solutions.
@@ -34,14 +34,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let family = family::read(family_file)?;
     let start = StartFile::from_json(&input::text(start_file)?).map_err(|e| Failure::in_file(start_file, e))?;
     if output.extension().is_some_and(|extension| extension == "fibre") {
-        return pack(&family, &start, arguments);
+        return packed(&family, &start, arguments);
     }
     let source = if input::is_standard(family_file) {
         "standard input".into()
     } else {
         family_file.file_name().unwrap_or_default().to_string_lossy()
     };
-    let module = generate(&family, &start, &source).map_err(|e| Failure::in_file(start_file, e))?;
+    let module = codegen::generate(&family, &start, &source).map_err(|e| Failure::in_file(start_file, e))?;
     if !check {
         return output::text(output, &module);
     }
@@ -53,12 +53,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Writes the solutions as a packed fibre, or checks that the one on disk is that.
-fn pack(family: &Family, start: &StartFile, arguments: &Arguments) -> Result<(), Failure> {
-    let path: &Path = &arguments.output;
-    let in_start = |error: &dyn std::fmt::Display| Failure::in_file(&arguments.start, error);
-    let fibre = start.fibre().map_err(|error| in_start(&error))?;
-    verify(family, &fibre).map_err(|error| in_start(&error))?;
-    let bytes = pack_fibre(family.program(), &fibre).map_err(|error| in_start(&error))?;
+fn packed(family: &Family, start: &StartFile, arguments: &Arguments) -> Result<(), Failure> {
+    let path = &arguments.output;
+    let bytes = codegen::pack(family, start).map_err(|error| Failure::in_file(&arguments.start, error))?;
     if !arguments.check {
         return output::file(path, &bytes);
     }

@@ -1,7 +1,7 @@
 //! The factorisations of a step: one matrix, and eight in the lanes of a vector unit.
 
-// The crate keeps its linear algebra to itself; the file stands on its own.
-#[path = "../src/linalg.rs"]
+// The crate keeps its linear algebra to itself; the folder stands on its own.
+#[path = "../src/linalg/mod.rs"]
 #[allow(dead_code, unused_imports)]
 mod linalg;
 

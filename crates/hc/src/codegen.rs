@@ -4,7 +4,7 @@
 //! generated module depends only on this crate.
 
 use crate::distinct::{coincidences, relative_distance};
-use crate::family::{Family, FamilyError, Fibre, StartFile, StartFileError};
+use crate::family::{Family, FamilyError, Fibre, PackedFibreError, StartFile, StartFileError, pack_fibre};
 use crate::refine::Refiner;
 use crate::tolerances::FAMILIES;
 use poly::counted;
@@ -22,6 +22,9 @@ pub enum CodegenError {
     /// The start file cannot be used.
     #[error(transparent)]
     Start(#[from] StartFileError),
+    /// The solutions cannot be packed.
+    #[error(transparent)]
+    Packed(#[from] PackedFibreError),
     /// The program cannot be written as Rust.
     #[error(transparent)]
     Emit(#[from] EmitError),
@@ -92,6 +95,17 @@ pub fn generate(family: &Family, start: &StartFile, source: &str) -> Result<Stri
     // Writing to a string cannot fail.
     let _ = append_fibre(&mut text, start, family.system().variables().len());
     Ok(text)
+}
+
+/// The solutions in few bytes ([`pack_fibre`]), for families of which thousands are stored and that are
+/// interpreted. They are checked as those of [`generate`].
+///
+/// # Errors
+/// If the stored solutions fail a check.
+pub fn pack(family: &Family, start: &StartFile) -> Result<Vec<u8>, CodegenError> {
+    let fibre = start.fibre()?;
+    verify(family, &fibre)?;
+    Ok(pack_fibre(family.program(), &fibre)?)
 }
 
 /// Checks that stored solutions solve the equations, are distinct, regular and not degenerate, and are

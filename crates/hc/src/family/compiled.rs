@@ -108,12 +108,7 @@ impl Family {
     /// # Errors
     /// If it does not.
     pub fn check(&self, fibre: &Fibre) -> Result<(), FamilyError> {
-        let (parameters, unknowns) = (self.program.parameters(), self.program.variables());
-        let (found_parameters, found_unknowns) = (fibre.parameters.len(), fibre.dimension);
-        if (found_parameters, found_unknowns) == (parameters, unknowns) {
-            return Ok(());
-        }
-        Err(FamilyError::Misfit { found_parameters, found_unknowns, parameters, unknowns })
+        FamilyError::unless_fits(&self.program, fibre.parameters.len(), fibre.dimension)
     }
 
     /// Checks that the stated maps take the tracked solutions of a fibre, whose parameters are

@@ -3,7 +3,7 @@
 use crate::checkpoint::CheckpointError;
 use crate::ranks::RanksError;
 use crate::tracker::OptionError;
-use poly::{CompileError, ParseError, counted};
+use poly::{CompileError, Evaluate, ParseError, counted};
 
 /// Why a family cannot be tracked.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -79,4 +79,19 @@ pub enum FamilyError {
     /// No first solution was found.
     #[error("no regular solution was found for any parameters; give a pair of parameters and solution")]
     NoPair,
+}
+
+impl FamilyError {
+    /// An error unless a fibre of these numbers of parameters and coordinates can be one of the system.
+    pub(super) fn unless_fits<E: Evaluate>(
+        system: &E,
+        found_parameters: usize,
+        found_unknowns: usize,
+    ) -> Result<(), FamilyError> {
+        let (parameters, unknowns) = (system.parameters(), system.variables());
+        if (found_parameters, found_unknowns) == (parameters, unknowns) {
+            return Ok(());
+        }
+        Err(FamilyError::Misfit { found_parameters, found_unknowns, parameters, unknowns })
+    }
 }

@@ -1,7 +1,15 @@
 //! Fibres in few bytes: solutions to four or five digits, which Newton's method brings back to all.
 //!
-//! A large fibre takes a tenth of its JSON, and can be part of a program.
+//! A large fibre takes a tenth of its JSON, and can be part of a program. The bytes, all numbers the least
+//! significant byte first:
+//!
+//! * `hcf1`, then as 32 bits each the numbers of parameters, unknowns `n`, solutions, and solutions in full;
+//! * the parameters, real and imaginary part as doubles;
+//! * the solutions, five bytes a coordinate: an exponent `e`, and as 16 bits each the real and the imaginary
+//!   part in units of `2^e / 32767`;
+//! * those in full: 32 bits for the place of the solution, then its `n` coordinates as doubles.
 
+use super::error::FamilyError;
 use super::fibre::Fibre;
 use crate::distinct::{coincidences, relative_distance};
 use crate::refine::Refiner;
@@ -36,24 +44,9 @@ pub enum PackedFibreError {
     /// The bytes begin with something else.
     #[error("not a packed fibre: it does not begin with `hcf1`")]
     Mark,
-    /// The fibre is that of another system.
-    #[error(
-        "{} and solutions of {}, but the system has {} and {}",
-        counted(*.found_parameters, "parameter"),
-        counted(*.found_unknowns, "coordinate"),
-        counted(*.parameters, "parameter"),
-        counted(*.unknowns, "unknown")
-    )]
-    Misfit {
-        /// Number of parameters of the fibre.
-        found_parameters: usize,
-        /// Number of coordinates of its solutions.
-        found_unknowns: usize,
-        /// Number of parameters of the system.
-        parameters: usize,
-        /// Number of unknowns of the system.
-        unknowns: usize,
-    },
+    /// The fibre is that of another system, or the system has no unknowns.
+    #[error(transparent)]
+    Family(#[from] FamilyError),
     /// A stored point to which Newton's method finds no solution.
     #[error("solution {index} is none of this system, or singular; compute the fibre anew")]
     NoSolution {
@@ -158,12 +151,11 @@ pub fn unpack_fibre<E: Evaluate>(system: &E, bytes: &[u8]) -> Result<Fibre, Pack
     Ok(Fibre::new(parameters, n, points))
 }
 
-fn fits<E: Evaluate>(system: &E, found_parameters: usize, found_unknowns: usize) -> Result<(), PackedFibreError> {
-    let (parameters, unknowns) = (system.parameters(), system.variables());
-    if (found_parameters, found_unknowns) == (parameters, unknowns) && unknowns > 0 {
-        return Ok(());
+fn fits<E: Evaluate>(system: &E, parameters: usize, unknowns: usize) -> Result<(), FamilyError> {
+    if system.variables() == 0 {
+        return Err(FamilyError::NotSquare { equations: system.equations(), unknowns: 0 });
     }
-    Err(PackedFibreError::Misfit { found_parameters, found_unknowns, parameters, unknowns })
+    FamilyError::unless_fits(system, parameters, unknowns)
 }
 
 /// The solutions near these points, which must be regular and distinct.
@@ -230,7 +222,7 @@ fn numbers(bytes: &[u8]) -> Vec<Complex64> {
 mod tests {
     use super::{LARGEST, PackedFibreError, number, pack_fibre, round, unpack_fibre};
     use crate::distinct::relative_distance;
-    use crate::family::{Family, Fibre};
+    use crate::family::{Family, FamilyError, Fibre};
     use crate::random::Random;
     use num_complex::Complex64;
     use proptest::prelude::*;
@@ -288,7 +280,10 @@ mod tests {
         assert_eq!(pack(&wrong), PackedFibreError::NoSolution { index: 2 });
         let mut long = fibre.clone();
         long.parameters.push(complex(1.0));
-        assert!(matches!(pack(&long), PackedFibreError::Misfit { found_parameters: 3, parameters: 2, .. }));
+        assert!(matches!(
+            pack(&long),
+            PackedFibreError::Family(FamilyError::Misfit { found_parameters: 3, parameters: 2, .. })
+        ));
 
         let bytes = pack_fibre(family.program(), &fibre).unwrap();
         let unpack = |bytes: &[u8]| unpack_fibre(family.program(), bytes).unwrap_err();

@@ -139,8 +139,8 @@ impl Unknowns {
     /// The same network with the receivers but the first in this order.
     fn reordered(&self, order: &[usize; ROWS]) -> Unknowns {
         let unit = |k: usize| -> Vector { from_fn(|i| Complex64::from(f64::from(u8::from(i == k)))) };
-        let [fourth, fifth] = self.coordinates;
-        let all = [unit(0), unit(1), unit(2), fourth, fifth];
+        let [fifth, sixth] = self.coordinates;
+        let all = [unit(0), unit(1), unit(2), fifth, sixth];
         let old = self.gram.matrix();
         let basis: Matrix = from_fn(|k| all[order[k]]);
         let gram: Matrix = from_fn(|i| from_fn(|j| form(&basis[i], &old, &basis[j])));

@@ -1,0 +1,220 @@
+//! The kernels: factorisation with threshold pivoting lane by lane, and solution.
+
+use super::{Lu, THRESHOLD};
+use poly::Lane;
+use poly::simd::{Isa, Kernel, across_lanes};
+
+/// Rows of a column: all of a range, or those with a bit in a mask.
+#[derive(Clone, Copy)]
+struct Rows<const SPARSE: bool> {
+    mask: u64,
+    next: usize,
+    end: usize,
+}
+
+impl<const SPARSE: bool> Rows<SPARSE> {
+    /// The rows below `k` of `n`.
+    #[inline(always)]
+    fn below(k: usize, n: usize, pattern: &[u64]) -> Self {
+        let mask = if SPARSE { pattern[k] & !(u64::MAX >> (63 - k)) } else { 0 };
+        Rows { mask, next: k + 1, end: n }
+    }
+
+    /// The rows above `k`.
+    #[inline(always)]
+    fn above(k: usize, pattern: &[u64]) -> Self {
+        Rows { mask: if SPARSE { pattern[k] & ((1 << k) - 1) } else { 0 }, next: 0, end: k }
+    }
+}
+
+impl<const SPARSE: bool> Iterator for Rows<SPARSE> {
+    type Item = usize;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<usize> {
+        let row = if SPARSE { self.mask.trailing_zeros() as usize } else { self.next };
+        if row >= self.end {
+            return None;
+        }
+        self.mask &= self.mask.wrapping_sub(1);
+        self.next = row + 1;
+        Some(row)
+    }
+}
+
+/// Factors the column-major matrix `a`.
+pub(super) struct Factor<'a, S: Lane, const SPARSE: bool> {
+    pub(super) lu: &'a mut Lu<S>,
+    pub(super) a: &'a [S],
+    pub(super) weights_sqr: &'a [S::Real],
+}
+
+impl<S: Lane, const SPARSE: bool> Kernel for Factor<'_, S, SPARSE> {
+    type Output = ();
+    const WIDEST: Isa = S::WIDEST;
+
+    #[inline(always)]
+    fn run(self) {
+        let Lu { n, factors, row_scale, pivots, moved, structure, pattern, .. } = self.lu;
+        let n = *n;
+        let f = &mut factors[..n * n];
+        f.copy_from_slice(&self.a[..n * n]);
+
+        if SPARSE {
+            pattern.copy_from_slice(structure);
+        }
+
+        let scale = &mut row_scale[..n];
+        for i in 0..n {
+            let mut largest = S::real(0.0);
+            for j in 0..n {
+                if SPARSE && pattern[j] >> i & 1 == 0 {
+                    continue;
+                }
+                across_lanes();
+                largest = S::real_max(&S::real_mul(&f[j * n + i].norm_sqr(), &self.weights_sqr[j]), &largest);
+            }
+            scale[i] = reciprocal::<S>(&largest);
+        }
+
+        for k in 0..n {
+            let candidates = Rows::<SPARSE>::below(k, n, pattern);
+            let pivots = &mut pivots[k * S::LANES..(k + 1) * S::LANES];
+            moved[k] = exchange_rows::<S, SPARSE>(n, k, candidates, f, scale, pivots, pattern);
+            let below = Rows::<SPARSE>::below(k, n, pattern);
+            let inverse = S::inv(&f[k * n + k]);
+            f[k * n + k] = inverse;
+            for i in below {
+                across_lanes();
+                f[k * n + i] = S::mul(&f[k * n + i], &inverse);
+            }
+            for j in k + 1..n {
+                if SPARSE {
+                    if pattern[j] >> k & 1 == 0 {
+                        continue;
+                    }
+                    pattern[j] |= below.mask;
+                }
+                let (left, right) = f.split_at_mut(j * n);
+                let pivot_column = &left[k * n..(k + 1) * n];
+                let column = &mut right[..n];
+                let top = column[k];
+                for i in below {
+                    across_lanes();
+                    column[i] = S::sub_mul(&pivot_column[i], &top, &column[i]);
+                }
+            }
+        }
+    }
+}
+
+/// Finds the pivot row of column `k` in every lane, among `candidates`, and exchanges it with row `k` where
+/// the diagonal is too small.
+#[inline(always)]
+fn exchange_rows<S: Lane, const SPARSE: bool>(
+    n: usize,
+    k: usize,
+    candidates: Rows<SPARSE>,
+    f: &mut [S],
+    scale: &mut [S::Real],
+    pivots: &mut [u32],
+    pattern: &mut [u64],
+) -> bool {
+    let diagonal = S::real_mul(&f[k * n + k].norm_sqr(), &scale[k]);
+    let (mut best, mut row) = (diagonal, S::real(k as f64));
+    for i in candidates {
+        let score = S::real_mul(&f[k * n + i].norm_sqr(), &scale[i]);
+        row = S::real_where_less(&best, &score, &S::real(i as f64), &row);
+        best = S::real_max(&score, &best);
+    }
+    let limit = S::real_mul(&best, &S::real(THRESHOLD * THRESHOLD));
+    // The row to exchange with; -1 where the diagonal stays.
+    let row = S::real_where_less(&diagonal, &limit, &row, &S::real(-1.0));
+    let mut moved = false;
+    for i in candidates {
+        if !S::any_equal(&row, i as f64) {
+            continue;
+        }
+        moved = true;
+        for j in 0..n {
+            if SPARSE {
+                // Other lanes may keep the rows where they are.
+                let either = (pattern[j] >> k | pattern[j] >> i) & 1;
+                if either == 0 {
+                    continue;
+                }
+                pattern[j] |= 1 << k | 1 << i;
+            }
+            let (upper, lower) = (f[j * n + k], f[j * n + i]);
+            f[j * n + k] = S::select_equal(&upper, &lower, &row, i as f64);
+            f[j * n + i] = S::select_equal(&lower, &upper, &row, i as f64);
+        }
+        // Their scales go with them.
+        let (upper, lower) = (scale[k], scale[i]);
+        for l in 0..S::LANES {
+            if row.as_ref()[l] == i as f64 {
+                scale[i].as_mut()[l] = upper.as_ref()[l];
+                scale[k].as_mut()[l] = lower.as_ref()[l];
+            }
+        }
+    }
+    if moved {
+        for l in 0..S::LANES {
+            let row = row.as_ref()[l];
+            pivots[l] = if row < 0.0 { k as u32 } else { row as u32 };
+        }
+    }
+    moved
+}
+
+#[inline(always)]
+fn reciprocal<S: Lane>(a: &S::Real) -> S::Real {
+    let mut out = *a;
+    for l in 0..S::LANES {
+        out.as_mut()[l] = 1.0 / a.as_ref()[l];
+    }
+    out
+}
+
+/// Replaces `b` by the solution.
+pub(super) struct Solve<'a, S: Lane, const SPARSE: bool> {
+    pub(super) lu: &'a Lu<S>,
+    pub(super) b: &'a mut [S],
+}
+
+impl<S: Lane, const SPARSE: bool> Kernel for Solve<'_, S, SPARSE> {
+    type Output = ();
+    const WIDEST: Isa = S::WIDEST;
+
+    #[inline(always)]
+    fn run(self) {
+        let n = self.lu.n;
+        let f = &self.lu.factors[..n * n];
+        let b = &mut self.b[..n];
+        for k in (0..n).filter(|&k| self.lu.moved[k]) {
+            for l in 0..S::LANES {
+                let i = self.lu.pivots[k * S::LANES + l] as usize;
+                if i != k {
+                    let (upper, lower) = (b[k].get(l), b[i].get(l));
+                    b[k].set(l, lower);
+                    b[i].set(l, upper);
+                }
+            }
+        }
+        for k in 0..n {
+            let top = b[k];
+            for i in Rows::<SPARSE>::below(k, n, &self.lu.pattern) {
+                across_lanes();
+                b[i] = S::sub_mul(&f[k * n + i], &top, &b[i]);
+            }
+        }
+        for k in (0..n).rev() {
+            b[k] = S::mul(&b[k], &f[k * n + k]);
+            let bottom = b[k];
+            for i in Rows::<SPARSE>::above(k, &self.lu.pattern) {
+                across_lanes();
+                b[i] = S::sub_mul(&f[k * n + i], &bottom, &b[i]);
+            }
+        }
+    }
+}
