@@ -1,6 +1,6 @@
 //! The adjoint of a factored matrix, and an estimate of the condition.
 
-use super::Lu;
+use super::lu::Lu;
 use num_complex::Complex64;
 
 /// Scratch space of estimates of the condition.

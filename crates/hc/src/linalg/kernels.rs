@@ -1,8 +1,32 @@
 //! The kernels: factorisation with threshold pivoting lane by lane, and solution.
 
-use super::{Lu, THRESHOLD};
+use super::lu::{Lu, THRESHOLD};
 use poly::Lane;
 use poly::simd::{Isa, Kernel, across_lanes};
+
+impl<S: Lane> Lu<S> {
+    /// Factors the column-major matrix `a` (`n * n` entries); `weights_sqr[j]` is the square of the
+    /// weight of unknown `j`.
+    ///
+    /// A singular matrix is not an error: its solutions are not finite.
+    pub(crate) fn factor(&mut self, a: &[S], weights_sqr: &[S::Real]) {
+        let isa = self.isa;
+        if self.structure.is_empty() {
+            isa.run(Factor::<S, false> { lu: self, a, weights_sqr });
+        } else {
+            isa.run(Factor::<S, true> { lu: self, a, weights_sqr });
+        }
+    }
+
+    /// Replaces the right-hand side `b` (`n` entries) by the solution.
+    pub(crate) fn solve(&self, b: &mut [S]) {
+        if self.structure.is_empty() {
+            self.isa.run(Solve::<S, false> { lu: self, b });
+        } else {
+            self.isa.run(Solve::<S, true> { lu: self, b });
+        }
+    }
+}
 
 /// Rows of a column: all of a range, or those with a bit in a mask.
 #[derive(Clone, Copy)]
@@ -43,10 +67,10 @@ impl<const SPARSE: bool> Iterator for Rows<SPARSE> {
 }
 
 /// Factors the column-major matrix `a`.
-pub(super) struct Factor<'a, S: Lane, const SPARSE: bool> {
-    pub(super) lu: &'a mut Lu<S>,
-    pub(super) a: &'a [S],
-    pub(super) weights_sqr: &'a [S::Real],
+struct Factor<'a, S: Lane, const SPARSE: bool> {
+    lu: &'a mut Lu<S>,
+    a: &'a [S],
+    weights_sqr: &'a [S::Real],
 }
 
 impl<S: Lane, const SPARSE: bool> Kernel for Factor<'_, S, SPARSE> {
@@ -177,9 +201,9 @@ fn reciprocal<S: Lane>(a: &S::Real) -> S::Real {
 }
 
 /// Replaces `b` by the solution.
-pub(super) struct Solve<'a, S: Lane, const SPARSE: bool> {
-    pub(super) lu: &'a Lu<S>,
-    pub(super) b: &'a mut [S],
+struct Solve<'a, S: Lane, const SPARSE: bool> {
+    lu: &'a Lu<S>,
+    b: &'a mut [S],
 }
 
 impl<S: Lane, const SPARSE: bool> Kernel for Solve<'_, S, SPARSE> {

@@ -1,0 +1,75 @@
+//! A factorisation and its workspace.
+
+use poly::simd::Isa;
+use poly::{Evaluate, Lane};
+
+/// Share of the largest candidate from which on the diagonal is kept as the pivot.
+pub(super) const THRESHOLD: f64 = 0.1;
+
+/// Workspace and result of a factorisation of one `n x n` matrix a lane.
+#[derive(Debug)]
+pub(crate) struct Lu<S: Lane> {
+    pub(super) n: usize,
+    pub(super) isa: Isa,
+    /// Column-major factors: unit lower triangle below the diagonal, upper triangle above, inverse
+    /// pivots on it.
+    pub(super) factors: Vec<S>,
+    pub(super) row_scale: Vec<S::Real>,
+    /// Row exchanged with row `k` in step `k`, for lane `l`: `pivots[k * LANES + l]`.
+    pub(super) pivots: Vec<u32>,
+    /// Whether any lane exchanges rows in step `k`.
+    pub(super) moved: Vec<bool>,
+    /// The rows of each column that are not always zero, a bit for each; empty if nothing is known.
+    pub(super) structure: Vec<u64>,
+    /// The same of the factors.
+    pub(super) pattern: Vec<u64>,
+}
+
+/// Largest order of matrices whose zeros are left out.
+const SPARSE_ORDER: usize = u64::BITS as usize;
+/// If more than this share of a matrix may be other than zero, all of it is treated alike.
+const DENSE_SHARE: f64 = 0.9;
+
+impl<S: Lane> Lu<S> {
+    /// Workspace for matrices of order `n`.
+    pub(crate) fn new(n: usize, isa: Isa) -> Self {
+        Lu {
+            n,
+            isa,
+            factors: vec![S::zero(); n * n],
+            row_scale: vec![S::real(0.0); n],
+            pivots: vec![0; n * S::LANES],
+            moved: vec![false; n],
+            structure: Vec::new(),
+            pattern: Vec::new(),
+        }
+    }
+
+    /// Workspace for the Jacobians of a square system.
+    pub(crate) fn of_jacobian<E: Evaluate>(system: &E, isa: Isa) -> Self {
+        let n = system.variables();
+        let mut lu = Lu::new(n, isa);
+        if n > SPARSE_ORDER {
+            return lu;
+        }
+        let rows = |j: usize| (0..n).filter(move |&i| !system.vanishes(i, j));
+        let filled: usize = (0..n).map(|j| rows(j).count()).sum();
+        if (filled as f64) < DENSE_SHARE * (n * n) as f64 {
+            lu.structure = (0..n).map(|j| rows(j).fold(0, |mask, i| mask | 1 << i)).collect();
+            lu.pattern.clone_from(&lu.structure);
+        }
+        lu
+    }
+
+    /// The smallest pivot of lane `l`, each relative to the largest entry of its row of the matrix
+    /// as it was, unknowns measured by the weights it was factored with: below the rounding error
+    /// the matrix is singular as far as doubles can tell.
+    pub(crate) fn smallest_pivot(&self, l: usize, weights_sqr: &[S::Real]) -> f64 {
+        let relative = |k: usize| {
+            let inverse = self.factors[k * self.n + k].get(l);
+            let size = weights_sqr[k].as_ref()[l] * self.row_scale[k].as_ref()[l] / inverse.norm_sqr();
+            if size.is_nan() { 0.0 } else { size }
+        };
+        (0..self.n).map(relative).fold(1.0, f64::min).sqrt()
+    }
+}
