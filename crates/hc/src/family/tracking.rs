@@ -270,7 +270,7 @@ fn is_broken_off(result: &PathResult) -> bool {
 /// steps.
 fn stricter<C: Charts>(settings: &TrackerOptions, level: u32) -> TrackerOptions {
     if level == 0 {
-        return settings.clone();
+        return TrackerOptions { quick: false, ..settings.clone() };
     }
     let stricter = settings.stricter(level);
     if C::COUNT == 1 {

@@ -12,9 +12,20 @@ impl<S: Lane> Lu<S> {
     pub(crate) fn factor(&mut self, a: &[S], weights_sqr: &[S::Real]) {
         let isa = self.isa;
         if self.structure.is_empty() {
-            isa.run(Factor::<S, false> { lu: self, a, weights_sqr });
+            isa.run(Factor::<S, false, true> { lu: self, a, weights_sqr });
         } else {
-            isa.run(Factor::<S, true> { lu: self, a, weights_sqr });
+            isa.run(Factor::<S, true, true> { lu: self, a, weights_sqr });
+        }
+    }
+
+    /// [`factor`](Self::factor) without exchanges of rows, whatever the pivots: for those who judge the
+    /// solutions.
+    pub(crate) fn factor_in_order(&mut self, a: &[S]) {
+        let isa = self.isa;
+        if self.structure.is_empty() {
+            isa.run(Factor::<S, false, false> { lu: self, a, weights_sqr: &[] });
+        } else {
+            isa.run(Factor::<S, true, false> { lu: self, a, weights_sqr: &[] });
         }
     }
 
@@ -66,14 +77,14 @@ impl<const SPARSE: bool> Iterator for Rows<SPARSE> {
     }
 }
 
-/// Factors the column-major matrix `a`.
-struct Factor<'a, S: Lane, const SPARSE: bool> {
+/// Factors the column-major matrix `a`, with or without exchanges of rows.
+struct Factor<'a, S: Lane, const SPARSE: bool, const EXCHANGE: bool> {
     lu: &'a mut Lu<S>,
     a: &'a [S],
     weights_sqr: &'a [S::Real],
 }
 
-impl<S: Lane, const SPARSE: bool> Kernel for Factor<'_, S, SPARSE> {
+impl<S: Lane, const SPARSE: bool, const EXCHANGE: bool> Kernel for Factor<'_, S, SPARSE, EXCHANGE> {
     type Output = ();
     const WIDEST: Isa = S::WIDEST;
 
@@ -89,22 +100,24 @@ impl<S: Lane, const SPARSE: bool> Kernel for Factor<'_, S, SPARSE> {
         }
 
         let scale = &mut row_scale[..n];
-        for i in 0..n {
-            let mut largest = S::real(0.0);
-            for j in 0..n {
-                if SPARSE && pattern[j] >> i & 1 == 0 {
-                    continue;
+        if EXCHANGE {
+            for i in 0..n {
+                let mut largest = S::real(0.0);
+                for j in 0..n {
+                    if SPARSE && pattern[j] >> i & 1 == 0 {
+                        continue;
+                    }
+                    across_lanes();
+                    largest = S::real_max(&S::real_mul(&f[j * n + i].norm_sqr(), &self.weights_sqr[j]), &largest);
                 }
-                across_lanes();
-                largest = S::real_max(&S::real_mul(&f[j * n + i].norm_sqr(), &self.weights_sqr[j]), &largest);
+                scale[i] = reciprocal::<S>(&largest);
             }
-            scale[i] = reciprocal::<S>(&largest);
         }
 
         for k in 0..n {
             let candidates = Rows::<SPARSE>::below(k, n, pattern);
             let pivots = &mut pivots[k * S::LANES..(k + 1) * S::LANES];
-            moved[k] = exchange_rows::<S, SPARSE>(n, k, candidates, f, scale, pivots, pattern);
+            moved[k] = EXCHANGE && exchange_rows::<S, SPARSE>(n, k, candidates, f, scale, pivots, pattern);
             let below = Rows::<SPARSE>::below(k, n, pattern);
             let inverse = S::inv(&f[k * n + k]);
             f[k * n + k] = inverse;

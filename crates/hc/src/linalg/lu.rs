@@ -65,9 +65,21 @@ impl<S: Lane> Lu<S> {
     /// as it was, unknowns measured by the weights it was factored with: below the rounding error
     /// the matrix is singular as far as doubles can tell.
     pub(crate) fn smallest_pivot(&self, l: usize, weights_sqr: &[S::Real]) -> f64 {
+        self.smallest(l, weights_sqr, |k| self.row_scale[k].as_ref()[l])
+    }
+
+    /// [`smallest_pivot`](Self::smallest_pivot) of the matrix `a`, factored without exchanges of rows.
+    pub(crate) fn smallest_pivot_in_order(&self, l: usize, a: &[S], weights_sqr: &[S::Real]) -> f64 {
+        let n = self.n;
+        let size = |i: usize, j: usize| a[j * n + i].get(l).norm_sqr() * weights_sqr[j].as_ref()[l];
+        self.smallest(l, weights_sqr, |i| 1.0 / (0..n).map(|j| size(i, j)).fold(0.0, f64::max))
+    }
+
+    /// The smallest pivot, with rows multiplied by the square roots of `scale`.
+    fn smallest(&self, l: usize, weights_sqr: &[S::Real], scale: impl Fn(usize) -> f64) -> f64 {
         let relative = |k: usize| {
             let inverse = self.factors[k * self.n + k].get(l);
-            let size = weights_sqr[k].as_ref()[l] * self.row_scale[k].as_ref()[l] / inverse.norm_sqr();
+            let size = weights_sqr[k].as_ref()[l] * scale(k) / inverse.norm_sqr();
             if size.is_nan() { 0.0 } else { size }
         };
         (0..self.n).map(relative).fold(1.0, f64::min).sqrt()

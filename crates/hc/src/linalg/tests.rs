@@ -165,3 +165,40 @@ fn condition_of_known_matrices() {
     lu.factor(&singular, &[[1.0], [1.0]]);
     assert_eq!(lu.condition(&singular, &[[1.0]; 2], &mut scratch), f64::INFINITY);
 }
+
+#[test]
+fn in_order_the_same_where_no_rows_are_exchanged() {
+    let mut random = Pcg64::seed_from_u64(11);
+    for n in [1, 3, 8, 13] {
+        let mut entry = || Complex64::new(random.random::<f64>() - 0.5, random.random::<f64>() - 0.5);
+        let mut a: Vec<Complex64> = (0..n * n).map(|_| entry()).collect();
+        // A dominant diagonal stays where it is.
+        (0..n).for_each(|k| a[k * n + k] += 4.0 * n as f64);
+        let weights = vec![[1.0]; n];
+        let (mut one, mut other) = (Lu::new(n, Isa::detect()), Lu::new(n, Isa::detect()));
+        one.factor(&a, &weights);
+        other.factor_in_order(&a);
+        let mut x: Vec<Complex64> = (0..n).map(|_| entry()).collect();
+        let mut y = x.clone();
+        one.solve(&mut x);
+        other.solve(&mut y);
+        assert_eq!(x, y, "{n}");
+        assert_eq!(one.smallest_pivot(0, &weights), other.smallest_pivot_in_order(0, &a, &weights), "{n}");
+    }
+}
+
+#[test]
+fn in_order_a_zero_pivot_shows() {
+    let [zero, one] = [0.0, 1.0].map(Complex64::from);
+    let a = [zero, one, one, zero];
+    let mut lu = Lu::new(2, Isa::detect());
+    lu.factor_in_order(&a);
+    let mut x = [one, one];
+    lu.solve(&mut x);
+    assert!(x.iter().any(|z| !z.is_finite()), "{x:?}");
+    // With the rows exchanged it is the easiest matrix of all; the memory serves for both.
+    lu.factor(&a, &[[1.0]; 2]);
+    let mut x = [one, zero];
+    lu.solve(&mut x);
+    assert_eq!(x, [zero, one]);
+}

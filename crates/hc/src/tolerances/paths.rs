@@ -50,6 +50,54 @@ pub const TRACKING: TrackingTolerances = TrackingTolerances {
     faint_reach: 10.0,
 };
 
+/// Thresholds of [quick](crate::TrackerOptions::quick) steps. Corrections of an attempt all take the
+/// Jacobian at the predicted point; they are relative to the weights of the unknowns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct QuickTolerances {
+    /// Largest contraction, of the second correction by the first.
+    pub contraction: f64,
+    /// Largest first correction.
+    pub first: f64,
+    /// The third correction is at most this, or contracts as the second must. It shows attempts that
+    /// converge to another path.
+    pub third: f64,
+    /// Where the first two corrections are below this, their contraction means nothing.
+    pub small: f64,
+    /// Nor do first and second corrections below these tell `omega`.
+    pub telling: [f64; 2],
+    /// Largest first correction at a start solution.
+    pub start: f64,
+    /// `omega` times the error of the predictor that a step aims at.
+    pub aim: f64,
+    /// Least `omega` by which steps are chosen.
+    pub least_omega: f64,
+    /// A step is at most this many times as long as the one before.
+    pub growth: f64,
+    /// Share of a step that is left after a rejection.
+    pub cut: f64,
+    /// Smallest pivot with which an end is taken for regular.
+    pub pivot: f64,
+    /// Attempts after which all care is cheaper.
+    pub attempts: usize,
+}
+
+/// The thresholds of quick steps.
+pub const QUICK: QuickTolerances = QuickTolerances {
+    contraction: 0.3,
+    first: 0.2,
+    third: 1e-8,
+    small: 1e-7,
+    telling: [1e-6, 1e-9],
+    start: 1e-6,
+    aim: 0.1,
+    least_omega: 2.0,
+    growth: 4.0,
+    cut: 0.5,
+    pivot: 1e-13,
+    attempts: 150,
+};
+
 /// Thresholds of [refinement](crate::refine): Newton's method with residuals in double-double.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]

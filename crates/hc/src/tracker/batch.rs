@@ -5,10 +5,12 @@
 //! same point until the other lanes have finished theirs, so that its numbers do not depend on its
 //! neighbours. The loop allocates nothing.
 
-use super::kernels::{Coefficients, Correct, Distance, Negate, Predict, Radius, Take, Weigh};
+use super::derivatives::derivatives;
+use super::kernels::{Coefficients, Correct, Distance, Predict, Radius, Take, Weigh};
 use super::options::TrackerOptions;
 use super::precise::{Precise, subtract};
 use super::progress::{Bounds, PathProgress, StepState};
+use super::quick::Quick;
 use super::result::{PathEnd, PathResult, PathSet};
 use super::valuation::valuation;
 use crate::homotopy::ParameterPath;
@@ -55,6 +57,10 @@ pub struct Tracker<'a, E: Evaluate, S: Lane> {
     inverse_weights_sqr: Vec<S::Real>,
     precise: Precise<E>,
     valuations: Vec<f64>,
+    /// Made by the first call that is to be quick.
+    quick: Option<Box<Quick<'a, E, S>>>,
+    /// The paths that quick steps leave.
+    left: Vec<usize>,
 }
 
 impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
@@ -95,6 +101,8 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             inverse_weights_sqr: vec![S::real(1.0); n],
             precise: Precise::new(system, isa, S::LANES),
             valuations: vec![0.0; n],
+            quick: None,
+            left: Vec::new(),
         }
     }
 
@@ -124,6 +132,25 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         out: &mut PathSet,
     ) {
         assert_eq!(path.parameters(), self.system.parameters(), "parameters of path and system");
+        if !self.bounds.options.quick {
+            return self.track_carefully(path, starts, which, out);
+        }
+        let mut left = std::mem::take(&mut self.left);
+        left.clear();
+        let (system, isa) = (self.system, self.isa);
+        let quick = self.quick.get_or_insert_with(|| Box::new(Quick::new(system, isa)));
+        quick.track(&self.bounds.options, &self.monitor, path, starts, which, out, &mut left);
+        self.track_carefully(path, starts, left.iter().copied(), out);
+        self.left = left;
+    }
+
+    fn track_carefully<P: ParameterPath>(
+        &mut self,
+        path: &P,
+        starts: &[Complex64],
+        which: impl IntoIterator<Item = usize>,
+        out: &mut PathSet,
+    ) {
         let mut which = which.into_iter();
         self.lanes.fill(PathProgress::idle());
         // Idle lanes compute too; harmless numbers keep them from slow exceptional arithmetic.
@@ -371,14 +398,9 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             inverse_weights_sqr: &self.inverse_weights_sqr,
         });
         self.taylor_next[..n].copy_from_slice(&self.corrected);
-        for order in 1..=3 {
-            let (known, next) = self.taylor_next.split_at_mut(order * n);
-            let orders = if straight { 2 } else { order + 1 };
-            let p = &self.parameters[..orders * m];
-            self.system.taylor(&mut self.memory, order, known, p, &mut next[..n]);
-            self.lu.solve(&mut next[..n]);
-            self.isa.run(Negate { x: &mut next[..n] });
-        }
+        let orders = if straight { 2 } else { 4 };
+        let p = &self.parameters[..orders * m];
+        derivatives(self.system, self.isa, &mut self.memory, &self.lu, p, &mut self.taylor_next);
         self.isa.run(Take { from: &self.taylor_next, mask: accepted, to: &mut self.taylor });
         for (l, lane) in self.lanes.iter_mut().enumerate().filter(|(l, lane)| accepted >> l & 1 == 1 && lane.wide) {
             for (to, from) in self.taylor_low.iter_mut().zip(&self.corrected_low) {

@@ -10,16 +10,22 @@
 //! double-double. Even that may not be enough, because other paths are nearly as near as the next
 //! double. The points are then carried in double-double too.
 //!
+//! Where the ends of a set of paths show which have jumped, most paths need less care: with
+//! [`TrackerOptions::quick`] each lane makes one attempt at a step at a time, and what is difficult is left to
+//! the tracker above.
+//!
 //! Paths travel in lanes, eight at once or alone ([`Tracker`] is generic over [`poly::Lane`]). A
 //! path takes the same steps to the same bits in either case. [`track`] is the entry point: it
 //! spreads paths over threads and returns them in order.
 
 mod batch;
+mod derivatives;
 mod kernels;
 mod options;
 mod pool;
 mod precise;
 mod progress;
+mod quick;
 mod result;
 mod valuation;
 

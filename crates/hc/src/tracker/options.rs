@@ -66,6 +66,12 @@ pub struct TrackerOptions {
     /// Whether residuals may be computed in double-double where double precision is not enough.
     /// Default true.
     pub extended_precision: bool,
+    /// Whether all paths are tracked first with one attempt at a step for all lanes at once and a corrector
+    /// that takes one Jacobian, three corrections and no second look. Paths for which that is not enough
+    /// start again with all care; their records leave out what was tried before. For sets of paths whose ends
+    /// show which have jumped. Default false.
+    #[serde(default)]
+    pub quick: bool,
     /// Instruction set of the lane kernels; `None` takes the widest of the machine. The result does
     /// not depend on it. Default `None`.
     #[serde(skip)]
@@ -90,6 +96,7 @@ impl Default for TrackerOptions {
             endgame_start: 0.1,
             least_share: least_share(),
             extended_precision: true,
+            quick: false,
             isa: None,
         }
     }
@@ -142,6 +149,7 @@ impl TrackerOptions {
             beta_tau: self.beta_tau.min(0.4) * factor,
             beta_tau_last: self.beta_tau_last.min(0.3) * factor,
             max_steps: self.max_steps.saturating_mul(1 << level.min(10)),
+            quick: false,
             ..self.clone()
         }
     }

@@ -1,0 +1,392 @@
+//! Quick steps: one attempt for all lanes at a time, whatever the others need.
+//!
+//! An attempt takes the Jacobian at the predicted point and three corrections with it. The first two tell
+//! whether the step is accepted and how long the next one is; the third catches what converges to another
+//! path. Rows are never exchanged, residuals never extended, and a path that needs more is left to the
+//! [careful tracker](super::Tracker). A lane depends on no other.
+
+use super::derivatives::derivatives;
+use super::kernels::{Coefficients, Correct, Predict, Radius, Take, Weigh};
+use super::options::TrackerOptions;
+use super::result::{PathEnd, PathResult, PathSet};
+use crate::homotopy::ParameterPath;
+use crate::linalg::Lu;
+use crate::monitor::Monitor;
+use crate::tolerances::{QUICK, TRACKING};
+use num_complex::Complex64;
+use poly::simd::Isa;
+use poly::{Evaluate, Lane};
+
+/// One path on its way.
+#[derive(Clone, Debug)]
+struct Attempts {
+    /// `None` in a lane without a path.
+    path: Option<usize>,
+    /// Whether the start solution has still to be checked and the first derivatives taken.
+    fresh: bool,
+    t: f64,
+    step: f64,
+    t_next: f64,
+    radius: f64,
+    /// Lipschitz constant of Newton's method.
+    omega: f64,
+    /// `|predicted - corrected| / step^4` of the last accepted step.
+    error: f64,
+    /// Size of the last correction.
+    last: f64,
+    accepted: usize,
+    rejected: usize,
+}
+
+impl Attempts {
+    fn of(path: Option<usize>) -> Self {
+        Attempts {
+            path,
+            fresh: true,
+            t: 1.0,
+            step: 0.0,
+            t_next: 1.0,
+            radius: 0.0,
+            omega: TRACKING.initial_omega,
+            error: f64::NAN,
+            last: 0.0,
+            accepted: 0,
+            rejected: 0,
+        }
+    }
+
+    /// Whether the attempt with corrections of these sizes is accepted; a size that is not a number is not.
+    fn judge(&mut self, [first, second, third]: [f64; 3]) -> bool {
+        if self.fresh {
+            return first < QUICK.start;
+        }
+        let small = first < QUICK.small && second < QUICK.small;
+        let contracts = first < QUICK.first && second < QUICK.contraction * first;
+        // An end has to be accurate, a point on the way only on its path.
+        let arrives = self.t_next == 0.0;
+        let settles = third < if arrives { QUICK.third } else { (QUICK.contraction * second).max(QUICK.third) };
+        if !(small || contracts && settles) {
+            return false;
+        }
+        let telling = first >= QUICK.telling[0] && second >= QUICK.telling[1];
+        let seen = if telling { 2.0 * second / (first * first) } else { 0.0 };
+        self.omega = seen.max(0.5 * self.omega).max(TRACKING.least_omega);
+        // Never zero, so that one lucky step does not free the next from the bound.
+        self.error = first.max(f64::EPSILON) / (self.step * self.step * self.step * self.step);
+        self.last = third;
+        true
+    }
+
+    /// Takes the accepted step, after which the radius of trust is as given, and chooses the next one.
+    fn advance(&mut self, radius: f64, options: &TrackerOptions) {
+        self.radius = radius;
+        self.t = self.t_next;
+        let error = if self.fresh { radius.powi(-4) } else { self.error };
+        let newton = (QUICK.aim / (self.omega.max(QUICK.least_omega) * error)).sqrt().sqrt();
+        let mut trust = options.beta_tau * radius;
+        if self.t < trust {
+            trust = options.beta_tau_last * radius;
+        }
+        let step = newton.min(trust);
+        self.choose(if self.fresh { step } else { step.min(QUICK.growth * self.step) });
+        self.accepted += usize::from(!self.fresh);
+        self.fresh = false;
+    }
+
+    fn retreat(&mut self) {
+        self.rejected += 1;
+        self.choose(QUICK.cut * self.step);
+    }
+
+    fn choose(&mut self, step: f64) {
+        let last = step >= self.t;
+        self.step = if last { self.t } else { step };
+        self.t_next = if last { 0.0 } else { self.t - step };
+    }
+
+    /// The record of a path with this number at its end.
+    fn arrived(&self, path: usize, pivot: f64) -> PathResult {
+        PathResult {
+            path,
+            end: PathEnd::Success,
+            t: 0.0,
+            accuracy: self.last.max(f64::EPSILON),
+            omega: self.omega,
+            pivot,
+            accepted: self.accepted,
+            rejected: self.rejected,
+            // At the start solution, at each predicted and at each accepted point.
+            jacobians: 2 + 2 * self.accepted + self.rejected,
+            extended: false,
+        }
+    }
+
+    /// Whether the path is better left to the careful tracker.
+    fn is_difficult(&self, options: &TrackerOptions) -> bool {
+        let moves = self.t_next < self.t && self.step > 4.0 * f64::EPSILON * self.t;
+        self.accepted + self.rejected >= options.max_steps.min(QUICK.attempts) || !moves
+    }
+}
+
+/// Tracks the easy paths of one system, `S::LANES` at a time. It keeps its memory from call to call.
+pub(super) struct Quick<'a, E: Evaluate, S: Lane> {
+    system: &'a E,
+    isa: Isa,
+    lanes: Vec<Attempts>,
+    labels: Vec<usize>,
+    memory: E::Memory<S>,
+    taylor: Vec<S>,
+    taylor_next: Vec<S>,
+    parameters: Vec<S>,
+    point: Vec<S>,
+    corrected: Vec<S>,
+    values: Vec<S>,
+    jacobian: Vec<S>,
+    lu: Lu<S>,
+    weights_sqr: Vec<S::Real>,
+    inverse_weights_sqr: Vec<S::Real>,
+}
+
+impl<'a, E: Evaluate, S: Lane> Quick<'a, E, S> {
+    pub(super) fn new(system: &'a E, isa: Isa) -> Self {
+        let (n, m) = (system.variables(), system.parameters());
+        let zeros = |len: usize| vec![S::zero(); len];
+        Quick {
+            system,
+            isa,
+            lanes: vec![Attempts::of(None); S::LANES],
+            labels: vec![0; S::LANES],
+            memory: system.memory(isa),
+            taylor: zeros(4 * n),
+            taylor_next: zeros(4 * n),
+            parameters: zeros(4 * m),
+            point: zeros(n),
+            corrected: zeros(n),
+            values: zeros(n),
+            jacobian: zeros(n * n),
+            lu: Lu::of_jacobian(system, isa),
+            weights_sqr: vec![S::real(1.0); n],
+            inverse_weights_sqr: vec![S::real(1.0); n],
+        }
+    }
+
+    /// Tracks paths as [`Tracker::track`](super::Tracker::track) does. The difficult ones, and those that have
+    /// not begun when the monitor is cancelled, go to `left`.
+    #[allow(clippy::too_many_arguments)]
+    pub(super) fn track<P: ParameterPath>(
+        &mut self,
+        options: &TrackerOptions,
+        monitor: &Monitor,
+        path: &P,
+        starts: &[Complex64],
+        which: impl IntoIterator<Item = usize>,
+        out: &mut PathSet,
+        left: &mut Vec<usize>,
+    ) {
+        let n = self.system.variables();
+        let mut which = which.into_iter();
+        left.reserve(which.size_hint().0);
+        self.lanes.fill(Attempts::of(None));
+        // Idle lanes compute too; harmless numbers keep them from slow exceptional arithmetic.
+        self.taylor.fill(S::zero());
+        let mut live = true;
+        while live {
+            live = false;
+            for l in 0..S::LANES {
+                if self.lanes[l].path.is_none() && !monitor.is_cancelled() {
+                    self.lanes[l] = Attempts::of(which.next());
+                    if let Some(k) = self.lanes[l].path {
+                        for (x, z) in self.taylor.iter_mut().zip(&starts[k * n..(k + 1) * n]) {
+                            x.set(l, *z);
+                        }
+                    }
+                }
+                live |= self.lanes[l].path.is_some();
+            }
+            if live {
+                self.attempt(options, path, out, left);
+            }
+        }
+        left.extend(which);
+    }
+
+    /// One attempt at a step, accepted or not, of every path.
+    fn attempt<P: ParameterPath>(
+        &mut self,
+        options: &TrackerOptions,
+        path: &P,
+        out: &mut PathSet,
+        left: &mut Vec<usize>,
+    ) {
+        let (n, m) = (self.system.variables(), self.system.parameters());
+        let some = self.lanes.iter().find_map(|lane| lane.path).unwrap_or(0);
+        let (mut t, mut step, mut radius_sqr) = (S::real(1.0), S::real(0.0), S::real(0.0));
+        let mut fresh = 0u8;
+        for (l, lane) in self.lanes.iter().enumerate() {
+            self.labels[l] = lane.path.unwrap_or(some);
+            t.as_mut()[l] = lane.t_next;
+            step.as_mut()[l] = lane.t_next - lane.t;
+            radius_sqr.as_mut()[l] = lane.radius * lane.radius;
+            fresh |= u8::from(lane.fresh) << l;
+        }
+        self.isa.run(Coefficients { path, labels: &self.labels, t: &t, out: &mut self.parameters });
+        self.isa.run(Predict { taylor: &self.taylor, step, radius_sqr, out: &mut self.point });
+        if fresh != 0 {
+            self.isa.run(Take { from: &self.taylor[..n], mask: fresh, to: &mut self.point });
+        }
+        self.isa.run(Weigh {
+            x: &self.point,
+            fresh,
+            least_share_sqr: options.least_share * options.least_share,
+            weights_sqr: &mut self.weights_sqr,
+            inverse: &mut self.inverse_weights_sqr,
+        });
+        self.factor();
+        let sizes = [0, 1, 2].map(|k| {
+            if k > 0 {
+                self.system.values(&mut self.memory, &self.point, &self.parameters[..m], &mut self.values);
+            }
+            self.lu.solve(&mut self.values);
+            let size = self.isa.run(Correct {
+                x: &self.point,
+                dx: &self.values,
+                inverse_weights_sqr: &self.inverse_weights_sqr,
+                running: u8::MAX,
+                out: &mut self.corrected,
+            });
+            std::mem::swap(&mut self.point, &mut self.corrected);
+            size
+        });
+        let mut accepted = 0u8;
+        for (l, lane) in self.lanes.iter_mut().enumerate().filter(|(_, lane)| lane.path.is_some()) {
+            if lane.judge([0, 1, 2].map(|k: usize| sizes[k].as_ref()[l].sqrt())) {
+                accepted |= 1 << l;
+            } else {
+                lane.retreat();
+            }
+        }
+        if accepted != 0 {
+            self.move_on(accepted, path.is_straight(), options);
+        }
+        for l in 0..S::LANES {
+            let Some(number) = self.lanes[l].path else { continue };
+            if self.lanes[l].t == 0.0 {
+                let pivot = self.lu.smallest_pivot_in_order(l, &self.jacobian, &self.weights_sqr);
+                if pivot > QUICK.pivot {
+                    out.push(self.lanes[l].arrived(number, pivot), self.taylor[..n].iter().map(|x| x.get(l)));
+                } else {
+                    left.push(number);
+                }
+                self.lanes[l] = Attempts::of(None);
+            } else if self.lanes[l].is_difficult(options) {
+                left.push(number);
+                self.lanes[l] = Attempts::of(None);
+            }
+        }
+    }
+
+    /// Values and the factored Jacobian at `point`.
+    fn factor(&mut self) {
+        let p = &self.parameters[..self.system.parameters()];
+        self.system.jacobian(&mut self.memory, &self.point, p, &mut self.values, &mut self.jacobian);
+        self.lu.factor_in_order(&self.jacobian);
+    }
+
+    /// Derivatives at the accepted points, and with them the next steps.
+    fn move_on(&mut self, accepted: u8, straight: bool, options: &TrackerOptions) {
+        let (n, m) = (self.system.variables(), self.system.parameters());
+        self.factor();
+        self.taylor_next[..n].copy_from_slice(&self.point);
+        let p = &self.parameters[..if straight { 2 } else { 4 } * m];
+        derivatives(self.system, self.isa, &mut self.memory, &self.lu, p, &mut self.taylor_next);
+        self.isa.run(Take { from: &self.taylor_next, mask: accepted, to: &mut self.taylor });
+        let mut omega_sqr = S::real(1.0);
+        for (omega_sqr, lane) in omega_sqr.as_mut().iter_mut().zip(&self.lanes) {
+            *omega_sqr = lane.omega * lane.omega;
+        }
+        let (taylor, inverse_weights_sqr) = (&self.taylor, &self.inverse_weights_sqr);
+        let radius = self.isa.run(Radius { n, taylor, inverse_weights_sqr, omega_sqr: &omega_sqr });
+        for (l, lane) in self.lanes.iter_mut().enumerate().filter(|(l, _)| accepted >> l & 1 == 1) {
+            lane.advance(radius.as_ref()[l].sqrt(), options);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::homotopy::Segment;
+    use crate::monitor::Monitor;
+    use crate::tracker::{PathEnd, PathSet, Tracker, TrackerOptions};
+    use num_complex::Complex64;
+    use poly::{Evaluate, Lane, Lanes8, parse};
+
+    fn quick() -> TrackerOptions {
+        TrackerOptions { quick: true, ..TrackerOptions::fast() }
+    }
+
+    /// The ends of all paths of `x^12 = a`, `y = x^2 + b` from `a = 1, b = 0` to these parameters, in order.
+    fn ends<S: Lane>(target: [Complex64; 2], options: &TrackerOptions, monitor: &Monitor) -> PathSet {
+        let text =
+            "name = 'roots'\nunknowns = ['x', 'y']\nparameters = ['a', 'b']\nequations = ['x^12 - a', 'y - x^2 - b']";
+        let system = parse::family(text).expect("a family").system.compile().expect("a program");
+        let starts: Vec<Complex64> = (0..12)
+            .map(|k| Complex64::from_polar(1.0, f64::from(k) * std::f64::consts::TAU / 12.0))
+            .flat_map(|x| [x, x * x])
+            .collect();
+        let path = Segment::new(&[1.0, 0.0].map(Complex64::from), &target);
+        let mut out = PathSet::new(system.variables());
+        let mut tracker = Tracker::<_, S>::new(&system, options);
+        tracker.set_monitor(monitor);
+        tracker.track(&path, &starts, 0..12, &mut out);
+        out.sort();
+        out
+    }
+
+    #[test]
+    fn all_roots_alone_and_among_others_to_the_same_bits() {
+        let (a, b) = (Complex64::new(-3.0, 4.0), Complex64::new(0.5, -2.0));
+        let eight = ends::<Lanes8>([a, b], &quick(), &Monitor::default());
+        assert_eq!(eight.len(), 12);
+        for (result, x) in eight.iter() {
+            assert_eq!(result.end, PathEnd::Success, "{result:?}");
+            assert!((x[0].powi(12) - a).norm() < 1e-6 && (x[1] - x[0] * x[0] - b).norm() < 1e-7, "{x:?}");
+            assert!(result.accuracy < 1e-8 && result.pivot > 1e-3, "{result:?}");
+        }
+        // Twelve roots, none twice.
+        let near = |k: usize, j: usize| (eight.point(k)[0] - eight.point(j)[0]).norm() < 1e-3;
+        assert!((0..12).all(|k| (0..k).all(|j| !near(k, j))));
+        assert_eq!(eight, ends::<Complex64>([a, b], &quick(), &Monitor::default()));
+        // The same ends as with all care, in more Jacobians there.
+        let careful = ends::<Lanes8>([a, b], &TrackerOptions::fast(), &Monitor::default());
+        for k in 0..12 {
+            assert!((eight.point(k)[0] - careful.point(k)[0]).norm() < 1e-6, "path {k}");
+        }
+    }
+
+    #[test]
+    fn what_is_singular_is_left_to_the_careful_tracker() {
+        // All roots meet at zero.
+        let target = [0.0, 1.0].map(Complex64::from);
+        let careful = ends::<Lanes8>(target, &TrackerOptions::fast(), &Monitor::default());
+        assert_eq!(ends::<Lanes8>(target, &quick(), &Monitor::default()), careful);
+        assert_eq!(careful.count(PathEnd::Success), 0);
+    }
+
+    #[test]
+    fn paths_that_have_not_begun_are_cancelled() {
+        let monitor = Monitor::watched();
+        monitor.cancel();
+        let ends = ends::<Lanes8>([2.0, 1.0].map(Complex64::from), &quick(), &monitor);
+        assert_eq!((ends.len(), ends.count(PathEnd::Cancelled)), (12, 12));
+    }
+
+    #[test]
+    fn a_start_that_is_no_solution_is_found_out() {
+        let system = parse::family("name = 'root'\nunknowns = ['x']\nparameters = ['a']\nequations = ['x^2 - a']");
+        let system = system.expect("a family").system.compile().expect("a program");
+        let path = Segment::new(&[Complex64::from(1.0)], &[Complex64::new(2.0, 1.0)]);
+        let mut out = PathSet::new(1);
+        Tracker::<_, Lanes8>::new(&system, &quick()).track(&path, &[Complex64::from(1.7)], [0], &mut out);
+        assert_eq!(out.results()[0].end, PathEnd::InvalidStart);
+    }
+}
