@@ -76,6 +76,9 @@ pub struct QuickTolerances {
     pub growth: f64,
     /// Share of a step that is left after a rejection.
     pub cut: f64,
+    /// Largest rounding error of an end. Newton's method still comes back to it, as regular ends with
+    /// coordinates that vanish must show: [`RefinementTolerances::perturbations`].
+    pub noise: f64,
     /// Smallest pivot with which an end is taken for regular.
     pub pivot: f64,
     /// Attempts after which all care is cheaper.
@@ -94,6 +97,7 @@ pub const QUICK: QuickTolerances = QuickTolerances {
     least_omega: 2.0,
     growth: 4.0,
     cut: 0.5,
+    noise: 1e-11,
     pivot: 1e-13,
     attempts: 150,
 };

@@ -44,8 +44,6 @@ pub enum MinimalStart {
 impl Default for MinimalOptions {
     fn default() -> Self {
         let mut paths = FibreOptions::default();
-        // Jumps show: every path has its own end.
-        paths.tracker.quick = true;
         paths.tracker.contraction = 0.2;
         paths.tracker.corrector_tolerance = 3e-4;
         paths.tracker.beta_omega = 1.2;
