@@ -64,6 +64,8 @@ pub(crate) fn endgame<'a, E: Evaluate>(
         endgame_start: 0.0,
         min_t: 0.0,
         least_share: 0.0,
+        // Nothing shows where a single leg has jumped.
+        quick: false,
         ..tracker.clone()
     };
     let max_steps = tracker.max_steps / (1 + segment.target().len() / HEAVY);

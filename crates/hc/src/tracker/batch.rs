@@ -5,12 +5,12 @@
 //! same point until the other lanes have finished theirs, so that its numbers do not depend on its
 //! neighbours. The loop allocates nothing.
 
+use super::attempts::Attempts;
 use super::derivatives::derivatives;
 use super::kernels::{Coefficients, Correct, Distance, Predict, Radius, Take, Weigh};
 use super::options::TrackerOptions;
 use super::precise::{Precise, subtract};
 use super::progress::{Bounds, PathProgress, StepState};
-use super::quick::Quick;
 use super::result::{PathEnd, PathResult, PathSet};
 use super::valuation::valuation;
 use crate::homotopy::ParameterPath;
@@ -22,24 +22,24 @@ use poly::{Evaluate, Lane};
 
 /// Tracks paths of one system, `S::LANES` at a time. It keeps its memory from call to call.
 pub struct Tracker<'a, E: Evaluate, S: Lane> {
-    system: &'a E,
-    bounds: Bounds,
-    monitor: Monitor,
-    isa: Isa,
-    n: usize,
+    pub(super) system: &'a E,
+    pub(super) bounds: Bounds,
+    pub(super) monitor: Monitor,
+    pub(super) isa: Isa,
+    pub(super) n: usize,
     lanes: Vec<PathProgress>,
     /// Index of the path in each lane.
-    labels: Vec<usize>,
-    memory: E::Memory<S>,
+    pub(super) labels: Vec<usize>,
+    pub(super) memory: E::Memory<S>,
     /// Taylor coefficients of the paths at their current points, orders 0 to 3.
-    taylor: Vec<S>,
+    pub(super) taylor: Vec<S>,
     /// Taylor coefficients at the point just reached.
-    taylor_next: Vec<S>,
-    parameters: Vec<S>,
+    pub(super) taylor_next: Vec<S>,
+    pub(super) parameters: Vec<S>,
     predicted: Vec<S>,
     /// Where the Jacobian is evaluated.
-    point: Vec<S>,
-    corrected: Vec<S>,
+    pub(super) point: Vec<S>,
+    pub(super) corrected: Vec<S>,
     /// The low parts of these two, and of the point of the last accepted step, for paths whose
     /// points are in double-double; arbitrary for other paths.
     point_low: Vec<S>,
@@ -48,18 +48,18 @@ pub struct Tracker<'a, E: Evaluate, S: Lane> {
     /// The point from which the closing correction starts.
     closing: Vec<S>,
     closing_low: Vec<S>,
-    values: Vec<S>,
-    jacobian: Vec<S>,
-    lu: Lu<S>,
+    pub(super) values: Vec<S>,
+    pub(super) jacobian: Vec<S>,
+    pub(super) lu: Lu<S>,
     /// The correction that residuals of double precision give where better ones are used.
     rough: Vec<S>,
-    weights_sqr: Vec<S::Real>,
-    inverse_weights_sqr: Vec<S::Real>,
+    pub(super) weights_sqr: Vec<S::Real>,
+    pub(super) inverse_weights_sqr: Vec<S::Real>,
     precise: Precise<E>,
     valuations: Vec<f64>,
-    /// Made by the first call that is to be quick.
-    quick: Option<Box<Quick<'a, E, S>>>,
-    /// The paths that quick steps leave.
+    /// The paths with quick steps, before any other.
+    pub(super) attempts: Vec<Attempts>,
+    /// The paths that these leave.
     left: Vec<usize>,
 }
 
@@ -101,7 +101,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             inverse_weights_sqr: vec![S::real(1.0); n],
             precise: Precise::new(system, isa, S::LANES),
             valuations: vec![0.0; n],
-            quick: None,
+            attempts: vec![Attempts::of(None); S::LANES],
             left: Vec::new(),
         }
     }
@@ -137,9 +137,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         }
         let mut left = std::mem::take(&mut self.left);
         left.clear();
-        let (system, isa) = (self.system, self.isa);
-        let quick = self.quick.get_or_insert_with(|| Box::new(Quick::new(system, isa)));
-        quick.track(&self.bounds.options, &self.monitor, path, starts, which, out, &mut left);
+        self.track_quickly(path, starts, which, out, &mut left);
         self.track_carefully(path, starts, left.iter().copied(), out);
         self.left = left;
     }

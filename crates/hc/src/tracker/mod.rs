@@ -18,6 +18,7 @@
 //! path takes the same steps to the same bits in either case. [`track`] is the entry point: it
 //! spreads paths over threads and returns them in order.
 
+mod attempts;
 mod batch;
 mod derivatives;
 mod kernels;

@@ -2,226 +2,66 @@
 //!
 //! An attempt takes the Jacobian at the predicted point and three corrections with it. The first two tell
 //! whether the step is accepted and how long the next one is; the third catches what converges to another
-//! path. Rows are never exchanged, residuals never extended, and a path that needs more is left to the
-//! [careful tracker](super::Tracker). A lane depends on no other.
+//! path. The next step is that for which `omega` times the predictor's error, which grows with the fourth
+//! power of the step, is [`aim`](crate::tolerances::QuickTolerances::aim), within the share of the radius of
+//! trust that the options allow. Rows are never exchanged, residuals never extended, and a path that needs
+//! more is left to the [careful tracker](super::Tracker). A lane depends on no other.
 
+use super::attempts::Attempts;
+use super::batch::Tracker;
 use super::derivatives::derivatives;
 use super::kernels::{Coefficients, Correct, Predict, Radius, Take, Weigh};
-use super::options::TrackerOptions;
-use super::result::{PathEnd, PathResult, PathSet};
+use super::result::PathSet;
 use crate::homotopy::ParameterPath;
-use crate::linalg::Lu;
-use crate::monitor::Monitor;
-use crate::tolerances::{QUICK, TRACKING};
+use crate::tolerances::QUICK;
 use num_complex::Complex64;
-use poly::simd::Isa;
 use poly::{Evaluate, Lane};
 
-/// One path on its way.
-#[derive(Clone, Debug)]
-struct Attempts {
-    /// `None` in a lane without a path.
-    path: Option<usize>,
-    /// Whether the start solution has still to be checked and the first derivatives taken.
-    fresh: bool,
-    t: f64,
-    step: f64,
-    t_next: f64,
-    radius: f64,
-    /// Lipschitz constant of Newton's method.
-    omega: f64,
-    /// `|predicted - corrected| / step^4` of the last accepted step.
-    error: f64,
-    /// Size of the last correction at the end.
-    last: f64,
-    accepted: usize,
-    rejected: usize,
-}
-
-impl Attempts {
-    fn of(path: Option<usize>) -> Self {
-        Attempts {
-            path,
-            fresh: true,
-            t: 1.0,
-            step: 0.0,
-            t_next: 1.0,
-            radius: 0.0,
-            omega: TRACKING.initial_omega,
-            error: f64::NAN,
-            last: 0.0,
-            accepted: 0,
-            rejected: 0,
-        }
-    }
-
-    /// Whether the attempt with corrections of these sizes is accepted; a size that is not a number is not.
-    fn judge(&mut self, [first, second, third]: [f64; 3]) -> bool {
-        if self.fresh {
-            return first < QUICK.start;
-        }
-        let small = first < QUICK.small && second < QUICK.small;
-        let contracts = first < QUICK.first && second < QUICK.contraction * first;
-        // An end has to be accurate, a point on the way only on its path.
-        let arrives = self.t_next == 0.0;
-        let settles = third < if arrives { QUICK.third } else { (QUICK.contraction * second).max(QUICK.third) };
-        if !(small || contracts && settles) {
-            return false;
-        }
-        let telling = first >= QUICK.telling[0] && second >= QUICK.telling[1];
-        let seen = if telling { 2.0 * second / (first * first) } else { 0.0 };
-        self.omega = seen.max(0.5 * self.omega).max(TRACKING.least_omega);
-        // Never zero, so that one lucky step does not free the next from the bound.
-        self.error = first.max(f64::EPSILON) / (self.step * self.step * self.step * self.step);
-        true
-    }
-
-    /// Takes the accepted step, after which the radius of trust is as given, and chooses the next one.
-    fn advance(&mut self, radius: f64, options: &TrackerOptions) {
-        self.radius = radius;
-        self.t = self.t_next;
-        let error = if self.fresh { radius.powi(-4) } else { self.error };
-        let newton = (QUICK.aim / (self.omega.max(QUICK.least_omega) * error)).sqrt().sqrt();
-        let mut trust = options.beta_tau * radius;
-        if self.t < trust {
-            trust = options.beta_tau_last * radius;
-        }
-        let step = newton.min(trust);
-        self.choose(if self.fresh { step } else { step.min(QUICK.growth * self.step) });
-        self.accepted += usize::from(!self.fresh);
-        self.fresh = false;
-    }
-
-    fn retreat(&mut self) {
-        self.rejected += 1;
-        self.choose(QUICK.cut * self.step);
-    }
-
-    fn choose(&mut self, step: f64) {
-        let last = step >= self.t;
-        self.step = if last { self.t } else { step };
-        self.t_next = if last { 0.0 } else { self.t - step };
-    }
-
-    /// The record of a path with this number at its end.
-    fn arrived(&self, path: usize, pivot: f64) -> PathResult {
-        PathResult {
-            path,
-            end: PathEnd::Success,
-            t: 0.0,
-            accuracy: self.last.max(f64::EPSILON),
-            omega: self.omega,
-            pivot,
-            accepted: self.accepted,
-            rejected: self.rejected,
-            // At the start solution, at each predicted and at each accepted point.
-            jacobians: 2 + 2 * self.accepted + self.rejected,
-            extended: false,
-        }
-    }
-
-    /// Whether the path is better left to the careful tracker.
-    fn is_difficult(&self, options: &TrackerOptions) -> bool {
-        let moves = self.t_next < self.t && self.step > 4.0 * f64::EPSILON * self.t;
-        self.accepted + self.rejected >= options.max_steps.min(QUICK.attempts) || !moves
-    }
-}
-
-/// Tracks the easy paths of one system, `S::LANES` at a time. It keeps its memory from call to call.
-pub(super) struct Quick<'a, E: Evaluate, S: Lane> {
-    system: &'a E,
-    isa: Isa,
-    lanes: Vec<Attempts>,
-    labels: Vec<usize>,
-    memory: E::Memory<S>,
-    taylor: Vec<S>,
-    taylor_next: Vec<S>,
-    parameters: Vec<S>,
-    point: Vec<S>,
-    corrected: Vec<S>,
-    values: Vec<S>,
-    jacobian: Vec<S>,
-    lu: Lu<S>,
-    weights_sqr: Vec<S::Real>,
-    inverse_weights_sqr: Vec<S::Real>,
-}
-
-impl<'a, E: Evaluate, S: Lane> Quick<'a, E, S> {
-    pub(super) fn new(system: &'a E, isa: Isa) -> Self {
-        let (n, m) = (system.variables(), system.parameters());
-        let zeros = |len: usize| vec![S::zero(); len];
-        Quick {
-            system,
-            isa,
-            lanes: vec![Attempts::of(None); S::LANES],
-            labels: vec![0; S::LANES],
-            memory: system.memory(isa),
-            taylor: zeros(4 * n),
-            taylor_next: zeros(4 * n),
-            parameters: zeros(4 * m),
-            point: zeros(n),
-            corrected: zeros(n),
-            values: zeros(n),
-            jacobian: zeros(n * n),
-            lu: Lu::of_jacobian(system, isa),
-            weights_sqr: vec![S::real(1.0); n],
-            inverse_weights_sqr: vec![S::real(1.0); n],
-        }
-    }
-
-    /// Tracks paths as [`Tracker::track`](super::Tracker::track) does. The difficult ones, and those that have
+impl<E: Evaluate, S: Lane> Tracker<'_, E, S> {
+    /// Tracks paths as [`track`](Self::track) does. The difficult ones, and those that have
     /// not begun when the monitor is cancelled, go to `left`.
-    #[allow(clippy::too_many_arguments)]
-    pub(super) fn track<P: ParameterPath>(
+    pub(super) fn track_quickly<P: ParameterPath>(
         &mut self,
-        options: &TrackerOptions,
-        monitor: &Monitor,
         path: &P,
         starts: &[Complex64],
         which: impl IntoIterator<Item = usize>,
         out: &mut PathSet,
         left: &mut Vec<usize>,
     ) {
-        let n = self.system.variables();
+        let n = self.n;
         let mut which = which.into_iter();
         left.reserve(which.size_hint().0);
-        self.lanes.fill(Attempts::of(None));
+        self.attempts.fill(Attempts::of(None));
         // Idle lanes compute too; harmless numbers keep them from slow exceptional arithmetic.
         self.taylor.fill(S::zero());
         let mut live = true;
         while live {
             live = false;
             for l in 0..S::LANES {
-                if self.lanes[l].path.is_none() && !monitor.is_cancelled() {
-                    self.lanes[l] = Attempts::of(which.next());
-                    if let Some(k) = self.lanes[l].path {
+                if self.attempts[l].path.is_none() && !self.monitor.is_cancelled() {
+                    self.attempts[l] = Attempts::of(which.next());
+                    if let Some(k) = self.attempts[l].path {
                         for (x, z) in self.taylor.iter_mut().zip(&starts[k * n..(k + 1) * n]) {
                             x.set(l, *z);
                         }
                     }
                 }
-                live |= self.lanes[l].path.is_some();
+                live |= self.attempts[l].path.is_some();
             }
             if live {
-                self.attempt(options, path, out, left);
+                self.attempt(path, out, left);
             }
         }
         left.extend(which);
     }
 
     /// One attempt at a step, accepted or not, of every path.
-    fn attempt<P: ParameterPath>(
-        &mut self,
-        options: &TrackerOptions,
-        path: &P,
-        out: &mut PathSet,
-        left: &mut Vec<usize>,
-    ) {
-        let (n, m) = (self.system.variables(), self.system.parameters());
-        let some = self.lanes.iter().find_map(|lane| lane.path).unwrap_or(0);
+    fn attempt<P: ParameterPath>(&mut self, path: &P, out: &mut PathSet, left: &mut Vec<usize>) {
+        let (n, m) = (self.n, self.system.parameters());
+        let some = self.attempts.iter().find_map(|lane| lane.path).unwrap_or(0);
         let (mut t, mut step, mut radius_sqr) = (S::real(1.0), S::real(0.0), S::real(0.0));
         let mut fresh = 0u8;
-        for (l, lane) in self.lanes.iter().enumerate() {
+        for (l, lane) in self.attempts.iter().enumerate() {
             self.labels[l] = lane.path.unwrap_or(some);
             t.as_mut()[l] = lane.t_next;
             step.as_mut()[l] = lane.t_next - lane.t;
@@ -236,11 +76,11 @@ impl<'a, E: Evaluate, S: Lane> Quick<'a, E, S> {
         self.isa.run(Weigh {
             x: &self.point,
             fresh,
-            least_share_sqr: options.least_share * options.least_share,
+            least_share_sqr: self.bounds.least_share_sqr,
             weights_sqr: &mut self.weights_sqr,
             inverse: &mut self.inverse_weights_sqr,
         });
-        self.factor();
+        self.factor_in_order();
         let sizes = [0, 1, 2].map(|k| {
             if k > 0 {
                 self.system.values(&mut self.memory, &self.point, &self.parameters[..m], &mut self.values);
@@ -257,7 +97,7 @@ impl<'a, E: Evaluate, S: Lane> Quick<'a, E, S> {
             size
         });
         let mut accepted = 0u8;
-        for (l, lane) in self.lanes.iter_mut().enumerate().filter(|(_, lane)| lane.path.is_some()) {
+        for (l, lane) in self.attempts.iter_mut().enumerate().filter(|(_, lane)| lane.path.is_some()) {
             if lane.judge([0, 1, 2].map(|k: usize| sizes[k].as_ref()[l].sqrt())) {
                 accepted |= 1 << l;
             } else {
@@ -265,28 +105,28 @@ impl<'a, E: Evaluate, S: Lane> Quick<'a, E, S> {
             }
         }
         if accepted != 0 {
-            self.move_on(accepted, path.is_straight(), options);
+            self.go_on(accepted, path.is_straight());
         }
         for l in 0..S::LANES {
-            let Some(number) = self.lanes[l].path else { continue };
-            if self.lanes[l].t == 0.0 {
+            let Some(number) = self.attempts[l].path else { continue };
+            if self.attempts[l].t == 0.0 {
                 let pivot = self.lu.smallest_pivot_in_order(l, &self.jacobian, &self.weights_sqr);
                 // A correction that is not a number is not small either.
-                if pivot > QUICK.pivot && self.lanes[l].last < QUICK.noise {
-                    out.push(self.lanes[l].arrived(number, pivot), self.taylor[..n].iter().map(|x| x.get(l)));
+                if pivot > QUICK.pivot && self.attempts[l].last < QUICK.noise {
+                    out.push(self.attempts[l].arrived(number, pivot), self.taylor[..n].iter().map(|x| x.get(l)));
                 } else {
                     left.push(number);
                 }
-                self.lanes[l] = Attempts::of(None);
-            } else if self.lanes[l].is_difficult(options) {
+                self.attempts[l] = Attempts::of(None);
+            } else if self.attempts[l].is_difficult(&self.bounds.options) {
                 left.push(number);
-                self.lanes[l] = Attempts::of(None);
+                self.attempts[l] = Attempts::of(None);
             }
         }
     }
 
     /// Values and the factored Jacobian at `point`.
-    fn factor(&mut self) {
+    fn factor_in_order(&mut self) {
         let p = &self.parameters[..self.system.parameters()];
         self.system.jacobian(&mut self.memory, &self.point, p, &mut self.values, &mut self.jacobian);
         self.lu.factor_in_order(&self.jacobian);
@@ -296,7 +136,7 @@ impl<'a, E: Evaluate, S: Lane> Quick<'a, E, S> {
     /// error that is left.
     fn arrive(&mut self, accepted: u8) {
         let mut arriving = 0u8;
-        for (l, lane) in self.lanes.iter().enumerate() {
+        for (l, lane) in self.attempts.iter().enumerate() {
             arriving |= u8::from(accepted >> l & 1 == 1 && lane.t_next == 0.0) << l;
         }
         if arriving == 0 {
@@ -311,7 +151,7 @@ impl<'a, E: Evaluate, S: Lane> Quick<'a, E, S> {
             out: &mut self.corrected,
         });
         // What another correction finds is rounding error.
-        let (n, m) = (self.system.variables(), self.system.parameters());
+        let (n, m) = (self.n, self.system.parameters());
         self.system.values(&mut self.memory, &self.corrected, &self.parameters[..m], &mut self.values);
         self.lu.solve(&mut self.values);
         let size = self.isa.run(Correct {
@@ -322,28 +162,28 @@ impl<'a, E: Evaluate, S: Lane> Quick<'a, E, S> {
             out: &mut self.point,
         });
         self.isa.run(Take { from: &self.point, mask: arriving, to: &mut self.taylor[..n] });
-        for (l, lane) in self.lanes.iter_mut().enumerate().filter(|(l, _)| arriving >> l & 1 == 1) {
+        for (l, lane) in self.attempts.iter_mut().enumerate().filter(|(l, _)| arriving >> l & 1 == 1) {
             lane.last = size.as_ref()[l].sqrt();
         }
     }
 
     /// Derivatives at the accepted points, and with them the next steps.
-    fn move_on(&mut self, accepted: u8, straight: bool, options: &TrackerOptions) {
-        let (n, m) = (self.system.variables(), self.system.parameters());
-        self.factor();
+    fn go_on(&mut self, accepted: u8, straight: bool) {
+        let (n, m) = (self.n, self.system.parameters());
+        self.factor_in_order();
         self.taylor_next[..n].copy_from_slice(&self.point);
         let p = &self.parameters[..if straight { 2 } else { 4 } * m];
         derivatives(self.system, self.isa, &mut self.memory, &self.lu, p, &mut self.taylor_next);
         self.isa.run(Take { from: &self.taylor_next, mask: accepted, to: &mut self.taylor });
         self.arrive(accepted);
         let mut omega_sqr = S::real(1.0);
-        for (omega_sqr, lane) in omega_sqr.as_mut().iter_mut().zip(&self.lanes) {
+        for (omega_sqr, lane) in omega_sqr.as_mut().iter_mut().zip(&self.attempts) {
             *omega_sqr = lane.omega * lane.omega;
         }
         let (taylor, inverse_weights_sqr) = (&self.taylor, &self.inverse_weights_sqr);
         let radius = self.isa.run(Radius { n, taylor, inverse_weights_sqr, omega_sqr: &omega_sqr });
-        for (l, lane) in self.lanes.iter_mut().enumerate().filter(|(l, _)| accepted >> l & 1 == 1) {
-            lane.advance(radius.as_ref()[l].sqrt(), options);
+        for (l, lane) in self.attempts.iter_mut().enumerate().filter(|(l, _)| accepted >> l & 1 == 1) {
+            lane.advance(radius.as_ref()[l].sqrt(), &self.bounds.options);
         }
     }
 }
@@ -387,12 +227,14 @@ mod tests {
             assert_eq!(result.end, PathEnd::Success, "{result:?}");
             assert!((x[0].powi(12) - a).norm() < 1e-12 && (x[1] - x[0] * x[0] - b).norm() < 1e-14, "{x:?}");
             assert!(result.accuracy < 1e-8 && result.pivot > 1e-3, "{result:?}");
+            // Quick steps did it: they take two Jacobians each, and two at the start solution.
+            assert_eq!(result.jacobians, 2 + 2 * result.accepted + result.rejected, "{result:?}");
         }
         // Twelve roots, none twice.
         let near = |k: usize, j: usize| (eight.point(k)[0] - eight.point(j)[0]).norm() < 1e-3;
         assert!((0..12).all(|k| (0..k).all(|j| !near(k, j))));
         assert_eq!(eight, ends::<Complex64>([a, b], &quick(), &Monitor::default()));
-        // The same ends as with all care, in more Jacobians there.
+        // The same ends as with all care.
         let careful = ends::<Lanes8>([a, b], &TrackerOptions::fast(), &Monitor::default());
         for k in 0..12 {
             assert!((eight.point(k)[0] - careful.point(k)[0]).norm() < 1e-6, "path {k}");
