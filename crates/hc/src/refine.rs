@@ -56,25 +56,25 @@ pub struct Refiner<'a, E: Evaluate> {
 impl<'a, E: Evaluate> Refiner<'a, E> {
     /// A refiner for a square system.
     pub fn new(system: &'a E) -> Self {
-        let n = system.variables();
+        let (n, m) = (system.variables(), system.parameters());
         let zero = Complex64::new(0.0, 0.0);
         Refiner {
             system,
             memory: system.memory(Isa::Portable),
             precise: system.memory(Isa::detect()),
-            precise_x: Vec::new(),
-            rounded_p: Vec::new(),
+            precise_x: Vec::with_capacity(n),
+            rounded_p: Vec::with_capacity(m),
             precise_values: vec![zero.into(); n],
             values: vec![zero; n],
             jacobian: vec![zero; n * n],
             lu: Lu::new(n, Isa::Portable),
-            exact_p: Vec::new(),
-            next: Vec::new(),
-            squares: Vec::new(),
-            scales: Vec::new(),
-            estimate: Estimate::default(),
+            exact_p: Vec::with_capacity(m),
+            next: Vec::with_capacity(n),
+            squares: Vec::with_capacity(n),
+            scales: Vec::with_capacity(n),
+            estimate: Estimate::with_capacity(n),
             changes: Vec::new(),
-            spare: Refined::default(),
+            spare: Refined { point: Vec::with_capacity(n), ..Refined::default() },
         }
     }
 

@@ -4,10 +4,17 @@ use super::lu::Lu;
 use num_complex::Complex64;
 
 /// Scratch space of estimates of the condition.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Estimate {
     rows: Vec<[f64; 2]>,
     probe: Vec<Complex64>,
+}
+
+impl Estimate {
+    /// With room for a matrix of order `n`.
+    pub(crate) fn with_capacity(n: usize) -> Self {
+        Estimate { rows: Vec::with_capacity(n), probe: Vec::with_capacity(n) }
+    }
 }
 
 impl Lu<Complex64> {

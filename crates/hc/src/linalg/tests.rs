@@ -151,7 +151,7 @@ fn smallest_pivots_of_known_matrices() {
 #[test]
 fn condition_of_known_matrices() {
     let identity = [1.0, 0.0, 0.0, 1.0].map(|v| Complex64::new(v, 0.0));
-    let (mut lu, mut scratch) = (Lu::new(2, Isa::Portable), super::Estimate::default());
+    let (mut lu, mut scratch) = (Lu::new(2, Isa::Portable), super::Estimate::with_capacity(2));
     lu.factor(&identity, &[[1.0], [1.0]]);
     assert_eq!(lu.condition(&identity, &[[1.0]; 2], &mut scratch), 1.0);
     // [[1, 1], [1, 1 + e]] has condition (2 + e)^2 / e in the maximum norm (nearly unchanged by
