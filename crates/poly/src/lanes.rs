@@ -202,7 +202,7 @@ impl Lane for Lanes8 {
         self.im[l] = z.im;
     }
     #[inline(always)]
-    fn select(a: &Self, b: &Self, mask: u8) -> Self {
+    fn select(a: &Self, b: &Self, mask: u16) -> Self {
         lanes!(l => if mask >> l & 1 == 1 { b.lane(l) } else { a.lane(l) })
     }
 }

@@ -36,7 +36,7 @@
 //!
 //! [`Evaluate`] is the interface of all three kinds of system. It runs over any [`Scalar`]:
 //! [`Complex64`], [`Lanes8`] (eight paths side by side, each bit for bit what one path computes, on
-//! every [`Isa`]), [`ComplexDd`] (32 digits),
+//! every [`Isa`]), [`Singles16`] (sixteen in single precision), [`ComplexDd`] (32 digits),
 //! [`ComplexMulti`] (as many digits as asked for), [`ComplexInterval`] and [`ComplexBall`] (proven
 //! bounds, of 16 and 32 digits) and [`Rational`] (exact).
 //!
@@ -59,6 +59,7 @@ mod monomial;
 mod multi;
 mod polynomial;
 mod rational;
+mod singles;
 mod sparse;
 mod system;
 mod wording;
@@ -87,6 +88,7 @@ pub use program::{CompileError, Interpreter, Program};
 pub use rational::Rational;
 pub use scalar::{Lane, Scalar};
 pub use simd::Isa;
+pub use singles::{Reals16, Singles16};
 pub use sparse::{SparseMemory, SparseSystem, SupportError};
 pub use system::{System, SystemError};
 pub use wording::{counted, one_or};

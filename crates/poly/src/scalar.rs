@@ -23,6 +23,13 @@ pub trait Scalar: Clone + Send + Sync + std::fmt::Debug + 'static {
     /// that other crates call them. These are by far the largest of all kernels.
     #[doc(hidden)]
     const TAYLOR_COMPILED: bool = false;
+    /// The narrowest instruction set for which these kernels are compiled. On narrower sets lanes are run one
+    /// by one.
+    #[doc(hidden)]
+    const TAYLOR_NARROWEST: Isa = match Self::STRAIGHT {
+        Some(isa) => isa,
+        None => Isa::Portable,
+    };
 
     /// The additive identity.
     fn zero() -> Self;
@@ -125,10 +132,12 @@ pub const fn narrowest<S: Scalar>() -> Isa {
     }
 }
 
-/// A [`Scalar`] of double precision with one lane or several, one lane for each path.
+/// A [`Scalar`] of double precision, or of single precision, with one lane or several, one lane for each
+/// path.
 ///
 /// Lanes never mix: lane `l` of a result depends only on lane `l` of the operands. Each lane is bit
-/// for bit what the type with one lane computes. The tracker is written once, over this trait.
+/// for bit what the type with one lane and the same precision computes. The tracker is written once, over
+/// this trait. Real numbers are of double precision, so that squares of sizes do not overflow.
 pub trait Lane: Scalar + Copy {
     /// Number of lanes.
     const LANES: usize;
@@ -155,7 +164,7 @@ pub trait Lane: Scalar + Copy {
     /// Replaces the number in lane `l < LANES`.
     fn set(&mut self, l: usize, z: Complex64);
     /// Takes lane `l` from `b` where `mask` has bit `l` set, from `a` elsewhere.
-    fn select(a: &Self, b: &Self, mask: u8) -> Self;
+    fn select(a: &Self, b: &Self, mask: u16) -> Self;
 }
 
 impl Scalar for Complex64 {
@@ -260,7 +269,7 @@ impl Lane for Complex64 {
         *self = z;
     }
     #[inline(always)]
-    fn select(a: &Self, b: &Self, mask: u8) -> Self {
+    fn select(a: &Self, b: &Self, mask: u16) -> Self {
         if mask & 1 == 1 { *b } else { *a }
     }
 }

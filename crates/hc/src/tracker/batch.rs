@@ -202,9 +202,9 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         loop {
             self.correct();
             self.close();
-            let mut unfinished = 0u8;
+            let mut unfinished = 0u16;
             for (l, lane) in self.lanes.iter().enumerate() {
-                unfinished |= u8::from(lane.state == StepState::Iterating) << l;
+                unfinished |= u16::from(lane.state == StepState::Iterating) << l;
             }
             if unfinished == 0 {
                 break;
@@ -212,9 +212,9 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             self.take_corrected(unfinished);
         }
 
-        let mut accepted = 0u8;
+        let mut accepted = 0u16;
         for l in 0..S::LANES {
-            accepted |= u8::from(self.lanes[l].state == StepState::Accepted) << l;
+            accepted |= u16::from(self.lanes[l].state == StepState::Accepted) << l;
             if let Some(end) = self.lanes[l].retreat(&self.bounds) {
                 self.finish(l, end, out);
             }
@@ -240,13 +240,13 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
 
     fn predict(&mut self) {
         let (mut step, mut radius_sqr) = (S::real(0.0), S::real(0.0));
-        let mut fresh = 0u8;
+        let mut fresh = 0u16;
         for (l, lane) in self.lanes.iter_mut().enumerate() {
             if lane.is_live() {
                 lane.choose_step(&self.bounds);
                 step.as_mut()[l] = lane.signed_step();
                 radius_sqr.as_mut()[l] = lane.radius * lane.radius;
-                fresh |= u8::from(lane.fresh) << l;
+                fresh |= u16::from(lane.fresh) << l;
             }
         }
         self.isa.run(Predict { taylor: &self.taylor, step, radius_sqr, out: &mut self.predicted });
@@ -298,9 +298,9 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             self.lu.factor(&self.jacobian, &self.weights_sqr);
             self.lu.solve(&mut self.values);
             // Lanes that have stopped keep their points in `corrected`.
-            let mut running = 0u8;
+            let mut running = 0u16;
             for (l, lane) in self.lanes.iter().enumerate() {
-                running |= u8::from(lane.state == StepState::Iterating) << l;
+                running |= u16::from(lane.state == StepState::Iterating) << l;
             }
             let norm = self.isa.run(Correct {
                 x: &self.point,
@@ -313,10 +313,10 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
                 let to = [&mut self.corrected[..], &mut self.corrected_low];
                 subtract(l, [&self.point, &self.point_low], &self.values, to);
             }
-            let mut again = 0u8;
+            let mut again = 0u16;
             for (l, lane) in self.lanes.iter_mut().enumerate() {
                 lane.judge(norm.as_ref()[l].sqrt(), &self.bounds);
-                again |= u8::from(lane.state == StepState::Iterating) << l;
+                again |= u16::from(lane.state == StepState::Iterating) << l;
             }
             if again == 0 {
                 return;
@@ -326,7 +326,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
     }
 
     /// Makes the corrected points of these lanes the points at which the Jacobian is evaluated.
-    fn take_corrected(&mut self, mask: u8) {
+    fn take_corrected(&mut self, mask: u16) {
         self.isa.run(Take { from: &self.corrected, mask, to: &mut self.point });
         if self.lanes.iter().any(|lane| lane.wide) {
             self.isa.run(Take { from: &self.corrected_low, mask, to: &mut self.point_low });
@@ -366,9 +366,9 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         // if others go on.
         self.closing.copy_from_slice(&self.corrected);
         self.closing_low.copy_from_slice(&self.corrected_low);
-        let mut running = 0u8;
+        let mut running = 0u16;
         for (l, lane) in self.lanes.iter().enumerate() {
-            running |= u8::from(converged(lane)) << l;
+            running |= u16::from(converged(lane)) << l;
         }
         let norm = self.isa.run(Correct {
             x: &self.closing,
@@ -388,7 +388,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
     }
 
     /// Derivatives at the accepted points, and with them the radius of trust for the next step.
-    fn move_on(&mut self, accepted: u8, straight: bool) {
+    fn move_on(&mut self, accepted: u16, straight: bool) {
         let (n, m) = (self.n, self.system.parameters());
         let distance = self.isa.run(Distance {
             a: &self.predicted,

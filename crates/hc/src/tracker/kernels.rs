@@ -35,14 +35,14 @@ impl<S: Lane> Kernel for Predict<'_, S> {
         let x3 = &x3[..n];
         for j in 0..n {
             let sizes = [x0[j].norm_sqr(), x1[j].norm_sqr(), x2[j].norm_sqr(), x3[j].norm_sqr()];
-            let mut negligible = 0u8;
+            let mut negligible = 0u16;
             for l in 0..S::LANES {
                 let r = self.radius_sqr.as_ref()[l];
                 let second = sizes[2].as_ref()[l] * (r * r);
                 let third = sizes[3].as_ref()[l] * (r * r * r);
                 let all = sizes[0].as_ref()[l] + sizes[1].as_ref()[l] * r + second + third;
                 // Written so that NaN counts as negligible.
-                negligible |= u8::from(!(second > 1e-24 * all && third > 1e-24 * all)) << l;
+                negligible |= u16::from(!(second > 1e-24 * all && third > 1e-24 * all)) << l;
             }
             let pade = S::div(&S::sqr(&x2[j]), &S::sub(&x2[j], &x3[j].scale_by(&self.step)));
             let second = S::select(&pade, &x2[j], negligible);
@@ -142,7 +142,7 @@ fn reach_sqr(size_sqr: f64) -> f64 {
 /// of the predicted point, bounded below; lanes in `fresh` forget their old weights.
 pub(crate) struct Weigh<'a, S: Lane> {
     pub(crate) x: &'a [S],
-    pub(crate) fresh: u8,
+    pub(crate) fresh: u16,
     /// Weights never fall below this share of the largest coordinate: the square of that.
     pub(crate) least_share_sqr: f64,
     pub(crate) weights_sqr: &'a mut [S::Real],
@@ -186,7 +186,7 @@ pub(crate) struct Correct<'a, S: Lane> {
     pub(crate) x: &'a [S],
     pub(crate) dx: &'a [S],
     pub(crate) inverse_weights_sqr: &'a [S::Real],
-    pub(crate) running: u8,
+    pub(crate) running: u16,
     pub(crate) out: &'a mut [S],
 }
 
@@ -246,7 +246,7 @@ impl<S: Lane, P: ParameterPath> Kernel for Coefficients<'_, S, P> {
 /// Overwrites `to` with `from` in the lanes of `mask`.
 pub(crate) struct Take<'a, S: Lane> {
     pub(crate) from: &'a [S],
-    pub(crate) mask: u8,
+    pub(crate) mask: u16,
     pub(crate) to: &'a mut [S],
 }
 

@@ -60,13 +60,13 @@ impl<E: Evaluate, S: Lane> Tracker<'_, E, S> {
         let (n, m) = (self.n, self.system.parameters());
         let some = self.attempts.iter().find_map(|lane| lane.path).unwrap_or(0);
         let (mut t, mut step, mut radius_sqr) = (S::real(1.0), S::real(0.0), S::real(0.0));
-        let mut fresh = 0u8;
+        let mut fresh = 0u16;
         for (l, lane) in self.attempts.iter().enumerate() {
             self.labels[l] = lane.path.unwrap_or(some);
             t.as_mut()[l] = lane.t_next;
             step.as_mut()[l] = lane.t_next - lane.t;
             radius_sqr.as_mut()[l] = lane.radius * lane.radius;
-            fresh |= u8::from(lane.fresh) << l;
+            fresh |= u16::from(lane.fresh) << l;
         }
         self.isa.run(Coefficients { path, labels: &self.labels, t: &t, out: &mut self.parameters });
         self.isa.run(Predict { taylor: &self.taylor, step, radius_sqr, out: &mut self.point });
@@ -90,13 +90,13 @@ impl<E: Evaluate, S: Lane> Tracker<'_, E, S> {
                 x: &self.point,
                 dx: &self.values,
                 inverse_weights_sqr: &self.inverse_weights_sqr,
-                running: u8::MAX,
+                running: u16::MAX,
                 out: &mut self.corrected,
             });
             std::mem::swap(&mut self.point, &mut self.corrected);
             size
         });
-        let mut accepted = 0u8;
+        let mut accepted = 0u16;
         for (l, lane) in self.attempts.iter_mut().enumerate().filter(|(_, lane)| lane.path.is_some()) {
             if lane.judge([0, 1, 2].map(|k: usize| sizes[k].as_ref()[l].sqrt())) {
                 accepted |= 1 << l;
@@ -134,10 +134,10 @@ impl<E: Evaluate, S: Lane> Tracker<'_, E, S> {
 
     /// One Newton iteration more for the accepted points at `t = 0`, with the Jacobian there, and the rounding
     /// error that is left.
-    fn arrive(&mut self, accepted: u8) {
-        let mut arriving = 0u8;
+    fn arrive(&mut self, accepted: u16) {
+        let mut arriving = 0u16;
         for (l, lane) in self.attempts.iter().enumerate() {
-            arriving |= u8::from(accepted >> l & 1 == 1 && lane.t_next == 0.0) << l;
+            arriving |= u16::from(accepted >> l & 1 == 1 && lane.t_next == 0.0) << l;
         }
         if arriving == 0 {
             return;
@@ -168,7 +168,7 @@ impl<E: Evaluate, S: Lane> Tracker<'_, E, S> {
     }
 
     /// Derivatives at the accepted points, and with them the next steps.
-    fn go_on(&mut self, accepted: u8, straight: bool) {
+    fn go_on(&mut self, accepted: u16, straight: bool) {
         let (n, m) = (self.n, self.system.parameters());
         self.factor_in_order();
         self.taylor_next[..n].copy_from_slice(&self.point);

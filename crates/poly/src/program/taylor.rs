@@ -12,8 +12,9 @@ use super::series::{
     BY_LINEAR, BY_UNKNOWN, GENERAL, LINEAR_BY_UNKNOWN, LINEARS, Series, UNKNOWNS, WIDTH, step_product, step_sum,
 };
 use crate::lanes::Lanes8;
-use crate::scalar::{Lane, Scalar, narrowest};
+use crate::scalar::{Lane, Scalar};
 use crate::simd::{Isa, Kernel};
+use crate::singles::Singles16;
 use num_complex::Complex64;
 use std::any::Any;
 use std::borrow::Cow;
@@ -113,7 +114,7 @@ impl TaylorTape {
         for (series, constant) in series.iter_mut().zip(constants) {
             series[0] = constant.clone();
         }
-        let by_lane = S::STRAIGHT.is_some() && !S::is_straight(isa);
+        let by_lane = isa.within_machine() < S::TAYLOR_NARROWEST;
         let lane = if by_lane { vec![[Complex64::zero(); WIDTH]; self.size] } else { Vec::new() };
         TaylorMemory { series, lane, bent: [false; WIDTH] }
     }
@@ -158,6 +159,8 @@ impl TaylorTape {
                 pass.run_eight(isa, series, lane);
             } else if let Some(series) = series.downcast_mut() {
                 pass.run_one(series);
+            } else if let Some(series) = series.downcast_mut() {
+                pass.run_sixteen(isa, series);
             } else {
                 unreachable!("numbers of this crate alone have TAYLOR_COMPILED");
             }
@@ -259,11 +262,17 @@ impl TaylorPass<'_> {
         self.run(Isa::Portable, series);
     }
 
+    /// The pass for sixteen paths in single precision, compiled here.
+    #[inline(never)]
+    fn run_sixteen(self, isa: Isa, series: &mut Vec<Series<Singles16>>) {
+        self.run(isa, series);
+    }
+
     /// The pass for eight paths, compiled here. Where there is no code for lanes, it runs one lane
     /// after the other, to the same bits.
     #[inline(never)]
     fn run_eight(self, isa: Isa, series: &mut Vec<Series<Lanes8>>, lane: &mut Vec<Series<Complex64>>) {
-        if Lanes8::is_straight(isa) {
+        if isa.within_machine() >= Lanes8::TAYLOR_NARROWEST {
             return self.run(isa, series);
         }
         for l in 0..Lanes8::LANES {
@@ -288,7 +297,7 @@ struct Order1<'a, S> {
 impl<S: Scalar> Kernel for Order1<'_, S> {
     type Output = ();
     const WIDEST: Isa = S::WIDEST;
-    const NARROWEST: Isa = narrowest::<S>();
+    const NARROWEST: Isa = S::TAYLOR_NARROWEST;
 
     #[inline(always)]
     fn run(self) {
@@ -315,7 +324,7 @@ struct Later<'a, const K: usize, const STRAIGHT: bool, S> {
 impl<const K: usize, const STRAIGHT: bool, S: Scalar> Kernel for Later<'_, K, STRAIGHT, S> {
     type Output = ();
     const WIDEST: Isa = S::WIDEST;
-    const NARROWEST: Isa = narrowest::<S>();
+    const NARROWEST: Isa = S::TAYLOR_NARROWEST;
 
     #[inline(always)]
     fn run(self) {

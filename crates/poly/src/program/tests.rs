@@ -1,7 +1,7 @@
 //! The interpreter against Cauchy's formula: derivatives and Taylor coefficients from values on a
 //! circle.
 
-use crate::{ComplexDd, Evaluate, Isa, Lane, Lanes8, Scalar, System, parse};
+use crate::{ComplexDd, Evaluate, Isa, Lane, Lanes8, Scalar, Singles16, System, parse};
 use num_complex::Complex64;
 use proptest::prelude::*;
 
@@ -149,6 +149,42 @@ proptest! {
             run(&q[..4 * k], [2, 3, 4]);
             prop_assert_eq!(&run(&padded, [2, 2, 4]), &expected);
             prop_assert_eq!(&run(&padded, [2, 3, 2]), &expected);
+        }
+    }
+
+    #[test]
+    fn singles_agree_with_doubles_on_every_instruction_set(x in numbers(16), p in numbers(8)) {
+        for system in families() {
+            let f = system.compile().unwrap();
+            let (m, n, k) = (f.equations(), f.variables(), f.parameters());
+            // What single precision can hold, so that only the arithmetic rounds.
+            let short = |z: &C| C::new(f64::from(z.re as f32), f64::from(z.im as f32));
+            let (x, p): (Vec<C>, Vec<C>) = (x.iter().map(short).collect(), p.iter().map(short).collect());
+            let wide = |z: &[C]| -> Vec<Singles16> { z.iter().map(|&z| Singles16::from_c64(z)).collect() };
+            let mut doubles = f.memory::<C>(Isa::Portable);
+            let (mut v1, mut j1) = (vec![C::ZERO; m], vec![C::ZERO; m * n]);
+            f.jacobian(&mut doubles, &x[..n], &p[..k], &mut v1, &mut j1);
+            let mut first = None;
+            for isa in [Isa::Portable, Isa::Avx2, Isa::Avx512] {
+                let mut memory = f.memory::<Singles16>(isa);
+                let (x, p) = (wide(&x), wide(&p));
+                let (mut v, mut j) = (vec![Singles16::zero(); m], vec![Singles16::zero(); m * n]);
+                f.jacobian(&mut memory, &x[..n], &p[..k], &mut v, &mut j);
+                for (a, b) in v.iter().zip(&v1).chain(j.iter().zip(&j1)) {
+                    let size = v1.iter().chain(&j1).map(|z| z.norm()).fold(1.0, f64::max);
+                    prop_assert!((a.get(11) - b).norm() < 1e-4 * size, "{a:?} {b}");
+                }
+                let mut all = v;
+                all.extend(j);
+                for (order, given) in TURNS {
+                    let mut out = vec![Singles16::zero(); m];
+                    f.taylor(&mut memory, order, &x[..order * n], &p[..given * k], &mut out);
+                    all.extend(out);
+                }
+                prop_assert!(all.iter().all(|z| (1..16).all(|l| z.get(l) == z.get(0))));
+                // The same bits everywhere.
+                prop_assert_eq!(first.get_or_insert_with(|| all.clone()), &all);
+            }
         }
     }
 
