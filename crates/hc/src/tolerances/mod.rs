@@ -19,6 +19,6 @@ mod paths;
 pub use families::{FAMILIES, FamilyTolerances, WITNESS, WitnessTolerances};
 pub use local::{CLUSTERS, ClusterTolerances, EQUATIONS, EquationTolerances, LOCAL, LocalTolerances};
 pub use paths::{
-    ENDGAME, ENDS, EndTolerances, EndgameTolerances, LoopTolerances, PROOFS, ProofTolerances, QUICK, QuickTolerances,
-    REFINEMENT, RefinementTolerances, TRACKING, TrackingTolerances,
+    ENDGAME, ENDS, EndTolerances, EndgameTolerances, LoopTolerances, PROOFS, ProofTolerances, QUICK, QUICK_ENDS,
+    QuickEndTolerances, QuickTolerances, REFINEMENT, RefinementTolerances, SINGLES, TRACKING, TrackingTolerances,
 };

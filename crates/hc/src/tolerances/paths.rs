@@ -76,16 +76,15 @@ pub struct QuickTolerances {
     pub growth: f64,
     /// Share of a step that is left after a rejection.
     pub cut: f64,
-    /// Largest rounding error of an end. Newton's method still comes back to it, as regular ends with
-    /// coordinates that vanish must show: [`RefinementTolerances::perturbations`].
-    pub noise: f64,
-    /// Smallest pivot with which an end is taken for regular.
-    pub pivot: f64,
-    /// Attempts after which all care is cheaper.
+    /// Rejections in a row after which more care is cheaper.
+    pub patience: usize,
+    /// Attempts after which more care is cheaper.
     pub attempts: usize,
+    /// Rounding error of the arithmetic.
+    pub epsilon: f64,
 }
 
-/// The thresholds of quick steps.
+/// The thresholds of quick steps in double precision.
 pub const QUICK: QuickTolerances = QuickTolerances {
     contraction: 0.3,
     first: 0.2,
@@ -97,9 +96,51 @@ pub const QUICK: QuickTolerances = QuickTolerances {
     least_omega: 2.0,
     growth: 4.0,
     cut: 0.5,
-    noise: 1e-11,
-    pivot: 1e-13,
+    patience: 12,
     attempts: 150,
+    epsilon: f64::EPSILON,
+};
+
+/// The thresholds of quick steps in single precision.
+pub const SINGLES: QuickTolerances = QuickTolerances {
+    contraction: 0.4,
+    third: 1e-3,
+    small: 1e-3,
+    telling: [1e-3, 1e-5],
+    start: 1e-3,
+    patience: 4,
+    attempts: 100,
+    epsilon: f32::EPSILON as f64,
+    ..QUICK
+};
+
+/// Thresholds of the beginning and the end of quick steps in double precision.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct QuickEndTolerances {
+    /// Largest first correction of a point at which a path goes on and that Newton's method brings nearer.
+    pub approach: f64,
+    /// Largest contraction there, of the second correction by the first.
+    pub approach_contraction: f64,
+    /// How often such a point is corrected.
+    pub approaches: usize,
+    /// Largest last correction of an end. The ends of paths are told apart by more.
+    pub noise: f64,
+    /// The same where coordinates vanish: Newton's method must still come back to the end from
+    /// [near](RefinementTolerances::perturbations), which shows that it is regular.
+    pub vanishing_noise: f64,
+    /// Smallest pivot with which an end is taken for regular.
+    pub pivot: f64,
+}
+
+/// The thresholds of the beginning and the end of quick steps in double precision.
+pub const QUICK_ENDS: QuickEndTolerances = QuickEndTolerances {
+    approach: 0.04,
+    approach_contraction: 0.1,
+    approaches: 3,
+    noise: 1e-8,
+    vanishing_noise: 1e-11,
+    pivot: 1e-13,
 };
 
 /// Thresholds of [refinement](crate::refine): Newton's method with residuals in double-double.

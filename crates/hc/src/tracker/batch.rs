@@ -5,16 +5,16 @@
 //! same point until the other lanes have finished theirs, so that its numbers do not depend on its
 //! neighbours. The loop allocates nothing.
 
-use super::attempts::Attempts;
 use super::derivatives::derivatives;
 use super::kernels::{Coefficients, Correct, Distance, Predict, Radius, Take, Weigh};
 use super::options::TrackerOptions;
 use super::precise::{Precise, subtract};
 use super::progress::{Bounds, PathProgress, StepState};
+use super::quick::QuickMemory;
 use super::result::{PathEnd, PathResult, PathSet};
 use super::valuation::valuation;
+use super::workspace::Workspace;
 use crate::homotopy::ParameterPath;
-use crate::linalg::Lu;
 use crate::monitor::Monitor;
 use num_complex::Complex64;
 use poly::simd::Isa;
@@ -22,44 +22,26 @@ use poly::{Evaluate, Lane};
 
 /// Tracks paths of one system, `S::LANES` at a time. It keeps its memory from call to call.
 pub struct Tracker<'a, E: Evaluate, S: Lane> {
-    pub(super) system: &'a E,
+    pub(super) work: Workspace<'a, E, S>,
     pub(super) bounds: Bounds,
     pub(super) monitor: Monitor,
-    pub(super) isa: Isa,
-    pub(super) n: usize,
     lanes: Vec<PathProgress>,
-    /// Index of the path in each lane.
-    pub(super) labels: Vec<usize>,
-    pub(super) memory: E::Memory<S>,
-    /// Taylor coefficients of the paths at their current points, orders 0 to 3.
-    pub(super) taylor: Vec<S>,
-    /// Taylor coefficients at the point just reached.
-    pub(super) taylor_next: Vec<S>,
-    pub(super) parameters: Vec<S>,
     predicted: Vec<S>,
-    /// Where the Jacobian is evaluated.
-    pub(super) point: Vec<S>,
-    pub(super) corrected: Vec<S>,
-    /// The low parts of these two, and of the point of the last accepted step, for paths whose
-    /// points are in double-double; arbitrary for other paths.
+    /// The low parts of the points, of the corrected points, and of those of the last accepted step, for
+    /// paths whose points are in double-double; arbitrary for other paths.
     point_low: Vec<S>,
     corrected_low: Vec<S>,
     taylor_low: Vec<S>,
     /// The point from which the closing correction starts.
     closing: Vec<S>,
     closing_low: Vec<S>,
-    pub(super) values: Vec<S>,
-    pub(super) jacobian: Vec<S>,
-    pub(super) lu: Lu<S>,
     /// The correction that residuals of double precision give where better ones are used.
     rough: Vec<S>,
-    pub(super) weights_sqr: Vec<S::Real>,
-    pub(super) inverse_weights_sqr: Vec<S::Real>,
     precise: Precise<E>,
     valuations: Vec<f64>,
-    /// The paths with quick steps, before any other.
-    pub(super) attempts: Vec<Attempts>,
-    /// The paths that these leave.
+    /// Made when quick steps are first asked for.
+    pub(super) quick: Option<Box<QuickMemory<'a, E>>>,
+    /// The paths that quick steps leave.
     left: Vec<usize>,
 }
 
@@ -69,39 +51,25 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
     /// # Panics
     /// If the system does not have as many equations as unknowns.
     pub fn new(system: &'a E, options: &TrackerOptions) -> Self {
-        let (n, m) = (system.variables(), system.parameters());
+        let n = system.variables();
         assert_eq!(system.equations(), n, "paths are tracked for square systems");
         let isa = options.isa.unwrap_or_else(Isa::detect);
-        let zeros = |len: usize| vec![S::zero(); len];
+        let zeros = || vec![S::zero(); n];
         Tracker {
-            system,
+            work: Workspace::new(system, isa),
             bounds: Bounds::new(options),
             monitor: Monitor::default(),
-            isa,
-            n,
             lanes: vec![PathProgress::idle(); S::LANES],
-            labels: vec![0; S::LANES],
-            memory: system.memory(isa),
-            taylor: zeros(4 * n),
-            taylor_next: zeros(4 * n),
-            parameters: zeros(4 * m),
-            predicted: zeros(n),
-            point: zeros(n),
-            corrected: zeros(n),
-            point_low: zeros(n),
-            corrected_low: zeros(n),
-            taylor_low: zeros(n),
-            closing: zeros(n),
-            closing_low: zeros(n),
-            values: zeros(n),
-            jacobian: zeros(n * n),
-            lu: Lu::of_jacobian(system, isa),
-            rough: zeros(n),
-            weights_sqr: vec![S::real(1.0); n],
-            inverse_weights_sqr: vec![S::real(1.0); n],
+            predicted: zeros(),
+            point_low: zeros(),
+            corrected_low: zeros(),
+            taylor_low: zeros(),
+            closing: zeros(),
+            closing_low: zeros(),
+            rough: zeros(),
             precise: Precise::new(system, isa, S::LANES),
             valuations: vec![0.0; n],
-            attempts: vec![Attempts::of(None); S::LANES],
+            quick: None,
             left: Vec::new(),
         }
     }
@@ -131,7 +99,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         which: impl IntoIterator<Item = usize>,
         out: &mut PathSet,
     ) {
-        assert_eq!(path.parameters(), self.system.parameters(), "parameters of path and system");
+        assert_eq!(path.parameters(), self.work.system.parameters(), "parameters of path and system");
         if !self.bounds.options.quick {
             return self.track_carefully(path, starts, which, out);
         }
@@ -152,11 +120,11 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         let mut which = which.into_iter();
         self.lanes.fill(PathProgress::idle());
         // Idle lanes compute too; harmless numbers keep them from slow exceptional arithmetic.
-        self.taylor.fill(S::zero());
+        self.work.taylor.fill(S::zero());
         loop {
             for l in 0..S::LANES {
                 if !self.lanes[l].is_live() && self.monitor.is_cancelled() {
-                    let point = |k: usize| starts[k * self.n..(k + 1) * self.n].iter().copied();
+                    let point = |k: usize| starts[k * self.work.n..(k + 1) * self.work.n].iter().copied();
                     for k in which.by_ref() {
                         out.push(PathResult::cancelled(k), point(k));
                     }
@@ -164,8 +132,8 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
                     && let Some(index) = which.next()
                 {
                     self.lanes[l] = PathProgress::start(index);
-                    let start = &starts[index * self.n..(index + 1) * self.n];
-                    for (x, z) in self.taylor.iter_mut().zip(start) {
+                    let start = &starts[index * self.work.n..(index + 1) * self.work.n];
+                    for (x, z) in self.work.taylor.iter_mut().zip(start) {
                         x.set(l, *z);
                     }
                 }
@@ -185,17 +153,18 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             *t = lane.t_next;
         }
         let some = self.lanes.iter().find(|lane| lane.is_live()).map_or(0, |lane| lane.path);
-        self.labels
+        self.work
+            .labels
             .iter_mut()
             .zip(&self.lanes)
             .for_each(|(label, lane)| *label = if lane.is_live() { lane.path } else { some });
-        self.isa.run(Coefficients { path, labels: &self.labels, t: &t, out: &mut self.parameters });
+        self.work.isa.run(Coefficients { path, labels: &self.work.labels, t: &t, out: &mut self.work.parameters });
         for (l, lane) in self.lanes.iter().enumerate() {
             if lane.is_live() && lane.extended {
-                self.precise.set_parameters(l, path, lane, &self.parameters[..self.system.parameters()]);
+                self.precise.set_parameters(l, path, lane, &self.work.parameters[..self.work.system.parameters()]);
             }
         }
-        self.point.copy_from_slice(&self.predicted);
+        self.work.point.copy_from_slice(&self.predicted);
         for lane in self.lanes.iter_mut() {
             lane.begin_correction(&self.bounds);
         }
@@ -249,69 +218,75 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
                 fresh |= u16::from(lane.fresh) << l;
             }
         }
-        self.isa.run(Predict { taylor: &self.taylor, step, radius_sqr, out: &mut self.predicted });
+        self.work.isa.run(Predict { taylor: &self.work.taylor, step, radius_sqr, out: &mut self.predicted });
         if fresh != 0 {
-            self.isa.run(Take { from: &self.taylor[..self.n], mask: fresh, to: &mut self.predicted });
+            self.work.isa.run(Take { from: &self.work.taylor[..self.work.n], mask: fresh, to: &mut self.predicted });
         }
         if self.lanes.iter().any(|lane| lane.wide) {
             self.predict_precisely(step, radius_sqr);
         }
-        self.isa.run(Weigh {
+        self.work.isa.run(Weigh {
             x: &self.predicted,
             fresh,
             least_share_sqr: self.bounds.least_share_sqr,
-            weights_sqr: &mut self.weights_sqr,
-            inverse: &mut self.inverse_weights_sqr,
+            weights_sqr: &mut self.work.weights_sqr,
+            inverse: &mut self.work.inverse_weights_sqr,
         });
     }
 
     /// Predictions from points in double-double, in the lanes that have them.
     fn predict_precisely(&mut self, step: S::Real, radius_sqr: S::Real) {
-        let n = self.n;
+        let n = self.work.n;
         self.point_low.fill(S::zero());
         // The change of the point is the prediction from zero with the same derivatives.
-        let (derivatives, from_point) = (&mut self.taylor_next, &mut self.closing);
-        derivatives.copy_from_slice(&self.taylor);
+        let (derivatives, from_point) = (&mut self.work.taylor_next, &mut self.closing);
+        derivatives.copy_from_slice(&self.work.taylor);
         derivatives[..n].fill(S::zero());
-        self.isa.run(Predict { taylor: derivatives, step, radius_sqr, out: from_point });
+        self.work.isa.run(Predict { taylor: derivatives, step, radius_sqr, out: from_point });
         for l in (0..S::LANES).filter(|&l| self.lanes[l].wide && self.lanes[l].kept) {
             for z in from_point.iter_mut() {
                 z.set(l, -z.get(l));
             }
             let to = [&mut self.predicted[..], &mut self.point_low];
-            subtract(l, [&self.taylor[..n], &self.taylor_low], from_point, to);
+            subtract(l, [&self.work.taylor[..n], &self.taylor_low], from_point, to);
         }
     }
 
     /// Runs Newton's method until every lane has converged or is rejected.
     fn correct(&mut self) {
         loop {
-            let m = self.system.parameters();
-            let p = &self.parameters[..m];
-            self.system.jacobian(&mut self.memory, &self.point, p, &mut self.values, &mut self.jacobian);
+            let m = self.work.system.parameters();
+            let p = &self.work.parameters[..m];
+            self.work.system.jacobian(
+                &mut self.work.memory,
+                &self.work.point,
+                p,
+                &mut self.work.values,
+                &mut self.work.jacobian,
+            );
             for l in 0..S::LANES {
                 if self.lanes[l].extended && self.lanes[l].state == StepState::Iterating {
-                    let x = [&self.point[..], &self.point_low];
-                    self.precise.overwrite(self.system, l, self.lanes[l].wide, x, &mut self.values);
+                    let x = [&self.work.point[..], &self.point_low];
+                    self.precise.overwrite(self.work.system, l, self.lanes[l].wide, x, &mut self.work.values);
                 }
             }
-            self.lu.factor(&self.jacobian, &self.weights_sqr);
-            self.lu.solve(&mut self.values);
+            self.work.lu.factor(&self.work.jacobian, &self.work.weights_sqr);
+            self.work.lu.solve(&mut self.work.values);
             // Lanes that have stopped keep their points in `corrected`.
             let mut running = 0u16;
             for (l, lane) in self.lanes.iter().enumerate() {
                 running |= u16::from(lane.state == StepState::Iterating) << l;
             }
-            let norm = self.isa.run(Correct {
-                x: &self.point,
-                dx: &self.values,
-                inverse_weights_sqr: &self.inverse_weights_sqr,
+            let norm = self.work.isa.run(Correct {
+                x: &self.work.point,
+                dx: &self.work.values,
+                inverse_weights_sqr: &self.work.inverse_weights_sqr,
                 running,
-                out: &mut self.corrected,
+                out: &mut self.work.corrected,
             });
             for l in (0..S::LANES).filter(|l| running >> l & 1 == 1 && self.lanes[*l].wide) {
-                let to = [&mut self.corrected[..], &mut self.corrected_low];
-                subtract(l, [&self.point, &self.point_low], &self.values, to);
+                let to = [&mut self.work.corrected[..], &mut self.corrected_low];
+                subtract(l, [&self.work.point, &self.point_low], &self.work.values, to);
             }
             let mut again = 0u16;
             for (l, lane) in self.lanes.iter_mut().enumerate() {
@@ -327,9 +302,9 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
 
     /// Makes the corrected points of these lanes the points at which the Jacobian is evaluated.
     fn take_corrected(&mut self, mask: u16) {
-        self.isa.run(Take { from: &self.corrected, mask, to: &mut self.point });
+        self.work.isa.run(Take { from: &self.work.corrected, mask, to: &mut self.work.point });
         if self.lanes.iter().any(|lane| lane.wide) {
-            self.isa.run(Take { from: &self.corrected_low, mask, to: &mut self.point_low });
+            self.work.isa.run(Take { from: &self.corrected_low, mask, to: &mut self.point_low });
         }
     }
 
@@ -339,47 +314,47 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         if !self.lanes.iter().any(|lane| lane.state == StepState::Converged) {
             return;
         }
-        let p = &self.parameters[..self.system.parameters()];
-        self.system.values(&mut self.memory, &self.corrected, p, &mut self.values);
+        let p = &self.work.parameters[..self.work.system.parameters()];
+        self.work.system.values(&mut self.work.memory, &self.work.corrected, p, &mut self.work.values);
         let converged = |lane: &PathProgress| lane.state == StepState::Converged;
         let any_extended = self.lanes.iter().any(|lane| lane.extended && converged(lane));
         let mut rough = S::real(0.0);
         if any_extended {
-            self.rough.copy_from_slice(&self.values);
-            self.lu.solve(&mut self.rough);
+            self.rough.copy_from_slice(&self.work.values);
+            self.work.lu.solve(&mut self.rough);
             for l in 0..S::LANES {
                 if self.lanes[l].extended && converged(&self.lanes[l]) {
-                    let x = [&self.corrected[..], &self.corrected_low];
-                    self.precise.overwrite(self.system, l, self.lanes[l].wide, x, &mut self.values);
+                    let x = [&self.work.corrected[..], &self.corrected_low];
+                    self.precise.overwrite(self.work.system, l, self.lanes[l].wide, x, &mut self.work.values);
                 }
             }
         }
-        self.lu.solve(&mut self.values);
+        self.work.lu.solve(&mut self.work.values);
         if any_extended {
-            rough = self.isa.run(Distance {
+            rough = self.work.isa.run(Distance {
                 a: &self.rough,
-                b: &self.values,
-                inverse_weights_sqr: &self.inverse_weights_sqr,
+                b: &self.work.values,
+                inverse_weights_sqr: &self.work.inverse_weights_sqr,
             });
         }
         // `point` stays where the Jacobian was taken: lanes that are done are evaluated there again
         // if others go on.
-        self.closing.copy_from_slice(&self.corrected);
+        self.closing.copy_from_slice(&self.work.corrected);
         self.closing_low.copy_from_slice(&self.corrected_low);
         let mut running = 0u16;
         for (l, lane) in self.lanes.iter().enumerate() {
             running |= u16::from(converged(lane)) << l;
         }
-        let norm = self.isa.run(Correct {
+        let norm = self.work.isa.run(Correct {
             x: &self.closing,
-            dx: &self.values,
-            inverse_weights_sqr: &self.inverse_weights_sqr,
+            dx: &self.work.values,
+            inverse_weights_sqr: &self.work.inverse_weights_sqr,
             running,
-            out: &mut self.corrected,
+            out: &mut self.work.corrected,
         });
         for l in (0..S::LANES).filter(|l| running >> l & 1 == 1 && self.lanes[*l].wide) {
-            let to = [&mut self.corrected[..], &mut self.corrected_low];
-            subtract(l, [&self.closing, &self.closing_low], &self.values, to);
+            let to = [&mut self.work.corrected[..], &mut self.corrected_low];
+            subtract(l, [&self.closing, &self.closing_low], &self.work.values, to);
         }
         for (l, lane) in self.lanes.iter_mut().enumerate() {
             let double = lane.extended.then(|| rough.as_ref()[l].sqrt());
@@ -389,17 +364,24 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
 
     /// Derivatives at the accepted points, and with them the radius of trust for the next step.
     fn move_on(&mut self, accepted: u16, straight: bool) {
-        let (n, m) = (self.n, self.system.parameters());
-        let distance = self.isa.run(Distance {
+        let (n, m) = (self.work.n, self.work.system.parameters());
+        let distance = self.work.isa.run(Distance {
             a: &self.predicted,
-            b: &self.corrected,
-            inverse_weights_sqr: &self.inverse_weights_sqr,
+            b: &self.work.corrected,
+            inverse_weights_sqr: &self.work.inverse_weights_sqr,
         });
-        self.taylor_next[..n].copy_from_slice(&self.corrected);
+        self.work.taylor_next[..n].copy_from_slice(&self.work.corrected);
         let orders = if straight { 2 } else { 4 };
-        let p = &self.parameters[..orders * m];
-        derivatives(self.system, self.isa, &mut self.memory, &self.lu, p, &mut self.taylor_next);
-        self.isa.run(Take { from: &self.taylor_next, mask: accepted, to: &mut self.taylor });
+        let p = &self.work.parameters[..orders * m];
+        derivatives(
+            self.work.system,
+            self.work.isa,
+            &mut self.work.memory,
+            &self.work.lu,
+            p,
+            &mut self.work.taylor_next,
+        );
+        self.work.isa.run(Take { from: &self.work.taylor_next, mask: accepted, to: &mut self.work.taylor });
         for (l, lane) in self.lanes.iter_mut().enumerate().filter(|(l, lane)| accepted >> l & 1 == 1 && lane.wide) {
             for (to, from) in self.taylor_low.iter_mut().zip(&self.corrected_low) {
                 to.set(l, from.get(l));
@@ -410,8 +392,8 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         for (o, lane) in omega_sqr.as_mut().iter_mut().zip(&self.lanes) {
             *o = lane.omega() * lane.omega();
         }
-        let (taylor, inverse_weights_sqr) = (&self.taylor, &self.inverse_weights_sqr);
-        let radius = self.isa.run(Radius { n, taylor, inverse_weights_sqr, omega_sqr: &omega_sqr });
+        let (taylor, inverse_weights_sqr) = (&self.work.taylor, &self.work.inverse_weights_sqr);
+        let radius = self.work.isa.run(Radius { n, taylor, inverse_weights_sqr, omega_sqr: &omega_sqr });
         for (l, lane) in self.lanes.iter_mut().enumerate() {
             if accepted >> l & 1 == 1 {
                 lane.advance(distance.as_ref()[l].sqrt(), radius.as_ref()[l].sqrt());
@@ -425,10 +407,10 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         if t == 0.0 || t > self.bounds.options.endgame_start {
             return;
         }
-        let n = self.n;
+        let n = self.work.n;
         let mut settled = false;
         for j in 0..n {
-            let c = |k: usize| self.taylor[k * n + j].get(l);
+            let c = |k: usize| self.work.taylor[k * n + j].get(l);
             let (v, drift) = valuation(t, [c(0), c(1), c(2), c(3)]);
             self.valuations[j] = v;
             settled |= v + drift < -0.05 && drift < 0.01;
@@ -437,8 +419,8 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
     }
 
     fn finish(&mut self, l: usize, end: PathEnd, out: &mut PathSet) {
-        let result = self.lanes[l].result(end, self.lu.smallest_pivot(l, &self.weights_sqr));
-        out.push(result, self.taylor[..self.n].iter().map(|x| x.get(l)));
+        let result = self.lanes[l].result(end, self.work.lu.smallest_pivot(l, &self.work.weights_sqr));
+        out.push(result, self.work.taylor[..self.work.n].iter().map(|x| x.get(l)));
         self.lanes[l] = PathProgress::idle();
     }
 }

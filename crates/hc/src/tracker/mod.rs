@@ -11,14 +11,13 @@
 //! double. The points are then carried in double-double too.
 //!
 //! Where the ends of a set of paths show which have jumped, most paths need less care: with
-//! [`TrackerOptions::quick`] each lane makes one attempt at a step at a time, and what is difficult is left to
-//! the tracker above.
+//! [`TrackerOptions::quick`] each lane makes one attempt at a step at a time, first in single precision, and
+//! what is difficult is left to the tracker above.
 //!
 //! Paths travel in lanes, eight at once or alone ([`Tracker`] is generic over [`poly::Lane`]). A
 //! path takes the same steps to the same bits in either case. [`track`] is the entry point: it
 //! spreads paths over threads and returns them in order.
 
-mod attempts;
 mod batch;
 mod derivatives;
 mod kernels;
@@ -29,6 +28,7 @@ mod progress;
 mod quick;
 mod result;
 mod valuation;
+mod workspace;
 
 pub use batch::Tracker;
 pub use options::{OptionError, TrackerOptions};

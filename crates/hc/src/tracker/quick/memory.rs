@@ -1,0 +1,31 @@
+//! Memory of quick steps.
+
+use super::super::workspace::Workspace;
+use super::attempts::{Attempts, Stop};
+use num_complex::Complex64;
+use poly::simd::Isa;
+use poly::{Evaluate, Lane, Singles16};
+
+/// Memory of quick steps, beside the tracker's own.
+pub(in super::super) struct QuickMemory<'a, E: Evaluate> {
+    pub(super) singles: Workspace<'a, E, Singles16>,
+    pub(super) lanes: Vec<Attempts>,
+    /// Where the paths stopped in single precision, and the points there.
+    pub(super) stops: Vec<Stop>,
+    pub(super) points: Vec<Complex64>,
+    /// Paths that start again in double precision.
+    pub(super) again: Vec<usize>,
+}
+
+impl<'a, E: Evaluate> QuickMemory<'a, E> {
+    /// For the paths of a square system.
+    pub(super) fn new(system: &'a E, isa: Isa) -> Self {
+        QuickMemory {
+            singles: Workspace::new(system, isa),
+            lanes: vec![Attempts::idle(); Singles16::LANES],
+            stops: Vec::new(),
+            points: Vec::new(),
+            again: Vec::new(),
+        }
+    }
+}

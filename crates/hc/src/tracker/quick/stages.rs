@@ -1,0 +1,114 @@
+//! The stages of quick steps.
+
+use super::super::batch::Tracker;
+use super::super::result::PathSet;
+use super::attempts::{Attempts, Stop};
+use super::lanes::{Paths, QuickLanes};
+use super::memory::QuickMemory;
+use crate::homotopy::ParameterPath;
+use crate::tolerances::{FAMILIES, QUICK, QUICK_ENDS, SINGLES};
+use num_complex::Complex64;
+use poly::{Evaluate, Lane, Singles16};
+
+impl<E: Evaluate, S: Lane> Tracker<'_, E, S> {
+    /// Tracks paths as [`track`](Self::track) does. The difficult ones, and those that have not ended when
+    /// the monitor is cancelled, go to `left`.
+    pub(in super::super) fn track_quickly<P: ParameterPath>(
+        &mut self,
+        path: &P,
+        starts: &[Complex64],
+        which: impl IntoIterator<Item = usize>,
+        out: &mut PathSet,
+        left: &mut Vec<usize>,
+    ) {
+        let (system, isa, n) = (self.work.system, self.work.isa, self.work.n);
+        let (options, monitor) = (&self.bounds.options, &self.monitor);
+        let QuickMemory { singles, lanes, stops, points, again } =
+            &mut **self.quick.get_or_insert_with(|| Box::new(QuickMemory::new(system, isa)));
+        stops.clear();
+        points.clear();
+        again.clear();
+        let mut which = which.into_iter();
+        left.reserve(which.size_hint().0);
+
+        let first = QuickLanes { work: singles, lanes, options, monitor, tolerances: &SINGLES, polishes: false };
+        first.run(path, &mut Begin { n, starts, which: &mut which, stops, points });
+        left.extend(which);
+        // The longest first, so that lanes do not wait for them at the end.
+        stops.sort_unstable_by(|a, b| b.t.total_cmp(&a.t).then(a.path.cmp(&b.path)));
+
+        let lanes = &mut lanes[..S::LANES];
+        let second = QuickLanes { work: &mut self.work, lanes, options, monitor, tolerances: &QUICK, polishes: true };
+        let mut finish = Finish { n, starts, stops: stops.iter(), points, again, out, left };
+        second.run(path, &mut finish);
+        let Finish { stops, again, left, .. } = finish;
+        left.extend(stops.map(|stop| stop.path));
+        left.append(again);
+    }
+}
+
+/// The paths from their starts, as far as single precision takes them.
+struct Begin<'q, I> {
+    n: usize,
+    starts: &'q [Complex64],
+    which: &'q mut I,
+    stops: &'q mut Vec<Stop>,
+    points: &'q mut Vec<Complex64>,
+}
+
+impl<I: Iterator<Item = usize>> Paths<Singles16> for Begin<'_, I> {
+    fn next(&mut self) -> Option<(Stop, &[Complex64])> {
+        let path = self.which.next()?;
+        Some((Stop::at_start(path), &self.starts[path * self.n..][..self.n]))
+    }
+
+    fn end(&mut self, lane: &Attempts, _: f64, x: &[Singles16], l: usize) {
+        let (stop, start) = (lane.stop(self.stops.len()), lane.path().unwrap_or_default());
+        if stop.t < 1.0 {
+            self.points.extend(x.iter().map(|x| x.get(l)));
+        } else {
+            self.points.extend_from_slice(&self.starts[start * self.n..][..self.n]);
+        }
+        self.stops.push(stop);
+    }
+}
+
+/// The paths from where they stopped, or from their starts, to their ends.
+struct Finish<'q> {
+    n: usize,
+    starts: &'q [Complex64],
+    stops: std::slice::Iter<'q, Stop>,
+    points: &'q [Complex64],
+    again: &'q mut Vec<usize>,
+    out: &'q mut PathSet,
+    left: &'q mut Vec<usize>,
+}
+
+impl<S: Lane> Paths<S> for Finish<'_> {
+    fn next(&mut self) -> Option<(Stop, &[Complex64])> {
+        if let Some(path) = self.again.pop() {
+            return Some((Stop::at_start(path), &self.starts[path * self.n..][..self.n]));
+        }
+        let stop = self.stops.next()?;
+        Some((stop.clone(), &self.points[stop.point * self.n..][..self.n]))
+    }
+
+    fn end(&mut self, lane: &Attempts, pivot: f64, x: &[S], l: usize) {
+        let Some(path) = lane.path() else { return };
+        if lane.has_arrived() && pivot > QUICK_ENDS.pivot && lane.last < noise(x, l) {
+            self.out.push(lane.arrived(pivot), x.iter().map(|x| x.get(l)));
+        } else if lane.strayed() {
+            self.again.push(path);
+        } else {
+            self.left.push(path);
+        }
+    }
+}
+
+/// How large the last correction of an end may be.
+fn noise<S: Lane>(x: &[S], l: usize) -> f64 {
+    let sizes = || x.iter().map(|x| x.get(l).norm_sqr());
+    let largest = sizes().fold(0.0, f64::max);
+    let vanishes = sizes().any(|size| size <= FAMILIES.vanished_sqr * largest);
+    if vanishes { QUICK_ENDS.vanishing_noise } else { QUICK_ENDS.noise }
+}

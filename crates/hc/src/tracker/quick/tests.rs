@@ -1,0 +1,93 @@
+//! Tests of quick steps.
+
+use crate::homotopy::Segment;
+use crate::monitor::Monitor;
+use crate::tracker::{PathEnd, PathSet, Tracker, TrackerOptions};
+use num_complex::Complex64;
+use poly::{Evaluate, Lane, Lanes8, parse};
+
+fn quick() -> TrackerOptions {
+    TrackerOptions { quick: true, ..TrackerOptions::fast() }
+}
+
+/// The ends of all paths of `x^12 = a`, `y = x^2 + b` from `a = 1, b = 0` to these parameters, in order.
+fn ends<S: Lane>(target: [Complex64; 2], options: &TrackerOptions, monitor: &Monitor) -> PathSet {
+    let text =
+        "name = 'roots'\nunknowns = ['x', 'y']\nparameters = ['a', 'b']\nequations = ['x^12 - a', 'y - x^2 - b']";
+    let system = parse::family(text).expect("a family").system.compile().expect("a program");
+    let starts: Vec<Complex64> = (0..12)
+        .map(|k| Complex64::from_polar(1.0, f64::from(k) * std::f64::consts::TAU / 12.0))
+        .flat_map(|x| [x, x * x])
+        .collect();
+    let path = Segment::new(&[1.0, 0.0].map(Complex64::from), &target);
+    let mut out = PathSet::new(system.variables());
+    let mut tracker = Tracker::<_, S>::new(&system, options);
+    tracker.set_monitor(monitor);
+    tracker.track(&path, &starts, 0..12, &mut out);
+    out.sort();
+    out
+}
+
+#[test]
+fn all_roots_alone_and_among_others_to_the_same_bits() {
+    let (a, b) = (Complex64::new(-3.0, 4.0), Complex64::new(0.5, -2.0));
+    let eight = ends::<Lanes8>([a, b], &quick(), &Monitor::default());
+    assert_eq!(eight.len(), 12);
+    for (result, x) in eight.iter() {
+        assert_eq!(result.end, PathEnd::Success, "{result:?}");
+        assert!((x[0].powi(12) - a).norm() < 1e-12 && (x[1] - x[0] * x[0] - b).norm() < 1e-14, "{x:?}");
+        assert!(result.accuracy < 1e-8 && result.pivot > 1e-3, "{result:?}");
+        // Quick steps did it: they take two Jacobians each, two at the start solution, and two where the path
+        // goes on in double precision.
+        assert_eq!(result.jacobians, 4 + 2 * result.accepted + result.rejected, "{result:?}");
+    }
+    // Twelve roots, none twice.
+    let near = |k: usize, j: usize| (eight.point(k)[0] - eight.point(j)[0]).norm() < 1e-3;
+    assert!((0..12).all(|k| (0..k).all(|j| !near(k, j))));
+    assert_eq!(eight, ends::<Complex64>([a, b], &quick(), &Monitor::default()));
+    // The same ends as with all care.
+    let careful = ends::<Lanes8>([a, b], &TrackerOptions::fast(), &Monitor::default());
+    for k in 0..12 {
+        assert!((eight.point(k)[0] - careful.point(k)[0]).norm() < 1e-6, "path {k}");
+    }
+}
+
+#[test]
+fn what_single_precision_does_not_resolve_goes_on_in_double_precision() {
+    // All twelve roots come as near to zero as (5e-8)^(1/12), where single precision sees a multiple root.
+    let target = [Complex64::new(-1.0, 1e-7), Complex64::from(0.0)];
+    let quick = ends::<Lanes8>(target, &quick(), &Monitor::default());
+    let careful = ends::<Lanes8>(target, &TrackerOptions::fast(), &Monitor::default());
+    assert_eq!((quick.len(), quick.count(PathEnd::Success)), (12, 12));
+    for ((k, (result, x)), (_, y)) in quick.iter().enumerate().zip(careful.iter()) {
+        assert!((x[0] - y[0]).norm() < 1e-8, "path {k}: {x:?} {y:?}");
+        assert!(!result.extended, "{result:?}");
+    }
+}
+
+#[test]
+fn what_is_singular_is_left_to_the_careful_tracker() {
+    // All roots meet at zero.
+    let target = [0.0, 1.0].map(Complex64::from);
+    let careful = ends::<Lanes8>(target, &TrackerOptions::fast(), &Monitor::default());
+    assert_eq!(ends::<Lanes8>(target, &quick(), &Monitor::default()), careful);
+    assert_eq!(careful.count(PathEnd::Success), 0);
+}
+
+#[test]
+fn paths_that_have_not_begun_are_cancelled() {
+    let monitor = Monitor::watched();
+    monitor.cancel();
+    let ends = ends::<Lanes8>([2.0, 1.0].map(Complex64::from), &quick(), &monitor);
+    assert_eq!((ends.len(), ends.count(PathEnd::Cancelled)), (12, 12));
+}
+
+#[test]
+fn a_start_that_is_no_solution_is_found_out() {
+    let system = parse::family("name = 'root'\nunknowns = ['x']\nparameters = ['a']\nequations = ['x^2 - a']");
+    let system = system.expect("a family").system.compile().expect("a program");
+    let path = Segment::new(&[Complex64::from(1.0)], &[Complex64::new(2.0, 1.0)]);
+    let mut out = PathSet::new(1);
+    Tracker::<_, Lanes8>::new(&system, &quick()).track(&path, &[Complex64::from(1.7)], [0], &mut out);
+    assert_eq!(out.results()[0].end, PathEnd::InvalidStart);
+}
