@@ -18,23 +18,37 @@ impl<S: Lane> Lu<S> {
         }
     }
 
-    /// [`factor`](Self::factor) without exchanges of rows, whatever the pivots: for those who judge the
-    /// solutions.
-    pub(crate) fn factor_in_order(&mut self, a: &[S]) {
+    /// Where to write the column-major matrix for [`factor_in_order`](Self::factor_in_order).
+    pub(crate) fn matrix(&mut self) -> &mut [S] {
+        &mut self.factors
+    }
+
+    /// Factors the [matrix](Self::matrix) in place, without exchanges of rows, whatever the pivots: for those
+    /// who judge the solutions.
+    pub(crate) fn factor_in_order(&mut self) {
         let isa = self.isa;
         if self.structure.is_empty() {
-            isa.run(Factor::<S, false, false> { lu: self, a, weights_sqr: &[] });
+            isa.run(Factor::<S, false, false> { lu: self, a: &[], weights_sqr: &[] });
         } else {
-            isa.run(Factor::<S, true, false> { lu: self, a, weights_sqr: &[] });
+            isa.run(Factor::<S, true, false> { lu: self, a: &[], weights_sqr: &[] });
         }
     }
 
     /// Replaces the right-hand side `b` (`n` entries) by the solution.
     pub(crate) fn solve(&self, b: &mut [S]) {
         if self.structure.is_empty() {
-            self.isa.run(Solve::<S, false> { lu: self, b });
+            self.isa.run(Solve::<S, false, false> { lu: self, b });
         } else {
-            self.isa.run(Solve::<S, true> { lu: self, b });
+            self.isa.run(Solve::<S, true, false> { lu: self, b });
+        }
+    }
+
+    /// Replaces the right-hand side `b` by the solution with its sign changed.
+    pub(crate) fn solve_negated(&self, b: &mut [S]) {
+        if self.structure.is_empty() {
+            self.isa.run(Solve::<S, false, true> { lu: self, b });
+        } else {
+            self.isa.run(Solve::<S, true, true> { lu: self, b });
         }
     }
 }
@@ -77,7 +91,7 @@ impl<const SPARSE: bool> Iterator for Rows<SPARSE> {
     }
 }
 
-/// Factors the column-major matrix `a`, with or without exchanges of rows.
+/// Factors the column-major matrix `a` with exchanges of rows, or the one in place of the factors without.
 struct Factor<'a, S: Lane, const SPARSE: bool, const EXCHANGE: bool> {
     lu: &'a mut Lu<S>,
     a: &'a [S],
@@ -93,7 +107,9 @@ impl<S: Lane, const SPARSE: bool, const EXCHANGE: bool> Kernel for Factor<'_, S,
         let Lu { n, factors, row_scale, pivots, moved, structure, pattern, .. } = self.lu;
         let n = *n;
         let f = &mut factors[..n * n];
-        f.copy_from_slice(&self.a[..n * n]);
+        if EXCHANGE {
+            f.copy_from_slice(&self.a[..n * n]);
+        }
 
         if SPARSE {
             pattern.copy_from_slice(structure);
@@ -213,13 +229,13 @@ fn reciprocal<S: Lane>(a: &S::Real) -> S::Real {
     out
 }
 
-/// Replaces `b` by the solution.
-struct Solve<'a, S: Lane, const SPARSE: bool> {
+/// Replaces `b` by the solution, with its sign changed or not.
+struct Solve<'a, S: Lane, const SPARSE: bool, const NEGATED: bool> {
     lu: &'a Lu<S>,
     b: &'a mut [S],
 }
 
-impl<S: Lane, const SPARSE: bool> Kernel for Solve<'_, S, SPARSE> {
+impl<S: Lane, const SPARSE: bool, const NEGATED: bool> Kernel for Solve<'_, S, SPARSE, NEGATED> {
     type Output = ();
     const WIDEST: Isa = S::WIDEST;
 
@@ -246,8 +262,8 @@ impl<S: Lane, const SPARSE: bool> Kernel for Solve<'_, S, SPARSE> {
             }
         }
         for k in (0..n).rev() {
-            b[k] = S::mul(&b[k], &f[k * n + k]);
-            let bottom = b[k];
+            let bottom = S::mul(&b[k], &f[k * n + k]);
+            b[k] = if NEGATED { S::neg(&bottom) } else { bottom };
             for i in Rows::<SPARSE>::above(k, &self.lu.pattern) {
                 across_lanes();
                 b[i] = S::sub_mul(&f[k * n + i], &bottom, &b[i]);

@@ -80,6 +80,8 @@ pub struct QuickTolerances {
     pub patience: usize,
     /// Attempts after which more care is cheaper.
     pub attempts: usize,
+    /// The `t` below which paths that have not arrived are left: their ends may be singular or at infinity.
+    pub least_t: f64,
     /// Rounding error of the arithmetic.
     pub epsilon: f64,
 }
@@ -98,6 +100,7 @@ pub const QUICK: QuickTolerances = QuickTolerances {
     cut: 0.5,
     patience: 12,
     attempts: 150,
+    least_t: 1e-4,
     epsilon: f64::EPSILON,
 };
 

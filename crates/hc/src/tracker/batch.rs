@@ -12,6 +12,7 @@ use super::precise::{Precise, subtract};
 use super::progress::{Bounds, PathProgress, StepState};
 use super::quick::QuickMemory;
 use super::result::{PathEnd, PathResult, PathSet};
+use super::stop::{Stop, Stops};
 use super::valuation::valuation;
 use super::workspace::Workspace;
 use crate::homotopy::ParameterPath;
@@ -41,8 +42,9 @@ pub struct Tracker<'a, E: Evaluate, S: Lane> {
     valuations: Vec<f64>,
     /// Made when quick steps are first asked for.
     pub(super) quick: Option<Box<QuickMemory<'a, E>>>,
-    /// The paths that quick steps leave.
-    left: Vec<usize>,
+    /// The paths that quick steps leave, and those that cannot go on from there.
+    left: Stops,
+    pub(super) strayed: Vec<usize>,
 }
 
 impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
@@ -70,7 +72,8 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             precise: Precise::new(system, isa, S::LANES),
             valuations: vec![0.0; n],
             quick: None,
-            left: Vec::new(),
+            left: Stops::default(),
+            strayed: Vec::new(),
         }
     }
 
@@ -101,39 +104,43 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
     ) {
         assert_eq!(path.parameters(), self.work.system.parameters(), "parameters of path and system");
         if !self.bounds.options.quick {
-            return self.track_carefully(path, starts, which, out);
+            return self.track_carefully(path, starts, which.into_iter().map(Stop::at_start), out);
         }
         let mut left = std::mem::take(&mut self.left);
         left.clear();
         self.track_quickly(path, starts, which, out, &mut left);
-        self.track_carefully(path, starts, left.iter().copied(), out);
+        self.track_carefully(path, &left.points, left.list.iter().copied(), out);
         self.left = left;
+        let mut strayed = std::mem::take(&mut self.strayed);
+        self.track_carefully(path, starts, strayed.drain(..).map(Stop::at_start), out);
+        self.strayed = strayed;
     }
 
-    fn track_carefully<P: ParameterPath>(
+    /// Tracks paths from where they go on; `points` has the points there. Those that go on from a point that
+    /// is not near the path are left in `strayed`.
+    pub(super) fn track_carefully<P: ParameterPath>(
         &mut self,
         path: &P,
-        starts: &[Complex64],
-        which: impl IntoIterator<Item = usize>,
+        points: &[Complex64],
+        mut stops: impl Iterator<Item = Stop>,
         out: &mut PathSet,
     ) {
-        let mut which = which.into_iter();
+        let n = self.work.n;
         self.lanes.fill(PathProgress::idle());
         // Idle lanes compute too; harmless numbers keep them from slow exceptional arithmetic.
         self.work.taylor.fill(S::zero());
         loop {
             for l in 0..S::LANES {
                 if !self.lanes[l].is_live() && self.monitor.is_cancelled() {
-                    let point = |k: usize| starts[k * self.work.n..(k + 1) * self.work.n].iter().copied();
-                    for k in which.by_ref() {
-                        out.push(PathResult::cancelled(k), point(k));
+                    for stop in stops.by_ref() {
+                        let record = PathResult { t: stop.t, ..PathResult::cancelled(stop.path) };
+                        out.push(record, points[stop.point * n..][..n].iter().copied());
                     }
                 } else if !self.lanes[l].is_live()
-                    && let Some(index) = which.next()
+                    && let Some(stop) = stops.next()
                 {
-                    self.lanes[l] = PathProgress::start(index);
-                    let start = &starts[index * self.work.n..(index + 1) * self.work.n];
-                    for (x, z) in self.work.taylor.iter_mut().zip(start) {
+                    self.lanes[l] = PathProgress::from(&stop);
+                    for (x, z) in self.work.taylor.iter_mut().zip(&points[stop.point * n..][..n]) {
                         x.set(l, *z);
                     }
                 }
@@ -373,14 +380,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         self.work.taylor_next[..n].copy_from_slice(&self.work.corrected);
         let orders = if straight { 2 } else { 4 };
         let p = &self.work.parameters[..orders * m];
-        derivatives(
-            self.work.system,
-            self.work.isa,
-            &mut self.work.memory,
-            &self.work.lu,
-            p,
-            &mut self.work.taylor_next,
-        );
+        derivatives(self.work.system, &mut self.work.memory, &self.work.lu, p, &mut self.work.taylor_next);
         self.work.isa.run(Take { from: &self.work.taylor_next, mask: accepted, to: &mut self.work.taylor });
         for (l, lane) in self.lanes.iter_mut().enumerate().filter(|(l, lane)| accepted >> l & 1 == 1 && lane.wide) {
             for (to, from) in self.taylor_low.iter_mut().zip(&self.corrected_low) {
@@ -419,6 +419,11 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
     }
 
     fn finish(&mut self, l: usize, end: PathEnd, out: &mut PathSet) {
+        if end == PathEnd::InvalidStart && self.lanes[l].t < 1.0 {
+            self.strayed.push(self.lanes[l].path);
+            self.lanes[l] = PathProgress::idle();
+            return;
+        }
         let result = self.lanes[l].result(end, self.work.lu.smallest_pivot(l, &self.work.weights_sqr));
         out.push(result, self.work.taylor[..self.work.n].iter().map(|x| x.get(l)));
         self.lanes[l] = PathProgress::idle();

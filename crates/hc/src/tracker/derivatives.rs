@@ -1,8 +1,6 @@
 //! Derivatives of paths by their parameter.
 
-use super::kernels::Negate;
 use crate::linalg::Lu;
-use poly::simd::Isa;
 use poly::{Evaluate, Lane};
 
 /// Completes the Taylor coefficients of paths, `taylor[k * n + j]` for order `k` and unknown `j`, whose orders
@@ -10,7 +8,6 @@ use poly::{Evaluate, Lane};
 /// orders 0 to 3, or of 0 and 1 if they move on a straight line.
 pub(super) fn derivatives<E: Evaluate, S: Lane>(
     system: &E,
-    isa: Isa,
     memory: &mut E::Memory<S>,
     lu: &Lu<S>,
     p: &[S],
@@ -20,7 +17,6 @@ pub(super) fn derivatives<E: Evaluate, S: Lane>(
     for order in 1..=3 {
         let (known, next) = taylor.split_at_mut(order * n);
         system.taylor(memory, order, known, &p[..p.len().min((order + 1) * m)], &mut next[..n]);
-        lu.solve(&mut next[..n]);
-        isa.run(Negate { x: &mut next[..n] });
+        lu.solve_negated(&mut next[..n]);
     }
 }

@@ -262,23 +262,6 @@ impl<S: Lane> Kernel for Take<'_, S> {
     }
 }
 
-/// Changes the sign of every number.
-pub(crate) struct Negate<'a, S: Lane> {
-    pub(crate) x: &'a mut [S],
-}
-
-impl<S: Lane> Kernel for Negate<'_, S> {
-    type Output = ();
-    const WIDEST: Isa = S::WIDEST;
-
-    #[inline(always)]
-    fn run(self) {
-        for x in self.x.iter_mut() {
-            *x = S::neg(x);
-        }
-    }
-}
-
 #[inline(always)]
 fn norm_sqr<S: Lane>(v: &[S], inverse_weights_sqr: &[S::Real]) -> S::Real {
     let mut norm = S::real(0.0);

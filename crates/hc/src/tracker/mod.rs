@@ -27,6 +27,7 @@ mod precise;
 mod progress;
 mod quick;
 mod result;
+mod stop;
 mod valuation;
 mod workspace;
 

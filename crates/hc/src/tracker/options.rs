@@ -68,10 +68,9 @@ pub struct TrackerOptions {
     pub extended_precision: bool,
     /// Whether all paths are tracked first with one attempt at a step for all lanes at once and a corrector
     /// that takes one Jacobian, three corrections and no second look, in single precision as far as that
-    /// goes, then in double precision. Paths for which that is not enough start again with all care; their
-    /// records leave out what was tried before. Of the other settings quick
-    /// steps heed `beta_tau`, `beta_tau_last`, `max_steps`, `least_share` and `isa`. For sets of paths whose
-    /// ends show which have jumped. Default false.
+    /// goes, then in double precision. Where that is not enough, paths go on with all care. Of the other
+    /// settings quick steps heed `beta_tau`, `beta_tau_last`, `max_steps`, `least_share` and `isa`. For sets
+    /// of paths whose ends show which have jumped. Default false.
     #[serde(default)]
     pub quick: bool,
     /// Instruction set of the lane kernels; `None` takes the widest of the machine. The result does

@@ -5,6 +5,7 @@
 
 use super::options::TrackerOptions;
 use super::result::{PathEnd, PathResult};
+use super::stop::{Counts, Stop};
 use crate::tolerances::TRACKING;
 
 /// `h(a) = 2a (sqrt(4a^2 + 1) - 2a)` (Timme 2020, lemma 4.2).
@@ -94,6 +95,8 @@ pub(crate) struct PathProgress {
     mu: f64,
     /// Size of corrections that are rounding error alone, as far as seen.
     noise: f64,
+    /// The work before the path went on here.
+    before: Counts,
     accepted: usize,
     rejected: usize,
     pub(crate) jacobians: usize,
@@ -129,6 +132,7 @@ impl PathProgress {
             omega_before: TRACKING.initial_omega,
             mu: f64::EPSILON,
             noise: f64::EPSILON,
+            before: Counts::default(),
             accepted: 0,
             rejected: 0,
             jacobians: 0,
@@ -143,8 +147,10 @@ impl PathProgress {
         }
     }
 
-    pub(crate) fn start(path: usize) -> Self {
-        PathProgress { path, state: StepState::Accepted, fresh: true, ..Self::idle() }
+    /// A path that goes on.
+    pub(super) fn from(stop: &Stop) -> Self {
+        let Stop { path, t, counts, .. } = *stop;
+        PathProgress { path, t, t_next: t, before: counts, state: StepState::Accepted, fresh: true, ..Self::idle() }
     }
 
     pub(crate) fn is_live(&self) -> bool {
@@ -455,9 +461,9 @@ impl PathProgress {
             accuracy: self.mu.max(f64::EPSILON),
             omega: self.omega,
             pivot,
-            accepted: self.accepted,
-            rejected: self.rejected,
-            jacobians: self.jacobians,
+            accepted: self.before.accepted + self.accepted,
+            rejected: self.before.rejected + self.rejected,
+            jacobians: self.before.jacobians + self.jacobians,
             extended: self.used_extended,
         }
     }

@@ -2,10 +2,11 @@
 
 use super::{Bounds, PathProgress, StepState, h};
 use crate::tracker::TrackerOptions;
+use crate::tracker::stop::Stop;
 
 /// On its way, with residuals in double-double.
 fn under_way(omega: f64, bounds: &Bounds) -> PathProgress {
-    let mut progress = PathProgress { fresh: false, extended: true, omega, ..PathProgress::start(0) };
+    let mut progress = PathProgress { fresh: false, extended: true, omega, ..PathProgress::from(&Stop::at_start(0)) };
     progress.begin_correction(bounds);
     progress
 }

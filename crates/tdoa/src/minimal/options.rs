@@ -50,7 +50,7 @@ impl Default for MinimalOptions {
         paths.tracker.beta_tau = 0.75;
         paths.tracker.beta_tau_last = 0.5;
         // Most paths take about 45 steps. One that takes many more is quicker in another chart.
-        paths.tracker.max_steps = 400;
+        paths.tracker.max_steps = 200;
         paths.tracker.quick = true;
         MinimalOptions {
             tolerance: 1e-6,

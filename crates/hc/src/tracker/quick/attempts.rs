@@ -2,32 +2,8 @@
 
 use super::super::options::TrackerOptions;
 use super::super::result::{PathEnd, PathResult};
+use super::super::stop::{Counts, Stop};
 use crate::tolerances::{QUICK_ENDS, QuickTolerances, TRACKING};
-
-/// Where a path goes on.
-#[derive(Clone, Debug)]
-pub(super) struct Stop {
-    pub(super) path: usize,
-    pub(super) t: f64,
-    /// Number of the point there.
-    pub(super) point: usize,
-    counts: Counts,
-}
-
-impl Stop {
-    /// The start of a path.
-    pub(super) fn at_start(path: usize) -> Self {
-        Stop { path, t: 1.0, point: path, counts: Counts::default() }
-    }
-}
-
-/// The work on a path.
-#[derive(Clone, Copy, Debug, Default)]
-struct Counts {
-    accepted: usize,
-    rejected: usize,
-    jacobians: usize,
-}
 
 /// What becomes of an attempt.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -176,14 +152,14 @@ impl Attempts {
         if self.fresh {
             return self.rejections > 0;
         }
+        let long = self.attempts >= options.max_steps.min(quick.attempts) || self.rejections >= quick.patience;
         let moves = self.t_next < self.t && self.step > 4.0 * f64::EPSILON * self.t;
-        self.attempts >= options.max_steps.min(quick.attempts) || self.rejections >= quick.patience || !moves
+        long || !moves || self.t < quick.least_t
     }
 
-    /// Where others may go on; `point` is the number of the point there.
-    pub(super) fn stop(&self, point: usize) -> Stop {
-        // A start that was rejected has led nowhere.
-        Stop { path: self.path.unwrap_or_default(), t: self.t, point, counts: self.counts }
+    /// Where others go on, in the point just reached; its number is not known here.
+    pub(super) fn stop(&self) -> Stop {
+        Stop { path: self.path.unwrap_or_default(), t: self.t, point: 0, counts: self.counts }
     }
 
     /// The record of the path at its end.

@@ -10,8 +10,9 @@
 use super::super::derivatives::derivatives;
 use super::super::kernels::{Coefficients, Correct, Predict, Radius, Take, Weigh};
 use super::super::options::TrackerOptions;
+use super::super::stop::Stop;
 use super::super::workspace::Workspace;
-use super::attempts::{Attempts, Stop, Verdict};
+use super::attempts::{Attempts, Verdict};
 use crate::homotopy::ParameterPath;
 use crate::monitor::Monitor;
 use crate::tolerances::QuickTolerances;
@@ -153,6 +154,10 @@ impl<E: Evaluate, S: Lane> QuickLanes<'_, '_, E, S> {
             return;
         }
         let work = &mut *self.work;
+        let (n, m) = (work.n, work.system.parameters());
+        // As it was before it was factored, for the smallest pivot.
+        let p = &work.parameters[..m];
+        work.system.jacobian(&mut work.memory, &work.point, p, &mut work.values, &mut work.jacobian);
         work.lu.solve(&mut work.values);
         work.isa.run(Correct {
             x: &work.point,
@@ -162,7 +167,6 @@ impl<E: Evaluate, S: Lane> QuickLanes<'_, '_, E, S> {
             out: &mut work.corrected,
         });
         // What another correction finds is rounding error.
-        let (n, m) = (work.n, work.system.parameters());
         work.system.values(&mut work.memory, &work.corrected, &work.parameters[..m], &mut work.values);
         work.lu.solve(&mut work.values);
         let size = work.isa.run(Correct {
@@ -185,7 +189,7 @@ impl<E: Evaluate, S: Lane> QuickLanes<'_, '_, E, S> {
         factor_in_order(work);
         work.taylor_next[..n].copy_from_slice(&work.point);
         let p = &work.parameters[..if straight { 2 } else { 4 } * m];
-        derivatives(work.system, work.isa, &mut work.memory, &work.lu, p, &mut work.taylor_next);
+        derivatives(work.system, &mut work.memory, &work.lu, p, &mut work.taylor_next);
         work.isa.run(Take { from: &work.taylor_next, mask: accepted, to: &mut work.taylor });
         self.arrive(accepted);
         let work = &*self.work;
@@ -204,6 +208,6 @@ impl<E: Evaluate, S: Lane> QuickLanes<'_, '_, E, S> {
 /// Values and the factored Jacobian at `point`.
 fn factor_in_order<E: Evaluate, S: Lane>(work: &mut Workspace<'_, E, S>) {
     let p = &work.parameters[..work.system.parameters()];
-    work.system.jacobian(&mut work.memory, &work.point, p, &mut work.values, &mut work.jacobian);
-    work.lu.factor_in_order(&work.jacobian);
+    work.system.jacobian(&mut work.memory, &work.point, p, &mut work.values, work.lu.matrix());
+    work.lu.factor_in_order();
 }

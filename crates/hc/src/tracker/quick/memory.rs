@@ -1,8 +1,8 @@
 //! Memory of quick steps.
 
+use super::super::stop::Stops;
 use super::super::workspace::Workspace;
-use super::attempts::{Attempts, Stop};
-use num_complex::Complex64;
+use super::attempts::Attempts;
 use poly::simd::Isa;
 use poly::{Evaluate, Lane, Singles16};
 
@@ -10,9 +10,8 @@ use poly::{Evaluate, Lane, Singles16};
 pub(in super::super) struct QuickMemory<'a, E: Evaluate> {
     pub(super) singles: Workspace<'a, E, Singles16>,
     pub(super) lanes: Vec<Attempts>,
-    /// Where the paths stopped in single precision, and the points there.
-    pub(super) stops: Vec<Stop>,
-    pub(super) points: Vec<Complex64>,
+    /// Where the paths stopped in single precision.
+    pub(super) stops: Stops,
     /// Paths that start again in double precision.
     pub(super) again: Vec<usize>,
 }
@@ -23,8 +22,7 @@ impl<'a, E: Evaluate> QuickMemory<'a, E> {
         QuickMemory {
             singles: Workspace::new(system, isa),
             lanes: vec![Attempts::idle(); Singles16::LANES],
-            stops: Vec::new(),
-            points: Vec::new(),
+            stops: Stops::default(),
             again: Vec::new(),
         }
     }

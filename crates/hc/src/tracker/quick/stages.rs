@@ -2,7 +2,8 @@
 
 use super::super::batch::Tracker;
 use super::super::result::PathSet;
-use super::attempts::{Attempts, Stop};
+use super::super::stop::{Stop, Stops};
+use super::attempts::Attempts;
 use super::lanes::{Paths, QuickLanes};
 use super::memory::QuickMemory;
 use crate::homotopy::ParameterPath;
@@ -11,40 +12,44 @@ use num_complex::Complex64;
 use poly::{Evaluate, Lane, Singles16};
 
 impl<E: Evaluate, S: Lane> Tracker<'_, E, S> {
-    /// Tracks paths as [`track`](Self::track) does. The difficult ones, and those that have not ended when
-    /// the monitor is cancelled, go to `left`.
+    /// Tracks paths as [`track`](Self::track) does. The difficult ones, and those that have not begun when the
+    /// monitor is cancelled, go to `left`.
     pub(in super::super) fn track_quickly<P: ParameterPath>(
         &mut self,
         path: &P,
         starts: &[Complex64],
         which: impl IntoIterator<Item = usize>,
         out: &mut PathSet,
-        left: &mut Vec<usize>,
+        left: &mut Stops,
     ) {
         let (system, isa, n) = (self.work.system, self.work.isa, self.work.n);
         let (options, monitor) = (&self.bounds.options, &self.monitor);
-        let QuickMemory { singles, lanes, stops, points, again } =
+        let QuickMemory { singles, lanes, stops, again } =
             &mut **self.quick.get_or_insert_with(|| Box::new(QuickMemory::new(system, isa)));
         stops.clear();
-        points.clear();
         again.clear();
         let mut which = which.into_iter();
-        left.reserve(which.size_hint().0);
 
         let first = QuickLanes { work: singles, lanes, options, monitor, tolerances: &SINGLES, polishes: false };
-        first.run(path, &mut Begin { n, starts, which: &mut which, stops, points });
-        left.extend(which);
+        first.run(path, &mut Begin { n, starts, which: &mut which, stops });
         // The longest first, so that lanes do not wait for them at the end.
-        stops.sort_unstable_by(|a, b| b.t.total_cmp(&a.t).then(a.path.cmp(&b.path)));
+        stops.list.sort_unstable_by(|a, b| b.t.total_cmp(&a.t).then(a.path.cmp(&b.path)));
 
         let lanes = &mut lanes[..S::LANES];
         let second = QuickLanes { work: &mut self.work, lanes, options, monitor, tolerances: &QUICK, polishes: true };
-        let mut finish = Finish { n, starts, stops: stops.iter(), points, again, out, left };
+        let (waiting, points) = (stops.list.iter(), &stops.points[..]);
+        let mut finish = Finish { n, starts, waiting, points, again, out, left };
         second.run(path, &mut finish);
-        let Finish { stops, again, left, .. } = finish;
-        left.extend(stops.map(|stop| stop.path));
-        left.append(again);
+
+        let Finish { waiting, again, left, .. } = finish;
+        for k in which.chain(waiting.map(|stop| stop.path)).chain(again.drain(..)) {
+            left.push(Stop::at_start(k), start(starts, n, k).iter().copied());
+        }
     }
+}
+
+fn start(starts: &[Complex64], n: usize, path: usize) -> &[Complex64] {
+    &starts[path * n..][..n]
 }
 
 /// The paths from their starts, as far as single precision takes them.
@@ -52,24 +57,23 @@ struct Begin<'q, I> {
     n: usize,
     starts: &'q [Complex64],
     which: &'q mut I,
-    stops: &'q mut Vec<Stop>,
-    points: &'q mut Vec<Complex64>,
+    stops: &'q mut Stops,
 }
 
 impl<I: Iterator<Item = usize>> Paths<Singles16> for Begin<'_, I> {
     fn next(&mut self) -> Option<(Stop, &[Complex64])> {
         let path = self.which.next()?;
-        Some((Stop::at_start(path), &self.starts[path * self.n..][..self.n]))
+        Some((Stop::at_start(path), start(self.starts, self.n, path)))
     }
 
     fn end(&mut self, lane: &Attempts, _: f64, x: &[Singles16], l: usize) {
-        let (stop, start) = (lane.stop(self.stops.len()), lane.path().unwrap_or_default());
+        let stop = lane.stop();
         if stop.t < 1.0 {
-            self.points.extend(x.iter().map(|x| x.get(l)));
+            self.stops.push(stop, x.iter().map(|x| x.get(l)));
         } else {
-            self.points.extend_from_slice(&self.starts[start * self.n..][..self.n]);
+            // With all digits.
+            self.stops.push(stop, start(self.starts, self.n, stop.path).iter().copied());
         }
-        self.stops.push(stop);
     }
 }
 
@@ -77,30 +81,32 @@ impl<I: Iterator<Item = usize>> Paths<Singles16> for Begin<'_, I> {
 struct Finish<'q> {
     n: usize,
     starts: &'q [Complex64],
-    stops: std::slice::Iter<'q, Stop>,
+    waiting: std::slice::Iter<'q, Stop>,
     points: &'q [Complex64],
     again: &'q mut Vec<usize>,
     out: &'q mut PathSet,
-    left: &'q mut Vec<usize>,
+    left: &'q mut Stops,
 }
 
 impl<S: Lane> Paths<S> for Finish<'_> {
     fn next(&mut self) -> Option<(Stop, &[Complex64])> {
         if let Some(path) = self.again.pop() {
-            return Some((Stop::at_start(path), &self.starts[path * self.n..][..self.n]));
+            return Some((Stop::at_start(path), start(self.starts, self.n, path)));
         }
-        let stop = self.stops.next()?;
-        Some((stop.clone(), &self.points[stop.point * self.n..][..self.n]))
+        let stop = *self.waiting.next()?;
+        Some((stop, &self.points[stop.point * self.n..][..self.n]))
     }
 
     fn end(&mut self, lane: &Attempts, pivot: f64, x: &[S], l: usize) {
-        let Some(path) = lane.path() else { return };
+        let stop = lane.stop();
         if lane.has_arrived() && pivot > QUICK_ENDS.pivot && lane.last < noise(x, l) {
             self.out.push(lane.arrived(pivot), x.iter().map(|x| x.get(l)));
         } else if lane.strayed() {
-            self.again.push(path);
+            self.again.push(stop.path);
+        } else if lane.has_arrived() || stop.t == 1.0 {
+            self.left.push(Stop::at_start(stop.path), start(self.starts, self.n, stop.path).iter().copied());
         } else {
-            self.left.push(path);
+            self.left.push(stop, x.iter().map(|x| x.get(l)));
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::homotopy::Segment;
 use crate::monitor::Monitor;
+use crate::tracker::stop::{Counts, Stop};
 use crate::tracker::{PathEnd, PathSet, Tracker, TrackerOptions};
 use num_complex::Complex64;
 use poly::{Evaluate, Lane, Lanes8, parse};
@@ -69,9 +70,33 @@ fn what_single_precision_does_not_resolve_goes_on_in_double_precision() {
 fn what_is_singular_is_left_to_the_careful_tracker() {
     // All roots meet at zero.
     let target = [0.0, 1.0].map(Complex64::from);
-    let careful = ends::<Lanes8>(target, &TrackerOptions::fast(), &Monitor::default());
-    assert_eq!(ends::<Lanes8>(target, &quick(), &Monitor::default()), careful);
-    assert_eq!(careful.count(PathEnd::Success), 0);
+    let quick = ends::<Lanes8>(target, &quick(), &Monitor::default());
+    assert_eq!((quick.len(), quick.count(PathEnd::Success)), (12, 0));
+    // It went on where quick steps stopped, towards x = 0, y = 1.
+    for (result, x) in quick.iter() {
+        assert!(result.t < 1e-4 && x[0].norm() < 1e-4_f64.powf(1.0 / 12.0), "{result:?} {x:?}");
+        assert!((x[0].powi(12) - result.t).norm() < 1e-6 * result.t, "{result:?} {x:?}");
+    }
+    assert_eq!(quick, ends::<Complex64>(target, &self::quick(), &Monitor::default()));
+}
+
+#[test]
+fn careful_paths_go_on_from_near_the_path_alone() {
+    let text = "name = 'root'\nunknowns = ['x']\nparameters = ['a']\nequations = ['x^2 - a']";
+    let system = parse::family(text).expect("a family").system.compile().expect("a program");
+    let path = Segment::new(&[Complex64::from(1.0)], &[Complex64::new(2.0, 1.0)]);
+    let counts = Counts { accepted: 5, rejected: 1, jacobians: 11 };
+    let stops = [(0, 0.5), (1, 0.25)].map(|(k, t)| Stop { path: k, t, point: k, counts });
+    // The root at t = 1/2, and a point far from both roots at t = 1/4.
+    let points = [Complex64::new(1.5, 0.5).sqrt(), Complex64::new(0.0, 1e3)];
+    let mut tracker = Tracker::<_, Lanes8>::new(&system, &TrackerOptions::fast());
+    let mut out = PathSet::new(1);
+    tracker.track_carefully(&path, &points, stops.into_iter(), &mut out);
+    assert_eq!(tracker.strayed, [1]);
+    let [result] = out.results() else { panic!("{out:?}") };
+    assert_eq!((result.path, result.end), (0, PathEnd::Success));
+    assert!((out.point(0)[0] - Complex64::new(2.0, 1.0).sqrt()).norm() < 1e-9);
+    assert!(result.accepted > 5 && result.jacobians > 11 && result.rejected == 1, "{result:?}");
 }
 
 #[test]

@@ -1,0 +1,50 @@
+//! Where paths go on.
+
+use num_complex::Complex64;
+
+/// The work on a path.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Counts {
+    pub(super) accepted: usize,
+    pub(super) rejected: usize,
+    pub(super) jacobians: usize,
+}
+
+/// Where a path goes on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stop {
+    pub(super) path: usize,
+    pub(super) t: f64,
+    /// Number of the point there.
+    pub(super) point: usize,
+    /// The work so far.
+    pub(super) counts: Counts,
+}
+
+impl Stop {
+    /// The start of a path, whose points are numbered as the paths are.
+    pub(super) fn at_start(path: usize) -> Self {
+        Stop { path, t: 1.0, point: path, counts: Counts::default() }
+    }
+}
+
+/// Paths that go on, with the points there.
+#[derive(Debug, Default)]
+pub(super) struct Stops {
+    pub(super) list: Vec<Stop>,
+    /// One point after the other.
+    pub(super) points: Vec<Complex64>,
+}
+
+impl Stops {
+    pub(super) fn clear(&mut self) {
+        self.list.clear();
+        self.points.clear();
+    }
+
+    /// Adds a path that goes on at this point.
+    pub(super) fn push(&mut self, stop: Stop, point: impl IntoIterator<Item = Complex64>) {
+        self.points.extend(point);
+        self.list.push(Stop { point: self.list.len(), ..stop });
+    }
+}
