@@ -18,19 +18,19 @@ pub struct Lanes8 {
     pub im: [f64; 8],
 }
 
-/// Eight real numbers, one for each lane.
+/// Real numbers of double precision, one for each of `N` lanes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
-pub struct Reals8(pub [f64; 8]);
+pub struct Reals<const N: usize>(pub [f64; N]);
 
-impl AsRef<[f64]> for Reals8 {
+impl<const N: usize> AsRef<[f64]> for Reals<N> {
     #[inline(always)]
     fn as_ref(&self) -> &[f64] {
         &self.0
     }
 }
 
-impl AsMut<[f64]> for Reals8 {
+impl<const N: usize> AsMut<[f64]> for Reals<N> {
     #[inline(always)]
     fn as_mut(&mut self) -> &mut [f64] {
         &mut self.0
@@ -139,57 +139,25 @@ impl Scalar for Lanes8 {
 
 impl Lane for Lanes8 {
     const LANES: usize = 8;
-    type Real = Reals8;
+    type Real = Reals<8>;
     #[inline(always)]
-    fn real(r: f64) -> Reals8 {
-        Reals8([r; 8])
+    fn real(r: f64) -> Reals<8> {
+        Reals([r; 8])
     }
     #[inline(always)]
-    fn real_mul(a: &Reals8, b: &Reals8) -> Reals8 {
-        let mut out = Reals8([0.0; 8]);
-        for l in 0..8 {
-            out.0[l] = a.0[l] * b.0[l];
-        }
-        out
-    }
-    #[inline(always)]
-    fn real_max(a: &Reals8, b: &Reals8) -> Reals8 {
-        let mut out = Reals8([0.0; 8]);
-        for l in 0..8 {
-            out.0[l] = if a.0[l] > b.0[l] { a.0[l] } else { b.0[l] };
-        }
-        out
-    }
-    #[inline(always)]
-    fn real_where_less(a: &Reals8, limit: &Reals8, b: &Reals8, c: &Reals8) -> Reals8 {
-        let mut out = Reals8([0.0; 8]);
-        for l in 0..8 {
-            out.0[l] = if a.0[l] < limit.0[l] { b.0[l] } else { c.0[l] };
-        }
-        out
-    }
-    #[inline(always)]
-    fn any_equal(labels: &Reals8, label: f64) -> bool {
-        let mut found = 0u64;
-        for l in 0..8 {
-            found += u64::from(labels.0[l] == label);
-        }
-        found > 0
-    }
-    #[inline(always)]
-    fn select_equal(a: &Self, b: &Self, labels: &Reals8, label: f64) -> Self {
+    fn select_equal(a: &Self, b: &Self, labels: &Reals<8>, label: f64) -> Self {
         lanes!(l => if labels.0[l] == label { b.lane(l) } else { a.lane(l) })
     }
     #[inline(always)]
-    fn norm_sqr(&self) -> Reals8 {
-        let mut out = Reals8([0.0; 8]);
+    fn norm_sqr(&self) -> Reals<8> {
+        let mut out = Reals([0.0; 8]);
         for l in 0..8 {
             out.0[l] = self.re[l] * self.re[l] + self.im[l] * self.im[l];
         }
         out
     }
     #[inline(always)]
-    fn scale_by(&self, r: &Reals8) -> Self {
+    fn scale_by(&self, r: &Reals<8>) -> Self {
         lanes!(l => <Complex64 as Scalar>::scale(&self.lane(l), r.0[l]))
     }
     #[inline(always)]

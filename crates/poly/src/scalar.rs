@@ -146,13 +146,43 @@ pub trait Lane: Scalar + Copy {
     /// A real number, in every lane.
     fn real(r: f64) -> Self::Real;
     /// `a * b` lane by lane.
-    fn real_mul(a: &Self::Real, b: &Self::Real) -> Self::Real;
+    #[inline(always)]
+    fn real_mul(a: &Self::Real, b: &Self::Real) -> Self::Real {
+        let mut out = *a;
+        for l in 0..Self::LANES {
+            out.as_mut()[l] = a.as_ref()[l] * b.as_ref()[l];
+        }
+        out
+    }
     /// The larger of `a` and `b`, lane by lane; `b` where either is not a number.
-    fn real_max(a: &Self::Real, b: &Self::Real) -> Self::Real;
+    #[inline(always)]
+    fn real_max(a: &Self::Real, b: &Self::Real) -> Self::Real {
+        let mut out = *b;
+        for l in 0..Self::LANES {
+            let (a, b) = (a.as_ref()[l], b.as_ref()[l]);
+            out.as_mut()[l] = if a > b { a } else { b };
+        }
+        out
+    }
     /// `b` where `a < limit`, `c` elsewhere, lane by lane.
-    fn real_where_less(a: &Self::Real, limit: &Self::Real, b: &Self::Real, c: &Self::Real) -> Self::Real;
+    #[inline(always)]
+    fn real_where_less(a: &Self::Real, limit: &Self::Real, b: &Self::Real, c: &Self::Real) -> Self::Real {
+        let mut out = *c;
+        for l in 0..Self::LANES {
+            let less = a.as_ref()[l] < limit.as_ref()[l];
+            out.as_mut()[l] = if less { b.as_ref()[l] } else { c.as_ref()[l] };
+        }
+        out
+    }
     /// Whether any lane holds exactly `label`.
-    fn any_equal(labels: &Self::Real, label: f64) -> bool;
+    #[inline(always)]
+    fn any_equal(labels: &Self::Real, label: f64) -> bool {
+        let mut found = 0u64;
+        for l in 0..Self::LANES {
+            found += u64::from(labels.as_ref()[l] == label);
+        }
+        found > 0
+    }
     /// Takes `b` where `labels` holds exactly `label`, `a` elsewhere.
     fn select_equal(a: &Self, b: &Self, labels: &Self::Real, label: f64) -> Self;
     /// `|a|^2` lane by lane.
@@ -231,22 +261,6 @@ impl Lane for Complex64 {
     #[inline(always)]
     fn real(r: f64) -> [f64; 1] {
         [r]
-    }
-    #[inline(always)]
-    fn real_mul(a: &[f64; 1], b: &[f64; 1]) -> [f64; 1] {
-        [a[0] * b[0]]
-    }
-    #[inline(always)]
-    fn real_max(a: &[f64; 1], b: &[f64; 1]) -> [f64; 1] {
-        [if a[0] > b[0] { a[0] } else { b[0] }]
-    }
-    #[inline(always)]
-    fn real_where_less(a: &[f64; 1], limit: &[f64; 1], b: &[f64; 1], c: &[f64; 1]) -> [f64; 1] {
-        [if a[0] < limit[0] { b[0] } else { c[0] }]
-    }
-    #[inline(always)]
-    fn any_equal(labels: &[f64; 1], label: f64) -> bool {
-        labels[0] == label
     }
     #[inline(always)]
     fn select_equal(a: &Self, b: &Self, labels: &[f64; 1], label: f64) -> Self {

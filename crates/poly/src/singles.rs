@@ -1,7 +1,7 @@
 //! Sixteen complex numbers of single precision side by side, in planes: sixteen real parts, then sixteen
 //! imaginary parts.
 
-use crate::lanes::Lanes8;
+use crate::lanes::{Lanes8, Reals};
 use crate::scalar::{Lane, Scalar};
 use crate::simd::Isa;
 use num_complex::Complex64;
@@ -17,25 +17,6 @@ pub struct Singles16 {
     pub re: [f32; 16],
     /// Imaginary parts.
     pub im: [f32; 16],
-}
-
-/// Sixteen real numbers of double precision, one for each lane.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C, align(64))]
-pub struct Reals16(pub [f64; 16]);
-
-impl AsRef<[f64]> for Reals16 {
-    #[inline(always)]
-    fn as_ref(&self) -> &[f64] {
-        &self.0
-    }
-}
-
-impl AsMut<[f64]> for Reals16 {
-    #[inline(always)]
-    fn as_mut(&mut self) -> &mut [f64] {
-        &mut self.0
-    }
 }
 
 /// Builds a result lane by lane from a formula for the real and one for the imaginary part.
@@ -113,47 +94,19 @@ impl Scalar for Singles16 {
 
 impl Lane for Singles16 {
     const LANES: usize = 16;
-    type Real = Reals16;
+    type Real = Reals<16>;
     #[inline(always)]
-    fn real(r: f64) -> Reals16 {
-        Reals16([r; 16])
+    fn real(r: f64) -> Reals<16> {
+        Reals([r; 16])
     }
     #[inline(always)]
-    fn real_mul(a: &Reals16, b: &Reals16) -> Reals16 {
-        let mut out = Reals16([0.0; 16]);
-        for l in 0..16 {
-            out.0[l] = a.0[l] * b.0[l];
-        }
-        out
-    }
-    #[inline(always)]
-    fn real_max(a: &Reals16, b: &Reals16) -> Reals16 {
-        let mut out = Reals16([0.0; 16]);
-        for l in 0..16 {
-            out.0[l] = if a.0[l] > b.0[l] { a.0[l] } else { b.0[l] };
-        }
-        out
-    }
-    #[inline(always)]
-    fn real_where_less(a: &Reals16, limit: &Reals16, b: &Reals16, c: &Reals16) -> Reals16 {
-        let mut out = Reals16([0.0; 16]);
-        for l in 0..16 {
-            out.0[l] = if a.0[l] < limit.0[l] { b.0[l] } else { c.0[l] };
-        }
-        out
-    }
-    #[inline(always)]
-    fn any_equal(labels: &Reals16, label: f64) -> bool {
-        labels.0.contains(&label)
-    }
-    #[inline(always)]
-    fn select_equal(a: &Self, b: &Self, labels: &Reals16, label: f64) -> Self {
+    fn select_equal(a: &Self, b: &Self, labels: &Reals<16>, label: f64) -> Self {
         lanes!(l => if labels.0[l] == label { b.re[l] } else { a.re[l] },
             if labels.0[l] == label { b.im[l] } else { a.im[l] })
     }
     #[inline(always)]
-    fn norm_sqr(&self) -> Reals16 {
-        let mut out = Reals16([0.0; 16]);
+    fn norm_sqr(&self) -> Reals<16> {
+        let mut out = Reals([0.0; 16]);
         for l in 0..16 {
             let (re, im) = (f64::from(self.re[l]), f64::from(self.im[l]));
             out.0[l] = re * re + im * im;
@@ -161,7 +114,7 @@ impl Lane for Singles16 {
         out
     }
     #[inline(always)]
-    fn scale_by(&self, r: &Reals16) -> Self {
+    fn scale_by(&self, r: &Reals<16>) -> Self {
         // Beyond the range of singles infinite, and the path fails.
         lanes!(l => self.re[l] * r.0[l] as f32, self.im[l] * r.0[l] as f32)
     }

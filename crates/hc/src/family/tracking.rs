@@ -266,8 +266,8 @@ fn is_broken_off(result: &PathResult) -> bool {
     matches!(result.end, PathEnd::MaxSteps | PathEnd::StepTooSmall | PathEnd::AccuracyLimit) && result.t > 0.0
 }
 
-/// The number of steps of a level; in several charts it grows so that a path gets farther with shorter
-/// steps.
+/// The settings of a level, at all of which paths are tracked with all care. In several charts the number
+/// of steps grows, so that a path gets farther with shorter steps.
 fn stricter<C: Charts>(settings: &TrackerOptions, level: u32) -> TrackerOptions {
     if level == 0 {
         return TrackerOptions { quick: false, ..settings.clone() };

@@ -89,8 +89,8 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
 
     /// Tracks the paths with the given indices into `starts` (`n` coordinates per path) along
     /// `path` from `t = 1` to 0, and appends their ends to `out`, in the order in which they end.
-    /// Once the monitor is cancelled, paths that have not begun are appended as
-    /// [`PathEnd::Cancelled`].
+    /// Once the monitor is cancelled, paths that have not begun, or wait to go on with more care, are
+    /// appended as [`PathEnd::Cancelled`].
     ///
     /// # Panics
     /// If an index lies outside `starts`, or the numbers of parameters of `path` and the system

@@ -50,7 +50,8 @@ pub struct TrackerOptions {
     /// with the last Jacobian follows, which leaves a relative error of about the third power of
     /// this. Default 1e-4; fast 1e-3.
     pub corrector_tolerance: f64,
-    /// Number of steps, accepted and rejected, after which a path is given up. Default 10,000.
+    /// Number of steps, accepted and rejected, after which a path is given up; with `quick`, of those with
+    /// all care. Default 10,000.
     pub max_steps: usize,
     /// A path whose `t` has fallen below this without reaching the target ends as singular or at
     /// infinity. Default 1e-14.

@@ -21,7 +21,8 @@ pub struct MinimalOptions {
     /// 4r/5s, and in 7r/5s, 6r/6s and 10r/4s in space, every candidate fits exactly; the first
     /// physical one is then returned, which need not be the true one. Default `None`: all networks.
     pub first_under: Option<f64>,
-    /// Settings for the paths.
+    /// Settings for the paths. Default: [quick](hc::TrackerOptions::quick) steps, and a tracker whose steps
+    /// are about as long as those of [`hc::TrackerOptions::fast`].
     pub paths: FibreOptions,
     /// Where paths start. Default [`MinimalStart::Stored`].
     pub start: MinimalStart,

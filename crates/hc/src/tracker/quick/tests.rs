@@ -5,22 +5,31 @@ use crate::monitor::Monitor;
 use crate::tracker::stop::{Counts, Stop};
 use crate::tracker::{PathEnd, PathSet, Tracker, TrackerOptions};
 use num_complex::Complex64;
-use poly::{Evaluate, Lane, Lanes8, parse};
+use poly::{Evaluate, Interpreter, Lane, Lanes8, parse};
 
 fn quick() -> TrackerOptions {
     TrackerOptions { quick: true, ..TrackerOptions::fast() }
 }
 
-/// The ends of all paths of `x^12 = a`, `y = x^2 + b` from `a = 1, b = 0` to these parameters, in order.
-fn ends<S: Lane>(target: [Complex64; 2], options: &TrackerOptions, monitor: &Monitor) -> PathSet {
+/// The parameters `a` and `b` of the start solutions.
+const START: [f64; 2] = [1.0, 0.0];
+
+/// The system `x^12 = a`, `y = x^2 + b`, and all its solutions at the start.
+fn roots() -> (Interpreter, Vec<Complex64>) {
     let text =
         "name = 'roots'\nunknowns = ['x', 'y']\nparameters = ['a', 'b']\nequations = ['x^12 - a', 'y - x^2 - b']";
     let system = parse::family(text).expect("a family").system.compile().expect("a program");
-    let starts: Vec<Complex64> = (0..12)
+    let starts = (0..12)
         .map(|k| Complex64::from_polar(1.0, f64::from(k) * std::f64::consts::TAU / 12.0))
         .flat_map(|x| [x, x * x])
         .collect();
-    let path = Segment::new(&[1.0, 0.0].map(Complex64::from), &target);
+    (system, starts)
+}
+
+/// The ends of all its paths from the start to these parameters, in order.
+fn ends<S: Lane>(target: [Complex64; 2], options: &TrackerOptions, monitor: &Monitor) -> PathSet {
+    let (system, starts) = roots();
+    let path = Segment::new(&START.map(Complex64::from), &target);
     let mut out = PathSet::new(system.variables());
     let mut tracker = Tracker::<_, S>::new(&system, options);
     tracker.set_monitor(monitor);
@@ -55,10 +64,17 @@ fn all_roots_alone_and_among_others_to_the_same_bits() {
 
 #[test]
 fn what_single_precision_does_not_resolve_goes_on_in_double_precision() {
-    // All twelve roots come as near to zero as (5e-8)^(1/12), where single precision sees a multiple root.
-    let target = [Complex64::new(-1.0, 1e-7), Complex64::from(0.0)];
-    let quick = ends::<Lanes8>(target, &quick(), &Monitor::default());
-    let careful = ends::<Lanes8>(target, &TrackerOptions::fast(), &Monitor::default());
+    // Half way `a` is 5e-8 i, which single precision does not tell from zero, where all roots meet.
+    let (system, starts) = roots();
+    let path = Segment::new(&START.map(Complex64::from), &[Complex64::new(-1.0, 1e-7), Complex64::from(0.0)]);
+    let track = |options: &TrackerOptions| {
+        let (mut tracker, mut out) = (Tracker::<_, Lanes8>::new(&system, options), PathSet::new(2));
+        tracker.track(&path, &starts, 0..12, &mut out);
+        out.sort();
+        (out, tracker.quick.map_or_else(Vec::new, |quick| quick.stops.list))
+    };
+    let ((quick, stops), (careful, _)) = (track(&quick()), track(&TrackerOptions::fast()));
+    assert!(stops.len() == 12 && stops.iter().all(|stop| stop.t > 0.4 && stop.t < 1.0), "{stops:?}");
     assert_eq!((quick.len(), quick.count(PathEnd::Success)), (12, 12));
     for ((k, (result, x)), (_, y)) in quick.iter().enumerate().zip(careful.iter()) {
         assert!((x[0] - y[0]).norm() < 1e-8, "path {k}: {x:?} {y:?}");
