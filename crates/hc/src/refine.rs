@@ -110,12 +110,13 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
     }
 
     /// Refines in place, for parameters in double-double. Returns the relative size of the last
-    /// correction, and how far rounding the parameters to double precision would move the point.
-    /// This distance is absolute, to first order, for random roundings, and infinite where the
+    /// correction, and, if asked for, how far rounding the parameters to double precision would move the
+    /// point. This distance is absolute, to first order, for random roundings, and infinite where the
     /// Jacobian is singular.
-    pub(crate) fn polish_and_blur(&mut self, p: &[ComplexDd], x: &mut [Complex64]) -> (f64, Vec<f64>) {
+    pub(crate) fn polish_and_blur(&mut self, p: &[ComplexDd], x: &mut [Complex64], blurs: bool) -> (f64, Vec<f64>) {
         let (accuracy, steady) = self.polish(p, x);
-        (accuracy, self.blur(p, x, steady && accuracy <= REFINEMENT.near))
+        let blur = if blurs { self.blur(p, x, steady && accuracy <= REFINEMENT.near) } else { Vec::new() };
+        (accuracy, blur)
     }
 
     /// Returns the size of the last correction and whether one that was no rounding error led to

@@ -50,7 +50,7 @@ impl Loop<'_> {
         let winding = count / self.per_turn;
         let roots: Vec<Complex64> =
             (0..count).map(|k| Complex64::from_polar(1.0, TAU * k as f64 / count as f64)).collect();
-        let size = |j: usize| (0..count).map(|k| self.samples[k * n + j].norm()).fold(0.0, f64::max);
+        let size = |j: usize| (0..count).map(|k| self.samples[k * n + j].norm_sqr()).fold(0.0, f64::max).sqrt();
         let largest = (0..n).map(size).fold(0.0, f64::max);
         let half = (count / 2) as i64;
         // Whether a coordinate has lower powers than the one that is taken for its order.
@@ -70,7 +70,8 @@ impl Loop<'_> {
                     .sum();
                 sum / count as f64
             };
-            let sizes: Vec<(i64, f64)> = (-half..count as i64 - half).map(|p| (p, coefficient(p).norm())).collect();
+            let sizes: Vec<(i64, f64)> =
+                (-half..count as i64 - half).map(|p| (p, coefficient(p).norm_sqr().sqrt())).collect();
             // The frequencies beyond three quarters of the highest.
             let in_tail = |p: i64| 4 * p.abs() >= 3 * half;
             let tail = sizes.iter().filter(|(p, _)| in_tail(*p)).map(|(_, c)| *c).fold(0.0, f64::max);

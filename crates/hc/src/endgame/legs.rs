@@ -21,6 +21,11 @@ impl Leg {
         self.time(0.0)[0]
     }
 
+    /// Whether the leg leads along the radius to the next circle.
+    pub(super) fn is_radial(self) -> bool {
+        matches!(self, Leg::Logarithmic([from, to]) if from.im == to.im)
+    }
+
     /// Taylor coefficients of `t` at `u`.
     fn time(self, u: f64) -> [Complex64; 4] {
         let zero = Complex64::new(0.0, 0.0);

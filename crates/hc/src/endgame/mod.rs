@@ -104,7 +104,8 @@ pub(crate) fn endgame<'a, E: Evaluate>(
                     }
                     legs.precise(result.path, p);
                     let mut point = point.to_vec();
-                    let (accuracy, blur) = refiner.polish_and_blur(p, &mut point);
+                    let blurs = legs.legs[result.path].is_radial();
+                    let (accuracy, blur) = refiner.polish_and_blur(p, &mut point, blurs);
                     Some(Sample { point, accuracy, blur })
                 },
             )

@@ -14,7 +14,8 @@ pub(super) struct Sample {
     pub(super) point: Vec<Complex64>,
     /// Relative error.
     pub(super) accuracy: f64,
-    /// How far each coordinate moves if the coefficients are rounded.
+    /// How far each coordinate moves if the coefficients are rounded; empty within a loop, where that hardly
+    /// changes.
     pub(super) blur: Vec<f64>,
 }
 
@@ -110,9 +111,6 @@ impl Walker {
         match end.filter(finite) {
             Some(sample) if on_loop => {
                 self.noise = self.noise.max(sample.accuracy);
-                for (a, b) in self.blur.iter_mut().zip(&sample.blur) {
-                    *a = a.max(*b);
-                }
                 self.turn(&sample.point, options);
             }
             Some(sample) => self.arrive(sample, options),
@@ -135,8 +133,8 @@ impl Walker {
         if self.radius == options.radius && self.middle.is_empty() {
             self.middle = point.clone();
         }
-        let largest = point.iter().map(|z| z.norm()).fold(0.0, f64::max);
-        let blurred = |share: f64| point.iter().zip(&blur).any(|(z, b)| *b > share * z.norm().max(1e-4 * largest));
+        let largest = largest(&point);
+        let blurred = |share: f64| point.iter().zip(&blur).any(|(z, b)| *b > share * size(z).max(1e-4 * largest));
         if blurred(ENDGAME.sharp) && self.widen_to().is_some_and(|wider| wider <= options.start) {
             self.widen();
             return;
@@ -292,20 +290,30 @@ fn gcd(a: u64, b: u64) -> u64 {
     if b == 0 { a } else { gcd(b, a % b) }
 }
 
+/// Absolute value; `norm` takes many times longer, to be right for numbers beyond 1e154 too.
+fn size(z: &Complex64) -> f64 {
+    z.norm_sqr().sqrt()
+}
+
+fn largest(x: &[Complex64]) -> f64 {
+    x.iter().map(Complex64::norm_sqr).fold(0.0, f64::max).sqrt()
+}
+
 /// Relative distance of two points of a path. Each coordinate is measured by its own size, because
 /// cycles may differ only in the small ones.
 fn distance(a: &[Complex64], b: &[Complex64]) -> f64 {
-    let largest = a.iter().chain(b).map(|z| z.norm()).fold(0.0, f64::max);
-    a.iter().zip(b).map(|(a, b)| (a - b).norm() / refine::size(a.norm().max(b.norm()), largest)).fold(0.0, f64::max)
+    let largest = largest(a).max(largest(b));
+    a.iter().zip(b).map(|(a, b)| size(&(a - b)) / refine::size(size(a).max(size(b)), largest)).fold(0.0, f64::max)
 }
 
 /// The largest valuation in size, from points `ds` apart in logarithmic time; coordinates that may
 /// be rounding error are left out.
 fn steepest(from: &[Complex64], to: &[Complex64], ds: f64) -> f64 {
-    let floor = |x: &[Complex64]| 1e-12 * x.iter().map(|z| z.norm()).fold(0.0, f64::max).min(1.0);
+    let floor = |x: &[Complex64]| 1e-12 * largest(x).min(1.0);
     let (a, b) = (floor(from), floor(to));
-    let clear = from.iter().zip(to).filter(|(x, y)| x.norm() > a && y.norm() > b);
-    clear.map(|(x, y)| ((y.norm() / x.norm()).ln() / ds).abs()).fold(0.0, f64::max)
+    let sizes = from.iter().zip(to).map(|(x, y)| (size(x), size(y)));
+    let clear = sizes.filter(|(x, y)| *x > a && *y > b);
+    clear.map(|(x, y)| ((y / x).ln() / ds).abs()).fold(0.0, f64::max)
 }
 
 /// Samples per turn that separate powers up to `steepest` from their aliases, with room for the

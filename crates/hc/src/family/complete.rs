@@ -90,6 +90,7 @@ impl Family {
                 found.trace = Some(test);
                 if test.passed(found.fibre.len()) {
                     found.stopped = Stopped::Trace;
+                    found.fibre.is_partial = false;
                 }
             }
         }

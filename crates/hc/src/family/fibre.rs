@@ -17,12 +17,16 @@ pub struct Fibre {
     /// known to be [symmetric](crate::Family::symmetry). `None` if each solution represents only
     /// itself.
     pub representatives: Option<Vec<usize>>,
+    /// Whether solutions may be missing. Ends of paths then do not show which of them have jumped, and
+    /// [`Family::track`](crate::Family::track) takes no [quick steps](TrackerOptions::quick).
+    pub is_partial: bool,
 }
 
 impl Fibre {
-    /// The fibre with these solutions, `dimension` coordinates each, one after the other.
+    /// The fibre with these solutions, `dimension` coordinates each, one after the other; they are all that
+    /// there are.
     pub fn new(parameters: Vec<Complex64>, dimension: usize, solutions: Vec<Complex64>) -> Fibre {
-        Fibre { parameters, dimension, solutions, representatives: None }
+        Fibre { parameters, dimension, solutions, representatives: None, is_partial: false }
     }
 
     /// The fibre from pairs `[re, im]`, as generated modules store them: the parameters, and the
@@ -59,7 +63,7 @@ impl Fibre {
     pub(crate) fn tracked(&self) -> Fibre {
         let Some(which) = &self.representatives else { return self.clone() };
         let solutions = which.iter().flat_map(|&k| self.solution(k)).copied().collect();
-        Fibre::new(self.parameters.clone(), self.dimension, solutions)
+        Fibre { is_partial: self.is_partial, ..Fibre::new(self.parameters.clone(), self.dimension, solutions) }
     }
 }
 

@@ -241,7 +241,8 @@ pub(super) fn fill<E: Evaluate>(
         loops += 1;
         idle = if filling.fibre.len() > known { 0 } else { idle + 1 };
     };
-    Monodromy { fibre: filling.fibre, stopped, loops, paths, trace: None }
+    let fibre = Fibre { is_partial: !stopped.is_complete(), ..filling.fibre };
+    Monodromy { fibre, stopped, loops, paths, trace: None }
 }
 
 /// In loops with more paths than this, every side is recorded.

@@ -48,7 +48,7 @@ pub(super) fn find_pair(
         let parameters = z[n..].to_vec();
         let refined = refiner.refine(&parameters, &z[..n]);
         if refined.accuracy < 1e-12 && refined.condition < 1e8 && accept(&parameters, &refined.point) {
-            return Ok(Some(Fibre::new(parameters, n, refined.point)));
+            return Ok(Some(Fibre { is_partial: true, ..Fibre::new(parameters, n, refined.point) }));
         }
     }
     Ok(None)

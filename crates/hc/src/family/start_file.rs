@@ -1,6 +1,7 @@
 //! The file form of a fibre: what `hc monodromy` and `cargo xtask codegen` write and read.
 
 use super::fibre::Fibre;
+use super::monodromy::Stopped;
 use num_complex::Complex64;
 use poly::counted;
 use serde::{Deserialize, Serialize};
@@ -84,7 +85,7 @@ impl StartFile {
         )
     }
 
-    /// The fibre itself.
+    /// The fibre itself; partial unless [`stopped`](Self::stopped) says that it is complete.
     ///
     /// # Errors
     /// If a number is not finite or the solutions differ in length.
@@ -106,7 +107,9 @@ impl StartFile {
                 solutions.push(number(z, &|| format!("solution {}, coordinate {}", k + 1, j + 1))?);
             }
         }
-        Ok(Fibre::new(parameters, dimension, solutions))
+        let complete =
+            [Stopped::RootsReached, Stopped::Trace].iter().any(|stopped| self.stopped == stopped.to_string());
+        Ok(Fibre { is_partial: !complete, ..Fibre::new(parameters, dimension, solutions) })
     }
 }
 
@@ -125,6 +128,14 @@ mod tests {
         let again = StartFile::from_json(&file.to_json()).unwrap();
         assert_eq!(again, file);
         assert_eq!(again.fibre().unwrap(), fibre);
+    }
+
+    #[test]
+    fn only_what_says_so_is_complete() {
+        for (stopped, complete) in [("roots reached", true), ("trace", true), ("no progress", false), ("", false)] {
+            let file = StartFile::new(&Fibre::default(), None, stopped);
+            assert_eq!(file.fibre().unwrap().is_partial, !complete, "{stopped}");
+        }
     }
 
     #[test]

@@ -91,7 +91,10 @@ pub(super) fn moved<E: Evaluate>(
 ) -> Option<Fibre> {
     let mut refiner = Refiner::new(system);
     let solutions = ends.iter().flat_map(|(_, x)| refiner.refine(target, x).point);
-    (counts.finite == fibre.len()).then(|| Fibre::new(target.to_vec(), fibre.dimension, solutions.collect()))
+    (counts.finite == fibre.len()).then(|| Fibre {
+        is_partial: fibre.is_partial,
+        ..Fibre::new(target.to_vec(), fibre.dimension, solutions.collect())
+    })
 }
 
 /// Tracks fibres of one family again and again, on one thread or on all. It keeps its memory from

@@ -58,8 +58,8 @@ pub struct SolveOptions {
     /// Largest number of paths; more are refused. Default 2^24.
     #[serde(skip)]
     pub max_paths: u64,
-    /// Settings of both stages. Default [`TrackerOptions::fast`]: paths that jump are found by
-    /// their ends and tracked again.
+    /// Settings of both stages. Default [`TrackerOptions::fast`] with
+    /// [quick steps](TrackerOptions::quick): paths that jump are found by their ends and tracked again.
     pub paths: FibreOptions,
     /// Settings for the ends of paths that are not regular.
     pub endgame: EndgameOptions,
@@ -85,7 +85,10 @@ impl Default for SolveOptions {
             groups: Vec::new(),
             torus_only: false,
             max_paths: 1 << 24,
-            paths: FibreOptions { tracker: TrackerOptions::fast(), ..FibreOptions::default() },
+            paths: FibreOptions {
+                tracker: TrackerOptions { quick: true, ..TrackerOptions::fast() },
+                ..FibreOptions::default()
+            },
             endgame: EndgameOptions::default(),
             known: None,
             restarts: 2,

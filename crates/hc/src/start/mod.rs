@@ -41,6 +41,10 @@ pub(crate) trait Source<E: Evaluate>: Sync {
     fn parameters(&self) -> &[Complex64];
     /// Whether start solutions are themselves ends of paths, which may be lost or jump.
     fn is_tracked(&self) -> bool;
+    /// Whether start solutions may be missing, so that the ends of paths do not show which have jumped.
+    fn is_partial(&self) -> bool {
+        false
+    }
     /// The start solutions with these ascending numbers; if they have to be tracked, some may be
     /// missing.
     fn solutions(
@@ -105,6 +109,10 @@ impl<E: Evaluate> Source<E> for Fibre {
 
     fn is_tracked(&self) -> bool {
         false
+    }
+
+    fn is_partial(&self) -> bool {
+        self.is_partial
     }
 
     fn solutions(&self, _: &Trackers<'_, E>, numbers: &[usize], _: &TrackerOptions, _: &Monitor) -> Reached {

@@ -33,15 +33,18 @@ impl ParameterPath for Toric<'_> {
     #[inline(always)]
     fn coefficients<S: Lane>(&self, paths: &[usize], t: &S::Real, p: &mut [S]) {
         let m = self.coefficients.len();
-        for (l, (&t, &path)) in t.as_ref().iter().zip(paths).enumerate() {
-            let cell = self.cells[path];
-            let rates = &self.rates[cell * m..(cell + 1) * m];
-            for (k, (c, &rate)) in self.coefficients.iter().zip(rates).enumerate() {
-                let mut value = if rate == 0.0 { *c } else { c * (-rate * t).exp() };
-                for order in 0..4 {
-                    p[order * m + k].set(l, value);
-                    value *= -rate / (order + 1) as f64;
-                }
+        for (k, c) in self.coefficients.iter().enumerate() {
+            let mut rate = S::real(0.0);
+            for (rate, &path) in rate.as_mut().iter_mut().zip(paths) {
+                *rate = -self.rates[self.cells[path] * m + k];
+            }
+            let mut power = S::real_mul(&rate, t);
+            poly::exp(power.as_mut());
+            let mut value = S::from_c64(*c).scale_by(&power);
+            p[k] = value;
+            for (order, factor) in [(1, 1.0), (2, 1.0 / 2.0), (3, 1.0 / 3.0)] {
+                value = value.scale_by(&S::real_mul(&rate, &S::real(factor)));
+                p[order * m + k] = value;
             }
         }
     }

@@ -71,7 +71,8 @@ pub struct TrackerOptions {
     /// that takes one Jacobian, three corrections and no second look, in single precision as far as that
     /// goes, then in double precision. Where that is not enough, paths go on with all care. Of the other
     /// settings quick steps heed `beta_tau`, `beta_tau_last`, `max_steps`, `least_share` and `isa`. For sets
-    /// of paths whose ends show which have jumped. Default false.
+    /// of paths whose ends show which have jumped. Default false; true in
+    /// [`SolveOptions`](crate::SolveOptions).
     #[serde(default)]
     pub quick: bool,
     /// Instruction set of the lane kernels; `None` takes the widest of the machine. The result does

@@ -57,7 +57,7 @@ impl WitnessSet {
                 solutions.extend(refined.point);
             }
         }
-        let fibre = Fibre::new(parameters, equations.unknowns(), solutions);
+        let fibre = Fibre { is_partial: true, ..Fibre::new(parameters, equations.unknowns(), solutions) };
         let dimension = slices.dimension();
         (!numbers.is_empty()).then_some(WitnessSet { family, fibre, numbers, unknowns, dimension })
     }
@@ -81,7 +81,7 @@ impl WitnessSet {
         // Where a component meets itself, paths may come there in cycles.
         let open = found.iter().filter(|(result, _)| !arrives(result)).map(|(result, _)| result.path);
         let open: Vec<Complex64> = open.flat_map(|k| self.fibre.solution(k)).copied().collect();
-        let fibre = Fibre::new(self.fibre.parameters.clone(), self.fibre.dimension, open);
+        let fibre = Fibre { is_partial: true, ..Fibre::new(self.fibre.parameters.clone(), self.fibre.dimension, open) };
         let mut options = SolveOptions::new();
         options.paths.tracker.max_steps = STEPS;
         options.paths.retries = 1;
