@@ -76,28 +76,28 @@ impl Segment {
         &self.direction
     }
 
-    /// Writes the parameters at `t`, real or complex, in double-double into `p`, one entry per
+    /// Writes the parameters at `t`, real or complex, in the numbers of `t` into `p`, one entry per
     /// parameter.
-    pub fn extended(&self, t: &ComplexDd, p: &mut [ComplexDd]) {
+    pub fn extended<S: Scalar>(&self, t: &S, p: &mut [S]) {
         Isa::detect().run(Extended { segment: self, t, p });
     }
 }
 
-/// The parameters of a segment in double-double.
-struct Extended<'a> {
+/// The parameters of a segment in other numbers than doubles.
+struct Extended<'a, S> {
     segment: &'a Segment,
-    t: &'a ComplexDd,
-    p: &'a mut [ComplexDd],
+    t: &'a S,
+    p: &'a mut [S],
 }
 
-impl Kernel for Extended<'_> {
+impl<S: Scalar> Kernel for Extended<'_, S> {
     type Output = ();
-    const WIDEST: Isa = ComplexDd::WIDEST;
+    const WIDEST: Isa = S::WIDEST;
 
     #[inline(always)]
     fn run(self) {
         for ((p, target), direction) in self.p.iter_mut().zip(&self.segment.target).zip(&self.segment.direction) {
-            *p = Scalar::mul_add(&ComplexDd::new(*direction), self.t, &ComplexDd::new(*target));
+            *p = S::mul_add(&S::from_c64(*direction), self.t, &S::from_c64(*target));
         }
     }
 }

@@ -238,7 +238,8 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         }
     }
 
-    fn blur(&mut self, p: &[ComplexDd], x: &[Complex64], factored: bool) -> Vec<f64> {
+    /// How far rounding the parameters would move a point; `factored` says that the Jacobian is factored.
+    pub(crate) fn blur(&mut self, p: &[ComplexDd], x: &[Complex64], factored: bool) -> Vec<f64> {
         if !factored {
             weights(x, &mut self.squares);
             self.factor(p, x);
@@ -346,9 +347,13 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
 /// Squared sizes of the coordinates, none below 1e-4 of the largest.
 fn weights(x: &[Complex64], squares: &mut Vec<[f64; 1]>) {
     let largest = x.iter().map(|z| z.norm_sqr()).fold(0.0, f64::max);
-    let floor = if largest > 0.0 { 1e-8 * largest } else { 1.0 };
     squares.clear();
-    squares.extend(x.iter().map(|z| [z.norm_sqr().max(floor)]));
+    squares.extend(x.iter().map(|z| [weight_sqr(z.norm_sqr(), largest)]));
+}
+
+/// The square of the size of a coordinate as a weight, from its square and that of the largest.
+pub(crate) fn weight_sqr(square: f64, largest: f64) -> f64 {
+    square.max(if largest > 0.0 { 1e-8 * largest } else { 1.0 })
 }
 
 /// Squared sizes of the coordinates; those below 1e-12 of the largest, or of one if that is less,
@@ -356,7 +361,12 @@ fn weights(x: &[Complex64], squares: &mut Vec<[f64; 1]>) {
 fn sizes(x: &[Complex64], squares: &mut Vec<[f64; 1]>) {
     let largest = x.iter().map(|z| z.norm_sqr()).fold(0.0, f64::max);
     squares.clear();
-    squares.extend(x.iter().map(|z| [measured(z.norm_sqr(), largest, 1e-24, 1e-8)]));
+    squares.extend(x.iter().map(|z| [size_sqr(z.norm_sqr(), largest)]));
+}
+
+/// The square of the [size](size) of a coordinate, from its square and that of the largest.
+pub(crate) fn size_sqr(square: f64, largest: f64) -> f64 {
+    measured(square, largest, 1e-24, 1e-8)
 }
 
 /// The size by which refinement measures a coordinate of absolute value `norm`, `largest` that of the

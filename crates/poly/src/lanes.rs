@@ -1,5 +1,7 @@
 //! Eight complex numbers side by side, in planes: eight real parts, then eight imaginary parts.
 
+use crate::dd::ComplexDd;
+use crate::dd_lanes::ComplexDdLanes;
 use crate::scalar::{Lane, Scalar};
 use crate::simd::Isa;
 use num_complex::Complex64;
@@ -140,6 +142,20 @@ impl Scalar for Lanes8 {
 impl Lane for Lanes8 {
     const LANES: usize = 8;
     type Real = Reals<8>;
+    type Extended = ComplexDdLanes<8>;
+    #[inline(always)]
+    fn extended(high: &Self, low: &Self) -> ComplexDdLanes<8> {
+        ComplexDdLanes::from_sums([&high.re, &low.re], [&high.im, &low.im])
+    }
+    #[inline(always)]
+    fn set_extended(numbers: &mut ComplexDdLanes<8>, l: usize, z: ComplexDd) {
+        numbers.set(l, z);
+    }
+    #[inline(always)]
+    fn rounded(numbers: &ComplexDdLanes<8>) -> Self {
+        let [re, im] = numbers.high();
+        Lanes8 { re: *re, im: *im }
+    }
     #[inline(always)]
     fn real(r: f64) -> Reals<8> {
         Reals([r; 8])

@@ -36,7 +36,7 @@
 //!
 //! [`Evaluate`] is the interface of all three kinds of system. It runs over any [`Scalar`]:
 //! [`Complex64`], [`Lanes8`] (eight paths side by side, each bit for bit what one path computes, on
-//! every [`Isa`]), [`Singles16`] (sixteen in single precision), [`ComplexDd`] (32 digits),
+//! every [`Isa`]), [`Singles16`] (sixteen in single precision), [`ComplexDd`] (32 digits, [`ComplexDdLanes`] side by side),
 //! [`ComplexMulti`] (as many digits as asked for), [`ComplexInterval`] and [`ComplexBall`] (proven
 //! bounds, of 16 and 32 digits) and [`Rational`] (exact).
 //!
@@ -45,6 +45,7 @@
 mod arena;
 mod ball;
 mod dd;
+mod dd_lanes;
 mod display;
 mod exact;
 mod expand;
@@ -73,6 +74,7 @@ pub mod simd;
 
 pub use ball::{Ball, ComplexBall};
 pub use dd::{ComplexDd, Dd};
+pub use dd_lanes::ComplexDdLanes;
 pub use evaluate::Evaluate;
 pub use exact::{Exact, ToExact};
 pub use expand::{ExpandError, ExpandLimits};

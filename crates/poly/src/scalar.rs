@@ -1,5 +1,6 @@
 //! The numbers over which straight-line programs run.
 
+use crate::dd::{ComplexDd, Dd};
 use crate::exact::{self, Exact};
 use crate::simd::Isa;
 use num_complex::Complex64;
@@ -143,6 +144,14 @@ pub trait Lane: Scalar + Copy {
     const LANES: usize;
     /// One real number for each lane.
     type Real: Copy + Send + Sync + std::fmt::Debug + AsRef<[f64]> + AsMut<[f64]> + 'static;
+    /// One number of double-double precision for each lane.
+    type Extended: Scalar + Copy;
+    /// The numbers `high + low`, `low` no larger than the rounding error of `high`.
+    fn extended(high: &Self, low: &Self) -> Self::Extended;
+    /// Replaces the number in lane `l < LANES`.
+    fn set_extended(numbers: &mut Self::Extended, l: usize, z: ComplexDd);
+    /// The numbers to the precision of this type.
+    fn rounded(numbers: &Self::Extended) -> Self;
     /// A real number, in every lane.
     fn real(r: f64) -> Self::Real;
     /// `a * b` lane by lane.
@@ -258,6 +267,19 @@ impl Scalar for Complex64 {
 impl Lane for Complex64 {
     const LANES: usize = 1;
     type Real = [f64; 1];
+    type Extended = ComplexDd;
+    #[inline(always)]
+    fn extended(high: &Self, low: &Self) -> ComplexDd {
+        ComplexDd { re: Dd { high: high.re, low: low.re }, im: Dd { high: high.im, low: low.im } }
+    }
+    #[inline(always)]
+    fn set_extended(numbers: &mut ComplexDd, _: usize, z: ComplexDd) {
+        *numbers = z;
+    }
+    #[inline(always)]
+    fn rounded(numbers: &ComplexDd) -> Self {
+        numbers.high()
+    }
     #[inline(always)]
     fn real(r: f64) -> [f64; 1] {
         [r]

@@ -1,6 +1,8 @@
 //! Sixteen complex numbers of single precision side by side, in planes: sixteen real parts, then sixteen
 //! imaginary parts.
 
+use crate::dd::ComplexDd;
+use crate::dd_lanes::ComplexDdLanes;
 use crate::lanes::{Lanes8, Reals};
 use crate::scalar::{Lane, Scalar};
 use crate::simd::Isa;
@@ -95,6 +97,21 @@ impl Scalar for Singles16 {
 impl Lane for Singles16 {
     const LANES: usize = 16;
     type Real = Reals<16>;
+    type Extended = ComplexDdLanes<16>;
+    #[inline(always)]
+    fn extended(high: &Self, low: &Self) -> ComplexDdLanes<16> {
+        let wide = |a: &[f32; 16]| a.map(f64::from);
+        ComplexDdLanes::from_sums([&wide(&high.re), &wide(&low.re)], [&wide(&high.im), &wide(&low.im)])
+    }
+    #[inline(always)]
+    fn set_extended(numbers: &mut ComplexDdLanes<16>, l: usize, z: ComplexDd) {
+        numbers.set(l, z);
+    }
+    #[inline(always)]
+    fn rounded(numbers: &ComplexDdLanes<16>) -> Self {
+        let [re, im] = numbers.high().map(|part| part.map(|x| x as f32));
+        Singles16 { re, im }
+    }
     #[inline(always)]
     fn real(r: f64) -> Reals<16> {
         Reals([r; 16])

@@ -16,6 +16,7 @@ mod ending;
 mod laurent;
 mod legs;
 mod options;
+mod polish;
 mod walker;
 
 pub(crate) use ending::{EndKind, Ending, Handed};
@@ -23,12 +24,12 @@ pub use options::EndgameOptions;
 
 use crate::homotopy::Segment;
 use crate::monitor::{Monitor, Stage};
-use crate::refine::Refiner;
-use crate::threads::{IntoParallelRefIterator, ParallelIterator};
+use crate::threads::{IntoParallelIterator, ParallelIterator};
 use crate::tolerances::ENDGAME;
-use crate::tracker::{PathEnd, PathResult, PathSet, TrackerOptions, Trackers};
+use crate::tracker::{PathEnd, PathSet, TrackerOptions, Trackers};
 use legs::{Leg, Legs};
 use num_complex::Complex64;
+use polish::{LANES, LegEnd, Polisher};
 use poly::Evaluate;
 use walker::{Sample, Walker};
 
@@ -93,24 +94,23 @@ pub(crate) fn endgame<'a, E: Evaluate>(
             trackers.track(&legs, &starts, &round, &settings, &nobody),
             trackers.track(&legs, &starts, &home, &to_zero, &nobody),
         ];
-        let ends: Vec<(&PathResult, &[Complex64])> = ends.iter().flat_map(PathSet::iter).collect();
-        let polished: Vec<Option<Sample>> = ends
-            .par_iter()
+        let results = || ends.iter().flat_map(PathSet::iter);
+        let arrived = results().filter(|(result, _)| result.end == PathEnd::Success);
+        let arrived: Vec<LegEnd<'_>> =
+            arrived.map(|(result, point)| LegEnd { leg: result.path, point, omega: result.omega }).collect();
+        let polished: Vec<Vec<Sample>> = (0..arrived.len().div_ceil(LANES))
+            .into_par_iter()
             .map_init(
-                || (Refiner::new(trackers.system()), Vec::new()),
-                |(refiner, p), (result, point)| {
-                    if result.end != PathEnd::Success {
-                        return None;
-                    }
-                    legs.precise(result.path, p);
-                    let mut point = point.to_vec();
-                    let blurs = legs.legs[result.path].is_radial();
-                    let (accuracy, blur) = refiner.polish_and_blur(p, &mut point, blurs);
-                    Some(Sample { point, accuracy, blur })
+                || Polisher::new(trackers.system()),
+                |polisher, part| {
+                    let ends = &arrived[part * LANES..];
+                    polisher.polish(&legs, &ends[..ends.len().min(LANES)])
                 },
             )
             .collect();
-        for ((result, _), end) in ends.iter().zip(polished) {
+        let mut polished = polished.into_iter().flatten();
+        for (result, _) in results() {
+            let end = if result.end == PathEnd::Success { polished.next() } else { None };
             let walker = &mut walkers[live[result.path]];
             walker.advance(end, options);
             walker.spend(result.accepted + result.rejected, max_steps);

@@ -167,6 +167,8 @@ pub struct RefinementTolerances {
     /// Last correction of solutions that are plainly regular. At a distance of `d` from a singular
     /// solution, corrections are about `d` or more.
     pub tiny: f64,
+    /// Lipschitz constants of Newton's method may be so many times as large as the tracker estimates them.
+    pub omega_margin: f64,
     /// Condition number of solutions that are plainly regular. At a distance of `d` from a singular
     /// solution it is about `1 / d` or more.
     pub good_condition: f64,
@@ -192,6 +194,7 @@ pub const REFINEMENT: RefinementTolerances = RefinementTolerances {
     precise_perturbations: [1e-14, 1e-12],
     returned: 1e-3,
     tiny: 1e-12,
+    omega_margin: 10.0,
     good_condition: 1e6,
     faint: 1e-10,
     blur_draws: 3,

@@ -8,7 +8,7 @@
 use super::derivatives::derivatives;
 use super::kernels::{Coefficients, Correct, Distance, Predict, Radius, Take, Weigh};
 use super::options::TrackerOptions;
-use super::precise::{Precise, subtract};
+use super::precise::{Precise, Wanted, subtract};
 use super::progress::{Bounds, PathProgress, StepState};
 use super::quick::QuickMemory;
 use super::result::{PathEnd, PathResult, PathSet};
@@ -38,7 +38,7 @@ pub struct Tracker<'a, E: Evaluate, S: Lane> {
     closing_low: Vec<S>,
     /// The correction that residuals of double precision give where better ones are used.
     rough: Vec<S>,
-    precise: Precise<E>,
+    precise: Precise<E, S>,
     valuations: Vec<f64>,
     /// Made when quick steps are first asked for.
     pub(super) quick: Option<Box<QuickMemory<'a, E>>>,
@@ -69,7 +69,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             closing: zeros(),
             closing_low: zeros(),
             rough: zeros(),
-            precise: Precise::new(system, isa, S::LANES),
+            precise: Precise::new(system, isa),
             valuations: vec![0.0; n],
             quick: None,
             left: Stops::default(),
@@ -271,12 +271,9 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
                 &mut self.work.values,
                 &mut self.work.jacobian,
             );
-            for l in 0..S::LANES {
-                if self.lanes[l].extended && self.lanes[l].state == StepState::Iterating {
-                    let x = [&self.work.point[..], &self.point_low];
-                    self.precise.overwrite(self.work.system, l, self.lanes[l].wide, x, &mut self.work.values);
-                }
-            }
+            let x = [&self.work.point[..], &self.point_low];
+            let wanted = wanted(&self.lanes, StepState::Iterating);
+            self.precise.overwrite(self.work.system, wanted, x, &mut self.work.values);
             self.work.lu.factor(&self.work.jacobian, &self.work.weights_sqr);
             self.work.lu.solve(&mut self.work.values);
             // Lanes that have stopped keep their points in `corrected`.
@@ -323,21 +320,16 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         }
         let p = &self.work.parameters[..self.work.system.parameters()];
         self.work.system.values(&mut self.work.memory, &self.work.corrected, p, &mut self.work.values);
-        let converged = |lane: &PathProgress| lane.state == StepState::Converged;
-        let any_extended = self.lanes.iter().any(|lane| lane.extended && converged(lane));
+        let extended = wanted(&self.lanes, StepState::Converged);
         let mut rough = S::real(0.0);
-        if any_extended {
+        if extended.lanes != 0 {
             self.rough.copy_from_slice(&self.work.values);
             self.work.lu.solve(&mut self.rough);
-            for l in 0..S::LANES {
-                if self.lanes[l].extended && converged(&self.lanes[l]) {
-                    let x = [&self.work.corrected[..], &self.corrected_low];
-                    self.precise.overwrite(self.work.system, l, self.lanes[l].wide, x, &mut self.work.values);
-                }
-            }
+            let x = [&self.work.corrected[..], &self.corrected_low];
+            self.precise.overwrite(self.work.system, extended, x, &mut self.work.values);
         }
         self.work.lu.solve(&mut self.work.values);
-        if any_extended {
+        if extended.lanes != 0 {
             rough = self.work.isa.run(Distance {
                 a: &self.rough,
                 b: &self.work.values,
@@ -350,7 +342,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         self.closing_low.copy_from_slice(&self.corrected_low);
         let mut running = 0u16;
         for (l, lane) in self.lanes.iter().enumerate() {
-            running |= u16::from(converged(lane)) << l;
+            running |= u16::from(lane.state == StepState::Converged) << l;
         }
         let norm = self.work.isa.run(Correct {
             x: &self.closing,
@@ -428,4 +420,14 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         out.push(result, self.work.taylor[..self.work.n].iter().map(|x| x.get(l)));
         self.lanes[l] = PathProgress::idle();
     }
+}
+
+/// The lanes in this state that need residuals in double-double.
+fn wanted(lanes: &[PathProgress], state: StepState) -> Wanted {
+    let mut wanted = Wanted::default();
+    for (l, lane) in lanes.iter().enumerate().filter(|(_, lane)| lane.extended && lane.state == state) {
+        wanted.lanes |= 1 << l;
+        wanted.wide |= u16::from(lane.wide) << l;
+    }
+    wanted
 }

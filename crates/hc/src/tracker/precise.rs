@@ -1,59 +1,64 @@
-//! What ill-conditioned paths need beyond double precision, one lane at a time: residuals,
-//! parameters and points in double-double.
+//! What ill-conditioned paths need beyond double precision: residuals, parameters and points in
+//! double-double. All lanes are evaluated at once, if there is a path in one that needs it.
 
 use super::progress::PathProgress;
 use crate::homotopy::ParameterPath;
 use num_complex::Complex64;
-use poly::Dd;
 use poly::simd::Isa;
-use poly::{ComplexDd, Evaluate, Lane, Scalar};
+use poly::{ComplexDd, Dd, Evaluate, Lane, Scalar};
 
-/// Residuals in double-double for single paths, at points in double or double-double.
-pub(super) struct Precise<E: Evaluate> {
-    memory: E::Memory<ComplexDd>,
-    x: Vec<ComplexDd>,
-    /// Parameters of all lanes, one lane after the other.
-    p: Vec<ComplexDd>,
-    values: Vec<ComplexDd>,
+/// Residuals in double-double, at points in double or double-double.
+pub(super) struct Precise<E: Evaluate, S: Lane> {
+    memory: E::Memory<S::Extended>,
+    x: Vec<S::Extended>,
+    p: Vec<S::Extended>,
+    values: Vec<S::Extended>,
+    /// The parameters of one lane.
+    row: Vec<ComplexDd>,
 }
 
-impl<E: Evaluate> Precise<E> {
-    pub(super) fn new(system: &E, isa: Isa, lanes: usize) -> Self {
-        let zero = ComplexDd::from(Complex64::new(0.0, 0.0));
+/// Lanes whose residuals are wanted.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Wanted {
+    pub(super) lanes: u16,
+    /// Those whose points are in double-double.
+    pub(super) wide: u16,
+}
+
+impl<E: Evaluate, S: Lane> Precise<E, S> {
+    pub(super) fn new(system: &E, isa: Isa) -> Self {
+        let zeros = |count: usize| vec![S::Extended::zero(); count];
         Precise {
             memory: system.memory(isa),
-            x: vec![zero; system.variables()],
-            p: vec![zero; lanes * system.parameters()],
-            values: vec![zero; system.equations()],
+            x: zeros(system.variables()),
+            p: zeros(system.parameters()),
+            values: zeros(system.equations()),
+            row: vec![ComplexDd::zero(); system.parameters()],
         }
     }
 
     /// Sets the parameters of lane `l`, which are at `t` of `path`.
-    pub(super) fn set_parameters<S: Lane, P: ParameterPath>(
-        &mut self,
-        l: usize,
-        path: &P,
-        lane: &PathProgress,
-        rounded: &[S],
-    ) {
-        let m = path.parameters();
-        let p = &mut self.p[l * m..(l + 1) * m];
-        for (d, s) in p.iter_mut().zip(rounded) {
+    pub(super) fn set_parameters<P: ParameterPath>(&mut self, l: usize, path: &P, lane: &PathProgress, rounded: &[S]) {
+        for (d, s) in self.row.iter_mut().zip(rounded) {
             *d = s.get(l).into();
         }
-        path.extend(lane.path, lane.t_next, p);
+        path.extend(lane.path, lane.t_next, &mut self.row);
+        for (p, d) in self.p.iter_mut().zip(&self.row) {
+            S::set_extended(p, l, *d);
+        }
     }
 
-    /// Overwrites lane `l` of `values` with residuals at the point `x`, or `x + low` where the lane
-    /// is wide.
-    pub(super) fn overwrite<S: Lane>(&mut self, system: &E, l: usize, wide: bool, x: [&[S]; 2], values: &mut [S]) {
-        let m = system.parameters();
-        for (d, (high, low)) in self.x.iter_mut().zip(x[0].iter().zip(x[1])) {
-            *d = if wide { joined(high.get(l), low.get(l)) } else { high.get(l).into() };
+    /// Overwrites lanes of `values` with residuals at the points `x`, or `x + low` in wide lanes.
+    pub(super) fn overwrite(&mut self, system: &E, which: Wanted, x: [&[S]; 2], values: &mut [S]) {
+        if which.lanes == 0 {
+            return;
         }
-        system.values(&mut self.memory, &self.x, &self.p[l * m..(l + 1) * m], &mut self.values);
+        for (d, (high, low)) in self.x.iter_mut().zip(x[0].iter().zip(x[1])) {
+            *d = S::extended(high, &S::select(&S::zero(), low, which.wide));
+        }
+        system.values(&mut self.memory, &self.x, &self.p, &mut self.values);
         for (d, s) in values.iter_mut().zip(&self.values) {
-            d.set(l, Complex64::from(*s));
+            *d = S::select(d, &S::rounded(s), which.lanes);
         }
     }
 }

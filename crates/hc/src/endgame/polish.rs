@@ -1,0 +1,205 @@
+//! The ends of legs to the last digit of double precision, eight at a time.
+
+use super::legs::Legs;
+use super::walker::Sample;
+use crate::linalg::Lu;
+use crate::refine::{Refiner, size_sqr, weight_sqr};
+use crate::tolerances::REFINEMENT;
+use num_complex::Complex64;
+use poly::simd::Isa;
+use poly::{ComplexDd, Evaluate, Lane, Lanes8, Scalar};
+
+/// The end of a leg.
+#[derive(Clone, Copy)]
+pub(super) struct LegEnd<'a> {
+    /// The number of the leg among the [`Legs`].
+    pub(super) leg: usize,
+    pub(super) point: &'a [Complex64],
+    /// Lipschitz constant of Newton's method, as the tracker estimated it.
+    pub(super) omega: f64,
+}
+
+/// So many are polished at a time.
+pub(super) const LANES: usize = Lanes8::LANES;
+type Extended = <Lanes8 as Lane>::Extended;
+type Reals = <Lanes8 as Lane>::Real;
+
+/// Newton's method with one Jacobian, in lanes. What that does not bring to the last digit is for the
+/// [`Refiner`].
+pub(super) struct Polisher<'a, E: Evaluate> {
+    system: &'a E,
+    refiner: Refiner<'a, E>,
+    memory: E::Memory<Lanes8>,
+    precise: E::Memory<Extended>,
+    lu: Lu<Lanes8>,
+    x: Vec<Lanes8>,
+    p: Vec<Lanes8>,
+    values: Vec<Lanes8>,
+    jacobian: Vec<Lanes8>,
+    squares: Vec<Reals>,
+    precise_x: Vec<Extended>,
+    precise_p: Vec<Extended>,
+    precise_values: Vec<Extended>,
+    /// The parameters of one leg.
+    row: Vec<ComplexDd>,
+}
+
+impl<'a, E: Evaluate> Polisher<'a, E> {
+    /// A polisher for a square system.
+    pub(super) fn new(system: &'a E) -> Self {
+        let (n, m, isa) = (system.variables(), system.parameters(), Isa::detect());
+        let zeros = |count: usize| vec![Lanes8::zero(); count];
+        let precise = |count: usize| vec![Extended::zero(); count];
+        Polisher {
+            system,
+            refiner: Refiner::new(system),
+            memory: system.memory(isa),
+            precise: system.memory(isa),
+            lu: Lu::of_jacobian(system, isa),
+            x: zeros(n),
+            p: zeros(m),
+            values: zeros(n),
+            jacobian: zeros(n * n),
+            squares: vec![Lanes8::real(1.0); n],
+            precise_x: precise(n),
+            precise_p: precise(m),
+            precise_values: precise(n),
+            row: vec![ComplexDd::zero(); m],
+        }
+    }
+
+    /// Polishes at most eight ends; each result depends on its own end alone.
+    pub(super) fn polish(&mut self, legs: &Legs<'_>, ends: &[LegEnd<'_>]) -> Vec<Sample> {
+        // Lanes without an end have the last one.
+        let lanes: [LegEnd<'_>; LANES] = std::array::from_fn(|l| ends[l.min(ends.len() - 1)]);
+        let accuracies = self.newton(legs, &lanes);
+        let polished = ends.iter().zip(accuracies).enumerate();
+        let samples = polished.map(|(l, (&LegEnd { leg, point, .. }, accuracy))| {
+            let mut point = point.to_vec();
+            let blurs = legs.legs[leg].is_radial();
+            if accuracy.is_none() || blurs {
+                legs.precise(leg, &mut self.row);
+            }
+            let Some(accuracy) = accuracy else {
+                let (accuracy, blur) = self.refiner.polish_and_blur(&self.row, &mut point, blurs);
+                return Sample { point, accuracy, blur };
+            };
+            point.iter_mut().zip(&self.x).for_each(|(z, x)| *z = x.get(l));
+            let blur = if blurs { self.refiner.blur(&self.row, &point, false) } else { Vec::new() };
+            Sample { point, accuracy, blur }
+        });
+        samples.collect()
+    }
+
+    /// Leaves the polished points in `x`, and returns the expected relative sizes of further corrections, those
+    /// that are no more than the rounding errors of the points.
+    ///
+    /// The first correction has residuals in double precision, the second in double-double, both the
+    /// Jacobian of the first point. With one Jacobian, Newton's method contracts by the distance from the
+    /// first point, times its Lipschitz constant: a third correction would be to the second at most what
+    /// twice the second is to the first. Where the second corrects rounding errors of the first, that is too
+    /// much, and the tracker's estimate of the constant serves, with a margin.
+    fn newton(&mut self, legs: &Legs<'_>, lanes: &[LegEnd<'_>; LANES]) -> [Option<f64>; LANES] {
+        let mut t = Extended::zero();
+        for (l, &LegEnd { leg, point, .. }) in lanes.iter().enumerate() {
+            Lanes8::set_extended(&mut t, l, ComplexDd::new(legs.legs[leg].target()));
+            self.x.iter_mut().zip(point).for_each(|(x, z)| x.set(l, *z));
+        }
+        legs.segment.extended(&t, &mut self.precise_p);
+        self.p.iter_mut().zip(&self.precise_p).for_each(|(p, precise)| *p = Lanes8::rounded(precise));
+        self.system.jacobian(&mut self.memory, &self.x, &self.p, &mut self.values, &mut self.jacobian);
+        measure(&self.x, &mut self.squares, weight_sqr);
+        self.lu.factor(&self.jacobian, &self.squares);
+        let first = self.correct();
+        let zero = Lanes8::zero();
+        self.precise_x.iter_mut().zip(&self.x).for_each(|(precise, x)| *precise = Lanes8::extended(x, &zero));
+        self.system.values(&mut self.precise, &self.precise_x, &self.precise_p, &mut self.precise_values);
+        self.values.iter_mut().zip(&self.precise_values).for_each(|(v, precise)| *v = Lanes8::rounded(precise));
+        let second = self.correct();
+        std::array::from_fn(|l| {
+            let (first, second) = (first.as_ref()[l].sqrt(), second.as_ref()[l].sqrt());
+            let most = REFINEMENT.omega_margin * lanes[l].omega.max(1.0) * first;
+            let contraction = (2.0 * second / first.max(f64::MIN_POSITIVE)).min(most);
+            let third = second * contraction.max(f64::EPSILON);
+            // Written so that NaN is not small.
+            (first <= REFINEMENT.near && third <= f64::EPSILON).then_some(third)
+        })
+    }
+
+    /// Takes the residuals in `values` for a correction; returns the squares of its relative sizes.
+    fn correct(&mut self) -> Reals {
+        self.lu.solve(&mut self.values);
+        for (x, dx) in self.x.iter_mut().zip(&self.values) {
+            *x = Lanes8::sub(x, dx);
+        }
+        measure(&self.x, &mut self.squares, size_sqr);
+        let mut largest = Lanes8::real(0.0);
+        for (dx, size) in self.values.iter().zip(&self.squares) {
+            for ((largest, dx), size) in largest.as_mut().iter_mut().zip(dx.norm_sqr().as_ref()).zip(size.as_ref()) {
+                let relative = dx / size;
+                // Once NaN, always NaN.
+                *largest = if relative <= *largest || largest.is_nan() { *largest } else { relative };
+            }
+        }
+        largest
+    }
+}
+
+/// Squares of sizes, coordinate by coordinate, from their own squares and that of the largest.
+fn measure(x: &[Lanes8], squares: &mut [Reals], size_sqr: impl Fn(f64, f64) -> f64) {
+    let mut largest = Lanes8::real(0.0);
+    for (x, square) in x.iter().zip(&mut *squares) {
+        *square = x.norm_sqr();
+        largest = Lanes8::real_max(square, &largest);
+    }
+    for (square, largest) in squares.iter_mut().flat_map(|square| square.as_mut().iter_mut().zip(largest.as_ref())) {
+        *square = size_sqr(*square, *largest);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{LegEnd, Legs, Polisher, Refiner};
+    use crate::endgame::legs::Leg;
+    use crate::homotopy::{ParameterPath, Segment};
+    use crate::random::Random;
+    use num_complex::Complex64;
+    use poly::parse;
+
+    /// `x^3 = a` and `x y = b` with cube roots of all sizes: the same ends and accuracies as one by one.
+    #[test]
+    fn ends_are_those_of_the_refiner_whatever_lies_beside_them() {
+        let text = "name = 'f'\nunknowns = ['x', 'y']\nparameters = ['a', 'b']\nequations = ['x^3 - a', 'x*y - b']";
+        let system = parse::family(text).unwrap().system.compile().unwrap();
+        let mut random = Random::new(7, 1);
+        let (start, target) = (random.normals(2), [Complex64::new(0.0, 0.0), random.normals(1)[0]]);
+        let segment = Segment::new(&start, &target);
+        let step = |k: usize| [0.3, 0.4].map(|angle| Complex64::new(2.0 * k as f64, angle));
+        let legs = Legs { segment: &segment, legs: (0..13).map(|k| Leg::Logarithmic(step(k))).collect() };
+        // Off by 1e-6, but the last: so far off that the Jacobian there will not do.
+        let points: Vec<Vec<Complex64>> = (0..legs.legs.len())
+            .map(|k| {
+                let mut p = [Complex64::new(0.0, 0.0); 8];
+                legs.coefficients(&[k], &[0.0], &mut p);
+                let x = p[0].powf(1.0 / 3.0);
+                let off = if k < 12 { 1e-6 } else { 0.2 };
+                vec![x * (1.0 + off), p[1] / x * (1.0 - 2.0 * off)]
+            })
+            .collect();
+        let ends = points.iter().enumerate().map(|(leg, x)| LegEnd { leg, point: x, omega: 10.0 });
+        let ends: Vec<LegEnd<'_>> = ends.collect();
+        let mut polisher = Polisher::new(&system);
+        let mut refiner = Refiner::new(&system);
+        for size in [1, 3, 8] {
+            let found: Vec<_> = ends.chunks(size).flat_map(|ends| polisher.polish(&legs, ends)).collect();
+            for (k, sample) in found.iter().enumerate() {
+                let (mut p, mut x) = (Vec::new(), points[k].clone());
+                legs.precise(k, &mut p);
+                let (accuracy, _) = refiner.polish_and_blur(&p, &mut x, false);
+                assert!(accuracy <= f64::EPSILON && sample.accuracy <= f64::EPSILON, "{k}: {accuracy:e}");
+                assert_eq!(sample.point, x, "{size}: {k}");
+                assert!(sample.blur.is_empty());
+            }
+        }
+    }
+}
