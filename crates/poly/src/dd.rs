@@ -112,6 +112,12 @@ impl ComplexDd {
         Complex64::new(self.re.high, self.im.high)
     }
 
+    /// High and low part of the real part, and of the imaginary part.
+    #[inline(always)]
+    pub fn parts(&self) -> [[f64; 2]; 2] {
+        [self.re, self.im].map(|part| [part.high, part.low])
+    }
+
     /// The difference from [`high`](ComplexDd::high), as a complex double.
     #[inline(always)]
     pub fn low(&self) -> Complex64 {

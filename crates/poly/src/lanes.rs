@@ -148,8 +148,8 @@ impl Lane for Lanes8 {
         ComplexDdLanes::from_sums([&high.re, &low.re], [&high.im, &low.im])
     }
     #[inline(always)]
-    fn set_extended(numbers: &mut ComplexDdLanes<8>, l: usize, z: ComplexDd) {
-        numbers.set(l, z);
+    fn set_extended(numbers: &mut ComplexDdLanes<8>, l: usize, re: [f64; 2], im: [f64; 2]) {
+        numbers.set(l, ComplexDd::from_parts(re, im));
     }
     #[inline(always)]
     fn rounded(numbers: &ComplexDdLanes<8>) -> Self {

@@ -44,6 +44,7 @@
 
 mod arena;
 mod ball;
+mod complex;
 mod dd;
 mod dd_lanes;
 mod display;

@@ -104,8 +104,8 @@ impl Lane for Singles16 {
         ComplexDdLanes::from_sums([&wide(&high.re), &wide(&low.re)], [&wide(&high.im), &wide(&low.im)])
     }
     #[inline(always)]
-    fn set_extended(numbers: &mut ComplexDdLanes<16>, l: usize, z: ComplexDd) {
-        numbers.set(l, z);
+    fn set_extended(numbers: &mut ComplexDdLanes<16>, l: usize, re: [f64; 2], im: [f64; 2]) {
+        numbers.set(l, ComplexDd::from_parts(re, im));
     }
     #[inline(always)]
     fn rounded(numbers: &ComplexDdLanes<16>) -> Self {

@@ -93,7 +93,8 @@ fn a_solve_that_is_killed_at_any_moment_goes_on_to_the_same_bytes() {
     let system = quadrics(folder.path(), 13);
     let arguments = ["solve", &system, "--start", "total-degree", "--seed", "1", "--json", "-"];
     let after = killed(folder.path(), &arguments, [2, 3]);
-    assert_eq!((&after["done"], &after["total"], &after["solutions"]), (&8192.into(), &8192.into(), &8192.into()));
+    // The last round is of paths that have jumped, if there are any.
+    assert_eq!((&after["solutions"], &after["done"]), (&8192.into(), &after["total"]));
 }
 
 /// The family of five points in two cameras, its fibre of 20 solutions, and a file of targets.

@@ -102,7 +102,8 @@ impl<'a, E: Evaluate> Polisher<'a, E> {
     fn newton(&mut self, legs: &Legs<'_>, lanes: &[LegEnd<'_>; LANES]) -> [Option<f64>; LANES] {
         let mut t = Extended::zero();
         for (l, &LegEnd { leg, point, .. }) in lanes.iter().enumerate() {
-            Lanes8::set_extended(&mut t, l, ComplexDd::new(legs.legs[leg].target()));
+            let [re, im] = ComplexDd::new(legs.legs[leg].target()).parts();
+            Lanes8::set_extended(&mut t, l, re, im);
             self.x.iter_mut().zip(point).for_each(|(x, z)| x.set(l, *z));
         }
         legs.segment.extended(&t, &mut self.precise_p);

@@ -10,6 +10,7 @@ use super::fibre::{Fibre, FibreOptions};
 use super::reach::Reach;
 use super::sides::{Searched, Which};
 use super::start_file::StartFile;
+use super::stopped::Stopped;
 use super::symmetry::Symmetry;
 use super::trace_result::TraceTest;
 use crate::checkpoint::{Piece, Pieces};
@@ -22,7 +23,6 @@ use crate::tracker::PathEnd;
 use num_complex::Complex64;
 use poly::Evaluate;
 use serde::{Deserialize, Serialize};
-use std::fmt;
 
 /// Settings of [`Family::monodromy`](crate::Family::monodromy). The serialized settings are those
 /// on which loops depend.
@@ -98,42 +98,6 @@ impl Default for MonodromyOptions {
         fibre.tracker.max_steps = 2_000;
         fibre.retries = 1;
         MonodromyOptions { seed: 0, roots: None, patience: 8, max_solutions: 100_000, fibre, trace_test: true }
-    }
-}
-
-/// Why the search for solutions ended, and whether it is known that there are no others.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Stopped {
-    /// The known number of solutions was reached.
-    RootsReached,
-    /// The last loops brought nothing new, and the trace test shows that there are no others.
-    Trace,
-    /// The last loops brought nothing new. This is no proof, and the trace test has given none.
-    NoProgress,
-    /// More solutions than allowed.
-    TooMany,
-    /// The monitor was cancelled: these are the solutions found so far.
-    Cancelled,
-}
-
-impl Stopped {
-    /// Whether a known number of roots or the trace test shows that the solutions are all.
-    pub fn is_complete(self) -> bool {
-        matches!(self, Stopped::RootsReached | Stopped::Trace)
-    }
-}
-
-/// The words of start files and programs.
-impl fmt::Display for Stopped {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Stopped::RootsReached => "roots reached",
-            Stopped::Trace => "trace",
-            Stopped::NoProgress => "no progress",
-            Stopped::TooMany => "too many solutions",
-            Stopped::Cancelled => "interrupted",
-        })
     }
 }
 

@@ -1,7 +1,7 @@
 //! The file form of a fibre: what `hc monodromy` and `cargo xtask codegen` write and read.
 
 use super::fibre::Fibre;
-use super::monodromy::Stopped;
+use super::stopped::Stopped;
 use num_complex::Complex64;
 use poly::counted;
 use serde::{Deserialize, Serialize};

@@ -44,7 +44,8 @@ impl<E: Evaluate, S: Lane> Precise<E, S> {
         }
         path.extend(lane.path, lane.t_next, &mut self.row);
         for (p, d) in self.p.iter_mut().zip(&self.row) {
-            S::set_extended(p, l, *d);
+            let [re, im] = d.parts();
+            S::set_extended(p, l, re, im);
         }
     }
 
