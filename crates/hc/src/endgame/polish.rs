@@ -68,7 +68,7 @@ impl<'a, E: Evaluate> Polisher<'a, E> {
         }
     }
 
-    /// Polishes at most eight ends; each result depends on its own end alone.
+    /// Polishes one to eight ends; each result depends on its own end alone.
     pub(super) fn polish(&mut self, legs: &Legs<'_>, ends: &[LegEnd<'_>]) -> Vec<Sample> {
         // Lanes without an end have the last one.
         let lanes: [LegEnd<'_>; LANES] = std::array::from_fn(|l| ends[l.min(ends.len() - 1)]);
