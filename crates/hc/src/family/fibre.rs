@@ -17,8 +17,8 @@ pub struct Fibre {
     /// known to be [symmetric](crate::Family::symmetry). `None` if each solution represents only
     /// itself.
     pub representatives: Option<Vec<usize>>,
-    /// Whether solutions may be missing. Ends of paths then do not show which of them have jumped, and
-    /// [`Family::track`](crate::Family::track) takes no [quick steps](TrackerOptions::quick).
+    /// Whether solutions may be missing. Ends of paths then do not show which of them have jumped, and no
+    /// [quick steps](TrackerOptions::quick) are taken.
     pub is_partial: bool,
 }
 

@@ -292,7 +292,8 @@ impl<C: Charts, U> FibreTracking<'_, C, U> {
         batch.clear(self.fibre.dimension);
         if round.is_first() {
             let Scratch { lanes, refiner, .. } = scratch;
-            lanes.track(self.segment, &self.fibre.solutions, numbers, &self.options.tracker, monitor, batch);
+            let options = self.options.tracker.first(self.fibre.is_partial);
+            lanes.track(self.segment, &self.fibre.solutions, numbers, &options, monitor, batch);
             settle(refiner, self.target, batch);
         } else {
             self.again(scratch, numbers, round, monitor, batch);

@@ -205,11 +205,8 @@ impl<'a, 'e, E: Evaluate, S: Source<E>> CoefficientStage<'a, 'e, E, S> {
 
 impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
     fn settings(&self, round: Round) -> TrackerOptions {
-        let first = &self.route.options.paths.tracker;
-        if round.level > 0 {
-            return first.stricter(round.level);
-        }
-        TrackerOptions { quick: first.quick && !self.route.start.is_partial(), ..first.clone() }
+        let given = &self.route.options.paths.tracker;
+        if round.level == 0 { given.first(self.route.start.is_partial()) } else { given.stricter(round.level) }
     }
 
     /// The settings of the endgame: from the second round again on it begins early in every second one,

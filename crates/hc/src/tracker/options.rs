@@ -143,6 +143,12 @@ impl TrackerOptions {
         OptionError::at_least("least_share", self.least_share, 0.0, "zero or more")
     }
 
+    /// These, for the first pass from all solutions there are, or from a part of them: then without quick
+    /// steps, because the ends do not show which paths have jumped.
+    pub(crate) fn first(&self, from_part: bool) -> Self {
+        TrackerOptions { quick: self.quick && !from_part, ..self.clone() }
+    }
+
     /// Shorter steps than these, for paths that are tracked again: at `level` 1 about half as long,
     /// at each further level half of that.
     pub(crate) fn stricter(&self, level: u32) -> Self {

@@ -315,6 +315,19 @@ fn monodromy_finds_branch_points_at_any_scale() {
 }
 
 #[test]
+fn paths_of_a_part_of_a_fibre_take_no_quick_steps() {
+    let (_, system, whole) = p3p_fibre();
+    let target = Random::new(0, 1).normals(6);
+    let ends = |is_partial: bool, quick: bool| {
+        let mut options = FibreOptions::default();
+        options.tracker.quick = quick;
+        track_fibre(&system, &Fibre { is_partial, ..whole.clone() }, &target, &options).0
+    };
+    assert_eq!(ends(true, true), ends(true, false));
+    assert_ne!(ends(false, true), ends(false, false));
+}
+
+#[test]
 fn detours_find_what_a_path_has_lost() {
     // So few steps that some paths fail; another way is as short as the first. Quick steps would do, but not
     // for a fibre that may be partial.
