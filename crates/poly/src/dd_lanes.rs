@@ -52,8 +52,7 @@ impl<const N: usize> ComplexDdLanes<N> {
         ComplexDdLanes { re: DdLanes::each(re), im: DdLanes::each(im) }
     }
 
-    /// The sums of high and low parts, each no larger than the rounding error of the other; real parts,
-    /// then imaginary parts.
+    /// The sums of high and low parts, the low ones no larger than the rounding errors of the high ones.
     #[inline(always)]
     pub(crate) fn from_sums(re: [&[f64; N]; 2], im: [&[f64; N]; 2]) -> Self {
         let [re, im] = [re, im].map(|[high, low]| DdLanes { high: *high, low: *low });

@@ -36,9 +36,10 @@
 //!
 //! [`Evaluate`] is the interface of all three kinds of system. It runs over any [`Scalar`]:
 //! [`Complex64`], [`Lanes8`] (eight paths side by side, each bit for bit what one path computes, on
-//! every [`Isa`]), [`Singles16`] (sixteen in single precision), [`ComplexDd`] (32 digits, [`ComplexDdLanes`] side by side),
-//! [`ComplexMulti`] (as many digits as asked for), [`ComplexInterval`] and [`ComplexBall`] (proven
-//! bounds, of 16 and 32 digits) and [`Rational`] (exact).
+//! every [`Isa`]), [`Singles16`] (sixteen in single precision), [`ComplexDd`] (32 digits) and
+//! [`ComplexDdLanes`] (several of these), [`ComplexMulti`] (as many digits as asked for),
+//! [`ComplexInterval`] and [`ComplexBall`] (proven bounds, of 16 and 32 digits) and [`Rational`]
+//! (exact).
 //!
 //! crates/benches/README.md in the repository has measured times.
 

@@ -107,9 +107,8 @@ impl StartFile {
                 solutions.push(number(z, &|| format!("solution {}, coordinate {}", k + 1, j + 1))?);
             }
         }
-        let complete =
-            [Stopped::RootsReached, Stopped::Trace].iter().any(|stopped| self.stopped == stopped.to_string());
-        Ok(Fibre { is_partial: !complete, ..Fibre::new(parameters, dimension, solutions) })
+        let is_complete = Stopped::in_words(&self.stopped).is_some_and(Stopped::is_complete);
+        Ok(Fibre { is_partial: !is_complete, ..Fibre::new(parameters, dimension, solutions) })
     }
 }
 

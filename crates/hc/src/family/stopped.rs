@@ -19,6 +19,15 @@ pub enum Stopped {
 }
 
 impl Stopped {
+    /// All there are.
+    const ALL: [Stopped; 5] =
+        [Stopped::RootsReached, Stopped::Trace, Stopped::NoProgress, Stopped::TooMany, Stopped::Cancelled];
+
+    /// The one with these words.
+    pub(super) fn in_words(words: &str) -> Option<Stopped> {
+        Stopped::ALL.into_iter().find(|stopped| stopped.to_string() == words)
+    }
+
     /// Whether a known number of roots or the trace test shows that the solutions are all.
     pub fn is_complete(self) -> bool {
         matches!(self, Stopped::RootsReached | Stopped::Trace)

@@ -34,6 +34,7 @@ mod workspace;
 pub use batch::Tracker;
 pub use options::{OptionError, TrackerOptions};
 pub(crate) use pool::Trackers;
+pub(crate) use precise::{Precise, Wanted};
 pub use result::{PathEnd, PathResult, PathSet};
 
 use crate::homotopy::ParameterPath;

@@ -8,7 +8,7 @@ use poly::simd::Isa;
 use poly::{ComplexDd, Dd, Evaluate, Lane, Scalar};
 
 /// Residuals in double-double, at points in double or double-double.
-pub(super) struct Precise<E: Evaluate, S: Lane> {
+pub(crate) struct Precise<E: Evaluate, S: Lane> {
     memory: E::Memory<S::Extended>,
     x: Vec<S::Extended>,
     p: Vec<S::Extended>,
@@ -19,14 +19,14 @@ pub(super) struct Precise<E: Evaluate, S: Lane> {
 
 /// Lanes whose residuals are wanted.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Wanted {
-    pub(super) lanes: u16,
+pub(crate) struct Wanted {
+    pub(crate) lanes: u16,
     /// Those whose points are in double-double.
-    pub(super) wide: u16,
+    pub(crate) wide: u16,
 }
 
 impl<E: Evaluate, S: Lane> Precise<E, S> {
-    pub(super) fn new(system: &E, isa: Isa) -> Self {
+    pub(crate) fn new(system: &E, isa: Isa) -> Self {
         let zeros = |count: usize| vec![S::Extended::zero(); count];
         Precise {
             memory: system.memory(isa),
@@ -35,6 +35,11 @@ impl<E: Evaluate, S: Lane> Precise<E, S> {
             values: zeros(system.equations()),
             row: vec![ComplexDd::zero(); system.parameters()],
         }
+    }
+
+    /// The parameters of all lanes.
+    pub(crate) fn parameters(&mut self) -> &mut [S::Extended] {
+        &mut self.p
     }
 
     /// Sets the parameters of lane `l`, which are at `t` of `path`.
@@ -50,7 +55,7 @@ impl<E: Evaluate, S: Lane> Precise<E, S> {
     }
 
     /// Overwrites lanes of `values` with residuals at the points `x`, or `x + low` in wide lanes.
-    pub(super) fn overwrite(&mut self, system: &E, which: Wanted, x: [&[S]; 2], values: &mut [S]) {
+    pub(crate) fn overwrite(&mut self, system: &E, which: Wanted, x: [&[S]; 2], values: &mut [S]) {
         if which.lanes == 0 {
             return;
         }
