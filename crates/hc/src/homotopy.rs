@@ -34,6 +34,18 @@ pub trait ParameterPath: Send + Sync {
     fn is_straight(&self) -> bool {
         false
     }
+
+    /// Whether the coordinates of a path behave like powers of `e`, as in logarithmic time near its end. The
+    /// tracker then predicts their logarithms.
+    fn is_exponential(&self, _path: usize) -> bool {
+        false
+    }
+
+    /// Into how many equal pieces of its time the way of a path is cut. The tracker also records the path
+    /// where a piece ends, and allows it so many times the steps. By default there is one piece.
+    fn pieces(&self, _path: usize) -> usize {
+        1
+    }
 }
 
 /// The straight segment from `start` (at `t = 1`) to `target` (at `t = 0`).

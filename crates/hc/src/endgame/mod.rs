@@ -95,9 +95,14 @@ pub(crate) fn endgame<'a, E: Evaluate>(
             trackers.track(&legs, &starts, &home, &to_zero, &nobody),
         ];
         let results = || ends.iter().flat_map(PathSet::iter);
-        let arrived = results().filter(|(result, _)| result.end == PathEnd::Success);
-        let arrived: Vec<LegEnd<'_>> =
-            arrived.map(|(result, point)| LegEnd { leg: result.path, point, omega: result.omega }).collect();
+        let mut arrives = vec![false; legs.legs.len()];
+        for (result, _) in results() {
+            arrives[result.path] = result.end == PathEnd::Success && result.t == 0.0;
+        }
+        let arrived: Vec<LegEnd<'_>> = results()
+            .filter(|(result, _)| arrives[result.path])
+            .map(|(result, point)| LegEnd { leg: result.path, u: result.t, point, omega: result.omega })
+            .collect();
         let polished: Vec<Vec<Sample>> = (0..arrived.len().div_ceil(LANES))
             .into_par_iter()
             .map_init(
@@ -109,10 +114,17 @@ pub(crate) fn endgame<'a, E: Evaluate>(
             )
             .collect();
         let mut polished = polished.into_iter().flatten();
+        let mut samples = Vec::new();
         for (result, _) in results() {
-            let end = if result.end == PathEnd::Success { polished.next() } else { None };
+            if arrives[result.path] {
+                samples.extend(polished.next());
+            }
+            if result.end == PathEnd::Success && result.t > 0.0 {
+                // A piece of a leg.
+                continue;
+            }
             let walker = &mut walkers[live[result.path]];
-            walker.advance(end, options);
+            walker.advance(std::mem::take(&mut samples), options);
             walker.spend(result.accepted + result.rejected, max_steps);
         }
     }

@@ -10,11 +10,13 @@ use num_complex::Complex64;
 use poly::simd::Isa;
 use poly::{ComplexDd, Evaluate, Lane, Lanes8, Scalar};
 
-/// The end of a leg.
+/// The end of a leg, or of a piece of it.
 #[derive(Clone, Copy)]
 pub(super) struct LegEnd<'a> {
     /// The number of the leg among the [`Legs`].
     pub(super) leg: usize,
+    /// The time of the leg there.
+    pub(super) u: f64,
     pub(super) point: &'a [Complex64],
     /// Lipschitz constant of Newton's method, as the tracker estimated it.
     pub(super) omega: f64,
@@ -68,11 +70,11 @@ impl<'a, E: Evaluate> Polisher<'a, E> {
         let lanes: [LegEnd<'_>; LANES] = std::array::from_fn(|l| ends[l.min(ends.len() - 1)]);
         let accuracies = self.newton(legs, &lanes);
         let polished = ends.iter().zip(accuracies).enumerate();
-        let samples = polished.map(|(l, (&LegEnd { leg, point, .. }, accuracy))| {
+        let samples = polished.map(|(l, (&LegEnd { leg, u, point, .. }, accuracy))| {
             let mut point = point.to_vec();
             let blurs = legs.legs[leg].is_radial();
             if accuracy.is_none() || blurs {
-                legs.precise(leg, &mut self.row);
+                legs.precise(leg, u, &mut self.row);
             }
             let Some(accuracy) = accuracy else {
                 let (accuracy, blur) = self.refiner.polish_and_blur(&self.row, &mut point, blurs);
@@ -95,8 +97,8 @@ impl<'a, E: Evaluate> Polisher<'a, E> {
     /// much, and the tracker's estimate of the constant serves, with a margin.
     fn newton(&mut self, legs: &Legs<'_>, lanes: &[LegEnd<'_>; LANES]) -> [Option<f64>; LANES] {
         let mut t = Extended::zero();
-        for (l, &LegEnd { leg, point, .. }) in lanes.iter().enumerate() {
-            let [re, im] = ComplexDd::new(legs.legs[leg].target()).parts();
+        for (l, &LegEnd { leg, u, point, .. }) in lanes.iter().enumerate() {
+            let [re, im] = ComplexDd::new(legs.legs[leg].at(u)).parts();
             Lanes8::set_extended(&mut t, l, re, im);
             self.x.iter_mut().zip(point).for_each(|(x, z)| x.set(l, *z));
         }
@@ -168,19 +170,19 @@ mod tests {
         let mut random = Random::new(7, 1);
         let (start, target) = (random.normals(2), [Complex64::new(0.0, 0.0), random.normals(1)[0]]);
         let segment = Segment::new(&start, &target);
-        let step = |k: usize| [0.3, 0.4].map(|angle| Complex64::new(2.0 * k as f64, angle));
-        let legs = Legs { segment: &segment, legs: (0..13).map(|k| Leg::Logarithmic(step(k))).collect() };
+        let legs = Legs { segment: &segment, legs: (0..13).map(|k| Leg::Turn(2.0 * k as f64, 16)).collect() };
+        let u = |leg: usize| leg as f64 / 16.0;
         // Off by 1e-8, as the tracker leaves them, but the last: so far off that the Jacobian there will not do.
         let points: Vec<Vec<Complex64>> = (0..legs.legs.len())
             .map(|k| {
                 let mut p = [Complex64::new(0.0, 0.0); 8];
-                legs.coefficients(&[k], &[0.0], &mut p);
+                legs.coefficients(&[k], &[u(k)], &mut p);
                 let x = p[0].powf(1.0 / 3.0);
                 let off = if k < 12 { 1e-8 } else { 0.2 };
                 vec![x * (1.0 + off), p[1] / x * (1.0 - 2.0 * off)]
             })
             .collect();
-        let ends = points.iter().enumerate().map(|(leg, x)| LegEnd { leg, point: x, omega: 10.0 });
+        let ends = points.iter().enumerate().map(|(leg, x)| LegEnd { leg, u: u(leg), point: x, omega: 10.0 });
         let ends: Vec<LegEnd<'_>> = ends.collect();
         let mut polisher = Polisher::new(&system);
         let mut refiner = Refiner::new(&system);
@@ -191,7 +193,7 @@ mod tests {
             let found: Vec<_> = ends.chunks(size).flat_map(|ends| polisher.polish(&legs, ends)).collect();
             for (k, sample) in found.iter().enumerate() {
                 let (mut p, mut x) = (Vec::new(), points[k].clone());
-                legs.precise(k, &mut p);
+                legs.precise(k, u(k), &mut p);
                 let (accuracy, _) = refiner.polish_and_blur(&p, &mut x, false);
                 assert!(accuracy <= f64::EPSILON && sample.accuracy <= f64::EPSILON, "{k}: {accuracy:e}");
                 assert_eq!(sample.point, x, "{size}: {k}");

@@ -7,9 +7,8 @@ use super::options::EndgameOptions;
 use crate::refine;
 use crate::tolerances::ENDGAME;
 use num_complex::Complex64;
-use std::f64::consts::TAU;
 
-/// The end of a leg.
+/// A polished point of a path.
 pub(super) struct Sample {
     pub(super) point: Vec<Complex64>,
     /// Relative error.
@@ -30,7 +29,7 @@ pub(super) struct Walker {
     origin: (f64, Vec<Complex64>),
     /// Circles must be wider than this.
     deepest: f64,
-    /// Samples of the loop, `x` the last of them; empty on a leg along the radius.
+    /// Samples of the loop, `x` the last of them, at the beginning of a turn; empty on a leg along the radius.
     samples: Vec<Complex64>,
     per_turn: usize,
     /// Turns after which the loop is given up, and the largest number ever.
@@ -88,35 +87,35 @@ impl Walker {
             return Leg::Home((-self.at).exp());
         }
         let s = -self.radius.ln();
-        if self.samples.is_empty() {
-            return Leg::Logarithmic([Complex64::new(self.at, 0.0), Complex64::new(s, 0.0)]);
-        }
-        let angle = TAU / self.per_turn as f64;
-        let done = (self.samples.len() / self.x.len() - 1) % self.per_turn;
-        Leg::Logarithmic([done, done + 1].map(|k| Complex64::new(s, angle * k as f64)))
+        if self.samples.is_empty() { Leg::Radial([self.at, s]) } else { Leg::Turn(s, self.per_turn) }
     }
 
-    /// Takes the end of the leg; `None` if the tracker failed on it.
-    pub(super) fn advance(&mut self, end: Option<Sample>, options: &EndgameOptions) {
-        if self.going_home {
-            self.going_home = false;
-            if let Some(end) = end {
-                self.x = end.point;
-                self.kind = Some(EndKind::Reached);
+    /// Takes the samples of the leg, one for each piece; none if the tracker failed on it.
+    pub(super) fn advance(&mut self, mut samples: Vec<Sample>, options: &EndgameOptions) {
+        let goes_home = std::mem::take(&mut self.going_home);
+        if !samples.iter().flat_map(|sample| &sample.point).all(|z| z.is_finite()) {
+            samples.clear();
+        }
+        let Some(end) = samples.pop() else {
+            match (goes_home, self.samples.is_empty(), self.middle.is_empty()) {
+                (true, ..) => {}
+                (_, false, _) => self.shrink(options),
+                (.., true) => self.widen(),
+                _ => self.lose(),
             }
             return;
-        }
-        let on_loop = !self.samples.is_empty();
-        let finite = |sample: &Sample| sample.point.iter().all(|z| z.is_finite());
-        match end.filter(finite) {
-            Some(sample) if on_loop => {
+        };
+        if goes_home {
+            self.x = end.point;
+            self.kind = Some(EndKind::Reached);
+        } else if self.samples.is_empty() {
+            self.arrive(end, options);
+        } else {
+            for sample in samples.iter().chain([&end]) {
                 self.noise = self.noise.max(sample.accuracy);
-                self.turn(&sample.point, options);
             }
-            Some(sample) => self.arrive(sample, options),
-            None if on_loop => self.shrink(options),
-            None if self.middle.is_empty() => self.widen(),
-            None => self.lose(),
+            self.samples.extend(samples.iter().flat_map(|sample| &sample.point));
+            self.turn(&end.point, options);
         }
     }
 
@@ -174,35 +173,30 @@ impl Walker {
         }
     }
 
+    /// At the end of a turn.
     fn turn(&mut self, end: &[Complex64], options: &EndgameOptions) {
         let n = self.x.len();
-        let count = self.samples.len() / n;
+        let winding = self.samples.len() / n / self.per_turn;
         let first = &self.samples[..n];
-        if count.is_multiple_of(self.per_turn) {
-            let gap = distance(first, end);
-            let spread = self.samples.chunks(n).map(|x| distance(first, x)).fold(0.0, f64::max);
-            if gap <= ENDGAME.closed.max(100.0 * self.noise).max(1e-7 * spread) {
-                let winding = count / self.per_turn;
-                let all =
-                    Loop { n, per_turn: self.per_turn, samples: &self.samples, noise: self.noise, blur: &self.blur };
-                let reading = all.read(ENDGAME.clear);
-                if reading == Reading::TooWide {
-                    self.suppose(end_kind(all.read(ENDGAME.vague), winding).map(reduced));
-                }
-                match reading {
-                    Reading::TooWide => self.shrink(options),
-                    Reading::TooDeep => self.lose(),
-                    reading => self.settle(end_kind(reading, winding)),
-                }
-                return;
+        let gap = distance(first, end);
+        let spread = self.samples.chunks(n).map(|x| distance(first, x)).fold(0.0, f64::max);
+        if gap <= ENDGAME.closed.max(100.0 * self.noise).max(1e-7 * spread) {
+            let all = Loop { n, per_turn: self.per_turn, samples: &self.samples, noise: self.noise, blur: &self.blur };
+            let reading = all.read(ENDGAME.clear);
+            if reading == Reading::TooWide {
+                self.suppose(end_kind(all.read(ENDGAME.vague), winding).map(reduced));
             }
-            if count / self.per_turn >= self.turns {
-                self.shrink(options);
-                return;
+            match reading {
+                Reading::TooWide => self.shrink(options),
+                Reading::TooDeep => self.lose(),
+                reading => self.settle(end_kind(reading, winding)),
             }
+        } else if winding >= self.turns {
+            self.shrink(options);
+        } else {
+            self.samples.extend_from_slice(end);
+            self.x.copy_from_slice(end);
         }
-        self.samples.extend_from_slice(end);
-        self.x.copy_from_slice(end);
     }
 
     /// Notes how the path ends by a loop that is not quite clear. If there are several, the first counts,

@@ -7,6 +7,7 @@
 
 use super::derivatives::derivatives;
 use super::kernels::{Coefficients, Correct, Distance, Predict, Radius, Take, Weigh};
+use super::logarithms::{Exponentials, Logarithms};
 use super::options::TrackerOptions;
 use super::precise::{Precise, Wanted, subtract};
 use super::progress::{Bounds, PathProgress, StepState};
@@ -28,6 +29,11 @@ pub struct Tracker<'a, E: Evaluate, S: Lane> {
     pub(super) monitor: Monitor,
     lanes: Vec<PathProgress>,
     predicted: Vec<S>,
+    /// The Taylor coefficients for the predictor, where there are coordinates whose logarithms it predicts: in
+    /// these lanes.
+    series: Vec<S>,
+    masks: Vec<u16>,
+    logarithmic: u16,
     /// The low parts of the points, of the corrected points, and of those of the last accepted step, for
     /// paths whose points are in double-double; arbitrary for other paths.
     point_low: Vec<S>,
@@ -63,6 +69,9 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             monitor: Monitor::default(),
             lanes: vec![PathProgress::idle(); S::LANES],
             predicted: zeros(),
+            series: vec![S::zero(); 4 * n],
+            masks: vec![0; n],
+            logarithmic: 0,
             point_low: zeros(),
             corrected_low: zeros(),
             taylor_low: zeros(),
@@ -127,6 +136,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
     ) {
         let n = self.work.n;
         self.lanes.fill(PathProgress::idle());
+        self.logarithmic = 0;
         // Idle lanes compute too; harmless numbers keep them from slow exceptional arithmetic.
         self.work.taylor.fill(S::zero());
         loop {
@@ -139,7 +149,8 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
                 } else if !self.lanes[l].is_live()
                     && let Some(stop) = stops.next()
                 {
-                    self.lanes[l] = PathProgress::from(&stop);
+                    self.lanes[l] = PathProgress::from(&stop, path.pieces(stop.path));
+                    self.lanes[l].exponential = path.is_exponential(stop.path);
                     for (x, z) in self.work.taylor.iter_mut().zip(&points[stop.point * n..][..n]) {
                         x.set(l, *z);
                     }
@@ -199,6 +210,9 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             self.move_on(accepted, path.is_straight());
             for l in (0..S::LANES).filter(|l| accepted >> l & 1 == 1) {
                 self.watch_valuations(l);
+                if self.lanes[l].begins_piece() {
+                    self.record(l, PathEnd::Success, out);
+                }
                 if let Some(end) = self.lanes[l].finished(&self.bounds) {
                     self.finish(l, end, out);
                 }
@@ -225,7 +239,12 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
                 fresh |= u16::from(lane.fresh) << l;
             }
         }
-        self.work.isa.run(Predict { taylor: &self.work.taylor, step, radius_sqr, out: &mut self.predicted });
+        let taylor = if self.logarithmic == 0 { &self.work.taylor } else { &self.series };
+        self.work.isa.run(Predict { taylor, step, radius_sqr, out: &mut self.predicted });
+        if self.logarithmic != 0 {
+            let x = &self.work.taylor[..self.work.n];
+            self.work.isa.run(Exponentials { x, masks: &self.masks, predicted: &mut self.predicted });
+        }
         if fresh != 0 {
             self.work.isa.run(Take { from: &self.work.taylor[..self.work.n], mask: fresh, to: &mut self.predicted });
         }
@@ -384,7 +403,17 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         for (o, lane) in omega_sqr.as_mut().iter_mut().zip(&self.lanes) {
             *o = lane.omega() * lane.omega();
         }
-        let (taylor, inverse_weights_sqr) = (&self.work.taylor, &self.work.inverse_weights_sqr);
+        self.logarithmic = 0;
+        for (l, lane) in self.lanes.iter().enumerate() {
+            self.logarithmic |= u16::from(lane.is_live() && lane.exponential && !lane.wide) << l;
+        }
+        let mut taylor = &self.work.taylor;
+        if self.logarithmic != 0 {
+            let (lanes, series, masks) = (self.logarithmic, &mut self.series, &mut self.masks);
+            self.work.isa.run(Logarithms { taylor, lanes, series, masks });
+            taylor = &self.series;
+        }
+        let inverse_weights_sqr = &self.work.inverse_weights_sqr;
         let radius = self.work.isa.run(Radius { n, taylor, inverse_weights_sqr, omega_sqr: &omega_sqr });
         for (l, lane) in self.lanes.iter_mut().enumerate() {
             if accepted >> l & 1 == 1 {
@@ -416,9 +445,13 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             self.lanes[l] = PathProgress::idle();
             return;
         }
+        self.record(l, end, out);
+        self.lanes[l] = PathProgress::idle();
+    }
+
+    fn record(&self, l: usize, end: PathEnd, out: &mut PathSet) {
         let result = self.lanes[l].result(end, self.work.lu.smallest_pivot(l, &self.work.weights_sqr));
         out.push(result, self.work.taylor[..self.work.n].iter().map(|x| x.get(l)));
-        self.lanes[l] = PathProgress::idle();
     }
 }
 

@@ -21,6 +21,7 @@
 mod batch;
 mod derivatives;
 mod kernels;
+mod logarithms;
 mod options;
 mod pool;
 mod precise;

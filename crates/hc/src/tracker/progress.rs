@@ -78,6 +78,11 @@ pub(crate) struct PathProgress {
     pub(crate) fresh: bool,
     pub(crate) t: f64,
     pub(crate) t_next: f64,
+    /// The number of pieces of the path, and how many lie ahead when this one is done.
+    pieces: usize,
+    ahead: usize,
+    /// Whether logarithms of its coordinates are predicted.
+    pub(super) exponential: bool,
     pub(crate) radius: f64,
     pub(crate) extended: bool,
     /// Whether the point is kept in double-double too: another path is so near that doubles hardly
@@ -121,6 +126,9 @@ impl PathProgress {
             fresh: false,
             t: 1.0,
             t_next: 1.0,
+            pieces: 1,
+            ahead: 0,
+            exponential: false,
             radius: 0.0,
             extended: false,
             wide: false,
@@ -147,10 +155,24 @@ impl PathProgress {
         }
     }
 
-    /// A path that goes on.
-    pub(super) fn from(stop: &Stop) -> Self {
+    /// A path in so many pieces that goes on.
+    pub(super) fn from(stop: &Stop, pieces: usize) -> Self {
         let Stop { path, t, counts, .. } = *stop;
-        PathProgress { path, t, t_next: t, before: counts, state: StepState::Accepted, fresh: true, ..Self::idle() }
+        let ahead = ((t * pieces as f64).ceil() as usize).saturating_sub(1);
+        let state = StepState::Accepted;
+        PathProgress { path, t, t_next: t, pieces, ahead, before: counts, state, fresh: true, ..Self::idle() }
+    }
+
+    /// The `t` at which this piece of the path ends.
+    fn stop(&self) -> f64 {
+        self.ahead as f64 / self.pieces as f64
+    }
+
+    /// Whether the path has come to the end of a piece, not the last; if so, the next piece begins.
+    pub(super) fn begins_piece(&mut self) -> bool {
+        let begins = self.ahead > 0 && self.t == self.stop();
+        self.ahead -= usize::from(begins);
+        begins
     }
 
     pub(crate) fn is_live(&self) -> bool {
@@ -198,8 +220,9 @@ impl PathProgress {
         let error = if self.local_error.is_finite() { self.local_error } else { self.radius.powi(-4) };
         let omega = (self.omega + 2.0 * (self.omega - self.omega_before)).clamp(self.omega, 8.0 * self.omega);
         let newton = (bounds.reach / (omega * error)).sqrt().sqrt() / o.beta_omega;
+        let stop = self.stop();
         let mut trust = o.beta_tau * self.radius;
-        if self.t < trust {
+        if self.t - stop < trust {
             trust = o.beta_tau_last * self.radius;
         }
         let mut step = newton.min(trust); // ignores NaN
@@ -209,9 +232,9 @@ impl PathProgress {
                 step = step.min(self.step);
             }
         }
-        if step >= self.t || step.is_nan() {
-            self.step = self.t;
-            self.t_next = 0.0;
+        if step >= self.t - stop || step.is_nan() {
+            self.step = self.t - stop;
+            self.t_next = stop;
         } else {
             self.step = step;
             self.t_next = self.t - step;
@@ -434,7 +457,8 @@ impl PathProgress {
         if self.t < bounds.options.min_t {
             return Some(PathEnd::Singular);
         }
-        (self.accepted + self.rejected >= bounds.options.max_steps).then_some(PathEnd::MaxSteps)
+        let most = bounds.options.max_steps.saturating_mul(self.pieces);
+        (self.accepted + self.rejected >= most).then_some(PathEnd::MaxSteps)
     }
 
     /// Watches the valuations: `settled` says that some are negative and constant at the current

@@ -6,7 +6,8 @@ use crate::tracker::stop::Stop;
 
 /// On its way, with residuals in double-double.
 fn under_way(omega: f64, bounds: &Bounds) -> PathProgress {
-    let mut progress = PathProgress { fresh: false, extended: true, omega, ..PathProgress::from(&Stop::at_start(0)) };
+    let mut progress =
+        PathProgress { fresh: false, extended: true, omega, ..PathProgress::from(&Stop::at_start(0), 1) };
     progress.begin_correction(bounds);
     progress
 }

@@ -39,7 +39,8 @@ pub struct PathResult {
     pub path: usize,
     /// Why it ended.
     pub end: PathEnd,
-    /// The value of `t` at the end: 0 if the target was reached.
+    /// The value of `t` at the end: 0 if the target was reached. Paths in several
+    /// [pieces](crate::homotopy::ParameterPath::pieces) also succeed at each `t` where a piece ends.
     pub t: f64,
     /// Size of the last correction relative to the point (weighted maximum norm): a bound on the
     /// relative error.
@@ -166,7 +167,7 @@ impl PathSet {
         self.results[k] = result;
     }
 
-    /// Sorts by the index of the start solution.
+    /// Sorts by the index of the start solution; the records of one path in the order in which they were taken.
     pub fn sort(&mut self) {
         // Mostly these are all numbers up to the largest: each record goes to its place, without
         // more memory.
@@ -189,7 +190,8 @@ impl PathSet {
 
     fn sort_by_copying(&mut self) {
         let mut order: Vec<usize> = (0..self.len()).collect();
-        order.sort_by_key(|&k| self.results[k].path);
+        let result = |k: usize| &self.results[k];
+        order.sort_by(|&a, &b| result(a).path.cmp(&result(b).path).then(result(b).t.total_cmp(&result(a).t)));
         let results = order.iter().map(|&k| self.results[k]).collect();
         let points = order.iter().flat_map(|&k| self.point(k).iter().copied()).collect();
         self.results = results;

@@ -31,7 +31,7 @@ impl<E: Evaluate, S: Lane> Tracker<'_, E, S> {
         let mut which = which.into_iter();
 
         let first = QuickLanes { work: singles, lanes, options, monitor, tolerances: &SINGLES, polishes: false };
-        first.run(path, &mut Begin { n, starts, which: &mut which, stops });
+        first.run(path, &mut Begin { n, starts, which: &mut which, stops, path, left });
         // The longest first, so that lanes do not wait for them at the end.
         stops.list.sort_unstable_by(|a, b| b.t.total_cmp(&a.t).then(a.path.cmp(&b.path)));
 
@@ -53,16 +53,25 @@ fn start(starts: &[Complex64], n: usize, path: usize) -> &[Complex64] {
 }
 
 /// The paths from their starts, as far as single precision takes them.
-struct Begin<'q, I> {
+struct Begin<'q, P, I> {
     n: usize,
     starts: &'q [Complex64],
     which: &'q mut I,
     stops: &'q mut Stops,
+    path: &'q P,
+    left: &'q mut Stops,
 }
 
-impl<I: Iterator<Item = usize>> Paths<Singles16> for Begin<'_, I> {
+impl<P: ParameterPath, I: Iterator<Item = usize>> Paths<Singles16> for Begin<'_, P, I> {
     fn next(&mut self) -> Option<(Stop, &[Complex64])> {
-        let path = self.which.next()?;
+        let path = loop {
+            let path = self.which.next()?;
+            if self.path.pieces(path) == 1 {
+                break path;
+            }
+            // Quick steps know nothing of pieces.
+            self.left.push(Stop::at_start(path), start(self.starts, self.n, path).iter().copied());
+        };
         Some((Stop::at_start(path), start(self.starts, self.n, path)))
     }
 

@@ -1,6 +1,6 @@
 //! Tests of quick steps.
 
-use crate::homotopy::Segment;
+use crate::homotopy::{ParameterPath, Segment};
 use crate::monitor::Monitor;
 use crate::tracker::stop::{Counts, Stop};
 use crate::tracker::{PathEnd, PathSet, Tracker, TrackerOptions};
@@ -113,6 +113,41 @@ fn careful_paths_go_on_from_near_the_path_alone() {
     assert_eq!((result.path, result.end), (0, PathEnd::Success));
     assert!((out.point(0)[0] - Complex64::new(2.0, 1.0).sqrt()).norm() < 1e-9);
     assert!(result.accepted > 5 && result.jacobians > 11 && result.rejected == 1, "{result:?}");
+}
+
+/// A segment in four pieces.
+struct Pieces(Segment);
+
+impl ParameterPath for Pieces {
+    fn parameters(&self) -> usize {
+        self.0.parameters()
+    }
+
+    fn pieces(&self, _: usize) -> usize {
+        4
+    }
+
+    fn coefficients<S: Lane>(&self, paths: &[usize], t: &S::Real, p: &mut [S]) {
+        self.0.coefficients(paths, t, p);
+    }
+}
+
+#[test]
+fn paths_are_recorded_at_the_ends_of_their_pieces() {
+    let (system, starts) = roots();
+    let path = Pieces(Segment::new(&START.map(Complex64::from), &[3.0, 1.0].map(Complex64::from)));
+    for options in [TrackerOptions::fast(), quick()] {
+        let (mut tracker, mut out) = (Tracker::<_, Lanes8>::new(&system, &options), PathSet::new(2));
+        tracker.track(&path, &starts, 0..12, &mut out);
+        out.sort();
+        assert_eq!((out.len(), out.count(PathEnd::Success)), (48, 48));
+        for (k, (result, x)) in out.iter().enumerate() {
+            assert_eq!((result.path, result.t), (k / 4, [0.75, 0.5, 0.25, 0.0][k % 4]));
+            // `a` is positive everywhere: the root keeps its angle.
+            let root = starts[2 * result.path] * (3.0 - 2.0 * result.t).powf(1.0 / 12.0);
+            assert!((x[0] - root).norm() < 1e-6, "{result:?} {x:?}");
+        }
+    }
 }
 
 #[test]
