@@ -34,7 +34,7 @@ use std::str::FromStr;
 pub struct Family {
     pub(super) given: poly::Family,
     pub(super) program: Interpreter,
-    nonzero: Interpreter,
+    pub(super) nonzero: Interpreter,
     pub(super) symmetry: Symmetry,
 }
 

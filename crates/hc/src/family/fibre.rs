@@ -106,7 +106,8 @@ pub struct PathCounts {
     pub finite: usize,
     /// Paths that are shown to diverge.
     pub at_infinity: usize,
-    /// Paths that ended otherwise, including those that still share their end with another.
+    /// Paths that ended otherwise, including those that still share their end with another, and those of a
+    /// family to points where a factor vanishes that it declares nonzero.
     pub failed: usize,
     /// Paths that were left once all solutions were known
     /// ([`SolveOptions::known`](crate::SolveOptions::known)).

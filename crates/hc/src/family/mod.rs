@@ -8,6 +8,7 @@
 mod charts;
 mod compiled;
 mod complete;
+mod degenerate;
 mod detour;
 mod error;
 mod fibre;

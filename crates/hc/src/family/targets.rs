@@ -291,7 +291,11 @@ impl How<'_> {
     /// steps come last.
     fn from(&self, trackers: &Trackers<'_, poly::Interpreter>, fibre: &Fibre, target: &[Complex64]) -> Solutions {
         let system = self.family.system();
-        let solve = |from: &Fibre, options| solve_member(system, trackers, from, target, options, &self.monitor);
+        let solve = |from: &Fibre, options| {
+            let mut found = solve_member(system, trackers, from, target, options, &self.monitor);
+            self.family.keep_own(target, &mut found);
+            found
+        };
         let mut once = self.options.clone();
         once.paths.retries = 0;
         let mut found = solve(fibre, &once);

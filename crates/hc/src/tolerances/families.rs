@@ -7,6 +7,9 @@ pub struct FamilyTolerances {
     /// Values of this size and below count as zero where a family demands that something does not
     /// vanish.
     pub vanishes: f64,
+    /// A factor that must not vanish has vanished at the end of a path if a change of the coordinates by this
+    /// share of the largest would make it vanish.
+    pub degenerate: f64,
     /// Ends that are known to fewer digits than this are refined before they are compared. The
     /// remaining error is the square of the last correction, times the Lipschitz constant of
     /// Newton's method.
@@ -50,6 +53,7 @@ pub struct FamilyTolerances {
 /// The thresholds of families.
 pub const FAMILIES: FamilyTolerances = FamilyTolerances {
     vanishes: 1e-9,
+    degenerate: 1e-12,
     vague: 1e-7,
     settled: 1e-10,
     vanished_sqr: 1e-32,

@@ -46,6 +46,31 @@ fn p3p_fibre() -> (Family, Interpreter, Fibre) {
     (family, system, found.fibre)
 }
 
+/// `x (x - a) = 0`, `y = x + b`, where `x` must not vanish: one solution.
+#[test]
+fn an_end_outside_the_family_is_no_solution() {
+    let text = "name = 'f'\nunknowns = ['x', 'y']\nparameters = ['a', 'b']\nequations = ['x*(x - a)', 'y - x - b']";
+    let family: Family = format!("{text}\nnonzero = ['x']").parse().unwrap();
+    let start = reals(&[1.0, 2.0]);
+    // The second solution has x = 0.
+    let fibre = |solutions: &[f64]| Fibre::new(start.clone(), 2, reals(solutions));
+    let targets = [[3.0, -1.0], [1e-11, 1e-11], [-5.0, 4.0]];
+    let (own, both) = (fibre(&[1.0, 3.0]), fibre(&[1.0, 3.0, 0.0, 2.0]));
+    for (fibre, lost) in [(&own, 0), (&both, 1)] {
+        let found = family.track(fibre, &targets).run().unwrap();
+        for (found, [a, b]) in found.iter().zip(targets) {
+            let [solution] = &found.solutions[..] else { panic!("{found:?}") };
+            let expected = reals(&[a, a + b]);
+            assert!(relative_distance(&solution.value, &expected) < 1e-12, "{solution:?}");
+            assert_eq!((found.paths.finite, found.paths.failed), (1, lost), "{:?}", found.paths);
+        }
+    }
+    // Nothing is known of factors that are not stated.
+    let family: Family = text.parse().unwrap();
+    let found = family.track(&both, &targets).run().unwrap();
+    assert!(found.iter().all(|found| (found.len(), found.paths.failed) == (2, 0)));
+}
+
 #[test]
 fn one_path_in_few_steps() {
     // From (1, 1) for (a, b) = (1, 0) to (sqrt 2, -sqrt 2) for (2, 4); HomotopyContinuation.jl
