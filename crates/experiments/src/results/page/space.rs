@@ -124,14 +124,14 @@ fn recording(row: &Row<'_>) -> Result<Vec<String>> {
 /// Real recordings reduced to the smallest sizes.
 pub(super) fn reduced(results: &Path) -> Result<String> {
     let mut text = String::from(
-        "Random parts of the recordings above, all of whose measurements are within 0.06 m of the measured receivers and the event that these tell, \
-         solved exactly. The oracle is least squares on the same measurements, started at the measured receivers. It is among the candidates if all \
-         nodes of one agree with it within 1e-3 of the network's size.\n\n\
-         The smallest sizes have as many measurements as unknowns. If the oracle fits exactly, it is a real root and has to be among the candidates. \
-         If it does not, errors of millimetres have made two real roots complex: the oracle is where these met. Two things show this. \"Nearly real\" \
-         counts oracles that are found from roots with imaginary parts up to a tenth of the size of the data, as `tdoa calibrate` takes them. \
-         \"Fold\" counts those with a candidate on either side, within a tenth of the network's size, once a thousandth of the oracle's residuals, or \
-         less, is reversed.\n\n",
+        "Random parts of the recordings above, solved exactly. All measurements of a part are within 0.06 m of what the measured receivers and the \
+         event, as these tell, give; its events are at least 0.05 m apart. The oracle is least squares on the same measurements, started at the \
+         measured receivers. It is among the candidates if all nodes of one agree with it within 1e-3 of the network's size.\n\n\
+         The smallest sizes have as many measurements as unknowns. An oracle that fits exactly is a real root and has to be among the candidates. \
+         One that does not is as a rule a minimum where the Jacobian is singular: errors of millimetres have made the two real roots near it complex. \
+         Two things show this. \"Nearly real\" counts oracles that are found from roots with imaginary parts up to a tenth of the size of the \
+         data, as `tdoa calibrate` takes them. \"Fold\" counts those with a candidate on either side, within a tenth of the network's size, \
+         once a thousandth of the oracle's residuals, or less, is reversed. For the others neither was shown.\n\n",
     );
     text += &head(&[
         "",
@@ -143,7 +143,8 @@ pub(super) fn reduced(results: &Path) -> Result<String> {
         "of these found",
         "nearly real",
         "fold",
-        "unexplained",
+        "neither",
+        "candidates without the oracle",
         "oracle near the truth",
         "a candidate near the truth",
         "oracle, m (median)",
@@ -151,11 +152,12 @@ pub(super) fn reduced(results: &Path) -> Result<String> {
         "s",
     ]);
     text += &lines(results, &["reduced"], smallest)?;
-    text += "\n\"Near the truth\" are receivers within a quarter of the network's size. Medians of candidates are over the parts that have any.\n\n\
-             Larger sizes have a few measurements more than unknowns and no exact solution. Their candidates are refined by least squares. Where the \
-             oracle is not among them, errors keep the solver from it. The table has what it finds of the same oracle with a tenth of its residuals, and with none. \
-             \"Cheaper\" are parts in which a candidate has a smaller residual than the oracle. Where no candidate is left, the solver says that \
-             no network explains the measurements.\n\n";
+    text += "\n\"Near the truth\" are receivers within a quarter of the network's size. Medians of candidates are over the parts that have any. Where \
+             candidates are listed without the oracle, `tdoa solve` has nothing to tell it by: all of them fit exactly.\n\n\
+             Larger sizes have a few measurements more than unknowns and no exact solution. Candidates are refined by least squares. Where the \
+             oracle is not among them, errors keep the solver from it: the table has how often it then finds the same oracle with a tenth of \
+             its residuals, and with none. \"Cheaper\" are parts in which a candidate has a smaller residual than the oracle. \"No network\" is \
+             what the solver says where no candidate is left.\n\n";
     text += &head(&[
         "",
         "parts",
@@ -174,7 +176,8 @@ pub(super) fn reduced(results: &Path) -> Result<String> {
         "s",
     ]);
     text += &lines(results, &["reduced-larger"], larger)?;
-    text += "\nSix ultra-wideband anchors, whose ranges have errors of centimetres:\n\n";
+    text +=
+        "\nSix ultra-wideband anchors, whose ranges have errors of centimetres (a moving tag is the transmitter):\n\n";
     text +=
         &head(&["", "parts", "no network", "oracle exact", "found", "nearly real", "fold", "with none", "unexplained"]);
     let columns =
@@ -191,6 +194,7 @@ fn smallest(row: &Row<'_>) -> Result<Vec<String>> {
         "nearly_real",
         "fold",
         "unexplained",
+        "others_only",
         "oracle_near_truth",
         "candidate_near_truth",
         "oracle_rms_median",
