@@ -27,7 +27,8 @@ const LEAST_SQUARES: RefineOptions = RefineOptions {
 /// should find if the measurements are those of a network near `start`.
 ///
 /// Unlike the solvers it needs no real root near by. Where noise has made two real roots of a smallest size
-/// complex, it ends between them, with a residual that is not zero.
+/// complex, it ends between them, with a residual that is not zero. Where there is no minimum, because a node
+/// moves away without end, it stops after 2,000 steps.
 ///
 /// # Errors
 /// If the matrix is too small or too large, a measurement is missing, two nodes coincide, or `start` is not
