@@ -13,6 +13,8 @@ mod dimension;
 mod growth;
 mod hard;
 mod noise;
+mod recording;
+mod reduced;
 mod routes;
 mod speed;
 mod statistics;
@@ -55,13 +57,14 @@ enum Kind {
     Conditions(conditions::Arguments),
     Growth(growth::Arguments),
     Damaged(damaged::Arguments),
+    Reduced(reduced::Arguments),
     Dimension(dimension::Arguments),
 }
 
 impl Arguments {
     /// Which experiments several ranks can do.
     pub const SHARED: &str = "only `tdoa experiment calibrate`, `clean`, `conditions`, `coverage`, `damaged`, `dimension`, `noise`, \
-                              `routes` and `table2` run on several ranks";
+                              `reduced`, `routes` and `table2` run on several ranks";
 
     /// Options of work over several ranks, where the experiment has them.
     pub fn sharing(&self) -> Option<&Sharing> {
@@ -78,6 +81,7 @@ impl Arguments {
             | Kind::Coverage(_)
             | Kind::Conditions(_)
             | Kind::Damaged(_)
+            | Kind::Reduced(_)
             | Kind::Dimension(_) => Some(&self.ranks),
         }
     }
@@ -104,6 +108,7 @@ pub fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<(), Failu
         Kind::Conditions(arguments) => conditions::run(arguments, ranks),
         Kind::Growth(arguments) => growth::run(arguments),
         Kind::Damaged(arguments) => damaged::run(arguments, ranks),
+        Kind::Reduced(arguments) => reduced::run(arguments, ranks),
         Kind::Dimension(arguments) => dimension::run(arguments, ranks),
     }
 }

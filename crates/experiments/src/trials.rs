@@ -6,3 +6,4 @@ pub mod checks;
 pub mod clean;
 pub mod hard;
 pub mod noise;
+pub mod reduced;

@@ -137,6 +137,41 @@ fn parts_of_a_recording_in_space_beside_the_oracle() {
 }
 
 #[test]
+#[cfg_attr(not(recordings), ignore = "needs the recordings: SHARED_DIR names their folder")]
+fn recordings_reduced_to_small_sizes_beside_the_oracle() {
+    let folders = format!("{},{}", recording("lund_tdoa_real/data3").display(), recording("xtdoa_real").display());
+    let words = format!("reduced --recordings {folders} --configuration 8r/5s,7r/6s --instances 4");
+    let (one, two) = (tempfile::tempdir().expect("directory"), tempfile::tempdir().expect("directory"));
+    let lines = experiment(&words, one.path(), "2");
+    assert_eq!(lines.len(), 3);
+    for line in &lines[1..] {
+        let of = |column: &str| number(&lines[0], line, column);
+        assert_eq!((of("tried"), of("special"), of("unexplained")), (8.0, 0.0, 0.0), "{line}");
+        // Whatever errors do, without them the network is found.
+        assert_eq!(of("found") + of("control"), 8.0, "{line}");
+        assert!(of("best_is_oracle") <= of("found") && of("oracle_rms_median") < 0.5, "{line}");
+    }
+    // All columns but the last, the time, are the same on one thread.
+    experiment(&words, two.path(), "1");
+    let [first, second] = [one.path(), two.path()].map(|folder| {
+        let text = std::fs::read_to_string(folder.join("trials.csv")).expect("trials");
+        text.lines().map(|line| line.rsplit_once(',').expect("cells").0.to_owned()).collect::<Vec<_>>()
+    });
+    assert_eq!(first, second);
+    let output = one.path().to_str().expect("UTF-8 path");
+    let folder = recording("xtdoa_real").display().to_string();
+    let refused = |size: &str| {
+        let words = ["experiment", "reduced", "--recordings", &folder, "--configuration", size, "--output", output];
+        let result = run("tdoa", &words);
+        (result.status.code(), String::from_utf8_lossy(&result.stderr).into_owned())
+    };
+    let (status, words) = refused("13r/4s");
+    assert!(status == Some(2) && words.contains("no recording has 13 receivers"), "{words}");
+    let (status, words) = refused("5r/9s");
+    assert!(status == Some(2) && words.contains("not solved exactly in space"), "{words}");
+}
+
+#[test]
 fn rooms_in_space_and_the_choice_of_the_dimension() {
     let directory = tempfile::tempdir().expect("directory");
     let words = "calibrate --dimensions 3 --configuration 12r/20s --outliers 0 --instances 2";

@@ -1,6 +1,6 @@
 //! `tdoa experiment damaged`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::trials::calibration::{apart, coverage, damage, oracle};
 use rand::SeedableRng;
@@ -8,11 +8,11 @@ use rand::seq::SliceRandom;
 use rand_pcg::Pcg64Mcg;
 use tdoa::align::align;
 use tdoa::calibrate::{Calibrates, Dimension, Hypotheses, MinimalHypotheses};
-use tdoa::read::{Units, read, read_nodes};
 use tdoa::{CalibrateError, CalibrateOptions, Pseudoranges, calibrate};
 
 use super::book::Rows;
 use super::common::{Common, thread_seconds};
+use super::recording::{Recording, open_all};
 use super::statistics::{mean, short};
 use super::table::Table;
 use crate::quantile::{median, quantile};
@@ -51,12 +51,6 @@ pub(super) struct Arguments {
     triples: u64,
     #[command(flatten)]
     common: Common,
-}
-
-struct Recording<const D: usize> {
-    name: String,
-    measured: Pseudoranges,
-    truth: Vec<Option<[f64; D]>>,
 }
 
 /// What is made of a recording.
@@ -231,34 +225,6 @@ fn sums(rows: &Rows, range: std::ops::Range<usize>) -> Vec<String> {
         short(total("covered_systematic") / total("ellipses")),
         typical("processor_seconds"),
     ]
-}
-
-fn open_all<const D: usize>(folders: &[PathBuf]) -> Result<Vec<Recording<D>>, Failure> {
-    let last = |folder: &Path| folder.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-    let mut recordings = Vec::new();
-    for folder in folders {
-        let mut name = last(folder);
-        if folders.iter().filter(|other| last(other) == name).count() > 1 {
-            name = format!("{}/{name}", folder.parent().map_or_else(String::new, last));
-        }
-        recordings.push(open(folder, name)?);
-    }
-    Ok(recordings)
-}
-
-fn open<const D: usize>(folder: &Path, name: String) -> Result<Recording<D>, Failure> {
-    let measured = read(&folder.join("pseudoranges_m.csv"), Units::Metres).map_err(Failure::unusable)?;
-    let nodes = read_nodes(&folder.join("receivers_gt.csv")).map_err(Failure::unusable)?;
-    let truth = nodes.in_order(measured.receiver_names()).ok_or_else(|| {
-        Failure::Unusable(format!(
-            "{}: receivers_gt.csv is not for the receivers of pseudoranges_m.csv",
-            folder.display()
-        ))
-    })?;
-    if name.is_empty() || name.contains(',') {
-        return Err(Failure::Unusable(format!("{}: give a folder with a name without commas", folder.display())));
-    }
-    Ok(Recording { name, measured, truth })
 }
 
 fn row<const D: usize>(recording: &Recording<D>, kind: Kind, seed: u64) -> Result<String, Failure>

@@ -46,6 +46,7 @@ const SECTIONS: &[Section] = &[
     ("damaged", "Recordings, as they are and damaged", recordings),
     ("rooms", "In space: rooms", space::rooms),
     ("recordings", "In space: recordings, as they are, damaged and in parts", space::recordings),
+    ("reduced", "In space: recordings reduced to the smallest sizes", space::reduced),
     ("dimension", "Plane or space", space::dimension),
 ];
 

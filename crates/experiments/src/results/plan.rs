@@ -33,6 +33,21 @@ const fn plain(name: &'static str, command: &'static str, full: u64, quick: u64)
     Experiment { name, command, full: Some(full), quick: (quick, ""), recordings: &[] }
 }
 
+/// Recordings of twelve microphones in rooms.
+const ROOMS: &[&str] = &[
+    "lund_tdoa_real/data1",
+    "lund_tdoa_real/data2",
+    "lund_tdoa_real/data3",
+    "lund_tdoa_real/data4",
+    "lund_tdoa_real/data5",
+    "lund_tdoa_real/data6",
+    "lund_tdoa_real/data7",
+    "xtdoa_real",
+];
+
+/// Recordings of six anchors.
+const RANGES: &[&str] = &["lps_uwb/data4", "lps_uwb/data5", "lps_uwb/data7"];
+
 /// All of them, in the order of the page.
 ///
 /// The comparisons at equal time have numbers of starts that take about as long as the portfolio
@@ -108,23 +123,35 @@ pub(super) const PLAN: &[Experiment] = &[
         command: "damaged --dimensions 3 --transmitters 8,12,24 --receivers 7,8",
         full: Some(20),
         quick: (1, ""),
-        recordings: &[
-            "lund_tdoa_real/data1",
-            "lund_tdoa_real/data2",
-            "lund_tdoa_real/data3",
-            "lund_tdoa_real/data4",
-            "lund_tdoa_real/data5",
-            "lund_tdoa_real/data6",
-            "lund_tdoa_real/data7",
-            "xtdoa_real",
-        ],
+        recordings: ROOMS,
     },
     Experiment {
         name: "ranges",
         command: "damaged --dimensions 3",
         full: Some(20),
         quick: (1, ""),
-        recordings: &["lps_uwb/data4", "lps_uwb/data5", "lps_uwb/data7"],
+        recordings: RANGES,
+    },
+    Experiment {
+        name: "reduced",
+        command: "reduced --threads 1",
+        full: Some(13),
+        quick: (1, "--configuration 8r/5s"),
+        recordings: ROOMS,
+    },
+    Experiment {
+        name: "reduced-larger",
+        command: "reduced --configuration 8r/5s,9r/5s,10r/5s,7r/6s,8r/6s,6r/8s --threads 1",
+        full: Some(100),
+        quick: (1, ""),
+        recordings: ROOMS,
+    },
+    Experiment {
+        name: "reduced-ranges",
+        command: "reduced --configuration 6r/6s,6r/8s --threads 1",
+        full: Some(4),
+        quick: (1, ""),
+        recordings: RANGES,
     },
     plain("dimension", "dimension", 167, 1),
     plain("low", "dimension --height 0.5,1", 20, 1),

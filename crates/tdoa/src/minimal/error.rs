@@ -63,6 +63,14 @@ pub enum MinimalError {
         /// Name of the transmitter.
         transmitter: String,
     },
+    /// A network to start from that is not one of the matrix.
+    #[error(
+        "the network to start from is not a finite one of {configuration}: give a position for every node and an offset for every transmitter"
+    )]
+    UnusableStart {
+        /// Size of the matrix, such as `7r/5s`.
+        configuration: String,
+    },
     /// Two receivers that cannot be told apart.
     #[error(
         "receivers {first} and {second} measure the same up to a constant: they coincide (or lie on one line with every transmitter); \

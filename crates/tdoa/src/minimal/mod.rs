@@ -28,6 +28,7 @@
 //! Exceptions are the few networks with roots whose Jacobians are singular as far as doubles can
 //! tell.
 
+mod adjust;
 mod check;
 mod doubts;
 mod engine;
@@ -51,6 +52,7 @@ pub mod spatial;
 pub(crate) mod subset;
 mod warning;
 
+pub use adjust::adjust;
 pub use error::MinimalError;
 pub use node_kind::NodeKind;
 pub use options::{MinimalOptions, MinimalStart};
