@@ -18,7 +18,7 @@ mod watch;
 use clap::{Parser, Subcommand};
 use cli::Failure;
 use hc::ranks::Ranks;
-use mpirun::{Program, Sharing};
+use mpirun::{Machine, Program, Sharing};
 use std::process::ExitCode;
 
 /// Homotopy continuation: all isolated solutions of polynomial systems and of parameter families.
@@ -30,6 +30,8 @@ use std::process::ExitCode;
 struct Arguments {
     #[command(subcommand)]
     command: Command,
+    #[command(flatten)]
+    machine: Machine,
 }
 
 #[derive(Subcommand)]
@@ -46,6 +48,10 @@ enum Command {
 impl Program for Arguments {
     const NAME: &'static str = "hc";
     const SHARED: &'static str = "only `hc solve`, `track`, `monodromy` and `mixed-volume` run on several ranks";
+
+    fn machine(&self) -> &Machine {
+        &self.machine
+    }
 
     fn sharing(&self) -> Option<&Sharing> {
         match &self.command {

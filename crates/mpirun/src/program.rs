@@ -1,5 +1,6 @@
 //! A program from its arguments to its exit status, and its options of work over several ranks.
 
+use crate::machine::Machine;
 use clap::Parser;
 use cli::Failure;
 use hc::ranks::{Exchange, Ranks, RanksOptions};
@@ -11,6 +12,9 @@ pub trait Program: Parser {
     const NAME: &'static str;
     /// A sentence that names the commands several ranks can do; others are refused with it.
     const SHARED: &'static str;
+
+    /// Options about the machine.
+    fn machine(&self) -> &Machine;
 
     /// Options of work over several ranks, where the command has them.
     fn sharing(&self) -> Option<&Sharing>;
@@ -79,7 +83,7 @@ fn run<P: Program>(exchange: Option<&dyn Exchange>) -> ExitCode {
     let result = if ranks.is_some() && options.is_none() {
         Err(Failure::Unusable(format!("{}; start this without mpirun", P::SHARED)))
     } else {
-        program.execute(ranks.as_ref())
+        program.machine().prepare().and_then(|()| program.execute(ranks.as_ref()))
     };
     if !is_lead {
         // Rank 0 says what there is to be said.

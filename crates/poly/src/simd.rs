@@ -6,6 +6,8 @@
 //! for bit. The fused instruction is enabled along with AVX2 only for explicit calls of
 //! `f64::mul_add` (double-double), whose result is the same everywhere.
 
+use std::sync::atomic::{AtomicU8, Ordering};
+
 /// An instruction set for which kernels are compiled, narrower ones first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
@@ -17,6 +19,9 @@ pub enum Isa {
     /// AVX-512 (F, VL, DQ), eight doubles per register.
     Avx512,
 }
+
+/// The widest instruction set that may be detected, as a number.
+static LIMIT: AtomicU8 = AtomicU8::new(Isa::Avx512 as u8);
 
 /// Code to be compiled for several instruction sets: `run` must be `#[inline(always)]`.
 pub trait Kernel {
@@ -31,18 +36,15 @@ pub trait Kernel {
 }
 
 impl Isa {
-    /// The widest instruction set of this machine.
+    /// The widest instruction set of this machine, within the [limit](Self::limit).
     pub fn detect() -> Isa {
-        #[cfg(target_arch = "x86_64")]
-        {
-            if Isa::Avx512.available() {
-                return Isa::Avx512;
-            }
-            if Isa::Avx2.available() {
-                return Isa::Avx2;
-            }
-        }
-        Isa::Portable
+        Isa::up_to(LIMIT.load(Ordering::Relaxed))
+    }
+
+    /// From now on [`detect`](Self::detect) gives no wider instruction set than this, in the whole process:
+    /// for programs that measure, or check that results do not depend on the machine.
+    pub fn limit(widest: Isa) {
+        LIMIT.store(widest as u8, Ordering::Relaxed);
     }
 
     /// Whether this machine has the instruction set.
@@ -67,8 +69,13 @@ impl Isa {
     /// The widest instruction set of this machine that is not wider than this one.
     #[inline]
     pub fn within_machine(self) -> Isa {
+        Isa::up_to(self as u8)
+    }
+
+    #[inline]
+    fn up_to(limit: u8) -> Isa {
         let sets = [Isa::Avx512, Isa::Avx2];
-        sets.into_iter().find(|&isa| isa <= self && isa.available()).unwrap_or(Isa::Portable)
+        sets.into_iter().find(|&isa| isa as u8 <= limit && isa.available()).unwrap_or(Isa::Portable)
     }
 
     /// Runs a kernel, compiled for the widest instruction set of this machine that is not wider

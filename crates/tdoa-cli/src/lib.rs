@@ -15,7 +15,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use cli::{Failure, interrupt, on_threads, output};
 use hc::ranks::Ranks;
-use mpirun::{Program, Sharing};
+use mpirun::{Machine, Program, Sharing};
 
 /// Calibrates sensor networks in the plane and in space from arrival times alone.
 ///
@@ -26,6 +26,8 @@ use mpirun::{Program, Sharing};
 struct Arguments {
     #[command(subcommand)]
     command: Command,
+    #[command(flatten)]
+    machine: Machine,
 }
 
 #[derive(Subcommand)]
@@ -43,6 +45,10 @@ impl Program for Arguments {
     const SHARED: &'static str = experiments::command::Arguments::SHARED;
     #[cfg(not(feature = "experiments"))]
     const SHARED: &'static str = "no command of this build runs on several ranks";
+
+    fn machine(&self) -> &Machine {
+        &self.machine
+    }
 
     fn sharing(&self) -> Option<&Sharing> {
         match &self.command {

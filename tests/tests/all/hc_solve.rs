@@ -40,17 +40,39 @@ fn writes_what_the_contract_says() {
     }
 }
 
+/// `hc solve` on a system with multiple solutions, which takes an endgame: its result without the time, or the
+/// exit status and what it said.
+fn result(arguments: &[&str]) -> Result<String, (Option<i32>, String)> {
+    let text = "3\nx^2+y*z-x-1;\n(y^2+x*z-2*y+3)*(x-z);\n(z-1)^2*(x*y-5);";
+    let (status, out, error) = solve(text, &[&["--json", "-"], arguments].concat());
+    if status != Some(0) {
+        return Err((status, error));
+    }
+    let mut json: Value = serde_json::from_str(&out).expect("JSON");
+    json["seconds"] = Value::Null;
+    Ok(json.to_string())
+}
+
 #[test]
 fn the_same_bytes_on_any_number_of_threads() {
-    let without_time = |threads: &str| {
-        let text = "3\nx^2+y*z-x-1;\n(y^2+x*z-2*y+3)*(x-z);\n(z-1)^2*(x*y-5);";
-        let (status, out, _) = solve(text, &["--json", "-", "--threads", threads]);
-        assert_eq!(status, Some(0));
-        let mut json: Value = serde_json::from_str(&out).expect("JSON");
-        json["seconds"] = Value::Null;
-        json.to_string()
-    };
-    assert_eq!(without_time("1"), without_time("3"));
+    let one = result(&["--threads", "1"]);
+    assert!(one.is_ok(), "{one:?}");
+    assert_eq!(one, result(&["--threads", "3"]));
+}
+
+#[test]
+fn the_same_bytes_with_any_instruction_set() {
+    let portable = result(&["--instructions", "portable"]);
+    assert!(portable.is_ok(), "{portable:?}");
+    for set in ["avx2", "avx512"] {
+        match result(&["--instructions", set]) {
+            // A machine without them says so.
+            Err((status, error)) => assert!(status == Some(2) && error.contains("does not have"), "{error}"),
+            same => assert_eq!(same, portable, "{set}"),
+        }
+    }
+    let (status, words) = result(&["--instructions", "abacus"]).unwrap_err();
+    assert!(status == Some(2) && words.contains("portable, avx2, avx512"), "{words}");
 }
 
 /// A circle and a hyperbola that meet in (1, 2), (2, 1) and their opposites, in each of the formats
