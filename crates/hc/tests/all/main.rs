@@ -2,6 +2,7 @@
 //! anew. Those that count what a process allocates are programs of their own.
 
 mod certifying;
+mod chicago;
 mod common;
 mod components;
 mod conics;
