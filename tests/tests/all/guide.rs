@@ -25,6 +25,8 @@ const NOT_RUN: &[&str] = &[
     // Written into the repository; `--check` is run instead.
     "cargo xtask codegen",
     "cargo xtask experiments --page",
+    // Builds a crate outside the workspace, for minutes.
+    "cargo run --release --manifest-path examples/cameras/Cargo.toml -- 50",
     // Each experiment runs in small in tdoa_experiments.rs.
     "cargo xtask experiments --quick",
     "cargo bench -p benches --bench evaluate",
