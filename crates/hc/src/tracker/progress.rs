@@ -158,8 +158,8 @@ impl PathProgress {
     /// A path in so many pieces that goes on.
     pub(super) fn from(stop: &Stop, pieces: usize) -> Self {
         let Stop { path, t, counts, .. } = *stop;
+        let (pieces, state) = (pieces.max(1), StepState::Accepted);
         let ahead = ((t * pieces as f64).ceil() as usize).saturating_sub(1);
-        let state = StepState::Accepted;
         PathProgress { path, t, t_next: t, pieces, ahead, before: counts, state, fresh: true, ..Self::idle() }
     }
 
@@ -428,14 +428,14 @@ impl PathProgress {
                 // workable step.
                 self.extended = true;
                 self.used_extended = true;
-                self.step = 1e-3 * self.radius.min(self.t);
+                self.step = 1e-3 * self.radius.min(self.t - self.stop());
                 return None;
             }
             if !self.wide && bounds.options.extended_precision {
                 // And once more, because rounding errors of the point may have made the predictor
                 // fail.
                 self.widen();
-                self.step = 1e-3 * self.radius.min(self.t);
+                self.step = 1e-3 * self.radius.min(self.t - self.stop());
                 return None;
             }
             return Some(PathEnd::StepTooSmall);

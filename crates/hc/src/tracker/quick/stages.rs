@@ -66,7 +66,7 @@ impl<P: ParameterPath, I: Iterator<Item = usize>> Paths<Singles16> for Begin<'_,
     fn next(&mut self) -> Option<(Stop, &[Complex64])> {
         let path = loop {
             let path = self.which.next()?;
-            if self.path.pieces(path) == 1 {
+            if self.path.pieces(path) <= 1 {
                 break path;
             }
             // Quick steps know nothing of pieces.
