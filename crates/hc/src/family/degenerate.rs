@@ -11,27 +11,27 @@ use num_complex::Complex64;
 use poly::{Evaluate, Isa};
 
 impl Family {
-    /// Whether a factor that the family declares nonzero vanishes at the solution `x` as far as rounding errors
-    /// can tell: a change of `x` by a small share of its largest coordinate would make it vanish.
-    fn degenerates(&self, p: &[Complex64], x: &[Complex64]) -> bool {
-        let (factors, n) = (self.nonzero.equations(), x.len());
+    /// Drops solutions outside the family. The paths to them count as failed.
+    ///
+    /// A factor has vanished at a solution `x` if a change of `x` by a small share of its largest coordinate
+    /// would make it vanish. Unlike [`accepts`](Self::accepts), which is for generic parameters of size one, this
+    /// does not depend on the unit of the unknowns.
+    pub(super) fn keep_own(&self, p: &[Complex64], found: &mut Solutions) {
+        let (factors, n) = (self.nonzero.equations(), self.nonzero.variables());
+        if factors == 0 {
+            return;
+        }
         let zeros = |count: usize| vec![Complex64::new(0.0, 0.0); count];
         let (mut values, mut gradients) = (zeros(factors), zeros(factors * n));
         let mut memory = self.nonzero.memory(Isa::Portable);
-        self.nonzero.jacobian(&mut memory, x, p, &mut values, &mut gradients);
-        let largest = x.iter().map(|z| z.norm()).fold(0.0, f64::max);
-        let slope = |factor: usize| gradients[factor * n..][..n].iter().map(|z| z.norm()).sum::<f64>();
-        (0..factors).any(|k| values[k].norm() <= FAMILIES.degenerate * slope(k) * largest)
-    }
-
-    /// Drops solutions outside the family. The paths to them count as failed.
-    pub(super) fn keep_own(&self, p: &[Complex64], found: &mut Solutions) {
-        if self.nonzero.equations() == 0 {
-            return;
-        }
         let mut paths = 0;
         found.solutions.retain(|solution| {
-            let degenerates = self.degenerates(p, &solution.value);
+            let x = &solution.value;
+            self.nonzero.jacobian(&mut memory, x, p, &mut values, &mut gradients);
+            let largest = x.iter().map(|z| z.norm()).fold(0.0, f64::max);
+            let slopes = gradients.chunks(n).map(|row| row.iter().map(|z| z.norm()).sum::<f64>());
+            let degenerates =
+                values.iter().zip(slopes).any(|(value, slope)| value.norm() <= FAMILIES.degenerate * slope * largest);
             paths += usize::from(degenerates) * solution.multiplicity;
             !degenerates
         });

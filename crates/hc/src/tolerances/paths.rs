@@ -33,6 +33,9 @@ pub struct TrackingTolerances {
     pub faint: f64,
     /// The radius of faint parts counts at most so many times.
     pub faint_reach: f64,
+    /// In logarithmic time a coordinate counts as `exp(v t)` if its derivatives are not larger than those for
+    /// this `|v|`.
+    pub steepest: f64,
 }
 
 /// The thresholds of the tracker.
@@ -48,6 +51,7 @@ pub const TRACKING: TrackingTolerances = TrackingTolerances {
     least_weight_sqr: 1e-12,
     faint: 0.01,
     faint_reach: 10.0,
+    steepest: 200.0,
 };
 
 /// Thresholds of [quick](crate::TrackerOptions::quick) steps. Corrections of an attempt all take the

@@ -4,22 +4,22 @@
 //! logarithms are nearly straight lines. The Pade approximant of the logarithm is then good for a step many
 //! times longer than that of the coordinate itself.
 
+use crate::tolerances::TRACKING;
 use poly::Lane;
 use poly::simd::{Isa, Kernel};
 
-/// A coordinate counts as `exp(v t)` if its derivatives are not larger than those for this `|v|`.
-const STEEPEST: f64 = 200.0;
 /// The argument of the exponential function is halved so many times.
 const HALVINGS: usize = 4;
 
-/// Taylor coefficients times constants, in the coordinates and lanes of `masks`, so that the logarithm of the
-/// coordinate is that of order 0, and the sum of the others over order 0.
+/// Replaces Taylor coefficients `x_k` of a coordinate by `y_k = x_0 c_k`, where
+/// `x_0 exp(c_1 d + c_2 d^2 + c_3 d^3)` has the same coefficients up to order 3: the predictor then
+/// extrapolates the logarithm, in units of the coordinate. `y_0 = x_0`.
 pub(super) struct Logarithms<'a, S: Lane> {
     /// Taylor coefficients of orders 0 to 3, `n` each.
     pub(super) taylor: &'a [S],
     /// The lanes in which logarithms are taken.
     pub(super) lanes: u16,
-    /// As many as in `taylor`; in other lanes the same.
+    /// The `y_k`, in the order of `taylor`; where no logarithm is taken, the `x_k`.
     pub(super) series: &'a mut [S],
     /// For each coordinate, the lanes in which its logarithm was taken: not where it is nearly zero.
     pub(super) masks: &'a mut [u16],
@@ -37,7 +37,7 @@ impl<S: Lane> Kernel for Logarithms<'_, S> {
             let mut mask = 0u16;
             for l in 0..S::LANES {
                 let size = |k: usize| sizes[k].as_ref()[l];
-                let most = STEEPEST * STEEPEST;
+                let most = TRACKING.steepest * TRACKING.steepest;
                 let bounds = [1.0, most, most * most, most * most * most];
                 // Written so that NaN does not count.
                 let mut counts = size(0) > f64::MIN_POSITIVE;
@@ -48,7 +48,6 @@ impl<S: Lane> Kernel for Logarithms<'_, S> {
             }
             mask &= self.lanes;
             self.masks[j] = mask;
-            // x = x0 exp(c1 d + c2 d^2 + c3 d^3), and y_k = x0 c_k.
             let half = S::real(0.5);
             let c1 = S::div(&x[n + j], &x[j]);
             let y2 = S::sub(&x[2 * n + j], &S::mul(&c1, &x[n + j]).scale_by(&half));
@@ -62,7 +61,7 @@ impl<S: Lane> Kernel for Logarithms<'_, S> {
     }
 }
 
-/// Replaces predictions `x + y` with such series by `x exp(y / x)`, in the coordinates and lanes of `masks`.
+/// Replaces predictions `x + y` from [`Logarithms`] by `x exp(y / x)`, in the coordinates and lanes of `masks`.
 pub(super) struct Exponentials<'a, S: Lane> {
     /// The points from which the predictions lead.
     pub(super) x: &'a [S],

@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum PathEnd {
-    /// A regular solution of the target system.
+    /// A regular solution of the target system, or at the end of a [piece](crate::homotopy::ParameterPath::pieces)
+    /// of the system there.
     Success,
     /// Some coordinates grow without bound: their valuations are negative and settled.
     AtInfinity,

@@ -131,8 +131,8 @@ pub(super) fn reduced(results: &Path) -> Result<String> {
          One that does not is as a rule a minimum where the Jacobian is singular: errors of millimetres have made the two real roots near it complex. \
          Two things show this. \"Nearly real\" counts oracles that are found from roots with imaginary parts up to a tenth of the size of the \
          data, as `tdoa calibrate` takes them. \"Fold\" counts those with a candidate on either side, within a tenth of the network's size, \
-         once a thousandth of the oracle's residuals, or less, is reversed. For the others neither was shown. In the first seven of \
-         these no minimum was reached in 2,000 steps: an event or a microphone moves away, 56 to 437 m by then.\n\n",
+         once a thousandth of the oracle's residuals, or less, is reversed. For the others neither was shown; least squares has no \
+         minimum where an event or a microphone moves away without end.\n\n",
     );
     text += &head(&[
         "",
