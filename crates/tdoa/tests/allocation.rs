@@ -20,8 +20,8 @@ fn later_solves_allocate_their_results_alone() {
             let result = measure(|| drop(found.clone()));
             let found = found.unwrap();
             retracked += found.paths.retracked;
-            // Memory has grown to what is needed; warnings are written piece by piece.
-            if seed >= 20 && found.warnings.is_empty() {
+            // The first call makes all memory; warnings are written piece by piece.
+            if seed > 0 && found.warnings.is_empty() {
                 let (all, own) = (solve.count_total, result.count_total);
                 assert!(
                     all <= own,

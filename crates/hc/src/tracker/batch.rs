@@ -86,9 +86,14 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         }
     }
 
-    /// Replaces the settings for later paths, except the instruction set.
+    /// Replaces the settings for later paths. For another instruction set all memory is made anew.
     pub fn set_options(&mut self, options: &TrackerOptions) {
-        self.bounds = Bounds::new(options);
+        if options.isa.unwrap_or_else(Isa::detect) == self.work.isa {
+            self.bounds = Bounds::new(options);
+        } else {
+            let monitor = self.monitor.clone();
+            *self = Tracker { monitor, ..Tracker::new(self.work.system, options) };
+        }
     }
 
     /// Sets the monitor that may stop later paths. The default monitor stops nothing.
@@ -115,8 +120,13 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         if !self.bounds.options.quick {
             return self.track_carefully(path, starts, which.into_iter().map(Stop::at_start), out);
         }
-        let mut left = std::mem::take(&mut self.left);
+        let (which, mut left) = (which.into_iter(), std::mem::take(&mut self.left));
         left.clear();
+        // Once and for all, so that later calls need no memory.
+        if let (_, Some(paths)) = which.size_hint() {
+            left.reserve(paths, self.work.n);
+            self.strayed.reserve(paths);
+        }
         self.track_quickly(path, starts, which, out, &mut left);
         self.track_carefully(path, &left.points, left.list.iter().copied(), out);
         self.left = left;

@@ -43,8 +43,7 @@ impl<'a, E: Evaluate> Trackers<'a, E> {
         self.system
     }
 
-    /// Tracks as [`super::track`] does. All calls must have the same instruction set in their
-    /// options.
+    /// Tracks as [`super::track`] does.
     pub(crate) fn track<P: ParameterPath>(
         &self,
         path: &P,

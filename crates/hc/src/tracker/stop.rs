@@ -42,6 +42,12 @@ impl Stops {
         self.points.clear();
     }
 
+    /// Makes room for so many paths in all, with points of `n` coordinates.
+    pub(super) fn reserve(&mut self, paths: usize, n: usize) {
+        self.list.reserve(paths.saturating_sub(self.list.len()));
+        self.points.reserve(paths.saturating_mul(n).saturating_sub(self.points.len()));
+    }
+
     /// Adds a path that goes on at this point.
     pub(super) fn push(&mut self, stop: Stop, point: impl IntoIterator<Item = Complex64>) {
         self.points.extend(point);

@@ -51,8 +51,7 @@ impl<F: FormulationIn<D>, const D: usize> Engine<F, D> {
         let make = if F::MANY { FibreTracker::on_all_threads } else { FibreTracker::new };
         let finder = RootFinder {
             tracker: make(F::system(), Recharted::default(), &stored),
-            stored,
-            nearest: Nearest::default(),
+            nearest: Nearest::new(stored, F::RECEIVERS, F::TRANSMITTERS),
             start,
         };
         let roots = Roots {
@@ -76,7 +75,7 @@ impl<F: FormulationIn<D>, const D: usize> Engine<F, D> {
     ) -> Result<MinimalSolution<D>, MinimalError> {
         let size = (measured.receivers(), measured.transmitters());
         assert_eq!(size, (F::RECEIVERS, F::TRANSMITTERS), "size of the matrix");
-        self.data.take(measured);
+        self.data.take_in_order(measured, &self.finder.nearest.orders(measured));
         self.target.clear();
         self.target.extend(self.data.parameters().iter().map(|&f| Complex64::from(f)));
         let (data, target, roots) = (&self.data, &self.target[..], &mut self.roots);
@@ -109,9 +108,8 @@ impl<F: FormulationIn<D>, const D: usize> Engine<F, D> {
 /// What finds the roots: the paths to the data, and where they start.
 struct RootFinder<F: Formulation> {
     tracker: FibreTracker<'static, F::System, Recharted<F>>,
-    stored: Fibre,
     nearest: Nearest,
-    /// The stored fibre in the position nearest to the data.
+    /// The stored fibre, turned to the data.
     start: Fibre,
 }
 
@@ -127,8 +125,8 @@ impl<F: Formulation> RootFinder<F> {
         let mut retracked = 0;
         let mut best: Option<(PathCounts, PathSet)> = None;
         for (attempt, turn) in TURNS.into_iter().enumerate() {
-            retracked += if attempt > 0 { self.stored.len() } else { 0 };
-            self.nearest.find::<F>(&self.stored, target, turn, &mut self.start);
+            retracked += if attempt > 0 { self.nearest.stored().len() } else { 0 };
+            self.nearest.turn(target, turn, F::WEIGHTS, &mut self.start);
             let in_parts = attempt == 0 && options.first_under.is_some();
             let size = if in_parts { PART } else { self.start.len() };
             let enough = |part: &PathSet| in_parts && found.fits_after(part);
@@ -177,19 +175,19 @@ impl<F: Formulation> RootFinder<F> {
         if !direct.whole {
             let (member, tracked) = scratch::at_random::<F>(found.target, monitor)?;
             spent += tracked;
-            if let Some(mut member) = member {
+            if let Some(member) = member {
                 spent += direct.paths.tracked;
-                std::mem::swap(&mut self.stored, &mut member);
+                let stored = self.nearest.replace(member);
                 let (paths, stopped_early) = self.run(found);
-                self.stored = member;
+                self.nearest.replace(stored);
                 if monitor.is_cancelled() {
                     return Err(MinimalError::Cancelled);
                 }
                 return Ok((PathCounts { retracked: spent + paths.retracked, ..paths }, stopped_early));
             }
         }
-        self.tracker.set_paths(PathSet::new(self.stored.dimension));
-        for root in direct.fibre.solutions.chunks_exact(self.stored.dimension) {
+        self.tracker.set_paths(PathSet::new(direct.fibre.dimension));
+        for root in direct.fibre.solutions.chunks_exact(direct.fibre.dimension) {
             found.add(root);
         }
         found.counts.complex = direct.fibre.len();

@@ -30,8 +30,6 @@ pub(crate) trait Formulation {
     /// Number of charts: forms of the same problem with the nodes in another order. Chart 0 is that
     /// of the data.
     const CHARTS: usize;
-    /// What can be permuted in the data without changing a solution.
-    const FREE: Free;
     /// Whether there are so many paths that they are tracked on all threads.
     const MANY: bool = false;
 
@@ -59,13 +57,4 @@ pub(crate) trait FormulationIn<const D: usize = 2>: Formulation {
     /// The network of a real solution, its first receiver in the origin, its offsets `p_j`; `None`
     /// unless the positions are real.
     fn network(f: &[f64], x: &[f64], squares: &mut LeastSquares) -> Option<Network<D>>;
-}
-
-/// Nodes that the unknowns do not tell apart.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Free {
-    /// All receivers but the first.
-    Receivers,
-    /// All transmitters.
-    Transmitters,
 }

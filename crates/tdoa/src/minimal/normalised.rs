@@ -1,14 +1,17 @@
 //! Measurements in the form that the equations need.
 
+use super::nearest::{Order, Orders};
 use super::options::MinimalOptions;
 use super::polish::Polisher;
 use super::solution::Candidate;
 use crate::network::Network;
 use crate::pseudoranges::Pseudoranges;
+use smallvec::SmallVec;
 
-/// Measurements relative to the first receiver, in units of their own size.
+/// Measurements with the nodes in some order, relative to the first receiver, in units of their own size.
 #[derive(Default)]
 pub(crate) struct Normalised {
+    orders: Orders,
     /// `(f_ij - f_1j) / size`, row-major; zeros in the first row.
     pub(crate) matrix: Vec<f64>,
     first: Vec<f64>,
@@ -16,7 +19,7 @@ pub(crate) struct Normalised {
 }
 
 impl Normalised {
-    /// A matrix without missing entries.
+    /// A matrix without missing entries, in the order of the data.
     pub(crate) fn new(measured: &Pseudoranges) -> Self {
         let mut data = Normalised::default();
         data.take(measured);
@@ -25,11 +28,19 @@ impl Normalised {
 
     /// [`new`](Self::new) with the memory of an earlier matrix.
     pub(crate) fn take(&mut self, measured: &Pseudoranges) {
+        self.take_in_order(measured, &Orders::of_data(measured.receivers(), measured.transmitters()));
+    }
+
+    /// A matrix without missing entries, its nodes in these orders, with the memory of an earlier matrix.
+    pub(crate) fn take_in_order(&mut self, measured: &Pseudoranges, orders: &Orders) {
         let (f, n) = (measured.cells().values(), measured.transmitters());
+        self.orders.clone_from(orders);
+        let Orders { receivers, transmitters } = orders;
+        let cell = |i: usize, j: usize| f[receivers[i] * n + transmitters[j]];
         self.first.clear();
-        self.first.extend_from_slice(&f[..n]);
+        self.first.extend((0..n).map(|j| cell(0, j)));
         self.matrix.clear();
-        self.matrix.extend((0..f.len()).map(|k| f[k] - f[k % n]));
+        self.matrix.extend((0..f.len()).map(|k| cell(k / n, k % n) - self.first[k % n]));
         let count = (f.len() - n) as f64;
         let size = (self.matrix.iter().map(|d| d * d).sum::<f64>() / count).sqrt();
         for d in self.matrix.iter_mut() {
@@ -69,7 +80,7 @@ impl Normalised {
         Candidate { network, residual, physical, condition }
     }
 
-    /// Back to metres and to the offsets of the data.
+    /// Back to metres, to the offsets and to the order of the data, the first receiver in the origin.
     pub(crate) fn restore<const D: usize>(&self, network: &mut Network<D>) {
         for x in network.receivers.iter_mut().chain(&mut network.transmitters).flatten() {
             *x *= self.size;
@@ -77,16 +88,38 @@ impl Normalised {
         for (o, first) in network.offsets.iter_mut().zip(&self.first) {
             *o = *o * self.size + first;
         }
+        let Orders { receivers, transmitters } = &self.orders;
+        if receivers.is_sorted() && transmitters.is_sorted() {
+            return;
+        }
+        give_back(&mut network.receivers, receivers);
+        give_back(&mut network.transmitters, transmitters);
+        give_back(&mut network.offsets, transmitters);
+        let origin = network.receivers[0];
+        for position in network.receivers.iter_mut().chain(&mut network.transmitters) {
+            for (x, origin) in position.iter_mut().zip(&origin) {
+                *x -= origin;
+            }
+        }
     }
 
-    /// From metres to these units; the inverse of [`Normalised::restore`].
+    /// From metres to these units, where the order is that of the data; the inverse of [`Normalised::restore`].
     pub(crate) fn enter<const D: usize>(&self, network: &mut Network<D>) {
+        debug_assert!(self.orders.receivers.is_sorted() && self.orders.transmitters.is_sorted());
         for x in network.receivers.iter_mut().chain(&mut network.transmitters).flatten() {
             *x /= self.size;
         }
         for (o, first) in network.offsets.iter_mut().zip(&self.first) {
             *o = (*o - first) / self.size;
         }
+    }
+}
+
+/// Gives every node its place in the data back.
+fn give_back<T: Copy>(nodes: &mut [T], order: &Order) {
+    let ordered: SmallVec<[T; 16]> = SmallVec::from_slice(nodes);
+    for (node, &place) in ordered.iter().zip(order) {
+        nodes[place] = *node;
     }
 }
 

@@ -91,7 +91,7 @@ fn the_first_network_that_fits_ends_the_search() {
         let solution = solver.solve(&simulation.pseudoranges, &options).unwrap();
         let found = |c: &tdoa::Candidate| c.physical && position_error(&c.network, &simulation.network) < 1e-4;
         assert!(solution.candidates.iter().any(found), "seed {seed}");
-        assert_eq!(solution.stopped_early, solution.paths.tracked < 152);
+        assert!(solution.stopped_early, "seed {seed}");
         tracked += solution.paths.tracked;
     }
     assert!(tracked < 4 * 152, "{tracked}");

@@ -29,6 +29,11 @@ impl<E: Evaluate, S: Lane> Tracker<'_, E, S> {
         stops.clear();
         again.clear();
         let mut which = which.into_iter();
+        // Once and for all, so that later calls need no memory.
+        if let (_, Some(paths)) = which.size_hint() {
+            stops.reserve(paths, n);
+            again.reserve(paths);
+        }
 
         let first = QuickLanes { work: singles, lanes, options, monitor, tolerances: &SINGLES, polishes: false };
         first.run(path, &mut Begin { n, starts, which: &mut which, stops, path, left });

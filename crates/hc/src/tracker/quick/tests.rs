@@ -5,6 +5,7 @@ use crate::monitor::Monitor;
 use crate::tracker::stop::{Counts, Stop};
 use crate::tracker::{PathEnd, PathSet, Tracker, TrackerOptions};
 use num_complex::Complex64;
+use poly::simd::Isa;
 use poly::{Evaluate, Interpreter, Lane, Lanes8, parse};
 
 fn quick() -> TrackerOptions {
@@ -166,4 +167,22 @@ fn a_start_that_is_no_solution_is_found_out() {
     let mut out = PathSet::new(1);
     Tracker::<_, Lanes8>::new(&system, &quick()).track(&path, &[Complex64::from(1.7)], [0], &mut out);
     assert_eq!(out.results()[0].end, PathEnd::InvalidStart);
+}
+
+#[test]
+fn the_instruction_set_can_be_changed() {
+    let (system, starts) = roots();
+    let path = Segment::new(&START.map(Complex64::from), &[Complex64::from(2.0), Complex64::from(1.0)]);
+    let mut tracker = Tracker::<_, Lanes8>::new(&system, &quick());
+    let mut outs = [Isa::Portable, Isa::Avx2.within_machine(), Isa::detect()].map(|isa| {
+        tracker.set_options(&TrackerOptions { isa: Some(isa), ..quick() });
+        assert_eq!(tracker.work.isa, isa);
+        let mut out = PathSet::new(2);
+        tracker.track(&path, &starts, 0..12, &mut out);
+        out
+    });
+    outs.iter_mut().for_each(PathSet::sort);
+    let points = |out: &PathSet| (0..12).map(|k| out.point(k).to_vec()).collect::<Vec<_>>();
+    assert_eq!(points(&outs[0]), points(&outs[1]));
+    assert_eq!(points(&outs[0]), points(&outs[2]));
 }

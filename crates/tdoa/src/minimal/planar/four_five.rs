@@ -1,7 +1,7 @@
 //! Four receivers, five transmitters: 344 paths, in the Gram matrix of the receivers.
 
 use crate::generated::four_five as generated;
-use crate::minimal::formulation::{Formulation, FormulationIn, Free, Parameters, Point};
+use crate::minimal::formulation::{Formulation, FormulationIn, Parameters, Point};
 use crate::minimal::linear::LeastSquares;
 use crate::network::Network;
 use hc::Fibre;
@@ -32,7 +32,6 @@ impl Formulation for FourFive {
     const TRANSMITTERS: usize = COLUMNS;
     const WEIGHTS: &'static [i32] = WEIGHTS;
     const CHARTS: usize = CHARTS.len();
-    const FREE: Free = Free::Transmitters;
 
     fn system() -> &'static Self::System {
         &generated::System

@@ -6,7 +6,7 @@
 //! fixes the offsets, the rest is linear.
 
 use crate::generated::five_six;
-use crate::minimal::formulation::{Formulation, FormulationIn, Free, Parameters, Point};
+use crate::minimal::formulation::{Formulation, FormulationIn, Parameters, Point};
 use crate::minimal::linear::LeastSquares;
 use crate::network::Network;
 use hc::Fibre;
@@ -24,7 +24,6 @@ impl Formulation for FiveSix {
     const TRANSMITTERS: usize = 6;
     const WEIGHTS: &'static [i32] = &[0, 0, 2, 0, 0, 2];
     const CHARTS: usize = CHARTS.len();
-    const FREE: Free = Free::Transmitters;
 
     fn system() -> &'static Self::System {
         &five_six::System

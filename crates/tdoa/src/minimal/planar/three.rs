@@ -4,7 +4,7 @@
 use super::chart::{CHARTS, COLUMNS, enter, leave, permute_columns};
 use super::dual;
 use crate::generated::{five_four, six_three};
-use crate::minimal::formulation::{Formulation, FormulationIn, Free, Parameters, Point};
+use crate::minimal::formulation::{Formulation, FormulationIn, Parameters, Point};
 use crate::minimal::linear::LeastSquares;
 use crate::network::Network;
 use hc::Fibre;
@@ -25,7 +25,6 @@ impl Formulation for SixThree {
     const TRANSMITTERS: usize = 3;
     const WEIGHTS: &'static [i32] = WEIGHTS;
     const CHARTS: usize = CHARTS.len();
-    const FREE: Free = Free::Receivers;
 
     fn system() -> &'static Self::System {
         &six_three::System
@@ -72,7 +71,6 @@ impl Formulation for FiveFour {
     const TRANSMITTERS: usize = FOUR;
     const WEIGHTS: &'static [i32] = WEIGHTS;
     const CHARTS: usize = CHARTS.len();
-    const FREE: Free = Free::Receivers;
 
     fn system() -> &'static Self::System {
         &five_four::System

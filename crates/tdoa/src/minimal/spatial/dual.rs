@@ -7,7 +7,7 @@
 
 use super::stored::{EIGHT_FIVE, EIGHT_FIVE_FAMILY, SEVEN_FIVE, SEVEN_FIVE_FAMILY, Stored, TEN_FOUR, TEN_FOUR_FAMILY};
 use super::symmetric::{Factored, Matrix, Vector, coordinates, form};
-use crate::minimal::formulation::{Formulation, FormulationIn, Free, Parameters, Point};
+use crate::minimal::formulation::{Formulation, FormulationIn, Parameters, Point};
 use crate::minimal::linear::LeastSquares;
 use crate::network::Network;
 use hc::Fibre;
@@ -100,7 +100,6 @@ impl<S: Size> Formulation for Dual<S> {
     const TRANSMITTERS: usize = S::TRANSMITTERS;
     const WEIGHTS: &'static [i32] = S::WEIGHTS;
     const CHARTS: usize = CHARTS.len();
-    const FREE: Free = Free::Receivers;
     const MANY: bool = true;
 
     fn system() -> &'static Interpreter {

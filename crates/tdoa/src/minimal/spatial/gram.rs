@@ -4,7 +4,7 @@
 
 use super::stored::{SIX_SIX, SIX_SIX_FAMILY};
 use super::symmetric::{Factored, Matrix, Vector, coordinates, form};
-use crate::minimal::formulation::{Formulation, FormulationIn, Free, Parameters, Point};
+use crate::minimal::formulation::{Formulation, FormulationIn, Parameters, Point};
 use crate::minimal::linear::LeastSquares;
 use crate::network::Network;
 use hc::Fibre;
@@ -40,7 +40,6 @@ impl Formulation for SixSix {
     const TRANSMITTERS: usize = COLUMNS;
     const WEIGHTS: &'static [i32] = &[0, 0, 0, 2, 0, 0, 0, 2, 2, 2, 2, 0, 0, 0];
     const CHARTS: usize = CHARTS.len();
-    const FREE: Free = Free::Transmitters;
     const MANY: bool = true;
 
     fn system() -> &'static Interpreter {
