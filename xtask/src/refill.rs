@@ -2,19 +2,16 @@
 //! well-placed parameter point.
 
 use anyhow::{Context, Result, ensure};
-use hc::family::{StartFile, Stopped, move_fibre, track_fibre};
-use hc::poly::Interpreter;
-use hc::random::Random;
-use hc::{Family, Fibre, FibreOptions, MonodromyOptions};
-use num_complex::Complex64;
+use hc::family::{ChoiceOptions, StartFile, Stopped, easiest_fibre, real_sample};
+use hc::{Family, Fibre, MonodromyOptions};
+use tdoa::minimal::parameters_near;
+use tdoa::{Layout, Pseudoranges, SimulateOptions, simulate};
 
-/// Parameter points that are tried as the place of the fibre, and real targets that each is judged
-/// by.
-const PLACES: u64 = 24;
-const TARGETS: u64 = 12;
-/// The numbers of their random streams. Others would give other fibres.
-const FIRST_TARGET: u64 = 1000;
-const FIRST_PLACE: u64 = 2000;
+/// Members and networks that are tried for the solvers in the plane.
+const MEMBERS: usize = 240;
+const NETWORKS: usize = 72;
+/// Seed of the first network; the experiments begin at zero.
+const FIRST_NETWORK: u64 = 1_000_000;
 
 /// Trace tests on different lines until one confirms the fibre.
 const TRACES: u64 = 4;
@@ -28,7 +25,7 @@ pub(crate) fn refill(family: &Family, seed: u64, with_trace: bool) -> Result<Sta
     if let Some(roots) = family.roots() {
         ensure!(found.fibre.len() == roots, "{}: {} roots instead of {roots}", family.name(), found.fibre.len());
     }
-    let fibre = place(family.program(), &found.fibre, seed)?;
+    let fibre = place(family, &found.fibre, seed);
     let mut deviation = None;
     if with_trace {
         // One further point far out that no path reaches spoils the test; on another line it lies
@@ -52,33 +49,33 @@ pub(crate) fn refill(family: &Family, seed: u64, with_trace: bool) -> Result<Sta
     Ok(StartFile::new(&fibre, deviation, &stopped.to_string()))
 }
 
-/// Moves the fibre to the parameter point, out of some random ones, from which random real targets
-/// are reached in the fewest steps.
-fn place(system: &Interpreter, fibre: &Fibre, seed: u64) -> Result<Fibre> {
-    let m = fibre.parameters.len();
-    let targets: Vec<Vec<Complex64>> = (0..TARGETS)
-        .map(|k| {
-            Random::new(seed, FIRST_TARGET + k)
-                .normals(m)
-                .iter()
-                .map(|z| Complex64::new(z.re * 2f64.sqrt(), 0.0))
-                .collect()
-        })
-        .collect();
-    let mut best: Option<(usize, Fibre)> = None;
-    for k in 0..PLACES {
-        let point = Random::new(seed, FIRST_PLACE + k).normals(m);
-        let Some(moved) = move_fibre(system, fibre, &point, &FibreOptions::default()) else { continue };
-        let mut steps = 0;
-        for target in &targets {
-            let (ends, counts) = track_fibre(system, &moved, target, &FibreOptions::default());
-            steps += ends.results().iter().map(|r| r.accepted + r.rejected).sum::<usize>();
-            steps += 10_000 * (counts.failed + counts.retracked);
-        }
-        if best.as_ref().is_none_or(|(least, _)| steps < *least) {
-            eprintln!("place {k}: {:.1} steps a path", steps as f64 / (TARGETS as usize * moved.len()) as f64);
-            best = Some((steps, moved));
-        }
+/// The fibre at the parameter point, out of some random ones, from which others are reached with fewest
+/// Jacobians: random networks for the solvers in the plane, random real parameters for the rest.
+fn place(family: &Family, fibre: &Fibre, seed: u64) -> Fibre {
+    let mut options = ChoiceOptions::default();
+    options.seed = seed;
+    let network = match family.name() {
+        "6r3s" => Some((6, 3)),
+        "5r4s" => Some((5, 4)),
+        "4r5s" => Some((4, 5)),
+        _ => None,
+    };
+    if network.is_some() {
+        (options.members, options.samples) = (MEMBERS, NETWORKS);
     }
-    best.map(|(_, fibre)| fibre).context("the fibre could not be moved whole to any other parameter point")
+    let sample = |fibre: &Fibre, k: u64| match network {
+        Some((receivers, transmitters)) => parameters_near(fibre, &random_network(receivers, transmitters, k)),
+        None => real_sample(fibre.parameters.len(), k),
+    };
+    let (fibre, jacobians) = easiest_fibre(family.program(), fibre, sample, &options);
+    eprintln!("{}: {jacobians:.1} Jacobians a path", family.name());
+    fibre
+}
+
+/// The measurements of a random network in the plane.
+fn random_network(receivers: usize, transmitters: usize, k: u64) -> Pseudoranges {
+    let mut options = SimulateOptions::default();
+    (options.receivers, options.transmitters, options.seed) = (receivers, transmitters, FIRST_NETWORK + k);
+    options.layout = Layout::Normal;
+    simulate(&options).expect("a network").pseudoranges
 }

@@ -1,11 +1,13 @@
 //! `hc codegen`.
 
-use crate::{family, input};
+use crate::{family, input, track, watch};
 use cli::{Failure, output};
-use hc::Family;
-use hc::codegen;
-use hc::family::{StartFile, unpack_fibre};
+use hc::codegen::{self, CodegenError};
+use hc::family::{ChoiceOptions, StartFile, easiest_fibre, real_sample, unpack_fibre};
+use hc::poly::counted;
+use hc::{Family, Fibre, Monitor};
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Writes a Rust module that solves a family: its equations as straight-line code, and its stored
 /// solutions.
@@ -23,16 +25,27 @@ pub(crate) struct Arguments {
     /// with --check.
     #[arg(long, short)]
     output: PathBuf,
+    /// Tries so many random members of the family, and stores the one from which the paths to random real
+    /// parameters take least work, in place of the given one if that is another.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
+    fibres: Option<u16>,
+    /// With --fibres: the parameters to which paths should take little work, in place of random ones. JSON
+    /// {"parameters": [number or [re, im], ...]}, or a list of such.
+    #[arg(long, requires = "fibres")]
+    targets: Option<PathBuf>,
     /// Write nothing; exit status 1 if the file is stale.
     #[arg(long)]
     check: bool,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { family: family_file, start: start_file, output, check } = arguments;
+    let Arguments { family: family_file, start: start_file, output, check, .. } = arguments;
     input::check(&[Some(family_file), Some(start_file), check.then_some(output)], false)?;
     let family = family::read(family_file)?;
-    let start = StartFile::from_json(&input::text(start_file)?).map_err(|e| Failure::in_file(start_file, e))?;
+    let mut start = StartFile::from_json(&input::text(start_file)?).map_err(|e| Failure::in_file(start_file, e))?;
+    if let Some(members) = arguments.fibres {
+        start = easiest(&family, &start, members, arguments)?;
+    }
     if output.extension().is_some_and(|extension| extension == "fibre") {
         return packed(&family, &start, arguments);
     }
@@ -50,6 +63,35 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::Undetermined(format!("{} is stale; run the command without --check", input::name(output))))
+}
+
+/// The easiest fibre of so many random members and the given one.
+fn easiest(family: &Family, start: &StartFile, members: u16, arguments: &Arguments) -> Result<StartFile, Failure> {
+    let refused = |error: CodegenError| Failure::in_file(&arguments.start, error);
+    let fibre = start.fibre().map_err(|e| Failure::in_file(&arguments.start, e))?;
+    codegen::verify(family, &fibre).map_err(refused)?;
+    let parameters = fibre.parameters.len();
+    let mut options = ChoiceOptions::default();
+    options.members = members.into();
+    let targets = match &arguments.targets {
+        Some(file) => track::targets(file, parameters)?.0,
+        None => (0..options.samples as u64).map(|k| real_sample(parameters, k)).collect(),
+    };
+    options.samples = targets.len();
+    let tracked = AtomicU64::new(0);
+    let total = u64::from(members) + 1;
+    let describe = |_| (tracked.load(Ordering::Relaxed) * total / options.work(), total, "members".to_owned());
+    let sample = |_: &Fibre, k: u64| {
+        tracked.fetch_add(1, Ordering::Relaxed);
+        targets[k as usize].clone()
+    };
+    let (easiest, jacobians) = watch::watched(None, &Monitor::default(), describe, || {
+        easiest_fibre(family.program(), &fibre, sample, &options)
+    })?;
+    let other = if easiest == fibre { "the given fibre" } else { "another fibre" };
+    eprintln!("{other}: {jacobians:.1} Jacobians a path to {}", counted(targets.len(), "sample"));
+    let trace = if easiest == fibre { start.trace_test } else { None };
+    Ok(StartFile::new(&easiest, trace, &start.stopped))
 }
 
 /// Writes the solutions as a packed fibre, or checks that the one on disk is that.

@@ -127,7 +127,7 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
 }
 
 /// The targets, and whether the file is a single one rather than a list.
-fn targets(file: &Path, parameters: usize) -> Result<(Vec<Vec<Complex64>>, bool), Failure> {
+pub(crate) fn targets(file: &Path, parameters: usize) -> Result<(Vec<Vec<Complex64>>, bool), Failure> {
     let targets: Targets = serde_json::from_str(&input::text(file)?).map_err(|e| {
         Failure::in_file(file, format!("{e}; expected {{\"parameters\": [number or [re, im], ...]}} or a list of such"))
     })?;

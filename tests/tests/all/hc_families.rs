@@ -130,6 +130,33 @@ fn the_solver_of_a_family_is_written_as_rust() {
     assert!(status == Some(2) && message.contains("the family has 6 parameters and 3 unknowns"), "{message}");
 }
 
+/// Of several members the one with the least work is stored, the same whenever it is sought.
+#[test]
+fn the_easiest_fibre_is_stored() {
+    let start = family("five_point").replace(".toml", ".start.json");
+    let generate = |members: &str, more: &[&str]| {
+        let arguments = ["codegen", &family("five_point"), &start, "-o", "-", "--fibres", members];
+        let output = run("hc", &[&arguments, more].concat());
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(0), "{message}");
+        let jacobians = message.split(": ").nth(1).and_then(|rest| rest.split(' ').next()?.parse::<f64>().ok());
+        (output.stdout, message.clone(), jacobians.unwrap_or_else(|| panic!("{message}")))
+    };
+    let (module, message, _) = generate("12", &[]);
+    assert!(message.contains(" fibre: ") && message.ends_with(" Jacobians a path to 36 samples\n"), "{message}");
+    assert!(String::from_utf8_lossy(&module).contains("pub fn fibre()"));
+    assert_eq!(generate("12", &[]).0, module);
+
+    let directory = tempfile::tempdir().expect("directory");
+    let targets = directory.path().join("targets.json");
+    let given: Value = serde_json::from_str(&std::fs::read_to_string(&start).expect("start")).expect("JSON");
+    std::fs::write(&targets, json!([{ "parameters": given["parameters"] }]).to_string()).expect("written");
+    // No way is shorter than none.
+    let (_, message, jacobians) = generate("2", &["--targets", text(&targets)]);
+    assert!(message.starts_with("the given fibre: ") && message.ends_with("to 1 sample\n"), "{message}");
+    assert!(jacobians < 10.0, "{message}");
+}
+
 /// A fibre is packed where the file's name says so, and checked as the source is.
 #[test]
 fn the_solutions_of_a_family_are_packed() {

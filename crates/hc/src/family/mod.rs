@@ -6,6 +6,7 @@
 //! ([`poly::Evaluate`]), such as generated ones.
 
 mod charts;
+mod choice;
 mod compiled;
 mod complete;
 mod degenerate;
@@ -31,6 +32,7 @@ mod track;
 mod tracking;
 
 pub use charts::{Charts, OneChart};
+pub use choice::{ChoiceOptions, easiest_fibre, real_sample};
 pub use compiled::Family;
 pub use error::FamilyError;
 pub use fibre::{Fibre, FibreOptions, PathCounts};

@@ -40,6 +40,7 @@ mod nearest;
 mod node_kind;
 mod normalised;
 mod options;
+mod orders;
 mod planar;
 mod polish;
 mod proofs;
@@ -54,6 +55,8 @@ mod warning;
 
 pub use adjust::adjust;
 pub use error::MinimalError;
+#[doc(hidden)]
+pub use nearest::parameters_near;
 pub use node_kind::NodeKind;
 pub use options::{MinimalOptions, MinimalStart};
 pub use proofs::RootProofs;

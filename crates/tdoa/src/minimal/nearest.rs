@@ -4,6 +4,8 @@
 //! order of the data's nodes and the number are taken for which the measurements, relative to their means over
 //! the receivers, are nearest to those of the stored fibre: the paths are shorter then.
 
+use super::normalised::Normalised;
+use super::orders::{Order, Orders};
 use crate::pseudoranges::Pseudoranges;
 use hc::Fibre;
 use num_complex::Complex64;
@@ -13,23 +15,6 @@ use smallvec::SmallVec;
 const PAIRS: usize = 10_000;
 /// Orders of the longer side are gone through if there are not more than these; else its first node stays.
 const ORDERS: usize = 50_000;
-
-/// An order of nodes: `order[k]` is the data's node in place `k`.
-pub(crate) type Order = SmallVec<[usize; 16]>;
-
-/// Orders of the data's nodes.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Orders {
-    pub(crate) receivers: Order,
-    pub(crate) transmitters: Order,
-}
-
-impl Orders {
-    /// The order of the data.
-    pub(crate) fn of_data(receivers: usize, transmitters: usize) -> Self {
-        Orders { receivers: (0..receivers).collect(), transmitters: (0..transmitters).collect() }
-    }
-}
 
 /// The stored fibre, and what finds the position nearest to some data; keeps its memory from call to call.
 pub(crate) struct Nearest {
@@ -148,14 +133,19 @@ impl Nearest {
         self.best.search_long(products, orders, first, sum);
     }
 
+    /// The number of size one by which the stored measurements come nearest to the data `target`.
+    fn towards(&self, target: &[Complex64]) -> Complex64 {
+        let pairs = self.stored.parameters.iter().zip(target);
+        let sum: Complex64 = pairs.map(|(stored, data)| stored.conj() * data).sum();
+        if sum.norm() > 0.0 { sum / sum.norm() } else { Complex64::new(1.0, 0.0) }
+    }
+
     /// Turns the stored fibre towards the data `target` and then by `turn` (radians) away again; a turn gives
     /// other paths to the same ends. The fibre goes into `moved`; `weights` says by which power of the unit of
     /// length each unknown grows.
     pub(crate) fn turn(&self, target: &[Complex64], turn: f64, weights: &[i32], moved: &mut Fibre) {
         let stored = &self.stored;
-        let sum: Complex64 = stored.parameters.iter().zip(target).map(|(stored, data)| stored.conj() * data).sum();
-        let towards = if sum.norm() > 0.0 { sum / sum.norm() } else { Complex64::new(1.0, 0.0) };
-        let factor = towards * Complex64::from_polar(1.0, turn);
+        let factor = self.towards(target) * Complex64::from_polar(1.0, turn);
         moved.dimension = stored.dimension;
         moved.parameters.clear();
         moved.parameters.extend(stored.parameters.iter().map(|f| factor * f));
@@ -184,11 +174,22 @@ impl Best {
     }
 }
 
+/// The parameters of a family of this crate at some data, with the nodes in the order nearest to a fibre and all
+/// lengths turned towards it: for the choice of the stored fibres.
+#[doc(hidden)]
+pub fn parameters_near(fibre: &Fibre, measured: &Pseudoranges) -> Vec<Complex64> {
+    let mut nearest = Nearest::new(fibre.clone(), measured.receivers(), measured.transmitters());
+    let mut data = Normalised::default();
+    data.take_in_order(measured, &nearest.orders(measured));
+    let target: Vec<Complex64> = data.parameters().iter().map(|&f| f.into()).collect();
+    let towards = nearest.towards(&target);
+    target.iter().map(|f| f / towards).collect()
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{Nearest, Orders};
+    use super::{Nearest, Normalised, Order, Orders};
     use crate::minimal::formulation::Formulation;
-    use crate::minimal::normalised::Normalised;
     use crate::minimal::planar::four_five::FourFive;
     use crate::minimal::planar::three::{FiveFour, SixThree};
     use crate::pseudoranges::Pseudoranges;
@@ -269,8 +270,8 @@ mod tests {
     }
 
     /// Some nodes in random order, the others in their places.
-    fn shuffled(count: usize, some: std::ops::Range<usize>, seed: u64) -> super::Order {
-        let mut order: super::Order = (0..count).collect();
+    fn shuffled(count: usize, some: std::ops::Range<usize>, seed: u64) -> Order {
+        let mut order: Order = (0..count).collect();
         let keys: Vec<f64> = Random::new(seed, 1).normals(count).iter().map(|z| z.re).collect();
         order[some].sort_by(|&a, &b| keys[a].total_cmp(&keys[b]));
         order

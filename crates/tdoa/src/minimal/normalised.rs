@@ -1,7 +1,7 @@
 //! Measurements in the form that the equations need.
 
-use super::nearest::{Order, Orders};
 use super::options::MinimalOptions;
+use super::orders::{Order, Orders};
 use super::polish::Polisher;
 use super::solution::Candidate;
 use crate::network::Network;
