@@ -46,6 +46,32 @@ fn families_are_solved_completely() {
     }
 }
 
+/// The candidates are those of the data, in whatever order their nodes come.
+#[test]
+fn the_order_of_the_nodes_does_not_matter() {
+    let mut solver = Solver::new();
+    for (receivers, transmitters) in [(6, 3), (5, 4), (4, 5)] {
+        for seed in 0..6 {
+            let measured = clean(receivers, transmitters, seed).pseudoranges;
+            let orders = [receivers, transmitters].map(|count| (0..count).rev().collect::<Vec<_>>());
+            let given = solver.solve(&measured, &MinimalOptions::default()).unwrap();
+            let other = solver.solve(&measured.select(&orders[0], &orders[1]), &MinimalOptions::default()).unwrap();
+            let size = format!("{receivers}r/{transmitters}s, seed {seed}");
+            assert_eq!((given.counts, given.candidates.len()), (other.counts, other.candidates.len()), "{size}");
+            for candidate in other.candidates {
+                let mut network = candidate.network;
+                network.receivers.reverse();
+                network.transmitters.reverse();
+                network.offsets.reverse();
+                let same = |c: &tdoa::Candidate| {
+                    position_error(&c.network, &network) < 1e-7 && offset_error(&c.network, &network) < 1e-7
+                };
+                assert_eq!(given.candidates.iter().filter(|c| same(c)).count(), 1, "{size}");
+            }
+        }
+    }
+}
+
 #[test]
 fn larger_networks_are_solved_through_smaller_ones() {
     let sizes = [(7, 3), (9, 3), (6, 4), (6, 5), (5, 5), (4, 6), (4, 8), (5, 6), (6, 6), (7, 4), (10, 20)];
