@@ -40,7 +40,8 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { family: family_file, start: start_file, output, check, .. } = arguments;
-    input::check(&[Some(family_file), Some(start_file), check.then_some(output)], false)?;
+    let targets = arguments.targets.as_deref();
+    input::check(&[Some(family_file), Some(start_file), targets, check.then_some(output)], false)?;
     let family = family::read(family_file)?;
     let mut start = StartFile::from_json(&input::text(start_file)?).map_err(|e| Failure::in_file(start_file, e))?;
     if let Some(members) = arguments.fibres {
@@ -74,7 +75,10 @@ fn easiest(family: &Family, start: &StartFile, members: u16, arguments: &Argumen
     let mut options = ChoiceOptions::default();
     options.members = members.into();
     let targets = match &arguments.targets {
-        Some(file) => track::targets(file, parameters)?.0,
+        Some(file) => match track::targets(file, parameters)?.0 {
+            targets if targets.is_empty() => return Err(Failure::in_file(file, "at least one target is needed")),
+            targets => targets,
+        },
         None => (0..options.samples as u64).map(|k| real_sample(parameters, k)).collect(),
     };
     options.samples = targets.len();

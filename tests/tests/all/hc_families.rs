@@ -155,6 +155,13 @@ fn the_easiest_fibre_is_stored() {
     let (_, message, jacobians) = generate("2", &["--targets", text(&targets)]);
     assert!(message.starts_with("the given fibre: ") && message.ends_with("to 1 sample\n"), "{message}");
     assert!(jacobians < 10.0, "{message}");
+
+    std::fs::write(&targets, "[]").expect("written");
+    let arguments = ["codegen", &family("five_point"), &start, "-o", "-", "--fibres", "2", "--targets", text(&targets)];
+    let output = run("hc", &arguments);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(message.contains("at least one target is needed"), "{message}");
 }
 
 /// A fibre is packed where the file's name says so, and checked as the source is.

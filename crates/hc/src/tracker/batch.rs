@@ -123,11 +123,10 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         let (which, mut left) = (which.into_iter(), std::mem::take(&mut self.left));
         left.clear();
         // Once and for all, so that later calls need no memory.
-        if let (_, Some(paths)) = which.size_hint() {
-            left.reserve(paths, self.work.n);
-            self.strayed.reserve(paths);
-        }
-        self.track_quickly(path, starts, which, out, &mut left);
+        let most = which.size_hint().1.unwrap_or(0).min(starts.len() / self.work.n.max(1));
+        left.reserve(most, self.work.n);
+        self.strayed.reserve(most);
+        self.track_quickly(path, starts, which, most, out, &mut left);
         self.track_carefully(path, &left.points, left.list.iter().copied(), out);
         self.left = left;
         let mut strayed = std::mem::take(&mut self.strayed);

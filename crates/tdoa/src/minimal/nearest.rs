@@ -75,11 +75,10 @@ impl Nearest {
     fn centre(&self, cells: &[Complex64], out: &mut Vec<Complex64>) {
         let [long, short] = self.sizes;
         let (receivers, transmitters) = if self.by_receivers { (long, short) } else { (short, long) };
-        let mean = |j: usize| (0..receivers).map(|i| cells[i * transmitters + j]).sum::<Complex64>() / receivers as f64;
         out.clear();
         out.resize(long * short, Complex64::new(0.0, 0.0));
         for j in 0..transmitters {
-            let mean = mean(j);
+            let mean = (0..receivers).map(|i| cells[i * transmitters + j]).sum::<Complex64>() / receivers as f64;
             for i in 0..receivers {
                 let place = if self.by_receivers { i * short + j } else { j * short + i };
                 out[place] = cells[i * transmitters + j] - mean;
@@ -174,8 +173,11 @@ impl Best {
     }
 }
 
-/// The parameters of a family of this crate at some data, with the nodes in the order nearest to a fibre and all
-/// lengths turned towards it: for the choice of the stored fibres.
+/// The parameters of a family of this crate at some data without gaps, with the nodes in the order nearest to a
+/// fibre and all lengths turned towards it: for the choice of the stored fibres.
+///
+/// # Panics
+/// If the fibre belongs to data of another size.
 #[doc(hidden)]
 pub fn parameters_near(fibre: &Fibre, measured: &Pseudoranges) -> Vec<Complex64> {
     let mut nearest = Nearest::new(fibre.clone(), measured.receivers(), measured.transmitters());

@@ -12,13 +12,14 @@ use num_complex::Complex64;
 use poly::{Evaluate, Lane, Singles16};
 
 impl<E: Evaluate, S: Lane> Tracker<'_, E, S> {
-    /// Tracks paths as [`track`](Self::track) does. The difficult ones, and those that have not begun when the
-    /// monitor is cancelled, go to `left`.
+    /// Tracks paths as [`track`](Self::track) does, with room for `most` of them. The difficult ones, and those that
+    /// have not begun when the monitor is cancelled, go to `left`.
     pub(in super::super) fn track_quickly<P: ParameterPath>(
         &mut self,
         path: &P,
         starts: &[Complex64],
-        which: impl IntoIterator<Item = usize>,
+        mut which: impl Iterator<Item = usize>,
+        most: usize,
         out: &mut PathSet,
         left: &mut Stops,
     ) {
@@ -28,12 +29,8 @@ impl<E: Evaluate, S: Lane> Tracker<'_, E, S> {
             &mut **self.quick.get_or_insert_with(|| Box::new(QuickMemory::new(system, isa)));
         stops.clear();
         again.clear();
-        let mut which = which.into_iter();
-        // Once and for all, so that later calls need no memory.
-        if let (_, Some(paths)) = which.size_hint() {
-            stops.reserve(paths, n);
-            again.reserve(paths);
-        }
+        stops.reserve(most, n);
+        again.reserve(most);
 
         let first = QuickLanes { work: singles, lanes, options, monitor, tolerances: &SINGLES, polishes: false };
         first.run(path, &mut Begin { n, starts, which: &mut which, stops, path, left });
