@@ -53,6 +53,18 @@ pub struct Refiner<'a, E: Evaluate> {
     pub(crate) spare: Refined,
 }
 
+/// How the corrections of a point went.
+struct Polished {
+    /// The relative size of the last correction.
+    accuracy: f64,
+    /// Whether a correction that was no rounding error led to one a thousand times smaller, or the first
+    /// one was tiny: near a solution of multiplicity `k` at a distance `d` it would be `d / k`, and a row of
+    /// the Jacobian about `d` or less, which is faint.
+    steady: bool,
+    /// The relative distance from where the Jacobian was factored.
+    moved: f64,
+}
+
 impl<'a, E: Evaluate> Refiner<'a, E> {
     /// A refiner for a square system.
     pub fn new(system: &'a E) -> Self {
@@ -91,9 +103,15 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         refined.point.clear();
         refined.point.extend_from_slice(point);
         let x = &mut refined.point;
-        let (accuracy, steady) = self.polish(&exact, x);
+        let Polished { accuracy, steady, moved } = self.polish(&exact, x);
         self.exact_p = exact;
-        let (residual, condition, smallest_row) = self.judge(p, x, steady && accuracy <= REFINEMENT.near);
+        let serves = steady && accuracy <= REFINEMENT.near;
+        let (mut residual, mut condition, mut smallest_row) = self.judge(p, x, serves);
+        // Near a set of solutions that is no point, the Jacobian becomes singular within a step. Written so
+        // that NaN is far.
+        if serves && !(condition * moved <= REFINEMENT.unmoved) {
+            (residual, condition, smallest_row) = self.judge(p, x, false);
+        }
         refined.plain = steady
             && accuracy <= REFINEMENT.tiny
             && condition <= REFINEMENT.good_condition
@@ -114,25 +132,23 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
     /// point. This distance is absolute, to first order, for random roundings, and infinite where the
     /// Jacobian is singular.
     pub(crate) fn polish_and_blur(&mut self, p: &[ComplexDd], x: &mut [Complex64], blurs: bool) -> (f64, Vec<f64>) {
-        let (accuracy, steady) = self.polish(p, x);
+        let Polished { accuracy, steady, .. } = self.polish(p, x);
         let blur = if blurs { self.blur(p, x, steady && accuracy <= REFINEMENT.near) } else { Vec::new() };
         (accuracy, blur)
     }
 
-    /// Returns the size of the last correction and whether one that was no rounding error led to
-    /// one a thousand times smaller, or the first one was tiny: near a solution of multiplicity `k`
-    /// at a distance `d` it would be `d / k`, and a row of the Jacobian about `d` or less, which is
-    /// faint. If so, and if it is at most [`near`](crate::tolerances::RefinementTolerances::near),
-    /// the Jacobian and its factors are those at `x`, or so near to it that Newton's method hardly
-    /// noticed the difference.
-    fn polish(&mut self, p: &[ComplexDd], x: &mut [Complex64]) -> (f64, bool) {
-        let (mut accuracy, mut steady) = (f64::INFINITY, false);
+    /// Corrects a point until corrections no longer shrink. If it is steady, and if the last correction is
+    /// at most [`near`](crate::tolerances::RefinementTolerances::near), the Jacobian and its factors are
+    /// left, at a point as far from the result as it has moved since.
+    fn polish(&mut self, p: &[ComplexDd], x: &mut [Complex64]) -> Polished {
+        let (mut accuracy, mut steady, mut moved) = (f64::INFINITY, false, 0.0);
         // Whether the last Jacobian serves for this correction.
         let mut serves = false;
         for _ in 0..REFINEMENT.iterations {
             if !serves {
                 weights(x, &mut self.squares);
                 self.factor(p, x);
+                moved = 0.0;
             }
             self.correction(p, x);
             self.next.clear();
@@ -152,13 +168,14 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
             let shrunk = accuracy.is_finite() && accuracy > REFINEMENT.tiny && size <= REFINEMENT.steady * accuracy;
             steady |= shrunk || (accuracy.is_infinite() && size <= REFINEMENT.tiny);
             accuracy = size;
+            moved += size;
             x.copy_from_slice(&self.next);
             if accuracy <= f64::EPSILON {
                 break;
             }
             serves = accuracy <= REFINEMENT.near;
         }
-        (accuracy, steady)
+        Polished { accuracy, steady, moved }
     }
 
     /// Whether a refined point is a regular solution: either [clearly](Refined::plain), or by the

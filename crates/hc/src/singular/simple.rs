@@ -1,5 +1,5 @@
-//! Whether two polynomials in two unknowns have no multiple common roots, proved by their eliminant
-//! modulo a prime.
+//! Whether two polynomials in two unknowns, or one in one, have no multiple roots, proved modulo a prime
+//! by their eliminant.
 
 use super::eliminant::Eliminant;
 use super::modular::{PRIME, Residue, is_squarefree};
@@ -14,12 +14,27 @@ const MAX_ROOTS: usize = 600;
 /// If the eliminant had a multiple root, so would its image modulo the prime, unless the leading
 /// coefficient vanishes there: of all changes of coordinates, at most one in 1e13 does that.
 pub(crate) fn all_simple(polynomials: &[Polynomial<Exact>]) -> bool {
+    if let [polynomial] = polynomials {
+        return coefficients(polynomial).is_some_and(is_squarefree);
+    }
     eliminant(polynomials).is_some_and(|found| found.degree() > 0 && is_squarefree(found.coefficients))
 }
 
 /// The number of all common roots, with their multiplicities, if they are isolated.
 pub(crate) fn finite_solutions(polynomials: &[Polynomial<Exact>]) -> Option<usize> {
     eliminant(polynomials).map(|found| found.degree())
+}
+
+/// The coefficients of a polynomial in one unknown modulo the prime, from the constant on; `None` if
+/// the leading one vanishes, or the roots are too many.
+fn coefficients(polynomial: &Polynomial<Exact>) -> Option<Vec<Residue>> {
+    let degree = usize::try_from(polynomial.degree()?).ok().filter(|degree| (1..=MAX_ROOTS).contains(degree))?;
+    let mut coefficients = vec![Residue::new(0); degree + 1];
+    for (monomial, c) in polynomial.terms() {
+        let [exponent] = monomial.exponents() else { return None };
+        coefficients[usize::try_from(*exponent).ok()?] = Residue::image(c)?;
+    }
+    (coefficients[degree] != Residue::new(0)).then_some(coefficients)
 }
 
 /// The eliminant modulo the prime, after a random change of coordinates.
@@ -66,6 +81,7 @@ mod tests {
         assert!(simple("2\nx^21-2000000*x^2+4000*x-2;\ny-x^2+1;"));
         assert!(simple("2\n(1e9*(x+y-5)-1)*(1e9*(x+y-5)-2);\nx-2*y-3;"));
         assert!(simple("2\nx*y-1;\nx+y^2;"));
+        assert!(simple("1\nx^3-2*x;") && !simple("1\nx^3-2*x^2;") && !simple("1\n(x^2+x+3)^2*(x-1);"));
         // Tangent, a double line, a common component, an imaginary double point.
         assert!(!simple("2\nx^2+y^2-1;\nx-1;"));
         assert!(!simple("2\n(x+y)^2;\nx-y-1;"));

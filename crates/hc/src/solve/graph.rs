@@ -73,6 +73,11 @@ impl Graph {
         }
     }
 
+    /// Whether all solutions are isolated and simple; false tells nothing.
+    pub(super) fn are_simple(&self) -> bool {
+        singular::all_simple(&self.equations)
+    }
+
     /// All solutions with their multiplicities, if they are isolated and all clear. `units` are the
     /// logarithms to base 2 of the units of the unknowns.
     pub(super) fn solutions(&self, units: &[i64], tracked: &Tracked<'_>) -> Option<Vec<Solution>> {

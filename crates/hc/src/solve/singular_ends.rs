@@ -44,7 +44,8 @@ impl Classified {
         let doubted = structures
             .iter()
             .any(|(_, s)| matches!(s, LocalStructure::Isolated { .. } | LocalStructure::OnComponent { .. }));
-        let simple = doubted && singular::all_simple(tracked.polynomials);
+        let by_graph = || Graph::new(tracked.polynomials).is_some_and(|graph| graph.are_simple());
+        let simple = doubted && (singular::all_simple(tracked.polynomials) || by_graph());
         let mut multiple: Vec<Multiple> = Vec::new();
         let mut further = 0;
         let mut refiner = Refiner::new(tracked.system);
@@ -130,7 +131,8 @@ impl Classified {
         if self.lost == 0 && !singular {
             // Paths may seem to go to infinity that do not.
             let is_right = |all: usize| all == count(&self);
-            if self.infinite == 0 || singular::finite_solutions(polynomials).is_none_or(is_right) {
+            let all = || singular::finite_solutions(polynomials).or_else(|| Graph::new(polynomials)?.count());
+            if self.infinite == 0 || all().is_none_or(is_right) {
                 return self;
             }
         }

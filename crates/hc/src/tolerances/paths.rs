@@ -176,6 +176,9 @@ pub struct RefinementTolerances {
     /// Condition number of solutions that are plainly regular. At a distance of `d` from a singular
     /// solution it is about `1 / d` or more.
     pub good_condition: f64,
+    /// A Jacobian from elsewhere tells the condition if this times the relative distance is at most this:
+    /// the least singular value changes by about the distance.
+    pub unmoved: f64,
     /// A row of the Jacobian below this share of the largest, or of one, may be what rounding left
     /// of a row that vanishes, as on a double component. The condition does not tell, since rows
     /// are scaled to equal size.
@@ -200,6 +203,7 @@ pub const REFINEMENT: RefinementTolerances = RefinementTolerances {
     tiny: 1e-12,
     omega_margin: 10.0,
     good_condition: 1e6,
+    unmoved: 1e-3,
     faint: 1e-10,
     blur_draws: 3,
     blur_step: 1e-6,

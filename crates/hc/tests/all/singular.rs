@@ -40,6 +40,12 @@ fn components_that_are_not_reduced() {
     check("2\n(x-y)^2*(x+y-1);\n(x-y)^2*(x+2*y+2);", 10, "1x1", 1, true);
 }
 
+/// `y^20 = 1` and `x = 2 y^2 + 1`, beside the line `x = 0`.
+#[test]
+fn beside_a_line_of_solutions() {
+    check("2\ny^20*x-x;\nx*(x-2*y^2-1);", 16, "20x1", 2, true);
+}
+
 #[test]
 fn ends_that_solve_nothing() {
     let sum: Vec<String> = (0..=150).map(|k| format!("x^{k}")).collect();
