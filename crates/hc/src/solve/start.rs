@@ -6,7 +6,7 @@ use super::options::{SolveOptions, Start};
 use crate::monitor::Monitor;
 use crate::start::{
     Grouped, MixedError, Multihomogeneous, PathSystem, Polyhedral, StartSystem, TotalDegree, bezout_number, degrees,
-    mixed_volume_is_bezout,
+    leading_unknowns, mixed_volume_is_bezout,
 };
 use num_complex::Complex64;
 use poly::{Interpreter, SparseSystem};
@@ -32,6 +32,8 @@ pub(super) struct Starts {
     /// Number of paths.
     pub(super) paths: usize,
     degrees: Vec<u64>,
+    /// The unknown of each equation in a total degree start system.
+    unknowns: Vec<usize>,
     grouped: Option<Grouped>,
     /// The first mixed cells, if they were found while choosing.
     first: Option<Polyhedral>,
@@ -121,12 +123,14 @@ impl Starts {
         let n = equations.unknowns;
         let too_many = SolveError::TooManyPaths { paths, limit: options.max_paths };
         let paths = usize::try_from(paths).ok().filter(|_| paths <= options.max_paths).ok_or(too_many)?;
+        let unknowns =
+            if kind == Start::TotalDegree { leading_unknowns(&equations.supports, &degrees) } else { vec![] };
         for i in 0..n {
             match (kind, &grouped) {
                 (Start::TotalDegree, _) => {
                     let degree = i32::try_from(degrees[i]).map_err(|_| SolveError::NegativeExponents)?;
                     equations.add_term(i, vec![0; n]);
-                    equations.add_term(i, (0..n).map(|j| if j == i { degree } else { 0 }).collect());
+                    equations.add_term(i, (0..n).map(|j| if j == unknowns[i] { degree } else { 0 }).collect());
                 }
                 (Start::Multihomogeneous, Some(grouped)) => {
                     equations.add_terms(i, grouped.terms(i).ok_or(SolveError::StartTooLarge)?);
@@ -145,7 +149,20 @@ impl Starts {
             }
         };
         let first = None;
-        Ok(Starts { system, equations, coefficients, target, written, kind, numbers, paths, degrees, grouped, first })
+        Ok(Starts {
+            system,
+            equations,
+            coefficients,
+            target,
+            written,
+            kind,
+            numbers,
+            paths,
+            degrees,
+            unknowns,
+            grouped,
+            first,
+        })
     }
 
     /// Instead of these polyhedral ones, and only for [`Start::Auto`]: those of one stage that have
@@ -168,9 +185,13 @@ impl Starts {
     ) -> Result<StartSystem, SolveError> {
         let supports = &self.equations.supports;
         let start = match (self.kind, &self.grouped) {
-            (Start::TotalDegree, _) => {
-                StartSystem::TotalDegree(TotalDegree::new(supports, &self.degrees, options.seed, attempt))
-            }
+            (Start::TotalDegree, _) => StartSystem::TotalDegree(TotalDegree::new(
+                supports,
+                &self.degrees,
+                &self.unknowns,
+                options.seed,
+                attempt,
+            )),
             (Start::Multihomogeneous, Some(grouped)) => {
                 StartSystem::Multihomogeneous(Multihomogeneous::new(supports, grouped.clone(), options.seed, attempt))
             }

@@ -3,7 +3,7 @@
 //! * Polyhedral: the mixed cells of the supports ([`mixed_volume`], [`mixed_cells`]), and a system
 //!   of binomials for each cell.
 //! * Multihomogeneous: products of linear forms in groups of unknowns.
-//! * Total degree: `x_i^(d_i) - 1` with the degrees `d_i` of the equations.
+//! * Total degree: `x_j^(d_i) - 1` with the degrees `d_i` of the equations.
 
 mod bezout;
 mod binomial;
@@ -20,7 +20,7 @@ pub(crate) use multihomogeneous::{Grouped, Multihomogeneous};
 pub(crate) use path_system::PathSystem;
 pub(crate) use polyhedral::Polyhedral;
 pub(crate) use reached::Reached;
-pub(crate) use total_degree::{TotalDegree, bezout_number, degrees};
+pub(crate) use total_degree::{TotalDegree, bezout_number, degrees, leading_unknowns};
 
 use crate::family::Fibre;
 use crate::monitor::Monitor;

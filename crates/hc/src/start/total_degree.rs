@@ -1,5 +1,5 @@
-//! The total degree start system `g_i (x_i^(d_i) - 1)` with the degrees `d_i` and random `g_i`: as
-//! many paths as Bezout's number.
+//! The total degree start system `g_i (x_j^(d_i) - 1)` with the degrees `d_i` and random `g_i`, where
+//! `j` runs through the unknowns as `i` does through the equations: as many paths as Bezout's number.
 
 use super::reached::Supports;
 use crate::random::{Random, Stream};
@@ -20,30 +20,84 @@ pub(crate) fn bezout_number(degrees: &[u64]) -> Option<u64> {
     degrees.iter().try_fold(1u64, |product, &d| product.checked_mul(d))
 }
 
+/// The unknown of each equation: as many of the powers `x_j^(d_i)` as can be, those of the highest
+/// degrees first, are terms of the equations already. Paths are short where they are; a power that is
+/// not may outgrow all terms.
+pub(crate) fn leading_unknowns(supports: &Supports, degrees: &[u64]) -> Vec<usize> {
+    let n = supports.len();
+    let has = |i: usize, j: usize| {
+        let is_power = |p: &Vec<i32>| p.iter().enumerate().all(|(k, &e)| k == j || e == 0);
+        supports[i].iter().any(|p| u64::try_from(p[j]) == Ok(degrees[i]) && is_power(p))
+    };
+    let mut equations: Vec<usize> = (0..n).collect();
+    equations.sort_by_key(|&i| std::cmp::Reverse(degrees[i]));
+    let mut owner = vec![None; n];
+    for &i in &equations {
+        matched(i, &has, &mut owner, &mut vec![false; n]);
+    }
+    let mut unknowns = vec![None; n];
+    owner.iter().enumerate().filter_map(|(j, i)| Some((j, (*i)?))).for_each(|(j, i)| unknowns[i] = Some(j));
+    // The others keep their own unknowns, if these are free.
+    for i in 0..n {
+        if unknowns[i].is_none() && owner[i].is_none() {
+            (unknowns[i], owner[i]) = (Some(i), Some(i));
+        }
+    }
+    let mut free = (0..n).filter(|&j| owner[j].is_none());
+    unknowns.into_iter().map(|unknown| unknown.or_else(|| free.next()).expect("as many as equations")).collect()
+}
+
+/// Gives an equation an unknown, its own before others, along an augmenting path (Kuhn 1955).
+fn matched(
+    i: usize,
+    has: &impl Fn(usize, usize) -> bool,
+    owner: &mut Vec<Option<usize>>,
+    seen: &mut Vec<bool>,
+) -> bool {
+    for j in std::iter::once(i).chain(0..owner.len()) {
+        if !seen[j] && has(i, j) {
+            seen[j] = true;
+            if owner[j].is_none_or(|other| matched(other, has, owner, seen)) {
+                owner[j] = Some(i);
+                return true;
+            }
+        }
+    }
+    false
+}
+
 /// The start system.
 pub(crate) struct TotalDegree {
-    degrees: Vec<u64>,
+    /// The unknown and the degree of each equation.
+    powers: Vec<(usize, u64)>,
     parameters: Vec<Complex64>,
 }
 
 impl TotalDegree {
-    /// The start system as coefficients of the supports, which must contain `x_i^(d_i)` and the origin; no
-    /// degree is zero.
-    pub(crate) fn new(supports: &Supports, degrees: &[u64], seed: u64, attempt: u64) -> TotalDegree {
+    /// The start system as coefficients of the supports, which must contain the origin and the powers
+    /// `x_j^(d_i)`, with the degrees `d_i` and an unknown `j` for each equation; no degree is zero.
+    pub(crate) fn new(
+        supports: &Supports,
+        degrees: &[u64],
+        unknowns: &[usize],
+        seed: u64,
+        attempt: u64,
+    ) -> TotalDegree {
         let mut random = Random::of(seed, Stream::TotalDegree(attempt));
         let mut parameters = Vec::new();
-        for (i, (points, &degree)) in supports.iter().zip(degrees).enumerate() {
+        let powers: Vec<(usize, u64)> = unknowns.iter().copied().zip(degrees.iter().copied()).collect();
+        for (points, &(unknown, degree)) in supports.iter().zip(&powers) {
             let factor = random.unit();
             parameters.extend(points.iter().map(|p| {
-                let others_vanish = p.iter().enumerate().all(|(j, &e)| j == i || e == 0);
-                match p[i] {
+                let others_vanish = p.iter().enumerate().all(|(j, &e)| j == unknown || e == 0);
+                match p[unknown] {
                     0 if others_vanish => -factor,
                     e if others_vanish && u64::try_from(e) == Ok(degree) => factor,
                     _ => Complex64::new(0.0, 0.0),
                 }
             }));
         }
-        TotalDegree { degrees: degrees.to_vec(), parameters }
+        TotalDegree { powers, parameters }
     }
 
     pub(crate) fn parameters(&self) -> &[Complex64] {
@@ -57,18 +111,18 @@ impl TotalDegree {
 
     /// The solution with this number, which is below the number of paths: roots of unity.
     pub(crate) fn solution(&self, mut number: u64) -> Vec<Complex64> {
-        let root = |&degree: &u64| {
-            let k = number % degree;
+        let mut solution = vec![Complex64::new(1.0, 0.0); self.powers.len()];
+        for &(unknown, degree) in &self.powers {
+            solution[unknown] = Complex64::from_polar(1.0, TAU * (number % degree) as f64 / degree as f64);
             number /= degree;
-            Complex64::from_polar(1.0, TAU * k as f64 / degree as f64)
-        };
-        self.degrees.iter().map(root).collect()
+        }
+        solution
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{TotalDegree, bezout_number, degrees};
+    use super::{TotalDegree, bezout_number, degrees, leading_unknowns};
     use poly::{Evaluate, Isa, SparseSystem};
 
     #[test]
@@ -77,7 +131,7 @@ mod tests {
             vec![vec![vec![3, 0], vec![1, 1], vec![0, 0]], vec![vec![0, 2], vec![1, 1], vec![2, 0], vec![0, 0]]];
         let degrees = degrees(&supports).unwrap();
         assert_eq!((&degrees[..], bezout_number(&degrees)), (&[3, 2][..], Some(6)));
-        let start = TotalDegree::new(&supports, &degrees, 0, 0);
+        let start = TotalDegree::new(&supports, &degrees, &leading_unknowns(&supports, &degrees), 0, 0);
         let system = SparseSystem::new(2, &supports).unwrap();
         let mut memory = system.memory(Isa::Portable);
         for k in 0..6 {
@@ -88,5 +142,21 @@ mod tests {
                 assert_ne!(start.solution(j), start.solution(k));
             }
         }
+    }
+
+    #[test]
+    fn powers_of_the_equations_lead() {
+        let leading = |terms: [&[[i32; 3]]; 3]| {
+            let supports: Vec<Vec<Vec<i32>>> =
+                terms.iter().map(|terms| terms.iter().map(|t| t.to_vec()).collect()).collect();
+            leading_unknowns(&supports, &degrees(&supports).unwrap())
+        };
+        // z^5 - 1, x - y^2, z - x - y: the last one can have any unknown.
+        let z = [[0, 0, 5], [0, 0, 0]];
+        assert_eq!(leading([&z, &[[1, 0, 0], [0, 2, 0]], &[[0, 0, 1], [1, 0, 0], [0, 1, 0]]]), [2, 1, 0]);
+        // The highest degree first, and an augmenting path: x^2 + y^2, x^2 - y, z^3 + x^3.
+        assert_eq!(leading([&[[2, 0, 0], [0, 2, 0]], &[[2, 0, 0], [0, 1, 0]], &[[0, 0, 3], [3, 0, 0]]]), [1, 0, 2]);
+        // None has a power, and each its own unknown.
+        assert_eq!(leading([&[[1, 1, 0]], &[[0, 1, 1]], &[[1, 0, 1]]]), [0, 1, 2]);
     }
 }
