@@ -55,6 +55,17 @@ impl System {
         unknowns: &[Expr<'a>],
         parameters: &[Expr<'a>],
     ) -> Vec<Expr<'a>> {
+        self.instantiate_with(arena, unknowns, parameters, |_, formula| formula)
+    }
+
+    /// The same with another formula for a node, if `replaced` gives one.
+    pub(crate) fn instantiate_with<'a>(
+        &self,
+        arena: &'a Expressions,
+        unknowns: &[Expr<'a>],
+        parameters: &[Expr<'a>],
+        mut replaced: impl FnMut(Id, Expr<'a>) -> Expr<'a>,
+    ) -> Vec<Expr<'a>> {
         assert_eq!(unknowns.len(), self.variables().len(), "one formula an unknown");
         assert_eq!(parameters.len(), self.parameters().len(), "one formula a parameter");
         let graph = &self.arena.graph;
@@ -63,7 +74,7 @@ impl System {
         for k in 0..graph.len() {
             let operand = |id: Id| built[id as usize];
             let id = k as Id;
-            built.push(match graph.node(id) {
+            let formula = match graph.node(id) {
                 Node::Constant(_) => arena.constant(graph.as_constant(id).cloned().unwrap_or_else(Exact::zero)),
                 Node::Variable(j) => unknowns[j as usize],
                 Node::Parameter(i) => parameters[i as usize],
@@ -73,7 +84,8 @@ impl System {
                 Node::Div(a, b) => operand(a) / operand(b),
                 Node::Neg(a) => -operand(a),
                 Node::Pow(a, e) => operand(a).powi(e),
-            });
+            };
+            built.push(replaced(id, formula));
         }
         self.equations.iter().map(|&id| built[id as usize]).collect()
     }

@@ -61,6 +61,7 @@ mod interval;
 mod lanes;
 mod monomial;
 mod multi;
+mod named_sums;
 mod polynomial;
 mod rational;
 mod singles;
