@@ -9,16 +9,19 @@ pub(super) struct Excess<'a> {
     /// All equations, if there are more equations than unknowns.
     all: Option<&'a Given>,
     torus_only: bool,
+    /// The coordinates that must not vanish there, the first ones.
+    unknowns: usize,
 }
 
 impl<'a> Excess<'a> {
-    pub(super) fn new(given: &'a Given, torus_only: bool) -> Excess<'a> {
-        Excess { all: Some(given).filter(|given| given.len() > given.unknowns()), torus_only }
+    /// What was not requested of given equations, of which the first `unknowns` unknowns count.
+    pub(super) fn new(given: &'a Given, torus_only: bool, unknowns: usize) -> Excess<'a> {
+        Excess { all: Some(given).filter(|given| given.len() > given.unknowns()), torus_only, unknowns }
     }
 
     /// No point is excess: every point that is found was requested.
     pub(super) fn none() -> Excess<'static> {
-        Excess { all: None, torus_only: false }
+        Excess { all: None, torus_only: false, unknowns: 0 }
     }
 
     /// Whether a regular end was not requested: it does not solve all equations, or lies outside
@@ -29,6 +32,7 @@ impl<'a> Excess<'a> {
 
     /// Whether a point has a zero coordinate although only the torus was requested.
     pub(super) fn outside(&self, point: &[Complex64]) -> bool {
+        let point = &point[..self.unknowns.min(point.len())];
         let largest = point.iter().map(|z| z.norm()).fold(0.0, f64::max);
         self.torus_only && point.iter().any(|z| z.norm() <= ENDS.torus * largest)
     }

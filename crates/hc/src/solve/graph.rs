@@ -11,10 +11,13 @@ use crate::tolerances::ENDS;
 use num_complex::Complex64;
 use num_traits::One;
 use poly::{Exact, Monomial, Polynomial, Scalar};
+use std::cmp::Reverse;
 
 /// Equations of a higher degree, or with more terms, are not made.
 const DEGREE: i64 = 150;
-const TERMS: f64 = 2000.0;
+const TERMS: usize = 2000;
+/// Nor those with more terms before equal ones are added.
+const PRODUCTS: f64 = 10_000.0;
 
 /// One equation in one unknown or two in two, and the other unknowns as polynomials in the unknowns
 /// after them.
@@ -39,18 +42,27 @@ impl Graph {
         while unknowns.len() > 1 {
             let ways = (0..equations.len()).flat_map(|i| unknowns.iter().map(move |&j| (i, j)));
             let ways = ways.filter_map(|(i, j)| Some((i, j, explicit(&equations[i], j)?)));
-            let Some((i, j, value)) = ways.min_by_key(|(_, _, value)| (value.degree(), value.len())) else { break };
+            // The last unknowns may be names of sums of the others.
+            let best = ways.min_by_key(|(_, j, value)| (value.degree(), value.len(), Reverse(*j)));
+            let Some((i, j, value)) = best else { break };
             let left: Vec<usize> = unknowns.iter().copied().filter(|&k| k != j).collect();
             let mut replaced = equations.clone();
             replaced.remove(i);
             for equation in &mut replaced {
                 let powers = equation.terms().iter().map(|(m, _)| i64::from(m.exponents()[j]));
                 let degree = equation.degree()? + powers.max()? * value.degree().unwrap_or(0);
-                let terms = (1..=left.len()).map(|k| (degree as f64 + k as f64) / k as f64).product::<f64>();
-                if degree > DEGREE || terms > TERMS {
+                // As many as monomials, or as products of terms.
+                let monomials = binomial(degree as f64, left.len());
+                let products =
+                    |(m, _): &(Monomial, Exact)| binomial(f64::from(m.exponents()[j]), value.len().saturating_sub(1));
+                let products: f64 = equation.terms().iter().map(products).sum();
+                if degree > DEGREE || monomials.min(products) > PRODUCTS {
                     return None;
                 }
                 *equation = equation.substitute(j, &value)?;
+                if equation.len() > TERMS {
+                    return None;
+                }
             }
             (equations, unknowns) = (replaced, left);
             others.push((j, value));
@@ -121,6 +133,11 @@ fn listed(points: impl Iterator<Item = (Vec<Digits>, usize)>, units: &[i64], tra
     all
 }
 
+/// The number of monomials of at most a degree in so many unknowns.
+fn binomial(degree: f64, unknowns: usize) -> f64 {
+    (1..=unknowns).map(|k| (degree + k as f64) / k as f64).product()
+}
+
 /// The unknown as a polynomial in the others, if the equation has it in one term and there alone.
 fn explicit(equation: &Polynomial<Exact>, unknown: usize) -> Option<Polynomial<Exact>> {
     let (own, others): (Vec<_>, Vec<_>) =
@@ -144,7 +161,7 @@ mod tests {
             Some(equations.collect::<Vec<_>>().join("; "))
         };
         assert_eq!(of("2\nx^3-2;\ny-x^2+1;").as_deref(), Some("t^3 - 2"));
-        assert_eq!(of("2\n(x+y)^2-2;\nx-2*y-1;").as_deref(), Some("9*t^2 + 6*t - 1"));
+        assert_eq!(of("2\n(x+y)^2-2;\nx-2*y-1;").as_deref(), Some("9/4*t^2 - 3/2*t - 7/4"));
         assert_eq!(of("3\nx^2-y*z;\ny-z-1;\nz-x^2;").as_deref(), Some("-t^4"));
         assert_eq!(of("3\nx^2+y^2-2;\nx*y-z;\nz-1;").as_deref(), Some("t^2 + s^2 - 2; t*s - 1"));
         assert_eq!(of("3\nx^2+y^2-2;\nx*y-z^2;\nz^2-1;"), None);

@@ -8,6 +8,7 @@ mod equations;
 mod error;
 mod excess;
 mod fingerprints;
+mod formulas;
 mod graph;
 mod infinity;
 mod member;
@@ -33,11 +34,13 @@ pub use solutions::{Direction, Solution, Solutions, Unresolved};
 pub use summary::coordinates;
 pub use warning::Warning;
 
+use self::formulas::Formulas;
 use crate::checkpoint::{Hash, Job};
 use crate::monitor::Monitor;
 use crate::ranks::{Lead, Worker};
 use crate::run::{RanksRun, Run};
-use poly::{Exact, ExpandLimits, Polynomial, System};
+
+use poly::System;
 use solutions::Member;
 
 /// Finds the isolated solutions of a system with at least as many polynomials as unknowns.
@@ -75,9 +78,9 @@ impl Run {
     /// As for [`solve`]; also if the checkpoint belongs to another run, or cannot be written.
     pub fn solve(&self, system: &System, options: &SolveOptions) -> Result<Solutions, SolveError> {
         self.install(|| {
-            let (checkpoint, written) = (self.checkpoint(), written::worth_tracking(system));
-            let context = SolveContext { checkpoint, written, ..SolveContext::default() };
-            solve_expanded(system, &expanded(system, options)?, options, self.monitor(), context)
+            let formulas = Formulas::new(system, options)?;
+            let context = SolveContext { checkpoint: self.checkpoint(), ..formulas.context() };
+            solve_formulas(&formulas, options, self.monitor(), context)
         })
     }
 }
@@ -91,47 +94,40 @@ impl RanksRun<'_> {
     pub fn solve(&self, system: &System, options: &SolveOptions) -> Result<Option<Solutions>, SolveError> {
         let Some(ranks) = self.ranks else { return self.run.solve(system, options).map(Some) };
         self.run.install(|| {
-            let polynomials = expanded(system, options);
-            let job = polynomials.as_ref().map(|polynomials| job(polynomials, system, options).fingerprint());
-            let fingerprint = job.unwrap_or_default();
-            let written = written::worth_tracking(system);
+            let formulas = Formulas::new(system, options);
+            let fingerprint = formulas.as_ref().map(|formulas| job(formulas, options).fingerprint());
+            let fingerprint = fingerprint.unwrap_or_default();
             if ranks.is_lead() {
                 return Lead::at(ranks, &fingerprint, |lead| {
-                    let checkpoint = self.run.checkpoint();
-                    let context = SolveContext { checkpoint, lead: Some(lead), worker: None, written };
-                    solve_expanded(system, &polynomials?, options, self.run.monitor(), context).map(Some)
+                    let formulas = formulas?;
+                    let (checkpoint, lead) = (self.run.checkpoint(), Some(lead));
+                    let context = SolveContext { checkpoint, lead, ..formulas.context() };
+                    solve_formulas(&formulas, options, self.run.monitor(), context).map(Some)
                 });
             }
             Worker::at(ranks, &fingerprint, |worker| {
-                let context = SolveContext { worker: Some(worker), written, ..SolveContext::default() };
-                solve_polynomials(&polynomials?, system.variables(), options, worker.monitor(), context).map(|_| None)
+                let formulas = formulas?;
+                let context = SolveContext { worker: Some(worker), ..formulas.context() };
+                let names = formulas.solved.variables();
+                solve_polynomials(&formulas.polynomials, names, options, worker.monitor(), context).map(|_| None)
             })
         })
     }
 }
 
-/// The polynomials of a system that can be solved with these options.
-fn expanded(system: &System, options: &SolveOptions) -> Result<Vec<Polynomial<Exact>>, SolveError> {
-    options.validate()?;
-    if !system.parameters().is_empty() {
-        return Err(SolveError::Parameters(system.parameters().join(", ")));
-    }
-    Ok(system.expand(&ExpandLimits::default())?)
-}
-
-fn solve_expanded(
-    system: &System,
-    polynomials: &[Polynomial<Exact>],
+fn solve_formulas(
+    formulas: &Formulas<'_>,
     options: &SolveOptions,
     monitor: &Monitor,
     context: SolveContext<'_>,
 ) -> Result<Solutions, SolveError> {
     if let Some(checkpoint) = context.checkpoint {
-        checkpoint.begin(job(polynomials, system, options))?;
+        checkpoint.begin(job(formulas, options))?;
     }
-    let mut found = solve_polynomials(polynomials, system.variables(), options, monitor, context)?;
-    found.variables = system.variables().to_vec();
-    found.member = Member::new(system, &[]);
+    let names = formulas.solved.variables();
+    let mut found = formulas.in_given(solve_polynomials(&formulas.polynomials, names, options, monitor, context)?);
+    found.variables = formulas.given.variables().to_vec();
+    found.member = Member::new(formulas.given, &[]);
     if options.certify {
         found.certify()?;
     }
@@ -139,14 +135,13 @@ fn solve_expanded(
 }
 
 /// The job: what a checkpoint of this work describes, and what all ranks do.
-fn job(polynomials: &[Polynomial<Exact>], system: &System, options: &SolveOptions) -> Job {
-    let unknowns = system.variables().to_vec();
-    let names: Vec<&str> = unknowns.iter().map(String::as_str).collect();
-    let expanded = polynomials.iter().map(|polynomial| polynomial.display(&names).to_string());
+fn job(formulas: &Formulas<'_>, options: &SolveOptions) -> Job {
+    let names: Vec<&str> = formulas.solved.variables().iter().map(String::as_str).collect();
+    let expanded = formulas.polynomials.iter().map(|polynomial| polynomial.display(&names).to_string());
     // The same polynomials are tracked in another way where they are written in another way.
-    let hash = Hash::of(expanded.chain(written::worth_tracking(system).map(System::to_string)));
-    let system = crate::checkpoint::System { unknowns, equations: polynomials.len(), hash };
-    Job::new("solve", system, options)
+    let hash = Hash::of(expanded.chain(formulas.written().map(System::to_string)));
+    let (unknowns, equations) = (formulas.given.variables().to_vec(), formulas.given.len());
+    Job::new("solve", crate::checkpoint::System { unknowns, equations, hash }, options)
 }
 
 #[cfg(all(test, feature = "threads"))]

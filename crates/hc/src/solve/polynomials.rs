@@ -42,6 +42,8 @@ pub(crate) struct SolveContext<'a> {
     pub(crate) worker: Option<&'a Worker<'a>>,
     /// The formulas, where these are to be tracked as they were written.
     pub(crate) written: Option<&'a System>,
+    /// How many unknowns, the last ones, and equations, the last ones, are named sums.
+    pub(crate) named_sums: usize,
 }
 
 /// How a solve belongs to another one, the ends of which it tells apart.
@@ -114,11 +116,11 @@ fn solve_nested(
 ) -> Result<Solutions, SolveError> {
     let nothing = Solutions { interrupted: true, ..Solutions::default() };
     let Some((problem, mut starts)) =
-        unless_cancelled(prepared(polynomials, names, context.written, options, squaring, monitor))?
+        unless_cancelled(prepared(polynomials, names, context, options, squaring, monitor))?
     else {
         return Ok(nothing);
     };
-    let excess = Excess::new(&problem.given, options.torus_only);
+    let excess = Excess::new(&problem.given, options.torus_only, names.len() - context.named_sums);
     if let Some(worker) = context.worker {
         serve_all(&problem, starts, &excess, worker)?;
         return Ok(nothing);
@@ -158,13 +160,13 @@ struct Problem<'a> {
 fn prepared<'a>(
     polynomials: &'a [Polynomial<Exact>],
     names: &[String],
-    written: Option<&System>,
+    context: SolveContext<'_>,
     options: &'a SolveOptions,
     squaring: Squaring,
     monitor: &'a Monitor,
 ) -> Result<(Problem<'a>, Starts), SolveError> {
     // Combinations of formulas are made of their terms.
-    let written = written.filter(|_| polynomials.len() == names.len());
+    let written = context.written.filter(|_| polynomials.len() == names.len());
     let equations = Equations::new(polynomials, names)?;
     let program = written.and_then(|system| written::program(system, &equations.units(), options.seed));
     let (equations, program) = match conditioned(polynomials) {
@@ -184,7 +186,7 @@ fn prepared<'a>(
         Some(square) => (square.equations, square.slack, Cow::Owned(square.options)),
         None => (equations, None, Cow::Borrowed(options)),
     };
-    let starts = Starts::new(equations, program, &options, monitor)?;
+    let starts = Starts::new(equations, program, context.named_sums, &options, monitor)?;
     Ok((Problem { polynomials, given, units, exact, roots, squaring, slack, options, monitor }, starts))
 }
 

@@ -37,6 +37,8 @@ pub(super) struct Starts {
     grouped: Option<Grouped>,
     /// The first mixed cells, if they were found while choosing.
     first: Option<Polyhedral>,
+    /// Whether other start systems may be tried.
+    may_try: bool,
 }
 
 /// How many paths start systems have; `None` where that is not known.
@@ -58,16 +60,20 @@ impl Numbers {
 }
 
 impl Starts {
+    /// Those of equations; the last `named_sums` of these give the last unknowns as sums of others.
     pub(super) fn new(
         given: Equations,
         written: Option<Interpreter>,
+        named_sums: usize,
         options: &SolveOptions,
         monitor: &Monitor,
     ) -> Result<Starts, SolveError> {
         let n = given.unknowns;
-        let mut equations = if given.len() > n { given.squared(options.seed, &[]) } else { given };
+        let definitions: Vec<usize> = (given.len() - named_sums..given.len()).collect();
+        let mut equations = if given.len() > n { given.squared(options.seed, &definitions) } else { given };
         let laurent = equations.is_laurent();
-        if !options.torus_only && !laurent {
+        // Sums may vanish at solutions in the torus.
+        if named_sums > 0 || (!options.torus_only && !laurent) {
             for i in 0..n {
                 equations.add_term(i, vec![0; n]);
             }
@@ -105,8 +111,11 @@ impl Starts {
                 }
             }
         };
-        Starts::with(kind, paths, equations, written, numbers, degrees, grouped, options)
-            .map(|starts| Starts { first, ..starts })
+        Starts::with(kind, paths, equations, written, numbers, degrees, grouped, options).map(|starts| Starts {
+            first,
+            may_try: named_sums == 0,
+            ..starts
+        })
     }
 
     /// Those of a kind.
@@ -162,6 +171,7 @@ impl Starts {
             unknowns,
             grouped,
             first,
+            may_try: false,
         })
     }
 
@@ -169,7 +179,9 @@ impl Starts {
     /// hardly more paths. Whether they are less work shows after some paths, see
     /// [`super::paths::follow`].
     pub(super) fn direct(&self, options: &SolveOptions) -> Option<Starts> {
-        let volume = self.numbers.mixed_volume.filter(|_| options.start == Start::Auto && !options.torus_only)?;
+        // With the factors of a product as unknowns, those of one stage take far longer.
+        let may_try = self.may_try && options.start == Start::Auto && !options.torus_only;
+        let volume = self.numbers.mixed_volume.filter(|_| may_try)?;
         let (kind, paths) = self.numbers.of_one_stage().filter(|(_, paths)| *paths <= volume + volume / HARDLY_MORE)?;
         let (degrees, grouped) = (self.degrees.clone(), self.grouped.clone());
         let (equations, written) = (self.equations.clone(), self.written.clone());

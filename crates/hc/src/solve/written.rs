@@ -16,7 +16,7 @@ const MOST: i64 = 1000;
 
 /// The system, if its formulas should be tracked as they were written.
 pub(super) fn worth_tracking(system: &System) -> Option<&System> {
-    Some(system).filter(|system| system.sums_multiplied() >= EQUATIONS.factors)
+    Some(system).filter(|system| system.sums_multiplied().iter().any(|&count| count >= EQUATIONS.factors))
 }
 
 /// The formulas in unknowns in units of `2^units`, each divided by its size and multiplied by one

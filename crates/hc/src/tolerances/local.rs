@@ -13,10 +13,14 @@ pub struct EquationTolerances {
     /// Equations of many terms are refused if their scaled coefficients differ by more decades than
     /// this.
     pub spread: f64,
-    /// Formulas that multiply as many sums, counted with multiplicity, are tracked as they were written
-    /// instead of expanded. For `(x + y)^n - 1, x - y^2` that takes as long with `n` = 16 and 20, and about
+    /// Formulas that multiply as many sums, counted with multiplicity, get unknowns for these, or are
+    /// tracked as they were written. For `(x + y)^n - 1, x - y^2` that takes as long with `n` = 16 and 20, and about
     /// half as long with 24 and 30, where expanded formulas need more digits than doubles have.
     pub factors: u32,
+    /// Products of up to this many sums are expanded all the same, where longer ones get unknowns.
+    pub kept_factors: u32,
+    /// Most unknowns for sums: mixed cells and linear algebra take longer with each.
+    pub named_sums: usize,
     /// Spread of the logarithms (base 2) of coefficients in an equation below which unknowns are
     /// not scaled.
     pub mild: f64,
@@ -33,6 +37,8 @@ pub const EQUATIONS: EquationTolerances = EquationTolerances {
     independent: 1e-6,
     spread: 30.0,
     factors: 16,
+    kept_factors: 3,
+    named_sums: 128,
     mild: 14.0,
     most_exponent: 200.0,
     faded: 30.0,

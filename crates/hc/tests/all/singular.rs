@@ -156,6 +156,7 @@ fn roots_that_doubles_do_not_tell_apart() {
     check(&format!("1\n{};", mignotte("x")), 3, "21x1", 3, false);
     check(&format!("2\n{};\ny-x^2+1;", mignotte("x")), 3, "21x1", 3, false);
     check(&format!("2\n{};\nx-2*y-1;", mignotte("(x+y)")), 3, "21x1", 3, false);
+    check(&format!("3\n{};\nx-2*y-1;\nz-x-y;", mignotte("z")), 3, "21x1", 3, false);
 }
 
 #[path = "../../examples/singular_families/families/mod.rs"]

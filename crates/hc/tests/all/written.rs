@@ -1,4 +1,4 @@
-//! Formulas that multiply many sums, which are tracked as they are written.
+//! Formulas that multiply many sums: these have unknowns of their own, or are tracked as they are written.
 
 use crate::common::{multiplicities, options, real, solved};
 use hc::Start;
@@ -15,6 +15,50 @@ fn powers_of_sums_keep_all_solutions() {
             assert!((x - y * y).norm() < 1e-12 && ((x + y).powi(20) - 1.0).norm() < 1e-11, "{seed}: {x} {y}");
         }
     }
+}
+
+/// Too large to be expanded, or with coefficients that doubles cannot hold together; in the second one,
+/// `w^200 = 1` and `x y = 2` with `w = x + y + x^2`, so that `x^3 + x^2 + 2 = w x`: one real root for `w = -1`
+/// and one for 1, and none is double, since `4 w^3 + w^2 - 36 w` is never 116. In the third one, `(2 x + 1)^100 = 1`.
+#[test]
+fn powers_that_are_never_expanded() {
+    for (text, solutions, real_solutions) in [
+        ("2\n(x+y)^50-1;\nx-y^2;", 100, 2),
+        ("3\n(x+y+z)^200-1;\nx*y-2;\nz-x^2;", 600, 2),
+        ("2\n(x+y+1)^100-1;\nx-y;", 100, 2),
+    ] {
+        for seed in 0..5 {
+            let found = solved(text, &options(seed));
+            let expected = (format!("{solutions}x1"), real_solutions, 0);
+            assert_eq!((multiplicities(&found), real(&found), found.paths.failed), expected, "{text} {seed}");
+            assert!(found.iter().all(|s| s.value.len() == found.variables.len()), "{text} {seed}");
+        }
+    }
+}
+
+/// More equations than unknowns, zero coordinates that are not asked for, negative exponents, a line of
+/// solutions.
+#[test]
+fn with_everything_that_a_solve_has() {
+    // w = x + y with w^20 = 1 and w^3 = w: 1 and -1, and y^2 + y = w has two solutions each, real for 1.
+    let found = solved("3 2\n(x+y)^20-1;\nx-y^2;\n(x+y)^3-x-y;", &options(0));
+    assert_eq!((multiplicities(&found), real(&found), found.paths.failed), ("4x1".to_owned(), 2, 0));
+    // The line x = 0, and x = y^2 with 20 roots of unity y^2 + y, all of them in the torus: y is neither 0
+    // nor -1 there.
+    for torus_only in [false, true] {
+        let found = solved("2\n(x+y)^20*x-x;\nx*(x-y^2);", &options(0).torus_only(torus_only));
+        assert_eq!((multiplicities(&found), real(&found), found.paths.failed), ("40x1".to_owned(), 2, 0));
+    }
+    // Sums that vanish in the torus: x = -y there, so that x^2 = 1.
+    let found = solved("2\n(x+y)^16*x;\nx^2*y^2-1;", &options(0).torus_only(true));
+    assert_eq!((multiplicities(&found), found.paths.failed), ("4x16".to_owned(), 0));
+    // y^2 + 1/y = w for the 20 roots of unity w: cubics y^3 - w y + 1 without double roots, since 4 w^3 is
+    // not 27. Those of 1 and -1 have one real root each.
+    let found = solved("2\n(x+y^(-1))^20-1;\nx-y^2;", &options(0));
+    assert_eq!((multiplicities(&found), real(&found), found.paths.failed), ("60x1".to_owned(), 2, 0));
+    // Certified as they were given.
+    let found = solved("2\n(x+y)^20-1;\nx-y^2;", &options(0).certify(true));
+    assert!(found.iter().all(|s| s.certified == Some(true)));
 }
 
 /// `((x^2 + 1)^4 - x^5)^4 = x^16` in `x` alone, of degree 32; its greatest common divisor with its

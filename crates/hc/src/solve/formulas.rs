@@ -1,0 +1,116 @@
+//! The formulas of a system, in the form in which they are solved.
+
+use super::error::SolveError;
+use super::options::{SolveOptions, Start};
+use super::polynomials::SolveContext;
+use super::solutions::{Direction, Solutions, is_real};
+use super::written::worth_tracking;
+use crate::start::bezout_number;
+use crate::tolerances::{ENDS, EQUATIONS};
+use num_complex::Complex64;
+use poly::{Exact, ExpandError, ExpandLimits, Polynomial, System};
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+/// A system as it was given, or with [named sums](System::with_named_sums) where it multiplies many
+/// sums: expanded, these have many terms in which digits cancel.
+pub(super) struct Formulas<'a> {
+    /// The given system.
+    pub(super) given: &'a System,
+    pub(super) solved: Cow<'a, System>,
+    /// The system that is solved, expanded.
+    pub(super) polynomials: Vec<Polynomial<Exact>>,
+}
+
+impl<'a> Formulas<'a> {
+    /// The form in which a system is solved with these options.
+    ///
+    /// # Errors
+    /// If it cannot be expanded, has parameters, or an option is out of range.
+    pub(super) fn new(given: &'a System, options: &SolveOptions) -> Result<Formulas<'a>, SolveError> {
+        options.validate()?;
+        if !given.parameters().is_empty() {
+            return Err(SolveError::Parameters(given.parameters().join(", ")));
+        }
+        let counts = given.sums_multiplied();
+        // In one unknown there are better ways to all roots.
+        if given.variables().len() > 1 && counts.iter().any(|&count| count >= EQUATIONS.factors) {
+            // Where the names are more than the sums that are multiplied, as in a sum of many powers, their
+            // equations are more work than they save.
+            let count = counts.iter().fold(0usize, |sum, &count| sum.saturating_add(count as usize));
+            let same = |named: &System| bezout_of(named) == bezout_of(given);
+            if let Some(formulas) = Formulas::with_names(given, count.min(EQUATIONS.named_sums), same, options) {
+                return Ok(formulas);
+            }
+        }
+        let error = match given.expand(&ExpandLimits::default()) {
+            Ok(polynomials) => return Ok(Formulas { given, solved: Cow::Borrowed(given), polynomials }),
+            Err(error) => error,
+        };
+        if matches!(error, ExpandError::TooLarge { .. })
+            && let Some(formulas) = Formulas::with_names(given, EQUATIONS.named_sums, |_| true, options)
+        {
+            return Ok(formulas);
+        }
+        Err(error.into())
+    }
+
+    /// With named sums; `None` where these would be more than `most`, or not serve the start system that was
+    /// asked for: that of total degree needs their approval.
+    fn with_names(
+        given: &'a System,
+        most: usize,
+        approved: impl Fn(&System) -> bool,
+        options: &SolveOptions,
+    ) -> Option<Formulas<'a>> {
+        if given.len() < given.variables().len() || !options.groups.is_empty() {
+            return None;
+        }
+        let named = given.with_named_sums(EQUATIONS.kept_factors, most)?;
+        let serves = match options.start {
+            Start::Auto | Start::Polyhedral => true,
+            Start::TotalDegree => approved(&named),
+            Start::Multihomogeneous => false,
+        };
+        let polynomials = serves.then(|| named.expand(&ExpandLimits::default()).ok())??;
+        Some(Formulas { given, solved: Cow::Owned(named), polynomials })
+    }
+
+    /// The system that is solved, if it should be tracked as it was written.
+    pub(super) fn written(&self) -> Option<&System> {
+        worth_tracking(&self.solved)
+    }
+
+    /// A solve of the polynomials.
+    pub(super) fn context(&self) -> SolveContext<'_> {
+        let named_sums = self.solved.variables().len() - self.given.variables().len();
+        SolveContext { written: self.written(), named_sums, ..SolveContext::default() }
+    }
+
+    /// What was found, in the given unknowns alone.
+    pub(super) fn in_given(&self, mut found: Solutions) -> Solutions {
+        let unknowns = self.given.variables().len();
+        let cut = |value: &mut Vec<Complex64>| value.truncate(unknowns);
+        for solution in &mut found.solutions {
+            cut(&mut solution.value);
+            let tolerance = if solution.multiplicity > 1 { ENDS.real_singular } else { ENDS.real };
+            solution.is_real = is_real(&solution.value, tolerance);
+        }
+        found.component_points.iter_mut().for_each(cut);
+        found.unresolved.iter_mut().for_each(|end| cut(&mut end.value));
+        let mut directions: BTreeMap<(Vec<i64>, usize), usize> = BTreeMap::new();
+        for Direction { mut valuations, denominator, paths } in std::mem::take(&mut found.directions) {
+            valuations.truncate(unknowns);
+            *directions.entry((valuations, denominator)).or_default() += paths;
+        }
+        let merged = directions.into_iter();
+        found.directions =
+            merged.map(|((valuations, denominator), paths)| Direction { valuations, denominator, paths }).collect();
+        found
+    }
+}
+
+/// The product of the degrees, as far as it is known before formulas are expanded.
+fn bezout_of(system: &System) -> Option<u64> {
+    bezout_number(&system.degrees_as_written()?)
+}
