@@ -68,6 +68,12 @@ impl Equations {
         Ok(Equations { unknowns, supports, coefficients, scale, exact })
     }
 
+    /// As many equations as unknowns, without terms.
+    pub(super) fn without_terms(unknowns: usize) -> Equations {
+        let (supports, coefficients) = (vec![Vec::new(); unknowns], vec![Vec::new(); unknowns]);
+        Equations { unknowns, supports, coefficients, scale: vec![1.0; unknowns], exact: false }
+    }
+
     /// Logarithms to base 2 of the units of the scaled unknowns.
     pub(super) fn units(&self) -> Vec<i64> {
         self.scale.iter().map(|s| s.log2().round() as i64).collect()

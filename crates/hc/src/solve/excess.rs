@@ -15,8 +15,8 @@ pub(super) struct Excess<'a> {
 
 impl<'a> Excess<'a> {
     /// What was not requested of given equations, of which the first `unknowns` unknowns count.
-    pub(super) fn new(given: &'a Given, torus_only: bool, unknowns: usize) -> Excess<'a> {
-        Excess { all: Some(given).filter(|given| given.len() > given.unknowns()), torus_only, unknowns }
+    pub(super) fn new(given: Option<&'a Given>, torus_only: bool, unknowns: usize) -> Excess<'a> {
+        Excess { all: given.filter(|given| given.len() > given.unknowns()), torus_only, unknowns }
     }
 
     /// No point is excess: every point that is found was requested.

@@ -2,9 +2,9 @@
 
 use super::error::SolveError;
 use super::options::{SolveOptions, Start};
-use super::polynomials::SolveContext;
+use super::polynomials::{SolveContext, solve_polynomials, solve_written};
 use super::solutions::{Direction, Solutions, is_real};
-use super::written::worth_tracking;
+use crate::monitor::Monitor;
 use crate::start::bezout_number;
 use crate::tolerances::{ENDS, EQUATIONS};
 use num_complex::Complex64;
@@ -12,14 +12,14 @@ use poly::{Exact, ExpandError, ExpandLimits, Polynomial, System};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-/// A system as it was given, or with [named sums](System::with_named_sums) where it multiplies many
+/// A system as it was given, expanded or too large for that, or with [named sums](System::with_named_sums) where it multiplies many
 /// sums: expanded, these have many terms in which digits cancel.
 pub(super) struct Formulas<'a> {
     /// The given system.
     pub(super) given: &'a System,
     pub(super) solved: Cow<'a, System>,
-    /// The system that is solved, expanded.
-    pub(super) polynomials: Vec<Polynomial<Exact>>,
+    /// The system that is solved, expanded, or why it cannot be.
+    pub(super) polynomials: Result<Vec<Polynomial<Exact>>, ExpandError>,
 }
 
 impl<'a> Formulas<'a> {
@@ -44,15 +44,16 @@ impl<'a> Formulas<'a> {
             }
         }
         let error = match given.expand(&ExpandLimits::default()) {
-            Ok(polynomials) => return Ok(Formulas { given, solved: Cow::Borrowed(given), polynomials }),
+            Ok(polynomials) => {
+                return Ok(Formulas { given, solved: Cow::Borrowed(given), polynomials: Ok(polynomials) });
+            }
             Err(error) => error,
         };
-        if matches!(error, ExpandError::TooLarge { .. })
-            && let Some(formulas) = Formulas::with_names(given, EQUATIONS.named_sums, |_| true, options)
-        {
-            return Ok(formulas);
+        if !matches!(error, ExpandError::TooLarge { .. }) {
+            return Err(error.into());
         }
-        Err(error.into())
+        let with_names = Formulas::with_names(given, EQUATIONS.named_sums, |_| true, options);
+        Ok(with_names.unwrap_or(Formulas { given, solved: Cow::Borrowed(given), polynomials: Err(error) }))
     }
 
     /// With named sums; `None` where these would be more than `most`, or not serve the start system that was
@@ -73,18 +74,26 @@ impl<'a> Formulas<'a> {
             Start::Multihomogeneous => false,
         };
         let polynomials = serves.then(|| named.expand(&ExpandLimits::default()).ok())??;
-        Some(Formulas { given, solved: Cow::Owned(named), polynomials })
+        Some(Formulas { given, solved: Cow::Owned(named), polynomials: Ok(polynomials) })
     }
 
-    /// The system that is solved, if it should be tracked as it was written.
-    pub(super) fn written(&self) -> Option<&System> {
-        worth_tracking(&self.solved)
+    /// How many unknowns, the last ones, and equations, the last ones, are named sums.
+    pub(super) fn named_sums(&self) -> usize {
+        self.solved.variables().len() - self.given.variables().len()
     }
 
-    /// A solve of the polynomials.
-    pub(super) fn context(&self) -> SolveContext<'_> {
-        let named_sums = self.solved.variables().len() - self.given.variables().len();
-        SolveContext { written: self.written(), named_sums, ..SolveContext::default() }
+    /// The solutions of the system that is solved.
+    pub(super) fn solve(
+        &self,
+        options: &SolveOptions,
+        monitor: &Monitor,
+        context: SolveContext<'_>,
+    ) -> Result<Solutions, SolveError> {
+        let context = SolveContext { named_sums: self.named_sums(), ..context };
+        match &self.polynomials {
+            Ok(polynomials) => solve_polynomials(polynomials, self.solved.variables(), options, monitor, context),
+            Err(error) => solve_written(&self.solved, error, options, monitor, context),
+        }
     }
 
     /// What was found, in the given unknowns alone.

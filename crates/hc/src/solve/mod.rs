@@ -29,7 +29,9 @@ mod written;
 pub use error::SolveError;
 pub(crate) use member::{ends, solve_member};
 pub use options::{SolveOptions, Start};
-pub(crate) use polynomials::{SolveContext, solve_polynomials, solve_sliced};
+#[cfg(test)]
+pub(crate) use polynomials::solve_polynomials;
+pub(crate) use polynomials::{SolveContext, solve_sliced};
 pub use solutions::{Direction, Solution, Solutions, Unresolved};
 pub use summary::coordinates;
 pub use warning::Warning;
@@ -79,7 +81,7 @@ impl Run {
     pub fn solve(&self, system: &System, options: &SolveOptions) -> Result<Solutions, SolveError> {
         self.install(|| {
             let formulas = Formulas::new(system, options)?;
-            let context = SolveContext { checkpoint: self.checkpoint(), ..formulas.context() };
+            let context = SolveContext { checkpoint: self.checkpoint(), ..SolveContext::default() };
             solve_formulas(&formulas, options, self.monitor(), context)
         })
     }
@@ -101,15 +103,13 @@ impl RanksRun<'_> {
                 return Lead::at(ranks, &fingerprint, |lead| {
                     let formulas = formulas?;
                     let (checkpoint, lead) = (self.run.checkpoint(), Some(lead));
-                    let context = SolveContext { checkpoint, lead, ..formulas.context() };
+                    let context = SolveContext { checkpoint, lead, ..SolveContext::default() };
                     solve_formulas(&formulas, options, self.run.monitor(), context).map(Some)
                 });
             }
             Worker::at(ranks, &fingerprint, |worker| {
-                let formulas = formulas?;
-                let context = SolveContext { worker: Some(worker), ..formulas.context() };
-                let names = formulas.solved.variables();
-                solve_polynomials(&formulas.polynomials, names, options, worker.monitor(), context).map(|_| None)
+                let context = SolveContext { worker: Some(worker), ..SolveContext::default() };
+                formulas?.solve(options, worker.monitor(), context).map(|_| None)
             })
         })
     }
@@ -124,8 +124,7 @@ fn solve_formulas(
     if let Some(checkpoint) = context.checkpoint {
         checkpoint.begin(job(formulas, options))?;
     }
-    let names = formulas.solved.variables();
-    let mut found = formulas.in_given(solve_polynomials(&formulas.polynomials, names, options, monitor, context)?);
+    let mut found = formulas.in_given(formulas.solve(options, monitor, context)?);
     found.variables = formulas.given.variables().to_vec();
     found.member = Member::new(formulas.given, &[]);
     if options.certify {
@@ -137,9 +136,10 @@ fn solve_formulas(
 /// The job: what a checkpoint of this work describes, and what all ranks do.
 fn job(formulas: &Formulas<'_>, options: &SolveOptions) -> Job {
     let names: Vec<&str> = formulas.solved.variables().iter().map(String::as_str).collect();
-    let expanded = formulas.polynomials.iter().map(|polynomial| polynomial.display(&names).to_string());
-    // The same polynomials are tracked in another way where they are written in another way.
-    let hash = Hash::of(expanded.chain(formulas.written().map(System::to_string)));
+    let hash = match &formulas.polynomials {
+        Ok(polynomials) => Hash::of(polynomials.iter().map(|polynomial| polynomial.display(&names).to_string())),
+        Err(_) => Hash::of([formulas.solved.to_string()]),
+    };
     let (unknowns, equations) = (formulas.given.variables().to_vec(), formulas.given.len());
     Job::new("solve", crate::checkpoint::System { unknowns, equations, hash }, options)
 }

@@ -25,7 +25,7 @@ use crate::singular::Given;
 use crate::start::MixedError;
 use crate::tolerances::ENDS;
 use crate::tracker::Trackers;
-use poly::{Exact, Polynomial, System};
+use poly::{Exact, ExpandError, Polynomial, System};
 use std::borrow::Cow;
 
 /// Clusters of solutions are looked at within clusters this often.
@@ -40,9 +40,7 @@ pub(crate) struct SolveContext<'a> {
     pub(crate) lead: Option<&'a Lead<'a>>,
     /// Among other ranks, of which this is not the first: there are no solutions here.
     pub(crate) worker: Option<&'a Worker<'a>>,
-    /// The formulas, where these are to be tracked as they were written.
-    pub(crate) written: Option<&'a System>,
-    /// How many unknowns, the last ones, and equations, the last ones, are named sums.
+    /// How many unknowns, the last ones, and equations, the last ones, are [named sums](poly::System::with_named_sums).
     pub(crate) named_sums: usize,
 }
 
@@ -114,22 +112,51 @@ fn solve_nested(
     nesting: Nesting<'_>,
     context: SolveContext<'_>,
 ) -> Result<Solutions, SolveError> {
-    let nothing = Solutions { interrupted: true, ..Solutions::default() };
-    let Some((problem, mut starts)) =
-        unless_cancelled(prepared(polynomials, names, context, options, squaring, monitor))?
+    let Some((problem, starts)) = unless_cancelled(prepared(polynomials, names, context, options, squaring, monitor))?
     else {
-        return Ok(nothing);
+        return Ok(nothing());
     };
-    let excess = Excess::new(&problem.given, options.torus_only, names.len() - context.named_sums);
+    solved(&problem, starts, nesting, context)
+}
+
+/// The solutions of formulas that cannot be expanded, which `error` says. They are as many as their
+/// unknowns. Ends that are not regular cannot be judged, and count as lost.
+pub(super) fn solve_written(
+    system: &System,
+    error: &ExpandError,
+    options: &SolveOptions,
+    monitor: &Monitor,
+    context: SolveContext<'_>,
+) -> Result<Solutions, SolveError> {
+    let starts = written::starts(system, error, options)?;
+    let (squaring, options) = (Squaring::Combinations, Cow::Borrowed(options));
+    let problem = Problem { expanded: None, squaring, slack: None, options, monitor };
+    solved(&problem, starts, Nesting::default(), context)
+}
+
+/// What there is where nothing was tracked.
+fn nothing() -> Solutions {
+    Solutions { interrupted: true, ..Solutions::default() }
+}
+
+fn solved(
+    problem: &Problem<'_>,
+    mut starts: Starts,
+    nesting: Nesting<'_>,
+    context: SolveContext<'_>,
+) -> Result<Solutions, SolveError> {
+    let given = problem.expanded.as_ref().map(|expanded| &expanded.given);
+    let unknowns = starts.equations.unknowns - context.named_sums;
+    let excess = Excess::new(given, problem.options.torus_only, unknowns);
     if let Some(worker) = context.worker {
-        serve_all(&problem, starts, &excess, worker)?;
-        return Ok(nothing);
+        serve_all(problem, starts, &excess, worker)?;
+        return Ok(nothing());
     }
-    let attempts = attempted(&problem, &mut starts, &excess, nesting, context)?;
-    if let Some(outer) = nesting.outer {
-        outer.spend(problem.given.spent());
+    let attempts = attempted(problem, &mut starts, &excess, nesting, context)?;
+    if let (Some(outer), Some(given)) = (nesting.outer, given) {
+        outer.spend(given.spent());
     }
-    Ok(assembled(attempts, &starts, monitor))
+    Ok(assembled(attempts, &starts, problem.monitor))
 }
 
 /// The value, or `None` where mixed cells were cancelled.
@@ -142,6 +169,16 @@ fn unless_cancelled<T>(result: Result<T, SolveError>) -> Result<Option<T>, Solve
 
 /// The given equations, and how those that are tracked follow from them.
 struct Problem<'a> {
+    /// `None` if they cannot be expanded.
+    expanded: Option<Expanded<'a>>,
+    squaring: Squaring,
+    slack: Option<Slack>,
+    options: Cow<'a, SolveOptions>,
+    monitor: &'a Monitor,
+}
+
+/// The given equations as polynomials, by which ends are judged.
+struct Expanded<'a> {
     polynomials: &'a [Polynomial<Exact>],
     given: Given,
     /// Logarithms to base 2 of the units of the unknowns.
@@ -150,10 +187,6 @@ struct Problem<'a> {
     exact: bool,
     /// The number of all roots, with their multiplicities, of a single equation in a single unknown.
     roots: Option<usize>,
-    squaring: Squaring,
-    slack: Option<Slack>,
-    options: Cow<'a, SolveOptions>,
-    monitor: &'a Monitor,
 }
 
 /// Prepares equations, as many as unknowns, and their start systems.
@@ -165,13 +198,9 @@ fn prepared<'a>(
     squaring: Squaring,
     monitor: &'a Monitor,
 ) -> Result<(Problem<'a>, Starts), SolveError> {
-    // Combinations of formulas are made of their terms.
-    let written = context.written.filter(|_| polynomials.len() == names.len());
-    let equations = Equations::new(polynomials, names)?;
-    let program = written.and_then(|system| written::program(system, &equations.units(), options.seed));
-    let (equations, program) = match conditioned(polynomials) {
-        Cow::Borrowed(_) => (equations, program),
-        Cow::Owned(rewritten) => (Equations::new(&rewritten, names)?, None),
+    let equations = match conditioned(polynomials) {
+        Cow::Borrowed(_) => Equations::new(polynomials, names)?,
+        Cow::Owned(rewritten) => Equations::new(&rewritten, names)?,
     };
     // A single equation has no condition number to tell, and combinations are rounded.
     let exact = equations.exact && (2..=names.len()).contains(&polynomials.len());
@@ -186,8 +215,9 @@ fn prepared<'a>(
         Some(square) => (square.equations, square.slack, Cow::Owned(square.options)),
         None => (equations, None, Cow::Borrowed(options)),
     };
-    let starts = Starts::new(equations, program, context.named_sums, &options, monitor)?;
-    Ok((Problem { polynomials, given, units, exact, roots, squaring, slack, options, monitor }, starts))
+    let starts = Starts::new(equations, context.named_sums, &options, monitor)?;
+    let expanded = Some(Expanded { polynomials, given, units, exact, roots });
+    Ok((Problem { expanded, squaring, slack, options, monitor }, starts))
 }
 
 /// Tracks paths of all start systems for rank 0 as long as it sends any.
@@ -260,7 +290,8 @@ fn attempted(
             return Err(error.into());
         }
         if !ends.abandoned {
-            let hopeless = problem.roots.is_some() || are_hopeless(ends.lost, from.paths);
+            let in_one_unknown = problem.expanded.as_ref().is_some_and(|expanded| expanded.roots.is_some());
+            let hopeless = in_one_unknown || are_hopeless(ends.lost, from.paths);
             attempts.start_systems += 1;
             attempts.retracked += ends.retracked;
             let found = problem.solutions_at(ends, from, excess, nesting);
@@ -280,7 +311,9 @@ impl Problem<'_> {
     /// The solutions at the ends of all paths of a start system, and those that other methods find if
     /// some are missing.
     fn solutions_at(&self, mut ends: Ends, from: &Starts, excess: &Excess<'_>, nesting: Nesting<'_>) -> Classified {
-        let (given, monitor) = (&self.given, self.monitor);
+        let (coincidence, monitor) = (self.options.paths.coincidence, self.monitor);
+        let Some(expanded) = &self.expanded else { return classify(None, &ends, excess, coincidence) };
+        let given = &expanded.given;
         let line = Line { supports: &from.equations.supports, target: &from.coefficients };
         let work = singular_ends::work(given, from.paths).min(nesting.outer.map_or(u64::MAX, Given::left));
         let (system, target) = match &self.slack {
@@ -296,29 +329,31 @@ impl Problem<'_> {
         let tracked = Tracked {
             given,
             work,
-            polynomials: self.polynomials,
+            polynomials: expanded.polynomials,
             system,
             target,
             line: Some(line),
-            exact: self.exact,
+            exact: expanded.exact,
             monitor,
             solve_cluster: (nesting.level < NESTED).then_some(&solver as &ClusterSolver<'_>),
         };
-        let found = self.roots_at_once(&ends, &tracked).unwrap_or_else(|| {
-            let found = classify(Some(&tracked), &ends, excess, self.options.paths.coincidence);
+        let found = expanded.roots_at_once(&ends, &tracked).unwrap_or_else(|| {
+            let found = classify(Some(&tracked), &ends, excess, coincidence);
             // All paths end at roots, those that seem to go to infinity too.
-            let astray = if self.roots.is_some() { found.infinite } else { 0 };
+            let astray = if expanded.roots.is_some() { found.infinite } else { 0 };
             Classified { lost: found.lost + astray, infinite: found.infinite - astray, ..found }
         });
         let all = !self.options.torus_only && self.options.known.is_none() && !monitor.is_cancelled();
-        if all { found.checked(self.polynomials, &self.units, &tracked, from.paths) } else { found }
+        if all { found.checked(expanded.polynomials, &expanded.units, &tracked, from.paths) } else { found }
     }
+}
 
+impl Expanded<'_> {
     /// All roots of a polynomial in one unknown without paths, if these have not ended at as many: there
     /// is a better way to them than other paths.
     fn roots_at_once(&self, ends: &Ends, tracked: &Tracked<'_>) -> Option<Classified> {
         let missing = self.roots.is_some_and(|degree| ends.lost > 0 || ends.regular.len() != degree);
-        if !missing || self.monitor.is_cancelled() {
+        if !missing || tracked.monitor.is_cancelled() {
             return None;
         }
         let solutions = Graph::new(self.polynomials)?.solutions(&self.units, tracked)?;

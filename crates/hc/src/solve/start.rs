@@ -25,8 +25,6 @@ pub(super) struct Starts {
     pub(super) coefficients: Vec<Complex64>,
     /// The parameters of the system at which paths end.
     pub(super) target: Vec<Complex64>,
-    /// The same equations as they were written, times a parameter, where they are tracked so.
-    written: Option<Interpreter>,
     pub(super) kind: Start,
     pub(super) numbers: Numbers,
     /// Number of paths.
@@ -63,7 +61,6 @@ impl Starts {
     /// Those of equations; the last `named_sums` of these give the last unknowns as sums of others.
     pub(super) fn new(
         given: Equations,
-        written: Option<Interpreter>,
         named_sums: usize,
         options: &SolveOptions,
         monitor: &Monitor,
@@ -111,11 +108,22 @@ impl Starts {
                 }
             }
         };
-        Starts::with(kind, paths, equations, written, numbers, degrees, grouped, options).map(|starts| Starts {
-            first,
-            may_try: named_sums == 0,
-            ..starts
-        })
+        let starts = Starts::with(kind, paths, equations, None, numbers, degrees, grouped, options)?;
+        Ok(Starts { first, may_try: named_sums == 0, ..starts })
+    }
+
+    /// Those of total degree of formulas of these degrees that are tracked as they were written, times the
+    /// parameter of the program.
+    pub(super) fn of_program(
+        without_terms: Equations,
+        program: Interpreter,
+        degrees: Vec<u64>,
+        options: &SolveOptions,
+    ) -> Result<Starts, SolveError> {
+        let (kind, bezout) = (Start::TotalDegree, bezout_number(&degrees));
+        let numbers = Numbers { bezout, ..Numbers::default() };
+        let paths = bezout.unwrap_or(u64::MAX);
+        Starts::with(kind, paths, without_terms, Some(program), numbers, degrees, None, options)
     }
 
     /// Those of a kind.
@@ -149,12 +157,12 @@ impl Starts {
         }
         let terms = SparseSystem::new(n, &equations.supports)?;
         let coefficients = equations.coefficients.concat();
-        let (system, target) = match &written {
+        let (system, target) = match written {
             None => (PathSystem::of_terms(terms), coefficients.clone()),
             Some(program) => {
                 let mut target = vec![Complex64::new(0.0, 0.0); coefficients.len()];
                 target.push(Complex64::new(1.0, 0.0));
-                (PathSystem::with_written(terms, program.clone()), target)
+                (PathSystem::with_written(terms, program), target)
             }
         };
         let first = None;
@@ -163,7 +171,6 @@ impl Starts {
             equations,
             coefficients,
             target,
-            written,
             kind,
             numbers,
             paths,
@@ -184,8 +191,7 @@ impl Starts {
         let volume = self.numbers.mixed_volume.filter(|_| may_try)?;
         let (kind, paths) = self.numbers.of_one_stage().filter(|(_, paths)| *paths <= volume + volume / HARDLY_MORE)?;
         let (degrees, grouped) = (self.degrees.clone(), self.grouped.clone());
-        let (equations, written) = (self.equations.clone(), self.written.clone());
-        Starts::with(kind, paths, equations, written, self.numbers, degrees, grouped, options).ok()
+        Starts::with(kind, paths, self.equations.clone(), None, self.numbers, degrees, grouped, options).ok()
     }
 
     /// A start system, another one for every attempt.

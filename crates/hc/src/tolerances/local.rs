@@ -13,9 +13,9 @@ pub struct EquationTolerances {
     /// Equations of many terms are refused if their scaled coefficients differ by more decades than
     /// this.
     pub spread: f64,
-    /// Formulas that multiply as many sums, counted with multiplicity, get unknowns for these, or are
-    /// tracked as they were written. For `(x + y)^n - 1, x - y^2` that takes as long with `n` = 16 and 20, and about
-    /// half as long with 24 and 30, where expanded formulas need more digits than doubles have.
+    /// Formulas that multiply as many sums, counted with multiplicity, get unknowns for these. Expanded,
+    /// `(x + y)^n - 1` with `x - y^2` takes as long with `n` = 8, twice as long with 10, four times with 15,
+    /// and loses solutions with 30.
     pub factors: u32,
     /// Products of up to this many sums are expanded all the same, where longer ones get unknowns.
     pub kept_factors: u32,
@@ -36,7 +36,7 @@ pub const EQUATIONS: EquationTolerances = EquationTolerances {
     dependent: 1e-5,
     independent: 1e-6,
     spread: 30.0,
-    factors: 16,
+    factors: 10,
     kept_factors: 3,
     named_sums: 128,
     mild: 14.0,

@@ -1,7 +1,10 @@
-//! Formulas that multiply many sums: these have unknowns of their own, or are tracked as they are written.
+//! Formulas that multiply many sums: these have unknowns of their own. What even so cannot be expanded is
+//! tracked as it is written.
 
 use crate::common::{multiplicities, options, real, solved};
-use hc::Start;
+use hc::poly::{ExpandError, Expr, Expressions, System};
+use hc::{SolveError, Start, solve};
+use std::collections::BTreeMap;
 
 /// `y^2 + y` is one of 20 roots of unity, so that there are 40 solutions, all simple since none of these is
 /// -1/4; those of 1 are real, and those of -1 are not.
@@ -81,4 +84,69 @@ fn powers_that_vanish_have_their_multiplicities() {
     let mut multiplicities: Vec<usize> = found.iter().map(|s| s.multiplicity).collect();
     multiplicities.sort_unstable();
     assert_eq!((multiplicities, found.paths.failed), (vec![16, 16], 0));
+}
+
+/// The determinant by Laplace's expansion along the rows, each minor once; `minors` are those of the last rows
+/// by their columns.
+fn determinant<'a>(
+    arena: &'a Expressions,
+    rows: &[Vec<Expr<'a>>],
+    columns: &[usize],
+    minors: &mut BTreeMap<Vec<usize>, Expr<'a>>,
+) -> Expr<'a> {
+    let Some((row, below)) = rows.split_first() else { return arena.constant(1) };
+    if let Some(&known) = minors.get(columns) {
+        return known;
+    }
+    let mut sum = arena.constant(0);
+    for (k, &column) in columns.iter().enumerate() {
+        let others: Vec<usize> = columns.iter().copied().filter(|&other| other != column).collect();
+        let term = row[column] * determinant(arena, below, &others, minors);
+        sum = if k % 2 == 0 { sum + term } else { sum - term };
+    }
+    minors.insert(columns.to_vec(), sum);
+    sum
+}
+
+/// `det(L D U)` with unit triangular matrices `L` and `U` and `D` = diag(`x_k - k^2`), and `x_k = k x_0 + 1`: the
+/// product of `k x_0 + 1 - k^2`, without `x_0` itself, and `x_0`.
+fn large_determinant(n: usize) -> System {
+    System::build(|s| {
+        let x: Vec<Expr<'_>> = (0..n).map(|k| s.variable(&format!("x{k}"))).collect();
+        let entry = |i: usize, j: usize| {
+            let (i, j) = (i as i64, j as i64);
+            if i == j { 1 } else { (3 * i + 5 * j + i * j) % 7 - 3 }
+        };
+        let row = |i: usize| {
+            let term = |j: usize| {
+                let terms = (0..=i.min(j)).map(|k| (x[k] - (k * k) as i64) * entry(i, k) * entry(k, j));
+                s.sum(terms)
+            };
+            (0..n).map(term).collect::<Vec<_>>()
+        };
+        let rows: Vec<Vec<Expr<'_>>> = (0..n).map(row).collect();
+        let columns: Vec<usize> = (0..n).collect();
+        let lines = (1..n).map(|k| x[k] - x[0] * k as i64 - 1);
+        std::iter::once(determinant(s, &rows, &columns, &mut BTreeMap::new())).chain(lines).collect()
+    })
+    .expect("names and constants are sound")
+}
+
+/// Ten solutions: `x_0` is 0 or `(k^2 - 1) / k` for `k` = 1 .. 9, of which that for 1 is 0 too.
+#[test]
+fn what_cannot_be_expanded_is_tracked_as_written() {
+    let system = large_determinant(10);
+    assert!(matches!(system.expand(&Default::default()), Err(ExpandError::TooLarge { equation: 1, .. })));
+    for seed in 0..2 {
+        let found = solve(&system, &options(seed)).unwrap();
+        // The double solution cannot be judged without the terms, and its paths count as lost.
+        assert_eq!((multiplicities(&found), found.paths.failed), ("8x1".to_owned(), 2), "{seed}");
+        for k in 2..10 {
+            let root = f64::from(k * k - 1) / f64::from(k);
+            assert!(found.iter().any(|s| (s.value[0] - root).norm() < 1e-10), "{seed}: {root}");
+        }
+    }
+    // No other start system serves.
+    let polyhedral = solve(&system, &options(0).start(Start::Polyhedral));
+    assert!(matches!(polyhedral, Err(SolveError::Expand(_))));
 }
