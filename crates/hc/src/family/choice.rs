@@ -28,6 +28,9 @@ pub struct ChoiceOptions {
     pub members: usize,
     /// Samples to which the best of them are tracked; all are tracked to a ninth of them. Default 36.
     pub samples: usize,
+    /// Solutions of a fibre, spread evenly over it, that are tracked for the choice; the fibre that is chosen is
+    /// whole. A few hundred of thousands tell as much. Default `None`: all.
+    pub solutions: Option<usize>,
     /// Seed of the members. Default 0.
     pub seed: u64,
     /// Settings of the paths to samples. Default: fast, quick steps, no second try.
@@ -38,7 +41,7 @@ impl Default for ChoiceOptions {
     fn default() -> Self {
         let tracker = TrackerOptions { quick: true, ..TrackerOptions::fast() };
         let paths = FibreOptions { tracker, retries: 0, ..FibreOptions::default() };
-        ChoiceOptions { members: 24, samples: 36, seed: 0, paths }
+        ChoiceOptions { members: 24, samples: 36, solutions: None, seed: 0, paths }
     }
 }
 
@@ -90,9 +93,10 @@ pub fn easiest_fibre<E: Evaluate>(
     options: &ChoiceOptions,
 ) -> (Fibre, f64) {
     let member = |k: u64| Random::new(options.seed, FIRST_MEMBER + k).normals(fibre.parameters.len());
-    let moved =
-        (0..options.members as u64).filter_map(|k| move_fibre(system, fibre, &member(k), &FibreOptions::default()));
-    let mut tried: Vec<(usize, Fibre)> = std::iter::once(fibre.clone()).chain(moved).map(|fibre| (0, fibre)).collect();
+    let to = |fibre: &Fibre, parameters: &[Complex64]| move_fibre(system, fibre, parameters, &FibreOptions::default());
+    let part = evenly(fibre, options.solutions.unwrap_or(usize::MAX));
+    let moved = (0..options.members as u64).filter_map(|k| to(&part, &member(k)));
+    let mut tried: Vec<(usize, Fibre)> = std::iter::once(part.clone()).chain(moved).map(|part| (0, part)).collect();
     for samples in options.rounds() {
         tried.truncate(tried.len().div_ceil(if samples.start > 0 { BEST } else { 1 }));
         for (work, fibre) in &mut tried {
@@ -104,9 +108,33 @@ pub fn easiest_fibre<E: Evaluate>(
         // Stable: of equals the first.
         tried.sort_by_key(|(work, _)| *work);
     }
-    let (work, fibre) = tried.swap_remove(0);
-    let paths = (options.samples.max(1) * fibre.len()).max(1);
-    (fibre, work as f64 / paths as f64)
+    let whole = |chosen: Fibre| {
+        if chosen.parameters == fibre.parameters {
+            Some(fibre.clone())
+        } else if chosen.len() == fibre.len() {
+            Some(chosen)
+        } else {
+            to(fibre, &chosen.parameters)
+        }
+    };
+    let paths = (options.samples.max(1) * part.len()).max(1);
+    let mut best = tried.into_iter();
+    match best.find_map(|(work, chosen)| Some((whole(chosen)?, work))) {
+        Some((fibre, work)) => (fibre, work as f64 / paths as f64),
+        // No member is reached by all paths.
+        None => easiest_fibre(system, fibre, sample, &ChoiceOptions { members: 0, ..options.clone() }),
+    }
+}
+
+/// So many solutions of a fibre, spread evenly over it. They are not marked as a part: paths are to be those of
+/// the whole fibre.
+fn evenly(fibre: &Fibre, count: usize) -> Fibre {
+    let (all, n) = (fibre.len(), fibre.dimension);
+    if count >= all {
+        return fibre.clone();
+    }
+    let solutions = (0..count).flat_map(|k| fibre.solution(k * all / count)).copied().collect();
+    Fibre { is_partial: fibre.is_partial, ..Fibre::new(fibre.parameters.clone(), n, solutions) }
 }
 
 /// Random real parameters, normally distributed with variance one, for sample `k`.
@@ -146,8 +174,13 @@ mod tests {
         assert!(work(&chosen) < work(&bad), "{} {}", work(&chosen), work(&bad));
         assert_eq!(work(&chosen) as f64 / 72.0, jacobians);
         // None is tried: none is chosen.
-        let same = ChoiceOptions { members: 0, ..options };
+        let same = ChoiceOptions { members: 0, ..options.clone() };
         assert_eq!(easiest_fibre(family.program(), &bad, |_, k| real_sample(2, k), &same).0, bad);
+        // Chosen by one of its two solutions, with half the paths, and whole.
+        let half = ChoiceOptions { solutions: Some(1), ..ChoiceOptions::default() };
+        let (by_half, jacobians) = easiest_fibre(family.program(), &bad, |_, k| real_sample(2, k), &half);
+        assert_eq!(by_half.len(), 2);
+        assert!(jacobians > 0.0 && work(&by_half) < work(&bad), "{jacobians} {}", work(&by_half));
         let again = track_fibre(family.program(), &chosen, &real_sample(2, 40), &FibreOptions::default());
         assert_eq!(again.1.finite, 2);
     }
