@@ -7,9 +7,6 @@ use hc::{Family, Fibre, MonodromyOptions};
 use tdoa::minimal::parameters_near;
 use tdoa::{Layout, Pseudoranges, SimulateOptions, simulate};
 
-/// Members and networks that are tried for the solvers in the plane.
-const MEMBERS: usize = 240;
-const NETWORKS: usize = 72;
 /// Seed of the first network; the experiments begin at zero.
 const FIRST_NETWORK: u64 = 1_000_000;
 
@@ -50,21 +47,18 @@ pub(crate) fn refill(family: &Family, seed: u64, with_trace: bool) -> Result<Sta
 }
 
 /// The fibre at the parameter point, out of some random ones, from which others are reached with fewest
-/// Jacobians: random networks for the solvers in the plane, random real parameters for the rest.
+/// Jacobians: random networks for the solvers of `tdoa` that are chosen for them, random real parameters for the
+/// rest.
 fn place(family: &Family, fibre: &Fibre, seed: u64) -> Fibre {
     let mut options = ChoiceOptions::default();
     options.seed = seed;
-    let network = match family.name() {
-        "6r3s" => Some((6, 3)),
-        "5r4s" => Some((5, 4)),
-        "4r5s" => Some((4, 5)),
-        _ => None,
-    };
-    if network.is_some() {
-        (options.members, options.samples) = (MEMBERS, NETWORKS);
+    let solver = SOLVERS.iter().find(|solver| solver.name == family.name());
+    if let Some(solver) = solver {
+        (options.members, options.samples) = (solver.members, solver.networks);
+        options.solutions = solver.solutions;
     }
-    let sample = |fibre: &Fibre, k: u64| match network {
-        Some((receivers, transmitters)) => parameters_near(fibre, &random_network(receivers, transmitters, k)),
+    let sample = |fibre: &Fibre, k: u64| match solver {
+        Some(solver) => parameters_near(fibre, &solver.network(FIRST_NETWORK + k)),
         None => real_sample(fibre.parameters.len(), k),
     };
     let (fibre, jacobians) = easiest_fibre(family.program(), fibre, sample, &options);
@@ -72,10 +66,53 @@ fn place(family: &Family, fibre: &Fibre, seed: u64) -> Fibre {
     fibre
 }
 
-/// The measurements of a random network in the plane.
-fn random_network(receivers: usize, transmitters: usize, k: u64) -> Pseudoranges {
-    let mut options = SimulateOptions::default();
-    (options.receivers, options.transmitters, options.seed) = (receivers, transmitters, FIRST_NETWORK + k);
-    options.layout = Layout::Normal;
-    simulate(&options).expect("a network").pseudoranges
+/// A solver whose fibre is chosen by random networks, and how many members and networks are tried.
+struct Solver {
+    name: &'static str,
+    dimensions: usize,
+    receivers: usize,
+    transmitters: usize,
+    members: usize,
+    networks: usize,
+    /// Solutions of a member that are tracked, if not all.
+    solutions: Option<usize>,
+}
+
+/// Those of the solvers in space with thousands of paths are chosen by a few hundred.
+const SOLVERS: [Solver; 7] = [
+    planar("6r3s", 6, 3),
+    planar("5r4s", 5, 4),
+    planar("4r5s", 4, 5),
+    spatial("8r5s", 8, 5, 120, None),
+    spatial("7r5s", 7, 5, 64, Some(256)),
+    spatial("6r6s", 6, 6, 32, Some(128)),
+    spatial("10r4s", 10, 4, 64, Some(256)),
+];
+
+const fn planar(name: &'static str, receivers: usize, transmitters: usize) -> Solver {
+    Solver { name, dimensions: 2, receivers, transmitters, members: 240, networks: 72, solutions: None }
+}
+
+const fn spatial(
+    name: &'static str,
+    receivers: usize,
+    transmitters: usize,
+    members: usize,
+    solutions: Option<usize>,
+) -> Solver {
+    Solver { name, dimensions: 3, receivers, transmitters, members, networks: 36, solutions }
+}
+
+impl Solver {
+    /// The measurements of a random network.
+    fn network(&self, seed: u64) -> Pseudoranges {
+        if self.dimensions == 2 { self.random::<2>(seed) } else { self.random::<3>(seed) }
+    }
+
+    fn random<const D: usize>(&self, seed: u64) -> Pseudoranges {
+        let mut options = SimulateOptions::<D>::new();
+        (options.receivers, options.transmitters, options.seed) = (self.receivers, self.transmitters, seed);
+        options.layout = Layout::Normal;
+        simulate(&options).expect("a network").pseudoranges
+    }
 }
