@@ -7,6 +7,7 @@ mod networks;
 mod program;
 mod solving;
 mod volumes;
+mod written;
 
 use crate::workspace;
 use anyhow::Result;
@@ -51,6 +52,8 @@ enum Table {
     Macaulay2,
     Gfan,
     Networks,
+    /// Formulas as written beside the same rewritten by hand.
+    Written,
 }
 
 /// Runs the tables that are asked for and writes the page.
@@ -92,6 +95,7 @@ pub fn run(arguments: &CompareArguments) -> Result<()> {
             Table::Macaulay2 => solving::beside_macaulay2(&tools, &plan, &mut text)?,
             Table::Gfan => volumes::beside_gfan(&tools, &plan, &mut text)?,
             Table::Networks => networks::beside_phcpack(&tools, &plan, &mut text)?,
+            Table::Written => written::beside_rewritten(&plan, &mut text)?,
         }
         // The tables so far, for a run that is ended early, and what is then missing.
         if let Some(path) = output {

@@ -109,7 +109,8 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         let (mut residual, mut condition, mut smallest_row) = self.judge(p, x, serves);
         // Near a set of solutions that is no point, the Jacobian becomes singular within a step. Written so
         // that NaN is far.
-        if serves && !(condition * moved <= REFINEMENT.unmoved) {
+        let unmoved = condition * moved <= REFINEMENT.unmoved;
+        if serves && !unmoved {
             (residual, condition, smallest_row) = self.judge(p, x, false);
         }
         refined.plain = steady

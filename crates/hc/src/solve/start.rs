@@ -6,7 +6,7 @@ use super::options::{SolveOptions, Start};
 use crate::monitor::Monitor;
 use crate::start::{
     Grouped, MixedError, Multihomogeneous, PathSystem, Polyhedral, StartSystem, TotalDegree, bezout_number, degrees,
-    leading_unknowns, mixed_volume_is_bezout,
+    leading_unknowns, mixed_volume_is_bezout, powers_lead,
 };
 use num_complex::Complex64;
 use poly::{Interpreter, SparseSystem};
@@ -108,8 +108,10 @@ impl Starts {
                 }
             }
         };
+        // With the factors of a product as unknowns, those of one stage take far longer.
+        let may_try = named_sums == 0 || (bezout.is_some() && powers_lead(&equations.supports, &degrees));
         let starts = Starts::with(kind, paths, equations, None, numbers, degrees, grouped, options)?;
-        Ok(Starts { first, may_try: named_sums == 0, ..starts })
+        Ok(Starts { first, may_try, ..starts })
     }
 
     /// Those of total degree of formulas of these degrees that are tracked as they were written, times the
@@ -186,7 +188,6 @@ impl Starts {
     /// hardly more paths. Whether they are less work shows after some paths, see
     /// [`super::paths::follow`].
     pub(super) fn direct(&self, options: &SolveOptions) -> Option<Starts> {
-        // With the factors of a product as unknowns, those of one stage take far longer.
         let may_try = self.may_try && options.start == Start::Auto && !options.torus_only;
         let volume = self.numbers.mixed_volume.filter(|_| may_try)?;
         let (kind, paths) = self.numbers.of_one_stage().filter(|(_, paths)| *paths <= volume + volume / HARDLY_MORE)?;

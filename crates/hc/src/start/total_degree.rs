@@ -25,10 +25,7 @@ pub(crate) fn bezout_number(degrees: &[u64]) -> Option<u64> {
 /// not may outgrow all terms.
 pub(crate) fn leading_unknowns(supports: &Supports, degrees: &[u64]) -> Vec<usize> {
     let n = supports.len();
-    let has = |i: usize, j: usize| {
-        let is_power = |p: &Vec<i32>| p.iter().enumerate().all(|(k, &e)| k == j || e == 0);
-        supports[i].iter().any(|p| u64::try_from(p[j]) == Ok(degrees[i]) && is_power(p))
-    };
+    let has = |i: usize, j: usize| has_power(&supports[i], j, degrees[i]);
     let mut equations: Vec<usize> = (0..n).collect();
     equations.sort_by_key(|&i| std::cmp::Reverse(degrees[i]));
     let mut owner = vec![None; n];
@@ -45,6 +42,17 @@ pub(crate) fn leading_unknowns(supports: &Supports, degrees: &[u64]) -> Vec<usiz
     }
     let mut free = (0..n).filter(|&j| owner[j].is_none());
     unknowns.into_iter().map(|unknown| unknown.or_else(|| free.next()).expect("as many as equations")).collect()
+}
+
+/// Whether all start terms are terms of the equations already.
+pub(crate) fn powers_lead(supports: &Supports, degrees: &[u64]) -> bool {
+    let unknowns = leading_unknowns(supports, degrees);
+    (0..supports.len()).all(|i| has_power(&supports[i], unknowns[i], degrees[i]))
+}
+
+fn has_power(support: &[Vec<i32>], unknown: usize, degree: u64) -> bool {
+    let is_power = |p: &[i32]| p.iter().enumerate().all(|(k, &e)| k == unknown || e == 0);
+    support.iter().any(|p| u64::try_from(p[unknown]) == Ok(degree) && is_power(p))
 }
 
 /// Gives an equation an unknown, its own before others, along an augmenting path (Kuhn 1955).
@@ -122,7 +130,7 @@ impl TotalDegree {
 
 #[cfg(test)]
 mod tests {
-    use super::{TotalDegree, bezout_number, degrees, leading_unknowns};
+    use super::{TotalDegree, bezout_number, degrees, leading_unknowns, powers_lead};
     use poly::{Evaluate, Isa, SparseSystem};
 
     #[test]
@@ -149,14 +157,18 @@ mod tests {
         let leading = |terms: [&[[i32; 3]]; 3]| {
             let supports: Vec<Vec<Vec<i32>>> =
                 terms.iter().map(|terms| terms.iter().map(|t| t.to_vec()).collect()).collect();
-            leading_unknowns(&supports, &degrees(&supports).unwrap())
+            let degrees = degrees(&supports).unwrap();
+            (leading_unknowns(&supports, &degrees), powers_lead(&supports, &degrees))
         };
         // z^5 - 1, x - y^2, z - x - y: the last one can have any unknown.
         let z = [[0, 0, 5], [0, 0, 0]];
-        assert_eq!(leading([&z, &[[1, 0, 0], [0, 2, 0]], &[[0, 0, 1], [1, 0, 0], [0, 1, 0]]]), [2, 1, 0]);
+        assert_eq!(leading([&z, &[[1, 0, 0], [0, 2, 0]], &[[0, 0, 1], [1, 0, 0], [0, 1, 0]]]), (vec![2, 1, 0], true));
         // The highest degree first, and an augmenting path: x^2 + y^2, x^2 - y, z^3 + x^3.
-        assert_eq!(leading([&[[2, 0, 0], [0, 2, 0]], &[[2, 0, 0], [0, 1, 0]], &[[0, 0, 3], [3, 0, 0]]]), [1, 0, 2]);
+        assert_eq!(
+            leading([&[[2, 0, 0], [0, 2, 0]], &[[2, 0, 0], [0, 1, 0]], &[[0, 0, 3], [3, 0, 0]]]),
+            (vec![1, 0, 2], true)
+        );
         // None has a power, and each its own unknown.
-        assert_eq!(leading([&[[1, 1, 0]], &[[0, 1, 1]], &[[1, 0, 1]]]), [0, 1, 2]);
+        assert_eq!(leading([&[[1, 1, 0]], &[[0, 1, 1]], &[[1, 0, 1]]]), (vec![0, 1, 2], false));
     }
 }

@@ -86,6 +86,27 @@ fn powers_that_vanish_have_their_multiplicities() {
     assert_eq!((multiplicities, found.paths.failed), (vec![16, 16], 0));
 }
 
+/// The systems of examples/written, whose numbers of solutions are known from eliminations.
+#[test]
+fn systems_with_known_numbers_of_solutions() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/written");
+    let table = std::fs::read_to_string(folder.join("expected.csv")).expect("the table");
+    let mut systems = 0;
+    for line in table.lines().skip(1) {
+        let mut fields = line.split(',');
+        let (name, expected) = fields.next().zip(fields.next()).expect("a name and a structure");
+        let text = std::fs::read_to_string(folder.join(format!("{name}.txt"))).expect("a system");
+        let system: System = text.parse().expect("a system");
+        for seed in 0..2 {
+            let found = solve(&system, &options(seed)).unwrap();
+            assert_eq!((&multiplicities(&found)[..], found.paths.failed), (expected, 0), "{name} {seed}");
+            assert!(found.iter().all(|s| s.residual < 1e-11), "{name} {seed}");
+        }
+        systems += 1;
+    }
+    assert_eq!(systems, 25);
+}
+
 /// The determinant by Laplace's expansion along the rows, each minor once; `minors` are those of the last rows
 /// by their columns.
 fn determinant<'a>(
