@@ -6,7 +6,7 @@ use super::options::{SolveOptions, Start};
 use crate::monitor::Monitor;
 use crate::start::{
     Grouped, MixedError, Multihomogeneous, PathSystem, Polyhedral, StartSystem, TotalDegree, bezout_number, degrees,
-    leading_unknowns, mixed_volume_is_bezout, powers_lead,
+    leading_unknowns, mixed_volume_is_bezout,
 };
 use num_complex::Complex64;
 use poly::{Interpreter, SparseSystem};
@@ -109,7 +109,8 @@ impl Starts {
             }
         };
         // With the factors of a product as unknowns, those of one stage take far longer.
-        let may_try = named_sums == 0 || (bezout.is_some() && powers_lead(&equations.supports, &degrees));
+        let leads = || bezout.is_some() && leading_unknowns(&equations.supports, &degrees).is_some();
+        let may_try = named_sums == 0 || leads();
         let starts = Starts::with(kind, paths, equations, None, numbers, degrees, grouped, options)?;
         Ok(Starts { first, may_try, ..starts })
     }
@@ -142,8 +143,9 @@ impl Starts {
         let n = equations.unknowns;
         let too_many = SolveError::TooManyPaths { paths, limit: options.max_paths };
         let paths = usize::try_from(paths).ok().filter(|_| paths <= options.max_paths).ok_or(too_many)?;
-        let unknowns =
-            if kind == Start::TotalDegree { leading_unknowns(&equations.supports, &degrees) } else { vec![] };
+        // Otherwise the unknowns of the same numbers.
+        let leading = if kind == Start::TotalDegree { leading_unknowns(&equations.supports, &degrees) } else { None };
+        let unknowns = leading.unwrap_or_else(|| (0..n).collect());
         for i in 0..n {
             match (kind, &grouped) {
                 (Start::TotalDegree, _) => {

@@ -20,7 +20,7 @@ pub(crate) use multihomogeneous::{Grouped, Multihomogeneous};
 pub(crate) use path_system::PathSystem;
 pub(crate) use polyhedral::Polyhedral;
 pub(crate) use reached::Reached;
-pub(crate) use total_degree::{TotalDegree, bezout_number, degrees, leading_unknowns, powers_lead};
+pub(crate) use total_degree::{TotalDegree, bezout_number, degrees, leading_unknowns};
 
 use crate::family::Fibre;
 use crate::monitor::Monitor;

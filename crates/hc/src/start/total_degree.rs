@@ -20,34 +20,17 @@ pub(crate) fn bezout_number(degrees: &[u64]) -> Option<u64> {
     degrees.iter().try_fold(1u64, |product, &d| product.checked_mul(d))
 }
 
-/// The unknown of each equation: as many of the powers `x_j^(d_i)` as can be, those of the highest
-/// degrees first, are terms of the equations already. Paths are short where they are; a power that is
-/// not may outgrow all terms.
-pub(crate) fn leading_unknowns(supports: &Supports, degrees: &[u64]) -> Vec<usize> {
+/// An unknown for each equation, so that all the powers `x_j^(d_i)` are terms of the equations already, by a
+/// matching; `None` if there is none. Paths are short from there, where powers that are no terms may outgrow
+/// all others.
+pub(crate) fn leading_unknowns(supports: &Supports, degrees: &[u64]) -> Option<Vec<usize>> {
     let n = supports.len();
     let has = |i: usize, j: usize| has_power(&supports[i], j, degrees[i]);
-    let mut equations: Vec<usize> = (0..n).collect();
-    equations.sort_by_key(|&i| std::cmp::Reverse(degrees[i]));
     let mut owner = vec![None; n];
-    for &i in &equations {
-        matched(i, &has, &mut owner, &mut vec![false; n]);
-    }
-    let mut unknowns = vec![None; n];
-    owner.iter().enumerate().filter_map(|(j, i)| Some((j, (*i)?))).for_each(|(j, i)| unknowns[i] = Some(j));
-    // The others keep their own unknowns, if these are free.
-    for i in 0..n {
-        if unknowns[i].is_none() && owner[i].is_none() {
-            (unknowns[i], owner[i]) = (Some(i), Some(i));
-        }
-    }
-    let mut free = (0..n).filter(|&j| owner[j].is_none());
-    unknowns.into_iter().map(|unknown| unknown.or_else(|| free.next()).expect("as many as equations")).collect()
-}
-
-/// Whether all start terms are terms of the equations already.
-pub(crate) fn powers_lead(supports: &Supports, degrees: &[u64]) -> bool {
-    let unknowns = leading_unknowns(supports, degrees);
-    (0..supports.len()).all(|i| has_power(&supports[i], unknowns[i], degrees[i]))
+    let all = (0..n).all(|i| matched(i, &has, &mut owner, &mut vec![false; n]));
+    let mut unknowns = vec![0; n];
+    owner.iter().enumerate().filter_map(|(j, i)| Some((j, (*i)?))).for_each(|(j, i)| unknowns[i] = j);
+    all.then_some(unknowns)
 }
 
 fn has_power(support: &[Vec<i32>], unknown: usize, degree: u64) -> bool {
@@ -130,7 +113,7 @@ impl TotalDegree {
 
 #[cfg(test)]
 mod tests {
-    use super::{TotalDegree, bezout_number, degrees, leading_unknowns, powers_lead};
+    use super::{TotalDegree, bezout_number, degrees, leading_unknowns};
     use poly::{Evaluate, Isa, SparseSystem};
 
     #[test]
@@ -139,7 +122,7 @@ mod tests {
             vec![vec![vec![3, 0], vec![1, 1], vec![0, 0]], vec![vec![0, 2], vec![1, 1], vec![2, 0], vec![0, 0]]];
         let degrees = degrees(&supports).unwrap();
         assert_eq!((&degrees[..], bezout_number(&degrees)), (&[3, 2][..], Some(6)));
-        let start = TotalDegree::new(&supports, &degrees, &leading_unknowns(&supports, &degrees), 0, 0);
+        let start = TotalDegree::new(&supports, &degrees, &[0, 1], 0, 0);
         let system = SparseSystem::new(2, &supports).unwrap();
         let mut memory = system.memory(Isa::Portable);
         for k in 0..6 {
@@ -157,18 +140,17 @@ mod tests {
         let leading = |terms: [&[[i32; 3]]; 3]| {
             let supports: Vec<Vec<Vec<i32>>> =
                 terms.iter().map(|terms| terms.iter().map(|t| t.to_vec()).collect()).collect();
-            let degrees = degrees(&supports).unwrap();
-            (leading_unknowns(&supports, &degrees), powers_lead(&supports, &degrees))
+            leading_unknowns(&supports, &degrees(&supports).unwrap())
         };
         // z^5 - 1, x - y^2, z - x - y: the last one can have any unknown.
         let z = [[0, 0, 5], [0, 0, 0]];
-        assert_eq!(leading([&z, &[[1, 0, 0], [0, 2, 0]], &[[0, 0, 1], [1, 0, 0], [0, 1, 0]]]), (vec![2, 1, 0], true));
-        // The highest degree first, and an augmenting path: x^2 + y^2, x^2 - y, z^3 + x^3.
+        assert_eq!(leading([&z, &[[1, 0, 0], [0, 2, 0]], &[[0, 0, 1], [1, 0, 0], [0, 1, 0]]]), Some(vec![2, 1, 0]));
+        // An augmenting path: x^2 + y^2, x^2 - y, z^3 + x^3.
         assert_eq!(
             leading([&[[2, 0, 0], [0, 2, 0]], &[[2, 0, 0], [0, 1, 0]], &[[0, 0, 3], [3, 0, 0]]]),
-            (vec![1, 0, 2], true)
+            Some(vec![1, 0, 2])
         );
-        // None has a power, and each its own unknown.
-        assert_eq!(leading([&[[1, 1, 0]], &[[0, 1, 1]], &[[1, 0, 1]]]), (vec![0, 1, 2], false));
+        // None has a power.
+        assert_eq!(leading([&[[1, 1, 0]], &[[0, 1, 1]], &[[1, 0, 1]]]), None);
     }
 }
