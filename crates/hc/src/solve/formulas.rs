@@ -12,8 +12,8 @@ use poly::{Exact, ExpandError, ExpandLimits, Polynomial, System};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-/// A system as it was given, expanded or too large for that, or with [named sums](System::with_named_sums) where it multiplies many
-/// sums: expanded, these have many terms in which digits cancel.
+/// A system as it was given, or with [named sums](System::with_named_sums) where it multiplies many: expanded,
+/// these have many terms, in which digits cancel.
 pub(super) struct Formulas<'a> {
     /// The given system.
     pub(super) given: &'a System,
@@ -98,6 +98,9 @@ impl<'a> Formulas<'a> {
 
     /// What was found, in the given unknowns alone.
     pub(super) fn in_given(&self, mut found: Solutions) -> Solutions {
+        if self.named_sums() == 0 {
+            return found;
+        }
         let unknowns = self.given.variables().len();
         let cut = |value: &mut Vec<Complex64>| value.truncate(unknowns);
         for solution in &mut found.solutions {

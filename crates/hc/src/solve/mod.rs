@@ -41,7 +41,6 @@ use crate::checkpoint::{Hash, Job};
 use crate::monitor::Monitor;
 use crate::ranks::{Lead, Worker};
 use crate::run::{RanksRun, Run};
-
 use poly::System;
 use solutions::Member;
 
@@ -50,6 +49,9 @@ use solutions::Member;
 /// From the solutions of a start system, paths lead along a straight line in the coefficients to
 /// all isolated solutions. The start system is polyhedral (Huber & Sturmfels 1995, with the origin
 /// added to supports for zero coordinates, Li & Wang 1996) or one with fewer stages ([`Start`]).
+/// Where ten sums or more are multiplied, as in `(x + y)^20`, these have unknowns of their own
+/// ([`System::with_named_sums`]), which the result does not have; numbers of paths are those of that
+/// system. Formulas that cannot be expanded even so are tracked as they are written.
 /// Ends that are not regular go through the endgame. More equations than unknowns are combined at
 /// random, and excess solutions are removed again. The same seed gives the same bits on any number
 /// of threads.
