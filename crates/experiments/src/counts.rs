@@ -257,7 +257,7 @@ fn one(name: &str, system: &System, seed: u64) -> Result<Row> {
 }
 
 /// Number of solutions of each multiplicity, such as `16x1 1x11`.
-fn structure(found: &Solutions) -> String {
+pub(crate) fn structure(found: &Solutions) -> String {
     let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
     for solution in &found.solutions {
         *counts.entry(solution.multiplicity).or_default() += 1;

@@ -58,7 +58,7 @@ impl System {
         self.instantiate_with(arena, unknowns, parameters, |_, formula| formula)
     }
 
-    /// The same with another formula for a node, if `replaced` gives one.
+    /// The same with what `replaced` gives for each node, from its formula.
     pub(crate) fn instantiate_with<'a>(
         &self,
         arena: &'a Expressions,

@@ -1,6 +1,7 @@
 //! Systems with unknowns in place of sums that are multiplied.
 
 use crate::expression::Expr;
+use crate::factors::counts;
 use crate::graph::{Graph, Id, Node};
 use crate::system::System;
 
@@ -59,31 +60,19 @@ fn prefix(system: &System) -> String {
 /// Which nodes are sums in a product of more than `factors` sums.
 fn named(graph: &Graph, equations: &[Id], factors: u32) -> Vec<bool> {
     let used = graph.reachable(equations.iter().copied());
-    let mut counts: Vec<u32> = Vec::with_capacity(graph.len());
+    let counts = counts(graph, factors);
     // Products that are whole equations, or terms of sums.
     let mut whole = vec![false; graph.len()];
     equations.iter().for_each(|&id| whole[id as usize] = true);
-    // Operands have smaller indices than the nodes that use them.
-    for k in 0..graph.len() {
-        let of = |id: Id| counts[id as usize];
-        // A product of many is one of names.
-        let term = |id: Id| if of(id) > factors { 0 } else { of(id) };
+    for k in (0..graph.len()).filter(|&k| used[k]) {
         let node = graph.node(k as Id);
-        let count = match node {
-            Node::Constant(_) | Node::Variable(_) | Node::Parameter(_) => 0,
-            Node::Add(a, b) | Node::Sub(a, b) => term(a).max(term(b)).max(1),
-            Node::Mul(a, b) => of(a).saturating_add(of(b)),
-            Node::Div(a, b) => of(a).saturating_add(term(b)),
-            Node::Neg(a) => of(a),
-            Node::Pow(a, exponent) => of(a).saturating_mul(exponent.unsigned_abs()),
-        };
-        counts.push(count);
-        if used[k] && matches!(node, Node::Add(..) | Node::Sub(..)) {
+        if matches!(node, Node::Add(..) | Node::Sub(..)) {
             node.operands().for_each(|id| whole[id as usize] = true);
         }
     }
     let mut many: Vec<bool> = (0..graph.len()).map(|k| used[k] && whole[k] && counts[k] > factors).collect();
     let mut named = vec![false; graph.len()];
+    // Operands have smaller indices than the nodes that use them.
     for k in (0..graph.len()).rev().filter(|&k| used[k]) {
         match graph.node(k as Id) {
             Node::Add(..) | Node::Sub(..) => named[k] = many[k],

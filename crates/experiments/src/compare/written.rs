@@ -1,12 +1,12 @@
 //! Formulas that multiply many sums beside the same with unknowns for these sums, written by hand.
 
 use super::program::Plan;
+use crate::counts::structure;
 use crate::quantile::median;
 use crate::workspace;
 use anyhow::{Context, Result};
 use hc::poly::System;
 use hc::{Run, SolveOptions};
-use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::time::Instant;
 
@@ -28,10 +28,7 @@ fn solved(system: &System, expected: &str) -> Result<Solved> {
         let started = Instant::now();
         let found = Run::new().threads(1)?.solve(system, &SolveOptions::new().seed(seed))?;
         all.milliseconds += started.elapsed().as_secs_f64() * 1e3 / SEEDS as f64;
-        let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
-        found.iter().for_each(|solution| *counts.entry(solution.multiplicity).or_default() += 1);
-        let structure: Vec<String> = counts.iter().map(|(multiplicity, n)| format!("{n}x{multiplicity}")).collect();
-        all.right += usize::from(structure.join(" ") == expected && found.paths.failed == 0);
+        all.right += usize::from(structure(&found) == expected && found.paths.failed == 0);
         all.lost += found.paths.failed;
     }
     Ok(all)

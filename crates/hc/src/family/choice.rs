@@ -126,8 +126,8 @@ pub fn easiest_fibre<E: Evaluate>(
     }
 }
 
-/// So many solutions of a fibre, spread evenly over it. They are not marked as a part: paths are to be those of
-/// the whole fibre.
+/// So many solutions of a fibre, spread evenly over it, not marked as a part: their paths are to be those of the
+/// whole fibre.
 fn evenly(fibre: &Fibre, count: usize) -> Fibre {
     let (all, n) = (fibre.len(), fibre.dimension);
     if count >= all {

@@ -66,7 +66,8 @@ pub enum SolveError {
     /// determine its solutions, such as the power of a sum, multiplied out.
     #[error(
         "equation {equation} has {terms} terms with coefficients over {decades} decades, too many for double \
-        precision; give powers of sums a new unknown: instead of (x + y + 1)^100 - 1 write z^100 - 1 and z - (x + y + 1)"
+        precision; write powers of sums as such, not multiplied out, or give the sum a new unknown: \
+        z^100 - 1 and z - (x + y + 1) instead of (x + y + 1)^100 - 1"
     )]
     Spread {
         /// The equation, from 1.

@@ -36,11 +36,11 @@ pub use solutions::{Direction, Solution, Solutions, Unresolved};
 pub use summary::coordinates;
 pub use warning::Warning;
 
-use self::formulas::Formulas;
 use crate::checkpoint::{Hash, Job};
 use crate::monitor::Monitor;
 use crate::ranks::{Lead, Worker};
 use crate::run::{RanksRun, Run};
+use formulas::Formulas;
 use poly::System;
 use solutions::Member;
 

@@ -17,6 +17,7 @@ use crate::threads::ParallelIterator;
 use crate::tolerances::ENDS;
 use num_complex::Complex64;
 use poly::{Exact, Polynomial};
+use std::cell::LazyCell;
 
 /// A singular solution and the paths that end there.
 struct Multiple {
@@ -126,17 +127,18 @@ impl Classified {
         tracked: &Tracked<'_>,
         paths: usize,
     ) -> Classified {
+        let graph = LazyCell::new(|| Graph::new(polynomials));
         let singular = self.on_components > 0 || self.solutions.iter().any(|s| s.singular);
         let count = |found: &Classified| found.solutions.iter().map(|s| s.multiplicity).sum::<usize>();
         if self.lost == 0 && !singular {
             // Paths may seem to go to infinity that do not.
             let is_right = |all: usize| all == count(&self);
-            let all = || singular::finite_solutions(polynomials).or_else(|| Graph::new(polynomials)?.count());
+            let all = || singular::finite_solutions(polynomials).or_else(|| graph.as_ref()?.count());
             if self.infinite == 0 || all().is_none_or(is_right) {
                 return self;
             }
         }
-        if let Some(graph) = Graph::new(polynomials) {
+        if let Some(graph) = &*graph {
             if let Some(all) = graph.count() {
                 // There are no components. Paths that are not accounted for go to infinity, however
                 // they seem to end, or solutions are missing.

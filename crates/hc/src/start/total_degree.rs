@@ -24,32 +24,34 @@ pub(crate) fn bezout_number(degrees: &[u64]) -> Option<u64> {
 /// matching; `None` if there is none. Paths are short from there, where powers that are no terms may outgrow
 /// all others.
 pub(crate) fn leading_unknowns(supports: &Supports, degrees: &[u64]) -> Option<Vec<usize>> {
-    let n = supports.len();
-    let has = |i: usize, j: usize| has_power(&supports[i], j, degrees[i]);
-    let mut owner = vec![None; n];
-    let all = (0..n).all(|i| matched(i, &has, &mut owner, &mut vec![false; n]));
-    let mut unknowns = vec![0; n];
-    owner.iter().enumerate().filter_map(|(j, i)| Some((j, (*i)?))).for_each(|(j, i)| unknowns[i] = j);
+    let powers: Vec<Vec<usize>> =
+        supports.iter().zip(degrees).enumerate().map(|(i, (points, &degree))| powers(points, degree, i)).collect();
+    let mut owners = vec![None; supports.len()];
+    let all = (0..supports.len()).all(|i| is_matched(i, &powers, &mut owners, &mut vec![false; supports.len()]));
+    let mut unknowns = vec![0; supports.len()];
+    owners.iter().enumerate().filter_map(|(j, i)| Some((j, (*i)?))).for_each(|(j, i)| unknowns[i] = j);
     all.then_some(unknowns)
 }
 
-fn has_power(support: &[Vec<i32>], unknown: usize, degree: u64) -> bool {
-    let is_power = |p: &[i32]| p.iter().enumerate().all(|(k, &e)| k == unknown || e == 0);
-    support.iter().any(|p| u64::try_from(p[unknown]) == Ok(degree) && is_power(p))
+/// The unknowns whose powers of this degree are points of a support, ascending, but `first` before others.
+fn powers(points: &[Vec<i32>], degree: u64, first: usize) -> Vec<usize> {
+    let power = |p: &Vec<i32>| {
+        let mut nonzero = p.iter().enumerate().filter(|(_, e)| **e != 0);
+        let (unknown, &exponent) = nonzero.next()?;
+        (nonzero.next().is_none() && u64::try_from(exponent) == Ok(degree)).then_some(unknown)
+    };
+    let mut unknowns: Vec<usize> = points.iter().filter_map(power).collect();
+    unknowns.sort_by_key(|&unknown| (unknown != first, unknown));
+    unknowns
 }
 
-/// Gives an equation an unknown, its own before others, along an augmenting path (Kuhn 1955).
-fn matched(
-    i: usize,
-    has: &impl Fn(usize, usize) -> bool,
-    owner: &mut Vec<Option<usize>>,
-    seen: &mut Vec<bool>,
-) -> bool {
-    for j in std::iter::once(i).chain(0..owner.len()) {
-        if !seen[j] && has(i, j) {
+/// Gives an equation one of its unknowns along an augmenting path, if there is one (Kuhn 1955).
+fn is_matched(i: usize, powers: &[Vec<usize>], owners: &mut [Option<usize>], seen: &mut [bool]) -> bool {
+    for &j in &powers[i] {
+        if !seen[j] {
             seen[j] = true;
-            if owner[j].is_none_or(|other| matched(other, has, owner, seen)) {
-                owner[j] = Some(i);
+            if owners[j].is_none_or(|other| is_matched(other, powers, owners, seen)) {
+                owners[j] = Some(i);
                 return true;
             }
         }

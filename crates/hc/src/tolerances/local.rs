@@ -14,7 +14,7 @@ pub struct EquationTolerances {
     /// this.
     pub spread: f64,
     /// Formulas that multiply as many sums, counted with multiplicity, get unknowns for these. Expanded,
-    /// `(x + y)^n - 1` with `x - y^2` takes as long with `n` = 8, twice as long with 10, four times with 15,
+    /// `(x + y)^n - 1` with `x - y^2` takes hardly longer with `n` = 8, twice as long with 10, four times with 15,
     /// and loses solutions with 30.
     pub factors: u32,
     /// Products of up to this many sums are expanded all the same, where longer ones get unknowns.

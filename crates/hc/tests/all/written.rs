@@ -129,8 +129,8 @@ fn determinant<'a>(
     sum
 }
 
-/// `det(L D U)` with unit triangular matrices `L` and `U` and `D` = diag(`x_k - k^2`), and `x_k = k x_0 + 1`: the
-/// product of `k x_0 + 1 - k^2`, without `x_0` itself, and `x_0`.
+/// `det(L D U)` with unit triangular matrices `L` and `U` and `D` = diag(`x_k - k^2`), and `x_k = k x_0 + 1` for
+/// `k` above 0, so that the determinant is the product of `x_0` and of these `k x_0 + 1 - k^2`.
 fn large_determinant(n: usize) -> System {
     System::build(|s| {
         let x: Vec<Expr<'_>> = (0..n).map(|k| s.variable(&format!("x{k}"))).collect();
@@ -153,7 +153,8 @@ fn large_determinant(n: usize) -> System {
     .expect("names and constants are sound")
 }
 
-/// Ten solutions: `x_0` is 0 or `(k^2 - 1) / k` for `k` = 1 .. 9, of which that for 1 is 0 too.
+/// `x_0` is 0 or `(k^2 - 1) / k` for `k` = 1 .. 9, of which that for 1 is 0 too: eight simple solutions and a
+/// double one.
 #[test]
 fn what_cannot_be_expanded_is_tracked_as_written() {
     let system = large_determinant(10);
