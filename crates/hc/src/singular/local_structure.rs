@@ -21,6 +21,9 @@ const ORDERS: [usize; 16] = [2, 3, 4, 5, 6, 7, 8, 11, 16, 23, 32, 45, 64, 90, 12
 /// second number where the point may be isolated with more functionals.
 const FUNCTIONALS: usize = 12;
 const MANY_FUNCTIONALS: usize = 80;
+/// Where more paths than this end, what double-double takes for a set of positive dimension may be a solution
+/// of high multiplicity.
+const FEW: usize = 3;
 
 /// The local structure at a point near which `paths` paths end. As far as is known, the relative error
 /// of the point is at most `error`. At most `most` paths may end at any one point.
@@ -59,13 +62,20 @@ pub(crate) fn local_structure(
     // Zeros of one precision may be small numbers of the next.
     let mut before = None;
     let ways = [multiple::<ComplexDd>, multiple::<ComplexMulti<4>>, multiple::<ComplexMulti<8>>];
-    for examine in &ways[..if effort == Effort::Little { 2 } else { 3 }] {
+    let ways = &ways[..if effort == Effort::Little { 2 } else { 3 }];
+    let mut left: Vec<usize> = (0..ways.len()).rev().collect();
+    while let Some(way) = left.pop() {
         if given.is_exhausted() {
             return LocalStructure::Unresolved(Why::TooMuch);
         }
-        match examine(given, point, paths, most, effort) {
+        match ways[way](given, point, paths, most, effort) {
             Ok(LocalStructure::Isolated { multiplicity, .. }) if before != Some(multiplicity) => {
                 (before, why) = (Some(multiplicity), Why::Unclear);
+            }
+            // High powers of small numbers are zero up to the highest precision, which is next.
+            Ok(LocalStructure::OnComponent { .. }) if paths > FEW && way + 1 < ways.len() => {
+                why = Why::Unclear;
+                left.reverse();
             }
             Ok(structure) => return structure,
             Err(reason) => why = reason,
@@ -157,10 +167,23 @@ fn sheet(given: &Given, point: &[Complex64], paths: usize, error: f64) -> Option
     if point.len() == 1 {
         return None;
     }
-    let local = given.near::<ComplexDd>(point);
     let near = LOCAL.near_sheet.max(LOCAL.near_sheet_errors * error).min(LOCAL.near_sheet_at_most).log2();
+    let found = sheet_in::<ComplexDd>(given, point, paths, near)?;
+    // High powers of small numbers are zero but in many digits.
+    if paths > FEW { sheet_in::<ComplexMulti<8>>(given, point, paths, near) } else { Some(found) }
+}
+
+fn sheet_in<S: Precision>(given: &Given, point: &[Complex64], paths: usize, near: f64) -> Option<LocalStructure> {
+    let local = given.near::<S>(point);
     let (point, dimension) = on_sheet(&local, &local.scaled(point), paths, near)?;
     Some(LocalStructure::OnComponent { dimension, point: rounded(given, &local, &point).0 })
+}
+
+/// Logarithms of the tolerances at which ranks are read off, from what is clear in this precision on.
+fn rank_tolerances<S: Number>() -> impl Iterator<Item = f64> {
+    let finest = LOCAL.clear * S::BITS;
+    let finer = (0..).map(move |k| finest + LOCAL.finer_ranks * f64::from(k));
+    finer.take_while(|&tolerance| tolerance < LOCAL.ranks[0]).chain(LOCAL.ranks)
 }
 
 /// The local structure at a point that is not a regular solution, in one precision. An error if the
@@ -180,8 +203,10 @@ fn multiple<S: Precision>(
     }
     let mut why = Why::NoSolution;
     for order in ORDERS.into_iter().take_while(|&order| order <= 2 * limit) {
+        // What is told by the highest order counts.
+        why = if why == Why::TooLarge { Why::Unclear } else { why };
         let mut tried: Vec<Profile> = Vec::new();
-        for tolerance in LOCAL.ranks {
+        for tolerance in rank_tolerances::<S>() {
             if given.is_exhausted() {
                 return Err(Why::TooMuch);
             }

@@ -103,3 +103,21 @@ fn points_that_solve_nothing() {
     assert_eq!(structure("2\nx*y-1;\nx+y-7;", &[1.0, 2.0], 2, 1e-9), LocalStructure::NotASolution);
     assert_eq!(structure("3 2\nx^2+y^2-2;\nx-y;\nx*y+3;", &[1.0, 1.0], 2, 1e-9), LocalStructure::NotASolution);
 }
+
+/// The double line `x = -y`, made thicker: a line that crosses it at a small angle, where coordinates are
+/// large, meets it in a point. On the crossing line, `s` is a small multiple of the unknown: its power is zero in
+/// few digits.
+#[test]
+fn a_thick_line_crossed_at_a_small_angle() {
+    for n in [3, 6, 12, 18, 20] {
+        for bits in [1, 3, 6] {
+            let (slope, y) = (1.0 - 0.5f64.powi(bits), 82.123456789);
+            let text = format!("4 3\ns^{n}*(x-1);\ns^{n}*(y-2);\nx+{slope}*y-({});\ns-x-y;", slope * y - y);
+            for error in [1e-5, 1e-8, 0.0] {
+                let found = structure(&text, &[0.0, -y, y], n, error);
+                let LocalStructure::Isolated { multiplicity, point, .. } = found else { panic!("{text} {found:?}") };
+                assert!(multiplicity == n && (point[2] - y).norm() < 1e-10, "{text} {multiplicity} {point:?}");
+            }
+        }
+    }
+}

@@ -81,7 +81,7 @@ fn touched<S: Number>(local: &LocalEquations<'_, S>, point: &[S], paths: usize) 
             let start: Vec<S> = point.iter().map(|z| S::add(z, &S::from_c64(random.unit() * away.exp2()))).collect();
             settled(local, start, 1, &profile, f64::INFINITY).is_some_and(|found| {
                 let reached = distance(point, &found.point);
-                (away - 5.0..away + 3.0).contains(&reached) && local.residual(&found.point) <= LOCAL.unseen
+                (away - 5.0..away + 3.0).contains(&reached) && local.residual(&found.point) <= LOCAL.unseen * S::BITS
             })
         })
     };
@@ -97,7 +97,7 @@ pub(crate) fn leads_on_somewhere<S: Number>(
     multiplicity: usize,
 ) -> bool {
     // The distance that is reached, to the power of the multiplicity, must be visible.
-    let is_visible = |stride: f64| multiplicity as f64 * stride.log2() > 0.5 * LOCAL.unseen;
+    let is_visible = |stride: f64| multiplicity as f64 * stride.log2() > LOCAL.visible * S::BITS;
     LOCAL.strides.iter().any(|&stride| is_visible(stride) && leads_on(local, found, order, stride))
 }
 
@@ -107,7 +107,8 @@ fn leads_on<S: Number>(local: &LocalEquations<'_, S>, found: &DeflatedPoint<S>, 
     for _ in 0..MOVES {
         let Some(next) = moved(local, &point, order, &found.profile, stride) else { return false };
         let way = distance(&point, &next);
-        if !(way >= stride.log2() - 3.0 && way <= stride.log2() + 3.0) || local.residual(&next) > LOCAL.unseen {
+        if !(way >= stride.log2() - 3.0 && way <= stride.log2() + 3.0) || local.residual(&next) > LOCAL.unseen * S::BITS
+        {
             return false;
         }
         point = next;

@@ -14,12 +14,12 @@ use std::collections::BTreeMap;
 
 /// A system as it was given, or with [named sums](System::with_named_sums) where it multiplies many: expanded,
 /// these have many terms, in which digits cancel.
-pub(super) struct Formulas<'a> {
+pub(crate) struct Formulas<'a> {
     /// The given system.
     pub(super) given: &'a System,
-    pub(super) solved: Cow<'a, System>,
+    pub(crate) solved: Cow<'a, System>,
     /// The system that is solved, expanded, or why it cannot be.
-    pub(super) polynomials: Result<Vec<Polynomial<Exact>>, ExpandError>,
+    pub(crate) polynomials: Result<Vec<Polynomial<Exact>>, ExpandError>,
 }
 
 impl<'a> Formulas<'a> {
@@ -27,7 +27,7 @@ impl<'a> Formulas<'a> {
     ///
     /// # Errors
     /// If it cannot be expanded, has parameters, or an option is out of range.
-    pub(super) fn new(given: &'a System, options: &SolveOptions) -> Result<Formulas<'a>, SolveError> {
+    pub(crate) fn new(given: &'a System, options: &SolveOptions) -> Result<Formulas<'a>, SolveError> {
         options.validate()?;
         if !given.parameters().is_empty() {
             return Err(SolveError::Parameters(given.parameters().join(", ")));
@@ -64,7 +64,7 @@ impl<'a> Formulas<'a> {
         approved: impl Fn(&System) -> bool,
         options: &SolveOptions,
     ) -> Option<Formulas<'a>> {
-        if given.len() < given.variables().len() || !options.groups.is_empty() {
+        if !options.groups.is_empty() {
             return None;
         }
         let named = given.with_named_sums(EQUATIONS.kept_factors, most)?;
@@ -89,6 +89,10 @@ impl<'a> Formulas<'a> {
         monitor: &Monitor,
         context: SolveContext<'_>,
     ) -> Result<Solutions, SolveError> {
+        let (equations, unknowns) = (self.given.len(), self.given.variables());
+        if equations < unknowns.len() {
+            return Err(SolveError::Underdetermined { equations, unknowns: unknowns.to_vec() });
+        }
         let context = SolveContext { named_sums: self.named_sums(), ..context };
         match &self.polynomials {
             Ok(polynomials) => solve_polynomials(polynomials, self.solved.variables(), options, monitor, context),
@@ -97,7 +101,7 @@ impl<'a> Formulas<'a> {
     }
 
     /// What was found, in the given unknowns alone.
-    pub(super) fn in_given(&self, mut found: Solutions) -> Solutions {
+    pub(crate) fn in_given(&self, mut found: Solutions) -> Solutions {
         if self.named_sums() == 0 {
             return found;
         }

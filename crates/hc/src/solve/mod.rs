@@ -27,6 +27,7 @@ mod warning;
 mod written;
 
 pub use error::SolveError;
+pub(crate) use formulas::Formulas;
 pub(crate) use member::{ends, solve_member};
 pub use options::{SolveOptions, Start};
 #[cfg(test)]
@@ -40,7 +41,6 @@ use crate::checkpoint::{Hash, Job};
 use crate::monitor::Monitor;
 use crate::ranks::{Lead, Worker};
 use crate::run::{RanksRun, Run};
-use formulas::Formulas;
 use poly::System;
 use solutions::Member;
 

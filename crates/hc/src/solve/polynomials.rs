@@ -74,14 +74,16 @@ pub(crate) fn solve_polynomials(
 }
 
 /// [`solve_polynomials`] of equations that are too many, some of them general hyperplanes: linear ones
-/// are kept as they are, and the others may get slack [unknowns](slack) instead of being combined.
+/// are kept as they are, and so are those of the last unknowns, which are `named_sums` sums. The others may
+/// get slack [unknowns](slack) instead of being combined.
 pub(crate) fn solve_sliced(
     polynomials: &[Polynomial<Exact>],
     names: &[String],
+    named_sums: usize,
     options: &SolveOptions,
     monitor: &Monitor,
 ) -> Result<Solutions, SolveError> {
-    let (nesting, context) = (Nesting::default(), SolveContext::default());
+    let (nesting, context) = (Nesting::default(), SolveContext { named_sums, ..SolveContext::default() });
     solve_nested(polynomials, names, options, monitor, Squaring::SlackUnknowns, nesting, context)
 }
 
@@ -146,7 +148,7 @@ fn solved(
     context: SolveContext<'_>,
 ) -> Result<Solutions, SolveError> {
     let given = problem.expanded.as_ref().map(|expanded| &expanded.given);
-    let unknowns = starts.equations.unknowns - context.named_sums;
+    let unknowns = given.map_or(starts.equations.unknowns, Given::unknowns) - context.named_sums;
     let excess = Excess::new(given, problem.options.torus_only, unknowns);
     if let Some(worker) = context.worker {
         serve_all(problem, starts, &excess, worker)?;
@@ -209,7 +211,7 @@ fn prepared<'a>(
     let roots = given.univariate_degrees().filter(|_| !options.torus_only).map(|(_, degree)| degree);
     let square = match squaring {
         Squaring::Combinations => None,
-        Squaring::SlackUnknowns => slack::squared(&equations, options, monitor)?,
+        Squaring::SlackUnknowns => slack::squared(&equations, context.named_sums, options, monitor)?,
     };
     let (equations, slack, options) = match square {
         Some(square) => (square.equations, square.slack, Cow::Owned(square.options)),

@@ -42,9 +42,11 @@ pub(super) struct Square {
     pub(super) options: SolveOptions,
 }
 
-/// Makes equations that are more than their unknowns as many; `None` if they are not.
+/// Makes equations that are more than their unknowns as many; `None` if they are not. Those of the last
+/// unknowns, which are `named_sums` sums, are kept as linear ones are.
 pub(super) fn squared(
     equations: &Equations,
+    named_sums: usize,
     options: &SolveOptions,
     monitor: &Monitor,
 ) -> Result<Option<Square>, SolveError> {
@@ -52,9 +54,14 @@ pub(super) fn squared(
         return Ok(None);
     }
     let mut options = options.clone();
-    let linear = equations.linear();
-    let combined = equations.squared(options.seed, &linear);
-    let wide = widened(equations, &linear, options.seed);
+    let sums = equations.len() - named_sums..equations.len();
+    let mut kept: Vec<usize> = equations.linear().into_iter().filter(|i| !sums.contains(i)).collect();
+    if kept.len() + named_sums > equations.unknowns {
+        kept.clear();
+    }
+    kept.extend(sums);
+    let combined = equations.squared(options.seed, &kept);
+    let wide = widened(equations, &kept, options.seed);
     let volume = match wide.as_ref().map(|wide| Polyhedral::new(&with_origin(wide), options.seed, 0, monitor)) {
         Some(Ok(cells)) => Some(cells.mixed_volume),
         Some(Err(MixedError::Cancelled)) => return Err(MixedError::Cancelled.into()),
@@ -87,10 +94,10 @@ pub(super) fn of_attempt(options: &SolveOptions, attempt: u32) -> SolveOptions {
     options
 }
 
-/// The equations with further unknowns; `None` if too many of them are linear.
-fn widened(equations: &Equations, linear: &[usize], seed: u64) -> Option<Equations> {
+/// The equations with further unknowns; `None` if too many of them are kept.
+fn widened(equations: &Equations, kept: &[usize], seed: u64) -> Option<Equations> {
     let further = equations.len() - equations.unknowns;
-    let mut curved: Vec<usize> = (0..equations.len()).filter(|i| !linear.contains(i)).collect();
+    let mut curved: Vec<usize> = (0..equations.len()).filter(|i| !kept.contains(i)).collect();
     curved.sort_by_key(|&i| equations.degree(i));
     if curved.len() < further {
         return None;

@@ -53,6 +53,8 @@ pub struct LocalTolerances {
     /// Logarithms of the tolerances at which ranks are read off near a solution, the strictest
     /// first; each gives a hypothesis, which deflation then tests.
     pub ranks: [f64; 7],
+    /// Steps in which stricter ones follow in numbers of more digits.
+    pub finer_ranks: f64,
     /// Orders of series with such tolerances that are tried on sets that are not reduced.
     pub sheet_ranks: [(usize, f64); 4],
     /// A regular solution is at most this far from the end of a path, relatively.
@@ -101,8 +103,11 @@ pub struct LocalTolerances {
     /// How far a point is moved along a set, in units of the coordinates.
     pub strides: [f64; 2],
     /// A moved point is still on the set if the logarithms of equations, relative to their terms,
-    /// are at most this.
+    /// are at most this share of the digits.
     pub unseen: f64,
+    /// A point is moved as far as the logarithm of its way, times the multiplicity that it may have, is more than
+    /// this share of the digits.
+    pub visible: f64,
     /// Logarithms of the distances at which solutions beside a point are sought.
     pub distances: [f64; 5],
     /// An end may be as far from a rational point as this many times its error.
@@ -136,6 +141,7 @@ pub struct LocalTolerances {
 /// The thresholds of local structure.
 pub const LOCAL: LocalTolerances = LocalTolerances {
     ranks: [-40.0, -30.0, -20.0, -13.0, -10.0, -6.5, -3.5],
+    finer_ranks: 20.0,
     sheet_ranks: [(2, -20.0), (2, -12.0), (3, -20.0), (3, -12.0)],
     near: 1e-7,
     near_errors: 1e2,
@@ -158,7 +164,8 @@ pub const LOCAL: LocalTolerances = LocalTolerances {
     converged: -0.7,
     doubtful_pivot: -4.0,
     strides: [0.25, 0.0625],
-    unseen: -80.0,
+    unseen: -0.77,
+    visible: -0.38,
     distances: [-4.0, -9.0, -14.0, -19.0, -24.0],
     rational_errors: 10.0,
     rational_least: 1e-12,

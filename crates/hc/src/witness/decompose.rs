@@ -1,14 +1,15 @@
 //! Decomposition into components, dimension by dimension.
 
+use super::equations::Equations;
 use super::irreducible::orbits;
 use super::set::WitnessSet;
 use super::slices::Slices;
 use crate::monitor::Monitor;
 use crate::run::Run;
-use crate::singular::{Given, is_missed};
-use crate::solve::{Solution, SolveError, SolveOptions, Unresolved, solve_sliced};
+use crate::singular::is_missed;
+use crate::solve::{Formulas, Solution, SolveError, SolveOptions, Unresolved, solve_sliced};
 use num_complex::Complex64;
-use poly::{Exact, ExpandLimits, Polynomial, System};
+use poly::System;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -60,7 +61,8 @@ pub struct Decomposition {
 /// the equations with random hyperplanes. In each other dimension, the given equations together
 /// with as many general hyperplanes are [solved](crate::solve) with these options. These are too
 /// many equations: they are combined at random, or get further unknowns that vanish at the
-/// solutions (Sommese & Verschelde 2000), whichever makes less work. Ends of paths that cannot be
+/// solutions (Sommese & Verschelde 2000), whichever makes less work. Sums that are multiplied many times
+/// get unknowns of their own, as in [`solve`](fn@crate::solve). Ends of paths that cannot be
 /// judged are compared with the components of higher dimensions: one of their witness points is
 /// moved there together with its hyperplanes. The same seed gives the same bits on any number of
 /// threads.
@@ -98,26 +100,24 @@ impl Run {
 }
 
 fn decompose_watched(system: &System, options: &SolveOptions, monitor: &Monitor) -> Result<Decomposition, SolveError> {
-    options.validate()?;
-    if !system.parameters().is_empty() {
-        return Err(SolveError::Parameters(system.parameters().join(", ")));
-    }
-    let polynomials = system.expand(&ExpandLimits::default())?;
+    let formulas = Formulas::new(system, options)?;
+    let polynomials = formulas.polynomials.as_ref().map_err(Clone::clone)?;
     let names = system.variables();
-    let lowest = names.len().saturating_sub(polynomials.len());
-    let given = Given::new(&polynomials, vec![0; names.len()]);
+    let equations = Equations::new(polynomials, names.len());
+    let lowest = names.len().saturating_sub(system.len());
     let mut all = Decomposition { variables: names.to_vec(), ..Decomposition::default() };
     let mut missed = true;
     let mut paths = options.max_paths;
     let mut sets: Vec<WitnessSet> = Vec::new();
     for dimension in (lowest..names.len()).rev() {
-        missed = missed && is_missed(&given, dimension, monitor);
+        missed = missed && is_missed(&equations.all, dimension, monitor);
         if missed {
             continue;
         }
         let slices = Slices::new(names.len(), dimension, options.seed);
-        let sliced = [polynomials.clone(), slices.polynomials(names.len())].concat();
-        let found = match solve_sliced(&sliced, names, &options.clone().max_paths(paths), monitor) {
+        let (sliced, named_sums) = (equations.sliced(&slices), equations.named_sums());
+        let (unknowns, options) = (formulas.solved.variables(), &options.clone().max_paths(paths));
+        let mut found = match solve_sliced(&sliced, unknowns, named_sums, options, monitor) {
             Err(SolveError::TooManyPaths { .. }) => {
                 all.unsearched.push(dimension);
                 all.failed += 1;
@@ -129,17 +129,22 @@ fn decompose_watched(system: &System, options: &SolveOptions, monitor: &Monitor)
         paths = paths.saturating_sub(tracked as u64);
         all.failed += found.paths.failed;
         all.partial |= found.interrupted;
-        for end in found.unresolved {
+        for mut end in std::mem::take(&mut found.unresolved) {
+            end.value.truncate(names.len());
             if sets.iter().any(|set| set.contains(&end.value, options.seed, monitor)) {
                 all.failed = all.failed.saturating_sub(end.paths);
             } else {
                 all.unresolved.push(end);
             }
         }
+        // Where higher dimensions have no components, no end lies on one.
+        if all.components.is_empty() && all.failed == 0 {
+            all.failed += found.component_points.len();
+        }
         if dimension == 0 {
-            all.isolated = found.solutions;
+            all.isolated = formulas.in_given(found).solutions;
         } else {
-            sets.extend(all.add((&polynomials, &given), &slices, found.solutions, options.seed, monitor));
+            sets.extend(all.add(&equations, &slices, found.solutions, options.seed, monitor));
             all.partial |= monitor.is_cancelled();
         }
         if all.partial {
@@ -154,7 +159,7 @@ impl Decomposition {
     /// returns what can be tracked of these.
     fn add(
         &mut self,
-        (polynomials, given): (&[Polynomial<Exact>], &Given),
+        equations: &Equations<'_>,
         slices: &Slices,
         solutions: Vec<Solution>,
         seed: u64,
@@ -167,15 +172,16 @@ impl Decomposition {
         let mut all = Vec::new();
         for (multiplicity, points) in by_multiplicity {
             let mut add = |which: Vec<usize>, irreducible: bool| {
-                let witness_points: Vec<Vec<Complex64>> = which.iter().map(|&k| points[k].clone()).collect();
+                let witness_points: Vec<Vec<Complex64>> =
+                    which.iter().map(|&k| points[k][..equations.unknowns].to_vec()).collect();
                 let (dimension, degree) = (slices.dimension(), which.len());
                 self.components.push(Component { dimension, degree, multiplicity, irreducible, witness_points });
             };
-            let sets = WitnessSet::all(polynomials, slices, &points, seed);
+            let sets = WitnessSet::all(equations, slices, &points, seed);
             let mut left: Vec<usize> = (0..points.len()).collect();
             for set in &sets {
                 left.retain(|k| !set.numbers.contains(k));
-                for orbit in orbits(set, given, seed, monitor) {
+                for orbit in orbits(set, equations, seed, monitor) {
                     self.failed += orbit.further;
                     let whole = orbit.is_whole();
                     add(orbit.points, whole);

@@ -7,6 +7,7 @@
 //! in turn (Leykin, Verschelde & Zhao 2006, Theoretical Computer Science 359:111; for components,
 //! Sommese & Wampler 2005, section 13.3).
 
+use super::equations::Equations;
 use crate::random::{Random, Stream};
 use crate::singular::{Elimination, Given, Number, Stop};
 use crate::tolerances::WITNESS;
@@ -22,21 +23,22 @@ const UNKNOWNS: usize = 100;
 
 /// Equations, mostly with multipliers, and points that solve them.
 pub(super) struct DeflatedEquations {
-    /// The equations that are not linear.
-    pub(super) curved: Vec<Polynomial<Exact>>,
-    /// The linear equations, in the multipliers alone.
-    pub(super) linear: Vec<Polynomial<Exact>>,
-    /// The points by their numbers; the multipliers come after the given unknowns.
+    /// The equations that may be combined.
+    pub(super) combined: Vec<Polynomial<Exact>>,
+    /// Those that stay as they are: of named sums, and linear ones in the multipliers alone.
+    pub(super) kept: Vec<Polynomial<Exact>>,
+    /// The points by their numbers; the multipliers come after the unknowns.
     pub(super) points: BTreeMap<usize, Vec<Complex64>>,
 }
 
 impl DeflatedEquations {
-    /// The points as solutions of the given equations.
+    /// The points as solutions of these equations.
     pub(super) fn new(
-        given: &[Polynomial<Exact>],
+        equations: &Equations<'_>,
         points: impl Iterator<Item = (usize, Vec<Complex64>)>,
     ) -> DeflatedEquations {
-        DeflatedEquations { curved: given.to_vec(), linear: Vec::new(), points: points.collect() }
+        let (given, sums) = equations.parts();
+        DeflatedEquations { combined: given.to_vec(), kept: sums.to_vec(), points: points.collect() }
     }
 
     /// The points on components of this dimension, grouped by the equations of which they are regular
@@ -65,7 +67,7 @@ impl DeflatedEquations {
 
     /// All equations.
     fn all(&self) -> Vec<Polynomial<Exact>> {
-        [&self.curved[..], &self.linear].concat()
+        [&self.combined[..], &self.kept].concat()
     }
 
     /// The points, grouped by how much larger the null space of the Jacobian is than the dimension.
@@ -74,9 +76,9 @@ impl DeflatedEquations {
         let mut groups: BTreeMap<usize, DeflatedEquations> = BTreeMap::new();
         for (k, point) in self.points {
             let further = (point.len() - null_space(&given, &point).1.rank()).saturating_sub(dimension);
-            let (curved, linear) = (&self.curved, &self.linear);
+            let (combined, kept) = (&self.combined, &self.kept);
             let empty =
-                || DeflatedEquations { curved: curved.clone(), linear: linear.clone(), points: BTreeMap::new() };
+                || DeflatedEquations { combined: combined.clone(), kept: kept.clone(), points: BTreeMap::new() };
             groups.entry(further).or_insert_with(empty).points.insert(k, point);
         }
         groups
@@ -111,9 +113,9 @@ impl DeflatedEquations {
             let constant = (Monomial::one(2 * before), exact(Complex64::from(-side(k))));
             Polynomial::from_terms(2 * before, terms.chain([constant]))
         };
-        let mut linear = with(&self.linear);
-        linear.extend(forms.iter().enumerate().map(condition));
-        DeflatedEquations { curved: with(&self.curved), linear, points }
+        let mut kept = with(&self.kept);
+        kept.extend(forms.iter().enumerate().map(condition));
+        DeflatedEquations { combined: with(&self.combined), kept, points }
     }
 }
 

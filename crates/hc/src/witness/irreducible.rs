@@ -1,12 +1,12 @@
 //! Which witness points belong to one irreducible component: monodromy of the hyperplanes, and the
 //! trace test.
 
+use super::equations::Equations;
 use super::set::WitnessSet;
 use crate::distinct::relative_distance;
 use crate::family::{Fibre, FibreOptions, MonodromyOptions, deviation, monodromy, move_fibre_watched};
 use crate::monitor::Monitor;
 use crate::random::{Random, Stream};
-use crate::singular::Given;
 use crate::tolerances::{FAMILIES, WITNESS};
 use num_complex::Complex64;
 use poly::{ComplexDd, Evaluate};
@@ -35,7 +35,7 @@ impl Orbit {
 /// Groups the points of a witness set by component.
 ///
 /// Loops join points until every group passes the trace test, which no part of a component passes.
-pub(super) fn orbits(set: &WitnessSet, given: &Given, seed: u64, monitor: &Monitor) -> Vec<Orbit> {
+pub(super) fn orbits(set: &WitnessSet, equations: &Equations<'_>, seed: u64, monitor: &Monitor) -> Vec<Orbit> {
     let WitnessSet { family, fibre: all, numbers, unknowns, .. } = set;
     let mut left: Vec<usize> = (0..all.len()).collect();
     let mut orbits = Vec::new();
@@ -49,7 +49,7 @@ pub(super) fn orbits(set: &WitnessSet, given: &Given, seed: u64, monitor: &Monit
             let found = (0..DIRECTIONS).find_map(of_direction);
             // A single point of a set that hardly bends seems to move straight, which tells nothing.
             let tells = |trace: &Trace| {
-                trace.deviation >= FAMILIES.trace_passed || fibre.len() > 1 || trace.follows_a_plane(given, *unknowns)
+                trace.deviation >= FAMILIES.trace_passed || fibre.len() > 1 || trace.follows_a_plane(equations)
             };
             deviation = found.filter(tells).map(|trace| trace.deviation);
             if deviation.is_some_and(|deviation| deviation < FAMILIES.trace_passed) || monitor.is_cancelled() {
@@ -84,8 +84,8 @@ fn settled(mut fibre: Fibre) -> Fibre {
 /// Points while the hyperplanes move in parallel.
 struct Trace {
     /// How far the sum of the points is from moving linearly, relative to how much the points bend. It is
-    /// rounding error if they are all points of one or more components. Only coordinates count, because
-    /// multipliers are rational functions of the hyperplanes.
+    /// rounding error if they are all points of one or more components. Only given coordinates count: named
+    /// sums are polynomials in them, and multipliers rational functions of the hyperplanes.
     deviation: f64,
     /// The first of the points, before and after the first step.
     first: [Vec<Complex64>; 2],
@@ -97,13 +97,13 @@ const FAR: [i32; 4] = [6, 18, 36, 54];
 impl Trace {
     /// Whether the plane in which the first point seems to stay, by its first step, solves the equations
     /// as far out as doubles tell.
-    fn follows_a_plane(&self, given: &Given, unknowns: usize) -> bool {
+    fn follows_a_plane(&self, equations: &Equations<'_>) -> bool {
         let [before, after] = &self.first;
         FAR.iter().all(|&power| {
             let far = 2f64.powi(power);
-            let point: Vec<Complex64> =
-                before.iter().zip(after).take(unknowns).map(|(a, b)| a + (b - a) * far).collect();
-            let local = given.near_within::<ComplexDd>(&point, WITNESS.far_small);
+            let along = before.iter().zip(after).take(equations.unknowns).map(|(a, b)| a + (b - a) * far);
+            let point = equations.completed(along.collect());
+            let local = equations.all.near_within::<ComplexDd>(&point, WITNESS.far_small);
             local.residual(&local.scaled(&point)).exp2() < WITNESS.far_solved
         })
     }
@@ -144,7 +144,7 @@ mod tests {
             solve_polynomials(&sliced, system.variables(), &options, &monitor, SolveContext::default()).unwrap();
         let points: Vec<Vec<Complex64>> = found.solutions.into_iter().map(|s| s.value).collect();
         assert_eq!(points.len(), 2);
-        let [set] = &WitnessSet::all(&given, &slices, &points, 0)[..] else { panic!("one set") };
+        let [set] = &WitnessSet::all(&Equations::new(&given, 2), &slices, &points, 0)[..] else { panic!("one set") };
         let deviation = |points: &[Vec<Complex64>]| {
             trace(&set.family, &Fibre::new(slices.parameters(), 2, points.concat()), 2, 0, &Monitor::default())
                 .unwrap()
@@ -164,10 +164,9 @@ mod tests {
             let [a, b, c] = slices.parameters()[..] else { panic!("one line") };
             // On the line, as far as the parabola is flat there.
             let x = c / (a + b * y(Complex64::from(1.0)));
-            let [set] = &WitnessSet::all(&given, &slices, &[vec![x, y(x)]], 0)[..] else { panic!("one set") };
-            let [orbit] = &orbits(set, &Given::new(&given, vec![0; 2]), 0, &Monitor::default())[..] else {
-                panic!("one orbit")
-            };
+            let equations = Equations::new(&given, 2);
+            let [set] = &WitnessSet::all(&equations, &slices, &[vec![x, y(x)]], 0)[..] else { panic!("one set") };
+            let [orbit] = &orbits(set, &equations, 0, &Monitor::default())[..] else { panic!("one orbit") };
             orbit.is_whole()
         };
         assert!(whole("2*x - y", |x| 2.0 * x));

@@ -9,6 +9,7 @@
 
 mod decompose;
 mod deflated;
+mod equations;
 mod irreducible;
 mod set;
 mod slices;

@@ -1,6 +1,7 @@
 //! Witness points that can be tracked while their hyperplanes move.
 
 use super::deflated::DeflatedEquations;
+use super::equations::Equations;
 use super::slices::Slices;
 use crate::distinct::relative_distance;
 use crate::family::{Fibre, FibreOptions, track_fibre_watched};
@@ -10,7 +11,7 @@ use crate::solve::{SolveOptions, ends};
 use crate::tolerances::WITNESS;
 use crate::tracker::{PathEnd, PathResult};
 use num_complex::Complex64;
-use poly::{Exact, Interpreter, Polynomial};
+use poly::Interpreter;
 
 /// Most steps of a path: paths that need more do not end at regular points.
 const STEPS: usize = 500;
@@ -19,11 +20,11 @@ const STEPS: usize = 500;
 /// family of which the hyperplanes are the parameters.
 pub(super) struct WitnessSet {
     pub(super) family: Interpreter,
-    /// The points, with multipliers behind their coordinates.
+    /// The points, with named sums and multipliers behind their coordinates.
     pub(super) fibre: Fibre,
     /// The numbers of the points.
     pub(super) numbers: Vec<usize>,
-    /// The number of coordinates.
+    /// The number of coordinates of a point.
     pub(super) unknowns: usize,
     dimension: usize,
 }
@@ -31,15 +32,14 @@ pub(super) struct WitnessSet {
 impl WitnessSet {
     /// The sets that can be tracked of some witness points, which all have the same multiplicity.
     pub(super) fn all(
-        given: &[Polynomial<Exact>],
+        equations: &Equations<'_>,
         slices: &Slices,
         points: &[Vec<Complex64>],
         seed: u64,
     ) -> Vec<WitnessSet> {
-        let Some(unknowns) = points.first().map(Vec::len) else { return Vec::new() };
-        let all = DeflatedEquations::new(given, points.iter().cloned().enumerate());
+        let all = DeflatedEquations::new(equations, points.iter().cloned().enumerate());
         let sets = all.regular(slices.dimension(), seed).into_iter();
-        sets.filter_map(|equations| WitnessSet::new(&equations, slices, unknowns, seed)).collect()
+        sets.filter_map(|regular| WitnessSet::new(&regular, slices, equations.unknowns, seed)).collect()
     }
 
     /// The points that are regular solutions once the equations are combined to as many as there are

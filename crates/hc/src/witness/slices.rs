@@ -54,15 +54,15 @@ impl Slices {
         self.slopes.iter().zip(&self.offsets).flat_map::<Vec<Complex64>, _>(plane).collect()
     }
 
-    /// As many equations as unknowns: the linear ones, combinations of the others, and hyperplanes with
+    /// As many equations as unknowns: those that are kept, combinations of the others, and hyperplanes with
     /// slopes and offsets as parameters. If only offsets moved, they would have to go as far as the branch
     /// points are away. `None` if the equations make no system.
     pub(super) fn family(&self, equations: &DeflatedEquations, seed: u64) -> Option<System> {
         let names: Vec<String> = (0..equations.unknowns()).map(|j| format!("x{j}")).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        let curved = System::from_polynomials(&names, &equations.curved).ok()?;
-        let linear = System::from_polynomials(&names, &equations.linear).ok()?;
-        let wanted = names.len().checked_sub(self.dimension() + linear.len())?;
+        let combined = System::from_polynomials(&names, &equations.combined).ok()?;
+        let kept = System::from_polynomials(&names, &equations.kept).ok()?;
+        let wanted = names.len().checked_sub(self.dimension() + kept.len())?;
         let given = self.slopes.first().map_or(0, Vec::len);
         let mut random = Random::of(seed, Stream::Combinations);
         System::build(|s| {
@@ -73,13 +73,13 @@ impl Slices {
                     (slopes, s.parameter(&format!("b{k}")))
                 })
                 .collect();
-            let curved = curved.instantiate(s, &unknowns, &[]);
-            let mut equations = if curved.len() == wanted {
-                curved
+            let combined = combined.instantiate(s, &unknowns, &[]);
+            let mut equations = if combined.len() == wanted {
+                combined
             } else {
-                (0..wanted).map(|_| s.sum(curved.iter().map(|&f| s.constant(random.unit()) * f))).collect()
+                (0..wanted).map(|_| s.sum(combined.iter().map(|&f| s.constant(random.unit()) * f))).collect()
             };
-            equations.extend(linear.instantiate(s, &unknowns, &[]));
+            equations.extend(kept.instantiate(s, &unknowns, &[]));
             for (slopes, offset) in planes {
                 equations.push(s.sum(slopes.iter().zip(&unknowns).map(|(&a, &x)| a * x)) - offset);
             }

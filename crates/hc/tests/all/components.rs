@@ -55,6 +55,19 @@ fn multiple_components() {
     check("2 3\nz^2*(x^2+y^2-1);\nz^2*(x-y);", 3, &[(2, 1, 2), (1, 1, 1), (1, 1, 1)], 0);
 }
 
+/// Sums that are multiplied many times have unknowns of their own, which neither hyperplanes nor degrees see. Planes that
+/// are roots of unity away from each other meet a parabolic cylinder in conics; a quadric to the tenth power
+/// is five quadrics of another equation in squares; a line and a conic of high multiplicity hide a point
+/// each; two surfaces are graphs of powers.
+#[test]
+fn sums_that_are_multiplied() {
+    check("2 3\n(x+y+z)^30-1;\nx-y^2;", 3, &[(1, 2, 1); 30], 0);
+    check("1 3\n(x^2+y^2+z^2-1)^10-(z-2)^5;", 2, &[(2, 4, 1); 5], 0);
+    check("2\n(x+y)^20*(x-1);\n(x+y)^20*(y-2);", 6, &[(1, 1, 20)], 1);
+    check("1 3\n((x+y)^10-z)*((x-y+1)^12-z);", 3, &[(2, 12, 1), (2, 10, 1)], 0);
+    check("2 3\n(x+y+z)^12*(x^2+y^2+z^2-1);\n(x+y+z)^12*(x-y);", 2, &[(2, 1, 12), (1, 2, 1)], 0);
+}
+
 /// The example of Sommese, Verschelde & Wampler 2001 (SIAM J. Numer. Anal. 38:2022): a sphere, a
 /// twisted cubic and three lines, and a point.
 #[test]
