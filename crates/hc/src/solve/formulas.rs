@@ -23,18 +23,19 @@ pub(crate) struct Formulas<'a> {
 }
 
 impl<'a> Formulas<'a> {
-    /// The form in which a system is solved with these options.
+    /// The form in which a system is solved with these options: with named sums where it multiplies at least
+    /// `factors` of them.
     ///
     /// # Errors
     /// If it cannot be expanded, has parameters, or an option is out of range.
-    pub(crate) fn new(given: &'a System, options: &SolveOptions) -> Result<Formulas<'a>, SolveError> {
+    pub(crate) fn new(given: &'a System, factors: u32, options: &SolveOptions) -> Result<Formulas<'a>, SolveError> {
         options.validate()?;
         if !given.parameters().is_empty() {
             return Err(SolveError::Parameters(given.parameters().join(", ")));
         }
         let counts = given.sums_multiplied();
         // In one unknown there are better ways to all roots.
-        if given.variables().len() > 1 && counts.iter().any(|&count| count >= EQUATIONS.factors) {
+        if given.variables().len() > 1 && counts.iter().any(|&count| count >= factors) {
             // Where the names are more than the sums that are multiplied, as in a sum of many powers, their
             // equations are more work than they save.
             let count = counts.iter().fold(0usize, |sum, &count| sum.saturating_add(count as usize));

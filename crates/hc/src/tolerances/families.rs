@@ -89,6 +89,10 @@ pub struct WitnessTolerances {
     /// Coordinates below this share of the largest are zero: Newton's method leaves ever smaller
     /// numbers in their place, and squares of these underflow.
     pub nothing: f64,
+    /// Coordinates of multiple points below this share of the largest are zero if the equations hold then.
+    pub zero: f64,
+    /// They hold if their residuals are less than this.
+    pub zero_solved: f64,
     /// Far along a plane, coordinates below this share of the largest may be rounding errors.
     pub far_small: f64,
     /// A plane solves the equations if residuals far along it are less than this.
@@ -102,6 +106,8 @@ pub const WITNESS: WitnessTolerances = WitnessTolerances {
     near: 1e-8,
     on: 1e-6,
     nothing: 1e-40,
+    zero: 1e-20,
+    zero_solved: 1e-9,
     far_small: 1e-10,
     far_solved: 1e-4,
 };

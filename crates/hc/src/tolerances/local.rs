@@ -17,6 +17,8 @@ pub struct EquationTolerances {
     /// `(x + y)^n - 1` with `x - y^2` takes hardly longer with `n` = 8, twice as long with 10, four times with 15,
     /// and loses solutions with 30.
     pub factors: u32,
+    /// The same where components are sought: these are multiple if they come from powers.
+    pub factors_of_components: u32,
     /// Products of up to this many sums are expanded all the same, where longer ones get unknowns.
     pub kept_factors: u32,
     /// Most unknowns for sums: mixed cells and linear algebra take longer with each.
@@ -37,6 +39,7 @@ pub const EQUATIONS: EquationTolerances = EquationTolerances {
     independent: 1e-6,
     spread: 30.0,
     factors: 10,
+    factors_of_components: 4,
     kept_factors: 3,
     named_sums: 128,
     mild: 14.0,

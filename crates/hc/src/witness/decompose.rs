@@ -8,6 +8,7 @@ use crate::monitor::Monitor;
 use crate::run::Run;
 use crate::singular::is_missed;
 use crate::solve::{Formulas, Solution, SolveError, SolveOptions, Unresolved, solve_sliced};
+use crate::tolerances::EQUATIONS;
 use num_complex::Complex64;
 use poly::System;
 use serde::Serialize;
@@ -100,7 +101,7 @@ impl Run {
 }
 
 fn decompose_watched(system: &System, options: &SolveOptions, monitor: &Monitor) -> Result<Decomposition, SolveError> {
-    let formulas = Formulas::new(system, options)?;
+    let formulas = Formulas::new(system, EQUATIONS.factors_of_components, options)?;
     let polynomials = formulas.polynomials.as_ref().map_err(Clone::clone)?;
     let names = system.variables();
     let equations = Equations::new(polynomials, names.len());

@@ -1,7 +1,9 @@
 //! Equations for which the witness points of multiple components are regular solutions.
 //!
 //! On a component of multiplicity two or more, the Jacobian has a larger null space than the
-//! tangents explain. Null vectors become further unknowns, the multipliers, with as many linear
+//! tangents explain. Coordinates that are zero at general points of a component are zero on all of it:
+//! equations say so, which is enough where the component comes from powers of these coordinates, or of
+//! [named sums](poly::System::with_named_sums). Otherwise null vectors become further unknowns, the multipliers, with as many linear
 //! conditions as make them one vector at each point. In the equations with multipliers the
 //! component has a smaller multiplicity. Where it is not yet one, their Jacobian gets multipliers
 //! in turn (Leykin, Verschelde & Zhao 2006, Theoretical Computer Science 359:111; for components,
@@ -44,8 +46,14 @@ impl DeflatedEquations {
     /// The points on components of this dimension, grouped by the equations of which they are regular
     /// solutions. Points that would need too many multipliers are left out.
     pub(super) fn regular(self, dimension: usize, seed: u64) -> Vec<DeflatedEquations> {
-        let mut regular = Vec::new();
-        let mut left = vec![self];
+        let (mut regular, mut left) = (Vec::new(), Vec::new());
+        for (further, group) in self.by_rank(dimension) {
+            if further == 0 {
+                regular.push(group);
+            } else {
+                left.extend(group.with_zeros());
+            }
+        }
         for level in 0..=LEVELS {
             for equations in std::mem::take(&mut left) {
                 for (further, group) in equations.by_rank(dimension) {
@@ -58,6 +66,35 @@ impl DeflatedEquations {
             }
         }
         regular
+    }
+
+    /// The equations, and for each coordinate that is zero at points that it is; one group for each set
+    /// of such coordinates.
+    fn with_zeros(self) -> Vec<DeflatedEquations> {
+        let unknowns = self.unknowns();
+        let given = Given::new(&self.all(), vec![0; unknowns]);
+        let mut groups: BTreeMap<Vec<usize>, DeflatedEquations> = BTreeMap::new();
+        for (k, mut point) in self.points {
+            let largest = point.iter().map(|z| z.norm()).fold(0.0, f64::max);
+            let small = |j: &usize| point[*j].norm() <= WITNESS.zero * largest;
+            let mut zeros: Vec<usize> = (0..unknowns).filter(small).collect();
+            let exact: Vec<Complex64> =
+                (0..unknowns).map(|j| if zeros.contains(&j) { Complex64::default() } else { point[j] }).collect();
+            let local = given.near_within::<ComplexDd>(&exact, WITNESS.nothing);
+            if local.residual(&local.scaled(&exact)).exp2() < WITNESS.zero_solved {
+                point = exact;
+            } else {
+                zeros.clear();
+            }
+            let equation = |&j: &usize| Polynomial::variable(unknowns, j);
+            let group = groups.entry(zeros.clone()).or_insert_with(|| DeflatedEquations {
+                combined: self.combined.iter().cloned().chain(zeros.iter().map(equation)).collect(),
+                kept: self.kept.clone(),
+                points: BTreeMap::new(),
+            });
+            group.points.insert(k, point);
+        }
+        groups.into_values().collect()
     }
 
     /// Number of unknowns.

@@ -6,6 +6,15 @@ use num_complex::Complex64;
 use num_traits::Zero;
 use poly::{Exact, Monomial, Polynomial, System, ToExact};
 
+/// So many random slopes are drawn for each hyperplane.
+const ROWS: usize = 8;
+
+/// How far the nearest two of the slopes, each of size one, are from being equal or opposite.
+fn least_angle(slopes: &[Complex64]) -> f64 {
+    let pairs = slopes.iter().enumerate().flat_map(|(j, a)| slopes[..j].iter().map(move |b| (a * a - b * b).norm()));
+    pairs.fold(f64::INFINITY, f64::min)
+}
+
 /// Hyperplanes `a x = b`.
 pub(super) struct Slices {
     /// The coefficients `a` of each.
@@ -15,10 +24,16 @@ pub(super) struct Slices {
 }
 
 impl Slices {
-    /// So many hyperplanes in general position.
+    /// So many hyperplanes in general position, and at no small angles to sets like `x = y` and `x = -y`, which
+    /// systems often have: they would meet these far away, where digits are lost.
     pub(super) fn new(unknowns: usize, dimension: usize, seed: u64) -> Slices {
         let mut random = Random::of(seed, Stream::Slice(dimension as u64));
-        let slopes = (0..dimension).map(|_| (0..unknowns).map(|_| random.unit()).collect()).collect();
+        let mut row = || -> Vec<Complex64> { (0..unknowns).map(|_| random.unit()).collect() };
+        let mut best = || {
+            let rows = (0..ROWS).map(|_| row());
+            rows.max_by(|a, b| least_angle(a).total_cmp(&least_angle(b))).unwrap_or_default()
+        };
+        let slopes = (0..dimension).map(|_| best()).collect();
         Slices { slopes, offsets: (0..dimension).map(|_| random.short_unit()).collect() }
     }
 

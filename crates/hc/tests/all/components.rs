@@ -57,13 +57,17 @@ fn multiple_components() {
 
 /// Sums that are multiplied many times have unknowns of their own, which neither hyperplanes nor degrees see. Planes that
 /// are roots of unity away from each other meet a parabolic cylinder in conics; a quadric to the tenth power
-/// is five quadrics of another equation in squares; a line and a conic of high multiplicity hide a point
-/// each; two surfaces are graphs of powers.
+/// is five quartics, since squares differ by roots of unity; a line and a conic of high multiplicity hide a
+/// point each; curves of three multiplicities lie together; two surfaces are graphs of powers.
 #[test]
 fn sums_that_are_multiplied() {
     check("2 3\n(x+y+z)^30-1;\nx-y^2;", 3, &[(1, 2, 1); 30], 0);
     check("1 3\n(x^2+y^2+z^2-1)^10-(z-2)^5;", 2, &[(2, 4, 1); 5], 0);
     check("2\n(x+y)^20*(x-1);\n(x+y)^20*(y-2);", 6, &[(1, 1, 20)], 1);
+    check("2\n(x^2+y^2-1)^12*(x-2*y);\n(x^2+y^2-1)^12*(y-3);", 3, &[(1, 2, 12)], 1);
+    check("1 2\n(x^2+y^2-1)^4*(x-2*y)^3*(y-x^3)^5;", 3, &[(1, 3, 5), (1, 2, 4), (1, 1, 3)], 0);
+    let both = "(x^2+y^2-1)^6*(x-2*y)^5";
+    check(&format!("2\n{both}*(x-3);\n{both}*(y+x-1);"), 3, &[(1, 2, 6), (1, 1, 5)], 1);
     check("1 3\n((x+y)^10-z)*((x-y+1)^12-z);", 3, &[(2, 12, 1), (2, 10, 1)], 0);
     check("2 3\n(x+y+z)^12*(x^2+y^2+z^2-1);\n(x+y+z)^12*(x-y);", 2, &[(2, 1, 12), (1, 2, 1)], 0);
 }
