@@ -21,9 +21,10 @@ use serde::Serialize;
 const PAIRS: u64 = 48;
 const FEW_TRIES: u64 = 20;
 /// The parts of the pieces of [`Family::complete`]: the search goes on in the second with solutions
-/// for other parameters.
+/// for other parameters, and in the last with those alone.
 const AGAIN: u32 = 1;
 const TRACE: u32 = 2;
+const ALONE: u32 = 8;
 
 impl Family {
     /// All solutions for some generic parameters: a first pair, and the solutions that loops in
@@ -77,9 +78,18 @@ impl Family {
             let others = self.other_pairs(options.seed)?;
             let joined = joined(searched, &found.fibre, &others, accept, &self.symmetry, &options, monitor);
             if let Some(fibre) = joined {
-                let (loops, paths) = (found.loops, found.paths + others.len());
-                found = fill(searched, &fibre, accept, &self.symmetry, &options, pieces.part(AGAIN));
-                (found.loops, found.paths) = (found.loops + loops, found.paths + paths);
+                let (mut loops, mut paths) = (found.loops, found.paths + others.len());
+                let mut search = |from: &Fibre, part: u32| {
+                    let found = fill(searched, from, accept, &self.symmetry, &options, pieces.part(part));
+                    (loops, paths) = (loops + found.loops, paths + found.paths);
+                    Monodromy { loops, paths, ..found }
+                };
+                // The first pair may be degenerate, and not one of the solutions that are counted.
+                let alone = options.roots.map(|_| search(&fibre.without_first(found.fibre.len()), ALONE));
+                found = match alone.filter(|alone| alone.stopped != Stopped::NoProgress) {
+                    Some(alone) => alone,
+                    None => search(&fibre, AGAIN),
+                };
             }
         }
         if options.trace_test && matches!(found.stopped, Stopped::NoProgress | Stopped::TooMany) {

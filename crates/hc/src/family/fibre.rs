@@ -59,6 +59,12 @@ impl Fibre {
         (0..self.len()).map(|k| self.solution(k))
     }
 
+    /// All but the first so many solutions, as a part of the fibre.
+    pub(super) fn without_first(&self, count: usize) -> Fibre {
+        let solutions = self.solutions.iter().skip(count * self.dimension).copied().collect();
+        Fibre { is_partial: true, ..Fibre::new(self.parameters.clone(), self.dimension, solutions) }
+    }
+
     /// The solutions that are tracked: the representatives of orbits, or all.
     pub(crate) fn tracked(&self) -> Fibre {
         let Some(which) = &self.representatives else { return self.clone() };
