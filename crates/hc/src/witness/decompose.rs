@@ -116,7 +116,8 @@ fn decompose_watched(system: &System, options: &SolveOptions, monitor: &Monitor)
             continue;
         }
         let slices = Slices::new(names.len(), dimension, options.seed);
-        let (sliced, named_sums) = (equations.sliced(&slices), equations.named_sums());
+        let planes = slices.polynomials(equations.all.unknowns());
+        let (sliced, named_sums) = (equations.with_planes(&planes), equations.named_sums());
         let (unknowns, options) = (formulas.solved.variables(), &options.clone().max_paths(paths));
         let mut found = match solve_sliced(&sliced, unknowns, named_sums, options, monitor) {
             Err(SolveError::TooManyPaths { .. }) => {

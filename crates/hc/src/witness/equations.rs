@@ -1,6 +1,5 @@
 //! The equations of which components are sought.
 
-use super::slices::Slices;
 use crate::singular::Given;
 use num_complex::Complex64;
 use num_traits::ToPrimitive;
@@ -35,10 +34,10 @@ impl<'a> Equations<'a> {
         self.polynomials.split_at(self.polynomials.len() - self.named_sums())
     }
 
-    /// The given equations, general hyperplanes, and then the equations of the named sums.
-    pub(super) fn sliced(&self, slices: &Slices) -> Vec<Polynomial<Exact>> {
+    /// The given equations, hyperplanes, and then the equations of the named sums.
+    pub(super) fn with_planes(&self, planes: &[Polynomial<Exact>]) -> Vec<Polynomial<Exact>> {
         let (given, sums) = self.parts();
-        [given, &slices.polynomials(self.all.unknowns()), sums].concat()
+        [given, planes, sums].concat()
     }
 
     /// The values of all unknowns where the given ones have these.
