@@ -1,13 +1,13 @@
 //! Equations for which the witness points of multiple components are regular solutions.
 //!
 //! On a component of multiplicity two or more, the Jacobian has a larger null space than the
-//! tangents explain. Coordinates that are zero at general points of a component are zero on all of it:
-//! equations say so, which is enough where the component comes from powers of these coordinates, or of
-//! [named sums](poly::System::with_named_sums). Otherwise null vectors become further unknowns, the multipliers, with as many linear
-//! conditions as make them one vector at each point. In the equations with multipliers the
-//! component has a smaller multiplicity. Where it is not yet one, their Jacobian gets multipliers
-//! in turn (Leykin, Verschelde & Zhao 2006, Theoretical Computer Science 359:111; for components,
-//! Sommese & Wampler 2005, section 13.3).
+//! tangents explain. Coordinates that are zero at general points of a component are zero on all of
+//! it: equations say so, which is enough where the component comes from powers of these
+//! coordinates, or of [named sums](poly::System::with_named_sums). Otherwise null vectors become
+//! further unknowns, the multipliers, with as many linear conditions as make them one vector at
+//! each point. In the equations with multipliers the component has a smaller multiplicity. Where
+//! it is not yet one, their Jacobian gets multipliers in turn (Leykin, Verschelde & Zhao 2006,
+//! Theoretical Computer Science 359:111; for components, Sommese & Wampler 2005, section 13.3).
 
 use super::equations::Equations;
 use crate::random::{Random, Stream};
