@@ -173,6 +173,7 @@ fn sheet(given: &Given, point: &[Complex64], paths: usize, error: f64) -> Option
     if paths > FEW { sheet_in::<ComplexMulti<8>>(given, point, paths, near) } else { Some(found) }
 }
 
+/// [`sheet`] in one precision.
 fn sheet_in<S: Precision>(given: &Given, point: &[Complex64], paths: usize, near: f64) -> Option<LocalStructure> {
     let local = given.near::<S>(point);
     let (point, dimension) = on_sheet(&local, &local.scaled(point), paths, near)?;

@@ -47,8 +47,8 @@ pub struct Decomposition {
     pub unresolved: Vec<Unresolved>,
     /// Dimensions that were not searched, because this would take more paths than are allowed.
     pub unsearched: Vec<usize>,
-    /// Lost paths in all dimensions, witness points that do not fit together, and dimensions that
-    /// were not searched. If there are any, something may be missing.
+    /// Lost paths in all dimensions, witness points that do not fit together, ends that seem to lie on
+    /// components where there are none, and dimensions that were not searched. If there are any, something may be missing.
     pub failed: usize,
     /// Whether the work was cancelled: the result is then partial.
     pub partial: bool,
@@ -62,8 +62,8 @@ pub struct Decomposition {
 /// the equations with random hyperplanes. In each other dimension, the given equations together
 /// with as many general hyperplanes are [solved](crate::solve) with these options. These are too
 /// many equations: they are combined at random, or get further unknowns that vanish at the
-/// solutions (Sommese & Verschelde 2000), whichever makes less work. Sums that are multiplied many times
-/// get unknowns of their own, as in [`solve`](fn@crate::solve). Ends of paths that cannot be
+/// solutions (Sommese & Verschelde 2000), whichever makes less work. Where four sums or more are
+/// multiplied, these get unknowns of their own, as in [`solve`](fn@crate::solve). Ends of paths that cannot be
 /// judged are compared with the components of higher dimensions: one of their witness points is
 /// moved there together with its hyperplanes. The same seed gives the same bits on any number of
 /// threads.

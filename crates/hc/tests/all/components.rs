@@ -55,14 +55,15 @@ fn multiple_components() {
     check("2 3\nz^2*(x^2+y^2-1);\nz^2*(x-y);", 3, &[(2, 1, 2), (1, 1, 1), (1, 1, 1)], 0);
 }
 
-/// Sums that are multiplied many times have unknowns of their own, which neither hyperplanes nor degrees see. Planes that
-/// are roots of unity away from each other meet a parabolic cylinder in conics; a quadric to the tenth power
-/// is five quartics, since squares differ by roots of unity; a line and a conic of high multiplicity hide a
-/// point each; curves of three multiplicities lie together; two surfaces are graphs of powers.
+/// Sums that are multiplied many times have unknowns of their own, which neither hyperplanes nor degrees see:
+/// thirty parallel planes meet a parabolic cylinder in conics; an equation between powers, tenth and fifth, is
+/// five quartics, one for each root of unity; lines and a conic of high multiplicity hide a point each; curves
+/// of several multiplicities lie together; two surfaces are graphs of powers.
 #[test]
 fn sums_that_are_multiplied() {
     check("2 3\n(x+y+z)^30-1;\nx-y^2;", 3, &[(1, 2, 1); 30], 0);
     check("1 3\n(x^2+y^2+z^2-1)^10-(z-2)^5;", 2, &[(2, 4, 1); 5], 0);
+    check("2\n(x+y)^6*(x-1);\n(x+y)^6*(y-2);", 6, &[(1, 1, 6)], 1);
     check("2\n(x+y)^20*(x-1);\n(x+y)^20*(y-2);", 6, &[(1, 1, 20)], 1);
     check("2\n(x^2+y^2-1)^12*(x-2*y);\n(x^2+y^2-1)^12*(y-3);", 3, &[(1, 2, 12)], 1);
     check("1 2\n(x^2+y^2-1)^4*(x-2*y)^3*(y-x^3)^5;", 3, &[(1, 3, 5), (1, 2, 4), (1, 1, 3)], 0);
