@@ -9,78 +9,94 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Mutex, PoisonError};
 use tdoa::accuracy::cramer_rao as bound;
-use tdoa::minimal::{MinimalError, MinimalOptions, MinimalStart, Solver, spatial};
+use tdoa::minimal::{MinimalError, MinimalOptions, MinimalStart, RootProofs, Solver, spatial};
 use tdoa::{Layout, MinimalSolution, Monitor, Network, Pseudoranges, ReceiverFault, SimulateOptions};
 
 /// Solvers that are not in use; they keep their start solutions and their memory.
-static SOLVERS: Mutex<Vec<Solver>> = Mutex::new(Vec::new());
+static IN_PLANE: Mutex<Vec<Solver>> = Mutex::new(Vec::new());
+static IN_SPACE: Mutex<Vec<spatial::Solver>> = Mutex::new(Vec::new());
 
 /// Solvers that are kept at most.
 const MOST_SOLVERS: usize = 16;
+
+/// What is asked of a solver.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Asked {
+    tolerance: Option<f64>,
+    start: String,
+    first_under: Option<f64>,
+    dimensions: usize,
+    prove: bool,
+}
 
 /// All networks that explain a table exactly: a dict of arrays.
 #[pyfunction]
 pub(crate) fn solve_network<'py>(
     py: Python<'py>,
     table: Table<'py>,
-    tolerance: Option<f64>,
-    start: &str,
-    first_under: Option<f64>,
-    dimensions: usize,
+    asked: Asked,
     how: How,
 ) -> PyResult<Bound<'py, PyAny>> {
     guarded(|| {
         let mut options = MinimalOptions::default();
-        options.tolerance = tolerance.unwrap_or(options.tolerance);
-        options.first_under = first_under;
-        options.start = match start {
+        options.tolerance = asked.tolerance.unwrap_or(options.tolerance);
+        options.first_under = asked.first_under;
+        options.start = match &*asked.start {
             "stored" => MinimalStart::Stored,
             "polyhedral" => MinimalStart::Polyhedral,
             other => return Err(Failure::Input(format!("start must be stored or polyhedral, not {other:?}"))),
         };
-        for (name, value) in [("tolerance", Some(options.tolerance)), ("first_under", first_under)] {
+        for (name, value) in [("tolerance", Some(options.tolerance)), ("first_under", asked.first_under)] {
             if value.is_some_and(|value| value.is_nan() || value < 0.0) {
                 return Err(Failure::Input(format!("{name} must not be negative")));
             }
         }
-        let measured = table.measured()?;
-        match dimensions {
-            2 => answer(py, measured, options, &how, solve_in_plane),
-            3 => answer(py, measured, options, &how, spatial::solve_watched),
+        let (measured, prove) = (table.measured()?, asked.prove);
+        let names = [measured.receiver_names().to_vec(), measured.transmitter_names().to_vec()];
+        match asked.dimensions {
+            2 => answer(py, names, &how, move |monitor| {
+                by_kept(&IN_PLANE, |solver: &mut Solver| {
+                    let solved = solver.solve_watched(&measured, &options, monitor)?;
+                    Ok((solved, prove.then(|| solver.prove()).flatten()))
+                })
+            }),
+            3 => answer(py, names, &how, move |monitor| {
+                by_kept(&IN_SPACE, |solver: &mut spatial::Solver| {
+                    let solved = solver.solve_watched(&measured, &options, monitor)?;
+                    Ok((solved, prove.then(|| solver.prove()).flatten()))
+                })
+            }),
             other => Err(Failure::Input(format!("dimensions must be 2 or 3, not {other}"))),
         }
     })
 }
 
-/// By a solver that is kept.
-fn solve_in_plane(
-    measured: &Pseudoranges,
-    options: &MinimalOptions,
-    monitor: &Monitor,
-) -> Result<MinimalSolution, MinimalError> {
-    let kept = || SOLVERS.lock().unwrap_or_else(PoisonError::into_inner);
+/// What a solver that is kept makes.
+fn by_kept<S: Default, T>(solvers: &Mutex<Vec<S>>, work: impl FnOnce(&mut S) -> T) -> T {
+    let kept = || solvers.lock().unwrap_or_else(PoisonError::into_inner);
     let solver = kept().pop();
     let mut solver = solver.unwrap_or_default();
-    let solved = solver.solve_watched(measured, options, monitor);
+    let made = work(&mut solver);
     let mut solvers = kept();
     if solvers.len() < MOST_SOLVERS {
         solvers.push(solver);
     }
-    solved
+    made
 }
+
+/// Networks, and what is proved of the roots behind them.
+type Solved<const D: usize> = (MinimalSolution<D>, Option<RootProofs>);
 
 /// Solves, and makes a dict of what was found.
 fn answer<'py, const D: usize>(
     py: Python<'py>,
-    measured: Pseudoranges,
-    options: MinimalOptions,
+    [receivers, transmitters]: [Vec<String>; 2],
     how: &How,
-    solve: fn(&Pseudoranges, &MinimalOptions, &Monitor) -> Result<MinimalSolution<D>, MinimalError>,
+    solve: impl FnOnce(&Monitor) -> Result<Solved<D>, MinimalError> + Send + 'static,
 ) -> Result<Bound<'py, PyAny>, Failure> {
-    let [receivers, transmitters] = [measured.receiver_names().to_vec(), measured.transmitter_names().to_vec()];
-    let work = move |monitor: &Monitor| solve(&measured, &options, monitor);
-    let Done { result: solved, stopped, seconds } = run(py, how, work)?;
-    let found = match solved {
+    let Done { result: solved, stopped, seconds } = run(py, how, solve)?;
+    let (found, proofs) = match solved {
         // What was tracked until then is no list of networks.
         _ if stopped.is_some() => return whole(py, py.None().into_bound(py), stopped),
         Ok(found) => found,
@@ -88,6 +104,10 @@ fn answer<'py, const D: usize>(
         Err(error) => return Err(Failure::undetermined(error)),
     };
     let result = solution(py, &found)?;
+    let proofs = proofs.map(|RootProofs { roots, proved, real, unseparated }| {
+        numbers(py, &[("roots", roots), ("proved", proved), ("real", real), ("unseparated", unseparated)])
+    });
+    result.set_item("proofs", proofs.transpose()?)?;
     result.set_item("seconds", seconds)?;
     result.set_item("receiver_names", receivers)?;
     result.set_item("transmitter_names", transmitters)?;

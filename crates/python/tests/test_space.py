@@ -116,6 +116,8 @@ def test_exact_solutions():
     assert error(found.receivers[0], made.receivers) < 1e-9 and np.abs(found.offsets[0] - made.offsets).max() < 1e-9
     # By paths.
     made = tdoa.simulate(8, 5, dimensions=3, seed=2)
-    found = tdoa.solve(made.pseudoranges, dimensions=3, progress=False)
+    found = tdoa.solve(made.pseudoranges, dimensions=3, prove=True, progress=False)
     assert len(found) == 1 and found.physical[0] and not found.warnings
     assert error(found.receivers[0], made.receivers) < 1e-8
+    assert found.proofs == {"roots": 256, "proved": 256, "real": found.counts["real"], "unseparated": 0}
+    assert tdoa.solve(made.pseudoranges, dimensions=3).proofs is None

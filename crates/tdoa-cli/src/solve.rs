@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
-use tdoa::minimal::{MinimalError, MinimalOptions, MinimalStart, Solver, spatial};
+use tdoa::minimal::{MinimalError, MinimalOptions, MinimalStart, RootProofs, Solver, spatial};
 use tdoa::quantity::{coordinate, decimals};
 use tdoa::read::read;
 use tdoa::summary::networks;
@@ -38,6 +38,11 @@ pub(crate) struct Arguments {
     /// 6r/3s, 5r/4s, 4r/5s and 5r/6s only, in space 8r/5s, 7r/5s, 6r/6s and 10r/4s.
     #[arg(long, value_name = "METRES")]
     first_under: Option<f64>,
+    /// Proves by interval arithmetic that the complex roots at the ends of all paths exist and are
+    /// distinct, and counts how many are proved real; of larger sizes those of the part that is solved.
+    /// Only sizes that are solved by paths have such roots.
+    #[arg(long)]
+    prove: bool,
     /// Threads; all cores if not given. The result does not depend on it.
     #[arg(long)]
     threads: Option<usize>,
@@ -60,6 +65,9 @@ struct Report<'a, const D: usize> {
     dimensions: usize,
     #[serde(flatten)]
     solution: &'a MinimalSolution<D>,
+    /// What is proved of the roots, where that was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    proofs: Option<RootProofs>,
     receiver_names: &'a [String],
     transmitter_names: &'a [String],
     seconds: f64,
@@ -88,20 +96,32 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         StartArgument::Stored => MinimalStart::Stored,
         StartArgument::Polyhedral => MinimalStart::Polyhedral,
     };
-    let solve_in_plane = |monitor: &Monitor| Solver::new().solve_watched(&measured, &options, monitor);
-    let solve_in_space = |monitor: &Monitor| spatial::solve_watched(&measured, &options, monitor);
+    let (prove, options) = (arguments.prove, &options);
+    let solve_in_plane = |monitor: &Monitor| {
+        let mut solver = Solver::new();
+        let solved = solver.solve_watched(&measured, options, monitor)?;
+        Ok((solved, prove.then(|| solver.prove()).flatten()))
+    };
+    let solve_in_space = |monitor: &Monitor| {
+        let mut solver = spatial::Solver::new();
+        let solved = solver.solve_watched(&measured, options, monitor)?;
+        Ok((solved, prove.then(|| solver.prove()).flatten()))
+    };
     match arguments.dimensions {
         2 => answer(arguments, unit, &measured, solve_in_plane),
         _ => answer(arguments, unit, &measured, solve_in_space),
     }
 }
 
+/// Networks, and what is proved of the roots behind them.
+type Solved<const D: usize> = (MinimalSolution<D>, Option<RootProofs>);
+
 /// Solves and reports.
 fn answer<const D: usize>(
     arguments: &Arguments,
     unit: Option<Unit>,
     measured: &Pseudoranges,
-    solve: impl FnOnce(&Monitor) -> Result<MinimalSolution<D>, MinimalError> + Send,
+    solve: impl FnOnce(&Monitor) -> Result<Solved<D>, MinimalError> + Send,
 ) -> Result<(), Failure>
 where
     [f64; D]: Serialize,
@@ -114,12 +134,14 @@ where
     let started = Instant::now();
     let solved = cli::bar::while_shown(arguments.threads, progress, || solve(&monitor))?;
     interrupt::check()?;
-    let solution = solved.map_err(|error| Failure::Undetermined(format!("{}: {error}", arguments.file.display())))?;
+    let (solution, proofs) =
+        solved.map_err(|error| Failure::Undetermined(format!("{}: {error}", arguments.file.display())))?;
     let seconds = started.elapsed().as_secs_f64();
     if let Some(path) = &arguments.json {
         let report = Report {
             dimensions: D,
             solution: &solution,
+            proofs,
             receiver_names: measured.receiver_names(),
             transmitter_names: measured.transmitter_names(),
             seconds,
@@ -131,12 +153,29 @@ where
     for warning in &solution.warnings {
         eprintln!("warning: {warning}");
     }
-    output::summary(arguments.json.as_deref(), || summary(&solution, measured, unit, seconds))?;
+    output::summary(arguments.json.as_deref(), || summary(&solution, proofs, measured, unit, seconds))?;
     if !solution.warnings.is_empty() {
         return Err(Failure::Undetermined(format!(
             "{}: the data do not determine the network, or the result is not whole; see the warnings",
             arguments.file.display()
         )));
+    }
+    if arguments.prove && !proofs.is_some_and(|proofs| proofs.proved == proofs.roots && proofs.unseparated == 0) {
+        return Err(Failure::Undetermined(match proofs {
+            Some(proofs) => format!(
+                "{}: {} of {} roots are not proved to exist, and {} pairs not to be different; the networks are as listed without \
+                 proof",
+                arguments.file.display(),
+                proofs.roots - proofs.proved,
+                proofs.roots,
+                proofs.unseparated
+            ),
+            None => format!(
+                "{}: --prove proves the roots at the ends of paths, and {} is solved without paths",
+                arguments.file.display(),
+                solution.configuration
+            ),
+        }));
     }
     if solution.candidates.iter().any(|candidate| candidate.physical) {
         return Ok(());
@@ -151,11 +190,17 @@ where
 
 fn summary<const D: usize>(
     solution: &MinimalSolution<D>,
+    proofs: Option<RootProofs>,
     measured: &Pseudoranges,
     unit: Option<Unit>,
     seconds: f64,
 ) -> String {
     let mut text = networks(solution, Some(Duration::from_secs_f64(seconds)));
+    if let Some(RootProofs { roots, proved, real, unseparated }) = proofs {
+        text += &format!(
+            "proved: {proved} of {roots} roots exist, {real} of them real; {unseparated} pairs not proved different\n"
+        );
+    }
     text += &format!("\n{:>4} {:>12} {:>10} {:>10}\n", "rank", "residual m", "physical", "condition");
     for (k, candidate) in solution.candidates.iter().take(20).enumerate() {
         let physical = if candidate.physical { "yes" } else { "no" };

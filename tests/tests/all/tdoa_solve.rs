@@ -22,7 +22,7 @@ fn solve(content: &str) -> (Value, String, Option<i32>) {
     let directory = tempfile::tempdir().expect("directory");
     let file = directory.path().join("pseudoranges.csv");
     std::fs::write(&file, content).expect("written");
-    let output = run("tdoa", &["solve", text(&file), "--json", "-"]);
+    let output = run("tdoa", &["solve", text(&file), "--prove", "--json", "-"]);
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(!message.contains("panicked"), "{message}");
     (serde_json::from_slice(&output.stdout).unwrap_or(Value::Null), message, output.status.code())
@@ -36,6 +36,9 @@ fn the_json_form_holds_every_network_that_fits() {
     let (json, message, status) = solve(&matrix(&receivers, &TRANSMITTERS));
     assert_eq!(status, Some(0), "{message}");
     assert_eq!((&json["configuration"], &json["solver"]), (&Value::from("6r/3s"), &Value::from("6r/3s")));
+    let proofs = &json["proofs"];
+    assert_eq!((&proofs["proved"], &proofs["unseparated"]), (&180.into(), &0.into()), "{message}");
+    assert_eq!(proofs["real"], json["counts"]["real"], "{message}");
     // 180 is the degree of the saturated ideal, computed exactly over a prime field.
     for (field, count) in [("tracked", 180), ("finite", 180), ("failed", 0), ("at_infinity", 0)] {
         assert_eq!(json["paths"][field], count, "{field}");

@@ -112,6 +112,24 @@ fn all_networks_of_a_smallest_size_are_listed() {
     assert!(status == Some(1) && message.contains("leave out the polyhedral start"), "{message}");
 }
 
+/// All roots of a member of a family whose trace test passed are proved, and as many real as are counted real.
+#[test]
+fn roots_are_proved_on_demand() {
+    for (size, roots) in [("--receivers 8 --transmitters 5", 256), ("--receivers 8 --transmitters 6", 0)] {
+        let (_directory, file) = simulated(&format!("{size} --dimensions 3 --seed 7"));
+        let (found, message, status) = solve(&file, &["--prove"]);
+        if roots == 0 {
+            assert!(status == Some(1) && message.contains("8r/6s is solved without paths"), "{message}");
+            assert_eq!((found["proofs"].is_null(), &found["counts"]["physical"]), (true, &1.into()), "{message}");
+            continue;
+        }
+        let proofs = &found["proofs"];
+        assert_eq!((status, &proofs["roots"], &proofs["proved"]), (Some(0), &roots.into(), &roots.into()), "{message}");
+        assert_eq!((&proofs["unseparated"], &proofs["real"]), (&0.into(), &found["counts"]["real"]), "{message}");
+        assert!(solve(&file, &[]).0["proofs"].is_null());
+    }
+}
+
 #[test]
 fn the_plane_is_the_default_and_says_where_space_is() {
     let (_directory, file) = simulated("--receivers 9 --transmitters 5 --dimensions 3 --seed 3");

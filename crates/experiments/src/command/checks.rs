@@ -138,7 +138,7 @@ pub(super) fn hurry(arguments: &Arguments) -> Result<(), Failure> {
 pub(super) fn charts(arguments: &Arguments) -> Result<(), Failure> {
     let mut text = format!(
         "# Paths that fail\n\n{}: each instance in one round at full steps and with four more rounds of shorter steps \
-         (the default). Where up to four paths are left over, all are tracked again from turned starts, which counts as tracked again too. Complex roots come in pairs: an odd number of real ones would tell of paths that have jumped unseen.\n\n\
+         (the default). In the latter, where up to four paths are left over, all are tracked again from turned starts, which counts as tracked again too. Complex roots come in pairs: an odd number of real ones would tell of paths that have jumped unseen.\n\n\
          | configuration | rounds | instances | paths | lost | in instances | tracked again | odd | Jacobians a path | milliseconds \
          a solve |\n|---|---|---|---|---|---|---|---|---|---|\n",
         arguments.command("charts")

@@ -144,6 +144,7 @@ class Networks:
     conditions: _Floats
     counts: dict[str, int]
     paths: dict[str, int]
+    proofs: dict[str, int] | None
     summary: str
     dimensions: int
     configuration: str
@@ -192,6 +193,7 @@ def solve(
     tolerance: float | None = None,
     start: Literal["stored", "polyhedral"] = "stored",
     first_under: float | None = None,
+    prove: bool = False,
     names: _Names | None = None,
     threads: int | None = None,
     progress: _Progress = True,

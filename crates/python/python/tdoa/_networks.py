@@ -296,6 +296,10 @@ class Networks(Result):
         Roots: `complex`, `real`, `positive_definite` (with real positions), `physical`.
     paths : dict
         How the paths ended.
+    proofs : dict or None
+        What is proved of the complex roots, if that was asked for and the size is solved by paths: `roots` that were tested, of
+        larger tables those of the part that is solved, `proved` to exist, `real` ones among these, and `unseparated`, pairs that
+        are not proved different.
     summary : str
         The lines that `tdoa solve` prints above its table.
     dimensions : int
@@ -327,6 +331,7 @@ def solve(
     tolerance=None,
     start="stored",
     first_under=None,
+    prove=False,
     names=None,
     threads=None,
     progress=True,
@@ -346,6 +351,8 @@ def solve(
         Where paths start: at stored solutions of a generic instance, or, in the plane, at a start system computed for these data.
     first_under : float, optional
         Stops at the first physical network with a residual (metres) below this.
+    prove : bool
+        Proves by interval arithmetic that the complex roots at the ends of all paths exist and are distinct; see `Networks.proofs`.
 
     Returns
     -------
@@ -369,8 +376,14 @@ def solve(
     """
     d = _plane_or_space(dimensions)
     given, _, _ = table(pseudoranges, names, None, speed)
-    arguments = given, number("tolerance", tolerance), text("start", start), number("first_under", first_under), d
-    return call(_native.solve_network, *arguments, threads=threads, progress=progress, wrap=Networks)
+    asked = {
+        "tolerance": number("tolerance", tolerance),
+        "start": text("start", start),
+        "first_under": number("first_under", first_under),
+        "dimensions": d,
+        "prove": bool(prove),
+    }
+    return call(_native.solve_network, given, asked, threads=threads, progress=progress, wrap=Networks)
 
 
 class Simulation(NamedTuple):

@@ -60,7 +60,8 @@ pub struct CalibrateOptions<const D: usize = 2> {
     /// Number of starts, besides those from random networks, that come from solving a small part of
     /// the data exactly. Default 6. With few nodes, random networks alone miss networks that fit as
     /// well. With many nodes, each of these starts ends in the best basin more often than a random
-    /// one. 0 for none.
+    /// one. In space with fewer than nine receivers or five transmitters it is one at most, and none where more
+    /// than two measurements are spare. 0 for none.
     pub minimal_subsets: usize,
     /// Largest number of transmitters on which the search works; the others are located after it.
     /// Default 48.

@@ -64,7 +64,7 @@ pub(super) fn search_whole<const D: usize>(
     let minimal = MinimalHypotheses::at_most(options.minimal_subsets).heeding(monitor);
     if options.restarts || all.is_empty() {
         all.insert(0, &restarts);
-        if options.minimal_subsets > 0 && MinimalHypotheses::fit::<D>(small.receivers(), small.transmitters()) {
+        if options.minimal_subsets > 0 && MinimalHypotheses::fit::<D>(&small) {
             all.push(&minimal);
         }
     }

@@ -21,7 +21,7 @@ use hc::tracker::{PathEnd, PathResult, PathSet};
 use num_complex::Complex64;
 
 /// Turns of the stored fibre, one after the other where paths stay lost: each gives other paths to
-/// the same ends.
+/// the same ends. One more is tried for every two retries that the options allow.
 const TURNS: [f64; 3] = [0.0, 0.7, -1.1];
 
 /// More lost paths than this tell of a degenerate network rather than of bad luck.
@@ -124,7 +124,8 @@ impl<F: Formulation> RootFinder<F> {
         let (target, options) = (found.target, found.options);
         let mut retracked = 0;
         let mut best: Option<(PathCounts, PathSet)> = None;
-        for (attempt, turn) in TURNS.into_iter().enumerate() {
+        let attempts = 1 + options.paths.retries as usize / 2;
+        for (attempt, turn) in TURNS.into_iter().take(attempts).enumerate() {
             retracked += if attempt > 0 { self.nearest.stored().len() } else { 0 };
             self.nearest.turn(target, turn, F::WEIGHTS, &mut self.start);
             let in_parts = attempt == 0 && options.first_under.is_some();

@@ -22,7 +22,8 @@ pub struct MinimalOptions {
     /// physical one is then returned, which need not be the true one. Default `None`: all networks.
     pub first_under: Option<f64>,
     /// Settings for the paths. Default: [quick](hc::TrackerOptions::quick) steps, and a tracker whose steps
-    /// are about as long as those of [`hc::TrackerOptions::fast`].
+    /// are about as long as those of [`hc::TrackerOptions::fast`]. Where a few paths stay lost, all are tracked
+    /// again from the fibre turned another way, at most twice, and once for every two `retries`.
     pub paths: FibreOptions,
     /// Where paths start. Default [`MinimalStart::Stored`].
     pub start: MinimalStart,

@@ -34,6 +34,7 @@
 
 mod bilinear;
 mod dual;
+mod engines;
 mod five;
 mod gram;
 mod grassmannian;
@@ -52,7 +53,7 @@ pub(super) use dual::{Dual, EightFive, SevenFive, TenFour};
 pub(crate) use five::five_transmitters;
 #[cfg(test)]
 pub(super) use gram::SixSix;
-pub use solve::{solve, solve_watched};
+pub use solve::{Solver, solve};
 
 #[cfg(test)]
 mod tests;

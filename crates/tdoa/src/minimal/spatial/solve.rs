@@ -1,6 +1,7 @@
 //! The entry point for all sizes in space.
 
 use super::dual::{Dual, EightFive, SevenFive, TenFour};
+use super::engines::{Engines, Kept};
 use super::five::{FEWEST, Scaled, five_transmitters};
 use super::gram::SixSix;
 use super::offsets::{DEGENERATE, offsets};
@@ -10,12 +11,11 @@ use crate::accuracy::position_error;
 use crate::duplicates::rounding;
 use crate::minimal::check::check;
 use crate::minimal::doubts::{allowed, warnings_in_space};
-use crate::minimal::engine::Engine;
 use crate::minimal::error::MinimalError;
-use crate::minimal::formulation::FormulationIn;
 use crate::minimal::larger::candidates_of_whole;
 use crate::minimal::normalised::rank;
 use crate::minimal::options::{MinimalOptions, MinimalStart};
+use crate::minimal::proofs::RootProofs;
 use crate::minimal::solution::{Candidate, MinimalSolution, RootCounts};
 use crate::minimal::subset::{Subset, combinations, ranked};
 use crate::pseudoranges::Pseudoranges;
@@ -28,16 +28,15 @@ const SAME: f64 = 1e-6;
 /// Receivers from which on equations that are linear show four transmitters in one plane.
 const SHOWING: usize = 8;
 
-/// Every network in space that explains the measurements, best first: [`solve_watched`] without a monitor.
+/// Every network in space that explains the measurements, best first: [`Solver::solve`] with a new solver.
 ///
 /// # Errors
-/// Those of [`solve_watched`].
+/// Those of [`Solver::solve_watched`].
 pub fn solve(measured: &Pseudoranges, options: &MinimalOptions) -> Result<MinimalSolution<3>, MinimalError> {
-    solve_watched(measured, options, &Monitor::default())
+    Solver::new().solve(measured, options)
 }
 
-/// Every network in space that explains the measurements, best first; a cancelled monitor ends it. Any
-/// rotation or reflection of the result fits as well.
+/// Solver for networks in space. It chooses the method by size, and keeps its memory from call to call.
 ///
 /// Sizes with three measurements or more than unknowns are solved without paths, and a generic network is
 /// the only one. From nine receivers on, the five transmitters of which linear equations are conditioned
@@ -53,37 +52,76 @@ pub fn solve(measured: &Pseudoranges, options: &MinimalOptions) -> Result<Minima
 ///
 /// Measurements with more errors than `tolerance` allows make a warning: the network is then not to be
 /// relied upon, and need not be that of least squares.
-///
-/// # Errors
-/// If the matrix is too small or too large, a measurement is missing, two nodes coincide, nodes are in
-/// special position, no network in space explains the measurements, a setting of the tracker is out of
-/// range, a size that takes paths is asked for from a polyhedral start, or the monitor is cancelled.
-pub fn solve_watched(
-    measured: &Pseudoranges,
-    options: &MinimalOptions,
-    monitor: &Monitor,
-) -> Result<MinimalSolution<3>, MinimalError> {
-    options.paths.validate()?;
-    check::<3>(measured)?;
-    let fits =
-        |method: &&Method| measured.receivers() >= method.receivers && measured.transmitters() >= method.transmitters;
-    if DIRECT.iter().any(|method| fits(&method)) {
-        return among(&mut DIRECT.iter().filter(fits), measured, options, monitor);
+#[derive(Default)]
+pub struct Solver {
+    engines: Engines,
+}
+
+impl Solver {
+    /// A solver. Start solutions are unpacked when they are first needed.
+    pub fn new() -> Self {
+        Self::default()
     }
-    let Some(method) = WITH_PATHS.iter().find(fits) else {
-        return Err(MinimalError::NotSolvedInSpace { configuration: measured.configuration() });
-    };
-    if options.start != MinimalStart::Stored {
-        return Err(MinimalError::StoredOnly { configuration: measured.configuration() });
+
+    /// Every network in space that explains the measurements, best first:
+    /// [`solve_watched`](Self::solve_watched) without a monitor.
+    ///
+    /// # Errors
+    /// Those of [`solve_watched`](Self::solve_watched).
+    pub fn solve(
+        &mut self,
+        measured: &Pseudoranges,
+        options: &MinimalOptions,
+    ) -> Result<MinimalSolution<3>, MinimalError> {
+        self.solve_watched(measured, options, &Monitor::default())
     }
-    match plane(measured) {
-        Some(plane) => Err(plane),
-        None => among(&mut std::iter::once(method), measured, options, monitor),
+
+    /// Every network in space that explains the measurements, best first; a cancelled monitor ends it. Any
+    /// rotation or reflection of the result fits as well.
+    ///
+    /// # Errors
+    /// If the matrix is too small or too large, a measurement is missing, two nodes coincide, nodes are in
+    /// special position, no network in space explains the measurements, a setting of the tracker is out of
+    /// range, a size that takes paths is asked for from a polyhedral start, or the monitor is cancelled.
+    pub fn solve_watched(
+        &mut self,
+        measured: &Pseudoranges,
+        options: &MinimalOptions,
+        monitor: &Monitor,
+    ) -> Result<MinimalSolution<3>, MinimalError> {
+        let engines = &mut self.engines;
+        engines.none_used();
+        options.paths.validate()?;
+        check::<3>(measured)?;
+        let fits = |method: &&Method| {
+            measured.receivers() >= method.receivers && measured.transmitters() >= method.transmitters
+        };
+        if DIRECT.iter().any(|method| fits(&method)) {
+            return among(engines, &mut DIRECT.iter().filter(fits), measured, options, monitor);
+        }
+        let Some(method) = WITH_PATHS.iter().find(fits) else {
+            return Err(MinimalError::NotSolvedInSpace { configuration: measured.configuration() });
+        };
+        if options.start != MinimalStart::Stored {
+            return Err(MinimalError::StoredOnly { configuration: measured.configuration() });
+        }
+        match plane(measured) {
+            Some(plane) => Err(plane),
+            None => among(engines, &mut std::iter::once(method), measured, options, monitor),
+        }
+    }
+
+    /// Proofs, in interval arithmetic, that the complex roots that the last call tracked exist and are
+    /// distinct ([`hc::certify()`]). `None` if the last call tracked none. For a larger network these are
+    /// the roots of the part that was solved.
+    pub fn prove(&self) -> Option<RootProofs> {
+        self.engines.prove()
     }
 }
 
 /// What the first method finds that explains the measurements, or the one that comes nearest.
 fn among(
+    engines: &mut Engines,
     methods: &mut dyn Iterator<Item = &Method>,
     measured: &Pseudoranges,
     options: &MinimalOptions,
@@ -98,7 +136,7 @@ fn among(
             let is_whole = selected.cells().values().len() == measured.cells().values().len();
             let first_under = options.first_under.filter(|_| is_whole);
             let settings = MinimalOptions { first_under, ..options.clone() };
-            let found = match (method.solve)(&selected, &settings, monitor) {
+            let found = match (method.solve)(engines, &selected, &settings, monitor) {
                 Ok(found) => found,
                 Err(error) => {
                     failure = failure.or(Some(error));
@@ -159,7 +197,7 @@ struct Method {
     transmitters: usize,
     /// Parts of its size that are tried, the most promising first; some take all receivers.
     parts: fn(&Pseudoranges) -> Vec<Subset>,
-    solve: fn(&Pseudoranges, &MinimalOptions, &Monitor) -> Result<Found, MinimalError>,
+    solve: fn(&mut Engines, &Pseudoranges, &MinimalOptions, &Monitor) -> Result<Found, MinimalError>,
 }
 
 /// Methods without paths, linear equations first.
@@ -170,14 +208,14 @@ const DIRECT: [Method; 3] = [
         receivers: 7,
         transmitters: 6,
         parts: |f| ranked(f, 7, 6, TRIED),
-        solve: |f, _, _| seven_six(f),
+        solve: |_, f, _, _| seven_six(f),
     },
     Method {
         name: "6r/8s",
         receivers: 6,
         transmitters: 8,
         parts: |f| ranked(f, 6, 8, TRIED),
-        solve: |f, _, _| six_eight(f),
+        solve: |_, f, _, _| six_eight(f),
     },
 ];
 
@@ -186,7 +224,7 @@ const WITH_PATHS: [Method; 4] =
     [tracked::<Dual<EightFive>>(), tracked::<Dual<SevenFive>>(), tracked::<SixSix>(), tracked::<Dual<TenFour>>()];
 
 /// The method of a formulation, for the part whose nodes are farthest apart.
-const fn tracked<F: FormulationIn<3>>() -> Method {
+const fn tracked<F: Kept>() -> Method {
     Method {
         name: F::NAME,
         receivers: F::RECEIVERS,
@@ -196,17 +234,18 @@ const fn tracked<F: FormulationIn<3>>() -> Method {
     }
 }
 
-fn five(measured: &Pseudoranges, _: &MinimalOptions, _: &Monitor) -> Result<Found, MinimalError> {
+fn five(_: &mut Engines, measured: &Pseudoranges, _: &MinimalOptions, _: &Monitor) -> Result<Found, MinimalError> {
     let counts = RootCounts { complex: 1, real: 1, positive_definite: 1, physical: 0 };
     Ok(Found::directly(vec![five_transmitters(measured)?], counts))
 }
 
-fn by_paths<F: FormulationIn<3>>(
+fn by_paths<F: Kept>(
+    engines: &mut Engines,
     measured: &Pseudoranges,
     options: &MinimalOptions,
     monitor: &Monitor,
 ) -> Result<Found, MinimalError> {
-    let solution = Engine::<F, 3>::new().solve(measured, options, monitor)?;
+    let solution = engines.used::<F>().solve(measured, options, monitor)?;
     Ok(Found {
         networks: solution.candidates.into_iter().map(|candidate| candidate.network).collect(),
         paths: solution.paths,

@@ -1,4 +1,4 @@
-use super::{five_transmitters, solve, solve_watched};
+use super::{Solver, five_transmitters, solve};
 use crate::accuracy::{cramer_rao, position_error};
 use crate::align::align;
 use crate::minimal::{Candidate, MinimalError, MinimalOptions, MinimalSolution, MinimalStart, MinimalWarning};
@@ -148,7 +148,7 @@ fn what_cannot_be_solved_is_named() {
     assert_eq!(found, Err(MinimalError::StoredOnly { configuration: "7r/5s".into() }));
     let monitor = Monitor::watched();
     monitor.cancel();
-    let found = solve_watched(&measured(&random(8, 5, 1)), &MinimalOptions::default(), &monitor);
+    let found = Solver::new().solve_watched(&measured(&random(8, 5, 1)), &MinimalOptions::default(), &monitor);
     assert_eq!(found, Err(MinimalError::Cancelled));
     for (m, n) in [(9, 4), (6, 5), (5, 8), (4, 30), (30, 3)] {
         let said = size(m, n);
