@@ -118,6 +118,13 @@ pub(super) const PLAN: &[Experiment] = &[
         100,
         1,
     ),
+    plain(
+        "smallest-rooms",
+        "calibrate --dimensions 3 --configuration 10r/4s,7r/5s,6r/6s,11r/4s,8r/5s,6r/7s,12r/4s,7r/6s --method restarts,portfolio \
+         --noise 0.001 --outliers 0 --missing 0",
+        60,
+        1,
+    ),
     Experiment {
         name: "recordings",
         command: "damaged --dimensions 3 --transmitters 8,12,24 --receivers 7,8",

@@ -21,22 +21,15 @@ use crate::refine::PartialNetwork;
 /// Subsets that are drawn for one call; the one whose nodes lie farthest apart is solved.
 const DRAWS: usize = 12;
 
-/// Sizes of subsets that take turns, and how many subsets are solved.
+/// Sizes of subsets, and how many subsets are solved.
 #[derive(Clone, Copy)]
 struct Shapes {
-    /// Receivers and transmitters.
+    /// Receivers and transmitters. They take turns; where no complete subset of one is found, the next one does.
     sizes: &'static [(usize, usize)],
     /// Subsets for one call.
     for_a_call: usize,
     /// Calls that are answered at most.
     calls: usize,
-}
-
-impl Shapes {
-    /// One subset of these receivers and transmitters.
-    const fn one(sizes: &'static [(usize, usize); 1]) -> Shapes {
-        Shapes { sizes, for_a_call: 1, calls: 1 }
-    }
 }
 
 /// In the plane a subset takes a millisecond.
@@ -45,8 +38,7 @@ const IN_PLANE: Shapes = Shapes { sizes: &[(6, 3), (5, 4), (4, 5)], for_a_call: 
 /// tenth, and few are right.
 const LINEAR: Shapes = Shapes { sizes: &[(9, 5), (10, 5)], for_a_call: 32, calls: usize::MAX };
 /// In space with fewer nodes a subset takes a tenth of a second to some seconds, as long as the whole search.
-const BY_PATHS: [Shapes; 4] =
-    [Shapes::one(&[(8, 5)]), Shapes::one(&[(7, 5)]), Shapes::one(&[(6, 6)]), Shapes::one(&[(10, 4)])];
+const BY_PATHS: Shapes = Shapes { sizes: &[(8, 5), (7, 5), (6, 6), (10, 4)], for_a_call: 1, calls: 1 };
 /// Spare measurements up to which paths are tracked in space. With three or more, random networks find all that
 /// fit. Of 60 rooms each with errors of a millimetre they listed the truth in 60 of 7r/6s (three spare), in 57 or
 /// 58 of 8r/5s, 6r/7s and 12r/4s (two), and in 47 to 56 of smaller ones; one subset more made this 58 to 60.
@@ -55,15 +47,13 @@ const MOST_SPARE: usize = 2;
 /// The subsets of measurements in `D` dimensions.
 fn shapes<const D: usize>(measured: &Pseudoranges) -> Option<Shapes> {
     let (m, n) = (measured.receivers(), measured.transmitters());
-    let fits = |shapes: &&Shapes| shapes.sizes.iter().any(|&(i, j)| m >= i && n >= j);
+    let fits = |shapes: &Shapes| shapes.sizes.iter().any(|&(i, j)| m >= i && n >= j);
+    // Unknowns less the six of a rigid motion.
+    let few = measured.observed() + 6 <= 3 * m + 4 * n + MOST_SPARE;
     match D {
-        2 => Some(&IN_PLANE).filter(fits).copied(),
-        3 if fits(&&LINEAR) => Some(LINEAR),
-        3 => {
-            // Unknowns less the six of a rigid motion.
-            let few = measured.observed() + 6 <= 3 * m + 4 * n + MOST_SPARE;
-            BY_PATHS.iter().find(fits).filter(|_| few).copied()
-        }
+        2 => Some(IN_PLANE).filter(fits),
+        3 if fits(&LINEAR) => Some(LINEAR),
+        3 if few => Some(BY_PATHS).filter(fits),
         _ => None,
     }
 }
@@ -245,13 +235,14 @@ impl<const D: usize> Hypotheses<D> for MinimalHypotheses {
             return Vec::new();
         }
         let mut rng = generator(seed ^ 0x6c62_272e_07bb_0142, index);
-        let size = sizes[index % sizes.len()];
         let mut proposals = Vec::new();
         for _ in 0..if only { 1 } else { shapes.for_a_call } {
             if self.monitor.is_cancelled() {
                 break;
             }
-            let Some((receivers, transmitters)) = Self::subset(measured, size, &mut rng) else { break };
+            let mut turns = (0..sizes.len()).map(|k| sizes[(index + k) % sizes.len()]);
+            let subset = turns.find_map(|size| Self::subset(measured, size, &mut rng));
+            let Some((receivers, transmitters)) = subset else { break };
             let part = dithered(measured, measured.select(&receivers, &transmitters), &mut rng);
             for network in self.networks(&part) {
                 let mut proposal = PartialNetwork::unknown(measured.receivers(), measured.transmitters());
