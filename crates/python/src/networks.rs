@@ -58,13 +58,13 @@ pub(crate) fn solve_network<'py>(
             2 => answer(py, names, &how, move |monitor| {
                 by_kept(&IN_PLANE, |solver: &mut Solver| {
                     let solved = solver.solve_watched(&measured, &options, monitor)?;
-                    Ok((solved, prove.then(|| solver.prove()).flatten()))
+                    Ok((solved, prove.then(|| solver.prove_watched(monitor)).flatten()))
                 })
             }),
             3 => answer(py, names, &how, move |monitor| {
                 by_kept(&IN_SPACE, |solver: &mut spatial::Solver| {
                     let solved = solver.solve_watched(&measured, &options, monitor)?;
-                    Ok((solved, prove.then(|| solver.prove()).flatten()))
+                    Ok((solved, prove.then(|| solver.prove_watched(monitor)).flatten()))
                 })
             }),
             other => Err(Failure::Input(format!("dimensions must be 2 or 3, not {other}"))),

@@ -100,12 +100,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let solve_in_plane = |monitor: &Monitor| {
         let mut solver = Solver::new();
         let solved = solver.solve_watched(&measured, options, monitor)?;
-        Ok((solved, prove.then(|| solver.prove()).flatten()))
+        Ok((solved, prove.then(|| solver.prove_watched(monitor)).flatten()))
     };
     let solve_in_space = |monitor: &Monitor| {
         let mut solver = spatial::Solver::new();
         let solved = solver.solve_watched(&measured, options, monitor)?;
-        Ok((solved, prove.then(|| solver.prove()).flatten()))
+        Ok((solved, prove.then(|| solver.prove_watched(monitor)).flatten()))
     };
     match arguments.dimensions {
         2 => answer(arguments, unit, &measured, solve_in_plane),

@@ -98,10 +98,10 @@ impl<F: FormulationIn<D>, const D: usize> Engine<F, D> {
         self.finder.tracker.paths().results()
     }
 
-    /// Proofs that the complex roots of the last call exist and are distinct.
-    pub(crate) fn prove(&self) -> Option<RootProofs> {
+    /// Proofs that the complex roots of the last call exist and are distinct; `None` if the monitor is cancelled.
+    pub(crate) fn prove(&self, monitor: &Monitor) -> Option<RootProofs> {
         let ends = self.finder.tracker.paths().iter().filter(|(r, _)| r.end == PathEnd::Success);
-        prove::<F>(&self.target, &ends.map(|(_, x)| x.to_vec()).collect::<Vec<_>>())
+        prove::<F>(&self.target, &ends.map(|(_, x)| x.to_vec()).collect::<Vec<_>>(), monitor)
     }
 }
 

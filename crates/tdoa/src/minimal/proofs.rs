@@ -1,8 +1,9 @@
 //! Proofs that the roots of a solver exist and are distinct.
 
 use super::formulation::{Formulation, Parameters};
-use hc::certify::{CertifyOptions, Reality, certify};
+use hc::certify::{CertifyOptions, Reality};
 use hc::poly::{ComplexInterval, System, parse};
+use hc::{Monitor, Run};
 use num_complex::Complex64;
 use serde::Serialize;
 
@@ -21,8 +22,14 @@ pub struct RootProofs {
 
 /// Puts the roots `points` for the parameters `target` to the test of Krawczyk, in every chart
 /// until all are proved: a root that is ill-conditioned in one, as next to a far node, is none in
-/// another. What is proved is about the differences `f_ij - f_1j` as they are in `target`.
-pub(crate) fn prove<F: Formulation>(target: &[Complex64], points: &[Vec<Complex64>]) -> Option<RootProofs> {
+/// another. What is proved is about the differences `f_ij - f_1j` as they are in `target`. `None` if the
+/// monitor is cancelled.
+pub(crate) fn prove<F: Formulation>(
+    target: &[Complex64],
+    points: &[Vec<Complex64>],
+    monitor: &Monitor,
+) -> Option<RootProofs> {
+    let run = Run::new().watched(monitor);
     let family = parse::family(F::FAMILY).ok()?;
     let count = points.len();
     let mut proved = vec![false; count];
@@ -32,7 +39,10 @@ pub(crate) fn prove<F: Formulation>(target: &[Complex64], points: &[Vec<Complex6
     for chart in 0..F::CHARTS {
         let system = in_chart::<F>(&family.system, chart)?;
         let carried: Vec<Vec<Complex64>> = points.iter().map(|x| F::enter(chart, x).to_vec()).collect();
-        let found = certify(&system, &parameters, &carried, &CertifyOptions::default()).ok()?;
+        let found = run.certify(&system, &parameters, &carried, &CertifyOptions::default()).ok()?;
+        if monitor.is_cancelled() {
+            return None;
+        }
         let mut different = vec![false; count * count];
         let alone: Vec<usize> =
             (0..count).filter(|&k| found.points[k].is_ok() && found.duplicate_of[k].is_none()).collect();

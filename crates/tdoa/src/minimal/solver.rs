@@ -156,11 +156,16 @@ impl Solver {
     /// are distinct ([`hc::certify()`]). `None` if the last call tracked none. For a larger network
     /// these are the roots of the part that was solved.
     pub fn prove(&self) -> Option<RootProofs> {
+        self.prove_watched(&Monitor::default())
+    }
+
+    /// [`prove`](Self::prove), watched: `None` once the monitor is cancelled.
+    pub fn prove_watched(&self, monitor: &Monitor) -> Option<RootProofs> {
         match self.last? {
-            Method::SixThree => self.six_three.as_ref()?.prove(),
-            Method::FiveFour => self.five_four.as_ref()?.prove(),
-            Method::FourFive => self.four_five.as_ref()?.prove(),
-            Method::FiveSix => self.five_six.as_ref()?.prove(),
+            Method::SixThree => self.six_three.as_ref()?.prove(monitor),
+            Method::FiveFour => self.five_four.as_ref()?.prove(monitor),
+            Method::FourFive => self.four_five.as_ref()?.prove(monitor),
+            Method::FiveSix => self.five_six.as_ref()?.prove(monitor),
             Method::SevenFour => None,
         }
     }

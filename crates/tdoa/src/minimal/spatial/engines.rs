@@ -5,6 +5,7 @@ use super::gram::SixSix;
 use crate::minimal::engine::Engine;
 use crate::minimal::formulation::FormulationIn;
 use crate::minimal::proofs::RootProofs;
+use hc::Monitor;
 
 /// A formulation whose solver is kept.
 pub(super) trait Kept: FormulationIn<3> + Sized {
@@ -23,7 +24,7 @@ macro_rules! engines {
         pub(super) struct Engines {
             $($name: Option<Engine<$formulation, 3>>,)*
             /// What proves the roots of the solver that was used last.
-            prove: Option<fn(&Engines) -> Option<RootProofs>>,
+            prove: Option<fn(&Engines, &Monitor) -> Option<RootProofs>>,
         }
 
         $(impl Kept for $formulation {
@@ -43,7 +44,7 @@ engines!(eight_five: Dual<EightFive>, seven_five: Dual<SevenFive>, six_six: SixS
 impl Engines {
     /// The solver of a formulation, whose roots are the ones to prove from now on.
     pub(super) fn used<F: Kept>(&mut self) -> &mut Engine<F, 3> {
-        self.prove = Some(|engines| F::engine(engines)?.prove());
+        self.prove = Some(|engines, monitor| F::engine(engines)?.prove(monitor));
         F::ready(self)
     }
 
@@ -53,7 +54,7 @@ impl Engines {
     }
 
     /// Proofs of the roots of the solver that was used last, if one was.
-    pub(super) fn prove(&self) -> Option<RootProofs> {
-        self.prove.and_then(|prove| prove(self))
+    pub(super) fn prove(&self, monitor: &Monitor) -> Option<RootProofs> {
+        self.prove.and_then(|prove| prove(self, monitor))
     }
 }

@@ -115,7 +115,12 @@ impl Solver {
     /// distinct ([`hc::certify()`]). `None` if the last call tracked none. For a larger network these are
     /// the roots of the part that was solved.
     pub fn prove(&self) -> Option<RootProofs> {
-        self.engines.prove()
+        self.prove_watched(&Monitor::default())
+    }
+
+    /// [`prove`](Self::prove), watched: `None` once the monitor is cancelled.
+    pub fn prove_watched(&self, monitor: &Monitor) -> Option<RootProofs> {
+        self.engines.prove(monitor)
     }
 }
 
