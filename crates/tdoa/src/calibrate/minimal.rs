@@ -13,7 +13,7 @@ use crate::duplicates::step;
 use crate::median::median;
 use crate::minimal::spatial::{self, five_transmitters};
 use crate::minimal::subset::spread;
-use crate::minimal::{MinimalOptions, Solver};
+use crate::minimal::{MinimalError, MinimalOptions, MinimalSolution, Solver};
 use crate::network::Network;
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::PartialNetwork;
@@ -92,9 +92,7 @@ impl MinimalHypotheses {
     /// Hypotheses with settings for noisy data. Roots that noise has made slightly complex count as
     /// real, and distances may be negative by up to a twentieth of the network's size.
     pub fn new() -> Self {
-        let mut options = MinimalOptions { near_real: 0.1, tolerance: 0.05, ..MinimalOptions::default() };
-        // What is left then is next to singular, and takes longer than all others together.
-        options.paths.retries = 1;
+        let options = MinimalOptions { near_real: 0.1, tolerance: 0.05, ..MinimalOptions::default() };
         MinimalHypotheses {
             options,
             in_plane_solvers: Mutex::default(),
@@ -131,12 +129,7 @@ impl MinimalHypotheses {
     }
 
     fn in_plane(&self, part: &Pseudoranges) -> Vec<Network> {
-        let spare = self.in_plane_solvers.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        let mut solver = spare.unwrap_or_default();
-        let solution = solver.solve_watched(part, &self.options, &self.monitor);
-        self.in_plane_solvers.lock().unwrap_or_else(PoisonError::into_inner).push(solver);
-        let candidates = solution.map_or_else(|_| Vec::new(), |solution| solution.candidates);
-        candidates.into_iter().filter(|candidate| candidate.physical).map(|candidate| candidate.network).collect()
+        by_spare(&self.in_plane_solvers, |solver| physical(solver.solve_watched(part, &self.options, &self.monitor)))
     }
 
     fn in_space(&self, part: &Pseudoranges) -> Vec<Network<3>> {
@@ -150,12 +143,10 @@ impl MinimalHypotheses {
     }
 
     fn by_paths(&self, part: &Pseudoranges) -> Vec<Network<3>> {
-        let spare = self.in_space_solvers.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        let mut solver = spare.unwrap_or_default();
-        let solution = solver.solve_watched(part, &self.options, &self.monitor);
-        self.in_space_solvers.lock().unwrap_or_else(PoisonError::into_inner).push(solver);
-        let candidates = solution.map_or_else(|_| Vec::new(), |solution| solution.candidates);
-        candidates.into_iter().filter(|candidate| candidate.physical).map(|candidate| candidate.network).collect()
+        let mut options = self.options.clone();
+        // What is left then is next to singular, and takes longer than all others together.
+        options.paths.retries = 1;
+        by_spare(&self.in_space_solvers, |solver| physical(solver.solve_watched(part, &options, &self.monitor)))
     }
 
     /// The subset of one call: `m` receivers and `n` transmitters, `None` if no draw is complete.
@@ -182,6 +173,22 @@ impl MinimalHypotheses {
         }
         best.map(|(_, receivers, transmitters)| (receivers, transmitters))
     }
+}
+
+/// What a solver that is not in use makes, or a new one.
+fn by_spare<S: Default, T>(solvers: &Mutex<Vec<S>>, work: impl FnOnce(&mut S) -> T) -> T {
+    let spare = || solvers.lock().unwrap_or_else(PoisonError::into_inner);
+    let solver = spare().pop();
+    let mut solver = solver.unwrap_or_default();
+    let made = work(&mut solver);
+    spare().push(solver);
+    made
+}
+
+/// The physical networks among those found, if any were.
+fn physical<const D: usize>(solved: Result<MinimalSolution<D>, MinimalError>) -> Vec<Network<D>> {
+    let candidates = solved.map_or_else(|_| Vec::new(), |solution| solution.candidates);
+    candidates.into_iter().filter(|candidate| candidate.physical).map(|candidate| candidate.network).collect()
 }
 
 /// A network as one of its own dimension, which the compiler does not know to be that.

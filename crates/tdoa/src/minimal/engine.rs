@@ -53,6 +53,7 @@ impl<F: FormulationIn<D>, const D: usize> Engine<F, D> {
             tracker: make(F::system(), Recharted::default(), &stored),
             nearest: Nearest::new(stored, F::RECEIVERS, F::TRANSMITTERS),
             start,
+            from_scratch: None,
         };
         let roots = Roots {
             refiner: Refiner::new(F::system()),
@@ -83,6 +84,7 @@ impl<F: FormulationIn<D>, const D: usize> Engine<F, D> {
         let mut found =
             RootNetworks::<F, D> { measured, data, options, target, roots, counts: RootCounts::default(), candidates };
         self.finder.tracker.set_monitor(monitor);
+        self.finder.from_scratch = None;
         let (paths, stopped_early) = match options.start {
             MinimalStart::Stored => self.finder.run(&mut found),
             MinimalStart::Polyhedral => self.finder.run_polyhedral(&mut found, monitor)?,
@@ -101,7 +103,11 @@ impl<F: FormulationIn<D>, const D: usize> Engine<F, D> {
     /// Proofs that the complex roots of the last call exist and are distinct; `None` if the monitor is cancelled.
     pub(crate) fn prove(&self, monitor: &Monitor) -> Option<RootProofs> {
         let ends = self.finder.tracker.paths().iter().filter(|(r, _)| r.end == PathEnd::Success);
-        prove::<F>(&self.target, &ends.map(|(_, x)| x.to_vec()).collect::<Vec<_>>(), monitor)
+        let roots: Vec<Vec<Complex64>> = match &self.finder.from_scratch {
+            Some(fibre) => fibre.iter().map(<[Complex64]>::to_vec).collect(),
+            None => ends.map(|(_, x)| x.to_vec()).collect(),
+        };
+        prove::<F>(&self.target, &roots, monitor)
     }
 }
 
@@ -111,6 +117,8 @@ struct RootFinder<F: Formulation> {
     nearest: Nearest,
     /// The stored fibre, turned to the data.
     start: Fibre,
+    /// The roots of the last call where no fibre was tracked to them.
+    from_scratch: Option<Fibre>,
 }
 
 impl<F: Formulation> RootFinder<F> {
@@ -192,6 +200,7 @@ impl<F: Formulation> RootFinder<F> {
             found.add(root);
         }
         found.counts.complex = direct.fibre.len();
+        self.from_scratch = Some(direct.fibre);
         Ok((PathCounts { retracked: spent, ..direct.paths }, false))
     }
 }

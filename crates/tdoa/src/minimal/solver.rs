@@ -280,6 +280,9 @@ mod tests {
                 let stored = solver.solve(&simulation.pseudoranges, &options).unwrap();
                 options.start = MinimalStart::Polyhedral;
                 let scratch = solver.solve(&simulation.pseudoranges, &options).unwrap();
+                let proofs = solver.prove().unwrap();
+                assert_eq!((proofs.roots, proofs.real), (scratch.counts.complex, scratch.counts.real), "seed {seed}");
+                assert_eq!((proofs.proved, proofs.unseparated), (proofs.roots, 0), "seed {seed}");
                 assert_eq!((scratch.counts, scratch.paths.failed), (stored.counts, 0), "seed {seed}");
                 // In order of the first offset, the candidates agree one by one.
                 let offsets = |solution: &MinimalSolution| {

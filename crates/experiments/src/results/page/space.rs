@@ -63,8 +63,8 @@ pub(super) fn rooms(results: &Path) -> Result<String> {
         ])
     };
     text += &lines(results, &["rooms", "small-rooms"], room)?;
-    text += "\nThe smallest sizes and those with one, two or three spare measurements (the last), with noise of 1 mm that is not given. Random networks \
-             alone miss the true network, and call others unique: no start ends in it. `tdoa calibrate` also starts from all networks of one exactly \
+    text += "\nThe smallest sizes, and others with one or two spare measurements or three (7r/6s), with noise of 1 mm that is not given. Where random networks \
+             alone miss the true network, no start ends in it, and another one may pass for the only one. `tdoa calibrate` also starts from all networks of one exactly \
              solved subset, unless three measurements or more are spare.\n\n";
     text += &head(&[
         "",
