@@ -254,12 +254,12 @@ impl<const D: usize> Clearing<'_, D> {
     fn relaxed(&self, near: Estimated<D>) -> Result<Estimated<D>, CalibrateError<D>> {
         let deviation = near.2;
         let cost = |(faults, refined, _): &Estimated<D>| {
-            let observations = Observations::new(&self.corrected(faults), |_, _| true);
+            let observations = Observations::<D>::new(&self.corrected(faults), |_, _| true);
             truncated_cost(&observations, &refined.network, deviation)
         };
         let gives_up = |(faults, refined, _): &Estimated<D>| {
             let reach = self.options.inlier_threshold * deviation;
-            let observations = Observations::<2>::new(&self.corrected(faults), |_, _| true);
+            let observations = Observations::<D>::new(&self.corrected(faults), |_, _| true);
             observations.all().iter().any(|o| o.residual(&refined.network).abs() > reach)
         };
         let mut best = near.clone();
@@ -299,7 +299,7 @@ impl<const D: usize> Clearing<'_, D> {
 
     /// Whether a network has more inliers than unknowns.
     fn is_left_over(&self, (faults, refined, deviation): &Estimated<D>) -> bool {
-        let observations = Observations::<2>::new(&self.corrected(faults), |_, _| true).beside(linear(faults).count());
+        let observations = Observations::<D>::new(&self.corrected(faults), |_, _| true).beside(linear(faults).count());
         let reach = self.options.inlier_threshold * deviation;
         let inliers = observations.all().iter().filter(|o| o.residual(&refined.network).abs() <= reach).count();
         refined.network.is_finite() && inliers > observations.unknowns()
@@ -311,7 +311,7 @@ impl<const D: usize> Clearing<'_, D> {
         let least = all.iter().map(|(.., deviation)| *deviation).fold(f64::INFINITY, f64::min);
         let deviation = self.known.unwrap_or(least).max(self.floor);
         for (faults, refined, _) in all.iter_mut() {
-            let observations = Observations::new(&self.corrected(faults), |_, _| true);
+            let observations = Observations::<D>::new(&self.corrected(faults), |_, _| true);
             refined.objective = truncated_cost(&observations, &refined.network, deviation);
         }
         all.sort_by(|a, b| a.1.objective.total_cmp(&b.1.objective));
@@ -442,4 +442,37 @@ pub(super) fn columns<const D: usize>(
         Ok(projection.off(&column(fault)))
     };
     linear(faults).map(off).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Clearing, Fault, ReceiverErrorKind};
+    use crate::observations::Observations;
+    use crate::refine::RefinedNetwork;
+    use crate::{CalibrateOptions, SimulateOptions, simulate};
+    use hc::Monitor;
+
+    /// Whether exact measurements of seven receivers are more than the unknowns, with a delay of each receiver but
+    /// one beside the network.
+    fn is_left_over<const D: usize>(transmitters: usize) -> bool {
+        let mut made = SimulateOptions::<D>::new();
+        (made.receivers, made.transmitters) = (7, transmitters);
+        let made = simulate(&made).unwrap();
+        let options = CalibrateOptions::<D>::new();
+        let monitor = Monitor::default();
+        let clearing =
+            Clearing { measured: &made.pseudoranges, known: None, floor: 1e-9, options: &options, monitor: &monitor };
+        let faults: Vec<Fault<D>> = (1..7).map(|i| Fault::new(i, ReceiverErrorKind::Delay, 0)).collect();
+        let observations = Observations::<D>::new(&made.pseudoranges, |_, _| true);
+        assert_eq!(observations.unknowns(), D * 7 + (D + 1) * transmitters - D * (D + 1) / 2);
+        let refined = RefinedNetwork { network: made.network, scale: 1.0, objective: 0.0, starts: 1 };
+        clearing.is_left_over(&(faults, refined, 1e-3))
+    }
+
+    #[test]
+    fn unknowns_are_those_of_the_dimension() {
+        // 7r/n in the plane: 7 n measurements for 17 + 3 n unknowns. In space: for 21 + 4 n.
+        assert_eq!([4, 5].map(is_left_over::<2>), [false, true]);
+        assert_eq!([5, 6, 7, 8].map(is_left_over::<3>), [false, false, false, true]);
+    }
 }
