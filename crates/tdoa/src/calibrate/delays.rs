@@ -7,14 +7,15 @@ use hc::Monitor;
 
 use super::clocks::middle_delays;
 use super::deviation::{inlier_deviation, spread_of_residuals, typical_deviation};
-use super::finish::{CAUCHY, finish};
+use super::finish::CAUCHY;
 use super::near::{Neighbour, Reason};
-use super::options::{CalibrateError, CalibrateOptions, ReceiverDelays, check};
+use super::options::{CalibrateError, ReceiverDelays, check};
 use super::ranking::truncated_cost;
 use super::receiver_errors::{Fault, ReceiverErrorKind};
 use super::refits::Refit;
 use super::same::merged;
 use super::shown::{Shown, look};
+use super::state::State;
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;
@@ -43,137 +44,117 @@ const WIDER: [f64; 5] = [100.0, 30.0, 10.0, 3.0, 1.0];
 /// Steps of bringing a network and the delays of all receivers near their best fit.
 const COARSE: usize = 24;
 
-/// What the measurements are and how they are refined.
-pub(super) struct Clearing<'a, const D: usize> {
-    /// The measurements as they are.
-    pub(super) measured: &'a Pseudoranges,
-    pub(super) known: Option<f64>,
-    pub(super) floor: f64,
-    pub(super) options: &'a CalibrateOptions<D>,
-    pub(super) monitor: &'a Monitor,
-}
-
-/// Networks for the measurements without the errors of receivers.
-pub(super) struct Cleared<const D: usize> {
-    /// The measurements without the errors that were taken out.
-    pub(super) measured: Pseudoranges,
-    pub(super) observations: Observations<D>,
-    pub(super) ranked: Vec<RefinedNetwork<D>>,
-    pub(super) deviation: f64,
-    /// Errors that were taken out.
-    pub(super) taken: Vec<Fault<D>>,
-    /// Errors that were found and left in.
-    pub(super) left: Vec<Fault<D>>,
-    /// Networks with an error that is worth a doubt.
-    pub(super) doubted: Vec<Neighbour<D>>,
-}
-
 /// Errors with their sizes, the network beside them, and the deviation that is left.
 type Estimated<const D: usize> = (Vec<Fault<D>>, RefinedNetwork<D>, f64);
 
-impl<const D: usize> Clearing<'_, D> {
-    /// Looks for errors of receivers in the best of some networks and takes them out as the options
-    /// say.
-    pub(super) fn clear(
-        &self,
-        ranked: Vec<RefinedNetwork<D>>,
-        deviation: f64,
-    ) -> Result<Cleared<D>, CalibrateError<D>> {
-        let observations = Observations::new(self.measured, |_, _| true);
-        let mut now = Cleared {
-            measured: self.measured.clone(),
-            observations,
-            ranked,
-            deviation,
-            taken: Vec::new(),
-            left: Vec::new(),
-            doubted: Vec::new(),
-        };
+impl<const D: usize> State<'_, D> {
+    /// Looks for errors of receivers in the best network and takes them out as the options say.
+    pub(super) fn clear(&mut self) -> Result<(), CalibrateError<D>> {
+        let near = std::mem::take(&mut self.neighbours);
         match self.options.receiver_delays {
             ReceiverDelays::None => {
-                let Shown { found, doubted, .. } = self.look(&now)?;
-                (now.left, now.doubted) = (found, now.doubts(doubted));
+                let Shown { found, doubted, .. } = self.look()?;
+                self.left = found;
+                self.doubt_of(doubted);
             }
-            ReceiverDelays::Auto => {
-                // Errors that were none once others were taken out.
-                let mut none: Vec<Fault<D>> = Vec::new();
-                let mut rivals = Vec::new();
-                for _ in 0..ROUNDS {
-                    let shown = self.look(&now)?;
-                    let known = |f: &Fault<D>, t: &Fault<D>| t.receiver == f.receiver && t.kind == f.kind;
-                    let fresh = |f: &&Fault<D>| !now.taken.iter().chain(&none).any(|t| known(f, t));
-                    let fresh: Vec<Fault<D>> = shown.found.iter().filter(fresh).copied().collect();
-                    if fresh.is_empty() {
-                        now.doubted = now.doubts(shown.doubted.into_iter().chain(rivals));
-                        now.left = shown.found;
-                        break;
-                    }
-                    now.taken.extend(fresh);
-                    rivals = shown.rivals;
-                    if let Some(network) = shown.hidden {
-                        let first = RefinedNetwork { network, ..now.ranked[0].clone() };
-                        now.ranked.insert(0, first);
-                    }
-                    now = self.without(now)?;
-                    while let Some(k) = self.negligible(&now)? {
-                        none.push(now.taken.remove(k));
-                        now = self.without(now)?;
-                    }
-                }
-            }
-            ReceiverDelays::All => now = self.all(now)?,
+            ReceiverDelays::Auto => self.take_out_shown()?,
+            ReceiverDelays::All => self.take_out_all()?,
         }
-        Ok(now)
+        // They are near the network that has the errors.
+        if self.taken.is_empty() {
+            self.neighbours.splice(0..0, near);
+        }
+        self.measured = self.corrected(&self.taken);
+        Ok(())
+    }
+
+    /// Takes out the errors that receivers show until none is left.
+    fn take_out_shown(&mut self) -> Result<(), CalibrateError<D>> {
+        // Errors that were none once others were taken out.
+        let mut none: Vec<Fault<D>> = Vec::new();
+        let mut rivals = Vec::new();
+        for _ in 0..ROUNDS {
+            let shown = self.look()?;
+            let known = |f: &Fault<D>, t: &Fault<D>| t.receiver == f.receiver && t.kind == f.kind;
+            let fresh = |f: &&Fault<D>| !self.taken.iter().chain(&none).any(|t| known(f, t));
+            let fresh: Vec<Fault<D>> = shown.found.iter().filter(fresh).copied().collect();
+            if fresh.is_empty() {
+                self.doubt_of(shown.doubted.into_iter().chain(rivals));
+                self.left = shown.found;
+                break;
+            }
+            self.taken.extend(fresh);
+            rivals = shown.rivals;
+            if let Some(network) = shown.hidden {
+                let first = RefinedNetwork { network, ..self.ranked[0].clone() };
+                self.ranked.insert(0, first);
+            }
+            self.fit_without_taken()?;
+            while let Some(k) = self.negligible()? {
+                none.push(self.taken.remove(k));
+                self.fit_without_taken()?;
+            }
+        }
+        Ok(())
     }
 
     /// Errors that the best network shows.
-    fn look(&self, now: &Cleared<D>) -> Result<Shown<D>, CalibrateError<D>> {
-        let (best, least) = (&now.ranked[0].network, self.least_size(now.deviation));
-        look(&now.observations, best, now.deviation, least, self.options, self.monitor)
+    fn look(&self) -> Result<Shown<D>, CalibrateError<D>> {
+        let (best, least) = (&self.ranked[0].network, self.least_size(self.deviation));
+        look(&self.observations, best, self.deviation, least, self.options, self.monitor)
+    }
+
+    /// Adds networks without errors that are worth a doubt to the neighbours.
+    fn doubt_of(&mut self, doubted: impl IntoIterator<Item = Refit<D>>) {
+        let is_new =
+            |f: &Refit<D>| !self.taken.iter().any(|t| t.receiver == f.fault.receiver && t.kind == f.fault.kind);
+        let of = |f: Refit<D>| Neighbour::new(&f.network, -f.lead, Reason::Error(f.fault), &self.ranked[0].network);
+        let doubted: Vec<Neighbour<D>> = doubted.into_iter().filter(is_new).filter_map(of).collect();
+        self.neighbours.extend(doubted);
     }
 
     /// Smaller errors of receivers are none.
     fn least_size(&self, deviation: f64) -> f64 {
-        LEAST_SHARE * deviation * typical_deviation(self.measured)
+        LEAST_SHARE * deviation * typical_deviation(&self.measured)
     }
 
     /// The smallest of the errors taken out, in its own deviations, if it is none.
-    fn negligible(&self, now: &Cleared<D>) -> Result<Option<usize>, CalibrateError<D>> {
-        let network = &now.ranked[0].network;
-        let kept =
-            now.observations.subset(|o| o.residual(network).abs() <= self.options.inlier_threshold * now.deviation);
+    fn negligible(&self) -> Result<Option<usize>, CalibrateError<D>> {
+        let network = &self.ranked[0].network;
+        let reach = self.options.inlier_threshold * self.deviation;
+        let kept = self.observations.subset(|o| o.residual(network).abs() <= reach);
         let Some(projection) = Projection::new(&kept, network, self.monitor)? else { return Ok(None) };
-        let columns = columns(&kept, &projection, &now.taken, self.monitor)?;
+        let columns = columns(&kept, &projection, &self.taken, self.monitor)?;
         let Some(gram) = gram(&columns, self.monitor)? else { return Ok(None) };
         let inverse = gram.solve(&Mat::<f64>::identity(columns.len(), columns.len()));
-        let at = now.taken.iter().enumerate().filter(|(_, fault)| fault.kind != ReceiverErrorKind::Move);
+        let at = self.taken.iter().enumerate().filter(|(_, fault)| fault.kind != ReceiverErrorKind::Move);
         let sizes = at.enumerate().map(|(a, (k, fault))| {
             let size = fault.size[0].abs();
-            let own = size / (now.deviation * inverse[(a, a)].max(0.0).sqrt());
-            (k, own / LEAST_DEVIATIONS, size / self.least_size(now.deviation))
+            let own = size / (self.deviation * inverse[(a, a)].max(0.0).sqrt());
+            (k, own / LEAST_DEVIATIONS, size / self.least_size(self.deviation))
         });
         let least = sizes.min_by(|a, b| a.1.min(a.2).total_cmp(&b.1.min(b.2)));
         Ok(least.filter(|least| least.1.min(least.2) < 1.0).map(|least| least.0))
     }
 
-    /// The networks again with the errors in `taken` estimated for the best of them.
-    fn without(&self, mut now: Cleared<D>) -> Result<Cleared<D>, CalibrateError<D>> {
-        let best = now.ranked[0].clone();
-        let (taken, _, _) = self.estimate(best, now.deviation, now.taken)?;
-        now.taken = taken;
-        now.measured = self.corrected(&now.taken);
-        now.observations = Observations::new(&now.measured, |_, _| true).beside(linear(&now.taken).count());
-        let first = self.known.unwrap_or(spread_of_residuals(&now.observations, &now.ranked[0].network));
-        let (ranked, deviation) =
-            finish(&now.observations, now.ranked, first, self.known.is_some(), self.floor, self.options, self.monitor)?;
-        Ok(Cleared { ranked, deviation, ..now })
+    /// Fits the networks again, with the errors in `taken` estimated for the best of them.
+    fn fit_without_taken(&mut self) -> Result<(), CalibrateError<D>> {
+        let taken = std::mem::take(&mut self.taken);
+        (self.taken, _, _) = self.estimate(self.ranked[0].clone(), self.deviation, taken)?;
+        self.observations = self.observe(&self.taken);
+        let wide = spread_of_residuals(&self.observations, &self.ranked[0].network);
+        self.finish(self.known.unwrap_or(wide))
     }
 
-    /// A delay for every receiver, for each of the best networks on its own; relative to their
-    /// mean.
-    fn all(&self, now: Cleared<D>) -> Result<Cleared<D>, CalibrateError<D>> {
+    /// The measurements without these errors, of which some are unknowns.
+    fn observe(&self, faults: &[Fault<D>]) -> Observations<D> {
+        Observations::new(&self.corrected(faults), |_, _| true).beside(linear(faults).count())
+    }
+
+    /// Takes a delay of every receiver out, relative to their mean, for each of the best networks on its own.
+    fn take_out_all(&mut self) -> Result<(), CalibrateError<D>> {
         let receivers = self.measured.receivers();
-        let middle = middle_delays(self.measured);
+        let middle = middle_delays(&self.measured);
         let delay = |receiver: usize, size: f64| {
             let mut fault = Fault::new(receiver, ReceiverErrorKind::Delay, 0);
             fault.size[0] = size;
@@ -182,13 +163,13 @@ impl<const D: usize> Clearing<'_, D> {
         // The mean of all delays cannot be told from the offsets.
         let unknown: Vec<Fault<D>> = (1..receivers).map(|i| delay(i, middle[i] - middle[0])).collect();
         // The search took the first receiver's too: what it says of offsets lacks that.
-        let networks = now.ranked.into_iter().map(|mut refined| {
+        let networks = std::mem::take(&mut self.ranked).into_iter().map(|mut refined| {
             refined.network.offsets.iter_mut().for_each(|offset| *offset += middle[0]);
             refined
         });
-        let unknowns = now.observations.unknowns() + unknown.len();
-        if now.observations.len() < unknowns {
-            return Err(CalibrateError::Delays { measurements: now.observations.len(), unknowns, receivers });
+        let (measurements, unknowns) = (self.observations.len(), self.observations.unknowns() + unknown.len());
+        if measurements < unknowns {
+            return Err(CalibrateError::Delays { measurements, unknowns, receivers });
         }
         let mut near = Vec::new();
         for candidate in networks {
@@ -212,15 +193,15 @@ impl<const D: usize> Clearing<'_, D> {
         for fault in &mut taken {
             fault.size[0] -= mean;
         }
-        let measured = self.corrected(&taken);
-        let observations = Observations::new(&measured, |_, _| true).beside(unknown.len());
-        let mut ranked: Vec<RefinedNetwork<D>> = all.into_iter().map(|(_, refined, _)| refined).collect();
-        for refined in &mut ranked {
+        self.observations = Observations::new(&self.corrected(&taken), |_, _| true).beside(unknown.len());
+        self.ranked = all.into_iter().map(|(_, refined, _)| refined).collect();
+        for refined in &mut self.ranked {
             for offset in refined.network.offsets.iter_mut() {
                 *offset += mean;
             }
         }
-        Ok(Cleared { measured, observations, ranked, deviation, taken, left: Vec::new(), doubted: Vec::new() })
+        (self.taken, self.deviation) = (taken, deviation);
+        Ok(())
     }
 
     /// Sizes of errors and a network brought near their best fit, with the deviation that is left:
@@ -230,12 +211,11 @@ impl<const D: usize> Clearing<'_, D> {
         mut best: RefinedNetwork<D>,
         mut faults: Vec<Fault<D>>,
     ) -> Result<Estimated<D>, CalibrateError<D>> {
-        let count = linear(&faults).count();
         let least = self.known.unwrap_or(self.floor);
         let mut deviation = least;
         for _ in 0..COARSE {
             check(self.monitor)?;
-            let observations = Observations::new(&self.corrected(&faults), |_, _| true).beside(count);
+            let observations = self.observe(&faults);
             deviation = spread_of_residuals(&observations, &best.network).max(least);
             let refine = RefineOptions { scale: Some(CAUCHY * deviation), steps: 8, rounds: 1, ..SEARCH };
             let refined = NetworkRefiner::new(&observations, 1.0).heeding(self.monitor).refine(best.network, &refine);
@@ -253,14 +233,11 @@ impl<const D: usize> Clearing<'_, D> {
     /// have bent itself to a wrong delay. What it was, where that costs less.
     fn relaxed(&self, near: Estimated<D>) -> Result<Estimated<D>, CalibrateError<D>> {
         let deviation = near.2;
-        let cost = |(faults, refined, _): &Estimated<D>| {
-            let observations = Observations::<D>::new(&self.corrected(faults), |_, _| true);
-            truncated_cost(&observations, &refined.network, deviation)
-        };
+        let cost =
+            |(faults, refined, _): &Estimated<D>| truncated_cost(&self.observe(faults), &refined.network, deviation);
         let gives_up = |(faults, refined, _): &Estimated<D>| {
             let reach = self.options.inlier_threshold * deviation;
-            let observations = Observations::<D>::new(&self.corrected(faults), |_, _| true);
-            observations.all().iter().any(|o| o.residual(&refined.network).abs() > reach)
+            self.observe(faults).all().iter().any(|o| o.residual(&refined.network).abs() > reach)
         };
         let mut best = near.clone();
         for factors in [&RELAXED[..], &WIDER[..]] {
@@ -277,11 +254,10 @@ impl<const D: usize> Clearing<'_, D> {
     /// errors are not determined.
     fn narrowed(&self, from: Estimated<D>, factors: &[f64]) -> Result<Option<Estimated<D>>, CalibrateError<D>> {
         let (mut faults, mut refined, deviation) = from;
-        let count = linear(&faults).count();
         for factor in factors {
             for _ in 0..STEPS {
                 check(self.monitor)?;
-                let observations = Observations::new(&self.corrected(&faults), |_, _| true).beside(count);
+                let observations = self.observe(&faults);
                 let wide = factor * deviation;
                 let reach = self.options.inlier_threshold * wide;
                 let inliers = observations.subset(|o| o.residual(&refined.network).abs() <= reach);
@@ -299,7 +275,7 @@ impl<const D: usize> Clearing<'_, D> {
 
     /// Whether a network has more inliers than unknowns.
     fn is_left_over(&self, (faults, refined, deviation): &Estimated<D>) -> bool {
-        let observations = Observations::<D>::new(&self.corrected(faults), |_, _| true).beside(linear(faults).count());
+        let observations = self.observe(faults);
         let reach = self.options.inlier_threshold * deviation;
         let inliers = observations.all().iter().filter(|o| o.residual(&refined.network).abs() <= reach).count();
         refined.network.is_finite() && inliers > observations.unknowns()
@@ -311,8 +287,7 @@ impl<const D: usize> Clearing<'_, D> {
         let least = all.iter().map(|(.., deviation)| *deviation).fold(f64::INFINITY, f64::min);
         let deviation = self.known.unwrap_or(least).max(self.floor);
         for (faults, refined, _) in all.iter_mut() {
-            let observations = Observations::<D>::new(&self.corrected(faults), |_, _| true);
-            refined.objective = truncated_cost(&observations, &refined.network, deviation);
+            refined.objective = truncated_cost(&self.observe(faults), &refined.network, deviation);
         }
         all.sort_by(|a, b| a.1.objective.total_cmp(&b.1.objective));
     }
@@ -325,21 +300,12 @@ impl<const D: usize> Clearing<'_, D> {
         mut deviation: f64,
         mut faults: Vec<Fault<D>>,
     ) -> Result<Estimated<D>, CalibrateError<D>> {
-        let count = linear(&faults).count();
         for step in 0..STEPS {
             check(self.monitor)?;
-            let observations = Observations::new(&self.corrected(&faults), |_, _| true).beside(count);
+            let observations = self.observe(&faults);
             let wide = spread_of_residuals(&observations, &best.network).max(self.known.unwrap_or(self.floor));
             let first = if step == 0 { self.known.unwrap_or(wide) } else { self.known.unwrap_or(deviation.min(wide)) };
-            let (mut ranked, next) = finish(
-                &observations,
-                vec![best.clone()],
-                first,
-                self.known.is_some(),
-                self.floor,
-                self.options,
-                self.monitor,
-            )?;
+            let (mut ranked, next) = self.finished(&observations, vec![best.clone()], first)?;
             (best, deviation) = (ranked.swap_remove(0), next);
             let wide = inlier_deviation(&observations, &best.network, wide, self.options.inlier_threshold);
             let Some(steps) = self.step(&observations, &best.network, wide, &faults)? else { break };
@@ -371,17 +337,7 @@ impl<const D: usize> Clearing<'_, D> {
     }
 
     fn corrected(&self, faults: &[Fault<D>]) -> Pseudoranges {
-        without_errors(self.measured, faults)
-    }
-}
-
-impl<const D: usize> Cleared<D> {
-    /// Errors that are worth a doubt, as neighbours of the best network.
-    pub(super) fn doubts(&self, doubted: impl IntoIterator<Item = Refit<D>>) -> Vec<Neighbour<D>> {
-        let is_new =
-            |f: &Refit<D>| !self.taken.iter().any(|t| t.receiver == f.fault.receiver && t.kind == f.fault.kind);
-        let of = |f: Refit<D>| Neighbour::new(&f.network, -f.lead, Reason::Error(f.fault), &self.ranked[0].network);
-        doubted.into_iter().filter(is_new).filter_map(of).collect()
+        without_errors(&self.measured, faults)
     }
 }
 
@@ -446,8 +402,7 @@ pub(super) fn columns<const D: usize>(
 
 #[cfg(test)]
 mod tests {
-    use super::{Clearing, Fault, ReceiverErrorKind};
-    use crate::observations::Observations;
+    use super::{Fault, ReceiverErrorKind, State};
     use crate::refine::RefinedNetwork;
     use crate::{CalibrateOptions, SimulateOptions, simulate};
     use hc::Monitor;
@@ -460,13 +415,11 @@ mod tests {
         let made = simulate(&made).unwrap();
         let options = CalibrateOptions::<D>::new();
         let monitor = Monitor::default();
-        let clearing =
-            Clearing { measured: &made.pseudoranges, known: None, floor: 1e-9, options: &options, monitor: &monitor };
+        let state = State::new(made.pseudoranges, None, &options, &monitor);
         let faults: Vec<Fault<D>> = (1..7).map(|i| Fault::new(i, ReceiverErrorKind::Delay, 0)).collect();
-        let observations = Observations::<D>::new(&made.pseudoranges, |_, _| true);
-        assert_eq!(observations.unknowns(), D * 7 + (D + 1) * transmitters - D * (D + 1) / 2);
+        assert_eq!(state.observations.unknowns(), D * 7 + (D + 1) * transmitters - D * (D + 1) / 2);
         let refined = RefinedNetwork { network: made.network, scale: 1.0, objective: 0.0, starts: 1 };
-        clearing.is_left_over(&(faults, refined, 1e-3))
+        state.is_left_over(&(faults, refined, 1e-3))
     }
 
     #[test]

@@ -2,60 +2,30 @@
 //! with receivers held at their known positions.
 
 use super::deviation::median_size;
-use super::finish::finish;
-use super::known::{Anchors, SpeedEstimate};
+use super::known::Anchors;
 use super::mirror::put_on_known_sides;
 use super::one_sided::noise;
-use super::options::{CalibrateError, CalibrateOptions};
+use super::options::CalibrateError;
+use super::state::State;
 use crate::degeneracy::Usable;
 use crate::observations::Observations;
-use crate::pseudoranges::Pseudoranges;
 use crate::quantity::length;
-use crate::refine::{RefinedNetwork, covariance};
-use hc::Monitor;
+use crate::refine::covariance;
 
-/// What is known when the network has been refined from the measurements alone.
-pub(super) struct Free<'a, const D: usize> {
-    pub(super) observations: Observations<D>,
-    pub(super) centred: &'a Pseudoranges,
-    pub(super) known: Option<f64>,
-    pub(super) floor: f64,
-}
-
-/// A network after receivers of known position were put in their places.
-pub(super) struct Held<const D: usize> {
-    pub(super) observations: Observations<D>,
-    pub(super) ranked: Vec<RefinedNetwork<D>>,
-    pub(super) deviation: f64,
-    pub(super) anchors: Option<Anchors<D>>,
-    pub(super) speed: Option<SpeedEstimate>,
-    pub(super) warnings: Vec<String>,
-    /// How far the known positions are from where the measurements put these receivers, root mean
-    /// square, where that is no chance.
-    pub(super) contradiction: Option<f64>,
-}
-
-impl<const D: usize> Free<'_, D> {
-    /// Estimates the propagation speed, then refines with the anchors held.
-    pub(super) fn hold(
-        self,
-        mut ranked: Vec<RefinedNetwork<D>>,
-        deviation: f64,
-        usable: &Usable,
-        options: &CalibrateOptions<D>,
-        monitor: &Monitor,
-    ) -> Result<Held<D>, CalibrateError<D>> {
-        let Free { observations, centred, known, floor } = self;
+impl<const D: usize> State<'_, D> {
+    /// Estimates the propagation speed, then refines with the receivers of known position in their places.
+    pub(super) fn hold(&mut self, usable: &Usable) -> Result<(), CalibrateError<D>> {
+        let State { options, monitor, known, deviation, .. } = *self;
         let mut anchors = Anchors::new(usable, options)?;
-        let mut warnings = Vec::new();
         if anchors.is_none() && !options.estimate_speed {
-            return Ok(Held { observations, ranked, deviation, anchors, speed: None, warnings, contradiction: None });
+            return Ok(());
         }
+        let State { measured, observations, ranked, warnings, .. } = self;
         let best = &ranked[0].network;
-        let sigma = known.unwrap_or_else(|| noise(&observations, best, deviation, options));
-        let kept = Observations::new(centred, |i, j| {
-            let residual = centred.get(i, j).map_or(0.0, |f| f - best.pseudorange(i, j));
-            residual.abs() <= options.inlier_threshold * sigma * centred.sigma(i, j).unwrap_or(1.0)
+        let sigma = known.unwrap_or_else(|| noise(observations, best, deviation, options));
+        let kept = Observations::new(measured, |i, j| {
+            let residual = measured.get(i, j).map_or(0.0, |f| f - best.pseudorange(i, j));
+            residual.abs() <= options.inlier_threshold * sigma * measured.sigma(i, j).unwrap_or(1.0)
         });
         let sure = known.is_some() || kept.len() > kept.unknowns();
         let uncertainty = covariance(&kept, best, sigma, monitor)?.filter(|_| sure);
@@ -70,18 +40,16 @@ impl<const D: usize> Free<'_, D> {
                 warnings.push(format!(
                     "the known position of {} is {} from where the measurements and the other known positions put it, and was not used; \
                      check the position and the name",
-                    centred.receiver_names()[i],
+                    measured.receiver_names()[i],
                     length(metre * off)
                 ));
             }
         }
-        let held = anchors.as_ref().map_or(Vec::new(), Anchors::held);
-        let Some(places) = anchors.as_ref().filter(|anchors| anchors.fix()) else {
-            return Ok(Held { observations, ranked, deviation, anchors, speed, warnings, contradiction: None });
-        };
+        self.speed = speed;
+        self.anchors = anchors;
+        let Some(places) = self.anchors.as_ref().filter(|anchors| anchors.fix()) else { return Ok(()) };
         let misfit: Vec<f64> = ranked.iter_mut().map(|refined| places.place(refined)).collect();
         let expected = uncertainty.as_ref().map(|all| places.expected(&all.receivers));
-        let mut contradiction = None;
         if let Some(expected) = expected.filter(|expected| misfit.iter().all(|misfit| *misfit > 4.0 * expected)) {
             let count = places.count();
             // As many as fix a frame and its side can contradict, one more can tell.
@@ -98,7 +66,7 @@ impl<const D: usize> Free<'_, D> {
                 length(metre * misfit[0]),
                 length(metre * expected)
             ));
-            contradiction = Some(misfit[0]);
+            self.contradiction = Some(misfit[0]);
         }
         if places.leave_mirror() {
             let what = if D == 2 { "line" } else { "plane" };
@@ -107,13 +75,11 @@ impl<const D: usize> Free<'_, D> {
                  off the {what}"
             ));
         }
-        let observations = observations.holding(&held);
-        let observations = observations.pinned(&places.pins(sigma));
-        ranked.iter_mut().for_each(|refined| put_on_known_sides(&observations, &mut refined.network));
+        *observations = observations.clone().holding(&places.held()).pinned(&places.pins(sigma));
+        ranked.iter_mut().for_each(|refined| put_on_known_sides(observations, &mut refined.network));
         // Where few measurements were left over, the free network took up most of the noise.
-        let first = known.unwrap_or_else(|| deviation.max(median_size(&observations, &ranked[0].network) / 0.6745));
-        let (ranked, deviation) = finish(&observations, ranked, first, known.is_some(), floor, options, monitor)?;
-        Ok(Held { observations, ranked, deviation, anchors, speed, warnings, contradiction })
+        let first = known.unwrap_or_else(|| deviation.max(median_size(observations, &ranked[0].network) / 0.6745));
+        self.finish(first)
     }
 }
 

@@ -4,10 +4,8 @@
 use super::near::{Neighbour, Reason};
 use super::one_sided::finish_one_sided;
 use super::options::CalibrateError;
+use super::state::State;
 use crate::network::Network;
-use crate::observations::Observations;
-use crate::refine::RefinedNetwork;
-use hc::Monitor;
 
 /// Probability that gross errors of either sign are late as often, at most: three of three.
 const CHANCE: f64 = 1.0 / 8.0;
@@ -15,37 +13,28 @@ const CHANCE: f64 = 1.0 / 8.0;
 /// Measurements left over, above which gross errors of one sign do not bend a network.
 const MOST_LEFT_OVER: usize = 100;
 
-/// What the best network is compared with.
-pub(super) struct Symmetric<'a, const D: usize> {
-    pub(super) observations: &'a Observations<D>,
-    pub(super) best: &'a RefinedNetwork<D>,
-    pub(super) deviation: f64,
-    pub(super) known: Option<f64>,
-    pub(super) floor: f64,
-    /// Measurements farther off than this many deviations are outliers.
-    pub(super) limit: f64,
-}
-
-impl<const D: usize> Symmetric<'_, D> {
-    /// The network that one-sided errors lead to from the best one, if outliers are nearly all late.
-    pub(super) fn under_one_sided(&self, monitor: &Monitor) -> Result<Option<Neighbour<D>>, CalibrateError<D>> {
-        let (late, all) = self.late();
+impl<const D: usize> State<'_, D> {
+    /// Adds the network that one-sided errors lead to from the best one to the neighbours, if outliers are
+    /// nearly all late.
+    pub(super) fn compare_with_one_sided(&mut self) -> Result<(), CalibrateError<D>> {
+        let best = &self.ranked[0];
+        let (late, all) = self.late_outliers();
         let left_over = (self.observations.len() - all).saturating_sub(self.observations.unknowns());
         if left_over > MOST_LEFT_OVER || as_often(late, all) > CHANCE {
-            return Ok(None);
+            return Ok(());
         }
-        let networks = vec![self.best.clone()];
-        let (ranked, deviation) =
-            finish_one_sided(self.observations, networks, self.deviation, self.known, self.floor, monitor)?;
-        let of = |network: &Network<D>| Neighbour::new(network, 0.0, Reason::Late { late, all }, &self.best.network);
+        let (ranked, deviation) = finish_one_sided(self, &self.observations, vec![best.clone()], self.deviation)?;
+        let of = |network: &Network<D>| Neighbour::new(network, 0.0, Reason::Late { late, all }, &best.network);
         let share = deviation / self.deviation;
-        Ok(ranked.first().and_then(|refined| of(&refined.network)).map(|neighbour| neighbour.narrowed(share)))
+        let late = ranked.first().and_then(|refined| of(&refined.network)).map(|neighbour| neighbour.narrowed(share));
+        self.neighbours.extend(late);
+        Ok(())
     }
 
     /// Late outliers, and outliers.
-    fn late(&self) -> (usize, usize) {
-        let residuals = self.observations.all().iter().map(|o| o.residual(&self.best.network));
-        let outliers = residuals.filter(|e| e.abs() > self.limit * self.deviation);
+    fn late_outliers(&self) -> (usize, usize) {
+        let residuals = self.observations.all().iter().map(|o| o.residual(&self.ranked[0].network));
+        let outliers = residuals.filter(|e| e.abs() > self.options.inlier_threshold * self.deviation);
         outliers.fold((0, 0), |(late, all), e| (late + usize::from(e > 0.0), all + 1))
     }
 }

@@ -8,6 +8,7 @@ use super::mixture::Mixture;
 use super::options::{CalibrateError, CalibrateOptions, Errors, check};
 use super::propagation::{Propagated, propagated};
 use super::same::merged;
+use super::state::State;
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::refine::{Cost, RefinedNetwork, Weighing};
@@ -80,13 +81,13 @@ pub(super) fn noise<const D: usize>(
 /// Refines networks with the loss of one-sided errors, and puts the most likely first; and the
 /// deviation of the noise. Objectives are differences of log-likelihood.
 pub(super) fn finish_one_sided<const D: usize>(
+    state: &State<'_, D>,
     observations: &Observations<D>,
     networks: Vec<RefinedNetwork<D>>,
     first: f64,
-    known: Option<f64>,
-    floor: f64,
-    monitor: &Monitor,
 ) -> Result<(Vec<RefinedNetwork<D>>, f64), CalibrateError<D>> {
+    let (monitor, floor) = (state.monitor, state.floor);
+    let known = state.known.map(|_| first);
     let least = known.unwrap_or(floor).max(floor);
     let mut fitting = Fitting { observations, weighing: Weighing::new(observations, monitor), least, known, monitor };
     let mut ranked: Vec<RefinedNetwork<D>> = Vec::new();

@@ -261,18 +261,10 @@ pub enum CalibrateError<const D: usize = 2> {
 }
 
 impl<const D: usize> CalibrateError<D> {
-    /// Changes the network that a stopped calibration leaves.
-    pub(super) fn placing(self, place: impl FnOnce(Unfinished<D>) -> Unfinished<D>) -> CalibrateError<D> {
+    /// With this network where the calibration was stopped.
+    pub(super) fn leaving(self, best: Option<Unfinished<D>>) -> CalibrateError<D> {
         match self {
-            CalibrateError::Cancelled(Some(best)) => CalibrateError::Cancelled(Some(Box::new(place(*best)))),
-            other => other,
-        }
-    }
-
-    /// Leaves this network where a stopped calibration leaves none.
-    pub(super) fn leaving(self, best: &Unfinished<D>) -> CalibrateError<D> {
-        match self {
-            CalibrateError::Cancelled(None) => CalibrateError::Cancelled(Some(Box::new(best.clone()))),
+            CalibrateError::Cancelled(_) => CalibrateError::Cancelled(best.map(Box::new)),
             other => other,
         }
     }

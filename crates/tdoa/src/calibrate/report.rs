@@ -4,29 +4,28 @@
 use super::calibration::{Alternative, Calibration};
 use super::delays::without_errors;
 use super::deviation::{inlier_deviation, typical_deviation};
-use super::known::{Anchors, SpeedEstimate};
+use super::input::Input;
 use super::mirror::{MirrorImage, Mirrored, Sides, differs_in_sides};
 use super::near::{BEYOND, Neighbour, Reason, widen};
 use super::one_sided::{Information, LEAST_REDUNDANCY};
-use super::options::{CalibrateError, CalibrateOptions, Errors, ReceiverDelays};
+use super::options::{CalibrateError, Errors, ReceiverDelays};
 use super::orientation::looks_transposed;
-use super::receiver_errors::Fault;
 use super::residuals::{Residual, Residuals};
 use super::same::{same_receivers, same_transmitters};
 use super::sides::warn_of_sides;
+use super::state::State;
 use super::submaps::overlap;
 use super::warnings::{doubtful_receivers, warn_of_nodes};
 use crate::align::{Transform, align, first_axes, frame};
 use crate::cells::Cells;
-use crate::degeneracy::{Usable, list, space};
+use crate::degeneracy::{list, space};
 use crate::minimal::NodeKind;
 use crate::network::Network;
 use crate::observations::Observations;
 use crate::points::trace;
 use crate::pseudoranges::Pseudoranges;
 use crate::quantity::length;
-use crate::refine::{Covariance, RefinedNetwork};
-use hc::Monitor;
+use crate::refine::Covariance;
 use hc::poly::{counted, one_or};
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
 use std::borrow::Cow;
@@ -35,70 +34,42 @@ use std::borrow::Cow;
 /// it while a better one was missed.
 const SETTLED: usize = 3;
 
-/// What the search and the refinement leave to report.
-pub(super) struct Solved<'a, const D: usize> {
-    pub(super) measured: &'a Pseudoranges,
-    pub(super) usable: &'a Usable,
-    pub(super) observations: &'a Observations<D>,
-    pub(super) centred: &'a Pseudoranges,
-    pub(super) shifts: &'a [f64],
-    /// At least one network.
-    pub(super) ranked: Vec<RefinedNetwork<D>>,
-    /// Neighbours of the best network.
-    pub(super) neighbours: Vec<Neighbour<D>>,
-    pub(super) deviation: f64,
-    pub(super) known: Option<f64>,
-    pub(super) starts: usize,
-    /// Where small networks were laid together, receivers whose place no overlap of them supports.
-    pub(super) weak: Option<Vec<usize>>,
-    pub(super) anchors: Option<Anchors<D>>,
-    pub(super) speed: Option<SpeedEstimate>,
-    /// Errors of receivers that were taken out of the measurements, and those that were left in.
-    pub(super) taken: &'a [Fault<D>],
-    pub(super) left: &'a [Fault<D>],
-    /// Warnings of the steps before.
-    pub(super) warnings: Vec<String>,
-    /// How far known positions are from where the measurements put them, where that is no chance.
-    pub(super) contradiction: Option<f64>,
-}
-
-impl<const D: usize> Solved<'_, D> {
+impl<const D: usize> State<'_, D> {
+    /// The result of a calibration that has come to its end.
+    ///
     /// # Errors
     /// Cancelled.
-    pub(super) fn report(
-        &self,
-        options: &CalibrateOptions<D>,
-        monitor: &Monitor,
-    ) -> Result<Calibration<D>, CalibrateError<D>> {
+    pub(super) fn report(&self, input: &Input<'_>) -> Result<Calibration<D>, CalibrateError<D>> {
+        let State { options, monitor, .. } = *self;
         let best = &self.ranked[0].network;
         let one_sided = (options.errors == Errors::OneSided)
-            .then(|| Information::new(self.observations, best, self.deviation, self.known, monitor))
+            .then(|| Information::new(&self.observations, best, self.deviation, self.known, monitor))
             .transpose()?;
         let estimated = match &one_sided {
             // Measurements that are late by little would count as noise.
             Some(information) => information.mixture.deviation,
-            None => inlier_deviation(self.observations, best, self.deviation, options.inlier_threshold),
+            None => inlier_deviation(&self.observations, best, self.deviation, options.inlier_threshold),
         };
         let sigma = self.known.unwrap_or(estimated);
         let inlier = |measured: &Pseudoranges, network: &Network<D>, i: usize, j: usize| -> bool {
             let residual = measured.get(i, j).map(|f| f - network.pseudorange(i, j));
-            let deviation = sigma * self.centred.sigma(i, j).unwrap_or(1.0);
+            let deviation = sigma * self.measured.sigma(i, j).unwrap_or(1.0);
             residual.is_some_and(|e| e.abs() <= options.inlier_threshold * deviation)
         };
         let held = self.observations.held();
         let is_held = held.contains(&true) || !self.observations.pins().is_empty();
-        let kept = Observations::new(self.centred, |i, j| inlier(self.centred, best, i, j))
+        let kept = Observations::new(&self.measured, |i, j| inlier(&self.measured, best, i, j))
             .holding(held)
             .pinned(self.observations.pins())
             .beside(self.observations.others());
-        let mut warnings = [self.usable.warnings.as_slice(), &self.warnings].concat();
+        let mut warnings = [input.usable.warnings.as_slice(), &self.warnings].concat();
         let redundancy = kept.len().saturating_sub(kept.unknowns());
         let ellipse_radius = radius_95::<D>(redundancy, self.known.is_some());
         let mut uncertainty = match ellipse_radius {
             Some(_) => match &one_sided {
-                Some(information) => self.covariance(&information.trusted, sigma, monitor)?,
+                Some(information) => self.covariance(&information.trusted, sigma)?,
                 // What the robust loss loses against least squares on normal noise is added.
-                None => self.covariance(&kept, sigma / EFFICIENCY.sqrt(), monitor)?,
+                None => self.covariance(&kept, sigma / EFFICIENCY.sqrt())?,
             },
             None => {
                 warnings.push(
@@ -115,11 +86,11 @@ impl<const D: usize> Solved<'_, D> {
             apart.extend(likely.filter(|n| n.distance(&uncertainty) >= BEYOND));
             widen(&mut uncertainty, &self.neighbours, radius);
         }
-        let fits = self.fits(best, estimated, redundancy, options, &mut warnings);
+        let fits = self.fits(estimated, redundancy, &mut warnings);
         let noise_known = ellipse_radius.is_some();
-        let band = 2.0 * options.inlier_threshold * sigma * typical_deviation(self.centred);
-        let doubtful = doubtful_receivers(self.centred, &kept, band / best.size());
-        let transposed = self.seems_transposed(estimated, options);
+        let band = 2.0 * options.inlier_threshold * sigma * typical_deviation(&self.measured);
+        let doubtful = doubtful_receivers(&self.measured, &kept, band / best.size());
+        let transposed = self.seems_transposed(input, estimated);
         if transposed {
             warnings.insert(
                 0,
@@ -129,7 +100,7 @@ impl<const D: usize> Solved<'_, D> {
             );
         }
         let sides = Sides {
-            observations: self.observations,
+            observations: &self.observations,
             kept: &kept,
             network: best,
             deviation: sigma,
@@ -139,26 +110,27 @@ impl<const D: usize> Solved<'_, D> {
         let mut mirrored = sides.mirror_images(monitor)?;
         let placeless = |i: &usize| doubtful.contains(i) || uncertainty.loose.contains(i);
         mirrored.retain(|image| image.kind == NodeKind::Transmitters || !placeless(&image.index));
-        let turn = warn_of_sides(self.centred, best, &uncertainty, &mirrored, &mut warnings);
-        let determined = warn_of_nodes(self.centred, best, &kept, &uncertainty, noise_known, &doubtful, &mut warnings)
-            && !turn
-            && !transposed
-            && 2 * doubtful.len() < best.receivers.len();
+        let turn = warn_of_sides(&self.measured, best, &uncertainty, &mirrored, &mut warnings);
+        let determined =
+            warn_of_nodes(&self.measured, best, &kept, &uncertainty, noise_known, &doubtful, &mut warnings)
+                && !turn
+                && !transposed
+                && 2 * doubtful.len() < best.receivers.len();
         let anchors_agree = self.contradiction.is_none_or(|off| off <= options.planar_limit * best.size());
 
-        let (m, n) = (self.measured.receivers(), self.measured.transmitters());
-        let (rows, columns) = (&self.usable.receivers, &self.usable.transmitters);
+        let (m, n) = (input.table.receivers(), input.table.transmitters());
+        let (rows, columns) = (&input.usable.receivers, &input.usable.transmitters);
         let spread_rows = |all: &[[f64; D]]| scatter(m, rows, all);
         let spread_columns = |all: &[[f64; D]]| scatter(n, columns, all);
         let offsets = |network: &Network<D>| -> Vec<Option<f64>> {
-            let moved: Vec<f64> = network.offsets.iter().zip(self.shifts).map(|(o, shift)| o + shift).collect();
+            let moved: Vec<f64> = network.offsets.iter().zip(&input.shifts).map(|(o, shift)| o + shift).collect();
             scatter(n, columns, &moved)
         };
         let residual = |(a, b, f): (usize, usize, &f64)| {
             let length = f - best.pseudorange(a, b);
-            (rows[a], columns[b], Residual { length, inlier: inlier(self.centred, best, a, b) })
+            (rows[a], columns[b], Residual { length, inlier: inlier(&self.measured, best, a, b) })
         };
-        let residuals = Cells::new(m, n, self.centred.cells().iter().map(residual));
+        let residuals = Cells::new(m, n, self.measured.cells().iter().map(residual));
         let rms = |measured: &Pseudoranges, network: &Network<D>| -> f64 {
             let cells = measured.cells().iter().filter(|&(a, b, _)| inlier(measured, network, a, b));
             let squares: Vec<f64> = cells.map(|(a, b, f)| (f - network.pseudorange(a, b)).powi(2)).collect();
@@ -185,8 +157,8 @@ impl<const D: usize> Solved<'_, D> {
                     transmitters: spread_columns(&network.transmitters),
                     offsets: offsets(&network),
                     residual: match error {
-                        Some(error) => rms(&without_errors(self.centred, &[error]), &network),
-                        None => rms(self.centred, &network),
+                        Some(error) => rms(&without_errors(&self.measured, &[error]), &network),
+                        None => rms(&self.measured, &network),
                     },
                     log_likelihood_loss: loss,
                     receiver_error: error.map(|error| self.receiver_error(&error, true)),
@@ -209,13 +181,13 @@ impl<const D: usize> Solved<'_, D> {
         let size = best.size();
         let placed = uncertainty.receivers.iter().all(|c| trace(c).max(0.0).sqrt() <= size);
         let agreeing = self.ranked[0].starts;
-        self.warn_of_receivers(options, &mut warnings);
+        self.warn_of_receivers(&mut warnings);
         let settled = match &self.weak {
             Some(weak) => weak.is_empty(),
             None => agreeing >= options.agreeing.min(options.max_starts).min(SETTLED),
         };
         if let Some(weak) = self.weak.as_ref().filter(|_| !settled) {
-            let names: Vec<String> = weak.iter().map(|&i| self.centred.receiver_names()[i].clone()).collect();
+            let names: Vec<String> = weak.iter().map(|&i| self.measured.receiver_names()[i].clone()).collect();
             warnings.push(format!(
                 "{agreeing} of {} of neighbours {} the whole, but none that overlaps with others places {}; measure \
                  transmitters that these receivers and at least {} of their neighbours hear",
@@ -251,17 +223,17 @@ impl<const D: usize> Solved<'_, D> {
         let transmitters: Vec<_> = uncertainty.transmitters.iter().map(|c| c.map(|c| c.rows)).collect();
         let offset_std: Vec<_> = uncertainty.transmitters.iter().map(|c| c.map(|c| c.corner.max(0.0).sqrt())).collect();
         let mut calibration = Calibration {
-            configuration: self.measured.configuration(),
-            receiver_names: self.measured.receiver_names().to_vec(),
-            transmitter_names: self.measured.transmitter_names().to_vec(),
+            configuration: input.table.configuration(),
+            receiver_names: input.table.receiver_names().to_vec(),
+            transmitter_names: input.table.transmitter_names().to_vec(),
             receivers: spread_rows(&best.receivers),
             transmitters: spread_columns(&best.transmitters),
             offsets: offsets(best),
             residuals: Residuals(residuals),
             sigma,
             sigma_estimated: self.known.is_none(),
-            sigma_is_factor: self.measured.has_sigmas(),
-            residual_rms: rms(self.centred, best),
+            sigma_is_factor: input.table.has_sigmas(),
+            residual_rms: rms(&self.measured, best),
             redundancy,
             ellipse_radius,
             receiver_std: Vec::new(),
@@ -311,7 +283,7 @@ impl<const D: usize> Solved<'_, D> {
         }
         // Residuals that may be late do not have the covariance that systematic errors are told by.
         if noise_known && one_sided.is_none() {
-            calibration.systematic = self.systematic(&kept, &calibration, monitor)?;
+            calibration.systematic = self.systematic(input, &kept, &calibration)?;
         }
         if !is_held {
             calibration.transform(&default_frame(&best.receivers));
@@ -327,8 +299,8 @@ impl<const D: usize> Solved<'_, D> {
 
     fn mirror_image(&self, image: &Mirrored<D>) -> MirrorImage<D> {
         let names = match image.kind {
-            NodeKind::Receivers => self.centred.receiver_names(),
-            NodeKind::Transmitters => self.centred.transmitter_names(),
+            NodeKind::Receivers => self.measured.receiver_names(),
+            NodeKind::Transmitters => self.measured.transmitter_names(),
         };
         MirrorImage {
             node: names[image.index].clone(),
@@ -341,26 +313,19 @@ impl<const D: usize> Solved<'_, D> {
 
     /// Whether rows have the offsets of transmitters, and the network that was found leaves residuals
     /// beyond a hundredth of its size.
-    fn seems_transposed(&self, estimated: f64, options: &CalibrateOptions<D>) -> bool {
-        let misfit = estimated * typical_deviation(self.centred);
-        options.receiver_delays != ReceiverDelays::All
+    fn seems_transposed(&self, input: &Input<'_>, estimated: f64) -> bool {
+        let misfit = estimated * typical_deviation(&self.measured);
+        self.options.receiver_delays != ReceiverDelays::All
             && misfit > 0.01 * self.ranked[0].network.size()
-            && looks_transposed(&self.measured.select(&self.usable.receivers, &self.usable.transmitters))
+            && looks_transposed(&input.table.select(&input.usable.receivers, &input.usable.transmitters))
     }
 
     /// Whether the measurements fit a network in the plane, or in space.
-    fn fits(
-        &self,
-        best: &Network<D>,
-        estimated: f64,
-        redundancy: usize,
-        options: &CalibrateOptions<D>,
-        warnings: &mut Vec<String>,
-    ) -> bool {
+    fn fits(&self, estimated: f64, redundancy: usize, warnings: &mut Vec<String>) -> bool {
         // In metres also where measurements carry their own deviations.
         let metre = self.speed.map_or(1.0, |speed| speed.factor);
-        let misfit = metre * estimated * typical_deviation(self.centred);
-        let size = metre * best.size();
+        let misfit = metre * estimated * typical_deviation(&self.measured);
+        let size = metre * self.ranked[0].network.size();
         if let Some(sigma) = self.known
             && too_large(estimated / sigma, redundancy)
         {
@@ -371,7 +336,7 @@ impl<const D: usize> Solved<'_, D> {
                 if D == 2 { "the network is not planar, or " } else { "" }
             ));
         }
-        if misfit > options.planar_limit * size {
+        if misfit > self.options.planar_limit * size {
             warnings.push(format!(
                 "the measurements do not fit a network {}: the residuals' deviation is {}, {:.1} % of \
                  the network's size {}; {}at most about a \

@@ -3,16 +3,15 @@
 
 use super::delays::columns;
 use super::near::{Neighbour, Reason};
-use super::options::{CalibrateOptions, ReceiverDelays};
+use super::options::ReceiverDelays;
 use super::receiver_errors::{Fault, MovedPlace, ReceiverError, ReceiverErrorKind};
-use super::report::Solved;
+use super::state::State;
 use crate::degeneracy::list;
 use crate::observations::Observations;
 use crate::quantity::length;
 use crate::refine::{Cancelled, Covariance, Motion, Projection, check, covariance, gram};
 use faer::Mat;
 use faer::prelude::Solve;
-use hc::Monitor;
 use std::array::from_fn;
 
 /// Adds the product of two motions to a covariance, but for the single receivers.
@@ -44,15 +43,11 @@ fn what_is_wrong(error: &ReceiverError, metre: f64) -> String {
     }
 }
 
-impl<const D: usize> Solved<'_, D> {
+impl<const D: usize> State<'_, D> {
     /// The covariance of all nodes, with what the uncertainty of errors that were taken out adds, and
     /// how far errors that were left in may have moved them.
-    pub(super) fn covariance(
-        &self,
-        kept: &Observations<D>,
-        sigma: f64,
-        monitor: &Monitor,
-    ) -> Result<Covariance<D>, Cancelled> {
+    pub(super) fn covariance(&self, kept: &Observations<D>, sigma: f64) -> Result<Covariance<D>, Cancelled> {
+        let monitor = self.monitor;
         let best = &self.ranked[0].network;
         let mut found = covariance(kept, best, sigma, monitor)?.unwrap_or_default();
         if self.taken.is_empty() && self.left.is_empty() || found.receivers.is_empty() {
@@ -60,7 +55,7 @@ impl<const D: usize> Solved<'_, D> {
         }
         let Some(projection) = Projection::new(kept, best, monitor)? else { return Ok(found) };
         // A delay for each receiver but one; that of the last one follows.
-        let free = if self.taken.len() == kept.receivers { &self.taken[1..] } else { self.taken };
+        let free = if self.taken.len() == kept.receivers { &self.taken[1..] } else { &self.taken[..] };
         let taken = columns(kept, &projection, free, monitor)?;
         let Some(gram) = gram(&taken, monitor)? else { return Ok(Covariance::default()) };
         // With sizes of covariance C = sigma^2 (products of the columns)^-1 and motions M that
@@ -71,7 +66,7 @@ impl<const D: usize> Solved<'_, D> {
             check(monitor)?;
             add(&mut found, sigma * sigma * inverse[(a, b)], &taken[a].1, &taken[b].1);
         }
-        for fault in self.left {
+        for fault in &self.left {
             if fault.kind == ReceiverErrorKind::Move {
                 // Its place is somewhere between the two.
                 let mut motion = Motion {
@@ -101,9 +96,9 @@ impl<const D: usize> Solved<'_, D> {
     pub(super) fn receiver_error(&self, fault: &Fault<D>, taken_out: bool) -> ReceiverError {
         let later = matches!(fault.kind, ReceiverErrorKind::Jump | ReceiverErrorKind::Move);
         ReceiverError {
-            receiver: self.centred.receiver_names()[fault.receiver].clone(),
+            receiver: self.measured.receiver_names()[fault.receiver].clone(),
             kind: fault.kind,
-            from: later.then(|| self.centred.transmitter_names()[fault.from].clone()),
+            from: later.then(|| self.measured.transmitter_names()[fault.from].clone()),
             place: (taken_out && fault.kind == ReceiverErrorKind::Move).then(|| self.place_of(fault)),
             size: fault.length(),
             gain: fault.gain,
@@ -141,18 +136,18 @@ impl<const D: usize> Solved<'_, D> {
     /// Which place of a receiver that was moved is in the result: what it measured at the other one was
     /// left out.
     fn place_of(&self, fault: &Fault<D>) -> MovedPlace {
-        let is_before = (0..fault.from).any(|j| self.centred.get(fault.receiver, j).is_some());
+        let is_before = (0..fault.from).any(|j| self.measured.get(fault.receiver, j).is_some());
         if is_before { MovedPlace::Before } else { MovedPlace::After }
     }
 
     /// Warnings that name the receivers, what is wrong with them, by how much, and what to do.
-    pub(super) fn warn_of_receivers(&self, options: &CalibrateOptions<D>, warnings: &mut Vec<String>) {
-        let all = options.receiver_delays == ReceiverDelays::All;
+    pub(super) fn warn_of_receivers(&self, warnings: &mut Vec<String>) {
+        let all = self.options.receiver_delays == ReceiverDelays::All;
         let metre = self.metre();
         let delays = |f: &&Fault<D>| f.kind == ReceiverErrorKind::Delay;
         if self.left.iter().filter(delays).count() > 4 {
             let names: Vec<String> =
-                self.left.iter().map(|f| self.centred.receiver_names()[f.receiver].clone()).collect();
+                self.left.iter().map(|f| self.measured.receiver_names()[f.receiver].clone()).collect();
             warnings.push(format!(
                 "many receivers seem to have errors of their own ({}): are their clocks synchronised{}? \
                  --receiver-delays all estimates a delay for each",

@@ -2,13 +2,13 @@
 
 use super::calibration::Calibration;
 use super::delays::columns;
-use super::report::Solved;
+use super::input::Input;
+use super::state::State;
 use super::systematic::SystematicErrors;
 use crate::median::median;
 use crate::observations::Observations;
 use crate::points::trace;
 use crate::refine::{Cancelled, Projection, Systematic, can_be_estimated, systematic};
-use hc::Monitor;
 use std::array::from_fn;
 
 /// Gain that noise alone exceeds in one network of a thousand (9 of 7,500 simulated ones): twice the gain is zero in half
@@ -31,26 +31,27 @@ fn sums<const D: usize>(
     all
 }
 
-impl<const D: usize> Solved<'_, D> {
+impl<const D: usize> State<'_, D> {
     /// Systematic errors of the receivers, for a calibration in the frame of the best network.
     pub(super) fn systematic(
         &self,
+        input: &Input<'_>,
         kept: &Observations<D>,
         calibration: &Calibration<D>,
-        monitor: &Monitor,
     ) -> Result<Option<SystematicErrors<D>>, Cancelled> {
+        let monitor = self.monitor;
         if !can_be_estimated(kept.receivers, calibration.redundancy) {
             return Ok(None);
         }
         let best = &self.ranked[0].network;
         let Some(projection) = Projection::new(kept, best, monitor)? else { return Ok(None) };
         // A delay for each receiver but one; that of the last one follows.
-        let free = if self.taken.len() == kept.receivers { &self.taken[1..] } else { self.taken };
+        let free = if self.taken.len() == kept.receivers { &self.taken[1..] } else { &self.taken[..] };
         let taken = columns(kept, &projection, free, monitor)?;
         let found = systematic(kept, best, calibration.redundancy, &projection, &taken, monitor)?;
         let Some(Systematic { deviation, gain, receivers, transmitters }) = found else { return Ok(None) };
         let noise = &calibration.receiver_covariance;
-        let receiver_covariance = sums(noise, &self.usable.receivers, &receivers);
+        let receiver_covariance = sums(noise, &input.usable.receivers, &receivers);
         let pairs =
             noise.iter().zip(&receiver_covariance).filter_map(|(a, b)| Some((trace(a.as_ref()?), trace(b.as_ref()?))));
         // Held receivers have no error of either kind.
@@ -61,7 +62,11 @@ impl<const D: usize> Solved<'_, D> {
             significant: gain > SIGNIFICANT && deviation > ROUNDING * best.size(),
             factor: factor.unwrap_or(1.0),
             receiver_covariance,
-            transmitter_covariance: sums(&calibration.transmitter_covariance, &self.usable.transmitters, &transmitters),
+            transmitter_covariance: sums(
+                &calibration.transmitter_covariance,
+                &input.usable.transmitters,
+                &transmitters,
+            ),
         }))
     }
 }

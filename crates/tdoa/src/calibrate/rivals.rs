@@ -7,14 +7,12 @@
 //! error that is left out. Here every place of every single node is tried together with the best
 //! network of the other nodes, and refined under the truncated cost, which does not grow with it.
 
-use hc::Monitor;
-
-use super::options::{CalibrateError, CalibrateOptions, check};
+use super::options::{CalibrateError, check};
 use super::ranking::refit;
 use super::same::same;
+use super::state::State;
 use crate::loss::{Loss, SEARCH_NU};
 use crate::network::Network;
-use crate::observations::Observations;
 use crate::refine::{RefinedNetwork, places_of_receiver, places_of_transmitter};
 
 /// Measurements left over, outliers not counted, above which no rivals are looked for: a node has
@@ -25,20 +23,16 @@ const MOST_LEFT_OVER: usize = 20;
 /// other.
 const ANNEALED: [f64; 2] = [3.0, 1.0];
 
-/// The networks with their rivals, best first. `deviation` is that of the measurements.
-pub(super) fn with_rivals<const D: usize>(
-    observations: &Observations<D>,
-    mut ranked: Vec<RefinedNetwork<D>>,
-    deviation: f64,
-    options: &CalibrateOptions<D>,
-    monitor: &Monitor,
-) -> Result<Vec<RefinedNetwork<D>>, CalibrateError<D>> {
+/// Adds their rivals to the networks of a state.
+pub(super) fn add_rivals<const D: usize>(state: &mut State<'_, D>) -> Result<(), CalibrateError<D>> {
+    let State { observations, ranked, deviation, options, monitor, .. } = state;
+    let deviation = *deviation;
     let limit = options.inlier_threshold * deviation;
     let (best, cost) = refit(observations, &ranked[0].network, deviation, monitor)?;
     let suspected = observations.all().iter().filter(|o| o.residual(&best).abs() > limit).count();
     let left_over = (observations.len() - suspected).saturating_sub(observations.unknowns());
     if suspected == 0 || left_over > MOST_LEFT_OVER || !cost.is_finite() {
-        return Ok(ranked);
+        return Ok(());
     }
     let loss = Loss { nu: SEARCH_NU, scale: 3.0 * deviation };
     let mut starts: Vec<Network<D>> = Vec::new();
@@ -80,7 +74,7 @@ pub(super) fn with_rivals<const D: usize>(
         }
     }
     ranked.sort_by(|a, b| a.objective.total_cmp(&b.objective));
-    Ok(ranked)
+    Ok(())
 }
 
 #[cfg(test)]

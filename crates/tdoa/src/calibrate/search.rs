@@ -9,7 +9,6 @@ use super::near::minima;
 use super::options::{CalibrateError, CalibrateOptions};
 use super::ranking::truncated_cost;
 use super::same::{distinct, same, same_but_for_sides};
-use super::unfinished::Unfinished;
 use crate::loss::{Loss, SEARCH_NU};
 use crate::network::Network;
 use crate::observations::Observations;
@@ -33,9 +32,10 @@ const AS_GOOD: f64 = 4.0;
 /// nearly the same objective.
 const SAME_BASIN: f64 = 20.0;
 
-/// What the search found.
+/// What the search found, also where it was stopped.
 pub(crate) struct SearchOutcome<const D: usize> {
-    /// Different networks, best objective first, each with the starts that ended in it.
+    /// Different networks, best objective first, each with the starts that ended in it. Only the best, or none,
+    /// where the search was stopped.
     pub(crate) networks: Vec<RefinedNetwork<D>>,
     /// Networks that count as the best one and end in other minima.
     pub(crate) near: Vec<Network<D>>,
@@ -90,8 +90,8 @@ impl<const D: usize> Search<'_, D> {
             }
             if stopped {
                 let best = refined.iter().min_by(|a, b| a.objective.total_cmp(&b.objective));
-                let left = best.map(|best| Unfinished::of(&best.network, starts, starts_in(best, &refined)));
-                return Err(CalibrateError::Cancelled(left.map(Box::new)));
+                let best = best.map(|best| RefinedNetwork { starts: starts_in(best, &refined), ..best.clone() });
+                return Ok(SearchOutcome { networks: best.into_iter().collect(), near: Vec::new(), starts });
             }
             starts = batch.end;
             let best = refined.iter().min_by(|a, b| a.objective.total_cmp(&b.objective));

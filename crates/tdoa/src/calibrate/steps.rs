@@ -2,19 +2,16 @@
 
 use super::calibration::Calibration;
 use super::clocks::{on_a_grid, without_middle_delays};
-use super::delays::{Cleared, Clearing};
-use super::hold::{Free, Held};
 use super::hypotheses::Hypotheses;
 use super::impossible::without_impossible;
+use super::input::Input;
 use super::known;
-use super::late::Symmetric;
 use super::options::{CalibrateError, CalibrateOptions, Errors, ReceiverDelays, check};
-use super::report::Solved;
+use super::state::State;
 use super::submaps::{ReceiverLayout, hearing_is_local, lay_out, overlap};
 use super::unfinished::Unfinished;
-use super::whole::{Sought, search_whole};
+use super::whole::search_whole;
 use crate::degeneracy::{Usable, least_per_transmitter, list, usable};
-use crate::median::median;
 use crate::pseudoranges::Pseudoranges;
 use hc::Monitor;
 
@@ -27,138 +24,100 @@ pub(super) fn calibrate_with<const D: usize>(
 ) -> Result<Calibration<D>, CalibrateError<D>> {
     options.validate()?;
     known::validate(measured, options)?;
-    let (measured, impossible) = without_impossible(measured);
+    let (table, impossible) = without_impossible(measured);
     check(monitor)?;
-    let measured = measured.as_ref();
-    let mut usable = usable::<D>(measured)?;
+    let mut usable = usable::<D>(&table)?;
     check(monitor)?;
     usable.warnings.extend(impossible);
-    let known = options.sigma.or(if measured.has_sigmas() { Some(1.0) } else { None });
-    let local = if options.receiver_delays != ReceiverDelays::All {
-        local_layout(measured, &mut usable, known, options, sources, monitor)?
-    } else {
-        None
-    };
-    let delayed = options.receiver_delays == ReceiverDelays::All;
-    let selected = measured.select(&usable.receivers, &usable.transmitters);
-    let (centred, shifts) = if delayed {
-        // What is subtracted does not depend on the delays.
-        let (_, shifts) = centre(&without_middle_delays(&selected));
-        (shifted(&selected, &shifts), shifts)
-    } else {
-        centre(&selected)
-    };
-    let sought = if delayed { on_a_grid(&without_middle_delays(&centred)) } else { centred.clone() };
-    let noise = known.filter(|_| !delayed);
-    let found = match &local {
-        Some((layout, places)) => layout.refine(&sought, places, noise, options, monitor),
-        // What fits best before the delays are known says little.
-        None if delayed => {
-            let options = CalibrateOptions { alternative_margin: 1e9, ..options.clone() };
-            search_whole(&sought, noise, &options, sources, monitor)
-        }
-        None => search_whole(&sought, noise, options, sources, monitor),
-    };
-    let (m, n) = (measured.receivers(), measured.transmitters());
-    let place = |best: Unfinished<D>| best.shifted(&shifts).among(m, &usable.receivers, n, &usable.transmitters);
-    let Sought { ranked, neighbours, deviation, floor, starts, weak } = found.map_err(|error| error.placing(place))?;
-    let so_far = place(Unfinished::of(&ranked[0].network, starts, ranked[0].starts));
-    let clearing = Clearing { measured: &centred, known, floor, options, monitor };
-    let Cleared { measured: centred, observations, ranked, deviation, taken, left, doubted } =
-        clearing.clear(ranked, deviation).map_err(|error| error.leaving(&so_far))?;
-    let free = Free { observations, centred: &centred, known, floor };
-    let held = free.hold(ranked, deviation, &usable, options, monitor).map_err(|error| error.leaving(&so_far))?;
-    check(monitor).map_err(|error| error.leaving(&so_far))?;
-    let Held { observations, ranked, deviation, anchors, speed, warnings, contradiction } = held;
-    let neighbours = if anchors.is_some() {
-        Vec::new()
-    } else {
-        let (best, limit) = (&ranked[0], options.inlier_threshold);
-        let symmetric = Symmetric { observations: &observations, best, deviation, known, floor, limit };
-        let late = match (options.errors, options.receiver_delays) {
-            (Errors::OneSided, _) | (_, ReceiverDelays::All) => None,
-            _ => symmetric.under_one_sided(monitor).map_err(|error| error.leaving(&so_far))?,
-        };
-        let near = neighbours.into_iter().filter(|_| taken.is_empty());
-        near.chain(doubted).chain(late).collect()
-    };
-    let solved = Solved {
-        measured,
-        neighbours,
-        taken: &taken,
-        left: &left,
-        usable: &usable,
-        observations: &observations,
-        centred: &centred,
-        shifts: &shifts,
-        ranked,
-        deviation,
-        known,
-        starts,
-        weak,
-        anchors,
-        speed,
-        warnings,
-        contradiction,
-    };
-    solved.report(options, monitor).map_err(|error| error.leaving(&so_far))
+    let known = options.sigma.or(if table.has_sigmas() { Some(1.0) } else { None });
+    let mut input = Input::new(&table, usable, options.receiver_delays == ReceiverDelays::All);
+    let mut state = State::new(input.centred(), known, options, monitor);
+    let found = steps(&mut input, &mut state, sources);
+    found.map_err(|error| error.leaving(state.so_far.map(|best| input.whole(best))))
 }
 
-/// Where hearing is local: the layout of the usable receivers by submaps, and which of them it
-/// places. Nodes that do not hang together with these are left out of `usable`, with a warning.
-fn local_layout<const D: usize>(
-    measured: &Pseudoranges,
-    usable: &mut Usable,
-    known: Option<f64>,
-    options: &CalibrateOptions<D>,
+/// The steps of a calibration, one after the other.
+fn steps<const D: usize>(
+    input: &mut Input<'_>,
+    state: &mut State<'_, D>,
     sources: &[&dyn Hypotheses<D>],
-    monitor: &Monitor,
+) -> Result<Calibration<D>, CalibrateError<D>> {
+    let options = state.options;
+    if options.receiver_delays == ReceiverDelays::All {
+        search_without_delays(state, sources)?;
+    } else if let Some((layout, places)) = local_layout(input, state, sources)? {
+        layout.refine(state, &places)?;
+    } else {
+        search_whole(state, sources)?;
+    }
+    let best = &state.ranked[0];
+    state.so_far = Some(Unfinished::of(&best.network, state.starts, best.starts));
+    state.clear()?;
+    state.hold(&input.usable)?;
+    check(state.monitor)?;
+    if state.anchors.is_some() {
+        // They were found without the known positions.
+        state.neighbours.clear();
+    } else if options.errors == Errors::Symmetric && options.receiver_delays != ReceiverDelays::All {
+        state.compare_with_one_sided()?;
+    }
+    state.report(input)
+}
+
+/// Searches networks for measurements less first guesses of the receivers' delays.
+fn search_without_delays<const D: usize>(
+    state: &mut State<'_, D>,
+    sources: &[&dyn Hypotheses<D>],
+) -> Result<(), CalibrateError<D>> {
+    // What fits best before the delays are known says little.
+    let options = CalibrateOptions { alternative_margin: 1e9, ..state.options.clone() };
+    let measured = on_a_grid(&without_middle_delays(&state.measured));
+    let mut found = State::new(measured, None, &options, state.monitor);
+    let ended = search_whole(&mut found, sources);
+    (state.so_far, state.ranked, state.deviation) = (found.so_far, found.ranked, found.deviation);
+    (state.floor, state.starts) = (found.floor, found.starts);
+    ended
+}
+
+/// Where hearing is local: the layout of the receivers by submaps, and which of them it places. Nodes that
+/// do not hang together with these take no part from then on, with a warning.
+fn local_layout<const D: usize>(
+    input: &mut Input<'_>,
+    state: &mut State<'_, D>,
+    sources: &[&dyn Hypotheses<D>],
 ) -> Result<Option<(ReceiverLayout<D>, Vec<usize>)>, CalibrateError<D>> {
-    let (centred, _) = centre(&measured.select(&usable.receivers, &usable.transmitters));
-    if !hearing_is_local(&centred) {
+    let State { measured: centred, known, options, monitor, so_far, .. } = state;
+    let (known, options, monitor) = (*known, *options, *monitor);
+    if !hearing_is_local(centred) {
         return Ok(None);
     }
-    let (m, n) = (measured.receivers(), measured.transmitters());
-    let place = |best: Unfinished<D>| best.among(m, &usable.receivers, n, &usable.transmitters);
     let mut layout = match sources.first() {
-        None => lay_out(&centred, known, options, monitor).map_err(|error| error.placing(place))?,
-        Some(source) => match ReceiverLayout::proposed(&centred, *source, options.seed) {
+        None => lay_out(centred, known, options, monitor, so_far)?,
+        Some(source) => match ReceiverLayout::proposed(centred, *source, options.seed) {
             Some(layout) => layout,
             None => return Ok(None),
         },
     };
-    let placed = layout.place_strays(&centred, monitor);
-    placed.map_err(|error| error.leaving(&layout.unfinished(&centred)).placing(place))?;
+    *so_far = Some(layout.unfinished(centred));
+    layout.place_strays(centred, monitor)?;
     let places: Vec<usize> = (0..centred.receivers()).filter(|&i| layout.positions[i].is_some()).collect();
     let heard =
         |&j: &usize| places.iter().filter(|&&i| centred.get(i, j).is_some()).count() >= least_per_transmitter::<D>();
     let columns: Vec<usize> = (0..centred.transmitters()).filter(heard).collect();
     let gone: Vec<String> =
         (0..centred.receivers()).filter(|i| !places.contains(i)).map(|i| centred.receiver_names()[i].clone()).collect();
+    let mut warnings = std::mem::take(&mut input.usable.warnings);
     if !gone.is_empty() {
-        usable.warnings.push(format!(
+        warnings.push(format!(
             "the measurements tie the receivers together in parts only; the largest part is calibrated, without {}; measure transmitters \
              between the parts that at least {} receivers of each hear",
             list(&gone),
             overlap::<D>()
         ));
     }
-    usable.receivers = places.iter().map(|&i| usable.receivers[i]).collect();
-    usable.transmitters = columns.iter().map(|&j| usable.transmitters[j]).collect();
+    let receivers = places.iter().map(|&i| input.usable.receivers[i]).collect();
+    let transmitters = columns.iter().map(|&j| input.usable.transmitters[j]).collect();
+    *input = Input::new(input.table, Usable { receivers, transmitters, warnings }, false);
+    *state = State::new(input.centred(), known, options, monitor);
     Ok(Some((layout, places)))
-}
-
-/// Subtracts each column's median, which the offsets take back at the end: large common times cost
-/// digits.
-fn centre(measured: &Pseudoranges) -> (Pseudoranges, Vec<f64>) {
-    let shifts: Vec<f64> = (0..measured.transmitters())
-        .map(|j| median((0..measured.receivers()).filter_map(|i| measured.get(i, j)).collect()).unwrap_or(0.0))
-        .collect();
-    (shifted(measured, &shifts), shifts)
-}
-
-/// The measurements with a number subtracted from each column, as if the transmitters' clocks were set
-/// differently.
-fn shifted(measured: &Pseudoranges, shifts: &[f64]) -> Pseudoranges {
-    measured.map(|_, j, value| value - shifts[j])
 }

@@ -2,18 +2,17 @@
 //! neighbouring receivers, laid together where they overlap, then refined as one.
 
 use super::deviation::{median_size, typical_deviation};
-use super::finish::finish;
 use super::hypotheses::Hypotheses;
 use super::options::{CalibrateError, CalibrateOptions, check};
+use super::state::State;
 use super::unfinished::Unfinished;
-use super::whole::{Sought, search_whole};
+use super::whole::search_whole;
 use crate::align::{Transform, align};
 use crate::degeneracy::usable;
 use crate::flatness::flatness;
 use crate::loss::{Loss, SEARCH_NU, normal_deviation};
 use crate::multilateration::{self, Sight};
 use crate::network::Network;
-use crate::observations::Observations;
 use crate::points::{distance, spread};
 use crate::pseudoranges::Pseudoranges;
 use crate::refine::{NetworkRefiner, PartialNetwork, RefineOptions, SEARCH, extend};
@@ -95,7 +94,7 @@ fn common_transmitters(measured: &Pseudoranges) -> Vec<usize> {
     common
 }
 
-/// Solves the neighbourhood of each receiver and lays the results together.
+/// Solves the neighbourhood of each receiver and lays the results together; stopped, those that it has.
 ///
 /// # Errors
 /// Cancelled, or no neighbourhood could be solved.
@@ -104,7 +103,30 @@ pub(super) fn lay_out<const D: usize>(
     known: Option<f64>,
     options: &CalibrateOptions<D>,
     monitor: &Monitor,
+    so_far: &mut Option<Unfinished<D>>,
 ) -> Result<ReceiverLayout<D>, CalibrateError<D>> {
+    let m = measured.receivers();
+    let mut submaps: Vec<Submap<D>> = Vec::new();
+    let solved = solve_neighbourhoods(measured, known, options, monitor, &mut submaps);
+    if submaps.is_empty() {
+        solved?;
+        return Err(CalibrateError::NotFound(m));
+    }
+    let positions = largest(&submaps, m);
+    let size = submaps.iter().map(|submap| submap.size).fold(0.0, f64::max);
+    let layout = ReceiverLayout { solved: submaps.len(), submaps, positions, size };
+    *so_far = Some(layout.unfinished(measured));
+    solved.map(|()| layout)
+}
+
+/// Solves the neighbourhood of each receiver.
+fn solve_neighbourhoods<const D: usize>(
+    measured: &Pseudoranges,
+    known: Option<f64>,
+    options: &CalibrateOptions<D>,
+    monitor: &Monitor,
+    submaps: &mut Vec<Submap<D>>,
+) -> Result<(), CalibrateError<D>> {
     let m = measured.receivers();
     let common = common_transmitters(measured);
     let options = &CalibrateOptions {
@@ -113,16 +135,10 @@ pub(super) fn lay_out<const D: usize>(
         agreeing: options.agreeing.min(AGREEING),
         ..options.clone()
     };
-    let mut submaps: Vec<Submap<D>> = Vec::new();
     let mut tried: Vec<Vec<usize>> = Vec::new();
     monitor.enter(Stage::Search, m as u64);
-    // Receivers alone, as far as they are laid together.
-    let leaving = |error: CalibrateError<D>, submaps: &[Submap<D>]| match submaps {
-        [] => error,
-        _ => error.leaving(&Unfinished::laid(largest(submaps, m), measured.transmitters(), submaps.len())),
-    };
     for centre in 0..m {
-        check(monitor).map_err(|error| leaving(error, &submaps))?;
+        check(monitor)?;
         let mut order: Vec<usize> = (0..m).filter(|&i| common[centre * m + i] >= COMMON).collect();
         // The receiver itself hears all that it hears.
         order.sort_by_key(|&i| std::cmp::Reverse(common[centre * m + i]));
@@ -132,18 +148,10 @@ pub(super) fn lay_out<const D: usize>(
             continue;
         }
         tried.push(order.clone());
-        let found = solve(measured, &order, known, options, &monitor.quiet());
-        if let Some(submap) = found.map_err(|error| leaving(error, &submaps))? {
-            submaps.push(submap);
-        }
+        submaps.extend(solve(measured, &order, known, options, &monitor.quiet())?);
         monitor.reach(centre as u64 + 1, submaps.len() as u64);
     }
-    if submaps.is_empty() {
-        return Err(CalibrateError::NotFound(m));
-    }
-    let positions = largest(&submaps, m);
-    let size = submaps.iter().map(|submap| submap.size).fold(0.0, f64::max);
-    Ok(ReceiverLayout { solved: submaps.len(), submaps, positions, size })
+    Ok(())
 }
 
 /// The network of some receivers if their transmitters determine it and no other network fits about
@@ -163,11 +171,12 @@ fn solve<const D: usize>(
     let part = measured.select(receivers, &transmitters);
     let Ok(kept) = usable::<D>(&part) else { return Ok(None) };
     let part = part.select(&kept.receivers, &kept.transmitters);
-    let found = match search_whole(&part, known, options, &[], monitor) {
-        Ok(found) => found,
-        Err(CalibrateError::Cancelled(_)) => return Err(CalibrateError::Cancelled(None)),
+    let mut found = State::new(part, known, options, monitor);
+    match search_whole(&mut found, &[]) {
+        Ok(()) => {}
+        Err(error @ CalibrateError::Cancelled(_)) => return Err(error),
         Err(_) => return Ok(None),
-    };
+    }
     let rivals =
         found.ranked[1..].iter().any(|r| r.objective <= found.ranked[0].objective + options.alternative_margin);
     let best = &found.ranked[0];
@@ -296,46 +305,35 @@ impl<const D: usize> ReceiverLayout<D> {
         (fitting.len(), weak.collect())
     }
 
-    /// The network of the placed receivers, refined as one. `measured` has these receivers alone,
-    /// with their indices beside.
+    /// Gives a state that has no network that of the placed receivers, refined as one. The state has these
+    /// receivers alone, with their indices beside.
     ///
     /// # Errors
     /// Cancelled, or a transmitter that cannot be located.
-    pub(super) fn refine(
-        &self,
-        measured: &Pseudoranges,
-        receivers: &[usize],
-        known: Option<f64>,
-        options: &CalibrateOptions<D>,
-        monitor: &Monitor,
-    ) -> Result<Sought<D>, CalibrateError<D>> {
-        let observations = Observations::new(measured, |_, _| true);
+    pub(super) fn refine(&self, state: &mut State<'_, D>, receivers: &[usize]) -> Result<(), CalibrateError<D>> {
+        let State { measured, observations, monitor, known, so_far, .. } = state;
         let unit = typical_deviation(measured);
         let size = self.size / unit;
         let mut part = PartialNetwork::unknown(measured.receivers(), measured.transmitters());
         part.receivers = receivers.iter().map(|&i| self.positions[i]).collect();
         let wide = Loss { nu: SEARCH_NU, scale: FIT * size };
-        let laid = || Unfinished::laid(part.receivers.clone(), measured.transmitters(), self.solved);
-        let network = extend(&observations, &part, &wide, monitor)
-            .map_err(|error| CalibrateError::from(error).leaving(&laid()))?
-            .ok_or(CalibrateError::NotFound(self.solved))?;
+        *so_far = Some(Unfinished::laid(part.receivers.clone(), measured.transmitters(), self.solved));
+        let network = extend(observations, &part, &wide, monitor)?.ok_or(CalibrateError::NotFound(self.solved))?;
         // Submaps that were laid one beside the other bend a little as a whole.
-        let bent = median_size(&observations, &network).max(FIT * size);
+        let bent = median_size(observations, &network).max(FIT * size);
         let refine = RefineOptions { anneal_from: Some(bent), steps: 60, floor: 1e-9 * size, ..SEARCH };
         let to_deviation = normal_deviation(SEARCH_NU);
         let start = RefineOptions { scale: known.map(|sigma| sigma / to_deviation), ..refine };
-        let mut refiner = NetworkRefiner::new(&observations, SEARCH_NU).heeding(monitor);
+        let mut refiner = NetworkRefiner::new(observations, SEARCH_NU).heeding(monitor);
         let mut refined = refiner.refine(network, &start);
-        let so_far = Unfinished::of(&refined.network, self.solved, 0);
-        check(monitor).map_err(|error| error.leaving(&so_far))?;
+        *so_far = Some(Unfinished::of(&refined.network, self.solved, 0));
+        check(monitor)?;
         let (fitting, weak) = self.support(&refined.network, receivers);
         refined.starts = fitting;
         let first = known.unwrap_or(refined.scale * to_deviation).max(refine.floor);
-        let (ranked, deviation) =
-            finish(&observations, vec![refined], first, known.is_some(), refine.floor, options, monitor)
-                .map_err(|error| error.leaving(&so_far))?;
-        let neighbours = Vec::new();
-        Ok(Sought { ranked, neighbours, deviation, floor: refine.floor, starts: self.solved, weak: Some(weak) })
+        (state.floor, state.starts, state.weak) = (refine.floor, self.solved, Some(weak));
+        state.ranked = vec![refined];
+        state.finish(first)
     }
 
     /// Places receivers that no submap has from transmitters that five placed receivers or more

@@ -1,13 +1,13 @@
 //! The search where most receivers hear most transmitters: from some of the nodes to all of them.
 
 use super::deviation::typical_deviation;
-use super::finish::finish;
 use super::hypotheses::{Hypotheses, RandomRestarts};
 use super::minimal::MinimalHypotheses;
-use super::near::{Neighbour, neighbours};
+use super::near::neighbours;
 use super::options::{CalibrateError, CalibrateOptions, Errors, check};
-use super::rivals::with_rivals;
+use super::rivals::add_rivals;
 use super::search::Search;
+use super::state::State;
 use super::unfinished::Unfinished;
 use crate::degeneracy::{Usable, usable};
 use crate::loss::{Loss, SEARCH_NU, normal_deviation};
@@ -19,45 +19,26 @@ use hc::Monitor;
 /// No measurement is trusted beyond this share of the network's diameter.
 const RESOLUTION: f64 = 1e-9;
 
-/// Networks for all nodes.
-pub(super) struct Sought<const D: usize> {
-    /// At least one network, best first.
-    pub(super) ranked: Vec<RefinedNetwork<D>>,
-    /// Deviation of the measurements.
-    pub(super) deviation: f64,
-    /// No measurement is trusted beyond this.
-    pub(super) floor: f64,
-    /// Neighbours of the best network, where the search had all nodes.
-    pub(super) neighbours: Vec<Neighbour<D>>,
-    /// Starts of the search; small networks that were laid together.
-    pub(super) starts: usize,
-    /// Where small networks were laid together, receivers whose place no overlap of them supports.
-    pub(super) weak: Option<Vec<usize>>,
-}
-
-/// Searches networks for these measurements, whose deviation may be known.
+/// Searches networks for the measurements of a state, which has none yet.
 pub(super) fn search_whole<const D: usize>(
-    measured: &Pseudoranges,
-    known: Option<f64>,
-    options: &CalibrateOptions<D>,
+    state: &mut State<'_, D>,
     sources: &[&dyn Hypotheses<D>],
-    monitor: &Monitor,
-) -> Result<Sought<D>, CalibrateError<D>> {
-    let observations = Observations::new(measured, |_, _| true);
-
-    let part = search_part(measured, options);
-    let small = measured.select(&part.receivers, &part.transmitters);
+) -> Result<(), CalibrateError<D>> {
+    let State { options, monitor, known, .. } = *state;
+    let part = search_part(&state.measured, options);
+    let small = state.measured.select(&part.receivers, &part.transmitters);
     let small_observations = Observations::new(&small, |_, _| true);
     let to_deviation = normal_deviation(SEARCH_NU);
     let restarts = RandomRestarts::new(&small_observations);
     let diameter = restarts.diameter();
     // Where measurements carry deviations, residuals are multiples of them, and so is the network's
     // size.
-    let unit = typical_deviation(measured);
+    let unit = typical_deviation(&state.measured);
+    state.floor = RESOLUTION * diameter / unit;
     let refine = RefineOptions {
         scale: known.map(|sigma| sigma / to_deviation),
         anneal_from: Some(0.1 * diameter / unit),
-        floor: RESOLUTION * diameter / unit,
+        floor: state.floor,
         ..SEARCH
     };
     let mut all: Vec<&dyn Hypotheses<D>> = sources.to_vec();
@@ -76,42 +57,36 @@ pub(super) fn search_whole<const D: usize>(
         wide: Loss { nu: SEARCH_NU, scale: 0.03 * diameter / unit },
         deviation: known.map(|sigma| sigma.max(refine.floor)),
     };
-    let (m, n) = (measured.receivers(), measured.transmitters());
-    let place = |best: Unfinished<D>| best.among(m, &part.receivers, n, &part.transmitters);
-    let found = search.run(options, monitor).map_err(|error| error.placing(place))?;
-    let so_far = place(Unfinished::of(&found.networks[0].network, found.starts, found.networks[0].starts));
+    let found = search.run(options, monitor)?;
+    let (m, n) = (state.measured.receivers(), state.measured.transmitters());
+    if let Some(best) = found.networks.first() {
+        let best = Unfinished::of(&best.network, found.starts, best.starts);
+        state.so_far = Some(best.among(m, &part.receivers, n, &part.transmitters));
+    }
+    check(monitor)?;
 
+    state.starts = found.starts;
     let best = found.networks[0].objective;
     let close = found.networks.into_iter().filter(|r| r.objective <= best + 4.0 * options.alternative_margin);
     let complete_part = part.receivers.len() == m && part.transmitters.len() == n;
-    let whole: Vec<RefinedNetwork<D>> = if complete_part {
+    state.ranked = if complete_part {
         close.collect()
     } else {
-        complete(&observations, &part, close.take(4), &refine, monitor).map_err(|error| error.leaving(&so_far))?
+        complete(&state.observations, &part, close.take(4), &refine, monitor)?
     };
-    let Some(scale) = whole.iter().min_by(|a, b| a.objective.total_cmp(&b.objective)).map(|r| r.scale) else {
+    let Some(scale) = state.ranked.iter().min_by(|a, b| a.objective.total_cmp(&b.objective)).map(|r| r.scale) else {
         return Err(CalibrateError::NotFound(found.starts));
     };
-    let first = known.unwrap_or(scale * to_deviation).max(refine.floor);
-    let (ranked, deviation) = finish(&observations, whole, first, known.is_some(), refine.floor, options, monitor)
-        .map_err(|error| error.leaving(&so_far))?;
-    let (ranked, deviation) = if complete_part {
-        let found = ranked.len();
-        let ranked =
-            with_rivals(&observations, ranked, deviation, options, monitor).map_err(|error| error.leaving(&so_far))?;
-        if options.errors == Errors::OneSided && ranked.len() > found {
-            finish(&observations, ranked, deviation, known.is_some(), refine.floor, options, monitor)
-                .map_err(|error| error.leaving(&so_far))?
-        } else {
-            (ranked, deviation)
+    state.finish(known.unwrap_or(scale * to_deviation).max(refine.floor))?;
+    if complete_part {
+        let found_by_search = state.ranked.len();
+        add_rivals(state)?;
+        if options.errors == Errors::OneSided && state.ranked.len() > found_by_search {
+            state.finish(state.deviation)?;
         }
-    } else {
-        (ranked, deviation)
-    };
-    let near = if complete_part { found.near } else { Vec::new() };
-    let neighbours = neighbours(&observations, &ranked[0], near, deviation, monitor)
-        .map_err(|error| CalibrateError::from(error).leaving(&so_far))?;
-    Ok(Sought { ranked, neighbours, deviation, floor: refine.floor, starts: found.starts, weak: None })
+        state.neighbours = neighbours(&state.observations, &state.ranked[0], found.near, state.deviation, monitor)?;
+    }
+    Ok(())
 }
 
 /// The nodes that the search works on: where there are many, some of the better observed half,
