@@ -1,66 +1,17 @@
-//! From the ends of paths to solutions: multiplicities, and which singular ends are isolated.
+//! From the ends of paths to solutions: regular ends, directions to infinity, and then singular ends.
 
-use super::ends::Ends;
+use super::ends::{End, Ends};
 use super::excess::Excess;
 use super::infinity::Line;
-use super::solutions::{Direction, Solution, Solutions, Unresolved, is_real};
+use super::solutions::{Solution, Solutions};
 use crate::distinct::coincidences;
-use crate::family::PathCounts;
 use crate::monitor::Monitor;
 use crate::refine::Refined;
 use crate::singular::Given;
 use crate::start::PathSystem;
-use crate::tolerances::ENDS;
 use num_complex::Complex64;
 use poly::{Exact, Polynomial};
-
-/// The result of all ends of paths.
-#[derive(Debug, Default)]
-pub(super) struct Classified {
-    /// Isolated solutions.
-    pub(super) solutions: Vec<Solution>,
-    /// Points on components of positive dimension.
-    pub(super) component_points: Vec<Vec<Complex64>>,
-    /// Number of paths that end on components.
-    pub(super) on_components: usize,
-    /// Number of paths that end at points that were not requested.
-    pub(super) excess: usize,
-    pub(super) infinite: usize,
-    pub(super) directions: Vec<Direction>,
-    /// Number of paths whose ends are not known, including those at unresolved ends.
-    pub(super) lost: usize,
-    pub(super) dropped: usize,
-    pub(super) unresolved: Vec<Unresolved>,
-}
-
-impl Classified {
-    /// The solutions, without data about the start system. `tracked` paths were tracked, and
-    /// `retracked` of these were tracked again.
-    pub(super) fn solutions(self, tracked: usize, retracked: usize) -> Solutions {
-        Solutions {
-            paths: self.counts(tracked, retracked),
-            on_components: self.on_components,
-            component_points: self.component_points,
-            excess: self.excess,
-            directions: self.directions,
-            solutions: self.solutions,
-            unresolved: self.unresolved,
-            ..Solutions::default()
-        }
-    }
-
-    /// How `tracked` paths ended; `retracked` tracks were run again.
-    fn counts(&self, tracked: usize, retracked: usize) -> PathCounts {
-        PathCounts {
-            tracked,
-            finite: tracked.saturating_sub(self.infinite + self.lost + self.dropped),
-            at_infinity: self.infinite,
-            failed: self.lost,
-            dropped: self.dropped,
-            retracked,
-        }
-    }
-}
+use std::collections::BTreeSet;
 
 /// A system that was tracked, and the given equations, by which its ends are judged.
 pub(super) struct Tracked<'a> {
@@ -84,46 +35,33 @@ pub(super) struct Tracked<'a> {
 /// Solves the equations of a cluster of ends, as part of the work on the given equations.
 pub(super) type ClusterSolver<'a> = dyn Fn(&[Polynomial<Exact>], &Given) -> Option<Solutions> + Sync + 'a;
 
-/// Sorts ends into solutions. Without `tracked`, singular ends are lost.
-pub(super) fn classify(tracked: Option<&Tracked<'_>>, all: &Ends, excess: &Excess<'_>, coincidence: f64) -> Classified {
-    let mut out = Classified::default();
-    let regular: Vec<&Refined> = all.regular.values().collect();
-    let mut repeated = vec![false; regular.len()];
-    for group in coincidences(regular.iter().enumerate().map(|(k, r)| (k, &r.point[..])), coincidence) {
-        group[1..].iter().for_each(|&k| repeated[k] = true);
-    }
-    for (refined, _) in regular.iter().zip(&repeated).filter(|(_, again)| !**again) {
-        if excess.contains_regular(&refined.point) {
-            out.excess += 1;
-        } else {
-            out.solutions.push(regular_solution(refined));
+impl Ends {
+    /// Judges what all paths have found. Without `tracked`, paths to singular ends are lost.
+    pub(super) fn judged(mut self, tracked: Option<&Tracked<'_>>, excess: &Excess<'_>, coincidence: f64) -> Ends {
+        let regular = std::mem::take(&mut self.regular);
+        let groups = coincidences(regular.iter().map(|(&path, r)| (path, &r.point[..])), coincidence);
+        let repeated: BTreeSet<usize> = groups.iter().flat_map(|group| &group[1..]).copied().collect();
+        let mut solutions = Vec::new();
+        for (path, refined) in regular.into_iter().filter(|(path, _)| !repeated.contains(path)) {
+            if excess.contains_regular(&refined.point) {
+                self.set(path, End::EXCESS);
+            } else {
+                let Refined { point, residual, condition, .. } = refined;
+                solutions.push((path, Solution::new(point, 1, 1, false, residual, condition)));
+            }
         }
-    }
-    (out.lost, out.dropped) = (all.lost, all.dropped);
-    out.infinite = all.directions.iter().map(|(_, _, paths)| paths).sum();
-    let directions = all.directions.iter().cloned();
-    out.directions =
-        directions.map(|(valuations, denominator, paths)| Direction { valuations, denominator, paths }).collect();
-    let Some(tracked) = tracked else {
-        out.lost += all.singular.len();
-        return out;
-    };
-    let impossible = tracked.line.as_ref().map_or(0, |line| line.impossible(all));
-    (out.infinite, out.lost) = (out.infinite - impossible, out.lost + impossible);
-    let doubtful = out.correct_rounded(tracked);
-    out.add_singular(tracked, all, &doubtful, excess);
-    out
-}
-
-fn regular_solution(refined: &Refined) -> Solution {
-    Solution {
-        value: refined.point.clone(),
-        multiplicity: 1,
-        winding_number: 1,
-        singular: false,
-        is_real: is_real(&refined.point, ENDS.real),
-        residual: refined.residual,
-        condition: refined.condition,
-        certified: None,
+        let Some(tracked) = tracked else {
+            self.solutions = solutions.into_iter().map(|(_, solution)| solution).collect();
+            self.reassign(self.paths, End::SINGULAR, End::LOST);
+            return self;
+        };
+        if let Some(line) = &tracked.line {
+            for k in 0..self.directions.len() {
+                self.reassign(line.impossible(&self.directions[k]), End::infinite(k), End::LOST);
+            }
+        }
+        let doubtful = self.correct_rounded(solutions, tracked);
+        self.add_singular(tracked, doubtful, excess);
+        self
     }
 }

@@ -4,10 +4,9 @@
 
 use super::classify::Tracked;
 use super::plane::{self, Digits, term};
-use super::solutions::{Solution, is_real};
+use super::solutions::Solution;
 use crate::refine::Refiner;
 use crate::singular;
-use crate::tolerances::ENDS;
 use num_complex::Complex64;
 use num_traits::One;
 use poly::{Exact, Monomial, Polynomial, Scalar};
@@ -116,17 +115,9 @@ fn listed(points: impl Iterator<Item = (Vec<Digits>, usize)>, units: &[i64], tra
     let solution = |(values, multiplicity): (Vec<Digits>, usize)| {
         // Several may be one double.
         let value: Vec<Complex64> = values.iter().zip(units).map(|(z, &u)| z.shifted(-u).to_c64()).collect();
-        let singular = multiplicity > 1;
-        Solution {
-            multiplicity,
-            winding_number: multiplicity,
-            singular,
-            is_real: is_real(&value, if singular { ENDS.real_singular } else { ENDS.real }),
-            residual: singular::residual(tracked.given, &value),
-            condition: refiner.judged(tracked.target, &value).condition,
-            certified: None,
-            value,
-        }
+        let residual = singular::residual(tracked.given, &value);
+        let condition = refiner.judged(tracked.target, &value).condition;
+        Solution::new(value, multiplicity, multiplicity, multiplicity > 1, residual, condition)
     };
     let mut all: Vec<Solution> = points.map(solution).collect();
     all.sort_by_key(|s| s.singular);

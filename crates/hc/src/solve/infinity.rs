@@ -1,6 +1,6 @@
 //! Directions in which paths to infinity may go.
 
-use super::ends::Ends;
+use super::solutions::Direction;
 use num_complex::Complex64;
 use std::cmp::Ordering;
 
@@ -13,13 +13,11 @@ pub(super) struct Line<'a> {
 }
 
 impl Line<'_> {
-    /// The number of paths in `all` that cannot have ended as they seem to: in a direction in which
-    /// no paths go, or in an incomplete cycle.
-    pub(super) fn impossible(&self, all: &Ends) -> usize {
-        let impossible = |(valuations, winding, paths): &(Vec<i64>, usize, usize)| {
-            if self.is_balanced(valuations, *winding) { paths % winding.max(&1) } else { *paths }
-        };
-        all.directions.iter().map(impossible).sum()
+    /// The number of paths that cannot have ended in this direction, as they seem to: no paths go there,
+    /// or they make an incomplete cycle.
+    pub(super) fn impossible(&self, direction: &Direction) -> usize {
+        let Direction { valuations, denominator, paths } = direction;
+        if self.is_balanced(valuations, *denominator) { paths % (*denominator).max(1) } else { *paths }
     }
 
     /// Whether the leading terms of every equation can cancel where unknowns grow like powers

@@ -1,6 +1,6 @@
 //! The members of a parameter family, from its stored fibre.
 
-use super::classify::{Tracked, classify};
+use super::classify::Tracked;
 use super::excess::Excess;
 use super::options::SolveOptions;
 use super::paths::{Route, follow};
@@ -45,9 +45,10 @@ pub(crate) fn solve_member<E: Evaluate>(
         monitor,
         solve_cluster: Some(&solver),
     });
-    let found = classify(tracked.as_ref(), &ends, &excess, options.paths.coincidence);
-    let interrupted = monitor.is_cancelled() && found.lost > 0;
-    Solutions { start_systems: 1, interrupted, ..found.solutions(fibre.len(), ends.retracked) }
+    let retracked = ends.retracked;
+    let mut ends = ends.judged(tracked.as_ref(), &excess, options.paths.coincidence);
+    let interrupted = monitor.is_cancelled() && ends.lost() > 0;
+    Solutions { start_systems: 1, interrupted, ..ends.solutions(retracked) }
 }
 
 impl Solutions {

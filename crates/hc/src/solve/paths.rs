@@ -1,9 +1,10 @@
 //! The coefficient stage: every path from the generic to the given coefficients, to its end.
 
-use super::ends::{End, EndList, Ends};
+use super::ends::{End, Ends};
 use super::excess::Excess;
 use super::fingerprints::{Fingerprint, Fingerprints};
 use super::record::{Record, RecordEnd, SingularEnd};
+use super::solutions::Direction;
 use crate::SolveOptions;
 use crate::checkpoint::{Part, Recordable, Recorded};
 use crate::distinct::{coincidences, groups, relative_distance};
@@ -76,7 +77,7 @@ pub(super) fn follow<E: Evaluate, S: Source<E>>(route: Route<'_, '_, E, S>, tria
     let mut stage = work.into_inner().into_inner();
     match outcome.flow {
         Flow::Abandoned => return stage.finish(outcome.retracked, true),
-        Flow::Found => stage.drop_others(),
+        Flow::Found => stage.ends.reassign(count, End::LOST, End::DROPPED),
         Flow::On => stage.lose_doubtful(&workspace.which),
     }
     stage.finish(outcome.retracked, false)
@@ -87,11 +88,9 @@ pub(super) struct CoefficientStage<'a, 'e, E: Evaluate, S> {
     pub(super) route: Route<'a, 'e, E, S>,
     segment: Segment,
     trial: bool,
-    ends: EndList,
-    regular: BTreeMap<usize, Refined>,
-    singular: BTreeMap<usize, SingularEnd>,
-    /// Numbers of directions to infinity.
-    directions: BTreeMap<(Vec<i64>, usize), u32>,
+    ends: Ends,
+    /// Numbers of directions to infinity: of their valuations and winding numbers.
+    directions: BTreeMap<(Vec<i64>, usize), usize>,
     /// Where the paths began, if they were tracked there.
     starts: Fingerprints,
     /// Where the paths that needed the endgame were at a common radius.
@@ -145,7 +144,7 @@ impl<E: Evaluate, S: Source<E>> Work for CoefficientStage<'_, '_, E, S> {
                 batch.push(record);
             }
         }
-        self.round.regular += batch.iter().filter(|record| self.regular.contains_key(&record.path)).count();
+        self.round.regular += batch.iter().filter(|record| self.ends.regular.contains_key(&record.path)).count();
         if self.is_whole() {
             return Flow::Found;
         }
@@ -156,7 +155,7 @@ impl<E: Evaluate, S: Source<E>> Work for CoefficientStage<'_, '_, E, S> {
 
     fn is_hopeless(&mut self, level: u32, before: usize, _: usize) -> bool {
         // In one unknown there are better ways to all roots than tracking again.
-        level == 0 && (self.route.trackers.system().variables() == 1 || are_hopeless(before, self.ends.count))
+        level == 0 && (self.route.trackers.system().variables() == 1 || are_hopeless(before, self.ends.paths))
     }
 
     fn doubtful(&mut self, (): &mut (), which: &mut Vec<usize>) {
@@ -179,7 +178,7 @@ impl<E: Evaluate, S: Source<E>> Recordable for CoefficientStage<'_, '_, E, S> {
     }
 
     fn solutions(&self) -> u64 {
-        (self.regular.len() + self.singular.len()) as u64
+        (self.ends.regular.len() + self.ends.singular.len()) as u64
     }
 }
 
@@ -191,9 +190,7 @@ impl<'a, 'e, E: Evaluate, S: Source<E>> CoefficientStage<'a, 'e, E, S> {
             segment: Segment::new(route.start.parameters(), route.target),
             route,
             trial,
-            ends: EndList::new(count),
-            regular: BTreeMap::new(),
-            singular: BTreeMap::new(),
+            ends: Ends::new(count),
             directions: BTreeMap::new(),
             starts: Fingerprints::new(count),
             middles: Fingerprints::new(count),
@@ -314,7 +311,7 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
     /// Takes a record, which replaces an earlier record of its path.
     fn take(&mut self, record: &Record) {
         let path = record.path;
-        self.lose(path);
+        self.ends.lose(path);
         self.middles.forget(path);
         self.starts.forget(path);
         if let Some(fingerprint) = &record.begun {
@@ -325,15 +322,15 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
         }
         match &record.end {
             RecordEnd::Regular(refined) => {
-                self.ends.set(path, End::REGULAR);
-                self.regular.insert(path, refined.clone());
+                self.ends.set(path, End::SOLUTION);
+                self.ends.regular.insert(path, refined.clone());
             }
             RecordEnd::Singular(end) => {
                 self.ends.set(path, End::SINGULAR);
-                self.singular.insert(path, end.clone());
+                self.ends.singular.insert(path, end.clone());
             }
             RecordEnd::Infinite { valuations, winding } => {
-                let next = self.directions.len() as u32;
+                let next = self.directions.len();
                 let direction = *self.directions.entry((valuations.clone(), *winding)).or_insert(next);
                 self.ends.set(path, End::infinite(direction));
             }
@@ -341,16 +338,12 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
         }
     }
 
-    fn lose(&mut self, path: usize) {
-        self.ends.set(path, End::LOST);
-        self.regular.remove(&path);
-        self.singular.remove(&path);
-    }
-
     /// Whether as many regular solutions are found as are known to exist.
     fn is_whole(&self) -> bool {
-        let Some(known) = self.route.options.known.filter(|&known| self.regular.len() >= known) else { return false };
-        let asked = self.regular.iter().filter(|(_, end)| !self.route.excess.contains_regular(&end.point));
+        let Some(known) = self.route.options.known.filter(|&known| self.ends.regular.len() >= known) else {
+            return false;
+        };
+        let asked = self.ends.regular.iter().filter(|(_, end)| !self.route.excess.contains_regular(&end.point));
         let points: Vec<(usize, &[Complex64])> = asked.map(|(&k, end)| (k, &end.point[..])).collect();
         let groups = coincidences(points.iter().copied(), self.route.options.paths.coincidence);
         points.len() - groups.iter().map(|group| group.len() - 1).sum::<usize>() >= known
@@ -360,26 +353,18 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
     fn lose_doubtful(&mut self, which: &[usize]) {
         for &k in which {
             let first = match self.ends.get(k) {
-                End::REGULAR => !which.iter().take_while(|&&j| j < k).any(|&j| self.same_regular(j, k)),
+                End::SOLUTION => !which.iter().take_while(|&&j| j < k).any(|&j| self.same_regular(j, k)),
                 End::SINGULAR => true,
                 _ => false,
             };
             if !first {
-                self.lose(k);
-            }
-        }
-    }
-
-    fn drop_others(&mut self) {
-        for path in 0..self.ends.count {
-            if self.ends.get(path) == End::LOST {
-                self.ends.set(path, End::DROPPED);
+                self.ends.lose(k);
             }
         }
     }
 
     fn same_regular(&self, j: usize, k: usize) -> bool {
-        let [a, b] = [j, k].map(|path| self.regular.get(&path));
+        let [a, b] = [j, k].map(|path| self.ends.regular.get(&path));
         let near = |(a, b): (&Refined, &Refined)| {
             relative_distance(&a.point, &b.point) <= self.route.options.paths.coincidence
         };
@@ -387,24 +372,22 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
     }
 
     fn finish(mut self, retracked: usize, abandoned: bool) -> Ends {
-        let mut infinite = vec![0; self.directions.len()];
-        let (mut lost, mut dropped) = (0, 0);
-        for path in 0..self.ends.count {
-            let end = self.ends.get(path);
-            lost += usize::from(end == End::LOST);
-            dropped += usize::from(end == End::DROPPED);
-            if let Some(paths) = end.direction().and_then(|direction| infinite.get_mut(direction)) {
-                *paths += 1;
+        let mut directions = vec![Direction::default(); self.directions.len()];
+        for ((valuations, denominator), k) in self.directions {
+            directions[k] = Direction { valuations, denominator, paths: 0 };
+        }
+        for path in 0..self.ends.paths {
+            if let Some(direction) = self.ends.get(path).direction().and_then(|k| directions.get_mut(k)) {
+                direction.paths += 1;
             }
         }
-        let directions = self.directions.into_iter().map(|((v, winding), k)| (v, winding, infinite[k as usize]));
-        let directions = directions.filter(|(_, _, paths)| *paths > 0).collect();
-        Ends { lost, dropped, regular: self.regular, singular: self.singular, directions, retracked, abandoned }
+        (self.ends.directions, self.ends.retracked, self.ends.abandoned) = (directions, retracked, abandoned);
+        self.ends
     }
 
     /// Paths that share a regular end, in their order.
     fn jumped(&self) -> Vec<usize> {
-        let regular = self.regular.iter().map(|(&k, refined)| (k, &refined.point[..]));
+        let regular = self.ends.regular.iter().map(|(&k, refined)| (k, &refined.point[..]));
         let mut which = coincidences(regular, self.route.options.paths.coincidence).concat();
         which.sort_unstable();
         which
@@ -416,15 +399,13 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
         let mut which = self.jumped();
         let crossed = [self.starts.met(self.route.options.paths.coincidence), self.middles.met(ENDS.crossed)];
         if crossed.iter().any(Result::is_err) {
-            for path in 0..self.ends.count {
-                self.lose(path);
-            }
+            (0..self.ends.paths).for_each(|path| self.ends.lose(path));
         }
         which.extend(crossed.into_iter().flatten().flatten());
-        let singular = self.singular.iter().map(|(&k, end)| (k, &end.point[..]));
+        let singular = self.ends.singular.iter().map(|(&k, end)| (k, &end.point[..]));
         for group in groups(singular, ENDS.cluster) {
             // Paths of winding number m come in cycles of m.
-            let winding = |k: &usize| self.singular.get(k).map_or(1, |end| end.winding);
+            let winding = |k: &usize| self.ends.singular.get(k).map_or(1, |end| end.winding);
             for k in &group {
                 let alike = group.iter().filter(|&j| winding(j) == winding(k)).count();
                 if !alike.is_multiple_of(winding(k)) {
@@ -432,7 +413,7 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
                 }
             }
         }
-        which.extend((0..self.ends.count).filter(|&path| self.ends.get(path) == End::LOST));
+        which.extend((0..self.ends.paths).filter(|&path| self.ends.get(path) == End::LOST));
         which.sort_unstable();
         which.dedup();
         which

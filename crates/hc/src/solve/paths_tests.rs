@@ -6,6 +6,7 @@ use crate::monitor::Monitor;
 use crate::runner::{Round, Work};
 use crate::solve::excess::Excess;
 use crate::solve::record::{Record, RecordEnd};
+use crate::solve::solutions::Direction;
 use crate::tracker::Trackers;
 use crate::{Family, SolveOptions};
 use num_complex::Complex64;
@@ -85,13 +86,13 @@ fn batches_are_absorbed_in_any_order() {
         }
         let doubts = stage.doubts();
         let ends: Vec<End> = (0..4).map(|path| stage.ends.get(path)).collect();
-        (ends, stage.regular.clone(), stage.singular.clone(), stage.directions.clone(), doubts)
+        (ends, stage.ends.regular.clone(), stage.ends.singular.clone(), stage.directions.clone(), doubts)
     };
 
     let whole = absorbed(batches(&[&[0, 1, 2, 3]]));
     let count = |end: End| whole.0.iter().filter(|&&e| e == end).count();
     let infinite = whole.0.iter().filter(|end| end.direction().is_some()).count();
-    assert_eq!((count(End::REGULAR), count(End::SINGULAR), infinite), (1, 2, 1));
+    assert_eq!((count(End::SOLUTION), count(End::SINGULAR), infinite), (1, 2, 1));
     assert!(whole.4.is_empty(), "{:?}", whole.4);
     let single = batches(&[&[0], &[1], &[2], &[3]]);
     for order in [[0, 1, 2, 3], [3, 2, 1, 0], [2, 0, 3, 1], [1, 3, 0, 2]] {
@@ -123,7 +124,7 @@ fn small_coordinates_tell_the_winding_number() {
     let surroundings = Surroundings::default();
     let trackers = Trackers::new(family.program());
     let route = surroundings.route(&trackers, &fibre, &target);
-    let ends = super::follow(route, false);
-    assert_eq!(ends.lost, 0);
-    assert_eq!(ends.directions, [(vec![-2, 3], 2, 2)]);
+    let mut ends = super::follow(route, false);
+    assert_eq!(ends.lost(), 0);
+    assert_eq!(ends.directions, [Direction { valuations: vec![-2, 3], denominator: 2, paths: 2 }]);
 }

@@ -1,9 +1,9 @@
 //! From expanded polynomials to solutions: start systems one after the other, as long as paths are
 //! lost.
 
-use super::classify::{Classified, ClusterSolver, Tracked, classify};
+use super::classify::{ClusterSolver, Tracked};
 use super::conditioned::conditioned;
-use super::ends::Ends;
+use super::ends::{End, Ends};
 use super::equations::Equations;
 use super::error::SolveError;
 use super::excess::Excess;
@@ -14,7 +14,7 @@ use super::paths::{Route, are_hopeless, follow};
 use super::portions::{Announced, serve};
 use super::singular_ends;
 use super::slack::{self, Slack};
-use super::solutions::Solutions;
+use super::solutions::{Solution, Solutions};
 use super::start::Starts;
 use super::written;
 use crate::checkpoint::{Checkpoint, Part};
@@ -245,11 +245,13 @@ fn serve_all(
 }
 
 /// What all start systems have given so far.
-#[derive(Default)]
 struct Attempts {
     start_systems: u32,
     retracked: usize,
-    best: BestStart,
+    /// The start system that lost fewest paths, the first of such.
+    start: Option<Start>,
+    /// What it has found, with the solutions that only others have.
+    best: Ends,
 }
 
 /// Tracks the paths of one start system after the other until none are lost, or another start system
@@ -262,7 +264,7 @@ fn attempted(
     context: SolveContext<'_>,
 ) -> Result<Attempts, SolveError> {
     let (options, monitor) = (&*problem.options, problem.monitor);
-    let mut attempts = Attempts::default();
+    let mut attempts = Attempts { start_systems: 0, retracked: 0, start: None, best: Ends::new(0) };
     // First, on trial, those of one stage.
     let mut direct = starts.direct(options);
     for number in 0.. {
@@ -274,7 +276,7 @@ fn attempted(
         }
         let system = from.system(u64::from(attempt), options, monitor);
         let Some(start) = unless_cancelled(system)? else { break };
-        let ends = {
+        let mut ends = {
             // Their memory is given back before the ends are sorted.
             let options = match problem.squaring {
                 Squaring::Combinations => Cow::Borrowed(options),
@@ -293,14 +295,13 @@ fn attempted(
         }
         if !ends.abandoned {
             let in_one_unknown = problem.expanded.as_ref().is_some_and(|expanded| expanded.roots.is_some());
-            let hopeless = in_one_unknown || are_hopeless(ends.lost, from.paths);
+            let hopeless = in_one_unknown || are_hopeless(ends.lost(), from.paths);
             attempts.start_systems += 1;
             attempts.retracked += ends.retracked;
             let found = problem.solutions_at(ends, from, excess, nesting);
-            let this = BestStart { start: Some(from.kind), tracked: from.paths, found };
-            attempts.best = if attempt == 0 { this } else { attempts.best.joined(this) };
+            attempts.join(from.kind, found);
             let last = attempts.start_systems > options.restarts || hopeless;
-            if attempts.best.found.lost == 0 || last || monitor.is_cancelled() {
+            if attempts.best.lost() == 0 || last || monitor.is_cancelled() {
                 break;
             }
         }
@@ -312,9 +313,9 @@ fn attempted(
 impl Problem<'_> {
     /// The solutions at the ends of all paths of a start system, and those that other methods find if
     /// some are missing.
-    fn solutions_at(&self, mut ends: Ends, from: &Starts, excess: &Excess<'_>, nesting: Nesting<'_>) -> Classified {
+    fn solutions_at(&self, mut ends: Ends, from: &Starts, excess: &Excess<'_>, nesting: Nesting<'_>) -> Ends {
         let (coincidence, monitor) = (self.options.paths.coincidence, self.monitor);
-        let Some(expanded) = &self.expanded else { return classify(None, &ends, excess, coincidence) };
+        let Some(expanded) = &self.expanded else { return ends.judged(None, excess, coincidence) };
         let given = &expanded.given;
         let line = Line { supports: &from.equations.supports, target: &from.coefficients };
         let work = singular_ends::work(given, from.paths).min(nesting.outer.map_or(u64::MAX, Given::left));
@@ -339,35 +340,36 @@ impl Problem<'_> {
             monitor,
             solve_cluster: (nesting.level < NESTED).then_some(&solver as &ClusterSolver<'_>),
         };
-        let found = expanded.roots_at_once(&ends, &tracked).unwrap_or_else(|| {
-            let found = classify(Some(&tracked), &ends, excess, coincidence);
+        if let Some(solutions) = expanded.roots_at_once(&mut ends, &tracked) {
+            return ends.with_all(solutions);
+        }
+        let mut ends = ends.judged(Some(&tracked), excess, coincidence);
+        if expanded.roots.is_some() {
             // All paths end at roots, those that seem to go to infinity too.
-            let astray = if expanded.roots.is_some() { found.infinite } else { 0 };
-            Classified { lost: found.lost + astray, infinite: found.infinite - astray, ..found }
-        });
+            (0..ends.directions.len()).for_each(|k| ends.reassign(ends.paths, End::infinite(k), End::LOST));
+        }
         let all = !self.options.torus_only && self.options.known.is_none() && !monitor.is_cancelled();
-        if all { found.checked(expanded.polynomials, &expanded.units, &tracked, from.paths) } else { found }
+        if all { ends.checked(&expanded.units, &tracked) } else { ends }
     }
 }
 
 impl Expanded<'_> {
     /// All roots of a polynomial in one unknown without paths, if these have not ended at as many: there
     /// is a better way to them than other paths.
-    fn roots_at_once(&self, ends: &Ends, tracked: &Tracked<'_>) -> Option<Classified> {
-        let missing = self.roots.is_some_and(|degree| ends.lost > 0 || ends.regular.len() != degree);
+    fn roots_at_once(&self, ends: &mut Ends, tracked: &Tracked<'_>) -> Option<Vec<Solution>> {
+        let missing = self.roots.is_some_and(|degree| ends.lost() > 0 || ends.regular.len() != degree);
         if !missing || tracked.monitor.is_cancelled() {
             return None;
         }
-        let solutions = Graph::new(self.polynomials)?.solutions(&self.units, tracked)?;
-        Some(Classified { solutions, ..Classified::default() })
+        Graph::new(self.polynomials)?.solutions(&self.units, tracked)
     }
 }
 
 /// The solutions that all start systems have given, in the unknowns themselves.
 fn assembled(attempts: Attempts, starts: &Starts, monitor: &Monitor) -> Solutions {
-    let Attempts { start_systems, retracked, best: BestStart { start, tracked, found } } = attempts;
-    let whole = start_systems > 0 && found.lost == 0;
-    let mut found = found.solutions(tracked, retracked);
+    let Attempts { start_systems, retracked, start, mut best } = attempts;
+    let whole = start_systems > 0 && best.lost() == 0;
+    let mut found = best.solutions(retracked);
     for solution in &mut found.solutions {
         starts.equations.unscale(&mut solution.value);
     }
@@ -389,29 +391,22 @@ fn assembled(attempts: Attempts, starts: &Starts, monitor: &Monitor) -> Solution
     }
 }
 
-/// The best start system so far, and what all of them have given.
-#[derive(Default)]
-struct BestStart {
-    /// The one that lost fewest paths, the first of such.
-    start: Option<Start>,
-    tracked: usize,
-    /// What it has found, with the solutions that only others have.
-    found: Classified,
-}
-
-impl BestStart {
-    fn joined(self, new: BestStart) -> BestStart {
-        let (mut better, other) = if self.found.lost <= new.found.lost { (self, new) } else { (new, self) };
-        if better.found.lost == 0 {
-            return better;
+impl Attempts {
+    /// Joins what one more start system has given: `new`, with the solutions that only others have, if it
+    /// loses fewer paths than those before.
+    fn join(&mut self, start: Start, mut new: Ends) {
+        if self.start.is_some() {
+            let keeps = self.best.lost() <= new.lost();
+            if !keeps {
+                (self.start, self.best, new) = (Some(start), new, std::mem::replace(&mut self.best, Ends::new(0)));
+            }
+            if self.best.lost() > 0 {
+                let known = Known::new(self.best.solutions.iter().map(|s| &s.value[..]));
+                new.solutions.retain(|s| !s.singular && !known.has(&s.value, ENDS.cluster));
+                self.best.add_missed(new.solutions);
+            }
+        } else {
+            (self.start, self.best) = (Some(start), new);
         }
-        let known = Known::new(better.found.solutions.iter().map(|s| &s.value[..]));
-        let mut new = other.found.solutions;
-        new.retain(|s| !s.singular && !known.has(&s.value, ENDS.cluster));
-        let before = better.found.solutions.len();
-        better.found.solutions.extend(new);
-        // Each of them is the end of a path that was lost.
-        better.found.lost = better.found.lost.saturating_sub(better.found.solutions.len() - before);
-        better
     }
 }

@@ -1,13 +1,13 @@
 //! Ends that the tracker alone cannot tell: singular ends, and regular ends for coefficients that were
 //! rounded.
 
-use super::classify::{Classified, Tracked};
+use super::classify::Tracked;
 use super::cluster::{clustered, distributed, is_known, is_same};
-use super::ends::Ends;
+use super::ends::{End, Ends};
 use super::excess::Excess;
 use super::graph::Graph;
 use super::record::SingularEnd;
-use super::solutions::{Solution, Unresolved, is_real};
+use super::solutions::{Solution, Unresolved};
 use crate::distinct::{groups, relative_distance};
 use crate::refine::Refiner;
 use crate::singular::{self, Effort, LocalStructure, Why};
@@ -16,125 +16,124 @@ use crate::threads::IntoParallelRefIterator;
 use crate::threads::ParallelIterator;
 use crate::tolerances::ENDS;
 use num_complex::Complex64;
-use poly::{Exact, Polynomial};
 use std::cell::LazyCell;
 
-/// A singular solution and the paths that end there.
-struct Multiple {
-    point: Vec<Complex64>,
-    multiplicity: usize,
-    residual: f64,
-    paths: usize,
-    winding: usize,
-}
-
-impl Classified {
-    /// Adds what the singular ends are, and the doubtful ones among the regular ends.
+impl Ends {
+    /// Judges the singular ends, and the `doubtful` ones among the regular ends.
     pub(super) fn add_singular(
         &mut self,
         tracked: &Tracked<'_>,
-        all: &Ends,
-        doubtful: &[SingularEnd],
+        doubtful: Vec<(usize, SingularEnd)>,
         excess: &Excess<'_>,
     ) {
-        let ends: Vec<&SingularEnd> = all.singular.values().chain(doubtful).collect();
-        let points = ends.iter().enumerate().map(|(k, end)| (k, &end.point[..]));
+        let ends: Vec<(usize, SingularEnd)> = std::mem::take(&mut self.singular).into_iter().chain(doubtful).collect();
+        let points = ends.iter().enumerate().map(|(k, (_, end))| (k, &end.point[..]));
         let groups = groups(points, ENDS.cluster);
-        let spare = self.lost;
+        let spare = self.lost();
         let structures = structures_of_ends(tracked, &ends, &groups, &self.solutions, spare);
         let doubted = structures
             .iter()
             .any(|(_, s)| matches!(s, LocalStructure::Isolated { .. } | LocalStructure::OnComponent { .. }));
         let by_graph = || Graph::new(tracked.polynomials).is_some_and(|graph| graph.are_simple());
         let simple = doubted && (singular::all_simple(tracked.polynomials) || by_graph());
-        let mut multiple: Vec<Multiple> = Vec::new();
+        // Multiple solutions, with the paths that end there, and the number of lost paths that end at others.
+        let mut multiple: Vec<(Solution, Vec<usize>)> = Vec::new();
         let mut further = 0;
         let mut refiner = Refiner::new(tracked.system);
+        let mut condition = |point: &[Complex64]| refiner.judged(tracked.target, point).condition;
         for (group, structure) in structures {
-            let paths = group.len();
+            let paths: Vec<usize> = group.iter().map(|&k| ends[k].0).collect();
             match structure {
-                LocalStructure::Isolated { point, .. } if excess.outside(&point) => self.excess += paths,
-                LocalStructure::Regular { point, .. } if excess.outside(&point) => self.excess += paths,
+                LocalStructure::Isolated { point, .. } | LocalStructure::Regular { point, .. }
+                    if excess.outside(&point) =>
+                {
+                    self.assign(&paths, End::EXCESS);
+                }
                 LocalStructure::Isolated { multiplicity, point, residual } => {
-                    let winding = group.iter().map(|&k| ends[k].winding).max().unwrap_or(1);
-                    match multiple.iter_mut().find(|m| relative_distance(&m.point, &point) <= ENDS.one_point) {
-                        Some(known) => {
-                            known.paths += paths;
-                            known.winding = known.winding.max(winding);
+                    self.assign(&paths, End::SOLUTION);
+                    let winding = group.iter().map(|&k| ends[k].1.winding).max().unwrap_or(1);
+                    match multiple.iter_mut().find(|(m, _)| relative_distance(&m.value, &point) <= ENDS.one_point) {
+                        Some((known, known_paths)) => {
+                            known_paths.extend(paths);
+                            known.winding_number = known.winding_number.max(winding);
                         }
-                        None => multiple.push(Multiple { point, multiplicity, residual, paths, winding }),
+                        None => {
+                            let condition = condition(&point);
+                            let solution = Solution::new(point, multiplicity, winding, true, residual, condition);
+                            multiple.push((solution, paths));
+                        }
                     }
                 }
                 LocalStructure::Regular { point, residual } => {
+                    self.assign(&paths, End::LOST);
                     // One path ends at a regular solution; any other has jumped.
-                    let known = is_known(tracked.given, &self.solutions, &point);
-                    self.lost += paths.saturating_sub(usize::from(!known));
-                    if !known {
-                        // A path that is counted as lost ends there.
-                        further += usize::from(paths == 0);
-                        let condition = refiner.judged(tracked.target, &point).condition;
-                        self.solutions.push(solution(&point, 1, 1, residual, condition, is_real(&point, ENDS.real)));
+                    if !is_known(tracked.given, &self.solutions, &point) {
+                        match paths.first() {
+                            Some(&path) => self.set(path, End::SOLUTION),
+                            None => further += 1,
+                        }
+                        let condition = condition(&point);
+                        self.solutions.push(Solution::new(point, 1, 1, false, residual, condition));
                     }
                 }
-                LocalStructure::OnComponent { point, .. } if simple => self.unresolved(&point, paths, Why::Unclear),
+                LocalStructure::OnComponent { point, .. } if simple => self.unresolved(&point, &paths, Why::Unclear),
                 LocalStructure::OnComponent { point, .. } => {
-                    self.on_components += paths;
+                    self.assign(&paths, End::COMPONENT);
                     self.component_points.push(point);
                 }
-                LocalStructure::NotASolution if excess.overdetermined() => self.excess += paths,
-                LocalStructure::NotASolution => self.lost += paths,
+                LocalStructure::NotASolution => {
+                    self.assign(&paths, if excess.overdetermined() { End::EXCESS } else { End::LOST });
+                }
                 LocalStructure::Unresolved(why) => {
                     if let Some(&end) = group.first() {
-                        self.unresolved(&ends[end].point, paths, why);
+                        self.unresolved(&ends[end].1.point, &paths, why);
                     }
                 }
             }
         }
-        self.lost = self.lost.saturating_sub(further);
-        let mut missing = 0;
-        for found in multiple {
-            // As many paths as the multiplicity, or more where equations were combined. Where they
-            // are fewer others are lost, else some have gone astray.
-            let surplus = if excess.overdetermined() { 0 } else { found.paths.saturating_sub(found.multiplicity) };
-            missing += found.multiplicity.saturating_sub(found.paths);
-            self.lost += surplus;
-            let condition = refiner.judged(tracked.target, &found.point).condition;
-            let one = |multiplicity: usize, winding: usize, real: f64| {
-                let real = is_real(&found.point, real);
-                solution(&found.point, multiplicity, winding, found.residual, condition, real)
-            };
-            if simple {
-                // As many solutions that are one point to all digits of a double.
-                self.solutions.extend((0..found.multiplicity).map(|_| one(1, 1, ENDS.real)));
-            } else {
-                let solution = one(found.multiplicity, found.winding, ENDS.real_singular);
-                self.solutions.push(Solution { singular: true, ..solution });
-            }
-        }
-        // Lost paths end there, if they are as many at least.
-        self.lost = if missing <= self.lost { self.lost - missing } else { missing };
-        if self.lost == 0 {
+        self.reassign(further, End::LOST, End::SOLUTION);
+        self.add_multiple(multiple, simple, excess);
+        if self.lost() == 0 {
             self.unresolved.clear();
         }
     }
 
-    /// The same, together with all solutions from other methods, if some of the `paths` are lost or
-    /// some ends are singular.
-    pub(super) fn checked(
-        mut self,
-        polynomials: &[Polynomial<Exact>],
-        units: &[i64],
-        tracked: &Tracked<'_>,
-        paths: usize,
-    ) -> Classified {
-        let graph = LazyCell::new(|| Graph::new(polynomials));
-        let singular = self.on_components > 0 || self.solutions.iter().any(|s| s.singular);
-        let count = |found: &Classified| found.solutions.iter().map(|s| s.multiplicity).sum::<usize>();
-        if self.lost == 0 && !singular {
+    /// Adds multiple solutions with the paths that end there; as many `simple` ones in place of each if all
+    /// solutions are known to be simple.
+    fn add_multiple(&mut self, multiple: Vec<(Solution, Vec<usize>)>, simple: bool, excess: &Excess<'_>) {
+        let mut missing = 0;
+        for (solution, paths) in multiple {
+            // As many paths as the multiplicity, or more where equations were combined. Where they
+            // are fewer others are lost, else some have gone astray.
+            let here = if excess.overdetermined() { paths.len() } else { solution.multiplicity.min(paths.len()) };
+            self.assign(&paths[here..], End::LOST);
+            missing += solution.multiplicity.saturating_sub(paths.len());
+            if simple {
+                // They are one point to all digits of a double.
+                let Solution { value, multiplicity, residual, condition, .. } = solution;
+                let one = Solution::new(value, 1, 1, false, residual, condition);
+                self.solutions.extend(std::iter::repeat_n(one, multiplicity));
+            } else {
+                self.solutions.push(solution);
+            }
+        }
+        // Lost paths end there, if they are as many at least.
+        if missing <= self.lost() {
+            self.reassign(missing, End::LOST, End::SOLUTION);
+        } else {
+            self.missing = missing;
+        }
+    }
+
+    /// Adds what other methods tell, if some paths are lost or some ends are singular.
+    pub(super) fn checked(mut self, units: &[i64], tracked: &Tracked<'_>) -> Ends {
+        let graph = LazyCell::new(|| Graph::new(tracked.polynomials));
+        let found: usize = self.solutions.iter().map(|s| s.multiplicity).sum();
+        let singular = !self.component_points.is_empty() || self.solutions.iter().any(|s| s.singular);
+        if self.lost() == 0 && !singular {
             // Paths may seem to go to infinity that do not.
-            let is_right = |all: usize| all == count(&self);
-            let all = || singular::finite_solutions(polynomials).or_else(|| graph.as_ref()?.count());
-            if self.infinite == 0 || all().is_none_or(is_right) {
+            let all = || singular::finite_solutions(tracked.polynomials).or_else(|| graph.as_ref()?.count());
+            if self.infinite() == 0 || all().is_none_or(|all| all == found) {
                 return self;
             }
         }
@@ -142,41 +141,40 @@ impl Classified {
             if let Some(all) = graph.count() {
                 // There are no components. Paths that are not accounted for go to infinity, however
                 // they seem to end, or solutions are missing.
-                let found = count(&self);
-                let unknown = self.lost + std::mem::take(&mut self.on_components);
                 self.component_points.clear();
-                self.lost = if found == all { 0 } else { unknown.max(found.abs_diff(all)) };
+                self.reassign(self.paths, End::COMPONENT, End::LOST);
+                self.missing = all.abs_diff(found);
+                if self.missing == 0 {
+                    self.reassign(self.paths, End::LOST, End::SOLUTION);
+                }
             }
-            if self.lost > 0
+            if self.lost() > 0
                 && let Some(solutions) = graph.solutions(units, tracked)
             {
-                return Classified::complete(solutions, paths);
+                return self.with_all(solutions);
             }
         }
-        if self.lost == 0 {
+        if self.lost() == 0 {
             self.unresolved.clear();
         }
         self
     }
 
-    /// All solutions, independently of the paths; paths that end at none of them go to infinity.
-    fn complete(solutions: Vec<Solution>, paths: usize) -> Classified {
-        let ends: usize = solutions.iter().map(|s| s.multiplicity).sum();
-        Classified { solutions, infinite: paths.saturating_sub(ends), ..Classified::default() }
+    fn unresolved(&mut self, end: &[Complex64], paths: &[usize], why: Why) {
+        self.assign(paths, End::LOST);
+        self.unresolved.push(Unresolved { value: end.to_vec(), paths: paths.len(), reason: why.to_string() });
     }
 
-    fn unresolved(&mut self, end: &[Complex64], paths: usize, why: Why) {
-        self.lost += paths;
-        self.unresolved.push(Unresolved { value: end.to_vec(), paths, reason: why.to_string() });
-    }
-
-    /// Replaces regular solutions by those of the given equations, if rounded coefficients move
-    /// them or doubles have too few digits. Returns the solutions that are not clearly regular, to
-    /// be examined like singular ends.
-    pub(super) fn correct_rounded(&mut self, tracked: &Tracked<'_>) -> Vec<SingularEnd> {
-        let mut kept: Vec<Solution> = Vec::with_capacity(self.solutions.len());
+    /// Adds regular solutions with their paths: those of the given equations, if rounded coefficients move
+    /// them or doubles have too few digits. Returns the ends that are not clearly regular, to be examined
+    /// like singular ones.
+    pub(super) fn correct_rounded(
+        &mut self,
+        solutions: Vec<(usize, Solution)>,
+        tracked: &Tracked<'_>,
+    ) -> Vec<(usize, SingularEnd)> {
         let mut doubtful = Vec::new();
-        for mut solution in std::mem::take(&mut self.solutions) {
+        for (path, mut solution) in solutions {
             // The condition does not tell of rounded coefficients: it is that of scaled rows.
             let steady =
                 tracked.exact && solution.condition < ENDS.exact_condition && solution.residual < ENDS.exact_residual;
@@ -184,25 +182,23 @@ impl Classified {
                 if solution.residual >= ENDS.exact_residual {
                     solution.residual = singular::residual(tracked.given, &solution.value);
                 }
-                kept.push(solution);
+                self.solutions.push(solution);
                 continue;
             }
-            let point = std::mem::take(&mut solution.value);
+            let point = solution.value;
             let LocalStructure::Regular { point: exact, residual } =
                 singular::local_structure(tracked.given, &point, 1, 1, ENDS.rounded, Effort::Little)
             else {
-                doubtful.push(SingularEnd { point, winding: 1, error: ENDS.rounded });
+                self.set(path, End::SINGULAR);
+                doubtful.push((path, SingularEnd { point, winding: 1, error: ENDS.rounded }));
                 continue;
             };
-            solution.residual = residual;
-            solution.is_real = is_real(&exact, ENDS.real);
-            if is_known(tracked.given, &kept, &exact) {
-                self.lost += 1;
+            if is_known(tracked.given, &self.solutions, &exact) {
+                self.set(path, End::LOST);
             } else {
-                kept.push(Solution { value: exact, ..solution });
+                self.solutions.push(Solution::new(exact, 1, 1, false, residual, solution.condition));
             }
         }
-        self.solutions = kept;
         doubtful
     }
 }
@@ -220,7 +216,7 @@ const WORK_OF_FACTORS: u64 = 100;
 /// cancelled.
 fn structures_of_ends(
     tracked: &Tracked<'_>,
-    ends: &[&SingularEnd],
+    ends: &[(usize, SingularEnd)],
     groups: &[Vec<usize>],
     known: &[Solution],
     spare: usize,
@@ -257,16 +253,17 @@ pub(super) fn work(given: &singular::Given, paths: usize) -> u64 {
 fn structures_of_group(
     tracked: &Tracked<'_>,
     given: &singular::Given,
-    ends: &[&SingularEnd],
+    ends: &[(usize, SingularEnd)],
     group: &[usize],
     known: &[Solution],
     spare: usize,
 ) -> Vec<(Vec<usize>, LocalStructure)> {
     let (paths, most) = (group.len() + spare, ends.len() + spare);
-    let structure =
-        |k: usize, effort: Effort| singular::local_structure(given, &ends[k].point, paths, most, ends[k].error, effort);
+    let structure = |k: usize, effort: Effort| {
+        singular::local_structure(given, &ends[k].1.point, paths, most, ends[k].1.error, effort)
+    };
     // The most accurate of the ends stands for all.
-    let Some(&best) = group.iter().min_by(|&&a, &&b| ends[a].error.total_cmp(&ends[b].error)) else {
+    let Some(&best) = group.iter().min_by(|&&a, &&b| ends[a].1.error.total_cmp(&ends[b].1.error)) else {
         return Vec::new();
     };
     // Combinations of equations have higher multiplicities.
@@ -279,14 +276,14 @@ fn structures_of_group(
         LocalStructure::OnComponent { .. } => return vec![(group.to_vec(), own)],
         LocalStructure::Regular { ref point, .. } if group.len() == 1 => {
             // Near a set of positive dimension Newton's method leads to a solution off it.
-            let beside = || singular::beside(given, &ends[best].point, paths, ends[best].error);
+            let beside = || singular::beside(given, &ends[best].1.point, paths, ends[best].1.error);
             let other = if is_known(given, known, point) { beside() } else { None };
             return vec![(group.to_vec(), other.unwrap_or(own))];
         }
         LocalStructure::NotASolution if group.len() == 1 => return vec![(group.to_vec(), own)],
         _ => {}
     }
-    let is_apart = |&k: &usize| k == best || relative_distance(&ends[k].point, &ends[best].point) > ENDS.one_point;
+    let is_apart = |&k: &usize| k == best || relative_distance(&ends[k].1.point, &ends[best].1.point) > ENDS.one_point;
     if group.iter().all(is_apart) && !matches!(own, LocalStructure::Isolated { .. }) {
         let each = |&k: &usize| (vec![k], if k == best { own.clone() } else { structure(k, Effort::Little) });
         let each: Vec<(Vec<usize>, LocalStructure)> = group.iter().map(each).collect();
@@ -295,7 +292,7 @@ fn structures_of_group(
         }
     }
     // Solutions so close to each other that the paths seemed to end between them.
-    let (mut all, left) = distributed(group, clustered(tracked, given, &ends[best].point, group.len(), most, known));
+    let (mut all, left) = distributed(group, clustered(tracked, given, &ends[best].1.point, group.len(), most, known));
     if left.is_empty() {
         return all;
     }
@@ -329,24 +326,4 @@ fn are_told_apart(given: &singular::Given, each: &[(Vec<usize>, LocalStructure)]
         LocalStructure::NotASolution => overdetermined,
         LocalStructure::Isolated { .. } | LocalStructure::OnComponent { .. } => true,
     })
-}
-
-fn solution(
-    point: &[Complex64],
-    multiplicity: usize,
-    winding_number: usize,
-    residual: f64,
-    condition: f64,
-    is_real: bool,
-) -> Solution {
-    Solution {
-        value: point.to_vec(),
-        multiplicity,
-        winding_number,
-        singular: false,
-        is_real,
-        residual,
-        condition,
-        certified: None,
-    }
 }

@@ -4,6 +4,7 @@ use super::options::Start;
 use super::warning::Warning;
 use crate::certify::{Certificates, CertifyError, CertifyOptions, Reality, certify};
 use crate::family::PathCounts;
+use crate::tolerances::ENDS;
 use num_complex::Complex64;
 use poly::{ComplexInterval, System};
 use serde::{Deserialize, Serialize};
@@ -34,8 +35,23 @@ pub struct Solution {
     pub certified: Option<bool>,
 }
 
+impl Solution {
+    /// A solution, not certified, with its largest winding number.
+    pub(super) fn new(
+        value: Vec<Complex64>,
+        multiplicity: usize,
+        winding_number: usize,
+        singular: bool,
+        residual: f64,
+        condition: f64,
+    ) -> Solution {
+        let is_real = is_real(&value, if singular { ENDS.real_singular } else { ENDS.real });
+        Solution { value, multiplicity, winding_number, singular, is_real, residual, condition, certified: None }
+    }
+}
+
 /// A direction in which paths go to infinity.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Direction {
     /// Unknown `j` is of order `t^(valuations[j] / denominator)` as `t` falls to zero.
