@@ -1,7 +1,7 @@
 //! Solutions that lie so close together that paths end between them: the equations near them, in
 //! coordinates in which the solutions are apart.
 
-use super::deflate::{Profile, Reduced, centred, deflated, distance};
+use super::deflate::{Profile, Reduced, approached, deflated, distance};
 use super::eliminate::{Elimination, Stop};
 use super::equations::{Given, LocalEquations};
 use super::kinds::{Effort, LocalStructure};
@@ -36,13 +36,6 @@ pub(crate) struct ClusterEquations<'a> {
     pub(crate) polynomials: Vec<Polynomial<Exact>>,
 }
 
-/// What the given equations have at a solution of [`ClusterEquations`].
-pub(crate) struct ClusterSolution {
-    pub(crate) structure: LocalStructure,
-    /// A regular solution to all digits.
-    point: Option<Vec<Digits>>,
-}
-
 impl<'a> ClusterEquations<'a> {
     /// All ways to look at the cluster near a point, the simplest first: with each way to read off
     /// which unknowns are determined.
@@ -65,11 +58,15 @@ impl<'a> ClusterEquations<'a> {
         }
         let local = given.near::<Digits>(point);
         let start = local.scaled(point);
-        let (centre, profile) = centred(&local, &start, order, tolerance, |profile| {
+        let (last, profile) = approached(&local, &start, order, tolerance, |profile| {
+            if profile.remaining > 0 {
+                return false;
+            }
             let fresh = !profile.is_regular() && !tried.contains(&(profile.clone(), order));
             tried.push((profile.clone(), order));
             fresh
         })?;
+        let centre = last.point;
         if distance(&start, &centre) > CLUSTERS.near {
             return None;
         }
@@ -89,38 +86,44 @@ impl<'a> ClusterEquations<'a> {
         self.reduced.basis.variables()
     }
 
-    /// Notes as much work, in products of complex double-doubles.
-    pub(crate) fn spend(&self, products: u64) {
-        self.given.spend(products);
+    /// What the given equations have at solutions of the equations of the cluster, at each of which so
+    /// many paths end.
+    pub(crate) fn structures<'p>(
+        &self,
+        solutions: impl Iterator<Item = (&'p Vec<Complex64>, usize)>,
+        most: usize,
+    ) -> Vec<LocalStructure> {
+        let mut regular = Vec::new();
+        solutions.filter_map(|(solution, paths)| self.structure(solution, paths, most, &mut regular)).collect()
     }
 
-    /// Adds what the given equations have at a `solution` of the equations of the cluster, at which
-    /// `paths` paths end, unless it is found already.
-    pub(crate) fn add(&self, found: &mut Vec<ClusterSolution>, solution: &[Complex64], paths: usize, most: usize) {
+    /// What the given equations have at a solution at which `paths` paths end; nothing if it is among the
+    /// `regular` ones that are known to all digits.
+    fn structure(
+        &self,
+        solution: &[Complex64],
+        paths: usize,
+        most: usize,
+        regular: &mut Vec<Vec<Digits>>,
+    ) -> Option<LocalStructure> {
         let unit = |z: &Complex64| Digits::from_c64(*z).shifted(self.size);
         let start = self.reduced.at(&solution.iter().map(unit).collect::<Vec<_>>());
-        let regular = deflated(&self.local, &start, 1, f64::NEG_INFINITY, &mut Vec::new())
-            .filter(|solution| solution.profile.is_regular())
-            .filter(|solution| distance(&start, &solution.point) <= self.size as f64 + 1.0);
-        if let Some(regular) = regular {
-            let known =
-                |f: &ClusterSolution| f.point.as_ref().is_some_and(|p| distance(p, &regular.point) <= CLUSTERS.same);
-            if !found.iter().any(known) {
-                let (point, residual) = rounded(self.given, &self.local, &regular.point);
-                found.push(ClusterSolution {
-                    structure: LocalStructure::Regular { point, residual },
-                    point: Some(regular.point),
-                });
-            }
-            return;
+        let found = deflated(&self.local, &start, 1, f64::NEG_INFINITY, &mut Vec::new())
+            .filter(|found| found.profile.is_regular())
+            .filter(|found| distance(&start, &found.point) <= self.size as f64 + 1.0);
+        if let Some(found) = found {
+            let is_new = regular.iter().all(|known| distance(known, &found.point) > CLUSTERS.same);
+            return is_new.then(|| {
+                let (point, residual) = rounded(self.given, &self.local, &found.point);
+                regular.push(found.point);
+                LocalStructure::Regular { point, residual }
+            });
         }
         let point: Vec<Complex64> = self.local.unscaled(&start).iter().map(Number::to_c64).collect();
         // As accurate as the equations of the cluster are.
-        let structure =
-            local_structure(self.given, &point, paths, most, 2f64.powi(2 * self.size as i32), Effort::Little);
-        if matches!(structure, LocalStructure::Isolated { .. } | LocalStructure::OnComponent { .. }) {
-            found.push(ClusterSolution { structure, point: None });
-        }
+        let error = 2f64.powi(2 * self.size as i32);
+        let structure = local_structure(self.given, &point, paths, most, error, Effort::Little);
+        matches!(structure, LocalStructure::Isolated { .. } | LocalStructure::OnComponent { .. }).then_some(structure)
     }
 }
 

@@ -16,15 +16,6 @@ use super::series::Basis;
 use crate::tolerances::LOCAL;
 use num_complex::Complex64;
 
-/// Where the iteration ends.
-pub(crate) enum NewtonEnd<S> {
-    /// At a solution.
-    Solution(DeflatedPoint<S>),
-    /// At a point that the equations determine but that is no solution: it lies between several.
-    Between,
-    Nowhere,
-}
-
 /// How many unknowns each level of a deflation determines.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Profile {
@@ -39,13 +30,6 @@ impl Profile {
     pub(crate) fn is_regular(&self) -> bool {
         self.remaining == 0 && self.ranks.len() == 1
     }
-}
-
-/// A solution to many digits.
-pub(crate) struct DeflatedPoint<S> {
-    /// In the units of the local equations.
-    pub(crate) point: Vec<S>,
-    pub(crate) profile: Profile,
 }
 
 /// Most iterations; if they converge, corrections get small at once.
@@ -73,16 +57,18 @@ impl RankRule<'_> {
     }
 }
 
-/// One step of the iteration.
-struct Step<S> {
-    point: Vec<S>,
-    profile: Profile,
+/// Where a step of the iteration leads.
+pub(crate) struct DeflatedPoint<S> {
+    /// In the units of the local equations.
+    pub(crate) point: Vec<S>,
+    pub(crate) profile: Profile,
+    /// The logarithm to base 2 of the smallest pivot.
     accepted: f64,
     /// The logarithm to base 2 of the largest number that was taken as zero.
     rejected: f64,
 }
 
-impl<S: Number> Step<S> {
+impl<S: Number> DeflatedPoint<S> {
     /// Whether the point solves the equations and what was taken as zero is clearly zero.
     fn is_solution(&self, local: &LocalEquations<'_, S>) -> bool {
         let clear = self.accepted >= LOCAL.clear * S::BITS && self.rejected <= LOCAL.zero * S::BITS;
@@ -100,35 +86,28 @@ pub(crate) fn deflated<S: Number>(
     tolerance: f64,
     tried: &mut Vec<Profile>,
 ) -> Option<DeflatedPoint<S>> {
-    match ending(local, start, order, tolerance, tried) {
-        NewtonEnd::Solution(found) => Some(found),
-        NewtonEnd::Between | NewtonEnd::Nowhere => None,
-    }
+    ending(local, start, order, tolerance, tried).filter(|(_, solves)| *solves).map(|(found, _)| found)
 }
 
-/// Where the iteration of [`deflated`] ends.
+/// Where the iteration of [`deflated`] ends, and whether that is a solution: if it is not, it is a point
+/// that the equations determine, between several solutions.
 pub(crate) fn ending<S: Number>(
     local: &LocalEquations<'_, S>,
     start: &[S],
     order: usize,
     tolerance: f64,
     tried: &mut Vec<Profile>,
-) -> NewtonEnd<S> {
-    let Some(first) = step(local, start, order, RankRule::Tolerance(tolerance)) else { return NewtonEnd::Nowhere };
-    let profile = first.profile;
-    if tried.contains(&profile) {
-        return NewtonEnd::Nowhere;
-    }
-    tried.push(profile.clone());
-    let before = distance(start, &first.point);
-    match iterated(local, first.point, order, &profile, before) {
-        None => NewtonEnd::Nowhere,
-        Some(last) if last.is_solution(local) => {
-            NewtonEnd::Solution(DeflatedPoint { point: last.point, profile: last.profile })
+) -> Option<(DeflatedPoint<S>, bool)> {
+    let is_new = |profile: &Profile| {
+        let is_new = !tried.contains(profile);
+        if is_new {
+            tried.push(profile.clone());
         }
-        Some(_) if profile.remaining > 0 => NewtonEnd::Nowhere,
-        Some(_) => NewtonEnd::Between,
-    }
+        is_new
+    };
+    let (last, profile) = approached(local, start, order, tolerance, is_new)?;
+    let solves = last.is_solution(local);
+    (solves || profile.remaining == 0).then_some((last, solves))
 }
 
 /// Iterates with the ranks of a profile, after a first correction of size `before`.
@@ -139,27 +118,23 @@ pub(crate) fn settled<S: Number>(
     profile: &Profile,
     before: f64,
 ) -> Option<DeflatedPoint<S>> {
-    let last = iterated(local, point, order, profile, before)?;
-    last.is_solution(local).then_some(DeflatedPoint { point: last.point, profile: last.profile })
+    iterated(local, point, order, profile, before).filter(|last| last.is_solution(local))
 }
 
-/// The point near `start` at which the equations of a deflation with a profile vanish: the centre of
-/// the solutions around it, where these are several. The profile is the one that pivots above
-/// `tolerance` show at the start, if it is `wanted` and determines all unknowns.
-pub(super) fn centred<S: Number>(
+/// The last step of the iteration from `start`, with the profile that pivots above `tolerance` (a
+/// logarithm to base 2) show there, if that is `wanted`. Where the profile determines all unknowns, the
+/// equations of the deflation vanish there: it is the centre of the solutions around it, if these are
+/// several.
+pub(super) fn approached<S: Number>(
     local: &LocalEquations<'_, S>,
     start: &[S],
     order: usize,
     tolerance: f64,
     wanted: impl FnOnce(&Profile) -> bool,
-) -> Option<(Vec<S>, Profile)> {
-    let first = step(local, start, order, RankRule::Tolerance(tolerance))?;
-    if first.profile.remaining > 0 || !wanted(&first.profile) {
-        return None;
-    }
+) -> Option<(DeflatedPoint<S>, Profile)> {
+    let first = step(local, start, order, RankRule::Tolerance(tolerance)).filter(|first| wanted(&first.profile))?;
     let before = distance(start, &first.point);
-    let last = iterated(local, first.point, order, &first.profile, before)?;
-    Some((last.point, first.profile))
+    Some((iterated(local, first.point, order, &first.profile, before)?, first.profile))
 }
 
 /// The last step of an iteration that converges as Newton's method does.
@@ -169,7 +144,7 @@ fn iterated<S: Number>(
     order: usize,
     profile: &Profile,
     mut before: f64,
-) -> Option<Step<S>> {
+) -> Option<DeflatedPoint<S>> {
     let mut slow = 0;
     for _ in 0..ITERATIONS {
         if local.is_exhausted() {
@@ -226,14 +201,14 @@ pub(crate) fn distance<S: Number>(a: &[S], b: &[S]) -> f64 {
     largest(&differences)
 }
 
-fn step<S: Number>(local: &LocalEquations<'_, S>, x: &[S], order: usize, ranks: RankRule<'_>) -> Option<Step<S>> {
+fn step<S: Number>(local: &LocalEquations<'_, S>, x: &[S], order: usize, ranks: RankRule<'_>) -> Option<DeflatedPoint<S>> {
     let (values, jacobian) = local.jacobian(x);
     let pivots = Elimination::new(jacobian, x.len(), ranks.stop(0));
     let mut profile = Profile { ranks: vec![pivots.rank()], remaining: 0 };
     let mut accepted = pivots.smallest;
     if pivots.rank() == x.len() {
         let point = pivots.newton_step(x, &values);
-        return Some(Step { point, profile, accepted, rejected: f64::NEG_INFINITY });
+        return Some(DeflatedPoint { point, profile, accepted, rejected: f64::NEG_INFINITY });
     }
     let mut rejected = pivots.rest;
     if order == 1 {
@@ -241,7 +216,7 @@ fn step<S: Number>(local: &LocalEquations<'_, S>, x: &[S], order: usize, ranks: 
         let point = pivots.newton_step(x, &values);
         rejected = rejected.max(local.residual(&point));
         profile.remaining = x.len() - pivots.rank();
-        return Some(Step { point, profile, accepted, rejected });
+        return Some(DeflatedPoint { point, profile, accepted, rejected });
     }
     let reduced = Reduced::new(local, x, &pivots, order)?;
     let mut levels: Vec<(Basis, Vec<Vec<S>>)> = Vec::new();
@@ -296,7 +271,7 @@ fn step<S: Number>(local: &LocalEquations<'_, S>, x: &[S], order: usize, ranks: 
         point = levels[k].1.iter().map(|series| inner.value(series, &point)).collect();
     }
     let point = reduced.at(&point);
-    Some(Step { point, profile, accepted, rejected })
+    Some(DeflatedPoint { point, profile, accepted, rejected })
 }
 
 /// The given equations near a point, with the unknowns that they determine as series in the others.

@@ -25,9 +25,6 @@ pub(crate) enum LocalStructure {
     },
     /// A point on a set of solutions of positive dimension.
     OnComponent {
-        /// A lower bound of the local dimension: that of a reduced set, if the point is a general
-        /// one.
-        dimension: usize,
         /// A solution on it near the end.
         point: Vec<Complex64>,
     },

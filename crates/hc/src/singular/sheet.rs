@@ -11,7 +11,7 @@ use crate::tolerances::LOCAL;
 const MOVES: u32 = 3;
 
 /// A solution on a set of positive dimension near `start`, at a distance of at most `near` (a
-/// logarithm to base 2), and how many of its unknowns are free: the dimension of the set.
+/// logarithm to base 2).
 ///
 /// The point is refined with the ranks that are seen there, and moved along the solutions of the
 /// same ranks. Near an isolated solution at which at most `paths` paths end, the equations are about as
@@ -22,33 +22,27 @@ pub(crate) fn on_sheet<S: Number>(
     start: &[S],
     paths: usize,
     near: f64,
-) -> Option<(Vec<S>, usize)> {
-    let sheet = |found: &DeflatedPoint<S>, order: usize| {
-        if found.profile.is_regular() || distance(start, &found.point) > near {
-            return None;
+) -> Option<Vec<S>> {
+    let leads_on = |found: &DeflatedPoint<S>, order: usize| {
+        let near = !found.profile.is_regular() && distance(start, &found.point) <= near;
+        near && if found.profile.remaining == 0 {
+            is_touched(local, &found.point, paths)
+        } else {
+            leads_on_somewhere(local, found, order, paths)
         }
-        if found.profile.remaining == 0 {
-            return touched(local, &found.point, paths);
-        }
-        leads_on_somewhere(local, found, order, paths).then_some(found.profile.remaining)
     };
     for rank in ranks(local, start) {
         let profile = Profile { ranks: vec![rank], remaining: start.len() - rank };
-        if let Some(found) = settled(local, start.to_vec(), 1, &profile, f64::INFINITY)
-            && let Some(dimension) = sheet(&found, 1)
-        {
-            return Some((found.point, dimension));
+        let found = settled(local, start.to_vec(), 1, &profile, f64::INFINITY);
+        if let Some(found) = found.filter(|found| leads_on(found, 1)) {
+            return Some(found.point);
         }
     }
     let mut tried = Vec::new();
-    for (order, tolerance) in LOCAL.sheet_ranks {
-        if let Some(found) = deflated(local, start, order, tolerance, &mut tried)
-            && let Some(dimension) = sheet(&found, order)
-        {
-            return Some((found.point, dimension));
-        }
-    }
-    None
+    let mut found = LOCAL.sheet_ranks.iter().filter_map(|&(order, tolerance)| {
+        deflated(local, start, order, tolerance, &mut tried).filter(|found| leads_on(found, order))
+    });
+    found.next().map(|found| found.point)
 }
 
 /// Ranks that the Jacobian may have at a point of a reduced set nearby, the highest first.
@@ -59,19 +53,19 @@ fn ranks<S: Number>(local: &LocalEquations<'_, S>, start: &[S]) -> Vec<usize> {
     (1..=sizes.len().min(start.len() - 1)).rev().filter(|&rank| others(rank) <= LOCAL.doubtful_pivot).collect()
 }
 
-/// Most paths at a point for which [`touched`] tells something: near an isolated solution of higher
+/// Most paths at a point for which [`is_touched`] tells something: near an isolated solution of higher
 /// multiplicity, the equations are too small at the least distance.
 const FEW: usize = 3;
 const STARTS: usize = 20;
 /// Dimensions of sets that are sought.
 const DIMENSIONS: usize = 2;
 
-/// The dimension of a reduced set on which a solution lies although ranks are lower there than nearby,
-/// for example where a curve crosses itself: at all distances there are solutions of a common rank.
-/// `None` tells nothing.
-fn touched<S: Number>(local: &LocalEquations<'_, S>, point: &[S], paths: usize) -> Option<usize> {
+/// Whether a solution lies on a reduced set although ranks are lower there than nearby, for example
+/// where a curve crosses itself: at all distances there are solutions of a common rank. False tells
+/// nothing.
+fn is_touched<S: Number>(local: &LocalEquations<'_, S>, point: &[S], paths: usize) -> bool {
     if paths > FEW {
-        return None;
+        return false;
     }
     let variables = point.len();
     let mut random = Random::of(0, Stream::Beside);
@@ -85,7 +79,7 @@ fn touched<S: Number>(local: &LocalEquations<'_, S>, point: &[S], paths: usize) 
             })
         })
     };
-    (1..=DIMENSIONS.min(variables - 1)).find(|&d| LOCAL.distances.iter().all(|&away| is_beside(d, away)))
+    (1..=DIMENSIONS.min(variables - 1)).any(|d| LOCAL.distances.iter().all(|&away| is_beside(d, away)))
 }
 
 /// Whether solutions of the same ranks lead on from this one; if it is isolated, its multiplicity is at

@@ -3,7 +3,7 @@
 use super::classify::Tracked;
 use super::solutions::Solution;
 use crate::distinct::relative_distance;
-use crate::singular::{self, ClusterEquations, ClusterSolution, Effort, Given, LocalStructure};
+use crate::singular::{self, ClusterEquations, Effort, Given, LocalStructure};
 use crate::tolerances::CLUSTERS;
 use num_complex::Complex64;
 use poly::{Exact, Polynomial};
@@ -33,17 +33,12 @@ pub(super) fn clustered(
         if bezout > PATHS {
             continue;
         }
-        cluster.spend(bezout * cluster.polynomials.iter().map(|p| p.terms().len() as u64).sum::<u64>() * WORK);
+        given.spend(bezout * cluster.polynomials.iter().map(|p| p.terms().len() as u64).sum::<u64>() * WORK);
         let Some(solved) = solve(&cluster.polynomials, given) else { continue };
-        let mut found: Vec<ClusterSolution> = Vec::new();
         let regular = solved.solutions.iter().map(|s| (&s.value, s.multiplicity));
-        let components = solved.component_points.iter().map(|point| (point, 1));
-        for (point, multiplicity) in regular.chain(components) {
-            if point.iter().all(|z| z.norm() <= CLUSTERS.outside) {
-                cluster.add(&mut found, point, multiplicity, most);
-            }
-        }
-        let mut found: Vec<LocalStructure> = found.into_iter().map(|f| f.structure).collect();
+        let all = regular.chain(solved.component_points.iter().map(|point| (point, 1)));
+        let inside = all.filter(|(point, _)| point.iter().all(|z| z.norm() <= CLUSTERS.outside));
+        let mut found = cluster.structures(inside, most);
         found.retain(|structure| match structure {
             LocalStructure::Regular { point, .. } => !is_known(given, known, point),
             _ => true,
