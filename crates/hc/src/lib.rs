@@ -66,6 +66,7 @@ pub mod checkpoint;
 pub mod codegen;
 pub mod distinct;
 mod endgame;
+mod exact;
 pub mod family;
 pub mod homotopy;
 mod inverse;

@@ -201,7 +201,12 @@ pub(crate) fn distance<S: Number>(a: &[S], b: &[S]) -> f64 {
     largest(&differences)
 }
 
-fn step<S: Number>(local: &LocalEquations<'_, S>, x: &[S], order: usize, ranks: RankRule<'_>) -> Option<DeflatedPoint<S>> {
+fn step<S: Number>(
+    local: &LocalEquations<'_, S>,
+    x: &[S],
+    order: usize,
+    ranks: RankRule<'_>,
+) -> Option<DeflatedPoint<S>> {
     let (values, jacobian) = local.jacobian(x);
     let pivots = Elimination::new(jacobian, x.len(), ranks.stop(0));
     let mut profile = Profile { ranks: vec![pivots.rank()], remaining: 0 };

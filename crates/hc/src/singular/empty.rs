@@ -1,8 +1,7 @@
 //! Shows, by linear algebra modulo a prime, that a number of general hyperplanes meet no solution.
 
-use super::eliminant::trimmed;
 use super::equations::Given;
-use super::modular::{Echelon, PRIME, Residue};
+use super::modular::{Echelon, PRIME, Residue, trimmed};
 use super::monomials::Monomials;
 use super::multiplicity::Modular;
 use crate::monitor::Monitor;

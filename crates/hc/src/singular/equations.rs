@@ -205,29 +205,6 @@ impl Given {
         })
     }
 
-    /// The terms of a single equation in a single unknown, by ascending exponent; `None` for any
-    /// other equations.
-    pub(crate) fn univariate<S: Precision>(&self) -> Option<Vec<(u32, S)>> {
-        let [terms] = &self.exact.equations[..] else { return None };
-        if self.exact.unknowns != 1 {
-            return None;
-        }
-        let exponent = |t: &Term| t.powers.first().map_or(0, |&(_, e)| e);
-        let scaled = |c: &S, e: u32| c.shifted(i64::from(e) * self.exact.scale[0]);
-        let mut terms: Vec<(u32, S)> =
-            terms.iter().map(exponent).zip(&self.coefficients::<S>()[0]).map(|(e, c)| (e, scaled(c, e))).collect();
-        terms.sort_by_key(|&(e, _)| e);
-        Some(terms)
-    }
-
-    /// The multiplicity of zero and the number of all roots of a single equation in a single
-    /// unknown, as often as they count; `None` for any other equations.
-    pub(crate) fn univariate_degrees(&self) -> Option<(usize, usize)> {
-        let [terms] = &self.exact.equations[..] else { return None };
-        let exponents = || terms.iter().map(|t| t.powers.first().map_or(0, |&(_, e)| e as usize));
-        Some((exponents().min()?, exponents().max()?)).filter(|_| self.exact.unknowns == 1)
-    }
-
     /// The equations in unknowns of about unit size near a point.
     pub(crate) fn near<S: Precision>(&self, point: &[Complex64]) -> LocalEquations<'_, S> {
         self.near_within(point, LOCAL.small)

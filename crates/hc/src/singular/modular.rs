@@ -1,7 +1,6 @@
 //! Arithmetic modulo a prime, in which exact numbers have images. It proves statements in little
 //! time.
 
-use super::eliminant::{Domain, trimmed};
 use num_bigint::{BigInt, Sign};
 use num_rational::BigRational;
 use num_traits::{One, Zero};
@@ -9,17 +8,17 @@ use poly::Exact;
 use std::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// A prime modulo which -1 is a square.
-pub(super) const PRIME: u64 = 0xFFFF_FFFF_0000_0001;
+pub(crate) const PRIME: u64 = 0xFFFF_FFFF_0000_0001;
 /// A square root of -1.
 const ROOT: Residue = Residue(1 << 48);
 
 /// A residue modulo the prime, less than it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Residue(u64);
+pub(crate) struct Residue(u64);
 
 impl Residue {
     /// The residue of an integer.
-    pub(super) fn new(value: u64) -> Residue {
+    pub(crate) fn new(value: u64) -> Residue {
         Residue(value % PRIME)
     }
 
@@ -41,7 +40,7 @@ impl Residue {
     }
 
     /// The image of an exact number; `None` where the prime divides a denominator.
-    pub(super) fn image(c: &Exact) -> Option<Residue> {
+    pub(crate) fn image(c: &Exact) -> Option<Residue> {
         let integer = |n: &BigInt| {
             let size = Residue((n.magnitude() % PRIME).iter_u64_digits().next().unwrap_or(0));
             if n.sign() == Sign::Minus { -size } else { size }
@@ -139,16 +138,22 @@ impl From<u32> for Residue {
     }
 }
 
-impl Domain for Residue {
-    /// By Euclid's algorithm, as residues can be divided.
-    fn resultant(a: Vec<Residue>, b: Vec<Residue>) -> Residue {
-        euclid(a, b).1
+/// The coefficients of a polynomial by ascending powers without leading ones that are zero.
+pub(crate) fn trimmed<T: Zero>(mut coefficients: Vec<T>) -> Vec<T> {
+    while coefficients.last().is_some_and(Zero::is_zero) {
+        coefficients.pop();
     }
+    coefficients
+}
+
+/// The resultant of two polynomials by ascending powers, their last coefficients not zero.
+pub(crate) fn resultant(a: Vec<Residue>, b: Vec<Residue>) -> Residue {
+    euclid(a, b).1
 }
 
 /// Whether a polynomial, its coefficients by ascending exponents and the last not zero, has no
 /// multiple roots.
-pub(super) fn is_squarefree(whole: Vec<Residue>) -> bool {
+pub(crate) fn is_squarefree(whole: Vec<Residue>) -> bool {
     let slope = whole.iter().zip(0u32..).skip(1).map(|(&c, e)| c * e.into()).collect();
     euclid(whole, slope).0.len() == 1
 }
@@ -246,7 +251,7 @@ fn reduce(row: &mut [Residue], column: usize, other: &[Residue]) {
 
 #[cfg(test)]
 mod tests {
-    use super::{Domain, Echelon, PRIME, Residue};
+    use super::{Echelon, PRIME, Residue, resultant};
     use num_traits::Zero;
     use proptest::prelude::{Strategy, prop, prop_assert_eq, proptest};
 
@@ -307,10 +312,10 @@ mod tests {
             }
             (0..b.len()).for_each(|_| want *= leading.0);
             (0..a.len()).for_each(|_| want *= leading.1);
-            prop_assert_eq!(Residue::resultant(with_roots(leading.0, &a), with_roots(leading.1, &b)), want);
+            prop_assert_eq!(resultant(with_roots(leading.0, &a), with_roots(leading.1, &b)), want);
             let mut shared = a;
             shared.push(b[0]);
-            prop_assert_eq!(Residue::resultant(with_roots(leading.0, &shared), with_roots(leading.1, &b)), Residue(0));
+            prop_assert_eq!(resultant(with_roots(leading.0, &shared), with_roots(leading.1, &b)), Residue(0));
         }
     }
 }

@@ -5,13 +5,15 @@ use super::excess::Excess;
 use super::infinity::Line;
 use super::solutions::{Solution, Solutions};
 use crate::distinct::coincidences;
+use crate::exact::{Digits, SmallSystem};
 use crate::monitor::Monitor;
-use crate::refine::Refined;
-use crate::singular::Given;
+use crate::refine::{Refined, Refiner};
+use crate::singular::{self, Given};
 use crate::start::PathSystem;
 use num_complex::Complex64;
 use poly::{Exact, Polynomial};
 use std::collections::BTreeSet;
+use std::sync::OnceLock;
 
 /// A system that was tracked, and the given equations, by which its ends are judged.
 pub(super) struct Tracked<'a> {
@@ -20,6 +22,8 @@ pub(super) struct Tracked<'a> {
     pub(super) work: u64,
     /// The same equations as polynomials.
     pub(super) polynomials: &'a [Polynomial<Exact>],
+    /// These in one unknown or two, once they are asked for.
+    pub(super) small: OnceLock<Option<SmallSystem>>,
     /// As many equations as unknowns, with their parameters.
     pub(super) system: &'a PathSystem,
     pub(super) target: &'a [Complex64],
@@ -30,6 +34,29 @@ pub(super) struct Tracked<'a> {
     pub(super) monitor: &'a Monitor,
     /// How to solve the equations of a cluster; `None` deep enough within such solves.
     pub(super) solve_cluster: Option<&'a ClusterSolver<'a>>,
+}
+
+impl Tracked<'_> {
+    /// The equations, if they come down to one unknown or two.
+    pub(super) fn small(&self) -> Option<&SmallSystem> {
+        self.small.get_or_init(|| SmallSystem::new(self.polynomials)).as_ref()
+    }
+
+    /// All solutions without paths, regular ones first, if the equations come down to one unknown or two.
+    pub(super) fn solutions(&self) -> Option<Vec<Solution>> {
+        let mut refiner = Refiner::new(self.system);
+        let units = self.given.scales();
+        let solution = |(values, multiplicity): (Vec<Digits>, usize)| {
+            // Several may be one double.
+            let value: Vec<Complex64> = values.iter().zip(units).map(|(z, &u)| z.shifted(-u).to_c64()).collect();
+            let residual = singular::residual(self.given, &value);
+            let condition = refiner.judged(self.target, &value).condition;
+            Solution::new(value, multiplicity, multiplicity, multiplicity > 1, residual, condition)
+        };
+        let mut all: Vec<Solution> = self.small()?.solutions()?.into_iter().map(solution).collect();
+        all.sort_by_key(|s| s.singular);
+        Some(all)
+    }
 }
 
 /// Solves the equations of a cluster of ends, as part of the work on the given equations.

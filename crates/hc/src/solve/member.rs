@@ -15,6 +15,7 @@ use crate::tracker::Trackers;
 use num_complex::Complex64;
 use num_traits::ToPrimitive;
 use poly::{Evaluate, Exact, Polynomial, SparseSystem, System};
+use std::sync::OnceLock;
 
 /// The isolated solutions of the member of `family` at the parameters `target`, from those at the
 /// parameters of `fibre`, all of which are tracked. `trackers` belong to the compiled family. The
@@ -38,6 +39,7 @@ pub(crate) fn solve_member<E: Evaluate>(
         given,
         work: work(given, fibre.len()),
         polynomials,
+        small: OnceLock::new(),
         system,
         target,
         line: None,

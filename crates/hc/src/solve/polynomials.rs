@@ -7,18 +7,18 @@ use super::ends::{End, Ends};
 use super::equations::Equations;
 use super::error::SolveError;
 use super::excess::Excess;
-use super::graph::Graph;
 use super::infinity::Line;
 use super::options::{SolveOptions, Start};
 use super::paths::{Route, are_hopeless, follow};
 use super::portions::{Announced, serve};
 use super::singular_ends;
 use super::slack::{self, Slack};
-use super::solutions::{Solution, Solutions};
+use super::solutions::Solutions;
 use super::start::Starts;
 use super::written;
 use crate::checkpoint::{Checkpoint, Part};
 use crate::distinct::Known;
+use crate::exact::number_of_roots;
 use crate::monitor::Monitor;
 use crate::ranks::{Lead, Worker};
 use crate::singular::Given;
@@ -27,6 +27,7 @@ use crate::tolerances::ENDS;
 use crate::tracker::Trackers;
 use poly::{Exact, ExpandError, Polynomial, System};
 use std::borrow::Cow;
+use std::sync::OnceLock;
 
 /// Clusters of solutions are looked at within clusters this often.
 const NESTED: usize = 3;
@@ -183,8 +184,6 @@ struct Problem<'a> {
 struct Expanded<'a> {
     polynomials: &'a [Polynomial<Exact>],
     given: Given,
-    /// Logarithms to base 2 of the units of the unknowns.
-    units: Vec<i64>,
     /// Whether the coefficients that are tracked are exactly those that were given.
     exact: bool,
     /// The number of all roots, with their multiplicities, of a single equation in a single unknown.
@@ -206,9 +205,8 @@ fn prepared<'a>(
     };
     // A single equation has no condition number to tell, and combinations are rounded.
     let exact = equations.exact && (2..=names.len()).contains(&polynomials.len());
-    let units = equations.units();
-    let given = Given::new(polynomials, units.clone()).heeding(monitor);
-    let roots = given.univariate_degrees().filter(|_| !options.torus_only).map(|(_, degree)| degree);
+    let given = Given::new(polynomials, equations.units()).heeding(monitor);
+    let roots = number_of_roots(polynomials).filter(|_| !options.torus_only);
     let square = match squaring {
         Squaring::Combinations => None,
         Squaring::SlackUnknowns => slack::squared(&equations, context.named_sums, options, monitor)?,
@@ -218,7 +216,7 @@ fn prepared<'a>(
         None => (equations, None, Cow::Borrowed(options)),
     };
     let starts = Starts::new(equations, context.named_sums, &options, monitor)?;
-    let expanded = Some(Expanded { polynomials, given, units, exact, roots });
+    let expanded = Some(Expanded { polynomials, given, exact, roots });
     Ok((Problem { expanded, squaring, slack, options, monitor }, starts))
 }
 
@@ -333,6 +331,7 @@ impl Problem<'_> {
             given,
             work,
             polynomials: expanded.polynomials,
+            small: OnceLock::new(),
             system,
             target,
             line: Some(line),
@@ -340,7 +339,12 @@ impl Problem<'_> {
             monitor,
             solve_cluster: (nesting.level < NESTED).then_some(&solver as &ClusterSolver<'_>),
         };
-        if let Some(solutions) = expanded.roots_at_once(&mut ends, &tracked) {
+        // There is a better way to all roots of a polynomial in one unknown than other paths.
+        let missing = expanded.roots.is_some_and(|roots| ends.lost() > 0 || ends.regular.len() != roots);
+        if missing
+            && !monitor.is_cancelled()
+            && let Some(solutions) = tracked.solutions()
+        {
             return ends.with_all(solutions);
         }
         let mut ends = ends.judged(Some(&tracked), excess, coincidence);
@@ -349,19 +353,7 @@ impl Problem<'_> {
             (0..ends.directions.len()).for_each(|k| ends.reassign(ends.paths, End::infinite(k), End::LOST));
         }
         let all = !self.options.torus_only && self.options.known.is_none() && !monitor.is_cancelled();
-        if all { ends.checked(&expanded.units, &tracked) } else { ends }
-    }
-}
-
-impl Expanded<'_> {
-    /// All roots of a polynomial in one unknown without paths, if these have not ended at as many: there
-    /// is a better way to them than other paths.
-    fn roots_at_once(&self, ends: &mut Ends, tracked: &Tracked<'_>) -> Option<Vec<Solution>> {
-        let missing = self.roots.is_some_and(|degree| ends.lost() > 0 || ends.regular.len() != degree);
-        if !missing || tracked.monitor.is_cancelled() {
-            return None;
-        }
-        Graph::new(self.polynomials)?.solutions(&self.units, tracked)
+        if all { ends.checked(&tracked) } else { ends }
     }
 }
 

@@ -5,10 +5,10 @@ use super::classify::Tracked;
 use super::cluster::{clustered, distributed, is_known, is_same};
 use super::ends::{End, Ends};
 use super::excess::Excess;
-use super::graph::Graph;
 use super::record::SingularEnd;
 use super::solutions::{Solution, Unresolved};
 use crate::distinct::{groups, relative_distance};
+use crate::exact::SmallSystem;
 use crate::refine::Refiner;
 use crate::singular::{self, Effort, LocalStructure, Why};
 use crate::threads::IntoParallelRefIterator;
@@ -16,7 +16,6 @@ use crate::threads::IntoParallelRefIterator;
 use crate::threads::ParallelIterator;
 use crate::tolerances::ENDS;
 use num_complex::Complex64;
-use std::cell::LazyCell;
 
 impl Ends {
     /// Judges the singular ends, and the `doubtful` ones among the regular ends.
@@ -34,8 +33,7 @@ impl Ends {
         let doubted = structures
             .iter()
             .any(|(_, s)| matches!(s, LocalStructure::Isolated { .. } | LocalStructure::OnComponent { .. }));
-        let by_graph = || Graph::new(tracked.polynomials).is_some_and(|graph| graph.are_simple());
-        let simple = doubted && (singular::all_simple(tracked.polynomials) || by_graph());
+        let simple = doubted && tracked.small().is_some_and(SmallSystem::are_simple);
         // Multiple solutions, with the paths that end there, and the number of lost paths that end at others.
         let mut multiple: Vec<(Solution, Vec<usize>)> = Vec::new();
         let mut further = 0;
@@ -126,33 +124,30 @@ impl Ends {
     }
 
     /// Adds what other methods tell, if some paths are lost or some ends are singular.
-    pub(super) fn checked(mut self, units: &[i64], tracked: &Tracked<'_>) -> Ends {
-        let graph = LazyCell::new(|| Graph::new(tracked.polynomials));
+    pub(super) fn checked(mut self, tracked: &Tracked<'_>) -> Ends {
         let found: usize = self.solutions.iter().map(|s| s.multiplicity).sum();
         let singular = !self.component_points.is_empty() || self.solutions.iter().any(|s| s.singular);
-        if self.lost() == 0 && !singular {
-            // Paths may seem to go to infinity that do not.
-            let all = || singular::finite_solutions(tracked.polynomials).or_else(|| graph.as_ref()?.count());
-            if self.infinite() == 0 || all().is_none_or(|all| all == found) {
+        // Paths may seem to go to infinity that do not.
+        if self.lost() == 0 && !singular && self.infinite() == 0 {
+            return self;
+        }
+        if let Some(all) = tracked.small().and_then(SmallSystem::count) {
+            if self.lost() == 0 && !singular && all == found {
                 return self;
             }
+            // There are no components. Paths that are not accounted for go to infinity, however they seem to
+            // end, or solutions are missing.
+            self.component_points.clear();
+            self.reassign(self.paths, End::COMPONENT, End::LOST);
+            self.missing = all.abs_diff(found);
+            if self.missing == 0 {
+                self.reassign(self.paths, End::LOST, End::SOLUTION);
+            }
         }
-        if let Some(graph) = &*graph {
-            if let Some(all) = graph.count() {
-                // There are no components. Paths that are not accounted for go to infinity, however
-                // they seem to end, or solutions are missing.
-                self.component_points.clear();
-                self.reassign(self.paths, End::COMPONENT, End::LOST);
-                self.missing = all.abs_diff(found);
-                if self.missing == 0 {
-                    self.reassign(self.paths, End::LOST, End::SOLUTION);
-                }
-            }
-            if self.lost() > 0
-                && let Some(solutions) = graph.solutions(units, tracked)
-            {
-                return self.with_all(solutions);
-            }
+        if self.lost() > 0
+            && let Some(solutions) = tracked.solutions()
+        {
+            return self.with_all(solutions);
         }
         if self.lost() == 0 {
             self.unresolved.clear();

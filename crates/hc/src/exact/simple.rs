@@ -2,8 +2,8 @@
 //! by their eliminant.
 
 use super::eliminant::Eliminant;
-use super::modular::{PRIME, Residue, is_squarefree};
 use crate::random::{Random, Stream};
+use crate::singular::{PRIME, Residue, is_squarefree};
 use poly::{Exact, Polynomial};
 
 /// Systems with more roots are not looked at.
@@ -13,7 +13,7 @@ const MAX_ROOTS: usize = 600;
 ///
 /// If the eliminant had a multiple root, so would its image modulo the prime, unless the leading
 /// coefficient vanishes there: of all changes of coordinates, at most one in 1e13 does that.
-pub(crate) fn all_simple(polynomials: &[Polynomial<Exact>]) -> bool {
+pub(super) fn all_simple(polynomials: &[Polynomial<Exact>]) -> bool {
     if let [polynomial] = polynomials {
         return coefficients(polynomial).is_some_and(is_squarefree);
     }
@@ -21,7 +21,7 @@ pub(crate) fn all_simple(polynomials: &[Polynomial<Exact>]) -> bool {
 }
 
 /// The number of all common roots, with their multiplicities, if they are isolated.
-pub(crate) fn finite_solutions(polynomials: &[Polynomial<Exact>]) -> Option<usize> {
+pub(super) fn finite_solutions(polynomials: &[Polynomial<Exact>]) -> Option<usize> {
     eliminant(polynomials).map(|found| found.degree())
 }
 

@@ -4,8 +4,7 @@
 //! are multiple roots, Yun's algorithm (1976) finds the factors by greatest common divisors of
 //! exact polynomials.
 
-use super::eliminant::trimmed;
-use super::modular::{self, Residue};
+use crate::singular::{self, Residue, trimmed};
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, Zero};
@@ -22,7 +21,7 @@ const MAX_WORK: f64 = 1e9;
 
 /// Factors without multiple roots and their exponents, whose product is the polynomial up to a
 /// constant; `None` for more than one unknown, negative exponents, or too much work.
-pub(crate) fn squarefree(polynomial: &Polynomial<Exact>) -> Option<Vec<(Polynomial<Exact>, usize)>> {
+pub(super) fn squarefree(polynomial: &Polynomial<Exact>) -> Option<Vec<(Polynomial<Exact>, usize)>> {
     let whole = dense(polynomial)?;
     if is_squarefree(&whole) {
         return Some(vec![(polynomial.clone(), 1)]);
@@ -123,7 +122,7 @@ fn monic(a: Dense) -> Dense {
 /// image there and the degree stays, a square factor has one too.
 fn is_squarefree(whole: &[Exact]) -> bool {
     let image = whole.iter().map(Residue::image).collect::<Option<Vec<Residue>>>();
-    image.is_some_and(|image| image.last().is_some_and(|c| !c.is_zero()) && modular::is_squarefree(image))
+    image.is_some_and(|image| image.last().is_some_and(|c| !c.is_zero()) && singular::is_squarefree(image))
 }
 
 #[cfg(test)]

@@ -5,12 +5,14 @@
 //! Algebra, section 83). It is interpolated: the resultant on each of as many lines `u = 0, 1, 2 ...`
 //! as its degree needs.
 
-use num_traits::{One, Zero};
+use crate::singular::{Residue, resultant, trimmed};
+use num_bigint::BigInt;
+use num_traits::{One, Zero, pow};
 use poly::{Exact, Polynomial};
 use std::ops::Sub;
 
 /// Coefficients whose resultants are computed without rounding.
-pub(crate) trait Domain: Clone + Zero + One + Sub<Output = Self> + From<u32> {
+pub(super) trait Domain: Clone + Zero + One + Sub<Output = Self> + From<u32> {
     /// The resultant of two polynomials by ascending powers, their last coefficients not zero.
     fn resultant(a: Vec<Self>, b: Vec<Self>) -> Self;
 }
@@ -19,18 +21,18 @@ pub(crate) trait Domain: Clone + Zero + One + Sub<Output = Self> + From<u32> {
 type Term<T> = ([usize; 2], T);
 
 /// The eliminant of polynomials whose coefficients have images in a domain.
-pub(crate) struct Eliminant<T> {
+pub(super) struct Eliminant<T> {
     /// The coefficients times [`factor`](Eliminant::factor), by ascending powers, the last not zero.
-    pub(crate) coefficients: Vec<T>,
+    pub(super) coefficients: Vec<T>,
     /// The factorial of the product of the degrees; the coefficients are divided by it.
-    pub(crate) factor: T,
+    pub(super) factor: T,
 }
 
 impl<T: Domain> Eliminant<T> {
     /// The eliminant of two polynomials after the change of coordinates `x = u - t y`; `None` if it is
     /// zero, if there may be more than `most` common roots, if the change of coordinates is not a
     /// general one, or if a coefficient has no `image` or an exponent is negative.
-    pub(crate) fn new(
+    pub(super) fn new(
         polynomials: &[Polynomial<Exact>],
         t: &T,
         most: usize,
@@ -48,7 +50,7 @@ impl<T: Domain> Eliminant<T> {
     }
 
     /// The degree: the number of common roots, with their multiplicities.
-    pub(crate) fn degree(&self) -> usize {
+    pub(super) fn degree(&self) -> usize {
         self.coefficients.len().saturating_sub(1)
     }
 }
@@ -110,10 +112,86 @@ fn interpolated<T: Domain>(mut values: Vec<T>) -> Option<Eliminant<T>> {
     (!coefficients.is_empty()).then_some(Eliminant { coefficients, factor })
 }
 
-/// The coefficients of a polynomial by ascending powers without leading ones that are zero.
-pub(crate) fn trimmed<T: Zero>(mut coefficients: Vec<T>) -> Vec<T> {
-    while coefficients.last().is_some_and(Zero::is_zero) {
-        coefficients.pop();
+impl Domain for Residue {
+    fn resultant(a: Vec<Residue>, b: Vec<Residue>) -> Residue {
+        resultant(a, b)
     }
-    coefficients
+}
+
+impl Domain for BigInt {
+    /// By subresultants (Cohen 1993, A Course in Computational Algebraic Number Theory, algorithm
+    /// 3.3.7), which stay integers.
+    fn resultant(mut a: Vec<BigInt>, mut b: Vec<BigInt>) -> BigInt {
+        let mut sign = BigInt::one();
+        if a.len() < b.len() {
+            if a.len().is_multiple_of(2) && b.len().is_multiple_of(2) {
+                sign = -sign;
+            }
+            std::mem::swap(&mut a, &mut b);
+        }
+        let (mut g, mut h) = (BigInt::one(), BigInt::one());
+        while b.len() > 1 {
+            let steps = a.len() - b.len();
+            if a.len().is_multiple_of(2) && b.len().is_multiple_of(2) {
+                sign = -sign;
+            }
+            let divisor = &g * pow(h.clone(), steps);
+            let rest = remainder(a, &b).into_iter().map(|c| c / &divisor).collect();
+            a = std::mem::replace(&mut b, rest);
+            g = a.last().cloned().unwrap_or_default();
+            if steps > 0 {
+                h = pow(g.clone(), steps) / pow(h, steps - 1);
+            }
+        }
+        let Some(last) = b.last() else { return BigInt::zero() };
+        match a.len() - 1 {
+            0 => sign,
+            degree => sign * pow(last.clone(), degree) / pow(h, degree - 1),
+        }
+    }
+}
+
+/// The remainder of `a`, times the leading coefficient of `b` to the power of one more than their
+/// degrees differ.
+fn remainder(mut a: Vec<BigInt>, b: &[BigInt]) -> Vec<BigInt> {
+    let Some(leading) = b.last() else { return a };
+    while a.len() >= b.len() {
+        let (place, Some(last)) = (a.len() - b.len(), a.pop()) else { break };
+        for c in &mut a {
+            *c *= leading;
+        }
+        for (c, d) in a[place..].iter_mut().zip(b) {
+            *c -= &last * d;
+        }
+    }
+    trimmed(a)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Domain;
+    use num_bigint::BigInt;
+    use proptest::prelude::{prop, prop_assert_eq, proptest};
+
+    proptest! {
+        /// The product of the differences of all roots.
+        #[test]
+        fn resultants_are_those_of_the_roots(
+            a in prop::collection::vec(-9i64..9, 0..5),
+            b in prop::collection::vec(-9i64..9, 0..5),
+            leading in (1i64..5, 1i64..5),
+        ) {
+            let with = |leading: i64, roots: &[i64]| roots.iter().fold(vec![BigInt::from(leading)], |p, &root| {
+                let below = p.iter().map(|c| -c * root).chain([BigInt::ZERO]);
+                below.zip(std::iter::once(BigInt::ZERO).chain(p.clone())).map(|(a, b)| a + b).collect()
+            });
+            let mut want = BigInt::from(leading.0).pow(b.len() as u32) * BigInt::from(leading.1).pow(a.len() as u32);
+            for x in &a {
+                for y in &b {
+                    want *= x - y;
+                }
+            }
+            prop_assert_eq!(BigInt::resultant(with(leading.0, &a), with(leading.1, &b)), want);
+        }
+    }
 }

@@ -1,48 +1,57 @@
-//! All roots of a polynomial in one unknown without multiple roots, to many digits: the iteration of
-//! Ehrlich and Aberth.
+//! All roots of a polynomial in one unknown, to many digits: those of its square-free factors, by the
+//! iteration of Ehrlich and Aberth.
 //!
 //! Starting points lie on the circles that the Newton polygon of the coefficients gives (Bini
 //! 1996). Roots may depend on the last digits of the coefficients; unlike paths, the iteration can
 //! take all the digits that it then needs. In the end each root has a disc of its own (Smith 1970):
 //! no root is missed, and roots that round to the same double are separated.
 
-use super::equations::{Given, Precision};
-use super::number::Number;
 use super::squarefree::squarefree;
+use crate::singular::Number;
 use crate::tolerances::LOCAL;
 use num_complex::Complex64;
-use poly::{ComplexMulti, Exact, Polynomial};
+use poly::{ComplexMulti, Exact, Monomial, Polynomial, Scalar};
+
+/// Numbers of 77 digits, for solutions that paths do not tell.
+pub(crate) type Digits = ComplexMulti<4>;
 
 /// Polynomials of a higher degree are left to paths.
 const MAX_DEGREE: usize = 3000;
 /// Most rounds; near simple roots each cubes the error.
 const ROUNDS: usize = 300;
 
-/// A root to 45 digits: the sum of three doubles.
-pub(crate) type Root = [Complex64; 3];
+/// The number of all roots, with their multiplicities, of a single polynomial in a single unknown; of
+/// negative exponents, those of its product with a power. `None` for any other polynomials.
+pub(crate) fn number_of_roots(polynomials: &[Polynomial<Exact>]) -> Option<usize> {
+    let [polynomial] = polynomials else { return None };
+    let exponents: Vec<i64> = polynomial.terms().iter().flat_map(|(m, _)| m.exponents()).map(|&e| e.into()).collect();
+    let (lowest, highest) = (*exponents.iter().min()?, *exponents.iter().max()?);
+    if polynomial.variables() == 1 { usize::try_from(highest - lowest.min(0)).ok() } else { None }
+}
 
-/// All roots of a polynomial in one unknown in units of `2^unit`, with their multiplicities: those of
-/// its square-free factors, which are simple; `None` if they are not all clear. Several may be one
-/// double.
-pub(crate) fn roots_with_multiplicities(polynomial: &Polynomial<Exact>, unit: i64) -> Option<Vec<(Root, usize)>> {
+/// All roots of a polynomial in one unknown to 45 digits, with their multiplicities: those of its
+/// square-free factors, which are simple; `None` if they are not all clear. Several may be one double.
+pub(super) fn roots_with_multiplicities(polynomial: &Polynomial<Exact>) -> Option<Vec<(Digits, usize)>> {
     let mut all = Vec::new();
     for (part, multiplicity) in squarefree(polynomial)? {
-        let part = Given::new(&[part], vec![unit]);
-        let (zero, _) = part.univariate_degrees()?;
-        let roots = roots(&part)?.into_iter().chain((zero > 0).then(Root::default));
+        let has_zero = part.terms().iter().all(|(monomial, _)| monomial.exponents() != [0]);
+        let roots = roots(&part)?.into_iter().chain(has_zero.then(Digits::zero));
         all.extend(roots.map(|root| (root, multiplicity)));
     }
-    Some(all)
+    let count: usize = all.iter().map(|(_, multiplicity)| multiplicity).sum();
+    (i64::try_from(count).ok() == polynomial.degree()).then_some(all)
 }
 
-/// All roots but zero; `None` if there is more than one equation or unknown, the degree is too high, or
+/// All roots but zero of a polynomial without negative exponents; `None` if the degree is too high, or
 /// the roots cannot be told apart because some are multiple.
-fn roots(given: &Given) -> Option<Vec<Root>> {
-    settled::<ComplexMulti<4>>(given).or_else(|| settled::<ComplexMulti<16>>(given))
+fn roots(polynomial: &Polynomial<Exact>) -> Option<Vec<Digits>> {
+    settled::<ComplexMulti<4>>(polynomial).or_else(|| settled::<ComplexMulti<16>>(polynomial))
 }
 
-fn settled<S: Precision>(given: &Given) -> Option<Vec<Root>> {
-    let terms = given.univariate::<S>()?;
+fn settled<S: Number>(polynomial: &Polynomial<Exact>) -> Option<Vec<Digits>> {
+    let term = |(m, c): &(Monomial, Exact)| Some((u32::try_from(*m.exponents().first()?).ok()?, S::from_exact(c)));
+    let mut terms: Vec<(u32, S)> = polynomial.terms().iter().map(term).collect::<Option<_>>()?;
+    terms.sort_by_key(|&(exponent, _)| exponent);
     let (lowest, highest) = (terms.first()?.0, terms.last()?.0);
     let degree = usize::try_from(highest - lowest).ok().filter(|&d| d <= MAX_DEGREE)?;
     let terms: Vec<(u32, S)> = terms.into_iter().map(|(e, c)| (e - lowest, c)).collect();
@@ -78,25 +87,27 @@ fn settled<S: Precision>(given: &Given) -> Option<Vec<Root>> {
             settled[k] = size < LOCAL.root_correction;
         }
         if settled.iter().all(|&s| s) {
-            return are_apart(&terms, &points).then(|| points.iter().map(parts).collect());
+            return are_apart(&terms, &points).then(|| points.iter().map(digits).collect());
         }
     }
     None
 }
 
-fn parts<S: Number>(z: &S) -> Root {
-    let mut rest = *z;
-    [(); 3].map(|()| {
+/// The sum of the three doubles that come nearest.
+fn digits<S: Number>(z: &S) -> Digits {
+    let (mut rest, mut sum) = (*z, Digits::zero());
+    for _ in 0..3 {
         let part = rest.to_c64();
         rest = S::sub(&rest, &S::from_c64(part));
-        part
-    })
+        sum = Digits::add(&sum, &Digits::from_c64(part));
+    }
+    sum
 }
 
 /// Whether discs about the points, each of which holds a root if it meets no other, are disjoint:
 /// their radii are the degree times what is left of the polynomial there, divided by the distances
 /// from the other points and by the leading coefficient (Smith 1970, J. ACM 17, theorem 1).
-fn are_apart<S: Precision>(terms: &[(u32, S)], points: &[S]) -> bool {
+fn are_apart<S: Number>(terms: &[(u32, S)], points: &[S]) -> bool {
     let Some((_, leading)) = terms.last() else { return false };
     let degree = (points.len() as f64).log2();
     let distance = |j: usize, k: usize| S::sub(&points[j], &points[k]).log2();
@@ -163,8 +174,7 @@ fn starts<S: Number>(terms: &[(u32, S)]) -> Vec<S> {
 
 #[cfg(test)]
 mod tests {
-    use super::roots;
-    use crate::singular::equations::Given;
+    use super::{Digits, roots};
     use num_complex::Complex64;
     use poly::parse::phcpack;
 
@@ -174,8 +184,7 @@ mod tests {
 
     fn found(text: &str) -> Option<Vec<Complex64>> {
         let system = phcpack(text).unwrap();
-        let given = Given::new(&system.expand(&Default::default()).unwrap(), vec![0; system.variables().len()]);
-        Some(roots(&given)?.into_iter().map(|[root, ..]| root).collect())
+        Some(roots(&system.expand(&Default::default()).unwrap()[0])?.iter().map(Digits::to_c64).collect())
     }
 
     /// Mignotte's polynomials `x^d - 2 (a x - 1)^2` have two roots at about `a^(-1 - d/2)` from each

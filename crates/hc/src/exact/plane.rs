@@ -4,36 +4,23 @@
 //! The roots of an [eliminant](Eliminant) after a change of coordinates `u = x + t y` are the `u` of
 //! all solutions, with their multiplicities. Two such changes give both coordinates.
 
-use crate::singular::{self, Eliminant};
+use super::eliminant::Eliminant;
+use super::roots::{Digits, roots_with_multiplicities};
 use crate::tolerances::LOCAL;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, Zero};
-use poly::{ComplexMulti, Exact, Monomial, Polynomial, Scalar};
+use poly::{Exact, Monomial, Polynomial, Scalar};
 
 /// Systems of more paths are left to these.
 const PATHS: usize = 150;
 /// Pairs of changes of coordinates, the next where one does not tell all solutions apart.
 const CHANGES: [[i32; 2]; 3] = [[3, -5], [7, -4], [11, -9]];
 
-/// Numbers of 77 digits, for solutions that paths do not tell.
-pub(super) type Digits = ComplexMulti<4>;
-
 /// The value of a term.
 pub(super) fn term(monomial: &Monomial, c: &Exact, point: &[Digits]) -> Digits {
     let powers = monomial.exponents().iter().zip(point);
     powers.fold(Digits::from_exact(c), |product, (&e, z)| (0..e).fold(product, |product, _| Digits::mul(&product, z)))
-}
-
-/// All roots of a polynomial in one unknown to many digits, with their multiplicities, if they are all
-/// clear.
-pub(super) fn roots(polynomial: &Polynomial<Exact>) -> Option<Vec<(Digits, usize)>> {
-    let found = singular::roots_with_multiplicities(polynomial, 0)?;
-    let count: usize = found.iter().map(|(_, multiplicity)| multiplicity).sum();
-    let digits = |(root, multiplicity): ([_; 3], usize)| {
-        (root.iter().fold(Digits::zero(), |sum, &part| Digits::add(&sum, &Digits::from_c64(part))), multiplicity)
-    };
-    (i64::try_from(count).ok() == polynomial.degree()).then(|| found.into_iter().map(digits).collect())
 }
 
 /// All common roots of two polynomials in two unknowns to many digits, with their multiplicities, if
@@ -52,13 +39,13 @@ fn without_denominators(polynomial: &Polynomial<Exact>) -> Polynomial<Exact> {
     polynomial.scaled(&Exact { re: denominator.into(), im: BigRational::zero() })
 }
 
-/// The same by these changes of coordinates.
+/// The common roots by these changes of coordinates.
 fn changed(
     equations: &[Polynomial<Exact>],
     polynomials: &[Polynomial<Exact>],
     changes: &[i32; 2],
 ) -> Option<Vec<(Vec<Digits>, usize)>> {
-    let [first, second] = changes.map(|t| roots(&eliminated(equations, t)?));
+    let [first, second] = changes.map(|t| roots_with_multiplicities(&eliminated(equations, t)?));
     let (first, second) = (first?, second?);
     let [t, s] = changes.map(f64::from);
     let mut taken = vec![false; second.len()];
