@@ -25,11 +25,17 @@ pub(super) struct Equations {
     scale: Vec<f64>,
     /// Whether the coefficients are exactly those of the polynomials.
     pub(super) exact: bool,
+    /// How many equations, the last ones, give as many unknowns as [sums](poly::System::with_named_sums).
+    named_sums: usize,
 }
 
 impl Equations {
     /// Reads polynomials, and scales equations and unknowns by powers of two.
-    pub(super) fn new(polynomials: &[Polynomial<Exact>], names: &[String]) -> Result<Equations, SolveError> {
+    pub(super) fn new(
+        polynomials: &[Polynomial<Exact>],
+        names: &[String],
+        named_sums: usize,
+    ) -> Result<Equations, SolveError> {
         let unknowns = names.len();
         let mut supports: Vec<Vec<Vec<i32>>> = Vec::with_capacity(polynomials.len());
         let mut coefficients = Vec::with_capacity(polynomials.len());
@@ -65,13 +71,13 @@ impl Equations {
             }
         }
         let scale = exponents.iter().map(|&e| 2f64.powi(e)).collect();
-        Ok(Equations { unknowns, supports, coefficients, scale, exact })
+        Ok(Equations { unknowns, supports, coefficients, scale, exact, named_sums })
     }
 
     /// As many equations as unknowns, without terms.
     pub(super) fn without_terms(unknowns: usize) -> Equations {
         let (supports, coefficients) = (vec![Vec::new(); unknowns], vec![Vec::new(); unknowns]);
-        Equations { unknowns, supports, coefficients, scale: vec![1.0; unknowns], exact: false }
+        Equations { unknowns, supports, coefficients, scale: vec![1.0; unknowns], exact: false, named_sums: 0 }
     }
 
     /// Logarithms to base 2 of the units of the scaled unknowns.
@@ -81,6 +87,11 @@ impl Equations {
 
     pub(super) fn len(&self) -> usize {
         self.supports.len()
+    }
+
+    /// The equations of named sums.
+    pub(super) fn named_sums(&self) -> std::ops::Range<usize> {
+        self.len() - self.named_sums..self.len()
     }
 
     /// The degree of an equation; with negative exponents, the largest sum of exponents.
@@ -134,7 +145,7 @@ impl Equations {
         squared
     }
 
-    /// The same equations with `further` more unknowns, which do not occur in them.
+    /// These equations with `further` more unknowns, which do not occur in them.
     pub(super) fn widened(&self, further: usize) -> Equations {
         let mut wide = self.clone();
         wide.unknowns += further;
@@ -156,7 +167,7 @@ impl Equations {
         }
     }
 
-    /// The same for many terms.
+    /// Adds terms with coefficient zero to an equation, as far as it does not have them.
     pub(super) fn add_terms(&mut self, equation: usize, points: Vec<Vec<i32>>) {
         let known: BTreeSet<Vec<i32>> = self.supports[equation].iter().cloned().collect();
         for point in points.into_iter().filter(|p| !known.contains(p)) {
@@ -265,7 +276,7 @@ mod tests {
     fn scales_bring_coefficients_together() {
         let system = phcpack("2\n1.0E-12*x^2 - 1.0E-3*x*y + 1.0E6;\n1.0E-6*x*y^2 - y + 1.0E2;").unwrap();
         let polynomials = system.expand(&Default::default()).unwrap();
-        let equations = Equations::new(&polynomials, system.variables()).unwrap();
+        let equations = Equations::new(&polynomials, system.variables(), 0).unwrap();
         let sizes: Vec<f64> = equations.coefficients.iter().flatten().map(|c| c.norm().log10()).collect();
         let spread = sizes.iter().copied().fold(f64::MIN, f64::max) - sizes.iter().copied().fold(f64::MAX, f64::min);
         assert!(spread < 6.0, "{sizes:?}");
@@ -275,7 +286,7 @@ mod tests {
     fn powers_of_sums_are_refused_with_a_remedy() {
         let system = phcpack("2\n(x+y+1)^100-1;\nx-y;").unwrap();
         let polynomials = system.expand(&Default::default()).unwrap();
-        let error = Equations::new(&polynomials, system.variables()).unwrap_err();
+        let error = Equations::new(&polynomials, system.variables(), 0).unwrap_err();
         assert!(matches!(error, SolveError::Spread { equation: 1, terms: 5150, .. }), "{error}");
         assert!(error.to_string().contains("new unknown"), "{error}");
     }

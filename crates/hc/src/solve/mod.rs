@@ -28,9 +28,7 @@ pub use error::SolveError;
 pub(crate) use formulas::Formulas;
 pub(crate) use member::{ends, solve_member};
 pub use options::{SolveOptions, Start};
-#[cfg(test)]
-pub(crate) use polynomials::solve_polynomials;
-pub(crate) use polynomials::{SolveContext, solve_sliced};
+pub(crate) use polynomials::{SolveContext, solve_polynomials};
 pub use solutions::{Direction, Solution, Solutions, Unresolved};
 pub use summary::coordinates;
 pub use warning::Warning;

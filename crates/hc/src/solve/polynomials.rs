@@ -43,24 +43,14 @@ pub(crate) struct SolveContext<'a> {
     pub(crate) worker: Option<&'a Worker<'a>>,
     /// How many unknowns, the last ones, and equations, the last ones, are [named sums](poly::System::with_named_sums).
     pub(crate) named_sums: usize,
-}
-
-/// How a solve belongs to another one, the ends of which it tells apart.
-#[derive(Clone, Copy, Default)]
-struct Nesting<'a> {
-    /// How deep it is within others; from [`NESTED`] on its own ends are told apart no further.
-    level: usize,
-    /// The equations of the other one, to whose work that of this one is added.
-    outer: Option<&'a Given>,
-}
-
-/// How more equations than unknowns become as many.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Squaring {
-    /// Each is a combination of several.
-    Combinations,
-    /// Linear ones are kept; the others get slack [unknowns](slack) where these save paths.
-    SlackUnknowns,
+    /// Whether some equations are general hyperplanes. They are kept as they are, like other linear ones
+    /// and those of named sums; the others may get slack [unknowns](slack) instead of being combined.
+    pub(crate) sliced: bool,
+    /// How deep it is within other solves, the ends of which it tells apart; from [`NESTED`] on its own
+    /// ends are told apart no further.
+    pub(crate) level: usize,
+    /// The equations of the solve around it, to whose work that of this one is added.
+    pub(crate) outer: Option<&'a Given>,
 }
 
 /// The solutions of polynomials in unknowns of these names, which the result does not have.
@@ -71,25 +61,14 @@ pub(crate) fn solve_polynomials(
     monitor: &Monitor,
     context: SolveContext<'_>,
 ) -> Result<Solutions, SolveError> {
-    solve_nested(polynomials, names, options, monitor, Squaring::Combinations, Nesting::default(), context)
+    match unless_cancelled(prepared(polynomials, names, options, monitor, context))? {
+        Some((problem, starts)) => solved(&problem, starts),
+        None => Ok(nothing()),
+    }
 }
 
-/// [`solve_polynomials`] of equations that are too many, some of them general hyperplanes: linear ones
-/// are kept as they are, and so are those of the last unknowns, which are `named_sums` sums. The others may
-/// get slack [unknowns](slack) instead of being combined.
-pub(crate) fn solve_sliced(
-    polynomials: &[Polynomial<Exact>],
-    names: &[String],
-    named_sums: usize,
-    options: &SolveOptions,
-    monitor: &Monitor,
-) -> Result<Solutions, SolveError> {
-    let (nesting, context) = (Nesting::default(), SolveContext { named_sums, ..SolveContext::default() });
-    solve_nested(polynomials, names, options, monitor, Squaring::SlackUnknowns, nesting, context)
-}
-
-/// [`solve_polynomials`] of the equations of a cluster, `level` deep within a solve of the `outer`
-/// equations, to whose work that of this one is added.
+/// The solutions of the equations of a cluster, `level` deep within a solve of the `outer` equations, to
+/// whose work that of this one is added.
 pub(super) fn solve_cluster(
     polynomials: &[Polynomial<Exact>],
     outer: &Given,
@@ -97,29 +76,10 @@ pub(super) fn solve_cluster(
     monitor: &Monitor,
 ) -> Option<Solutions> {
     let names: Vec<String> = (0..polynomials.first()?.variables()).map(|k| format!("x{k}")).collect();
-    let nesting = Nesting { level, outer: Some(outer) };
-    let options = SolveOptions::new();
+    let context = SolveContext { level, outer: Some(outer), ..SolveContext::default() };
     // Cancelled with the rest, but no progress that is to be told.
-    let monitor = monitor.quiet();
-    let (squaring, context) = (Squaring::Combinations, SolveContext::default());
-    let found = solve_nested(polynomials, &names, &options, &monitor, squaring, nesting, context).ok()?;
+    let found = solve_polynomials(polynomials, &names, &SolveOptions::new(), &monitor.quiet(), context).ok()?;
     (!found.interrupted).then_some(found)
-}
-
-fn solve_nested(
-    polynomials: &[Polynomial<Exact>],
-    names: &[String],
-    options: &SolveOptions,
-    monitor: &Monitor,
-    squaring: Squaring,
-    nesting: Nesting<'_>,
-    context: SolveContext<'_>,
-) -> Result<Solutions, SolveError> {
-    let Some((problem, starts)) = unless_cancelled(prepared(polynomials, names, context, options, squaring, monitor))?
-    else {
-        return Ok(nothing());
-    };
-    solved(&problem, starts, nesting, context)
 }
 
 /// The solutions of formulas that cannot be expanded, which `error` says. They are as many as their
@@ -132,9 +92,8 @@ pub(super) fn solve_written(
     context: SolveContext<'_>,
 ) -> Result<Solutions, SolveError> {
     let starts = written::starts(system, error, options)?;
-    let (squaring, options) = (Squaring::Combinations, Cow::Borrowed(options));
-    let problem = Problem { expanded: None, squaring, slack: None, options, monitor };
-    solved(&problem, starts, Nesting::default(), context)
+    let problem = Problem { expanded: None, slack: None, options: Cow::Borrowed(options), monitor, context };
+    solved(&problem, starts)
 }
 
 /// What there is where nothing was tracked.
@@ -142,12 +101,8 @@ fn nothing() -> Solutions {
     Solutions { interrupted: true, ..Solutions::default() }
 }
 
-fn solved(
-    problem: &Problem<'_>,
-    mut starts: Starts,
-    nesting: Nesting<'_>,
-    context: SolveContext<'_>,
-) -> Result<Solutions, SolveError> {
+fn solved(problem: &Problem<'_>, mut starts: Starts) -> Result<Solutions, SolveError> {
+    let context = problem.context;
     let given = problem.expanded.as_ref().map(|expanded| &expanded.given);
     let unknowns = given.map_or(starts.equations.unknowns, Given::unknowns) - context.named_sums;
     let excess = Excess::new(given, problem.options.torus_only, unknowns);
@@ -155,8 +110,8 @@ fn solved(
         serve_all(problem, starts, &excess, worker)?;
         return Ok(nothing());
     }
-    let attempts = attempted(problem, &mut starts, &excess, nesting, context)?;
-    if let (Some(outer), Some(given)) = (nesting.outer, given) {
+    let attempts = attempted(problem, &mut starts, &excess)?;
+    if let (Some(outer), Some(given)) = (context.outer, given) {
         outer.spend(given.spent());
     }
     Ok(assembled(attempts, &starts, problem.monitor))
@@ -174,10 +129,10 @@ fn unless_cancelled<T>(result: Result<T, SolveError>) -> Result<Option<T>, Solve
 struct Problem<'a> {
     /// `None` if they cannot be expanded.
     expanded: Option<Expanded<'a>>,
-    squaring: Squaring,
     slack: Option<Slack>,
     options: Cow<'a, SolveOptions>,
     monitor: &'a Monitor,
+    context: SolveContext<'a>,
 }
 
 /// The given equations as polynomials, by which ends are judged.
@@ -194,30 +149,23 @@ struct Expanded<'a> {
 fn prepared<'a>(
     polynomials: &'a [Polynomial<Exact>],
     names: &[String],
-    context: SolveContext<'_>,
     options: &'a SolveOptions,
-    squaring: Squaring,
     monitor: &'a Monitor,
+    context: SolveContext<'a>,
 ) -> Result<(Problem<'a>, Starts), SolveError> {
-    let equations = match conditioned(polynomials) {
-        Cow::Borrowed(_) => Equations::new(polynomials, names)?,
-        Cow::Owned(rewritten) => Equations::new(&rewritten, names)?,
-    };
+    let equations = Equations::new(&conditioned(polynomials), names, context.named_sums)?;
     // A single equation has no condition number to tell, and combinations are rounded.
     let exact = equations.exact && (2..=names.len()).contains(&polynomials.len());
     let given = Given::new(polynomials, equations.units()).heeding(monitor);
     let roots = number_of_roots(polynomials).filter(|_| !options.torus_only);
-    let square = match squaring {
-        Squaring::Combinations => None,
-        Squaring::SlackUnknowns => slack::squared(&equations, context.named_sums, options, monitor)?,
-    };
+    let square = if context.sliced { slack::squared(&equations, options, monitor)? } else { None };
     let (equations, slack, options) = match square {
-        Some(square) => (square.equations, square.slack, Cow::Owned(square.options)),
+        Some((equations, slack, options)) => (equations, slack, Cow::Owned(options)),
         None => (equations, None, Cow::Borrowed(options)),
     };
-    let starts = Starts::new(equations, context.named_sums, &options, monitor)?;
+    let starts = Starts::new(equations, &options, monitor)?;
     let expanded = Some(Expanded { polynomials, given, exact, roots });
-    Ok((Problem { expanded, squaring, slack, options, monitor }, starts))
+    Ok((Problem { expanded, slack, options, monitor, context }, starts))
 }
 
 /// Tracks paths of all start systems for rank 0 as long as it sends any.
@@ -254,14 +202,8 @@ struct Attempts {
 
 /// Tracks the paths of one start system after the other until none are lost, or another start system
 /// would not help.
-fn attempted(
-    problem: &Problem<'_>,
-    starts: &mut Starts,
-    excess: &Excess<'_>,
-    nesting: Nesting<'_>,
-    context: SolveContext<'_>,
-) -> Result<Attempts, SolveError> {
-    let (options, monitor) = (&*problem.options, problem.monitor);
+fn attempted(problem: &Problem<'_>, starts: &mut Starts, excess: &Excess<'_>) -> Result<Attempts, SolveError> {
+    let (options, monitor, context) = (&*problem.options, problem.monitor, problem.context);
     let mut attempts = Attempts { start_systems: 0, retracked: 0, start: None, best: Ends::new(0) };
     // First, on trial, those of one stage.
     let mut direct = starts.direct(options);
@@ -276,9 +218,9 @@ fn attempted(
         let Some(start) = unless_cancelled(system)? else { break };
         let mut ends = {
             // Their memory is given back before the ends are sorted.
-            let options = match problem.squaring {
-                Squaring::Combinations => Cow::Borrowed(options),
-                Squaring::SlackUnknowns => Cow::Owned(slack::of_attempt(options, attempt)),
+            let options = match context.sliced {
+                true => Cow::Owned(slack::of_attempt(options, attempt)),
+                false => Cow::Borrowed(options),
             };
             let (trackers, start, lead) = (&Trackers::new(&from.system), &start, context.lead);
             let record = context.checkpoint.map(|checkpoint| Part { checkpoint, number });
@@ -296,7 +238,7 @@ fn attempted(
             let hopeless = in_one_unknown || are_hopeless(ends.lost(), from.paths);
             attempts.start_systems += 1;
             attempts.retracked += ends.retracked;
-            let found = problem.solutions_at(ends, from, excess, nesting);
+            let found = problem.solutions_at(ends, from, excess);
             attempts.join(from.kind, found);
             let last = attempts.start_systems > options.restarts || hopeless;
             if attempts.best.lost() == 0 || last || monitor.is_cancelled() {
@@ -311,12 +253,13 @@ fn attempted(
 impl Problem<'_> {
     /// The solutions at the ends of all paths of a start system, and those that other methods find if
     /// some are missing.
-    fn solutions_at(&self, mut ends: Ends, from: &Starts, excess: &Excess<'_>, nesting: Nesting<'_>) -> Ends {
+    fn solutions_at(&self, mut ends: Ends, from: &Starts, excess: &Excess<'_>) -> Ends {
         let (coincidence, monitor) = (self.options.paths.coincidence, self.monitor);
+        let SolveContext { level, outer, .. } = self.context;
         let Some(expanded) = &self.expanded else { return ends.judged(None, excess, coincidence) };
         let given = &expanded.given;
         let line = Line { supports: &from.equations.supports, target: &from.coefficients };
-        let work = singular_ends::work(given, from.paths).min(nesting.outer.map_or(u64::MAX, Given::left));
+        let work = singular_ends::work(given, from.paths).min(outer.map_or(u64::MAX, Given::left));
         let (system, target) = match &self.slack {
             Some(slack) => {
                 slack.shorten(&mut ends);
@@ -324,9 +267,8 @@ impl Problem<'_> {
             }
             None => (&from.system, &from.target[..]),
         };
-        let solver = |polynomials: &[Polynomial<Exact>], outer: &Given| {
-            solve_cluster(polynomials, outer, nesting.level + 1, monitor)
-        };
+        let solver =
+            |polynomials: &[Polynomial<Exact>], outer: &Given| solve_cluster(polynomials, outer, level + 1, monitor);
         let tracked = Tracked {
             given,
             work,
@@ -337,7 +279,7 @@ impl Problem<'_> {
             line: Some(line),
             exact: expanded.exact,
             monitor,
-            solve_cluster: (nesting.level < NESTED).then_some(&solver as &ClusterSolver<'_>),
+            solve_cluster: (level < NESTED).then_some(&solver as &ClusterSolver<'_>),
         };
         // There is a better way to all roots of a polynomial in one unknown than other paths.
         let missing = expanded.roots.is_some_and(|roots| ends.lost() > 0 || ends.regular.len() != roots);

@@ -1,7 +1,7 @@
 //! Paths of the coefficient stage in portions, in which other ranks take part.
 
 use super::paths::{CoefficientStage, Route};
-use super::record::{Record, TrackedPath};
+use super::record::Record;
 use crate::monitor;
 use crate::ranks::{RanksError, Shareable, Task, Worker};
 use crate::runner::Round;
@@ -28,33 +28,36 @@ pub(super) fn serve<E: Evaluate, S: Source<E>>(
 }
 
 impl<E: Evaluate, S: Source<E>> Shareable for CoefficientStage<'_, '_, E, S> {
-    type End = TrackedPath;
+    /// How far a path gets in one go: up to the endgame, and if it needs that through it.
+    type End = (Record, Option<Record>);
 
-    fn ends(&self, numbers: &[usize], round: Round) -> Vec<TrackedPath> {
+    fn ends(&self, numbers: &[usize], round: Round) -> Vec<Self::End> {
         // The progress of a batch is told as a whole.
         let monitor = self.route.monitor.quiet();
         let records = self.tracked(numbers, round, &monitor);
         let (places, open): (Vec<usize>, Vec<Record>) =
             records.iter().enumerate().filter(|(_, record)| record.is_open()).map(|(k, r)| (k, r.clone())).unzip();
-        let mut ends: Vec<TrackedPath> =
-            records.into_iter().map(|record| TrackedPath { record, ended: None }).collect();
+        let mut ends: Vec<Self::End> = records.into_iter().map(|record| (record, None)).collect();
         for (k, record) in places.into_iter().zip(self.ended(&open, round, &monitor)) {
-            ends[k].ended = Some(record);
+            ends[k].1 = Some(record);
         }
         ends
     }
 
-    fn is_end(&self, end: &TrackedPath, path: usize) -> bool {
-        end.is_of(path, self.route.trackers.system().variables())
+    fn is_end(&self, end: &Self::End, path: usize) -> bool {
+        let unknowns = self.route.trackers.system().variables();
+        let fits = |record: &Record| record.path == path && record.fits(unknowns);
+        let (record, ended) = end;
+        fits(record) && ended.as_ref().is_none_or(|ended| record.is_open() && fits(ended) && !ended.is_open())
     }
 
-    fn gather(&self, ends: Vec<TrackedPath>, batch: &mut Vec<Record>) {
+    fn gather(&self, ends: Vec<Self::End>, batch: &mut Vec<Record>) {
         batch.clear();
         let mut closed = self.closed.borrow_mut();
         closed.clear();
-        for end in ends {
-            closed.extend(end.ended.map(|record| (record.path, record)));
-            batch.push(end.record);
+        for (record, ended) in ends {
+            closed.extend(ended.map(|record| (record.path, record)));
+            batch.push(record);
         }
     }
 

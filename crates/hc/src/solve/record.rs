@@ -49,23 +49,6 @@ pub(crate) enum RecordEnd {
     },
 }
 
-/// How far a path gets in one go: up to the endgame, and if it needs that through it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct TrackedPath {
-    pub(super) record: Record,
-    /// After the endgame.
-    pub(super) ended: Option<Record>,
-}
-
-impl TrackedPath {
-    /// Whether it can be of the path with this number, in so many unknowns.
-    pub(super) fn is_of(&self, path: usize, unknowns: usize) -> bool {
-        let fits = |record: &Record| record.path == path && record.fits(unknowns);
-        let ended = self.ended.as_ref().is_none_or(|record| fits(record) && !record.is_open());
-        fits(&self.record) && ended && (self.ended.is_none() || self.record.is_open())
-    }
-}
-
 /// The end of a path at a solution at which the Jacobian is singular.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct SingularEnd {
@@ -82,7 +65,7 @@ impl Record {
     }
 
     /// Whether all points have so many coordinates.
-    fn fits(&self, unknowns: usize) -> bool {
+    pub(super) fn fits(&self, unknowns: usize) -> bool {
         let fits = |point: &[Complex64]| point.len() == unknowns;
         let fingerprints = self.begun.iter().chain(&self.middle);
         fingerprints.filter_map(Fingerprint::point).all(fits)

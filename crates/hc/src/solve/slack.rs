@@ -35,28 +35,20 @@ pub(super) struct Slack {
     pub(super) combined: (PathSystem, Vec<Complex64>),
 }
 
-/// As many equations as unknowns, and how they are tracked.
-pub(super) struct Square {
-    pub(super) equations: Equations,
-    pub(super) slack: Option<Slack>,
-    pub(super) options: SolveOptions,
-}
-
-/// Makes equations that are more than their unknowns as many; `None` if they are not. Those of the last
-/// unknowns, which are `named_sums` sums, are kept as linear ones are.
+/// Makes equations that are more than their unknowns as many, and says how they are tracked; `None` if
+/// they are not more. Those of named sums are kept as linear ones are.
 pub(super) fn squared(
     equations: &Equations,
-    named_sums: usize,
     options: &SolveOptions,
     monitor: &Monitor,
-) -> Result<Option<Square>, SolveError> {
+) -> Result<Option<(Equations, Option<Slack>, SolveOptions)>, SolveError> {
     if equations.len() <= equations.unknowns {
         return Ok(None);
     }
     let mut options = options.clone();
-    let sums = equations.len() - named_sums..equations.len();
+    let sums = equations.named_sums();
     let mut kept: Vec<usize> = equations.linear().into_iter().filter(|i| !sums.contains(i)).collect();
-    if kept.len() + named_sums > equations.unknowns {
+    if kept.len() + sums.len() > equations.unknowns {
         kept.clear();
     }
     kept.extend(sums);
@@ -69,17 +61,17 @@ pub(super) fn squared(
     };
     let bezout = degrees(&combined.supports).and_then(|degrees| bezout_number(&degrees));
     let (Some(wide), Some(volume)) = (wide, volume) else {
-        return Ok(Some(Square { equations: combined, slack: None, options }));
+        return Ok(Some((combined, None, options)));
     };
     if bezout.is_some_and(|bezout| bezout <= volume.saturating_mul(WORTH)) {
-        return Ok(Some(Square { equations: combined, slack: None, options }));
+        return Ok(Some((combined, None, options)));
     }
     options.paths.tracker.max_steps = options.paths.tracker.max_steps.min(STEPS);
     options.paths.retries = options.paths.retries.min(RETRIES);
     options.restarts = options.restarts.max(RESTARTS);
     let system = PathSystem::of_terms(SparseSystem::new(combined.unknowns, &combined.supports)?);
     let slack = Slack { given: equations.unknowns, combined: (system, combined.coefficients.concat()) };
-    Ok(Some(Square { equations: wide, slack: Some(slack), options }))
+    Ok(Some((wide, Some(slack), options)))
 }
 
 /// The options of an attempt: every second one has larger circles. On hyperplanes that are kept,

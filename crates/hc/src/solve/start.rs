@@ -58,19 +58,14 @@ impl Numbers {
 }
 
 impl Starts {
-    /// Those of equations; the last `named_sums` of these give the last unknowns as sums of others.
-    pub(super) fn new(
-        given: Equations,
-        named_sums: usize,
-        options: &SolveOptions,
-        monitor: &Monitor,
-    ) -> Result<Starts, SolveError> {
+    /// The start systems of equations. Those of named sums are not combined with others.
+    pub(super) fn new(given: Equations, options: &SolveOptions, monitor: &Monitor) -> Result<Starts, SolveError> {
         let n = given.unknowns;
-        let definitions: Vec<usize> = (given.len() - named_sums..given.len()).collect();
-        let mut equations = if given.len() > n { given.squared(options.seed, &definitions) } else { given };
+        let named_sums: Vec<usize> = given.named_sums().collect();
+        let mut equations = if given.len() > n { given.squared(options.seed, &named_sums) } else { given };
         let laurent = equations.is_laurent();
         // Sums may vanish at solutions in the torus.
-        if named_sums > 0 || (!options.torus_only && !laurent) {
+        if !named_sums.is_empty() || (!options.torus_only && !laurent) {
             for i in 0..n {
                 equations.add_term(i, vec![0; n]);
             }
@@ -110,7 +105,7 @@ impl Starts {
         };
         // With the factors of a product as unknowns, those of one stage take far longer.
         let leads = || bezout.is_some() && leading_unknowns(&equations.supports, &degrees).is_some();
-        let may_try = named_sums == 0 || leads();
+        let may_try = named_sums.is_empty() || leads();
         let starts = Starts::with(kind, paths, equations, None, numbers, degrees, grouped, options)?;
         Ok(Starts { first, may_try, ..starts })
     }

@@ -7,7 +7,7 @@ use super::slices::Slices;
 use crate::monitor::Monitor;
 use crate::run::Run;
 use crate::singular::is_missed;
-use crate::solve::{Formulas, Solution, SolveError, SolveOptions, Unresolved, solve_sliced};
+use crate::solve::{Formulas, Solution, SolveContext, SolveError, SolveOptions, Unresolved, solve_polynomials};
 use crate::tolerances::EQUATIONS;
 use num_complex::Complex64;
 use poly::System;
@@ -117,9 +117,10 @@ fn decompose_watched(system: &System, options: &SolveOptions, monitor: &Monitor)
         }
         let slices = Slices::new(names.len(), dimension, options.seed);
         let planes = slices.polynomials(equations.all.unknowns());
-        let (sliced, named_sums) = (equations.with_planes(&planes), equations.named_sums());
+        let sliced = equations.with_planes(&planes);
+        let context = SolveContext { named_sums: equations.named_sums(), sliced: true, ..SolveContext::default() };
         let (unknowns, options) = (formulas.solved.variables(), &options.clone().max_paths(paths));
-        let mut found = match solve_sliced(&sliced, unknowns, named_sums, options, monitor) {
+        let mut found = match solve_polynomials(&sliced, unknowns, options, monitor, context) {
             Err(SolveError::TooManyPaths { .. }) => {
                 all.unsearched.push(dimension);
                 all.failed += 1;
