@@ -10,9 +10,6 @@ use num_rational::BigRational;
 use num_traits::{One, Zero};
 use poly::{Exact, Monomial, Polynomial};
 
-/// Coefficients by ascending exponents, the last not zero; none for the zero polynomial.
-type Dense = Vec<Exact>;
-
 /// Polynomials of a higher degree are not looked at.
 const MAX_DEGREE: usize = 3000;
 /// Exact divisors are computed up to this work, about a second: the square of the degree times that
@@ -36,8 +33,9 @@ pub(super) fn squarefree(polynomial: &Polynomial<Exact>) -> Option<Vec<(Polynomi
     Some(parts.collect())
 }
 
-fn dense(polynomial: &Polynomial<Exact>) -> Option<Dense> {
-    let mut coefficients: Dense = Vec::new();
+/// Coefficients by ascending exponents, the last not zero.
+fn dense(polynomial: &Polynomial<Exact>) -> Option<Vec<Exact>> {
+    let mut coefficients = Vec::new();
     for (monomial, c) in polynomial.terms() {
         let [exponent] = monomial.exponents()[..] else { return None };
         let place = usize::try_from(exponent).ok().filter(|&e| e <= MAX_DEGREE)?;
@@ -55,7 +53,7 @@ fn sparse(coefficients: &[Exact]) -> Polynomial<Exact> {
 }
 
 /// Yun's factors with their exponents, constants left out.
-fn yun(whole: &[Exact]) -> Vec<(Dense, usize)> {
+fn yun(whole: &[Exact]) -> Vec<(Vec<Exact>, usize)> {
     let slope = derivative(whole);
     let common = divisor(whole.to_vec(), slope.clone());
     let (mut rest, mut other) = (divided(whole, &common).0, divided(&slope, &common).0);
@@ -74,19 +72,19 @@ fn yun(whole: &[Exact]) -> Vec<(Dense, usize)> {
     parts
 }
 
-fn derivative(a: &[Exact]) -> Dense {
+fn derivative(a: &[Exact]) -> Vec<Exact> {
     let factor = |e: usize| Exact::new(BigRational::from_integer(BigInt::from(e)), BigRational::zero());
     a.iter().enumerate().skip(1).map(|(e, c)| c * factor(e)).collect()
 }
 
-fn minus(a: &[Exact], b: &[Exact]) -> Dense {
+fn minus(a: &[Exact], b: &[Exact]) -> Vec<Exact> {
     let at = |c: &[Exact], k: usize| c.get(k).cloned().unwrap_or_else(Exact::zero);
     trimmed((0..a.len().max(b.len())).map(|k| at(a, k) - at(b, k)).collect())
 }
 
 /// Quotient and remainder; the divisor is not zero.
-fn divided(a: &[Exact], b: &[Exact]) -> (Dense, Dense) {
-    let (mut rest, mut quotient) = (a.to_vec(), Dense::new());
+fn divided(a: &[Exact], b: &[Exact]) -> (Vec<Exact>, Vec<Exact>) {
+    let (mut rest, mut quotient) = (a.to_vec(), Vec::new());
     let Some(leading) = b.last() else { return (quotient, rest) };
     while rest.len() >= b.len() {
         let (place, Some(last)) = (rest.len() - b.len(), rest.pop()) else { break };
@@ -103,7 +101,7 @@ fn divided(a: &[Exact], b: &[Exact]) -> (Dense, Dense) {
 }
 
 /// The monic greatest common divisor of two polynomials, not both zero.
-fn divisor(mut a: Dense, mut b: Dense) -> Dense {
+fn divisor(mut a: Vec<Exact>, mut b: Vec<Exact>) -> Vec<Exact> {
     while !b.is_empty() {
         let rest = divided(&a, &b).1;
         (a, b) = (b, monic(rest));
@@ -111,7 +109,7 @@ fn divisor(mut a: Dense, mut b: Dense) -> Dense {
     monic(a)
 }
 
-fn monic(a: Dense) -> Dense {
+fn monic(a: Vec<Exact>) -> Vec<Exact> {
     match a.last().cloned() {
         Some(leading) if !leading.is_one() => a.iter().map(|c| c / &leading).collect(),
         _ => a,

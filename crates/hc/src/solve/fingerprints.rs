@@ -87,12 +87,12 @@ impl Fingerprints {
         }
     }
 
-    /// Paths that may have met others: all that are within the relative distance `tolerance` of
-    /// another, and perhaps some that merely look so because one of the two points is not kept.
+    /// Paths that may share a point: all that are within the relative distance `tolerance` of another,
+    /// and perhaps some that merely look so because one of the two points is not kept.
     ///
     /// # Errors
     /// If fingerprints cannot be read back.
-    pub(super) fn met(&mut self, tolerance: f64) -> io::Result<Vec<usize>> {
+    pub(super) fn coinciding(&mut self, tolerance: f64) -> io::Result<Vec<usize>> {
         let Some(records) = &mut self.records else { return Ok(Vec::new()) };
         let mut sorter = Sorter::new(8 + 8 + 4);
         for path in 0..self.paths {
@@ -146,15 +146,15 @@ mod tests {
         for (k, x) in points.iter().enumerate() {
             fingerprints.note(k + 1, &Fingerprint::new(x, false));
         }
-        assert_eq!(fingerprints.met(1e-11).unwrap(), [1, 2]);
+        assert_eq!(fingerprints.coinciding(1e-11).unwrap(), [1, 2]);
         fingerprints.forget(1);
-        assert_eq!(fingerprints.met(1e-11).unwrap(), [0usize; 0]);
+        assert_eq!(fingerprints.coinciding(1e-11).unwrap(), [0usize; 0]);
         // A small coordinate beside a large one shows only in points that are kept.
         for keep in [false, true] {
             fingerprints.note(0, &Fingerprint::new(&[z(1e9, 0.0), z(0.0, 0.0)], keep));
             fingerprints.note(1, &Fingerprint::new(&[z(1e9, 0.0), z(1e-5, 0.0)], keep));
-            assert_eq!(fingerprints.met(1e-9).unwrap(), [0, 1]);
-            assert_eq!(fingerprints.met(1e-11).unwrap(), if keep { vec![] } else { vec![0, 1] });
+            assert_eq!(fingerprints.coinciding(1e-9).unwrap(), [0, 1]);
+            assert_eq!(fingerprints.coinciding(1e-11).unwrap(), if keep { vec![] } else { vec![0, 1] });
         }
     }
 
@@ -168,8 +168,8 @@ mod tests {
             last = random.normals(4).iter().map(|z| z * size).collect();
             fingerprints.note(path, &Fingerprint::new(&last, false));
         }
-        assert_eq!(fingerprints.met(1e-11).unwrap(), [0usize; 0]);
+        assert_eq!(fingerprints.coinciding(1e-11).unwrap(), [0usize; 0]);
         fingerprints.note(7_999, &Fingerprint::new(&last, false));
-        assert_eq!(fingerprints.met(1e-11).unwrap(), [7_998, 7_999]);
+        assert_eq!(fingerprints.coinciding(1e-11).unwrap(), [7_998, 7_999]);
     }
 }

@@ -1,13 +1,156 @@
-//! Paths of the coefficient stage in portions, in which other ranks take part.
+//! Paths of the coefficient stage in portions: tracked, taken through the endgame, and handed to other
+//! ranks.
 
+use super::fingerprints::Fingerprint;
 use super::paths::{CoefficientStage, Route};
-use super::record::Record;
-use crate::monitor;
+use super::record::{Record, RecordEnd, SingularEnd};
+use crate::distinct::relative_distance;
+use crate::endgame::{EndKind, EndgameOptions, Ending, Handed, endgame};
+use crate::homotopy::Segment;
+use crate::monitor::{self, Monitor};
 use crate::ranks::{RanksError, Shareable, Task, Worker};
+use crate::refine::Refiner;
 use crate::runner::Round;
 use crate::start::Source;
+use crate::threads::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
+use crate::tolerances::ENDS;
+use crate::tracker::{PathEnd, TrackerOptions};
+use num_complex::Complex64;
 use poly::Evaluate;
 use serde::{Deserialize, Serialize};
+
+/// Least number of ends that one thread refines at a time.
+const LEAST: usize = 8;
+
+impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
+    fn settings(&self, round: Round) -> TrackerOptions {
+        let given = &self.route.options.paths.tracker;
+        if round.level == 0 { given.first(self.route.start.is_partial()) } else { given.stricter(round.level) }
+    }
+
+    /// The settings of the endgame: from the second round again on it begins early in every second one,
+    /// for paths on which too few digits are left before.
+    fn endgame(&self, round: Round) -> EndgameOptions {
+        let options = self.route.options.endgame.clone();
+        let early = round.level > 0 && round.level.is_multiple_of(2);
+        let start = if early { options.start.max(ENDS.early) } else { options.start };
+        EndgameOptions { start, ..options }
+    }
+
+    /// Tracks paths to regular ends, or to the point where the endgame begins. Returns one record
+    /// per path, in order; none once the work is cancelled.
+    pub(super) fn tracked(&self, numbers: &[usize], round: Round, monitor: &Monitor) -> Vec<Record> {
+        let Route { trackers, start, target, .. } = self.route;
+        if monitor.is_cancelled() {
+            // Not even start solutions are made any more; there may be millions of paths to come.
+            return Vec::new();
+        }
+        let settings = self.settings(round);
+        if start.is_tracked() {
+            monitor.enter(monitor::Stage::Start, numbers.len() as u64);
+        }
+        let reached = start.solutions(trackers, numbers, &settings, monitor);
+        monitor.enter(monitor::Stage::Paths, self.round.all as u64);
+        monitor.add(self.round.done as u64, self.round.regular as u64);
+        let tracker = TrackerOptions { endgame_start: 0.0, min_t: self.endgame(round).start, ..settings };
+        let all: Vec<usize> = (0..reached.numbers.len()).collect();
+        let paths = trackers.track(&self.segment, &reached.points, &all, &tracker, monitor);
+        let ends: Vec<RecordEnd> = (0..paths.len())
+            .into_par_iter()
+            .with_min_len(LEAST)
+            .map_init(
+                || Refiner::new(trackers.system()),
+                |refiner, k| {
+                    let (result, point) = (&paths.results()[k], paths.point(k));
+                    match result.end {
+                        PathEnd::Success => {
+                            let refined = refiner.refine(target, point);
+                            let near = relative_distance(&refined.point, point) < ENDS.arrived;
+                            if near && refiner.is_regular(target, &refined) {
+                                RecordEnd::Regular(refined)
+                            } else {
+                                // Once more up to where the endgame begins.
+                                RecordEnd::Undecided { start: reached.point(result.path).to_vec() }
+                            }
+                        }
+                        PathEnd::Singular => RecordEnd::Open { t: result.t, point: point.to_vec() },
+                        _ => RecordEnd::Lost,
+                    }
+                },
+            )
+            .collect();
+        let mut records: Vec<Record> = numbers.iter().map(|&path| Record::lost(path)).collect();
+        for (result, end) in paths.results().iter().zip(ends) {
+            let path = reached.numbers[result.path];
+            let begun = start.is_tracked().then(|| Fingerprint::new(reached.point(result.path), !round.is_first()));
+            if let Ok(k) = numbers.binary_search(&path) {
+                records[k] = Record { path, begun, middle: None, end };
+            }
+        }
+        records
+    }
+
+    /// Takes open paths through the endgame. Returns one record per path, in order.
+    pub(super) fn ended(&self, open: &[Record], round: Round, monitor: &Monitor) -> Vec<Record> {
+        let Route { trackers, start, target, .. } = self.route;
+        let settings = self.settings(round);
+        // Paths that seemed to reach the target, but not at a regular solution: once more up to
+        // where the endgame begins.
+        let options = self.endgame(round);
+        let begin = options.start;
+        let near: Vec<Complex64> =
+            self.segment.target().iter().zip(self.segment.direction()).map(|(p, d)| p + d * begin).collect();
+        let tracker = TrackerOptions { endgame_start: 0.0, ..settings };
+        let to_near = Segment::new(start.parameters(), &near);
+        let mut undecided = Vec::new();
+        let mut starts = Vec::new();
+        let mut handed: Vec<Handed<'_>> = Vec::new();
+        for (k, record) in open.iter().enumerate() {
+            match &record.end {
+                RecordEnd::Undecided { start } => {
+                    undecided.push(k);
+                    starts.extend_from_slice(start);
+                }
+                RecordEnd::Open { t, point } => handed.push((k, *t, point)),
+                _ => {}
+            }
+        }
+        let all: Vec<usize> = (0..undecided.len()).collect();
+        let held = trackers.track(&to_near, &starts, &all, &tracker, monitor);
+        let held = held.iter().filter(|(r, _)| r.end == PathEnd::Success);
+        handed.extend(held.map(|(r, x)| (undecided[r.path], begin, x)));
+        let mut records: Vec<Record> =
+            open.iter().map(|record| Record { begun: record.begun.clone(), ..Record::lost(record.path) }).collect();
+        let mut refiner = Refiner::new(trackers.system());
+        for ending in endgame(trackers, &self.segment, handed, self.route.count, &tracker, &options, monitor) {
+            let record = &mut records[ending.path];
+            record.middle = (!ending.middle.is_empty()).then(|| Fingerprint::new(&ending.middle, !round.is_first()));
+            record.end = end_of(&mut refiner, target, ending, !round.is_first());
+        }
+        records
+    }
+}
+
+/// The end of a path after its endgame; if it is regular after all, it is refined. A path
+/// that comes to the target along the radius `again`, although it is singular there, ends on a
+/// component.
+fn end_of<E: Evaluate>(refiner: &mut Refiner<'_, E>, target: &[Complex64], ending: Ending, again: bool) -> RecordEnd {
+    if matches!(ending.kind, EndKind::Reached | EndKind::Finite { winding: 1, .. }) {
+        let refined = refiner.refine(target, &ending.point);
+        let near = relative_distance(&refined.point, &ending.point) < ENDS.cluster;
+        if near && refiner.is_regular(target, &refined) {
+            return RecordEnd::Regular(refined);
+        }
+    }
+    match ending.kind {
+        EndKind::Finite { winding, error } => RecordEnd::Singular(SingularEnd { point: ending.point, winding, error }),
+        EndKind::Infinite { winding, valuations } => RecordEnd::Infinite { valuations, winding },
+        EndKind::Reached if again => {
+            RecordEnd::Singular(SingularEnd { point: ending.point, winding: 1, error: ENDS.reached })
+        }
+        EndKind::Reached | EndKind::Lost => RecordEnd::Lost,
+    }
+}
 
 /// A start system, as rank 0 describes it to the others, which make it themselves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
