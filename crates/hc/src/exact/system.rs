@@ -37,8 +37,8 @@ impl SmallSystem {
         })
     }
 
-    /// Replaces one unknown after the other by its expression from an equation, the lowest degree
-    /// first; `None` if more than two are left, or equations get too large.
+    /// Eliminates unknowns that an equation gives explicitly, the expression of lowest degree first;
+    /// `None` if more than two unknowns are left, or equations get too large.
     fn eliminated(polynomials: &[Polynomial<Exact>]) -> Option<SmallSystem> {
         let mut equations = polynomials.to_vec();
         let mut unknowns: Vec<usize> = (0..polynomials.len()).collect();

@@ -2,8 +2,8 @@
 //! coordinates in which the solutions are apart.
 
 use super::deflate::{Profile, Reduced, approached, deflated, distance};
-use super::eliminate::{Elimination, Stop};
-use super::equations::{Given, LocalEquations};
+use super::eliminate::{Elimination, PivotLimit};
+use super::equations::{ExactEquations, LocalEquations};
 use super::kinds::{Effort, LocalStructure};
 use super::local_structure::{local_structure, rounded};
 use super::number::{Number, largest};
@@ -27,7 +27,7 @@ const SINGLE: usize = 24;
 /// The equations near the centre of a cluster, without the unknowns that they determine at once, and
 /// in units of its size.
 pub(crate) struct ClusterEquations<'a> {
-    given: &'a Given,
+    given: &'a ExactEquations,
     local: LocalEquations<'a, Digits>,
     reduced: Reduced<Digits>,
     /// The logarithm to base 2 of the size.
@@ -39,7 +39,7 @@ pub(crate) struct ClusterEquations<'a> {
 impl<'a> ClusterEquations<'a> {
     /// All ways to look at the cluster near a point, the simplest first: with each way to read off
     /// which unknowns are determined.
-    pub(crate) fn all(given: &'a Given, point: &[Complex64]) -> impl Iterator<Item = ClusterEquations<'a>> {
+    pub(crate) fn all(given: &'a ExactEquations, point: &[Complex64]) -> impl Iterator<Item = ClusterEquations<'a>> {
         let mut tried: Vec<(Profile, usize)> = Vec::new();
         let ways = ORDERS.into_iter().flat_map(|order| CLUSTERS.ranks.map(|tolerance| (order, tolerance)));
         let point = point.to_vec();
@@ -47,7 +47,7 @@ impl<'a> ClusterEquations<'a> {
     }
 
     fn new(
-        given: &'a Given,
+        given: &'a ExactEquations,
         point: &[Complex64],
         order: usize,
         tolerance: f64,
@@ -71,7 +71,7 @@ impl<'a> ClusterEquations<'a> {
             return None;
         }
         let (_, jacobian) = local.jacobian(&centre);
-        let pivots = Elimination::new(jacobian, centre.len(), Stop::After(profile.ranks[0]));
+        let pivots = Elimination::new(jacobian, centre.len(), PivotLimit::After(profile.ranks[0]));
         let left = centre.len() - pivots.rank();
         let order = if left == 1 { order + SINGLE } else { order };
         let reduced = (left <= UNKNOWNS).then(|| Reduced::new(&local, &centre, &pivots, order)).flatten()?;

@@ -9,7 +9,7 @@
 //! system that determines all unknowns, on which Newton's method doubles digits. Or it ends with a
 //! system that is zero to the order at hand: the solution then lies on a set of positive dimension.
 
-use super::eliminate::{Elimination, Stop};
+use super::eliminate::{Elimination, PivotLimit};
 use super::equations::LocalEquations;
 use super::number::{Number, largest};
 use super::series::Basis;
@@ -44,15 +44,15 @@ const MANY: usize = 24;
 enum RankRule<'a> {
     /// Pivots of this size (logarithm to base 2) or less count as zero.
     Tolerance(f64),
-    /// As in this profile.
+    /// The ranks of this profile.
     Known(&'a Profile),
 }
 
 impl RankRule<'_> {
-    fn stop(self, level: usize) -> Stop {
+    fn stop(self, level: usize) -> PivotLimit {
         match self {
-            RankRule::Tolerance(size) => Stop::Below(size),
-            RankRule::Known(profile) => Stop::After(profile.ranks.get(level).copied().unwrap_or(0)),
+            RankRule::Tolerance(size) => PivotLimit::Below(size),
+            RankRule::Known(profile) => PivotLimit::After(profile.ranks.get(level).copied().unwrap_or(0)),
         }
     }
 }
@@ -177,7 +177,7 @@ pub(crate) fn moved<S: Number>(
     stride: f64,
 ) -> Option<Vec<S>> {
     let (_, jacobian) = local.jacobian(point);
-    let pivots = Elimination::new(jacobian, point.len(), Stop::After(profile.ranks[0]));
+    let pivots = Elimination::new(jacobian, point.len(), PivotLimit::After(profile.ranks[0]));
     let mut direction = vec![S::zero(); point.len()];
     for (k, vector) in pivots.null_space().iter().enumerate() {
         // Phases without a pattern.
@@ -368,7 +368,7 @@ fn correct<S: Number>(unknowns: &mut [Vec<S>], values: &[Vec<S>], pivots: &Elimi
 /// Some of the equations that span the same space as all, as far as digits tell.
 fn independent<S: Number>(equations: Vec<Vec<S>>) -> Vec<Vec<S>> {
     let width = equations.first().map_or(0, Vec::len);
-    let pivots = Elimination::new(equations.clone(), width, Stop::Below(-0.8 * S::BITS));
+    let pivots = Elimination::new(equations.clone(), width, PivotLimit::Below(-0.8 * S::BITS));
     let mut rows = pivots.rows;
     rows.sort_unstable();
     rows.into_iter().map(|i| equations[i].clone()).collect()

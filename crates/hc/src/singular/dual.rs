@@ -8,7 +8,7 @@
 //! solution is isolated. If there are more functionals than paths that can end at an isolated
 //! solution, it is not isolated (Bates, Hauenstein, Peterson & Sommese 2009).
 
-use super::eliminate::{Elimination, Stop};
+use super::eliminate::{Elimination, PivotLimit};
 use super::number::{Number, largest};
 use super::series::Basis;
 use crate::tolerances::LOCAL;
@@ -101,7 +101,7 @@ impl<S: Number> Space<'_, S> {
                 row.iter_mut().for_each(|z| *z = z.shifted(-(size.round() as i64)));
             }
         }
-        let found = Elimination::new(rows, n * m, Stop::Below(0.5 * (LOCAL.zero + LOCAL.clear) * S::BITS));
+        let found = Elimination::new(rows, n * m, PivotLimit::Below(0.5 * (LOCAL.zero + LOCAL.clear) * S::BITS));
         if !(found.rest <= LOCAL.zero * S::BITS && found.smallest >= LOCAL.clear * S::BITS) {
             return None;
         }

@@ -5,7 +5,7 @@ use super::number::Number;
 
 /// When elimination ends.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Stop {
+pub(crate) enum PivotLimit {
     /// At pivots of this size (logarithm to base 2) or less.
     Below(f64),
     /// After so many pivots.
@@ -31,7 +31,7 @@ pub(crate) struct Elimination<S> {
 impl<S: Number> Elimination<S> {
     /// Eliminates in a matrix that is given by rows of `width` entries. An entry that is not a number
     /// ends the elimination, with [`rest`](Elimination::rest) not a number.
-    pub(crate) fn new(mut matrix: Vec<Vec<S>>, width: usize, stop: Stop) -> Elimination<S> {
+    pub(crate) fn new(mut matrix: Vec<Vec<S>>, width: usize, stop: PivotLimit) -> Elimination<S> {
         let height = matrix.len();
         let (mut rows, mut columns) = (Vec::new(), Vec::new());
         let (mut free_rows, mut free_columns): (Vec<usize>, Vec<usize>) = ((0..height).collect(), (0..width).collect());
@@ -48,8 +48,8 @@ impl<S: Number> Elimination<S> {
             }
             let (size, a, b) = best;
             let ends = match stop {
-                Stop::Below(limit) => size <= limit,
-                Stop::After(count) => rows.len() >= count,
+                PivotLimit::Below(limit) => size <= limit,
+                PivotLimit::After(count) => rows.len() >= count,
             };
             if ends || size == f64::NEG_INFINITY || size.is_nan() {
                 rest = if size.is_nan() { f64::NAN } else { size };
@@ -142,7 +142,7 @@ impl<S: Number> Elimination<S> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Elimination, Stop};
+    use super::{Elimination, PivotLimit};
     use num_complex::Complex64;
     use poly::{ComplexMulti, Scalar};
     use proptest::prelude::{prop, prop_assert, proptest};
@@ -157,7 +157,7 @@ mod tests {
             let entry = |i: usize, j: usize| (0..3).map(|k| a[3 * i + k] * b[5 * k + j]).sum::<i32>();
             let number = |k: i32| Number::from_c64(Complex64::new(f64::from(k), 0.0));
             let matrix: Vec<Vec<Number>> = (0..6).map(|i| (0..5).map(|j| number(entry(i, j))).collect()).collect();
-            let found = Elimination::new(matrix.clone(), 5, Stop::Below(-128.0));
+            let found = Elimination::new(matrix.clone(), 5, PivotLimit::Below(-128.0));
             prop_assert!(found.rank() <= 3 && found.rest < -200.0);
             for vector in found.null_space() {
                 for row in &matrix {

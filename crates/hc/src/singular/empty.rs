@@ -1,6 +1,6 @@
 //! Shows, by linear algebra modulo a prime, that a number of general hyperplanes meet no solution.
 
-use super::equations::Given;
+use super::equations::ExactEquations;
 use super::modular::{Echelon, PRIME, Residue, trimmed};
 use super::monomials::Monomials;
 use super::multiplicity::Modular;
@@ -24,7 +24,7 @@ const EXPONENT: u32 = 64;
 /// Ding et al. 2008). The arithmetic is modulo a prime of 64 bits, and the hyperplanes are random there.
 /// A proof modulo the prime is one for general hyperplanes, unless the prime is one of the few that
 /// divide certain determinants; the probability of this is tiny, but not zero.
-pub(crate) fn is_missed(given: &Given, dimension: usize, monitor: &Monitor) -> bool {
+pub(crate) fn is_missed(given: &ExactEquations, dimension: usize, monitor: &Monitor) -> bool {
     let Some(equations) = given.modular(EXPONENT) else { return false };
     let Some(affine) = affine(&equations, given.unknowns(), dimension) else { return true };
     let left = affine.first().map_or(0, |form| form.len() - 1);
@@ -202,7 +202,8 @@ mod tests {
 
     fn missed(text: &str, dimension: usize) -> bool {
         let system: poly::System = text.parse().unwrap();
-        let given = Given::new(&system.expand(&Default::default()).unwrap(), vec![0; system.variables().len()]);
+        let given =
+            ExactEquations::new(&system.expand(&Default::default()).unwrap(), vec![0; system.variables().len()]);
         is_missed(&given, dimension, &Monitor::default())
     }
 

@@ -19,8 +19,8 @@ use std::sync::{Arc, OnceLock};
 /// Where exponents are negative an equation is multiplied by a monomial; its solutions without zero
 /// coordinates stay.
 #[derive(Clone)]
-pub(crate) struct Given {
-    exact: Arc<ExactEquations>,
+pub(crate) struct ExactEquations {
+    exact: Arc<EquationData>,
     /// Work done so far; the unit is about a product of complex double-doubles.
     spent: Arc<AtomicU64>,
     /// Work after which nothing more is done.
@@ -29,8 +29,8 @@ pub(crate) struct Given {
     monitor: Monitor,
 }
 
-/// The equations themselves, which clones of [`Given`] share.
-struct ExactEquations {
+/// The equations themselves, which clones of [`ExactEquations`] share.
+struct EquationData {
     unknowns: usize,
     /// Logarithms to base 2 of the units of the unknowns.
     scale: Vec<i64>,
@@ -55,34 +55,25 @@ struct Term {
 /// A precision in which the equations are available.
 pub(crate) trait Precision: Number {
     /// Where the coefficients in this precision are kept.
-    fn kept(given: &Given) -> &OnceLock<Vec<Vec<Self>>>;
+    fn kept(given: &ExactEquations) -> &OnceLock<Vec<Vec<Self>>>;
 }
 
-impl Precision for ComplexDd {
-    fn kept(given: &Given) -> &OnceLock<Vec<Vec<Self>>> {
-        &given.exact.double_double
-    }
-}
-impl Precision for ComplexMulti<4> {
-    fn kept(given: &Given) -> &OnceLock<Vec<Vec<Self>>> {
-        &given.exact.four
-    }
-}
-impl Precision for ComplexMulti<8> {
-    fn kept(given: &Given) -> &OnceLock<Vec<Vec<Self>>> {
-        &given.exact.eight
-    }
-}
-impl Precision for ComplexMulti<16> {
-    fn kept(given: &Given) -> &OnceLock<Vec<Vec<Self>>> {
-        &given.exact.sixteen
-    }
+macro_rules! precisions {
+    ($($number:ty: $field:ident),*) => {$(
+        impl Precision for $number {
+            fn kept(given: &ExactEquations) -> &OnceLock<Vec<Vec<Self>>> {
+                &given.exact.$field
+            }
+        }
+    )*};
 }
 
-impl Given {
+precisions!(ComplexDd: double_double, ComplexMulti<4>: four, ComplexMulti<8>: eight, ComplexMulti<16>: sixteen);
+
+impl ExactEquations {
     /// Takes polynomials in equally many unknowns; points have unknown `j` in units of
     /// `2^scale[j]`.
-    pub(crate) fn new(polynomials: &[Polynomial<Exact>], scale: Vec<i64>) -> Given {
+    pub(crate) fn new(polynomials: &[Polynomial<Exact>], scale: Vec<i64>) -> ExactEquations {
         let unknowns = scale.len();
         let equation = |polynomial: &Polynomial<Exact>| {
             let exponents = || polynomial.terms().iter().map(|(m, _)| m.exponents());
@@ -108,7 +99,7 @@ impl Given {
             let place = |&(j, e): &(usize, u32)| exponents[j].partition_point(|&f| f < e);
             term.places = term.powers.iter().map(place).collect();
         }
-        let exact = ExactEquations {
+        let exact = EquationData {
             unknowns,
             scale,
             equations,
@@ -118,17 +109,17 @@ impl Given {
             eight: OnceLock::new(),
             sixteen: OnceLock::new(),
         };
-        Given { exact: Arc::new(exact), spent: Arc::default(), limit: u64::MAX, monitor: Monitor::default() }
+        ExactEquations { exact: Arc::new(exact), spent: Arc::default(), limit: u64::MAX, monitor: Monitor::default() }
     }
 
-    /// The same equations, about which nothing more is done once the monitor is cancelled.
-    pub(crate) fn heeding(self, monitor: &Monitor) -> Given {
-        Given { monitor: monitor.quiet(), ..self }
+    /// Ends all work on these equations once the monitor is cancelled.
+    pub(crate) fn stopped_by(self, monitor: &Monitor) -> ExactEquations {
+        ExactEquations { monitor: monitor.quiet(), ..self }
     }
 
-    /// The same equations, with a work count of their own and this limit.
-    pub(crate) fn limited(&self, limit: u64) -> Given {
-        Given { exact: self.exact.clone(), spent: Arc::default(), limit, monitor: self.monitor.clone() }
+    /// A copy with a work count of its own and this limit.
+    pub(crate) fn limited(&self, limit: u64) -> ExactEquations {
+        ExactEquations { exact: self.exact.clone(), spent: Arc::default(), limit, monitor: self.monitor.clone() }
     }
 
     /// Whether the limit of the work is reached, or the work is cancelled.
@@ -210,7 +201,7 @@ impl Given {
         self.near_within(point, LOCAL.small)
     }
 
-    /// [`near`](Given::near) a point of which coordinates below this share of the largest, or of one, may
+    /// [`near`](ExactEquations::near) a point of which coordinates below this share of the largest, or of one, may
     /// be zero in truth.
     pub(crate) fn near_within<S: Precision>(&self, point: &[Complex64], small: f64) -> LocalEquations<'_, S> {
         let units = units(point, small);
@@ -244,7 +235,7 @@ fn units(point: &[Complex64], small: f64) -> Vec<i64> {
 
 /// The given equations in unknowns and terms of about unit size near a point.
 pub(crate) struct LocalEquations<'a, S> {
-    given: &'a Given,
+    given: &'a ExactEquations,
     units: Vec<i64>,
     coefficients: Vec<Vec<S>>,
 }

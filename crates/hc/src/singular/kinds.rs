@@ -1,6 +1,6 @@
 //! What a point near which paths end may be.
 
-use super::equations::Given;
+use super::equations::ExactEquations;
 use num_complex::Complex64;
 use poly::ComplexDd;
 
@@ -31,7 +31,7 @@ pub(crate) enum LocalStructure {
     /// The given equations have no solution nearby.
     NotASolution,
     /// It is not known which of these the point is.
-    Unresolved(Why),
+    Unresolved(UnresolvedReason),
 }
 
 /// How much is done to find the local structure.
@@ -43,9 +43,9 @@ pub(crate) enum Effort {
     Much,
 }
 
-/// Why an end is not resolved.
+/// What keeps an end from being resolved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub(crate) enum Why {
+pub(crate) enum UnresolvedReason {
     /// No solution was found near the end, though the equations nearly vanish there.
     #[error("the equations nearly vanish, but no solution was found nearby")]
     NoSolution,
@@ -53,7 +53,7 @@ pub(crate) enum Why {
     #[error("ranks are not clear to 300 digits")]
     Unclear,
     /// The work that a solve may take for its ends is done.
-    #[error("too many ends need much work to be judged; this one was not looked at")]
+    #[error("work limit reached; this end was not examined")]
     TooMuch,
     /// The work was cancelled.
     #[error("interrupted")]
@@ -64,7 +64,7 @@ pub(crate) enum Why {
 }
 
 /// The largest value of an equation at a point, relative to the sizes of its terms.
-pub(crate) fn residual(given: &Given, point: &[Complex64]) -> f64 {
+pub(crate) fn residual(given: &ExactEquations, point: &[Complex64]) -> f64 {
     let near = given.near::<ComplexDd>(point);
     near.residual(&near.scaled(point)).exp2()
 }

@@ -3,9 +3,9 @@
 
 use super::deflate::{DeflatedPoint, Profile, Reduced, deflated, distance, ending};
 use super::dual::{Count, count};
-use super::eliminate::{Elimination, Stop};
-use super::equations::{Given, LocalEquations, Precision};
-use super::kinds::{Effort, LocalStructure, Why, residual};
+use super::eliminate::{Elimination, PivotLimit};
+use super::equations::{ExactEquations, LocalEquations, Precision};
+use super::kinds::{Effort, LocalStructure, UnresolvedReason, residual};
 use super::number::Number;
 use super::rational::at_rational;
 use super::sheet::{leads_on_somewhere, on_sheet};
@@ -28,7 +28,7 @@ const FEW: usize = 3;
 /// The local structure at a point near which `paths` paths end. As far as is known, the relative error
 /// of the point is at most `error`. At most `most` paths may end at any one point.
 pub(crate) fn local_structure(
-    given: &Given,
+    given: &ExactEquations,
     point: &[Complex64],
     paths: usize,
     most: usize,
@@ -36,7 +36,7 @@ pub(crate) fn local_structure(
     effort: Effort,
 ) -> LocalStructure {
     if point.iter().any(|z| !z.is_finite()) {
-        return LocalStructure::Unresolved(Why::NoSolution);
+        return LocalStructure::Unresolved(UnresolvedReason::NoSolution);
     }
     let error = if error.is_finite() { error.abs() } else { LOCAL.near_singular };
     if is_no_solution(given, point, error) {
@@ -56,7 +56,7 @@ pub(crate) fn local_structure(
     if let Some(structure) = attempts.iter().find_map(|attempt| attempt()) {
         return structure;
     }
-    let mut why = Why::NoSolution;
+    let mut why = UnresolvedReason::NoSolution;
     // Zeros of one precision may be small numbers of the next.
     let mut before = None;
     let ways = [multiple::<ComplexDd>, multiple::<ComplexMulti<4>>, multiple::<ComplexMulti<8>>];
@@ -64,21 +64,21 @@ pub(crate) fn local_structure(
     let mut left: Vec<usize> = (0..ways.len()).rev().collect();
     while let Some(way) = left.pop() {
         if given.is_exhausted() {
-            return LocalStructure::Unresolved(Why::TooMuch);
+            return LocalStructure::Unresolved(UnresolvedReason::TooMuch);
         }
         match ways[way](given, point, paths, most, effort) {
             Ok(LocalStructure::Isolated { multiplicity, .. }) if before != Some(multiplicity) => {
-                (before, why) = (Some(multiplicity), Why::Unclear);
+                (before, why) = (Some(multiplicity), UnresolvedReason::Unclear);
             }
             // High powers of small numbers are zero up to the highest precision, which is next.
             Ok(LocalStructure::OnComponent { .. }) if paths > FEW && way + 1 < ways.len() => {
-                why = Why::Unclear;
+                why = UnresolvedReason::Unclear;
                 left.reverse();
             }
             Ok(structure) => return structure,
             Err(reason) => why = reason,
         }
-        if why == Why::TooLarge && point.len() > 1 {
+        if why == UnresolvedReason::TooLarge && point.len() > 1 {
             break;
         }
     }
@@ -90,7 +90,7 @@ pub(crate) fn local_structure(
 }
 
 /// Whether equations are too large at the end of a path for a solution nearby.
-fn is_no_solution(given: &Given, point: &[Complex64], error: f64) -> bool {
+fn is_no_solution(given: &ExactEquations, point: &[Complex64], error: f64) -> bool {
     // A term changes by as many times the relative change of a point as its degree.
     let degree = given.degree() as f64;
     let local = given.near_within::<ComplexDd>(point, (1e3 * error).clamp(LOCAL.surely_zero, LOCAL.near_singular));
@@ -99,7 +99,7 @@ fn is_no_solution(given: &Given, point: &[Complex64], error: f64) -> bool {
 
 /// Whether a regular solution of combinations of the equations, to all digits of a double, solves
 /// them all.
-pub(crate) fn solves(given: &Given, point: &[Complex64]) -> bool {
+pub(crate) fn solves(given: &ExactEquations, point: &[Complex64]) -> bool {
     let residual = residual(given, point);
     residual <= LOCAL.solves
         || residual < LOCAL.misses
@@ -108,7 +108,7 @@ pub(crate) fn solves(given: &Given, point: &[Complex64]) -> bool {
 
 /// Whether the given equations move a regular solution of rounded ones by more than its own
 /// rounding error, or do not determine it.
-pub(crate) fn is_moved(given: &Given, point: &[Complex64]) -> bool {
+pub(crate) fn is_moved(given: &ExactEquations, point: &[Complex64]) -> bool {
     let near = given.near::<ComplexDd>(point);
     let x = near.scaled(point);
     // Values need all digits, derivatives few, unless the Jacobian is nearly singular.
@@ -128,19 +128,19 @@ pub(crate) fn is_moved(given: &Given, point: &[Complex64]) -> bool {
 /// A step of Newton's method, if all pivots of the Jacobian are larger than `smallest` (a logarithm to
 /// base 2).
 fn newton<S: Number>(x: &[S], values: &[S], jacobian: Vec<Vec<S>>, smallest: f64) -> Option<Vec<S>> {
-    let pivots = Elimination::new(jacobian, x.len(), Stop::Below(f64::NEG_INFINITY));
+    let pivots = Elimination::new(jacobian, x.len(), PivotLimit::Below(f64::NEG_INFINITY));
     (pivots.rank() == x.len() && pivots.smallest > smallest).then(|| pivots.newton_step(x, values))
 }
 
 /// The regular solution near a point, if there is one that numbers of this precision show.
-fn regular<S: Precision>(given: &Given, point: &[Complex64], error: f64) -> Option<LocalStructure> {
+fn regular<S: Precision>(given: &ExactEquations, point: &[Complex64], error: f64) -> Option<LocalStructure> {
     regular_from(&given.near::<S>(point), given, point, error)
 }
 
 /// The regular solution near a point, by the equations near it.
 fn regular_from<S: Precision>(
     local: &LocalEquations<'_, S>,
-    given: &Given,
+    given: &ExactEquations,
     point: &[Complex64],
     error: f64,
 ) -> Option<LocalStructure> {
@@ -156,12 +156,17 @@ fn regular_from<S: Precision>(
 
 /// A point on a set of positive dimension at the end of a path. The path seemed to lead to a
 /// regular solution nearby, but another path leads to that solution.
-pub(crate) fn beside(given: &Given, point: &[Complex64], paths: usize, error: f64) -> Option<LocalStructure> {
+pub(crate) fn on_set_nearby(
+    given: &ExactEquations,
+    point: &[Complex64],
+    paths: usize,
+    error: f64,
+) -> Option<LocalStructure> {
     sheet(given, point, paths, error.max(LOCAL.near_sheet_at_most / LOCAL.near_sheet_errors))
 }
 
 /// The local structure at a point that can be moved along a set of solutions.
-fn sheet(given: &Given, point: &[Complex64], paths: usize, error: f64) -> Option<LocalStructure> {
+fn sheet(given: &ExactEquations, point: &[Complex64], paths: usize, error: f64) -> Option<LocalStructure> {
     if point.len() == 1 {
         return None;
     }
@@ -172,7 +177,12 @@ fn sheet(given: &Given, point: &[Complex64], paths: usize, error: f64) -> Option
 }
 
 /// [`sheet`] in one precision.
-fn sheet_in<S: Precision>(given: &Given, point: &[Complex64], paths: usize, near: f64) -> Option<LocalStructure> {
+fn sheet_in<S: Precision>(
+    given: &ExactEquations,
+    point: &[Complex64],
+    paths: usize,
+    near: f64,
+) -> Option<LocalStructure> {
     let local = given.near::<S>(point);
     let point = on_sheet(&local, &local.scaled(point), paths, near)?;
     Some(LocalStructure::OnComponent { point: rounded(given, &local, &point).0 })
@@ -188,30 +198,30 @@ fn rank_tolerances<S: Number>() -> impl Iterator<Item = f64> {
 /// The local structure at a point that is not a regular solution, in one precision. An error if the
 /// precision is not enough, or, with little effort, if the point lies between several solutions.
 fn multiple<S: Precision>(
-    given: &Given,
+    given: &ExactEquations,
     point: &[Complex64],
     paths: usize,
     most: usize,
     effort: Effort,
-) -> Result<LocalStructure, Why> {
+) -> Result<LocalStructure, UnresolvedReason> {
     let local = given.near::<S>(point);
     let start = local.scaled(point);
     let limit = (2 * paths + 2).max(FUNCTIONALS);
     if let Some(structure) = at_zeros(&local, &start, limit) {
         return Ok(structure);
     }
-    let mut why = Why::NoSolution;
+    let mut why = UnresolvedReason::NoSolution;
     for order in ORDERS.into_iter().take_while(|&order| order <= 2 * limit) {
         // What is told by the highest order counts.
-        why = if why == Why::TooLarge { Why::Unclear } else { why };
+        why = if why == UnresolvedReason::TooLarge { UnresolvedReason::Unclear } else { why };
         let mut tried: Vec<Profile> = Vec::new();
         for tolerance in rank_tolerances::<S>() {
             if given.is_exhausted() {
-                return Err(Why::TooMuch);
+                return Err(UnresolvedReason::TooMuch);
             }
             let found = match ending(&local, &start, order, tolerance, &mut tried) {
                 Some((found, true)) => found,
-                Some(_) if effort == Effort::Little => return Err(Why::NoSolution),
+                Some(_) if effort == Effort::Little => return Err(UnresolvedReason::NoSolution),
                 _ => continue,
             };
             if found.profile.is_regular() || distance(&start, &found.point) > LOCAL.near_singular.log2() {
@@ -225,7 +235,7 @@ fn multiple<S: Precision>(
                         None => LocalStructure::OnComponent { point },
                     });
                 }
-                Err(Why::Unclear) if why == Why::TooLarge => {}
+                Err(UnresolvedReason::Unclear) if why == UnresolvedReason::TooLarge => {}
                 Err(reason) => why = reason,
             }
         }
@@ -235,7 +245,7 @@ fn multiple<S: Precision>(
 
 /// The local structure at a point with zeros in place of small coordinates, if one of the small ones may
 /// take any value, whatever the nonzero coordinates are.
-fn on_axes(given: &Given, point: &[Complex64], error: f64) -> Option<LocalStructure> {
+fn on_axes(given: &ExactEquations, point: &[Complex64], error: f64) -> Option<LocalStructure> {
     let small = LOCAL.near_sheet_at_most.max(LOCAL.near_sheet_errors * error).min(LOCAL.near_singular).log2();
     let local = given.near::<ComplexDd>(point);
     let start = local.scaled(point);
@@ -264,7 +274,7 @@ fn at_zeros<S: Number>(local: &LocalEquations<'_, S>, start: &[S], limit: usize)
     if !values.iter().all(Number::vanishes) {
         return None;
     }
-    let pivots = Elimination::new(jacobian, snapped.len(), Stop::Below(LOCAL.zero * S::BITS));
+    let pivots = Elimination::new(jacobian, snapped.len(), PivotLimit::Below(LOCAL.zero * S::BITS));
     if pivots.smallest < LOCAL.clear * S::BITS || pivots.rank() == snapped.len() {
         return None;
     }
@@ -286,10 +296,10 @@ fn by_series<S: Number>(
     order: usize,
     limit: usize,
     most: usize,
-) -> Result<Option<usize>, Why> {
+) -> Result<Option<usize>, UnresolvedReason> {
     let (_, jacobian) = local.jacobian(&found.point);
-    let pivots = Elimination::new(jacobian, found.point.len(), Stop::After(found.profile.ranks[0]));
-    let reduced = Reduced::new(local, &found.point, &pivots, order).ok_or(Why::TooLarge)?;
+    let pivots = Elimination::new(jacobian, found.point.len(), PivotLimit::After(found.profile.ranks[0]));
+    let reduced = Reduced::new(local, &found.point, &pivots, order).ok_or(UnresolvedReason::TooLarge)?;
     let counted = |bound: usize| {
         let functionals = count(&reduced.basis, &reduced.equations, bound);
         let many =
@@ -307,18 +317,22 @@ fn by_series<S: Number>(
         let bound = most.saturating_add(1).clamp(limit, MANY_FUNCTIONALS.max(4 * limit));
         functionals = if bound > limit { counted(bound) } else { functionals };
         if functionals == Count::More {
-            return if bound > most { Ok(None) } else { Err(Why::TooLarge) };
+            return if bound > most { Ok(None) } else { Err(UnresolvedReason::TooLarge) };
         }
     }
     match functionals {
-        Count::Unclear => Err(Why::Unclear),
+        Count::Unclear => Err(UnresolvedReason::Unclear),
         Count::All(multiplicity) if found.profile.remaining == 0 => Ok(Some(multiplicity)),
-        Count::All(_) | Count::More | Count::Unfinished => Err(Why::TooLarge),
+        Count::All(_) | Count::More | Count::Unfinished => Err(UnresolvedReason::TooLarge),
     }
 }
 
 /// A point as doubles, and the values of the equations there relative to their terms.
-pub(super) fn rounded<S: Number>(given: &Given, local: &LocalEquations<'_, S>, point: &[S]) -> (Vec<Complex64>, f64) {
+pub(super) fn rounded<S: Number>(
+    given: &ExactEquations,
+    local: &LocalEquations<'_, S>,
+    point: &[S],
+) -> (Vec<Complex64>, f64) {
     let point: Vec<Complex64> = local.unscaled(point).iter().map(Number::to_c64).collect();
     let residual = residual(given, &point);
     (point, residual)

@@ -1,13 +1,13 @@
 //! Points whose local structure is known by hand.
 
 use super::{Effort, LocalStructure, local_structure};
-use crate::singular::equations::Given;
+use crate::singular::equations::ExactEquations;
 use num_complex::Complex64;
 use poly::parse::phcpack;
 
 fn structure(text: &str, point: &[f64], paths: usize, error: f64) -> LocalStructure {
     let system = phcpack(text).unwrap();
-    let given = Given::new(&system.expand(&Default::default()).unwrap(), vec![0; system.variables().len()]);
+    let given = ExactEquations::new(&system.expand(&Default::default()).unwrap(), vec![0; system.variables().len()]);
     // Beside the point by the error that is said.
     let point: Vec<Complex64> = point
         .iter()

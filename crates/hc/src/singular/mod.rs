@@ -21,10 +21,10 @@ mod series;
 mod sheet;
 
 pub(crate) use cluster::ClusterEquations;
-pub(crate) use eliminate::{Elimination, Stop};
+pub(crate) use eliminate::{Elimination, PivotLimit};
 pub(crate) use empty::is_missed;
-pub(crate) use equations::Given;
-pub(crate) use kinds::{Effort, LocalStructure, Why, residual};
-pub(crate) use local_structure::{beside, is_moved, local_structure, solves};
+pub(crate) use equations::ExactEquations;
+pub(crate) use kinds::{Effort, LocalStructure, UnresolvedReason, residual};
+pub(crate) use local_structure::{is_moved, local_structure, on_set_nearby, solves};
 pub(crate) use modular::{PRIME, Residue, is_squarefree, resultant, trimmed};
 pub(crate) use number::Number;

@@ -2,7 +2,7 @@
 //! isolated, and with which multiplicity.
 
 use super::dual::Count;
-use super::equations::Given;
+use super::equations::ExactEquations;
 use super::kinds::{LocalStructure, residual};
 use super::modular::Residue;
 use super::multiplicity::{Modular, multiplicity};
@@ -28,7 +28,12 @@ const EXPONENT: u32 = 512;
 /// matter. An isolated solution splits into as many solutions as paths end there. So if the dimension
 /// grows beyond the number of paths, the solution lies on a component, unless the prime divides such
 /// minors.
-pub(super) fn at_rational(given: &Given, point: &[Complex64], error: f64, most: usize) -> Option<LocalStructure> {
+pub(super) fn at_rational(
+    given: &ExactEquations,
+    point: &[Complex64],
+    error: f64,
+    most: usize,
+) -> Option<LocalStructure> {
     let tolerance = (LOCAL.rational_errors * error).clamp(LOCAL.rational_least, LOCAL.rational_most);
     let rough = || within(given, point, LOCAL.rough_rational, LOCAL.rough_denominator, most);
     match within(given, point, tolerance, LOCAL.denominator, most) {
@@ -40,7 +45,7 @@ pub(super) fn at_rational(given: &Given, point: &[Complex64], error: f64, most: 
 /// [`at_rational`] for a rational point within `tolerance`, with denominators up to `denominator`; `None`
 /// if it is no solution. The inner `None` means that its local structure would take too much work.
 fn within(
-    given: &Given,
+    given: &ExactEquations,
     point: &[Complex64],
     tolerance: f64,
     denominator: f64,
@@ -101,7 +106,7 @@ fn near(x: f64, tolerance: f64, denominator: f64) -> Option<BigRational> {
 #[cfg(test)]
 mod tests {
     use super::{at_rational, near};
-    use crate::singular::{Given, LocalStructure};
+    use crate::singular::{ExactEquations, LocalStructure};
     use num_complex::Complex64;
     use num_traits::ToPrimitive;
     use proptest::prelude::{prop_assert_eq, proptest};
@@ -117,7 +122,7 @@ mod tests {
 
     fn structure(text: &str, point: &[f64], most: usize) -> Option<LocalStructure> {
         let system = poly::parse::phcpack(text).unwrap();
-        let given = Given::new(&system.expand(&Default::default()).unwrap(), vec![0; point.len()]);
+        let given = ExactEquations::new(&system.expand(&Default::default()).unwrap(), vec![0; point.len()]);
         let point: Vec<Complex64> = point.iter().map(|&x| Complex64::new(x, 0.0)).collect();
         at_rational(&given, &point, 1e-9, most)
     }
@@ -137,7 +142,7 @@ mod tests {
         assert!(is_isolated(structure("2\n(3*x-1)^3;\n(y-2)^2+(3*x-1);", &[1.0 / 3.0, 2.0], 6), 6));
         let gaussian = "2\n(x-y*i)^3;\n(y-2)^2+(x-2*i);";
         let system = poly::parse::phcpack(gaussian).unwrap();
-        let given = Given::new(&system.expand(&Default::default()).unwrap(), vec![0; 2]);
+        let given = ExactEquations::new(&system.expand(&Default::default()).unwrap(), vec![0; 2]);
         let found = at_rational(&given, &[Complex64::new(0.0, 2.0), Complex64::new(2.0, 0.0)], 1e-9, 20);
         // With y = 2 + w and x = i y: w^2 + i w, simple.
         assert!(is_isolated(found, 3));

@@ -2,7 +2,7 @@
 //! the set.
 
 use super::deflate::{DeflatedPoint, Profile, deflated, distance, moved, settled};
-use super::eliminate::{Elimination, Stop};
+use super::eliminate::{Elimination, PivotLimit};
 use super::equations::LocalEquations;
 use super::number::Number;
 use crate::random::{Random, Stream};
@@ -48,7 +48,7 @@ pub(crate) fn on_sheet<S: Number>(
 /// Ranks that the Jacobian may have at a point of a reduced set nearby, the highest first.
 fn ranks<S: Number>(local: &LocalEquations<'_, S>, start: &[S]) -> Vec<usize> {
     let (_, jacobian) = local.jacobian(start);
-    let sizes = Elimination::new(jacobian, start.len(), Stop::Below(LOCAL.clear * S::BITS)).sizes;
+    let sizes = Elimination::new(jacobian, start.len(), PivotLimit::Below(LOCAL.clear * S::BITS)).sizes;
     let others = |rank: usize| sizes.get(rank).copied().unwrap_or(f64::NEG_INFINITY);
     (1..=sizes.len().min(start.len() - 1)).rev().filter(|&rank| others(rank) <= LOCAL.doubtful_pivot).collect()
 }

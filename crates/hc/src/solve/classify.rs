@@ -8,7 +8,7 @@ use crate::distinct::coincidences;
 use crate::exact::{Digits, SmallSystem};
 use crate::monitor::Monitor;
 use crate::refine::{Refined, Refiner};
-use crate::singular::{self, Given};
+use crate::singular::{self, ExactEquations};
 use crate::start::PathSystem;
 use num_complex::Complex64;
 use poly::{Exact, Polynomial};
@@ -17,17 +17,17 @@ use std::sync::OnceLock;
 
 /// A system that was tracked, and the given equations, by which its ends are judged.
 pub(super) struct Tracked<'a> {
-    pub(super) given: &'a Given,
+    pub(super) given: &'a ExactEquations,
     /// The work that may be done for the ends.
     pub(super) work: u64,
-    /// The same equations as polynomials.
+    /// The given equations as polynomials.
     pub(super) polynomials: &'a [Polynomial<Exact>],
     /// These in one unknown or two, once they are asked for.
     pub(super) small: OnceLock<Option<SmallSystem>>,
     /// As many equations as unknowns, with their parameters.
     pub(super) system: &'a PathSystem,
     pub(super) target: &'a [Complex64],
-    /// The same as supports and coefficients, where these move along a straight line.
+    /// The supports and coefficients that were tracked, where these move along a straight line.
     pub(super) line: Option<Line<'a>>,
     /// Whether the coefficients that were tracked are exactly those that were given.
     pub(super) exact: bool,
@@ -60,7 +60,7 @@ impl Tracked<'_> {
 }
 
 /// Solves the equations of a cluster of ends, as part of the work on the given equations.
-pub(super) type ClusterSolver<'a> = dyn Fn(&[Polynomial<Exact>], &Given) -> Option<Solutions> + Sync + 'a;
+pub(super) type ClusterSolver<'a> = dyn Fn(&[Polynomial<Exact>], &ExactEquations) -> Option<Solutions> + Sync + 'a;
 
 impl Ends {
     /// Judges what all paths have found. Without `tracked`, paths to singular ends are lost.

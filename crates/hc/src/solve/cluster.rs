@@ -1,9 +1,9 @@
-//! Solutions so close together that paths end between them.
+//! Separates nearby solutions by a nested solve.
 
 use super::classify::Tracked;
 use super::solutions::Solution;
 use crate::distinct::relative_distance;
-use crate::singular::{self, ClusterEquations, Effort, Given, LocalStructure};
+use crate::singular::{self, ClusterEquations, Effort, ExactEquations, LocalStructure};
 use crate::tolerances::CLUSTERS;
 use num_complex::Complex64;
 use poly::{Exact, Polynomial};
@@ -19,7 +19,7 @@ const WORK: u64 = 20;
 /// many as are found. At most `most` paths may end at any one point.
 pub(super) fn clustered(
     tracked: &Tracked<'_>,
-    given: &Given,
+    given: &ExactEquations,
     end: &[Complex64],
     paths: usize,
     most: usize,
@@ -54,12 +54,12 @@ pub(super) fn clustered(
 }
 
 /// Whether a regular solution, rounded from many digits, is among the known ones.
-pub(super) fn is_known(given: &Given, known: &[Solution], point: &[Complex64]) -> bool {
+pub(super) fn is_known(given: &ExactEquations, known: &[Solution], point: &[Complex64]) -> bool {
     known.iter().filter(|s| !s.singular).any(|s| is_same(given, &s.value, point))
 }
 
 /// Whether two regular solutions are the same, the second rounded from many digits.
-pub(super) fn is_same(given: &Given, known: &[Complex64], point: &[Complex64]) -> bool {
+pub(super) fn is_same(given: &ExactEquations, known: &[Complex64], point: &[Complex64]) -> bool {
     let distance = relative_distance(known, point);
     if distance <= CLUSTERS.same_precise || distance > CLUSTERS.same_regular {
         return distance <= CLUSTERS.same_precise;

@@ -15,7 +15,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Equations as supports and coefficients.
 #[derive(Clone, Debug)]
-pub(super) struct Equations {
+pub(super) struct ScaledEquations {
     pub(super) unknowns: usize,
     /// Exponent vectors of the terms of each equation.
     pub(super) supports: Vec<Vec<Vec<i32>>>,
@@ -29,13 +29,13 @@ pub(super) struct Equations {
     named_sums: usize,
 }
 
-impl Equations {
+impl ScaledEquations {
     /// Reads polynomials, and scales equations and unknowns by powers of two.
     pub(super) fn new(
         polynomials: &[Polynomial<Exact>],
         names: &[String],
         named_sums: usize,
-    ) -> Result<Equations, SolveError> {
+    ) -> Result<ScaledEquations, SolveError> {
         let unknowns = names.len();
         let mut supports: Vec<Vec<Vec<i32>>> = Vec::with_capacity(polynomials.len());
         let mut coefficients = Vec::with_capacity(polynomials.len());
@@ -71,13 +71,13 @@ impl Equations {
             }
         }
         let scale = exponents.iter().map(|&e| 2f64.powi(e)).collect();
-        Ok(Equations { unknowns, supports, coefficients, scale, exact, named_sums })
+        Ok(ScaledEquations { unknowns, supports, coefficients, scale, exact, named_sums })
     }
 
     /// As many equations as unknowns, without terms.
-    pub(super) fn without_terms(unknowns: usize) -> Equations {
+    pub(super) fn without_terms(unknowns: usize) -> ScaledEquations {
         let (supports, coefficients) = (vec![Vec::new(); unknowns], vec![Vec::new(); unknowns]);
-        Equations { unknowns, supports, coefficients, scale: vec![1.0; unknowns], exact: false, named_sums: 0 }
+        ScaledEquations { unknowns, supports, coefficients, scale: vec![1.0; unknowns], exact: false, named_sums: 0 }
     }
 
     /// Logarithms to base 2 of the units of the scaled unknowns.
@@ -120,12 +120,12 @@ impl Equations {
     /// the others, each with a random combination of the remaining ones added. Bezout's number is
     /// then the product of the highest degrees. They have all solutions of these equations, and
     /// excess ones.
-    pub(super) fn squared(&self, seed: u64, fixed: &[usize]) -> Equations {
+    pub(super) fn squared(&self, seed: u64, fixed: &[usize]) -> ScaledEquations {
         let mut order: Vec<usize> = (0..self.len()).filter(|i| !fixed.contains(i)).collect();
         order.sort_by_key(|&i| std::cmp::Reverse(self.degree(i)));
         let (kept, others) = order.split_at(self.unknowns - fixed.len());
         let mut random = Random::of(seed, Stream::Combinations);
-        let mut squared = Equations { supports: Vec::new(), coefficients: Vec::new(), ..self.clone() };
+        let mut squared = ScaledEquations { supports: Vec::new(), coefficients: Vec::new(), ..self.clone() };
         for &i in kept {
             let mut sum: BTreeMap<&[i32], Complex64> = BTreeMap::new();
             let mut add = |k: usize, factor: Complex64| {
@@ -146,7 +146,7 @@ impl Equations {
     }
 
     /// These equations with `further` more unknowns, which do not occur in them.
-    pub(super) fn widened(&self, further: usize) -> Equations {
+    pub(super) fn widened(&self, further: usize) -> ScaledEquations {
         let mut wide = self.clone();
         wide.unknowns += further;
         wide.supports.iter_mut().flatten().for_each(|point| point.resize(wide.unknowns, 0));
@@ -268,7 +268,7 @@ fn unknown_scales(n: usize, supports: &[Vec<Vec<i32>>], coefficients: &[Vec<Comp
 
 #[cfg(test)]
 mod tests {
-    use super::{Equations, SolveError};
+    use super::{ScaledEquations, SolveError};
     use poly::parse::phcpack;
 
     /// Coefficients over 18 decades: what counts is that the spread falls to a few.
@@ -276,7 +276,7 @@ mod tests {
     fn scales_bring_coefficients_together() {
         let system = phcpack("2\n1.0E-12*x^2 - 1.0E-3*x*y + 1.0E6;\n1.0E-6*x*y^2 - y + 1.0E2;").unwrap();
         let polynomials = system.expand(&Default::default()).unwrap();
-        let equations = Equations::new(&polynomials, system.variables(), 0).unwrap();
+        let equations = ScaledEquations::new(&polynomials, system.variables(), 0).unwrap();
         let sizes: Vec<f64> = equations.coefficients.iter().flatten().map(|c| c.norm().log10()).collect();
         let spread = sizes.iter().copied().fold(f64::MIN, f64::max) - sizes.iter().copied().fold(f64::MAX, f64::min);
         assert!(spread < 6.0, "{sizes:?}");
@@ -286,7 +286,7 @@ mod tests {
     fn powers_of_sums_are_refused_with_a_remedy() {
         let system = phcpack("2\n(x+y+1)^100-1;\nx-y;").unwrap();
         let polynomials = system.expand(&Default::default()).unwrap();
-        let error = Equations::new(&polynomials, system.variables(), 0).unwrap_err();
+        let error = ScaledEquations::new(&polynomials, system.variables(), 0).unwrap_err();
         assert!(matches!(error, SolveError::Spread { equation: 1, terms: 5150, .. }), "{error}");
         assert!(error.to_string().contains("new unknown"), "{error}");
     }

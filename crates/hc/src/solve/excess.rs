@@ -1,13 +1,13 @@
 //! Solutions that were not requested.
 
-use crate::singular::{self, Given};
+use crate::singular::{self, ExactEquations};
 use crate::tolerances::ENDS;
 use num_complex::Complex64;
 
 /// Which points were not requested.
 pub(super) struct Excess<'a> {
     /// All equations, if there are more equations than unknowns.
-    all: Option<&'a Given>,
+    all: Option<&'a ExactEquations>,
     torus_only: bool,
     /// The coordinates that must not vanish there, the first ones.
     unknowns: usize,
@@ -15,7 +15,7 @@ pub(super) struct Excess<'a> {
 
 impl<'a> Excess<'a> {
     /// What was not requested of given equations, of which the first `unknowns` unknowns count.
-    pub(super) fn new(given: Option<&'a Given>, torus_only: bool, unknowns: usize) -> Excess<'a> {
+    pub(super) fn new(given: Option<&'a ExactEquations>, torus_only: bool, unknowns: usize) -> Excess<'a> {
         Excess { all: given.filter(|given| given.len() > given.unknowns()), torus_only, unknowns }
     }
 

@@ -1,6 +1,7 @@
 //! The members of a parameter family, from its stored fibre.
 
 use super::classify::Tracked;
+use super::ends::Ends;
 use super::excess::Excess;
 use super::options::SolveOptions;
 use super::paths::{Route, follow};
@@ -9,7 +10,7 @@ use super::singular_ends::work;
 use super::solutions::{Member, Solutions};
 use crate::family::Fibre;
 use crate::monitor::Monitor;
-use crate::singular::Given;
+use crate::singular::ExactEquations;
 use crate::start::PathSystem;
 use crate::tracker::Trackers;
 use num_complex::Complex64;
@@ -28,13 +29,10 @@ pub(crate) fn solve_member<E: Evaluate>(
     options: &SolveOptions,
     monitor: &Monitor,
 ) -> Solutions {
-    let excess = Excess::none();
-    let count = fibre.len();
-    let route =
-        Route { trackers, start: fibre, count, target, excess: &excess, options, monitor, record: None, lead: None };
-    let ends = follow(route, false);
+    let ends = followed(trackers, fibre, target, options, monitor);
     let expanded = if !ends.singular.is_empty() { expanded(family, target, monitor) } else { None };
-    let solver = |polynomials: &[Polynomial<Exact>], outer: &Given| solve_cluster(polynomials, outer, 0, monitor);
+    let solver =
+        |polynomials: &[Polynomial<Exact>], outer: &ExactEquations| solve_cluster(polynomials, outer, 0, monitor);
     let tracked = expanded.as_ref().map(|(polynomials, given, system, target)| Tracked {
         given,
         work: work(given, fibre.len()),
@@ -48,7 +46,7 @@ pub(crate) fn solve_member<E: Evaluate>(
         solve_cluster: Some(&solver),
     });
     let retracked = ends.retracked;
-    let mut ends = ends.judged(tracked.as_ref(), &excess, options.paths.coincidence);
+    let mut ends = ends.judged(tracked.as_ref(), &Excess::none(), options.paths.coincidence);
     let interrupted = monitor.is_cancelled() && ends.lost() > 0;
     Solutions { start_systems: 1, interrupted, ..ends.solutions(retracked) }
 }
@@ -69,16 +67,24 @@ pub(crate) fn ends<E: Evaluate>(
     options: &SolveOptions,
     monitor: &Monitor,
 ) -> impl Iterator<Item = Vec<Complex64>> {
-    let (excess, trackers) = (Excess::none(), Trackers::new(family));
-    let (trackers, count) = (&trackers, fibre.len());
-    let route =
-        Route { trackers, start: fibre, count, target, excess: &excess, options, monitor, record: None, lead: None };
-    let ends = follow(route, false);
+    let ends = followed(&Trackers::new(family), fibre, target, options, monitor);
     let regular = ends.regular.into_values().map(|end| end.point);
     regular.chain(ends.singular.into_values().map(|end| end.point))
 }
 
-type Expanded = (Vec<Polynomial<Exact>>, Given, PathSystem, Vec<Complex64>);
+/// Where the paths from all solutions of a fibre end.
+fn followed<E: Evaluate>(
+    trackers: &Trackers<'_, E>,
+    fibre: &Fibre,
+    target: &[Complex64],
+    options: &SolveOptions,
+    monitor: &Monitor,
+) -> Ends {
+    let (count, excess) = (fibre.len(), &Excess::none());
+    follow(Route { trackers, start: fibre, count, target, excess, options, monitor, record: None, lead: None }, false)
+}
+
+type Expanded = (Vec<Polynomial<Exact>>, ExactEquations, PathSystem, Vec<Complex64>);
 
 /// The polynomials of a member, and the same as supports and coefficients.
 fn expanded(family: &System, target: &[Complex64], monitor: &Monitor) -> Option<Expanded> {
@@ -89,6 +95,6 @@ fn expanded(family: &System, target: &[Complex64], monitor: &Monitor) -> Option<
     let numbers = terms.map(|(_, c)| Some(Complex64::new(c.re.to_f64()?, c.im.to_f64()?)).filter(|z| z.is_finite()));
     let system = PathSystem::of_terms(SparseSystem::new(unknowns, &supports).ok()?);
     let target = numbers.collect::<Option<_>>()?;
-    let given = Given::new(&polynomials, vec![0; unknowns]).heeding(monitor);
+    let given = ExactEquations::new(&polynomials, vec![0; unknowns]).stopped_by(monitor);
     Some((polynomials, given, system, target))
 }

@@ -76,7 +76,7 @@ impl Run {
     /// of the run that a checkpoint belongs to.
     ///
     /// # Errors
-    /// As for [`solve`]; also if the checkpoint belongs to another run, or cannot be written.
+    /// Those of [`solve`]; also if the checkpoint belongs to another run, or cannot be written.
     pub fn solve(&self, system: &System, options: &SolveOptions) -> Result<Solutions, SolveError> {
         self.install(|| {
             let formulas = Formulas::new(system, EQUATIONS.factors, options)?;
@@ -91,7 +91,7 @@ impl RanksRun<'_> {
     /// not.
     ///
     /// # Errors
-    /// As for [`Run::solve`]; on rank 0 also if another rank fails or has another job.
+    /// Those of [`Run::solve`]; on rank 0 also if another rank fails or has another job.
     pub fn solve(&self, system: &System, options: &SolveOptions) -> Result<Option<Solutions>, SolveError> {
         let Some(ranks) = self.ranks else { return self.run.solve(system, options).map(Some) };
         self.run.install(|| {

@@ -4,7 +4,7 @@
 use super::classify::{ClusterSolver, Tracked};
 use super::conditioned::conditioned;
 use super::ends::{End, Ends};
-use super::equations::Equations;
+use super::equations::ScaledEquations;
 use super::error::SolveError;
 use super::excess::Excess;
 use super::infinity::Line;
@@ -21,7 +21,7 @@ use crate::distinct::Known;
 use crate::exact::number_of_roots;
 use crate::monitor::Monitor;
 use crate::ranks::{Lead, Worker};
-use crate::singular::Given;
+use crate::singular::ExactEquations;
 use crate::start::MixedError;
 use crate::tolerances::ENDS;
 use crate::tracker::Trackers;
@@ -50,7 +50,7 @@ pub(crate) struct SolveContext<'a> {
     /// ends are told apart no further.
     pub(crate) level: usize,
     /// The equations of the solve around it, to whose work that of this one is added.
-    pub(crate) outer: Option<&'a Given>,
+    pub(crate) outer: Option<&'a ExactEquations>,
 }
 
 /// The solutions of polynomials in unknowns of these names, which the result does not have.
@@ -71,7 +71,7 @@ pub(crate) fn solve_polynomials(
 /// whose work that of this one is added.
 pub(super) fn solve_cluster(
     polynomials: &[Polynomial<Exact>],
-    outer: &Given,
+    outer: &ExactEquations,
     level: usize,
     monitor: &Monitor,
 ) -> Option<Solutions> {
@@ -104,7 +104,7 @@ fn nothing() -> Solutions {
 fn solved(problem: &Problem<'_>, mut starts: Starts) -> Result<Solutions, SolveError> {
     let context = problem.context;
     let given = problem.expanded.as_ref().map(|expanded| &expanded.given);
-    let unknowns = given.map_or(starts.equations.unknowns, Given::unknowns) - context.named_sums;
+    let unknowns = given.map_or(starts.equations.unknowns, ExactEquations::unknowns) - context.named_sums;
     let excess = Excess::new(given, problem.options.torus_only, unknowns);
     if let Some(worker) = context.worker {
         serve_all(problem, starts, &excess, worker)?;
@@ -138,7 +138,7 @@ struct Problem<'a> {
 /// The given equations as polynomials, by which ends are judged.
 struct Expanded<'a> {
     polynomials: &'a [Polynomial<Exact>],
-    given: Given,
+    given: ExactEquations,
     /// Whether the coefficients that are tracked are exactly those that were given.
     exact: bool,
     /// The number of all roots, with their multiplicities, of a single equation in a single unknown.
@@ -153,10 +153,10 @@ fn prepared<'a>(
     monitor: &'a Monitor,
     context: SolveContext<'a>,
 ) -> Result<(Problem<'a>, Starts), SolveError> {
-    let equations = Equations::new(&conditioned(polynomials), names, context.named_sums)?;
+    let equations = ScaledEquations::new(&conditioned(polynomials), names, context.named_sums)?;
     // A single equation has no condition number to tell, and combinations are rounded.
     let exact = equations.exact && (2..=names.len()).contains(&polynomials.len());
-    let given = Given::new(polynomials, equations.units()).heeding(monitor);
+    let given = ExactEquations::new(polynomials, equations.units()).stopped_by(monitor);
     let roots = number_of_roots(polynomials).filter(|_| !options.torus_only);
     let square = if context.sliced { slack::squared(&equations, options, monitor)? } else { None };
     let (equations, slack, options) = match square {
@@ -259,7 +259,7 @@ impl Problem<'_> {
         let Some(expanded) = &self.expanded else { return ends.judged(None, excess, coincidence) };
         let given = &expanded.given;
         let line = Line { supports: &from.equations.supports, target: &from.coefficients };
-        let work = singular_ends::work(given, from.paths).min(outer.map_or(u64::MAX, Given::left));
+        let work = singular_ends::work(given, from.paths).min(outer.map_or(u64::MAX, ExactEquations::left));
         let (system, target) = match &self.slack {
             Some(slack) => {
                 slack.shorten(&mut ends);
@@ -267,8 +267,9 @@ impl Problem<'_> {
             }
             None => (&from.system, &from.target[..]),
         };
-        let solver =
-            |polynomials: &[Polynomial<Exact>], outer: &Given| solve_cluster(polynomials, outer, level + 1, monitor);
+        let solver = |polynomials: &[Polynomial<Exact>], outer: &ExactEquations| {
+            solve_cluster(polynomials, outer, level + 1, monitor)
+        };
         let tracked = Tracked {
             given,
             work,

@@ -10,7 +10,7 @@ use super::solutions::{Solution, Unresolved};
 use crate::distinct::{groups, relative_distance};
 use crate::exact::SmallSystem;
 use crate::refine::Refiner;
-use crate::singular::{self, Effort, LocalStructure, Why};
+use crate::singular::{self, Effort, LocalStructure, UnresolvedReason};
 use crate::threads::IntoParallelRefIterator;
 #[cfg(feature = "threads")]
 use crate::threads::ParallelIterator;
@@ -74,7 +74,9 @@ impl Ends {
                         self.solutions.push(Solution::new(point, 1, 1, false, residual, condition));
                     }
                 }
-                LocalStructure::OnComponent { point, .. } if simple => self.unresolved(&point, &paths, Why::Unclear),
+                LocalStructure::OnComponent { point, .. } if simple => {
+                    self.unresolved(&point, &paths, UnresolvedReason::Unclear)
+                }
                 LocalStructure::OnComponent { point, .. } => {
                     self.assign(&paths, End::COMPONENT);
                     self.component_points.push(point);
@@ -155,7 +157,7 @@ impl Ends {
         self
     }
 
-    fn unresolved(&mut self, end: &[Complex64], paths: &[usize], why: Why) {
+    fn unresolved(&mut self, end: &[Complex64], paths: &[usize], why: UnresolvedReason) {
         self.assign(paths, End::LOST);
         self.unresolved.push(Unresolved { value: end.to_vec(), paths: paths.len(), reason: why.to_string() });
     }
@@ -219,8 +221,11 @@ fn structures_of_ends(
     let mut found = Vec::new();
     for batch in groups.chunks(BATCH) {
         let left = tracked.work.saturating_sub(tracked.given.spent());
-        let stop =
-            if tracked.monitor.is_cancelled() { Some(Why::Interrupted) } else { (left == 0).then_some(Why::TooMuch) };
+        let stop = if tracked.monitor.is_cancelled() {
+            Some(UnresolvedReason::Interrupted)
+        } else {
+            (left == 0).then_some(UnresolvedReason::TooMuch)
+        };
         if let Some(why) = stop {
             found.extend(batch.iter().map(|group| (group.clone(), LocalStructure::Unresolved(why))));
             continue;
@@ -239,7 +244,7 @@ fn structures_of_ends(
 }
 
 /// The work that a solve may spend on the ends of this many paths.
-pub(super) fn work(given: &singular::Given, paths: usize) -> u64 {
+pub(super) fn work(given: &singular::ExactEquations, paths: usize) -> u64 {
     WORK.saturating_add(WORK_OF_FACTORS.saturating_mul(paths as u64).saturating_mul(given.factors() as u64))
 }
 
@@ -247,7 +252,7 @@ pub(super) fn work(given: &singular::Given, paths: usize) -> u64 {
 /// multiple solution. `spare` more paths may end there; other paths end at the `known` solutions.
 fn structures_of_group(
     tracked: &Tracked<'_>,
-    given: &singular::Given,
+    given: &singular::ExactEquations,
     ends: &[(usize, SingularEnd)],
     group: &[usize],
     known: &[Solution],
@@ -271,8 +276,8 @@ fn structures_of_group(
         LocalStructure::OnComponent { .. } => return vec![(group.to_vec(), own)],
         LocalStructure::Regular { ref point, .. } if group.len() == 1 => {
             // Near a set of positive dimension Newton's method leads to a solution off it.
-            let beside = || singular::beside(given, &ends[best].1.point, paths, ends[best].1.error);
-            let other = if is_known(given, known, point) { beside() } else { None };
+            let on_set = || singular::on_set_nearby(given, &ends[best].1.point, paths, ends[best].1.error);
+            let other = if is_known(given, known, point) { on_set() } else { None };
             return vec![(group.to_vec(), other.unwrap_or(own))];
         }
         LocalStructure::NotASolution if group.len() == 1 => return vec![(group.to_vec(), own)],
@@ -295,21 +300,25 @@ fn structures_of_group(
         whole @ (LocalStructure::Isolated { .. } | LocalStructure::OnComponent { .. }) => vec![(group.to_vec(), whole)],
         regular @ LocalStructure::Regular { .. } if all.is_empty() => {
             let others = group.iter().filter(|&&k| k != best).copied().collect();
-            vec![(vec![best], regular), (others, LocalStructure::Unresolved(Why::NoSolution))]
+            vec![(vec![best], regular), (others, LocalStructure::Unresolved(UnresolvedReason::NoSolution))]
         }
         LocalStructure::Unresolved(why) => {
             all.push((left, LocalStructure::Unresolved(why)));
             all
         }
         _ => {
-            all.push((left, LocalStructure::Unresolved(Why::NoSolution)));
+            all.push((left, LocalStructure::Unresolved(UnresolvedReason::NoSolution)));
             all
         }
     }
 }
 
 /// Whether every end has a structure of its own.
-fn are_told_apart(given: &singular::Given, each: &[(Vec<usize>, LocalStructure)], overdetermined: bool) -> bool {
+fn are_told_apart(
+    given: &singular::ExactEquations,
+    each: &[(Vec<usize>, LocalStructure)],
+    overdetermined: bool,
+) -> bool {
     let mut regular: Vec<&[Complex64]> = Vec::new();
     each.iter().all(|(_, structure)| match structure {
         LocalStructure::Regular { point, .. } => {

@@ -6,7 +6,7 @@
 //! combinations once `z` is eliminated, but the supports stay small, and so does the mixed volume.
 
 use super::ends::Ends;
-use super::equations::Equations;
+use super::equations::ScaledEquations;
 use super::error::SolveError;
 use super::options::SolveOptions;
 use crate::monitor::Monitor;
@@ -38,10 +38,10 @@ pub(super) struct Slack {
 /// Makes equations that are more than their unknowns as many, and says how they are tracked; `None` if
 /// they are not more. Those of named sums are kept as linear ones are.
 pub(super) fn squared(
-    equations: &Equations,
+    equations: &ScaledEquations,
     options: &SolveOptions,
     monitor: &Monitor,
-) -> Result<Option<(Equations, Option<Slack>, SolveOptions)>, SolveError> {
+) -> Result<Option<(ScaledEquations, Option<Slack>, SolveOptions)>, SolveError> {
     if equations.len() <= equations.unknowns {
         return Ok(None);
     }
@@ -87,7 +87,7 @@ pub(super) fn of_attempt(options: &SolveOptions, attempt: u32) -> SolveOptions {
 }
 
 /// The equations with further unknowns; `None` if too many of them are kept.
-fn widened(equations: &Equations, kept: &[usize], seed: u64) -> Option<Equations> {
+fn widened(equations: &ScaledEquations, kept: &[usize], seed: u64) -> Option<ScaledEquations> {
     let further = equations.len() - equations.unknowns;
     let mut curved: Vec<usize> = (0..equations.len()).filter(|i| !kept.contains(i)).collect();
     curved.sort_by_key(|&i| equations.degree(i));
@@ -108,7 +108,7 @@ fn widened(equations: &Equations, kept: &[usize], seed: u64) -> Option<Equations
 }
 
 /// The supports with the origin, as they are tracked.
-fn with_origin(equations: &Equations) -> Vec<Vec<Vec<i32>>> {
+fn with_origin(equations: &ScaledEquations) -> Vec<Vec<Vec<i32>>> {
     let mut with = equations.clone();
     for i in 0..with.len() {
         with.add_term(i, vec![0; equations.unknowns]);

@@ -1,6 +1,6 @@
 //! Which start system is used, and the equations with the terms that it needs.
 
-use super::equations::Equations;
+use super::equations::ScaledEquations;
 use super::error::SolveError;
 use super::options::{SolveOptions, Start};
 use crate::monitor::Monitor;
@@ -20,7 +20,7 @@ pub(super) struct Starts {
     /// The system of the coefficient stage.
     pub(super) system: PathSystem,
     /// As many equations as unknowns, with all terms of the system.
-    pub(super) equations: Equations,
+    pub(super) equations: ScaledEquations,
     /// Their coefficients in one row.
     pub(super) coefficients: Vec<Complex64>,
     /// The parameters of the system at which paths end.
@@ -59,7 +59,7 @@ impl Numbers {
 
 impl Starts {
     /// The start systems of equations. Those of named sums are not combined with others.
-    pub(super) fn new(given: Equations, options: &SolveOptions, monitor: &Monitor) -> Result<Starts, SolveError> {
+    pub(super) fn new(given: ScaledEquations, options: &SolveOptions, monitor: &Monitor) -> Result<Starts, SolveError> {
         let n = given.unknowns;
         let named_sums: Vec<usize> = given.named_sums().collect();
         let mut equations = if given.len() > n { given.squared(options.seed, &named_sums) } else { given };
@@ -113,7 +113,7 @@ impl Starts {
     /// Those of total degree of formulas of these degrees that are tracked as they were written, times the
     /// parameter of the program.
     pub(super) fn of_program(
-        without_terms: Equations,
+        without_terms: ScaledEquations,
         program: Interpreter,
         degrees: Vec<u64>,
         options: &SolveOptions,
@@ -128,7 +128,7 @@ impl Starts {
     fn with(
         kind: Start,
         paths: u64,
-        mut equations: Equations,
+        mut equations: ScaledEquations,
         written: Option<Interpreter>,
         numbers: Numbers,
         degrees: Vec<u64>,
@@ -222,7 +222,7 @@ impl Starts {
 
 /// The given groups with the degrees in them; `None` without groups, or if they are too many or
 /// exponents negative.
-fn groups(equations: &Equations, options: &SolveOptions) -> Result<Option<Grouped>, SolveError> {
+fn groups(equations: &ScaledEquations, options: &SolveOptions) -> Result<Option<Grouped>, SolveError> {
     let n = equations.unknowns;
     if options.groups.is_empty() && options.start != Start::Multihomogeneous {
         return Ok(None);

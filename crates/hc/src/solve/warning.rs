@@ -18,7 +18,7 @@ pub enum Warning {
         points: usize,
     },
     /// Finite ends that are not solutions.
-    #[error("left out, since some equation does not hold or they lie outside the torus: {}", counted(*.paths, "finite end"))]
+    #[error("{} discarded: outside the torus, or not a solution of every equation", counted(*.paths, "finite end"))]
     Excess {
         /// Number of paths that end there.
         paths: usize,

@@ -1,7 +1,7 @@
 //! Formulas that are tracked as they were written, because they are too large to be expanded: from a
 //! total degree start system, which needs only their degrees.
 
-use super::equations::Equations;
+use super::equations::ScaledEquations;
 use super::error::SolveError;
 use super::options::{SolveOptions, Start};
 use super::start::Starts;
@@ -25,7 +25,7 @@ pub(super) fn starts(system: &System, error: &ExpandError, options: &SolveOption
     let degrees = system.degrees_as_written().filter(|degrees| serves && !degrees.contains(&0));
     let program = degrees.as_ref().and_then(|_| program(system, options.seed));
     let (Some(degrees), Some(program)) = (degrees, program) else { return Err(error.clone().into()) };
-    Starts::of_program(Equations::without_terms(n), program, degrees, options)
+    Starts::of_program(ScaledEquations::without_terms(n), program, degrees, options)
 }
 
 /// The formulas, each divided by its size and multiplied by one parameter; `None` if they cannot be compiled,

@@ -1,6 +1,6 @@
 //! Decomposition into components, dimension by dimension.
 
-use super::equations::Equations;
+use super::equations::NamedEquations;
 use super::irreducible::orbits;
 use super::set::WitnessSet;
 use super::slices::Slices;
@@ -84,7 +84,7 @@ pub struct Decomposition {
 /// ```
 ///
 /// # Errors
-/// As for [`solve`](fn@crate::solve), but fewer equations than unknowns are not an error.
+/// Those of [`solve`](fn@crate::solve), but fewer equations than unknowns are not an error.
 pub fn decompose(system: &System, options: &SolveOptions) -> Result<Decomposition, SolveError> {
     Run::new().decompose(system, options)
 }
@@ -93,7 +93,7 @@ impl Run {
     /// [`decompose`], run in this way.
     ///
     /// # Errors
-    /// As for [`decompose`]; also if there is a checkpoint, since a decomposition is not recorded.
+    /// Those of [`decompose`]; also if there is a checkpoint, since a decomposition is not recorded.
     pub fn decompose(&self, system: &System, options: &SolveOptions) -> Result<Decomposition, SolveError> {
         self.unrecorded("a decomposition")?;
         self.install(|| decompose_watched(system, options, self.monitor()))
@@ -104,7 +104,7 @@ fn decompose_watched(system: &System, options: &SolveOptions, monitor: &Monitor)
     let formulas = Formulas::new(system, EQUATIONS.factors_of_components, options)?;
     let polynomials = formulas.polynomials.as_ref().map_err(Clone::clone)?;
     let names = system.variables();
-    let equations = Equations::new(polynomials, names.len());
+    let equations = NamedEquations::new(polynomials, names.len());
     let lowest = names.len().saturating_sub(system.len());
     let mut all = Decomposition { variables: names.to_vec(), ..Decomposition::default() };
     let mut missed = true;
@@ -162,7 +162,7 @@ impl Decomposition {
     /// returns what can be tracked of these.
     fn add(
         &mut self,
-        equations: &Equations<'_>,
+        equations: &NamedEquations<'_>,
         slices: &Slices,
         solutions: Vec<Solution>,
         seed: u64,

@@ -9,9 +9,9 @@
 //! it is not yet one, their Jacobian gets multipliers in turn (Leykin, Verschelde & Zhao 2006,
 //! Theoretical Computer Science 359:111; for components, Sommese & Wampler 2005, section 13.3).
 
-use super::equations::Equations;
+use super::equations::NamedEquations;
 use crate::random::{Random, Stream};
-use crate::singular::{Elimination, Given, Number, Stop};
+use crate::singular::{Elimination, ExactEquations, Number, PivotLimit};
 use crate::tolerances::WITNESS;
 use num_complex::Complex64;
 use num_traits::Zero;
@@ -36,7 +36,7 @@ pub(super) struct DeflatedEquations {
 impl DeflatedEquations {
     /// The points as solutions of these equations.
     pub(super) fn new(
-        equations: &Equations<'_>,
+        equations: &NamedEquations<'_>,
         points: impl Iterator<Item = (usize, Vec<Complex64>)>,
     ) -> DeflatedEquations {
         let (given, sums) = equations.parts();
@@ -72,7 +72,7 @@ impl DeflatedEquations {
     /// of such coordinates.
     fn with_zeros(self) -> Vec<DeflatedEquations> {
         let unknowns = self.unknowns();
-        let given = Given::new(&self.all(), vec![0; unknowns]);
+        let given = ExactEquations::new(&self.all(), vec![0; unknowns]);
         let mut groups: BTreeMap<Vec<usize>, DeflatedEquations> = BTreeMap::new();
         for (k, mut point) in self.points {
             let largest = point.iter().map(|z| z.norm()).fold(0.0, f64::max);
@@ -109,7 +109,7 @@ impl DeflatedEquations {
 
     /// The points, grouped by how much larger the null space of the Jacobian is than the dimension.
     fn by_rank(self, dimension: usize) -> BTreeMap<usize, DeflatedEquations> {
-        let given = Given::new(&self.all(), vec![0; self.unknowns()]);
+        let given = ExactEquations::new(&self.all(), vec![0; self.unknowns()]);
         let mut groups: BTreeMap<usize, DeflatedEquations> = BTreeMap::new();
         for (k, point) in self.points {
             let further = (point.len() - null_space(&given, &point).1.rank()).saturating_sub(dimension);
@@ -130,7 +130,7 @@ impl DeflatedEquations {
         let forms: Vec<Vec<Complex64>> =
             (0..dimension + further).map(|_| (0..before).map(|_| random.short_unit()).collect()).collect();
         let side = |form: usize| if form < dimension { 0.0 } else { 1.0 };
-        let given = Given::new(&self.all(), vec![0; before]);
+        let given = ExactEquations::new(&self.all(), vec![0; before]);
         let extended = |(k, point): (usize, Vec<Complex64>)| {
             let multipliers = multipliers(&given, &point, &forms, side)?;
             Some((k, [point, multipliers].concat()))
@@ -157,20 +157,20 @@ impl DeflatedEquations {
 }
 
 /// The point in units of the equations near it, and the Jacobian there after elimination.
-fn null_space(given: &Given, point: &[Complex64]) -> (Vec<f64>, Elimination<ComplexDd>) {
+fn null_space(given: &ExactEquations, point: &[Complex64]) -> (Vec<f64>, Elimination<ComplexDd>) {
     let local = given.near::<ComplexDd>(point);
     let (_, jacobian) = local.jacobian(&local.scaled(point));
     let units = local.unscaled(&vec![ComplexDd::one(); point.len()]);
     (
         units.iter().map(|unit| unit.to_c64().re).collect(),
-        Elimination::new(jacobian, point.len(), Stop::Below(WITNESS.zero_pivot)),
+        Elimination::new(jacobian, point.len(), PivotLimit::Below(WITNESS.zero_pivot)),
     )
 }
 
 /// The vector of the null space at a point on which the forms have the values of `side`; `None` if
 /// there is none or more than one.
 fn multipliers(
-    given: &Given,
+    given: &ExactEquations,
     point: &[Complex64],
     forms: &[Vec<Complex64>],
     side: impl Fn(usize) -> f64,
@@ -187,7 +187,7 @@ fn multipliers(
             .fold(ComplexDd::zero(), |sum, (&a, z)| ComplexDd::mul_add(&ComplexDd::from_c64(a), z, &sum))
     };
     let matrix: Vec<Vec<ComplexDd>> = forms.iter().map(|f| vectors.iter().map(|v| dot(f, v)).collect()).collect();
-    let solver = Elimination::new(matrix, vectors.len(), Stop::Below(f64::NEG_INFINITY));
+    let solver = Elimination::new(matrix, vectors.len(), PivotLimit::Below(f64::NEG_INFINITY));
     if vectors.len() != forms.len() || solver.rank() < forms.len() {
         return None;
     }
@@ -201,7 +201,7 @@ fn multipliers(
     Some(sum.iter().map(Number::to_c64).collect())
 }
 
-/// The same monomial among twice as many unknowns.
+/// A monomial among twice as many unknowns.
 fn wider(monomial: &Monomial) -> Monomial {
     let exponents = monomial.exponents();
     Monomial::new(exponents.iter().copied().chain(exponents.iter().map(|_| 0)))

@@ -1,6 +1,6 @@
 //! The equations of which components are sought.
 
-use crate::singular::Given;
+use crate::singular::ExactEquations;
 use num_complex::Complex64;
 use num_traits::ToPrimitive;
 use poly::{Exact, Polynomial};
@@ -9,19 +9,19 @@ use poly::{Exact, Polynomial};
 ///
 /// Such an unknown is a polynomial in the given ones. Components therefore keep their dimensions and
 /// multiplicities, and their degrees if hyperplanes and traces are in the given unknowns alone.
-pub(super) struct Equations<'a> {
+pub(super) struct NamedEquations<'a> {
     polynomials: &'a [Polynomial<Exact>],
     /// All of them, by which points are judged.
-    pub(super) all: Given,
+    pub(super) all: ExactEquations,
     /// How many unknowns, the first ones, were given.
     pub(super) unknowns: usize,
 }
 
-impl<'a> Equations<'a> {
+impl<'a> NamedEquations<'a> {
     /// Equations in all unknowns, of which the first `unknowns` were given.
-    pub(super) fn new(polynomials: &'a [Polynomial<Exact>], unknowns: usize) -> Equations<'a> {
+    pub(super) fn new(polynomials: &'a [Polynomial<Exact>], unknowns: usize) -> NamedEquations<'a> {
         let all = polynomials.first().map_or(unknowns, Polynomial::variables);
-        Equations { polynomials, all: Given::new(polynomials, vec![0; all]), unknowns }
+        NamedEquations { polynomials, all: ExactEquations::new(polynomials, vec![0; all]), unknowns }
     }
 
     /// How many unknowns are named sums.
@@ -59,7 +59,7 @@ impl<'a> Equations<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::Equations;
+    use super::NamedEquations;
     use num_complex::Complex64;
 
     #[test]
@@ -67,7 +67,7 @@ mod tests {
         let system: poly::System = "((x + y)^20 + x)^20 = y".parse().unwrap();
         let named = system.with_named_sums(3, 8).unwrap();
         let polynomials = named.expand(&Default::default()).unwrap();
-        let equations = Equations::new(&polynomials, 2);
+        let equations = NamedEquations::new(&polynomials, 2);
         let point = equations.completed(vec![3.0.into(), Complex64::new(-2.0, 0.0)]);
         let mut sums: Vec<f64> = point[2..].iter().map(|z| z.re).collect();
         sums.sort_by(f64::total_cmp);

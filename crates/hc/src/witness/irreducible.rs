@@ -1,7 +1,7 @@
 //! Which witness points belong to one irreducible component: monodromy of the hyperplanes, and the
 //! trace test.
 
-use super::equations::Equations;
+use super::equations::NamedEquations;
 use super::set::WitnessSet;
 use crate::distinct::relative_distance;
 use crate::family::{Fibre, FibreOptions, MonodromyOptions, deviation, monodromy, move_fibre_watched};
@@ -35,7 +35,7 @@ impl Orbit {
 /// Groups the points of a witness set by component.
 ///
 /// Loops join points until every group passes the trace test, which no part of a component passes.
-pub(super) fn orbits(set: &WitnessSet, equations: &Equations<'_>, seed: u64, monitor: &Monitor) -> Vec<Orbit> {
+pub(super) fn orbits(set: &WitnessSet, equations: &NamedEquations<'_>, seed: u64, monitor: &Monitor) -> Vec<Orbit> {
     let WitnessSet { family, fibre: all, numbers, unknowns, .. } = set;
     let mut left: Vec<usize> = (0..all.len()).collect();
     let mut orbits = Vec::new();
@@ -97,7 +97,7 @@ const FAR: [i32; 4] = [6, 18, 36, 54];
 impl Trace {
     /// Whether the plane in which the first point seems to stay, by its first step, solves the equations
     /// as far out as doubles tell.
-    fn follows_a_plane(&self, equations: &Equations<'_>) -> bool {
+    fn follows_a_plane(&self, equations: &NamedEquations<'_>) -> bool {
         let [before, after] = &self.first;
         FAR.iter().all(|&power| {
             let far = 2f64.powi(power);
@@ -144,7 +144,9 @@ mod tests {
             solve_polynomials(&sliced, system.variables(), &options, &monitor, SolveContext::default()).unwrap();
         let points: Vec<Vec<Complex64>> = found.solutions.into_iter().map(|s| s.value).collect();
         assert_eq!(points.len(), 2);
-        let [set] = &WitnessSet::all(&Equations::new(&given, 2), &slices, &points, 0)[..] else { panic!("one set") };
+        let [set] = &WitnessSet::all(&NamedEquations::new(&given, 2), &slices, &points, 0)[..] else {
+            panic!("one set")
+        };
         let deviation = |points: &[Vec<Complex64>]| {
             trace(&set.family, &Fibre::new(slices.parameters(), 2, points.concat()), 2, 0, &Monitor::default())
                 .unwrap()
@@ -164,7 +166,7 @@ mod tests {
             let [a, b, c] = slices.parameters()[..] else { panic!("one line") };
             // On the line, as far as the parabola is flat there.
             let x = c / (a + b * y(Complex64::from(1.0)));
-            let equations = Equations::new(&given, 2);
+            let equations = NamedEquations::new(&given, 2);
             let [set] = &WitnessSet::all(&equations, &slices, &[vec![x, y(x)]], 0)[..] else { panic!("one set") };
             let [orbit] = &orbits(set, &equations, 0, &Monitor::default())[..] else { panic!("one orbit") };
             orbit.is_whole()

@@ -1,7 +1,7 @@
 //! Witness points that can be tracked while their hyperplanes move.
 
 use super::deflated::DeflatedEquations;
-use super::equations::Equations;
+use super::equations::NamedEquations;
 use super::slices::Slices;
 use crate::distinct::relative_distance;
 use crate::family::{Fibre, FibreOptions, track_fibre_watched};
@@ -32,7 +32,7 @@ pub(super) struct WitnessSet {
 impl WitnessSet {
     /// The sets that can be tracked of some witness points, which all have the same multiplicity.
     pub(super) fn all(
-        equations: &Equations<'_>,
+        equations: &NamedEquations<'_>,
         slices: &Slices,
         points: &[Vec<Complex64>],
         seed: u64,
