@@ -7,8 +7,6 @@ use std::collections::HashMap;
 /// The monomials by which series are listed, with their products; a series of a lower order is a
 /// shorter list of coefficients.
 pub(crate) struct Basis {
-    variables: usize,
-    order: usize,
     monomials: Monomials,
     /// The places of the products of each monomial with those that leave it within the order.
     products: Vec<Vec<u32>>,
@@ -38,20 +36,20 @@ impl Basis {
             within.iter().filter_map(|b| places.get(&sum(b)[..]).copied()).collect()
         });
         let products = products.collect();
-        Some(Basis { variables, order, monomials, products })
+        Some(Basis { monomials, products })
     }
 
     pub(crate) fn variables(&self) -> usize {
-        self.variables
+        self.monomials.exponents[0].len()
     }
 
     pub(crate) fn order(&self) -> usize {
-        self.order
+        self.monomials.order()
     }
 
     /// Number of monomials of an order or less.
     pub(crate) fn count(&self, order: usize) -> usize {
-        self.monomials.counts[order.min(self.order)]
+        self.monomials.counts[order.min(self.order())]
     }
 
     /// Number of pairs of monomials whose product is of an order or less.
@@ -62,7 +60,7 @@ impl Basis {
             while k >= self.monomials.counts[degree] {
                 degree += 1;
             }
-            pairs += self.count(order.min(self.order) - degree);
+            pairs += self.count(order.min(self.order()) - degree);
         }
         pairs
     }
@@ -73,7 +71,7 @@ impl Basis {
 
     /// The order of a series, by its length.
     fn order_of<S>(&self, series: &[S]) -> usize {
-        self.monomials.counts.iter().position(|&count| count == series.len()).unwrap_or(self.order)
+        self.monomials.counts.iter().position(|&count| count == series.len()).unwrap_or(self.order())
     }
 
     pub(crate) fn constant<S: Number>(&self, value: S, order: usize) -> Vec<S> {
