@@ -14,6 +14,7 @@ mod hold;
 mod hypotheses;
 mod impossible;
 mod input;
+mod judge;
 mod known;
 mod late;
 mod minimal;
@@ -45,6 +46,7 @@ mod systematic;
 mod truth;
 mod unfinished;
 mod warnings;
+mod weak_nodes;
 mod whole;
 
 pub use calibration::{Alternative, Calibration};

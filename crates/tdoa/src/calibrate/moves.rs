@@ -6,7 +6,7 @@ use super::ranking::{OUTLIER_COST, refit};
 use super::receiver_errors::{Fault, ReceiverErrorKind, SIDE, tests};
 use super::refits::{Fitting, Refit};
 use super::significance::least_surprise;
-use super::warnings::{BY_CHANCE, agree_by_chance};
+use super::weak_nodes::{BY_CHANCE, agree_by_chance};
 use crate::loss::{Loss, SEARCH_NU};
 use crate::median::median;
 use crate::multilateration::{Sight, receiver as locate};

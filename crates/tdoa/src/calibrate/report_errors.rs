@@ -128,11 +128,6 @@ impl<const D: usize> State<'_, D> {
         ))
     }
 
-    /// Metres of one metre before the propagation speed was estimated.
-    fn metre(&self) -> f64 {
-        self.speed.map_or(1.0, |speed| speed.factor)
-    }
-
     /// Which place of a receiver that was moved is in the result: what it measured at the other one was
     /// left out.
     fn place_of(&self, fault: &Fault<D>) -> MovedPlace {

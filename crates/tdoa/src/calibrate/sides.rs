@@ -21,26 +21,37 @@ const WIDE: f64 = 4.0;
 /// Lengths below this share of the network's size are rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// Warns of receivers and of transmitters in one line, in space in one plane, and of mirror images. Returns
-/// whether nodes may turn about a line of space, so that nothing tells where they are.
+/// Kinds of nodes that lie in one line of space, as far as the measurements tell: the others may be anywhere
+/// around it.
+pub(super) fn turning<const D: usize>(network: &Network<D>, uncertainty: &Covariance<D>) -> Vec<NodeKind> {
+    let of_receivers: Vec<&[[f64; D]; D]> = uncertainty.receivers.iter().collect();
+    let of_transmitters: Vec<&[[f64; D]; D]> = uncertainty.transmitters.iter().flatten().map(|c| &c.rows).collect();
+    let all = [
+        (NodeKind::Receivers, &network.receivers, of_receivers),
+        (NodeKind::Transmitters, &network.transmitters, of_transmitters),
+    ];
+    // In the plane, a line leaves mirror images alone.
+    let turn = |(kind, points, covariances): (NodeKind, &Vec<[f64; D]>, Vec<&[[f64; D]; D]>)| {
+        (D > 2 && in_line(points, &covariances, network.size())).then_some(kind)
+    };
+    all.into_iter().filter_map(turn).collect()
+}
+
+/// Warns of receivers and of transmitters in one line, in space in one plane, and of mirror images.
 pub(super) fn warn_of_sides<const D: usize>(
     measured: &Pseudoranges,
     network: &Network<D>,
     uncertainty: &Covariance<D>,
+    turning: &[NodeKind],
     images: &[Mirrored<D>],
     warnings: &mut Vec<String>,
-) -> bool {
-    let mut turn = false;
-    let of_receivers: Vec<&[[f64; D]; D]> = uncertainty.receivers.iter().collect();
-    let of_transmitters: Vec<&[[f64; D]; D]> = uncertainty.transmitters.iter().flatten().map(|c| &c.rows).collect();
+) {
     let (receivers, transmitters) = (NodeKind::Receivers, NodeKind::Transmitters);
-    for (kind, points, covariances, other, names) in [
-        (receivers, &network.receivers, of_receivers, transmitters, measured.transmitter_names()),
-        (transmitters, &network.transmitters, of_transmitters, receivers, measured.receiver_names()),
+    for (kind, points, other, names) in [
+        (receivers, &network.receivers, transmitters, measured.transmitter_names()),
+        (transmitters, &network.transmitters, receivers, measured.receiver_names()),
     ] {
-        // In the plane, a line leaves mirror images alone.
-        if D > 2 && in_line(points, &covariances, network.size()) {
-            turn = true;
+        if turning.contains(&kind) {
             warnings.push(format!(
                 "the {kind} lie in one line, as far as the measurements tell: the {other} may be anywhere around it, and the places given for \
                  them are some of many; move some {kind} off the line"
@@ -88,7 +99,6 @@ pub(super) fn warn_of_sides<const D: usize>(
             (false, None, _) => {}
         }
     }
-    turn
 }
 
 /// Whether the width of points is not known to be more than zero; by its share of the length alone where

@@ -61,7 +61,8 @@ fn steps<const D: usize>(
     } else if options.errors == Errors::Symmetric && options.receiver_delays != ReceiverDelays::All {
         state.compare_with_one_sided()?;
     }
-    state.report(input)
+    let judged = state.judge(input)?;
+    state.report(input, &judged)
 }
 
 /// Searches networks for measurements less first guesses of the receivers' delays.
