@@ -49,9 +49,9 @@ impl Settings {
         options.estimate_speed = self.estimate_speed;
         let known = |(a, b, distance)| KnownDistance { receivers: [a, b], distance };
         options.distances = self.distances.into_iter().map(known).collect();
-        options.max_starts = self.max_starts.unwrap_or(options.max_starts);
-        options.min_starts = options.min_starts.min(options.max_starts);
-        options.agreeing = self.agreeing.unwrap_or(options.agreeing);
+        options.search.max_starts = self.max_starts.unwrap_or(options.search.max_starts);
+        options.search.min_starts = options.search.min_starts.min(options.search.max_starts);
+        options.search.agreeing = self.agreeing.unwrap_or(options.search.agreeing);
         options.receiver_delays = match self.receiver_delays.as_str() {
             "none" => ReceiverDelays::None,
             "auto" => ReceiverDelays::Auto,

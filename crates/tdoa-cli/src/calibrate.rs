@@ -91,11 +91,11 @@ pub(crate) struct Arguments {
     #[arg(long)]
     threads: Option<usize>,
     /// Most starts of the search.
-    #[arg(long, default_value_t = CalibrateOptions::default().max_starts)]
+    #[arg(long, default_value_t = CalibrateOptions::default().search.max_starts)]
     max_starts: usize,
     /// Starts that must have found the best network before the search ends: more for more
     /// certainty.
-    #[arg(long, default_value_t = CalibrateOptions::default().agreeing)]
+    #[arg(long, default_value_t = CalibrateOptions::default().search.agreeing)]
     agreeing: usize,
     /// Writes the result as JSON; - for standard output instead of the summary.
     #[arg(long)]
@@ -305,9 +305,9 @@ impl Task<'_> {
         options.estimate_speed = arguments.estimate_speed;
         options.sigma = arguments.sigma;
         options.seed = arguments.seed;
-        options.max_starts = arguments.max_starts;
-        options.agreeing = arguments.agreeing;
-        options.min_starts = options.min_starts.min(arguments.max_starts);
+        options.search.max_starts = arguments.max_starts;
+        options.search.agreeing = arguments.agreeing;
+        options.search.min_starts = options.search.min_starts.min(arguments.max_starts);
         Ok(options)
     }
 

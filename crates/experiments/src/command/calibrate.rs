@@ -144,15 +144,15 @@ impl Case {
         options.seed = seed;
         options.sigma = Some(self.noise).filter(|_| self.known_sigma);
         if let Some(starts) = self.starts {
-            (options.min_starts, options.max_starts) = (starts, starts);
+            (options.search.min_starts, options.search.max_starts) = (starts, starts);
         }
         let exact = MinimalHypotheses::new();
         let mut sources: Vec<&dyn tdoa::Hypotheses<D>> = Vec::new();
         match self.method {
             Method::Portfolio => {}
-            Method::Restarts => options.minimal_subsets = 0,
+            Method::Restarts => options.search.minimal_subsets = 0,
             Method::Minimal => {
-                options.restarts = false;
+                options.search.restarts = false;
                 sources.push(&exact);
             }
         }

@@ -135,8 +135,8 @@ where
     let named = measured.receiver_names().iter().cloned().zip(truth.iter().copied());
     let positions = named.filter_map(|(name, position)| Some((name, position?))).collect();
     let mut options = options.clone();
-    options.restarts = false;
-    (options.min_starts, options.max_starts) = (1, 1);
+    options.search.restarts = false;
+    (options.search.min_starts, options.search.max_starts) = (1, 1);
     let mut calibration = calibrate_with(measured, &options, &[&KnownReceivers { positions }], &Monitor::default())?;
     calibration.compare(truth);
     Ok(calibration)

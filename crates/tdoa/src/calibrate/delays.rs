@@ -10,7 +10,7 @@ use super::deviation::{inlier_deviation, spread_of_residuals, typical_deviation}
 use super::finish::CAUCHY;
 use super::near::{Neighbour, Reason};
 use super::options::{CalibrateError, ReceiverDelays, check};
-use super::ranking::truncated_cost;
+use super::ranking::{annealed, truncated_cost};
 use super::receiver_errors::{Fault, ReceiverErrorKind};
 use super::refits::Refit;
 use super::same::merged;
@@ -35,11 +35,9 @@ const LEAST_SHARE: f64 = 0.2;
 /// Networks whose delays are estimated to the end where all receivers have one.
 const CANDIDATES: usize = 10;
 
-/// Deviations, in those that the residuals have, at which such a network is fitted by least squares.
-const RELAXED: [f64; 3] = [10.0, 3.0, 1.0];
-
-/// The same where measurements are still given up.
-const WIDER: [f64; 5] = [100.0, 30.0, 10.0, 3.0, 1.0];
+/// Deviations, in those that the residuals have, at which such a network is fitted by least squares at first, and
+/// where measurements are still given up after that.
+const WIDEST: [f64; 2] = [10.0, 100.0];
 
 /// Steps of bringing a network and the delays of all receivers near their best fit.
 const COARSE: usize = 24;
@@ -240,8 +238,8 @@ impl<const D: usize> State<'_, D> {
             self.observe(faults).all().iter().any(|o| o.residual(&refined.network).abs() > reach)
         };
         let mut best = near.clone();
-        for factors in [&RELAXED[..], &WIDER[..]] {
-            let next = self.narrowed(near.clone(), factors)?.filter(|next| cost(next) < cost(&best));
+        for widest in WIDEST {
+            let next = self.narrowed(near.clone(), annealed(widest))?.filter(|next| cost(next) < cost(&best));
             best = next.unwrap_or(best);
             if !gives_up(&best) {
                 break;

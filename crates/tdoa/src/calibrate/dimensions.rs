@@ -6,8 +6,8 @@ use super::dimension_test::DimensionTest;
 use super::entry::calibrate_with;
 use super::hypotheses::{Hypotheses, generator};
 use super::known;
-use super::options::{CalibrateError, CalibrateOptions, Errors, MeasuredPosition, ReceiverDelays};
-use super::ranking::OUTLIER_COST;
+use super::options::{CalibrateError, CalibrateOptions, Errors, MeasuredPosition, ReceiverDelays, SearchOptions};
+use super::ranking::truncated;
 use crate::points::spread;
 use crate::pseudoranges::Pseudoranges;
 use crate::quantity::number;
@@ -95,10 +95,10 @@ pub fn calibrate_either(
     if options.anchors.iter().any(Option::is_some) || !options.positions.is_empty() {
         return Ok(Calibrated::Plane(calibrate_with(measured, &plane, &[], monitor)?));
     }
-    let first =
-        CalibrateOptions { max_starts: plane.max_starts.min(FIRST_STARTS.max(plane.min_starts)), ..plane.clone() };
+    let mut first = plane.clone();
+    first.search.max_starts = plane.search.max_starts.min(FIRST_STARTS.max(plane.search.min_starts));
     let mut flat = calibrate_with(measured, &first, &[], monitor)?;
-    let settled = first.max_starts == plane.max_starts || flat.starts < first.max_starts;
+    let settled = first.search.max_starts == plane.search.max_starts || flat.starts < first.search.max_starts;
     if settled && flat.fits && flat.unique_receivers {
         let test = lifted(measured, options, &flat, monitor)?.map(|lifted| compare(measured, &flat, &lifted, options));
         if test.is_none_or(|test| !test.supports(1.0)) {
@@ -175,13 +175,7 @@ fn in_plane(options: &CalibrateOptions<3>) -> CalibrateOptions {
     CalibrateOptions {
         sigma: options.sigma,
         seed: options.seed,
-        min_starts: options.min_starts,
-        max_starts: options.max_starts,
-        agreeing: options.agreeing,
-        restarts: options.restarts,
-        minimal_subsets: options.minimal_subsets,
-        search_transmitters: options.search_transmitters,
-        search_receivers: options.search_receivers,
+        search: options.search,
         inlier_threshold: options.inlier_threshold,
         alternative_margin: options.alternative_margin,
         planar_limit: options.planar_limit,
@@ -223,13 +217,9 @@ fn lifted(
     monitor: &Monitor,
 ) -> Result<Option<Calibration<3>>, CalibrateError<3>> {
     let starts = LIFTED.len();
-    let options = CalibrateOptions {
-        min_starts: starts,
-        max_starts: starts,
-        restarts: false,
-        minimal_subsets: 0,
-        ..options.clone()
-    };
+    let mut options = options.clone();
+    options.search =
+        SearchOptions { min_starts: starts, max_starts: starts, restarts: false, minimal_subsets: 0, ..options.search };
     let source = Lifted { flat, size: spread(flat.receivers.iter().flatten()) };
     unless_stopped(calibrate_with(measured, &options, &[&source], monitor))
 }
@@ -246,10 +236,7 @@ fn compare(
     let (mut in_plane, mut in_space) = (0.0, 0.0);
     for (i, j, residual) in whole.residuals.iter() {
         let Some(other) = flat.residuals.get(i, j) else { continue };
-        let cost = |length: f64| {
-            let e = length / (deviation * measured.sigma(i, j).unwrap_or(1.0));
-            (0.5 * e * e).min(OUTLIER_COST)
-        };
+        let cost = |length: f64| truncated(length / (deviation * measured.sigma(i, j).unwrap_or(1.0)));
         in_plane += cost(other.length);
         in_space += cost(residual.length);
     }

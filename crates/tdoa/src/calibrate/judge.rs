@@ -163,7 +163,7 @@ impl<const D: usize> State<'_, D> {
         let placed = uncertainty.receivers.iter().all(|c| trace(c).max(0.0).sqrt() <= best.size());
         let settled = match &self.weak {
             Some(weak) => weak.is_empty(),
-            None => self.ranked[0].starts >= options.agreeing.min(options.max_starts).min(SETTLED),
+            None => self.ranked[0].starts >= options.search.agreeing.min(options.search.max_starts).min(SETTLED),
         };
         let as_given = self.known.is_none_or(|sigma| !too_large(estimated / sigma, redundancy));
         let as_likely = as_given && one_sided.as_ref().is_none_or(|information| information.fits(redundancy));

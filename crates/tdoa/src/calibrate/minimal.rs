@@ -277,7 +277,7 @@ mod tests {
             let simulation = simulate(&options).unwrap();
             let listed = |minimal_subsets: usize| {
                 let mut options = CalibrateOptions::<3>::new();
-                (options.minimal_subsets, options.seed) = (minimal_subsets, seed);
+                (options.search.minimal_subsets, options.seed) = (minimal_subsets, seed);
                 let found = calibrate(&simulation.pseudoranges, &options).unwrap();
                 let all = found.alternatives.iter().map(|other| &other.receivers).chain([&found.receivers]);
                 let near = |receivers: &Vec<Option<[f64; 3]>>| {

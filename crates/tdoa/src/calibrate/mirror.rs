@@ -11,7 +11,7 @@ use hc::Monitor;
 use serde::{Deserialize, Serialize};
 
 use super::near::BEYOND;
-use super::ranking::{OUTLIER_COST, refit};
+use super::ranking::{annealed, refit_annealed, truncated};
 use super::same::{agree, fits};
 use crate::align::align;
 use crate::flatness::Plane;
@@ -99,10 +99,6 @@ const HOPELESS: f64 = 20.0;
 /// chance.
 const QUANTILE: f64 = 1.0 - 1e-4;
 
-/// Deviations, in those of the measurements, at which a network with a mirrored node is fitted: heights that
-/// belong to the other side make residuals that look like outliers at first.
-const ANNEALED: [f64; 2] = [3.0, 1.0];
-
 /// Measurements that are fitted anew for all nodes together, at most, those of each node all.
 const WORK: usize = 200_000;
 
@@ -151,7 +147,7 @@ impl<const D: usize> Sides<'_, D> {
         unsure.sort_by(|&a, &b| found[a].loss.total_cmp(&found[b].loss));
         unsure.truncate((WORK / self.observations.len().max(1)).max(1));
         if !unsure.is_empty() {
-            let least = self.fitted(self.network, &[1.0], monitor)?.1;
+            let least = self.fitted(self.network, annealed(1.0), monitor)?.1;
             for k in unsure {
                 self.let_go(&mut found[k], least, monitor)?;
             }
@@ -175,7 +171,7 @@ impl<const D: usize> Sides<'_, D> {
                 (network.transmitters[image.index], network.offsets[image.index]) = (image.position, image.offset);
             }
         }
-        let (network, cost) = self.fitted(&network, &ANNEALED, monitor)?;
+        let (network, cost) = self.fitted(&network, annealed(3.0), monitor)?;
         let (here, there) = (self.other_nodes(self.network, image), self.other_nodes(&network, image));
         let place = match image.kind {
             NodeKind::Receivers => network.receivers[image.index],
@@ -192,17 +188,8 @@ impl<const D: usize> Sides<'_, D> {
 
     /// The network fitted anew under truncated costs of so many deviations one after the other, and what it
     /// costs, known coordinates included.
-    fn fitted(
-        &self,
-        network: &Network<D>,
-        deviations: &[f64],
-        monitor: &Monitor,
-    ) -> Result<(Network<D>, f64), Cancelled> {
-        let mut now = (network.clone(), f64::INFINITY);
-        for factor in deviations {
-            now = refit(self.observations, &now.0, factor * self.deviation(), monitor)?;
-        }
-        let (network, cost) = now;
+    fn fitted(&self, network: &Network<D>, factors: &[f64], monitor: &Monitor) -> Result<(Network<D>, f64), Cancelled> {
+        let (network, cost) = refit_annealed(self.observations, network, factors, self.deviation(), monitor)?;
         let pins = self.observations.pins().iter();
         let known: f64 = pins.map(|pin| 0.5 * (pin.residual(&network) / self.deviation()).powi(2)).sum();
         Ok((network, cost + known))
@@ -307,7 +294,7 @@ impl<const D: usize> Sides<'_, D> {
     /// Sum of the truncated costs of the measurements of a node at another place.
     fn cost(&self, kind: NodeKind, index: usize, place: &Located<D>) -> f64 {
         let deviation = self.deviation();
-        let truncated = |e: f64| (0.5 * (e / deviation).powi(2)).min(OUTLIER_COST);
+        let truncated = |e: f64| truncated(e / deviation);
         let residual = |o: &Observation| {
             let (position, offset) = match kind {
                 NodeKind::Receivers => (self.network.transmitters[o.transmitter], self.network.offsets[o.transmitter]),

@@ -57,7 +57,9 @@ pub use hypotheses::{Hypotheses, KnownReceivers, generator};
 pub use known::SpeedEstimate;
 pub use minimal::MinimalHypotheses;
 pub use mirror::MirrorImage;
-pub use options::{CalibrateError, CalibrateOptions, Errors, KnownDistance, MeasuredPosition, ReceiverDelays};
+pub use options::{
+    CalibrateError, CalibrateOptions, Errors, KnownDistance, MeasuredPosition, ReceiverDelays, SearchOptions,
+};
 pub use receiver_errors::{MovedPlace, ReceiverError, ReceiverErrorKind};
 pub use residuals::{Residual, Residuals};
 pub use same::SAME_NETWORK;

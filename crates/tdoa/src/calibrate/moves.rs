@@ -2,7 +2,7 @@
 //! on.
 
 use super::options::{CalibrateError, check};
-use super::ranking::{OUTLIER_COST, refit};
+use super::ranking::{refit, truncated};
 use super::receiver_errors::{Fault, ReceiverErrorKind, SIDE, tests};
 use super::refits::{Fitting, Refit};
 use super::significance::least_surprise;
@@ -39,7 +39,7 @@ impl<const D: usize> Sights<D> {
         let position = locate(part, &loss)?.position;
         let cost = |s: &Sight<D>| {
             let e = (s.length - distance(s.position, position)) * s.precision;
-            (0.5 * (e / self.deviation).powi(2)).min(OUTLIER_COST)
+            truncated(e / self.deviation)
         };
         Some((position, part.iter().map(cost).sum()))
     }

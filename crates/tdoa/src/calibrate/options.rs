@@ -36,17 +36,10 @@ pub enum Errors {
     OneSided,
 }
 
-/// Options of a calibration. All fields have defaults; start from `CalibrateOptions::default()`.
-#[derive(Debug, Clone, PartialEq)]
+/// How networks are searched. All fields have defaults; start from `SearchOptions::default()`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
-pub struct CalibrateOptions<const D: usize = 2> {
-    /// Standard deviation of the measurements in metres. If measurements carry their own
-    /// deviations, a factor on those. Default `None`: estimated, or 1 if measurements carry their
-    /// own.
-    pub sigma: Option<f64>,
-    /// Seed of all random draws. The same seed gives the same result on any number of threads.
-    /// Default 0.
-    pub seed: u64,
+pub struct SearchOptions {
     /// Smallest number of starts of the search. Default 48: a basin that catches one start in
     /// sixteen is then missed with a probability of 5 %.
     pub min_starts: usize,
@@ -65,10 +58,39 @@ pub struct CalibrateOptions<const D: usize = 2> {
     pub minimal_subsets: usize,
     /// Largest number of transmitters on which the search works; the others are located after it.
     /// Default 48.
-    pub search_transmitters: usize,
+    pub transmitters: usize,
     /// Largest number of receivers on which the search works; the others are located after it.
     /// Default 32.
-    pub search_receivers: usize,
+    pub receivers: usize,
+}
+
+impl Default for SearchOptions {
+    fn default() -> Self {
+        SearchOptions {
+            min_starts: 48,
+            max_starts: 480,
+            agreeing: 10,
+            restarts: true,
+            minimal_subsets: 6,
+            transmitters: 48,
+            receivers: 32,
+        }
+    }
+}
+
+/// Options of a calibration. All fields have defaults; start from `CalibrateOptions::default()`.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct CalibrateOptions<const D: usize = 2> {
+    /// Standard deviation of the measurements in metres. If measurements carry their own
+    /// deviations, a factor on those. Default `None`: estimated, or 1 if measurements carry their
+    /// own.
+    pub sigma: Option<f64>,
+    /// Seed of all random draws. The same seed gives the same result on any number of threads.
+    /// Default 0.
+    pub seed: u64,
+    /// How networks are searched. Default [`SearchOptions::default()`].
+    pub search: SearchOptions,
     /// Measurements whose residual exceeds this many standard deviations are outliers. Default 3.5.
     pub inlier_threshold: f64,
     /// Another network is an alternative if the data are less likely under it by at most this much
@@ -140,13 +162,7 @@ impl<const D: usize> CalibrateOptions<D> {
         CalibrateOptions {
             sigma: None,
             seed: 0,
-            min_starts: 48,
-            max_starts: 480,
-            agreeing: 10,
-            restarts: true,
-            minimal_subsets: 6,
-            search_transmitters: 48,
-            search_receivers: 32,
+            search: SearchOptions::default(),
             inlier_threshold: 3.5,
             alternative_margin: 8.0,
             planar_limit: 0.04,
@@ -181,10 +197,10 @@ impl<const D: usize> CalibrateOptions<D> {
         positive("alternative_margin", self.alternative_margin)?;
         positive("planar_limit", self.planar_limit)?;
         for (name, value, least) in [
-            ("max_starts", self.max_starts, 1),
-            ("agreeing", self.agreeing, 1),
-            ("search_transmitters", self.search_transmitters, 8),
-            ("search_receivers", self.search_receivers, 8),
+            ("max_starts", self.search.max_starts, 1),
+            ("agreeing", self.search.agreeing, 1),
+            ("search.transmitters", self.search.transmitters, 8),
+            ("search.receivers", self.search.receivers, 8),
         ] {
             if value < least {
                 let range = if least == 1 { "at least 1" } else { "at least 8" };

@@ -20,8 +20,27 @@ use super::same::same;
 /// often; below 10, networks that leave one more measurement out would pass for alternatives.
 pub(super) const OUTLIER_COST: f64 = 15.0;
 
+/// Multiples of the deviation of the measurements at which a network that is bent by an error is fitted, one after
+/// the other: what belongs to the error looks like outliers at first.
+const ANNEALED: [f64; 5] = [100.0, 30.0, 10.0, 3.0, 1.0];
+
+/// Those of these multiples that are at most `widest`.
+pub(super) fn annealed(widest: f64) -> &'static [f64] {
+    &ANNEALED[ANNEALED.partition_point(|factor| *factor > widest)..]
+}
+
 /// Rounds of choosing inliers and fitting them.
 const ROUNDS: usize = 8;
+
+/// Cost of a residual in standard deviations: min(e^2/2, h).
+pub(super) fn truncated(e: f64) -> f64 {
+    (0.5 * e.powi(2)).min(OUTLIER_COST)
+}
+
+/// Measurements farther off than this many deviations cost as much as outliers.
+pub(super) fn truncated_at() -> f64 {
+    (2.0 * OUTLIER_COST).sqrt()
+}
 
 /// Sum of min(e^2/2, h) over the residuals e of a network in standard deviations; `deviation` is
 /// that of the measurements.
@@ -30,8 +49,7 @@ pub(super) fn truncated_cost<const D: usize>(
     network: &Network<D>,
     deviation: f64,
 ) -> f64 {
-    let cost = |e: f64| (0.5 * (e / deviation).powi(2)).min(OUTLIER_COST);
-    observations.all().iter().map(|o| cost(o.residual(network))).sum()
+    observations.all().iter().map(|o| truncated(o.residual(network) / deviation)).sum()
 }
 
 /// The networks with truncated costs as objectives, least first. The best ones are refitted to
@@ -73,7 +91,7 @@ pub(super) fn refit<const D: usize>(
     deviation: f64,
     monitor: &Monitor,
 ) -> Result<(Network<D>, f64), Cancelled> {
-    let limit = (2.0 * OUTLIER_COST).sqrt() * deviation;
+    let limit = truncated_at() * deviation;
     let options = RefineOptions { scale: Some(deviation), steps: 20, rounds: 0, tolerance: 1e-9, ..SEARCH };
     let mut best = (network.clone(), truncated_cost(observations, network, deviation));
     for _ in 0..ROUNDS {
@@ -92,6 +110,21 @@ pub(super) fn refit<const D: usize>(
         }
     }
     Ok(best)
+}
+
+/// [`refit`] at these multiples of the deviation, one after the other.
+pub(super) fn refit_annealed<const D: usize>(
+    observations: &Observations<D>,
+    network: &Network<D>,
+    factors: &[f64],
+    deviation: f64,
+    monitor: &Monitor,
+) -> Result<(Network<D>, f64), Cancelled> {
+    let mut now = (network.clone(), f64::INFINITY);
+    for factor in factors {
+        now = refit(observations, &now.0, factor * deviation, monitor)?;
+    }
+    Ok(now)
 }
 
 #[cfg(test)]

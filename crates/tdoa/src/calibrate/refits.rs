@@ -10,7 +10,7 @@
 use super::deviation::{inlier_deviation, spread_of_receiver};
 use super::finish::CAUCHY;
 use super::options::{CalibrateError, check};
-use super::ranking::{OUTLIER_COST, refit, truncated_cost};
+use super::ranking::{annealed, refit, truncated, truncated_at, truncated_cost};
 use super::receiver_errors::{Fault, ReceiverErrorKind, SIDE, tests};
 use super::significance::{doubt, least_gain, least_surprise, surprise};
 use crate::bordered::{Bordered, Placed};
@@ -36,9 +36,9 @@ const ANNEAL: f64 = 0.7;
 /// Rounds of fitting network and error together.
 const ROUNDS: usize = 10;
 
-/// Deviations, in those of the measurements, at which network and error are fitted once more where
+/// Deviations, in those of the measurements, at which network and error are fitted once more at first where
 /// measurements were given up.
-const RELAXED: [f64; 3] = [10.0, 3.0, 1.0];
+const WIDEST: f64 = 10.0;
 
 /// An error of a receiver and the network that goes with it.
 pub(super) struct Refit<const D: usize> {
@@ -168,11 +168,11 @@ impl<const D: usize> Fitting<'_, D> {
         let start = Joint { observations: self.corrected(&fault), network, fault, square: 0.0, cost: f64::INFINITY };
         let Some(mut fitted) = self.descend(start, 1.0)? else { return Ok(None) };
         // A network that is still bent gives up measurements that the error would explain.
-        let (least, most) = (self.reach(), RELAXED[0] * self.reach());
+        let (least, most) = (self.reach(), WIDEST * self.reach());
         let is_near = |o: &Observation| (least..most).contains(&o.residual(&fitted.network).abs());
         if fitted.observations.all().iter().any(is_near) {
             let mut relaxed = Some(fitted.clone());
-            for factor in RELAXED {
+            for &factor in annealed(WIDEST) {
                 relaxed = match relaxed {
                     Some(now) => self.descend(now, factor)?,
                     None => None,
@@ -207,7 +207,7 @@ impl<const D: usize> Fitting<'_, D> {
 
     /// Measurements farther off cost as much as outliers.
     fn reach(&self) -> f64 {
-        (2.0 * OUTLIER_COST).sqrt() * self.deviation
+        truncated_at() * self.deviation
     }
 
     /// Lowers the truncated cost with so many times the deviation.
@@ -384,8 +384,7 @@ impl<const D: usize> Local<D> {
             }
             scale = (scale * ANNEAL).max(least);
         }
-        let cost = |e: f64| (0.5 * (e / self.deviation).powi(2)).min(OUTLIER_COST);
-        let cost = (0..shapes.len()).map(|k| cost(residual(k, at, size))).sum();
+        let cost = (0..shapes.len()).map(|k| truncated(residual(k, at, size) / self.deviation)).sum();
         fault.size[0] = size;
         (at.iter().all(|x| x.is_finite()) && size.is_finite()).then_some(LocatedFault { position: at, fault, cost })
     }

@@ -8,7 +8,7 @@
 //! network of the other nodes, and refined under the truncated cost, which does not grow with it.
 
 use super::options::{CalibrateError, check};
-use super::ranking::refit;
+use super::ranking::{annealed, refit, refit_annealed};
 use super::same::same;
 use super::state::State;
 use crate::loss::{Loss, SEARCH_NU};
@@ -18,10 +18,6 @@ use crate::refine::{RefinedNetwork, places_of_receiver, places_of_transmitter};
 /// Measurements left over, outliers not counted, above which no rivals are looked for: a node has
 /// then more to agree with than another place can.
 const MOST_LEFT_OVER: usize = 20;
-
-/// Deviations, in those of the measurements, at which the truncated cost is lowered one after the
-/// other.
-const ANNEALED: [f64; 2] = [3.0, 1.0];
 
 /// Adds their rivals to the networks of a state.
 pub(super) fn add_rivals<const D: usize>(state: &mut State<'_, D>) -> Result<(), CalibrateError<D>> {
@@ -55,15 +51,9 @@ pub(super) fn add_rivals<const D: usize>(state: &mut State<'_, D>) -> Result<(),
             starts.push(network);
         }
     }
-    let carried = |network: Network<D>| -> Result<(Network<D>, f64), CalibrateError<D>> {
-        let mut now = (network, f64::INFINITY);
-        for factor in ANNEALED {
-            now = refit(observations, &now.0, factor * deviation, monitor)?;
-        }
-        Ok(now)
-    };
-    let carried = starts.into_iter().filter(Network::is_finite).map(carried);
-    let mut found: Vec<(Network<D>, f64)> = carried.collect::<Result<_, CalibrateError<D>>>()?;
+    let carried = |network: &Network<D>| refit_annealed(observations, network, annealed(3.0), deviation, monitor);
+    let carried = starts.iter().filter(|network| network.is_finite()).map(carried);
+    let mut found: Vec<(Network<D>, f64)> = carried.collect::<Result<_, _>>()?;
     found.retain(|(network, new)| *new <= cost + options.alternative_margin && network.is_finite());
     found.sort_by(|a, b| a.1.total_cmp(&b.1));
     // Costs are put on the scale of the last refinement's objectives.

@@ -6,7 +6,7 @@ use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 
 use super::hypotheses::Hypotheses;
 use super::near::minima;
-use super::options::{CalibrateError, CalibrateOptions};
+use super::options::{CalibrateError, SearchOptions};
 use super::ranking::truncated_cost;
 use super::same::{distinct, same, same_but_for_sides};
 use crate::loss::{Loss, SEARCH_NU};
@@ -62,7 +62,8 @@ const EXTRA_TURNS: usize = 1 << 24;
 impl<const D: usize> Search<'_, D> {
     pub(crate) fn run(
         &self,
-        options: &CalibrateOptions<D>,
+        options: &SearchOptions,
+        seed: u64,
         monitor: &Monitor,
     ) -> Result<SearchOutcome<D>, CalibrateError<D>> {
         let mut refined: Vec<RefinedNetwork<D>> = Vec::new();
@@ -72,7 +73,7 @@ impl<const D: usize> Search<'_, D> {
             let batch = BATCH.min(options.max_starts - starts);
             let refiner = || NetworkRefiner::new(self.observations, SEARCH_NU).heeding(monitor);
             let start = |refiner: &mut NetworkRefiner<'_, D>, index| {
-                if monitor.is_cancelled() { Vec::new() } else { self.start(refiner, index, options.seed, monitor) }
+                if monitor.is_cancelled() { Vec::new() } else { self.start(refiner, index, seed, monitor) }
             };
             let batch = starts..starts + batch;
             #[cfg(feature = "threads")]

@@ -3,7 +3,7 @@
 
 use super::deviation::{median_size, typical_deviation};
 use super::hypotheses::Hypotheses;
-use super::options::{CalibrateError, CalibrateOptions, check};
+use super::options::{CalibrateError, CalibrateOptions, SearchOptions, check};
 use super::state::State;
 use super::unfinished::Unfinished;
 use super::whole::search_whole;
@@ -130,9 +130,12 @@ fn solve_neighbourhoods<const D: usize>(
     let m = measured.receivers();
     let common = common_transmitters(measured);
     let options = &CalibrateOptions {
-        min_starts: options.min_starts.min(STARTS),
-        max_starts: options.max_starts.min(MOST_STARTS),
-        agreeing: options.agreeing.min(AGREEING),
+        search: SearchOptions {
+            min_starts: options.search.min_starts.min(STARTS),
+            max_starts: options.search.max_starts.min(MOST_STARTS),
+            agreeing: options.search.agreeing.min(AGREEING),
+            ..options.search
+        },
         ..options.clone()
     };
     let mut tried: Vec<Vec<usize>> = Vec::new();

@@ -70,7 +70,7 @@ fn scatter<T: Clone>(length: usize, at: &[usize], values: Vec<Option<T>>) -> Vec
 
 #[cfg(test)]
 mod tests {
-    use crate::calibrate::{CalibrateError, CalibrateOptions, calibrate_with};
+    use crate::calibrate::{CalibrateError, CalibrateOptions, SearchOptions, calibrate_with};
     use crate::{Errors, ReceiverDelays, ReceiverFault, SimulateOptions, simulate};
     use hc::{Monitor, Stage};
     use std::sync::atomic::{AtomicU64, Ordering};
@@ -87,8 +87,8 @@ mod tests {
         }
         let measured = crate::Pseudoranges::new(m, n, values).unwrap();
         let mut options = CalibrateOptions::default();
-        options.max_starts = usize::MAX >> 8;
-        options.agreeing = options.max_starts;
+        options.search.max_starts = usize::MAX >> 8;
+        options.search.agreeing = options.search.max_starts;
         let monitor = Monitor::asking(|now| now.stage == Stage::Search && now.done >= 48);
         let Err(CalibrateError::Cancelled(Some(best))) = calibrate_with(&measured, &options, &[], &monitor) else {
             panic!("it ended")
@@ -155,10 +155,13 @@ mod tests {
             let options = CalibrateOptions {
                 errors,
                 receiver_delays,
-                max_starts: 32,
-                min_starts: 16,
-                agreeing: 4,
-                minimal_subsets: 0,
+                search: SearchOptions {
+                    max_starts: 32,
+                    min_starts: 16,
+                    agreeing: 4,
+                    minimal_subsets: 0,
+                    ..SearchOptions::default()
+                },
                 ..CalibrateOptions::default()
             };
             // Says no until it has been asked so often.

@@ -42,10 +42,10 @@ pub(super) fn search_whole<const D: usize>(
         ..SEARCH
     };
     let mut all: Vec<&dyn Hypotheses<D>> = sources.to_vec();
-    let minimal = MinimalHypotheses::at_most(options.minimal_subsets).heeding(monitor);
-    if options.restarts || all.is_empty() {
+    let minimal = MinimalHypotheses::at_most(options.search.minimal_subsets).heeding(monitor);
+    if options.search.restarts || all.is_empty() {
         all.insert(0, &restarts);
-        if options.minimal_subsets > 0 && MinimalHypotheses::fit::<D>(&small) {
+        if options.search.minimal_subsets > 0 && MinimalHypotheses::fit::<D>(&small) {
             all.push(&minimal);
         }
     }
@@ -57,7 +57,7 @@ pub(super) fn search_whole<const D: usize>(
         wide: Loss { nu: SEARCH_NU, scale: 0.03 * diameter / unit },
         deviation: known.map(|sigma| sigma.max(refine.floor)),
     };
-    let found = search.run(options, monitor)?;
+    let found = search.run(&options.search, options.seed, monitor)?;
     let (m, n) = (state.measured.receivers(), state.measured.transmitters());
     if let Some(best) = found.networks.first() {
         let best = Unfinished::of(&best.network, found.starts, best.starts);
@@ -104,9 +104,9 @@ fn search_part<const D: usize>(measured: &Pseudoranges, options: &CalibrateOptio
         better.sort_unstable();
         (0..most).map(|k| better[k * better.len() / most]).collect()
     };
-    let receivers = pick(m, options.search_receivers, &|i| measured.cells().row(i).count());
+    let receivers = pick(m, options.search.receivers, &|i| measured.cells().row(i).count());
     let heard = |j: usize| receivers.iter().filter(|&&i| measured.get(i, j).is_some()).count();
-    let transmitters = pick(n, options.search_transmitters, &heard);
+    let transmitters = pick(n, options.search.transmitters, &heard);
     // A part that cannot be solved on its own is no help.
     match usable::<D>(&measured.select(&receivers, &transmitters)) {
         Ok(part) => Usable {
