@@ -1,9 +1,9 @@
 //! The way into a calibration, compiled once for the plane and once for space.
 
-use super::calibration::Calibration;
-use super::hypotheses::Hypotheses;
-use super::options::{CalibrateError, CalibrateOptions};
-use super::steps;
+use crate::calibrate::options::{CalibrateError, CalibrateOptions};
+use crate::calibrate::report::calibration::Calibration;
+use crate::calibrate::search::hypotheses::Hypotheses;
+use crate::calibrate::steps;
 use crate::pseudoranges::Pseudoranges;
 use hc::Monitor;
 

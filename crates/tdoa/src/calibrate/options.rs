@@ -1,6 +1,6 @@
 //! Options of a calibration, and how it ends early.
 
-use super::unfinished::Unfinished;
+use crate::calibrate::unfinished::Unfinished;
 use crate::degeneracy::Degeneracy;
 use crate::refine::Cancelled;
 use hc::Monitor;
@@ -149,7 +149,7 @@ impl Default for CalibrateOptions {
 
 impl<const D: usize> MeasuredPosition<D> {
     /// The position, if all coordinates are known.
-    pub(super) fn whole(&self) -> Option<[f64; D]> {
+    pub(crate) fn whole(&self) -> Option<[f64; D]> {
         let position = self.position.map(|x| x.unwrap_or(f64::NAN));
         self.position.iter().all(Option::is_some).then_some(position)
     }
@@ -212,7 +212,7 @@ impl<const D: usize> CalibrateOptions<D> {
 }
 
 /// Ends the calibration if it has been cancelled.
-pub(super) fn check<const D: usize>(monitor: &Monitor) -> Result<(), CalibrateError<D>> {
+pub(crate) fn check<const D: usize>(monitor: &Monitor) -> Result<(), CalibrateError<D>> {
     Ok(crate::refine::check(monitor)?)
 }
 
@@ -278,7 +278,7 @@ pub enum CalibrateError<const D: usize = 2> {
 
 impl<const D: usize> CalibrateError<D> {
     /// With this network where the calibration was stopped.
-    pub(super) fn leaving(self, best: Option<Unfinished<D>>) -> CalibrateError<D> {
+    pub(crate) fn leaving(self, best: Option<Unfinished<D>>) -> CalibrateError<D> {
         match self {
             CalibrateError::Cancelled(_) => CalibrateError::Cancelled(best.map(Box::new)),
             other => other,

@@ -1,29 +1,29 @@
 //! The steps of a calibration, from measurements to a report.
 
-use super::calibration::Calibration;
-use super::clocks::{on_a_grid, without_middle_delays};
-use super::hypotheses::Hypotheses;
-use super::impossible::without_impossible;
-use super::input::Input;
-use super::known;
-use super::options::{CalibrateError, CalibrateOptions, Errors, ReceiverDelays, check};
-use super::state::State;
-use super::submaps::{ReceiverLayout, hearing_is_local, lay_out, overlap};
-use super::unfinished::Unfinished;
-use super::whole::search_whole;
+use crate::calibrate::input::anchors;
+use crate::calibrate::input::impossible::without_impossible;
+use crate::calibrate::input::middle_delays::{on_a_grid, without_middle_delays};
+use crate::calibrate::input::selection::Input;
+use crate::calibrate::options::{CalibrateError, CalibrateOptions, Errors, ReceiverDelays, check};
+use crate::calibrate::report::calibration::Calibration;
+use crate::calibrate::search::dense::search_whole;
+use crate::calibrate::search::hypotheses::Hypotheses;
+use crate::calibrate::search::local::{ReceiverLayout, hearing_is_local, lay_out, overlap};
+use crate::calibrate::state::State;
+use crate::calibrate::unfinished::Unfinished;
 use crate::degeneracy::{Usable, least_per_transmitter, list, usable};
 use crate::pseudoranges::Pseudoranges;
 use hc::Monitor;
 
 /// What `calibrate_with` does, for any number of coordinates.
-pub(super) fn calibrate_with<const D: usize>(
+pub(crate) fn calibrate_with<const D: usize>(
     measured: &Pseudoranges,
     options: &CalibrateOptions<D>,
     sources: &[&dyn Hypotheses<D>],
     monitor: &Monitor,
 ) -> Result<Calibration<D>, CalibrateError<D>> {
     options.validate()?;
-    known::validate(measured, options)?;
+    anchors::validate(measured, options)?;
     let (table, impossible) = without_impossible(measured);
     check(monitor)?;
     let mut usable = usable::<D>(&table)?;

@@ -24,7 +24,7 @@ pub struct Unfinished<const D: usize = 2> {
 }
 
 impl<const D: usize> Unfinished<D> {
-    pub(super) fn of(network: &Network<D>, starts: usize, agreeing: usize) -> Unfinished<D> {
+    pub(crate) fn of(network: &Network<D>, starts: usize, agreeing: usize) -> Unfinished<D> {
         Unfinished {
             receivers: network.receivers.iter().copied().map(Some).collect(),
             transmitters: network.transmitters.iter().copied().map(Some).collect(),
@@ -35,14 +35,14 @@ impl<const D: usize> Unfinished<D> {
     }
 
     /// Receivers alone, from small networks laid together, beside so many transmitters.
-    pub(super) fn laid(receivers: Vec<Option<[f64; D]>>, transmitters: usize, starts: usize) -> Unfinished<D> {
+    pub(crate) fn laid(receivers: Vec<Option<[f64; D]>>, transmitters: usize, starts: usize) -> Unfinished<D> {
         let (nowhere, never) = (vec![None; transmitters], vec![None; transmitters]);
         Unfinished { receivers, transmitters: nowhere, offsets: never, starts, agreeing: 0 }
     }
 
     /// The same network among `m` receivers and `n` transmitters; its own nodes are those at `rows`
     /// and `columns`.
-    pub(super) fn among(self, m: usize, rows: &[usize], n: usize, columns: &[usize]) -> Unfinished<D> {
+    pub(crate) fn among(self, m: usize, rows: &[usize], n: usize, columns: &[usize]) -> Unfinished<D> {
         Unfinished {
             receivers: scatter(m, rows, self.receivers),
             transmitters: scatter(n, columns, self.transmitters),
@@ -52,7 +52,7 @@ impl<const D: usize> Unfinished<D> {
     }
 
     /// Undoes the centring of the measurements: `shifts` were taken from those of the transmitters.
-    pub(super) fn shifted(mut self, shifts: &[f64]) -> Unfinished<D> {
+    pub(crate) fn shifted(mut self, shifts: &[f64]) -> Unfinished<D> {
         for (offset, shift) in self.offsets.iter_mut().zip(shifts) {
             *offset = offset.map(|offset| offset + shift);
         }

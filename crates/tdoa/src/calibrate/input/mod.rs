@@ -1,0 +1,6 @@
+//! What takes part in a calibration, and what is known beforehand.
+
+pub(crate) mod anchors;
+pub(crate) mod impossible;
+pub(crate) mod middle_delays;
+pub(crate) mod selection;

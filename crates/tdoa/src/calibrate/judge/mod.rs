@@ -1,0 +1,11 @@
+//! What is decided about the networks that were found: noise, uncertainty, uniqueness, mirror images, dimension.
+
+pub(crate) mod dimension_test;
+pub(crate) mod dimensions;
+pub(crate) mod judgement;
+pub(crate) mod late;
+pub(crate) mod lines_and_planes;
+pub(crate) mod mirror_images;
+pub(crate) mod neighbours;
+pub(crate) mod orientation;
+pub(crate) mod weak_nodes;

@@ -1,0 +1,9 @@
+//! Errors of whole receivers, and receivers of known position.
+
+pub(crate) mod evidence;
+pub(crate) mod known_positions;
+pub(crate) mod moves;
+pub(crate) mod refits;
+pub(crate) mod score_test;
+pub(crate) mod significance;
+pub(crate) mod take_out;

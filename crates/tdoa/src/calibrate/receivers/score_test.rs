@@ -1,0 +1,489 @@
+//! Receivers with errors of their own: a delay, a clock that drifts or jumps, a receiver that was
+//! moved.
+//!
+//! Such an error is a column beside the Jacobian: its contribution to the residuals of one
+//! receiver. The part of the column that no motion of the nodes produces is compared with the
+//! residuals (a score test). The column that explains most is added to the model, and the test goes
+//! on with what remains.
+
+use serde::{Deserialize, Serialize};
+use std::array::from_fn;
+
+use crate::calibrate::receivers::significance::{doubt, least_surprise, surprise};
+use crate::calibrate::search::deviation::{inlier_deviation, spread_of_receiver, spread_of_residuals};
+use crate::calibrate::search::mixture::Mixture;
+use crate::multilateration::solve_symmetric;
+use crate::network::Network;
+use crate::observations::Observations;
+use crate::points;
+use crate::refine::{Cancelled, Projection, check, dot};
+use hc::Monitor;
+
+/// Measurements before and after an event between which a jump or a move is looked for.
+pub(crate) const SIDE: usize = 4;
+
+/// Receivers whose columns are projected; in larger networks those with the most telling residuals.
+const PROJECTED: usize = 24;
+
+/// The kind of error that a receiver has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum ReceiverErrorKind {
+    /// All its measurements are too long, or too short, by the same length.
+    Delay,
+    /// The error of its measurements grows evenly from the first transmitter to the last one.
+    Drift,
+    /// Its clock jumps: from one transmitter on, its measurements are too long, or too short, by
+    /// the same length.
+    Jump,
+    /// It stands elsewhere from one transmitter on.
+    Move,
+}
+
+/// One of the two places of a receiver that was moved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum MovedPlace {
+    /// The place before the move.
+    Before,
+    /// The place after the move.
+    After,
+}
+
+/// An error of one receiver that its measurements show.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ReceiverError {
+    /// Name of the receiver.
+    pub receiver: String,
+    /// The kind of error.
+    pub kind: ReceiverErrorKind,
+    /// Name of the first transmitter after a jump or a move, in the order of the table.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub from: Option<String>,
+    /// The place that the result has for a receiver that was moved: the one with more measurements.
+    /// `None` for other errors, and for a move that was not taken out. In the latter case the
+    /// result has a place between both, with a covariance that includes both.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub place: Option<MovedPlace>,
+    /// Size of the error in metres: the delay, the drift from the first transmitter to the last
+    /// one, the jump, or the distance of the move.
+    pub size: f64,
+    /// How much more likely the measurements are with the error (natural logarithm).
+    pub gain: f64,
+    /// Whether the error was taken out of the network.
+    pub taken_out: bool,
+}
+
+/// An error of one receiver, by indices.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Fault<const D: usize> {
+    pub(crate) receiver: usize,
+    pub(crate) kind: ReceiverErrorKind,
+    /// First transmitter that has it; 0 for delay and drift.
+    pub(crate) from: usize,
+    /// Metres; of a move in each coordinate, otherwise the first alone.
+    pub(crate) size: [f64; D],
+    pub(crate) gain: f64,
+}
+
+impl<const D: usize> Fault<D> {
+    /// One of no size yet.
+    pub(crate) fn new(receiver: usize, kind: ReceiverErrorKind, from: usize) -> Fault<D> {
+        Fault { receiver, kind, from, size: [0.0; D], gain: 0.0 }
+    }
+
+    pub(crate) fn length(&self) -> f64 {
+        if self.kind == ReceiverErrorKind::Move {
+            self.size.iter().copied().fold(0.0, f64::hypot)
+        } else {
+            self.size[0]
+        }
+    }
+
+    /// What the error adds to a measurement of transmitter `j` of `n`, for a size of 1; a move is
+    /// none of these.
+    pub(crate) fn shape(&self, j: usize, n: usize) -> f64 {
+        match self.kind {
+            ReceiverErrorKind::Delay => 1.0,
+            ReceiverErrorKind::Drift => j as f64 / (n.max(2) - 1) as f64,
+            ReceiverErrorKind::Jump | ReceiverErrorKind::Move => f64::from(u8::from(j >= self.from)),
+        }
+    }
+}
+
+/// What a score test tells.
+#[derive(Default)]
+pub(crate) struct Told<const D: usize> {
+    /// Errors of single receivers, most telling first.
+    pub(crate) found: Vec<Fault<D>>,
+    /// Those beside that are worth a doubt.
+    pub(crate) doubted: Vec<Fault<D>>,
+}
+
+/// Errors of single receivers that the residuals at a network show. `deviation` is that of the measurements; receivers in `unmoved` are known not to have been moved.
+pub(crate) fn find<const D: usize>(
+    observations: &Observations<D>,
+    network: &Network<D>,
+    deviation: f64,
+    threshold: f64,
+    unmoved: &[usize],
+    monitor: &Monitor,
+) -> Result<Told<D>, Cancelled> {
+    // An error of one receiver makes residuals larger than the noise: the test takes the deviation
+    // that they have.
+    let wide = spread_of_residuals(observations, network).max(deviation);
+    let wide = inlier_deviation(observations, network, wide, threshold);
+    // What the robust loss has given up of a receiver is what tells of its error: all cells near
+    // its own spread take part.
+    let reach: Vec<f64> = (0..observations.receivers).map(|i| spread_of_receiver(observations, network, i)).collect();
+    let kept = observations.subset(|o| o.residual(network).abs() <= threshold * wide.max(reach[o.receiver]));
+    let residuals: Vec<f64> = kept.all().iter().map(|o| o.residual(network)).collect();
+    told(&kept, network, &residuals, unmoved, monitor)
+}
+
+/// The same where errors are one-sided. The test takes what each measurement says of its length (the
+/// scores of the mixture), in which late ones hardly count, in place of residuals.
+pub(crate) fn find_one_sided<const D: usize>(
+    observations: &Observations<D>,
+    network: &Network<D>,
+    mixture: &Mixture,
+    monitor: &Monitor,
+) -> Result<Told<D>, Cancelled> {
+    let step = mixture.deviation / mixture.information();
+    let scores: Vec<f64> = observations.all().iter().map(|o| step * mixture.score(o.residual(network))).collect();
+    told(observations, network, &scores, &[], monitor)
+}
+
+/// Errors that values tell of, one for each measurement.
+fn told<const D: usize>(
+    kept: &Observations<D>,
+    network: &Network<D>,
+    values: &[f64],
+    unmoved: &[usize],
+    monitor: &Monitor,
+) -> Result<Told<D>, Cancelled> {
+    let redundancy = kept.len().saturating_sub(kept.unknowns());
+    if redundancy < 4 {
+        return Ok(Told::default());
+    }
+    let Some(projection) = Projection::new(kept, network, monitor)? else { return Ok(Told::default()) };
+    let (rest, _) = projection.off(values);
+    Test { kept, projection, rest, taken: Vec::new(), redundancy: redundancy as f64, unmoved, monitor }.run()
+}
+
+/// How many errors of a kind are tested among these receivers and measurements.
+pub(crate) fn tests(kind: ReceiverErrorKind, receivers: usize, measurements: usize) -> f64 {
+    match kind {
+        ReceiverErrorKind::Delay | ReceiverErrorKind::Drift => receivers as f64,
+        ReceiverErrorKind::Jump | ReceiverErrorKind::Move => measurements as f64,
+    }
+}
+
+struct Test<'a, const D: usize> {
+    kept: &'a Observations<D>,
+    projection: Projection<'a, D>,
+    /// What neither the network nor the errors found so far explain.
+    rest: Vec<f64>,
+    /// Orthonormal parts of the columns of these, that no motion makes.
+    taken: Vec<Vec<f64>>,
+    redundancy: f64,
+    unmoved: &'a [usize],
+    monitor: &'a Monitor,
+}
+
+impl<const D: usize> Test<'_, D> {
+    fn run(mut self) -> Result<Told<D>, Cancelled> {
+        let (mut found, mut doubted) = (Vec::<Fault<D>>::new(), Vec::new());
+        let rows = self.rows();
+        while found.len() < self.kept.receivers / 2 {
+            let known = |fault: &Fault<D>| {
+                found.iter().any(|f| f.receiver == fault.receiver && f.kind == fault.kind)
+                    || fault.kind == ReceiverErrorKind::Move && self.unmoved.contains(&fault.receiver)
+            };
+            let candidates = self.candidates(&rows)?;
+            // A candidate of each kind has as many rivals as that kind has tests.
+            let least = |kind| least_surprise(tests(kind, self.kept.receivers, self.kept.len()));
+            let mut judged = Vec::new();
+            for fault in candidates.into_iter().filter(|fault| !known(fault)) {
+                check(self.monitor)?;
+                let Some((gain, fault, columns)) = self.judge(fault, &rows) else { continue };
+                let told = surprise(gain, self.redundancy - columns.len() as f64, columns.len());
+                judged.push((told - least(fault.kind), fault, columns));
+            }
+            judged.sort_by(|a, b| b.0.total_cmp(&a.0));
+            doubted = judged.iter().filter(|(lead, ..)| *lead > -doubt()).map(|(_, fault, _)| *fault).collect();
+            let Some((_, fault, columns)) = judged.into_iter().next().filter(|(lead, ..)| *lead >= 0.0) else { break };
+            found.push(fault);
+            if fault.kind == ReceiverErrorKind::Move {
+                // A move is large against what a linear model sees of it: what remains may be its
+                // own.
+                break;
+            }
+            for column in columns {
+                self.take(column);
+            }
+            self.redundancy -= 1.0;
+        }
+        doubted.retain(|doubt| found.iter().all(|fault| fault.receiver != doubt.receiver));
+        Ok(Told { found, doubted })
+    }
+
+    /// Places of the measurements of each receiver, in the order of the transmitters.
+    fn rows(&self) -> Vec<Vec<usize>> {
+        let mut rows = vec![Vec::new(); self.kept.receivers];
+        for (k, o) in self.kept.all().iter().enumerate() {
+            rows[o.receiver].push(k);
+        }
+        rows
+    }
+
+    /// The most promising error of each kind and receiver, by the residuals alone.
+    fn candidates(&self, rows: &[Vec<usize>]) -> Result<Vec<Fault<D>>, Cancelled> {
+        let mut all: Vec<(f64, Fault<D>)> = Vec::new();
+        for (receiver, row) in rows.iter().enumerate() {
+            if row.len() < 3 {
+                continue;
+            }
+            let fault = |kind, from| Fault::new(receiver, kind, from);
+            let mut best = [(f64::NEG_INFINITY, 0); 2];
+            for at in SIDE..(row.len() + 1).saturating_sub(SIDE) {
+                check(self.monitor)?;
+                let from = self.kept.all()[row[at]].transmitter;
+                for (best, power) in best.iter_mut().zip([0, 1]) {
+                    let score = self.score(&row[..at], power) + self.score(&row[at..], power);
+                    if score > best.0 {
+                        *best = (score, from);
+                    }
+                }
+            }
+            let whole = self.score(row, 0).max(best[0].0).max(best[1].0);
+            all.push((whole, fault(ReceiverErrorKind::Delay, 0)));
+            all.push((whole, fault(ReceiverErrorKind::Drift, 0)));
+            for (best, kind) in best.into_iter().zip([ReceiverErrorKind::Jump, ReceiverErrorKind::Move]) {
+                if best.0.is_finite() {
+                    all.push((whole, fault(kind, best.1)));
+                }
+            }
+        }
+        // The sort is stable: the kinds of one receiver stay together.
+        all.sort_by(|a, b| b.0.total_cmp(&a.0));
+        all.truncate(4 * PROJECTED);
+        Ok(all.into_iter().map(|(_, fault)| fault).collect())
+    }
+
+    /// How much of the squares of the residuals in some cells of a receiver one length explains, or
+    /// a motion of the receiver.
+    fn score(&self, row: &[usize], power: usize) -> f64 {
+        let (mut sum, mut square, mut g, mut h) = (0.0, 0.0, [0.0; D], [[0.0; D]; D]);
+        for &k in row {
+            let (p, u) = (self.kept.all()[k].precision, self.projection.rays()[k]);
+            let v = self.rest[k] * p;
+            (sum, square) = (sum + v, square + p * p);
+            g = from_fn(|a| g[a] + u[a] * v);
+            h = from_fn(|a| from_fn(|b| h[a][b] + p * p * u[a] * u[b]));
+        }
+        if power == 0 { sum * sum / square } else { solve_symmetric(&h, g).map_or(0.0, |s| points::dot(s, g)) }
+    }
+
+    /// The gain of taking an error into the model, with its size, and the parts of its columns that
+    /// nothing else explains. `None` where it explains nothing.
+    fn judge(&self, fault: Fault<D>, rows: &[Vec<usize>]) -> Option<(f64, Fault<D>, Vec<Vec<f64>>)> {
+        let n = self.kept.transmitters;
+        let is_move = fault.kind == ReceiverErrorKind::Move;
+        let column = |axis: usize| -> Vec<f64> {
+            let mut column = vec![0.0; self.kept.len()];
+            for &k in &rows[fault.receiver] {
+                let o = &self.kept.all()[k];
+                let along = if is_move { -self.projection.rays()[k][axis] } else { 1.0 };
+                column[k] = o.precision * fault.shape(o.transmitter, n) * along;
+            }
+            let plain: f64 = column.iter().map(|x| x * x).sum();
+            let mut left = self.projection.off(&column).0;
+            for other in &self.taken {
+                let part = dot(&left, other);
+                for (x, y) in left.iter_mut().zip(other) {
+                    *x -= part * y;
+                }
+            }
+            // What the network or another error absorbs to rounding cannot be told.
+            if dot(&left, &left) < 1e-6 * plain { Vec::new() } else { left }
+        };
+        let columns: Vec<Vec<f64>> = (0..if is_move { D } else { 1 }).map(column).collect();
+        if columns.iter().any(Vec::is_empty) {
+            return None;
+        }
+        let solve = |h: &[[f64; D]; D], g: [f64; D]| -> Option<[f64; D]> {
+            if is_move { solve_symmetric(h, g) } else { Some(from_fn(|a| if a == 0 { g[0] / h[0][0] } else { 0.0 })) }
+        };
+        let products = |weight: &dyn Fn(usize) -> f64| -> [[f64; D]; D] {
+            let mut h = [[0.0; D]; D];
+            for k in 0..self.kept.len() {
+                let w = weight(k);
+                for (row, x) in h.iter_mut().zip(&columns) {
+                    for (entry, y) in row.iter_mut().zip(&columns) {
+                        *entry += w * x[k] * y[k];
+                    }
+                }
+            }
+            h
+        };
+        let g = from_fn(|a| columns.get(a).map_or(0.0, |column| dot(column, &self.rest)));
+        let size = solve(&products(&|_| 1.0), g)?;
+        let explained = points::dot(size, g);
+        let total = dot(&self.rest, &self.rest);
+        let count = columns.len() as f64;
+        // Under normal noise explained / total follows Beta(q/2, (k-q)/2), whose tail for one or two
+        // columns is at most (1 - x)^((k - q)/2).
+        let tail = |x: f64| -0.5 * (self.redundancy - count) * (-x.min(1.0)).ln_1p();
+        // Receivers of uneven noise: with the spread of the residuals that the column meets. The
+        // smaller gain counts.
+        let left =
+            |k: usize| columns.iter().zip(size).fold(self.rest[k], |rest, (column, size)| rest - size * column[k]);
+        let correction = self.kept.len() as f64 / (self.redundancy - count).max(1.0);
+        let s = solve(&products(&|k| correction * left(k).powi(2)), g)?;
+        let squared = points::dot(s, g);
+        let uneven = squared / (squared + self.redundancy - count);
+        let gain = tail(explained / total).min(tail(uneven));
+        Some((gain, Fault { size, gain, ..fault }, columns))
+    }
+
+    /// Takes a column into the model.
+    fn take(&mut self, mut column: Vec<f64>) {
+        let length = dot(&column, &column).sqrt();
+        for x in column.iter_mut() {
+            *x /= length;
+        }
+        let part = dot(&self.rest, &column);
+        for (x, y) in self.rest.iter_mut().zip(&column) {
+            *x -= part * y;
+        }
+        self.taken.push(column);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::ReceiverErrorKind;
+    use crate::align::align;
+    use crate::calibrate::receivers::evidence::tests::late;
+    use crate::{CalibrateOptions, Calibration, ReceiverDelays, ReceiverFault, SimulateOptions, calibrate, simulate};
+
+    const SIGMA: f64 = 0.01;
+
+    /// A calibration and how far its receivers are from the truth, metres.
+    fn run(fault: Option<ReceiverFault>, delays: f64, handling: ReceiverDelays, seed: u64) -> (Calibration, f64) {
+        let options = SimulateOptions {
+            receivers: 10,
+            transmitters: 20,
+            noise: SIGMA,
+            fault,
+            delays,
+            seed,
+            ..Default::default()
+        };
+        let simulation = simulate(&options).unwrap();
+        let options = CalibrateOptions { receiver_delays: handling, seed, ..Default::default() };
+        let found = calibrate(&simulation.pseudoranges, &options).unwrap();
+        let pairs = found.receivers.iter().zip(&simulation.network.receivers).filter_map(|(p, q)| Some(((*p)?, *q)));
+        let (placed, truth): (Vec<_>, Vec<_>) = pairs.unzip();
+        let error = align(&placed, &truth, false).unwrap().rms;
+        (found, error)
+    }
+
+    #[test]
+    fn the_receiver_and_its_error_are_named_and_taken_out() {
+        for (fault, kind, size) in [
+            (ReceiverFault::Delay(0.3), ReceiverErrorKind::Delay, 0.3),
+            (ReceiverFault::Drift(0.5), ReceiverErrorKind::Drift, 0.5),
+            (ReceiverFault::Move(1.0), ReceiverErrorKind::Move, 1.0),
+        ] {
+            for seed in 0..3 {
+                let (told, _) = run(Some(fault), 0.0, ReceiverDelays::None, seed);
+                let error = &told.receiver_errors[0];
+                assert_eq!(
+                    (error.receiver.as_str(), error.kind, error.taken_out),
+                    ("r1", kind, false),
+                    "{fault:?} {seed}"
+                );
+                assert!(!told.unique && told.warnings.iter().any(|warning| warning.contains("receiver r1 seems")));
+                let (mended, right) = run(Some(fault), 0.0, ReceiverDelays::Auto, seed);
+                let error = &mended.receiver_errors[0];
+                assert_eq!(
+                    (error.receiver.as_str(), error.kind, error.taken_out),
+                    ("r1", kind, true),
+                    "{fault:?} {seed}"
+                );
+                assert!((error.size.abs() - size).abs() < 0.3 * size, "{fault:?} {seed}: {}", error.size);
+                // The noise alone makes errors of about its own size.
+                assert!(right < 3.0 * SIGMA && mended.receivers[0].is_some(), "{fault:?} {seed}: {right}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_network_that_has_bent_itself_to_an_error_is_seen_through() {
+        // Thirty deviations, part of which the network takes up while it gives up other measurements
+        // of the receiver as outliers.
+        for (seed, outliers) in [(5007, 0.0), (5002, 0.05), (5012, 0.05), (40072, 0.0), (40098, 0.0)] {
+            let simulation = late(outliers, seed);
+            for handling in [ReceiverDelays::None, ReceiverDelays::Auto] {
+                let options = CalibrateOptions { receiver_delays: handling, seed, ..Default::default() };
+                let found = calibrate(&simulation.pseudoranges, &options).unwrap();
+                let [error] = &found.receiver_errors[..] else { panic!("seed {seed}: {:?}", found.receiver_errors) };
+                assert_eq!((error.receiver.as_str(), error.kind), ("r1", ReceiverErrorKind::Delay), "seed {seed}");
+                assert_eq!(found.unique, error.taken_out && found.alternatives.is_empty());
+                // Twenty measurements determine it to a few deviations.
+                assert!((error.size - 0.3).abs() < 5.0 * SIGMA || !error.taken_out, "seed {seed}: {}", error.size);
+            }
+        }
+    }
+
+    #[test]
+    fn clean_networks_have_no_errors() {
+        // Five false alarms in a thousand networks at most.
+        for seed in 0..12 {
+            let (found, _) = run(None, 0.0, ReceiverDelays::None, 100 + seed);
+            assert!(found.receiver_errors.is_empty(), "seed {seed}: {:?}", found.receiver_errors);
+        }
+    }
+
+    #[test]
+    fn the_network_does_not_depend_on_how_far_clocks_are_apart() {
+        for seed in 0..4 {
+            let at = |delays: f64| {
+                let mut options =
+                    SimulateOptions { receivers: 10, transmitters: 30, delays, seed, ..Default::default() };
+                options.noise = SIGMA;
+                let simulation = simulate(&options).unwrap();
+                let options = CalibrateOptions {
+                    receiver_delays: ReceiverDelays::All,
+                    sigma: Some(SIGMA),
+                    seed,
+                    ..Default::default()
+                };
+                let found = calibrate(&simulation.pseudoranges, &options).unwrap();
+                let receivers: Vec<[f64; 2]> = found.receivers.iter().flatten().copied().collect();
+                (align(&receivers, &simulation.network.receivers, false).unwrap().rms, receivers, found.unique)
+            };
+            let (error, first, unique) = at(0.1);
+            assert!(unique && error < 5.0 * SIGMA, "seed {seed}: {error}");
+            for delays in [5.0, 1000.0] {
+                let (_, receivers, unique) = at(delays);
+                let apart = align(&receivers, &first, false).unwrap().rms;
+                assert!(unique && apart < 1e-3 * SIGMA, "seed {seed}, {delays}: {apart}");
+            }
+        }
+    }
+
+    #[test]
+    fn receivers_without_a_common_clock_are_calibrated() {
+        for seed in 0..3 {
+            let (found, error) = run(None, 2.0, ReceiverDelays::All, seed);
+            assert_eq!(found.receiver_errors.len(), 10);
+            let mean: f64 = found.receiver_errors.iter().map(|error| error.size).sum::<f64>() / 10.0;
+            assert!(mean.abs() < 1e-9 && error < 5.0 * SIGMA, "seed {seed}: {error}");
+        }
+    }
+}

@@ -1,0 +1,15 @@
+//! Networks that fit the measurements: starts, rivals, and their last refinement.
+
+pub(crate) mod dense;
+pub(crate) mod deviation;
+pub(crate) mod finish;
+pub(crate) mod hypotheses;
+pub(crate) mod local;
+pub(crate) mod minimal;
+pub(crate) mod mixture;
+pub(crate) mod one_sided;
+pub(crate) mod propagation;
+pub(crate) mod rivals;
+pub(crate) mod same_network;
+pub(crate) mod starts;
+pub(crate) mod truncated_cost;

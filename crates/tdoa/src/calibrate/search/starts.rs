@@ -1,0 +1,177 @@
+//! The search: many starts, each refined on its own, until enough of them agree.
+
+use hc::{Monitor, Stage};
+#[cfg(feature = "threads")]
+use rayon::prelude::{IntoParallelIterator, ParallelIterator};
+
+use crate::calibrate::judge::neighbours::minima;
+use crate::calibrate::options::{CalibrateError, SearchOptions};
+use crate::calibrate::search::hypotheses::Hypotheses;
+use crate::calibrate::search::same_network::{distinct, same, same_but_for_sides};
+use crate::calibrate::search::truncated_cost::truncated_cost;
+use crate::loss::{Loss, SEARCH_NU};
+use crate::network::Network;
+use crate::observations::Observations;
+use crate::pseudoranges::Pseudoranges;
+use crate::refine::{NetworkRefiner, RefineOptions, RefinedNetwork, extend, residuals};
+
+/// Starts that run between two looks at the result. Fixed, so that the result does not depend on
+/// the number of threads.
+const BATCH: usize = 16;
+
+/// Proposals of one call that are refined in any case, and at most; also the most networks that the
+/// search returns.
+const REFINED: usize = 3;
+const MOST_REFINED: usize = 40;
+
+/// Further proposals are refined if they fit about as well as the best (units of log-likelihood).
+const AS_GOOD: f64 = 4.0;
+
+/// A start counts for the best network if it found the same one with an objective this close to it
+/// (units of log-likelihood): where few measurements are left over, one network has many minima of
+/// nearly the same objective.
+const SAME_BASIN: f64 = 20.0;
+
+/// What the search found, also where it was stopped.
+pub(crate) struct SearchOutcome<const D: usize> {
+    /// Different networks, best objective first, each with the starts that ended in it. Only the best, or none,
+    /// where the search was stopped.
+    pub(crate) networks: Vec<RefinedNetwork<D>>,
+    /// Networks that count as the best one and end in other minima.
+    pub(crate) near: Vec<Network<D>>,
+    /// Starts that were made.
+    pub(crate) starts: usize,
+}
+
+/// The measurements to search and how.
+pub(crate) struct Search<'a, const D: usize> {
+    pub(crate) measured: &'a Pseudoranges,
+    pub(crate) observations: &'a Observations<D>,
+    pub(crate) refine: RefineOptions,
+    /// Sources of starts, which take turns.
+    pub(crate) sources: Vec<&'a dyn Hypotheses<D>>,
+    /// Loss with which proposals are completed and ranked.
+    pub(crate) wide: Loss,
+    /// Deviation of the measurements if it is known: networks are then ranked by what they explain.
+    pub(crate) deviation: Option<f64>,
+}
+
+/// Number of the first call of a source in another's turn; far above the numbers of its own turns.
+const EXTRA_TURNS: usize = 1 << 24;
+
+impl<const D: usize> Search<'_, D> {
+    pub(crate) fn run(
+        &self,
+        options: &SearchOptions,
+        seed: u64,
+        monitor: &Monitor,
+    ) -> Result<SearchOutcome<D>, CalibrateError<D>> {
+        let mut refined: Vec<RefinedNetwork<D>> = Vec::new();
+        let mut starts = 0;
+        monitor.enter(Stage::Search, options.max_starts as u64);
+        loop {
+            let batch = BATCH.min(options.max_starts - starts);
+            let refiner = || NetworkRefiner::new(self.observations, SEARCH_NU).heeding(monitor);
+            let start = |refiner: &mut NetworkRefiner<'_, D>, index| {
+                if monitor.is_cancelled() { Vec::new() } else { self.start(refiner, index, seed, monitor) }
+            };
+            let batch = starts..starts + batch;
+            #[cfg(feature = "threads")]
+            let ended: Vec<Vec<RefinedNetwork<D>>> = batch.clone().into_par_iter().map_init(refiner, start).collect();
+            #[cfg(not(feature = "threads"))]
+            let ended: Vec<Vec<RefinedNetwork<D>>> = {
+                let mut refiner = refiner();
+                batch.clone().map(|index| start(&mut refiner, index)).collect()
+            };
+            let stopped = monitor.is_cancelled();
+            // The refinements of a batch that was stopped have not ended.
+            if !stopped || refined.is_empty() {
+                starts = batch.start + ended.iter().filter(|networks| !networks.is_empty()).count();
+                refined.extend(ended.into_iter().flatten());
+            }
+            if stopped {
+                let best = refined.iter().min_by(|a, b| a.objective.total_cmp(&b.objective));
+                let best = best.map(|best| RefinedNetwork { starts: starts_in(best, &refined), ..best.clone() });
+                return Ok(SearchOutcome { networks: best.into_iter().collect(), near: Vec::new(), starts });
+            }
+            starts = batch.end;
+            let best = refined.iter().min_by(|a, b| a.objective.total_cmp(&b.objective));
+            let agreeing = best.map_or(0, |best| starts_in(best, &refined));
+            monitor.reach(starts as u64, agreeing as u64);
+            let enough = starts >= options.min_starts && agreeing >= options.agreeing;
+            if enough || starts >= options.max_starts {
+                if refined.is_empty() {
+                    return Err(CalibrateError::NotFound(starts));
+                }
+                refined.sort_by(|a, b| a.objective.total_cmp(&b.objective));
+                let mut networks = distinct(refined.clone(), MOST_REFINED);
+                for network in &mut networks {
+                    network.starts = starts_in(network, &refined);
+                }
+                let best = &networks[0];
+                let close = refined.iter().take_while(|r| r.objective <= best.objective + SAME_BASIN);
+                let close = close.filter(|r| same(&r.network, &best.network)).map(|r| r.network.clone());
+                let near = minima(&best.network, close);
+                return Ok(SearchOutcome { networks, near, starts });
+            }
+        }
+    }
+
+    fn start(
+        &self,
+        refiner: &mut NetworkRefiner<'_, D>,
+        index: usize,
+        seed: u64,
+        monitor: &Monitor,
+    ) -> Vec<RefinedNetwork<D>> {
+        let source = self.sources[index % self.sources.len()];
+        let mut proposals = source.propose(self.measured, index / self.sources.len(), seed);
+        if proposals.is_empty() && self.sources.len() > 1 {
+            // A source that has nothing more to say leaves its turn to the first, under a number
+            // that no other call has.
+            proposals = self.sources[0].propose(self.measured, EXTRA_TURNS + index, seed);
+        }
+        let mut ranked: Vec<(f64, Network<D>)> = proposals
+            .iter()
+            .filter_map(|part| extend(self.observations, part, &self.wide, monitor).ok().flatten())
+            .filter(|network| network.is_finite())
+            .map(|network| (self.rank(&network), network))
+            .collect();
+        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let limit = ranked.first().map_or(0.0, |best| best.0 + AS_GOOD);
+        let promising = ranked.iter().take(MOST_REFINED).filter(|(cost, _)| *cost <= limit).count();
+        let mut refined: Vec<RefinedNetwork<D>> = ranked
+            .into_iter()
+            .take(promising.max(REFINED))
+            .map(|(_, network)| refiner.refine(network, &self.refine))
+            .map(|refined| self.judge(refined))
+            .filter(|refined| refined.objective.is_finite() && refined.network.is_finite())
+            .collect();
+        refined.sort_by(|a, b| a.objective.total_cmp(&b.objective));
+        distinct(refined, MOST_REFINED)
+    }
+
+    /// Replaces the objective by the truncated cost where the noise is known.
+    fn judge(&self, refined: RefinedNetwork<D>) -> RefinedNetwork<D> {
+        match self.deviation {
+            Some(deviation) => {
+                let objective = truncated_cost(self.observations, &refined.network, deviation);
+                RefinedNetwork { objective, ..refined }
+            }
+            None => refined,
+        }
+    }
+
+    fn rank(&self, network: &Network<D>) -> f64 {
+        let mut all = vec![0.0; self.observations.len()];
+        residuals(self.observations, network, &mut all);
+        self.wide.total(all.into_iter())
+    }
+}
+
+/// How many of `all` ended in the basin of `best`. Where receivers lie in one plane, transmitters have mirror
+/// images, and hardly two starts choose the same side for all of them.
+fn starts_in<const D: usize>(best: &RefinedNetwork<D>, all: &[RefinedNetwork<D>]) -> usize {
+    let near = all.iter().filter(|r| r.objective < best.objective + SAME_BASIN);
+    near.filter(|r| same_but_for_sides(&r.network, &best.network)).count()
+}
