@@ -20,7 +20,7 @@ pub use judge::mirror_images::MirrorImage;
 pub use options::{
     CalibrateError, CalibrateOptions, Errors, KnownDistance, MeasuredPosition, ReceiverDelays, SearchOptions,
 };
-pub use receivers::score_test::{MovedPlace, ReceiverError, ReceiverErrorKind};
+pub use receivers::errors::{MovedPlace, ReceiverError, ReceiverErrorKind};
 pub use report::calibration::{Alternative, Calibration};
 pub use report::residuals::{Residual, Residuals};
 pub use report::systematic::SystematicErrors;

@@ -3,7 +3,7 @@
 use crate::calibrate::input::anchors::{Anchors, SpeedEstimate};
 use crate::calibrate::judge::neighbours::Neighbour;
 use crate::calibrate::options::CalibrateOptions;
-use crate::calibrate::receivers::score_test::Fault;
+use crate::calibrate::receivers::errors::Fault;
 use crate::calibrate::unfinished::Unfinished;
 use crate::observations::Observations;
 use crate::pseudoranges::Pseudoranges;

@@ -8,7 +8,8 @@ use crate::calibrate::options::{CalibrateError, CalibrateOptions, Errors, Receiv
 use crate::calibrate::report::calibration::Calibration;
 use crate::calibrate::search::dense::search_whole;
 use crate::calibrate::search::hypotheses::Hypotheses;
-use crate::calibrate::search::local::{ReceiverLayout, hearing_is_local, lay_out, overlap};
+use crate::calibrate::search::local::{ReceiverLayout, hearing_is_local, lay_out};
+use crate::calibrate::search::submaps::overlap;
 use crate::calibrate::state::State;
 use crate::calibrate::unfinished::Unfinished;
 use crate::degeneracy::{Usable, least_per_transmitter, list, usable};

@@ -11,6 +11,7 @@
 
 mod cancel;
 mod covariance;
+mod descent;
 mod extend;
 mod normal;
 mod predicted;
@@ -24,11 +25,12 @@ mod weighing;
 
 pub(crate) use cancel::{Cancelled, check};
 pub(crate) use covariance::{Covariance, covariance};
+pub(crate) use descent::residuals;
 pub use extend::PartialNetwork;
 pub(crate) use extend::extend;
 pub(crate) use predicted::predicted_variances;
 pub(crate) use projection::{Motion, Projection, dot, gram};
-pub(crate) use refiner::{NetworkRefiner, RefineOptions, RefinedNetwork, SEARCH, residuals};
+pub(crate) use refiner::{NetworkRefiner, RefineOptions, RefinedNetwork, SEARCH};
 pub(crate) use reseed::{place_transmitters, places_of_receiver, places_of_transmitter};
 pub(crate) use systematic::{Systematic, can_be_estimated, systematic};
 pub(crate) use weighing::{Cost, Weighing};

@@ -1,6 +1,7 @@
 //! Levenberg-Marquardt steps with annealing of the scale, in rounds of reseeding.
 
 use super::cancel::Cancelled;
+use super::descent::Descent;
 use super::normal::Normal;
 use super::reseed::reseed;
 use crate::loss::Loss;
@@ -59,10 +60,7 @@ pub(crate) struct NetworkRefiner<'a, const D: usize = 2> {
     nu: f64,
     /// Redundancy: share of the measurements that is left over when the unknowns are determined.
     share: f64,
-    normal: Normal<D>,
-    residuals: Vec<f64>,
-    trial_residuals: Vec<f64>,
-    trial: Network<D>,
+    descent: Descent<'a, D>,
     monitor: Monitor,
 }
 
@@ -74,10 +72,7 @@ impl<'a, const D: usize> NetworkRefiner<'a, D> {
             observations,
             nu,
             share: (1.0 - observations.unknowns() as f64 / observations.len().max(1) as f64).max(0.02),
-            normal: Normal::new(observations),
-            residuals: vec![0.0; observations.len() + observations.pins().len()],
-            trial_residuals: vec![0.0; observations.len() + observations.pins().len()],
-            trial: Network::default(),
+            descent: Descent::new(observations),
             monitor: Monitor::default(),
         }
     }
@@ -114,54 +109,34 @@ impl<'a, const D: usize> NetworkRefiner<'a, D> {
     }
 
     fn minimise(&mut self, mut network: Network<D>, options: &RefineOptions) -> RefinedNetwork<D> {
-        self.trial.clone_from(&network);
-        let observations = self.observations;
-        residuals(observations, &network, &mut self.residuals);
+        let NetworkRefiner { observations, share, ref monitor, ref mut descent, .. } = *self;
+        descent.begin(&network);
         let mut annealed = options.anneal_from.unwrap_or(0.0);
         let mut loss = Loss { nu: self.nu, scale: 1.0 };
         loss.scale = match options.scale {
             Some(scale) => scale.max(annealed),
             None => {
-                loss.scale = mean_size(&self.residuals).max(options.floor);
-                fit_scale(&self.residuals, &loss, self.share, 20).max(annealed).max(options.floor)
+                loss.scale = mean_size(&descent.residuals).max(options.floor);
+                fit_scale(&descent.residuals, &loss, share, 20).max(annealed).max(options.floor)
             }
         };
-        let mut cost = loss.total(self.residuals.iter().copied());
-        let mut damping = 1e-3;
+        let mut cost = loss.total(descent.residuals.iter().copied());
         let mut calm = 0;
         for _ in 0..options.steps {
-            if self.monitor.is_cancelled() {
+            if monitor.is_cancelled() {
                 break;
             }
-            self.normal.linearise(observations, &network, &self.residuals, &loss);
-            let mut improved = false;
-            while damping < 1e8 {
-                let Ok(solved) = self.normal.solve(observations, damping, &self.monitor) else { break };
-                if solved {
-                    self.normal.step(&network, &mut self.trial);
-                    residuals(observations, &self.trial, &mut self.trial_residuals);
-                    let next = loss.total(self.trial_residuals.iter().copied());
-                    if next < cost {
-                        improved = cost - next > options.tolerance * cost.abs();
-                        damping = (damping * 0.2).max(1e-9);
-                        std::mem::swap(&mut network, &mut self.trial);
-                        std::mem::swap(&mut self.residuals, &mut self.trial_residuals);
-                        break;
-                    }
-                    if next - cost <= 1e-14 * cost.abs() {
-                        break;
-                    }
-                }
-                damping = (damping * 6.0).max(1e-6);
-            }
-            damping = damping.min(1e2);
+            descent.normal.linearise(observations, &network, &descent.residuals, &loss);
+            let total = |residuals: &[f64]| loss.total(residuals.iter().copied());
+            let Ok(lower) = descent.step_down(&mut network, cost, 1e-14, total, monitor) else { break };
+            let improved = lower.is_some_and(|next| cost - next > options.tolerance * cost.abs());
             annealed *= options.anneal_factor;
             let before = loss.scale;
             loss.scale = match options.scale {
                 Some(scale) => scale.max(annealed),
-                None => fit_scale(&self.residuals, &loss, self.share, 2).max(annealed).max(options.floor),
+                None => fit_scale(&descent.residuals, &loss, share, 2).max(annealed).max(options.floor),
             };
-            cost = loss.total(self.residuals.iter().copied());
+            cost = loss.total(descent.residuals.iter().copied());
             let settled = (loss.scale - before).abs() <= 1e-4 * loss.scale;
             calm = if improved || !settled { 0 } else { calm + 1 };
             if calm == 2 {
@@ -179,27 +154,16 @@ impl<'a, const D: usize> NetworkRefiner<'a, D> {
 
     /// The normal equations at `network`, undamped, with the weights of `loss`.
     pub(crate) fn normal_at(&mut self, network: &Network<D>, loss: &Loss) -> Result<&Normal<D>, Cancelled> {
-        residuals(self.observations, network, &mut self.residuals);
-        self.normal.linearise(self.observations, network, &self.residuals, loss);
-        self.normal.reduce(self.observations, 0.0, &self.monitor)?;
-        Ok(&self.normal)
+        let descent = &mut self.descent;
+        descent.look(network);
+        descent.normal.linearise(self.observations, network, &descent.residuals, loss);
+        descent.normal.reduce(self.observations, 0.0, &self.monitor)?;
+        Ok(&descent.normal)
     }
 
     /// Those equations again.
     pub(crate) fn normal(&self) -> &Normal<D> {
-        &self.normal
-    }
-}
-
-/// Residuals over their deviations, in the order of the observations, then those of coordinates as
-/// far as there is room for them.
-pub(crate) fn residuals<const D: usize>(observations: &Observations<D>, network: &Network<D>, out: &mut [f64]) {
-    let (cells, pins) = out.split_at_mut(observations.len());
-    for (o, e) in observations.all().iter().zip(cells) {
-        *e = o.residual(network);
-    }
-    for (pin, e) in observations.pins().iter().zip(pins) {
-        *e = pin.residual(network);
+        &self.descent.normal
     }
 }
 

@@ -19,7 +19,7 @@ use crate::loss::Loss;
 use crate::minimal::NodeKind;
 use crate::multilateration::{Located, Sight, cost, polish};
 use crate::network::Network;
-use crate::observations::{Observation, Observations, Pin};
+use crate::observations::{Observation, Observations};
 use crate::points::{distance, dot};
 use crate::refine::{Cancelled, Covariance, check};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
@@ -67,25 +67,6 @@ pub(crate) fn differs_in_sides<const D: usize>(best: &Network<D>, other: &Networ
             && agree(fixed, free, size, |k, _| image(k).map(|image| image.position))
     };
     by(NodeKind::Receivers, transmitters, receivers) || by(NodeKind::Transmitters, receivers, transmitters)
-}
-
-/// Puts receivers of which coordinates are known on the side of the plane of their transmitters where these
-/// coordinates have them. A refinement does not carry them through that plane.
-pub(crate) fn put_on_known_sides<const D: usize>(observations: &Observations<D>, network: &mut Network<D>) {
-    for i in (0..observations.receivers).filter(|&i| !observations.held()[i]) {
-        let pins: Vec<&Pin> = observations.pins().iter().filter(|pin| pin.receiver == i).collect();
-        let others: Vec<[f64; D]> = observations.of_receiver(i).map(|o| network.transmitters[o.transmitter]).collect();
-        let Some(plane) = Plane::through(&others).filter(|_| !pins.is_empty()) else { continue };
-        let misfit = |network: &Network<D>| {
-            let known = pins.iter().map(|pin| pin.residual(network).powi(2));
-            known.chain(observations.of_receiver(i).map(|o| o.residual(network).powi(2))).sum::<f64>()
-        };
-        let mut other = network.clone();
-        other.receivers[i] = plane.mirrored(network.receivers[i]);
-        if misfit(&other) < misfit(network) {
-            *network = other;
-        }
-    }
 }
 
 /// Residuals count in this share of the network's size at least: exact measurements have no noise.

@@ -2,7 +2,7 @@
 //! count as other networks, and too far for ellipses around the best one alone.
 
 use crate::align::align;
-use crate::calibrate::receivers::score_test::Fault;
+use crate::calibrate::receivers::errors::Fault;
 use crate::calibrate::search::truncated_cost::refit;
 use crate::network::Network;
 use crate::observations::Observations;

@@ -2,8 +2,9 @@
 //! hints.
 
 use crate::calibrate::options::{CalibrateError, CalibrateOptions, Errors};
+use crate::calibrate::receivers::errors::{Fault, ReceiverErrorKind};
 use crate::calibrate::receivers::refits::{Refit, refits};
-use crate::calibrate::receivers::score_test::{Fault, ReceiverErrorKind, Told, find, find_one_sided};
+use crate::calibrate::receivers::score_test::{Suspects, find, find_one_sided};
 use crate::calibrate::search::one_sided::mixture_of;
 use crate::network::Network;
 use crate::observations::Observations;
@@ -56,7 +57,7 @@ pub(crate) fn look<const D: usize>(
     let limit = options.inlier_threshold;
     let mut unmoved = Vec::new();
     loop {
-        let Told { found, doubted } = find(observations, best, deviation, limit, &unmoved, monitor)?;
+        let Suspects { found, doubted } = find(observations, best, deviation, limit, &unmoved, monitor)?;
         let mut found = one_of_each(found);
         found.retain(|fault| fault.length().abs() >= least_size);
         let is_move = |fault: &Fault<D>| fault.kind == ReceiverErrorKind::Move;

@@ -2,13 +2,14 @@
 //! with receivers held at their known positions.
 
 use crate::calibrate::input::anchors::Anchors;
-use crate::calibrate::judge::mirror_images::put_on_known_sides;
 use crate::calibrate::options::CalibrateError;
 use crate::calibrate::search::deviation::median_size;
 use crate::calibrate::search::one_sided::noise;
 use crate::calibrate::state::State;
 use crate::degeneracy::Usable;
-use crate::observations::Observations;
+use crate::flatness::Plane;
+use crate::network::Network;
+use crate::observations::{Observations, Pin};
 use crate::quantity::length;
 use crate::refine::covariance;
 
@@ -83,6 +84,25 @@ impl<const D: usize> State<'_, D> {
         // Where few measurements were left over, the free network took up most of the noise.
         let first = known.unwrap_or_else(|| deviation.max(median_size(observations, &ranked[0].network) / 0.6745));
         self.finish(first)
+    }
+}
+
+/// Puts receivers of which coordinates are known on the side of the plane of their transmitters where these
+/// coordinates have them. A refinement does not carry them through that plane.
+fn put_on_known_sides<const D: usize>(observations: &Observations<D>, network: &mut Network<D>) {
+    for i in (0..observations.receivers).filter(|&i| !observations.held()[i]) {
+        let pins: Vec<&Pin> = observations.pins().iter().filter(|pin| pin.receiver == i).collect();
+        let others: Vec<[f64; D]> = observations.of_receiver(i).map(|o| network.transmitters[o.transmitter]).collect();
+        let Some(plane) = Plane::through(&others).filter(|_| !pins.is_empty()) else { continue };
+        let misfit = |network: &Network<D>| {
+            let known = pins.iter().map(|pin| pin.residual(network).powi(2));
+            known.chain(observations.of_receiver(i).map(|o| o.residual(network).powi(2))).sum::<f64>()
+        };
+        let mut other = network.clone();
+        other.receivers[i] = plane.mirrored(network.receivers[i]);
+        if misfit(&other) < misfit(network) {
+            *network = other;
+        }
     }
 }
 

@@ -1,5 +1,7 @@
 //! Errors of whole receivers, and receivers of known position.
 
+pub(crate) mod all_delays;
+pub(crate) mod errors;
 pub(crate) mod evidence;
 pub(crate) mod known_positions;
 pub(crate) mod moves;

@@ -3,8 +3,9 @@
 
 use crate::calibrate::judge::weak_nodes::{BY_CHANCE, agree_by_chance};
 use crate::calibrate::options::{CalibrateError, check};
+use crate::calibrate::receivers::errors::{Fault, ReceiverErrorKind};
 use crate::calibrate::receivers::refits::{Fitting, Refit};
-use crate::calibrate::receivers::score_test::{Fault, ReceiverErrorKind, SIDE, tests};
+use crate::calibrate::receivers::score_test::{SIDE, tests};
 use crate::calibrate::receivers::significance::least_surprise;
 use crate::calibrate::search::truncated_cost::{refit, truncated};
 use crate::loss::{Loss, SEARCH_NU};

@@ -9,7 +9,8 @@
 
 use crate::bordered::{Bordered, Placed};
 use crate::calibrate::options::{CalibrateError, check};
-use crate::calibrate::receivers::score_test::{Fault, ReceiverErrorKind, SIDE, tests};
+use crate::calibrate::receivers::errors::{Fault, ReceiverErrorKind};
+use crate::calibrate::receivers::score_test::{SIDE, tests};
 use crate::calibrate::receivers::significance::{doubt, least_gain, least_surprise, surprise};
 use crate::calibrate::search::deviation::{inlier_deviation, spread_of_receiver};
 use crate::calibrate::search::finish::CAUCHY;

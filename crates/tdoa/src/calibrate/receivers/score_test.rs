@@ -6,9 +6,9 @@
 //! residuals (a score test). The column that explains most is added to the model, and the test goes
 //! on with what remains.
 
-use serde::{Deserialize, Serialize};
 use std::array::from_fn;
 
+use crate::calibrate::receivers::errors::{Fault, ReceiverErrorKind};
 use crate::calibrate::receivers::significance::{doubt, least_surprise, surprise};
 use crate::calibrate::search::deviation::{inlier_deviation, spread_of_receiver, spread_of_residuals};
 use crate::calibrate::search::mixture::Mixture;
@@ -25,97 +25,9 @@ pub(crate) const SIDE: usize = 4;
 /// Receivers whose columns are projected; in larger networks those with the most telling residuals.
 const PROJECTED: usize = 24;
 
-/// The kind of error that a receiver has.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-#[non_exhaustive]
-pub enum ReceiverErrorKind {
-    /// All its measurements are too long, or too short, by the same length.
-    Delay,
-    /// The error of its measurements grows evenly from the first transmitter to the last one.
-    Drift,
-    /// Its clock jumps: from one transmitter on, its measurements are too long, or too short, by
-    /// the same length.
-    Jump,
-    /// It stands elsewhere from one transmitter on.
-    Move,
-}
-
-/// One of the two places of a receiver that was moved.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-#[non_exhaustive]
-pub enum MovedPlace {
-    /// The place before the move.
-    Before,
-    /// The place after the move.
-    After,
-}
-
-/// An error of one receiver that its measurements show.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ReceiverError {
-    /// Name of the receiver.
-    pub receiver: String,
-    /// The kind of error.
-    pub kind: ReceiverErrorKind,
-    /// Name of the first transmitter after a jump or a move, in the order of the table.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub from: Option<String>,
-    /// The place that the result has for a receiver that was moved: the one with more measurements.
-    /// `None` for other errors, and for a move that was not taken out. In the latter case the
-    /// result has a place between both, with a covariance that includes both.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub place: Option<MovedPlace>,
-    /// Size of the error in metres: the delay, the drift from the first transmitter to the last
-    /// one, the jump, or the distance of the move.
-    pub size: f64,
-    /// How much more likely the measurements are with the error (natural logarithm).
-    pub gain: f64,
-    /// Whether the error was taken out of the network.
-    pub taken_out: bool,
-}
-
-/// An error of one receiver, by indices.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Fault<const D: usize> {
-    pub(crate) receiver: usize,
-    pub(crate) kind: ReceiverErrorKind,
-    /// First transmitter that has it; 0 for delay and drift.
-    pub(crate) from: usize,
-    /// Metres; of a move in each coordinate, otherwise the first alone.
-    pub(crate) size: [f64; D],
-    pub(crate) gain: f64,
-}
-
-impl<const D: usize> Fault<D> {
-    /// One of no size yet.
-    pub(crate) fn new(receiver: usize, kind: ReceiverErrorKind, from: usize) -> Fault<D> {
-        Fault { receiver, kind, from, size: [0.0; D], gain: 0.0 }
-    }
-
-    pub(crate) fn length(&self) -> f64 {
-        if self.kind == ReceiverErrorKind::Move {
-            self.size.iter().copied().fold(0.0, f64::hypot)
-        } else {
-            self.size[0]
-        }
-    }
-
-    /// What the error adds to a measurement of transmitter `j` of `n`, for a size of 1; a move is
-    /// none of these.
-    pub(crate) fn shape(&self, j: usize, n: usize) -> f64 {
-        match self.kind {
-            ReceiverErrorKind::Delay => 1.0,
-            ReceiverErrorKind::Drift => j as f64 / (n.max(2) - 1) as f64,
-            ReceiverErrorKind::Jump | ReceiverErrorKind::Move => f64::from(u8::from(j >= self.from)),
-        }
-    }
-}
-
-/// What a score test tells.
+/// Errors that a score test finds.
 #[derive(Default)]
-pub(crate) struct Told<const D: usize> {
+pub(crate) struct Suspects<const D: usize> {
     /// Errors of single receivers, most telling first.
     pub(crate) found: Vec<Fault<D>>,
     /// Those beside that are worth a doubt.
@@ -130,7 +42,7 @@ pub(crate) fn find<const D: usize>(
     threshold: f64,
     unmoved: &[usize],
     monitor: &Monitor,
-) -> Result<Told<D>, Cancelled> {
+) -> Result<Suspects<D>, Cancelled> {
     // An error of one receiver makes residuals larger than the noise: the test takes the deviation
     // that they have.
     let wide = spread_of_residuals(observations, network).max(deviation);
@@ -143,14 +55,14 @@ pub(crate) fn find<const D: usize>(
     told(&kept, network, &residuals, unmoved, monitor)
 }
 
-/// The same where errors are one-sided. The test takes what each measurement says of its length (the
+/// Errors of single receivers where errors of measurements are one-sided. The test takes what each measurement says of its length (the
 /// scores of the mixture), in which late ones hardly count, in place of residuals.
 pub(crate) fn find_one_sided<const D: usize>(
     observations: &Observations<D>,
     network: &Network<D>,
     mixture: &Mixture,
     monitor: &Monitor,
-) -> Result<Told<D>, Cancelled> {
+) -> Result<Suspects<D>, Cancelled> {
     let step = mixture.deviation / mixture.information();
     let scores: Vec<f64> = observations.all().iter().map(|o| step * mixture.score(o.residual(network))).collect();
     told(observations, network, &scores, &[], monitor)
@@ -163,12 +75,12 @@ fn told<const D: usize>(
     values: &[f64],
     unmoved: &[usize],
     monitor: &Monitor,
-) -> Result<Told<D>, Cancelled> {
+) -> Result<Suspects<D>, Cancelled> {
     let redundancy = kept.len().saturating_sub(kept.unknowns());
     if redundancy < 4 {
-        return Ok(Told::default());
+        return Ok(Suspects::default());
     }
-    let Some(projection) = Projection::new(kept, network, monitor)? else { return Ok(Told::default()) };
+    let Some(projection) = Projection::new(kept, network, monitor)? else { return Ok(Suspects::default()) };
     let (rest, _) = projection.off(values);
     Test { kept, projection, rest, taken: Vec::new(), redundancy: redundancy as f64, unmoved, monitor }.run()
 }
@@ -194,7 +106,7 @@ struct Test<'a, const D: usize> {
 }
 
 impl<const D: usize> Test<'_, D> {
-    fn run(mut self) -> Result<Told<D>, Cancelled> {
+    fn run(mut self) -> Result<Suspects<D>, Cancelled> {
         let (mut found, mut doubted) = (Vec::<Fault<D>>::new(), Vec::new());
         let rows = self.rows();
         while found.len() < self.kept.receivers / 2 {
@@ -227,7 +139,7 @@ impl<const D: usize> Test<'_, D> {
             self.redundancy -= 1.0;
         }
         doubted.retain(|doubt| found.iter().all(|fault| fault.receiver != doubt.receiver));
-        Ok(Told { found, doubted })
+        Ok(Suspects { found, doubted })
     }
 
     /// Places of the measurements of each receiver, in the order of the transmitters.

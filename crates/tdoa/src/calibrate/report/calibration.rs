@@ -5,7 +5,7 @@ use crate::align::{Alignment, Transform, align, spanned};
 use crate::calibrate::input::anchors::{Anchors, SpeedEstimate};
 use crate::calibrate::judge::dimension_test::DimensionTest;
 use crate::calibrate::judge::mirror_images::MirrorImage;
-use crate::calibrate::receivers::score_test::ReceiverError;
+use crate::calibrate::receivers::errors::ReceiverError;
 use crate::calibrate::report::residuals::{Residual, Residuals};
 use crate::calibrate::report::systematic::SystematicErrors;
 use crate::calibrate::report::truth::Truth;

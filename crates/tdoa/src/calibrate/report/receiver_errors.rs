@@ -3,7 +3,7 @@
 
 use crate::calibrate::judge::neighbours::{Neighbour, Reason};
 use crate::calibrate::options::ReceiverDelays;
-use crate::calibrate::receivers::score_test::{Fault, MovedPlace, ReceiverError, ReceiverErrorKind};
+use crate::calibrate::receivers::errors::{Fault, MovedPlace, ReceiverError, ReceiverErrorKind};
 use crate::calibrate::receivers::take_out::columns;
 use crate::calibrate::state::State;
 use crate::degeneracy::list;

@@ -12,4 +12,5 @@ pub(crate) mod propagation;
 pub(crate) mod rivals;
 pub(crate) mod same_network;
 pub(crate) mod starts;
+pub(crate) mod submaps;
 pub(crate) mod truncated_cost;
