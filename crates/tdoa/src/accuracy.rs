@@ -146,7 +146,7 @@ mod tests {
                 let mut values = truth.pseudoranges();
                 values[k] += by;
                 let observations = Observations::new(&Pseudoranges::new(m, n, values).unwrap(), |_, _| true);
-                let mut refiner = NetworkRefiner::new(&observations, f64::INFINITY);
+                let mut refiner = NetworkRefiner::new(&observations, f64::INFINITY, &hc::Monitor::default());
                 let found = refiner.refine(truth.clone(), &options).network.receivers;
                 let map = align(&found, &truth.receivers, false).unwrap().transform;
                 found.into_iter().map(|p| map.apply(p)).collect::<Vec<_>>()

@@ -12,7 +12,7 @@ pub(crate) const fn least_per_transmitter<const D: usize>() -> usize {
     D + 2
 }
 
-/// The same of a receiver, whose position alone is unknown.
+/// Fewest measurements of a receiver, whose position alone is unknown.
 const fn least_per_receiver<const D: usize>() -> usize {
     D + 1
 }

@@ -78,7 +78,7 @@ pub(crate) fn transmitters<const D: usize>(sights: &[Sight<D>], loss: &Loss) -> 
     minima(sights, starts, true, loss)
 }
 
-/// As [`transmitters`], places of a receiver.
+/// Places of a receiver, by distances from transmitters.
 pub(crate) fn receivers<const D: usize>(sights: &[Sight<D>], loss: &Loss) -> Vec<Located<D>> {
     let mut starts = Vec::new();
     each_receiver(sights, |position| {

@@ -58,7 +58,7 @@ pub(crate) struct Observations<const D: usize = 2> {
     row_entries: Vec<usize>,
     held: Vec<bool>,
     pins: Vec<Pin>,
-    others: usize,
+    other_unknowns: usize,
 }
 
 impl<const D: usize> Observations<D> {
@@ -92,7 +92,7 @@ impl<const D: usize> Observations<D> {
             row_entries,
             held: vec![false; m],
             pins: Vec::new(),
-            others: 0,
+            other_unknowns: 0,
         }
     }
 
@@ -104,11 +104,14 @@ impl<const D: usize> Observations<D> {
             entries.extend(self.of_transmitter(j).iter().filter(|o| keep(o)).copied());
             columns.push(entries.len());
         }
-        Observations::of(self.receivers, entries, columns).holding(&self.held).pinned(&self.pins).beside(self.others)
+        Observations::of(self.receivers, entries, columns)
+            .holding(&self.held)
+            .pinned(&self.pins)
+            .with_other_unknowns(self.other_unknowns)
     }
 
     /// These measurements less a length each, metres.
-    pub(crate) fn less(&self, of: impl Fn(&Observation) -> f64) -> Self {
+    pub(crate) fn reduced_by(&self, of: impl Fn(&Observation) -> f64) -> Self {
         let mut all = self.clone();
         for o in &mut all.entries {
             o.value -= of(o);
@@ -129,7 +132,10 @@ impl<const D: usize> Observations<D> {
             columns.push(entries.len());
         }
         let held: Vec<bool> = self.held.iter().copied().chain([false]).collect();
-        Observations::of(self.receivers + 1, entries, columns).holding(&held).pinned(&self.pins).beside(self.others)
+        Observations::of(self.receivers + 1, entries, columns)
+            .holding(&held)
+            .pinned(&self.pins)
+            .with_other_unknowns(self.other_unknowns)
     }
 
     /// These measurements, each with a share of its information.
@@ -157,13 +163,13 @@ impl<const D: usize> Observations<D> {
     }
 
     /// These measurements, which have this many unknowns more than the nodes.
-    pub(crate) fn beside(self, others: usize) -> Self {
-        Observations { others, ..self }
+    pub(crate) fn with_other_unknowns(self, other_unknowns: usize) -> Self {
+        Observations { other_unknowns, ..self }
     }
 
     /// Unknowns beside the nodes.
-    pub(crate) fn others(&self) -> usize {
-        self.others
+    pub(crate) fn other_unknowns(&self) -> usize {
+        self.other_unknowns
     }
 
     /// Which receivers stay where they are.
@@ -203,7 +209,7 @@ impl<const D: usize> Observations<D> {
         let held = self.held.iter().filter(|&&held| held).count();
         let loose = D.saturating_sub(held);
         let known = D * held + self.pins.len().max(loose * (loose + 1) / 2);
-        (D * self.receivers + (D + 1) * self.transmitters).saturating_sub(known) + self.others
+        (D * self.receivers + (D + 1) * self.transmitters).saturating_sub(known) + self.other_unknowns
     }
 }
 

@@ -40,7 +40,7 @@ impl<const D: usize> Unfinished<D> {
         Unfinished { receivers, transmitters: nowhere, offsets: never, starts, agreeing: 0 }
     }
 
-    /// The same network among `m` receivers and `n` transmitters; its own nodes are those at `rows`
+    /// This network as a part of `m` receivers and `n` transmitters; its own nodes are those at `rows`
     /// and `columns`.
     pub(crate) fn among(self, m: usize, rows: &[usize], n: usize, columns: &[usize]) -> Unfinished<D> {
         Unfinished {

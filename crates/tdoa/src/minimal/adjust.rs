@@ -51,7 +51,9 @@ pub fn adjust<const D: usize>(
     let scaled = Pseudoranges::new(m, n, data.matrix.clone())
         .map_err(|_| MinimalError::UnusableStart { configuration: measured.configuration() })?;
     let observations = Observations::<D>::new(&scaled, |_, _| true);
-    let network = NetworkRefiner::new(&observations, f64::INFINITY).refine(network, &LEAST_SQUARES).network;
+    let network = NetworkRefiner::new(&observations, f64::INFINITY, &hc::Monitor::default())
+        .refine(network, &LEAST_SQUARES)
+        .network;
     let mut candidate = data.candidate(network, options, &mut Polisher::default());
     data.restore(&mut candidate.network);
     candidate.residual = candidate.network.rms(measured);

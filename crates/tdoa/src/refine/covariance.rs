@@ -67,7 +67,7 @@ pub(super) fn reduced<'a, const D: usize>(
     sigma: f64,
     monitor: &Monitor,
 ) -> Result<Option<Reduced<'a, D>>, Cancelled> {
-    let mut refiner = NetworkRefiner::new(observations, f64::INFINITY).heeding(monitor);
+    let mut refiner = NetworkRefiner::new(observations, f64::INFINITY, monitor);
     let normal = refiner.normal_at(network, &Loss { nu: f64::INFINITY, scale: 1.0 })?;
     let size = D * observations.receivers;
     let lower = normal.schur();

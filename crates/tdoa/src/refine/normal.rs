@@ -50,7 +50,7 @@ pub(crate) struct Normal<const D: usize = 2> {
     /// D + 1 rows: what a transmitter couples to the receivers, in the frame in which its block is
     /// the identity.
     coupling: Vec<f64>,
-    /// The same for a transmitter that few receivers hear: coordinates in ascending order, and their
+    /// What a transmitter that few receivers hear couples to them: coordinates in ascending order, and their
     /// columns.
     few: Vec<(usize, Placed<D>)>,
     isa: Isa,
@@ -90,7 +90,7 @@ impl<const D: usize> Normal<D> {
         self.linearise_by(observations, network, residuals, |_, e| (loss.weight(e), e), |e| (loss.weight(e), e));
     }
 
-    /// As [`Normal::linearise`] for any loss: `terms`, of the place of a measurement and its
+    /// Linearises under any loss: `terms`, of the place of a measurement and its
     /// residual, and `pin_terms` give the weight and the residual that has, with that weight, the
     /// derivative of the loss.
     #[inline]
@@ -394,7 +394,7 @@ mod tests {
         let values = network.pseudoranges();
         let measured = (0..600).map(|k| if heard(k / 20, k % 20) { values[k] } else { f64::NAN }).collect();
         let observations = Observations::new(&Pseudoranges::new(30, 20, measured).unwrap(), |_, _| true);
-        let mut refiner = NetworkRefiner::new(&observations, f64::INFINITY);
+        let mut refiner = NetworkRefiner::new(&observations, f64::INFINITY, &Monitor::default());
         let normal = refiner.normal_at(&network, &Loss { nu: f64::INFINITY, scale: 1.0 }).unwrap();
         let size = D * 30;
         let mut expected = vec![0.0; size * size];

@@ -67,20 +67,17 @@ pub(crate) struct NetworkRefiner<'a, const D: usize = 2> {
 impl<'a, const D: usize> NetworkRefiner<'a, D> {
     /// With these degrees of freedom of the loss; infinite for least squares, which needs the scale
     /// to be given.
-    pub(crate) fn new(observations: &'a Observations<D>, nu: f64) -> Self {
+    ///
+    /// A refiner stops within its next step once the monitor is cancelled; what it then returns is not
+    /// converged.
+    pub(crate) fn new(observations: &'a Observations<D>, nu: f64, monitor: &Monitor) -> Self {
         NetworkRefiner {
             observations,
             nu,
             share: (1.0 - observations.unknowns() as f64 / observations.len().max(1) as f64).max(0.02),
             descent: Descent::new(observations),
-            monitor: Monitor::default(),
+            monitor: monitor.clone(),
         }
-    }
-
-    /// A refiner that stops within its next step once the monitor is cancelled; what it then
-    /// returns is not converged.
-    pub(crate) fn heeding(self, monitor: &Monitor) -> Self {
-        NetworkRefiner { monitor: monitor.clone(), ..self }
     }
 
     /// The best network near `start`, which must be complete and finite.
@@ -215,7 +212,7 @@ mod tests {
             }
             let options =
                 RefineOptions { scale: Some(1e-3), anneal_from: Some(0.3), steps: 60, tolerance: 1e-12, ..SEARCH };
-            let found = NetworkRefiner::new(&observations, SEARCH_NU).refine(start, &options);
+            let found = NetworkRefiner::new(&observations, SEARCH_NU, &Monitor::default()).refine(start, &options);
             let error = align(&found.network.receivers, &truth.receivers, false).unwrap().rms;
             assert!(found.network.rms(&measured) < 1e-7 && error < 1e-5, "seed {seed}: {error}");
         }
@@ -232,9 +229,8 @@ mod tests {
         let simulation = simulate(&SimulateOptions { noise: 0.1, ..Default::default() }).unwrap();
         let observations = Observations::new(&simulation.pseudoranges, |_, _| true);
         let monitor = Monitor::watched();
-        let refined = || {
-            NetworkRefiner::new(&observations, SEARCH_NU).heeding(&monitor).refine(simulation.network.clone(), &SEARCH)
-        };
+        let refined =
+            || NetworkRefiner::new(&observations, SEARCH_NU, &monitor).refine(simulation.network.clone(), &SEARCH);
         assert_ne!(refined().network, simulation.network);
         monitor.cancel();
         assert_eq!(refined().network, simulation.network);

@@ -34,7 +34,7 @@ impl ReceiverEquations {
         use_normal: impl FnOnce(&Normal<D>) -> T,
     ) -> Result<Option<(ReceiverEquations, T)>, Cancelled> {
         if observations.receivers >= MANY {
-            let mut refiner = NetworkRefiner::new(observations, f64::INFINITY).heeding(monitor);
+            let mut refiner = NetworkRefiner::new(observations, f64::INFINITY, monitor);
             let normal = refiner.normal_at(network, &Loss { nu: f64::INFINITY, scale: 1.0 })?;
             if let Some(factor) = factor(observations, network, normal, monitor)? {
                 return Ok(Some((ReceiverEquations::Factor(factor), use_normal(normal))));

@@ -296,7 +296,7 @@ impl<const D: usize> Anchors<D> {
             let off = distance(others.transform.apply(network.receivers[i]), p);
             (off > limit).then_some((i, off))
         });
-        // Two suspects accuse each other.
+        // With two suspects, neither can be singled out.
         found.next().filter(|_| found.next().is_none())
     }
 

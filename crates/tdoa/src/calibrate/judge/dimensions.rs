@@ -168,7 +168,7 @@ fn has_heights(options: &CalibrateOptions<3>) -> bool {
     all.any(|z| Some(z) != first)
 }
 
-/// The same options in the plane. All fields are named, so that none is forgotten.
+/// Options for the plane with these values. All fields are named, so that none is forgotten.
 fn in_plane(options: &CalibrateOptions<3>) -> CalibrateOptions {
     let position = |known: &MeasuredPosition<3>| {
         let ([x, y, _], [of_x, of_y, _]) = (known.position, known.sigma);

@@ -115,7 +115,7 @@ impl<const D: usize> State<'_, D> {
         let kept = Observations::new(measured, |i, j| self.is_inlier(measured, best, sigma, i, j))
             .holding(observations.held())
             .pinned(observations.pins())
-            .beside(observations.others());
+            .with_other_unknowns(observations.other_unknowns());
         let redundancy = kept.len().saturating_sub(kept.unknowns());
         let ellipse_radius = radius_95::<D>(redundancy, self.known.is_some());
         let mut uncertainty = match (ellipse_radius, &one_sided) {

@@ -65,7 +65,7 @@ impl<const D: usize> State<'_, D> {
         for fault in &mut taken {
             fault.size[0] -= mean;
         }
-        self.observations = Observations::new(&self.corrected(&taken), |_, _| true).beside(unknown.len());
+        self.observations = Observations::new(&self.corrected(&taken), |_, _| true).with_other_unknowns(unknown.len());
         self.ranked = all.into_iter().map(|(_, refined, _)| refined).collect();
         for refined in &mut self.ranked {
             for offset in refined.network.offsets.iter_mut() {
@@ -90,7 +90,7 @@ impl<const D: usize> State<'_, D> {
             let observations = self.observe(&faults);
             deviation = spread_of_residuals(&observations, &best.network).max(least);
             let refine = RefineOptions { scale: Some(CAUCHY * deviation), steps: 8, rounds: 1, ..SEARCH };
-            let refined = NetworkRefiner::new(&observations, 1.0).heeding(self.monitor).refine(best.network, &refine);
+            let refined = NetworkRefiner::new(&observations, 1.0, self.monitor).refine(best.network, &refine);
             best = RefinedNetwork { starts: best.starts, ..refined };
             let wide = inlier_deviation(&observations, &best.network, deviation, self.options.inlier_threshold);
             let Some(steps) = self.step(&observations, &best.network, wide, &faults)? else { break };
@@ -101,7 +101,7 @@ impl<const D: usize> State<'_, D> {
         Ok((faults, best, deviation))
     }
 
-    /// The same by least squares, at first over measurements that were given up too: a network may
+    /// Errors and network fitted by least squares, at first over measurements that were given up too: a network may
     /// have bent itself to a wrong delay. What it was, where that costs less.
     fn relaxed(&self, near: Estimated<D>) -> Result<Estimated<D>, CalibrateError<D>> {
         let deviation = near.2;
@@ -134,7 +134,7 @@ impl<const D: usize> State<'_, D> {
                 let reach = self.options.inlier_threshold * wide;
                 let inliers = observations.subset(|o| o.residual(&refined.network).abs() <= reach);
                 let refine = RefineOptions { scale: Some(wide), steps: 8, rounds: 0, ..SEARCH };
-                let mut refiner = NetworkRefiner::new(&inliers, f64::INFINITY).heeding(self.monitor);
+                let mut refiner = NetworkRefiner::new(&inliers, f64::INFINITY, self.monitor);
                 refined.network = refiner.refine(refined.network, &refine).network;
                 let Some(steps) = self.step(&observations, &refined.network, wide, &faults)? else { return Ok(None) };
                 if moved(&mut faults, steps) < 1e-2 * deviation {

@@ -16,7 +16,7 @@ const MISJUDGED: f64 = 0.2;
 
 /// Errors of receivers that a network shows.
 #[derive(Default)]
-pub(crate) struct Shown<const D: usize> {
+pub(crate) struct Evidence<const D: usize> {
     /// One of each receiver, or the one that it hides if that tells more.
     pub(crate) found: Vec<Fault<D>>,
     /// The network without the first of them, where the present one is bent by it.
@@ -27,9 +27,9 @@ pub(crate) struct Shown<const D: usize> {
     pub(crate) rivals: Vec<Refit<D>>,
 }
 
-impl<const D: usize> Shown<D> {
+impl<const D: usize> Evidence<D> {
     /// With those of these fits that tell about as much as the first error, of other receivers.
-    fn beside(mut self, fitted: Vec<Refit<D>>, margin: f64) -> Shown<D> {
+    fn with_rivals(mut self, fitted: Vec<Refit<D>>, margin: f64) -> Evidence<D> {
         let of = |fault: &Fault<D>| fitted.iter().find(|other| other.fault.receiver == fault.receiver);
         let Some(lead) = self.found.first().and_then(of).map(|other| other.lead) else { return self };
         let behind = fitted.into_iter().map(|other| Refit { lead: other.lead - lead, ..other });
@@ -41,18 +41,18 @@ impl<const D: usize> Shown<D> {
 
 /// What a network shows. `deviation` is that of the measurements, and errors of less than `least_size`
 /// metres are none.
-pub(crate) fn look<const D: usize>(
+pub(crate) fn find_errors<const D: usize>(
     observations: &Observations<D>,
     best: &Network<D>,
     deviation: f64,
     least_size: f64,
     options: &CalibrateOptions<D>,
     monitor: &Monitor,
-) -> Result<Shown<D>, CalibrateError<D>> {
+) -> Result<Evidence<D>, CalibrateError<D>> {
     if options.errors == Errors::OneSided {
         let mixture = mixture_of(observations, best, deviation);
         let found = find_one_sided(observations, best, &mixture, monitor)?.found;
-        return Ok(Shown { found, ..Shown::default() });
+        return Ok(Evidence { found, ..Evidence::default() });
     }
     let limit = options.inlier_threshold;
     let mut unmoved = Vec::new();
@@ -71,7 +71,7 @@ pub(crate) fn look<const D: usize>(
             unmoved.push(refuted.receiver);
             continue;
         }
-        let Some(hidden) = fitted.first() else { return Ok(Shown { found, doubted, ..Shown::default() }) };
+        let Some(hidden) = fitted.first() else { return Ok(Evidence { found, doubted, ..Evidence::default() }) };
         let alone = |hidden: &Refit<D>| (vec![hidden.fault], Some(hidden.network.clone()));
         let (found, hidden) = match found.first().copied() {
             None => alone(hidden),
@@ -97,8 +97,8 @@ pub(crate) fn look<const D: usize>(
                 }
             }
         };
-        let shown = Shown { found, hidden, doubted, ..Shown::default() };
-        return Ok(shown.beside(fitted, options.alternative_margin));
+        let shown = Evidence { found, hidden, doubted, ..Evidence::default() };
+        return Ok(shown.with_rivals(fitted, options.alternative_margin));
     }
 }
 

@@ -1,8 +1,8 @@
-//! Errors of receivers to which a network has bent itself. Each receiver is fitted once with a free
+//! Receiver errors absorbed by the fitted geometry. Each receiver is fitted once with a free
 //! error of its own and with all its measurements. So is a receiver that the score test names,
 //! because the test may take one kind of error for another.
 //!
-//! The score test of `receiver_errors` is linear. If the best network has given up some of the
+//! The score test of `score_test` is linear. If the best network has given up some of the
 //! measurements that show an error as outliers, the error is too large for it. Here the other nodes
 //! are refined without the receiver, the receiver is located from them together with the size of
 //! its error, and the whole is refitted. What counts is the decrease of the truncated cost.
@@ -134,7 +134,7 @@ impl<const D: usize> Fitting<'_, D> {
     fn receiver(&self, receiver: usize, may_have_moved: bool) -> Result<Vec<Refit<D>>, CalibrateError<D>> {
         let others = self.observations.subset(|o| o.receiver != receiver);
         let options = RefineOptions { scale: Some(CAUCHY * self.deviation), rounds: 0, steps: 30, ..SEARCH };
-        let bent = NetworkRefiner::new(&others, 1.0).heeding(self.monitor).refine(self.base.clone(), &options).network;
+        let bent = NetworkRefiner::new(&others, 1.0, self.monitor).refine(self.base.clone(), &options).network;
         let (alone, cost) = refit(&others, &bent, self.deviation, self.monitor)?;
         // No error can bring the cost below that of the others.
         let least = least_gain(tests(ReceiverErrorKind::Delay, others.receivers, 1)) - doubt();
@@ -182,7 +182,7 @@ impl<const D: usize> Fitting<'_, D> {
             fitted = relaxed.filter(|relaxed| self.is_better(relaxed, &fitted)).unwrap_or(fitted);
         }
         let Joint { observations, network, fault, square, .. } = fitted;
-        let with_error = observations.beside(self.observations.others() + 1);
+        let with_error = observations.with_other_unknowns(self.observations.other_unknowns() + 1);
         let size = fault.size[0];
         let gain = self.gain(&with_error, &network, &[fault.receiver], Some(size * size * square))?;
         Ok(gain.map(|(gain, freedom)| Refit { fault: Fault { gain, ..fault }, network, freedom, lead: 0.0 }))
@@ -203,7 +203,7 @@ impl<const D: usize> Fitting<'_, D> {
         let of = |o: &Observation| {
             if o.receiver == fault.receiver { fault.size[0] * fault.shape(o.transmitter, n) } else { 0.0 }
         };
-        self.observations.less(of)
+        self.observations.reduced_by(of)
     }
 
     /// Measurements farther off cost as much as outliers.

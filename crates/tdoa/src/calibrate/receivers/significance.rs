@@ -3,7 +3,7 @@
 /// Probability of a false alarm in data with normal noise, at most.
 const FALSE_ALARM: f64 = 5e-3;
 
-/// The same for errors that are no more than doubts.
+/// Probability of a false alarm for errors that are no more than doubts.
 const FALSE_DOUBT: f64 = 0.1;
 
 /// Surprise above which the best of so many tests of each of the four kinds is no chance.

@@ -8,7 +8,7 @@ use hc::Monitor;
 use crate::calibrate::judge::neighbours::{Neighbour, Reason};
 use crate::calibrate::options::{CalibrateError, ReceiverDelays, check};
 use crate::calibrate::receivers::errors::{Fault, ReceiverErrorKind};
-use crate::calibrate::receivers::evidence::{Shown, look};
+use crate::calibrate::receivers::evidence::{Evidence, find_errors};
 use crate::calibrate::receivers::refits::Refit;
 use crate::calibrate::search::deviation::{inlier_deviation, spread_of_residuals, typical_deviation};
 use crate::calibrate::state::State;
@@ -37,7 +37,7 @@ impl<const D: usize> State<'_, D> {
         let near = std::mem::take(&mut self.neighbours);
         match self.options.receiver_delays {
             ReceiverDelays::None => {
-                let Shown { found, doubted, .. } = self.look()?;
+                let Evidence { found, doubted, .. } = self.look()?;
                 self.left = found;
                 self.doubt_of(doubted);
             }
@@ -83,9 +83,9 @@ impl<const D: usize> State<'_, D> {
     }
 
     /// Errors that the best network shows.
-    fn look(&self) -> Result<Shown<D>, CalibrateError<D>> {
+    fn look(&self) -> Result<Evidence<D>, CalibrateError<D>> {
         let (best, least) = (&self.ranked[0].network, self.least_size(self.deviation));
-        look(&self.observations, best, self.deviation, least, self.options, self.monitor)
+        find_errors(&self.observations, best, self.deviation, least, self.options, self.monitor)
     }
 
     /// Adds networks without errors that are worth a doubt to the neighbours.
@@ -132,7 +132,7 @@ impl<const D: usize> State<'_, D> {
 
     /// The measurements without these errors, of which some are unknowns.
     pub(crate) fn observe(&self, faults: &[Fault<D>]) -> Observations<D> {
-        Observations::new(&self.corrected(faults), |_, _| true).beside(linear(faults).count())
+        Observations::new(&self.corrected(faults), |_, _| true).with_other_unknowns(linear(faults).count())
     }
 
     /// Sizes of errors beside a network: steps of least squares for the errors with the network,

@@ -126,7 +126,7 @@ fn complete<const D: usize>(
     refine: &RefineOptions,
     monitor: &Monitor,
 ) -> Result<Vec<RefinedNetwork<D>>, CalibrateError<D>> {
-    let mut refiner = NetworkRefiner::new(observations, SEARCH_NU).heeding(monitor);
+    let mut refiner = NetworkRefiner::new(observations, SEARCH_NU, monitor);
     let refine = RefineOptions { anneal_from: None, ..*refine };
     let mut all = Vec::new();
     for refined in networks {

@@ -37,7 +37,7 @@ impl<const D: usize> State<'_, D> {
         if options.errors == Errors::OneSided {
             return finish_one_sided(self, observations, networks, first);
         }
-        let mut refiner = NetworkRefiner::new(observations, 1.0).heeding(monitor);
+        let mut refiner = NetworkRefiner::new(observations, 1.0, monitor);
         let mut deviation = first;
         let turns = if known { 1 } else { 4 };
         for turn in 0..turns {

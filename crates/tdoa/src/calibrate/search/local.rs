@@ -237,7 +237,7 @@ impl<const D: usize> ReceiverLayout<D> {
         let refine = RefineOptions { anneal_from: Some(bent), steps: 60, floor: 1e-9 * size, ..SEARCH };
         let to_deviation = normal_deviation(SEARCH_NU);
         let start = RefineOptions { scale: known.map(|sigma| sigma / to_deviation), ..refine };
-        let mut refiner = NetworkRefiner::new(observations, SEARCH_NU).heeding(monitor);
+        let mut refiner = NetworkRefiner::new(observations, SEARCH_NU, monitor);
         let mut refined = refiner.refine(network, &start);
         *so_far = Some(Unfinished::of(&refined.network, self.solved, 0));
         check(monitor)?;

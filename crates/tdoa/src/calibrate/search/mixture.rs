@@ -27,7 +27,7 @@ const LARGEST_RATE: f64 = 10.0;
 /// is on time, so that no node is free.
 pub(crate) const LEAST_WEIGHT: f64 = 0.02;
 
-/// The same of what a measurement says beside the others, which may be next to nothing.
+/// Least weight of what a measurement says beside the others, which may be next to nothing.
 const LEAST_SITE: f64 = 0.002;
 
 /// Steps of fitting a mixture to residuals, at most.
@@ -211,7 +211,7 @@ impl Mixture {
         (weight, residual - slope * (1.0 + weight * variance) / weight * self.deviation)
     }
 
-    /// As [`Mixture::updated`] for residuals of which the others say what they are, with variances in
+    /// A step of expectation and maximisation for residuals of which the others say what they are, with variances in
     /// squares of the deviation; the deviation is `known` or estimated.
     pub(crate) fn updated_by(&self, cavities: &[(f64, f64)], known: Option<f64>, least: f64) -> Mixture {
         let mut sums = Sums::default();

@@ -71,7 +71,7 @@ impl<const D: usize> Search<'_, D> {
         monitor.enter(Stage::Search, options.max_starts as u64);
         loop {
             let batch = BATCH.min(options.max_starts - starts);
-            let refiner = || NetworkRefiner::new(self.observations, SEARCH_NU).heeding(monitor);
+            let refiner = || NetworkRefiner::new(self.observations, SEARCH_NU, monitor);
             let start = |refiner: &mut NetworkRefiner<'_, D>, index| {
                 if monitor.is_cancelled() { Vec::new() } else { self.start(refiner, index, seed, monitor) }
             };

@@ -96,8 +96,7 @@ pub(crate) fn refit<const D: usize>(
     let mut best = (network.clone(), truncated_cost(observations, network, deviation));
     for _ in 0..ROUNDS {
         let inliers = observations.subset(|o| o.residual(&best.0).abs() <= limit);
-        let fitted =
-            NetworkRefiner::new(&inliers, f64::INFINITY).heeding(monitor).refine(best.0.clone(), &options).network;
+        let fitted = NetworkRefiner::new(&inliers, f64::INFINITY, monitor).refine(best.0.clone(), &options).network;
         check(monitor)?;
         let cost = truncated_cost(observations, &fitted, deviation);
         // Each round lowers the cost or leaves the inliers as they are.

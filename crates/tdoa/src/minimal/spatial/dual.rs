@@ -26,7 +26,7 @@ const CHARTS: [[usize; BASIS]; 8] =
 
 /// By which power of the unit of length the unknowns `p k z u`, without fifth transmitter, grow.
 const WEIGHTS: [i32; 13] = [1, 1, 1, 1, -2, -2, -2, 0, 0, 0, 0, 0, 0];
-/// The same for `g p5` of a fifth transmitter before these.
+/// Powers for the unknowns `g p5` of a fifth transmitter, before these.
 const WEIGHTS_OF_FIVE: [i32; 17] = [0, 0, 0, 1, 1, 1, 1, 1, -2, -2, -2, 0, 0, 0, 0, 0, 0];
 
 /// What distinguishes the sizes.
@@ -197,7 +197,7 @@ impl Unknowns {
         self.g.iter().flatten().chain(fifth).chain(p).chain(parts).copied().collect()
     }
 
-    /// The same network with the first four transmitters in this order.
+    /// A network with the first four transmitters in this order.
     ///
     /// The new basis is `L T` with an integer matrix `T` of determinant one or minus one, so that its Gram
     /// matrix is `T' G T` and `b` becomes `T^-1` times the new first transmitter.

@@ -85,6 +85,8 @@ pub(crate) fn five_transmitters(measured: &Pseudoranges) -> Result<Network<3>, M
         return Err(MinimalError::SpecialPosition);
     }
     let observations = Observations::<3>::new(measured, |_, _| true);
-    let adjusted = NetworkRefiner::new(&observations, f64::INFINITY).refine(linear.clone(), &ADJUSTMENT).network;
+    let adjusted = NetworkRefiner::new(&observations, f64::INFINITY, &hc::Monitor::default())
+        .refine(linear.clone(), &ADJUSTMENT)
+        .network;
     Ok(if adjusted.rms(measured) < linear.rms(measured) { adjusted } else { linear })
 }

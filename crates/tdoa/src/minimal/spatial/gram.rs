@@ -135,7 +135,7 @@ impl Unknowns {
         receivers.chain(&self.gram.diagonal).chain(&self.gram.below).copied().collect()
     }
 
-    /// The same network with the receivers but the first in this order.
+    /// A network with the receivers but the first in this order.
     fn reordered(&self, order: &[usize; ROWS]) -> Unknowns {
         let unit = |k: usize| -> Vector { from_fn(|i| Complex64::from(f64::from(u8::from(i == k)))) };
         let [fifth, sixth] = self.coordinates;

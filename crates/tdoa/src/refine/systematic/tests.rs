@@ -35,7 +35,8 @@ fn fitted<const D: usize>(truth: &Network<D>, errors: &[f64]) -> (Observations<D
     let values = truth.pseudoranges().iter().zip(errors).map(|(f, e)| f + e).collect();
     let observations = Observations::new(&Pseudoranges::new(m, n, values).unwrap(), |_, _| true);
     let options = RefineOptions { scale: Some(1.0), rounds: 0, steps: 100, tolerance: 0.0, ..SEARCH };
-    let network = NetworkRefiner::new(&observations, f64::INFINITY).refine(truth.clone(), &options).network;
+    let network =
+        NetworkRefiner::new(&observations, f64::INFINITY, &Monitor::default()).refine(truth.clone(), &options).network;
     (observations, network)
 }
 
