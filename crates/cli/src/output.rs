@@ -105,11 +105,37 @@ pub fn text(path: &Path, text: &str) -> Result<(), Failure> {
     if is_standard_output(path) { print(text) } else { file(path, text.as_bytes()) }
 }
 
-/// Writes JSON to a file and says so on standard error, or to standard output for `-`.
+/// Number of the form of the programs' results, their field `format`. A field that goes, gets another name or
+/// another meaning raises it; a further field does not.
+pub const FORMAT: u32 = 1;
+
+/// A result with the number of its form.
+#[derive(Serialize)]
+struct Numbered<'a, T> {
+    format: u32,
+    #[serde(flatten)]
+    value: &'a T,
+}
+
+/// Writes a result, which has fields, as JSON to a file and says so on standard error, or to standard output
+/// for `-`. The field `format` comes first.
 ///
 /// # Errors
 /// Those of [`write()`] and [`print()`].
 pub fn json(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
+    json_of(path, &Numbered { format: FORMAT, value })
+}
+
+/// Writes a list of results, each as [`json()`] has it.
+///
+/// # Errors
+/// Those of [`json()`].
+pub fn json_list<T: Serialize>(path: &Path, values: &[T]) -> Result<(), Failure> {
+    let all: Vec<Numbered<'_, T>> = values.iter().map(|value| Numbered { format: FORMAT, value }).collect();
+    json_of(path, &all)
+}
+
+fn json_of(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
     if is_standard_output(path) {
         return print_by(|out| write_json(out, value));
     }

@@ -108,7 +108,7 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
     if let Some(path) = &arguments.json {
         match &reports[..] {
             [report] if single => output::json(path, report)?,
-            reports => output::json(path, &reports)?,
+            reports => output::json_list(path, reports)?,
         }
     }
     output::summary(arguments.json.as_deref(), || summary(&solved, begun.elapsed().as_secs_f64()))?;

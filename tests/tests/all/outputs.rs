@@ -21,6 +21,45 @@ fn long_system(folder: &Path) -> String {
     text(&path).to_string()
 }
 
+/// Every result says the number of its form first, in a list each of them.
+#[test]
+fn results_say_the_number_of_their_form() {
+    let directory = tempfile::tempdir().expect("directory");
+    let system = directory.path().join("circle.txt");
+    std::fs::write(&system, "x^2 + y^2 - 1\nx - y\n").expect("written");
+    let families = root().join("examples/families");
+    let (family, one) = (families.join("p3p.toml"), families.join("p3p.target.json"));
+    let start = directory.path().join("start.json");
+    let made = run("hc", &["monodromy", text(&family), "--output", text(&start)]);
+    assert_eq!(made.status.code(), Some(0), "{}", String::from_utf8_lossy(&made.stderr));
+    let targets = directory.path().join("targets.json");
+    let target = std::fs::read_to_string(&one).expect("target");
+    std::fs::write(&targets, format!("[{target}, {target}]")).expect("written");
+    let (exact, network) =
+        (directory.path().join("exact/pseudoranges.csv"), root().join("examples/network/pseudoranges.csv"));
+    let made = run(
+        "tdoa",
+        &["simulate", "--receivers", "5", "--transmitters", "4", "--output", text(exact.parent().expect("a folder"))],
+    );
+    assert_eq!(made.status.code(), Some(0), "{}", String::from_utf8_lossy(&made.stderr));
+    let track = |target| vec!["track", text(&family), "--start", text(&start), "--target", target];
+    for (program, arguments, results) in [
+        ("hc", vec!["solve", text(&system)], 1),
+        ("hc", vec!["decompose", text(&system)], 1),
+        ("hc", vec!["mixed-volume", text(&system)], 1),
+        ("hc", track(text(&one)), 1),
+        ("hc", track(text(&targets)), 2),
+        ("tdoa", vec!["solve", text(&exact), "--dimensions", "2"], 1),
+        ("tdoa", vec!["calibrate", text(&network), "--dimensions", "2"], 1),
+    ] {
+        let output = run(program, &[&arguments[..], &["--json", "-"]].concat());
+        let found: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        let all = found.as_array().cloned().unwrap_or_else(|| vec![found]);
+        assert_eq!(all.len(), results, "{program} {arguments:?}");
+        assert!(all.iter().all(|found| found["format"] == 1), "{program} {arguments:?}");
+    }
+}
+
 #[test]
 fn unwritable_places_are_said_at_once() {
     let directory = tempfile::tempdir().expect("directory");
