@@ -12,48 +12,68 @@ use crate::singular::{self, ExactEquations};
 use crate::start::PathSystem;
 use num_complex::Complex64;
 use poly::{Exact, Polynomial};
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
-/// A system that was tracked, and the given equations, by which its ends are judged.
+/// The given equations as polynomials, by which ends are judged.
+pub(super) struct Expanded<'a> {
+    polynomials: Cow<'a, [Polynomial<Exact>]>,
+    pub(super) given: ExactEquations,
+    /// Whether the coefficients that are tracked are exactly those that were given.
+    pub(super) exact: bool,
+    /// The equations in one unknown or two, once they are asked for.
+    small: OnceLock<Option<SmallSystem>>,
+}
+
+impl<'a> Expanded<'a> {
+    /// Takes polynomials in unknowns whose units have these logarithms to base 2.
+    pub(super) fn new(
+        polynomials: impl Into<Cow<'a, [Polynomial<Exact>]>>,
+        units: Vec<i64>,
+        exact: bool,
+        monitor: &Monitor,
+    ) -> Expanded<'a> {
+        let polynomials = polynomials.into();
+        let given = ExactEquations::new(&polynomials, units).stopped_by(monitor);
+        Expanded { polynomials, given, exact, small: OnceLock::new() }
+    }
+
+    /// The equations, if they come down to one unknown or two.
+    pub(super) fn small(&self) -> Option<&SmallSystem> {
+        self.small.get_or_init(|| SmallSystem::new(&self.polynomials)).as_ref()
+    }
+}
+
+/// A system that was tracked, and what its ends are judged by.
 pub(super) struct Tracked<'a> {
-    pub(super) given: &'a ExactEquations,
+    pub(super) expanded: &'a Expanded<'a>,
     /// The work that may be done for the ends.
     pub(super) work: u64,
-    /// The given equations as polynomials.
-    pub(super) polynomials: &'a [Polynomial<Exact>],
-    /// These in one unknown or two, once they are asked for.
-    pub(super) small: OnceLock<Option<SmallSystem>>,
     /// As many equations as unknowns, with their parameters.
     pub(super) system: &'a PathSystem,
     pub(super) target: &'a [Complex64],
     /// The supports and coefficients that were tracked, where these move along a straight line.
     pub(super) line: Option<Line<'a>>,
-    /// Whether the coefficients that were tracked are exactly those that were given.
-    pub(super) exact: bool,
     pub(super) monitor: &'a Monitor,
     /// How to solve the equations of a cluster; `None` deep enough within such solves.
     pub(super) solve_cluster: Option<&'a ClusterSolver<'a>>,
 }
 
 impl Tracked<'_> {
-    /// The equations, if they come down to one unknown or two.
-    pub(super) fn small(&self) -> Option<&SmallSystem> {
-        self.small.get_or_init(|| SmallSystem::new(self.polynomials)).as_ref()
-    }
-
     /// All solutions without paths, regular ones first, if the equations come down to one unknown or two.
     pub(super) fn solutions(&self) -> Option<Vec<Solution>> {
         let mut refiner = Refiner::new(self.system);
-        let units = self.given.scales();
+        let given = &self.expanded.given;
+        let units = given.scales();
         let solution = |(values, multiplicity): (Vec<Digits>, usize)| {
             // Several may be one double.
             let value: Vec<Complex64> = values.iter().zip(units).map(|(z, &u)| z.shifted(-u).to_c64()).collect();
-            let residual = singular::residual(self.given, &value);
+            let residual = singular::residual(given, &value);
             let condition = refiner.judged(self.target, &value).condition;
             Solution::new(value, multiplicity, multiplicity, multiplicity > 1, residual, condition)
         };
-        let mut all: Vec<Solution> = self.small()?.solutions()?.into_iter().map(solution).collect();
+        let mut all: Vec<Solution> = self.expanded.small()?.solutions()?.into_iter().map(solution).collect();
         all.sort_by_key(|s| s.singular);
         Some(all)
     }

@@ -1,6 +1,6 @@
 //! The members of a parameter family, from its stored fibre.
 
-use super::classify::Tracked;
+use super::classify::{Expanded, Tracked};
 use super::ends::Ends;
 use super::excess::Excess;
 use super::options::SolveOptions;
@@ -16,7 +16,6 @@ use crate::tracker::Trackers;
 use num_complex::Complex64;
 use num_traits::ToPrimitive;
 use poly::{Evaluate, Exact, Polynomial, SparseSystem, System};
-use std::sync::OnceLock;
 
 /// The isolated solutions of the member of `family` at the parameters `target`, from those at the
 /// parameters of `fibre`, all of which are tracked. `trackers` belong to the compiled family. The
@@ -33,15 +32,12 @@ pub(crate) fn solve_member<E: Evaluate>(
     let expanded = if !ends.singular.is_empty() { expanded(family, target, monitor) } else { None };
     let solver =
         |polynomials: &[Polynomial<Exact>], outer: &ExactEquations| solve_cluster(polynomials, outer, 0, monitor);
-    let tracked = expanded.as_ref().map(|(polynomials, given, system, target)| Tracked {
-        given,
-        work: work(given, fibre.len()),
-        polynomials,
-        small: OnceLock::new(),
+    let tracked = expanded.as_ref().map(|(expanded, system, target)| Tracked {
+        expanded,
+        work: work(&expanded.given, fibre.len()),
         system,
         target,
         line: None,
-        exact: true,
         monitor,
         solve_cluster: Some(&solver),
     });
@@ -84,10 +80,12 @@ fn followed<E: Evaluate>(
     follow(Route { trackers, start: fibre, count, target, excess, options, monitor, record: None, lead: None }, false)
 }
 
-type Expanded = (Vec<Polynomial<Exact>>, ExactEquations, PathSystem, Vec<Complex64>);
-
-/// The polynomials of a member, and the same as supports and coefficients.
-fn expanded(family: &System, target: &[Complex64], monitor: &Monitor) -> Option<Expanded> {
+/// The polynomials of a member, and their supports and coefficients.
+fn expanded(
+    family: &System,
+    target: &[Complex64],
+    monitor: &Monitor,
+) -> Option<(Expanded<'static>, PathSystem, Vec<Complex64>)> {
     let polynomials = family.at(target).ok()?.expand(&Default::default()).ok()?;
     let unknowns = family.variables().len();
     let supports: Vec<Vec<Vec<i32>>> = polynomials.iter().map(Polynomial::support).collect();
@@ -95,6 +93,5 @@ fn expanded(family: &System, target: &[Complex64], monitor: &Monitor) -> Option<
     let numbers = terms.map(|(_, c)| Some(Complex64::new(c.re.to_f64()?, c.im.to_f64()?)).filter(|z| z.is_finite()));
     let system = PathSystem::of_terms(SparseSystem::new(unknowns, &supports).ok()?);
     let target = numbers.collect::<Option<_>>()?;
-    let given = ExactEquations::new(&polynomials, vec![0; unknowns]).stopped_by(monitor);
-    Some((polynomials, given, system, target))
+    Some((Expanded::new(polynomials, vec![0; unknowns], true, monitor), system, target))
 }

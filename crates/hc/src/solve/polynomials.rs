@@ -1,7 +1,7 @@
 //! From expanded polynomials to solutions: start systems one after the other, as long as paths are
 //! lost.
 
-use super::classify::{ClusterSolver, Tracked};
+use super::classify::{ClusterSolver, Expanded, Tracked};
 use super::conditioned::conditioned;
 use super::ends::{End, Ends};
 use super::equations::ScaledEquations;
@@ -27,7 +27,6 @@ use crate::tolerances::ENDS;
 use crate::tracker::Trackers;
 use poly::{Exact, ExpandError, Polynomial, System};
 use std::borrow::Cow;
-use std::sync::OnceLock;
 
 /// Clusters of solutions are looked at within clusters this often.
 const NESTED: usize = 3;
@@ -92,7 +91,8 @@ pub(super) fn solve_written(
     context: SolveContext<'_>,
 ) -> Result<Solutions, SolveError> {
     let starts = written::starts(system, error, options)?;
-    let problem = Problem { expanded: None, slack: None, options: Cow::Borrowed(options), monitor, context };
+    let problem =
+        Problem { expanded: None, roots: None, slack: None, options: Cow::Borrowed(options), monitor, context };
     solved(&problem, starts)
 }
 
@@ -129,20 +129,12 @@ fn unless_cancelled<T>(result: Result<T, SolveError>) -> Result<Option<T>, Solve
 struct Problem<'a> {
     /// `None` if they cannot be expanded.
     expanded: Option<Expanded<'a>>,
+    /// The number of all roots, with their multiplicities, of a single equation in a single unknown.
+    roots: Option<usize>,
     slack: Option<Slack>,
     options: Cow<'a, SolveOptions>,
     monitor: &'a Monitor,
     context: SolveContext<'a>,
-}
-
-/// The given equations as polynomials, by which ends are judged.
-struct Expanded<'a> {
-    polynomials: &'a [Polynomial<Exact>],
-    given: ExactEquations,
-    /// Whether the coefficients that are tracked are exactly those that were given.
-    exact: bool,
-    /// The number of all roots, with their multiplicities, of a single equation in a single unknown.
-    roots: Option<usize>,
 }
 
 /// Prepares equations, as many as unknowns, and their start systems.
@@ -156,7 +148,7 @@ fn prepared<'a>(
     let equations = ScaledEquations::new(&conditioned(polynomials), names, context.named_sums)?;
     // A single equation has no condition number to tell, and combinations are rounded.
     let exact = equations.exact && (2..=names.len()).contains(&polynomials.len());
-    let given = ExactEquations::new(polynomials, equations.units()).stopped_by(monitor);
+    let expanded = Some(Expanded::new(polynomials, equations.units(), exact, monitor));
     let roots = number_of_roots(polynomials).filter(|_| !options.torus_only);
     let square = if context.sliced { slack::squared(&equations, options, monitor)? } else { None };
     let (equations, slack, options) = match square {
@@ -164,8 +156,7 @@ fn prepared<'a>(
         None => (equations, None, Cow::Borrowed(options)),
     };
     let starts = Starts::new(equations, &options, monitor)?;
-    let expanded = Some(Expanded { polynomials, given, exact, roots });
-    Ok((Problem { expanded, slack, options, monitor, context }, starts))
+    Ok((Problem { expanded, roots, slack, options, monitor, context }, starts))
 }
 
 /// Tracks paths of all start systems for rank 0 as long as it sends any.
@@ -234,8 +225,7 @@ fn attempted(problem: &Problem<'_>, starts: &mut Starts, excess: &Excess<'_>) ->
             return Err(error.into());
         }
         if !ends.abandoned {
-            let in_one_unknown = problem.expanded.as_ref().is_some_and(|expanded| expanded.roots.is_some());
-            let hopeless = in_one_unknown || are_hopeless(ends.lost(), from.paths);
+            let hopeless = problem.roots.is_some() || are_hopeless(ends.lost(), from.paths);
             attempts.start_systems += 1;
             attempts.retracked += ends.retracked;
             let found = problem.solutions_at(ends, from, excess);
@@ -257,9 +247,8 @@ impl Problem<'_> {
         let (coincidence, monitor) = (self.options.paths.coincidence, self.monitor);
         let SolveContext { level, outer, .. } = self.context;
         let Some(expanded) = &self.expanded else { return ends.judged(None, excess, coincidence) };
-        let given = &expanded.given;
         let line = Line { supports: &from.equations.supports, target: &from.coefficients };
-        let work = singular_ends::work(given, from.paths).min(outer.map_or(u64::MAX, ExactEquations::left));
+        let work = singular_ends::work(&expanded.given, from.paths).min(outer.map_or(u64::MAX, ExactEquations::left));
         let (system, target) = match &self.slack {
             Some(slack) => {
                 slack.shorten(&mut ends);
@@ -271,19 +260,16 @@ impl Problem<'_> {
             solve_cluster(polynomials, outer, level + 1, monitor)
         };
         let tracked = Tracked {
-            given,
+            expanded,
             work,
-            polynomials: expanded.polynomials,
-            small: OnceLock::new(),
             system,
             target,
             line: Some(line),
-            exact: expanded.exact,
             monitor,
             solve_cluster: (level < NESTED).then_some(&solver as &ClusterSolver<'_>),
         };
         // There is a better way to all roots of a polynomial in one unknown than other paths.
-        let missing = expanded.roots.is_some_and(|roots| ends.lost() > 0 || ends.regular.len() != roots);
+        let missing = self.roots.is_some_and(|roots| ends.lost() > 0 || ends.regular.len() != roots);
         if missing
             && !monitor.is_cancelled()
             && let Some(solutions) = tracked.solutions()
@@ -291,7 +277,7 @@ impl Problem<'_> {
             return ends.with_all(solutions);
         }
         let mut ends = ends.judged(Some(&tracked), excess, coincidence);
-        if expanded.roots.is_some() {
+        if self.roots.is_some() {
             // All paths end at roots, those that seem to go to infinity too.
             (0..ends.directions.len()).for_each(|k| ends.reassign(ends.paths, End::infinite(k), End::LOST));
         }

@@ -33,7 +33,7 @@ impl Ends {
         let doubted = structures
             .iter()
             .any(|(_, s)| matches!(s, LocalStructure::Isolated { .. } | LocalStructure::OnComponent { .. }));
-        let simple = doubted && tracked.small().is_some_and(SmallSystem::are_simple);
+        let simple = doubted && tracked.expanded.small().is_some_and(SmallSystem::are_simple);
         // Multiple solutions, with the paths that end there, and the number of lost paths that end at others.
         let mut multiple: Vec<(Solution, Vec<usize>)> = Vec::new();
         let mut further = 0;
@@ -65,7 +65,7 @@ impl Ends {
                 LocalStructure::Regular { point, residual } => {
                     self.assign(&paths, End::LOST);
                     // One path ends at a regular solution; any other has jumped.
-                    if !is_known(tracked.given, &self.solutions, &point) {
+                    if !is_known(&tracked.expanded.given, &self.solutions, &point) {
                         match paths.first() {
                             Some(&path) => self.set(path, End::SOLUTION),
                             None => further += 1,
@@ -133,7 +133,7 @@ impl Ends {
         if self.lost() == 0 && !singular && self.infinite() == 0 {
             return self;
         }
-        if let Some(all) = tracked.small().and_then(SmallSystem::count) {
+        if let Some(all) = tracked.expanded.small().and_then(SmallSystem::count) {
             if self.lost() == 0 && !singular && all == found {
                 return self;
             }
@@ -173,24 +173,25 @@ impl Ends {
         let mut doubtful = Vec::new();
         for (path, mut solution) in solutions {
             // The condition does not tell of rounded coefficients: it is that of scaled rows.
-            let steady =
-                tracked.exact && solution.condition < ENDS.exact_condition && solution.residual < ENDS.exact_residual;
-            if steady || !singular::is_moved(tracked.given, &solution.value) {
+            let steady = tracked.expanded.exact
+                && solution.condition < ENDS.exact_condition
+                && solution.residual < ENDS.exact_residual;
+            if steady || !singular::is_moved(&tracked.expanded.given, &solution.value) {
                 if solution.residual >= ENDS.exact_residual {
-                    solution.residual = singular::residual(tracked.given, &solution.value);
+                    solution.residual = singular::residual(&tracked.expanded.given, &solution.value);
                 }
                 self.solutions.push(solution);
                 continue;
             }
             let point = solution.value;
             let LocalStructure::Regular { point: exact, residual } =
-                singular::local_structure(tracked.given, &point, 1, 1, ENDS.rounded, Effort::Little)
+                singular::local_structure(&tracked.expanded.given, &point, 1, 1, ENDS.rounded, Effort::Little)
             else {
                 self.set(path, End::SINGULAR);
                 doubtful.push((path, SingularEnd { point, winding: 1, error: ENDS.rounded }));
                 continue;
             };
-            if is_known(tracked.given, &self.solutions, &exact) {
+            if is_known(&tracked.expanded.given, &self.solutions, &exact) {
                 self.set(path, End::LOST);
             } else {
                 self.solutions.push(Solution::new(exact, 1, 1, false, residual, solution.condition));
@@ -220,7 +221,7 @@ fn structures_of_ends(
 ) -> Vec<(Vec<usize>, LocalStructure)> {
     let mut found = Vec::new();
     for batch in groups.chunks(BATCH) {
-        let left = tracked.work.saturating_sub(tracked.given.spent());
+        let left = tracked.work.saturating_sub(tracked.expanded.given.spent());
         let stop = if tracked.monitor.is_cancelled() {
             Some(UnresolvedReason::Interrupted)
         } else {
@@ -232,9 +233,9 @@ fn structures_of_ends(
         }
         // Each has its own, so that it does not matter which is done first.
         let of = |group: &Vec<usize>| {
-            let given = tracked.given.limited(left / groups.len().clamp(1, SHARE) as u64);
+            let given = tracked.expanded.given.limited(left / groups.len().clamp(1, SHARE) as u64);
             let structures = structures_of_group(tracked, &given, ends, group, known, spare);
-            tracked.given.spend(given.spent());
+            tracked.expanded.given.spend(given.spent());
             structures
         };
         let structures: Vec<Vec<_>> = batch.par_iter().map(of).collect();
