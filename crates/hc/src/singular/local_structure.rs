@@ -44,6 +44,8 @@ pub(crate) fn local_structure(
     }
     let rational = LazyCell::new(|| at_rational(given, point, error, most));
     let is_on_component = |found: &LocalStructure| matches!(found, LocalStructure::OnComponent { .. });
+    // In this order, as far as one tells something. A rational point on a component counts only where more
+    // digits show no regular solution, and no sheet that the path has rather come to.
     let attempts: [&dyn Fn() -> Option<LocalStructure>; 7] = [
         &|| regular_from(&given.near_within::<ComplexDd>(point, LOCAL.own_units), given, point, error),
         &|| rational.clone().filter(|found| !is_on_component(found)),
