@@ -5,6 +5,7 @@ use crate::input::{self, Number};
 use crate::report::Report;
 use crate::{family, watch};
 use cli::{Failure, output};
+use hc::family::TargetLimits;
 use hc::poly::counted;
 use hc::ranks::Ranks;
 use hc::{Run, Solutions, SolveOptions};
@@ -37,6 +38,14 @@ pub(crate) struct Arguments {
     /// as they are in double precision. Exit status 1 if some regular one is not certified.
     #[arg(long)]
     certify: bool,
+    /// Paths that are tracked again for a target, at most, in multiples of the paths of its first pass. What is lost
+    /// then is said, with exit status 1. With 2 and more detours are tried first.
+    #[arg(long, default_value_t = TargetLimits::default().again, value_name = "MULTIPLE", allow_negative_numbers = true)]
+    again: f64,
+    /// Seconds for each target; paths that have not begun by then are left, which is said, with exit status 1. The
+    /// result then depends on the machine. No limit if not given.
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    time_limit: Option<f64>,
     /// Threads; all cores if not given. The result does not depend on it.
     #[arg(long)]
     threads: Option<usize>,
@@ -91,10 +100,12 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
         if count == 1 { (position, length, words) } else { (done.load(Ordering::Relaxed), count, "targets".to_owned()) }
     };
     let options = SolveOptions::new().seed(arguments.seed).certify(arguments.certify);
+    let mut limits = TargetLimits::default();
+    (limits.again, limits.seconds) = (arguments.again, arguments.time_limit);
     let checkpoint = if is_lead { arguments.checkpoint.open()? } else { None };
     let run = Run::new().watched(&monitor).recorded(checkpoint.as_ref()).on_ranks(ranks);
     let solved = watch::watched(arguments.threads, &monitor, describe, || {
-        run.track(&family, &fibre, &targets).options(&options).transform(|_, found| {
+        run.track(&family, &fibre, &targets).options(&options).limits(&limits).transform(|_, found| {
             done.fetch_add(1, Ordering::Relaxed);
             (found, begun.elapsed().as_secs_f64())
         })

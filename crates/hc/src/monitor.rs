@@ -4,6 +4,7 @@ use poly::counted;
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering};
+use std::time::{Duration, Instant};
 
 /// The stage of the work.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -111,6 +112,8 @@ pub struct Monitor {
     shared: Option<Arc<Shared>>,
     /// Whether progress is kept to itself.
     quiet: bool,
+    /// When the work ends in any case.
+    deadline: Option<Instant>,
 }
 
 impl fmt::Debug for Monitor {
@@ -151,7 +154,7 @@ impl Monitor {
     }
 
     fn of(shared: Shared) -> Monitor {
-        Monitor { shared: Some(Arc::new(shared)), quiet: false }
+        Monitor { shared: Some(Arc::new(shared)), ..Monitor::default() }
     }
 
     /// A handle that stops together with this one but does not change the progress: for parts of
@@ -159,6 +162,12 @@ impl Monitor {
     #[must_use]
     pub fn quiet(&self) -> Monitor {
         Monitor { quiet: true, ..self.clone() }
+    }
+
+    /// A handle that also stops part of the work this long from now.
+    #[must_use]
+    pub(crate) fn within(&self, time: Duration) -> Monitor {
+        Monitor { deadline: Instant::now().checked_add(time), ..self.clone() }
     }
 
     /// Asks the work to stop soon. What is finished by then is returned, marked as partial. This
@@ -172,6 +181,9 @@ impl Monitor {
     /// Whether the work has been asked to stop.
     pub fn is_cancelled(&self) -> bool {
         let set = |flag: &AtomicBool| flag.load(Ordering::Relaxed);
+        if self.deadline.is_some_and(|deadline| Instant::now() >= deadline) {
+            return true;
+        }
         let Some(shared) = &self.shared else { return false };
         if !set(&shared.cancelled) && shared.question.as_ref().is_some_and(|question| question(self.progress())) {
             self.cancel();

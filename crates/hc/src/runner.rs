@@ -81,6 +81,8 @@ pub(crate) struct Policy {
     pub(crate) retries: u32,
     /// Number of charts.
     pub(crate) charts: usize,
+    /// Most paths that are tracked again: a round that would exceed this is not begun, and the last.
+    pub(crate) again: usize,
     /// Number of paths in the first batch, at least 1.
     pub(crate) first: usize,
     /// Number of paths in a batch, at least 1.
@@ -92,6 +94,8 @@ pub(crate) struct Policy {
 pub(crate) struct Outcome {
     /// How often a path was tracked again.
     pub(crate) retracked: usize,
+    /// Whether doubtful paths are left because [`Policy::again`] did not allow another round.
+    pub(crate) bounded: bool,
     /// Why the run ended, unless nothing was doubtful any more or everything had been tried.
     pub(crate) flow: Flow,
 }
@@ -116,28 +120,31 @@ pub(crate) fn run<W: Work>(
 ) -> Outcome {
     workspace.which.clear();
     workspace.which.extend(0..count);
-    let mut retracked = 0;
-    let flow = pass(work, Round::FIRST, policy, workspace);
-    if flow != Flow::On {
-        return Outcome { retracked, flow };
+    let mut outcome = Outcome { retracked: 0, bounded: false, flow: pass(work, Round::FIRST, policy, workspace) };
+    if outcome.flow != Flow::On {
+        return outcome;
     }
     for level in 0..=policy.retries {
         let before = workspace.which.len();
         for chart in usize::from(level == 0)..policy.charts {
             if workspace.which.is_empty() || monitor.is_cancelled() {
-                return Outcome { retracked, flow };
+                return outcome;
             }
-            retracked += workspace.which.len();
-            let flow = pass(work, Round { level, chart }, policy, workspace);
-            if flow != Flow::On {
-                return Outcome { retracked, flow };
+            outcome.bounded = workspace.which.len() > policy.again - outcome.retracked;
+            if outcome.bounded {
+                return outcome;
+            }
+            outcome.retracked += workspace.which.len();
+            outcome.flow = pass(work, Round { level, chart }, policy, workspace);
+            if outcome.flow != Flow::On {
+                return outcome;
             }
         }
         if work.is_hopeless(level, before, workspace.which.len()) {
             break;
         }
     }
-    Outcome { retracked, flow }
+    outcome
 }
 
 /// One round over `workspace.which`, which afterwards holds the doubtful paths.

@@ -3,7 +3,7 @@
 use crate::arrays::{array, rows};
 use crate::errors::{Failure, guarded};
 use crate::work::{Done, How, run, whole};
-use hc::family::StartFile;
+use hc::family::{StartFile, TargetLimits};
 use hc::{FamilyError, MonodromyOptions, Run, Solutions, SolveOptions};
 use num_complex::Complex64;
 use numpy::PyReadonlyArrayDyn;
@@ -119,6 +119,7 @@ impl Family {
         fibre: PyRef<'py, Fibre>,
         targets: PyReadonlyArrayDyn<'py, Complex64>,
         certify: bool,
+        effort: (f64, Option<f64>),
         how: How,
     ) -> PyResult<Bound<'py, PyAny>> {
         guarded(|| {
@@ -127,8 +128,10 @@ impl Family {
             let shown = fibre.representatives.as_ref().map_or(roots, Vec::len);
             let Done { result: found, stopped, seconds } = run(py, &how, move |monitor| {
                 let options = SolveOptions::new().certify(certify);
+                let mut limits = TargetLimits::default();
+                (limits.again, limits.seconds) = effort;
                 let tracking = Run::new().watched(monitor).track(&family, &fibre, &targets).options(&options);
-                tracking.transform(|_, found| slots(&found, roots, shown, certify))
+                tracking.limits(&limits).transform(|_, found| slots(&found, roots, shown, certify))
             })?;
             let found = found.map_err(Failure::input)?;
             let width = found.iter().map(|row| row.ends.len()).max().unwrap_or(0).max(roots);

@@ -229,6 +229,33 @@ fn special_members_are_solved_like_any_system() {
 }
 
 #[test]
+fn limits_of_effort_are_said() {
+    let directory = tempfile::tempdir().expect("directory");
+    let (start, target) = (directory.path().join("start.json"), directory.path().join("target.json"));
+    let output = run("hc", &["monodromy", &family("p3p"), "--output", text(&start)]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    std::fs::write(&target, json!({ "parameters": [0.5, 0.6, 0.7, 7.0, 10.4, 8.2] }).to_string()).expect("written");
+    let track = |more: &[&str]| {
+        let family = family("p3p");
+        let arguments = ["track", &family, "--start", text(&start), "--target", text(&target)];
+        let output = run("hc", &[&arguments[..], more].concat());
+        let words = [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned());
+        (output.status.code(), words)
+    };
+    let report = |json: &str| serde_json::from_str::<Value>(json).expect("JSON");
+    let (status, [out, _]) = track(&["--json", "-", "--again", "0", "--time-limit", "1000"]);
+    assert_eq!((status, &report(&out)["limited"]), (Some(0), &Value::Null));
+    let (status, [out, error]) = track(&["--json", "-", "--time-limit", "0"]);
+    let found = report(&out);
+    assert_eq!((status, &found["limited"], &found["partial"]), (Some(1), &json!("time"), &json!(false)), "{error}");
+    assert!(found["paths"]["failed"].as_u64() > Some(0) && error.contains("the lists are not whole"), "{error}");
+    let (status, [out, _]) = track(&["--time-limit", "0"]);
+    assert!(status == Some(1) && out.contains("left: the time limit was reached"), "{out}");
+    let (status, [_, error]) = track(&["--again", "-1"]);
+    assert!(status == Some(2) && error.contains("again must be zero or more"), "{error}");
+}
+
+#[test]
 fn unusable_input_is_named() {
     let directory = tempfile::tempdir().expect("directory");
     let write = |name: &str, content: &str| {

@@ -82,13 +82,16 @@ pub struct FibreOptions {
     /// How often jumped and failed paths are tracked again, each time with steps half as long.
     /// Default 4.
     pub retries: u32,
+    /// Most paths that are tracked again; where more are doubtful, all of them stay as they are. Default `None`: as
+    /// many as there are.
+    pub again: Option<usize>,
     /// Relative distance below which two endpoints are the same point. Default 1e-8.
     pub coincidence: f64,
 }
 
 impl Default for FibreOptions {
     fn default() -> Self {
-        FibreOptions { tracker: TrackerOptions::default(), retries: 4, coincidence: 1e-8 }
+        FibreOptions { tracker: TrackerOptions::default(), retries: 4, again: None, coincidence: 1e-8 }
     }
 }
 
@@ -101,6 +104,48 @@ impl FibreOptions {
         self.tracker.validate()?;
         OptionError::positive(&[("coincidence", self.coincidence)])
     }
+}
+
+/// How much may be spent on one target of [`Family::track`](crate::Family::track) beyond its first pass. Paths that
+/// are still lost then count as failed, and [`Solutions::limited`](crate::Solutions::limited) says why they were left.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct TargetLimits {
+    /// Paths that are tracked again, at most, in multiples of the paths of the first pass. Doubtful paths are tracked
+    /// again with shorter steps, round after round. With 2 and more the whole fibre is first tracked to the target by
+    /// a detour, which takes two paths for each solution; a second detour takes as many. Default 1.
+    pub again: f64,
+    /// Seconds of wall-clock time after which no further path is begun. What is found by then depends on the machine.
+    /// Default `None`: no limit.
+    pub seconds: Option<f64>,
+}
+
+impl Default for TargetLimits {
+    fn default() -> Self {
+        TargetLimits { again: 1.0, seconds: None }
+    }
+}
+
+impl TargetLimits {
+    /// Checks the numbers.
+    ///
+    /// # Errors
+    /// The first setting that is outside its range.
+    pub fn validate(&self) -> Result<(), OptionError> {
+        OptionError::at_least("again", self.again, 0.0, "zero or more")?;
+        OptionError::at_least("seconds", self.seconds.unwrap_or(0.0), 0.0, "zero or more")
+    }
+}
+
+/// The limit for whose sake paths are left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Limit {
+    /// The number of paths that may be tracked again: [`TargetLimits::again`] or [`FibreOptions::again`].
+    Again,
+    /// The time: [`TargetLimits::seconds`].
+    Time,
 }
 
 /// How paths ended; `tracked` is the sum of the next four.

@@ -35,7 +35,7 @@ pub use charts::{Charts, OneChart};
 pub use choice::{ChoiceOptions, easiest_fibre, real_sample};
 pub use compiled::Family;
 pub use error::FamilyError;
-pub use fibre::{Fibre, FibreOptions, PathCounts};
+pub use fibre::{Fibre, FibreOptions, Limit, PathCounts, TargetLimits};
 pub(crate) use monodromy::monodromy;
 pub use monodromy::{Monodromy, MonodromyOptions};
 pub use packed::{PackedFibreError, pack_fibre, unpack_fibre};

@@ -3,10 +3,10 @@
 use super::compiled::Family;
 use super::detour::{DETOURS, corner};
 use super::error::FamilyError;
-use super::fibre::{Fibre, FibreOptions};
+use super::fibre::{Fibre, FibreOptions, Limit, TargetLimits};
 use super::job::{Points, job};
 use super::orbits::Orbits;
-use super::track::move_fibre_watched;
+use super::track::{moved as moved_fibre, track_fibre_watched};
 use crate::checkpoint::{Checkpoint, Job, Part, Recordable, Recorded};
 use crate::endgame::EndgameOptions;
 use crate::monitor::Monitor;
@@ -20,6 +20,7 @@ use crate::threads::{IntoParallelIterator, IntoParallelRefIterator, ParallelIter
 use crate::tracker::Trackers;
 use num_complex::Complex64;
 use serde::Serialize;
+use std::time::Duration;
 
 /// Targets that are tracked before it is asked whether enough are done: the answer depends on no
 /// number of threads.
@@ -64,7 +65,8 @@ impl<'a> RanksRun<'a> {
         Z: Copy + Into<Complex64>,
     {
         let monitor = self.run.monitor().clone();
-        let how = How { family, fibre, options: SolveOptions::default(), only_real: false, monitor };
+        let (options, limits) = (SolveOptions::default(), TargetLimits::default());
+        let how = How { family, fibre, options, limits, only_real: false, monitor };
         let targets = targets.iter().map(|p| p.as_ref().iter().map(|&z| z.into()).collect()).collect();
         Targets { how, targets, enough: None, run: self.clone() }
     }
@@ -84,6 +86,7 @@ struct How<'a> {
     family: &'a Family,
     fibre: &'a Fibre,
     options: SolveOptions,
+    limits: TargetLimits,
     only_real: bool,
     monitor: Monitor,
 }
@@ -92,6 +95,12 @@ impl<'a> Targets<'a> {
     /// Settings. Start systems are not used here. Default [`SolveOptions::default`].
     pub fn options(self, options: &SolveOptions) -> Self {
         Targets { how: How { options: options.clone(), ..self.how }, ..self }
+    }
+
+    /// Limits of the work on each target. Default [`TargetLimits::default`]: as many paths are tracked again as there
+    /// are, at most.
+    pub fn limits(self, limits: &TargetLimits) -> Self {
+        Targets { how: How { limits: *limits, ..self.how }, ..self }
     }
 
     /// Keeps only the real solutions in each result; counts cover all paths. Default false.
@@ -139,6 +148,7 @@ impl<'a> Targets<'a> {
         let Targets { how, targets, .. } = self;
         how.family.check(how.fibre)?;
         how.options.validate()?;
+        how.limits.validate()?;
         let parameters = how.fibre.parameters.len();
         let unusable = |target: &Vec<Complex64>| target.len() != parameters || target.iter().any(|z| !z.is_finite());
         match targets.iter().position(unusable) {
@@ -171,7 +181,7 @@ impl<'a> Targets<'a> {
             Some(_) => (RECORDED / how.fibre.len().max(1)).clamp(1, BLOCK),
             None => BLOCK,
         };
-        let policy = Policy { retries: 0, charts: 1, first: block, batch: block };
+        let policy = Policy { retries: 0, charts: 1, again: 0, first: block, batch: block };
         let part = checkpoint.map(|checkpoint| Part { checkpoint, number: 0 });
         let mut work = Recorded::new(DividedWork::new(each, lead, monitor), part, monitor);
         run(&mut work, count, &policy, &mut Workspace::default(), monitor);
@@ -273,6 +283,7 @@ struct Settings<'a> {
     paths: &'a FibreOptions,
     endgame: &'a EndgameOptions,
     known: Option<usize>,
+    limits: &'a TargetLimits,
     start: Points,
     targets: Points,
 }
@@ -283,45 +294,69 @@ impl How<'_> {
         let SolveOptions { seed, paths, endgame, known, .. } = &self.options;
         let start = Points::of_fibre(self.fibre);
         let targets = Points::new(targets.iter().map(Vec::as_slice));
-        let settings = Settings { seed: *seed, paths, endgame, known: *known, start, targets };
+        let settings = Settings { seed: *seed, paths, endgame, known: *known, limits: &self.limits, start, targets };
         job("track", &self.family.given, &self.family.program, &settings)
     }
 
-    /// The solutions for a target from a fibre, or where paths are lost, from one on a detour: more
-    /// steps come last.
-    fn from(&self, trackers: &Trackers<'_, poly::Interpreter>, fibre: &Fibre, target: &[Complex64]) -> Solutions {
-        let system = self.family.system();
-        let solve = |from: &Fibre, options| {
-            let mut found = solve_member(system, trackers, from, target, options, &self.monitor);
+    /// The solutions for a target from a fibre. Where paths are lost, detours are tried, and then shorter steps, as far
+    /// as the limits allow.
+    fn from(
+        &self,
+        trackers: &Trackers<'_, poly::Interpreter>,
+        fibre: &Fibre,
+        target: &[Complex64],
+        monitor: &Monitor,
+    ) -> Solutions {
+        let (system, given) = (&self.family.program, &self.options.paths);
+        let solve = |from: &Fibre, retries: u32, again: usize| {
+            let paths = FibreOptions { retries, again: Some(again), ..given.clone() };
+            let options = SolveOptions { paths, ..self.options.clone() };
+            let mut found = solve_member(self.family.system(), trackers, from, target, &options, monitor);
             self.family.keep_own(target, &mut found);
             found
         };
-        let mut once = self.options.clone();
-        once.paths.retries = 0;
-        let mut found = solve(fibre, &once);
-        let mut tracked = found.paths.tracked;
+        let most = ((self.limits.again * fibre.len() as f64) as usize).min(given.again.unwrap_or(usize::MAX));
+        let detour = 2 * fibre.len();
+        if given.retries == 0 {
+            return solve(fibre, 0, 0);
+        }
+        if most < detour {
+            let mut found = solve(fibre, given.retries, most);
+            found.limited = (found.paths.failed > 0).then_some(Limit::Again);
+            return found;
+        }
+        let (mut found, mut again, mut bounded) = (solve(fibre, 0, 0), 0, false);
         for number in 0..DETOURS {
-            if found.paths.failed == 0 || self.options.paths.retries == 0 || self.monitor.is_cancelled() {
+            if found.paths.failed == 0 || monitor.is_cancelled() {
                 break;
             }
-            let (corner, paths) = (corner(fibre, target, number), &self.options.paths);
-            let Some(moved) = move_fibre_watched(&self.family.program, fibre, &corner, paths, &self.monitor) else {
-                continue;
-            };
-            let other = solve(&moved, &once);
-            tracked += moved.len() + other.paths.tracked;
+            bounded = most - again < detour;
+            if bounded {
+                break;
+            }
+            let corner = corner(fibre, target, number);
+            let paths = FibreOptions { again: Some(most - again - detour), ..given.clone() };
+            let moved = track_fibre_watched(system, fibre, &corner, &paths, monitor);
+            again += fibre.len() + moved.1.retracked;
+            let Some(moved) = moved_fibre(system, fibre, &corner, &moved) else { continue };
+            let other = solve(&moved, 0, 0);
+            again += other.paths.tracked;
             if other.paths.failed < found.paths.failed {
                 found = other;
             }
         }
-        if found.paths.failed > 0 && self.options.paths.retries > 0 {
-            let last = solve(fibre, &self.options);
-            tracked += last.paths.tracked;
+        if found.paths.failed > 0 && most - again >= fibre.len() {
+            let last = solve(fibre, given.retries, most - again - fibre.len());
+            again += last.paths.tracked + last.paths.retracked;
+            bounded |= last.limited.is_some();
             if last.paths.failed <= found.paths.failed {
                 found = last;
             }
+        } else {
+            bounded = true;
         }
-        found.paths.retracked += tracked.saturating_sub(found.paths.tracked);
+        found.limited = (bounded && found.paths.failed > 0).then_some(Limit::Again);
+        found.paths.retracked = again;
         found
     }
 
@@ -335,14 +370,22 @@ impl How<'_> {
         if self.monitor.is_cancelled() {
             return None;
         }
-        let from = |fibre: &Fibre| self.from(trackers, fibre, target);
+        let time = self.limits.seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+        let limited = time.map(|time| self.monitor.within(time));
+        let monitor = limited.as_ref().unwrap_or(&self.monitor);
+        let from = |fibre: &Fibre| self.from(trackers, fibre, target, monitor);
         let expanded = orbits.and_then(|orbits| {
             let mut found = from(&orbits.tracked);
             let same = self.options.paths.coincidence;
             found.solutions = orbits.expand(&self.family.symmetry, target, same, &found)?;
             Some(found)
         });
-        Some(expanded.unwrap_or_else(|| from(self.fibre)))
+        let mut found = expanded.unwrap_or_else(|| from(self.fibre));
+        if found.interrupted {
+            found.interrupted = self.monitor.is_cancelled();
+            found.limited = (!found.interrupted).then_some(Limit::Time);
+        }
+        Some(found)
     }
 
     /// The solutions for some of the targets, with their numbers, up to the first that was not begun.

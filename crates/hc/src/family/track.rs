@@ -215,7 +215,8 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
             enough,
             steps: 0,
         };
-        let policy = Policy { retries: options.retries, charts: C::COUNT, first: size, batch: size };
+        let again = options.again.unwrap_or(usize::MAX);
+        let policy = Policy { retries: options.retries, charts: C::COUNT, again, first: size, batch: size };
         let mut work = DividedWork::new(FibreWork::new(tracking, self.system), lead, &self.monitor);
         let outcome = run(&mut work, fibre.len(), &policy, &mut self.workspace, &self.monitor);
         let found = outcome.flow == Flow::Found;

@@ -77,7 +77,7 @@ fn led(
     let mut sum = Sum { divided: Divided { space: &space, tasks }, monitor, volume: 0, cells: 0, done: 0, fits: true };
     sum.add(Some(total(vec![first])?));
     let mut work = DividedWork::new(sum, Some(lead), monitor);
-    let policy = Policy { retries: 0, charts: 1, first: BATCH, batch: BATCH };
+    let policy = Policy { retries: 0, charts: 1, again: 0, first: BATCH, batch: BATCH };
     run(&mut work, count, &policy, &mut Workspace::default(), monitor);
     if let Some(error) = lead.failure() {
         return Err(error.into());

@@ -61,6 +61,8 @@ pub(super) struct Ends {
     pub(super) unresolved: Vec<Unresolved>,
     /// How often a path was tracked again.
     pub(super) retracked: usize,
+    /// Whether doubtful paths are left because no more may be tracked again.
+    pub(super) bounded: bool,
     /// Whether the paths were given up on trial; the ends are then not a result.
     pub(super) abandoned: bool,
 }
@@ -79,6 +81,7 @@ impl Ends {
             component_points: Vec::new(),
             unresolved: Vec::new(),
             retracked: 0,
+            bounded: false,
             abandoned: false,
         }
     }

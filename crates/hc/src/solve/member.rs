@@ -8,7 +8,7 @@ use super::paths::{Route, follow};
 use super::polynomials::solve_cluster;
 use super::singular_ends::work;
 use super::solutions::{Member, Solutions};
-use crate::family::Fibre;
+use crate::family::{Fibre, Limit};
 use crate::monitor::Monitor;
 use crate::singular::ExactEquations;
 use crate::start::PathSystem;
@@ -41,10 +41,11 @@ pub(crate) fn solve_member<E: Evaluate>(
         monitor,
         solve_cluster: Some(&solver),
     });
-    let retracked = ends.retracked;
+    let (retracked, bounded) = (ends.retracked, ends.bounded);
     let mut ends = ends.judged(tracked.as_ref(), &Excess::none(), options.paths.coincidence);
-    let interrupted = monitor.is_cancelled() && ends.lost() > 0;
-    Solutions { start_systems: 1, interrupted, ..ends.solutions(retracked) }
+    let lost = ends.lost() > 0;
+    let limited = (bounded && lost).then_some(Limit::Again);
+    Solutions { start_systems: 1, interrupted: monitor.is_cancelled() && lost, limited, ..ends.solutions(retracked) }
 }
 
 impl Solutions {

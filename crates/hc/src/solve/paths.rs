@@ -67,7 +67,8 @@ pub(super) fn follow<E: Evaluate, S: Source<E>>(route: Route<'_, '_, E, S>, tria
     let Route { count, options, monitor, record, lead, .. } = route;
     let mut work = Recorded::new(DividedWork::new(CoefficientStage::new(route, trial), lead, monitor), record, monitor);
     let first = if trial { TRIAL } else { CHUNK };
-    let policy = Policy { retries: options.paths.retries, charts: 1, first, batch: CHUNK };
+    let again = options.paths.again.unwrap_or(usize::MAX);
+    let policy = Policy { retries: options.paths.retries, charts: 1, again, first, batch: CHUNK };
     let mut workspace = Workspace::default();
     let outcome = run(&mut work, count, &policy, &mut workspace, monitor);
     let mut stage = work.into_inner().into_inner();
@@ -76,6 +77,7 @@ pub(super) fn follow<E: Evaluate, S: Source<E>>(route: Route<'_, '_, E, S>, tria
         Flow::Found => stage.ends.reassign(count, End::LOST, End::DROPPED),
         Flow::On => stage.lose_doubtful(&workspace.which),
     }
+    stage.ends.bounded = outcome.bounded;
     stage.finish(outcome.retracked, false)
 }
 

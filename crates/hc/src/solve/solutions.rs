@@ -3,7 +3,7 @@
 use super::options::Start;
 use super::warning::Warning;
 use crate::certify::{Certificates, CertifyError, CertifyOptions, Reality, certify};
-use crate::family::PathCounts;
+use crate::family::{Limit, PathCounts};
 use crate::tolerances::ENDS;
 use num_complex::Complex64;
 use poly::{ComplexInterval, System};
@@ -120,6 +120,8 @@ pub struct Solutions {
     /// failed. In JSON `partial`.
     #[serde(rename = "partial")]
     pub interrupted: bool,
+    /// The limit for whose sake failed paths were not tracked again; `None` if there was none, or no path failed.
+    pub limited: Option<Limit>,
     /// The distinct isolated solutions, regular ones first.
     pub solutions: Vec<Solution>,
     /// Ends of paths at which the equations nearly vanish, but which could not be judged. Their
@@ -229,6 +231,9 @@ impl Solutions {
         }
         if self.paths.failed > 0 {
             warnings.push(Warning::Lost { paths: self.paths.failed });
+        }
+        if let Some(limit) = self.limited {
+            warnings.push(Warning::Limited { paths: self.paths.failed, limit });
         }
         if !self.unresolved.is_empty() {
             warnings.push(Warning::Unresolved { ends: self.unresolved.len() });

@@ -1,5 +1,6 @@
 //! What a reader of a list of solutions must know.
 
+use crate::family::Limit;
 use poly::{counted, one_or};
 
 /// A way in which a list of solutions may be incomplete.
@@ -35,6 +36,14 @@ pub enum Warning {
         /// Number of paths.
         paths: usize,
     },
+    /// Paths that a limit of effort left.
+    #[error("{} left: {}", counted(*.paths, "path"), in_words(*.limit))]
+    Limited {
+        /// Number of paths.
+        paths: usize,
+        /// The limit.
+        limit: Limit,
+    },
     /// Ends at which the equations nearly vanish, but whose nature is not known.
     #[error("{} could not be judged, and {} listed as unresolved", counted(*.ends, "end"), one_or(*.ends, "is", "are"))]
     Unresolved {
@@ -47,4 +56,11 @@ pub enum Warning {
         /// Number of solutions.
         solutions: usize,
     },
+}
+
+fn in_words(limit: Limit) -> &'static str {
+    match limit {
+        Limit::Again => "no more may be tracked again within the limit of effort",
+        Limit::Time => "the time limit was reached, and a slower or faster run may find fewer or more solutions",
+    }
 }

@@ -1,13 +1,13 @@
 //! The tracker and what is built on it, on families whose solutions are known.
 
 use hc::distinct::relative_distance;
-use hc::family::{Stopped, track_fibre};
+use hc::family::{Limit, Stopped, TargetLimits, track_fibre};
 use hc::homotopy::Segment;
 use hc::poly::{Interpreter, Isa, Lane, Lanes8, parse};
 use hc::random::Random;
 use hc::refine::Refiner;
 use hc::tracker::{PathEnd, PathSet, Tracker, TrackerOptions, track};
-use hc::{Family, Fibre, FibreOptions, Monitor, MonodromyOptions, Solutions, SolveOptions};
+use hc::{Family, Fibre, FibreOptions, Monitor, MonodromyOptions, Solutions, SolveOptions, Warning};
 use num_complex::Complex64;
 
 fn family(unknowns: &str, parameters: &str, equations: &str) -> (Family, Interpreter) {
@@ -364,7 +364,9 @@ fn detours_find_what_a_path_has_lost() {
         let mut options = SolveOptions::default();
         options.paths.tracker.max_steps = 25;
         options.paths.retries = retries;
-        family.track(&fibre, &targets).options(&options).run().unwrap()
+        let mut limits = TargetLimits::default();
+        limits.again = 10.0;
+        family.track(&fibre, &targets).options(&options).limits(&limits).run().unwrap()
     };
     let lost = |found: &[Solutions]| found.iter().map(|s| s.paths.failed).sum::<usize>();
     let (before, after) = (run(0), run(1));
@@ -376,6 +378,62 @@ fn detours_find_what_a_path_has_lost() {
         let apart = |i: usize| points[..i].iter().all(|y| relative_distance(points[i], y) > 1e-6);
         assert!((1..8).all(apart), "target {k}");
     }
+}
+
+#[test]
+fn paths_are_tracked_again_as_often_as_allowed() {
+    let (family, _, mut fibre) = p3p_fibre();
+    fibre.is_partial = true;
+    let targets: Vec<_> = (0..100).map(|seed| Random::new(seed, 1).normals(6)).collect();
+    let mut options = SolveOptions::default();
+    // Too few steps for most paths, even when they are tracked again.
+    options.paths.tracker.max_steps = 12;
+    let run = |again: f64| {
+        let mut limits = TargetLimits::default();
+        limits.again = again;
+        family.track(&fibre, &targets).options(&options).limits(&limits).run().unwrap()
+    };
+    let allowed = [0.0, 0.5, 1.0, 3.5, 100.0].map(|again| (again, run(again)));
+    for (again, found) in &allowed {
+        for found in found {
+            assert!(found.paths.retracked as f64 <= 8.0 * again, "{again}: {:?}", found.paths);
+            // With 100 everything is tried, and few paths stay lost.
+            let limited = found.paths.failed > 0 && *again < 100.0;
+            assert_eq!(found.limited, limited.then_some(Limit::Again), "{again}: {:?}", found.paths);
+            let said = found.warnings().contains(&Warning::Limited { paths: found.paths.failed, limit: Limit::Again });
+            assert_eq!((said, found.interrupted), (limited, false));
+        }
+    }
+    let lost = |found: &[Solutions]| found.iter().map(|s| s.paths.failed).sum::<usize>();
+    let lost = allowed.each_ref().map(|(_, found)| lost(found));
+    // Shorter steps need as many more as they are allowed, so that here detours alone find what is lost.
+    assert!(lost.is_sorted_by(|more, fewer| more >= fewer) && lost[2] > lost[3] && lost[3] > lost[4], "{lost:?}");
+    // The default is 1, and what needs no more is found all the same.
+    let default = family.track(&fibre, &targets).options(&options).run().unwrap();
+    assert_eq!(default, allowed[2].1);
+    for (less, more) in allowed[0].1.iter().zip(&default) {
+        assert!(less.paths.failed > 0 || less == more);
+    }
+    let mut limits = TargetLimits::default();
+    limits.again = -1.0;
+    let error = family.track(&fibre, &targets).limits(&limits).run().unwrap_err();
+    assert_eq!(error.to_string(), "option again must be zero or more, not -1");
+}
+
+#[test]
+fn a_target_ends_at_its_time_limit() {
+    let (family, _, fibre) = p3p_fibre();
+    let targets: Vec<_> = (0..3).map(|seed| Random::new(seed, 1).normals(6)).collect();
+    let run = |seconds: f64| {
+        let mut limits = TargetLimits::default();
+        limits.seconds = Some(seconds);
+        family.track(&fibre, &targets).limits(&limits).run().unwrap()
+    };
+    for found in run(0.0) {
+        assert_eq!((found.paths.failed, found.limited, found.interrupted), (8, Some(Limit::Time), false));
+        assert!(found.to_string().contains("8 paths left: the time limit was reached"), "{found}");
+    }
+    assert_eq!(run(1e5), family.track(&fibre, &targets).run().unwrap());
 }
 
 #[test]

@@ -183,7 +183,14 @@ class Compiled:
     @property
     def roots(self) -> int: ...
     def __call__(
-        self, targets: ArrayLike, *, certify: bool = False, threads: int | None = None, progress: _Progress = True
+        self,
+        targets: ArrayLike,
+        *,
+        certify: bool = False,
+        again: float = 1.0,
+        time_limit: float | None = None,
+        threads: int | None = None,
+        progress: _Progress = True,
     ) -> Tracked: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
 
@@ -224,6 +231,8 @@ class Family:
         *,
         fibre: Fibre | None = None,
         certify: bool = False,
+        again: float = 1.0,
+        time_limit: float | None = None,
         threads: int | None = None,
         progress: _Progress = True,
     ) -> Tracked: ...

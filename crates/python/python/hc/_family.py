@@ -9,7 +9,7 @@ import numpy as np
 from . import _native
 from ._errors import InputError
 from ._numbers import counted
-from ._run import call, integer, seeded
+from ._run import call, integer, number, seeded
 from ._result import Result
 from ._solve import complex_rows
 from ._symbols import Symbols, listed
@@ -150,7 +150,7 @@ class Compiled:
         """Number of solutions that are tracked to each target."""
         return len(self._fibre)
 
-    def __call__(self, targets, *, certify=False, threads=None, progress=True):
+    def __call__(self, targets, *, certify=False, again=1.0, time_limit=None, threads=None, progress=True):
         """Track all solutions to each target: see `Family.track`."""
         rows = complex_rows("targets", targets)
         parameters = self._family.parameters
@@ -161,6 +161,7 @@ class Compiled:
             self._native,
             rows,
             bool(certify),
+            (number("again", again), number("time_limit", time_limit)),
             threads=threads,
             progress=progress,
             wrap=Tracked,
@@ -333,7 +334,7 @@ class Family:
         fibre = fibre if fibre is not None else self.fibre
         return Compiled(self, fibre if fibre is not None else self.monodromy())
 
-    def track(self, targets, *, fibre=None, certify=False, threads=None, progress=True):
+    def track(self, targets, *, fibre=None, certify=False, again=1.0, time_limit=None, threads=None, progress=True):
         """Find the solutions for many parameter points, in parallel.
 
         Parameters
@@ -342,6 +343,11 @@ class Family:
             Parameter points, real or complex.
         fibre, certify, threads, progress
             All solutions for one parameter point as in `compile`; whether solutions are proved; as in `hc.solve`.
+        again : float
+            Paths that are tracked again for a target, at most, in multiples of the paths of its first pass. What is lost
+            then has `End.FAILED`. With 2 and more detours are tried first.
+        time_limit : float, optional
+            Seconds for each target, after which no further path is begun. The result then depends on the machine.
 
         Returns
         -------
@@ -353,7 +359,8 @@ class Family:
         KeyboardInterrupt
             On Ctrl-C, with the targets so far as `partial`.
         """
-        return self.compile(fibre)(targets, certify=certify, threads=threads, progress=progress)
+        track = self.compile(fibre)
+        return track(targets, certify=certify, again=again, time_limit=time_limit, threads=threads, progress=progress)
 
     def __repr__(self):
         name = f"{self.name}: " if self.name else ""
