@@ -83,7 +83,7 @@ mod solve;
 pub mod start;
 mod store;
 mod threads;
-pub mod tolerances;
+mod tolerances;
 pub mod tracker;
 pub mod witness;
 

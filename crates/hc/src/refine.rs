@@ -139,7 +139,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
     }
 
     /// Corrects a point until corrections no longer shrink. If it is steady, and if the last correction is
-    /// at most [`near`](crate::tolerances::RefinementTolerances::near), the Jacobian and its factors are
+    /// at most `REFINEMENT.near`, the Jacobian and its factors are
     /// left, at a point as far from the result as it has moved since.
     fn polish(&mut self, p: &[ComplexDd], x: &mut [Complex64]) -> Polished {
         let (mut accuracy, mut steady, mut moved) = (f64::INFINITY, false, 0.0);

@@ -12,15 +12,14 @@
 //! All paths take their legs together, in lanes and on all threads. The result does not depend on
 //! how the paths are distributed.
 
-mod ending;
 mod laurent;
 mod legs;
 mod options;
 mod polish;
 mod walker;
 
-pub(crate) use ending::{EndKind, Ending, Handed};
 pub use options::EndgameOptions;
+pub(crate) use walker::{EndKind, Ending};
 
 use crate::homotopy::Segment;
 use crate::monitor::{Monitor, Stage};
@@ -42,7 +41,7 @@ const HEAVY: usize = 256;
 
 /// Finds the ends of paths along `segment`, in the order given.
 ///
-/// `tracker` has the settings for the legs. `turns` bounds the winding number, for instance by the
+/// A path is given by its index, its `t > 0` and its point there. `tracker` has the settings for the legs. `turns` bounds the winding number, for instance by the
 /// number of all paths.
 ///
 /// # Panics
@@ -50,13 +49,13 @@ const HEAVY: usize = 256;
 pub(crate) fn endgame<'a, E: Evaluate>(
     trackers: &Trackers<'_, E>,
     segment: &Segment,
-    paths: impl IntoIterator<Item = Handed<'a>>,
+    paths: impl IntoIterator<Item = (usize, f64, &'a [Complex64])>,
     turns: usize,
     tracker: &TrackerOptions,
     options: &EndgameOptions,
     monitor: &Monitor,
 ) -> Vec<Ending> {
-    let mut walkers: Vec<Walker> = paths.into_iter().map(|handed| Walker::new(handed, turns, options)).collect();
+    let mut walkers: Vec<Walker> = paths.into_iter().map(|path| Walker::new(path, turns, options)).collect();
     let settings = TrackerOptions {
         corrector_tolerance: tracker.corrector_tolerance.min(1e-5),
         // A leg is short, and one that needs many steps leads nowhere.

@@ -5,7 +5,7 @@ use super::walker::Sample;
 use crate::linalg::Lu;
 use crate::refine::{Refiner, size_sqr, weight_sqr};
 use crate::tolerances::REFINEMENT;
-use crate::tracker::{Precise, Wanted};
+use crate::tracker::Precise;
 use num_complex::Complex64;
 use poly::simd::Isa;
 use poly::{ComplexDd, Evaluate, Lane, Lanes8, Scalar};
@@ -24,8 +24,6 @@ pub(super) struct LegEnd<'a> {
 
 /// So many are polished at a time.
 pub(super) const LANES: usize = Lanes8::LANES;
-type Extended = <Lanes8 as Lane>::Extended;
-type Reals = <Lanes8 as Lane>::Real;
 
 /// Newton's method with one Jacobian, in lanes. What that does not bring to the last digit is for the
 /// [`Refiner`].
@@ -39,7 +37,7 @@ pub(super) struct Polisher<'a, E: Evaluate> {
     p: Vec<Lanes8>,
     values: Vec<Lanes8>,
     jacobian: Vec<Lanes8>,
-    squares: Vec<Reals>,
+    squares: Vec<<Lanes8 as Lane>::Real>,
     /// The parameters of one leg.
     row: Vec<ComplexDd>,
 }
@@ -96,7 +94,7 @@ impl<'a, E: Evaluate> Polisher<'a, E> {
     /// twice the second is to the first. Where the second corrects rounding errors of the first, that is too
     /// much, and the tracker's estimate of the constant serves, with a margin.
     fn newton(&mut self, legs: &Legs<'_>, lanes: &[LegEnd<'_>; LANES]) -> [Option<f64>; LANES] {
-        let mut t = Extended::zero();
+        let mut t = <Lanes8 as Lane>::Extended::zero();
         for (l, &LegEnd { leg, u, point, .. }) in lanes.iter().enumerate() {
             let [re, im] = ComplexDd::new(legs.legs[leg].at(u)).parts();
             Lanes8::set_extended(&mut t, l, re, im);
@@ -109,8 +107,7 @@ impl<'a, E: Evaluate> Polisher<'a, E> {
         measure(&self.x, &mut self.squares, weight_sqr);
         self.lu.factor(&self.jacobian, &self.squares);
         let first = self.correct();
-        let all = Wanted { lanes: u16::MAX, wide: 0 };
-        self.precise.overwrite(self.system, all, [&self.x, &self.x], &mut self.values);
+        self.precise.overwrite(self.system, [u16::MAX, 0], [&self.x, &self.x], &mut self.values);
         let second = self.correct();
         std::array::from_fn(|l| {
             let (first, second) = (first.as_ref()[l].sqrt(), second.as_ref()[l].sqrt());
@@ -123,7 +120,7 @@ impl<'a, E: Evaluate> Polisher<'a, E> {
     }
 
     /// Takes the residuals in `values` for a correction; returns the squares of its relative sizes.
-    fn correct(&mut self) -> Reals {
+    fn correct(&mut self) -> <Lanes8 as Lane>::Real {
         self.lu.solve(&mut self.values);
         for (x, dx) in self.x.iter_mut().zip(&self.values) {
             *x = Lanes8::sub(x, dx);
@@ -142,7 +139,7 @@ impl<'a, E: Evaluate> Polisher<'a, E> {
 }
 
 /// Squares of sizes, coordinate by coordinate, from their own squares and that of the largest.
-fn measure(x: &[Lanes8], squares: &mut [Reals], size_sqr: impl Fn(f64, f64) -> f64) {
+fn measure(x: &[Lanes8], squares: &mut [<Lanes8 as Lane>::Real], size_sqr: impl Fn(f64, f64) -> f64) {
     let mut largest = Lanes8::real(0.0);
     for (x, square) in x.iter().zip(&mut *squares) {
         *square = x.norm_sqr();

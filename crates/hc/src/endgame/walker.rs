@@ -1,12 +1,48 @@
 //! One path in its endgame: which leg comes next, and when the endgame is over.
 
-use super::ending::{EndKind, Ending, Handed};
 use super::laurent::{Loop, Reading};
 use super::legs::Leg;
 use super::options::EndgameOptions;
 use crate::refine;
 use crate::tolerances::ENDGAME;
 use num_complex::Complex64;
+
+/// How a path ends, after its endgame.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum EndKind {
+    /// At a point; after `winding` turns round zero the path returns to its beginning.
+    Finite {
+        /// Winding number.
+        winding: usize,
+        /// Error of the point, relative to the path's size on the last loop.
+        error: f64,
+    },
+    /// At a point to which the path could be tracked like a regular one.
+    Reached,
+    /// At infinity: coordinate `j` is of order `t^(valuations[j] / winding)`, and at least one
+    /// valuation is negative.
+    Infinite {
+        /// Winding number; if no loop was clear, the least for which the valuations are integers.
+        winding: usize,
+        /// The direction: valuations times the winding number.
+        valuations: Vec<i64>,
+    },
+    /// Unknown: the path could not be tracked, or no loop closed and showed a decaying series.
+    Lost,
+}
+
+/// A path and its end.
+pub(crate) struct Ending {
+    /// Index of the path, as given.
+    pub(crate) path: usize,
+    /// How it ends.
+    pub(crate) kind: EndKind,
+    /// The end if it is finite, otherwise the last point.
+    pub(crate) point: Vec<Complex64>,
+    /// The point at the first radius, common to all paths: two that coincide here have crossed.
+    /// Empty if not reached.
+    pub(crate) middle: Vec<Complex64>,
+}
 
 /// A polished point of a path.
 pub(super) struct Sample {
@@ -49,7 +85,12 @@ pub(super) struct Walker {
 }
 
 impl Walker {
-    pub(super) fn new((path, t, x): Handed<'_>, max_turns: usize, options: &EndgameOptions) -> Self {
+    /// A path of this index that has come to the point `x` at `t > 0`.
+    pub(super) fn new(
+        (path, t, x): (usize, f64, &[Complex64]),
+        max_turns: usize,
+        options: &EndgameOptions,
+    ) -> Self {
         Walker {
             path,
             at: -t.ln(),
@@ -259,7 +300,7 @@ impl Walker {
 
     pub(super) fn ending(self) -> Ending {
         let kind = self.kind.unwrap_or(EndKind::Lost);
-        Ending { path: self.path, kind, point: self.x, middle: self.middle, radius: self.radius }
+        Ending { path: self.path, kind, point: self.x, middle: self.middle }
     }
 }
 

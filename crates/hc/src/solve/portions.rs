@@ -5,7 +5,7 @@ use super::fingerprints::Fingerprint;
 use super::paths::{CoefficientStage, Route};
 use super::record::{Record, RecordEnd, SingularEnd};
 use crate::distinct::relative_distance;
-use crate::endgame::{EndKind, EndgameOptions, Ending, Handed, endgame};
+use crate::endgame::{EndKind, EndgameOptions, Ending, endgame};
 use crate::homotopy::Segment;
 use crate::monitor::{self, Monitor};
 use crate::ranks::{RanksError, Shareable, Task, Worker};
@@ -104,7 +104,7 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
         let to_near = Segment::new(start.parameters(), &near);
         let mut undecided = Vec::new();
         let mut starts = Vec::new();
-        let mut handed: Vec<Handed<'_>> = Vec::new();
+        let mut handed: Vec<(usize, f64, &[Complex64])> = Vec::new();
         for (k, record) in open.iter().enumerate() {
             match &record.end {
                 RecordEnd::Undecided { start } => {

@@ -5,15 +5,14 @@
 //! same point until the other lanes have finished theirs, so that its numbers do not depend on its
 //! neighbours. The loop allocates nothing.
 
-use super::derivatives::derivatives;
-use super::kernels::{Coefficients, Correct, Distance, Predict, Radius, Take, Weigh};
+use super::kernels::{Coefficients, Distance, Predict, Radius, Take, Weigh};
 use super::logarithms::{Exponentials, Logarithms};
 use super::options::TrackerOptions;
-use super::precise::{Precise, Wanted, subtract};
-use super::progress::{Bounds, PathProgress, StepState};
+use super::precise::{Precise, subtract};
+use super::progress::{Bounds, PathProgress, StepState, mask};
 use super::quick::QuickMemory;
 use super::result::{PathEnd, PathResult, PathSet};
-use super::stop::{Stop, Stops};
+use super::resume::{ResumePoint, ResumePoints};
 use super::valuation::valuation;
 use super::workspace::Workspace;
 use crate::homotopy::ParameterPath;
@@ -27,29 +26,29 @@ pub struct Tracker<'a, E: Evaluate, S: Lane> {
     pub(super) work: Workspace<'a, E, S>,
     pub(super) bounds: Bounds,
     pub(super) monitor: Monitor,
-    lanes: Vec<PathProgress>,
-    predicted: Vec<S>,
+    pub(super) lanes: Vec<PathProgress>,
+    pub(super) predicted: Vec<S>,
     /// The Taylor coefficients for the predictor, where there are coordinates whose logarithms it predicts: in
     /// these lanes.
-    series: Vec<S>,
-    masks: Vec<u16>,
-    logarithmic: u16,
+    pub(super) series: Vec<S>,
+    pub(super) masks: Vec<u16>,
+    pub(super) logarithmic: u16,
     /// The low parts of the points, of the corrected points, and of those of the last accepted step, for
     /// paths whose points are in double-double; arbitrary for other paths.
-    point_low: Vec<S>,
-    corrected_low: Vec<S>,
-    taylor_low: Vec<S>,
+    pub(super) point_low: Vec<S>,
+    pub(super) corrected_low: Vec<S>,
+    pub(super) taylor_low: Vec<S>,
     /// The point from which the closing correction starts.
-    closing: Vec<S>,
-    closing_low: Vec<S>,
+    pub(super) closing: Vec<S>,
+    pub(super) closing_low: Vec<S>,
     /// The correction that residuals of double precision give where better ones are used.
-    rough: Vec<S>,
-    precise: Precise<E, S>,
-    valuations: Vec<f64>,
+    pub(super) rough: Vec<S>,
+    pub(super) precise: Precise<E, S>,
+    pub(super) valuations: Vec<f64>,
     /// Made when quick steps are first asked for.
     pub(super) quick: Option<Box<QuickMemory<'a, E>>>,
     /// The paths that quick steps leave, and those that cannot go on from there.
-    left: Stops,
+    pub(super) left: ResumePoints,
     pub(super) strayed: Vec<usize>,
 }
 
@@ -81,7 +80,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
             precise: Precise::new(system, isa),
             valuations: vec![0.0; n],
             quick: None,
-            left: Stops::default(),
+            left: ResumePoints::default(),
             strayed: Vec::new(),
         }
     }
@@ -118,7 +117,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
     ) {
         assert_eq!(path.parameters(), self.work.system.parameters(), "parameters of path and system");
         if !self.bounds.options.quick {
-            return self.track_carefully(path, starts, which.into_iter().map(Stop::at_start), out);
+            return self.track_carefully(path, starts, which.into_iter().map(ResumePoint::at_start), out);
         }
         let (which, mut left) = (which.into_iter(), std::mem::take(&mut self.left));
         left.clear();
@@ -130,7 +129,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         self.track_carefully(path, &left.points, left.list.iter().copied(), out);
         self.left = left;
         let mut strayed = std::mem::take(&mut self.strayed);
-        self.track_carefully(path, starts, strayed.drain(..).map(Stop::at_start), out);
+        self.track_carefully(path, starts, strayed.drain(..).map(ResumePoint::at_start), out);
         self.strayed = strayed;
     }
 
@@ -140,7 +139,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         &mut self,
         path: &P,
         points: &[Complex64],
-        mut stops: impl Iterator<Item = Stop>,
+        mut stops: impl Iterator<Item = ResumePoint>,
         out: &mut PathSet,
     ) {
         let n = self.work.n;
@@ -198,10 +197,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         loop {
             self.correct();
             self.close();
-            let mut unfinished = 0u16;
-            for (l, lane) in self.lanes.iter().enumerate() {
-                unfinished |= u16::from(lane.state == StepState::Iterating) << l;
-            }
+            let unfinished = mask(&self.lanes, |lane| lane.state == StepState::Iterating);
             if unfinished == 0 {
                 break;
             }
@@ -287,121 +283,16 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         }
     }
 
-    /// Runs Newton's method until every lane has converged or is rejected.
-    fn correct(&mut self) {
-        loop {
-            let m = self.work.system.parameters();
-            let p = &self.work.parameters[..m];
-            self.work.system.jacobian(
-                &mut self.work.memory,
-                &self.work.point,
-                p,
-                &mut self.work.values,
-                &mut self.work.jacobian,
-            );
-            let x = [&self.work.point[..], &self.point_low];
-            let wanted = wanted(&self.lanes, StepState::Iterating);
-            self.precise.overwrite(self.work.system, wanted, x, &mut self.work.values);
-            self.work.lu.factor(&self.work.jacobian, &self.work.weights_sqr);
-            self.work.lu.solve(&mut self.work.values);
-            // Lanes that have stopped keep their points in `corrected`.
-            let mut running = 0u16;
-            for (l, lane) in self.lanes.iter().enumerate() {
-                running |= u16::from(lane.state == StepState::Iterating) << l;
-            }
-            let norm = self.work.isa.run(Correct {
-                x: &self.work.point,
-                dx: &self.work.values,
-                inverse_weights_sqr: &self.work.inverse_weights_sqr,
-                running,
-                out: &mut self.work.corrected,
-            });
-            for l in (0..S::LANES).filter(|l| running >> l & 1 == 1 && self.lanes[*l].wide) {
-                let to = [&mut self.work.corrected[..], &mut self.corrected_low];
-                subtract(l, [&self.work.point, &self.point_low], &self.work.values, to);
-            }
-            let mut again = 0u16;
-            for (l, lane) in self.lanes.iter_mut().enumerate() {
-                lane.judge(norm.as_ref()[l].sqrt(), &self.bounds);
-                again |= u16::from(lane.state == StepState::Iterating) << l;
-            }
-            if again == 0 {
-                return;
-            }
-            self.take_corrected(again);
-        }
-    }
-
-    /// Makes the corrected points of these lanes the points at which the Jacobian is evaluated.
-    fn take_corrected(&mut self, mask: u16) {
-        self.work.isa.run(Take { from: &self.work.corrected, mask, to: &mut self.work.point });
-        if self.lanes.iter().any(|lane| lane.wide) {
-            self.work.isa.run(Take { from: &self.corrected_low, mask, to: &mut self.point_low });
-        }
-    }
-
-    /// One more correction with the last Jacobian, which makes the points accurate and measures their
-    /// accuracy.
-    fn close(&mut self) {
-        if !self.lanes.iter().any(|lane| lane.state == StepState::Converged) {
-            return;
-        }
-        let p = &self.work.parameters[..self.work.system.parameters()];
-        self.work.system.values(&mut self.work.memory, &self.work.corrected, p, &mut self.work.values);
-        let extended = wanted(&self.lanes, StepState::Converged);
-        let mut rough = S::real(0.0);
-        if extended.lanes != 0 {
-            self.rough.copy_from_slice(&self.work.values);
-            self.work.lu.solve(&mut self.rough);
-            let x = [&self.work.corrected[..], &self.corrected_low];
-            self.precise.overwrite(self.work.system, extended, x, &mut self.work.values);
-        }
-        self.work.lu.solve(&mut self.work.values);
-        if extended.lanes != 0 {
-            rough = self.work.isa.run(Distance {
-                a: &self.rough,
-                b: &self.work.values,
-                inverse_weights_sqr: &self.work.inverse_weights_sqr,
-            });
-        }
-        // `point` stays where the Jacobian was taken: lanes that are done are evaluated there again
-        // if others go on.
-        self.closing.copy_from_slice(&self.work.corrected);
-        self.closing_low.copy_from_slice(&self.corrected_low);
-        let mut running = 0u16;
-        for (l, lane) in self.lanes.iter().enumerate() {
-            running |= u16::from(lane.state == StepState::Converged) << l;
-        }
-        let norm = self.work.isa.run(Correct {
-            x: &self.closing,
-            dx: &self.work.values,
-            inverse_weights_sqr: &self.work.inverse_weights_sqr,
-            running,
-            out: &mut self.work.corrected,
-        });
-        for l in (0..S::LANES).filter(|l| running >> l & 1 == 1 && self.lanes[*l].wide) {
-            let to = [&mut self.work.corrected[..], &mut self.corrected_low];
-            subtract(l, [&self.closing, &self.closing_low], &self.work.values, to);
-        }
-        for (l, lane) in self.lanes.iter_mut().enumerate() {
-            let double = lane.extended.then(|| rough.as_ref()[l].sqrt());
-            lane.judge_closing(norm.as_ref()[l].sqrt(), double, &self.bounds);
-        }
-    }
-
     /// Derivatives at the accepted points, and with them the radius of trust for the next step.
     fn move_on(&mut self, accepted: u16, straight: bool) {
-        let (n, m) = (self.work.n, self.work.system.parameters());
+        let n = self.work.n;
         let distance = self.work.isa.run(Distance {
             a: &self.predicted,
             b: &self.work.corrected,
             inverse_weights_sqr: &self.work.inverse_weights_sqr,
         });
         self.work.taylor_next[..n].copy_from_slice(&self.work.corrected);
-        let orders = if straight { 2 } else { 4 };
-        let p = &self.work.parameters[..orders * m];
-        derivatives(self.work.system, &mut self.work.memory, &self.work.lu, p, &mut self.work.taylor_next);
-        self.work.isa.run(Take { from: &self.work.taylor_next, mask: accepted, to: &mut self.work.taylor });
+        self.work.differentiate(straight, accepted);
         for (l, lane) in self.lanes.iter_mut().enumerate().filter(|(l, lane)| accepted >> l & 1 == 1 && lane.wide) {
             for (to, from) in self.taylor_low.iter_mut().zip(&self.corrected_low) {
                 to.set(l, from.get(l));
@@ -412,10 +303,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         for (o, lane) in omega_sqr.as_mut().iter_mut().zip(&self.lanes) {
             *o = lane.omega() * lane.omega();
         }
-        self.logarithmic = 0;
-        for (l, lane) in self.lanes.iter().enumerate() {
-            self.logarithmic |= u16::from(lane.is_live() && lane.exponential && !lane.wide) << l;
-        }
+        self.logarithmic = mask(&self.lanes, |lane| lane.is_live() && lane.exponential && !lane.wide);
         let mut taylor = &self.work.taylor;
         if self.logarithmic != 0 {
             let (lanes, series, masks) = (self.logarithmic, &mut self.series, &mut self.masks);
@@ -464,12 +352,3 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
     }
 }
 
-/// The lanes in this state that need residuals in double-double.
-fn wanted(lanes: &[PathProgress], state: StepState) -> Wanted {
-    let mut wanted = Wanted::default();
-    for (l, lane) in lanes.iter().enumerate().filter(|(_, lane)| lane.extended && lane.state == state) {
-        wanted.lanes |= 1 << l;
-        wanted.wide |= u16::from(lane.wide) << l;
-    }
-    wanted
-}

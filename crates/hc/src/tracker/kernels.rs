@@ -58,9 +58,9 @@ impl<S: Lane> Kernel for Predict<'_, S> {
 ///
 /// A part of the path that varies quickly but hardly at all, such as a term of a toric homotopy
 /// that is still fading in, must not hold up the rest: where `a_j = omega |x2_j| r_j^2` is less
-/// than [`faint`](crate::tolerances::TrackingTolerances::faint), `r_j` counts
+/// than `TRACKING.faint`, `r_j` counts
 /// `1 + ln(faint / a_j) / 3` times, at most
-/// [`faint_reach`](crate::tolerances::TrackingTolerances::faint_reach). For `exp(c t)`, whose ratio is
+/// `TRACKING.faint_reach`. For `exp(c t)`, whose ratio is
 /// `3 / c`, that is where the part has grown to `faint / omega`, still far inside the region in which
 /// Newton's method converges to this path.
 pub(crate) struct Radius<'a, S: Lane> {

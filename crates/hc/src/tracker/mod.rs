@@ -19,7 +19,8 @@
 //! spreads paths over threads and returns them in order.
 
 mod batch;
-mod derivatives;
+mod correct;
+mod judge;
 mod kernels;
 mod logarithms;
 mod options;
@@ -28,14 +29,14 @@ mod precise;
 mod progress;
 mod quick;
 mod result;
-mod stop;
+mod resume;
 mod valuation;
 mod workspace;
 
 pub use batch::Tracker;
 pub use options::{OptionError, TrackerOptions};
 pub(crate) use pool::Trackers;
-pub(crate) use precise::{Precise, Wanted};
+pub(crate) use precise::Precise;
 pub use result::{PathEnd, PathResult, PathSet};
 
 use crate::homotopy::ParameterPath;

@@ -17,14 +17,6 @@ pub(crate) struct Precise<E: Evaluate, S: Lane> {
     row: Vec<ComplexDd>,
 }
 
-/// Lanes whose residuals are wanted.
-#[derive(Clone, Copy, Default)]
-pub(crate) struct Wanted {
-    pub(crate) lanes: u16,
-    /// Those whose points are in double-double.
-    pub(crate) wide: u16,
-}
-
 impl<E: Evaluate, S: Lane> Precise<E, S> {
     pub(crate) fn new(system: &E, isa: Isa) -> Self {
         let zeros = |count: usize| vec![S::Extended::zero(); count];
@@ -54,17 +46,18 @@ impl<E: Evaluate, S: Lane> Precise<E, S> {
         }
     }
 
-    /// Overwrites lanes of `values` with residuals at the points `x`, or `x + low` in wide lanes.
-    pub(crate) fn overwrite(&mut self, system: &E, which: Wanted, x: [&[S]; 2], values: &mut [S]) {
-        if which.lanes == 0 {
+    /// Overwrites `values` in the first lanes of the mask with residuals at the points `x[0]`, or `x[0] + x[1]` in the
+    /// second lanes, those with points in double-double.
+    pub(crate) fn overwrite(&mut self, system: &E, [lanes, wide]: [u16; 2], x: [&[S]; 2], values: &mut [S]) {
+        if lanes == 0 {
             return;
         }
         for (d, (high, low)) in self.x.iter_mut().zip(x[0].iter().zip(x[1])) {
-            *d = S::extended(high, &S::select(&S::zero(), low, which.wide));
+            *d = S::extended(high, &S::select(&S::zero(), low, wide));
         }
         system.values(&mut self.memory, &self.x, &self.p, &mut self.values);
         for (d, s) in values.iter_mut().zip(&self.values) {
-            *d = S::select(d, &S::rounded(s), which.lanes);
+            *d = S::select(d, &S::rounded(s), lanes);
         }
     }
 }

@@ -1,11 +1,11 @@
-//! The state of one path and all decisions about it: convergence, precision, step size, divergence.
+//! The state of one path and the decisions about its steps: size, precision, divergence.
 //!
 //! Nothing here depends on other paths, so that a path takes the same steps alone and among seven
 //! others.
 
 use super::options::TrackerOptions;
 use super::result::{PathEnd, PathResult};
-use super::stop::{Counts, Stop};
+use super::resume::{Counts, ResumePoint};
 use crate::tolerances::TRACKING;
 
 /// `h(a) = 2a (sqrt(4a^2 + 1) - 2a)` (Timme 2020, lemma 4.2).
@@ -36,19 +36,24 @@ pub(crate) enum StepState {
 #[derive(Clone, Debug)]
 pub(crate) struct Bounds {
     pub(crate) options: TrackerOptions,
-    h: f64,
+    pub(super) h: f64,
     /// `sqrt(1 + 2 h) - 1`
-    reach: f64,
-    h_half: f64,
-    reach_half: f64,
+    pub(super) reach: f64,
+    pub(super) h_half: f64,
+    pub(super) reach_half: f64,
     /// `omega mu` above which double precision is left.
-    leave_double: f64,
+    pub(super) leave_double: f64,
     /// `omega mu` (of double precision, `omega` at least 1) below which it is taken up again.
-    enter_double: f64,
+    pub(super) enter_double: f64,
     /// `omega mu` above which even extended precision ends.
-    limit: f64,
+    pub(super) limit: f64,
     /// Square of the option.
     pub(crate) least_share_sqr: f64,
+}
+
+/// The lanes of which this holds, as bits.
+pub(super) fn mask(lanes: &[PathProgress], holds: impl Fn(&PathProgress) -> bool) -> u16 {
+    lanes.iter().enumerate().fold(0, |mask, (l, lane)| mask | u16::from(holds(lane)) << l)
 }
 
 impl Bounds {
@@ -79,8 +84,8 @@ pub(crate) struct PathProgress {
     pub(crate) t: f64,
     pub(crate) t_next: f64,
     /// The number of pieces of the path, and how many lie ahead when this one is done.
-    pieces: usize,
-    ahead: usize,
+    pub(super) pieces: usize,
+    pub(super) ahead: usize,
     /// Whether logarithms of its coordinates are predicted.
     pub(super) exponential: bool,
     pub(crate) radius: f64,
@@ -90,32 +95,32 @@ pub(crate) struct PathProgress {
     pub(crate) wide: bool,
     /// Whether the point of the last accepted step was kept in double-double.
     pub(crate) kept: bool,
-    step: f64,
+    pub(super) step: f64,
     /// Rejections since the last accepted step.
-    failed_before: usize,
+    pub(super) failed_before: usize,
     /// `|predicted - corrected| / step^4` of the last accepted step.
-    local_error: f64,
-    omega: f64,
-    omega_before: f64,
-    mu: f64,
+    pub(super) local_error: f64,
+    pub(super) omega: f64,
+    pub(super) omega_before: f64,
+    pub(super) mu: f64,
     /// Size of corrections that are rounding error alone, as far as seen.
-    noise: f64,
+    pub(super) noise: f64,
     /// The work before the path went on here.
-    before: Counts,
-    accepted: usize,
-    rejected: usize,
+    pub(super) before: Counts,
+    pub(super) accepted: usize,
+    pub(super) rejected: usize,
     pub(crate) jacobians: usize,
-    used_extended: bool,
+    pub(super) used_extended: bool,
     /// The `t` from which on the valuations say that the path diverges.
-    diverges_since: Option<f64>,
-    first: f64,
-    last: f64,
-    omega_now: f64,
-    theta_bound: f64,
+    pub(super) diverges_since: Option<f64>,
+    pub(super) first: f64,
+    pub(super) last: f64,
+    pub(super) omega_now: f64,
+    pub(super) theta_bound: f64,
     /// Newton iterations of this step.
-    iterations: usize,
+    pub(super) iterations: usize,
     /// Whether the closing correction after the first iteration said that more are needed.
-    resumed: bool,
+    pub(super) resumed: bool,
 }
 
 impl PathProgress {
@@ -156,8 +161,8 @@ impl PathProgress {
     }
 
     /// A path in so many pieces that goes on.
-    pub(super) fn from(stop: &Stop, pieces: usize) -> Self {
-        let Stop { path, t, counts, .. } = *stop;
+    pub(super) fn from(point: &ResumePoint, pieces: usize) -> Self {
+        let ResumePoint { path, t, counts, .. } = *point;
         let (pieces, state) = (pieces.max(1), StepState::Accepted);
         let ahead = ((t * pieces as f64).ceil() as usize).saturating_sub(1);
         PathProgress { path, t, t_next: t, pieces, ahead, before: counts, state, fresh: true, ..Self::idle() }
@@ -179,20 +184,28 @@ impl PathProgress {
         self.state != StepState::Idle
     }
 
-    fn widen(&mut self) {
+    /// Turns to residuals in double-double, if that is allowed; false if it is not, or they are in use.
+    pub(super) fn extend(&mut self, bounds: &Bounds) -> bool {
+        let turns = !self.extended && bounds.options.extended_precision;
+        self.extended |= turns;
+        self.used_extended |= turns;
+        turns
+    }
+
+    pub(super) fn widen(&mut self) {
         self.wide = true;
         self.noise = self.rounding();
     }
 
     /// Goes back to double precision and its rounding errors: corrections of size `double` have just been
     /// seen to be nothing else.
-    fn narrow(&mut self, double: f64) {
+    pub(super) fn narrow(&mut self, double: f64) {
         (self.extended, self.wide, self.kept) = (false, false, false);
         self.noise = self.noise.max(double).max(self.rounding());
     }
 
     /// Relative size below which a correction is less than the rounding error of the point.
-    fn rounding(&self) -> f64 {
+    pub(super) fn rounding(&self) -> f64 {
         if self.wide { f64::EPSILON * f64::EPSILON } else { f64::EPSILON }
     }
 
@@ -241,143 +254,6 @@ impl PathProgress {
         }
     }
 
-    pub(crate) fn begin_correction(&mut self, bounds: &Bounds) {
-        if self.is_live() {
-            self.state = StepState::Iterating;
-            self.theta_bound = bounds.options.contraction;
-            self.omega_now = self.omega;
-            self.iterations = 0;
-            self.resumed = false;
-        }
-    }
-
-    /// Judges the correction of size `norm`.
-    pub(crate) fn judge(&mut self, norm: f64, bounds: &Bounds) {
-        if self.state != StepState::Iterating {
-            return;
-        }
-        let i = self.iterations;
-        self.iterations += 1;
-        self.jacobians += 1;
-        if !norm.is_finite() {
-            self.state = StepState::Rejected { theta: f64::INFINITY };
-            return;
-        }
-        if i == 0 {
-            self.first = norm;
-            // Predicted not to be an approximate zero (the Newton-Kantorovich bound with a margin
-            // of 4).
-            if !self.fresh && 0.125 * self.omega * norm > bounds.h {
-                self.last = norm;
-                self.state = StepState::Rejected { theta: f64::INFINITY };
-                return;
-            }
-        } else if norm > TRACKING.noise_margin * self.noise {
-            let theta = norm / self.last;
-            if i == 1 && !self.resumed {
-                self.omega_now = 2.0 * norm / (self.last * self.last);
-            }
-            if theta > self.theta_bound {
-                self.state = StepState::Rejected { theta: if i == 1 { theta } else { f64::INFINITY } };
-                return;
-            }
-            self.theta_bound *= self.theta_bound;
-        } else {
-            // Rounding error: it says nothing about contraction, and no correction will be smaller.
-            self.omega_now = if i == 1 { 0.5 * self.omega } else { self.omega_now };
-            self.last = norm;
-            self.state = StepState::Converged;
-            return;
-        }
-        self.last = norm;
-        if self.omega_now.max(TRACKING.least_omega) * norm <= bounds.options.corrector_tolerance {
-            self.state = StepState::Converged;
-        } else if i + 1 >= TRACKING.iterations {
-            self.state = StepState::Rejected { theta: f64::INFINITY };
-        }
-    }
-
-    /// Judges the closing correction with the last Jacobian, of size `norm` (an upper bound for the
-    /// limiting accuracy `mu`); `double` is the size that residuals in double precision give at the
-    /// same point, for paths in extended precision.
-    pub(crate) fn judge_closing(&mut self, norm: f64, double: Option<f64>, bounds: &Bounds) {
-        if self.state != StepState::Converged {
-            return;
-        }
-        if !norm.is_finite() {
-            self.state = StepState::Rejected { theta: f64::INFINITY };
-            return;
-        }
-        let matters =
-            self.omega_now.max(1.0) * norm > 0.01 * bounds.leave_double && norm > TRACKING.noise_margin * self.noise;
-        if matters && norm > TRACKING.unfinished * self.last && self.iterations + 1 < TRACKING.iterations {
-            self.resume(norm, bounds);
-            return;
-        }
-        if self.omega_now == self.omega && self.first == self.last {
-            // One iteration only: the closing correction tells omega, unless it is rounding error.
-            self.omega_now = if norm > TRACKING.noise_margin * self.noise {
-                (2.0 * norm / (self.first * self.first)).min(self.omega)
-            } else {
-                0.5 * self.omega
-            };
-        }
-        let mut omega = self.omega_now.max(0.5 * self.omega).max(TRACKING.least_omega);
-        if norm <= omega * self.last * self.last {
-            self.noise = self.noise.min(norm).max(self.rounding());
-        } else if norm <= TRACKING.most_noise {
-            // More than quadratic convergence leaves is rounding error, if it is small enough for
-            // that.
-            self.noise = norm.max(self.rounding());
-        } else {
-            // Newton's method converges more slowly than was estimated. With a point in double-double the
-            // cause is not the rounding of the point: Newton's method has not converged yet.
-            omega = norm / (self.last * self.last);
-            let unfinished = norm > TRACKING.unfinished * self.last || omega * norm > bounds.leave_double;
-            if self.wide && unfinished && self.iterations + 1 < TRACKING.iterations {
-                self.resume(norm, bounds);
-                return;
-            }
-        }
-        let noise = omega * norm;
-        if noise > bounds.leave_double && !self.extended && bounds.options.extended_precision {
-            self.extended = true;
-            self.used_extended = true;
-            self.state = StepState::Retry;
-            return;
-        }
-        if noise > bounds.limit {
-            self.state = if self.wide || !self.extended {
-                StepState::Failed(PathEnd::AccuracyLimit)
-            } else {
-                self.widen();
-                StepState::Retry
-            };
-            return;
-        }
-        if let Some(double) = double
-            && omega.max(1.0) * double < bounds.enter_double
-        {
-            self.narrow(double);
-        }
-        self.omega_before = self.omega;
-        self.omega = omega;
-        self.mu = norm.max(self.rounding());
-        self.state = StepState::Accepted;
-    }
-
-    /// Goes on with Newton's method after a closing correction of size `norm`.
-    fn resume(&mut self, norm: f64, bounds: &Bounds) {
-        if self.iterations == 1 {
-            // The next correction tells nothing of omega: it follows one with an old Jacobian.
-            self.omega_now = 2.0 * norm / (self.last * self.last);
-            self.resumed = true;
-        }
-        self.last = norm;
-        self.theta_bound = bounds.options.contraction;
-        self.state = StepState::Iterating;
-    }
-
     /// Takes the accepted step; `distance` is that of the corrected from the predicted point.
     pub(crate) fn advance(&mut self, distance: f64, radius: f64) {
         if self.fresh {
@@ -401,13 +277,8 @@ impl PathProgress {
             _ => return None,
         };
         if self.fresh {
-            if !self.extended && bounds.options.extended_precision {
-                // A solution near a singularity may fail the test for rounding errors alone.
-                self.extended = true;
-                self.used_extended = true;
-                return None;
-            }
-            return Some(PathEnd::InvalidStart);
+            // A solution near a singularity may fail the test for rounding errors alone.
+            return if self.extend(bounds) { None } else { Some(PathEnd::InvalidStart) };
         }
         self.rejected += 1;
         self.failed_before += 1;
@@ -418,16 +289,12 @@ impl PathProgress {
             (bounds.reach_half / ((1.0 + 2.0 * h_theta).sqrt() - 1.0)).sqrt().sqrt().max(TRACKING.hard_cut)
         };
         self.step *= factor;
-        if self.failed_before >= TRACKING.resistant && !self.extended && bounds.options.extended_precision {
-            self.extended = true;
-            self.used_extended = true;
+        if self.failed_before >= TRACKING.resistant {
+            self.extend(bounds);
         }
         if self.t - self.step == self.t || self.step < 4.0 * f64::EPSILON * self.t {
-            if !self.extended && bounds.options.extended_precision {
-                // Rounding errors alone may have made the corrector fail: try once more from a
-                // workable step.
-                self.extended = true;
-                self.used_extended = true;
+            // Rounding errors alone may have made the corrector fail: try once more from a workable step.
+            if self.extend(bounds) {
                 self.step = 1e-3 * self.radius.min(self.t - self.stop());
                 return None;
             }

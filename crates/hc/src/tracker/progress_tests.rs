@@ -2,12 +2,12 @@
 
 use super::{Bounds, PathProgress, StepState, h};
 use crate::tracker::TrackerOptions;
-use crate::tracker::stop::Stop;
+use crate::tracker::resume::ResumePoint;
 
 /// On its way, with residuals in double-double.
 fn under_way(omega: f64, bounds: &Bounds) -> PathProgress {
     let mut progress =
-        PathProgress { fresh: false, extended: true, omega, ..PathProgress::from(&Stop::at_start(0), 1) };
+        PathProgress { fresh: false, extended: true, omega, ..PathProgress::from(&ResumePoint::at_start(0), 1) };
     progress.begin_correction(bounds);
     progress
 }

@@ -1,5 +1,6 @@
 //! The numbers of the paths in the lanes.
 
+use super::kernels::Take;
 use crate::linalg::Lu;
 use poly::simd::Isa;
 use poly::{Evaluate, Lane};
@@ -49,5 +50,20 @@ impl<'a, E: Evaluate, S: Lane> Workspace<'a, E, S> {
             weights_sqr: vec![S::real(1.0); n],
             inverse_weights_sqr: vec![S::real(1.0); n],
         }
+    }
+
+    /// Completes the Taylor coefficients at the point just reached, which is that of order 0 in `taylor_next`, to order
+    /// 3, and makes them those of the current points in the lanes of `accepted`. `lu` factors the Jacobian there;
+    /// parameters that move on a straight line have no coefficients of orders 2 and 3.
+    pub(super) fn differentiate(&mut self, straight: bool, accepted: u16) {
+        let (n, m) = (self.n, self.system.parameters());
+        let orders = if straight { 2 } else { 4 };
+        for order in 1..=3 {
+            let (known, next) = self.taylor_next.split_at_mut(order * n);
+            let p = &self.parameters[..orders.min(order + 1) * m];
+            self.system.taylor(&mut self.memory, order, known, p, &mut next[..n]);
+            self.lu.solve_negated(&mut next[..n]);
+        }
+        self.isa.run(Take { from: &self.taylor_next, mask: accepted, to: &mut self.taylor });
     }
 }

@@ -2,7 +2,7 @@
 
 use super::super::options::TrackerOptions;
 use super::super::result::{PathEnd, PathResult};
-use super::super::stop::{Counts, Stop};
+use super::super::resume::{Counts, ResumePoint};
 use crate::tolerances::{QUICK_ENDS, QuickTolerances, TRACKING};
 
 /// What becomes of an attempt.
@@ -61,7 +61,7 @@ impl Attempts {
     }
 
     /// A path that goes on.
-    pub(super) fn from(stop: &Stop) -> Self {
+    pub(super) fn from(stop: &ResumePoint) -> Self {
         Attempts { path: Some(stop.path), t: stop.t, t_next: stop.t, counts: stop.counts, ..Attempts::idle() }
     }
 
@@ -158,8 +158,8 @@ impl Attempts {
     }
 
     /// Where others go on, in the point just reached; its number is not known here.
-    pub(super) fn stop(&self) -> Stop {
-        Stop { path: self.path.unwrap_or_default(), t: self.t, point: 0, counts: self.counts }
+    pub(super) fn stop(&self) -> ResumePoint {
+        ResumePoint { path: self.path.unwrap_or_default(), t: self.t, point: 0, counts: self.counts }
     }
 
     /// The record of the path at its end.

@@ -3,26 +3,48 @@
 //! An attempt takes the Jacobian at the predicted point and three corrections with it. The first two tell
 //! whether the step is accepted and how long the next one is; the third catches what converges to another
 //! path. The next step is that for which `omega` times the predictor's error, which grows with the fourth
-//! power of the step, is [`aim`](crate::tolerances::QuickTolerances::aim), within the share of the radius of
+//! power of the step, is `aim` of the tolerances, within the share of the radius of
 //! trust that the options allow. Rows are never exchanged, residuals never extended, and a path that needs
 //! more is given up. A lane depends on no other.
 
-use super::super::derivatives::derivatives;
 use super::super::kernels::{Coefficients, Correct, Predict, Radius, Take, Weigh};
 use super::super::options::TrackerOptions;
-use super::super::stop::Stop;
+use super::super::resume::{ResumePoint, ResumePoints};
 use super::super::workspace::Workspace;
 use super::attempts::{Attempts, Verdict};
 use crate::homotopy::ParameterPath;
 use crate::monitor::Monitor;
 use crate::tolerances::QuickTolerances;
 use num_complex::Complex64;
-use poly::{Evaluate, Lane};
+use poly::simd::Isa;
+use poly::{Evaluate, Lane, Singles16};
+
+/// Memory of quick steps, beside the tracker's own.
+pub(in super::super) struct QuickMemory<'a, E: Evaluate> {
+    pub(super) singles: Workspace<'a, E, Singles16>,
+    pub(super) lanes: Vec<Attempts>,
+    /// Where the paths stopped in single precision.
+    pub(super) stops: ResumePoints,
+    /// Paths that start again in double precision.
+    pub(super) again: Vec<usize>,
+}
+
+impl<'a, E: Evaluate> QuickMemory<'a, E> {
+    /// For the paths of a square system.
+    pub(super) fn new(system: &'a E, isa: Isa) -> Self {
+        QuickMemory {
+            singles: Workspace::new(system, isa),
+            lanes: vec![Attempts::idle(); Singles16::LANES],
+            stops: ResumePoints::default(),
+            again: Vec::new(),
+        }
+    }
+}
 
 /// The paths that wait for a lane, and what becomes of them.
 pub(super) trait Paths<S: Lane> {
     /// The next path, with the point where it goes on.
-    fn next(&mut self) -> Option<(Stop, &[Complex64])>;
+    fn next(&mut self) -> Option<(ResumePoint, &[Complex64])>;
 
     /// Takes a path that has arrived, with the smallest pivot of its end, or is given up; lane `l` of `x` is
     /// its last point.
@@ -185,12 +207,10 @@ impl<E: Evaluate, S: Lane> QuickLanes<'_, '_, E, S> {
     /// Derivatives at the accepted points, and with them the next steps.
     fn go_on(&mut self, accepted: u16, straight: bool) {
         let work = &mut *self.work;
-        let (n, m) = (work.n, work.system.parameters());
+        let n = work.n;
         factor_in_order(work);
         work.taylor_next[..n].copy_from_slice(&work.point);
-        let p = &work.parameters[..if straight { 2 } else { 4 } * m];
-        derivatives(work.system, &mut work.memory, &work.lu, p, &mut work.taylor_next);
-        work.isa.run(Take { from: &work.taylor_next, mask: accepted, to: &mut work.taylor });
+        work.differentiate(straight, accepted);
         self.arrive(accepted);
         let work = &*self.work;
         let mut omega_sqr = S::real(1.0);

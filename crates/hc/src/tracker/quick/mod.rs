@@ -6,9 +6,8 @@
 
 mod attempts;
 mod lanes;
-mod memory;
 mod stages;
 #[cfg(test)]
 mod tests;
 
-pub(super) use memory::QuickMemory;
+pub(super) use lanes::QuickMemory;

@@ -2,10 +2,9 @@
 
 use super::super::batch::Tracker;
 use super::super::result::PathSet;
-use super::super::stop::{Stop, Stops};
+use super::super::resume::{ResumePoint, ResumePoints};
 use super::attempts::Attempts;
-use super::lanes::{Paths, QuickLanes};
-use super::memory::QuickMemory;
+use super::lanes::{Paths, QuickLanes, QuickMemory};
 use crate::homotopy::ParameterPath;
 use crate::tolerances::{FAMILIES, QUICK, QUICK_ENDS, SINGLES};
 use num_complex::Complex64;
@@ -21,7 +20,7 @@ impl<E: Evaluate, S: Lane> Tracker<'_, E, S> {
         mut which: impl Iterator<Item = usize>,
         most: usize,
         out: &mut PathSet,
-        left: &mut Stops,
+        left: &mut ResumePoints,
     ) {
         let (system, isa, n) = (self.work.system, self.work.isa, self.work.n);
         let (options, monitor) = (&self.bounds.options, &self.monitor);
@@ -45,7 +44,7 @@ impl<E: Evaluate, S: Lane> Tracker<'_, E, S> {
 
         let Finish { waiting, again, left, .. } = finish;
         for k in which.chain(waiting.map(|stop| stop.path)).chain(again.drain(..)) {
-            left.push(Stop::at_start(k), start(starts, n, k).iter().copied());
+            left.push(ResumePoint::at_start(k), start(starts, n, k).iter().copied());
         }
     }
 }
@@ -59,22 +58,22 @@ struct Begin<'q, P, I> {
     n: usize,
     starts: &'q [Complex64],
     which: &'q mut I,
-    stops: &'q mut Stops,
+    stops: &'q mut ResumePoints,
     path: &'q P,
-    left: &'q mut Stops,
+    left: &'q mut ResumePoints,
 }
 
 impl<P: ParameterPath, I: Iterator<Item = usize>> Paths<Singles16> for Begin<'_, P, I> {
-    fn next(&mut self) -> Option<(Stop, &[Complex64])> {
+    fn next(&mut self) -> Option<(ResumePoint, &[Complex64])> {
         let path = loop {
             let path = self.which.next()?;
             if self.path.pieces(path) <= 1 {
                 break path;
             }
             // Quick steps know nothing of pieces.
-            self.left.push(Stop::at_start(path), start(self.starts, self.n, path).iter().copied());
+            self.left.push(ResumePoint::at_start(path), start(self.starts, self.n, path).iter().copied());
         };
-        Some((Stop::at_start(path), start(self.starts, self.n, path)))
+        Some((ResumePoint::at_start(path), start(self.starts, self.n, path)))
     }
 
     fn end(&mut self, lane: &Attempts, _: f64, x: &[Singles16], l: usize) {
@@ -92,17 +91,17 @@ impl<P: ParameterPath, I: Iterator<Item = usize>> Paths<Singles16> for Begin<'_,
 struct Finish<'q> {
     n: usize,
     starts: &'q [Complex64],
-    waiting: std::slice::Iter<'q, Stop>,
+    waiting: std::slice::Iter<'q, ResumePoint>,
     points: &'q [Complex64],
     again: &'q mut Vec<usize>,
     out: &'q mut PathSet,
-    left: &'q mut Stops,
+    left: &'q mut ResumePoints,
 }
 
 impl<S: Lane> Paths<S> for Finish<'_> {
-    fn next(&mut self) -> Option<(Stop, &[Complex64])> {
+    fn next(&mut self) -> Option<(ResumePoint, &[Complex64])> {
         if let Some(path) = self.again.pop() {
-            return Some((Stop::at_start(path), start(self.starts, self.n, path)));
+            return Some((ResumePoint::at_start(path), start(self.starts, self.n, path)));
         }
         let stop = *self.waiting.next()?;
         Some((stop, &self.points[stop.point * self.n..][..self.n]))
@@ -115,7 +114,7 @@ impl<S: Lane> Paths<S> for Finish<'_> {
         } else if lane.strayed() {
             self.again.push(stop.path);
         } else if lane.has_arrived() || stop.t == 1.0 {
-            self.left.push(Stop::at_start(stop.path), start(self.starts, self.n, stop.path).iter().copied());
+            self.left.push(ResumePoint::at_start(stop.path), start(self.starts, self.n, stop.path).iter().copied());
         } else {
             self.left.push(stop, x.iter().map(|x| x.get(l)));
         }

@@ -1,4 +1,4 @@
-//! Where paths go on.
+//! Points from which paths are resumed.
 
 use num_complex::Complex64;
 
@@ -10,33 +10,33 @@ pub(super) struct Counts {
     pub(super) jacobians: usize,
 }
 
-/// Where a path goes on.
+/// A point from which a path is resumed.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Stop {
+pub(super) struct ResumePoint {
     pub(super) path: usize,
     pub(super) t: f64,
-    /// Number of the point there.
+    /// Number of the point.
     pub(super) point: usize,
     /// The work so far.
     pub(super) counts: Counts,
 }
 
-impl Stop {
+impl ResumePoint {
     /// The start of a path, whose points are numbered as the paths are.
     pub(super) fn at_start(path: usize) -> Self {
-        Stop { path, t: 1.0, point: path, counts: Counts::default() }
+        ResumePoint { path, t: 1.0, point: path, counts: Counts::default() }
     }
 }
 
-/// Paths that go on, with the points there.
+/// Paths to be resumed, with their points.
 #[derive(Debug, Default)]
-pub(super) struct Stops {
-    pub(super) list: Vec<Stop>,
+pub(super) struct ResumePoints {
+    pub(super) list: Vec<ResumePoint>,
     /// One point after the other.
     pub(super) points: Vec<Complex64>,
 }
 
-impl Stops {
+impl ResumePoints {
     pub(super) fn clear(&mut self) {
         self.list.clear();
         self.points.clear();
@@ -48,9 +48,9 @@ impl Stops {
         self.points.reserve(paths.saturating_mul(n).saturating_sub(self.points.len()));
     }
 
-    /// Adds a path that goes on at this point.
-    pub(super) fn push(&mut self, stop: Stop, point: impl IntoIterator<Item = Complex64>) {
+    /// Adds a path that is resumed from this point.
+    pub(super) fn push(&mut self, at: ResumePoint, point: impl IntoIterator<Item = Complex64>) {
         self.points.extend(point);
-        self.list.push(Stop { point: self.list.len(), ..stop });
+        self.list.push(ResumePoint { point: self.list.len(), ..at });
     }
 }
