@@ -86,11 +86,7 @@ pub(super) struct Walker {
 
 impl Walker {
     /// A path of this index that has come to the point `x` at `t > 0`.
-    pub(super) fn new(
-        (path, t, x): (usize, f64, &[Complex64]),
-        max_turns: usize,
-        options: &EndgameOptions,
-    ) -> Self {
+    pub(super) fn new((path, t, x): (usize, f64, &[Complex64]), max_turns: usize, options: &EndgameOptions) -> Self {
         Walker {
             path,
             at: -t.ln(),

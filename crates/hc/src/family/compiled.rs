@@ -4,10 +4,14 @@ use super::error::FamilyError;
 use super::fibre::Fibre;
 use super::pair::{TRIES, find_pair};
 use super::symmetry::Symmetry;
+use crate::checkpoint::{self, Hash, Job};
 use crate::distinct::relative_distance;
+use crate::random::{Random, Stream};
+use crate::solve::Solutions;
 use crate::tolerances::FAMILIES;
 use num_complex::Complex64;
 use poly::{Evaluate, Interpreter, Isa, System};
+use serde::Serialize;
 use std::str::FromStr;
 
 /// A compiled parameter family: its equations, the factors that must not vanish at its solutions,
@@ -150,6 +154,47 @@ impl Family {
     pub fn find_pair(&self, seed: u64) -> Result<Fibre, FamilyError> {
         find_pair(self.system(), |p, x| self.accepts(p, x), seed, TRIES)?.ok_or(FamilyError::NoPair)
     }
+
+    /// Drops solutions outside the family, where a factor vanishes that it declares nonzero. The paths to them count
+    /// as failed. A path can jump to them, and shares its end with no other path then, so that nothing else shows it.
+    ///
+    /// A factor has vanished at a solution `x` if a change of `x` by a small share of its largest coordinate
+    /// would make it vanish. Unlike [`accepts`](Self::accepts), which is for generic parameters of size one, this
+    /// does not depend on the unit of the unknowns.
+    pub(super) fn keep_own(&self, p: &[Complex64], found: &mut Solutions) {
+        let (factors, n) = (self.nonzero.equations(), self.nonzero.variables());
+        if factors == 0 {
+            return;
+        }
+        let zeros = |count: usize| vec![Complex64::new(0.0, 0.0); count];
+        let (mut values, mut gradients) = (zeros(factors), zeros(factors * n));
+        let mut memory = self.nonzero.memory(Isa::Portable);
+        let mut paths = 0;
+        found.solutions.retain(|solution| {
+            let x = &solution.value;
+            self.nonzero.jacobian(&mut memory, x, p, &mut values, &mut gradients);
+            let largest = x.iter().map(|z| z.norm()).fold(0.0, f64::max);
+            let slopes = gradients.chunks(n).map(|row| row.iter().map(|z| z.norm()).sum::<f64>());
+            let degenerates =
+                values.iter().zip(slopes).any(|(value, slope)| value.norm() <= FAMILIES.degenerate * slope * largest);
+            paths += usize::from(degenerates) * solution.multiplicity;
+            !degenerates
+        });
+        let paths = paths.min(found.paths.finite);
+        found.paths.finite -= paths;
+        found.paths.failed += paths;
+    }
+
+    /// What a checkpoint describes of work on this family, with the settings on which the result depends.
+    pub(super) fn job(&self, what: &str, settings: &impl Serialize) -> Job {
+        let given = &self.given;
+        let systems = [&given.system, &given.nonzero].into_iter().chain(&given.symmetry);
+        let mut parts: Vec<Vec<u8>> = systems.map(|system| system.to_string().into_bytes()).collect();
+        parts.push(bytes(&somewhere(&self.program)));
+        let unknowns = given.system.variables().to_vec();
+        let system = checkpoint::System { unknowns, equations: given.system.len(), hash: Hash::of(parts) };
+        Job::new(what, system, settings)
+    }
 }
 
 /// From plain text or TOML, as [`poly::Family`] is read.
@@ -159,4 +204,38 @@ impl FromStr for Family {
     fn from_str(text: &str) -> Result<Family, FamilyError> {
         Family::new(text.parse::<poly::Family>()?)
     }
+}
+
+/// A short hash of many points.
+#[derive(Serialize)]
+pub(super) struct Points {
+    count: usize,
+    hash: Hash,
+}
+
+impl Points {
+    pub(super) fn new<'x>(points: impl Iterator<Item = &'x [Complex64]>) -> Points {
+        let bytes: Vec<Vec<u8>> = points.map(bytes).collect();
+        Points { count: bytes.len(), hash: Hash::of(bytes) }
+    }
+
+    /// The parameters of a fibre and its solutions.
+    pub(super) fn of_fibre(fibre: &Fibre) -> Points {
+        let hash = Hash::of(std::iter::once(&fibre.parameters[..]).chain(fibre.iter()).map(bytes));
+        Points { count: fibre.len(), hash }
+    }
+}
+
+/// The values of the equations at one point. They tell equations apart whose formulas are too long to be
+/// shown in full.
+fn somewhere(program: &Interpreter) -> Vec<Complex64> {
+    let mut random = Random::of(0, Stream::Member(0));
+    let (x, p) = (random.normals(program.variables()), random.normals(program.parameters()));
+    let mut values = vec![Complex64::default(); program.equations()];
+    program.values(&mut program.memory(Isa::Portable), &x, &p, &mut values);
+    values
+}
+
+fn bytes(numbers: &[Complex64]) -> Vec<u8> {
+    numbers.iter().flat_map(|z| [z.re, z.im]).flat_map(f64::to_le_bytes).collect()
 }

@@ -1,15 +1,13 @@
 //! All solutions for some parameters: the search, the steps after it, and the ranks that take part.
 
-use super::compiled::Family;
+use super::compiled::{Family, Points};
 use super::error::FamilyError;
 use super::fibre::Fibre;
-use super::job::{Points, job};
-use super::monodromy::{Monodromy, MonodromyOptions, fill, joined};
+use super::monodromy::{fill, joined};
 use super::pair::find_pair;
-use super::sides::{Searched, Side, Which};
-use super::stopped::Stopped;
+use super::search::{Monodromy, MonodromyOptions, Stopped, TraceTest};
+use super::sides::{Searched, Side};
 use super::trace::{enlarge, trace_test};
-use super::trace_result::TraceTest;
 use crate::checkpoint::{Checkpoint, Job, Pieces};
 use crate::monitor::Monitor;
 use crate::ranks::{Lead, Worker};
@@ -71,7 +69,7 @@ impl Family {
             checkpoint.begin(self.search_job(first, &options))?;
         }
         let pieces = Pieces::new(checkpoint, monitor, lead);
-        let searched = Searched { system: &self.program, which: Which::Given };
+        let searched = Searched { system: &self.program, enlarged: false };
         let accept = |p: &[Complex64], x: &[Complex64]| self.accepts(p, x);
         let mut found = fill(searched, first, accept, &self.symmetry, &options, pieces);
         if found.stopped == Stopped::NoProgress {
@@ -118,16 +116,15 @@ impl Family {
     fn serve(&self, worker: &Worker<'_>) -> Result<(), FamilyError> {
         let mut enlarged = None;
         while let Some(task) = worker.next::<Side<'_>>()? {
-            match task.content.which {
-                Which::Given => Searched { system: &self.program, which: Which::Given }.serve(worker, &task)?,
-                Which::Enlarged => {
-                    if enlarged.is_none() {
-                        enlarged = enlarge(self.system())?;
-                    }
-                    if let Some(system) = &enlarged {
-                        Searched { system, which: Which::Enlarged }.serve(worker, &task)?;
-                    }
-                }
+            if !task.content.enlarged {
+                Searched { system: &self.program, enlarged: false }.serve(worker, &task)?;
+                continue;
+            }
+            if enlarged.is_none() {
+                enlarged = enlarge(self.system())?;
+            }
+            if let Some(system) = &enlarged {
+                Searched { system, enlarged: true }.serve(worker, &task)?;
             }
         }
         Ok(())
@@ -146,8 +143,7 @@ impl Family {
 
     /// What a checkpoint of a search is of, and all ranks do.
     fn search_job(&self, first: &Fibre, options: &MonodromyOptions) -> Job {
-        let settings = Settings { options, start: Points::of_fibre(first) };
-        job("monodromy", &self.given, &self.program, &settings)
+        self.job("monodromy", &SearchInputs { options, start: Points::of_fibre(first) })
     }
 
     /// First pairs from other random points. On sheets that nearly part from each other loops of any
@@ -232,7 +228,7 @@ impl RanksRun<'_> {
 
 /// What a search for solutions depends on.
 #[derive(Serialize)]
-struct Settings<'a> {
+struct SearchInputs<'a> {
     #[serde(flatten)]
     options: &'a MonodromyOptions,
     start: Points,

@@ -6,13 +6,11 @@
 //! a fibre is whole is never guessed: a known count or the [trace test](crate::Family::trace_test)
 //! shows it, and the result says which.
 
-use super::fibre::{Fibre, FibreOptions};
+use super::fibre::Fibre;
 use super::reach::Reach;
-use super::sides::{Searched, Which};
-use super::start_file::StartFile;
-use super::stopped::Stopped;
+use super::search::{Monodromy, MonodromyOptions, Stopped};
+use super::sides::Searched;
 use super::symmetry::Symmetry;
-use super::trace_result::TraceTest;
 use crate::checkpoint::{Piece, Pieces};
 use crate::distinct::{coincidences, relative_distance};
 use crate::monitor::{Monitor, Stage};
@@ -22,108 +20,6 @@ use crate::tolerances::FAMILIES;
 use crate::tracker::PathEnd;
 use num_complex::Complex64;
 use poly::Evaluate;
-use serde::{Deserialize, Serialize};
-
-/// Settings of [`Family::monodromy`](crate::Family::monodromy). The serialized settings are those
-/// on which loops depend.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[non_exhaustive]
-pub struct MonodromyOptions {
-    /// Seed of the loops. Default 0.
-    pub seed: u64,
-    /// The known number of solutions, if any; reaching it ends the search. Default `None`.
-    pub roots: Option<usize>,
-    /// Loops without a new solution after which the search ends, provided that they had at least
-    /// 128 chances (loops times solutions) to bring one. Where single parameters have to move
-    /// further than others before they have an effect, it is twice as many, because loops then have
-    /// two sizes in turn. Default 8.
-    pub patience: usize,
-    /// Largest number of solutions; the search gives up a fibre that exceeds it. Default 100,000.
-    pub max_solutions: usize,
-    /// Settings for the paths. By default difficult paths are given up early (2,000 steps, one
-    /// retry), because easier paths of later loops find the same solutions.
-    pub fibre: FibreOptions,
-    /// Whether the [trace test](crate::Family::trace_test) comes last, unless the known number of
-    /// solutions is reached. It takes several times as long as the search. Default true.
-    #[serde(skip)]
-    pub trace_test: bool,
-}
-
-impl MonodromyOptions {
-    /// The defaults.
-    pub fn new() -> Self {
-        MonodromyOptions::default()
-    }
-
-    /// Sets [`seed`](Self::seed).
-    #[must_use]
-    pub fn seed(self, seed: u64) -> Self {
-        MonodromyOptions { seed, ..self }
-    }
-
-    /// Sets [`roots`](Self::roots).
-    #[must_use]
-    pub fn roots(self, roots: usize) -> Self {
-        MonodromyOptions { roots: Some(roots), ..self }
-    }
-
-    /// Sets [`patience`](Self::patience).
-    #[must_use]
-    pub fn patience(self, patience: usize) -> Self {
-        MonodromyOptions { patience, ..self }
-    }
-
-    /// Sets [`max_solutions`](Self::max_solutions).
-    #[must_use]
-    pub fn max_solutions(self, max_solutions: usize) -> Self {
-        MonodromyOptions { max_solutions, ..self }
-    }
-
-    /// Sets [`fibre`](Self::fibre).
-    #[must_use]
-    pub fn fibre(self, fibre: FibreOptions) -> Self {
-        MonodromyOptions { fibre, ..self }
-    }
-
-    /// Sets [`trace_test`](Self::trace_test).
-    #[must_use]
-    pub fn trace_test(self, trace_test: bool) -> Self {
-        MonodromyOptions { trace_test, ..self }
-    }
-}
-
-impl Default for MonodromyOptions {
-    fn default() -> Self {
-        let mut fibre = FibreOptions::default();
-        fibre.tracker.max_steps = 2_000;
-        fibre.retries = 1;
-        MonodromyOptions { seed: 0, roots: None, patience: 8, max_solutions: 100_000, fibre, trace_test: true }
-    }
-}
-
-/// What monodromy found.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Monodromy {
-    /// The fibre, refined.
-    pub fibre: Fibre,
-    /// Why the search ended.
-    pub stopped: Stopped,
-    /// Number of loops.
-    pub loops: usize,
-    /// Number of paths tracked.
-    pub paths: usize,
-    /// What the trace test found, if it was requested and completed.
-    pub trace: Option<TraceTest>,
-}
-
-impl Monodromy {
-    /// The fibre in its file form.
-    pub fn start_file(&self) -> StartFile {
-        let count = self.fibre.len();
-        StartFile::new(&self.fibre, self.trace.and_then(|test| test.result(count)), &self.stopped.to_string())
-    }
-}
 
 /// [`fill`] for a program without symmetries, all solutions of which are wanted.
 pub(crate) fn monodromy<E: Evaluate>(
@@ -132,7 +28,7 @@ pub(crate) fn monodromy<E: Evaluate>(
     options: &MonodromyOptions,
     monitor: &Monitor,
 ) -> Monodromy {
-    let searched = Searched { system, which: Which::Given };
+    let searched = Searched { system, enlarged: false };
     fill(searched, start, |_, _| true, &Symmetry::default(), options, Pieces::alone(monitor))
 }
 
@@ -236,13 +132,6 @@ struct Filling<'a, E> {
     fibre: Fibre,
 }
 
-/// What a loop has added to a fibre.
-#[derive(Serialize, Deserialize)]
-struct Added {
-    solutions: Vec<Complex64>,
-    representatives: Option<Vec<usize>>,
-}
-
 impl<E: Evaluate> Filling<'_, E> {
     /// Tracks the fibre round one triangle and adds new solutions, or takes them from a record.
     /// Returns the number of paths.
@@ -256,16 +145,17 @@ impl<E: Evaluate> Filling<'_, E> {
         let represented = self.fibre.representatives.as_ref().map(Vec::len);
         let paths = 3 * represented.unwrap_or(known);
         self.pieces.monitor.enter(Stage::Loop, paths as u64);
-        let fits = |added: &Added| {
-            let len = known + added.solutions.len() / n;
+        // A record has the solutions that the loop has added, and those of them that represent orbits.
+        let fits = |(solutions, representatives): &(Vec<Complex64>, Option<Vec<usize>>)| {
+            let len = known + solutions.len() / n;
             let are_there = |which: &Vec<usize>| which.iter().all(|&k| k < len);
-            added.solutions.len().is_multiple_of(n)
-                && added.representatives.is_some() == represented.is_some()
-                && added.representatives.as_ref().is_none_or(are_there)
+            solutions.len().is_multiple_of(n)
+                && representatives.is_some() == represented.is_some()
+                && representatives.as_ref().is_none_or(are_there)
         };
-        if let Some(added) = self.pieces.take(Piece::Whole(number), fits) {
-            self.fibre.solutions.extend(added.solutions);
-            if let (Some(all), Some(more)) = (&mut self.fibre.representatives, added.representatives) {
+        if let Some((solutions, representatives)) = self.pieces.take(Piece::Whole(number), fits) {
+            self.fibre.solutions.extend(solutions);
+            if let (Some(all), Some(more)) = (&mut self.fibre.representatives, representatives) {
                 all.extend(more);
             }
             return paths;
@@ -274,7 +164,7 @@ impl<E: Evaluate> Filling<'_, E> {
         self.add_accepted(back.chunks_exact(n), accept);
         let new = |all: &Vec<usize>| all[represented.unwrap_or(0)..].to_vec();
         let representatives = self.fibre.representatives.as_ref().map(new);
-        let added = Added { solutions: self.fibre.solutions[known * n..].to_vec(), representatives };
+        let added = (self.fibre.solutions[known * n..].to_vec(), representatives);
         self.pieces.record(Piece::Whole(number), self.fibre.len(), &added);
         paths
     }

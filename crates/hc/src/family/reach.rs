@@ -2,7 +2,6 @@
 //! a family looks linear: loops meet no branch point, and the sum of any points moves straight.
 
 use super::fibre::Fibre;
-use super::size::{Sizes, largest, natural_size};
 use crate::random::{Random, Stream};
 use crate::refine::Refiner;
 use crate::tolerances::FAMILIES;
@@ -13,6 +12,37 @@ use poly::{ComplexDd, Evaluate, Scalar};
 const SCALES: i32 = 9;
 /// The number of points of the fibre that are examined.
 const POINTS: usize = 8;
+
+/// Sizes in this range count as one.
+const UNIT_SIZES: std::ops::RangeInclusive<f64> = 1.0 / 64.0..=64.0;
+
+/// The natural size of numbers of this size, by which random numbers are drawn: one, unless they are much
+/// larger or smaller, as lengths in millimetres are.
+fn natural_size(size: f64) -> f64 {
+    if UNIT_SIZES.contains(&size) || !size.is_normal() { 1.0 } else { size }
+}
+
+/// Sizes of the parameters and unknowns of a family.
+#[derive(Clone, PartialEq)]
+pub(super) struct Sizes {
+    pub(super) parameters: Vec<f64>,
+    pub(super) unknowns: Vec<f64>,
+}
+
+impl Sizes {
+    /// The natural sizes of the parameters of a fibre, and of its largest solutions.
+    fn natural(fibre: &Fibre) -> Sizes {
+        Sizes {
+            parameters: fibre.parameters.iter().map(|p| natural_size(p.norm())).collect(),
+            unknowns: largest(fibre).into_iter().map(natural_size).collect(),
+        }
+    }
+}
+
+/// The size of the largest value of each unknown.
+fn largest(fibre: &Fibre) -> Vec<f64> {
+    (0..fibre.dimension).map(|j| fibre.iter().map(|x| x[j].norm()).fold(0.0, f64::max)).collect()
+}
 
 /// The sizes on which parameters and unknowns vary about the points of a fibre.
 pub(super) struct Reach {
@@ -30,18 +60,18 @@ pub(super) struct Reach {
 impl Reach {
     /// The reach of the regular points of a fibre.
     pub(super) fn new<E: Evaluate>(system: &E, fibre: &Fibre) -> Reach {
-        let mut walker = Walker { refiner: Refiner::new(system), parameters: &fibre.parameters };
+        let mut motion = Motion { refiner: Refiner::new(system), parameters: &fibre.parameters };
         let points: Vec<&[Complex64]> = fibre.iter().step_by(fibre.len().div_ceil(POINTS).max(1)).collect();
         let natural = Sizes::natural(fibre);
         let (mut parameters, mut unknowns) = (natural.parameters.clone(), largest(fibre));
         for (k, size) in parameters.iter_mut().enumerate() {
-            let mut scales: Vec<i32> = points.iter().filter_map(|x| walker.scale(k, *size, x)).collect();
+            let mut scales: Vec<i32> = points.iter().filter_map(|x| motion.scale(k, *size, x)).collect();
             scales.sort_unstable();
             let scale = scales.get(scales.len() / 2).map_or(0, |&scale| scale);
             if scale > 0 {
                 let straight = *size * FAMILIES.reach_scale.powi(scale);
                 for x in &points {
-                    let steps = walker.steps(&walker.only(k, straight), x);
+                    let steps = motion.steps(&motion.only(k, straight), x);
                     for (unknown, step) in unknowns.iter_mut().zip(steps) {
                         *unknown = unknown.max(FAMILIES.reach_middle * Complex64::from(step[0]).norm());
                     }
@@ -56,7 +86,7 @@ impl Reach {
             };
             let (near, far) = (change(&natural.parameters), change(&parameters));
             let mut hides = |x: &&[Complex64]| {
-                let (near, far) = (walker.straight(&near, x), walker.straight(&far, x));
+                let (near, far) = (motion.straight(&near, x), motion.straight(&far, x));
                 near.iter().zip(&far).any(|(&near, &far)| near && !far)
             };
             2 * points.iter().filter(|x| hides(x)).count() > points.len()
@@ -67,12 +97,12 @@ impl Reach {
 }
 
 /// Moves parameters, and points that follow them.
-struct Walker<'a, E: Evaluate> {
+struct Motion<'a, E: Evaluate> {
     refiner: Refiner<'a, E>,
     parameters: &'a [Complex64],
 }
 
-impl<E: Evaluate> Walker<'_, E> {
+impl<E: Evaluate> Motion<'_, E> {
     /// The largest power of 64 up to which the `k`-th parameter may move, times its size, before the
     /// last of the coordinates that ever leave their tangents has left its tangent; `None` if none
     /// does.

@@ -15,25 +15,17 @@ use std::borrow::Cow;
 /// Fewer paths than this are not shared out: they are done before other ranks are ready.
 const FEW: usize = 32;
 
-/// A system of a search, and which it is.
+/// A system of a search.
 pub(super) struct Searched<'a, E> {
     pub(super) system: &'a E,
-    pub(super) which: Which,
-}
-
-/// The systems of a search.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) enum Which {
-    /// The system of the family.
-    Given,
-    /// The system of the trace test.
-    Enlarged,
+    /// Whether it is the system of the trace test, and not that of the family.
+    pub(super) enlarged: bool,
 }
 
 /// A fibre and where it goes, as rank 0 describes it to the others.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Side<'a> {
-    pub(super) which: Which,
+    pub(super) enlarged: bool,
     parameters: Cow<'a, [Complex64]>,
     solutions: Cow<'a, [Complex64]>,
     target: Cow<'a, [Complex64]>,
@@ -61,7 +53,7 @@ impl<E: Evaluate> Searched<'_, E> {
         let lead = pieces.lead.filter(|_| fibre.len() >= FEW);
         if let Some(lead) = lead {
             let side = Side {
-                which: self.which,
+                enlarged: self.enlarged,
                 parameters: Cow::Borrowed(&fibre.parameters),
                 solutions: Cow::Borrowed(&fibre.solutions),
                 target: Cow::Borrowed(target),

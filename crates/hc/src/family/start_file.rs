@@ -1,7 +1,7 @@
 //! The file form of a fibre: what `hc monodromy` and `cargo xtask codegen` write and read.
 
 use super::fibre::Fibre;
-use super::stopped::Stopped;
+use super::search::{Monodromy, Stopped};
 use num_complex::Complex64;
 use poly::counted;
 use serde::{Deserialize, Serialize};
@@ -109,6 +109,14 @@ impl StartFile {
         }
         let is_complete = Stopped::in_words(&self.stopped).is_some_and(Stopped::is_complete);
         Ok(Fibre { is_partial: !is_complete, ..Fibre::new(parameters, dimension, solutions) })
+    }
+}
+
+impl Monodromy {
+    /// The fibre in its file form.
+    pub fn start_file(&self) -> StartFile {
+        let count = self.fibre.len();
+        StartFile::new(&self.fibre, self.trace.and_then(|test| test.result(count)), &self.stopped.to_string())
     }
 }
 

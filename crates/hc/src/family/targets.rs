@@ -1,26 +1,21 @@
 //! One fibre to many targets.
 
-use super::compiled::Family;
-use super::detour::{DETOURS, corner};
+use super::compiled::{Family, Points};
 use super::error::FamilyError;
-use super::fibre::{Fibre, FibreOptions, Limit, TargetLimits};
-use super::job::{Points, job};
-use super::orbits::Orbits;
-use super::track::{moved as moved_fibre, track_fibre_watched};
+use super::fibre::{Fibre, FibreOptions, TargetLimits};
+use super::target::{Orbits, TargetTracking};
 use crate::checkpoint::{Checkpoint, Job, Part, Recordable, Recorded};
 use crate::endgame::EndgameOptions;
-use crate::monitor::Monitor;
 use crate::ranks::{DividedWork, Lead, Shareable, Worker};
 use crate::run::{RanksRun, Run};
 use crate::runner::{Flow, Policy, Round, Work, Workspace, run};
-use crate::solve::{Solutions, SolveOptions, solve_member};
+use crate::solve::{Solutions, SolveOptions};
 // One thread needs no trait for `map`.
 #[cfg_attr(not(feature = "threads"), allow(unused_imports))]
 use crate::threads::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use crate::tracker::Trackers;
 use num_complex::Complex64;
 use serde::Serialize;
-use std::time::Duration;
 
 /// Targets that are tracked before it is asked whether enough are done: the answer depends on no
 /// number of threads.
@@ -66,46 +61,36 @@ impl<'a> RanksRun<'a> {
     {
         let monitor = self.run.monitor().clone();
         let (options, limits) = (SolveOptions::default(), TargetLimits::default());
-        let how = How { family, fibre, options, limits, only_real: false, monitor };
+        let tracking = TargetTracking { family, fibre, options, limits, only_real: false, monitor };
         let targets = targets.iter().map(|p| p.as_ref().iter().map(|&z| z.into()).collect()).collect();
-        Targets { how, targets, enough: None, run: self.clone() }
+        Targets { tracking, targets, enough: None, run: self.clone() }
     }
 }
 
 /// Many targets of a family, about to be tracked in parallel; made by [`Family::track`].
 #[must_use = "nothing is tracked before `run` or `transform`"]
 pub struct Targets<'a> {
-    how: How<'a>,
+    tracking: TargetTracking<'a>,
     targets: Vec<Vec<Complex64>>,
     enough: Option<Box<Enough<'a>>>,
     run: RanksRun<'a>,
 }
 
-/// How each target is tracked.
-struct How<'a> {
-    family: &'a Family,
-    fibre: &'a Fibre,
-    options: SolveOptions,
-    limits: TargetLimits,
-    only_real: bool,
-    monitor: Monitor,
-}
-
 impl<'a> Targets<'a> {
     /// Settings. Start systems are not used here. Default [`SolveOptions::default`].
     pub fn options(self, options: &SolveOptions) -> Self {
-        Targets { how: How { options: options.clone(), ..self.how }, ..self }
+        Targets { tracking: TargetTracking { options: options.clone(), ..self.tracking }, ..self }
     }
 
     /// Limits of the work on each target. Default [`TargetLimits::default`]: as many paths are tracked again as there
     /// are, at most.
     pub fn limits(self, limits: &TargetLimits) -> Self {
-        Targets { how: How { limits: *limits, ..self.how }, ..self }
+        Targets { tracking: TargetTracking { limits: *limits, ..self.tracking }, ..self }
     }
 
     /// Keeps only the real solutions in each result; counts cover all paths. Default false.
     pub fn only_real(self, only_real: bool) -> Self {
-        Targets { how: How { only_real, ..self.how }, ..self }
+        Targets { tracking: TargetTracking { only_real, ..self.tracking }, ..self }
     }
 
     /// Stops after the first target, in their order, for which `enough` returns true. `enough` gets
@@ -136,7 +121,8 @@ impl<'a> Targets<'a> {
         run.run.install(|| {
             let Some(ranks) = run.ranks else { return self.led(None, transform) };
             let valid = self.validate();
-            let fingerprint = if valid.is_ok() { self.how.job(&self.targets).fingerprint() } else { String::new() };
+            let fingerprint =
+                if valid.is_ok() { job(&self.tracking, &self.targets).fingerprint() } else { String::new() };
             if ranks.is_lead() {
                 return Lead::at(ranks, &fingerprint, |lead| self.led(Some(lead), transform));
             }
@@ -145,11 +131,11 @@ impl<'a> Targets<'a> {
     }
 
     fn validate(&self) -> Result<(), FamilyError> {
-        let Targets { how, targets, .. } = self;
-        how.family.check(how.fibre)?;
-        how.options.validate()?;
-        how.limits.validate()?;
-        let parameters = how.fibre.parameters.len();
+        let Targets { tracking, targets, .. } = self;
+        tracking.family.check(tracking.fibre)?;
+        tracking.options.validate()?;
+        tracking.limits.validate()?;
+        let parameters = tracking.fibre.parameters.len();
         let unusable = |target: &Vec<Complex64>| target.len() != parameters || target.iter().any(|z| !z.is_finite());
         match targets.iter().position(unusable) {
             Some(k) => Err(FamilyError::Target { target: k + 1, parameters }),
@@ -164,26 +150,35 @@ impl<'a> Targets<'a> {
         transform: impl Fn(usize, Solutions) -> T + Sync,
     ) -> Result<Vec<T>, FamilyError> {
         self.validate()?;
-        let Targets { how, targets, enough, run: RanksRun { run: circumstances, .. } } = self;
+        let Targets { tracking, targets, enough, run: RanksRun { run: circumstances, .. } } = self;
         let checkpoint = circumstances.checkpoint();
-        let orbits = Orbits::of(how.family, how.fibre)?;
+        let orbits = Orbits::of(tracking.family, tracking.fibre)?;
         if let Some(checkpoint) = checkpoint {
-            checkpoint.begin(how.job(&targets))?;
+            checkpoint.begin(job(&tracking, &targets))?;
         }
         if let Some(lead) = lead {
-            lead.begin_part(&(), how.fibre.len());
+            lead.begin_part(&(), tracking.fibre.len());
         }
-        let (trackers, count) = (Trackers::new(&how.family.program), targets.len());
-        let (monitor, orbits) = (&how.monitor, orbits.as_ref());
+        let (trackers, count) = (Trackers::new(&tracking.family.program), targets.len());
+        let (monitor, orbits) = (&tracking.monitor, orbits.as_ref());
         let results = Vec::with_capacity(count);
-        let each = Each { how: &how, trackers, orbits, targets: &targets, enough, transform, results, solutions: 0 };
+        let work = TargetWork {
+            tracking: &tracking,
+            trackers,
+            orbits,
+            targets: &targets,
+            enough,
+            transform,
+            results,
+            solutions: 0,
+        };
         let block = match checkpoint {
-            Some(_) => (RECORDED / how.fibre.len().max(1)).clamp(1, BLOCK),
+            Some(_) => (RECORDED / tracking.fibre.len().max(1)).clamp(1, BLOCK),
             None => BLOCK,
         };
         let policy = Policy { retries: 0, charts: 1, again: 0, first: block, batch: block };
         let part = checkpoint.map(|checkpoint| Part { checkpoint, number: 0 });
-        let mut work = Recorded::new(DividedWork::new(each, lead, monitor), part, monitor);
+        let mut work = Recorded::new(DividedWork::new(work, lead, monitor), part, monitor);
         run(&mut work, count, &policy, &mut Workspace::default(), monitor);
         if let Some(error) = checkpoint.and_then(Checkpoint::failure) {
             return Err(error.into());
@@ -197,20 +192,20 @@ impl<'a> Targets<'a> {
     /// The work at another rank than the first.
     fn serve(mut self, worker: &Worker<'_>) -> Result<(), FamilyError> {
         self.validate()?;
-        let orbits = Orbits::of(self.how.family, self.how.fibre)?;
-        let trackers = Trackers::new(&self.how.family.program);
+        let orbits = Orbits::of(self.tracking.family, self.tracking.fibre)?;
+        let trackers = Trackers::new(&self.tracking.family.program);
         while let Some(task) = worker.next::<()>()? {
-            self.how.monitor = task.monitor.clone();
-            let (how, targets) = (&self.how, &self.targets);
-            worker.serve(&task, |numbers, _| how.solved(&trackers, orbits.as_ref(), targets, numbers))?;
+            self.tracking.monitor = task.monitor.clone();
+            let (tracking, targets) = (&self.tracking, &self.targets);
+            worker.serve(&task, |numbers, _| tracking.solved(&trackers, orbits.as_ref(), targets, numbers))?;
         }
         Ok(())
     }
 }
 
 /// Every target, each solved for itself.
-struct Each<'r, 'a, T, F> {
-    how: &'r How<'a>,
+struct TargetWork<'r, 'a, T, F> {
+    tracking: &'r TargetTracking<'a>,
     trackers: Trackers<'r, poly::Interpreter>,
     orbits: Option<&'r Orbits>,
     targets: &'r [Vec<Complex64>],
@@ -221,7 +216,7 @@ struct Each<'r, 'a, T, F> {
     solutions: u64,
 }
 
-impl<T: Send, F: Fn(usize, Solutions) -> T + Sync> Work for Each<'_, '_, T, F> {
+impl<T: Send, F: Fn(usize, Solutions) -> T + Sync> Work for TargetWork<'_, '_, T, F> {
     type Batch = Vec<(usize, Solutions)>;
     type Memory = ();
 
@@ -231,8 +226,8 @@ impl<T: Send, F: Fn(usize, Solutions) -> T + Sync> Work for Each<'_, '_, T, F> {
 
     fn absorb(&mut self, batch: &mut Self::Batch, _: Round) -> Flow {
         self.solutions += batch.iter().map(|(_, found)| found.len() as u64).sum::<u64>();
-        let (how, targets) = (self.how, self.targets);
-        let finished = |(k, found): &(usize, Solutions)| (*k, how.finished(found.clone(), &targets[*k]));
+        let (tracking, targets) = (self.tracking, self.targets);
+        let finished = |(k, found): &(usize, Solutions)| (*k, tracking.finished(found.clone(), &targets[*k]));
         let mut done: Vec<(usize, Solutions)> = batch.par_iter().map(finished).collect();
         let last = self.enough.as_mut().and_then(|enough| done.iter().position(|(k, found)| enough(*k, found)));
         done.truncate(last.map_or(done.len(), |last| last + 1));
@@ -240,7 +235,7 @@ impl<T: Send, F: Fn(usize, Solutions) -> T + Sync> Work for Each<'_, '_, T, F> {
         self.results.extend(done.into_par_iter().map(|(k, found)| transform(k, found)).collect::<Vec<T>>());
         match last {
             Some(_) => Flow::Found,
-            None if self.how.monitor.is_cancelled() => Flow::Abandoned,
+            None if self.tracking.monitor.is_cancelled() => Flow::Abandoned,
             None => Flow::On,
         }
     }
@@ -250,7 +245,7 @@ impl<T: Send, F: Fn(usize, Solutions) -> T + Sync> Work for Each<'_, '_, T, F> {
     }
 }
 
-impl<T: Send, F: Fn(usize, Solutions) -> T + Sync> Recordable for Each<'_, '_, T, F> {
+impl<T: Send, F: Fn(usize, Solutions) -> T + Sync> Recordable for TargetWork<'_, '_, T, F> {
     fn is_of(batch: &Self::Batch, numbers: &[usize]) -> bool {
         batch.iter().map(|(k, _)| k).eq(numbers)
     }
@@ -260,15 +255,15 @@ impl<T: Send, F: Fn(usize, Solutions) -> T + Sync> Recordable for Each<'_, '_, T
     }
 }
 
-impl<T: Send, F: Fn(usize, Solutions) -> T + Sync> Shareable for Each<'_, '_, T, F> {
+impl<T: Send, F: Fn(usize, Solutions) -> T + Sync> Shareable for TargetWork<'_, '_, T, F> {
     type End = (usize, Solutions);
 
     fn ends(&self, numbers: &[usize], _: Round) -> Vec<Self::End> {
-        self.how.solved(&self.trackers, self.orbits, self.targets, numbers)
+        self.tracking.solved(&self.trackers, self.orbits, self.targets, numbers)
     }
 
     fn is_end(&self, (target, found): &Self::End, number: usize) -> bool {
-        *target == number && found.fits(self.how.fibre.dimension)
+        *target == number && found.fits(self.tracking.fibre.dimension)
     }
 
     fn gather(&self, ends: Vec<Self::End>, batch: &mut Self::Batch) {
@@ -278,7 +273,7 @@ impl<T: Send, F: Fn(usize, Solutions) -> T + Sync> Shareable for Each<'_, '_, T,
 
 /// What results depend on.
 #[derive(Serialize)]
-struct Settings<'a> {
+struct TrackInputs<'a> {
     seed: u64,
     paths: &'a FibreOptions,
     endgame: &'a EndgameOptions,
@@ -288,132 +283,11 @@ struct Settings<'a> {
     targets: Points,
 }
 
-impl How<'_> {
-    /// What a checkpoint of this is of.
-    fn job(&self, targets: &[Vec<Complex64>]) -> Job {
-        let SolveOptions { seed, paths, endgame, known, .. } = &self.options;
-        let start = Points::of_fibre(self.fibre);
-        let targets = Points::new(targets.iter().map(Vec::as_slice));
-        let settings = Settings { seed: *seed, paths, endgame, known: *known, limits: &self.limits, start, targets };
-        job("track", &self.family.given, &self.family.program, &settings)
-    }
-
-    /// The solutions for a target from a fibre. Where paths are lost, detours are tried, and then shorter steps, as far
-    /// as the limits allow.
-    fn from(
-        &self,
-        trackers: &Trackers<'_, poly::Interpreter>,
-        fibre: &Fibre,
-        target: &[Complex64],
-        monitor: &Monitor,
-    ) -> Solutions {
-        let (system, given) = (&self.family.program, &self.options.paths);
-        let solve = |from: &Fibre, retries: u32, again: usize| {
-            let paths = FibreOptions { retries, again: Some(again), ..given.clone() };
-            let options = SolveOptions { paths, ..self.options.clone() };
-            let mut found = solve_member(self.family.system(), trackers, from, target, &options, monitor);
-            self.family.keep_own(target, &mut found);
-            found
-        };
-        let most = ((self.limits.again * fibre.len() as f64) as usize).min(given.again.unwrap_or(usize::MAX));
-        let detour = 2 * fibre.len();
-        if given.retries == 0 {
-            return solve(fibre, 0, 0);
-        }
-        if most < detour {
-            let mut found = solve(fibre, given.retries, most);
-            found.limited = (found.paths.failed > 0).then_some(Limit::Again);
-            return found;
-        }
-        let (mut found, mut again, mut bounded) = (solve(fibre, 0, 0), 0, false);
-        for number in 0..DETOURS {
-            if found.paths.failed == 0 || monitor.is_cancelled() {
-                break;
-            }
-            bounded = most - again < detour;
-            if bounded {
-                break;
-            }
-            let corner = corner(fibre, target, number);
-            let paths = FibreOptions { again: Some(most - again - detour), ..given.clone() };
-            let moved = track_fibre_watched(system, fibre, &corner, &paths, monitor);
-            again += fibre.len() + moved.1.retracked;
-            let Some(moved) = moved_fibre(system, fibre, &corner, &moved) else { continue };
-            let other = solve(&moved, 0, 0);
-            again += other.paths.tracked;
-            if other.paths.failed < found.paths.failed {
-                found = other;
-            }
-        }
-        if found.paths.failed > 0 && most - again >= fibre.len() {
-            let last = solve(fibre, given.retries, most - again - fibre.len());
-            again += last.paths.tracked + last.paths.retracked;
-            bounded |= last.limited.is_some();
-            if last.paths.failed <= found.paths.failed {
-                found = last;
-            }
-        } else {
-            bounded = true;
-        }
-        found.limited = (bounded && found.paths.failed > 0).then_some(Limit::Again);
-        found.paths.retracked = again;
-        found
-    }
-
-    /// The solutions for one target; `None` if the work was cancelled before.
-    fn solve(
-        &self,
-        trackers: &Trackers<'_, poly::Interpreter>,
-        orbits: Option<&Orbits>,
-        target: &[Complex64],
-    ) -> Option<Solutions> {
-        if self.monitor.is_cancelled() {
-            return None;
-        }
-        let time = self.limits.seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
-        let limited = time.map(|time| self.monitor.within(time));
-        let monitor = limited.as_ref().unwrap_or(&self.monitor);
-        let from = |fibre: &Fibre| self.from(trackers, fibre, target, monitor);
-        let expanded = orbits.and_then(|orbits| {
-            let mut found = from(&orbits.tracked);
-            let same = self.options.paths.coincidence;
-            found.solutions = orbits.expand(&self.family.symmetry, target, same, &found)?;
-            Some(found)
-        });
-        let mut found = expanded.unwrap_or_else(|| from(self.fibre));
-        if found.interrupted {
-            found.interrupted = self.monitor.is_cancelled();
-            found.limited = (!found.interrupted).then_some(Limit::Time);
-        }
-        Some(found)
-    }
-
-    /// The solutions for some of the targets, with their numbers, up to the first that was not begun.
-    fn solved(
-        &self,
-        trackers: &Trackers<'_, poly::Interpreter>,
-        orbits: Option<&Orbits>,
-        targets: &[Vec<Complex64>],
-        numbers: &[usize],
-    ) -> Vec<(usize, Solutions)> {
-        let solve = |&k: &usize| Some((k, self.solve(trackers, orbits, &targets[k])?));
-        let solved: Vec<Option<(usize, Solutions)>> = numbers.par_iter().map(solve).collect();
-        solved.into_iter().map_while(|found| found).collect()
-    }
-
-    /// What was asked for of the solutions for a target.
-    fn finished(&self, found: Solutions, target: &[Complex64]) -> Solutions {
-        let mut found = found.of_member(self.family.system(), target);
-        if self.options.certify && found.certify().is_err() {
-            // The family compiles and is square, which is all that can be wrong; nothing is proved
-            // if not.
-            for s in found.solutions.iter_mut() {
-                s.certified = Some(false);
-            }
-        }
-        if self.only_real {
-            found.solutions.retain(|s| s.is_real);
-        }
-        found
-    }
+/// What a checkpoint of this work is of.
+fn job(tracking: &TargetTracking<'_>, targets: &[Vec<Complex64>]) -> Job {
+    let SolveOptions { seed, paths, endgame, known, .. } = &tracking.options;
+    let start = Points::of_fibre(tracking.fibre);
+    let targets = Points::new(targets.iter().map(Vec::as_slice));
+    let inputs = TrackInputs { seed: *seed, paths, endgame, known: *known, limits: &tracking.limits, start, targets };
+    tracking.family.job("track", &inputs)
 }

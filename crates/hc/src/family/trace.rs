@@ -9,12 +9,11 @@
 //! points, starting from the fibre.
 
 use super::fibre::{Fibre, FibreOptions};
-use super::monodromy::{MonodromyOptions, fill};
-use super::reach::Reach;
-use super::sides::{Searched, Which};
-use super::size::Sizes;
+use super::monodromy::fill;
+use super::reach::{Reach, Sizes};
+use super::search::{MonodromyOptions, TraceTest};
+use super::sides::Searched;
 use super::symmetry::Symmetry;
-use super::trace_result::TraceTest;
 use crate::checkpoint::{Piece, Pieces};
 use crate::random::{Random, Stream};
 use crate::refine::Refiner;
@@ -35,7 +34,7 @@ pub(super) fn trace_test(
     pieces: Pieces<'_>,
 ) -> Result<TraceTest, CompileError> {
     let Some(enlarged) = enlarge(system)? else { return Ok(FAILED) };
-    let searched = Searched { system: &enlarged, which: Which::Enlarged };
+    let searched = Searched { system: &enlarged, enlarged: true };
     let Reach { natural, wide, hidden } = Reach::new(&system.compile()?, fibre);
     let all = match (wide == natural, hidden) {
         (true, _) => vec![natural],

@@ -2,7 +2,7 @@
 
 use super::charts::{Charts, OneChart};
 use super::fibre::{Fibre, FibreOptions, PathCounts};
-use super::tracking::{FibreTracking, FibreWork, Lanes, Scratch, ends};
+use super::tracking::{FibreWork, Lanes, Scratch, ends};
 use crate::homotopy::Segment;
 use crate::monitor::Monitor;
 use crate::ranks::{DividedWork, Lead};
@@ -11,6 +11,7 @@ use crate::runner::{Flow, Policy, Workspace, run};
 use crate::tracker::{PathEnd, PathSet, Tracker, TrackerOptions, Trackers};
 use num_complex::Complex64;
 use poly::Evaluate;
+use std::cell::Cell;
 
 /// Tracks all solutions of a fibre to the parameters `target`, on the threads of the current rayon
 /// pool.
@@ -204,7 +205,8 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
         }
         self.segment.join(&self.ends[0], &self.ends[1]);
         self.paths.clear(fibre.dimension);
-        let tracking = FibreTracking {
+        let work = FibreWork {
+            system: self.system,
             charts: &self.charts,
             fibre,
             segment: &self.segment,
@@ -214,10 +216,11 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
             paths: &mut self.paths,
             enough,
             steps: 0,
+            reported: Cell::default(),
         };
         let again = options.again.unwrap_or(usize::MAX);
         let policy = Policy { retries: options.retries, charts: C::COUNT, again, first: size, batch: size };
-        let mut work = DividedWork::new(FibreWork::new(tracking, self.system), lead, &self.monitor);
+        let mut work = DividedWork::new(work, lead, &self.monitor);
         let outcome = run(&mut work, fibre.len(), &policy, &mut self.workspace, &self.monitor);
         let found = outcome.flow == Flow::Found;
         let failed = if found { 0 } else { self.workspace.which.len() };

@@ -1,9 +1,7 @@
-//! One pass over paths of a fibre: they are tracked and judged, and replace the results of earlier
-//! passes.
+//! One pass over paths of a fibre: they are tracked and judged, and replace the results of earlier passes.
 
 use super::charts::{Charts, OneChart, Rests};
 use super::fibre::{Fibre, FibreOptions};
-use super::regular_ends::{doubtful, ends_regularly, settle};
 use crate::distinct::Coincidences;
 use crate::homotopy::{ParameterPath, Segment};
 use crate::monitor::Monitor;
@@ -55,18 +53,17 @@ pub(super) struct Scratch<'a, E: Evaluate> {
 impl<'a, E: Evaluate> Scratch<'a, E> {
     /// Memory for so many paths of a fibre.
     pub(super) fn new(system: &'a E, lanes: Lanes<'a, E>, fibre: &Fibre, paths: usize) -> Self {
-        let dimension = fibre.dimension;
         Scratch {
             lanes,
             refiner: Refiner::new(system),
-            refined: Refined { point: Vec::with_capacity(dimension), ..Refined::default() },
+            refined: Refined { point: Vec::with_capacity(fibre.dimension), ..Refined::default() },
             coincidences: Coincidences::with_capacity(paths),
             from: Vec::with_capacity(paths),
-            carried: Vec::with_capacity(paths * dimension),
-            back: Vec::with_capacity(dimension),
+            carried: Vec::with_capacity(paths * fibre.dimension),
+            back: Vec::with_capacity(fibre.dimension),
             segment: Segment::new(&fibre.parameters, &fibre.parameters),
             ends: ends(fibre),
-            paths: PathSet::with_capacity(dimension, paths),
+            paths: PathSet::with_capacity(fibre.dimension, paths),
             which: Vec::with_capacity(paths),
         }
     }
@@ -100,7 +97,8 @@ impl<E: Evaluate> Lanes<'_, E> {
 }
 
 /// The paths of a fibre to a target.
-pub(super) struct FibreTracking<'r, C, U> {
+pub(super) struct FibreWork<'r, 'a, E: Evaluate, C, U> {
+    pub(super) system: &'a E,
     pub(super) charts: &'r C,
     pub(super) fibre: &'r Fibre,
     /// The way from the fibre to the target in chart 0.
@@ -113,20 +111,8 @@ pub(super) struct FibreTracking<'r, C, U> {
     pub(super) enough: U,
     /// Steps of all paths before the last level.
     pub(super) steps: usize,
-}
-
-/// The work of tracking these paths, with their system.
-pub(super) struct FibreWork<'r, 'a, E: Evaluate, C, U> {
-    tracking: FibreTracking<'r, C, U>,
-    system: &'a E,
     /// In a batch on several ranks, the paths that were reported to the monitor.
-    told: Cell<usize>,
-}
-
-impl<'r, 'a, E: Evaluate, C, U> FibreWork<'r, 'a, E, C, U> {
-    pub(super) fn new(tracking: FibreTracking<'r, C, U>, system: &'a E) -> Self {
-        FibreWork { tracking, system, told: Cell::new(0) }
-    }
+    pub(super) reported: Cell<usize>,
 }
 
 impl<'a, E, C, U> Work for FibreWork<'_, 'a, E, C, U>
@@ -139,15 +125,15 @@ where
     type Memory = Scratch<'a, E>;
 
     fn begin(&mut self, _: Round, _: usize) {
-        self.told.set(0);
+        self.reported.set(0);
     }
 
     fn batch(&self, scratch: &mut Scratch<'a, E>, numbers: &[usize], round: Round, batch: &mut PathSet) {
-        self.tracking.pass(scratch, numbers, round, self.tracking.monitor, batch);
+        self.pass(scratch, numbers, round, self.monitor, batch);
     }
 
     fn absorb(&mut self, batch: &mut PathSet, round: Round) -> Flow {
-        let FibreTracking { paths, enough, .. } = &mut self.tracking;
+        let FibreWork { paths, enough, .. } = self;
         if round.is_first() {
             let found = enough(batch);
             paths.append(batch);
@@ -172,17 +158,16 @@ where
     }
 
     fn doubtful(&mut self, scratch: &mut Scratch<'a, E>, which: &mut Vec<usize>) {
-        let FibreTracking { paths, options, .. } = &mut self.tracking;
+        let FibreWork { paths, options, .. } = self;
         paths.sort();
         doubtful(paths, options.coincidence, &mut scratch.coincidences, which);
     }
 
     fn is_hopeless(&mut self, level: u32, before: usize, after: usize) -> bool {
-        let tracking = &mut self.tracking;
-        let steps: usize = tracking.paths.results().iter().map(|r| r.accepted + r.rejected).sum();
-        let spent = steps.saturating_sub(std::mem::replace(&mut tracking.steps, steps));
+        let steps: usize = self.paths.results().iter().map(|r| r.accepted + r.rejected).sum();
+        let spent = steps.saturating_sub(std::mem::replace(&mut self.steps, steps));
         let useless = level > 0 && after > BAD_LUCK && after > before - before / WORTHWHILE && spent > LONG;
-        let degenerate = level == 0 && after > tracking.fibre.len() / MANY && spent > VERY_LONG;
+        let degenerate = level == 0 && after > self.fibre.len() / MANY && spent > VERY_LONG;
         C::COUNT > 1 && (useless || degenerate)
     }
 }
@@ -197,30 +182,30 @@ where
     type End = (PathResult, Vec<Complex64>);
 
     fn ends(&self, numbers: &[usize], round: Round) -> Vec<Self::End> {
-        let fibre = self.tracking.fibre;
+        let fibre = self.fibre;
         let lanes = Lanes::Threads(Trackers::new(self.system));
         let mut scratch = Scratch::new(self.system, lanes, fibre, numbers.len());
         let mut batch = PathSet::with_capacity(fibre.dimension, numbers.len());
         // The progress of a batch is told as a whole.
-        self.tracking.pass(&mut scratch, numbers, round, &self.tracking.monitor.quiet(), &mut batch);
+        self.pass(&mut scratch, numbers, round, &self.monitor.quiet(), &mut batch);
         batch.sort();
         batch.iter().map(|(result, point)| (*result, point.to_vec())).collect()
     }
 
     fn is_end(&self, (result, point): &Self::End, number: usize) -> bool {
-        result.path == number && point.len() == self.tracking.fibre.dimension
+        result.path == number && point.len() == self.fibre.dimension
     }
 
     fn gather(&self, ends: Vec<Self::End>, batch: &mut PathSet) {
-        batch.clear(self.tracking.fibre.dimension);
+        batch.clear(self.fibre.dimension);
         for (result, point) in ends {
             batch.push(result, point);
         }
     }
 
     fn reached(&self, paths: usize) {
-        let before = self.told.replace(paths);
-        self.tracking.monitor.add(paths.saturating_sub(before) as u64, 0);
+        let before = self.reported.replace(paths);
+        self.monitor.add(paths.saturating_sub(before) as u64, 0);
     }
 }
 
@@ -236,7 +221,8 @@ pub(super) fn serve_fibre<E: Evaluate, T>(
     target: &[Complex64],
     options: &FibreOptions,
 ) -> Result<(), RanksError> {
-    let tracking = FibreTracking {
+    let work = FibreWork {
+        system,
         charts: &OneChart,
         fibre,
         segment: &Segment::new(&fibre.parameters, target),
@@ -246,8 +232,8 @@ pub(super) fn serve_fibre<E: Evaluate, T>(
         paths: &mut PathSet::new(fibre.dimension),
         enough: |_: &PathSet| false,
         steps: 0,
+        reported: Cell::default(),
     };
-    let work = FibreWork::new(tracking, system);
     worker.serve(task, |numbers, round| work.ends(numbers, round))
 }
 
@@ -279,11 +265,11 @@ fn stricter<C: Charts>(settings: &TrackerOptions, level: u32) -> TrackerOptions 
     TrackerOptions { max_steps: settings.max_steps.saturating_mul(1 << (2 * level).min(20)), ..stricter }
 }
 
-impl<C: Charts, U> FibreTracking<'_, C, U> {
+impl<'a, E: Evaluate, C: Charts, U> FibreWork<'_, 'a, E, C, U> {
     /// Tracks the paths with these numbers in a round.
-    fn pass<E: Evaluate>(
+    fn pass(
         &self,
-        scratch: &mut Scratch<'_, E>,
+        scratch: &mut Scratch<'a, E>,
         numbers: &[usize],
         round: Round,
         monitor: &Monitor,
@@ -291,19 +277,18 @@ impl<C: Charts, U> FibreTracking<'_, C, U> {
     ) {
         batch.clear(self.fibre.dimension);
         if round.is_first() {
-            let Scratch { lanes, refiner, .. } = scratch;
             let options = self.options.tracker.first(self.fibre.is_partial);
-            lanes.track(self.segment, &self.fibre.solutions, numbers, &options, monitor, batch);
-            settle(refiner, self.target, batch);
+            scratch.lanes.track(self.segment, &self.fibre.solutions, numbers, &options, monitor, batch);
+            settle(&mut scratch.refiner, self.target, batch);
         } else {
             self.again(scratch, numbers, round, monitor, batch);
         }
     }
 
     /// Tracks paths again in a chart, from the start or, if they go on, from where they broke off.
-    fn again<E: Evaluate>(
+    fn again(
         &self,
-        scratch: &mut Scratch<'_, E>,
+        scratch: &mut Scratch<'a, E>,
         numbers: &[usize],
         Round { level, chart }: Round,
         monitor: &Monitor,
@@ -354,4 +339,61 @@ impl<C: Charts, U> FibreTracking<'_, C, U> {
             batch.push(record, back.iter().copied());
         }
     }
+}
+
+/// Whether a path with this record has reached a regular solution `x` (one entry per unknown) for
+/// the parameters `target` (one entry per parameter).
+///
+/// A system may have components of singular solutions besides its fibre. Newton's method converges
+/// to them too, slowly, and this does not show where coordinates vanish. Newton's method must
+/// therefore return to an end with such coordinates, or with a singular Jacobian, from some
+/// distance, if need be in double-double.
+fn ends_regularly<E: Evaluate>(
+    refiner: &mut Refiner<'_, E>,
+    target: &[Complex64],
+    result: &PathResult,
+    x: &[Complex64],
+) -> bool {
+    let largest = x.iter().map(|z| z.norm_sqr()).fold(0.0, f64::max);
+    let plain = || result.pivot > f64::EPSILON && x.iter().all(|z| z.norm_sqr() > FAMILIES.vanished_sqr * largest);
+    let mut attracts = || refiner.contracts(target, x) || refiner.contracts_precisely(target, x);
+    result.end == PathEnd::Success && (plain() || attracts())
+}
+
+/// Refines the regular ends that the tracker leaves vague, so that coinciding ends can be
+/// recognised. Where Newton's method does not settle, or the end is not a regular solution, the
+/// path becomes [`PathEnd::Singular`].
+fn settle<E: Evaluate>(refiner: &mut Refiner<'_, E>, target: &[Complex64], paths: &mut PathSet) {
+    let mut refined = std::mem::take(&mut refiner.spare);
+    for k in 0..paths.len() {
+        let result = paths.results()[k];
+        if result.end != PathEnd::Success {
+            continue;
+        }
+        if !ends_regularly(refiner, target, &result, paths.point(k)) {
+            paths.replace_record(k, PathResult { end: PathEnd::Singular, ..result });
+        } else if result.accuracy > FAMILIES.vague {
+            refiner.refine_into(target, paths.point(k), &mut refined);
+            let end = if refined.accuracy <= FAMILIES.settled { PathEnd::Success } else { PathEnd::Singular };
+            paths.replace(k, PathResult { end, accuracy: refined.accuracy, ..result }, &refined.point);
+        }
+    }
+    refiner.spare = refined;
+}
+
+/// Writes to `which` the paths that failed or share a regular end with another path, by the index
+/// of their start solutions. These have to be tracked again.
+///
+/// `paths` must hold the paths `0 .. len` in order.
+fn doubtful(paths: &PathSet, tolerance: f64, memory: &mut Coincidences, which: &mut Vec<usize>) {
+    which.clear();
+    let results = paths.results();
+    let regular = (0..paths.len()).filter(|&k| results[k].end == PathEnd::Success);
+    memory.members(regular, |k| paths.point(k), tolerance, which);
+    for k in which.iter_mut() {
+        *k = results[*k].path;
+    }
+    which.extend(results.iter().filter(|r| !r.end.is_good()).map(|r| r.path));
+    which.sort_unstable();
+    which.dedup();
 }

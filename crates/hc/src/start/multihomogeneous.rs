@@ -155,7 +155,7 @@ impl Multihomogeneous {
         &self.parameters
     }
 
-    /// The same, to be followed by parameters that are not coefficients.
+    /// The coefficients, to which parameters of another kind may be appended.
     pub(super) fn parameters_mut(&mut self) -> &mut Vec<Complex64> {
         &mut self.parameters
     }

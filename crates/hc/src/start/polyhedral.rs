@@ -86,7 +86,7 @@ impl Polyhedral {
         &self.coefficients
     }
 
-    /// The same, to be followed by parameters that are not coefficients.
+    /// The coefficients, to which parameters of another kind may be appended.
     pub(super) fn parameters_mut(&mut self) -> &mut Vec<Complex64> {
         &mut self.coefficients
     }

@@ -97,7 +97,7 @@ impl TotalDegree {
         &self.parameters
     }
 
-    /// The same, to be followed by parameters that are not coefficients.
+    /// The coefficients, to which parameters of another kind may be appended.
     pub(super) fn parameters_mut(&mut self) -> &mut Vec<Complex64> {
         &mut self.parameters
     }

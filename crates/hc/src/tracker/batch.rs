@@ -351,4 +351,3 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         out.push(result, self.work.taylor[..self.work.n].iter().map(|x| x.get(l)));
     }
 }
-

@@ -2,7 +2,7 @@
 
 use crate::homotopy::{ParameterPath, Segment};
 use crate::monitor::Monitor;
-use crate::tracker::stop::{Counts, Stop};
+use crate::tracker::resume::{Counts, ResumePoint};
 use crate::tracker::{PathEnd, PathSet, Tracker, TrackerOptions};
 use num_complex::Complex64;
 use poly::simd::Isa;
@@ -103,7 +103,7 @@ fn careful_paths_go_on_from_near_the_path_alone() {
     let system = parse::family(text).expect("a family").system.compile().expect("a program");
     let path = Segment::new(&[Complex64::from(1.0)], &[Complex64::new(2.0, 1.0)]);
     let counts = Counts { accepted: 5, rejected: 1, jacobians: 11 };
-    let stops = [(0, 0.5), (1, 0.25)].map(|(k, t)| Stop { path: k, t, point: k, counts });
+    let stops = [(0, 0.5), (1, 0.25)].map(|(k, t)| ResumePoint { path: k, t, point: k, counts });
     // The root at t = 1/2, and a point far from both roots at t = 1/4.
     let points = [Complex64::new(1.5, 0.5).sqrt(), Complex64::new(0.0, 1e3)];
     let mut tracker = Tracker::<_, Lanes8>::new(&system, &TrackerOptions::fast());

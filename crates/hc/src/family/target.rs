@@ -1,0 +1,223 @@
+//! One target of a family: its solutions from those of a fibre, within the limits of effort.
+//!
+//! A path that struggles passes close to a branch point. Paths on a detour, from a fibre for other parameters, keep
+//! their distance from that point, and take as few steps as usual. In a symmetric family one solution of each orbit is
+//! tracked, and the others are its images.
+
+use super::compiled::Family;
+use super::error::FamilyError;
+use super::fibre::{Fibre, FibreOptions, Limit, TargetLimits};
+use super::symmetry::Symmetry;
+use super::track::{moved as moved_fibre, track_fibre_watched};
+use crate::distinct::coincidences;
+use crate::monitor::Monitor;
+use crate::random::{Random, Stream};
+use crate::solve::{Solution, Solutions, SolveOptions, solve_member};
+// One thread needs no trait for `map`.
+#[cfg_attr(not(feature = "threads"), allow(unused_imports))]
+use crate::threads::{IntoParallelRefIterator, ParallelIterator};
+use crate::tolerances::FAMILIES;
+use crate::tracker::Trackers;
+use num_complex::Complex64;
+use std::time::Duration;
+
+/// The number of detours that are tried before paths get more steps.
+const DETOURS: u64 = 2;
+
+/// How each target is tracked.
+pub(super) struct TargetTracking<'a> {
+    pub(super) family: &'a Family,
+    pub(super) fibre: &'a Fibre,
+    pub(super) options: SolveOptions,
+    pub(super) limits: TargetLimits,
+    pub(super) only_real: bool,
+    pub(super) monitor: Monitor,
+}
+
+impl TargetTracking<'_> {
+    /// The solutions for a target from a fibre. Where paths are lost, detours are tried, and then shorter steps, as far
+    /// as the limits allow.
+    fn from(
+        &self,
+        trackers: &Trackers<'_, poly::Interpreter>,
+        fibre: &Fibre,
+        target: &[Complex64],
+        monitor: &Monitor,
+    ) -> Solutions {
+        let (system, given) = (&self.family.program, &self.options.paths);
+        let solve = |from: &Fibre, retries: u32, again: usize| {
+            let paths = FibreOptions { retries, again: Some(again), ..given.clone() };
+            let options = SolveOptions { paths, ..self.options.clone() };
+            let mut found = solve_member(self.family.system(), trackers, from, target, &options, monitor);
+            self.family.keep_own(target, &mut found);
+            found
+        };
+        let most = ((self.limits.again * fibre.len() as f64) as usize).min(given.again.unwrap_or(usize::MAX));
+        let detour = 2 * fibre.len();
+        if given.retries == 0 {
+            return solve(fibre, 0, 0);
+        }
+        if most < detour {
+            let mut found = solve(fibre, given.retries, most);
+            found.limited = (found.paths.failed > 0).then_some(Limit::Again);
+            return found;
+        }
+        let (mut found, mut again, mut bounded) = (solve(fibre, 0, 0), 0, false);
+        for number in 0..DETOURS {
+            if found.paths.failed == 0 || monitor.is_cancelled() {
+                break;
+            }
+            bounded = most - again < detour;
+            if bounded {
+                break;
+            }
+            let corner = corner(fibre, target, number);
+            let paths = FibreOptions { again: Some(most - again - detour), ..given.clone() };
+            let moved = track_fibre_watched(system, fibre, &corner, &paths, monitor);
+            again += fibre.len() + moved.1.retracked;
+            let Some(moved) = moved_fibre(system, fibre, &corner, &moved) else { continue };
+            let other = solve(&moved, 0, 0);
+            again += other.paths.tracked;
+            if other.paths.failed < found.paths.failed {
+                found = other;
+            }
+        }
+        if found.paths.failed > 0 && most - again >= fibre.len() {
+            let last = solve(fibre, given.retries, most - again - fibre.len());
+            again += last.paths.tracked + last.paths.retracked;
+            bounded |= last.limited.is_some();
+            if last.paths.failed <= found.paths.failed {
+                found = last;
+            }
+        } else {
+            bounded = true;
+        }
+        found.limited = (bounded && found.paths.failed > 0).then_some(Limit::Again);
+        found.paths.retracked = again;
+        found
+    }
+
+    /// The solutions for one target; `None` if the work was cancelled before.
+    fn solve(
+        &self,
+        trackers: &Trackers<'_, poly::Interpreter>,
+        orbits: Option<&Orbits>,
+        target: &[Complex64],
+    ) -> Option<Solutions> {
+        if self.monitor.is_cancelled() {
+            return None;
+        }
+        let time = self.limits.seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+        let limited = time.map(|time| self.monitor.within(time));
+        let monitor = limited.as_ref().unwrap_or(&self.monitor);
+        let from = |fibre: &Fibre| self.from(trackers, fibre, target, monitor);
+        let expanded = orbits.and_then(|orbits| {
+            let mut found = from(&orbits.tracked);
+            let same = self.options.paths.coincidence;
+            found.solutions = orbits.expand(&self.family.symmetry, target, same, &found)?;
+            Some(found)
+        });
+        let mut found = expanded.unwrap_or_else(|| from(self.fibre));
+        if found.interrupted {
+            found.interrupted = self.monitor.is_cancelled();
+            found.limited = (!found.interrupted).then_some(Limit::Time);
+        }
+        Some(found)
+    }
+
+    /// The solutions for some of the targets, with their numbers, up to the first that was not begun.
+    pub(super) fn solved(
+        &self,
+        trackers: &Trackers<'_, poly::Interpreter>,
+        orbits: Option<&Orbits>,
+        targets: &[Vec<Complex64>],
+        numbers: &[usize],
+    ) -> Vec<(usize, Solutions)> {
+        let solve = |&k: &usize| Some((k, self.solve(trackers, orbits, &targets[k])?));
+        let solved: Vec<Option<(usize, Solutions)>> = numbers.par_iter().map(solve).collect();
+        solved.into_iter().map_while(|found| found).collect()
+    }
+
+    /// What was asked for of the solutions for a target.
+    pub(super) fn finished(&self, found: Solutions, target: &[Complex64]) -> Solutions {
+        let mut found = found.of_member(self.family.system(), target);
+        if self.options.certify && found.certify().is_err() {
+            // The family compiles and is square, which is all that can be wrong; nothing is proved
+            // if not.
+            for s in found.solutions.iter_mut() {
+                s.certified = Some(false);
+            }
+        }
+        if self.only_real {
+            found.solutions.retain(|s| s.is_real);
+        }
+        found
+    }
+}
+
+/// Parameters of a detour: about as far from a fibre and a target as these are from each other; parameters that
+/// stay on the straight way stay on the detour.
+fn corner(fibre: &Fibre, target: &[Complex64], number: u64) -> Vec<Complex64> {
+    let start = &fibre.parameters;
+    let normals = Random::of(0, Stream::Detour(number)).normals(start.len());
+    let corner = |((a, b), z): ((&Complex64, &Complex64), Complex64)| (a + b) / 2.0 + z * (b - a).norm();
+    start.iter().zip(target).zip(normals).map(corner).collect()
+}
+
+/// The representatives of a fibre, and how many solutions each stands for.
+pub(super) struct Orbits {
+    /// The representatives as a fibre of their own.
+    tracked: Fibre,
+    /// The sizes of the orbits, ascending.
+    sizes: Vec<usize>,
+}
+
+impl Orbits {
+    /// The orbits of a fibre that notes its representatives; `None` if it does not.
+    ///
+    /// # Errors
+    /// If a map of the family takes one of its solutions to a point that is none.
+    pub(super) fn of(family: &Family, fibre: &Fibre) -> Result<Option<Orbits>, FamilyError> {
+        if fibre.representatives.is_none() {
+            return Ok(None);
+        }
+        family.check_symmetry(fibre)?;
+        let tracked = fibre.tracked();
+        let size = |x| family.symmetry.orbit(&fibre.parameters, x, FAMILIES.same).len();
+        let mut sizes: Vec<usize> = tracked.iter().map(size).collect();
+        sizes.sort_unstable();
+        Ok(Some(Orbits { tracked, sizes }))
+    }
+
+    /// All solutions for a target, from those to which the representatives lead. `None` where they
+    /// do not tell how many paths end where, so that all have to be tracked: where one is singular
+    /// or lost (of the paths that share a singular end some are missing), where two lie in one
+    /// orbit, and where an orbit is smaller than for generic parameters.
+    fn expand(
+        &self,
+        symmetry: &Symmetry,
+        target: &[Complex64],
+        tolerance: f64,
+        found: &Solutions,
+    ) -> Option<Vec<Solution>> {
+        let lost = found.paths.failed > 0 && !found.interrupted;
+        if lost || found.iter().any(|s| s.singular || s.multiplicity > 1) {
+            return None;
+        }
+        let orbits: Vec<Vec<Vec<Complex64>>> =
+            found.iter().map(|s| symmetry.orbit(target, &s.value, tolerance)).collect();
+        let mut sizes: Vec<usize> = orbits.iter().map(Vec::len).collect();
+        sizes.sort_unstable();
+        // If all orbits have one size, the comparison can do without the paths at infinity.
+        let equal = self.sizes.first() == self.sizes.last();
+        let generic = if equal { sizes.iter().all(|n| self.sizes.first() == Some(n)) } else { sizes == self.sizes };
+        let points = || orbits.iter().flatten().map(Vec::as_slice).enumerate();
+        if !generic || !coincidences(points(), tolerance).is_empty() {
+            return None;
+        }
+        let images = |(s, orbit): (&Solution, Vec<Vec<Complex64>>)| {
+            orbit.into_iter().map(|value| Solution { value, ..s.clone() }).collect::<Vec<_>>()
+        };
+        Some(found.iter().zip(orbits).flat_map(images).collect())
+    }
+}
