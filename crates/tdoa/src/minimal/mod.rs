@@ -32,6 +32,7 @@ mod adjust;
 mod check;
 mod doubts;
 mod engine;
+mod engines;
 mod error;
 mod formulation;
 mod larger;

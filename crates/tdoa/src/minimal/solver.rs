@@ -3,6 +3,7 @@
 use super::check::check;
 use super::doubts::warnings;
 use super::engine::Engine;
+use super::engines::{Engines, PathSolver};
 use super::error::MinimalError;
 use super::formulation::FormulationIn;
 use super::larger::extend;
@@ -33,16 +34,10 @@ pub fn solve(measured: &Pseudoranges, options: &MinimalOptions) -> Result<Minima
 /// call.
 #[derive(Default)]
 pub struct Solver {
-    six_three: Option<Engine<SixThree>>,
-    five_four: Option<Engine<FiveFour>>,
-    four_five: Option<Engine<FourFive>>,
-    five_six: Option<Engine<FiveSix>>,
-    records: Vec<PathResult>,
+    engines: Engines<2>,
     data: Normalised,
     squares: LeastSquares,
     polisher: Polisher,
-    /// The method of the last call.
-    last: Option<Method>,
 }
 
 /// The method for a size.
@@ -161,18 +156,12 @@ impl Solver {
 
     /// [`prove`](Self::prove), watched: `None` once the monitor is cancelled.
     pub fn prove_watched(&self, monitor: &Monitor) -> Option<RootProofs> {
-        match self.last? {
-            Method::SixThree => self.six_three.as_ref()?.prove(monitor),
-            Method::FiveFour => self.five_four.as_ref()?.prove(monitor),
-            Method::FourFive => self.four_five.as_ref()?.prove(monitor),
-            Method::FiveSix => self.five_six.as_ref()?.prove(monitor),
-            Method::SevenFour => None,
-        }
+        self.engines.prove(monitor)
     }
 
     /// The records of the paths of the last call.
     pub fn records(&self) -> &[PathResult] {
-        &self.records
+        self.engines.records()
     }
 
     fn solve_by(
@@ -182,15 +171,14 @@ impl Solver {
         options: &MinimalOptions,
         monitor: &Monitor,
     ) -> Result<MinimalSolution, MinimalError> {
-        self.last = Some(method);
-        let records = &mut self.records;
+        let engines = &mut self.engines;
         match method {
-            Method::SixThree => through(&mut self.six_three, measured, options, monitor, records),
-            Method::FiveFour => through(&mut self.five_four, measured, options, monitor, records),
-            Method::FourFive => through(&mut self.four_five, measured, options, monitor, records),
-            Method::FiveSix => through(&mut self.five_six, measured, options, monitor, records),
+            Method::SixThree => through::<SixThree>(engines, measured, options, monitor),
+            Method::FiveFour => through::<FiveFour>(engines, measured, options, monitor),
+            Method::FourFive => through::<FourFive>(engines, measured, options, monitor),
+            Method::FiveSix => through::<FiveSix>(engines, measured, options, monitor),
             Method::SevenFour => {
-                records.clear();
+                engines.none_used();
                 Ok(seven_four(measured, options))
             }
         }
@@ -198,26 +186,25 @@ impl Solver {
 }
 
 /// Solves a part of the formulation's size, and the rest from there.
-fn through<F: FormulationIn>(
-    engine: &mut Option<Engine<F>>,
+fn through<F: FormulationIn + 'static>(
+    engines: &mut Engines<2>,
     measured: &Pseudoranges,
     options: &MinimalOptions,
     monitor: &Monitor,
-    records: &mut Vec<PathResult>,
-) -> Result<MinimalSolution, MinimalError> {
-    let engine = engine.get_or_insert_with(Engine::new);
-    let solution = if (measured.receivers(), measured.transmitters()) == (F::RECEIVERS, F::TRANSMITTERS) {
-        engine.solve(measured, options, monitor)?
+) -> Result<MinimalSolution, MinimalError>
+where
+    Engine<F>: PathSolver<2>,
+{
+    let engine = engines.used::<F>();
+    if (measured.receivers(), measured.transmitters()) == (F::RECEIVERS, F::TRANSMITTERS) {
+        engine.solve(measured, options, monitor)
     } else {
         let part = subset::best(measured, F::RECEIVERS, F::TRANSMITTERS);
         // Only all measurements together tell which candidate of the part is the network.
         let whole = MinimalOptions { first_under: None, ..options.clone() };
         let solution = engine.solve(&measured.select(&part.receivers, &part.transmitters), &whole, monitor)?;
-        extend(measured, &part, solution, options)
-    };
-    records.clear();
-    records.extend_from_slice(engine.records());
-    Ok(solution)
+        Ok(extend(measured, &part, solution, options))
+    }
 }
 
 /// Seven or more receivers, four or more transmitters: the offsets of the four best spread

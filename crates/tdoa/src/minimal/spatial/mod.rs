@@ -34,7 +34,6 @@
 
 mod bilinear;
 mod dual;
-mod engines;
 mod five;
 mod gram;
 mod grassmannian;

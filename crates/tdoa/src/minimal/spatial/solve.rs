@@ -1,7 +1,6 @@
 //! The entry point for all sizes in space.
 
 use super::dual::{Dual, EightFive, SevenFive, TenFour};
-use super::engines::{Engines, Kept};
 use super::five::{FEWEST, Scaled, five_transmitters};
 use super::gram::SixSix;
 use super::offsets::{DEGENERATE, offsets};
@@ -11,7 +10,10 @@ use crate::accuracy::position_error;
 use crate::duplicates::rounding;
 use crate::minimal::check::check;
 use crate::minimal::doubts::{allowed, warnings_in_space};
+use crate::minimal::engine::Engine;
+use crate::minimal::engines::{Engines, PathSolver};
 use crate::minimal::error::MinimalError;
+use crate::minimal::formulation::FormulationIn;
 use crate::minimal::larger::candidates_of_whole;
 use crate::minimal::normalised::rank;
 use crate::minimal::options::{MinimalOptions, MinimalStart};
@@ -54,7 +56,7 @@ pub fn solve(measured: &Pseudoranges, options: &MinimalOptions) -> Result<Minima
 /// relied upon, and need not be that of least squares.
 #[derive(Default)]
 pub struct Solver {
-    engines: Engines,
+    engines: Engines<3>,
 }
 
 impl Solver {
@@ -126,7 +128,7 @@ impl Solver {
 
 /// What the first method finds that explains the measurements, or the one that comes nearest.
 fn among(
-    engines: &mut Engines,
+    engines: &mut Engines<3>,
     methods: &mut dyn Iterator<Item = &Method>,
     measured: &Pseudoranges,
     options: &MinimalOptions,
@@ -202,7 +204,7 @@ struct Method {
     transmitters: usize,
     /// Parts of its size that are tried, the most promising first; some take all receivers.
     parts: fn(&Pseudoranges) -> Vec<Subset>,
-    solve: fn(&mut Engines, &Pseudoranges, &MinimalOptions, &Monitor) -> Result<Found, MinimalError>,
+    solve: fn(&mut Engines<3>, &Pseudoranges, &MinimalOptions, &Monitor) -> Result<Found, MinimalError>,
 }
 
 /// Methods without paths, linear equations first.
@@ -229,7 +231,10 @@ const WITH_PATHS: [Method; 4] =
     [tracked::<Dual<EightFive>>(), tracked::<Dual<SevenFive>>(), tracked::<SixSix>(), tracked::<Dual<TenFour>>()];
 
 /// The method of a formulation, for the part whose nodes are farthest apart.
-const fn tracked<F: Kept>() -> Method {
+const fn tracked<F: FormulationIn<3> + 'static>() -> Method
+where
+    Engine<F, 3>: PathSolver<3>,
+{
     Method {
         name: F::NAME,
         receivers: F::RECEIVERS,
@@ -239,17 +244,20 @@ const fn tracked<F: Kept>() -> Method {
     }
 }
 
-fn five(_: &mut Engines, measured: &Pseudoranges, _: &MinimalOptions, _: &Monitor) -> Result<Found, MinimalError> {
+fn five(_: &mut Engines<3>, measured: &Pseudoranges, _: &MinimalOptions, _: &Monitor) -> Result<Found, MinimalError> {
     let counts = RootCounts { complex: 1, real: 1, positive_definite: 1, physical: 0 };
     Ok(Found::directly(vec![five_transmitters(measured)?], counts))
 }
 
-fn by_paths<F: Kept>(
-    engines: &mut Engines,
+fn by_paths<F: FormulationIn<3> + 'static>(
+    engines: &mut Engines<3>,
     measured: &Pseudoranges,
     options: &MinimalOptions,
     monitor: &Monitor,
-) -> Result<Found, MinimalError> {
+) -> Result<Found, MinimalError>
+where
+    Engine<F, 3>: PathSolver<3>,
+{
     let solution = engines.used::<F>().solve(measured, options, monitor)?;
     Ok(Found {
         networks: solution.candidates.into_iter().map(|candidate| candidate.network).collect(),
