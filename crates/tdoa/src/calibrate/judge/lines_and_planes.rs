@@ -26,15 +26,16 @@ const ROUNDING: f64 = 1e-9;
 pub(crate) fn turning<const D: usize>(network: &Network<D>, uncertainty: &Covariance<D>) -> Vec<NodeKind> {
     let of_receivers: Vec<&[[f64; D]; D]> = uncertainty.receivers.iter().collect();
     let of_transmitters: Vec<&[[f64; D]; D]> = uncertainty.transmitters.iter().flatten().map(|c| &c.rows).collect();
-    let all = [
-        (NodeKind::Receivers, &network.receivers, of_receivers),
-        (NodeKind::Transmitters, &network.transmitters, of_transmitters),
-    ];
     // In the plane, a line leaves mirror images alone.
-    let turn = |(kind, points, covariances): (NodeKind, &Vec<[f64; D]>, Vec<&[[f64; D]; D]>)| {
-        (D > 2 && in_line(points, &covariances, network.size())).then_some(kind)
-    };
-    all.into_iter().filter_map(turn).collect()
+    let in_line = |points, covariances| D > 2 && in_line(points, covariances, network.size());
+    let mut turning = Vec::new();
+    if in_line(&network.receivers, &of_receivers) {
+        turning.push(NodeKind::Receivers);
+    }
+    if in_line(&network.transmitters, &of_transmitters) {
+        turning.push(NodeKind::Transmitters);
+    }
+    turning
 }
 
 /// Warns of receivers and of transmitters in one line, in space in one plane, and of mirror images.
