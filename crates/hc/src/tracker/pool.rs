@@ -3,7 +3,10 @@
 use super::{PathEnd, PathSet, Tracker, TrackerOptions};
 use crate::homotopy::ParameterPath;
 use crate::monitor::Monitor;
-use crate::threads::{IntoParallelIterator, ParallelIterator, current_num_threads};
+// Without threads, iterators have `map` of their own.
+#[cfg(feature = "threads")]
+use crate::threads::ParallelIterator;
+use crate::threads::{IntoParallelIterator, current_num_threads};
 use num_complex::Complex64;
 use poly::{Evaluate, Lanes8};
 use std::sync::{Mutex, MutexGuard, PoisonError};
