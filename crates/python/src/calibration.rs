@@ -1,5 +1,6 @@
 //! `tdoa.calibrate`, in the plane and in space.
 
+use crate::FORMAT;
 use crate::arrays::array;
 use crate::errors::{Failure, guarded};
 use crate::measured::Table;
@@ -77,6 +78,7 @@ fn coordinates<T, const D: usize>(all: Vec<T>) -> Result<[T; D], Failure> {
 #[derive(Serialize)]
 #[serde(bound = "Calibration<D>: Serialize")]
 struct Report<'a, const D: usize> {
+    format: u32,
     #[serde(flatten)]
     calibration: &'a Calibration<D>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -143,6 +145,7 @@ where
     let metres = speed.map(|speed| speed * calibration.speed.map_or(1.0, |found| found.factor));
     let offsets = |metres: f64| calibration.offsets.iter().map(|o| o.map(|o| o / metres)).collect();
     let report = Report {
+        format: FORMAT,
         calibration: &calibration,
         units: metres.map(|metres| Unit { name: "s", metres }),
         offsets_in_units: metres.map(offsets),

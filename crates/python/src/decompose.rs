@@ -1,5 +1,6 @@
 //! `hc.decompose`.
 
+use crate::FORMAT;
 use crate::errors::{Failure, guarded};
 use crate::system::Given;
 use crate::work::{Done, How, run, whole};
@@ -12,6 +13,7 @@ use serde::Serialize;
 /// The JSON of the program, without the seconds.
 #[derive(Serialize)]
 struct Report<'a> {
+    format: u32,
     variables: &'a [String],
     seed: u64,
     #[serde(flatten)]
@@ -33,7 +35,7 @@ pub(crate) fn decompose(
         let Done { result: found, stopped, seconds } =
             run(py, &how, move |monitor| Run::new().watched(monitor).decompose(&system, &options))?;
         let found = found.map_err(Failure::input)?;
-        let report = Report { variables: &found.variables, seed, found: &found };
+        let report = Report { format: FORMAT, variables: &found.variables, seed, found: &found };
         let result = PyDict::new(py);
         result.set_item("json", serde_json::to_string_pretty(&report).map_err(Failure::input)? + "\n")?;
         result.set_item("summary", found.to_string())?;

@@ -108,6 +108,8 @@ pub(crate) fn solutions<'py>(py: Python<'py>, found: &Solutions) -> Result<Bound
     result.set_item("multihomogeneous_number", found.multihomogeneous_number)?;
     result.set_item("start_systems", found.start_systems)?;
     result.set_item("partial", found.interrupted)?;
+    let limited = serde_json::to_value(found.limited).map_err(Failure::input)?;
+    result.set_item("limited", limited.as_str())?;
     result.set_item("warnings", found.warnings().iter().map(ToString::to_string).collect::<Vec<_>>())?;
     result.set_item("summary", found.to_string())?;
     Ok(result)

@@ -87,6 +87,7 @@ class Solutions(_Points):
     bezout_number: int | None
     multihomogeneous_number: int | None
     partial: bool
+    limited: str | None
     warnings: list[str]
     seed: int
     seconds: float

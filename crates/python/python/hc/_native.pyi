@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 __all__ = [
+    "FORMAT",
     "Family",
     "Fibre",
     "__version__",
@@ -31,6 +32,7 @@ class _How(TypedDict):
     threads: int | None
     progress: Callable[[str, int, int], object] | None
 
+FORMAT: int
 __version__: str
 
 _System = tuple[str | list[str], list[str] | None]

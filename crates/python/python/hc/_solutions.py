@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ._native import FORMAT
 from ._numbers import counted
 from ._result import Points, Result
 from ._symbols import own_names
@@ -57,6 +58,8 @@ class Solutions(Points):
         Numbers of paths of start systems, where they were needed.
     partial : bool
         Whether the work was interrupted: the list is then not whole.
+    limited : str or None
+        The limit for whose sake failed paths were not tracked again: `again` or `time`.
     warnings : list of str
         What a reader of the list must know.
     seed : int
@@ -107,6 +110,7 @@ class Solutions(Points):
         components, excess = counts.pop("on_components"), counts.pop("excess")
         keys = ("valuations", "denominator", "paths")
         whole = {
+            "format": FORMAT,
             "variables": self.variables,
             "seed": self.seed,
             "start": self.start,
@@ -120,6 +124,7 @@ class Solutions(Points):
             "directions": [dict(zip(keys, direction)) for direction in self.directions],
             "start_systems": self.start_systems,
             "partial": self.partial,
+            "limited": self.limited,
             "solutions": rows,
             "unresolved": [
                 {"value": _pairs(end.value), "paths": end.paths, "reason": end.reason} for end in self.unresolved
