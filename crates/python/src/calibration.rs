@@ -1,8 +1,8 @@
 //! `tdoa.calibrate`, in the plane and in space.
 
-use crate::FORMAT;
 use crate::arrays::array;
 use crate::errors::{Failure, guarded};
+use crate::json::{self, FORMAT};
 use crate::measured::Table;
 use crate::work::{Done, How, run, whole};
 use pyo3::IntoPyObjectExt;
@@ -150,9 +150,7 @@ where
         units: metres.map(|metres| Unit { name: "s", metres }),
         offsets_in_units: metres.map(offsets),
     };
-    let mut json = serde_json::to_string_pretty(&report).map_err(Failure::input)?;
-    json.push('\n');
-    Ok(json)
+    json::text(&report)
 }
 
 /// What a calibration leaves that was stopped; why there is none, for all others.

@@ -1,7 +1,7 @@
 //! `hc.decompose`.
 
-use crate::FORMAT;
 use crate::errors::{Failure, guarded};
+use crate::json::{self, FORMAT};
 use crate::system::Given;
 use crate::work::{Done, How, run, whole};
 use hc::witness::Decomposition;
@@ -37,7 +37,7 @@ pub(crate) fn decompose(
         let found = found.map_err(Failure::input)?;
         let report = Report { format: FORMAT, variables: &found.variables, seed, found: &found };
         let result = PyDict::new(py);
-        result.set_item("json", serde_json::to_string_pretty(&report).map_err(Failure::input)? + "\n")?;
+        result.set_item("json", json::text(&report)?)?;
         result.set_item("summary", found.to_string())?;
         result.set_item("seconds", seconds)?;
         whole(py, result.into_any(), stopped)

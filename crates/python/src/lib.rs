@@ -10,14 +10,12 @@ mod certify;
 mod decompose;
 mod errors;
 mod family;
+mod json;
 mod measured;
 mod networks;
 mod solve;
 mod system;
 mod work;
-
-/// Number of the form of results as JSON, that of the programs (`cli::output::FORMAT`): the tests compare the two.
-const FORMAT: u32 = 1;
 
 #[pyo3::pymodule]
 mod _native {
@@ -38,7 +36,7 @@ mod _native {
 
     #[pymodule_init]
     fn init(module: &pyo3::Bound<'_, pyo3::types::PyModule>) -> pyo3::PyResult<()> {
-        pyo3::types::PyModuleMethods::add(module, "FORMAT", crate::FORMAT)?;
+        pyo3::types::PyModuleMethods::add(module, "FORMAT", crate::json::FORMAT)?;
         pyo3::types::PyModuleMethods::add(module, "__version__", env!("CARGO_PKG_VERSION"))
     }
 }
