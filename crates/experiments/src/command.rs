@@ -12,6 +12,7 @@ mod damaged;
 mod dimension;
 mod growth;
 mod hard;
+mod kinds;
 mod noise;
 mod recording;
 mod reduced;
@@ -59,12 +60,13 @@ enum Kind {
     Damaged(damaged::Arguments),
     Reduced(reduced::Arguments),
     Dimension(dimension::Arguments),
+    Kinds(kinds::Arguments),
 }
 
 impl Arguments {
     /// Which experiments several ranks can do.
-    pub const SHARED: &str = "only `tdoa experiment calibrate`, `clean`, `conditions`, `coverage`, `damaged`, `dimension`, `noise`, \
-                              `reduced`, `routes` and `table2` run on several ranks";
+    pub const SHARED: &str = "only `tdoa experiment calibrate`, `clean`, `conditions`, `coverage`, `damaged`, `dimension`, `kinds`, \
+                              `noise`, `reduced`, `routes` and `table2` run on several ranks";
 
     /// Options of work over several ranks, where the experiment has them.
     pub fn sharing(&self) -> Option<&Sharing> {
@@ -82,7 +84,8 @@ impl Arguments {
             | Kind::Conditions(_)
             | Kind::Damaged(_)
             | Kind::Reduced(_)
-            | Kind::Dimension(_) => Some(&self.ranks),
+            | Kind::Dimension(_)
+            | Kind::Kinds(_) => Some(&self.ranks),
         }
     }
 }
@@ -110,5 +113,6 @@ pub fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<(), Failu
         Kind::Damaged(arguments) => damaged::run(arguments, ranks),
         Kind::Reduced(arguments) => reduced::run(arguments, ranks),
         Kind::Dimension(arguments) => dimension::run(arguments, ranks),
+        Kind::Kinds(arguments) => kinds::run(arguments, ranks),
     }
 }

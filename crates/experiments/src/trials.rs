@@ -5,5 +5,6 @@ pub mod calibration;
 pub mod checks;
 pub mod clean;
 pub mod hard;
+pub mod kinds;
 pub mod noise;
 pub mod reduced;
