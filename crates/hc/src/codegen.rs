@@ -6,7 +6,7 @@
 use crate::distinct::{coincidences, relative_distance};
 use crate::family::{Family, FamilyError, Fibre, PackedFibreError, StartFile, StartFileError, pack_fibre};
 use crate::refine::Refiner;
-use crate::tolerances::FAMILIES;
+use crate::tolerances::{families, same};
 use poly::counted;
 use poly::program::{EmitError, EmitOptions, emit};
 use std::fmt::Write;
@@ -124,17 +124,17 @@ pub fn verify(family: &Family, fibre: &Fibre) -> Result<(), CodegenError> {
         let refined = refiner.refine(&fibre.parameters, x);
         let distance = relative_distance(x, &refined.point);
         // What is not a number is no solution either.
-        if !distance.lt(&FAMILIES.stored_moved) {
+        if !distance.lt(&families::STORED_MOVED) {
             return Err(CodegenError::Inaccurate { index, distance });
         }
-        if !refined.condition.lt(&FAMILIES.stored_condition) {
+        if !refined.condition.lt(&families::STORED_CONDITION) {
             return Err(CodegenError::Singular { index, condition: refined.condition });
         }
         if !family.accepts(&fibre.parameters, x) {
             return Err(CodegenError::Degenerate { index });
         }
     }
-    let same = coincidences((0..fibre.len()).map(|k| (k, fibre.solution(k))), FAMILIES.stored_same);
+    let same = coincidences((0..fibre.len()).map(|k| (k, fibre.solution(k))), same::REGULAR);
     match same.first() {
         Some(group) => Err(CodegenError::Coincident { solutions: group.iter().map(|k| k + 1).collect() }),
         None => Ok(()),

@@ -3,7 +3,7 @@
 //! Points are sorted by a fixed real projection, so that only neighbours in that order are
 //! compared: N log N for N points in general position.
 
-use crate::tolerances::ENDS;
+use crate::tolerances::ends;
 use num_complex::Complex64;
 
 /// Relative distance of two points: `max_j |a_j - b_j| / w_j`, where `w_j` is the size of the
@@ -13,7 +13,7 @@ pub fn relative_distance(a: &[Complex64], b: &[Complex64]) -> f64 {
     if largest == 0.0 {
         return 0.0;
     }
-    a.iter().zip(b).map(|(a, b)| (a - b).norm() / a.norm().max(b.norm()).max(ENDS.floor * largest)).fold(0.0, f64::max)
+    a.iter().zip(b).map(|(a, b)| (a - b).norm() / a.norm().max(b.norm()).max(ends::FLOOR * largest)).fold(0.0, f64::max)
 }
 
 /// Groups of two or more coinciding points among `points` (pairs of a label and `n` coordinates):

@@ -3,7 +3,7 @@
 use crate::inverse;
 use crate::linalg::{Estimate, Lu};
 use crate::random::{Random, Stream};
-use crate::tolerances::REFINEMENT;
+use crate::tolerances::refinement;
 use num_complex::Complex64;
 use poly::simd::Isa;
 use poly::{ComplexDd, Evaluate, Scalar};
@@ -105,18 +105,18 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         let x = &mut refined.point;
         let Polished { accuracy, steady, moved } = self.polish(&exact, x);
         self.exact_p = exact;
-        let serves = steady && accuracy <= REFINEMENT.near;
+        let serves = steady && accuracy <= refinement::NEAR;
         let (mut residual, mut condition, mut smallest_row) = self.judge(p, x, serves);
         // Near a set of solutions that is no point, the Jacobian becomes singular within a step. Written so
         // that NaN is far.
-        let unmoved = condition * moved <= REFINEMENT.unmoved;
+        let unmoved = condition * moved <= refinement::UNMOVED;
         if serves && !unmoved {
             (residual, condition, smallest_row) = self.judge(p, x, false);
         }
         refined.plain = steady
-            && accuracy <= REFINEMENT.tiny
-            && condition <= REFINEMENT.good_condition
-            && smallest_row > REFINEMENT.faint;
+            && accuracy <= refinement::TINY
+            && condition <= refinement::GOOD_CONDITION
+            && smallest_row > refinement::FAINT;
         (refined.accuracy, refined.residual, refined.condition) = (accuracy, residual, condition);
     }
 
@@ -134,18 +134,18 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
     /// Jacobian is singular.
     pub(crate) fn polish_and_blur(&mut self, p: &[ComplexDd], x: &mut [Complex64], blurs: bool) -> (f64, Vec<f64>) {
         let Polished { accuracy, steady, .. } = self.polish(p, x);
-        let blur = if blurs { self.blur(p, x, steady && accuracy <= REFINEMENT.near) } else { Vec::new() };
+        let blur = if blurs { self.blur(p, x, steady && accuracy <= refinement::NEAR) } else { Vec::new() };
         (accuracy, blur)
     }
 
     /// Corrects a point until corrections no longer shrink. If it is steady, and if the last correction is
-    /// at most `REFINEMENT.near`, the Jacobian and its factors are
+    /// at most `refinement::NEAR`, the Jacobian and its factors are
     /// left, at a point as far from the result as it has moved since.
     fn polish(&mut self, p: &[ComplexDd], x: &mut [Complex64]) -> Polished {
         let (mut accuracy, mut steady, mut moved) = (f64::INFINITY, false, 0.0);
         // Whether the last Jacobian serves for this correction.
         let mut serves = false;
-        for _ in 0..REFINEMENT.iterations {
+        for _ in 0..refinement::ITERATIONS {
             if !serves {
                 weights(x, &mut self.squares);
                 self.factor(p, x);
@@ -158,7 +158,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
             let relative = self.values.iter().zip(&self.squares).map(|(d, s)| (d.norm_sqr() / s[0]).sqrt());
             // Once NaN, always NaN.
             let size = relative.fold(0.0, |m: f64, d| if d <= m || m.is_nan() { m } else { d });
-            let shrinks = size <= f64::EPSILON || size < if serves { REFINEMENT.steady * accuracy } else { accuracy };
+            let shrinks = size <= f64::EPSILON || size < if serves { refinement::STEADY * accuracy } else { accuracy };
             if !shrinks {
                 if !serves {
                     break;
@@ -166,15 +166,15 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
                 serves = false;
                 continue;
             }
-            let shrunk = accuracy.is_finite() && accuracy > REFINEMENT.tiny && size <= REFINEMENT.steady * accuracy;
-            steady |= shrunk || (accuracy.is_infinite() && size <= REFINEMENT.tiny);
+            let shrunk = accuracy.is_finite() && accuracy > refinement::TINY && size <= refinement::STEADY * accuracy;
+            steady |= shrunk || (accuracy.is_infinite() && size <= refinement::TINY);
             accuracy = size;
             moved += size;
             x.copy_from_slice(&self.next);
             if accuracy <= f64::EPSILON {
                 break;
             }
-            serves = accuracy <= REFINEMENT.near;
+            serves = accuracy <= refinement::NEAR;
         }
         Polished { accuracy, steady, moved }
     }
@@ -190,7 +190,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
     /// the first may drown in rounding errors, and the second may meet other solutions.
     pub fn contracts(&mut self, p: &[Complex64], x: &[Complex64]) -> bool {
         let exact = self.exact(p);
-        let contracts = REFINEMENT.perturbations.iter().any(|&perturbation| self.comes_back(&exact, x, perturbation));
+        let contracts = refinement::PERTURBATIONS.iter().any(|&perturbation| self.comes_back(&exact, x, perturbation));
         self.exact_p = exact;
         contracts
     }
@@ -209,7 +209,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
             }
         }
         let mut distances = y.iter().zip(x).zip(&self.squares).map(|((y, x), w)| (y - x).norm() / w[0].sqrt());
-        let comes_back = distances.all(|d| d <= REFINEMENT.returned * perturbation);
+        let comes_back = distances.all(|d| d <= refinement::RETURNED * perturbation);
         self.next = y;
         comes_back
     }
@@ -228,14 +228,14 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         let sizes: Vec<f64> = self.squares.iter().map(|w| w[0].sqrt()).collect();
         let within = |a: &ComplexDd, b: &ComplexDd, limit: f64| ComplexDd::sub(a, b).high().norm() <= limit;
         // Written so that NaN is not near.
-        let stays = x.iter().zip(&centre).zip(&sizes).all(|((x, z), w)| within(&(*x).into(), z, REFINEMENT.near * w));
+        let stays = x.iter().zip(&centre).zip(&sizes).all(|((x, z), w)| within(&(*x).into(), z, refinement::NEAR * w));
         let contracts = stays
-            && REFINEMENT.precise_perturbations.iter().any(|&distance| {
+            && refinement::PRECISE_PERTURBATIONS.iter().any(|&distance| {
                 let mut random = Random::of(0, Stream::Perturbation);
                 let away = |(z, w): (&ComplexDd, &f64)| ComplexDd::add(z, &(random.unit() * (distance * w)).into());
                 let mut y: Vec<ComplexDd> = centre.iter().zip(&sizes).map(away).collect();
                 self.newton_precisely(&exact, &mut y, &mut scratch);
-                y.iter().zip(&centre).zip(&sizes).all(|((y, z), w)| within(y, z, REFINEMENT.returned * distance * w))
+                y.iter().zip(&centre).zip(&sizes).all(|((y, z), w)| within(y, z, refinement::RETURNED * distance * w))
             });
         self.exact_p = exact;
         contracts
@@ -265,7 +265,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         if self.changes.is_empty() {
             let mut random = Random::of(0, Stream::Rounding);
             self.changes
-                .extend((0..REFINEMENT.blur_draws * p.len()).map(|_| 1.0 + REFINEMENT.blur_step * random.unit()));
+                .extend((0..refinement::BLUR_DRAWS * p.len()).map(|_| 1.0 + refinement::BLUR_STEP * random.unit()));
         }
         let mut blur = vec![0.0; x.len()];
         for changes in self.changes.chunks_exact(p.len().max(1)) {
@@ -275,7 +275,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
             self.system.values(&mut self.memory, x, &self.rounded_p, &mut self.values);
             self.lu.solve(&mut self.values);
             for (blur, d) in blur.iter_mut().zip(&self.values) {
-                let moved = d.norm_sqr().sqrt() * (f64::EPSILON / REFINEMENT.blur_step);
+                let moved = d.norm_sqr().sqrt() * (f64::EPSILON / refinement::BLUR_STEP);
                 *blur = if moved.is_nan() { f64::INFINITY } else { moved.max(*blur) };
             }
         }
@@ -318,7 +318,7 @@ impl<'a, E: Evaluate> Refiner<'a, E> {
         self.system.jacobian(&mut self.memory, point, p, &mut self.values, &mut self.jacobian);
         weights(point, &mut self.squares);
         self.lu.factor(&self.jacobian, &self.squares);
-        for _ in 0..REFINEMENT.extensions {
+        for _ in 0..refinement::EXTENSIONS {
             self.system.values(&mut self.precise, &x, &precise_p, &mut values);
             for (d, s) in self.values.iter_mut().zip(&values) {
                 *d = Complex64::from(*s);

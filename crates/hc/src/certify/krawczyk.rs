@@ -1,7 +1,7 @@
 //! Krawczyk's test at one point, in interval arithmetic of either precision.
 
 use super::proof::{Proof, shifted, symmetric};
-use crate::tolerances::PROOFS;
+use crate::tolerances::proofs;
 use num_complex::Complex64;
 use poly::Interval;
 use poly::{ComplexBall, ComplexDd, ComplexInterval, Evaluate, Interpreter, Isa, Scalar};
@@ -121,13 +121,13 @@ impl<'a, S: Enclosure> Krawczyk<'a, S> {
         let correction = |z: &S| z.interval().magnitude();
         // Room for the correction, and for the doubles that bound the published box.
         let least: Vec<f64> = (self.newton.iter().zip(at.centre))
-            .map(|(d, c)| (PROOFS.room * correction(d)).max(spacing(c.high())))
+            .map(|(d, c)| (proofs::ROOM * correction(d)).max(spacing(c.high())))
             .collect();
         if !least.iter().all(|size| size.is_finite()) {
             return None;
         }
         let mut share = largest;
-        for _ in 0..PROOFS.boxes {
+        for _ in 0..proofs::BOXES {
             let large: Vec<f64> = at.weights.iter().zip(&least).map(|(w, l)| (w * share).max(*l)).collect();
             let boxes = squares(&large);
             let (image, norm) = self.image(at.centre, &boxes);
@@ -141,9 +141,9 @@ impl<'a, S: Enclosure> Krawczyk<'a, S> {
             // Beyond rounding, the norm is proportional to the size of small boxes; that of large
             // ones grows as a higher power.
             share *= if norm.is_finite() {
-                (0.25 / norm).clamp(PROOFS.shrink * PROOFS.shrink, PROOFS.shrink)
+                (0.25 / norm).clamp(proofs::SHRINK * proofs::SHRINK, proofs::SHRINK)
             } else {
-                PROOFS.shrink * PROOFS.shrink
+                proofs::SHRINK * proofs::SHRINK
             };
         }
         None
@@ -190,7 +190,7 @@ impl<'a, S: Enclosure> Krawczyk<'a, S> {
         least: &[f64],
     ) -> Vec<ComplexInterval> {
         let total = |boxes: &[ComplexInterval]| boxes.iter().map(ComplexInterval::radius).fold(0.0, f64::max);
-        for _ in 0..PROOFS.tighter {
+        for _ in 0..proofs::TIGHTER {
             let extended: Vec<ComplexInterval> = small.iter().map(with_zero).collect();
             let (image, _) = self.image(centre, &extended);
             let next: Vec<ComplexInterval> = small.iter().zip(&image).map(|(a, b)| intersection(a, b)).collect();
@@ -202,7 +202,7 @@ impl<'a, S: Enclosure> Krawczyk<'a, S> {
         }
         // Where rounding hinders that: the least box, if it holds a solution, which is this one.
         let boxes = squares(least);
-        if total(&small) > PROOFS.wide * total(&boxes) {
+        if total(&small) > proofs::WIDE * total(&boxes) {
             let (image, _) = self.image(centre, &boxes);
             if within(&image, &boxes) {
                 small = small.iter().zip(&image).map(|(a, b)| intersection(a, b)).collect();

@@ -6,7 +6,7 @@ use super::krawczyk::{Krawczyk, Place};
 use super::proof::Proof;
 use crate::inverse;
 use crate::linalg::Lu;
-use crate::tolerances::PROOFS;
+use crate::tolerances::proofs;
 use num_complex::Complex64;
 use poly::{ComplexBall, ComplexDd, ComplexInterval, Evaluate, Interpreter, Isa, Scalar};
 
@@ -134,14 +134,14 @@ impl<'a> Prover<'a> {
     fn refine(&mut self, mut centre: Vec<ComplexDd>, weights: &[f64]) -> Result<Vec<ComplexDd>, Obstacle> {
         let n = self.n;
         let mut last = f64::INFINITY;
-        for count in 0..PROOFS.newton_steps {
+        for count in 0..proofs::NEWTON_STEPS {
             self.invert(&centre)?;
             self.evaluate_residuals(&centre);
             let residuals: Vec<ComplexDd> =
                 self.residuals.iter().map(|r| ComplexDd { re: r.re.mid, im: r.im.mid }).collect();
             let step = inverse::product(n, &self.inverse, &residuals);
             let size = step.iter().zip(weights).map(|(d, w)| d.high().norm() / w).fold(0.0, f64::max);
-            if count == 1 && size > PROOFS.contraction * last && last > PROOFS.rounding {
+            if count == 1 && size > proofs::CONTRACTION * last && last > proofs::ROUNDING {
                 return Err(Obstacle::NoContraction);
             }
             if size.is_nan() || size >= last {
@@ -226,7 +226,7 @@ impl<'a> Prover<'a> {
             let carried: Vec<f64> =
                 errors.chunks(n).map(|row| row.iter().zip(&weights).map(|(e, w)| e * w).sum::<f64>()).collect();
             for (w, c) in weights.iter_mut().zip(carried) {
-                *w = w.max(PROOFS.level * c);
+                *w = w.max(proofs::LEVEL * c);
             }
         }
         weights

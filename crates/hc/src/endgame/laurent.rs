@@ -8,7 +8,7 @@
 //! 1991).
 
 use crate::refine;
-use crate::tolerances::{ENDGAME, LoopTolerances};
+use crate::tolerances::{LoopTolerances, endgame};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -60,10 +60,10 @@ impl Loop<'_> {
             let size = size(j);
             let noise = self.noise * refine::size(size, largest);
             let blur = self.blur[j];
-            if blur > ENDGAME.blurred * size.max(1e-4 * largest) {
+            if blur > endgame::BLURRED * size.max(1e-4 * largest) {
                 return Reading::TooDeep;
             }
-            let significant = (view.zero * size).max(16.0 * noise).max(ENDGAME.blur_margin * blur);
+            let significant = (view.zero * size).max(16.0 * noise).max(endgame::BLUR_MARGIN * blur);
             let coefficient = |power: i64| {
                 let sum: Complex64 = (0..count)
                     .map(|k| self.samples[k * n + j] * roots[(power.rem_euclid(count as i64) as usize * k) % count])
@@ -87,7 +87,7 @@ impl Loop<'_> {
                 valuations.push(0);
                 continue;
             };
-            let lowest = if lowest < 0 && share < ENDGAME.dominant * size {
+            let lowest = if lowest < 0 && share < endgame::DOMINANT * size {
                 impure = true;
                 match sizes.iter().find(|(_, c)| *c > view.largest * size) {
                     Some(&(power, _)) => power,
@@ -114,7 +114,7 @@ impl Loop<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::{ENDGAME, Loop, Reading};
+    use super::{Loop, Reading, endgame};
     use num_complex::Complex64;
     use std::f64::consts::TAU;
 
@@ -130,7 +130,7 @@ mod tests {
     }
 
     fn read(n: usize, per_turn: usize, samples: &[Complex64]) -> Reading {
-        Loop { n, per_turn, samples, noise: 1e-15, blur: &vec![0.0; n] }.read(ENDGAME.clear)
+        Loop { n, per_turn, samples, noise: 1e-15, blur: &vec![0.0; n] }.read(endgame::CLEAR)
     }
 
     #[test]

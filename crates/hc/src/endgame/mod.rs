@@ -24,7 +24,7 @@ pub(crate) use walker::{EndKind, Ending};
 use crate::homotopy::Segment;
 use crate::monitor::{Monitor, Stage};
 use crate::threads::{IntoParallelIterator, ParallelIterator};
-use crate::tolerances::ENDGAME;
+use crate::tolerances::endgame;
 use crate::tracker::{PathEnd, PathSet, TrackerOptions, Trackers};
 use legs::{Leg, Legs};
 use num_complex::Complex64;
@@ -72,7 +72,7 @@ pub(crate) fn endgame<'a, E: Evaluate>(
     monitor.enter(Stage::Endgame, walkers.len() as u64);
     // Legs are no paths: they are not counted.
     let nobody = Monitor::default();
-    let to_zero = TrackerOptions { min_t: ENDGAME.left_of_leg, ..settings.clone() };
+    let to_zero = TrackerOptions { min_t: endgame::LEFT_OF_LEG, ..settings.clone() };
     let mut undecided = walkers.len();
     let mut starts: Vec<Complex64> = Vec::new();
     loop {

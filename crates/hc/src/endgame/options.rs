@@ -1,6 +1,6 @@
 //! Settings of the endgame.
 
-use crate::tolerances::ENDGAME;
+use crate::tolerances::endgame;
 use crate::tracker::OptionError;
 use serde::Serialize;
 
@@ -40,7 +40,7 @@ impl EndgameOptions {
             ("endgame.min_radius", self.min_radius),
             ("endgame.shrink", self.shrink),
         ])?;
-        OptionError::at_least("endgame.shrink", self.shrink, ENDGAME.least_shrink, "at least 1.5")?;
+        OptionError::at_least("endgame.shrink", self.shrink, endgame::LEAST_SHRINK, "at least 1.5")?;
         OptionError::at_least("endgame.turns", self.turns as f64, 1.0, "at least 1")
     }
 }

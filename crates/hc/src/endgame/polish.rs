@@ -4,7 +4,7 @@ use super::legs::Legs;
 use super::walker::Sample;
 use crate::linalg::Lu;
 use crate::refine::{Refiner, size_sqr, weight_sqr};
-use crate::tolerances::REFINEMENT;
+use crate::tolerances::refinement;
 use crate::tracker::Precise;
 use num_complex::Complex64;
 use poly::simd::Isa;
@@ -111,11 +111,11 @@ impl<'a, E: Evaluate> Polisher<'a, E> {
         let second = self.correct();
         std::array::from_fn(|l| {
             let (first, second) = (first.as_ref()[l].sqrt(), second.as_ref()[l].sqrt());
-            let most = REFINEMENT.omega_margin * lanes[l].omega.max(1.0) * first;
+            let most = refinement::OMEGA_MARGIN * lanes[l].omega.max(1.0) * first;
             let contraction = (2.0 * second / first.max(f64::MIN_POSITIVE)).min(most);
             let third = second * contraction.max(f64::EPSILON);
             // Written so that NaN is not small.
-            (first <= REFINEMENT.near && third <= f64::EPSILON).then_some(third)
+            (first <= refinement::NEAR && third <= f64::EPSILON).then_some(third)
         })
     }
 

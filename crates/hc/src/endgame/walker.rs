@@ -4,7 +4,7 @@ use super::laurent::{Loop, Reading};
 use super::legs::Leg;
 use super::options::EndgameOptions;
 use crate::refine;
-use crate::tolerances::ENDGAME;
+use crate::tolerances::endgame;
 use num_complex::Complex64;
 
 /// How a path ends, after its endgame.
@@ -95,7 +95,7 @@ impl Walker {
             origin: (-t.ln(), x.to_vec()),
             deepest: options.min_radius,
             samples: Vec::new(),
-            per_turn: ENDGAME.samples,
+            per_turn: endgame::SAMPLES,
             turns: options.turns.min(max_turns).max(1),
             max_turns,
             shrunk: 0,
@@ -171,11 +171,11 @@ impl Walker {
         }
         let largest = largest(&point);
         let blurred = |share: f64| point.iter().zip(&blur).any(|(z, b)| *b > share * size(z).max(1e-4 * largest));
-        if blurred(ENDGAME.sharp) && self.widen_to().is_some_and(|wider| wider <= options.start) {
+        if blurred(endgame::SHARP) && self.widen_to().is_some_and(|wider| wider <= options.start) {
             self.widen();
             return;
         }
-        if blurred(ENDGAME.hopeless) {
+        if blurred(endgame::HOPELESS) {
             self.lose();
             return;
         }
@@ -217,11 +217,11 @@ impl Walker {
         let first = &self.samples[..n];
         let gap = distance(first, end);
         let spread = self.samples.chunks(n).map(|x| distance(first, x)).fold(0.0, f64::max);
-        if gap <= ENDGAME.closed.max(100.0 * self.noise).max(1e-7 * spread) {
+        if gap <= endgame::CLOSED.max(100.0 * self.noise).max(1e-7 * spread) {
             let all = Loop { n, per_turn: self.per_turn, samples: &self.samples, noise: self.noise, blur: &self.blur };
-            let reading = all.read(ENDGAME.clear);
+            let reading = all.read(endgame::CLEAR);
             if reading == Reading::TooWide {
-                self.suppose(end_kind(all.read(ENDGAME.vague), winding).map(reduced));
+                self.suppose(end_kind(all.read(endgame::VAGUE), winding).map(reduced));
             }
             match reading {
                 Reading::TooWide => self.shrink(options),
@@ -256,17 +256,17 @@ impl Walker {
         self.x.copy_from_slice(&self.samples[..n]);
         self.samples.clear();
         self.shrunk += 1;
-        self.going_home = self.shrunk == ENDGAME.straight_after;
+        self.going_home = self.shrunk == endgame::STRAIGHT_AFTER;
         self.turns = self.turns.saturating_mul(2).min(self.max_turns).max(1);
         // Circles that never shrink would never end.
-        let shrink = options.shrink.max(ENDGAME.least_shrink);
+        let shrink = options.shrink.max(endgame::LEAST_SHRINK);
         // Where a deeper circle was too deep already: one halfway there.
         let halfway = (self.radius * self.deepest).sqrt();
         if self.radius / shrink > self.deepest {
             self.radius /= shrink;
         } else if self.deepest > options.min_radius && self.radius > 2.0 * halfway {
             self.radius = halfway;
-        } else if self.per_turn < ENDGAME.most_samples_wide {
+        } else if self.per_turn < endgame::MOST_SAMPLES_WIDE {
             // No smaller circle will do: once more with more samples, which may also stand a
             // singularity not far outside.
             self.per_turn *= 2;
@@ -350,8 +350,8 @@ fn steepest(from: &[Complex64], to: &[Complex64], ds: f64) -> f64 {
 /// Samples per turn that separate powers up to `steepest` from their aliases, with room for the
 /// decay beyond them.
 fn samples_for(steepest: f64) -> usize {
-    let mut samples = ENDGAME.samples;
-    while samples < ENDGAME.most_samples && steepest > 0.25 * samples as f64 + 0.25 {
+    let mut samples = endgame::SAMPLES;
+    while samples < endgame::MOST_SAMPLES && steepest > 0.25 * samples as f64 + 0.25 {
         samples *= 2;
     }
     samples

@@ -6,7 +6,7 @@
 
 use super::eliminant::Eliminant;
 use super::roots::{Digits, roots_with_multiplicities};
-use crate::tolerances::LOCAL;
+use crate::tolerances::structure;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, Zero};
@@ -66,7 +66,10 @@ fn changed(
         ways.sort_by(|a, b| a.0.total_cmp(&b.0));
         let next = ways.get(1).map_or(f64::INFINITY, |way| way.0);
         let (size, k, point) = ways.into_iter().next()?;
-        if size > LOCAL.plane_solves || next < size + LOCAL.plane_clearer || std::mem::replace(&mut taken[k], true) {
+        if size > structure::PLANE_SOLVES
+            || next < size + structure::PLANE_CLEARER
+            || std::mem::replace(&mut taken[k], true)
+        {
             return None;
         }
         points.push((point, multiplicity));

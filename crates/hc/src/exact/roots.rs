@@ -8,7 +8,7 @@
 
 use super::squarefree::squarefree;
 use crate::singular::Number;
-use crate::tolerances::LOCAL;
+use crate::tolerances::structure;
 use num_complex::Complex64;
 use poly::{ComplexMulti, Exact, Monomial, Polynomial, Scalar};
 
@@ -84,7 +84,7 @@ fn settled<S: Number>(polynomial: &Polynomial<Exact>) -> Option<Vec<Digits>> {
                 return None;
             }
             points[k] = S::sub(&z, &step);
-            settled[k] = size < LOCAL.root_correction;
+            settled[k] = size < structure::ROOT_CORRECTION;
         }
         if settled.iter().all(|&s| s) {
             return are_apart(&terms, &points).then(|| points.iter().map(digits).collect());
@@ -114,7 +114,7 @@ fn are_apart<S: Number>(terms: &[(u32, S)], points: &[S]) -> bool {
     let radius = |k: usize| {
         let z = &points[k];
         let size = terms.iter().map(|(e, c)| c.log2() + f64::from(*e) * z.log2()).fold(f64::NEG_INFINITY, f64::max);
-        let value = values(terms, z).0.log2().max(size + LOCAL.root_error - S::BITS);
+        let value = values(terms, z).0.log2().max(size + structure::ROOT_ERROR - S::BITS);
         let others: f64 = (0..points.len()).filter(|&j| j != k).map(|j| distance(j, k)).sum();
         1.0 + degree + value - leading.log2() - others
     };

@@ -8,7 +8,7 @@ use crate::checkpoint::{self, Hash, Job};
 use crate::distinct::relative_distance;
 use crate::random::{Random, Stream};
 use crate::solve::Solutions;
-use crate::tolerances::FAMILIES;
+use crate::tolerances::{families, same};
 use num_complex::Complex64;
 use poly::{Evaluate, Interpreter, Isa, System};
 use serde::Serialize;
@@ -104,7 +104,7 @@ impl Family {
         let mut memory = self.nonzero.memory(Isa::Portable);
         let mut values = vec![Complex64::new(0.0, 0.0); self.nonzero.equations()];
         self.nonzero.values(&mut memory, x, p, &mut values);
-        values.iter().all(|z| z.norm() > FAMILIES.vanishes)
+        values.iter().all(|z| z.norm() > families::VANISHES)
     }
 
     /// Checks that a fibre has the family's numbers of parameters and unknowns.
@@ -139,9 +139,9 @@ impl Family {
                 continue;
             }
             representatives.push(k);
-            let orbit = self.symmetry.orbit(&fibre.parameters, fibre.solution(k), FAMILIES.same);
+            let orbit = self.symmetry.orbit(&fibre.parameters, fibre.solution(k), same::REGULAR);
             for (j, known) in known.iter_mut().enumerate() {
-                *known |= orbit.iter().any(|x| relative_distance(x, fibre.solution(j)) <= FAMILIES.same);
+                *known |= orbit.iter().any(|x| relative_distance(x, fibre.solution(j)) <= same::REGULAR);
             }
         }
         Fibre { representatives: Some(representatives), ..fibre }
@@ -176,7 +176,7 @@ impl Family {
             let largest = x.iter().map(|z| z.norm()).fold(0.0, f64::max);
             let slopes = gradients.chunks(n).map(|row| row.iter().map(|z| z.norm()).sum::<f64>());
             let degenerates =
-                values.iter().zip(slopes).any(|(value, slope)| value.norm() <= FAMILIES.degenerate * slope * largest);
+                values.iter().zip(slopes).any(|(value, slope)| value.norm() <= families::DEGENERATE * slope * largest);
             paths += usize::from(degenerates) * solution.multiplicity;
             !degenerates
         });

@@ -1,5 +1,6 @@
 //! Fibres: all solutions of a family for one parameter point.
 
+use crate::tolerances::same;
 use crate::tracker::{OptionError, TrackerOptions};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -91,7 +92,7 @@ pub struct FibreOptions {
 
 impl Default for FibreOptions {
     fn default() -> Self {
-        FibreOptions { tracker: TrackerOptions::default(), retries: 4, again: None, coincidence: 1e-8 }
+        FibreOptions { tracker: TrackerOptions::default(), retries: 4, again: None, coincidence: same::REGULAR }
     }
 }
 

@@ -16,7 +16,7 @@ use crate::distinct::{coincidences, relative_distance};
 use crate::monitor::{Monitor, Stage};
 use crate::random::{Random, Stream};
 use crate::refine::Refiner;
-use crate::tolerances::FAMILIES;
+use crate::tolerances::families;
 use crate::tracker::PathEnd;
 use num_complex::Complex64;
 use poly::Evaluate;
@@ -120,7 +120,7 @@ fn scale(idle: usize, patience: usize) -> f64 {
     let Some(k) = idle.checked_sub(patience.div_ceil(2)) else { return 1.0 };
     let turn = k / 3;
     let steps = if k % 3 < 2 { (turn % LARGER + 1) as i32 } else { -((turn % SMALLER + 1) as i32) };
-    FAMILIES.loop_scale.powi(steps)
+    families::LOOP_SCALE.powi(steps)
 }
 
 /// A fibre that is being filled.
@@ -217,7 +217,7 @@ impl<E: Evaluate> Filling<'_, E> {
         let mut new = Vec::new();
         for x in points {
             let refined = refiner.refine(&self.fibre.parameters, x);
-            if refined.accuracy < FAMILIES.accurate && accept(&self.fibre.parameters, &refined.point) {
+            if refined.accuracy < families::ACCURATE && accept(&self.fibre.parameters, &refined.point) {
                 new.push(refined.point);
             }
         }
@@ -239,7 +239,7 @@ impl<E: Evaluate> Filling<'_, E> {
             for image in self.symmetry.orbit(&self.fibre.parameters, x, tolerance).into_iter().skip(1) {
                 // A point that is no solution is no image under a symmetry.
                 let refined = refiner.refine(&self.fibre.parameters, &image);
-                if refined.accuracy < FAMILIES.accurate && relative_distance(&refined.point, &image) < tolerance {
+                if refined.accuracy < families::ACCURATE && relative_distance(&refined.point, &image) < tolerance {
                     self.fibre.solutions.extend(refined.point);
                 }
             }

@@ -14,7 +14,7 @@ use super::fibre::Fibre;
 use crate::distinct::{coincidences, relative_distance};
 use crate::refine::Refiner;
 use crate::threads::{IntoParallelIterator, ParallelIterator};
-use crate::tolerances::FAMILIES;
+use crate::tolerances::{families, same};
 use num_complex::Complex64;
 use poly::{Evaluate, counted};
 
@@ -98,7 +98,7 @@ pub fn pack_fibre<E: Evaluate>(system: &E, fibre: &Fibre) -> Result<Vec<u8>, Pac
     let mut returns = |k: usize| {
         let places = k * fibre.dimension..(k + 1) * fibre.dimension;
         let back = refiner.refine(&fibre.parameters, &near[places.clone()]);
-        settled(back.accuracy) && relative_distance(&back.point, &solutions[places]) < FAMILIES.stored_same
+        settled(back.accuracy) && relative_distance(&back.point, &solutions[places]) < same::REGULAR
     };
     let full: Vec<usize> = (0..fibre.len()).filter(|&k| !returns(k)).collect();
     let mut bytes = MARK.to_vec();
@@ -172,7 +172,7 @@ fn refined<E: Evaluate>(
             || Refiner::new(system),
             |refiner, k| {
                 let refined = refiner.refine(parameters, &points[k * n..(k + 1) * n]);
-                let regular = settled(refined.accuracy) && refined.condition < FAMILIES.stored_condition;
+                let regular = settled(refined.accuracy) && refined.condition < families::STORED_CONDITION;
                 regular.then_some(refined.point)
             },
         )
@@ -181,7 +181,7 @@ fn refined<E: Evaluate>(
     for (k, found) in found.into_iter().enumerate() {
         solutions.extend(found.ok_or(PackedFibreError::NoSolution { index: k + 1 })?);
     }
-    let same = coincidences(solutions.chunks_exact(n).enumerate(), FAMILIES.stored_same);
+    let same = coincidences(solutions.chunks_exact(n).enumerate(), same::REGULAR);
     match same.first() {
         Some(group) => Err(PackedFibreError::Coincident { solutions: group.iter().map(|k| k + 1).collect() }),
         None => Ok(solutions),
@@ -190,7 +190,7 @@ fn refined<E: Evaluate>(
 
 /// Whether Newton's method has found a solution. NaN is none.
 fn settled(accuracy: f64) -> bool {
-    accuracy < FAMILIES.stored_moved
+    accuracy < families::STORED_MOVED
 }
 
 /// A number to 15 bits of its larger part; what is too large or too small for the exponent becomes the

@@ -4,7 +4,7 @@
 use super::fibre::Fibre;
 use crate::random::{Random, Stream};
 use crate::refine::Refiner;
-use crate::tolerances::FAMILIES;
+use crate::tolerances::families;
 use num_complex::Complex64;
 use poly::{ComplexDd, Evaluate, Scalar};
 
@@ -69,20 +69,20 @@ impl Reach {
             scales.sort_unstable();
             let scale = scales.get(scales.len() / 2).map_or(0, |&scale| scale);
             if scale > 0 {
-                let straight = *size * FAMILIES.reach_scale.powi(scale);
+                let straight = *size * families::REACH_SCALE.powi(scale);
                 for x in &points {
                     let steps = motion.steps(&motion.only(k, straight), x);
                     for (unknown, step) in unknowns.iter_mut().zip(steps) {
-                        *unknown = unknown.max(FAMILIES.reach_middle * Complex64::from(step[0]).norm());
+                        *unknown = unknown.max(families::REACH_MIDDLE * Complex64::from(step[0]).norm());
                     }
                 }
-                *size = FAMILIES.reach_middle * straight;
+                *size = families::REACH_MIDDLE * straight;
             }
         }
         let hidden = parameters != natural.parameters && {
             let change = |sizes: &[f64]| -> Vec<Complex64> {
                 let random = Random::of(0, Stream::Trace).normals(sizes.len());
-                random.into_iter().zip(sizes).map(|(z, size)| z * (FAMILIES.reach_middle * size)).collect()
+                random.into_iter().zip(sizes).map(|(z, size)| z * (families::REACH_MIDDLE * size)).collect()
             };
             let (near, far) = (change(&natural.parameters), change(&parameters));
             let mut hides = |x: &&[Complex64]| {
@@ -110,7 +110,7 @@ impl<E: Evaluate> Motion<'_, E> {
         let mut straight = vec![true; x.len()];
         let mut last = None;
         for scale in 0..SCALES {
-            let change = self.only(k, natural * FAMILIES.reach_scale.powi(scale + 1));
+            let change = self.only(k, natural * families::REACH_SCALE.powi(scale + 1));
             for (before, now) in straight.iter_mut().zip(self.straight(&change, x)) {
                 if *before && !now {
                     *before = false;
@@ -151,7 +151,7 @@ fn leaves_its_tangent(steps: &[ComplexDd; 2], size: f64) -> bool {
     let bend = Complex64::from(ComplexDd::sub(&steps[1], &steps[0])).norm();
     let step = Complex64::from(steps[0]).norm();
     // Written so that NaN is bent.
-    !(step <= FAMILIES.still * size || bend <= FAMILIES.bent * step)
+    !(step <= families::STILL * size || bend <= families::BENT * step)
 }
 
 #[cfg(test)]

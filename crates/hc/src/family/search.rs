@@ -1,7 +1,7 @@
 //! The search for all solutions of a family: its settings, its result, and what the trace test found.
 
 use super::fibre::{Fibre, FibreOptions};
-use crate::tolerances::FAMILIES;
+use crate::tolerances::families;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -163,7 +163,7 @@ impl TraceTest {
     /// Whether the test shows that a fibre of `len` points is whole: it has a
     /// [result](Self::result), and the result is below 1e-18.
     pub fn passed(&self, len: usize) -> bool {
-        self.result(len).is_some_and(|deviation| deviation < FAMILIES.trace_passed)
+        self.result(len).is_some_and(|deviation| deviation < families::TRACE_PASSED)
     }
 
     /// The deviation for a fibre of `len` points, if it means something: every path ended well, and

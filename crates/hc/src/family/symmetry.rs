@@ -2,7 +2,7 @@
 
 use crate::distinct::relative_distance;
 use crate::refine::Refiner;
-use crate::tolerances::FAMILIES;
+use crate::tolerances::{families, same};
 use num_complex::Complex64;
 use poly::{CompileError, Evaluate, Interpreter, Isa, System};
 
@@ -56,7 +56,7 @@ impl Symmetry {
             let keeps = |map: &Interpreter, refiner: &mut Refiner<'_, Interpreter>| {
                 let image = image(map, p, x);
                 let refined = refiner.refine(p, &image);
-                refined.accuracy < FAMILIES.accurate && relative_distance(&refined.point, &image) <= FAMILIES.same
+                refined.accuracy < families::ACCURATE && relative_distance(&refined.point, &image) <= same::REGULAR
             };
             if let Some(k) = self.maps.iter().position(|map| !keeps(map, &mut refiner)) {
                 return Some(k);

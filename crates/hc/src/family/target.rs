@@ -16,7 +16,7 @@ use crate::solve::{Solution, Solutions, SolveOptions, solve_member};
 // One thread needs no trait for `map`.
 #[cfg_attr(not(feature = "threads"), allow(unused_imports))]
 use crate::threads::{IntoParallelRefIterator, ParallelIterator};
-use crate::tolerances::FAMILIES;
+use crate::tolerances::same;
 use crate::tracker::Trackers;
 use num_complex::Complex64;
 use std::time::Duration;
@@ -183,7 +183,7 @@ impl Orbits {
         }
         family.check_symmetry(fibre)?;
         let tracked = fibre.tracked();
-        let size = |x| family.symmetry.orbit(&fibre.parameters, x, FAMILIES.same).len();
+        let size = |x| family.symmetry.orbit(&fibre.parameters, x, same::REGULAR).len();
         let mut sizes: Vec<usize> = tracked.iter().map(size).collect();
         sizes.sort_unstable();
         Ok(Some(Orbits { tracked, sizes }))

@@ -17,7 +17,7 @@ use super::symmetry::Symmetry;
 use crate::checkpoint::{Piece, Pieces};
 use crate::random::{Random, Stream};
 use crate::refine::Refiner;
-use crate::tolerances::FAMILIES;
+use crate::tolerances::families;
 use crate::tracker::PathEnd;
 use num_complex::Complex64;
 use poly::{CompileError, ComplexDd, Evaluate, Interpreter, Scalar, System};
@@ -160,7 +160,7 @@ pub(crate) fn deviation<E: Evaluate>(system: &E, fibres: &[&Fibre; 3], n: usize)
     let size = sizes.iter().copied().fold(0.0, f64::max);
     let relative = |j: usize| {
         let off = Complex64::from(whole[j]).norm();
-        if off <= FAMILIES.straight * size { 0.0 } else { off / single[j] }
+        if off <= families::STRAIGHT * size { 0.0 } else { off / single[j] }
     };
     let largest = |a: f64, b: f64| if b.is_nan() { f64::INFINITY } else { a.max(b) };
     (0..n).map(relative).fold(0.0, largest)

@@ -8,7 +8,7 @@ use crate::monitor::Monitor;
 use crate::ranks::{RanksError, Shareable, Task, Worker};
 use crate::refine::{Refined, Refiner};
 use crate::runner::{Flow, Round, Work};
-use crate::tolerances::FAMILIES;
+use crate::tolerances::families;
 use crate::tracker::{PathEnd, PathResult, PathSet, Tracker, TrackerOptions, Trackers};
 use num_complex::Complex64;
 use poly::{Evaluate, Lanes8};
@@ -327,7 +327,7 @@ impl<'a, E: Evaluate, C: Charts, U> FibreWork<'_, 'a, E, C, U> {
                 if regular {
                     refiner.refine_into(self.target, back, refined);
                 }
-                if regular && refined.accuracy < FAMILIES.carried {
+                if regular && refined.accuracy < families::CARRIED {
                     back.copy_from_slice(&refined.point);
                 } else {
                     record.end = PathEnd::Singular;
@@ -355,7 +355,7 @@ fn ends_regularly<E: Evaluate>(
     x: &[Complex64],
 ) -> bool {
     let largest = x.iter().map(|z| z.norm_sqr()).fold(0.0, f64::max);
-    let plain = || result.pivot > f64::EPSILON && x.iter().all(|z| z.norm_sqr() > FAMILIES.vanished_sqr * largest);
+    let plain = || result.pivot > f64::EPSILON && x.iter().all(|z| z.norm_sqr() > families::VANISHED_SQR * largest);
     let mut attracts = || refiner.contracts(target, x) || refiner.contracts_precisely(target, x);
     result.end == PathEnd::Success && (plain() || attracts())
 }
@@ -372,9 +372,9 @@ fn settle<E: Evaluate>(refiner: &mut Refiner<'_, E>, target: &[Complex64], paths
         }
         if !ends_regularly(refiner, target, &result, paths.point(k)) {
             paths.replace_record(k, PathResult { end: PathEnd::Singular, ..result });
-        } else if result.accuracy > FAMILIES.vague {
+        } else if result.accuracy > families::VAGUE {
             refiner.refine_into(target, paths.point(k), &mut refined);
-            let end = if refined.accuracy <= FAMILIES.settled { PathEnd::Success } else { PathEnd::Singular };
+            let end = if refined.accuracy <= families::SETTLED { PathEnd::Success } else { PathEnd::Singular };
             paths.replace(k, PathResult { end, accuracy: refined.accuracy, ..result }, &refined.point);
         }
     }

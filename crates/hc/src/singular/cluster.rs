@@ -7,7 +7,7 @@ use super::equations::{ExactEquations, LocalEquations};
 use super::kinds::{Effort, LocalStructure};
 use super::local_structure::{local_structure, rounded};
 use super::number::{Number, largest};
-use crate::tolerances::CLUSTERS;
+use crate::tolerances::clusters;
 use num_complex::Complex64;
 use num_rational::BigRational;
 use num_traits::Zero;
@@ -41,7 +41,7 @@ impl<'a> ClusterEquations<'a> {
     /// which unknowns are determined.
     pub(crate) fn all(given: &'a ExactEquations, point: &[Complex64]) -> impl Iterator<Item = ClusterEquations<'a>> {
         let mut tried: Vec<(Profile, usize)> = Vec::new();
-        let ways = ORDERS.into_iter().flat_map(|order| CLUSTERS.ranks.map(|tolerance| (order, tolerance)));
+        let ways = ORDERS.into_iter().flat_map(|order| clusters::RANKS.map(|tolerance| (order, tolerance)));
         let point = point.to_vec();
         ways.filter_map(move |(order, tolerance)| ClusterEquations::new(given, &point, order, tolerance, &mut tried))
     }
@@ -67,7 +67,7 @@ impl<'a> ClusterEquations<'a> {
             fresh
         })?;
         let centre = last.point;
-        if distance(&start, &centre) > CLUSTERS.near {
+        if distance(&start, &centre) > clusters::NEAR {
             return None;
         }
         let (_, jacobian) = local.jacobian(&centre);
@@ -112,7 +112,7 @@ impl<'a> ClusterEquations<'a> {
             .filter(|found| found.profile.is_regular())
             .filter(|found| distance(&start, &found.point) <= self.size as f64 + 1.0);
         if let Some(found) = found {
-            let is_new = regular.iter().all(|known| distance(known, &found.point) > CLUSTERS.same);
+            let is_new = regular.iter().all(|known| distance(known, &found.point) > clusters::SAME);
             return is_new.then(|| {
                 let (point, residual) = rounded(self.given, &self.local, &found.point);
                 regular.push(found.point);
@@ -138,17 +138,17 @@ fn size(reduced: &Reduced<Digits>) -> Option<i64> {
             .map(|k| {
                 let from = if k == 0 { 0 } else { reduced.basis.count(k - 1) };
                 Some(largest(&series[from..reduced.basis.count(k)]))
-                    .filter(|&s| s > CLUSTERS.noise)
+                    .filter(|&s| s > clusters::NOISE)
                     .unwrap_or(f64::NEG_INFINITY)
             })
             .collect();
-        let outside = |k: &usize| sizes[*k] + *k as f64 * CLUSTERS.widest;
+        let outside = |k: &usize| sizes[*k] + *k as f64 * clusters::WIDEST;
         let leading = (0..=order).max_by(|a, b| outside(a).total_cmp(&outside(b)))?;
         for k in 0..leading {
             size = size.max((sizes[k] - sizes[leading]) / (leading - k) as f64);
         }
     }
-    (size.is_finite() && size <= CLUSTERS.widest).then(|| size.round() as i64)
+    (size.is_finite() && size <= clusters::WIDEST).then(|| size.round() as i64)
 }
 
 /// An equation in units of a size, without the terms that do not matter.
@@ -157,7 +157,7 @@ fn in_units(reduced: &Reduced<Digits>, series: &[Digits], size: i64) -> Option<P
     let degree = |k: usize| exponents[k].iter().map(|&e| i64::from(e)).sum::<i64>();
     let scaled: Vec<Digits> = series.iter().enumerate().map(|(k, c)| c.shifted(degree(k) * size)).collect();
     let top = largest(&scaled);
-    let kept = scaled.iter().enumerate().filter(|(_, c)| c.log2() > top + CLUSTERS.small_term);
+    let kept = scaled.iter().enumerate().filter(|(_, c)| c.log2() > top + clusters::SMALL_TERM);
     let term = |(k, c): (usize, &Digits)| {
         let monomial = Monomial::new(exponents[k].iter().map(|&e| i32::from(e)));
         Some((monomial, exact(&c.shifted(-top.round() as i64))?))

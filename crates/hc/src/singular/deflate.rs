@@ -13,7 +13,7 @@ use super::eliminate::{Elimination, PivotLimit};
 use super::equations::LocalEquations;
 use super::number::{Number, largest};
 use super::series::Basis;
-use crate::tolerances::LOCAL;
+use crate::tolerances::structure;
 use num_complex::Complex64;
 
 /// How many unknowns each level of a deflation determines.
@@ -71,8 +71,8 @@ pub(crate) struct DeflatedPoint<S> {
 impl<S: Number> DeflatedPoint<S> {
     /// Whether the point solves the equations and what was taken as zero is clearly zero.
     fn is_solution(&self, local: &LocalEquations<'_, S>) -> bool {
-        let clear = self.accepted >= LOCAL.clear * S::BITS && self.rejected <= LOCAL.zero * S::BITS;
-        clear && local.residual(&self.point) <= LOCAL.solved * S::BITS
+        let clear = self.accepted >= structure::CLEAR * S::BITS && self.rejected <= structure::ZERO * S::BITS;
+        clear && local.residual(&self.point) <= structure::SOLVED * S::BITS
     }
 }
 
@@ -159,7 +159,7 @@ fn iterated<S: Number>(
             return None;
         }
         before = correction;
-        if correction <= LOCAL.converged * S::BITS {
+        if correction <= structure::CONVERGED * S::BITS {
             return step(local, &point, order, RankRule::Known(profile));
         }
     }

@@ -11,7 +11,7 @@
 use super::eliminate::{Elimination, PivotLimit};
 use super::number::{Number, largest};
 use super::series::Basis;
-use crate::tolerances::LOCAL;
+use crate::tolerances::structure;
 
 /// What the functionals up to an order tell.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -93,16 +93,17 @@ impl<S: Number> Space<'_, S> {
         }
         for row in &mut rows {
             let size = largest(row.iter());
-            if size > LOCAL.zero * S::BITS && size < LOCAL.clear * S::BITS {
+            if size > structure::ZERO * S::BITS && size < structure::CLEAR * S::BITS {
                 return None;
             }
             // Rows of rounding errors stay as small as they are.
-            if size.is_finite() && size >= LOCAL.clear * S::BITS {
+            if size.is_finite() && size >= structure::CLEAR * S::BITS {
                 row.iter_mut().for_each(|z| *z = z.shifted(-(size.round() as i64)));
             }
         }
-        let found = Elimination::new(rows, n * m, PivotLimit::Below(0.5 * (LOCAL.zero + LOCAL.clear) * S::BITS));
-        if !(found.rest <= LOCAL.zero * S::BITS && found.smallest >= LOCAL.clear * S::BITS) {
+        let found =
+            Elimination::new(rows, n * m, PivotLimit::Below(0.5 * (structure::ZERO + structure::CLEAR) * S::BITS));
+        if !(found.rest <= structure::ZERO * S::BITS && found.smallest >= structure::CLEAR * S::BITS) {
             return None;
         }
         let vectors = found.null_space();

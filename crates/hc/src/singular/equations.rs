@@ -6,7 +6,7 @@ use super::multiplicity::Modular;
 use super::number::{Number, largest};
 use super::series::Basis;
 use crate::monitor::Monitor;
-use crate::tolerances::LOCAL;
+use crate::tolerances::structure;
 use num_complex::Complex64;
 use num_traits::Zero;
 use poly::{ComplexDd, ComplexMulti, Exact, Polynomial};
@@ -198,7 +198,7 @@ impl ExactEquations {
 
     /// The equations in unknowns of about unit size near a point.
     pub(crate) fn near<S: Precision>(&self, point: &[Complex64]) -> LocalEquations<'_, S> {
-        self.near_within(point, LOCAL.small)
+        self.near_within(point, structure::SMALL)
     }
 
     /// [`near`](ExactEquations::near) a point of which coordinates below this share of the largest, or of one, may

@@ -10,7 +10,7 @@ use super::number::Number;
 use super::rational::at_rational;
 use super::sheet::{leads_on_somewhere, on_sheet};
 use crate::distinct::relative_distance;
-use crate::tolerances::LOCAL;
+use crate::tolerances::structure;
 use num_complex::Complex64;
 use poly::{ComplexDd, ComplexMulti};
 use std::cell::LazyCell;
@@ -38,7 +38,7 @@ pub(crate) fn local_structure(
     if point.iter().any(|z| !z.is_finite()) {
         return LocalStructure::Unresolved(UnresolvedReason::NoSolution);
     }
-    let error = if error.is_finite() { error.abs() } else { LOCAL.near_singular };
+    let error = if error.is_finite() { error.abs() } else { structure::NEAR_SINGULAR };
     if is_no_solution(given, point, error) {
         return LocalStructure::NotASolution;
     }
@@ -47,7 +47,7 @@ pub(crate) fn local_structure(
     // In this order, as far as one tells something. A rational point on a component counts only where more
     // digits show no regular solution, and no sheet that the path has rather come to.
     let attempts: [&dyn Fn() -> Option<LocalStructure>; 7] = [
-        &|| regular_from(&given.near_within::<ComplexDd>(point, LOCAL.own_units), given, point, error),
+        &|| regular_from(&given.near_within::<ComplexDd>(point, structure::OWN_UNITS), given, point, error),
         &|| rational.clone().filter(|found| !is_on_component(found)),
         &|| regular::<ComplexMulti<4>>(given, point, error),
         &|| sheet(given, point, paths, error),
@@ -95,16 +95,17 @@ pub(crate) fn local_structure(
 fn is_no_solution(given: &ExactEquations, point: &[Complex64], error: f64) -> bool {
     // A term changes by as many times the relative change of a point as its degree.
     let degree = given.degree() as f64;
-    let local = given.near_within::<ComplexDd>(point, (1e3 * error).clamp(LOCAL.surely_zero, LOCAL.near_singular));
-    local.residual(&local.scaled(point)).exp2() > LOCAL.not_zero.max(1e3 * degree * error).min(0.5)
+    let local =
+        given.near_within::<ComplexDd>(point, (1e3 * error).clamp(structure::SURELY_ZERO, structure::NEAR_SINGULAR));
+    local.residual(&local.scaled(point)).exp2() > structure::NOT_ZERO.max(1e3 * degree * error).min(0.5)
 }
 
 /// Whether a regular solution of combinations of the equations, to all digits of a double, solves
 /// them all.
 pub(crate) fn solves(given: &ExactEquations, point: &[Complex64]) -> bool {
     let residual = residual(given, point);
-    residual <= LOCAL.solves
-        || residual < LOCAL.misses
+    residual <= structure::SOLVES
+        || residual < structure::MISSES
             && matches!(local_structure(given, point, 1, 1, 0.0, Effort::Little), LocalStructure::Regular { .. })
 }
 
@@ -117,14 +118,15 @@ pub(crate) fn is_moved(given: &ExactEquations, point: &[Complex64]) -> bool {
     let rough = near.rounded();
     let (_, jacobian) = rough.jacobian(&rough.scaled(point));
     let values: Vec<Complex64> = near.values(&x).iter().map(Number::to_c64).collect();
-    let corrected =
-        newton(&rough.scaled(point), &values, jacobian, LOCAL.plain_pivot).map(|x| rough.unscaled(&x)).or_else(|| {
+    let corrected = newton(&rough.scaled(point), &values, jacobian, structure::PLAIN_PIVOT)
+        .map(|x| rough.unscaled(&x))
+        .or_else(|| {
             let (values, jacobian) = near.jacobian(&x);
-            let x = newton(&x, &values, jacobian, LOCAL.faint_pivot)?;
+            let x = newton(&x, &values, jacobian, structure::FAINT_PIVOT)?;
             Some(near.unscaled(&x).iter().map(Number::to_c64).collect())
         });
     // Written so that what is no number is moved.
-    !corrected.is_some_and(|corrected| relative_distance(point, &corrected) <= LOCAL.steady)
+    !corrected.is_some_and(|corrected| relative_distance(point, &corrected) <= structure::STEADY)
 }
 
 /// A step of Newton's method, if all pivots of the Jacobian are larger than `smallest` (a logarithm to
@@ -148,7 +150,8 @@ fn regular_from<S: Precision>(
 ) -> Option<LocalStructure> {
     let start = local.scaled(point);
     let found = deflated(local, &start, 1, f64::NEG_INFINITY, &mut Vec::new())?;
-    if !found.profile.is_regular() || distance(&start, &found.point) > LOCAL.near.max(LOCAL.near_errors * error).log2()
+    if !found.profile.is_regular()
+        || distance(&start, &found.point) > structure::NEAR.max(structure::NEAR_ERRORS * error).log2()
     {
         return None;
     }
@@ -164,7 +167,7 @@ pub(crate) fn on_set_nearby(
     paths: usize,
     error: f64,
 ) -> Option<LocalStructure> {
-    sheet(given, point, paths, error.max(LOCAL.near_sheet_at_most / LOCAL.near_sheet_errors))
+    sheet(given, point, paths, error.max(structure::NEAR_SHEET_AT_MOST / structure::NEAR_SHEET_ERRORS))
 }
 
 /// The local structure at a point that can be moved along a set of solutions.
@@ -172,7 +175,8 @@ fn sheet(given: &ExactEquations, point: &[Complex64], paths: usize, error: f64) 
     if point.len() == 1 {
         return None;
     }
-    let near = LOCAL.near_sheet.max(LOCAL.near_sheet_errors * error).min(LOCAL.near_sheet_at_most).log2();
+    let near =
+        structure::NEAR_SHEET.max(structure::NEAR_SHEET_ERRORS * error).min(structure::NEAR_SHEET_AT_MOST).log2();
     let found = sheet_in::<ComplexDd>(given, point, paths, near)?;
     // High powers of small numbers are zero but in many digits.
     if paths > FEW { sheet_in::<ComplexMulti<8>>(given, point, paths, near) } else { Some(found) }
@@ -192,9 +196,9 @@ fn sheet_in<S: Precision>(
 
 /// Logarithms of the tolerances at which ranks are read off, from what is clear in this precision on.
 fn rank_tolerances<S: Number>() -> impl Iterator<Item = f64> {
-    let finest = LOCAL.clear * S::BITS;
-    let finer = (0..).map(move |k| finest + LOCAL.finer_ranks * f64::from(k));
-    finer.take_while(|&tolerance| tolerance < LOCAL.ranks[0]).chain(LOCAL.ranks)
+    let finest = structure::CLEAR * S::BITS;
+    let finer = (0..).map(move |k| finest + structure::FINER_RANKS * f64::from(k));
+    finer.take_while(|&tolerance| tolerance < structure::RANKS[0]).chain(structure::RANKS)
 }
 
 /// The local structure at a point that is not a regular solution, in one precision. An error if the
@@ -226,7 +230,7 @@ fn multiple<S: Precision>(
                 Some(_) if effort == Effort::Little => return Err(UnresolvedReason::NoSolution),
                 _ => continue,
             };
-            if found.profile.is_regular() || distance(&start, &found.point) > LOCAL.near_singular.log2() {
+            if found.profile.is_regular() || distance(&start, &found.point) > structure::NEAR_SINGULAR.log2() {
                 continue;
             }
             match by_series(&local, &found, order, limit, most) {
@@ -248,7 +252,8 @@ fn multiple<S: Precision>(
 /// The local structure at a point with zeros in place of small coordinates, if one of the small ones may
 /// take any value, whatever the nonzero coordinates are.
 fn on_axes(given: &ExactEquations, point: &[Complex64], error: f64) -> Option<LocalStructure> {
-    let small = LOCAL.near_sheet_at_most.max(LOCAL.near_sheet_errors * error).min(LOCAL.near_singular).log2();
+    let small =
+        structure::NEAR_SHEET_AT_MOST.max(structure::NEAR_SHEET_ERRORS * error).min(structure::NEAR_SINGULAR).log2();
     let local = given.near::<ComplexDd>(point);
     let start = local.scaled(point);
     let mut zero: Vec<bool> = start.iter().map(|z| z.log2() < small).collect();
@@ -271,13 +276,13 @@ fn on_axes(given: &ExactEquations, point: &[Complex64], error: f64) -> Option<Lo
 /// refinement.
 fn at_zeros<S: Number>(local: &LocalEquations<'_, S>, start: &[S], limit: usize) -> Option<LocalStructure> {
     let snapped: Vec<S> =
-        start.iter().map(|z| if z.log2() < LOCAL.near_singular.log2() { S::zero() } else { *z }).collect();
+        start.iter().map(|z| if z.log2() < structure::NEAR_SINGULAR.log2() { S::zero() } else { *z }).collect();
     let (values, jacobian) = local.jacobian(&snapped);
     if !values.iter().all(Number::vanishes) {
         return None;
     }
-    let pivots = Elimination::new(jacobian, snapped.len(), PivotLimit::Below(LOCAL.zero * S::BITS));
-    if pivots.smallest < LOCAL.clear * S::BITS || pivots.rank() == snapped.len() {
+    let pivots = Elimination::new(jacobian, snapped.len(), PivotLimit::Below(structure::ZERO * S::BITS));
+    if pivots.smallest < structure::CLEAR * S::BITS || pivots.rank() == snapped.len() {
         return None;
     }
     for order in ORDERS {

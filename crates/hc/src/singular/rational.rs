@@ -6,7 +6,7 @@ use super::equations::ExactEquations;
 use super::kinds::{LocalStructure, residual};
 use super::modular::Residue;
 use super::multiplicity::{Modular, multiplicity};
-use crate::tolerances::LOCAL;
+use crate::tolerances::structure;
 use num_bigint::BigInt;
 use num_complex::Complex64;
 use num_rational::BigRational;
@@ -34,9 +34,9 @@ pub(super) fn at_rational(
     error: f64,
     most: usize,
 ) -> Option<LocalStructure> {
-    let tolerance = (LOCAL.rational_errors * error).clamp(LOCAL.rational_least, LOCAL.rational_most);
-    let rough = || within(given, point, LOCAL.rough_rational, LOCAL.rough_denominator, most);
-    match within(given, point, tolerance, LOCAL.denominator, most) {
+    let tolerance = (structure::RATIONAL_ERRORS * error).clamp(structure::RATIONAL_LEAST, structure::RATIONAL_MOST);
+    let rough = || within(given, point, structure::ROUGH_RATIONAL, structure::ROUGH_DENOMINATOR, most);
+    match within(given, point, tolerance, structure::DENOMINATOR, most) {
         Some(structure) => structure,
         None => rough()?.filter(|structure| matches!(structure, LocalStructure::Isolated { .. })),
     }
@@ -88,7 +88,7 @@ fn rational(z: Complex64, unit: i64, tolerance: f64, denominator: f64) -> Option
 
 /// The rational with the least denominator near a real number, by its continued fraction.
 fn near(x: f64, tolerance: f64, denominator: f64) -> Option<BigRational> {
-    if x.is_nan() || x.abs() > LOCAL.rational_size {
+    if x.is_nan() || x.abs() > structure::RATIONAL_SIZE {
         return None;
     }
     let (mut rest, mut last, mut this) = (x, (1.0, 0.0), (x.floor(), 1.0));

@@ -6,7 +6,7 @@ use super::eliminate::{Elimination, PivotLimit};
 use super::equations::LocalEquations;
 use super::number::Number;
 use crate::random::{Random, Stream};
-use crate::tolerances::LOCAL;
+use crate::tolerances::structure;
 
 const MOVES: u32 = 3;
 
@@ -39,7 +39,7 @@ pub(crate) fn on_sheet<S: Number>(
         }
     }
     let mut tried = Vec::new();
-    let mut found = LOCAL.sheet_ranks.iter().filter_map(|&(order, tolerance)| {
+    let mut found = structure::SHEET_RANKS.iter().filter_map(|&(order, tolerance)| {
         deflated(local, start, order, tolerance, &mut tried).filter(|found| leads_on(found, order))
     });
     found.next().map(|found| found.point)
@@ -48,9 +48,9 @@ pub(crate) fn on_sheet<S: Number>(
 /// Ranks that the Jacobian may have at a point of a reduced set nearby, the highest first.
 fn ranks<S: Number>(local: &LocalEquations<'_, S>, start: &[S]) -> Vec<usize> {
     let (_, jacobian) = local.jacobian(start);
-    let sizes = Elimination::new(jacobian, start.len(), PivotLimit::Below(LOCAL.clear * S::BITS)).sizes;
+    let sizes = Elimination::new(jacobian, start.len(), PivotLimit::Below(structure::CLEAR * S::BITS)).sizes;
     let others = |rank: usize| sizes.get(rank).copied().unwrap_or(f64::NEG_INFINITY);
-    (1..=sizes.len().min(start.len() - 1)).rev().filter(|&rank| others(rank) <= LOCAL.doubtful_pivot).collect()
+    (1..=sizes.len().min(start.len() - 1)).rev().filter(|&rank| others(rank) <= structure::DOUBTFUL_PIVOT).collect()
 }
 
 /// Most paths at a point for which [`is_touched`] tells something: near an isolated solution of higher
@@ -75,11 +75,12 @@ fn is_touched<S: Number>(local: &LocalEquations<'_, S>, point: &[S], paths: usiz
             let start: Vec<S> = point.iter().map(|z| S::add(z, &S::from_c64(random.unit() * away.exp2()))).collect();
             settled(local, start, 1, &profile, f64::INFINITY).is_some_and(|found| {
                 let reached = distance(point, &found.point);
-                (away - 5.0..away + 3.0).contains(&reached) && local.residual(&found.point) <= LOCAL.unseen * S::BITS
+                (away - 5.0..away + 3.0).contains(&reached)
+                    && local.residual(&found.point) <= structure::UNSEEN * S::BITS
             })
         })
     };
-    (1..=DIMENSIONS.min(variables - 1)).any(|d| LOCAL.distances.iter().all(|&away| is_beside(d, away)))
+    (1..=DIMENSIONS.min(variables - 1)).any(|d| structure::DISTANCES.iter().all(|&away| is_beside(d, away)))
 }
 
 /// Whether solutions of the same ranks lead on from this one; if it is isolated, its multiplicity is at
@@ -91,8 +92,8 @@ pub(crate) fn leads_on_somewhere<S: Number>(
     multiplicity: usize,
 ) -> bool {
     // The distance that is reached, to the power of the multiplicity, must be visible.
-    let is_visible = |stride: f64| multiplicity as f64 * stride.log2() > LOCAL.visible * S::BITS;
-    LOCAL.strides.iter().any(|&stride| is_visible(stride) && leads_on(local, found, order, stride))
+    let is_visible = |stride: f64| multiplicity as f64 * stride.log2() > structure::VISIBLE * S::BITS;
+    structure::STRIDES.iter().any(|&stride| is_visible(stride) && leads_on(local, found, order, stride))
 }
 
 /// Whether the point can be moved by some strides, each to another solution of the same ranks.
@@ -101,7 +102,8 @@ fn leads_on<S: Number>(local: &LocalEquations<'_, S>, found: &DeflatedPoint<S>, 
     for _ in 0..MOVES {
         let Some(next) = moved(local, &point, order, &found.profile, stride) else { return false };
         let way = distance(&point, &next);
-        if !(way >= stride.log2() - 3.0 && way <= stride.log2() + 3.0) || local.residual(&next) > LOCAL.unseen * S::BITS
+        if !(way >= stride.log2() - 3.0 && way <= stride.log2() + 3.0)
+            || local.residual(&next) > structure::UNSEEN * S::BITS
         {
             return false;
         }

@@ -4,7 +4,7 @@ use super::classify::Tracked;
 use super::solutions::Solution;
 use crate::distinct::relative_distance;
 use crate::singular::{self, ClusterEquations, Effort, ExactEquations, LocalStructure};
-use crate::tolerances::CLUSTERS;
+use crate::tolerances::clusters;
 use num_complex::Complex64;
 use poly::{Exact, Polynomial};
 
@@ -37,7 +37,7 @@ pub(super) fn clustered(
         let Some(solved) = solve(&cluster.polynomials, given) else { continue };
         let regular = solved.solutions.iter().map(|s| (&s.value, s.multiplicity));
         let all = regular.chain(solved.component_points.iter().map(|point| (point, 1)));
-        let inside = all.filter(|(point, _)| point.iter().all(|z| z.norm() <= CLUSTERS.outside));
+        let inside = all.filter(|(point, _)| point.iter().all(|z| z.norm() <= clusters::OUTSIDE));
         let mut found = cluster.structures(inside, most);
         found.retain(|structure| match structure {
             LocalStructure::Regular { point, .. } => !is_known(given, known, point),
@@ -61,11 +61,11 @@ pub(super) fn is_known(given: &ExactEquations, known: &[Solution], point: &[Comp
 /// Whether two regular solutions are the same, the second rounded from many digits.
 pub(super) fn is_same(given: &ExactEquations, known: &[Complex64], point: &[Complex64]) -> bool {
     let distance = relative_distance(known, point);
-    if distance <= CLUSTERS.same_precise || distance > CLUSTERS.same_regular {
-        return distance <= CLUSTERS.same_precise;
+    if distance <= clusters::SAME_PRECISE || distance > clusters::SAME_REGULAR {
+        return distance <= clusters::SAME_PRECISE;
     }
-    match singular::local_structure(given, known, 1, 1, CLUSTERS.same_regular, Effort::Little) {
-        LocalStructure::Regular { point: refined, .. } => relative_distance(&refined, point) <= CLUSTERS.same_precise,
+    match singular::local_structure(given, known, 1, 1, clusters::SAME_REGULAR, Effort::Little) {
+        LocalStructure::Regular { point: refined, .. } => relative_distance(&refined, point) <= clusters::SAME_PRECISE,
         _ => true,
     }
 }

@@ -1,6 +1,6 @@
 //! Nearly dependent equations, rewritten as equations that are not.
 
-use crate::tolerances::EQUATIONS;
+use crate::tolerances::equations;
 use num_complex::Complex64;
 use num_traits::{ToPrimitive, Zero};
 use poly::{Exact, Monomial, Polynomial};
@@ -64,7 +64,7 @@ fn nearly_dependent(polynomials: &[Polynomial<Exact>], monomials: &BTreeMap<&Mon
         for _ in 0..2 {
             make_orthogonal(&mut row, &basis);
         }
-        nearly.push(normalise(&mut row) < EQUATIONS.dependent);
+        nearly.push(normalise(&mut row) < equations::DEPENDENT);
         basis.push(row);
     }
     nearly

@@ -5,7 +5,7 @@ use super::conditioned::make_orthogonal;
 use super::error::SolveError;
 use crate::linalg::Lu;
 use crate::random::{Random, Stream};
-use crate::tolerances::EQUATIONS;
+use crate::tolerances::equations;
 use num_complex::Complex64;
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
@@ -65,7 +65,7 @@ impl ScaledEquations {
         for (i, (support, coefficients)) in supports.iter().zip(&mut coefficients).enumerate() {
             *coefficients = scaled(support, coefficients, &exponents);
             let decades = decades(coefficients);
-            if coefficients.len() > DENSE && decades > EQUATIONS.spread {
+            if coefficients.len() > DENSE && decades > equations::SPREAD {
                 let (terms, decades) = (coefficients.len(), decades.min(600.0) as usize);
                 return Err(SolveError::Spread { equation: i + 1, terms, decades });
             }
@@ -192,7 +192,7 @@ fn are_independent(rows: impl Iterator<Item = Vec<Complex64>>) -> bool {
         let before = size(&row);
         make_orthogonal(&mut row, &basis);
         let left = size(&row);
-        let clear = left > EQUATIONS.independent * before;
+        let clear = left > equations::INDEPENDENT * before;
         if !clear {
             return false;
         }
@@ -237,7 +237,7 @@ fn unknown_scales(n: usize, supports: &[Vec<Vec<i32>>], coefficients: &[Vec<Comp
         logs.iter().copied().fold(f64::NEG_INFINITY, f64::max) - logs.iter().copied().fold(f64::INFINITY, f64::min)
     };
     let logs: Vec<Vec<f64>> = coefficients.iter().map(|c| c.iter().map(|c| c.norm().log2()).collect()).collect();
-    if logs.iter().all(|l| spread(l) < EQUATIONS.mild) {
+    if logs.iter().all(|l| spread(l) < equations::MILD) {
         return vec![0; n];
     }
     let mut matrix = vec![Complex64::new(0.0, 0.0); n * n];
@@ -261,7 +261,7 @@ fn unknown_scales(n: usize, supports: &[Vec<Vec<i32>>], coefficients: &[Vec<Comp
     lu.factor(&matrix, &vec![[1.0]; n]);
     lu.solve(&mut side);
     let exponent = |y: f64| {
-        if y.is_finite() { y.clamp(-EQUATIONS.most_exponent, EQUATIONS.most_exponent).round() as i32 } else { 0 }
+        if y.is_finite() { y.clamp(-equations::MOST_EXPONENT, equations::MOST_EXPONENT).round() as i32 } else { 0 }
     };
     side.iter().map(|y| exponent(y.re)).collect()
 }

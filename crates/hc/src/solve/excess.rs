@@ -1,7 +1,7 @@
 //! Solutions that were not requested.
 
 use crate::singular::{self, ExactEquations};
-use crate::tolerances::ENDS;
+use crate::tolerances::ends;
 use num_complex::Complex64;
 
 /// Which points were not requested.
@@ -34,7 +34,7 @@ impl<'a> Excess<'a> {
     pub(super) fn outside(&self, point: &[Complex64]) -> bool {
         let point = &point[..self.unknowns.min(point.len())];
         let largest = point.iter().map(|z| z.norm()).fold(0.0, f64::max);
-        self.torus_only && point.iter().any(|z| z.norm() <= ENDS.torus * largest)
+        self.torus_only && point.iter().any(|z| z.norm() <= ends::TORUS * largest)
     }
 
     /// Whether there are more equations than unknowns.

@@ -6,7 +6,7 @@ use super::polynomials::{SolveContext, solve_polynomials, solve_written};
 use super::solutions::{Direction, Solutions, is_real};
 use crate::monitor::Monitor;
 use crate::start::bezout_number;
-use crate::tolerances::{ENDS, EQUATIONS};
+use crate::tolerances::{ends, equations};
 use num_complex::Complex64;
 use poly::{Exact, ExpandError, ExpandLimits, Polynomial, System};
 use std::borrow::Cow;
@@ -40,7 +40,7 @@ impl<'a> Formulas<'a> {
             // equations are more work than they save.
             let count = counts.iter().fold(0usize, |sum, &count| sum.saturating_add(count as usize));
             let same = |named: &System| bezout_of(named) == bezout_of(given);
-            if let Some(formulas) = Formulas::with_names(given, count.min(EQUATIONS.named_sums), same, options) {
+            if let Some(formulas) = Formulas::with_names(given, count.min(equations::NAMED_SUMS), same, options) {
                 return Ok(formulas);
             }
         }
@@ -53,7 +53,7 @@ impl<'a> Formulas<'a> {
         if !matches!(error, ExpandError::TooLarge { .. }) {
             return Err(error.into());
         }
-        let with_names = Formulas::with_names(given, EQUATIONS.named_sums, |_| true, options);
+        let with_names = Formulas::with_names(given, equations::NAMED_SUMS, |_| true, options);
         Ok(with_names.unwrap_or(Formulas { given, solved: Cow::Borrowed(given), polynomials: Err(error) }))
     }
 
@@ -68,7 +68,7 @@ impl<'a> Formulas<'a> {
         if !options.groups.is_empty() {
             return None;
         }
-        let named = given.with_named_sums(EQUATIONS.kept_factors, most)?;
+        let named = given.with_named_sums(equations::KEPT_FACTORS, most)?;
         let serves = match options.start {
             Start::Auto | Start::Polyhedral => true,
             Start::TotalDegree => approved(&named),
@@ -110,7 +110,7 @@ impl<'a> Formulas<'a> {
         let cut = |value: &mut Vec<Complex64>| value.truncate(unknowns);
         for solution in &mut found.solutions {
             cut(&mut solution.value);
-            let tolerance = if solution.multiplicity > 1 { ENDS.real_singular } else { ENDS.real };
+            let tolerance = if solution.multiplicity > 1 { ends::REAL_SINGULAR } else { ends::REAL };
             solution.is_real = is_real(&solution.value, tolerance);
         }
         found.component_points.iter_mut().for_each(cut);

@@ -37,7 +37,7 @@ use crate::checkpoint::{Hash, Job};
 use crate::monitor::Monitor;
 use crate::ranks::{Lead, Worker};
 use crate::run::{RanksRun, Run};
-use crate::tolerances::EQUATIONS;
+use crate::tolerances;
 use poly::System;
 use solutions::Member;
 
@@ -79,7 +79,7 @@ impl Run {
     /// Those of [`solve`]; also if the checkpoint belongs to another run, or cannot be written.
     pub fn solve(&self, system: &System, options: &SolveOptions) -> Result<Solutions, SolveError> {
         self.install(|| {
-            let formulas = Formulas::new(system, EQUATIONS.factors, options)?;
+            let formulas = Formulas::new(system, tolerances::equations::FACTORS, options)?;
             let context = SolveContext { checkpoint: self.checkpoint(), ..SolveContext::default() };
             solve_formulas(&formulas, options, self.monitor(), context)
         })
@@ -95,7 +95,7 @@ impl RanksRun<'_> {
     pub fn solve(&self, system: &System, options: &SolveOptions) -> Result<Option<Solutions>, SolveError> {
         let Some(ranks) = self.ranks else { return self.run.solve(system, options).map(Some) };
         self.run.install(|| {
-            let formulas = Formulas::new(system, EQUATIONS.factors, options);
+            let formulas = Formulas::new(system, tolerances::equations::FACTORS, options);
             let fingerprint = formulas.as_ref().map(|formulas| job(formulas, options).fingerprint());
             let fingerprint = fingerprint.unwrap_or_default();
             if ranks.is_lead() {

@@ -14,7 +14,7 @@ use crate::ranks::{DividedWork, Lead};
 use crate::refine::Refined;
 use crate::runner::{Flow, Policy, Round, Work, Workspace, run};
 use crate::start::Source;
-use crate::tolerances::ENDS;
+use crate::tolerances::{ends, same};
 use crate::tracker::Trackers;
 use num_complex::Complex64;
 use poly::Evaluate;
@@ -289,13 +289,13 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
     fn doubts(&mut self) -> Vec<usize> {
         let mut which = self.jumped();
         let crossed =
-            [self.starts.coinciding(self.route.options.paths.coincidence), self.middles.coinciding(ENDS.crossed)];
+            [self.starts.coinciding(self.route.options.paths.coincidence), self.middles.coinciding(ends::CROSSED)];
         if crossed.iter().any(Result::is_err) {
             (0..self.ends.paths).for_each(|path| self.ends.lose(path));
         }
         which.extend(crossed.into_iter().flatten().flatten());
         let singular = self.ends.singular.iter().map(|(&k, end)| (k, &end.point[..]));
-        for group in groups(singular, ENDS.cluster) {
+        for group in groups(singular, same::SINGULAR) {
             // Paths of winding number m come in cycles of m.
             let winding = |k: &usize| self.ends.singular.get(k).map_or(1, |end| end.winding);
             for k in &group {

@@ -23,7 +23,7 @@ use crate::monitor::Monitor;
 use crate::ranks::{Lead, Worker};
 use crate::singular::ExactEquations;
 use crate::start::MixedError;
-use crate::tolerances::ENDS;
+use crate::tolerances::same;
 use crate::tracker::Trackers;
 use poly::{Exact, ExpandError, Polynomial, System};
 use std::borrow::Cow;
@@ -323,7 +323,7 @@ impl Attempts {
             }
             if self.best.lost() > 0 {
                 let known = Known::new(self.best.solutions.iter().map(|s| &s.value[..]));
-                new.solutions.retain(|s| !s.singular && !known.has(&s.value, ENDS.cluster));
+                new.solutions.retain(|s| !s.singular && !known.has(&s.value, same::SINGULAR));
                 self.best.add_missed(new.solutions);
             }
         } else {

@@ -13,7 +13,7 @@ use crate::refine::Refiner;
 use crate::runner::Round;
 use crate::start::Source;
 use crate::threads::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
-use crate::tolerances::ENDS;
+use crate::tolerances::{ends, same};
 use crate::tracker::{PathEnd, TrackerOptions};
 use num_complex::Complex64;
 use poly::Evaluate;
@@ -33,7 +33,7 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
     fn endgame(&self, round: Round) -> EndgameOptions {
         let options = self.route.options.endgame.clone();
         let early = round.level > 0 && round.level.is_multiple_of(2);
-        let start = if early { options.start.max(ENDS.early) } else { options.start };
+        let start = if early { options.start.max(ends::EARLY) } else { options.start };
         EndgameOptions { start, ..options }
     }
 
@@ -65,7 +65,7 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
                     match result.end {
                         PathEnd::Success => {
                             let refined = refiner.refine(target, point);
-                            let near = relative_distance(&refined.point, point) < ENDS.arrived;
+                            let near = relative_distance(&refined.point, point) < ends::ARRIVED;
                             if near && refiner.is_regular(target, &refined) {
                                 RecordEnd::Regular(refined)
                             } else {
@@ -137,7 +137,7 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
 fn end_of<E: Evaluate>(refiner: &mut Refiner<'_, E>, target: &[Complex64], ending: Ending, again: bool) -> RecordEnd {
     if matches!(ending.kind, EndKind::Reached | EndKind::Finite { winding: 1, .. }) {
         let refined = refiner.refine(target, &ending.point);
-        let near = relative_distance(&refined.point, &ending.point) < ENDS.cluster;
+        let near = relative_distance(&refined.point, &ending.point) < same::SINGULAR;
         if near && refiner.is_regular(target, &refined) {
             return RecordEnd::Regular(refined);
         }
@@ -146,7 +146,7 @@ fn end_of<E: Evaluate>(refiner: &mut Refiner<'_, E>, target: &[Complex64], endin
         EndKind::Finite { winding, error } => RecordEnd::Singular(SingularEnd { point: ending.point, winding, error }),
         EndKind::Infinite { winding, valuations } => RecordEnd::Infinite { valuations, winding },
         EndKind::Reached if again => {
-            RecordEnd::Singular(SingularEnd { point: ending.point, winding: 1, error: ENDS.reached })
+            RecordEnd::Singular(SingularEnd { point: ending.point, winding: 1, error: ends::REACHED })
         }
         EndKind::Reached | EndKind::Lost => RecordEnd::Lost,
     }

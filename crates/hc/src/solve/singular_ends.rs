@@ -14,7 +14,7 @@ use crate::singular::{self, Effort, LocalStructure, UnresolvedReason};
 use crate::threads::IntoParallelRefIterator;
 #[cfg(feature = "threads")]
 use crate::threads::ParallelIterator;
-use crate::tolerances::ENDS;
+use crate::tolerances::{ends, same};
 use num_complex::Complex64;
 
 impl Ends {
@@ -27,7 +27,7 @@ impl Ends {
     ) {
         let ends: Vec<(usize, SingularEnd)> = std::mem::take(&mut self.singular).into_iter().chain(doubtful).collect();
         let points = ends.iter().enumerate().map(|(k, (_, end))| (k, &end.point[..]));
-        let groups = groups(points, ENDS.cluster);
+        let groups = groups(points, same::SINGULAR);
         let spare = self.lost();
         let structures = structures_of_ends(tracked, &ends, &groups, &self.solutions, spare);
         let doubted = structures
@@ -50,7 +50,7 @@ impl Ends {
                 LocalStructure::Isolated { multiplicity, point, residual } => {
                     self.assign(&paths, End::SOLUTION);
                     let winding = group.iter().map(|&k| ends[k].1.winding).max().unwrap_or(1);
-                    match multiple.iter_mut().find(|(m, _)| relative_distance(&m.value, &point) <= ENDS.one_point) {
+                    match multiple.iter_mut().find(|(m, _)| relative_distance(&m.value, &point) <= ends::ONE_POINT) {
                         Some((known, known_paths)) => {
                             known_paths.extend(paths);
                             known.winding_number = known.winding_number.max(winding);
@@ -174,10 +174,10 @@ impl Ends {
         for (path, mut solution) in solutions {
             // The condition does not tell of rounded coefficients: it is that of scaled rows.
             let steady = tracked.expanded.exact
-                && solution.condition < ENDS.exact_condition
-                && solution.residual < ENDS.exact_residual;
+                && solution.condition < ends::EXACT_CONDITION
+                && solution.residual < ends::EXACT_RESIDUAL;
             if steady || !singular::is_moved(&tracked.expanded.given, &solution.value) {
-                if solution.residual >= ENDS.exact_residual {
+                if solution.residual >= ends::EXACT_RESIDUAL {
                     solution.residual = singular::residual(&tracked.expanded.given, &solution.value);
                 }
                 self.solutions.push(solution);
@@ -185,10 +185,10 @@ impl Ends {
             }
             let point = solution.value;
             let LocalStructure::Regular { point: exact, residual } =
-                singular::local_structure(&tracked.expanded.given, &point, 1, 1, ENDS.rounded, Effort::Little)
+                singular::local_structure(&tracked.expanded.given, &point, 1, 1, ends::ROUNDED, Effort::Little)
             else {
                 self.set(path, End::SINGULAR);
-                doubtful.push((path, SingularEnd { point, winding: 1, error: ENDS.rounded }));
+                doubtful.push((path, SingularEnd { point, winding: 1, error: ends::ROUNDED }));
                 continue;
             };
             if is_known(&tracked.expanded.given, &self.solutions, &exact) {
@@ -284,7 +284,7 @@ fn structures_of_group(
         LocalStructure::NotASolution if group.len() == 1 => return vec![(group.to_vec(), own)],
         _ => {}
     }
-    let is_apart = |&k: &usize| k == best || relative_distance(&ends[k].1.point, &ends[best].1.point) > ENDS.one_point;
+    let is_apart = |&k: &usize| k == best || relative_distance(&ends[k].1.point, &ends[best].1.point) > ends::ONE_POINT;
     if group.iter().all(is_apart) && !matches!(own, LocalStructure::Isolated { .. }) {
         let each = |&k: &usize| (vec![k], if k == best { own.clone() } else { structure(k, Effort::Little) });
         let each: Vec<(Vec<usize>, LocalStructure)> = group.iter().map(each).collect();

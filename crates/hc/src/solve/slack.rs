@@ -12,7 +12,7 @@ use super::options::SolveOptions;
 use crate::monitor::Monitor;
 use crate::random::{Random, Stream};
 use crate::start::{MixedError, PathSystem, Polyhedral, bezout_number, degrees};
-use crate::tolerances::ENDS;
+use crate::tolerances::ends;
 use num_complex::Complex64;
 use poly::SparseSystem;
 
@@ -80,8 +80,8 @@ pub(super) fn squared(
 pub(super) fn of_attempt(options: &SolveOptions, attempt: u32) -> SolveOptions {
     let mut options = options.clone();
     if attempt % 2 == 1 {
-        options.endgame.radius = options.endgame.radius.max(ENDS.least_circle);
-        options.endgame.start = options.endgame.start.max(10.0 * ENDS.least_circle);
+        options.endgame.radius = options.endgame.radius.max(ends::LEAST_CIRCLE);
+        options.endgame.start = options.endgame.start.max(10.0 * ends::LEAST_CIRCLE);
     }
     options
 }

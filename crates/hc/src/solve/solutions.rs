@@ -4,7 +4,7 @@ use super::options::Start;
 use super::warning::Warning;
 use crate::certify::{Certificates, CertifyError, CertifyOptions, Reality, certify};
 use crate::family::{Limit, PathCounts};
-use crate::tolerances::ENDS;
+use crate::tolerances::ends;
 use num_complex::Complex64;
 use poly::{ComplexInterval, System};
 use serde::{Deserialize, Serialize};
@@ -45,7 +45,7 @@ impl Solution {
         residual: f64,
         condition: f64,
     ) -> Solution {
-        let is_real = is_real(&value, if singular { ENDS.real_singular } else { ENDS.real });
+        let is_real = is_real(&value, if singular { ends::REAL_SINGULAR } else { ends::REAL });
         Solution { value, multiplicity, winding_number, singular, is_real, residual, condition, certified: None }
     }
 }

@@ -1,7 +1,7 @@
 //! The toric homotopy: from the binomials of mixed cells to generic coefficients.
 
 use crate::homotopy::ParameterPath;
-use crate::tolerances::EQUATIONS;
+use crate::tolerances::equations;
 use num_complex::Complex64;
 use poly::Lane;
 
@@ -22,7 +22,7 @@ pub(crate) struct Toric<'a> {
 /// The rates that belong to the weights of a cell, which are zero for its binomials.
 pub(crate) fn rates(weights: &[f64]) -> impl Iterator<Item = f64> {
     let least = weights.iter().copied().filter(|&w| w > 0.0).fold(f64::INFINITY, f64::min);
-    weights.iter().map(move |w| if *w > 0.0 { EQUATIONS.faded * (w / least) } else { 0.0 })
+    weights.iter().map(move |w| if *w > 0.0 { equations::FADED * (w / least) } else { 0.0 })
 }
 
 impl ParameterPath for Toric<'_> {

@@ -2,17 +2,17 @@
 //!
 //! They are no settings: results rest on them together, and the tests hold them. What a user may
 //! choose is in [`TrackerOptions`](crate::TrackerOptions), [`EndgameOptions`](crate::EndgameOptions)
-//! and [`CertifyOptions`](crate::CertifyOptions). Each field says what its number decides, and from
+//! and [`CertifyOptions`](crate::CertifyOptions). Each constant says what it decides, and from
 //! what it follows: a theorem, a paper, or the precision of the arithmetic. Where no source is
 //! named, the number was chosen by trial on the systems of the tests. Limits of work and memory
 //! stand beside the code that keeps them.
 
-mod families;
-mod local;
+mod fibres;
 mod paths;
+mod singular;
 
-pub(crate) use families::{FAMILIES, WITNESS};
-pub(crate) use local::{CLUSTERS, EQUATIONS, LOCAL};
+pub(crate) use fibres::{families, witness};
 pub(crate) use paths::{
-    ENDGAME, ENDS, LoopTolerances, PROOFS, QUICK, QUICK_ENDS, QuickTolerances, REFINEMENT, SINGLES, TRACKING,
+    LoopTolerances, QUICK, QuickTolerances, SINGLES, endgame, ends, proofs, quick_ends, refinement, same, tracking,
 };
+pub(crate) use singular::{clusters, equations, structure};

@@ -2,7 +2,7 @@
 
 use super::progress::{Bounds, PathProgress, StepState};
 use super::result::PathEnd;
-use crate::tolerances::TRACKING;
+use crate::tolerances::tracking;
 
 impl PathProgress {
     pub(crate) fn begin_correction(&mut self, bounds: &Bounds) {
@@ -36,7 +36,7 @@ impl PathProgress {
                 self.state = StepState::Rejected { theta: f64::INFINITY };
                 return;
             }
-        } else if norm > TRACKING.noise_margin * self.noise {
+        } else if norm > tracking::NOISE_MARGIN * self.noise {
             let theta = norm / self.last;
             if i == 1 && !self.resumed {
                 self.omega_now = 2.0 * norm / (self.last * self.last);
@@ -54,9 +54,9 @@ impl PathProgress {
             return;
         }
         self.last = norm;
-        if self.omega_now.max(TRACKING.least_omega) * norm <= bounds.options.corrector_tolerance {
+        if self.omega_now.max(tracking::LEAST_OMEGA) * norm <= bounds.options.corrector_tolerance {
             self.state = StepState::Converged;
-        } else if i + 1 >= TRACKING.iterations {
+        } else if i + 1 >= tracking::ITERATIONS {
             self.state = StepState::Rejected { theta: f64::INFINITY };
         }
     }
@@ -73,23 +73,23 @@ impl PathProgress {
             return;
         }
         let matters =
-            self.omega_now.max(1.0) * norm > 0.01 * bounds.leave_double && norm > TRACKING.noise_margin * self.noise;
-        if matters && norm > TRACKING.unfinished * self.last && self.iterations + 1 < TRACKING.iterations {
+            self.omega_now.max(1.0) * norm > 0.01 * bounds.leave_double && norm > tracking::NOISE_MARGIN * self.noise;
+        if matters && norm > tracking::UNFINISHED * self.last && self.iterations + 1 < tracking::ITERATIONS {
             self.resume(norm, bounds);
             return;
         }
         if self.omega_now == self.omega && self.first == self.last {
             // One iteration only: the closing correction tells omega, unless it is rounding error.
-            self.omega_now = if norm > TRACKING.noise_margin * self.noise {
+            self.omega_now = if norm > tracking::NOISE_MARGIN * self.noise {
                 (2.0 * norm / (self.first * self.first)).min(self.omega)
             } else {
                 0.5 * self.omega
             };
         }
-        let mut omega = self.omega_now.max(0.5 * self.omega).max(TRACKING.least_omega);
+        let mut omega = self.omega_now.max(0.5 * self.omega).max(tracking::LEAST_OMEGA);
         if norm <= omega * self.last * self.last {
             self.noise = self.noise.min(norm).max(self.rounding());
-        } else if norm <= TRACKING.most_noise {
+        } else if norm <= tracking::MOST_NOISE {
             // More than quadratic convergence leaves is rounding error, if it is small enough for
             // that.
             self.noise = norm.max(self.rounding());
@@ -97,8 +97,8 @@ impl PathProgress {
             // Newton's method converges more slowly than was estimated. With a point in double-double the
             // cause is not the rounding of the point: Newton's method has not converged yet.
             omega = norm / (self.last * self.last);
-            let unfinished = norm > TRACKING.unfinished * self.last || omega * norm > bounds.leave_double;
-            if self.wide && unfinished && self.iterations + 1 < TRACKING.iterations {
+            let unfinished = norm > tracking::UNFINISHED * self.last || omega * norm > bounds.leave_double;
+            if self.wide && unfinished && self.iterations + 1 < tracking::ITERATIONS {
                 self.resume(norm, bounds);
                 return;
             }

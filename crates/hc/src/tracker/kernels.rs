@@ -5,7 +5,7 @@
 //! root is taken per coordinate.
 
 use crate::homotopy::ParameterPath;
-use crate::tolerances::TRACKING;
+use crate::tolerances::tracking;
 use poly::Lane;
 use poly::simd::{Isa, Kernel};
 
@@ -58,9 +58,9 @@ impl<S: Lane> Kernel for Predict<'_, S> {
 ///
 /// A part of the path that varies quickly but hardly at all, such as a term of a toric homotopy
 /// that is still fading in, must not hold up the rest: where `a_j = omega |x2_j| r_j^2` is less
-/// than `TRACKING.faint`, `r_j` counts
+/// than `tracking::FAINT`, `r_j` counts
 /// `1 + ln(faint / a_j) / 3` times, at most
-/// `TRACKING.faint_reach`. For `exp(c t)`, whose ratio is
+/// `tracking::FAINT_REACH`. For `exp(c t)`, whose ratio is
 /// `3 / c`, that is where the part has grown to `faint / omega`, still far inside the region in which
 /// Newton's method converges to this path.
 pub(crate) struct Radius<'a, S: Lane> {
@@ -129,12 +129,12 @@ impl<S: Lane> Kernel for Radius<'_, S> {
 /// is that of the power of two below.
 #[inline(always)]
 fn reach_sqr(size_sqr: f64) -> f64 {
-    let faintness = (TRACKING.faint * TRACKING.faint) / size_sqr;
+    let faintness = (tracking::FAINT * tracking::FAINT) / size_sqr;
     let exponent = (faintness.to_bits() >> 52) as i64 - 1023;
     let factor = 1.0 + std::f64::consts::LN_2 / 6.0 * exponent as f64;
     // Not a number, where nothing is known, gives one.
     let factor = if faintness > 1.0 { factor } else { 1.0 };
-    let factor = if factor < TRACKING.faint_reach { factor } else { TRACKING.faint_reach };
+    let factor = if factor < tracking::FAINT_REACH { factor } else { tracking::FAINT_REACH };
     factor * factor
 }
 
@@ -170,7 +170,7 @@ impl<S: Lane> Kernel for Weigh<'_, S> {
                 let size = size.as_ref()[l];
                 let w = &mut self.weights_sqr[j].as_mut()[l];
                 let mean = if self.fresh >> l & 1 == 1 { size } else { 0.5 * (*w + size) };
-                let floor = (self.least_share_sqr * largest.as_ref()[l]).max(TRACKING.least_weight_sqr);
+                let floor = (self.least_share_sqr * largest.as_ref()[l]).max(tracking::LEAST_WEIGHT_SQR);
                 let next = mean.max(floor);
                 // A point that is not finite keeps the old weights.
                 *w = if next < f64::INFINITY { next } else { *w };
@@ -284,19 +284,19 @@ fn grow<S: Lane>(norm: &mut S::Real, z: &S, inverse_weight_sqr: &S::Real) {
 
 #[cfg(test)]
 mod tests {
-    use super::{TRACKING, reach_sqr};
+    use super::{reach_sqr, tracking};
 
     #[test]
     fn faint_parts_reach_farther_and_others_do_not() {
-        for size in [TRACKING.faint, 1.0, f64::INFINITY, f64::NAN] {
+        for size in [tracking::FAINT, 1.0, f64::INFINITY, f64::NAN] {
             assert_eq!(reach_sqr(size * size), 1.0, "{size}");
         }
         // The logarithm is that of the power of two below, at most ln 2 / 6 too small for a square.
         for size in [1e-3f64, 1e-7, 1e-12] {
-            let exact = 1.0 + (TRACKING.faint / size).ln() / 3.0;
+            let exact = 1.0 + (tracking::FAINT / size).ln() / 3.0;
             let found = reach_sqr(size * size).sqrt();
             assert!(found <= exact && found > exact - 0.12, "{size}: {found}, {exact}");
         }
-        assert_eq!(reach_sqr(0.0), TRACKING.faint_reach * TRACKING.faint_reach);
+        assert_eq!(reach_sqr(0.0), tracking::FAINT_REACH * tracking::FAINT_REACH);
     }
 }

@@ -4,7 +4,7 @@
 //! logarithms are nearly straight lines. The Pade approximant of the logarithm is then good for a step many
 //! times longer than that of the coordinate itself.
 
-use crate::tolerances::TRACKING;
+use crate::tolerances::tracking;
 use poly::Lane;
 use poly::simd::{Isa, Kernel};
 
@@ -37,7 +37,7 @@ impl<S: Lane> Kernel for Logarithms<'_, S> {
             let mut mask = 0u16;
             for l in 0..S::LANES {
                 let size = |k: usize| sizes[k].as_ref()[l];
-                let most = TRACKING.steepest * TRACKING.steepest;
+                let most = tracking::STEEPEST * tracking::STEEPEST;
                 let bounds = [1.0, most, most * most, most * most * most];
                 // Written so that NaN does not count.
                 let mut counts = size(0) > f64::MIN_POSITIVE;

@@ -6,7 +6,7 @@
 use super::options::TrackerOptions;
 use super::result::{PathEnd, PathResult};
 use super::resume::{Counts, ResumePoint};
-use crate::tolerances::TRACKING;
+use crate::tolerances::tracking;
 
 /// `h(a) = 2a (sqrt(4a^2 + 1) - 2a)` (Timme 2020, lemma 4.2).
 fn h(a: f64) -> f64 {
@@ -141,8 +141,8 @@ impl PathProgress {
             step: 0.0,
             failed_before: 0,
             local_error: f64::NAN,
-            omega: TRACKING.initial_omega,
-            omega_before: TRACKING.initial_omega,
+            omega: tracking::INITIAL_OMEGA,
+            omega_before: tracking::INITIAL_OMEGA,
             mu: f64::EPSILON,
             noise: f64::EPSILON,
             before: Counts::default(),
@@ -153,7 +153,7 @@ impl PathProgress {
             diverges_since: None,
             first: 0.0,
             last: 0.0,
-            omega_now: TRACKING.initial_omega,
+            omega_now: tracking::INITIAL_OMEGA,
             theta_bound: 0.0,
             iterations: 0,
             resumed: false,
@@ -284,12 +284,12 @@ impl PathProgress {
         self.failed_before += 1;
         let h_theta = if theta.is_finite() { h(theta) } else { 0.0 };
         let factor = if h_theta < bounds.h_half {
-            TRACKING.hard_cut
+            tracking::HARD_CUT
         } else {
-            (bounds.reach_half / ((1.0 + 2.0 * h_theta).sqrt() - 1.0)).sqrt().sqrt().max(TRACKING.hard_cut)
+            (bounds.reach_half / ((1.0 + 2.0 * h_theta).sqrt() - 1.0)).sqrt().sqrt().max(tracking::HARD_CUT)
         };
         self.step *= factor;
-        if self.failed_before >= TRACKING.resistant {
+        if self.failed_before >= tracking::RESISTANT {
             self.extend(bounds);
         }
         if self.t - self.step == self.t || self.step < 4.0 * f64::EPSILON * self.t {

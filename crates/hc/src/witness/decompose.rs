@@ -8,7 +8,7 @@ use crate::monitor::Monitor;
 use crate::run::Run;
 use crate::singular::is_missed;
 use crate::solve::{Formulas, Solution, SolveContext, SolveError, SolveOptions, Unresolved, solve_polynomials};
-use crate::tolerances::EQUATIONS;
+use crate::tolerances::equations;
 use num_complex::Complex64;
 use poly::System;
 use serde::Serialize;
@@ -101,7 +101,7 @@ impl Run {
 }
 
 fn decompose_watched(system: &System, options: &SolveOptions, monitor: &Monitor) -> Result<Decomposition, SolveError> {
-    let formulas = Formulas::new(system, EQUATIONS.factors_of_components, options)?;
+    let formulas = Formulas::new(system, equations::FACTORS_OF_COMPONENTS, options)?;
     let polynomials = formulas.polynomials.as_ref().map_err(Clone::clone)?;
     let names = system.variables();
     let equations = NamedEquations::new(polynomials, names.len());

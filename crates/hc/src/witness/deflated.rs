@@ -12,7 +12,7 @@
 use super::equations::NamedEquations;
 use crate::random::{Random, Stream};
 use crate::singular::{Elimination, ExactEquations, Number, PivotLimit};
-use crate::tolerances::WITNESS;
+use crate::tolerances::witness;
 use num_complex::Complex64;
 use num_traits::Zero;
 use poly::{ComplexDd, Exact, Monomial, Polynomial, Scalar, ToExact};
@@ -76,12 +76,12 @@ impl DeflatedEquations {
         let mut groups: BTreeMap<Vec<usize>, DeflatedEquations> = BTreeMap::new();
         for (k, mut point) in self.points {
             let largest = point.iter().map(|z| z.norm()).fold(0.0, f64::max);
-            let small = |j: &usize| point[*j].norm() <= WITNESS.zero * largest;
+            let small = |j: &usize| point[*j].norm() <= witness::ZERO * largest;
             let mut zeros: Vec<usize> = (0..unknowns).filter(small).collect();
             let exact: Vec<Complex64> =
                 (0..unknowns).map(|j| if zeros.contains(&j) { Complex64::default() } else { point[j] }).collect();
-            let local = given.near_within::<ComplexDd>(&exact, WITNESS.nothing);
-            if local.residual(&local.scaled(&exact)).exp2() < WITNESS.zero_solved {
+            let local = given.near_within::<ComplexDd>(&exact, witness::NOTHING);
+            if local.residual(&local.scaled(&exact)).exp2() < witness::ZERO_SOLVED {
                 point = exact;
             } else {
                 zeros.clear();
@@ -163,7 +163,7 @@ fn null_space(given: &ExactEquations, point: &[Complex64]) -> (Vec<f64>, Elimina
     let units = local.unscaled(&vec![ComplexDd::one(); point.len()]);
     (
         units.iter().map(|unit| unit.to_c64().re).collect(),
-        Elimination::new(jacobian, point.len(), PivotLimit::Below(WITNESS.zero_pivot)),
+        Elimination::new(jacobian, point.len(), PivotLimit::Below(witness::ZERO_PIVOT)),
     )
 }
 

@@ -7,7 +7,7 @@ use crate::distinct::relative_distance;
 use crate::family::{Fibre, FibreOptions, MonodromyOptions, deviation, monodromy, move_fibre_watched};
 use crate::monitor::Monitor;
 use crate::random::{Random, Stream};
-use crate::tolerances::{FAMILIES, WITNESS};
+use crate::tolerances::{families, same, witness};
 use num_complex::Complex64;
 use poly::{ComplexDd, Evaluate};
 
@@ -28,7 +28,7 @@ pub(super) struct Orbit {
 impl Orbit {
     /// Whether these are shown to be all points of one irreducible component.
     pub(super) fn is_whole(&self) -> bool {
-        self.further == 0 && self.trace.is_some_and(|deviation| deviation < FAMILIES.trace_passed)
+        self.further == 0 && self.trace.is_some_and(|deviation| deviation < families::TRACE_PASSED)
     }
 }
 
@@ -49,10 +49,10 @@ pub(super) fn orbits(set: &WitnessSet, equations: &NamedEquations<'_>, seed: u64
             let found = (0..DIRECTIONS).find_map(of_direction);
             // A single point of a set that hardly bends seems to move straight, which tells nothing.
             let tells = |trace: &Trace| {
-                trace.deviation >= FAMILIES.trace_passed || fibre.len() > 1 || trace.follows_a_plane(equations)
+                trace.deviation >= families::TRACE_PASSED || fibre.len() > 1 || trace.follows_a_plane(equations)
             };
             deviation = found.filter(tells).map(|trace| trace.deviation);
-            if deviation.is_some_and(|deviation| deviation < FAMILIES.trace_passed) || monitor.is_cancelled() {
+            if deviation.is_some_and(|deviation| deviation < families::TRACE_PASSED) || monitor.is_cancelled() {
                 break;
             }
             let known = fibre.len();
@@ -63,7 +63,7 @@ pub(super) fn orbits(set: &WitnessSet, equations: &NamedEquations<'_>, seed: u64
                 break;
             }
         }
-        let is_found = |k: &usize| fibre.iter().any(|x| relative_distance(x, all.solution(*k)) < WITNESS.same);
+        let is_found = |k: &usize| fibre.iter().any(|x| relative_distance(x, all.solution(*k)) < same::REGULAR);
         let (here, others): (Vec<usize>, Vec<usize>) = left.iter().copied().partition(|k| *k == first || is_found(k));
         let further = fibre.len().saturating_sub(here.len());
         orbits.push(Orbit { points: here.iter().map(|&k| numbers[k]).collect(), trace: deviation, further });
@@ -76,7 +76,7 @@ pub(super) fn orbits(set: &WitnessSet, equations: &NamedEquations<'_>, seed: u64
 fn settled(mut fibre: Fibre) -> Fibre {
     for point in fibre.solutions.chunks_exact_mut(fibre.dimension.max(1)) {
         let largest = point.iter().map(|z| z.norm()).fold(0.0, f64::max);
-        point.iter_mut().filter(|z| z.norm() < WITNESS.nothing * largest).for_each(|z| *z = Complex64::default());
+        point.iter_mut().filter(|z| z.norm() < witness::NOTHING * largest).for_each(|z| *z = Complex64::default());
     }
     fibre
 }
@@ -103,8 +103,8 @@ impl Trace {
             let far = 2f64.powi(power);
             let along = before.iter().zip(after).take(equations.unknowns).map(|(a, b)| a + (b - a) * far);
             let point = equations.completed(along.collect());
-            let local = equations.all.near_within::<ComplexDd>(&point, WITNESS.far_small);
-            local.residual(&local.scaled(&point)).exp2() < WITNESS.far_solved
+            let local = equations.all.near_within::<ComplexDd>(&point, witness::FAR_SMALL);
+            local.residual(&local.scaled(&point)).exp2() < witness::FAR_SOLVED
         })
     }
 }
@@ -152,7 +152,7 @@ mod tests {
                 .unwrap()
                 .deviation
         };
-        assert!(deviation(&points) < FAMILIES.trace_passed);
+        assert!(deviation(&points) < families::TRACE_PASSED);
         assert!(deviation(&points[..1]) > 0.1);
     }
 

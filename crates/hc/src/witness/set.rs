@@ -8,7 +8,7 @@ use crate::family::{Fibre, FibreOptions, track_fibre_watched};
 use crate::monitor::Monitor;
 use crate::refine::Refiner;
 use crate::solve::{SolveOptions, ends};
-use crate::tolerances::WITNESS;
+use crate::tolerances::{same, witness};
 use crate::tracker::{PathEnd, PathResult};
 use num_complex::Complex64;
 use poly::Interpreter;
@@ -52,7 +52,7 @@ impl WitnessSet {
         for (&k, point) in &equations.points {
             let refined = refiner.refine(&parameters, point);
             let (before, after) = (&point[..unknowns], &refined.point[..unknowns]);
-            if refiner.is_regular(&parameters, &refined) && relative_distance(before, after) < WITNESS.near {
+            if refiner.is_regular(&parameters, &refined) && relative_distance(before, after) < witness::NEAR {
                 numbers.push(k);
                 solutions.extend(refined.point);
             }
@@ -68,7 +68,7 @@ impl WitnessSet {
     pub(super) fn contains(&self, point: &[Complex64], seed: u64, monitor: &Monitor) -> bool {
         let slices = Slices::through(point, self.dimension, seed);
         let target = slices.parameters();
-        let is_there = |end: &[Complex64]| relative_distance(&end[..self.unknowns], point) < WITNESS.on;
+        let is_there = |end: &[Complex64]| relative_distance(&end[..self.unknowns], point) < same::SINGULAR;
         let mut options = FibreOptions { retries: 0, ..FibreOptions::default() };
         options.tracker.max_steps = STEPS;
         let (found, _) = track_fibre_watched(&self.family, &self.fibre, &target, &options, monitor);

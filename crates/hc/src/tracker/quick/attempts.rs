@@ -3,7 +3,7 @@
 use super::super::options::TrackerOptions;
 use super::super::result::{PathEnd, PathResult};
 use super::super::resume::{Counts, ResumePoint};
-use crate::tolerances::{QUICK_ENDS, QuickTolerances, TRACKING};
+use crate::tolerances::{QuickTolerances, quick_ends, tracking};
 
 /// What becomes of an attempt.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,7 +50,7 @@ impl Attempts {
             step: 0.0,
             t_next: 1.0,
             radius: 0.0,
-            omega: TRACKING.initial_omega,
+            omega: tracking::INITIAL_OMEGA,
             error: f64::NAN,
             last: 0.0,
             attempts: 0,
@@ -88,8 +88,8 @@ impl Attempts {
         let arrives = self.t_next == 0.0;
         let settles = third < if arrives { quick.third } else { (quick.contraction * second).max(quick.third) };
         if !(small || contracts && settles) {
-            let nearer = first < QUICK_ENDS.approach && second < QUICK_ENDS.approach_contraction * first;
-            if self.fresh && nearer && self.approaches < QUICK_ENDS.approaches {
+            let nearer = first < quick_ends::APPROACH && second < quick_ends::APPROACH_CONTRACTION * first;
+            if self.fresh && nearer && self.approaches < quick_ends::APPROACHES {
                 self.approaches += 1;
                 return Verdict::Nearer;
             }
@@ -100,7 +100,7 @@ impl Attempts {
         }
         let telling = first >= quick.telling[0] && second >= quick.telling[1];
         let seen = if telling { 2.0 * second / (first * first) } else { 0.0 };
-        self.omega = seen.max(0.5 * self.omega).max(TRACKING.least_omega);
+        self.omega = seen.max(0.5 * self.omega).max(tracking::LEAST_OMEGA);
         // Never zero, so that one lucky step does not free the next from the bound.
         self.error = first.max(quick.epsilon) / (self.step * self.step * self.step * self.step);
         Verdict::Accepted

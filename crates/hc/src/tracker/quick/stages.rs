@@ -6,7 +6,7 @@ use super::super::resume::{ResumePoint, ResumePoints};
 use super::attempts::Attempts;
 use super::lanes::{Paths, QuickLanes, QuickMemory};
 use crate::homotopy::ParameterPath;
-use crate::tolerances::{FAMILIES, QUICK, QUICK_ENDS, SINGLES};
+use crate::tolerances::{QUICK, SINGLES, families, quick_ends};
 use num_complex::Complex64;
 use poly::{Evaluate, Lane, Singles16};
 
@@ -109,7 +109,7 @@ impl<S: Lane> Paths<S> for Finish<'_> {
 
     fn end(&mut self, lane: &Attempts, pivot: f64, x: &[S], l: usize) {
         let stop = lane.stop();
-        if lane.has_arrived() && pivot > QUICK_ENDS.pivot && lane.last < noise(x, l) {
+        if lane.has_arrived() && pivot > quick_ends::PIVOT && lane.last < noise(x, l) {
             self.out.push(lane.arrived(pivot), x.iter().map(|x| x.get(l)));
         } else if lane.strayed() {
             self.again.push(stop.path);
@@ -125,6 +125,6 @@ impl<S: Lane> Paths<S> for Finish<'_> {
 fn noise<S: Lane>(x: &[S], l: usize) -> f64 {
     let sizes = || x.iter().map(|x| x.get(l).norm_sqr());
     let largest = sizes().fold(0.0, f64::max);
-    let vanishes = sizes().any(|size| size <= FAMILIES.vanished_sqr * largest);
-    if vanishes { QUICK_ENDS.vanishing_noise } else { QUICK_ENDS.noise }
+    let vanishes = sizes().any(|size| size <= families::VANISHED_SQR * largest);
+    if vanishes { quick_ends::VANISHING_NOISE } else { quick_ends::NOISE }
 }
