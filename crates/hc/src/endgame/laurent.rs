@@ -7,6 +7,7 @@
 //! `(r / R)^samples`, where `R` is the distance to the next singularity (Morgan, Sommese & Wampler
 //! 1991).
 
+use super::ending::{Ending, SingularEnd};
 use crate::refine;
 use crate::tolerances::{LoopTolerances, endgame};
 use num_complex::Complex64;
@@ -28,14 +29,9 @@ pub(super) struct Loop<'a> {
     pub(super) blur: &'a [f64],
 }
 
-/// What a loop says about the end of its path.
+/// Why a loop does not show the end of its path.
 #[derive(Debug, PartialEq)]
-pub(super) enum Reading {
-    /// The path ends at `limit`, known up to about `error` (relative to the path's size on the
-    /// loop); coordinates that vanish within it are exactly zero.
-    Finite { limit: Vec<Complex64>, error: f64 },
-    /// The path diverges: coordinate `j` is of order `t^(valuations[j] / m)`.
-    Infinite { valuations: Vec<i64> },
+pub(super) enum Unclear {
     /// The loop is too wide: singularities other than zero lie not far outside the loop, or inside
     /// it.
     TooWide,
@@ -44,8 +40,9 @@ pub(super) enum Reading {
 }
 
 impl Loop<'_> {
-    /// Reads the loop.
-    pub(super) fn read(&self, view: LoopTolerances) -> Reading {
+    /// The end of the path: at a point, in which coordinates that vanish within its error are exactly zero, or
+    /// at infinity.
+    pub(super) fn read(&self, view: LoopTolerances) -> Result<Ending, Unclear> {
         let (n, count) = (self.n, self.samples.len() / self.n);
         let winding = count / self.per_turn;
         let roots: Vec<Complex64> =
@@ -61,7 +58,7 @@ impl Loop<'_> {
             let noise = self.noise * refine::size(size, largest);
             let blur = self.blur[j];
             if blur > endgame::BLURRED * size.max(1e-4 * largest) {
-                return Reading::TooDeep;
+                return Err(Unclear::TooDeep);
             }
             let significant = (view.zero * size).max(16.0 * noise).max(endgame::BLUR_MARGIN * blur);
             let coefficient = |power: i64| {
@@ -76,7 +73,7 @@ impl Loop<'_> {
             let in_tail = |p: i64| 4 * p.abs() >= 3 * half;
             let tail = sizes.iter().filter(|(p, _)| in_tail(*p)).map(|(_, c)| *c).fold(0.0, f64::max);
             if tail > (view.tail * size).max(16.0 * noise).max(16.0 * blur) {
-                return Reading::TooWide;
+                return Err(Unclear::TooWide);
             }
             // Negative frequencies are aliases of positive ones, the lowest of those in the tail,
             // the others above five eighths of the samples.
@@ -91,7 +88,7 @@ impl Loop<'_> {
                 impure = true;
                 match sizes.iter().find(|(_, c)| *c > view.largest * size) {
                     Some(&(power, _)) => power,
-                    None => return Reading::TooWide,
+                    None => return Err(Unclear::TooWide),
                 }
             } else {
                 lowest
@@ -103,18 +100,18 @@ impl Loop<'_> {
         }
         debug_assert!(winding > 0);
         if valuations.iter().any(|&v| v < 0) {
-            Reading::Infinite { valuations }
+            Ok(Ending::Infinite { valuations, winding })
         } else if impure {
-            Reading::TooWide
+            Err(Unclear::TooWide)
         } else {
-            Reading::Finite { limit, error }
+            Ok(Ending::Singular(SingularEnd { point: limit, winding, error }))
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Loop, Reading, endgame};
+    use super::{Ending, Loop, SingularEnd, Unclear, endgame};
     use num_complex::Complex64;
     use std::f64::consts::TAU;
 
@@ -129,7 +126,7 @@ mod tests {
         (0..count).flat_map(|k| path(root(k))).collect()
     }
 
-    fn read(n: usize, per_turn: usize, samples: &[Complex64]) -> Reading {
+    fn read(n: usize, per_turn: usize, samples: &[Complex64]) -> Result<Ending, Unclear> {
         Loop { n, per_turn, samples, noise: 1e-15, blur: &vec![0.0; n] }.read(endgame::CLEAR)
     }
 
@@ -138,26 +135,26 @@ mod tests {
         let z = Complex64::new;
         // m = 3 with a limit, one coordinate that vanishes like t^(2/3).
         let s = samples(3, 4, 1e-6, |u| vec![z(2.0, 1.0) + u - u.powi(4), u * u * z(0.0, 3.0)]);
-        let Reading::Finite { limit, error } = read(2, 4, &s) else { panic!("finite") };
-        assert!((limit[0] - z(2.0, 1.0)).norm() < 1e-13 && limit[1] == z(0.0, 0.0) && error < 1e-12);
+        let Ok(Ending::Singular(SingularEnd { point, winding: 3, error })) = read(2, 4, &s) else { panic!("finite") };
+        assert!((point[0] - z(2.0, 1.0)).norm() < 1e-13 && point[1] == z(0.0, 0.0) && error < 1e-12);
         // t^(-1/2) and a limit.
         let s = samples(2, 4, 1e-6, |u| vec![u.inv() + 1.0, u + 5.0]);
-        assert_eq!(read(2, 4, &s), Reading::Infinite { valuations: vec![-1, 0] });
+        assert_eq!(read(2, 4, &s), Ok(Ending::Infinite { valuations: vec![-1, 0], winding: 2 }));
     }
 
     #[test]
     fn a_large_limit_is_not_infinity() {
         // 1 / (t + 1e-7) on |t| = 1e-6: the pole is within the loop, not at zero.
         let s = samples(1, 8, 1e-6, |t| vec![(t + 1e-7).inv()]);
-        assert_eq!(read(1, 8, &s), Reading::TooWide);
+        assert_eq!(read(1, 8, &s), Err(Unclear::TooWide));
         let s = samples(1, 8, 1e-11, |t| vec![(t + 1e-7).inv()]);
-        let Reading::Finite { limit, .. } = read(1, 8, &s) else { panic!("finite") };
-        assert!((limit[0] - 1e7).norm() < 1e-5);
+        let Ok(Ending::Singular(end)) = read(1, 8, &s) else { panic!("finite") };
+        assert!((end.point[0] - 1e7).norm() < 1e-5);
     }
 
     #[test]
     fn singularities_just_outside_are_noticed() {
         let s = samples(1, 4, 1e-2, |t| vec![(t + 0.03).sqrt()]);
-        assert_eq!(read(1, 4, &s), Reading::TooWide);
+        assert_eq!(read(1, 4, &s), Err(Unclear::TooWide));
     }
 }

@@ -12,14 +12,15 @@
 //! All paths take their legs together, in lanes and on all threads. The result does not depend on
 //! how the paths are distributed.
 
+mod ending;
 mod laurent;
 mod legs;
 mod options;
 mod polish;
 mod walker;
 
+pub(crate) use ending::{Ending, SingularEnd};
 pub use options::EndgameOptions;
-pub(crate) use walker::{EndKind, Ending};
 
 use crate::homotopy::Segment;
 use crate::monitor::{Monitor, Stage};
@@ -41,8 +42,9 @@ const HEAVY: usize = 256;
 
 /// Finds the ends of paths along `segment`, in the order given.
 ///
-/// A path is given by its index, its `t > 0` and its point there. `tracker` has the settings for the legs. `turns` bounds the winding number, for instance by the
-/// number of all paths.
+/// A path is given by its index, its `t > 0` and its point there. The result has its index, its end and its point at
+/// the first radius, common to all paths: two that coincide there have crossed. It is empty if not reached. `tracker`
+/// has the settings for the legs. `turns` bounds the winding number, for instance by the number of all paths.
 ///
 /// # Panics
 /// If the system is not square or points and segment do not fit it.
@@ -54,7 +56,7 @@ pub(crate) fn endgame<'a, E: Evaluate>(
     tracker: &TrackerOptions,
     options: &EndgameOptions,
     monitor: &Monitor,
-) -> Vec<Ending> {
+) -> Vec<(usize, Ending, Vec<Complex64>)> {
     let mut walkers: Vec<Walker> = paths.into_iter().map(|path| Walker::new(path, turns, options)).collect();
     let settings = TrackerOptions {
         corrector_tolerance: tracker.corrector_tolerance.min(1e-5),
@@ -80,7 +82,7 @@ pub(crate) fn endgame<'a, E: Evaluate>(
         monitor.add((undecided - live.len()) as u64, 0);
         undecided = live.len();
         if live.is_empty() || monitor.is_cancelled() {
-            return walkers.into_iter().map(Walker::ending).collect();
+            return walkers.into_iter().map(Walker::ended).collect();
         }
         let legs = Legs { segment, legs: live.iter().map(|&k| walkers[k].leg()).collect() };
         starts.clear();

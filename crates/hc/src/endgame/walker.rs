@@ -1,48 +1,12 @@
 //! One path in its endgame: which leg comes next, and when the endgame is over.
 
-use super::laurent::{Loop, Reading};
+use super::ending::Ending;
+use super::laurent::{Loop, Unclear};
 use super::legs::Leg;
 use super::options::EndgameOptions;
 use crate::refine;
 use crate::tolerances::endgame;
 use num_complex::Complex64;
-
-/// How a path ends, after its endgame.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum EndKind {
-    /// At a point; after `winding` turns round zero the path returns to its beginning.
-    Finite {
-        /// Winding number.
-        winding: usize,
-        /// Error of the point, relative to the path's size on the last loop.
-        error: f64,
-    },
-    /// At a point to which the path could be tracked like a regular one.
-    Reached,
-    /// At infinity: coordinate `j` is of order `t^(valuations[j] / winding)`, and at least one
-    /// valuation is negative.
-    Infinite {
-        /// Winding number; if no loop was clear, the least for which the valuations are integers.
-        winding: usize,
-        /// The direction: valuations times the winding number.
-        valuations: Vec<i64>,
-    },
-    /// Unknown: the path could not be tracked, or no loop closed and showed a decaying series.
-    Lost,
-}
-
-/// A path and its end.
-pub(crate) struct Ending {
-    /// Index of the path, as given.
-    pub(crate) path: usize,
-    /// How it ends.
-    pub(crate) kind: EndKind,
-    /// The end if it is finite, otherwise the last point.
-    pub(crate) point: Vec<Complex64>,
-    /// The point at the first radius, common to all paths: two that coincide here have crossed.
-    /// Empty if not reached.
-    pub(crate) middle: Vec<Complex64>,
-}
 
 /// A polished point of a path.
 pub(super) struct Sample {
@@ -78,10 +42,10 @@ pub(super) struct Walker {
     going_home: bool,
     noise: f64,
     blur: Vec<f64>,
-    /// How the path ends by a loop that was not quite clear, with the limit if it is finite.
-    vague: Option<(EndKind, Vec<Complex64>)>,
+    /// How the path ends by a loop that was not quite clear.
+    vague: Option<Ending>,
     middle: Vec<Complex64>,
-    kind: Option<EndKind>,
+    end: Option<Ending>,
 }
 
 impl Walker {
@@ -105,12 +69,12 @@ impl Walker {
             blur: Vec::new(),
             vague: None,
             middle: Vec::new(),
-            kind: None,
+            end: None,
         }
     }
 
     pub(super) fn is_live(&self) -> bool {
-        self.kind.is_none()
+        self.end.is_none()
     }
 
     /// Where the next leg starts.
@@ -143,8 +107,7 @@ impl Walker {
             return;
         };
         if goes_home {
-            self.x = end.point;
-            self.kind = Some(EndKind::Reached);
+            self.end = Some(Ending::Open { t: 0.0, point: end.point });
         } else if self.samples.is_empty() {
             self.arrive(end, options);
         } else {
@@ -219,14 +182,14 @@ impl Walker {
         let spread = self.samples.chunks(n).map(|x| distance(first, x)).fold(0.0, f64::max);
         if gap <= endgame::CLOSED.max(100.0 * self.noise).max(1e-7 * spread) {
             let all = Loop { n, per_turn: self.per_turn, samples: &self.samples, noise: self.noise, blur: &self.blur };
-            let reading = all.read(endgame::CLEAR);
-            if reading == Reading::TooWide {
-                self.suppose(end_kind(all.read(endgame::VAGUE), winding).map(reduced));
-            }
-            match reading {
-                Reading::TooWide => self.shrink(options),
-                Reading::TooDeep => self.lose(),
-                reading => self.settle(end_kind(reading, winding)),
+            match all.read(endgame::CLEAR) {
+                Err(Unclear::TooWide) => {
+                    let vague = all.read(endgame::VAGUE).ok().map(reduced);
+                    self.suppose(vague);
+                    self.shrink(options);
+                }
+                Err(Unclear::TooDeep) => self.lose(),
+                Ok(end) => self.settle(end),
             }
         } else if winding >= self.turns {
             self.shrink(options);
@@ -238,15 +201,12 @@ impl Walker {
 
     /// Notes how the path ends by a loop that is not quite clear. If there are several, the first counts,
     /// but all loops must agree that a path diverges.
-    fn suppose(&mut self, vague: Option<(EndKind, Vec<Complex64>)>) {
-        let diverges = |vague: &Option<(EndKind, Vec<Complex64>)>| match vague {
-            Some((EndKind::Infinite { winding, valuations }, _)) => Some((*winding, valuations.clone())),
-            _ => None,
-        };
-        if self.vague.is_none() && (self.shrunk == 0 || diverges(&vague).is_none()) {
+    fn suppose(&mut self, vague: Option<Ending>) {
+        let diverges = |vague: &Option<Ending>| matches!(vague, Some(Ending::Infinite { .. }));
+        if self.vague.is_none() && (self.shrunk == 0 || !diverges(&vague)) {
             self.vague = vague;
-        } else if diverges(&self.vague).is_some() && diverges(&self.vague) != diverges(&vague) {
-            self.vague = vague.filter(|(kind, _)| matches!(kind, EndKind::Finite { .. }));
+        } else if diverges(&self.vague) && self.vague != vague {
+            self.vague = vague.filter(|end| matches!(end, Ending::Singular(_)));
         }
     }
 
@@ -278,43 +238,27 @@ impl Walker {
     /// Ends the path without a clear loop, as a vague one says if there was one.
     fn lose(&mut self) {
         let vague = self.vague.take();
-        self.settle(vague);
+        self.settle(vague.unwrap_or(Ending::Lost));
     }
 
-    fn settle(&mut self, found: Option<(EndKind, Vec<Complex64>)>) {
+    fn settle(&mut self, end: Ending) {
         self.going_home = false;
-        self.kind = Some(match found {
-            Some((kind, limit)) => {
-                if !limit.is_empty() {
-                    self.x = limit;
-                }
-                kind
-            }
-            None => EndKind::Lost,
-        });
+        self.end = Some(end);
     }
 
-    pub(super) fn ending(self) -> Ending {
-        let kind = self.kind.unwrap_or(EndKind::Lost);
-        Ending { path: self.path, kind, point: self.x, middle: self.middle }
-    }
-}
-
-fn end_kind(reading: Reading, winding: usize) -> Option<(EndKind, Vec<Complex64>)> {
-    match reading {
-        Reading::Finite { limit, error } => Some((EndKind::Finite { winding, error }, limit)),
-        Reading::Infinite { valuations } => Some((EndKind::Infinite { winding, valuations }, Vec::new())),
-        Reading::TooWide | Reading::TooDeep => None,
+    /// The index of the path, its end, and its point at the first radius.
+    pub(super) fn ended(self) -> (usize, Ending, Vec<Complex64>) {
+        (self.path, self.end.unwrap_or(Ending::Lost), self.middle)
     }
 }
 
 /// A direction to infinity in lowest terms. Branch points within a loop make it unclear. They can
 /// join cycles that go the same way, and only the winding number of one of these is of interest.
-fn reduced((kind, limit): (EndKind, Vec<Complex64>)) -> (EndKind, Vec<Complex64>) {
-    let EndKind::Infinite { winding, valuations } = kind else { return (kind, limit) };
+fn reduced(end: Ending) -> Ending {
+    let Ending::Infinite { valuations, winding } = end else { return end };
     let common = valuations.iter().fold(winding as u64, |divisor, v| gcd(v.unsigned_abs(), divisor)).max(1);
     let valuations = valuations.into_iter().map(|v| v / common as i64).collect();
-    (EndKind::Infinite { winding: winding / common as usize, valuations }, limit)
+    Ending::Infinite { valuations, winding: winding / common as usize }
 }
 
 fn gcd(a: u64, b: u64) -> u64 {
@@ -359,16 +303,13 @@ fn samples_for(steepest: f64) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::{EndKind, distance, reduced};
+    use super::{Ending, distance, reduced};
     use num_complex::Complex64;
 
     #[test]
     fn directions_in_lowest_terms() {
-        let lowest = |winding, valuations: &[i64]| {
-            let (kind, _) = reduced((EndKind::Infinite { winding, valuations: valuations.to_vec() }, Vec::new()));
-            kind
-        };
-        let infinite = |winding, valuations: &[i64]| EndKind::Infinite { winding, valuations: valuations.to_vec() };
+        let infinite = |winding, valuations: &[i64]| Ending::Infinite { winding, valuations: valuations.to_vec() };
+        let lowest = |winding, valuations| reduced(infinite(winding, valuations));
         assert_eq!(lowest(12, &[2, 0, -2]), infinite(6, &[1, 0, -1]));
         assert_eq!(lowest(2, &[-2, 3]), infinite(2, &[-2, 3]));
         assert_eq!(lowest(1, &[-4, 2]), infinite(1, &[-4, 2]));

@@ -1,7 +1,7 @@
 //! Where all paths of the coefficient stage end.
 
-use super::record::SingularEnd;
 use super::solutions::{Direction, Solution, Solutions, Unresolved};
+use crate::endgame::SingularEnd;
 use crate::family::PathCounts;
 use crate::refine::Refined;
 use crate::store::Records;

@@ -3,11 +3,12 @@
 use super::ends::{End, Ends};
 use super::excess::Excess;
 use super::fingerprints::Fingerprints;
-use super::record::{Record, RecordEnd};
+use super::record::Record;
 use super::solutions::Direction;
 use crate::SolveOptions;
 use crate::checkpoint::{Part, Recordable, Recorded};
 use crate::distinct::{coincidences, groups, relative_distance};
+use crate::endgame::Ending;
 use crate::homotopy::Segment;
 use crate::monitor::Monitor;
 use crate::ranks::{DividedWork, Lead};
@@ -212,20 +213,20 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
             self.middles.note(path, fingerprint);
         }
         match &record.end {
-            RecordEnd::Regular(refined) => {
+            Ending::Regular(refined) => {
                 self.ends.set(path, End::SOLUTION);
                 self.ends.regular.insert(path, refined.clone());
             }
-            RecordEnd::Singular(end) => {
+            Ending::Singular(end) => {
                 self.ends.set(path, End::SINGULAR);
                 self.ends.singular.insert(path, end.clone());
             }
-            RecordEnd::Infinite { valuations, winding } => {
+            Ending::Infinite { valuations, winding } => {
                 let next = self.directions.len();
                 let direction = *self.directions.entry((valuations.clone(), *winding)).or_insert(next);
                 self.ends.set(path, End::infinite(direction));
             }
-            RecordEnd::Lost | RecordEnd::Open { .. } | RecordEnd::Undecided { .. } => {}
+            Ending::Lost | Ending::Open { .. } | Ending::Undecided { .. } => {}
         }
     }
 

@@ -1,11 +1,12 @@
 //! Batches may come from anywhere, in any order.
 
 use super::{CHUNK, CoefficientStage, End, Route};
+use crate::endgame::Ending;
 use crate::family::Fibre;
 use crate::monitor::Monitor;
 use crate::runner::{Round, Work};
 use crate::solve::excess::Excess;
-use crate::solve::record::{Record, RecordEnd};
+use crate::solve::record::Record;
 use crate::solve::solutions::Direction;
 use crate::tracker::Trackers;
 use crate::{Family, SolveOptions};
@@ -105,7 +106,7 @@ fn batches_are_absorbed_in_any_order() {
     again[2] = vec![Record::lost(2)];
     again.push(single[2].clone());
     assert_eq!(absorbed(again), whole);
-    assert!(single.iter().flatten().all(|record| !matches!(record.end, RecordEnd::Lost)));
+    assert!(single.iter().flatten().all(|record| !matches!(record.end, Ending::Lost)));
     assert!(whole.0.len() < CHUNK);
 }
 

@@ -3,9 +3,9 @@
 
 use super::fingerprints::Fingerprint;
 use super::paths::{CoefficientStage, Route};
-use super::record::{Record, RecordEnd, SingularEnd};
+use super::record::Record;
 use crate::distinct::relative_distance;
-use crate::endgame::{EndKind, EndgameOptions, Ending, endgame};
+use crate::endgame::{EndgameOptions, Ending, SingularEnd, endgame};
 use crate::homotopy::Segment;
 use crate::monitor::{self, Monitor};
 use crate::ranks::{RanksError, Shareable, Task, Worker};
@@ -55,7 +55,7 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
         let tracker = TrackerOptions { endgame_start: 0.0, min_t: self.endgame(round).start, ..settings };
         let all: Vec<usize> = (0..reached.numbers.len()).collect();
         let paths = trackers.track(&self.segment, &reached.points, &all, &tracker, monitor);
-        let ends: Vec<RecordEnd> = (0..paths.len())
+        let ends: Vec<Ending> = (0..paths.len())
             .into_par_iter()
             .with_min_len(LEAST)
             .map_init(
@@ -67,14 +67,14 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
                             let refined = refiner.refine(target, point);
                             let near = relative_distance(&refined.point, point) < ends::ARRIVED;
                             if near && refiner.is_regular(target, &refined) {
-                                RecordEnd::Regular(refined)
+                                Ending::Regular(refined)
                             } else {
                                 // Once more up to where the endgame begins.
-                                RecordEnd::Undecided { start: reached.point(result.path).to_vec() }
+                                Ending::Undecided { start: reached.point(result.path).to_vec() }
                             }
                         }
-                        PathEnd::Singular => RecordEnd::Open { t: result.t, point: point.to_vec() },
-                        _ => RecordEnd::Lost,
+                        PathEnd::Singular => Ending::Open { t: result.t, point: point.to_vec() },
+                        _ => Ending::Lost,
                     }
                 },
             )
@@ -107,11 +107,11 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
         let mut handed: Vec<(usize, f64, &[Complex64])> = Vec::new();
         for (k, record) in open.iter().enumerate() {
             match &record.end {
-                RecordEnd::Undecided { start } => {
+                Ending::Undecided { start } => {
                     undecided.push(k);
                     starts.extend_from_slice(start);
                 }
-                RecordEnd::Open { t, point } => handed.push((k, *t, point)),
+                Ending::Open { t, point } => handed.push((k, *t, point)),
                 _ => {}
             }
         }
@@ -122,10 +122,10 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
         let mut records: Vec<Record> =
             open.iter().map(|record| Record { begun: record.begun.clone(), ..Record::lost(record.path) }).collect();
         let mut refiner = Refiner::new(trackers.system());
-        for ending in endgame(trackers, &self.segment, handed, self.route.count, &tracker, &options, monitor) {
-            let record = &mut records[ending.path];
-            record.middle = (!ending.middle.is_empty()).then(|| Fingerprint::new(&ending.middle, !round.is_first()));
-            record.end = end_of(&mut refiner, target, ending, !round.is_first());
+        let ends = endgame(trackers, &self.segment, handed, self.route.count, &tracker, &options, monitor);
+        for (k, end, middle) in ends {
+            records[k].middle = (!middle.is_empty()).then(|| Fingerprint::new(&middle, !round.is_first()));
+            records[k].end = decided(&mut refiner, target, end, !round.is_first());
         }
         records
     }
@@ -134,21 +134,20 @@ impl<E: Evaluate, S: Source<E>> CoefficientStage<'_, '_, E, S> {
 /// The end of a path after its endgame; if it is regular after all, it is refined. A path
 /// that comes to the target along the radius `again`, although it is singular there, ends on a
 /// component.
-fn end_of<E: Evaluate>(refiner: &mut Refiner<'_, E>, target: &[Complex64], ending: Ending, again: bool) -> RecordEnd {
-    if matches!(ending.kind, EndKind::Reached | EndKind::Finite { winding: 1, .. }) {
-        let refined = refiner.refine(target, &ending.point);
-        let near = relative_distance(&refined.point, &ending.point) < same::SINGULAR;
+fn decided<E: Evaluate>(refiner: &mut Refiner<'_, E>, target: &[Complex64], end: Ending, again: bool) -> Ending {
+    if let Ending::Open { point, .. } | Ending::Singular(SingularEnd { point, winding: 1, .. }) = &end {
+        let refined = refiner.refine(target, point);
+        let near = relative_distance(&refined.point, point) < same::SINGULAR;
         if near && refiner.is_regular(target, &refined) {
-            return RecordEnd::Regular(refined);
+            return Ending::Regular(refined);
         }
     }
-    match ending.kind {
-        EndKind::Finite { winding, error } => RecordEnd::Singular(SingularEnd { point: ending.point, winding, error }),
-        EndKind::Infinite { winding, valuations } => RecordEnd::Infinite { valuations, winding },
-        EndKind::Reached if again => {
-            RecordEnd::Singular(SingularEnd { point: ending.point, winding: 1, error: ends::REACHED })
+    match end {
+        Ending::Open { point, .. } if again => {
+            Ending::Singular(SingularEnd { point, winding: 1, error: ends::REACHED })
         }
-        EndKind::Reached | EndKind::Lost => RecordEnd::Lost,
+        Ending::Open { .. } => Ending::Lost,
+        end => end,
     }
 }
 
