@@ -12,7 +12,7 @@ use hc::homotopy::Segment;
 use hc::poly::{Complex64, Evaluate, Interpreter, Lane, Lanes8, parse};
 use hc::random::Random;
 use hc::tracker::{PathSet, Tracker, TrackerOptions};
-use hc::{Fibre, FibreOptions};
+use hc::{Fibre, FibreOptions, Monitor};
 
 fn main() {
     divan::main();
@@ -65,7 +65,7 @@ fn generated_eight(bencher: Bencher<'_, '_>) {
 fn whole_fibre(bencher: Bencher<'_, '_>) {
     let fibre = generated::fibre();
     let target = target(&fibre);
-    bencher
-        .counter(ItemsCount::new(fibre.len()))
-        .bench_local(|| track_fibre(&generated::System, &fibre, black_box(&target), &FibreOptions::default()));
+    bencher.counter(ItemsCount::new(fibre.len())).bench_local(|| {
+        track_fibre(&generated::System, &fibre, black_box(&target), &FibreOptions::default(), &Monitor::default())
+    });
 }

@@ -2,6 +2,7 @@
 
 use super::fibre::{Fibre, FibreOptions};
 use super::track::{move_fibre, track_fibre};
+use crate::monitor::Monitor;
 use crate::random::Random;
 use crate::tracker::TrackerOptions;
 use num_complex::Complex64;
@@ -93,7 +94,8 @@ pub fn easiest_fibre<E: Evaluate>(
     options: &ChoiceOptions,
 ) -> (Fibre, f64) {
     let member = |k: u64| Random::new(options.seed, FIRST_MEMBER + k).normals(fibre.parameters.len());
-    let to = |fibre: &Fibre, parameters: &[Complex64]| move_fibre(system, fibre, parameters, &FibreOptions::default());
+    let (given, monitor) = (FibreOptions::default(), Monitor::default());
+    let to = |fibre: &Fibre, parameters: &[Complex64]| move_fibre(system, fibre, parameters, &given, &monitor);
     let part = evenly(fibre, options.solutions.unwrap_or(usize::MAX));
     let moved = (0..options.members as u64).filter_map(|k| to(&part, &member(k)));
     let mut tried: Vec<(usize, Fibre)> = std::iter::once(part.clone()).chain(moved).map(|part| (0, part)).collect();
@@ -101,7 +103,7 @@ pub fn easiest_fibre<E: Evaluate>(
         tried.truncate(tried.len().div_ceil(if samples.start > 0 { BEST } else { 1 }));
         for (work, fibre) in &mut tried {
             for k in samples.clone() {
-                let (ends, counts) = track_fibre(system, fibre, &sample(fibre, k), &options.paths);
+                let (ends, counts) = track_fibre(system, fibre, &sample(fibre, k), &options.paths, &monitor);
                 *work += ends.results().iter().map(|path| path.jacobians).sum::<usize>() + LOST * counts.failed;
             }
         }
@@ -147,6 +149,7 @@ pub fn real_sample(parameters: usize, k: u64) -> Vec<Complex64> {
 mod tests {
     use super::{ChoiceOptions, easiest_fibre, real_sample};
     use crate::family::{Family, Fibre, FibreOptions, track_fibre};
+    use crate::monitor::Monitor;
     use num_complex::Complex64;
     use std::cell::Cell;
 
@@ -168,8 +171,9 @@ mod tests {
         assert_eq!((asked.get(), options.work()), (204, 204));
         assert_eq!(chosen.len(), 2);
         let work = |fibre: &Fibre| {
-            let paths = (0..36).map(|k| track_fibre(family.program(), fibre, &real_sample(2, k), &options.paths).0);
-            paths.map(|ends| ends.results().iter().map(|path| path.jacobians).sum::<usize>()).sum::<usize>()
+            let to =
+                |k| track_fibre(family.program(), fibre, &real_sample(2, k), &options.paths, &Monitor::default()).0;
+            (0..36).map(|k| to(k).results().iter().map(|path| path.jacobians).sum::<usize>()).sum::<usize>()
         };
         assert!(work(&chosen) < work(&bad), "{} {}", work(&chosen), work(&bad));
         assert_eq!(work(&chosen) as f64 / 72.0, jacobians);
@@ -181,7 +185,8 @@ mod tests {
         let (by_half, jacobians) = easiest_fibre(family.program(), &bad, |_, k| real_sample(2, k), &half);
         assert_eq!(by_half.len(), 2);
         assert!(jacobians > 0.0 && work(&by_half) < work(&bad), "{jacobians} {}", work(&by_half));
-        let again = track_fibre(family.program(), &chosen, &real_sample(2, 40), &FibreOptions::default());
+        let to = real_sample(2, 40);
+        let again = track_fibre(family.program(), &chosen, &to, &FibreOptions::default(), &Monitor::default());
         assert_eq!(again.1.finite, 2);
     }
 }

@@ -37,7 +37,6 @@ pub use start_file::{StartFile, StartFileError};
 pub use targets::Targets;
 pub(crate) use trace::deviation;
 pub use track::{FibreTracker, move_fibre, track_fibre};
-pub(crate) use track::{move_fibre_watched, track_fibre_watched};
 
 #[cfg(all(test, feature = "threads"))]
 #[path = "recorded_tests.rs"]

@@ -8,7 +8,7 @@ use super::compiled::Family;
 use super::error::FamilyError;
 use super::fibre::{Fibre, FibreOptions, Limit, TargetLimits};
 use super::symmetry::Symmetry;
-use super::track::{moved as moved_fibre, track_fibre_watched};
+use super::track::{moved as moved_fibre, track_fibre};
 use crate::distinct::coincidences;
 use crate::monitor::Monitor;
 use crate::random::{Random, Stream};
@@ -73,7 +73,7 @@ impl TargetTracking<'_> {
             }
             let corner = corner(fibre, target, number);
             let paths = FibreOptions { again: Some(most - again - detour), ..given.clone() };
-            let moved = track_fibre_watched(system, fibre, &corner, &paths, monitor);
+            let moved = track_fibre(system, fibre, &corner, &paths, monitor);
             again += fibre.len() + moved.1.retracked;
             let Some(moved) = moved_fibre(system, fibre, &corner, &moved) else { continue };
             let other = solve(&moved, 0, 0);

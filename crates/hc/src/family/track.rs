@@ -27,22 +27,12 @@ pub fn track_fibre<E: Evaluate>(
     fibre: &Fibre,
     target: &[Complex64],
     options: &FibreOptions,
-) -> (PathSet, PathCounts) {
-    track_fibre_watched(system, fibre, target, options, &Monitor::default())
-}
-
-/// [`track_fibre`], watched.
-pub(crate) fn track_fibre_watched<E: Evaluate>(
-    system: &E,
-    fibre: &Fibre,
-    target: &[Complex64],
-    options: &FibreOptions,
     monitor: &Monitor,
 ) -> (PathSet, PathCounts) {
     track_fibre_led(system, fibre, target, options, monitor, None)
 }
 
-/// [`track_fibre_watched`], by all ranks if this one leads them.
+/// [`track_fibre`], by all ranks if this one leads them.
 pub(super) fn track_fibre_led<E: Evaluate>(
     system: &E,
     fibre: &Fibre,
@@ -67,20 +57,9 @@ pub fn move_fibre<E: Evaluate>(
     fibre: &Fibre,
     target: &[Complex64],
     options: &FibreOptions,
-) -> Option<Fibre> {
-    move_fibre_watched(system, fibre, target, options, &Monitor::default())
-}
-
-/// [`move_fibre`], watched.
-pub(crate) fn move_fibre_watched<E: Evaluate>(
-    system: &E,
-    fibre: &Fibre,
-    target: &[Complex64],
-    options: &FibreOptions,
     monitor: &Monitor,
 ) -> Option<Fibre> {
-    let tracked = track_fibre_watched(system, fibre, target, options, monitor);
-    moved(system, fibre, target, &tracked)
+    moved(system, fibre, target, &track_fibre(system, fibre, target, options, monitor))
 }
 
 /// The fibre to whose solutions all of another have been tracked; `None` if a path was lost.

@@ -4,7 +4,7 @@
 use super::equations::NamedEquations;
 use super::set::WitnessSet;
 use crate::distinct::relative_distance;
-use crate::family::{Fibre, FibreOptions, MonodromyOptions, deviation, monodromy, move_fibre_watched};
+use crate::family::{Fibre, FibreOptions, MonodromyOptions, deviation, monodromy, move_fibre};
 use crate::monitor::Monitor;
 use crate::random::{Random, Stream};
 use crate::tolerances::{families, same, witness};
@@ -118,7 +118,7 @@ fn trace<E: Evaluate>(family: &E, fibre: &Fibre, unknowns: usize, seed: u64, mon
     let direction: Vec<Complex64> = (0..fibre.parameters.len()).map(step).collect();
     let at = |s: f64| fibre.parameters.iter().zip(&direction).map(|(b, v)| b + v * s).collect::<Vec<_>>();
     let options = FibreOptions::default();
-    let moved = |fibre: &Fibre, s: f64| move_fibre_watched(family, fibre, &at(s), &options, monitor).map(settled);
+    let moved = |fibre: &Fibre, s: f64| move_fibre(family, fibre, &at(s), &options, monitor).map(settled);
     let second = moved(fibre, 1.0)?;
     let third = moved(&second, 2.0)?;
     let deviation = deviation(family, &[fibre, &second, &third], unknowns);

@@ -4,7 +4,7 @@ use super::deflated::DeflatedEquations;
 use super::equations::NamedEquations;
 use super::slices::Slices;
 use crate::distinct::relative_distance;
-use crate::family::{Fibre, FibreOptions, track_fibre_watched};
+use crate::family::{Fibre, FibreOptions, track_fibre};
 use crate::monitor::Monitor;
 use crate::refine::Refiner;
 use crate::solve::{SolveOptions, ends};
@@ -71,7 +71,7 @@ impl WitnessSet {
         let is_there = |end: &[Complex64]| relative_distance(&end[..self.unknowns], point) < same::SINGULAR;
         let mut options = FibreOptions { retries: 0, ..FibreOptions::default() };
         options.tracker.max_steps = STEPS;
-        let (found, _) = track_fibre_watched(&self.family, &self.fibre, &target, &options, monitor);
+        let (found, _) = track_fibre(&self.family, &self.fibre, &target, &options, monitor);
         // Where components meet, the Jacobian is singular at the end of a path that comes straight there.
         let arrives =
             |result: &PathResult| matches!(result.end, PathEnd::Success | PathEnd::Singular) && result.t == 0.0;

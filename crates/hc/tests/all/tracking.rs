@@ -123,7 +123,8 @@ fn a_singular_component_is_no_end_of_a_fibre() {
     // that line every correction is tiny.
     let (_, system) = family("x y", "p q", "x^2*(x - p); x*(y - q)");
     let fibre = Fibre::new(reals(&[1.0, 2.0]), 2, reals(&[1.0, 2.0, 1e-20, 2.0]));
-    let (paths, counts) = track_fibre(&system, &fibre, &reals(&[3.0, 2.0]), &FibreOptions::default());
+    let (paths, counts) =
+        track_fibre(&system, &fibre, &reals(&[3.0, 2.0]), &FibreOptions::default(), &Monitor::default());
     assert_eq!((counts.finite, counts.failed), (1, 1));
     assert!((paths.point(0)[0] - 3.0).norm() < 1e-14 && paths.results()[0].pivot > 0.1, "{paths:?}");
     assert_ne!(paths.results()[1].end, PathEnd::Success);
@@ -253,7 +254,7 @@ fn the_whole_fibre_reaches_a_hundred_targets() {
     let (_, system, fibre) = p3p_fibre();
     for seed in 0..100 {
         let target = Random::new(seed, 1).normals(6);
-        let (_, counts) = track_fibre(&system, &fibre, &target, &FibreOptions::default());
+        let (_, counts) = track_fibre(&system, &fibre, &target, &FibreOptions::default(), &Monitor::default());
         assert_eq!((counts.tracked, counts.finite, counts.failed), (8, 8, 0), "seed {seed}");
     }
 }
@@ -274,11 +275,11 @@ fn jumped_paths_are_found_and_mended() {
     for seed in 0..200 {
         let target = Random::new(seed, 2).normals(6);
         reckless.retries = 0;
-        let (_, counts) = track_fibre(&system, &fibre, &target, &reckless);
+        let (_, counts) = track_fibre(&system, &fibre, &target, &reckless, &Monitor::default());
         if counts.failed > 0 {
             jumped += 1;
             reckless.retries = 12;
-            let (_, counts) = track_fibre(&system, &fibre, &target, &reckless);
+            let (_, counts) = track_fibre(&system, &fibre, &target, &reckless, &Monitor::default());
             assert_eq!((counts.finite, counts.failed), (8, 0), "seed {seed}: {counts:?}");
             assert!(counts.retracked > 0);
         }
@@ -346,7 +347,7 @@ fn paths_of_a_part_of_a_fibre_take_no_quick_steps() {
     let ends = |is_partial: bool, quick: bool| {
         let mut options = FibreOptions::default();
         options.tracker.quick = quick;
-        track_fibre(&system, &Fibre { is_partial, ..whole.clone() }, &target, &options).0
+        track_fibre(&system, &Fibre { is_partial, ..whole.clone() }, &target, &options, &Monitor::default()).0
     };
     assert_eq!(ends(true, true), ends(true, false));
     assert_ne!(ends(false, true), ends(false, false));
