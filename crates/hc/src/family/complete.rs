@@ -71,14 +71,14 @@ impl Family {
         let pieces = Pieces::new(checkpoint, monitor, lead);
         let searched = Searched { system: &self.program, enlarged: false };
         let accept = |p: &[Complex64], x: &[Complex64]| self.accepts(p, x);
-        let mut found = fill(searched, first, accept, &self.symmetry, &options, pieces);
+        let mut found = fill(&searched, first, accept, &self.symmetry, &options, pieces);
         if found.stopped == Stopped::NoProgress {
             let others = self.other_pairs(options.seed)?;
-            let joined = joined(searched, &found.fibre, &others, accept, &self.symmetry, &options, monitor);
+            let joined = joined(&searched, &found.fibre, &others, accept, &self.symmetry, &options, monitor);
             if let Some(fibre) = joined {
                 let (mut loops, mut paths) = (found.loops, found.paths + others.len());
                 let mut search = |from: &Fibre, part: u32| {
-                    let found = fill(searched, from, accept, &self.symmetry, &options, pieces.part(part));
+                    let found = fill(&searched, from, accept, &self.symmetry, &options, pieces.part(part));
                     (loops, paths) = (loops + found.loops, paths + found.paths);
                     Monodromy { loops, paths, ..found }
                 };

@@ -29,12 +29,12 @@ pub(crate) fn monodromy<E: Evaluate>(
     monitor: &Monitor,
 ) -> Monodromy {
     let searched = Searched { system, enlarged: false };
-    fill(searched, start, |_, _| true, &Symmetry::default(), options, Pieces::alone(monitor))
+    fill(&searched, start, |_, _| true, &Symmetry::default(), options, Pieces::alone(monitor))
 }
 
 /// The fibre with the solutions to which those of another fibre lead; `None` if it has them all.
 pub(super) fn joined<E: Evaluate>(
-    searched: Searched<'_, E>,
+    searched: &Searched<'_, E>,
     fibre: &Fibre,
     others: &[Fibre],
     accept: impl Fn(&[Complex64], &[Complex64]) -> bool,
@@ -58,7 +58,7 @@ pub(super) fn joined<E: Evaluate>(
 /// `accept` is asked about every new solution; solutions that it refuses (degenerate ones) are
 /// dropped. Each loop is a piece.
 pub(super) fn fill<E: Evaluate>(
-    searched: Searched<'_, E>,
+    searched: &Searched<'_, E>,
     start: &Fibre,
     accept: impl Fn(&[Complex64], &[Complex64]) -> bool,
     symmetry: &Symmetry,
@@ -125,7 +125,7 @@ fn scale(idle: usize, patience: usize) -> f64 {
 
 /// A fibre that is being filled.
 struct Filling<'a, E> {
-    searched: Searched<'a, E>,
+    searched: &'a Searched<'a, E>,
     symmetry: &'a Symmetry,
     options: &'a MonodromyOptions,
     pieces: Pieces<'a>,

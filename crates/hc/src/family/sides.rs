@@ -32,19 +32,11 @@ pub(super) struct Side<'a> {
     options: Cow<'a, FibreOptions>,
 }
 
-impl<E> Clone for Searched<'_, E> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<E> Copy for Searched<'_, E> {}
-
 impl<E: Evaluate> Searched<'_, E> {
     /// The ends of all paths of a fibre to other parameters, as
     /// [`track_fibre`](super::track_fibre) finds them.
     pub(super) fn track(
-        self,
+        &self,
         fibre: &Fibre,
         target: &[Complex64],
         options: &FibreOptions,
@@ -66,7 +58,7 @@ impl<E: Evaluate> Searched<'_, E> {
 
     /// The whole fibre at other parameters, as [`move_fibre`](super::move_fibre) finds it.
     pub(super) fn moved(
-        self,
+        &self,
         fibre: &Fibre,
         target: &[Complex64],
         options: &FibreOptions,
@@ -76,7 +68,7 @@ impl<E: Evaluate> Searched<'_, E> {
     }
 
     /// Tracks paths for rank 0 as long as it sends any.
-    pub(super) fn serve(self, worker: &Worker<'_>, task: &Task<Side<'_>>) -> Result<(), RanksError> {
+    pub(super) fn serve(&self, worker: &Worker<'_>, task: &Task<Side<'_>>) -> Result<(), RanksError> {
         let Side { parameters, solutions, target, options, .. } = &task.content;
         let (n, m) = (self.system.variables(), self.system.parameters());
         if !(solutions.len().is_multiple_of(n.max(1)) && parameters.len() == m && target.len() == m) {

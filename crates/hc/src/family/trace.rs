@@ -43,7 +43,7 @@ pub(super) fn trace_test(
     };
     let mut test = FAILED;
     for (sizes, part) in all.iter().zip((0..).step_by(3)) {
-        test = on_sizes(searched, fibre, sizes, options, pieces.part(part));
+        test = on_sizes(&searched, fibre, sizes, options, pieces.part(part));
         if test.passed(fibre.len()) {
             break;
         }
@@ -56,7 +56,7 @@ const FAILED: TraceTest = TraceTest { deviation: f64::INFINITY, fibre: 0, furthe
 
 /// The trace test with a line and a hypersurface of these sizes.
 fn on_sizes<E: Evaluate>(
-    enlarged: Searched<'_, E>,
+    enlarged: &Searched<'_, E>,
     fibre: &Fibre,
     sizes: &Sizes,
     options: &MonodromyOptions,

@@ -2,8 +2,7 @@
 
 use super::charts::{Charts, OneChart};
 use super::fibre::{Fibre, FibreOptions, PathCounts};
-use super::tracking::{FibreWork, Lanes, Scratch, ends};
-use crate::homotopy::Segment;
+use super::tracking::{FibreWork, Lanes, Scratch};
 use crate::monitor::Monitor;
 use crate::ranks::{DividedWork, Lead};
 use crate::refine::Refiner;
@@ -87,8 +86,6 @@ pub struct FibreTracker<'a, E: Evaluate, C: Charts = OneChart> {
     charts: C,
     monitor: Monitor,
     paths: PathSet,
-    segment: Segment,
-    ends: [Vec<Complex64>; 2],
     workspace: Workspace<Scratch<'a, E>, PathSet>,
 }
 
@@ -121,8 +118,6 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
             charts,
             monitor: Monitor::default(),
             paths: PathSet::with_capacity(dimension, paths),
-            segment: Segment::new(&fibre.parameters, &fibre.parameters),
-            ends: ends(fibre),
             workspace: Workspace { memory: Scratch::new(system, lanes, fibre, paths), batch, which },
         }
     }
@@ -178,17 +173,11 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
         enough: impl FnMut(&PathSet) -> bool,
         lead: Option<&Lead<'_>>,
     ) -> (PathCounts, bool) {
-        for (chart, p) in self.ends.iter_mut().zip([&fibre.parameters[..], target]) {
-            chart.clear();
-            self.charts.parameters(0, p, chart);
-        }
-        self.segment.join(&self.ends[0], &self.ends[1]);
         self.paths.clear(fibre.dimension);
         let work = FibreWork {
             system: self.system,
             charts: &self.charts,
             fibre,
-            segment: &self.segment,
             target,
             options,
             monitor: &self.monitor,

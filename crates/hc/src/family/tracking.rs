@@ -62,16 +62,11 @@ impl<'a, E: Evaluate> Scratch<'a, E> {
             carried: Vec::with_capacity(paths * fibre.dimension),
             back: Vec::with_capacity(fibre.dimension),
             segment: Segment::new(&fibre.parameters, &fibre.parameters),
-            ends: ends(fibre),
+            ends: [0, 1].map(|_| Vec::with_capacity(fibre.parameters.len())),
             paths: PathSet::with_capacity(fibre.dimension, paths),
             which: Vec::with_capacity(paths),
         }
     }
-}
-
-/// Room for the ends of the way in a chart.
-pub(super) fn ends(fibre: &Fibre) -> [Vec<Complex64>; 2] {
-    [0, 1].map(|_| Vec::with_capacity(fibre.parameters.len()))
 }
 
 impl<E: Evaluate> Lanes<'_, E> {
@@ -101,8 +96,6 @@ pub(super) struct FibreWork<'r, 'a, E: Evaluate, C, U> {
     pub(super) system: &'a E,
     pub(super) charts: &'r C,
     pub(super) fibre: &'r Fibre,
-    /// The way from the fibre to the target in chart 0.
-    pub(super) segment: &'r Segment,
     pub(super) target: &'r [Complex64],
     pub(super) options: &'r FibreOptions,
     pub(super) monitor: &'r Monitor,
@@ -225,7 +218,6 @@ pub(super) fn serve_fibre<E: Evaluate, T>(
         system,
         charts: &OneChart,
         fibre,
-        segment: &Segment::new(&fibre.parameters, target),
         target,
         options,
         monitor: &task.monitor,
@@ -275,17 +267,23 @@ impl<'a, E: Evaluate, C: Charts, U> FibreWork<'_, 'a, E, C, U> {
         monitor: &Monitor,
         batch: &mut PathSet,
     ) {
+        let Scratch { ends, segment, .. } = scratch;
+        for (end, p) in ends.iter_mut().zip([&self.fibre.parameters[..], self.target]) {
+            end.clear();
+            self.charts.parameters(round.chart, p, end);
+        }
+        segment.join(&ends[0], &ends[1]);
         batch.clear(self.fibre.dimension);
         if round.is_first() {
             let options = self.options.tracker.first(self.fibre.is_partial);
-            scratch.lanes.track(self.segment, &self.fibre.solutions, numbers, &options, monitor, batch);
+            scratch.lanes.track(&scratch.segment, &self.fibre.solutions, numbers, &options, monitor, batch);
             settle(&mut scratch.refiner, self.target, batch);
         } else {
             self.again(scratch, numbers, round, monitor, batch);
         }
     }
 
-    /// Tracks paths again in a chart, from the start or, if they go on, from where they broke off.
+    /// Tracks paths again in a chart, along its segment, from the start or, if they go on, from where they broke off.
     fn again(
         &self,
         scratch: &mut Scratch<'a, E>,
@@ -294,12 +292,7 @@ impl<'a, E: Evaluate, C: Charts, U> FibreWork<'_, 'a, E, C, U> {
         monitor: &Monitor,
         batch: &mut PathSet,
     ) {
-        let Scratch { lanes, refiner, refined, from, carried, back, segment, ends, paths, which, .. } = scratch;
-        for (end, p) in ends.iter_mut().zip([&self.fibre.parameters[..], self.target]) {
-            end.clear();
-            self.charts.parameters(chart, p, end);
-        }
-        segment.join(&ends[0], &ends[1]);
+        let Scratch { lanes, refiner, refined, from, carried, back, segment, paths, which, .. } = scratch;
         let goes_on = chart > 0 && level.is_multiple_of(2);
         from.clear();
         carried.clear();
