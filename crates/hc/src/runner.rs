@@ -102,7 +102,7 @@ pub(crate) struct Outcome {
 
 /// The memory of a run, which may be used again.
 #[derive(Debug, Default)]
-pub(crate) struct Workspace<M, B> {
+pub(crate) struct RunMemory<M, B> {
     pub(crate) memory: M,
     pub(crate) batch: B,
     /// Paths that are tracked, then those that are doubtful. The paths that a run leaves here stay
@@ -115,7 +115,7 @@ pub(crate) fn run<W: Work>(
     work: &mut W,
     count: usize,
     policy: &Policy,
-    workspace: &mut Workspace<W::Memory, W::Batch>,
+    workspace: &mut RunMemory<W::Memory, W::Batch>,
     monitor: &Monitor,
 ) -> Outcome {
     workspace.which.clear();
@@ -148,8 +148,8 @@ pub(crate) fn run<W: Work>(
 }
 
 /// One round over `workspace.which`, which afterwards holds the doubtful paths.
-fn pass<W: Work>(work: &mut W, round: Round, policy: &Policy, workspace: &mut Workspace<W::Memory, W::Batch>) -> Flow {
-    let Workspace { memory, batch, which } = workspace;
+fn pass<W: Work>(work: &mut W, round: Round, policy: &Policy, workspace: &mut RunMemory<W::Memory, W::Batch>) -> Flow {
+    let RunMemory { memory, batch, which } = workspace;
     work.begin(round, which.len());
     let (mut done, mut size) = (0, if round.is_first() { policy.first } else { policy.batch });
     while done < which.len() {

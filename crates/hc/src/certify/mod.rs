@@ -217,7 +217,7 @@ fn certify_watched(
         proof
     };
     let proofs: Vec<_> = points.par_iter().map_init(|| Prover::new(&target, options), prove).collect();
-    let compared = same::compare(&proofs);
+    let (duplicate_of, unseparated) = same::compare(&proofs);
     let points = proofs.into_iter().map(|proof| proof.map(|p| p.certificate(real))).collect();
-    Ok(Certificates { points, duplicate_of: compared.duplicate_of, unseparated: compared.unseparated })
+    Ok(Certificates { points, duplicate_of, unseparated })
 }

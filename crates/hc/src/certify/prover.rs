@@ -18,16 +18,16 @@ pub(super) struct Target<'a> {
 
 /// The arithmetic of Jacobians and their inverses; points and values are always in double-double.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Precision {
+enum Arithmetic {
     Double,
     DoubleDouble,
 }
 
-impl Precision {
+impl Arithmetic {
     fn rounding(self) -> f64 {
         match self {
-            Precision::Double => f64::EPSILON,
-            Precision::DoubleDouble => f64::EPSILON * f64::EPSILON,
+            Arithmetic::Double => f64::EPSILON,
+            Arithmetic::DoubleDouble => f64::EPSILON * f64::EPSILON,
         }
     }
 }
@@ -37,7 +37,7 @@ pub(super) struct Prover<'a> {
     target: &'a Target<'a>,
     options: &'a CertifyOptions,
     n: usize,
-    precision: Precision,
+    precision: Arithmetic,
     parameters: Vec<Complex64>,
     precise_parameters: Vec<ComplexDd>,
     ball_parameters: Vec<ComplexBall>,
@@ -66,7 +66,7 @@ impl<'a> Prover<'a> {
             target,
             options,
             n,
-            precision: Precision::Double,
+            precision: Arithmetic::Double,
             precise_parameters: parameters.iter().map(|&p| p.into()).collect(),
             parameters,
             ball_parameters: target.parameters.iter().map(ComplexBall::containing).collect(),
@@ -91,7 +91,7 @@ impl<'a> Prover<'a> {
             return Err(Obstacle::NotFinite);
         }
         let mut first = None;
-        for precision in [Precision::Double, Precision::DoubleDouble] {
+        for precision in [Arithmetic::Double, Arithmetic::DoubleDouble] {
             self.precision = precision;
             // Once more with all unknowns of one size: beside zeros, tiny coordinates say nothing
             // of the scale of their unknowns.
@@ -124,8 +124,8 @@ impl<'a> Prover<'a> {
         let Prover { fast, exact, inverse, residuals, .. } = self;
         let place = Place { centre: &centre, inverse, residuals, weights: &weights };
         let proof = match self.precision {
-            Precision::Double => fast.contract(&place, self.options.largest_box),
-            Precision::DoubleDouble => exact.contract(&place, self.options.largest_box),
+            Arithmetic::Double => fast.contract(&place, self.options.largest_box),
+            Arithmetic::DoubleDouble => exact.contract(&place, self.options.largest_box),
         };
         proof.ok_or(Obstacle::NoContraction)
     }
@@ -161,7 +161,7 @@ impl<'a> Prover<'a> {
         let n = self.n;
         let Prover { target, parameters, plain, values, plain_jacobian, jacobian, lu, inverse, .. } = self;
         match self.precision {
-            Precision::Double => {
+            Arithmetic::Double => {
                 let rounded: Vec<Complex64> = x.iter().map(ComplexDd::high).collect();
                 target.system.jacobian(plain, &rounded, parameters, values, plain_jacobian);
                 for (a, &b) in jacobian.iter_mut().zip(plain_jacobian.iter()) {
@@ -182,7 +182,7 @@ impl<'a> Prover<'a> {
                     }
                 }
             }
-            Precision::DoubleDouble => {
+            Arithmetic::DoubleDouble => {
                 let (memory, values) = (&mut self.precise, &mut self.precise_values);
                 target.system.jacobian(memory, x, &self.precise_parameters, values, jacobian);
                 inverse::invert(n, jacobian, inverse);

@@ -7,12 +7,9 @@ use super::certificate::Obstacle;
 use super::proof::Proof;
 use poly::Interval;
 
-pub(super) struct Compared {
-    pub(super) duplicate_of: Vec<Option<usize>>,
-    pub(super) unseparated: Vec<[usize; 2]>,
-}
-
-pub(super) fn compare(proofs: &[Result<Proof, Obstacle>]) -> Compared {
+/// For each proof the first one about the same solution, if that is another, and the pairs that may be about the same
+/// solution or about two.
+pub(super) fn compare(proofs: &[Result<Proof, Obstacle>]) -> (Vec<Option<usize>>, Vec<[usize; 2]>) {
     let proved = proofs.iter().enumerate().filter_map(|(k, p)| Some((k, p.as_ref().ok()?)));
     let mut images: Vec<(Interval, usize, &Proof)> = proved.map(|(k, p)| (image(p), k, p)).collect();
     images.sort_by(|a, b| a.0.low.total_cmp(&b.0.low).then(a.1.cmp(&b.1)));
@@ -37,7 +34,7 @@ pub(super) fn compare(proofs: &[Result<Proof, Obstacle>]) -> Compared {
     unseparated.retain(|&[a, b]| root(&first, a) != root(&first, b));
     unseparated.sort_unstable();
     let duplicate_of = (0..proofs.len()).map(|k| Some(root(&first, k)).filter(|&f| f != k)).collect();
-    Compared { duplicate_of, unseparated }
+    (duplicate_of, unseparated)
 }
 
 fn root(first: &[usize], mut k: usize) -> usize {

@@ -41,7 +41,7 @@ pub enum CheckpointError {
         /// Its value in this run.
         own: String,
     },
-    /// The same [`Checkpoint`](super::Checkpoint) was given to two runs.
+    /// One [`Checkpoint`](super::Checkpoint) was given to two runs.
     #[error("{}: this checkpoint has served a run already; open it again for the next", .0.display())]
     Used(PathBuf),
     /// Work that does not record itself.

@@ -18,7 +18,7 @@ pub(super) trait Domain: Clone + Zero + One + Sub<Output = Self> + From<u32> {
 }
 
 /// A term in two unknowns: exponents and coefficient.
-type Term<T> = ([usize; 2], T);
+type PlaneTerm<T> = ([usize; 2], T);
 
 /// The eliminant of polynomials whose coefficients have images in a domain.
 pub(super) struct Eliminant<T> {
@@ -55,7 +55,7 @@ impl<T: Domain> Eliminant<T> {
     }
 }
 
-fn terms<T>(polynomial: &Polynomial<Exact>, image: impl Fn(&Exact) -> Option<T>) -> Option<Vec<Term<T>>> {
+fn terms<T>(polynomial: &Polynomial<Exact>, image: impl Fn(&Exact) -> Option<T>) -> Option<Vec<PlaneTerm<T>>> {
     let term = |exponents: &[i32], c: &Exact| {
         let [a, b] = *exponents else { return None };
         Some(([usize::try_from(a).ok()?, usize::try_from(b).ok()?], image(c)?))
@@ -63,13 +63,13 @@ fn terms<T>(polynomial: &Polynomial<Exact>, image: impl Fn(&Exact) -> Option<T>)
     polynomial.terms().iter().map(|(monomial, c)| term(monomial.exponents(), c)).collect()
 }
 
-fn degree<T>(terms: &[Term<T>]) -> usize {
+fn degree<T>(terms: &[PlaneTerm<T>]) -> usize {
     terms.iter().map(|([a, b], _)| a + b).max().unwrap_or(0)
 }
 
 /// A polynomial of this degree on the line `x = u - t y`, by ascending powers of `y`; `None` if its
 /// degree is less there.
-fn on_line<T: Domain>(terms: &[Term<T>], degree: usize, u: &T, t: &T) -> Option<Vec<T>> {
+fn on_line<T: Domain>(terms: &[PlaneTerm<T>], degree: usize, u: &T, t: &T) -> Option<Vec<T>> {
     let highest = terms.iter().map(|([a, _], _)| *a).max().unwrap_or(0);
     // By Horner's rule in x.
     let mut whole = vec![T::zero(); degree + 1];

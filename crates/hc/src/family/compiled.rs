@@ -208,21 +208,21 @@ impl FromStr for Family {
 
 /// A short hash of many points.
 #[derive(Serialize)]
-pub(super) struct Points {
+pub(super) struct PointsHash {
     count: usize,
     hash: Hash,
 }
 
-impl Points {
-    pub(super) fn new<'x>(points: impl Iterator<Item = &'x [Complex64]>) -> Points {
+impl PointsHash {
+    pub(super) fn new<'x>(points: impl Iterator<Item = &'x [Complex64]>) -> PointsHash {
         let bytes: Vec<Vec<u8>> = points.map(bytes).collect();
-        Points { count: bytes.len(), hash: Hash::of(bytes) }
+        PointsHash { count: bytes.len(), hash: Hash::of(bytes) }
     }
 
     /// The parameters of a fibre and its solutions.
-    pub(super) fn of_fibre(fibre: &Fibre) -> Points {
+    pub(super) fn of_fibre(fibre: &Fibre) -> PointsHash {
         let hash = Hash::of(std::iter::once(&fibre.parameters[..]).chain(fibre.iter()).map(bytes));
-        Points { count: fibre.len(), hash }
+        PointsHash { count: fibre.len(), hash }
     }
 }
 

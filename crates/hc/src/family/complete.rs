@@ -1,6 +1,6 @@
 //! All solutions for some parameters: the search, the steps after it, and the ranks that take part.
 
-use super::compiled::{Family, Points};
+use super::compiled::{Family, PointsHash};
 use super::error::FamilyError;
 use super::fibre::Fibre;
 use super::monodromy::{fill, joined};
@@ -143,7 +143,7 @@ impl Family {
 
     /// What a checkpoint of a search is of, and all ranks do.
     fn search_job(&self, first: &Fibre, options: &MonodromyOptions) -> Job {
-        self.job("monodromy", &SearchInputs { options, start: Points::of_fibre(first) })
+        self.job("monodromy", &SearchInputs { options, start: PointsHash::of_fibre(first) })
     }
 
     /// First pairs from other random points. On sheets that nearly part from each other loops of any
@@ -231,5 +231,5 @@ impl RanksRun<'_> {
 struct SearchInputs<'a> {
     #[serde(flatten)]
     options: &'a MonodromyOptions,
-    start: Points,
+    start: PointsHash,
 }

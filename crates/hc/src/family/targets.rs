@@ -1,6 +1,6 @@
 //! One fibre to many targets.
 
-use super::compiled::{Family, Points};
+use super::compiled::{Family, PointsHash};
 use super::error::FamilyError;
 use super::fibre::{Fibre, FibreOptions, TargetLimits};
 use super::target::{Orbits, TargetTracking};
@@ -8,7 +8,7 @@ use crate::checkpoint::{Checkpoint, Job, Part, Recordable, Recorded};
 use crate::endgame::EndgameOptions;
 use crate::ranks::{DividedWork, Lead, Shareable, Worker};
 use crate::run::{RanksRun, Run};
-use crate::runner::{Flow, Policy, Round, Work, Workspace, run};
+use crate::runner::{Flow, Policy, Round, RunMemory, Work, run};
 use crate::solve::{Solutions, SolveOptions};
 // One thread needs no trait for `map`.
 #[cfg_attr(not(feature = "threads"), allow(unused_imports))]
@@ -179,7 +179,7 @@ impl<'a> Targets<'a> {
         let policy = Policy { retries: 0, charts: 1, again: 0, first: block, batch: block };
         let part = checkpoint.map(|checkpoint| Part { checkpoint, number: 0 });
         let mut work = Recorded::new(DividedWork::new(work, lead, monitor), part, monitor);
-        run(&mut work, count, &policy, &mut Workspace::default(), monitor);
+        run(&mut work, count, &policy, &mut RunMemory::default(), monitor);
         if let Some(error) = checkpoint.and_then(Checkpoint::failure) {
             return Err(error.into());
         }
@@ -279,15 +279,15 @@ struct TrackInputs<'a> {
     endgame: &'a EndgameOptions,
     known: Option<usize>,
     limits: &'a TargetLimits,
-    start: Points,
-    targets: Points,
+    start: PointsHash,
+    targets: PointsHash,
 }
 
 /// What a checkpoint of this work is of.
 fn job(tracking: &TargetTracking<'_>, targets: &[Vec<Complex64>]) -> Job {
     let SolveOptions { seed, paths, endgame, known, .. } = &tracking.options;
-    let start = Points::of_fibre(tracking.fibre);
-    let targets = Points::new(targets.iter().map(Vec::as_slice));
+    let start = PointsHash::of_fibre(tracking.fibre);
+    let targets = PointsHash::new(targets.iter().map(Vec::as_slice));
     let inputs = TrackInputs { seed: *seed, paths, endgame, known: *known, limits: &tracking.limits, start, targets };
     tracking.family.job("track", &inputs)
 }

@@ -2,11 +2,11 @@
 
 use super::charts::{Charts, OneChart};
 use super::fibre::{Fibre, FibreOptions, PathCounts};
-use super::tracking::{FibreWork, Lanes, Scratch};
+use super::tracking::{FibreMemory, FibreWork, PathTrackers};
 use crate::monitor::Monitor;
 use crate::ranks::{DividedWork, Lead};
 use crate::refine::Refiner;
-use crate::runner::{Flow, Policy, Workspace, run};
+use crate::runner::{Flow, Policy, RunMemory, run};
 use crate::tracker::{PathEnd, PathSet, Tracker, TrackerOptions, Trackers};
 use num_complex::Complex64;
 use poly::Evaluate;
@@ -40,7 +40,7 @@ pub(super) fn track_fibre_led<E: Evaluate>(
     monitor: &Monitor,
     lead: Option<&Lead<'_>>,
 ) -> (PathSet, PathCounts) {
-    let mut tracker = FibreTracker::over(system, OneChart, Lanes::Threads(Trackers::new(system)), fibre);
+    let mut tracker = FibreTracker::over(system, OneChart, PathTrackers::Threads(Trackers::new(system)), fibre);
     tracker.monitor.clone_from(monitor);
     let (counts, _) = tracker.track_led(fibre, target, options, fibre.len(), |_| false, lead);
     (tracker.paths, counts)
@@ -86,7 +86,7 @@ pub struct FibreTracker<'a, E: Evaluate, C: Charts = OneChart> {
     charts: C,
     monitor: Monitor,
     paths: PathSet,
-    workspace: Workspace<Scratch<'a, E>, PathSet>,
+    workspace: RunMemory<FibreMemory<'a, E>, PathSet>,
 }
 
 impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
@@ -96,7 +96,7 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
     /// If the system does not have as many equations as unknowns.
     pub fn new(system: &'a E, charts: C, fibre: &Fibre) -> Self {
         let tracker = Tracker::new(system, &TrackerOptions::default());
-        FibreTracker::over(system, charts, Lanes::One(Box::new(tracker)), fibre)
+        FibreTracker::over(system, charts, PathTrackers::One(Box::new(tracker)), fibre)
     }
 
     /// [`new`](Self::new), with the paths on the threads of the current rayon pool. The results do not
@@ -105,10 +105,10 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
     /// # Panics
     /// If the system does not have as many equations as unknowns.
     pub fn on_all_threads(system: &'a E, charts: C, fibre: &Fibre) -> Self {
-        FibreTracker::over(system, charts, Lanes::Threads(Trackers::new(system)), fibre)
+        FibreTracker::over(system, charts, PathTrackers::Threads(Trackers::new(system)), fibre)
     }
 
-    fn over(system: &'a E, charts: C, lanes: Lanes<'a, E>, fibre: &Fibre) -> Self {
+    fn over(system: &'a E, charts: C, lanes: PathTrackers<'a, E>, fibre: &Fibre) -> Self {
         let (paths, dimension) = (fibre.len(), fibre.dimension);
         // A path may be lost and share its end.
         let which = Vec::with_capacity(2 * paths);
@@ -118,7 +118,7 @@ impl<'a, E: Evaluate, C: Charts> FibreTracker<'a, E, C> {
             charts,
             monitor: Monitor::default(),
             paths: PathSet::with_capacity(dimension, paths),
-            workspace: Workspace { memory: Scratch::new(system, lanes, fibre, paths), batch, which },
+            workspace: RunMemory { memory: FibreMemory::new(system, lanes, fibre, paths), batch, which },
         }
     }
 

@@ -28,7 +28,7 @@ const MANY: usize = 16;
 const VERY_LONG: usize = 500_000;
 
 /// Where paths are tracked.
-pub(super) enum Lanes<'a, E: Evaluate> {
+pub(super) enum PathTrackers<'a, E: Evaluate> {
     /// In the lanes of one tracker.
     One(Box<Tracker<'a, E, Lanes8>>),
     /// On all threads.
@@ -36,8 +36,8 @@ pub(super) enum Lanes<'a, E: Evaluate> {
 }
 
 /// What a batch needs besides its arguments.
-pub(super) struct Scratch<'a, E: Evaluate> {
-    lanes: Lanes<'a, E>,
+pub(super) struct FibreMemory<'a, E: Evaluate> {
+    lanes: PathTrackers<'a, E>,
     refiner: Refiner<'a, E>,
     refined: Refined,
     coincidences: Coincidences,
@@ -50,10 +50,10 @@ pub(super) struct Scratch<'a, E: Evaluate> {
     which: Vec<usize>,
 }
 
-impl<'a, E: Evaluate> Scratch<'a, E> {
+impl<'a, E: Evaluate> FibreMemory<'a, E> {
     /// Memory for so many paths of a fibre.
-    pub(super) fn new(system: &'a E, lanes: Lanes<'a, E>, fibre: &Fibre, paths: usize) -> Self {
-        Scratch {
+    pub(super) fn new(system: &'a E, lanes: PathTrackers<'a, E>, fibre: &Fibre, paths: usize) -> Self {
+        FibreMemory {
             lanes,
             refiner: Refiner::new(system),
             refined: Refined { point: Vec::with_capacity(fibre.dimension), ..Refined::default() },
@@ -69,7 +69,7 @@ impl<'a, E: Evaluate> Scratch<'a, E> {
     }
 }
 
-impl<E: Evaluate> Lanes<'_, E> {
+impl<E: Evaluate> PathTrackers<'_, E> {
     /// Tracks the paths with these numbers into `starts` and appends them to `out`.
     fn track<P: ParameterPath>(
         &mut self,
@@ -81,12 +81,12 @@ impl<E: Evaluate> Lanes<'_, E> {
         out: &mut PathSet,
     ) {
         match self {
-            Lanes::One(tracker) => {
+            PathTrackers::One(tracker) => {
                 tracker.set_options(options);
                 tracker.set_monitor(monitor);
                 tracker.track(path, starts, which.iter().copied(), out);
             }
-            Lanes::Threads(trackers) => *out = trackers.track(path, starts, which, options, monitor),
+            PathTrackers::Threads(trackers) => *out = trackers.track(path, starts, which, options, monitor),
         }
     }
 }
@@ -115,13 +115,13 @@ where
     U: FnMut(&PathSet) -> bool,
 {
     type Batch = PathSet;
-    type Memory = Scratch<'a, E>;
+    type Memory = FibreMemory<'a, E>;
 
     fn begin(&mut self, _: Round, _: usize) {
         self.reported.set(0);
     }
 
-    fn batch(&self, scratch: &mut Scratch<'a, E>, numbers: &[usize], round: Round, batch: &mut PathSet) {
+    fn batch(&self, scratch: &mut FibreMemory<'a, E>, numbers: &[usize], round: Round, batch: &mut PathSet) {
         self.pass(scratch, numbers, round, self.monitor, batch);
     }
 
@@ -150,7 +150,7 @@ where
         Flow::On
     }
 
-    fn doubtful(&mut self, scratch: &mut Scratch<'a, E>, which: &mut Vec<usize>) {
+    fn doubtful(&mut self, scratch: &mut FibreMemory<'a, E>, which: &mut Vec<usize>) {
         let FibreWork { paths, options, .. } = self;
         paths.sort();
         doubtful(paths, options.coincidence, &mut scratch.coincidences, which);
@@ -176,8 +176,8 @@ where
 
     fn ends(&self, numbers: &[usize], round: Round) -> Vec<Self::End> {
         let fibre = self.fibre;
-        let lanes = Lanes::Threads(Trackers::new(self.system));
-        let mut scratch = Scratch::new(self.system, lanes, fibre, numbers.len());
+        let lanes = PathTrackers::Threads(Trackers::new(self.system));
+        let mut scratch = FibreMemory::new(self.system, lanes, fibre, numbers.len());
         let mut batch = PathSet::with_capacity(fibre.dimension, numbers.len());
         // The progress of a batch is told as a whole.
         self.pass(&mut scratch, numbers, round, &self.monitor.quiet(), &mut batch);
@@ -261,13 +261,13 @@ impl<'a, E: Evaluate, C: Charts, U> FibreWork<'_, 'a, E, C, U> {
     /// Tracks the paths with these numbers in a round.
     fn pass(
         &self,
-        scratch: &mut Scratch<'a, E>,
+        scratch: &mut FibreMemory<'a, E>,
         numbers: &[usize],
         round: Round,
         monitor: &Monitor,
         batch: &mut PathSet,
     ) {
-        let Scratch { ends, segment, .. } = scratch;
+        let FibreMemory { ends, segment, .. } = scratch;
         for (end, p) in ends.iter_mut().zip([&self.fibre.parameters[..], self.target]) {
             end.clear();
             self.charts.parameters(round.chart, p, end);
@@ -286,13 +286,13 @@ impl<'a, E: Evaluate, C: Charts, U> FibreWork<'_, 'a, E, C, U> {
     /// Tracks paths again in a chart, along its segment, from the start or, if they go on, from where they broke off.
     fn again(
         &self,
-        scratch: &mut Scratch<'a, E>,
+        scratch: &mut FibreMemory<'a, E>,
         numbers: &[usize],
         Round { level, chart }: Round,
         monitor: &Monitor,
         batch: &mut PathSet,
     ) {
-        let Scratch { lanes, refiner, refined, from, carried, back, segment, paths, which, .. } = scratch;
+        let FibreMemory { lanes, refiner, refined, from, carried, back, segment, paths, which, .. } = scratch;
         let goes_on = chart > 0 && level.is_multiple_of(2);
         from.clear();
         carried.clear();

@@ -21,7 +21,7 @@ pub(crate) struct Lu<S: Lane> {
     pub(super) moved: Vec<bool>,
     /// The rows of each column that are not always zero, a bit for each; empty if nothing is known.
     pub(super) structure: Vec<u64>,
-    /// The same of the factors.
+    /// The rows of each column of the factors that are not always zero, a bit for each.
     pub(super) pattern: Vec<u64>,
 }
 

@@ -164,11 +164,11 @@ pub(crate) fn watched_cells<K: Keep>(
     let space = Space::new(supports, Some(tau), monitor);
     let (edges, normal) = (vec![[0; 2]; unknowns], vec![0; unknowns]);
     let cells =
-        || Cells { lifting, order: &order, edges: edges.clone(), normal: normal.clone(), kept: make(), monitor };
+        || CellSink { lifting, order: &order, edges: edges.clone(), normal: normal.clone(), kept: make(), monitor };
     Ok(search(&space, cells)?.into_iter().map(|part| part.kept).collect())
 }
 
-struct Cells<'a, K> {
+struct CellSink<'a, K> {
     lifting: &'a [Vec<i32>],
     order: &'a [usize],
     edges: Vec<[u32; 2]>,
@@ -177,7 +177,7 @@ struct Cells<'a, K> {
     monitor: &'a Monitor,
 }
 
-impl<K: Keep> Sink for Cells<'_, K> {
+impl<K: Keep> Sink for CellSink<'_, K> {
     fn take<T: Integer>(&mut self, cell: &Cell<T>) -> Result<(), Overflow> {
         self.normal.fill(0);
         for (j, (&support, &edge)) in self.order.iter().zip(&cell.pairs).enumerate() {

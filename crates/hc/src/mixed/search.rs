@@ -23,11 +23,11 @@ pub(super) trait Sink: Send {
 
 /// A [`Sink`] for cells of one size of integers. The search knows nothing else of its sink, so that it is
 /// compiled only once for each size.
-trait Take<T> {
+trait TakeCell<T> {
     fn take_cell(&mut self, cell: &Cell<T>) -> Result<(), Overflow>;
 }
 
-impl<T: Integer, S: Sink> Take<T> for S {
+impl<T: Integer, S: Sink> TakeCell<T> for S {
     fn take_cell(&mut self, cell: &Cell<T>) -> Result<(), Overflow> {
         self.take(cell)
     }
@@ -52,7 +52,7 @@ pub(super) struct SubtreeRoot {
 
 /// Cells that a task visits before it hands over what is left: about a millisecond.
 const BUDGET: usize = 1 << 12;
-/// The same limit while the tree is divided, so that the subtrees begin high up.
+/// Cells that a task visits while the tree is divided: few, so that the subtrees begin high up.
 const SMALL_BUDGET: usize = 1 << 5;
 
 impl SubtreeRoot {
@@ -91,7 +91,7 @@ pub(super) fn search_in<S: Sink>(
     task: SubtreeRoot,
     sink: impl Fn() -> S + Sync,
 ) -> Result<Vec<S>, MixedError> {
-    let state = State {
+    let state = SearchState {
         space,
         sink,
         isa: Isa::detect(),
@@ -128,7 +128,7 @@ pub(super) fn divided<S: Sink>(space: &Space, least: usize, sink: &mut S) -> Res
     Ok(tasks.into())
 }
 
-struct State<'a, S, F> {
+struct SearchState<'a, S, F> {
     space: &'a Space,
     sink: F,
     isa: Isa,
@@ -139,7 +139,7 @@ struct State<'a, S, F> {
     cancelled: AtomicBool,
 }
 
-impl<S: Sink, F: Fn() -> S + Sync> State<'_, S, F> {
+impl<S: Sink, F: Fn() -> S + Sync> SearchState<'_, S, F> {
     fn idle(&self) -> MutexGuard<'_, Vec<S>> {
         self.sinks.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -169,7 +169,7 @@ struct Subtree<'a, T> {
     points: &'a Points<T>,
     stage: usize,
     cell: Cell<T>,
-    sink: &'a mut dyn Take<T>,
+    sink: &'a mut dyn TakeCell<T>,
     scratch: Scratch<T>,
     /// Cells still to be visited, and memory for more.
     stack: Vec<(usize, Cell<T>)>,
@@ -183,7 +183,7 @@ impl<'a, T: Size> Subtree<'a, T> {
         space: &'a Space,
         stage: usize,
         cell: Cell<T>,
-        sink: &'a mut dyn Take<T>,
+        sink: &'a mut dyn TakeCell<T>,
         (pending, budget): (Pending, usize),
     ) -> Result<Vec<SubtreeRoot>, Overflow> {
         let points = T::points(space).ok_or(Overflow)?;

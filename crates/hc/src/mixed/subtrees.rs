@@ -8,7 +8,7 @@ use crate::checkpoint::{Hash, Job, System};
 use crate::monitor::{Monitor, Stage};
 use crate::ranks::{DividedWork, Lead, Shareable, Worker};
 use crate::run::RanksRun;
-use crate::runner::{Flow, Policy, Round, Work, Workspace, run};
+use crate::runner::{Flow, Policy, Round, RunMemory, Work, run};
 // One thread needs no trait for `map`.
 #[cfg_attr(not(feature = "threads"), allow(unused_imports))]
 use crate::threads::{IntoParallelRefIterator, ParallelIterator};
@@ -78,7 +78,7 @@ fn led(
     sum.add(Some(total(vec![first])?));
     let mut work = DividedWork::new(sum, Some(lead), monitor);
     let policy = Policy { retries: 0, charts: 1, again: 0, first: BATCH, batch: BATCH };
-    run(&mut work, count, &policy, &mut Workspace::default(), monitor);
+    run(&mut work, count, &policy, &mut RunMemory::default(), monitor);
     if let Some(error) = lead.failure() {
         return Err(error.into());
     }

@@ -16,11 +16,11 @@ pub(crate) struct Lead<'a> {
     ranks: &'a Ranks<'a>,
     job: u64,
     fingerprint: &'a str,
-    state: Mutex<State>,
+    state: Mutex<LeadState>,
     changed: Condvar,
 }
 
-struct State {
+struct LeadState {
     desk: Desk,
     /// Parts that have begun.
     parts: u32,
@@ -41,18 +41,18 @@ impl<'a> Lead<'a> {
     /// meanwhile.
     pub(crate) fn at<T>(ranks: &'a Ranks<'a>, fingerprint: &'a str, work: impl FnOnce(&Lead<'a>) -> T) -> T {
         let desk = Desk::new(ranks.exchange.count(), current_num_threads(), ranks.options.patience);
-        let state = State { desk, parts: 0, arrived: Vec::new(), failure: None };
+        let state = LeadState { desk, parts: 0, arrived: Vec::new(), failure: None };
         let lead = Lead { ranks, job: ranks.begin(), fingerprint, state: Mutex::new(state), changed: Condvar::new() };
         let over = AtomicBool::new(false);
         std::thread::scope(|scope| {
             // The others go on to the next job, and the thread ends, after a panic too.
-            let _end = End { lead: &lead, over: &over };
+            let _end = OverAtEnd { lead: &lead, over: &over };
             scope.spawn(|| lead.listen(&over));
             work(&lead)
         })
     }
 
-    fn state(&self) -> MutexGuard<'_, State> {
+    fn state(&self) -> MutexGuard<'_, LeadState> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -131,7 +131,7 @@ impl<'a> Lead<'a> {
     }
 
     /// Sends a rank what it has room for.
-    fn feed(&self, state: &mut State, rank: usize) {
+    fn feed(&self, state: &mut LeadState, rank: usize) {
         while let Some(portion) = state.desk.take(rank, Instant::now()) {
             let order = Order::Track { job: self.job, part: state.parts, portion };
             if let Err(error) = self.ranks.send(rank, &order) {
@@ -184,12 +184,12 @@ impl<'a> Lead<'a> {
 }
 
 /// Tells the others that a job is over.
-struct End<'a> {
+struct OverAtEnd<'a> {
     lead: &'a Lead<'a>,
     over: &'a AtomicBool,
 }
 
-impl Drop for End<'_> {
+impl Drop for OverAtEnd<'_> {
     fn drop(&mut self) {
         self.over.store(true, Ordering::Relaxed);
         self.lead.ranks.to_all(&Order::Over { job: self.lead.job });

@@ -14,7 +14,7 @@ use num_traits::Zero;
 use poly::{ComplexMulti, Exact, Monomial, Polynomial, Scalar};
 
 /// The numbers in which clusters are looked at: 154 digits, of which 77 tell solutions apart.
-type Digits = ComplexMulti<8>;
+type ManyDigits = ComplexMulti<8>;
 
 /// Orders of the series that are tried, with logarithms to base 2 of the tolerances at which ranks
 /// are read off.
@@ -28,8 +28,8 @@ const SINGLE: usize = 24;
 /// in units of its size.
 pub(crate) struct ClusterEquations<'a> {
     given: &'a ExactEquations,
-    local: LocalEquations<'a, Digits>,
-    reduced: Reduced<Digits>,
+    local: LocalEquations<'a, ManyDigits>,
+    reduced: Reduced<ManyDigits>,
     /// The logarithm to base 2 of the size.
     size: i64,
     /// The equations in the unknowns that are left, cut off at an order.
@@ -56,7 +56,7 @@ impl<'a> ClusterEquations<'a> {
         if given.is_exhausted() {
             return None;
         }
-        let local = given.near::<Digits>(point);
+        let local = given.near::<ManyDigits>(point);
         let start = local.scaled(point);
         let (last, profile) = approached(&local, &start, order, tolerance, |profile| {
             if profile.remaining > 0 {
@@ -104,9 +104,9 @@ impl<'a> ClusterEquations<'a> {
         solution: &[Complex64],
         paths: usize,
         most: usize,
-        regular: &mut Vec<Vec<Digits>>,
+        regular: &mut Vec<Vec<ManyDigits>>,
     ) -> Option<LocalStructure> {
-        let unit = |z: &Complex64| Digits::from_c64(*z).shifted(self.size);
+        let unit = |z: &Complex64| ManyDigits::from_c64(*z).shifted(self.size);
         let start = self.reduced.at(&solution.iter().map(unit).collect::<Vec<_>>());
         let found = deflated(&self.local, &start, 1, f64::NEG_INFINITY, &mut Vec::new())
             .filter(|found| found.profile.is_regular())
@@ -130,7 +130,7 @@ impl<'a> ClusterEquations<'a> {
 /// The logarithm to base 2 of about how far the solutions of the cluster are from its centre: at that
 /// distance, lower terms of some equation are as large as those that are largest further outside. `None`
 /// if there is no such distance: the equations have a multiple solution, or no cluster.
-fn size(reduced: &Reduced<Digits>) -> Option<i64> {
+fn size(reduced: &Reduced<ManyDigits>) -> Option<i64> {
     let order = reduced.basis.order();
     let mut size = f64::NEG_INFINITY;
     for series in &reduced.equations {
@@ -152,13 +152,13 @@ fn size(reduced: &Reduced<Digits>) -> Option<i64> {
 }
 
 /// An equation in units of a size, without the terms that do not matter.
-fn in_units(reduced: &Reduced<Digits>, series: &[Digits], size: i64) -> Option<Polynomial<Exact>> {
+fn in_units(reduced: &Reduced<ManyDigits>, series: &[ManyDigits], size: i64) -> Option<Polynomial<Exact>> {
     let exponents = reduced.basis.exponents();
     let degree = |k: usize| exponents[k].iter().map(|&e| i64::from(e)).sum::<i64>();
-    let scaled: Vec<Digits> = series.iter().enumerate().map(|(k, c)| c.shifted(degree(k) * size)).collect();
+    let scaled: Vec<ManyDigits> = series.iter().enumerate().map(|(k, c)| c.shifted(degree(k) * size)).collect();
     let top = largest(&scaled);
     let kept = scaled.iter().enumerate().filter(|(_, c)| c.log2() > top + clusters::SMALL_TERM);
-    let term = |(k, c): (usize, &Digits)| {
+    let term = |(k, c): (usize, &ManyDigits)| {
         let monomial = Monomial::new(exponents[k].iter().map(|&e| i32::from(e)));
         Some((monomial, exact(&c.shifted(-top.round() as i64))?))
     };
@@ -167,12 +167,12 @@ fn in_units(reduced: &Reduced<Digits>, series: &[Digits], size: i64) -> Option<P
 }
 
 /// The leading digits of a number of about unit size, exactly.
-fn exact(z: &Digits) -> Option<Exact> {
+fn exact(z: &ManyDigits) -> Option<Exact> {
     let (mut rest, mut sum) = (*z, Exact::zero());
     for _ in 0..4 {
         let part = rest.to_c64();
         sum += Exact { re: BigRational::from_float(part.re)?, im: BigRational::from_float(part.im)? };
-        rest = Digits::sub(&rest, &Digits::from_c64(part));
+        rest = ManyDigits::sub(&rest, &ManyDigits::from_c64(part));
     }
     Some(sum)
 }

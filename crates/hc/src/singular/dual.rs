@@ -29,7 +29,7 @@ pub(crate) enum Count {
 /// Counts the functionals at the origin of equations in a few unknowns, given as series without
 /// constant terms, up to the order of the basis; more than `bound` are not sought.
 pub(crate) fn count<S: Number>(basis: &Basis, equations: &[Vec<S>], bound: usize) -> Count {
-    let mut space = Space::new(basis);
+    let mut space = DualSpace::new(basis);
     for order in 1..=basis.order() {
         let Some(found) = space.grown(equations, order) else { return Count::Unclear };
         if found == 0 {
@@ -43,7 +43,7 @@ pub(crate) fn count<S: Number>(basis: &Basis, equations: &[Vec<S>], bound: usize
 }
 
 /// Functionals found so far.
-struct Space<'a, S> {
+struct DualSpace<'a, S> {
     basis: &'a Basis,
     /// Their coefficients at the monomials of the basis; the first functional is the value at the origin.
     functionals: Vec<Vec<S>>,
@@ -52,9 +52,9 @@ struct Space<'a, S> {
     lowered: Vec<Vec<Vec<S>>>,
 }
 
-impl<S: Number> Space<'_, S> {
-    fn new(basis: &Basis) -> Space<'_, S> {
-        Space {
+impl<S: Number> DualSpace<'_, S> {
+    fn new(basis: &Basis) -> DualSpace<'_, S> {
+        DualSpace {
             basis,
             functionals: vec![basis.constant(S::one(), 0)],
             lowered: vec![vec![vec![S::zero()]]; basis.variables()],

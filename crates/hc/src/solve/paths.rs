@@ -13,7 +13,7 @@ use crate::homotopy::Segment;
 use crate::monitor::Monitor;
 use crate::ranks::{DividedWork, Lead};
 use crate::refine::Refined;
-use crate::runner::{Flow, Policy, Round, Work, Workspace, run};
+use crate::runner::{Flow, Policy, Round, RunMemory, Work, run};
 use crate::start::Source;
 use crate::tolerances::{ends, same};
 use crate::tracker::Trackers;
@@ -70,7 +70,7 @@ pub(super) fn follow<E: Evaluate, S: Source<E>>(route: Route<'_, '_, E, S>, tria
     let first = if trial { TRIAL } else { CHUNK };
     let again = options.paths.again.unwrap_or(usize::MAX);
     let policy = Policy { retries: options.paths.retries, charts: 1, again, first, batch: CHUNK };
-    let mut workspace = Workspace::default();
+    let mut workspace = RunMemory::default();
     let outcome = run(&mut work, count, &policy, &mut workspace, monitor);
     let mut stage = work.into_inner().into_inner();
     match outcome.flow {

@@ -19,7 +19,7 @@ pub(crate) use bezout::mixed_volume_is_bezout;
 pub(crate) use multihomogeneous::{Grouped, Multihomogeneous};
 pub(crate) use path_system::PathSystem;
 pub(crate) use polyhedral::Polyhedral;
-pub(crate) use reached::Reached;
+pub(crate) use reached::StartSolutions;
 pub(crate) use total_degree::{TotalDegree, bezout_number, degrees, leading_unknowns};
 
 use crate::family::Fibre;
@@ -53,16 +53,16 @@ pub(crate) trait Source<E: Evaluate>: Sync {
         numbers: &[usize],
         settings: &TrackerOptions,
         monitor: &Monitor,
-    ) -> Reached;
+    ) -> StartSolutions;
 }
 
 impl StartSystem {
     /// With as many further parameters, which are zero.
     pub(crate) fn with_further(mut self, count: usize) -> StartSystem {
         let parameters = match &mut self {
-            StartSystem::Polyhedral(start) => start.parameters_mut(),
-            StartSystem::Multihomogeneous(start) => start.parameters_mut(),
-            StartSystem::TotalDegree(start) => start.parameters_mut(),
+            StartSystem::Polyhedral(start) => &mut start.coefficients,
+            StartSystem::Multihomogeneous(start) => &mut start.parameters,
+            StartSystem::TotalDegree(start) => &mut start.parameters,
         };
         parameters.resize(parameters.len() + count, Complex64::new(0.0, 0.0));
         self
@@ -72,9 +72,9 @@ impl StartSystem {
 impl Source<PathSystem> for StartSystem {
     fn parameters(&self) -> &[Complex64] {
         match self {
-            StartSystem::Polyhedral(start) => start.parameters(),
-            StartSystem::Multihomogeneous(start) => start.parameters(),
-            StartSystem::TotalDegree(start) => start.parameters(),
+            StartSystem::Polyhedral(start) => &start.coefficients,
+            StartSystem::Multihomogeneous(start) => &start.parameters,
+            StartSystem::TotalDegree(start) => &start.parameters,
         }
     }
 
@@ -88,8 +88,8 @@ impl Source<PathSystem> for StartSystem {
         numbers: &[usize],
         settings: &TrackerOptions,
         monitor: &Monitor,
-    ) -> Reached {
-        let made = |solution: &dyn Fn(u64) -> Vec<Complex64>| Reached {
+    ) -> StartSolutions {
+        let made = |solution: &dyn Fn(u64) -> Vec<Complex64>| StartSolutions {
             numbers: numbers.to_vec(),
             points: numbers.iter().flat_map(|&k| solution(k as u64)).collect(),
         };
@@ -115,8 +115,8 @@ impl<E: Evaluate> Source<E> for Fibre {
         self.is_partial
     }
 
-    fn solutions(&self, _: &Trackers<'_, E>, numbers: &[usize], _: &TrackerOptions, _: &Monitor) -> Reached {
+    fn solutions(&self, _: &Trackers<'_, E>, numbers: &[usize], _: &TrackerOptions, _: &Monitor) -> StartSolutions {
         let points = numbers.iter().flat_map(|&k| self.solution(k).iter().copied()).collect();
-        Reached { numbers: numbers.to_vec(), points }
+        StartSolutions { numbers: numbers.to_vec(), points }
     }
 }

@@ -123,7 +123,8 @@ pub(crate) struct Multihomogeneous {
     grouped: Grouped,
     /// `forms[i][g][k]`: coefficients of the unknowns of group `g`, then the constant.
     forms: Vec<Vec<Vec<Vec<Complex64>>>>,
-    parameters: Vec<Complex64>,
+    /// The coefficients, to which parameters of another kind may be appended.
+    pub(super) parameters: Vec<Complex64>,
 }
 
 impl Multihomogeneous {
@@ -149,15 +150,6 @@ impl Multihomogeneous {
             forms.push(own);
         }
         Multihomogeneous { grouped, forms, parameters }
-    }
-
-    pub(crate) fn parameters(&self) -> &[Complex64] {
-        &self.parameters
-    }
-
-    /// The coefficients, to which parameters of another kind may be appended.
-    pub(super) fn parameters_mut(&mut self) -> &mut Vec<Complex64> {
-        &mut self.parameters
     }
 
     /// The solution with this number, which is below the number of paths.
@@ -246,7 +238,7 @@ mod tests {
         assert_eq!(solutions.len(), 15);
         for (k, x) in solutions.iter().enumerate() {
             let mut values = vec![num_complex::Complex64::default(); 4];
-            system.values(&mut memory, x, start.parameters(), &mut values);
+            system.values(&mut memory, x, &start.parameters, &mut values);
             let size = x.iter().map(|z| z.norm()).fold(1.0, f64::max).powi(3);
             assert!(values.iter().all(|v| v.norm() < 1e-13 * size), "{values:?}");
             assert!(solutions[..k].iter().all(|y| crate::distinct::relative_distance(x, y) > 1e-6));

@@ -3,7 +3,7 @@
 
 use super::binomial::Binomials;
 use super::path_system::PathSystem;
-use super::reached::{Reached, Supports};
+use super::reached::{StartSolutions, Supports};
 use super::toric::{Toric, rates};
 use crate::mixed::{Keep, MixedError, watched_cells};
 use crate::monitor::Monitor;
@@ -18,15 +18,16 @@ use std::sync::{Mutex, PoisonError};
 pub(crate) struct Polyhedral {
     supports: Vec<Vec<Vec<i32>>>,
     lifting: Vec<Vec<i32>>,
-    coefficients: Vec<Complex64>,
-    cells: Mutex<Cells>,
+    /// The coefficients, to which parameters of another kind may be appended.
+    pub(super) coefficients: Vec<Complex64>,
+    cells: Mutex<StoredCells>,
     /// Number of solutions: the mixed volume.
     pub(crate) mixed_volume: u64,
 }
 
 /// Cells in ascending order of their edges: the edges, one per support, then the number of the
 /// first path.
-struct Cells {
+struct StoredCells {
     records: Records,
     count: usize,
     /// The number of the first path of each block of records.
@@ -34,7 +35,7 @@ struct Cells {
 }
 
 /// A cell as it is stored.
-struct Stored {
+struct StoredCell {
     /// The place of the cell among all.
     place: usize,
     edges: Vec<[u32; 2]>,
@@ -43,7 +44,7 @@ struct Stored {
 }
 
 /// Roots of the binomials of some cells, and the weights of the cells.
-struct Starts {
+struct CellStarts {
     rates: Vec<f64>,
     /// The cell of each root, by its place in `rates`.
     cells: Vec<usize>,
@@ -66,7 +67,7 @@ impl Polyhedral {
         // In the order of their edges: which sorter has a cell depends on the threads.
         let mut sorted = Sorter::merged(parts).map_err(|_| MixedError::Storage)?;
         let width = 8 * supports.len() + 8;
-        let mut cells = Cells { records: Records::new(width), count: 0, heads: Vec::new() };
+        let mut cells = StoredCells { records: Records::new(width), count: 0, heads: Vec::new() };
         let mut mixed_volume = 0u64;
         while let Some(mut record) = sorted.next().map_err(|_| MixedError::Storage)? {
             if cells.count.is_multiple_of(cells.records.per_block()) {
@@ -82,15 +83,6 @@ impl Polyhedral {
         Ok(Polyhedral { supports: supports.to_vec(), lifting, coefficients, cells, mixed_volume })
     }
 
-    pub(crate) fn parameters(&self) -> &[Complex64] {
-        &self.coefficients
-    }
-
-    /// The coefficients, to which parameters of another kind may be appended.
-    pub(super) fn parameters_mut(&mut self) -> &mut Vec<Complex64> {
-        &mut self.coefficients
-    }
-
     /// Tracks roots of the binomials, in ascending order of their numbers, to solutions for the generic
     /// coefficients.
     pub(crate) fn solutions(
@@ -99,11 +91,11 @@ impl Polyhedral {
         numbers: &[usize],
         settings: &TrackerOptions,
         monitor: &Monitor,
-    ) -> Reached {
+    ) -> StartSolutions {
         let starts = self.starts(numbers);
         let which: Vec<usize> = (0..starts.numbers.len()).collect();
         let path = Toric { coefficients: &self.coefficients, rates: &starts.rates, cells: &starts.cells };
-        let mut reached = Reached::default();
+        let mut reached = StartSolutions::default();
         let ends = trackers.track(&path, &starts.points, &which, settings, monitor);
         for (result, point) in ends.iter() {
             if result.end == PathEnd::Success {
@@ -116,8 +108,8 @@ impl Polyhedral {
 
     /// The roots with these numbers; those of a cell whose integers outgrow 127 bits, or that
     /// cannot be read, are left out.
-    fn starts(&self, numbers: &[usize]) -> Starts {
-        let mut starts = Starts { rates: Vec::new(), cells: Vec::new(), points: Vec::new(), numbers: Vec::new() };
+    fn starts(&self, numbers: &[usize]) -> CellStarts {
+        let mut starts = CellStarts { rates: Vec::new(), cells: Vec::new(), points: Vec::new(), numbers: Vec::new() };
         let mut cells = self.cells.lock().unwrap_or_else(PoisonError::into_inner);
         let mut rest = numbers;
         let mut place = 0;
@@ -159,7 +151,7 @@ impl Polyhedral {
     }
 }
 
-impl Cells {
+impl StoredCells {
     /// The edges and the number of the first path of a cell, in bytes.
     fn get(&mut self, place: usize) -> Option<(&[u8], u64)> {
         let record = (place < self.count).then(|| self.records.get(place))?;
@@ -172,7 +164,7 @@ impl Cells {
     }
 
     /// The cell of a path.
-    fn with(&mut self, path: u64) -> Option<Stored> {
+    fn with(&mut self, path: u64) -> Option<StoredCell> {
         let block = self.heads.partition_point(|&head| head <= path).checked_sub(1)?;
         let (mut low, mut high) = (block * self.records.per_block(), (block + 1) * self.records.per_block());
         high = high.min(self.count);
@@ -184,7 +176,7 @@ impl Cells {
         let (edges, first) = self.get(low)?;
         let edges =
             edges.as_chunks::<4>().0.as_chunks::<2>().0.iter().map(|edge| edge.map(u32::from_be_bytes)).collect();
-        Some(Stored { place: low, edges, first })
+        Some(StoredCell { place: low, edges, first })
     }
 }
 

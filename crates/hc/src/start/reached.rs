@@ -7,14 +7,14 @@ pub(crate) type Supports = [Vec<Vec<i32>>];
 
 /// Solutions of a start system.
 #[derive(Default)]
-pub(crate) struct Reached {
+pub(crate) struct StartSolutions {
     /// The numbers of the solutions.
     pub(crate) numbers: Vec<usize>,
     /// The coordinates, one solution after the other.
     pub(crate) points: Vec<Complex64>,
 }
 
-impl Reached {
+impl StartSolutions {
     /// The `k`-th solution.
     pub(crate) fn point(&self, k: usize) -> &[Complex64] {
         let n = self.points.len() / self.numbers.len().max(1);

@@ -63,7 +63,8 @@ fn is_matched(i: usize, powers: &[Vec<usize>], owners: &mut [Option<usize>], see
 pub(crate) struct TotalDegree {
     /// The unknown and the degree of each equation.
     powers: Vec<(usize, u64)>,
-    parameters: Vec<Complex64>,
+    /// The coefficients, to which parameters of another kind may be appended.
+    pub(super) parameters: Vec<Complex64>,
 }
 
 impl TotalDegree {
@@ -93,15 +94,6 @@ impl TotalDegree {
         TotalDegree { powers, parameters }
     }
 
-    pub(crate) fn parameters(&self) -> &[Complex64] {
-        &self.parameters
-    }
-
-    /// The coefficients, to which parameters of another kind may be appended.
-    pub(super) fn parameters_mut(&mut self) -> &mut Vec<Complex64> {
-        &mut self.parameters
-    }
-
     /// The solution with this number, which is below the number of paths: roots of unity.
     pub(crate) fn solution(&self, mut number: u64) -> Vec<Complex64> {
         let mut solution = vec![Complex64::new(1.0, 0.0); self.powers.len()];
@@ -129,7 +121,7 @@ mod tests {
         let mut memory = system.memory(Isa::Portable);
         for k in 0..6 {
             let mut values = vec![num_complex::Complex64::default(); 2];
-            system.values(&mut memory, &start.solution(k), start.parameters(), &mut values);
+            system.values(&mut memory, &start.solution(k), &start.parameters, &mut values);
             assert!(values.iter().all(|v| v.norm() < 1e-14));
             for j in 0..k {
                 assert_ne!(start.solution(j), start.solution(k));

@@ -58,11 +58,11 @@ impl Sorter {
             let file = sorted.files.len();
             let mut from = 0;
             for &end in &sorter.ends {
-                sorted.runs.push(Run { file, from, end, bytes: Vec::new(), at: 0 });
+                sorted.runs.push(SortedRun { file, from, end, bytes: Vec::new(), at: 0 });
                 from = end;
             }
             let bytes = ordered(&sorter.buffer, sorter.width);
-            sorted.runs.push(Run { file, from: 0, end: 0, bytes, at: 0 });
+            sorted.runs.push(SortedRun { file, from: 0, end: 0, bytes, at: 0 });
             sorted.files.push(sorter.file);
         }
         for run in 0..sorted.runs.len() {
@@ -83,13 +83,13 @@ pub(crate) struct Sorted {
     width: usize,
     /// One a sorter.
     files: Vec<Option<File>>,
-    runs: Vec<Run>,
+    runs: Vec<SortedRun>,
     /// The next record of each run that has one.
     heap: BinaryHeap<Reverse<(Vec<u8>, usize)>>,
 }
 
 /// Records in order: `bytes` from `at` on, then what lies in a file.
-struct Run {
+struct SortedRun {
     file: usize,
     from: u64,
     end: u64,
@@ -123,7 +123,7 @@ impl Sorted {
     }
 }
 
-impl Run {
+impl SortedRun {
     fn fill(&mut self, file: Option<&mut File>, width: usize) -> io::Result<()> {
         let length = (self.end - self.from).min((READ / width).max(1) as u64 * width as u64) as usize;
         self.bytes.resize(length, 0);

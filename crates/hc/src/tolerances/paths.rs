@@ -111,7 +111,7 @@ pub(crate) mod quick_ends {
     pub(crate) const APPROACHES: usize = 3;
     /// Largest last correction of an end. The ends of paths are told apart by more.
     pub(crate) const NOISE: f64 = 1e-8;
-    /// The same where coordinates vanish: Newton's method must still come back to the end from
+    /// Largest last correction of an end at which coordinates vanish: Newton's method must still come back to the end from
     /// [near](super::refinement::PERTURBATIONS), which shows that it is regular.
     pub(crate) const VANISHING_NOISE: f64 = 1e-11;
     /// Smallest pivot with which an end is taken for regular.

@@ -15,7 +15,8 @@ pub(crate) mod equations {
     /// `(x + y)^n - 1` with `x - y^2` takes hardly longer with `n` = 8, twice as long with 10, four times with 15,
     /// and loses solutions with 30.
     pub(crate) const FACTORS: u32 = 10;
-    /// The same where components are sought: these are multiple if they come from powers.
+    /// Formulas of which components are sought get unknowns for sums from this many on: components are multiple if they
+    /// come from powers.
     pub(crate) const FACTORS_OF_COMPONENTS: u32 = 4;
     /// Products of up to this many sums are expanded all the same, where longer ones get unknowns.
     pub(crate) const KEPT_FACTORS: u32 = 3;

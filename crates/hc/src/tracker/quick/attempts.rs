@@ -16,7 +16,7 @@ pub(super) enum Verdict {
 
 /// One path on its way.
 #[derive(Clone, Debug)]
-pub(super) struct Attempts {
+pub(super) struct QuickPath {
     /// `None` in a lane without a path.
     path: Option<usize>,
     /// Whether the first point has still to be checked and the first derivatives taken.
@@ -40,10 +40,10 @@ pub(super) struct Attempts {
     counts: Counts,
 }
 
-impl Attempts {
+impl QuickPath {
     /// A lane without a path.
     pub(super) fn idle() -> Self {
-        Attempts {
+        QuickPath {
             path: None,
             fresh: true,
             t: 1.0,
@@ -62,7 +62,7 @@ impl Attempts {
 
     /// A path that goes on.
     pub(super) fn from(stop: &ResumePoint) -> Self {
-        Attempts { path: Some(stop.path), t: stop.t, t_next: stop.t, counts: stop.counts, ..Attempts::idle() }
+        QuickPath { path: Some(stop.path), t: stop.t, t_next: stop.t, counts: stop.counts, ..QuickPath::idle() }
     }
 
     /// Index of the path.

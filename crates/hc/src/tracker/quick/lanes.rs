@@ -11,7 +11,7 @@ use super::super::kernels::{Coefficients, Correct, Predict, Radius, Take, Weigh}
 use super::super::options::TrackerOptions;
 use super::super::resume::{ResumePoint, ResumePoints};
 use super::super::workspace::Workspace;
-use super::attempts::{Attempts, Verdict};
+use super::attempts::{QuickPath, Verdict};
 use crate::homotopy::ParameterPath;
 use crate::monitor::Monitor;
 use crate::tolerances::QuickTolerances;
@@ -22,7 +22,7 @@ use poly::{Evaluate, Lane, Singles16};
 /// Memory of quick steps, beside the tracker's own.
 pub(in super::super) struct QuickMemory<'a, E: Evaluate> {
     pub(super) singles: Workspace<'a, E, Singles16>,
-    pub(super) lanes: Vec<Attempts>,
+    pub(super) lanes: Vec<QuickPath>,
     /// Where the paths stopped in single precision.
     pub(super) stops: ResumePoints,
     /// Paths that start again in double precision.
@@ -34,7 +34,7 @@ impl<'a, E: Evaluate> QuickMemory<'a, E> {
     pub(super) fn new(system: &'a E, isa: Isa) -> Self {
         QuickMemory {
             singles: Workspace::new(system, isa),
-            lanes: vec![Attempts::idle(); Singles16::LANES],
+            lanes: vec![QuickPath::idle(); Singles16::LANES],
             stops: ResumePoints::default(),
             again: Vec::new(),
         }
@@ -48,13 +48,13 @@ pub(super) trait Paths<S: Lane> {
 
     /// Takes a path that has arrived, with the smallest pivot of its end, or is given up; lane `l` of `x` is
     /// its last point.
-    fn end(&mut self, lane: &Attempts, pivot: f64, x: &[S], l: usize);
+    fn end(&mut self, lane: &QuickPath, pivot: f64, x: &[S], l: usize);
 }
 
 /// Quick steps of the paths in lanes.
 pub(super) struct QuickLanes<'w, 'a, E: Evaluate, S: Lane> {
     pub(super) work: &'w mut Workspace<'a, E, S>,
-    pub(super) lanes: &'w mut [Attempts],
+    pub(super) lanes: &'w mut [QuickPath],
     pub(super) options: &'w TrackerOptions,
     pub(super) monitor: &'w Monitor,
     pub(super) tolerances: &'static QuickTolerances,
@@ -65,7 +65,7 @@ pub(super) struct QuickLanes<'w, 'a, E: Evaluate, S: Lane> {
 impl<E: Evaluate, S: Lane> QuickLanes<'_, '_, E, S> {
     /// Tracks all paths, or those that have begun when the monitor is cancelled.
     pub(super) fn run<P: ParameterPath>(mut self, path: &P, paths: &mut impl Paths<S>) {
-        self.lanes.fill(Attempts::idle());
+        self.lanes.fill(QuickPath::idle());
         // Idle lanes compute too; harmless numbers keep them from slow exceptional arithmetic.
         self.work.taylor.fill(S::zero());
         let mut live = true;
@@ -76,7 +76,7 @@ impl<E: Evaluate, S: Lane> QuickLanes<'_, '_, E, S> {
                     && !self.monitor.is_cancelled()
                     && let Some((stop, point)) = paths.next()
                 {
-                    self.lanes[l] = Attempts::from(&stop);
+                    self.lanes[l] = QuickPath::from(&stop);
                     for (x, z) in self.work.taylor.iter_mut().zip(point) {
                         x.set(l, *z);
                     }
@@ -93,7 +93,7 @@ impl<E: Evaluate, S: Lane> QuickLanes<'_, '_, E, S> {
     /// One attempt at a step, accepted or not, of every path.
     fn attempt<P: ParameterPath>(&mut self, path: &P) {
         let (n, m) = (self.work.n, self.work.system.parameters());
-        let some = self.lanes.iter().find_map(Attempts::path).unwrap_or(0);
+        let some = self.lanes.iter().find_map(QuickPath::path).unwrap_or(0);
         let (mut t, mut step, mut radius_sqr) = (S::real(1.0), S::real(0.0), S::real(0.0));
         let mut fresh = 0u16;
         for (l, lane) in self.lanes.iter().enumerate() {
@@ -161,7 +161,7 @@ impl<E: Evaluate, S: Lane> QuickLanes<'_, '_, E, S> {
             let pivot =
                 if judged { work.lu.smallest_pivot_in_order(l, &work.jacobian, &work.weights_sqr) } else { 0.0 };
             paths.end(lane, pivot, &work.taylor[..work.n], l);
-            *lane = Attempts::idle();
+            *lane = QuickPath::idle();
         }
     }
 

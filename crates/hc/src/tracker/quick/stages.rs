@@ -3,7 +3,7 @@
 use super::super::batch::Tracker;
 use super::super::result::PathSet;
 use super::super::resume::{ResumePoint, ResumePoints};
-use super::attempts::Attempts;
+use super::attempts::QuickPath;
 use super::lanes::{Paths, QuickLanes, QuickMemory};
 use crate::homotopy::ParameterPath;
 use crate::tolerances::{QUICK, SINGLES, families, quick_ends};
@@ -76,7 +76,7 @@ impl<P: ParameterPath, I: Iterator<Item = usize>> Paths<Singles16> for Begin<'_,
         Some((ResumePoint::at_start(path), start(self.starts, self.n, path)))
     }
 
-    fn end(&mut self, lane: &Attempts, _: f64, x: &[Singles16], l: usize) {
+    fn end(&mut self, lane: &QuickPath, _: f64, x: &[Singles16], l: usize) {
         let stop = lane.stop();
         if stop.t < 1.0 {
             self.stops.push(stop, x.iter().map(|x| x.get(l)));
@@ -107,7 +107,7 @@ impl<S: Lane> Paths<S> for Finish<'_> {
         Some((stop, &self.points[stop.point * self.n..][..self.n]))
     }
 
-    fn end(&mut self, lane: &Attempts, pivot: f64, x: &[S], l: usize) {
+    fn end(&mut self, lane: &QuickPath, pivot: f64, x: &[S], l: usize) {
         let stop = lane.stop();
         if lane.has_arrived() && pivot > quick_ends::PIVOT && lane.last < noise(x, l) {
             self.out.push(lane.arrived(pivot), x.iter().map(|x| x.get(l)));
