@@ -2,6 +2,7 @@
 //! threads, progress bars.
 
 pub mod bar;
+pub mod files;
 pub mod input;
 pub mod interrupt;
 pub mod output;

@@ -6,6 +6,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::Failure;
+use crate::standard::is_standard;
 use crate::writing::Writing;
 
 /// Writes a file by way of a temporary one in the same directory, so that an interrupted run leaves
@@ -41,23 +42,36 @@ pub fn file(path: &Path, content: &[u8]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Checks, before the work begins, that the files which options ask for can be written, each by its
-/// option's name. Nothing is left there.
-///
-/// # Errors
-/// For a file that cannot be written, and two options with one file.
-pub fn check(files: &[(&str, Option<&Path>)]) -> Result<(), Failure> {
-    let files: Vec<(&str, &Path)> = files.iter().filter_map(|(option, path)| Some((*option, (*path)?))).collect();
-    for (k, (option, path)) in files.iter().enumerate() {
-        if let Some((other, _)) = files[..k].iter().find(|(_, other)| other == path) {
-            let name = path.display();
-            return Err(Failure::Unusable(format!("{name}: is asked for by {other} and {option}; give two names")));
-        }
-        if !is_standard_output(path) && !is_special(path) {
-            temporary(path)?;
-        }
+/// Checks that a file can be written. Nothing is left there.
+pub(crate) fn probe(path: &Path) -> Result<(), Failure> {
+    if !is_standard(path) && !is_special(path) {
+        temporary(path)?;
     }
     Ok(())
+}
+
+/// Checks that files can be written in a directory, which is made later if it is not there. Nothing
+/// is left there.
+pub(crate) fn probe_directory(directory: &Path) -> Result<(), Failure> {
+    let refused = |what: &str| Failure::Unusable(format!("{}: {what}", directory.display()));
+    if is_standard(directory) {
+        return Err(refused("files go to a directory, not to standard output; give its name"));
+    }
+    // The directory, or the one in which it is made.
+    let there = directory.ancestors().find(|place| place.as_os_str().is_empty() || place.exists());
+    match there {
+        Some(place) if !place.as_os_str().is_empty() && !place.is_dir() => {
+            Err(refused("is a file, or lies in one; give a directory"))
+        }
+        place => {
+            let place = place.filter(|place| !place.as_os_str().is_empty()).unwrap_or(Path::new("."));
+            temporary_in(place).map(|_| ()).map_err(|error| {
+                refused(&format!(
+                    "cannot be written to ({error}); check that it, or the directory it is made in, is writable and has space"
+                ))
+            })
+        }
+    }
 }
 
 /// Whether a path is neither a file nor a directory but a device or a pipe.
@@ -74,6 +88,10 @@ fn temporary(path: &Path) -> Result<tempfile::NamedTempFile, Failure> {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
     };
+    temporary_in(directory).map_err(|error| unwritable(path, &error))
+}
+
+fn temporary_in(directory: &Path) -> std::io::Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".part-");
     #[cfg(unix)]
@@ -82,7 +100,7 @@ fn temporary(path: &Path) -> Result<tempfile::NamedTempFile, Failure> {
         // As for any new file; the umask takes away what the user does not want.
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
-    builder.tempfile_in(directory).map_err(|error| unwritable(path, &error))
+    builder.tempfile_in(directory)
 }
 
 fn unwritable(path: &Path, error: &std::io::Error) -> Failure {
@@ -92,17 +110,12 @@ fn unwritable(path: &Path, error: &std::io::Error) -> Failure {
     ))
 }
 
-/// Whether a path stands for standard output: `-`.
-fn is_standard_output(path: &Path) -> bool {
-    path.as_os_str() == "-"
-}
-
 /// Writes text to a file and says so on standard error, or to standard output for `-`.
 ///
 /// # Errors
 /// Those of [`write()`] and [`print()`].
 pub fn text(path: &Path, text: &str) -> Result<(), Failure> {
-    if is_standard_output(path) { print(text) } else { file(path, text.as_bytes()) }
+    if is_standard(path) { print(text) } else { file(path, text.as_bytes()) }
 }
 
 /// Number of the form of the programs' results, their field `format`. A field that goes, gets another name or
@@ -136,7 +149,7 @@ pub fn json_list<T: Serialize>(path: &Path, values: &[T]) -> Result<(), Failure>
 }
 
 fn json_of(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
-    if is_standard_output(path) {
+    if is_standard(path) {
         return print_by(|out| write_json(out, value));
     }
     write_by(path, |file| write_json(file, value))?;
@@ -152,12 +165,12 @@ fn write_json(to: impl Write, value: &impl Serialize) -> std::io::Result<()> {
     to.flush()
 }
 
-/// Prints a summary, unless the JSON is asked for on standard output instead.
+/// Prints a summary, unless one of the outputs is asked for on standard output instead.
 ///
 /// # Errors
 /// Those of [`print()`].
-pub fn summary(json: Option<&Path>, text: impl FnOnce() -> String) -> Result<(), Failure> {
-    if json.is_some_and(is_standard_output) { Ok(()) } else { print(&text()) }
+pub fn summary<'a>(outputs: impl IntoIterator<Item = &'a Path>, text: impl FnOnce() -> String) -> Result<(), Failure> {
+    if outputs.into_iter().any(is_standard) { Ok(()) } else { print(&text()) }
 }
 
 /// Prints to standard output. A reader that has gone away, such as `head`, is no error.

@@ -1,8 +1,8 @@
-//! Standard input in the place of a file.
+//! Standard input and standard output in the place of files.
 
 use std::path::Path;
 
-/// Whether a path stands for standard input: `-`.
+/// Whether a path stands for standard input, or for standard output where it is written: `-`.
 pub fn is_standard(path: &Path) -> bool {
     path.as_os_str() == "-"
 }

@@ -1,6 +1,7 @@
 //! `hc certify`, and `--certify` of `hc solve`.
 
 use crate::{input, points, watch};
+use cli::files::Files;
 use cli::{Failure, output};
 use hc::Run;
 use hc::certify::{Certificate, Certificates, CertifyOptions, Obstacle, Reality};
@@ -74,8 +75,8 @@ struct Point {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    output::check(&[("--json", arguments.json.as_deref())])?;
-    input::check(&[Some(&arguments.system), Some(&arguments.solutions)], false)?;
+    let files = Files::new().reads(Some(&arguments.system)).reads(Some(&arguments.solutions));
+    files.writes("--json", arguments.json.as_deref()).check()?;
     let start = Instant::now();
     let file = &arguments.system;
     let system = input::system(file)?;

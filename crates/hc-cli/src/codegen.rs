@@ -1,6 +1,7 @@
 //! `hc codegen`.
 
 use crate::{family, input, track, watch};
+use cli::files::Files;
 use cli::{Failure, output};
 use hc::codegen::{self, CodegenError};
 use hc::family::{ChoiceOptions, StartFile, easiest_fibre, real_sample, unpack_fibre};
@@ -40,8 +41,9 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { family: family_file, start: start_file, output, check, .. } = arguments;
-    let targets = arguments.targets.as_deref();
-    input::check(&[Some(family_file), Some(start_file), targets, check.then_some(output)], false)?;
+    let files = Files::new().reads(Some(family_file)).reads(Some(start_file)).reads(arguments.targets.as_deref());
+    let files = if *check { files.reads(Some(output)) } else { files.writes("--output", Some(output)) };
+    files.check()?;
     let family = family::read(family_file)?;
     let mut start = StartFile::from_json(&input::text(start_file)?).map_err(|e| Failure::in_file(start_file, e))?;
     if let Some(members) = arguments.fibres {

@@ -1,6 +1,7 @@
 //! `hc decompose`.
 
 use crate::{input, watch};
+use cli::files::Files;
 use cli::{Failure, output};
 use hc::witness::Decomposition;
 use hc::{Run, SolveOptions};
@@ -41,6 +42,7 @@ struct Output<'a> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    Files::new().reads(Some(&arguments.file)).writes("--json", arguments.json.as_deref()).check()?;
     let begun = Instant::now();
     let system = input::system(&arguments.file)?;
     let monitor = watch::interruptible()?;

@@ -1,12 +1,22 @@
 //! Systems, and numbers in JSON.
 
-pub(crate) use cli::input::{check, is_standard, name, text};
+pub(crate) use cli::input::{is_standard, name, text};
 
 use cli::Failure;
+use cli::files::Files;
 use hc::System;
+use hc::ranks::Ranks;
 use num_complex::Complex64;
 use serde::Deserialize;
 use std::path::Path;
+
+/// Checks, before the work begins, the files of one of several processes, or of the only one.
+pub(crate) fn check(files: &Files<'_>, ranks: Option<&Ranks<'_>>) -> Result<(), Failure> {
+    match ranks {
+        Some(ranks) => files.check_shared(ranks.is_lead()),
+        None => files.check(),
+    }
+}
 
 /// Reads a system without parameters, in whichever format it is.
 pub(crate) fn system(file: &Path) -> Result<System, Failure> {

@@ -1,6 +1,7 @@
 //! `hc mixed-volume`.
 
 use crate::{input, watch};
+use cli::files::Files;
 use cli::{Failure, output};
 use hc::Run;
 use hc::poly::{Polynomial, counted};
@@ -45,10 +46,8 @@ struct Output {
 
 /// Searches, with the other ranks if there are any; rank 0 alone prints, and writes files.
 pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<(), Failure> {
-    if ranks.is_none_or(Ranks::is_lead) {
-        output::check(&[("--json", arguments.json.as_deref())])?;
-    }
-    input::check(&[Some(&arguments.file)], ranks.is_some())?;
+    let files = Files::new().reads(Some(&arguments.file)).writes("--json", arguments.json.as_deref());
+    input::check(&files, ranks)?;
     let system = input::system(&arguments.file)?;
     let polynomials = system.expand(&Default::default()).map_err(|error| Failure::in_file(&arguments.file, error))?;
     let supports: Vec<Vec<Vec<i32>>> = polynomials.iter().map(Polynomial::support).collect();

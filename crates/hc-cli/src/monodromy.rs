@@ -2,6 +2,7 @@
 
 use crate::checkpoint::{self, Recording};
 use crate::{family, input, watch};
+use cli::files::Files;
 use cli::{Failure, output};
 use hc::family::Stopped;
 use hc::poly::counted;
@@ -49,10 +50,8 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
         return if is_lead { checkpoint::status(directory) } else { Ok(()) };
     }
     let output = Recording::needed(&arguments.output, "the fibre (--output)")?;
-    if is_lead {
-        output::check(&[("--output", Some(output))])?;
-    }
-    input::check(&[arguments.family.as_deref(), arguments.seed_pair.as_deref()], ranks.is_some())?;
+    let files = Files::new().reads(arguments.family.as_deref()).reads(arguments.seed_pair.as_deref());
+    input::check(&files.writes("--output", Some(output)), ranks)?;
     let path = Recording::needed(&arguments.family, "a family")?;
     let family = family::read(path)?;
     let start = match &arguments.seed_pair {

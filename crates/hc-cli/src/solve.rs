@@ -3,6 +3,7 @@
 use crate::checkpoint::{self, Recording};
 use crate::report::Report;
 use crate::{input, watch};
+use cli::files::Files;
 use cli::{Failure, output};
 use hc::poly::counted;
 use hc::ranks::Ranks;
@@ -78,10 +79,8 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
     if let Some(directory) = arguments.checkpoint.status() {
         return if is_lead { checkpoint::status(directory) } else { Ok(()) };
     }
-    if is_lead {
-        output::check(&[("--json", arguments.json.as_deref())])?;
-    }
-    input::check(&[arguments.file.as_deref()], ranks.is_some())?;
+    let files = Files::new().reads(arguments.file.as_deref()).writes("--json", arguments.json.as_deref());
+    input::check(&files, ranks)?;
     let begun = Instant::now();
     let file = Recording::needed(&arguments.file, "a system")?;
     let system = input::system(file)?;

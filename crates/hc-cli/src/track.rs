@@ -4,6 +4,7 @@ use crate::checkpoint::{self, Recording};
 use crate::input::{self, Number};
 use crate::report::Report;
 use crate::{family, watch};
+use cli::files::Files;
 use cli::{Failure, output};
 use hc::family::TargetLimits;
 use hc::poly::counted;
@@ -79,13 +80,9 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
     if let Some(directory) = arguments.checkpoint.status() {
         return if is_lead { checkpoint::status(directory) } else { Ok(()) };
     }
-    if is_lead {
-        output::check(&[("--json", arguments.json.as_deref())])?;
-    }
-    input::check(
-        &[arguments.family.as_deref(), arguments.start.as_deref(), arguments.target.as_deref()],
-        ranks.is_some(),
-    )?;
+    let files = Files::new().reads(arguments.family.as_deref()).reads(arguments.start.as_deref());
+    let files = files.reads(arguments.target.as_deref()).writes("--json", arguments.json.as_deref());
+    input::check(&files, ranks)?;
     let begun = Instant::now();
     let file = Recording::needed(&arguments.family, "a family")?;
     let family = family::read(file)?;

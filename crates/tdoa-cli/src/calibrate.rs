@@ -1,167 +1,34 @@
 //! `tdoa calibrate`.
 
+mod arguments;
+
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use cli::files::Files;
+use cli::input::name;
 use serde::Serialize;
 use tdoa::calibrate::{Calibrated, CalibratedError, Calibrates, Dimension, calibrate_either};
 use tdoa::html::{Provenance, html_with};
 use tdoa::node_table::node_table;
 use tdoa::picture::picture;
-use tdoa::read::{Nodes, Units, read, read_distances, read_nodes};
+use tdoa::read::{Nodes, Units};
 use tdoa::summary::doubt_of_units;
 use tdoa::{
     CalibrateError, CalibrateOptions, Calibration, Errors, Monitor, Pseudoranges, ReceiverDelays, Unfinished,
     calibrate_with,
 };
 
+pub(crate) use arguments::Arguments;
+use arguments::{Delays, Dimensions, Side};
+
 use crate::frame::{self, Frame};
 use crate::known::{self, Truth};
 use crate::partial;
-use crate::provenance::{self, named, said};
+use crate::provenance;
 use crate::summary::{self, Context};
 use crate::units::Unit;
-use crate::{Failure, interrupt, output};
-
-/// Finds positions and offsets of a whole network from its pseudoranges.
-///
-/// FILE is a CSV matrix (receivers in rows, transmitters in columns, empty or nan where nothing was
-/// measured, optionally with names in the first line and the first column), a CSV list with one
-/// measurement a line below a header that names the columns receiver (or mic, anchor, sensor),
-/// transmitter (or event, source, tag), value (or time, toa, range) and, if wanted, sigma, in any
-/// order, a .npy array, or a .mat file with the matrix z (or --variable) and, as truth, the
-/// positions rgt. Cells stand between commas, semicolons, tabs or blanks; with any but commas,
-/// numbers may have decimal commas.
-///
-/// Interrupted, it writes the best network so far as JSON marked "unfinished", with exit status 130.
-#[derive(clap::Args)]
-pub(crate) struct Arguments {
-    /// The measurements.
-    file: PathBuf,
-    #[command(flatten)]
-    input: crate::units::InputArguments,
-    /// Standard deviation of the measurements in metres; estimated if not given.
-    #[arg(long, allow_negative_numbers = true)]
-    sigma: Option<f64>,
-    /// Whether the network is sought in the plane or in space. `auto`: in space where anchors have
-    /// different heights or --frame names four nodes; without these, where the measurements support a
-    /// third coordinate (likelihood ratio), and says so.
-    #[arg(long, value_enum, default_value = "auto")]
-    dimensions: Dimensions,
-    /// Fits a common scale when comparing with --truth and presents the network with it (the
-    /// propagation speed is then wrong by that factor).
-    #[arg(long)]
-    scale: bool,
-    /// Known positions of some receivers (columns name, x, y and, in space, z in any order, metres):
-    /// they fix the frame, and two or more (three) are held there, which sharpens the rest. With a
-    /// column sigma (or std_x and std_y, std_z) they are measurements with that standard deviation,
-    /// exact where it is 0; coordinates may be empty.
-    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["frame", "scale"])]
-    anchors: Option<PathBuf>,
-    /// What is done about receivers whose measurements are all too long or too short, as by a
-    /// cable: told (none), estimated for those that show it (auto; drifting and jumping clocks and
-    /// moved receivers too), or estimated for all, as where clocks were started apart (all).
-    #[arg(long, value_enum, default_value = "none")]
-    receiver_delays: Delays,
-    /// How measurements are wrong that are wrong by more than noise: too long or too short alike
-    /// (symmetric), or nearly all too long, as where sound or radio comes by a detour (one-sided).
-    #[arg(long, value_enum, default_value = "symmetric")]
-    errors: Side,
-    /// Known distances between some receivers (receiver,receiver,distance, metres), for
-    /// --estimate-speed.
-    #[arg(long, value_name = "FILE.csv", requires = "estimate_speed")]
-    distances: Option<PathBuf>,
-    /// Estimates the propagation speed from the known distances and those between anchors: with
-    /// --units s, ms, us, ns or samples in metres a second (only --sigma depends on --speed then),
-    /// otherwise as a factor on the one that made the measurements metres.
-    #[arg(long)]
-    estimate_speed: bool,
-    /// Puts the node ORIGIN at (0, 0), XAXIS on the positive x axis and UP above it; in space
-    /// ORIGIN,XAXIS,YSIDE,UP, with YSIDE in the plane of x and y.
-    #[arg(long, value_name = "ORIGIN,XAXIS,UP")]
-    frame: Option<String>,
-    /// True positions of receivers (columns name, x, y and, in space, z, or rgt in a .mat file) to compare with:
-    /// by name, or in the order of the receivers where one side has no names.
-    #[arg(long, value_name = "RECEIVERS.csv")]
-    truth: Option<PathBuf>,
-    /// Seed of the search.
-    #[arg(long, default_value_t = 0)]
-    seed: u64,
-    /// Threads; all cores if not given. The result does not depend on it.
-    #[arg(long)]
-    threads: Option<usize>,
-    /// Most starts of the search.
-    #[arg(long, default_value_t = CalibrateOptions::default().search.max_starts)]
-    max_starts: usize,
-    /// Starts that must have found the best network before the search ends: more for more
-    /// certainty.
-    #[arg(long, default_value_t = CalibrateOptions::default().search.agreeing)]
-    agreeing: usize,
-    /// Writes the result as JSON; - for standard output instead of the summary.
-    #[arg(long)]
-    json: Option<PathBuf>,
-    /// Writes a picture of the network.
-    #[arg(long)]
-    svg: Option<PathBuf>,
-    /// Writes a report for a browser and for paper: the picture, tables of nodes and measurements that
-    /// sort by a click, and where they come from. One file, without references to others. Where
-    /// SOURCE_DATE_EPOCH is set, its date is that one and no time is told: the same bytes each time.
-    #[arg(long)]
-    html: Option<PathBuf>,
-    /// Writes the nodes as a CSV table: kind, name, position, standard deviations, offset, numbers
-    /// of measurements.
-    #[arg(long, value_name = "FILE.csv")]
-    nodes: Option<PathBuf>,
-}
-
-/// Where the network is sought.
-#[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
-enum Dimensions {
-    #[value(name = "2")]
-    Plane,
-    #[value(name = "3")]
-    Space,
-    Auto,
-}
-
-/// What is done about errors of whole receivers.
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum Delays {
-    None,
-    Auto,
-    All,
-}
-
-/// The side to which measurements are wrong.
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum Side {
-    Symmetric,
-    OneSided,
-}
-
-impl Arguments {
-    /// Names and values of the options that shape the result: those that have a value, by default too.
-    fn settings(&self) -> Vec<(String, String)> {
-        let path = |path: &Option<PathBuf>| path.as_ref().map(|path| path.display().to_string());
-        let switch = |given: bool| given.then_some("yes");
-        let own = [
-            named("dimensions", Some(said(self.dimensions))),
-            named("sigma", self.sigma),
-            named("anchors", path(&self.anchors)),
-            named("receiver-delays", Some(said(self.receiver_delays))),
-            named("errors", Some(said(self.errors))),
-            named("distances", path(&self.distances)),
-            named("estimate-speed", switch(self.estimate_speed)),
-            named("frame", self.frame.as_ref()),
-            named("truth", path(&self.truth)),
-            named("scale", switch(self.scale)),
-            named("seed", Some(self.seed)),
-            named("max-starts", Some(self.max_starts)),
-            named("agreeing", Some(self.agreeing)),
-        ];
-        self.input.settings().into_iter().chain(own.into_iter().flatten()).collect()
-    }
-}
+use crate::{Failure, input, interrupt, output};
 
 /// The JSON form: offsets in the unit of the input too, where that is not the metre.
 #[derive(Serialize)]
@@ -184,20 +51,16 @@ impl<const D: usize> Report<'_, D> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    output::check(&[
-        ("--json", arguments.json.as_deref()),
-        ("--svg", arguments.svg.as_deref()),
-        ("--html", arguments.html.as_deref()),
-        ("--nodes", arguments.nodes.as_deref()),
-    ])?;
+    let files = Files::new().reads(Some(&arguments.file)).reads(arguments.anchors.as_deref());
+    let files = files.reads(arguments.distances.as_deref()).reads(arguments.truth.as_deref());
+    arguments.outputs().into_iter().fold(files, |files, (option, path)| files.writes(option, path)).check()?;
     let date = arguments.html.as_ref().map(|_| provenance::Date::read()).transpose()?;
-    let input = arguments.input.options(arguments.estimate_speed)?;
-    let (units, said) = (input.units.unwrap_or_default(), input.units.is_some());
-    let measured = read(&arguments.file, input).map_err(Failure::unusable)?;
-    let anchors = match &arguments.anchors {
-        Some(path) => Some((path.as_path(), read_nodes(path).map_err(Failure::unusable)?)),
-        None => None,
-    };
+    let options = arguments.input.options(arguments.estimate_speed)?;
+    let (units, said) = (options.units.unwrap_or_default(), options.units.is_some());
+    let measured = input::measurements(&arguments.file, options)?;
+    let nodes = |path: &Option<PathBuf>| path.as_deref().map(input::nodes).transpose();
+    let (anchors, true_nodes) = (nodes(&arguments.anchors)?, nodes(&arguments.truth)?);
+    let anchors = arguments.anchors.as_deref().zip(anchors);
     let given = match (arguments.dimensions, &anchors, &arguments.frame) {
         (Dimensions::Plane, ..) => Some((2, "as --dimensions says")),
         (Dimensions::Space, ..) => Some((3, "as --dimensions says")),
@@ -206,7 +69,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         (Dimensions::Auto, None, None) => None,
     };
     let chosen = given.map(|(_, by)| by);
-    let task = Task { arguments, measured: &measured, units, said, date, chosen };
+    let task = Task { arguments, measured: &measured, true_nodes, units, said, date, chosen };
     match given.map(|(dimensions, _)| dimensions) {
         Some(3) => task.given::<3>(anchors),
         Some(_) => task.given::<2>(anchors),
@@ -218,6 +81,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 struct Task<'a> {
     arguments: &'a Arguments,
     measured: &'a Pseudoranges,
+    /// What the file of --truth has.
+    true_nodes: Option<Nodes>,
     units: Units,
     /// Whether the unit was said.
     said: bool,
@@ -275,7 +140,8 @@ impl Task<'_> {
     }
 
     fn truth<const D: usize>(&self) -> Result<Truth<D>, Failure> {
-        let truth = Truth::read(self.arguments.truth.as_deref(), &self.arguments.file, self.measured)?;
+        let given = self.arguments.truth.as_deref().zip(self.true_nodes.as_ref());
+        let truth = Truth::read(given, &self.arguments.file, self.measured)?;
         if self.arguments.scale && truth.receivers.is_none() {
             return Err(Failure::Unusable("--scale needs --truth with the true positions".to_string()));
         }
@@ -291,7 +157,7 @@ impl Task<'_> {
         let arguments = self.arguments;
         let mut options = CalibrateOptions::new();
         if let Some(path) = &arguments.distances {
-            options.distances = read_distances(path, self.measured.receiver_names()).map_err(Failure::unusable)?;
+            options.distances = input::distances(path, self.measured.receiver_names())?;
         }
         options.receiver_delays = match arguments.receiver_delays {
             Delays::None => ReceiverDelays::None,
@@ -327,7 +193,7 @@ impl Task<'_> {
     {
         match error {
             CalibrateError::Degenerate(_) | CalibrateError::NotFound(_) | CalibrateError::Delays { .. } => {
-                Failure::Undetermined(format!("{}: {error}", self.arguments.file.display()))
+                Failure::Undetermined(format!("{}: {error}", name(&self.arguments.file)))
             }
             CalibrateError::Cancelled(Some(best)) => {
                 partial::write(&best, self.measured, self.arguments.json.as_deref())
@@ -341,7 +207,7 @@ impl Task<'_> {
     fn provenance(&self, time: Duration) -> Provenance {
         let mut provenance = Provenance::default();
         provenance.program = Some(concat!("tdoa ", env!("CARGO_PKG_VERSION")).to_string());
-        provenance.file = Some(self.arguments.file.display().to_string());
+        provenance.file = Some(name(&self.arguments.file));
         provenance.command = Some(provenance::command());
         provenance.settings = self.arguments.settings();
         provenance.dimensions = self.chosen.map(str::to_string);
@@ -381,24 +247,25 @@ impl Task<'_> {
             frame.apply(&mut calibration)?;
         }
         if let Some(path) = &arguments.svg {
-            output::file(path, picture(&calibration).as_bytes())?;
+            output::text(path, &picture(&calibration))?;
         }
         if let Some(path) = &arguments.html {
-            output::file(path, html_with(&calibration, &self.provenance(started.elapsed())).as_bytes())?;
+            output::text(path, &html_with(&calibration, &self.provenance(started.elapsed())))?;
         }
         if let Some(path) = &arguments.nodes {
-            output::file(path, node_table(&calibration).as_bytes())?;
+            output::text(path, &node_table(&calibration))?;
         }
         if let Some(path) = &arguments.json {
             output::json(path, &Report::new(&calibration, unit))?;
         }
         let context = Context { time: started.elapsed(), unit };
-        output::summary(arguments.json.as_deref(), || summary::text(&calibration, &context))?;
+        let outputs = arguments.outputs().into_iter().filter_map(|(_, path)| path);
+        output::summary(outputs, || summary::text(&calibration, &context))?;
         match calibration.distrust() {
             None => Ok(()),
             Some(why) => Err(Failure::Undetermined(format!(
                 "{}: {why} (see the warnings); the network is not to be trusted",
-                arguments.file.display()
+                name(&arguments.file)
             ))),
         }
     }

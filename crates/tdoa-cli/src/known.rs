@@ -1,10 +1,11 @@
 //! Known positions of receivers: the truth to compare with, and anchors.
 
+use cli::input::name;
 use hc::poly::counted;
 use std::path::Path;
 
 use tdoa::quantity::length;
-use tdoa::read::{Nodes, is_mat, read_mat_nodes, read_mat_transmitters, read_nodes};
+use tdoa::read::{Nodes, is_mat, read_mat_nodes, read_mat_transmitters};
 use tdoa::{MeasuredPosition, Pseudoranges};
 
 use crate::Failure;
@@ -32,10 +33,13 @@ pub(crate) struct Truth<const D: usize> {
 
 impl<const D: usize> Truth<D> {
     /// The truth in the file given for it, otherwise the one in the .mat file of the measurements.
-    pub(crate) fn read(given: Option<&Path>, file: &Path, measured: &Pseudoranges) -> Result<Truth<D>, Failure> {
+    pub(crate) fn read(
+        given: Option<(&Path, &Nodes)>,
+        file: &Path,
+        measured: &Pseudoranges,
+    ) -> Result<Truth<D>, Failure> {
         let mut truth = Truth::default();
-        if let Some(path) = given {
-            let nodes = read_nodes(path).map_err(Failure::unusable)?;
+        if let Some((path, nodes)) = given {
             if let Some(k) = nodes.positions::<D>().iter().position(Option::is_none) {
                 let name = nodes.nodes[k].name.clone().unwrap_or_else(|| format!("position {}", k + 1));
                 let lacks = match nodes.nodes[k].whole::<2>() {
@@ -44,7 +48,7 @@ impl<const D: usize> Truth<D> {
                 };
                 return Err(Failure::in_file(path, format!("{name} {lacks}")));
             }
-            truth.receivers = Some(truth.place(path, &nodes, measured)?);
+            truth.receivers = Some(truth.place(path, nodes, measured)?);
         } else if is_mat(file)
             && let Some(nodes) = read_mat_nodes(file).map_err(Failure::unusable)?
         {
@@ -54,13 +58,13 @@ impl<const D: usize> Truth<D> {
                 Some(_) => heights::<D>(file, &nodes),
                 None => Some(format!(
                     "{}: rgt has {} for {}, so that nothing is compared with it",
-                    file.display(),
+                    name(file),
                     counted(nodes.nodes.len(), "position"),
                     counted(measured.receivers(), "receiver")
                 )),
             });
         }
-        let file = given.unwrap_or(file);
+        let file = given.map_or(file, |(path, _)| path);
         if is_mat(file) {
             let all = read_mat_transmitters(file).map_err(Failure::unusable)?.unwrap_or_default().positions();
             truth.transmitters = if all.len() == measured.transmitters() { all } else { Vec::new() };
@@ -101,7 +105,7 @@ impl<const D: usize> Truth<D> {
                 some(receivers)
             ));
         }
-        let file = path.display();
+        let file = name(path);
         if matched && !unknown.is_empty() {
             self.notes.push(format!("{file}: no receiver is named {}: left out of the comparison", quoted(&unknown)));
         }
@@ -208,10 +212,7 @@ fn heights<const D: usize>(path: &Path, nodes: &Nodes) -> Option<String> {
     let range = if low == high { length(low) } else { format!("{} to {}", length(low), length(high)) };
     let flat = high - low <= FLAT * extent(nodes);
     let advice = if flat { "" } else { "; receivers at such different heights form no plane" };
-    Some(format!(
-        "{}: the heights (z, {range}) are left out: the network is taken to be a plane{advice}",
-        path.display()
-    ))
+    Some(format!("{}: the heights (z, {range}) are left out: the network is taken to be a plane{advice}", name(path)))
 }
 
 /// The largest distance along x or y.

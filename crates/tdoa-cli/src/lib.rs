@@ -2,6 +2,7 @@
 
 mod calibrate;
 mod frame;
+mod input;
 mod known;
 mod partial;
 mod provenance;

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
+use cli::files::check_directory;
 use tdoa::{Layout, ReceiverFault, SimulateOptions, simulate};
 
 use crate::Failure;
@@ -73,6 +74,9 @@ pub(crate) struct Arguments {
     /// Directory for the files; made if it is not there.
     #[arg(long)]
     output: PathBuf,
+    /// Replaces the files if they are in the directory already.
+    #[arg(long)]
+    force: bool,
 }
 
 /// How receivers stand in the room.
@@ -83,7 +87,11 @@ enum Shape {
     Grid,
 }
 
+/// What is written.
+const FILES: [&str; 4] = ["pseudoranges.csv", "receivers.csv", "transmitters.csv", "offsets.csv"];
+
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    check_directory(&arguments.output, &FILES, arguments.force)?;
     let sides = arguments.layout.as_deref().and_then(sides);
     match (sides.map(|sides| sides.len()), arguments.dimensions) {
         (None | Some(3), Some(3)) | (Some(3), None) => make::<3>(arguments),
@@ -115,6 +123,7 @@ fn make<const D: usize>(arguments: &Arguments) -> Result<(), Failure> {
     options.fault = arguments.fault.as_deref().map(fault).transpose()?;
     options.delays = arguments.delays;
     options.seed = arguments.seed;
+    let unit = unit_of(&arguments.units)?;
     let simulation = crate::on_threads(arguments.threads, || simulate(&options))?.map_err(Failure::unusable)?;
     let measured = &simulation.pseudoranges;
 
@@ -122,7 +131,6 @@ fn make<const D: usize>(arguments: &Arguments) -> Result<(), Failure> {
     std::fs::create_dir_all(directory).map_err(|error| {
         Failure::Unusable(format!("{}: cannot be made ({error}); choose another --output", directory.display()))
     })?;
-    let unit = unit_of(&arguments.units)?;
     // A micrometre is finer than any measurement, but tests of exact data want all digits.
     let digits = unit.map_or(6, |unit| unit.decimals(6));
     let mut table = format!("receiver,{}\n", measured.transmitter_names().join(","));
@@ -139,16 +147,16 @@ fn make<const D: usize>(arguments: &Arguments) -> Result<(), Failure> {
         table += "\n";
     }
     let network = &simulation.network;
-    output::file(&directory.join("pseudoranges.csv"), table.as_bytes())?;
     let receivers = positions(measured.receiver_names(), &network.receivers);
-    output::file(&directory.join("receivers.csv"), receivers.as_bytes())?;
     let transmitters = positions(measured.transmitter_names(), &network.transmitters);
-    output::file(&directory.join("transmitters.csv"), transmitters.as_bytes())?;
     let rows = measured.transmitter_names().iter().zip(&network.offsets);
     let in_unit = |offset: f64| unit.map_or_else(String::new, |unit| format!(",{}", unit.of(offset)));
     let offsets: String = rows.map(|(name, offset)| format!("{name},{offset}{}\n", in_unit(*offset))).collect();
     let heading = unit.map_or_else(String::new, |unit| format!(",offset_{}", unit.name));
-    output::file(&directory.join("offsets.csv"), format!("id,offset{heading}\n{offsets}").as_bytes())?;
+    let offsets = format!("id,offset{heading}\n{offsets}");
+    for (name, text) in FILES.iter().zip([table, receivers, transmitters, offsets]) {
+        output::file(&directory.join(name), text.as_bytes())?;
+    }
 
     let outliers: Vec<String> = (0..simulation.outliers.len())
         .filter(|&k| simulation.outliers[k])

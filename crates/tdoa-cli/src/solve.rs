@@ -3,22 +3,24 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+use cli::files::Files;
+use cli::input::name;
 use serde::Serialize;
 use tdoa::minimal::{MinimalError, MinimalOptions, MinimalStart, RootProofs, Solver, spatial};
 use tdoa::quantity::{coordinate, decimals};
-use tdoa::read::read;
 use tdoa::summary::networks;
 use tdoa::{MinimalSolution, Monitor, Pseudoranges};
 
 use crate::units::Unit;
-use crate::{Failure, interrupt, output};
+use crate::{Failure, input, interrupt, output};
 
 /// Finds every network that explains pseudoranges without errors, best first: in the plane 6r/3s,
 /// 4r/5s, 5r/4s and all larger sizes, in space (--dimensions 3) 10r/4s, 7r/5s, 6r/6s and all larger
 /// sizes.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The measurements, in the forms that `calibrate` takes; none may be missing.
+    /// The measurements, in the forms that `calibrate` takes; none may be missing. - for standard
+    /// input.
     file: PathBuf,
     #[command(flatten)]
     input: crate::units::InputArguments,
@@ -79,10 +81,10 @@ struct Report<'a, const D: usize> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    output::check(&[("--json", arguments.json.as_deref())])?;
-    let input = arguments.input.options(false)?;
-    let unit = Unit::new(input.units.unwrap_or_default());
-    let measured = read(&arguments.file, input).map_err(Failure::unusable)?;
+    Files::new().reads(Some(&arguments.file)).writes("--json", arguments.json.as_deref()).check()?;
+    let options = arguments.input.options(false)?;
+    let unit = Unit::new(options.units.unwrap_or_default());
+    let measured = input::measurements(&arguments.file, options)?;
     if arguments.tolerance.is_nan() || arguments.tolerance < 0.0 {
         return Err(Failure::Unusable("--tolerance must not be negative".to_string()));
     }
@@ -135,7 +137,7 @@ where
     let solved = cli::bar::while_shown(arguments.threads, progress, || solve(&monitor))?;
     interrupt::check()?;
     let (solution, proofs) =
-        solved.map_err(|error| Failure::Undetermined(format!("{}: {error}", arguments.file.display())))?;
+        solved.map_err(|error| Failure::Undetermined(format!("{}: {error}", name(&arguments.file))))?;
     let seconds = started.elapsed().as_secs_f64();
     if let Some(path) = &arguments.json {
         let report = Report {
@@ -157,7 +159,7 @@ where
     if !solution.warnings.is_empty() {
         return Err(Failure::Undetermined(format!(
             "{}: the data do not determine the network, or the result is not whole; see the warnings",
-            arguments.file.display()
+            name(&arguments.file)
         )));
     }
     if arguments.prove && !proofs.is_some_and(|proofs| proofs.proved == proofs.roots && proofs.unseparated == 0) {
@@ -165,14 +167,14 @@ where
             Some(proofs) => format!(
                 "{}: {} of {} roots are not proved to exist, and {} pairs not to be different; the networks are as listed without \
                  proof",
-                arguments.file.display(),
+                name(&arguments.file),
                 proofs.roots - proofs.proved,
                 proofs.roots,
                 proofs.unseparated
             ),
             None => format!(
                 "{}: --prove proves the roots at the ends of paths, and {} is solved without paths",
-                arguments.file.display(),
+                name(&arguments.file),
                 solution.configuration
             ),
         }));
@@ -184,7 +186,7 @@ where
     Err(Failure::Undetermined(format!(
         "{}: no physical network explains the measurements exactly; if they are noisy, give the noise as --tolerance or use \
          `tdoa calibrate`{in_space}",
-        arguments.file.display()
+        name(&arguments.file)
     )))
 }
 

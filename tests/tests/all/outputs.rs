@@ -102,6 +102,164 @@ fn unwritable_places_are_said_at_once() {
     assert_eq!(std::fs::read_dir(folder).expect("folder").count(), before);
 }
 
+/// What each command reads, asked for as its result too: under its name, by a detour, through a link.
+#[test]
+fn nothing_that_is_read_is_overwritten() {
+    let directory = tempfile::tempdir().expect("directory");
+    let folder = directory.path();
+    let write = |name: &str, content: &str| {
+        let path = folder.join(name);
+        std::fs::write(&path, content).expect("written");
+        text(&path).to_owned()
+    };
+    let table = std::fs::read_to_string(root().join("examples/network/pseudoranges.csv")).expect("example");
+    let positions = std::fs::read_to_string(root().join("examples/network/receivers.csv")).expect("example");
+    let (table, positions) = (write("p.csv", &table), write("r.csv", &positions));
+    let distances = write("d.csv", "r1,r2,3\n");
+    let system = write("s.txt", "x^2 + y^2 = 5\nx*y = 2\n");
+    let points = write("points.txt", "1 2\n2 1\n");
+    let family = write("f.txt", "parameters: a b\nunknowns: x y\nx^2 + y^2 = a\nx*y = b\n");
+    let pair = write("pair.json", "{\"parameters\": [[5, 0], [2, 0]], \"solutions\": [[[1, 0], [2, 0]]]}");
+    let target = write("target.json", "{\"parameters\": [5, 2]}");
+    let track = ["track", &family, "--start", &pair, "--target", &target, "--json"];
+    let monodromy = ["monodromy", &family, "--seed-pair", &pair, "--output"];
+    let calibrate = |option, read: &[&'static str]| [&["calibrate", &table], read, &[option]].concat().join(" ");
+    let mut commands: Vec<(&str, String, &str)> = vec![
+        ("hc", format!("solve {system} --json"), &system),
+        ("hc", format!("decompose {system} --json"), &system),
+        ("hc", format!("mixed-volume {system} --json"), &system),
+        ("hc", format!("certify {system} {points} --json"), &system),
+        ("hc", format!("certify {system} {points} --json"), &points),
+        ("hc", track.join(" "), &family),
+        ("hc", track.join(" "), &pair),
+        ("hc", track.join(" "), &target),
+        ("hc", monodromy.join(" "), &family),
+        ("hc", monodromy.join(" "), &pair),
+        ("hc", format!("codegen {family} {pair} --output"), &pair),
+        ("tdoa", format!("solve {table} --json"), &table),
+        ("tdoa", format!("calibrate {table} --truth {positions} --svg"), &positions),
+        ("tdoa", format!("calibrate {table} --anchors {positions} --nodes"), &positions),
+        ("tdoa", format!("calibrate {table} --estimate-speed --distances {distances} --json"), &distances),
+    ];
+    commands.extend(["--json", "--svg", "--html", "--nodes"].map(|option| ("tdoa", calibrate(option, &[]), &*table)));
+    let all = || -> Vec<(String, Vec<u8>)> {
+        let names = std::fs::read_dir(folder).expect("folder").map(|entry| entry.expect("entry").path());
+        let mut all: Vec<_> = names
+            .filter(|path| path.is_file())
+            .map(|path| (text(&path).to_owned(), std::fs::read(&path).expect("file")))
+            .collect();
+        all.sort();
+        all
+    };
+    std::fs::create_dir(folder.join("sub")).expect("folder");
+    let before = all();
+    for (program, command, read) in &commands {
+        let name = Path::new(read).file_name().and_then(|name| name.to_str()).expect("name");
+        let mut spellings = vec![(*read).to_owned(), text(&folder.join("sub/..").join(name)).to_owned()];
+        #[cfg(unix)]
+        {
+            let link = folder.join("sub").join(name);
+            if !link.exists() {
+                std::os::unix::fs::symlink(read, &link).expect("link");
+            }
+            spellings.push(text(&link).to_owned());
+        }
+        for written in &spellings {
+            let arguments: Vec<&str> = command.split(' ').chain([written.as_str()]).collect();
+            let output = run(program, &arguments);
+            let message = String::from_utf8_lossy(&output.stderr);
+            assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+            assert!(
+                message.contains("would overwrite") && message.contains("another name"),
+                "{arguments:?}: {message}"
+            );
+        }
+    }
+    assert!(all() == before, "a file was changed");
+    // Standard input is a file too.
+    #[cfg(unix)]
+    for arguments in [["solve", "-", "--json", &system], ["decompose", "-", "--json", &system]] {
+        let mut command = std::process::Command::new(end_to_end::program("hc"));
+        let output = command.args(arguments).stdin(std::fs::File::open(&system).expect("file")).output().expect("runs");
+        assert_eq!(output.status.code(), Some(2), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+    assert!(all() == before, "a file was changed");
+}
+
+#[test]
+fn two_results_of_one_file_are_refused() {
+    let directory = tempfile::tempdir().expect("directory");
+    let folder = directory.path();
+    let table = root().join("examples/network/pseudoranges.csv");
+    let (a, b) = (folder.join("a"), folder.join("../").join(folder.file_name().expect("name")).join("a"));
+    let (a, b) = (text(&a), text(&b));
+    for [one, other] in [[a, a], [a, b], ["-", "-"]] {
+        let output = run("tdoa", &["calibrate", text(&table), "--svg", one, "--nodes", other]);
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains("--svg and --nodes; give two names"), "{message}");
+    }
+    assert_eq!(std::fs::read_dir(folder).expect("folder").count(), 0);
+}
+
+#[test]
+fn a_simulation_replaces_nothing_unless_told_to() {
+    let directory = tempfile::tempdir().expect("directory");
+    let folder = directory.path().join("made");
+    let make = |seed: &'static str, more: &[&'static str]| {
+        let output = run("tdoa", &[&["simulate", "--seed", seed, "--output", text(&folder)], more].concat());
+        (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    let read = || std::fs::read(folder.join("pseudoranges.csv")).expect("table");
+    assert_eq!(make("1", &[]).0, Some(0));
+    let first = read();
+    let (status, message) = make("2", &[]);
+    assert_eq!(status, Some(2), "{message}");
+    assert!(message.contains("pseudoranges.csv, receivers.csv") && message.contains("--force"), "{message}");
+    assert!(read() == first);
+    assert_eq!(make("2", &["--force"]).0, Some(0));
+    assert!(read() != first);
+    // What else lies there is in nobody's way, one of the files is.
+    let other = directory.path().join("other");
+    std::fs::create_dir(&other).expect("folder");
+    std::fs::write(other.join("notes.txt"), "mine").expect("written");
+    assert_eq!(run("tdoa", &["simulate", "--output", text(&other)]).status.code(), Some(0));
+    let file = other.join("notes.txt");
+    let output = run("tdoa", &["simulate", "--output", text(&file)]);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(2) && message.contains("give a directory"), "{message}");
+    assert_eq!(run("tdoa", &["simulate", "--output", "-"]).status.code(), Some(2));
+}
+
+/// `-` is standard input and standard output, as in `hc`.
+#[test]
+fn measurements_come_and_results_go_through_pipes() {
+    let example = |name: &str| std::fs::read_to_string(root().join("examples/network").join(name)).expect("example");
+    let (table, positions) = (root().join("examples/network/pseudoranges.csv"), example("receivers.csv"));
+    let out = |output: std::process::Output| {
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    };
+    let run_on = |arguments: &[&str], input: &str| out(end_to_end::run_on("tdoa", arguments, input));
+    let expected = out(run("tdoa", &["calibrate", text(&table), "--json", "-"]));
+    let found = run_on(&["calibrate", "-", "--json", "-"], &example("pseudoranges.csv"));
+    assert!(found == expected);
+    for (option, begins) in [("--nodes", "kind,name,x,y,"), ("--svg", "<svg"), ("--html", "<!DOCTYPE html>")] {
+        let found = run_on(&["calibrate", "-", option, "-"], &example("pseudoranges.csv"));
+        assert!(found.to_lowercase().starts_with(&begins.to_lowercase()), "{option}: {}", &found[..40]);
+    }
+    let compared = run_on(&["calibrate", text(&table), "--truth", "-"], &positions);
+    assert!(compared.contains("against the truth: 8 receivers"), "{compared}");
+    let held = run_on(&["calibrate", text(&table), "--anchors", "-"], &positions);
+    assert!(held.contains("r1"), "{held}");
+    let output = end_to_end::run_on("tdoa", &["calibrate", "-", "--truth", "-"], &positions);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(2) && message.contains("can be read once"), "{message}");
+    let output = end_to_end::run_on("tdoa", &["calibrate", "-"], "receiver,s1,s2\nm,1,x\n");
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(2) && message.contains("standard input, line 2, column 3"), "{message}");
+}
+
 /// The partial result goes to a pipe that is read only after the second interrupt.
 #[cfg(unix)]
 #[test]

@@ -3,6 +3,7 @@
 use super::common::configuration;
 use crate::trials::checks::{ChartTrial, HurryTrial, chart_trial, hurry_trial, proof_trial};
 use cli::bar::Bar;
+use cli::files::Files;
 use cli::{Failure, output};
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 use std::fmt::Write;
@@ -37,6 +38,7 @@ impl Arguments {
         (receivers, transmitters): (usize, usize),
         one: impl Fn(&mut Solver, &Simulation) -> Result<T, MinimalError> + Sync,
     ) -> Result<Vec<T>, Failure> {
+        Files::new().writes("--output", Some(&self.output)).check()?;
         let bar = Bar::counted(self.instances);
         let seeds = self.seed..self.seed.saturating_add(self.instances);
         let trials = cli::on_threads(self.threads, || {

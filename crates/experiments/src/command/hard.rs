@@ -3,6 +3,7 @@
 use super::common::Size;
 use crate::trials::hard::{Case, HardSummary, hard_trials};
 use cli::bar::Bar;
+use cli::files::check_directory;
 use cli::{Failure, output};
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 use std::fmt::Write;
@@ -32,6 +33,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    check_directory(&arguments.output, &["summary.md"], true)?;
     let mut text = format!(
         "# Hard networks\n\n`tdoa experiment hard --instances {} --seed {} --output DIR`: positions and offsets standard normal, then made \
          hard as stated; no noise. \"found\": the true network is among the physical candidates, to 1e-3 of its size. \"refused\": an error \

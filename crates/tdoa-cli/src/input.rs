@@ -1,0 +1,37 @@
+//! What the commands read: files, or standard input for `-`.
+
+use std::path::Path;
+
+use cli::input::{is_standard, name, source};
+use tdoa::Pseudoranges;
+use tdoa::calibrate::KnownDistance;
+use tdoa::read::{self, Nodes, ReadOptions};
+
+use crate::Failure;
+
+/// Measurements, in any form that the library reads.
+pub(crate) fn measurements(path: &Path, options: ReadOptions) -> Result<Pseudoranges, Failure> {
+    let read = if is_standard(path) {
+        read::read_from(source(path)?, Path::new(&name(path)), options)
+    } else {
+        read::read(path, options)
+    };
+    read.map_err(Failure::unusable)
+}
+
+/// Known positions.
+pub(crate) fn nodes(path: &Path) -> Result<Nodes, Failure> {
+    let read =
+        if is_standard(path) { read::read_nodes_from(source(path)?, &name(path)) } else { read::read_nodes(path) };
+    read.map_err(Failure::unusable)
+}
+
+/// Known distances between receivers of these names.
+pub(crate) fn distances(path: &Path, names: &[String]) -> Result<Vec<KnownDistance>, Failure> {
+    let read = if is_standard(path) {
+        read::read_distances_from(source(path)?, &name(path), names)
+    } else {
+        read::read_distances(path, names)
+    };
+    read.map_err(Failure::unusable)
+}
