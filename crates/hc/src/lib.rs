@@ -78,6 +78,7 @@ pub mod ranks;
 pub mod refine;
 mod run;
 mod runner;
+mod setters;
 mod singular;
 mod solve;
 pub mod start;

@@ -5,6 +5,7 @@ use super::header::{FORMAT, Header, Job};
 use super::log::{Log, RecordSpan};
 use super::note::Note;
 use crate::runner::Round;
+use crate::setters::setters;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -51,25 +52,9 @@ impl CheckpointOptions {
     pub fn new() -> CheckpointOptions {
         CheckpointOptions::default()
     }
-
-    /// Sets [`resume`](Self::resume).
-    #[must_use]
-    pub fn resume(self, resume: bool) -> Self {
-        CheckpointOptions { resume, ..self }
-    }
-
-    /// Sets [`required`](Self::required).
-    #[must_use]
-    pub fn required(self, required: bool) -> Self {
-        CheckpointOptions { required, ..self }
-    }
-
-    /// Sets [`interval`](Self::interval).
-    #[must_use]
-    pub fn interval(self, interval: Duration) -> Self {
-        CheckpointOptions { interval, ..self }
-    }
 }
+
+setters!(CheckpointOptions { resume: bool, required: bool, interval: Duration });
 
 /// A directory in which one run records what it has finished; see the [module](crate::checkpoint).
 #[derive(Clone)]

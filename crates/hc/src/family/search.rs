@@ -1,6 +1,7 @@
 //! The search for all solutions of a family: its settings, its result, and what the trace test found.
 
 use super::fibre::{Fibre, FibreOptions};
+use crate::setters::setters;
 use crate::tolerances::families;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -35,43 +36,16 @@ impl MonodromyOptions {
     pub fn new() -> Self {
         MonodromyOptions::default()
     }
-
-    /// Sets [`seed`](Self::seed).
-    #[must_use]
-    pub fn seed(self, seed: u64) -> Self {
-        MonodromyOptions { seed, ..self }
-    }
-
-    /// Sets [`roots`](Self::roots).
-    #[must_use]
-    pub fn roots(self, roots: usize) -> Self {
-        MonodromyOptions { roots: Some(roots), ..self }
-    }
-
-    /// Sets [`patience`](Self::patience).
-    #[must_use]
-    pub fn patience(self, patience: usize) -> Self {
-        MonodromyOptions { patience, ..self }
-    }
-
-    /// Sets [`max_solutions`](Self::max_solutions).
-    #[must_use]
-    pub fn max_solutions(self, max_solutions: usize) -> Self {
-        MonodromyOptions { max_solutions, ..self }
-    }
-
-    /// Sets [`fibre`](Self::fibre).
-    #[must_use]
-    pub fn fibre(self, fibre: FibreOptions) -> Self {
-        MonodromyOptions { fibre, ..self }
-    }
-
-    /// Sets [`trace_test`](Self::trace_test).
-    #[must_use]
-    pub fn trace_test(self, trace_test: bool) -> Self {
-        MonodromyOptions { trace_test, ..self }
-    }
 }
+
+setters!(MonodromyOptions {
+    seed: u64,
+    roots: usize,
+    patience: usize,
+    max_solutions: usize,
+    fibre: FibreOptions,
+    trace_test: bool,
+});
 
 impl Default for MonodromyOptions {
     fn default() -> Self {

@@ -2,6 +2,7 @@
 
 use crate::endgame::EndgameOptions;
 use crate::family::FibreOptions;
+use crate::setters::setters;
 use crate::tracker::{OptionError, TrackerOptions};
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -111,64 +112,17 @@ impl SolveOptions {
         self.paths.validate()?;
         self.endgame.validate()
     }
-
-    /// Sets [`seed`](Self::seed).
-    #[must_use]
-    pub fn seed(self, seed: u64) -> Self {
-        SolveOptions { seed, ..self }
-    }
-
-    /// Sets [`start`](Self::start).
-    #[must_use]
-    pub fn start(self, start: Start) -> Self {
-        SolveOptions { start, ..self }
-    }
-
-    /// Sets [`groups`](Self::groups).
-    #[must_use]
-    pub fn groups(self, groups: Vec<Vec<usize>>) -> Self {
-        SolveOptions { groups, ..self }
-    }
-
-    /// Sets [`torus_only`](Self::torus_only).
-    #[must_use]
-    pub fn torus_only(self, torus_only: bool) -> Self {
-        SolveOptions { torus_only, ..self }
-    }
-
-    /// Sets [`max_paths`](Self::max_paths).
-    #[must_use]
-    pub fn max_paths(self, max_paths: u64) -> Self {
-        SolveOptions { max_paths, ..self }
-    }
-
-    /// Sets [`paths`](Self::paths).
-    #[must_use]
-    pub fn paths(self, paths: FibreOptions) -> Self {
-        SolveOptions { paths, ..self }
-    }
-
-    /// Sets [`endgame`](Self::endgame).
-    #[must_use]
-    pub fn endgame(self, endgame: EndgameOptions) -> Self {
-        SolveOptions { endgame, ..self }
-    }
-
-    /// Sets [`known`](Self::known).
-    #[must_use]
-    pub fn known(self, known: usize) -> Self {
-        SolveOptions { known: Some(known), ..self }
-    }
-
-    /// Sets [`restarts`](Self::restarts).
-    #[must_use]
-    pub fn restarts(self, restarts: u32) -> Self {
-        SolveOptions { restarts, ..self }
-    }
-
-    /// Sets [`certify`](Self::certify).
-    #[must_use]
-    pub fn certify(self, certify: bool) -> Self {
-        SolveOptions { certify, ..self }
-    }
 }
+
+setters!(SolveOptions {
+    seed: u64,
+    start: Start,
+    groups: Vec<Vec<usize>>,
+    torus_only: bool,
+    max_paths: u64,
+    paths: FibreOptions,
+    endgame: EndgameOptions,
+    known: usize,
+    restarts: u32,
+    certify: bool,
+});
