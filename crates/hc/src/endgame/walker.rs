@@ -19,6 +19,7 @@ pub(super) struct Sample {
 }
 
 /// A path on its way round smaller and smaller circles.
+#[derive(Default)]
 pub(super) struct Walker {
     path: usize,
     /// Where the path is: logarithmic time and point.
@@ -58,18 +59,10 @@ impl Walker {
             radius: options.radius,
             origin: (-t.ln(), x.to_vec()),
             deepest: options.min_radius,
-            samples: Vec::new(),
             per_turn: endgame::SAMPLES,
             turns: options.turns.min(max_turns).max(1),
             max_turns,
-            shrunk: 0,
-            steps: 0,
-            going_home: false,
-            noise: 0.0,
-            blur: Vec::new(),
-            vague: None,
-            middle: Vec::new(),
-            end: None,
+            ..Walker::default()
         }
     }
 

@@ -14,9 +14,10 @@ fn h(a: f64) -> f64 {
 }
 
 /// How far the step of a path has come.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) enum StepState {
     /// No path in this lane.
+    #[default]
     Idle,
     /// More iterations are needed.
     Iterating,
@@ -75,7 +76,7 @@ impl Bounds {
 }
 
 /// One path on its way.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct PathProgress {
     pub(crate) path: usize,
     pub(crate) state: StepState,
@@ -124,39 +125,20 @@ pub(crate) struct PathProgress {
 }
 
 impl PathProgress {
+    /// A lane without a path.
     pub(crate) fn idle() -> Self {
         PathProgress {
             path: usize::MAX,
-            state: StepState::Idle,
-            fresh: false,
             t: 1.0,
             t_next: 1.0,
             pieces: 1,
-            ahead: 0,
-            exponential: false,
-            radius: 0.0,
-            extended: false,
-            wide: false,
-            kept: false,
-            step: 0.0,
-            failed_before: 0,
             local_error: f64::NAN,
             omega: tracking::INITIAL_OMEGA,
             omega_before: tracking::INITIAL_OMEGA,
             mu: f64::EPSILON,
             noise: f64::EPSILON,
-            before: Counts::default(),
-            accepted: 0,
-            rejected: 0,
-            jacobians: 0,
-            used_extended: false,
-            diverges_since: None,
-            first: 0.0,
-            last: 0.0,
             omega_now: tracking::INITIAL_OMEGA,
-            theta_bound: 0.0,
-            iterations: 0,
-            resumed: false,
+            ..PathProgress::default()
         }
     }
 

@@ -15,7 +15,7 @@ pub(super) enum Verdict {
 }
 
 /// One path on its way.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct QuickPath {
     /// `None` in a lane without a path.
     path: Option<usize>,
@@ -43,21 +43,8 @@ pub(super) struct QuickPath {
 impl QuickPath {
     /// A lane without a path.
     pub(super) fn idle() -> Self {
-        QuickPath {
-            path: None,
-            fresh: true,
-            t: 1.0,
-            step: 0.0,
-            t_next: 1.0,
-            radius: 0.0,
-            omega: tracking::INITIAL_OMEGA,
-            error: f64::NAN,
-            last: 0.0,
-            attempts: 0,
-            rejections: 0,
-            approaches: 0,
-            counts: Counts::default(),
-        }
+        let omega = tracking::INITIAL_OMEGA;
+        QuickPath { fresh: true, t: 1.0, t_next: 1.0, omega, error: f64::NAN, ..QuickPath::default() }
     }
 
     /// A path that goes on.
