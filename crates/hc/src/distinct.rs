@@ -155,7 +155,8 @@ impl Coincidences {
     }
 }
 
-fn root(parent: &mut [usize], mut i: usize) -> usize {
+/// The first of the group of `i`, by way of another member of it for each that is not the first.
+pub(crate) fn root(parent: &mut [usize], mut i: usize) -> usize {
     while parent[i] != i {
         parent[i] = parent[parent[i]];
         i = parent[i];

@@ -5,6 +5,7 @@
 
 use super::certificate::Obstacle;
 use super::proof::Proof;
+use crate::distinct::root;
 use poly::Interval;
 
 /// For each proof the first one about the same solution, if that is another, and the pairs that may be about the same
@@ -23,7 +24,7 @@ pub(super) fn compare(proofs: &[Result<Proof, Obstacle>]) -> (Vec<Option<usize>>
                 continue;
             }
             if proof.holds(candidate) || candidate.holds(proof) {
-                let (a, b) = (root(&first, k), root(&first, other));
+                let (a, b) = (root(&mut first, k), root(&mut first, other));
                 first[a.max(b)] = a.min(b);
             } else {
                 unseparated.push([k.min(other), k.max(other)]);
@@ -31,17 +32,10 @@ pub(super) fn compare(proofs: &[Result<Proof, Obstacle>]) -> (Vec<Option<usize>>
         }
     }
     // Two points that a third one joins are separated after all.
-    unseparated.retain(|&[a, b]| root(&first, a) != root(&first, b));
+    unseparated.retain(|&[a, b]| root(&mut first, a) != root(&mut first, b));
     unseparated.sort_unstable();
-    let duplicate_of = (0..proofs.len()).map(|k| Some(root(&first, k)).filter(|&f| f != k)).collect();
+    let duplicate_of = (0..proofs.len()).map(|k| Some(root(&mut first, k)).filter(|&f| f != k)).collect();
     (duplicate_of, unseparated)
-}
-
-fn root(first: &[usize], mut k: usize) -> usize {
-    while first[k] != k {
-        k = first[k];
-    }
-    k
 }
 
 /// Bounds of a projection of the small box with fixed irrational coefficients.

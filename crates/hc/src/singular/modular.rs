@@ -61,25 +61,38 @@ fn sum(a: u64, b: u64) -> u64 {
     difference(a, difference(0, b))
 }
 
-impl Mul for Residue {
-    type Output = Residue;
-
-    fn mul(self, other: Residue) -> Residue {
-        let product = u128::from(self.0) * u128::from(other.0);
-        let (low, high) = (product as u64, (product >> 64) as u64);
-        // 2^64 is 2^32 - 1, and 2^96 is -1.
-        let (top, middle) = (high >> 32, (high & 0xFFFF_FFFF) * 0xFFFF_FFFF);
-        let low = if low >= PRIME { low - PRIME } else { low };
-        Residue(sum(difference(low, top), middle))
-    }
+fn product(a: u64, b: u64) -> u64 {
+    let product = u128::from(a) * u128::from(b);
+    let (low, high) = (product as u64, (product >> 64) as u64);
+    // 2^64 is 2^32 - 1, and 2^96 is -1.
+    let (top, middle) = (high >> 32, (high & 0xFFFF_FFFF) * 0xFFFF_FFFF);
+    let low = if low >= PRIME { low - PRIME } else { low };
+    sum(difference(low, top), middle)
 }
 
-impl Sub for Residue {
-    type Output = Residue;
+/// Operators, and those that assign, of numbers below the prime.
+macro_rules! operators {
+    ($($operator:ident::$name:ident, $assign:ident::$assign_name:ident: $of:ident;)*) => {$(
+        impl $operator for Residue {
+            type Output = Residue;
 
-    fn sub(self, other: Residue) -> Residue {
-        Residue(difference(self.0, other.0))
-    }
+            fn $name(self, other: Residue) -> Residue {
+                Residue($of(self.0, other.0))
+            }
+        }
+
+        impl $assign for Residue {
+            fn $assign_name(&mut self, other: Residue) {
+                self.0 = $of(self.0, other.0);
+            }
+        }
+    )*};
+}
+
+operators! {
+    Add::add, AddAssign::add_assign: sum;
+    Sub::sub, SubAssign::sub_assign: difference;
+    Mul::mul, MulAssign::mul_assign: product;
 }
 
 impl Neg for Residue {
@@ -87,32 +100,6 @@ impl Neg for Residue {
 
     fn neg(self) -> Residue {
         Residue(difference(0, self.0))
-    }
-}
-
-impl Add for Residue {
-    type Output = Residue;
-
-    fn add(self, other: Residue) -> Residue {
-        Residue(sum(self.0, other.0))
-    }
-}
-
-impl AddAssign for Residue {
-    fn add_assign(&mut self, other: Residue) {
-        *self = *self + other;
-    }
-}
-
-impl MulAssign for Residue {
-    fn mul_assign(&mut self, other: Residue) {
-        *self = *self * other;
-    }
-}
-
-impl SubAssign for Residue {
-    fn sub_assign(&mut self, other: Residue) {
-        *self = *self - other;
     }
 }
 
