@@ -98,8 +98,7 @@ struct Recording {
 pub(crate) struct Key {
     /// The part of the work: a start system, all targets, a search.
     part: u32,
-    level: u32,
-    chart: u32,
+    round: Round,
     /// The number of the first path, target or loop.
     first: u64,
     /// How many. Zero in the record at the beginning of a round, and in records of steps.
@@ -109,7 +108,7 @@ pub(crate) struct Key {
 impl Key {
     /// Whether two records belong to the same round.
     pub(super) fn is_of_round(self, other: Key) -> bool {
-        (self.part, self.level, self.chart) == (other.part, other.level, other.chart)
+        (self.part, self.round) == (other.part, other.round)
     }
 
     pub(super) fn part(self) -> u32 {
@@ -217,8 +216,7 @@ pub(crate) struct Part<'a> {
 
 impl Part<'_> {
     pub(crate) fn key(self, round: Round, first: usize, count: usize) -> Key {
-        let Round { level, chart } = round;
-        Key { part: self.number, level, chart: chart as u32, first: first as u64, count: count as u64 }
+        Key { part: self.number, round, first: first as u64, count: count as u64 }
     }
 
     /// The recorded content for this key; `None` if nothing is recorded, or nothing that `fits`.

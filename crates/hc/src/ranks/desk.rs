@@ -170,8 +170,7 @@ impl Desk {
         if rank > 0 {
             seat.held.insert(number);
         }
-        let Round { level, chart } = self.round;
-        Some(Portion { number, level, chart, paths })
+        Some(Portion { number, round: self.round, paths })
     }
 
     /// Notes the answer of a rank. Returns the paths of the portion if this is the first answer and
@@ -209,7 +208,7 @@ mod tests {
         desk.offer(&paths[200..]);
         let held = [desk.take(1, now).unwrap(), desk.take(1, now).unwrap()];
         assert_eq!(desk.take(1, now), None);
-        assert_eq!((held[0].level, held[0].paths.len()), (2, 250));
+        assert_eq!((held[0].round.level, held[0].paths.len()), (2, 250));
         let mut seen: Vec<usize> = held[1].paths.clone();
         seen.extend(&held[0].paths);
         while let Some(portion) = desk.take(0, now) {

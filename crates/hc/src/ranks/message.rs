@@ -20,16 +20,9 @@ pub(super) const LONGEST: usize = 1 << 30;
 pub struct Portion {
     /// Its number in the part.
     pub number: u64,
-    pub(super) level: u32,
-    pub(super) chart: usize,
+    pub(super) round: Round,
     /// The numbers of the paths, in ascending order.
     pub paths: Vec<usize>,
-}
-
-impl Portion {
-    pub(super) fn round(&self) -> Round {
-        Round { level: self.level, chart: self.chart }
-    }
 }
 
 /// From rank 0.
@@ -88,7 +81,7 @@ mod tests {
 
     #[test]
     fn messages_are_read_back_and_others_refused() {
-        let portion = Portion { number: 3, level: 1, chart: 0, paths: vec![5, 7, 1 << 40] };
+        let portion = Portion { number: 3, round: Round { level: 1, chart: 0 }, paths: vec![5, 7, 1 << 40] };
         let order = Order::Track { job: 1, part: 2, portion };
         let bytes = encoded(&order).unwrap();
         assert_eq!(decoded(0, &bytes), Ok(order));

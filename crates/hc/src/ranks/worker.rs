@@ -127,7 +127,7 @@ impl Worker<'_> {
                 }
                 Heard::Portion(of, portion) if of == part => {
                     let begun = Instant::now();
-                    let answer = track(&portion.paths, portion.round());
+                    let answer = track(&portion.paths, portion.round);
                     let seconds = begun.elapsed().as_secs_f64();
                     // What was cancelled half way is no answer.
                     if !task.monitor.is_cancelled() {
