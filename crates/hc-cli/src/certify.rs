@@ -57,7 +57,7 @@ struct Output<'a> {
 }
 
 /// What is proved of a point.
-#[derive(Serialize)]
+#[derive(Default, Serialize)]
 struct Point {
     /// The middle of the box, or the point as given where there is none.
     value: Vec<[f64; 2]>,
@@ -131,14 +131,7 @@ fn entry(result: &Result<Certificate, Obstacle>, duplicate_of: Option<usize>, po
             duplicate_of,
             reason: None,
         },
-        Err(obstacle) => Point {
-            value: pairs(point),
-            certified: false,
-            is_real: None,
-            enclosure: None,
-            duplicate_of: None,
-            reason: Some(obstacle.to_string()),
-        },
+        Err(obstacle) => Point { value: pairs(point), reason: Some(obstacle.to_string()), ..Point::default() },
     }
 }
 

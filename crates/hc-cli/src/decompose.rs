@@ -1,11 +1,10 @@
 //! `hc decompose`.
 
+use crate::report::Report;
 use crate::{input, watch};
 use cli::files::Files;
 use cli::{Failure, output};
-use hc::witness::Decomposition;
 use hc::{Run, SolveOptions};
-use serde::Serialize;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -32,15 +31,6 @@ pub(crate) struct Arguments {
     threads: Option<usize>,
 }
 
-#[derive(Serialize)]
-struct Output<'a> {
-    variables: &'a [String],
-    seed: u64,
-    seconds: f64,
-    #[serde(flatten)]
-    found: &'a Decomposition,
-}
-
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     Files::new().reads(Some(&arguments.file)).writes("--json", arguments.json.as_deref()).check()?;
     let begun = Instant::now();
@@ -53,7 +43,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let seconds = begun.elapsed().as_secs_f64();
     output::summary(arguments.json.as_deref(), || format!("{found}{seconds:.3} s\n"))?;
     if let Some(out) = &arguments.json {
-        output::json(out, &Output { variables: &found.variables, seed: arguments.seed, seconds, found: &found })?;
+        output::json(out, &Report { variables: &found.variables, seed: arguments.seed, seconds, found: &found })?;
     }
     if found.partial {
         return Err(Failure::Interrupted);

@@ -1,20 +1,13 @@
-//! What `hc solve` and `hc track` write as JSON.
+//! What `hc solve`, `hc track` and `hc decompose` write as JSON.
 
-use hc::Solutions;
 use serde::Serialize;
 
-/// The JSON of one system.
+/// The JSON of one system, of which this was found.
 #[derive(Serialize)]
-pub(crate) struct Report<'a> {
-    variables: &'a [String],
-    seed: u64,
-    seconds: f64,
+pub(crate) struct Report<'a, T> {
+    pub(crate) variables: &'a [String],
+    pub(crate) seed: u64,
+    pub(crate) seconds: f64,
     #[serde(flatten)]
-    found: &'a Solutions,
-}
-
-impl<'a> Report<'a> {
-    pub(crate) fn new(found: &'a Solutions, seed: u64, seconds: f64) -> Report<'a> {
-        Report { variables: &found.variables, seed, seconds, found }
-    }
+    pub(crate) found: &'a T,
 }

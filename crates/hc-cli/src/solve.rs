@@ -109,7 +109,7 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
     let seconds = begun.elapsed().as_secs_f64();
     output::summary(arguments.json.as_deref(), || format!("{found}{seconds:.3} s\n"))?;
     if let Some(out) = &arguments.json {
-        output::json(out, &Report::new(&found, arguments.seed, seconds))?;
+        output::json(out, &Report { variables: &found.variables, seed: arguments.seed, seconds, found: &found })?;
     }
     // A list that may not be whole is not presented as a success.
     if found.interrupted {

@@ -111,8 +111,11 @@ pub(crate) fn run(arguments: &Arguments, ranks: Option<&Ranks<'_>>) -> Result<()
     if !is_lead {
         return Ok(());
     }
-    let reports: Vec<Report<'_>> =
-        solved.iter().map(|(found, seconds)| Report::new(found, arguments.seed, *seconds)).collect();
+    let seed = arguments.seed;
+    let reports: Vec<Report<'_, Solutions>> = solved
+        .iter()
+        .map(|(found, seconds)| Report { variables: &found.variables, seed, seconds: *seconds, found })
+        .collect();
     if let Some(path) = &arguments.json {
         match &reports[..] {
             [report] if single => output::json(path, report)?,
