@@ -138,16 +138,19 @@ impl Basis {
         (0..self.count(order - 1)).map(term).collect()
     }
 
+    /// The place of a monomial without its last variable, which comes earlier, and that variable; `None` for one.
+    fn factors(&self, monomial: usize) -> Option<(usize, usize)> {
+        let mut lower = self.monomials.exponents[monomial].clone();
+        let j = lower.iter().rposition(|&e| e > 0)?;
+        lower[j] -= 1;
+        Some((self.monomials.exponents[..monomial].iter().rposition(|e| *e == lower)?, j))
+    }
+
     /// The value of a series at a point.
     pub(crate) fn value<S: Number>(&self, a: &[S], point: &[S]) -> S {
-        let mut monomials: Vec<S> = vec![S::one()];
-        for exponents in &self.monomials.exponents[1..a.len().max(1)] {
-            let j = exponents.iter().rposition(|&e| e > 0).unwrap_or(0);
-            let mut lower = exponents.clone();
-            lower[j] -= 1;
-            // The monomial without its last variable comes earlier in the list.
-            let place = self.monomials.exponents[..monomials.len()].iter().rposition(|e| *e == lower).unwrap_or(0);
-            monomials.push(S::mul(&monomials[place], &point[j]));
+        let mut monomials: Vec<S> = Vec::with_capacity(a.len());
+        for k in 0..a.len() {
+            monomials.push(self.factors(k).map_or(S::one(), |(place, j)| S::mul(&monomials[place], &point[j])));
         }
         a.iter().zip(&monomials).fold(S::zero(), |sum, (a, m)| S::mul_add(a, m, &sum))
     }
@@ -164,15 +167,10 @@ impl Basis {
         let length = all.iter().map(Vec::len).max().unwrap_or(0);
         let mut sums = vec![vec![S::zero(); inner.count(order)]; all.len()];
         let mut monomials: Vec<Vec<S>> = Vec::with_capacity(length);
-        for (k, exponents) in self.monomials.exponents[..length].iter().enumerate() {
-            let monomial = match exponents.iter().rposition(|&e| e > 0) {
+        for k in 0..length {
+            let monomial = match self.factors(k) {
                 None => inner.constant(S::one(), order),
-                Some(j) => {
-                    let mut lower = exponents.clone();
-                    lower[j] -= 1;
-                    let place = self.monomials.exponents[..k].iter().rposition(|e| *e == lower).unwrap_or(0);
-                    inner.product(&monomials[place], &map[j], order)
-                }
+                Some((place, j)) => inner.product(&monomials[place], &map[j], order),
             };
             for (sum, series) in sums.iter_mut().zip(all) {
                 if let Some(c) = series.get(k).filter(|c| !c.vanishes()) {
