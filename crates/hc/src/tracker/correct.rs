@@ -26,17 +26,7 @@ impl<E: Evaluate, S: Lane> Tracker<'_, E, S> {
             self.work.lu.solve(&mut self.work.values);
             // Lanes that have stopped keep their points in `corrected`.
             let running = mask(&self.lanes, |lane| lane.state == StepState::Iterating);
-            let norm = self.work.isa.run(Correct {
-                x: &self.work.point,
-                dx: &self.work.values,
-                inverse_weights_sqr: &self.work.inverse_weights_sqr,
-                running,
-                out: &mut self.work.corrected,
-            });
-            for l in (0..S::LANES).filter(|l| running >> l & 1 == 1 && self.lanes[*l].wide) {
-                let to = [&mut self.work.corrected[..], &mut self.corrected_low];
-                subtract(l, [&self.work.point, &self.point_low], &self.work.values, to);
-            }
+            let norm = self.subtract_values(running, false);
             for (l, lane) in self.lanes.iter_mut().enumerate() {
                 lane.judge(norm.as_ref()[l].sqrt(), &self.bounds);
             }
@@ -46,6 +36,19 @@ impl<E: Evaluate, S: Lane> Tracker<'_, E, S> {
             }
             self.take_corrected(again);
         }
+    }
+
+    /// Subtracts the corrections in `values` from the points where the Jacobian was taken, or from those of
+    /// the closing correction. Returns the squares of the sizes of the corrections.
+    fn subtract_values(&mut self, running: u16, closing: bool) -> S::Real {
+        let (x, low) = if closing { (&self.closing, &self.closing_low) } else { (&self.work.point, &self.point_low) };
+        let (dx, out) = (&self.work.values, &mut self.work.corrected);
+        let inverse_weights_sqr = &self.work.inverse_weights_sqr;
+        let norm = self.work.isa.run(Correct { x, dx, inverse_weights_sqr, running, out });
+        for l in (0..S::LANES).filter(|l| running >> l & 1 == 1 && self.lanes[*l].wide) {
+            subtract(l, [x, low], dx, [&mut self.work.corrected, &mut self.corrected_low]);
+        }
+        norm
     }
 
     /// Makes the corrected points of these lanes the points at which the Jacobian is evaluated.
@@ -85,17 +88,7 @@ impl<E: Evaluate, S: Lane> Tracker<'_, E, S> {
         self.closing.copy_from_slice(&self.work.corrected);
         self.closing_low.copy_from_slice(&self.corrected_low);
         let running = mask(&self.lanes, |lane| lane.state == StepState::Converged);
-        let norm = self.work.isa.run(Correct {
-            x: &self.closing,
-            dx: &self.work.values,
-            inverse_weights_sqr: &self.work.inverse_weights_sqr,
-            running,
-            out: &mut self.work.corrected,
-        });
-        for l in (0..S::LANES).filter(|l| running >> l & 1 == 1 && self.lanes[*l].wide) {
-            let to = [&mut self.work.corrected[..], &mut self.corrected_low];
-            subtract(l, [&self.closing, &self.closing_low], &self.work.values, to);
-        }
+        let norm = self.subtract_values(running, true);
         for (l, lane) in self.lanes.iter_mut().enumerate() {
             let double = lane.extended.then(|| rough.as_ref()[l].sqrt());
             lane.judge_closing(norm.as_ref()[l].sqrt(), double, &self.bounds);

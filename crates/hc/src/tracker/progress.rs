@@ -275,19 +275,15 @@ impl PathProgress {
             self.extend(bounds);
         }
         if self.t - self.step == self.t || self.step < 4.0 * f64::EPSILON * self.t {
-            // Rounding errors alone may have made the corrector fail: try once more from a workable step.
-            if self.extend(bounds) {
-                self.step = 1e-3 * self.radius.min(self.t - self.stop());
-                return None;
-            }
-            if !self.wide && bounds.options.extended_precision {
-                // And once more, because rounding errors of the point may have made the predictor
-                // fail.
+            // Rounding errors alone may have made the corrector fail: try once more from a workable step. And
+            // once more, because rounding errors of the point may have made the predictor fail.
+            if !self.extend(bounds) {
+                if self.wide || !bounds.options.extended_precision {
+                    return Some(PathEnd::StepTooSmall);
+                }
                 self.widen();
-                self.step = 1e-3 * self.radius.min(self.t - self.stop());
-                return None;
             }
-            return Some(PathEnd::StepTooSmall);
+            self.step = 1e-3 * self.radius.min(self.t - self.stop());
         }
         None
     }

@@ -4,7 +4,7 @@ use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
 /// Why a path ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum PathEnd {
     /// A regular solution of the target system, or at the end of a [piece](crate::homotopy::ParameterPath::pieces)
@@ -23,6 +23,7 @@ pub enum PathEnd {
     /// The step limit was reached.
     MaxSteps,
     /// The path was not tracked, because the work was cancelled before.
+    #[default]
     Cancelled,
 }
 
@@ -34,7 +35,7 @@ impl PathEnd {
 }
 
 /// The record of one path.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PathResult {
     /// Index of the start solution.
     pub path: usize,
@@ -66,18 +67,7 @@ pub struct PathResult {
 impl PathResult {
     /// The record of a path that was not tracked.
     pub(super) fn cancelled(path: usize) -> PathResult {
-        PathResult {
-            path,
-            end: PathEnd::Cancelled,
-            t: 1.0,
-            accuracy: 0.0,
-            omega: 0.0,
-            pivot: 0.0,
-            accepted: 0,
-            rejected: 0,
-            jacobians: 0,
-            extended: false,
-        }
+        PathResult { path, t: 1.0, ..PathResult::default() }
     }
 }
 
