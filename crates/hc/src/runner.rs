@@ -65,8 +65,10 @@ pub(crate) trait Work {
         Flow::On
     }
 
-    /// Writes the numbers of the paths whose ends are doubtful to `which`, in ascending order.
-    fn doubtful(&mut self, memory: &mut Self::Memory, which: &mut Vec<usize>);
+    /// Writes the numbers of the paths whose ends are doubtful to `which`, in ascending order; by default none.
+    fn doubtful(&mut self, _memory: &mut Self::Memory, which: &mut Vec<usize>) {
+        which.clear();
+    }
 
     /// Whether another level is not worthwhile after a level that left `after` of `before` paths
     /// doubtful.

@@ -21,8 +21,9 @@ use crate::tracker::Trackers;
 use num_complex::Complex64;
 use std::time::Duration;
 
-/// The number of detours that are tried before paths get more steps.
-const DETOURS: u64 = 2;
+/// How a fibre is tracked again as long as paths are lost: by the detours of these numbers, and then straight, with
+/// shorter steps for lost paths.
+const AGAIN: [Option<u64>; 3] = [Some(0), Some(1), None];
 
 /// How each target is tracked.
 pub(super) struct TargetTracking<'a> {
@@ -52,45 +53,34 @@ impl TargetTracking<'_> {
             self.family.keep_own(target, &mut found);
             found
         };
-        let most = ((self.limits.again * fibre.len() as f64) as usize).min(given.again.unwrap_or(usize::MAX));
-        let detour = 2 * fibre.len();
-        if given.retries == 0 {
-            return solve(fibre, 0, 0);
-        }
-        if most < detour {
-            let mut found = solve(fibre, given.retries, most);
-            found.limited = (found.paths.failed > 0).then_some(Limit::Again);
-            return found;
-        }
-        let (mut found, mut again, mut bounded) = (solve(fibre, 0, 0), 0, false);
-        for number in 0..DETOURS {
-            if found.paths.failed == 0 || monitor.is_cancelled() {
-                break;
-            }
-            bounded = most - again < detour;
-            if bounded {
-                break;
-            }
-            let corner = corner(fibre, target, number);
-            let paths = FibreOptions { again: Some(most - again - detour), ..given.clone() };
-            let moved = track_fibre(system, fibre, &corner, &paths, monitor);
-            again += fibre.len() + moved.1.retracked;
-            let Some(moved) = moved_fibre(system, fibre, &corner, &moved) else { continue };
-            let other = solve(&moved, 0, 0);
-            again += other.paths.tracked;
-            if other.paths.failed < found.paths.failed {
+        let (count, again) = (fibre.len(), given.again.unwrap_or(usize::MAX));
+        let most = ((self.limits.again * count as f64) as usize).min(again);
+        let by_detours = given.retries > 0 && most >= 2 * count;
+        let mut found = if by_detours { solve(fibre, 0, 0) } else { solve(fibre, given.retries, most) };
+        let (mut again, mut bounded) = (found.paths.retracked, given.retries > 0 && !by_detours);
+        for detour in AGAIN.iter().filter(|_| by_detours) {
+            let needed = if detour.is_some() { 2 * count } else { count };
+            let left = most.checked_sub(again + needed);
+            bounded |= left.is_none();
+            let Some(left) = left.filter(|_| found.paths.failed > 0) else { continue };
+            let other = match detour {
+                Some(_) if monitor.is_cancelled() => continue,
+                Some(number) => {
+                    let corner = corner(fibre, target, *number);
+                    let paths = FibreOptions { again: Some(left), ..given.clone() };
+                    let tracked = track_fibre(system, fibre, &corner, &paths, monitor);
+                    again += count + tracked.1.retracked;
+                    let Some(moved) = moved_fibre(system, fibre, &corner, &tracked) else { continue };
+                    solve(&moved, 0, 0)
+                }
+                None => solve(fibre, given.retries, left),
+            };
+            again += other.paths.tracked + other.paths.retracked;
+            bounded |= other.limited.is_some();
+            // With shorter steps, the ends are surer.
+            if other.paths.failed < found.paths.failed + usize::from(detour.is_none()) {
                 found = other;
             }
-        }
-        if found.paths.failed > 0 && most - again >= fibre.len() {
-            let last = solve(fibre, given.retries, most - again - fibre.len());
-            again += last.paths.tracked + last.paths.retracked;
-            bounded |= last.limited.is_some();
-            if last.paths.failed <= found.paths.failed {
-                found = last;
-            }
-        } else {
-            bounded = true;
         }
         found.limited = (bounded && found.paths.failed > 0).then_some(Limit::Again);
         found.paths.retracked = again;

@@ -239,10 +239,6 @@ impl<T: Send, F: Fn(usize, Solutions) -> T + Sync> Work for TargetWork<'_, '_, T
             None => Flow::On,
         }
     }
-
-    fn doubtful(&mut self, (): &mut (), which: &mut Vec<usize>) {
-        which.clear();
-    }
 }
 
 impl<T: Send, F: Fn(usize, Solutions) -> T + Sync> Recordable for TargetWork<'_, '_, T, F> {

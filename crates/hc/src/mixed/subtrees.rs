@@ -172,10 +172,6 @@ impl Work for Sum<'_> {
         }
         if self.fits { Flow::On } else { Flow::Abandoned }
     }
-
-    fn doubtful(&mut self, (): &mut (), which: &mut Vec<usize>) {
-        which.clear();
-    }
 }
 
 impl Shareable for Sum<'_> {
