@@ -24,11 +24,6 @@ impl Leg {
         self.time(u)[0]
     }
 
-    /// Whether the leg leads along the radius to the next circle.
-    pub(super) fn is_radial(self) -> bool {
-        matches!(self, Leg::Radial(_))
-    }
-
     /// The number of pieces, each of which ends at a sample.
     fn pieces(self) -> usize {
         if let Leg::Turn(_, pieces) = self { pieces } else { 1 }

@@ -87,7 +87,7 @@ pub(crate) fn endgame<'a, E: Evaluate>(
         let legs = Legs { segment, legs: live.iter().map(|&k| walkers[k].leg()).collect() };
         starts.clear();
         for &k in live.iter() {
-            starts.extend_from_slice(walkers[k].point());
+            starts.extend_from_slice(&walkers[k].x);
         }
         let (home, round): (Vec<usize>, Vec<usize>) =
             (0..live.len()).partition(|&i| matches!(legs.legs[i], Leg::Home(_)));

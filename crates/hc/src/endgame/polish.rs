@@ -1,6 +1,6 @@
 //! The ends of legs to the last digit of double precision, eight at a time.
 
-use super::legs::Legs;
+use super::legs::{Leg, Legs};
 use super::walker::Sample;
 use crate::linalg::Lu;
 use crate::refine::{Refiner, size_sqr, weight_sqr};
@@ -70,7 +70,7 @@ impl<'a, E: Evaluate> Polisher<'a, E> {
         let polished = ends.iter().zip(accuracies).enumerate();
         let samples = polished.map(|(l, (&LegEnd { leg, u, point, .. }, accuracy))| {
             let mut point = point.to_vec();
-            let blurs = legs.legs[leg].is_radial();
+            let blurs = matches!(legs.legs[leg], Leg::Radial(_));
             if accuracy.is_none() || blurs {
                 legs.precise(leg, u, &mut self.row);
             }
@@ -100,7 +100,7 @@ impl<'a, E: Evaluate> Polisher<'a, E> {
             Lanes8::set_extended(&mut t, l, re, im);
             self.x.iter_mut().zip(point).for_each(|(x, z)| x.set(l, *z));
         }
-        let precise_p = self.precise.parameters();
+        let precise_p = &mut self.precise.p;
         legs.segment.extended(&t, precise_p);
         self.p.iter_mut().zip(precise_p).for_each(|(p, precise)| *p = Lanes8::rounded(precise));
         self.system.jacobian(&mut self.memory, &self.x, &self.p, &mut self.values, &mut self.jacobian);
@@ -152,8 +152,7 @@ fn measure(x: &[Lanes8], squares: &mut [<Lanes8 as Lane>::Real], size_sqr: impl 
 
 #[cfg(test)]
 mod tests {
-    use super::{LegEnd, Legs, Polisher, Refiner};
-    use crate::endgame::legs::Leg;
+    use super::{Leg, LegEnd, Legs, Polisher, Refiner};
     use crate::homotopy::{ParameterPath, Segment};
     use crate::random::Random;
     use num_complex::Complex64;

@@ -24,7 +24,7 @@ pub(super) struct Walker {
     path: usize,
     /// Where the path is: logarithmic time and point.
     at: f64,
-    x: Vec<Complex64>,
+    pub(super) x: Vec<Complex64>,
     radius: f64,
     /// Logarithmic time and point at which the endgame began.
     origin: (f64, Vec<Complex64>),
@@ -68,11 +68,6 @@ impl Walker {
 
     pub(super) fn is_live(&self) -> bool {
         self.end.is_none()
-    }
-
-    /// Where the next leg starts.
-    pub(super) fn point(&self) -> &[Complex64] {
-        &self.x
     }
 
     /// The next leg, in logarithmic time.

@@ -147,7 +147,7 @@ fn iterated<S: Number>(
 ) -> Option<DeflatedPoint<S>> {
     let mut slow = 0;
     for _ in 0..ITERATIONS {
-        if local.is_exhausted() {
+        if local.given.is_exhausted() {
             return None;
         }
         let next = step(local, &point, order, RankRule::Known(profile))?;
@@ -318,7 +318,7 @@ impl<S: Number> Reduced<S> {
             let values = local.series(&pivots.rows, &basis, &unknowns, round.max(1).min(order));
             correct(&mut unknowns, &values, pivots);
         }
-        let others: Vec<usize> = (0..local.equations()).filter(|i| !pivots.rows.contains(i)).collect();
+        let others: Vec<usize> = (0..local.given.len()).filter(|i| !pivots.rows.contains(i)).collect();
         let equations = local.series(&others, &basis, &unknowns, order);
         Some(Reduced { basis, unknowns, equations })
     }

@@ -235,7 +235,7 @@ fn units(point: &[Complex64], small: f64) -> Vec<i64> {
 
 /// The given equations in unknowns and terms of about unit size near a point.
 pub(crate) struct LocalEquations<'a, S> {
-    given: &'a ExactEquations,
+    pub(super) given: &'a ExactEquations,
     units: Vec<i64>,
     coefficients: Vec<Vec<S>>,
 }
@@ -245,16 +245,6 @@ impl<'a, S: Number> LocalEquations<'a, S> {
     pub(crate) fn rounded(&self) -> LocalEquations<'a, Complex64> {
         let coefficients = self.coefficients.iter().map(|row| row.iter().map(S::to_c64).collect()).collect();
         LocalEquations { given: self.given, units: self.units.clone(), coefficients }
-    }
-
-    /// Number of equations.
-    pub(crate) fn equations(&self) -> usize {
-        self.given.len()
-    }
-
-    /// Whether the limit of the work is reached, or the work is cancelled.
-    pub(super) fn is_exhausted(&self) -> bool {
-        self.given.is_exhausted()
     }
 
     /// Adds so many products to the work.

@@ -239,7 +239,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         for (l, lane) in self.lanes.iter_mut().enumerate() {
             if lane.is_live() {
                 lane.choose_step(&self.bounds);
-                step.as_mut()[l] = lane.signed_step();
+                step.as_mut()[l] = lane.t_next - lane.t;
                 radius_sqr.as_mut()[l] = lane.radius * lane.radius;
                 fresh |= u16::from(lane.fresh) << l;
             }
@@ -301,7 +301,7 @@ impl<'a, E: Evaluate, S: Lane> Tracker<'a, E, S> {
         }
         let mut omega_sqr = S::real(1.0);
         for (o, lane) in omega_sqr.as_mut().iter_mut().zip(&self.lanes) {
-            *o = lane.omega() * lane.omega();
+            *o = lane.omega * lane.omega;
         }
         self.logarithmic = mask(&self.lanes, |lane| lane.is_live() && lane.exponential && !lane.wide);
         let mut taylor = &self.work.taylor;

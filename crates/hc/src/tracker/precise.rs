@@ -11,7 +11,8 @@ use poly::{ComplexDd, Dd, Evaluate, Lane, Scalar};
 pub(crate) struct Precise<E: Evaluate, S: Lane> {
     memory: E::Memory<S::Extended>,
     x: Vec<S::Extended>,
-    p: Vec<S::Extended>,
+    /// The parameters of all lanes.
+    pub(crate) p: Vec<S::Extended>,
     values: Vec<S::Extended>,
     /// The parameters of one lane.
     row: Vec<ComplexDd>,
@@ -27,11 +28,6 @@ impl<E: Evaluate, S: Lane> Precise<E, S> {
             values: zeros(system.equations()),
             row: vec![ComplexDd::zero(); system.parameters()],
         }
-    }
-
-    /// The parameters of all lanes.
-    pub(crate) fn parameters(&mut self) -> &mut [S::Extended] {
-        &mut self.p
     }
 
     /// Sets the parameters of lane `l`, which are at `t` of `path`.

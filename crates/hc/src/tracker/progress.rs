@@ -101,6 +101,7 @@ pub(crate) struct PathProgress {
     pub(super) failed_before: usize,
     /// `|predicted - corrected| / step^4` of the last accepted step.
     pub(super) local_error: f64,
+    /// Lipschitz constant of Newton's method, as last estimated.
     pub(super) omega: f64,
     pub(super) omega_before: f64,
     pub(super) mu: f64,
@@ -189,16 +190,6 @@ impl PathProgress {
     /// Relative size below which a correction is less than the rounding error of the point.
     pub(super) fn rounding(&self) -> f64 {
         if self.wide { f64::EPSILON * f64::EPSILON } else { f64::EPSILON }
-    }
-
-    /// Lipschitz constant of Newton's method, as last estimated.
-    pub(crate) fn omega(&self) -> f64 {
-        self.omega
-    }
-
-    /// Signed step in `t` that the predictor has to make.
-    pub(crate) fn signed_step(&self) -> f64 {
-        self.t_next - self.t
     }
 
     /// Chooses the next step from the radius of trust and the Newton bound (reference: Timme 2020,

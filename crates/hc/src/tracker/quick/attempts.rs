@@ -18,10 +18,10 @@ pub(super) enum Verdict {
 #[derive(Clone, Debug, Default)]
 pub(super) struct QuickPath {
     /// `None` in a lane without a path.
-    path: Option<usize>,
+    pub(super) path: Option<usize>,
     /// Whether the first point has still to be checked and the first derivatives taken.
     pub(super) fresh: bool,
-    t: f64,
+    pub(super) t: f64,
     step: f64,
     pub(super) t_next: f64,
     pub(super) radius: f64,
@@ -50,16 +50,6 @@ impl QuickPath {
     /// A path that goes on.
     pub(super) fn from(stop: &ResumePoint) -> Self {
         QuickPath { path: Some(stop.path), t: stop.t, t_next: stop.t, counts: stop.counts, ..QuickPath::idle() }
-    }
-
-    /// Index of the path.
-    pub(super) fn path(&self) -> Option<usize> {
-        self.path
-    }
-
-    /// The step of the attempt.
-    pub(super) fn signed_step(&self) -> f64 {
-        self.t_next - self.t
     }
 
     /// Decides about the attempt with corrections of these sizes; a size that is not a number is not small.

@@ -72,7 +72,7 @@ impl<E: Evaluate, S: Lane> QuickLanes<'_, '_, E, S> {
         while live {
             live = false;
             for l in 0..S::LANES {
-                if self.lanes[l].path().is_none()
+                if self.lanes[l].path.is_none()
                     && !self.monitor.is_cancelled()
                     && let Some((stop, point)) = paths.next()
                 {
@@ -81,7 +81,7 @@ impl<E: Evaluate, S: Lane> QuickLanes<'_, '_, E, S> {
                         x.set(l, *z);
                     }
                 }
-                live |= self.lanes[l].path().is_some();
+                live |= self.lanes[l].path.is_some();
             }
             if live {
                 self.attempt(path);
@@ -93,13 +93,13 @@ impl<E: Evaluate, S: Lane> QuickLanes<'_, '_, E, S> {
     /// One attempt at a step, accepted or not, of every path.
     fn attempt<P: ParameterPath>(&mut self, path: &P) {
         let (n, m) = (self.work.n, self.work.system.parameters());
-        let some = self.lanes.iter().find_map(QuickPath::path).unwrap_or(0);
+        let some = self.lanes.iter().find_map(|lane| lane.path).unwrap_or(0);
         let (mut t, mut step, mut radius_sqr) = (S::real(1.0), S::real(0.0), S::real(0.0));
         let mut fresh = 0u16;
         for (l, lane) in self.lanes.iter().enumerate() {
-            self.work.labels[l] = lane.path().unwrap_or(some);
+            self.work.labels[l] = lane.path.unwrap_or(some);
             t.as_mut()[l] = lane.t_next;
-            step.as_mut()[l] = lane.signed_step();
+            step.as_mut()[l] = lane.t_next - lane.t;
             radius_sqr.as_mut()[l] = lane.radius * lane.radius;
             fresh |= u16::from(lane.fresh) << l;
         }
@@ -133,7 +133,7 @@ impl<E: Evaluate, S: Lane> QuickLanes<'_, '_, E, S> {
             size
         });
         let (mut accepted, mut nearer) = (0u16, 0u16);
-        for (l, lane) in self.lanes.iter_mut().enumerate().filter(|(_, lane)| lane.path().is_some()) {
+        for (l, lane) in self.lanes.iter_mut().enumerate().filter(|(_, lane)| lane.path.is_some()) {
             let sizes = [0, 1, 2].map(|k: usize| sizes[k].as_ref()[l].sqrt());
             match lane.judge(sizes, self.tolerances) {
                 Verdict::Accepted => accepted |= 1 << l,
@@ -152,7 +152,7 @@ impl<E: Evaluate, S: Lane> QuickLanes<'_, '_, E, S> {
     /// Takes the paths that have arrived or are given up out of their lanes.
     fn collect(&mut self, paths: &mut impl Paths<S>) {
         let work = &*self.work;
-        for (l, lane) in self.lanes.iter_mut().enumerate().filter(|(_, lane)| lane.path().is_some()) {
+        for (l, lane) in self.lanes.iter_mut().enumerate().filter(|(_, lane)| lane.path.is_some()) {
             let arrived = lane.has_arrived();
             if !(arrived || lane.is_difficult(self.options, self.tolerances)) {
                 continue;
