@@ -3,7 +3,7 @@
 use super::compiled::{Family, PointsHash};
 use super::error::FamilyError;
 use super::fibre::Fibre;
-use super::monodromy::{fill, joined};
+use super::monodromy::LoopSearch;
 use super::pair::find_pair;
 use super::search::{Monodromy, MonodromyOptions, Stopped, TraceTest};
 use super::sides::{Searched, Side};
@@ -71,22 +71,22 @@ impl Family {
         let pieces = Pieces::new(checkpoint, monitor, lead);
         let searched = Searched { system: &self.program, enlarged: false };
         let accept = |p: &[Complex64], x: &[Complex64]| self.accepts(p, x);
-        let mut found = fill(&searched, first, accept, &self.symmetry, &options, pieces);
+        let search = LoopSearch { searched: &searched, accept: &accept, symmetry: &self.symmetry, options: &options };
+        let mut found = search.fill(first, pieces);
         if found.stopped == Stopped::NoProgress {
             let others = self.other_pairs(options.seed)?;
-            let joined = joined(&searched, &found.fibre, &others, accept, &self.symmetry, &options, monitor);
-            if let Some(fibre) = joined {
+            if let Some(fibre) = search.joined(&found.fibre, &others, monitor) {
                 let (mut loops, mut paths) = (found.loops, found.paths + others.len());
-                let mut search = |from: &Fibre, part: u32| {
-                    let found = fill(&searched, from, accept, &self.symmetry, &options, pieces.part(part));
+                let mut again = |from: &Fibre, part: u32| {
+                    let found = search.fill(from, pieces.part(part));
                     (loops, paths) = (loops + found.loops, paths + found.paths);
                     Monodromy { loops, paths, ..found }
                 };
                 // The first pair may be degenerate, and not one of the solutions that are counted.
-                let alone = options.roots.map(|_| search(&fibre.without_first(found.fibre.len()), ALONE));
+                let alone = options.roots.map(|_| again(&fibre.without_first(found.fibre.len()), ALONE));
                 found = match alone.filter(|alone| alone.stopped != Stopped::NoProgress) {
                     Some(alone) => alone,
-                    None => search(&fibre, AGAIN),
+                    None => again(&fibre, AGAIN),
                 };
             }
         }

@@ -21,88 +21,82 @@ use crate::tracker::PathEnd;
 use num_complex::Complex64;
 use poly::Evaluate;
 
-/// [`fill`] for a program without symmetries, all solutions of which are wanted.
+/// All solutions of a program without symmetries that loops join to those of `start`.
 pub(crate) fn monodromy<E: Evaluate>(
     system: &E,
     start: &Fibre,
     options: &MonodromyOptions,
     monitor: &Monitor,
 ) -> Monodromy {
-    let searched = Searched { system, enlarged: false };
-    fill(&searched, start, |_, _| true, &Symmetry::default(), options, Pieces::alone(monitor))
+    let (searched, symmetry) = (&Searched { system, enlarged: false }, &Symmetry::default());
+    LoopSearch { searched, accept: &|_, _| true, symmetry, options }.fill(start, Pieces::alone(monitor))
 }
 
-/// The fibre with the solutions to which those of another fibre lead; `None` if it has them all.
-pub(super) fn joined<E: Evaluate>(
-    searched: &Searched<'_, E>,
-    fibre: &Fibre,
-    others: &[Fibre],
-    accept: impl Fn(&[Complex64], &[Complex64]) -> bool,
-    symmetry: &Symmetry,
-    options: &MonodromyOptions,
-    monitor: &Monitor,
-) -> Option<Fibre> {
-    let pieces = Pieces::alone(monitor);
-    let mut filling = Filling { searched, symmetry, options, pieces, fibre: fibre.clone() };
-    for other in others {
-        let (ends, _) = searched.track(other, &fibre.parameters, &options.fibre, pieces);
-        let regular = ends.iter().filter(|(r, _)| r.end == PathEnd::Success);
-        filling.add_accepted(regular.map(|(_, x)| x), &accept);
-    }
-    (filling.fibre.len() > fibre.len()).then_some(filling.fibre)
+/// A search for solutions by loops in parameter space; of a symmetric family one solution of each orbit goes
+/// round.
+pub(super) struct LoopSearch<'a, E> {
+    pub(super) searched: &'a Searched<'a, E>,
+    /// Asked about every new solution; solutions that it refuses (degenerate ones) are dropped.
+    pub(super) accept: &'a dyn Fn(&[Complex64], &[Complex64]) -> bool,
+    pub(super) symmetry: &'a Symmetry,
+    pub(super) options: &'a MonodromyOptions,
 }
 
-/// Completes `start` (one or several solutions for generic parameters) by loops in parameter space;
-/// of a symmetric family one solution of each orbit goes round.
-///
-/// `accept` is asked about every new solution; solutions that it refuses (degenerate ones) are
-/// dropped. Each loop is a piece.
-pub(super) fn fill<E: Evaluate>(
-    searched: &Searched<'_, E>,
-    start: &Fibre,
-    accept: impl Fn(&[Complex64], &[Complex64]) -> bool,
-    symmetry: &Symmetry,
-    options: &MonodromyOptions,
-    pieces: Pieces<'_>,
-) -> Monodromy {
-    let mut filling = Filling { searched, symmetry, options, pieces, fibre: start.clone() };
-    if !symmetry.is_trivial() {
-        filling.fibre.solutions.clear();
-        filling.fibre.representatives = Some(Vec::new());
-        filling.add(start.solutions.chunks_exact(start.dimension.max(1)));
+impl<E: Evaluate> LoopSearch<'_, E> {
+    /// The fibre with the solutions to which those of other fibres lead; `None` if it has them all.
+    pub(super) fn joined(&self, fibre: &Fibre, others: &[Fibre], monitor: &Monitor) -> Option<Fibre> {
+        let pieces = Pieces::alone(monitor);
+        let mut filling = Filling { search: self, pieces, fibre: fibre.clone() };
+        for other in others {
+            let (ends, _) = self.searched.track(other, &fibre.parameters, &self.options.fibre, pieces);
+            let regular = ends.iter().filter(|(r, _)| r.end == PathEnd::Success);
+            filling.add_accepted(regular.map(|(_, x)| x));
+        }
+        (filling.fibre.len() > fibre.len()).then_some(filling.fibre)
     }
-    // Loops have each of these sizes in turn.
-    let Reach { natural, wide, .. } = Reach::new(searched.system, start);
-    let mut sizes = vec![wide.parameters, natural.parameters];
-    sizes.dedup();
-    let (mut loops, mut idle, mut paths) = (0, 0, 0);
-    let stopped = loop {
-        if pieces.are_stopped() {
-            break Stopped::Cancelled;
+
+    /// Completes `start` (one or several solutions for generic parameters). Each loop is a piece.
+    pub(super) fn fill(&self, start: &Fibre, pieces: Pieces<'_>) -> Monodromy {
+        let LoopSearch { searched, symmetry, options, .. } = self;
+        let mut filling = Filling { search: self, pieces, fibre: start.clone() };
+        if !symmetry.is_trivial() {
+            filling.fibre.solutions.clear();
+            filling.fibre.representatives = Some(Vec::new());
+            filling.add(start.solutions.chunks_exact(start.dimension.max(1)));
         }
-        let known = filling.fibre.len();
-        if options.roots.is_some_and(|roots| known >= roots) {
-            break Stopped::RootsReached;
-        }
-        let turns = idle / sizes.len();
-        if turns >= options.patience && turns * known >= CHANCES {
-            break Stopped::NoProgress;
-        }
-        if known > options.max_solutions {
-            break Stopped::TooMany;
-        }
-        let mut random = Random::of(options.seed, Stream::Loop(loops as u64));
-        let scale = scale(turns, options.patience);
-        let sizes = &sizes[loops % sizes.len()];
-        let corner = |z: Complex64, size: f64| z * size * scale;
-        let corners =
-            [0, 1].map(|_| random.normals(sizes.len()).into_iter().zip(sizes).map(|(z, &s)| corner(z, s)).collect());
-        paths += filling.go_round(loops, &corners, &accept);
-        loops += 1;
-        idle = if filling.fibre.len() > known { 0 } else { idle + 1 };
-    };
-    let fibre = Fibre { is_partial: !stopped.is_complete(), ..filling.fibre };
-    Monodromy { fibre, stopped, loops, paths, trace: None }
+        // Loops have each of these sizes in turn.
+        let Reach { natural, wide, .. } = Reach::new(searched.system, start);
+        let mut sizes = vec![wide.parameters, natural.parameters];
+        sizes.dedup();
+        let (mut loops, mut idle, mut paths) = (0, 0, 0);
+        let stopped = loop {
+            if pieces.are_stopped() {
+                break Stopped::Cancelled;
+            }
+            let known = filling.fibre.len();
+            if options.roots.is_some_and(|roots| known >= roots) {
+                break Stopped::RootsReached;
+            }
+            let turns = idle / sizes.len();
+            if turns >= options.patience && turns * known >= CHANCES {
+                break Stopped::NoProgress;
+            }
+            if known > options.max_solutions {
+                break Stopped::TooMany;
+            }
+            let mut random = Random::of(options.seed, Stream::Loop(loops as u64));
+            let scale = scale(turns, options.patience);
+            let sizes = &sizes[loops % sizes.len()];
+            let corner = |z: Complex64, size: f64| z * size * scale;
+            let corners = [0, 1]
+                .map(|_| random.normals(sizes.len()).into_iter().zip(sizes).map(|(z, &s)| corner(z, s)).collect());
+            paths += filling.go_round(loops, &corners);
+            loops += 1;
+            idle = if filling.fibre.len() > known { 0 } else { idle + 1 };
+        };
+        let fibre = Fibre { is_partial: !stopped.is_complete(), ..filling.fibre };
+        Monodromy { fibre, stopped, loops, paths, trace: None }
+    }
 }
 
 /// In loops with more paths than this, every side is recorded.
@@ -125,9 +119,7 @@ fn scale(idle: usize, patience: usize) -> f64 {
 
 /// A fibre that is being filled.
 struct Filling<'a, E> {
-    searched: &'a Searched<'a, E>,
-    symmetry: &'a Symmetry,
-    options: &'a MonodromyOptions,
+    search: &'a LoopSearch<'a, E>,
     pieces: Pieces<'a>,
     fibre: Fibre,
 }
@@ -135,12 +127,7 @@ struct Filling<'a, E> {
 impl<E: Evaluate> Filling<'_, E> {
     /// Tracks the fibre round one triangle and adds new solutions, or takes them from a record.
     /// Returns the number of paths.
-    fn go_round(
-        &mut self,
-        number: usize,
-        corners: &[Vec<Complex64>; 2],
-        accept: &impl Fn(&[Complex64], &[Complex64]) -> bool,
-    ) -> usize {
+    fn go_round(&mut self, number: usize, corners: &[Vec<Complex64>; 2]) -> usize {
         let (n, known) = (self.fibre.dimension.max(1), self.fibre.len());
         let represented = self.fibre.representatives.as_ref().map(Vec::len);
         let paths = 3 * represented.unwrap_or(known);
@@ -161,7 +148,7 @@ impl<E: Evaluate> Filling<'_, E> {
             return paths;
         }
         let back = self.carried(number, corners);
-        self.add_accepted(back.chunks_exact(n), accept);
+        self.add_accepted(back.chunks_exact(n));
         let new = |all: &Vec<usize>| all[represented.unwrap_or(0)..].to_vec();
         let representatives = self.fibre.representatives.as_ref().map(new);
         let added = (self.fibre.solutions[known * n..].to_vec(), representatives);
@@ -196,8 +183,9 @@ impl<E: Evaluate> Filling<'_, E> {
 
     /// The solutions for other parameters at which paths end well.
     fn moved(&self, fibre: &Fibre, target: &[Complex64]) -> Vec<Complex64> {
-        let options = &self.options.fibre;
-        let (ends, _) = self.searched.track(fibre, target, options, self.pieces);
+        let LoopSearch { searched, options, .. } = self.search;
+        let options = &options.fibre;
+        let (ends, _) = searched.track(fibre, target, options, self.pieces);
         // Paths that share an end have been counted as failed; whichever is true is found by a
         // later loop.
         let regular = ends.iter().filter(|(r, _)| r.end == PathEnd::Success);
@@ -208,12 +196,9 @@ impl<E: Evaluate> Filling<'_, E> {
     }
 
     /// Adds points that are refined to solutions that are wanted and not known yet.
-    fn add_accepted<'x>(
-        &mut self,
-        points: impl Iterator<Item = &'x [Complex64]>,
-        accept: &impl Fn(&[Complex64], &[Complex64]) -> bool,
-    ) {
-        let mut refiner = Refiner::new(self.searched.system);
+    fn add_accepted<'x>(&mut self, points: impl Iterator<Item = &'x [Complex64]>) {
+        let LoopSearch { searched, accept, .. } = self.search;
+        let mut refiner = Refiner::new(searched.system);
         let mut new = Vec::new();
         for x in points {
             let refined = refiner.refine(&self.fibre.parameters, x);
@@ -226,17 +211,18 @@ impl<E: Evaluate> Filling<'_, E> {
 
     /// Adds points that are not known yet, each with its orbit.
     fn add<'x>(&mut self, points: impl Iterator<Item = &'x [Complex64]>) {
-        let (n, known, tolerance) = (self.fibre.dimension, self.fibre.len(), self.options.fibre.coincidence);
+        let LoopSearch { searched, symmetry, options, .. } = self.search;
+        let (n, known, tolerance) = (self.fibre.dimension, self.fibre.len(), options.fibre.coincidence);
         let mut first = Vec::new();
-        let mut refiner = Refiner::new(self.searched.system);
+        let mut refiner = Refiner::new(searched.system);
         for x in points {
-            if self.symmetry.is_trivial() {
+            if symmetry.is_trivial() {
                 self.fibre.solutions.extend_from_slice(x);
                 continue;
             }
             first.push(self.fibre.len());
             self.fibre.solutions.extend_from_slice(x);
-            for image in self.symmetry.orbit(&self.fibre.parameters, x, tolerance).into_iter().skip(1) {
+            for image in symmetry.orbit(&self.fibre.parameters, x, tolerance).into_iter().skip(1) {
                 // A point that is no solution is no image under a symmetry.
                 let refined = refiner.refine(&self.fibre.parameters, &image);
                 if refined.accuracy < families::ACCURATE && relative_distance(&refined.point, &image) < tolerance {

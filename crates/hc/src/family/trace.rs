@@ -9,7 +9,7 @@
 //! points, starting from the fibre.
 
 use super::fibre::{Fibre, FibreOptions};
-use super::monodromy::fill;
+use super::monodromy::LoopSearch;
 use super::reach::{Reach, Sizes};
 use super::search::{MonodromyOptions, TraceTest};
 use super::sides::Searched;
@@ -102,7 +102,9 @@ fn on_sizes<E: Evaluate>(
     let Some(start) = moved(pieces, 0, &on_fibre, 1.0) else { return FAILED };
     let mut search = options.clone();
     search.roots = None;
-    let filled = fill(enlarged, &start, |_, _| true, &Symmetry::default(), &search, pieces.part(1)).fibre;
+    let filled =
+        LoopSearch { searched: enlarged, accept: &|_, _| true, symmetry: &Symmetry::default(), options: &search };
+    let filled = filled.fill(&start, pieces.part(1)).fibre;
 
     let ends = pieces.part(2);
     let (Some(second), Some(third)) = (moved(ends, 0, &filled, 2.0), moved(ends, 1, &filled, 3.0)) else {
