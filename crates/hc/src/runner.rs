@@ -10,7 +10,7 @@ use crate::monitor::Monitor;
 use serde::{Deserialize, Serialize};
 
 /// One pass over some of the paths.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) struct Round {
     /// How strict the steps are: at level 0 as the settings say, at each further level about half
     /// as long.

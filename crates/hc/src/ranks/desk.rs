@@ -31,7 +31,7 @@ const MOST: usize = 256;
 /// assert_eq!(portion.paths.len(), 4 * 256);
 /// assert_eq!(desk.answer(1, portion.number), Some(portion.paths));
 /// ```
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Desk {
     patience: Duration,
     round: Round,
@@ -75,18 +75,7 @@ impl Desk {
     pub fn new(ranks: usize, threads: usize, patience: Duration) -> Desk {
         let mut seats = vec![Seat::default(); ranks.max(1)];
         seats[0].threads = threads.max(1);
-        Desk {
-            patience,
-            round: Round::FIRST,
-            sizes: [LEAST, MOST],
-            fresh: VecDeque::new(),
-            last: None,
-            next: 0,
-            out: BTreeMap::new(),
-            oldest: None,
-            threads: seats[0].threads,
-            seats,
-        }
+        Desk { patience, sizes: [LEAST, MOST], threads: seats[0].threads, seats, ..Desk::default() }
     }
 
     /// Begins another part, for which the other ranks have to become ready. Each of its numbers

@@ -41,6 +41,7 @@ impl End {
 
 /// Where each path ends, and what is there. A judge of ends reassigns paths; they are counted once, in
 /// the end. No points are kept for paths to infinity.
+#[derive(Default)]
 pub(super) struct Ends {
     /// Number of paths.
     pub(super) paths: usize,
@@ -70,20 +71,7 @@ pub(super) struct Ends {
 impl Ends {
     /// So many paths, none of whose ends is known.
     pub(super) fn new(paths: usize) -> Ends {
-        Ends {
-            paths,
-            list: Records::new(4),
-            missing: 0,
-            regular: BTreeMap::new(),
-            singular: BTreeMap::new(),
-            directions: Vec::new(),
-            solutions: Vec::new(),
-            component_points: Vec::new(),
-            unresolved: Vec::new(),
-            retracked: 0,
-            bounded: false,
-            abandoned: false,
-        }
+        Ends { paths, list: Records::new(4), ..Ends::default() }
     }
 
     pub(super) fn get(&mut self, path: usize) -> End {

@@ -10,6 +10,7 @@ const SLOTS: usize = 4;
 
 /// Records of `width` bytes, all zero at first. What cannot be read from the file again is zero
 /// too.
+#[derive(Default)]
 pub(crate) struct Records {
     width: usize,
     /// Records of a block.
