@@ -255,19 +255,26 @@ pub fn outcome(instance: &Instance) -> Outcome {
     let Instance { measured, truth, options } = instance;
     let known: Vec<Option<[f64; 3]>> = truth.receivers.iter().copied().map(Some).collect();
     let mut outcome = Outcome { size: truth.size(), ..Outcome::default() };
-    outcome.oracle = oracle(measured, &known, options).ok().and_then(|found| apart(&found.receivers, &known));
+    let above: Vec<Option<[f64; 2]>> = truth.receivers.iter().map(|p| Some([p[0], p[1]])).collect();
+    outcome.oracle = if truth.transmitters.iter().chain(&truth.receivers).all(|p| p[2] == 0.0) {
+        let mut in_plane = CalibrateOptions::new();
+        (in_plane.seed, in_plane.receiver_delays) = (options.seed, options.receiver_delays);
+        oracle(measured, &above, &in_plane).ok().and_then(|found| apart(&found.receivers, &above))
+    } else {
+        let found = oracle(measured, &known, options);
+        found.ok().and_then(|found| apart(&found.receivers, &known))
+    };
     match calibrate_either(measured, options, &Monitor::default()) {
         Ok(Calibrated::Space(found)) => {
             outcome.error = apart(&found.receivers, &known);
-            outcome.covered = coverage(&found, &found.receiver_covariance, &known);
+            outcome.covered = coverage(&found, found.trusted_covariances()[0], &known);
             outcome.with(3, &found)
         }
         Ok(Calibrated::Plane(found)) => {
             let lifted: Vec<Option<[f64; 3]>> = found.receivers.iter().map(|p| p.map(|[x, y]| [x, y, 0.0])).collect();
             outcome.error = apart(&lifted, &known);
             // As far as the plane tells: the truth seen from above.
-            let above: Vec<Option<[f64; 2]>> = truth.receivers.iter().map(|p| Some([p[0], p[1]])).collect();
-            outcome.covered = coverage(&found, &found.receiver_covariance, &above);
+            outcome.covered = coverage(&found, found.trusted_covariances()[0], &above);
             outcome.with(2, &found)
         }
         Err(CalibratedError::Plane(_) | CalibratedError::Space(_)) => outcome,
