@@ -3,6 +3,7 @@
 use super::calibration::{apart, coverage, oracle};
 use rand::seq::SliceRandom;
 use rand::{Rng, RngExt, SeedableRng};
+use rand_distr::StandardNormal;
 use rand_pcg::Pcg64Mcg;
 use std::array::from_fn;
 use std::f64::consts::TAU;
@@ -10,7 +11,7 @@ use tdoa::calibrate::{Calibrated, CalibratedError, Calibration, calibrate_either
 use tdoa::{CalibrateOptions, MeasuredPosition, Monitor, Network, PseudorangeError, Pseudoranges, ReceiverDelays};
 
 /// A calibration is wrong if its receivers are farther from the truth than this share of the network's size, and
-/// this many times farther than least squares that starts at the truth.
+/// this many times farther than least squares that starts at the truth and has no other errors than noise.
 const WRONG: (f64, f64) = (0.02, 3.0);
 
 /// A kind of network.
@@ -25,7 +26,7 @@ pub enum Kind {
     TwoHeights,
     /// A square kilometre with hills of 30 m.
     Hills,
-    /// Six microphones on a table, talkers around it.
+    /// Six microphones on a table, up to 2 cm above it, and talkers around it.
     Table,
     /// Radio anchors in six corners of a room.
     Corners,
@@ -123,7 +124,7 @@ impl Kind {
             Kind::Table => {
                 let talker = |p: [f64; 3]| [p[0] - 0.8, p[1] - 0.9, 0.3 + p[2]];
                 (
-                    within(rng, 6, [2.4, 1.2, 0.0]),
+                    within(rng, 6, [2.4, 1.2, 0.02]),
                     within(rng, 40, [4.0, 3.0, 0.9]).into_iter().map(talker).collect(),
                     0.01,
                 )
@@ -168,7 +169,9 @@ impl Kind {
         let (m, n) = (receivers.len(), transmitters.len());
         let offsets = (0..n).map(|_| 30.0 * (rng.random::<f64>() - 0.5)).collect();
         let truth = Network { receivers, transmitters, offsets };
-        let mut values: Vec<f64> = truth.pseudoranges().into_iter().map(|f| f + noise * normal(rng)).collect();
+        let mut values: Vec<f64> =
+            truth.pseudoranges().into_iter().map(|f| f + noise * rng.sample::<f64, _>(StandardNormal)).collect();
+        let with_noise = Pseudoranges::new(m, n, values.clone())?;
         let mut options = CalibrateOptions::<3>::new();
         options.seed = seed;
         match self {
@@ -183,17 +186,17 @@ impl Kind {
             Kind::Delays => {
                 options.receiver_delays = ReceiverDelays::Auto;
                 for row in values.chunks_exact_mut(n) {
-                    let delay = 0.05 * normal(rng);
+                    let delay = 0.05 * rng.sample::<f64, _>(StandardNormal);
                     row.iter_mut().for_each(|value| *value += delay);
                 }
             }
             Kind::Echo => {
                 // The wall x = -0.7, whose mirror image of the receiver hears what the receiver hears late.
-                let mut image = truth.receivers[0];
-                image[0] = -1.4 - image[0];
-                for (j, s) in truth.transmitters.iter().enumerate() {
+                let mut mirrored = truth.clone();
+                mirrored.receivers[0][0] = -1.4 - truth.receivers[0][0];
+                for (j, value) in values[..n].iter_mut().enumerate() {
                     if rng.random::<bool>() {
-                        values[j] += distance(image, *s) - truth.distance(0, j);
+                        *value += mirrored.distance(0, j) - truth.distance(0, j);
                     }
                 }
             }
@@ -208,7 +211,7 @@ impl Kind {
             }
             _ => {}
         }
-        Ok(Instance { measured: Pseudoranges::new(m, n, values)?, truth, options })
+        Ok(Instance { measured: Pseudoranges::new(m, n, values)?, with_noise, truth, options })
     }
 }
 
@@ -217,6 +220,8 @@ impl Kind {
 pub struct Instance {
     /// The measurements.
     pub measured: Pseudoranges,
+    /// These with their noise alone, without delays, drift, echoes and reflections.
+    pub with_noise: Pseudoranges,
     /// The network in space.
     pub truth: Network<3>,
     /// The options of the calibration.
@@ -234,7 +239,8 @@ pub struct Outcome {
     pub unique: bool,
     /// Root mean square distance of the receivers from the truth after the best rigid motion in space, metres.
     pub error: Option<f64>,
-    /// The same of least squares in space that starts at the true receivers.
+    /// Likewise of least squares that starts at the true receivers and has measurements with noise alone, in the plane
+    /// where all nodes lie in one, metres; `None` if it finds no network.
     pub oracle: Option<f64>,
     /// Size of the true network, metres.
     pub size: f64,
@@ -252,16 +258,15 @@ impl Outcome {
 
 /// Calibrates a network and compares with its truth.
 pub fn outcome(instance: &Instance) -> Outcome {
-    let Instance { measured, truth, options } = instance;
+    let Instance { measured, with_noise, truth, options } = instance;
     let known: Vec<Option<[f64; 3]>> = truth.receivers.iter().copied().map(Some).collect();
     let mut outcome = Outcome { size: truth.size(), ..Outcome::default() };
     let above: Vec<Option<[f64; 2]>> = truth.receivers.iter().map(|p| Some([p[0], p[1]])).collect();
     outcome.oracle = if truth.transmitters.iter().chain(&truth.receivers).all(|p| p[2] == 0.0) {
-        let mut in_plane = CalibrateOptions::new();
-        (in_plane.seed, in_plane.receiver_delays) = (options.seed, options.receiver_delays);
-        oracle(measured, &above, &in_plane).ok().and_then(|found| apart(&found.receivers, &above))
+        let found = oracle(with_noise, &above, &CalibrateOptions::new());
+        found.ok().and_then(|found| apart(&found.receivers, &above))
     } else {
-        let found = oracle(measured, &known, options);
+        let found = oracle(with_noise, &known, &CalibrateOptions::new());
         found.ok().and_then(|found| apart(&found.receivers, &known))
     };
     match calibrate_either(measured, options, &Monitor::default()) {
@@ -295,16 +300,6 @@ fn within(rng: &mut impl Rng, count: usize, corner: [f64; 3]) -> Vec<[f64; 3]> {
 /// A number between plus and minus this.
 fn jitter(rng: &mut impl Rng, most: f64) -> f64 {
     most * (2.0 * rng.random::<f64>() - 1.0)
-}
-
-/// A standard normal number (Box and Muller 1958).
-fn normal(rng: &mut impl Rng) -> f64 {
-    let radius = (-2.0 * (1.0 - rng.random::<f64>()).ln()).sqrt();
-    radius * (TAU * rng.random::<f64>()).cos()
-}
-
-fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
 }
 
 #[cfg(test)]
