@@ -11,12 +11,18 @@ use crate::Failure;
 
 /// Measurements, in any form that the library reads.
 pub(crate) fn measurements(path: &Path, options: ReadOptions) -> Result<Pseudoranges, Failure> {
+    let is_turned = options.transpose;
     let read = if is_standard(path) {
         read::read_from(source(path)?, Path::new(&name(path)), options)
     } else {
         read::read(path, options)
     };
-    read.map_err(Failure::unusable)
+    let measured = read.map_err(Failure::unusable)?;
+    // Said before the work, which may take long and end in nothing.
+    if let Some(doubt) = read::orientation(&measured).filter(|_| !is_turned) {
+        eprintln!("note: {}: {doubt}", name(path));
+    }
+    Ok(measured)
 }
 
 /// Known positions.

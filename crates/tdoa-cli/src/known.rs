@@ -141,6 +141,14 @@ pub(crate) fn anchors<const D: usize>(
         return Err(Failure::in_file(path, format!("names no receivers; expected lines name,{}", axes::<D>())));
     }
     let unknown = nodes.unknown(receivers);
+    if let Some(name) = unknown.iter().find(|name| measured.transmitter_names().iter().any(|other| other == *name)) {
+        return Err(Failure::in_file(
+            path,
+            format!(
+                "{name} is a transmitter; only positions of receivers can be held, leave out those of transmitters"
+            ),
+        ));
+    }
     if !unknown.is_empty() {
         return Err(Failure::in_file(
             path,

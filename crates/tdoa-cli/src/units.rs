@@ -1,6 +1,7 @@
-//! The options --units, --speed, --rate and --variable.
+//! The options of how the measurements are read: --units, --speed, --rate, --variable, --transpose,
+//! --columns and --decimal-mark.
 
-use tdoa::read::{ReadOptions, Units};
+use tdoa::read::{ReadOptions, Role, Units};
 
 use crate::Failure;
 use crate::provenance::{named, said};
@@ -120,6 +121,32 @@ pub(crate) struct InputArguments {
     /// The matrix to read of a .mat file, where that is not z.
     #[arg(long, value_name = "NAME")]
     variable: Option<String>,
+    /// The rows of the matrix are the transmitters (events), and its columns the receivers.
+    #[arg(long)]
+    transpose: bool,
+    /// What columns hold whose headings do not say it, such as receiver=ch,transmitter=shot,time=t. Roles are
+    /// receiver, transmitter (or event), value (or range), time, sigma, ignore, and reference where each line has
+    /// the time of the receiver minus that of the reference. Of a matrix: receiver (with --transpose
+    /// transmitter) for the column of names, and ignore.
+    #[arg(long, value_name = "ROLE=HEADING,...", value_delimiter = ',', value_parser = column)]
+    columns: Vec<(Role, String)>,
+    /// What stands before decimals; the other mark may stand between thousands. As the numbers have it
+    /// if not given.
+    #[arg(long, value_enum)]
+    decimal_mark: Option<Mark>,
+}
+
+/// What stands before decimals.
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum Mark {
+    Point,
+    Comma,
+}
+
+/// What a column holds, and its heading.
+fn column(text: &str) -> Result<(Role, String), String> {
+    let (role, heading) = text.split_once('=').ok_or("expected ROLE=HEADING, such as receiver=ch")?;
+    Ok((role.trim().parse()?, heading.trim().to_string()))
 }
 
 impl InputArguments {
@@ -128,17 +155,27 @@ impl InputArguments {
         let mut options = ReadOptions::default();
         options.units = self.units.units(estimate_speed)?;
         options.variable.clone_from(&self.variable);
+        options.transpose = self.transpose;
+        options.columns.clone_from(&self.columns);
+        options.decimal_mark = self.decimal_mark.map(|mark| match mark {
+            Mark::Point => '.',
+            Mark::Comma => ',',
+        });
         Ok(options)
     }
 
     /// Names and values of the options that were given.
     pub(crate) fn settings(&self) -> Vec<(String, String)> {
         let units = &self.units;
+        let columns: Vec<String> = self.columns.iter().map(|(role, heading)| format!("{role}={heading}")).collect();
         [
             named("units", units.units.map(said)),
             named("speed", units.speed),
             named("rate", units.rate),
             named("variable", self.variable.as_ref()),
+            named("transpose", self.transpose.then_some("yes")),
+            named("columns", Some(columns.join(",")).filter(|columns| !columns.is_empty())),
+            named("decimal-mark", self.decimal_mark.map(said)),
         ]
         .into_iter()
         .flatten()

@@ -2,48 +2,64 @@
 //! MATLAB's .mat.
 
 mod cells;
+mod columns;
 mod distances;
 mod error;
+mod first_column;
+mod grid;
 mod heading;
+mod latin;
 mod list;
 mod mat;
 mod nodes;
 mod npy;
+mod numbers;
+mod orientation;
+mod pairs;
+mod role;
 mod source;
 mod table;
+mod thousands;
+mod times;
 mod units;
+mod words;
 
 use std::io::Read;
 use std::path::Path;
 
+pub use columns::heads_list;
 pub use distances::{read_distances, read_distances_from};
 pub use error::{MAX_BYTES, ReadError};
-pub use heading::heads_list;
 pub use nodes::{Node, Nodes, read_mat_nodes, read_mat_transmitters, read_nodes, read_nodes_from};
+pub use orientation::orientation;
+pub use role::Role;
 pub use source::is_mat;
 pub use units::{ReadOptions, Units};
 
 use crate::pseudoranges::Pseudoranges;
-use source::{has_extension, open, text};
+use source::{Form, form, open, text};
 
-/// Reads pseudoranges from a file: `.npy` and `.mat` by their extension, else CSV.
+/// Reads pseudoranges from a file: `.npy` and `.mat` by their extension or their first bytes, else CSV.
 ///
 /// The CSV is a matrix, receivers in rows and transmitters in columns, empty or `nan` where nothing
 /// was measured, with an optional first line that names the transmitters and an optional first
-/// column that names the receivers (headed by `receiver`, `id`, `name` or nothing, or by any word
-/// if names stand below it); or a list of one measurement a line with a first line that names the
-/// columns receiver (or mic, microphone, channel, anchor, sensor, station, node), transmitter (or
-/// event, shot, source, emitter, sound, tag, beacon), value (or pseudorange, range, distance, time,
-/// toa, arrival) and optionally sigma, a standard deviation for each measurement. A unit behind a
-/// name, as in `arrival time (ms)`, must be that of the options. Cells are separated by semicolons,
-/// tabs, commas or blanks, whichever the first line has; with any but commas, numbers may have
-/// decimal commas. The text is UTF-8, or UTF-16 with a byte order mark.
+/// column that names the receivers (headed by `receiver`, `id`, `name`, `serial` or nothing, or by any
+/// word if names stand below it, or different whole numbers that are no measurements); or a list of one
+/// measurement a line with a first line that names the
+/// columns receiver (or mic, microphone, hydrophone, recorder, channel, anchor, sensor, station, node), transmitter (or
+/// event, shot, source, call, emitter, sound, tag, beacon), value (or pseudorange, range, distance, time,
+/// toa, arrival) and optionally sigma, a standard deviation for each measurement. A list with a column reference has
+/// differences: the receiver's time minus that of the reference. Selection tables of Raven with a column Event are lists.
+/// What headings do not say, [`ReadOptions::columns`] does. A unit behind a
+/// name, as in `arrival time (ms)`, must be that of the options. Times may be moments of ISO 8601, which count from the
+/// first on. Cells are separated by semicolons,
+/// tabs, commas or blanks, whichever the first line has or, as in `sep=;`, says; with any but commas, numbers may have
+/// decimal commas. The text is UTF-8, UTF-16 with a byte order mark, or Latin-1.
 ///
 /// # Errors
 /// With file, line, column and the names of the nodes, and what to do.
 pub fn read(path: &Path, options: impl Into<ReadOptions>) -> Result<Pseudoranges, ReadError> {
     let options = options.into();
-    check_variable(path, &options)?;
     read_from(open(path, &path.display().to_string())?, path, options)
 }
 
@@ -52,24 +68,23 @@ pub fn read(path: &Path, options: impl Into<ReadOptions>) -> Result<Pseudoranges
 /// # Errors
 /// Those of [`read`].
 pub fn read_from(source: impl Read, name: &Path, options: impl Into<ReadOptions>) -> Result<Pseudoranges, ReadError> {
-    let (file, path, options) = (name.display().to_string(), name, options.into());
-    check_variable(path, &options)?;
-    if has_extension(path, "npy") {
-        read_npy(source, &file, options)
-    } else if is_mat(path) {
-        read_mat(source, &file, options)
-    } else {
-        read_csv(source, &file, options)
+    let (file, options) = (name.display().to_string(), options.into());
+    let (form, source) = form(source, name, &file)?;
+    check_variable(form, &file, &options)?;
+    match form {
+        Form::Npy => read_npy(source, &file, options),
+        Form::Mat => read_mat(source, &file, options),
+        Form::Text => read_csv(source, &file, options),
     }
 }
 
 /// Refuses a variable of a file that has none.
-fn check_variable(path: &Path, options: &ReadOptions) -> Result<(), ReadError> {
-    if options.variable.is_none() || is_mat(path) {
+fn check_variable(form: Form, file: &str, options: &ReadOptions) -> Result<(), ReadError> {
+    if options.variable.is_none() || form == Form::Mat {
         return Ok(());
     }
     let problem = "has no variables; --variable is for .mat files".to_string();
-    Err(ReadError::Variable { file: path.display().to_string(), problem })
+    Err(ReadError::Variable { file: file.to_string(), problem })
 }
 
 /// Reads CSV as [`read`] does; `file` names the source in errors.
@@ -77,11 +92,11 @@ fn check_variable(path: &Path, options: &ReadOptions) -> Result<(), ReadError> {
 /// # Errors
 /// Those of [`read`].
 pub fn read_csv(source: impl Read, file: &str, options: impl Into<ReadOptions>) -> Result<Pseudoranges, ReadError> {
-    let units = options.into().units;
+    let options = options.into();
     // A wrong speed is said before the file is read.
-    units.unwrap_or_default().factor()?;
+    options.units.unwrap_or_default().factor()?;
     let text = text(source, file)?;
-    table::parse(&text, file, units)
+    table::parse(&text, file, &options)
 }
 
 /// Reads a .npy array as [`read`] does; `file` names the source in errors.
@@ -89,8 +104,10 @@ pub fn read_csv(source: impl Read, file: &str, options: impl Into<ReadOptions>) 
 /// # Errors
 /// Those of [`read`].
 pub fn read_npy(source: impl Read, file: &str, options: impl Into<ReadOptions>) -> Result<Pseudoranges, ReadError> {
-    let factor = options.into().units.unwrap_or_default().factor()?;
-    npy::parse(source.take(MAX_BYTES), file, factor)
+    let options = options.into();
+    options.refuse_text(file)?;
+    let factor = options.units.unwrap_or_default().factor()?;
+    turned(npy::parse(source.take(MAX_BYTES), file, factor)?, &options, file)
 }
 
 /// Reads a matrix (receivers in rows) of a .mat file as [`read`] does: the variable that is asked
@@ -100,8 +117,19 @@ pub fn read_npy(source: impl Read, file: &str, options: impl Into<ReadOptions>) 
 /// Those of [`read`].
 pub fn read_mat(source: impl Read, file: &str, options: impl Into<ReadOptions>) -> Result<Pseudoranges, ReadError> {
     let options = options.into();
+    options.refuse_text(file)?;
     let factor = options.units.unwrap_or_default().factor()?;
-    mat::parse(source, file, options.variable.as_deref(), factor)
+    turned(mat::parse(source, file, options.variable.as_deref(), factor)?, &options, file)
+}
+
+/// A matrix without names, with its rows as columns where the options say so.
+fn turned(measured: Pseudoranges, options: &ReadOptions, file: &str) -> Result<Pseudoranges, ReadError> {
+    if !options.transpose {
+        return Ok(measured);
+    }
+    let cells = measured.cells().iter().map(|(i, j, value)| (j, i, *value));
+    let turned = Pseudoranges::from_cells(measured.transmitters(), measured.receivers(), cells);
+    turned.map_err(|source| ReadError::Matrix { file: file.to_string(), source })
 }
 
 #[cfg(test)]

@@ -37,3 +37,4 @@ mod tdoa_solve;
 mod tdoa_solve_space;
 mod tdoa_space;
 mod tdoa_space_input;
+mod tdoa_tables;

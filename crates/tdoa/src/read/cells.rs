@@ -1,6 +1,9 @@
-//! Text as records of cells, and cells as numbers.
+//! Text as records of cells.
+
+use std::borrow::Cow;
 
 use super::error::ReadError;
+use super::words::MISSING;
 
 /// One line of a table that is not empty.
 pub(super) struct Record {
@@ -15,35 +18,83 @@ impl Record {
     }
 }
 
-/// Splits text into records, lazily: a bad line is reported before the rest is looked at.
-pub(super) fn records<'a>(text: &'a str, file: &'a str) -> impl Iterator<Item = Result<Record, ReadError>> + 'a {
-    let first = text.lines().find(|line| !line.trim().is_empty() && !line.starts_with('#')).unwrap_or("");
-    let separator = Separator::of(first);
-    let reader = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .delimiter(separator.delimiter())
-        .trim(csv::Trim::All)
-        .comment(Some(b'#'))
-        .from_reader(text.as_bytes());
-    let records = reader.into_records().map(move |record| {
-        let record = record.map_err(|error| ReadError::Line {
-            file: file.to_string(),
-            line: error.position().map_or(1, |position| line_at(text, position)),
-            problem: format!("cannot be read as CSV ({error})"),
-        })?;
-        let line = record.position().map_or(1, |position| line_at(text, position));
-        let cells = record.iter().filter(|cell| separator != Separator::Blanks || !cell.is_empty());
-        Ok(Record { line, cells: cells.map(|cell| unquoted(cell).to_string()).collect() })
-    });
-    // A line of blanks is an empty line.
-    records.filter(|record| record.as_ref().map_or(true, |record| record.cells.len() > 1 || !record.is_blank()))
+/// The records of a text, read lazily: a bad line is reported before the rest is looked at.
+pub(super) struct Table<'a> {
+    text: Cow<'a, str>,
+    file: &'a str,
+    /// What stands between its cells.
+    pub(super) separator: Separator,
+    /// Lines before the text.
+    skipped: u64,
+}
+
+impl<'a> Table<'a> {
+    pub(super) fn new(text: &'a str, file: &'a str) -> Table<'a> {
+        let (said, text, skipped) = said_separator(text);
+        let first = text.lines().find(|line| !line.trim().is_empty() && !is_comment(line)).unwrap_or("");
+        let separator = said.unwrap_or_else(|| Separator::of(first));
+        // Comments are emptied where a cell for something missing begins like one.
+        let text = if text.lines().any(|line| line.starts_with('#') && !is_comment(line)) {
+            text.split_inclusive('\n').map(|line| if is_comment(line) { "\n" } else { line }).collect::<String>().into()
+        } else {
+            Cow::Borrowed(text)
+        };
+        Table { text, file, separator, skipped }
+    }
+
+    /// The lines that are not empty.
+    pub(super) fn records(&self) -> impl Iterator<Item = Result<Record, ReadError>> + '_ {
+        let (text, separator) = (&*self.text, self.separator);
+        let reader = csv::ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .delimiter(separator.delimiter())
+            .trim(csv::Trim::All)
+            .comment(matches!(self.text, Cow::Borrowed(_)).then_some(b'#'))
+            .from_reader(text.as_bytes());
+        let records = reader.into_records().map(move |record| {
+            let record = record.map_err(|error| ReadError::Line {
+                file: self.file.to_string(),
+                line: self.skipped + error.position().map_or(1, |position| line_at(text, position)),
+                problem: format!("cannot be read as CSV ({error})"),
+            })?;
+            let line = self.skipped + record.position().map_or(1, |position| line_at(text, position));
+            let cells = record.iter().filter(|cell| separator != Separator::Blanks || !cell.is_empty());
+            Ok(Record { line, cells: cells.map(|cell| unquoted(cell).to_string()).collect() })
+        });
+        // A line of blanks is an empty line.
+        records.filter(|record| record.as_ref().map_or(true, |record| record.cells.len() > 1 || !record.is_blank()))
+    }
+}
+
+/// The separator that a first line `sep=;` says, as Excel writes and reads it, the text below that
+/// line, and the number of lines before that.
+fn said_separator(text: &str) -> (Option<Separator>, &str, u64) {
+    let (line, rest) = text.split_once('\n').unwrap_or((text, ""));
+    let said = line.trim_matches(['\r', ' ', '"']);
+    let word = said.get(..4).filter(|word| word.eq_ignore_ascii_case("sep="));
+    let separator = match word.and_then(|_| said.get(4..)) {
+        Some(",") => Separator::Comma,
+        Some(";") => Separator::Semicolon,
+        Some("\t") => Separator::Tab,
+        Some("") if line.contains("= ") => Separator::Blanks,
+        _ => return (None, text, 0),
+    };
+    (Some(separator), rest, 1)
+}
+
+/// Whether a line is a comment, and does not begin with a cell such as `#N/A`.
+fn is_comment(line: &str) -> bool {
+    line.starts_with('#') && {
+        let cell = line.split([',', ';', '\t', ' ', '\r', '\n']).next().unwrap_or_default();
+        cell.len() < 2 || !MISSING.iter().any(|word| cell.eq_ignore_ascii_case(word))
+    }
 }
 
 /// The line of a record. Its position is that of the empty lines and comments before it.
 fn line_at(text: &str, position: &csv::Position) -> u64 {
     let rest = usize::try_from(position.byte()).ok().and_then(|byte| text.get(byte..)).unwrap_or("");
-    let skipped = rest.lines().take_while(|line| line.is_empty() || line.starts_with('#')).count();
+    let skipped = rest.lines().take_while(|line| line.is_empty() || is_comment(line)).count();
     position.line() + skipped as u64
 }
 
@@ -54,7 +105,7 @@ fn unquoted(cell: &str) -> &str {
 
 /// What stands between cells.
 #[derive(Clone, Copy, PartialEq, Debug)]
-enum Separator {
+pub(super) enum Separator {
     Comma,
     Semicolon,
     Tab,
@@ -67,7 +118,8 @@ impl Separator {
     fn of(line: &str) -> Separator {
         // What stands in quotes separates nothing.
         let bare: String = line.split('"').step_by(2).collect();
-        let decimal = has_decimal_commas(&bare);
+        // Of a date and a time, separated by a blank, come two before and after a comma.
+        let decimal = has_decimal_commas(&bare) && !bare.contains(':');
         if bare.contains(';') {
             Separator::Semicolon
         } else if bare.contains('\t') && (decimal || !pads_commas(&bare)) {
@@ -105,72 +157,6 @@ fn pads_commas(line: &str) -> bool {
     line.contains(',') && pieces.windows(2).all(|pair| pair[0].ends_with(',') || pair[1].starts_with(','))
 }
 
-/// The decimal mark of one file: that of the first number that has one.
-#[derive(Default)]
-pub(super) struct Decimals {
-    mark: Option<char>,
-}
-
-impl Decimals {
-    /// The number in a cell, NaN for what was not measured.
-    ///
-    /// # Errors
-    /// What to do, for a cell that holds no number or one with another decimal mark than the
-    /// file's.
-    pub(super) fn number(&mut self, cell: &str) -> Result<f64, String> {
-        let Some(value) = number(cell) else {
-            return Err(remedy(cell));
-        };
-        let mark = cell.chars().find(|&c| matches!(c, '.' | ',')).filter(|_| !value.is_nan());
-        self.mark = self.mark.or(mark);
-        match (mark, self.mark) {
-            (Some(mark), Some(known)) if mark != known => {
-                Err(format!("numbers before it have the decimal mark {known:?}; write all of them with one"))
-            }
-            _ => Ok(value),
-        }
-    }
-}
-
-/// A number with a decimal point or comma, NaN for an empty cell and the usual words for a missing
-/// one.
-pub(super) fn number(cell: &str) -> Option<f64> {
-    const MISSING: [&str; 6] = ["", "nan", "na", "n/a", "null", "-"];
-    if MISSING.iter().any(|word| cell.eq_ignore_ascii_case(word)) {
-        return Some(f64::NAN);
-    }
-    if cell.contains(',') {
-        // Only one, and no point beside it: anything else groups thousands.
-        return if cell.matches(',').count() == 1 && !cell.contains('.') {
-            cell.replace(',', ".").parse().ok()
-        } else {
-            None
-        };
-    }
-    cell.parse().ok()
-}
-
-/// What to do with a cell that holds no number.
-fn remedy(cell: &str) -> String {
-    let grouped =
-        cell.chars().all(|c| c.is_ascii_digit() || "+-., '".contains(c)) && cell.chars().any(|c| c.is_ascii_digit());
-    let with_unit = cell
-        .split_once(' ')
-        .is_some_and(|(value, unit)| number(value).is_some() && unit.chars().all(char::is_alphabetic));
-    if grouped {
-        "write it without marks between thousands".to_string()
-    } else if with_unit {
-        "write the number without its unit, and give that as --units".to_string()
-    } else {
-        "leave the cell empty or write nan if it was not measured".to_string()
-    }
-}
-
-/// The start of a cell, for messages.
-pub(super) fn shorten(cell: &str) -> String {
-    if cell.chars().count() <= 40 { cell.to_string() } else { cell.chars().take(40).chain("...".chars()).collect() }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -188,6 +174,7 @@ mod tests {
             ("1.0e+00 2.5e+00", Separator::Blanks),
             ("0,1 0,2", Separator::Blanks),
             ("1, 2, 3", Separator::Comma),
+            ("2024-05-12 05:30:35,2024-05-12 05:30:37", Separator::Comma),
             ("\"a;b\",c", Separator::Comma),
             ("alone", Separator::Comma),
             ("", Separator::Comma),
@@ -197,17 +184,16 @@ mod tests {
     }
 
     #[test]
-    fn numbers_with_point_and_comma() {
-        assert_eq!(
-            [number("1,5"), number("-1.5e3"), number("7"), number("1.234,5"), number("1,234,567")],
-            [Some(1.5), Some(-1500.0), Some(7.0), None, None]
-        );
-        let mut decimals = Decimals::default();
-        assert_eq!([decimals.number("3"), decimals.number("1,5"), decimals.number("2,5")], [Ok(3.0), Ok(1.5), Ok(2.5)]);
-        assert!(decimals.number("1.5").unwrap_err().contains("','"));
-        assert!(decimals.number("1.234,5").unwrap_err().contains("thousands"));
-        assert!(decimals.number("3 ms").unwrap_err().contains("--units"));
-        assert!(decimals.number("x").unwrap_err().contains("leave the cell empty"));
-        assert!(decimals.number("n/a").unwrap().is_nan());
+    fn comments_and_cells_for_what_is_missing() {
+        let cells = |text: &str| -> Vec<(u64, String)> {
+            let table = Table::new(text, "f");
+            table.records().map(|record| record.unwrap()).map(|record| (record.line, record.cells.join("|"))).collect()
+        };
+        let line = |line: u64, cells: &str| (line, cells.to_string());
+        assert_eq!(cells("# one\n1,2\n#N/A,4\n# two\n\n5,6\n"), [line(2, "1|2"), line(3, "#N/A|4"), line(6, "5|6")]);
+        assert_eq!(cells("sep=;\r\na;1,5\r\n\r\nb;2\r\n"), [line(2, "a|1,5"), line(4, "b|2")]);
+        assert_eq!(cells("\"sep=,\"\n1,5\n"), [line(2, "1|5")]);
+        assert_eq!(cells("SEP=\t\n1\t2\n"), [line(2, "1|2")]);
+        assert_eq!(cells("sep,a\n1,2\n"), [line(1, "sep|a"), line(2, "1|2")]);
     }
 }

@@ -3,8 +3,9 @@
 use std::io::Read;
 use std::path::Path;
 
-use super::cells::{Decimals, number, records, shorten};
+use super::cells::Table;
 use super::error::ReadError;
+use super::numbers::{Numbers, number, shorten};
 use super::source::{open, text};
 use crate::calibrate::KnownDistance;
 
@@ -24,8 +25,9 @@ pub fn read_distances(path: &Path, names: &[String]) -> Result<Vec<KnownDistance
 pub fn read_distances_from(source: impl Read, file: &str, names: &[String]) -> Result<Vec<KnownDistance>, ReadError> {
     let text = text(source, file)?;
     let mut all = Vec::new();
-    let mut decimals = Decimals::default();
-    for (index, record) in records(&text, file).enumerate() {
+    let mut numbers = Numbers::default();
+    let table = Table::new(&text, file);
+    for (index, record) in table.records().enumerate() {
         let record = record?;
         if record.is_blank() {
             continue;
@@ -44,7 +46,7 @@ pub fn read_distances_from(source: impl Read, file: &str, names: &[String]) -> R
             })
         };
         let no_distance = |remedy: String| bad(format!("{:?} is not a distance in metres; {remedy}", shorten(length)));
-        let distance = decimals.number(length).map_err(no_distance)?;
+        let distance = numbers.number(length).map_err(no_distance)?;
         if !(distance > 0.0 && distance.is_finite()) {
             return Err(no_distance("give a positive number".to_string()));
         }

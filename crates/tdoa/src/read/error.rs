@@ -12,7 +12,8 @@ pub const MAX_BYTES: u64 = 512_000_000;
 pub(super) const ACCEPTED: &str = "a list of measurements has the columns receiver (or mic, microphone, channel, anchor, \
      sensor, station, node), transmitter (or event, shot, source, emitter, sound, tag, beacon), value (or pseudorange, range, distance, time, toa, \
      arrival) and, if wanted, sigma (or std), in any order; a matrix has the names of the transmitters in its first line, \
-     after an empty cell or the word receiver where the rows begin with names";
+     after an empty cell or the word receiver where the rows begin with names; --columns receiver=...,transmitter=...,value=... says \
+     which column is which";
 
 /// Why a file cannot be used. Lines and columns count from 1.
 #[derive(Debug, Error)]
@@ -56,7 +57,10 @@ pub enum ReadError {
         file: String,
     },
     /// Not a text file.
-    #[error("{file}, line {line}: is not UTF-8 text; give a CSV file (or .npy with that extension)")]
+    #[error(
+        "{file}, line {line}: is no text (UTF-8, UTF-16 with a byte order mark, or Latin-1) from there on; give a CSV file, or \
+         .npy or .mat with that extension"
+    )]
     NotText {
         /// The file.
         file: String,
@@ -122,6 +126,40 @@ pub enum ReadError {
         line: u64,
         /// What is wrong and what to do.
         problem: String,
+    },
+    /// Columns that are not what is needed, or of which it cannot be told what they hold.
+    #[error("{file}, line {line}: {problem}")]
+    Columns {
+        /// The file.
+        file: String,
+        /// The line of the headings.
+        line: u64,
+        /// What is wrong and what to do.
+        problem: String,
+    },
+    /// Numbers that may have marks between thousands.
+    #[error("{file}: {problem}")]
+    Thousands {
+        /// The file.
+        file: String,
+        /// What is doubtful and what to do.
+        problem: String,
+    },
+    /// Differences of times that do not give times.
+    #[error("{file}: {problem}")]
+    Pairs {
+        /// The file.
+        file: String,
+        /// What is wrong and what to do.
+        problem: String,
+    },
+    /// An option for tables of text, with another file.
+    #[error("{file}: {option} is for tables of text")]
+    TextAlone {
+        /// The file.
+        file: String,
+        /// The option.
+        option: &'static str,
     },
     /// A first line that names another unit than the one the numbers are taken to have.
     #[error("{file}, line {line}: {problem}")]

@@ -1,24 +1,33 @@
 //! The CSV list: one measurement a line.
 
-use hc::poly::counted;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
-use super::cells::{Decimals, Record, shorten};
+use hc::poly::counted;
+
+use super::cells::{Record, Separator};
+use super::columns::Columns;
 use super::error::ReadError;
-use super::heading::Columns;
+use super::numbers::{Numbers, shorten};
+use super::pairs::Pairs;
+use super::thousands::refuse_thousands;
+use super::units::Units;
 use crate::pseudoranges::{MAX_CELLS, Pseudoranges};
 
 /// Reads the lines below the first.
 pub(super) fn list(
     records: impl Iterator<Item = Result<Record, ReadError>>,
     columns: &Columns,
+    mut numbers: Numbers,
+    separator: Separator,
     file: &str,
-    factor: f64,
+    units: Units,
 ) -> Result<Pseudoranges, ReadError> {
+    let factor = units.factor()?;
     let mut receivers = Names::default();
     let mut transmitters = Names::default();
     let mut entries: HashMap<(usize, usize), Entry> = HashMap::new();
-    let mut decimals = Decimals::default();
+    let mut pairs = Pairs::default();
+    let mut selections = HashSet::new();
     for record in records {
         let record = record?;
         if record.is_blank() {
@@ -34,28 +43,42 @@ pub(super) fn list(
                 columns.count
             )));
         }
+        // Raven writes a line for each view of a selection.
+        if columns.selection.is_some_and(|k| !selections.insert(cells[k].clone())) {
+            continue;
+        }
         let (receiver, transmitter) = (&cells[columns.receiver], &cells[columns.transmitter]);
         if receiver.is_empty() || transmitter.is_empty() {
             return Err(bad("names no receiver or no transmitter; both are needed".to_string()));
         }
-        let mut read = |column: usize| {
-            decimals.number(&cells[column]).map_err(|remedy| ReadError::NotANumber {
-                file: file.to_string(),
-                line,
-                column: column + 1,
-                place: format!("receiver {receiver}, transmitter {transmitter}"),
-                text: shorten(&cells[column]),
-                remedy,
-            })
+        let not_a_number = |column: usize, remedy: String| ReadError::NotANumber {
+            file: file.to_string(),
+            line,
+            column: column + 1,
+            place: format!("receiver {receiver}, transmitter {transmitter}"),
+            text: shorten(&cells[column]),
+            remedy,
         };
-        let value = read(columns.value)? * factor;
-        let sigma = columns.sigma.map(read).transpose()?.map_or(1.0, |sigma| sigma * factor);
+        let value =
+            numbers.measurement(&cells[columns.value], units).map_err(|why| not_a_number(columns.value, why))?;
+        let value = value * factor;
+        let sigma = columns.sigma.map(|k| numbers.number(&cells[k]).map_err(|why| not_a_number(k, why))).transpose()?;
+        let sigma = sigma.map_or(1.0, |sigma| sigma * factor);
         let at = (receivers.index(receiver), transmitters.index(transmitter));
+        let reference = columns.reference.map(|k| &cells[k]);
+        let second = reference.map(|reference| receivers.index(reference));
         if value.is_nan() {
             continue;
         }
-        if entries.len() >= MAX_CELLS {
+        if entries.len().max(pairs.len()) >= MAX_CELLS {
             return Err(ReadError::TooManyCells { file: file.to_string(), line });
+        }
+        if let (Some(second), Some(reference)) = (second, reference) {
+            if reference.is_empty() {
+                return Err(bad("names no reference; a difference has two receivers".to_string()));
+            }
+            pairs.add(at.1, [at.0, second], value);
+            continue;
         }
         if let Some(earlier) = entries.insert(at, Entry { value, sigma, line }) {
             return Err(bad(format!(
@@ -69,9 +92,15 @@ pub(super) fn list(
     }
     let (m, n) = (receivers.names.len(), transmitters.names.len());
     let wrap = |source| ReadError::Matrix { file: file.to_string(), source };
-    let cells = entries.iter().map(|(&(i, j), entry)| (i, j, entry.value));
-    let measured = Pseudoranges::from_cells(m, n, cells).map_err(wrap)?;
-    let measured = measured.with_names(receivers.names, transmitters.names).map_err(wrap)?;
+    let measured = if columns.reference.is_some() {
+        let times = pairs.times(&receivers.names, &transmitters.names);
+        let times = times.map_err(|problem| ReadError::Pairs { file: file.to_string(), problem })?;
+        Pseudoranges::from_cells(m, n, times)
+    } else {
+        Pseudoranges::from_cells(m, n, entries.iter().map(|(&(i, j), entry)| (i, j, entry.value)))
+    };
+    let measured = measured.map_err(wrap)?.with_names(receivers.names, transmitters.names).map_err(wrap)?;
+    refuse_thousands(&numbers, separator, units, &measured, file)?;
     if columns.sigma.is_none() {
         return Ok(measured);
     }

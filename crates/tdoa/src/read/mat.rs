@@ -11,8 +11,8 @@
 use std::io::Read;
 use std::ops::Range;
 
-use super::cells::shorten;
 use super::error::{MAX_BYTES, ReadError};
+use super::numbers::shorten;
 use crate::pseudoranges::{MAX_CELLS, Pseudoranges};
 
 /// Bytes of a variable that are unpacked: values of [`MAX_CELLS`] doubles, and what stands before

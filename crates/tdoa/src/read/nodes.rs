@@ -8,9 +8,10 @@ use std::collections::HashMap;
 use std::io::Read;
 use std::path::Path;
 
-use super::cells::{Decimals, Record, number, records, shorten};
+use super::cells::{Record, Table};
 use super::error::ReadError;
 use super::mat::File;
+use super::numbers::{Numbers, number, shorten};
 use super::source::{is_mat, open, text};
 use columns::Columns;
 
@@ -172,8 +173,9 @@ pub fn read_nodes_from(source: impl Read, file: &str) -> Result<Nodes, ReadError
     let mut lines: HashMap<String, u64> = HashMap::new();
     let mut nodes = Vec::new();
     let mut columns: Option<Columns> = None;
-    let mut decimals = Decimals::default();
-    for record in records(&text, file) {
+    let mut numbers = Numbers::default();
+    let table = Table::new(&text, file);
+    for record in table.records() {
         let record = record?;
         if record.is_blank() {
             continue;
@@ -191,7 +193,7 @@ pub fn read_nodes_from(source: impl Read, file: &str) -> Result<Nodes, ReadError
                 place
             }
         };
-        let Some(node) = node(&record, &place, &mut decimals).map_err(bad)? else { continue };
+        let Some(node) = node(&record, &place, &mut numbers).map_err(bad)? else { continue };
         if let Some(name) = &node.name
             && let Some(earlier) = lines.insert(name.clone(), record.line)
         {
@@ -208,7 +210,7 @@ pub fn read_nodes_from(source: impl Read, file: &str) -> Result<Nodes, ReadError
 
 /// The node of a line; `None` if it is no receiver, or a receiver without a position in a table of
 /// nodes of both kinds.
-fn node(record: &Record, place: &Columns, decimals: &mut Decimals) -> Result<Option<Node>, String> {
+fn node(record: &Record, place: &Columns, numbers: &mut Numbers) -> Result<Option<Node>, String> {
     let cell = |k: usize| record.cells.get(k).map(String::as_str);
     let is_empty = |k: usize| cell(k) == Some("");
     let is_given = |k: usize| cell(k).is_some_and(|cell| !cell.is_empty());
@@ -220,24 +222,24 @@ fn node(record: &Record, place: &Columns, decimals: &mut Decimals) -> Result<Opt
     // What has a name is known by it, whatever else of it is not.
     let may_be_empty = name.is_some() && !is_unlocated;
     let mut optional = |k: Option<usize>| match k.filter(|&k| is_given(k)) {
-        Some(k) => coordinate(record, k, decimals).map(Some),
+        Some(k) => coordinate(record, k, numbers).map(Some),
         None => Ok(None),
     };
     let [x, y, z] = place.sigma.unwrap_or_default();
     let sigma = [optional(x)?, optional(y)?, optional(z)?].map(|sigma| sigma.unwrap_or(f64::NAN));
     let mut needed = |k: usize| {
-        if may_be_empty && is_empty(k) { Ok(None) } else { coordinate(record, k, decimals).map(Some) }
+        if may_be_empty && is_empty(k) { Ok(None) } else { coordinate(record, k, numbers).map(Some) }
     };
     let [x, y] = [needed(place.x)?, needed(place.y)?];
-    let z = place.z.filter(|&k| is_given(k)).map(|k| coordinate(record, k, decimals)).transpose()?;
+    let z = place.z.filter(|&k| is_given(k)).map(|k| coordinate(record, k, numbers)).transpose()?;
     Ok(Some(Node { name, position: [x, y, z], sigma }))
 }
 
 /// The coordinate in a cell.
-fn coordinate(record: &Record, k: usize, decimals: &mut Decimals) -> Result<f64, String> {
+fn coordinate(record: &Record, k: usize, numbers: &mut Numbers) -> Result<f64, String> {
     let cell = record.cells.get(k).ok_or_else(|| format!("has no column {}; {}", k + 1, columns::EXPECTED))?;
     let wrong = |remedy: &str| format!("column {}: {:?} is not a coordinate in metres; {remedy}", k + 1, shorten(cell));
-    match decimals.number(cell) {
+    match numbers.number(cell) {
         Ok(value) if value.is_finite() => Ok(value),
         Ok(_) => Err(wrong("leave out the line of a node that is not known")),
         Err(remedy) if number(cell).is_some() => Err(wrong(&remedy)),

@@ -5,6 +5,7 @@ use std::io::{BufReader, Read};
 use std::path::Path;
 
 use super::error::{MAX_BYTES, ReadError};
+use super::latin;
 
 /// Whether a file is read as a .mat file, by its name.
 pub fn is_mat(path: &Path) -> bool {
@@ -28,13 +29,14 @@ pub(super) fn open(path: &Path, file: &str) -> Result<BufReader<File>, ReadError
     Ok(BufReader::new(File::open(path).map_err(io)?))
 }
 
-/// The whole text, of UTF-8, or of UTF-16 with a byte order mark. A file that is no text is refused
-/// at its first bad block, so that garbage is not read to its end.
+/// The whole text, of UTF-8, of UTF-16 with a byte order mark, or of Latin-1 as Windows has it. A file
+/// that is no text is refused at its first bad block, so that garbage is not read to its end.
 pub(super) fn text(mut source: impl Read, file: &str) -> Result<String, ReadError> {
     let mut bytes = Vec::new();
     let mut checked = 0;
     let mut block = vec![0u8; 1 << 16];
     let mut wide = None;
+    let mut is_latin = false;
     loop {
         let count = match source.read(&mut block) {
             Ok(count) => count,
@@ -56,7 +58,9 @@ pub(super) fn text(mut source: impl Read, file: &str) -> Result<String, ReadErro
             file: file.to_string(),
             line: 1 + bytes[..upto].iter().filter(|&&b| b == b'\n').count() as u64,
         };
-        if wide.is_none() {
+        if is_latin {
+            checked = latin::check(&bytes, checked).map_err(|at| not_text(at, &bytes))?;
+        } else if wide.is_none() {
             match std::str::from_utf8(&bytes[checked..]) {
                 Ok(part) => {
                     if let Some(at) = part.find('\0') {
@@ -68,7 +72,10 @@ pub(super) fn text(mut source: impl Read, file: &str) -> Result<String, ReadErro
                     checked += error.valid_up_to();
                     // A character cut off at the end of a block is completed by the next.
                     if error.error_len().is_some() || count == 0 {
-                        return Err(not_text(checked, &bytes));
+                        // What comes before is UTF-8 to the end of the file, or Latin-1 from its beginning.
+                        let bad = checked;
+                        checked = latin::check(&bytes, 0).map_err(|_| not_text(bad, &bytes))?;
+                        is_latin = true;
                     }
                 }
             }
@@ -80,9 +87,44 @@ pub(super) fn text(mut source: impl Read, file: &str) -> Result<String, ReadErro
     if let Some(wide) = wide {
         return wide.decode(&bytes[2..]).map_err(|line| ReadError::NotText { file: file.to_string(), line });
     }
+    if is_latin {
+        return Ok(latin::decode(&bytes));
+    }
     let text = String::from_utf8(bytes).map_err(|_| ReadError::NotText { file: file.to_string(), line: 1 })?;
     // Spreadsheets write a byte order mark.
     Ok(text.strip_prefix('\u{feff}').map(str::to_string).unwrap_or(text))
+}
+
+/// What a source without an extension holds, by how it begins.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Form {
+    Npy,
+    Mat,
+    Text,
+}
+
+/// The form of a source of this name, and the source from its beginning on.
+///
+/// # Errors
+/// If it cannot be read.
+pub(super) fn form<R: Read>(mut source: R, path: &Path, file: &str) -> Result<(Form, impl Read + use<R>), ReadError> {
+    let mut start = Vec::new();
+    let by_name = if has_extension(path, "npy") {
+        Some(Form::Npy)
+    } else if is_mat(path) {
+        Some(Form::Mat)
+    } else {
+        let read = source.by_ref().take(10).read_to_end(&mut start);
+        read.map_err(|source| ReadError::Io { file: file.to_string(), source })?;
+        None
+    };
+    let by_start = || match start.as_slice() {
+        [0x93, b'N', b'U', b'M', b'P', b'Y', ..] => Form::Npy,
+        _ if start.starts_with(b"MATLAB 5.0") => Form::Mat,
+        _ => Form::Text,
+    };
+    let form = by_name.unwrap_or_else(by_start);
+    Ok((form, std::io::Cursor::new(start).chain(source)))
 }
 
 /// The order of the bytes of UTF-16.

@@ -1,165 +1,170 @@
-//! The CSV matrix: receivers in rows, transmitters in columns, with or without names.
+//! Tables as text: which form they have, and the matrix with receivers in rows and transmitters in
+//! columns, with or without names.
 
-use super::cells::{Decimals, Record, number, records, shorten};
-use super::error::{ACCEPTED, ReadError};
-use super::heading::{Heading, check_matrix, list_columns};
+use super::cells::{Separator, Table};
+use super::columns::{given, list_columns};
+use super::error::ReadError;
+use super::first_column::{Meaning, list_in, meaning};
+use super::grid::{Grid, has_only_names};
+use super::heading::check_matrix;
 use super::list::list;
-use super::units::Units;
-use crate::pseudoranges::{MAX_CELLS, Pseudoranges};
+use super::numbers::{Numbers, shorten};
+use super::role::Role;
+use super::thousands::refuse_thousands;
+use super::units::{ReadOptions, Units};
+use crate::pseudoranges::Pseudoranges;
 
 /// Reads a matrix, or a list if the first line is that of one.
-pub(super) fn parse(text: &str, file: &str, units: Option<Units>) -> Result<Pseudoranges, ReadError> {
-    let factor = units.unwrap_or_default().factor()?;
-    let mut records = records(text, file);
-    let empty = || ReadError::Empty { file: file.to_string() };
-    let first = records.next().ok_or_else(empty)??;
-    if only_names(&first.cells)
-        && let Some(columns) = list_columns(&first.cells, file, first.line, units)?
-    {
-        return list(records, &columns, file, factor);
+pub(super) fn parse(text: &str, file: &str, options: &ReadOptions) -> Result<Pseudoranges, ReadError> {
+    let units = options.units.unwrap_or_default();
+    units.factor()?;
+    let table = Table::new(text, file);
+    let numbers = Numbers::new(options.decimal_mark);
+    let mut records = table.records();
+    let first = records.next().ok_or_else(|| ReadError::Empty { file: file.to_string() })??;
+    let said = given(&first.cells, options, file, first.line)?;
+    if !options.transpose && has_only_names(&first.cells) {
+        let columns = list_columns(&first.cells, &said, file, first.line, options.units)?;
+        if let Some(columns) = columns {
+            return list(records, &columns, numbers, table.separator, file, units);
+        }
     }
-    let second = records.next().transpose()?;
-    let shape = Shape::of(&first.cells, second.as_ref().map(|record| record.cells.as_slice()));
-    let header = first.line;
-    let has_corner = shape.corner;
-    let (above, first) = if shape.transmitters.is_some() { (first.cells, None) } else { (Vec::new(), Some(Ok(first))) };
-    let rows = first.into_iter().chain(second.map(Ok)).chain(records);
-    let measured = matrix(rows, shape, header, file, factor)?;
-    let names = if measured.receivers_named() { measured.receiver_names() } else { &[] };
-    check_matrix(&above, has_corner, names, file, header, units)?;
-    Ok(measured)
+    // The column of names comes first, what is no measurement goes.
+    let names_of = if options.transpose { Role::Transmitter } else { Role::Receiver };
+    let named = said.iter().find(|(role, _)| *role == names_of).map(|(_, k)| *k);
+    let other = said.iter().find(|(role, _)| *role != Role::Ignore && *role != names_of);
+    if let Some((_, k)) = other {
+        let problem =
+            format!("the column {:?} cannot be chosen in a matrix, of which all columns are alike", first.cells[*k]);
+        return Err(ReadError::Columns { file: file.to_string(), line: first.line, problem });
+    }
+    let is_kept = |k: &usize| Some(*k) != named && !said.contains(&(Role::Ignore, *k));
+    let kept: Vec<usize> = named.into_iter().chain((0..first.cells.len()).filter(is_kept)).collect();
+    let chosen = if said.is_empty() { None } else { Some(kept.as_slice()) };
+    let mut matrix = Matrix { file, options, units, separator: table.separator, numbers, named: named.is_some() };
+    let grid = Grid::read(first, records, chosen, file, &mut matrix.numbers, units)?;
+    matrix.pseudoranges(grid)
 }
 
-/// A line without any number is a header; one with both numbers and text may be a row with a
-/// mistake in it.
-fn only_names(cells: &[String]) -> bool {
-    cells.iter().all(|c| number(c).is_none_or(f64::is_nan)) && cells.iter().any(|c| number(c).is_none())
-}
-
-/// What the first two lines say of a matrix.
-struct Shape {
-    /// Names of the transmitters, if the first line has them.
-    transmitters: Option<Vec<String>>,
-    /// Whether rows begin with names.
+/// A matrix that is read.
+struct Matrix<'a> {
+    file: &'a str,
+    options: &'a ReadOptions,
+    units: Units,
+    separator: Separator,
+    numbers: Numbers,
+    /// Whether the options say which column has the names of the rows.
     named: bool,
-    /// Whether the first line has a cell above these.
-    corner: bool,
 }
 
-impl Shape {
-    fn of(first: &[String], second: Option<&[String]>) -> Shape {
-        let begins_with_name = |cells: &[String]| match cells {
-            [name, values @ ..] => {
-                number(name).is_none() && !values.is_empty() && values.iter().all(|cell| number(cell).is_some())
+impl Matrix<'_> {
+    /// The measurements of a grid: its first column is found to be names or measurements, empty columns
+    /// go, and what its names say of rows and columns is checked.
+    fn pseudoranges(mut self, mut grid: Grid) -> Result<Pseudoranges, ReadError> {
+        let (file, line) = (self.file, grid.line);
+        if grid.rows() == 0 || grid.width == 0 {
+            return Err(ReadError::Empty { file: file.to_string() });
+        }
+        let refused = |problem: String| ReadError::Columns { file: file.to_string(), line, problem };
+        if let Some(problem) = list_in(&grid).filter(|_| !self.options.transpose) {
+            return Err(refused(problem));
+        }
+        let meaning = if self.named { Meaning::Names } else { meaning(&grid).map_err(refused)? };
+        let is_named = meaning == Meaning::Names;
+        if is_named {
+            grid.drop_blank_rows();
+        }
+        let rows = self.names_of_rows(&grid, is_named)?;
+        let columns = Self::columns(&grid, is_named);
+        let values = self.values(&grid, is_named, &columns)?;
+        if values.is_empty() {
+            return Err(ReadError::Empty { file: file.to_string() });
+        }
+        let wrap = |source| ReadError::Matrix { file: file.to_string(), source };
+        let (m, n) = (grid.rows(), columns.len());
+        let names = grid.header.as_ref().map(|header| names(header, &columns));
+        let measured = if self.options.transpose {
+            let cells = values.iter().enumerate().map(|(k, value)| (k % n, k / n, *value));
+            let mut measured = Pseudoranges::from_cells(n, m, cells).map_err(wrap)?;
+            if let Some(names) = names {
+                measured = measured.with_receiver_names(names).map_err(wrap)?;
             }
-            [] => false,
+            if is_named { measured.with_transmitter_names(rows.clone()).map_err(wrap)? } else { measured }
+        } else {
+            let mut measured = Pseudoranges::new(m, n, values).map_err(wrap)?;
+            if let Some(names) = names {
+                measured = measured.with_transmitter_names(names).map_err(wrap)?;
+            }
+            if is_named { measured.with_receiver_names(rows.clone()).map_err(wrap)? } else { measured }
         };
-        let is_header = only_names(first) || (counts(first) && is_row_of_counted(first, second));
-        if !is_header {
-            let named = begins_with_name(first) && second.is_none_or(begins_with_name);
-            return Shape { transmitters: None, named, corner: false };
+        if let Some(header) = &grid.header {
+            let corner = is_named.then(|| header[0].clone());
+            let above: Vec<String> = corner.into_iter().chain(columns.iter().map(|&k| header[k].clone())).collect();
+            let place = (file, line);
+            check_matrix(&above, is_named, &rows, self.options.transpose, place, self.options.units)?;
+        } else {
+            check_matrix(&[], false, &rows, self.options.transpose, (file, line), self.options.units)?;
         }
-        let mut names = first.to_vec();
-        // What follows a comma at the end of each line is no column.
-        while names.len() > 1 && names.last().is_some_and(String::is_empty) {
-            names.pop();
-        }
-        // Rows may have one cell more than the first line, their name.
-        let corner = second.is_none_or(|cells| !begins_with_name(cells) || cells.len() != first.len() + 1);
-        let heading = Heading::new(&first[0]);
-        let named = !corner || (names.len() > 1 && (heading.heads_receivers() || second.is_some_and(begins_with_name)));
-        let skip = usize::from(named && corner);
-        let numbered = |(k, name): (usize, &String)| if name.is_empty() { format!("s{}", k + 1) } else { name.clone() };
-        let transmitters = names[skip..].iter().enumerate().map(numbered).collect();
-        Shape { transmitters: Some(transmitters), named, corner: named && corner }
+        refuse_thousands(&self.numbers, self.separator, self.units, &measured, file)?;
+        Ok(measured)
     }
-}
 
-/// Whether a line is a corner and the numbers 0, 1, 2, ... or 1, 2, 3, ... of columns.
-fn counts(cells: &[String]) -> bool {
-    let [corner, numbers @ ..] = cells else { return false };
-    let counted = |first: usize| numbers.iter().enumerate().all(|(k, cell)| *cell == (first + k).to_string());
-    let heading = Heading::new(corner);
-    let heads_rows = heading.heads_receivers() || heading.heads_transmitters();
-    let is_corner = corner.is_empty() || (number(corner).is_none() && heads_rows);
-    is_corner && numbers.len() > 1 && (counted(0) || counted(1))
-}
-
-/// Whether numbers of columns and the next line belong together: below an empty corner stands a
-/// name, or the first of the numbers.
-fn is_row_of_counted(first: &[String], second: Option<&[String]>) -> bool {
-    let below = second.and_then(<[String]>::first);
-    !first[0].is_empty() || below.is_some_and(|cell| number(cell).is_none() || Some(cell) == first.get(1))
-}
-
-fn matrix(
-    rows: impl Iterator<Item = Result<Record, ReadError>>,
-    shape: Shape,
-    header: u64,
-    file: &str,
-    factor: f64,
-) -> Result<Pseudoranges, ReadError> {
-    let Shape { transmitters, named, .. } = shape;
-    let skip = usize::from(named);
-    let mut receivers: Vec<String> = Vec::new();
-    let mut values = Vec::new();
-    let mut width = transmitters.as_ref().map(Vec::len);
-    let mut decimals = Decimals::default();
-    for record in rows {
-        let record = record?;
-        if named && record.is_blank() {
-            continue;
+    /// The names of the rows; none if they have none.
+    fn names_of_rows(&self, grid: &Grid, is_named: bool) -> Result<Vec<String>, ReadError> {
+        if !is_named {
+            return Ok(Vec::new());
         }
-        let Record { line, cells } = record;
-        let counted = format!("r{}", receivers.len() + 1);
-        let receiver = if named { cells.first().cloned().unwrap_or_default() } else { counted };
-        if receiver.is_empty() {
+        if let Some(k) = grid.first.iter().position(String::is_empty) {
             let problem =
                 "the row has no name, but other rows begin with the name of a receiver; give it one".to_string();
-            return Err(ReadError::Line { file: file.to_string(), line, problem });
+            return Err(ReadError::Line { file: self.file.to_string(), line: grid.lines[k], problem });
         }
-        let mut cells = &cells[skip.min(cells.len())..];
-        let expected = *width.get_or_insert(cells.len());
-        if transmitters.is_some() && cells.len() > expected && cells[expected..].iter().all(String::is_empty) {
-            cells = &cells[..expected];
-        }
-        if cells.len() != expected {
-            return Err(ReadError::Ragged { file: file.to_string(), line, receiver, expected, found: cells.len() });
-        }
-        if values.len() + cells.len() > MAX_CELLS {
-            return Err(ReadError::TooManyCells { file: file.to_string(), line });
-        }
-        for (j, cell) in cells.iter().enumerate() {
-            let value = decimals.number(cell).map_err(|remedy| {
-                let transmitter = transmitters.as_ref().map_or_else(|| format!("s{}", j + 1), |names| names[j].clone());
-                let is_list = receivers.is_empty() && transmitters.is_some();
-                ReadError::NotANumber {
-                    file: file.to_string(),
-                    line,
-                    column: j + 1 + skip,
-                    place: format!("receiver {receiver}, transmitter {transmitter}"),
-                    text: shorten(cell),
-                    remedy: if is_list {
-                        format!("{remedy}; line {header} was taken for names: {ACCEPTED}")
-                    } else {
-                        remedy
-                    },
-                }
-            })?;
-            values.push(value * factor);
-        }
-        receivers.push(receiver);
+        Ok(grid.first.clone())
     }
-    if values.is_empty() {
-        return Err(ReadError::Empty { file: file.to_string() });
+
+    /// The columns of measurements: those that have a heading or anything below it.
+    fn columns(grid: &Grid, is_named: bool) -> Vec<usize> {
+        let is_there = |&k: &usize| grid.header.as_ref().is_none_or(|header| !(header[k].is_empty() && grid.blank[k]));
+        (usize::from(is_named)..grid.width).filter(is_there).collect()
     }
-    let wrap = |source| ReadError::Matrix { file: file.to_string(), source };
-    let mut measured = Pseudoranges::new(receivers.len(), width.unwrap_or(0), values).map_err(wrap)?;
-    if let Some(names) = transmitters {
-        measured = measured.with_transmitter_names(names).map_err(wrap)?;
+
+    /// The measurements in metres, row by row.
+    fn values(&mut self, grid: &Grid, is_named: bool, columns: &[usize]) -> Result<Vec<f64>, ReadError> {
+        let factor = self.units.factor()?;
+        let mut values = Vec::with_capacity(grid.rows() * columns.len());
+        for i in 0..grid.rows() {
+            for &k in columns {
+                let value = if k == 0 && !is_named {
+                    let cell = &grid.first[i];
+                    self.numbers.measurement(cell, self.units).map_err(|remedy| ReadError::NotANumber {
+                        file: self.file.to_string(),
+                        line: grid.lines[i],
+                        column: 1,
+                        place: format!("receiver r{}, transmitter s1", i + 1),
+                        text: shorten(cell),
+                        remedy,
+                    })?
+                } else {
+                    grid.rest[i * (grid.width - 1) + k - 1]
+                };
+                values.push(value * factor);
+            }
+        }
+        Ok(values)
     }
-    if named {
-        measured = measured.with_receiver_names(receivers).map_err(wrap)?;
-    }
-    Ok(measured)
+}
+
+/// The names of columns by their headings, or by their places where these are empty.
+fn names(header: &[String], columns: &[usize]) -> Vec<String> {
+    let name = |(place, &k): (usize, &usize)| {
+        let counted = format!("s{}", place + 1);
+        if !header[k].is_empty() {
+            header[k].clone()
+        } else if header.contains(&counted) {
+            format!("column {}", k + 1)
+        } else {
+            counted
+        }
+    };
+    columns.iter().enumerate().map(name).collect()
 }

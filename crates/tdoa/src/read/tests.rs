@@ -1,6 +1,8 @@
+mod tables;
+
 use proptest::prelude::{ProptestConfig, any, proptest};
 
-use super::{ReadError, ReadOptions, Units, read_csv, read_npy};
+use super::{ReadError, ReadOptions, Role, Units, read_csv, read_npy};
 use crate::pseudoranges::Pseudoranges;
 
 fn parse(text: &str) -> Result<Pseudoranges, ReadError> {
@@ -141,7 +143,8 @@ fn first_lines_that_are_not_understood() {
 fn units_of_a_matrix_are_heeded() {
     let text = "time_ms,a,b\nm,1.5,2.5\nn,3.5,4.5\n";
     let read = |text: &str, units: Option<Units>| {
-        read_csv(text.as_bytes(), "f.csv", ReadOptions { units, variable: None }).map_err(|error| error.to_string())
+        read_csv(text.as_bytes(), "f.csv", ReadOptions { units, ..ReadOptions::default() })
+            .map_err(|error| error.to_string())
     };
     let ms = Some(Units::Milliseconds { speed: 343.0 });
     let error = read(text, None).unwrap_err();
@@ -349,11 +352,14 @@ proptest! {
 
     #[test]
     fn random_cells_in_all_separators_never_panic(
-        cells in proptest::collection::vec("[a-z]{0,3}|-?[0-9]{0,2}[.,]?[0-9]{0,2}|time_ms|receiver|event|x|y|z|sigma|std_[xyz]|\"", 0..40),
+        cells in proptest::collection::vec("[a-z]{0,3}|-?[0-9]{0,2}[.,]?[0-9]{0,3}|time_ms|receiver|event|x|y|z|sigma|std_[xyz]|\"|sep=;|#N/A|[0-9]{1,3} [0-9]{3}|mic_[ab]|ref|\u{2212}[0-9]|[0-9]{2}:[0-9]{2}:[0-9]{2}.[0-9]|2024-0[0-9]-[0-9]{2}T[0-9]{2}:[0-9]{2}:[0-9]{2}[Z+-]|view|selection|begin time|e|n|lat|depth", 0..40),
         separator in "[,; \t]",
         width in 1usize..6,
         wide: bool,
+        mark in proptest::option::of(proptest::sample::select(vec!['.', ','])),
+        columns in proptest::collection::vec((proptest::sample::select(vec![Role::Receiver, Role::Time, Role::Reference, Role::Ignore]), "[a-z]{0,2}"), 0..2),
     ) {
+        let seconds = ReadOptions { units: Some(Units::Seconds { speed: 343.0 }), ..ReadOptions::default() };
         let lines: Vec<String> = cells.chunks(width).map(|line| line.join(&separator)).collect();
         let text = lines.join("\n");
         let bytes = if wide {
@@ -362,6 +368,8 @@ proptest! {
             text.into_bytes()
         };
         let _ = read_csv(&bytes[..], "f", ReadOptions::default());
+        let options = ReadOptions { transpose: wide, columns: columns.clone(), decimal_mark: mark, ..seconds };
+        let _ = read_csv(&bytes[..], "f", options).map(|measured| super::orientation(&measured));
         let _ = super::read_nodes_from(&bytes[..], "f");
         let _ = super::read_distances_from(&bytes[..], "f", &["a".to_string(), "b".to_string()]);
     }

@@ -1,6 +1,7 @@
 //! The unit of the numbers in a file.
 
 use super::error::ReadError;
+use super::role::Role;
 
 /// How the numbers of a file become metres.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -107,10 +108,32 @@ pub struct ReadOptions {
     pub units: Option<Units>,
     /// Name of the matrix in a .mat file. Default `None`: z, or the only matrix that the file has.
     pub variable: Option<String>,
+    /// Whether transmitters are the rows and receivers the columns of a matrix. Default: no.
+    pub transpose: bool,
+    /// What columns hold, by their headings, where these do not say it: of a list of measurements, and of
+    /// a matrix the column of the names of its rows, and columns to leave out. Default: what headings say.
+    pub columns: Vec<(Role, String)>,
+    /// What stands before decimals, a point or a comma; the other may stand between thousands. Default
+    /// `None`: as the numbers have it, but where these may be a thousand times as large they are refused.
+    pub decimal_mark: Option<char>,
+}
+
+impl ReadOptions {
+    /// Refuses the options of tables of text for another file.
+    pub(super) fn refuse_text(&self, file: &str) -> Result<(), ReadError> {
+        let option = if !self.columns.is_empty() {
+            "--columns"
+        } else if self.decimal_mark.is_some() {
+            "--decimal-mark"
+        } else {
+            return Ok(());
+        };
+        Err(ReadError::TextAlone { file: file.to_string(), option })
+    }
 }
 
 impl From<Units> for ReadOptions {
     fn from(units: Units) -> ReadOptions {
-        ReadOptions { units: Some(units), variable: None }
+        ReadOptions { units: Some(units), ..ReadOptions::default() }
     }
 }

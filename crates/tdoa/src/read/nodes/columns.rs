@@ -1,11 +1,11 @@
 //! Which columns of a table of nodes hold what.
 
-use crate::read::cells::number;
 use crate::read::heading::Heading;
+use crate::read::numbers::number;
 
 /// What a file of nodes looks like, for messages.
-pub(super) const EXPECTED: &str = "expected a first line with name (or id, receiver, mic, anchor, sensor), x and y, in any order, \
-     in space z too, then one node a line, metres; or lines name,x,y or x,y without a first line";
+pub(super) const EXPECTED: &str = "expected a first line with name (or id, receiver, mic, anchor, sensor, station), x and y, in any order \
+     (or easting and northing), in space z (or height, elevation) too, then one node a line, metres; or lines name,x,y or x,y without a first line";
 
 /// Where a table has its columns.
 #[derive(Clone, Copy)]
@@ -24,9 +24,21 @@ impl Columns {
     /// The columns by a first line that names them; `None` if it names no coordinates.
     pub(super) fn named(cells: &[String]) -> Result<Option<Columns>, String> {
         let headings: Vec<Heading> = cells.iter().map(|cell| Heading::new(cell)).collect();
-        let at = |k: usize| headings.iter().position(|heading| heading.coordinate() == Some(k));
-        let (Some(x), Some(y)) = (at(0), at(1)) else { return Ok(None) };
-        let z = at(2);
+        let headed = |k: usize| headings.iter().position(|heading| heading.coordinate() == Some(k));
+        let lettered = |k: usize| headings.iter().position(|heading| heading.letter() == Some(k));
+        let by_words = headed(0).zip(headed(1)).map(|(x, y)| (x, y, headed(2)));
+        // The letters e, n and u say it together.
+        let by_letters = || lettered(0).zip(lettered(1)).map(|(x, y)| (x, y, lettered(2).or_else(|| headed(2))));
+        let wrong = |(k, heading): (usize, &Heading)| {
+            Some(format!("the column {:?} {}", cells[k], heading.is_no_coordinate()?))
+        };
+        let wrong = headings.iter().enumerate().find_map(wrong);
+        let Some((x, y, z)) = by_words.or_else(by_letters) else {
+            return wrong.map_or(Ok(None), |wrong| Err(format!("{wrong}; {EXPECTED}")));
+        };
+        if let Some(wrong) = wrong.filter(|_| z.is_none()) {
+            return Err(wrong);
+        }
         let sigma = sigma_columns(&headings, cells, z)?;
         for k in [Some(x), Some(y), z].into_iter().chain(sigma.into_iter().flatten()).flatten() {
             if let Some(unit) = headings[k].unit.filter(|unit| *unit != "m") {
