@@ -3,7 +3,7 @@
 use hc::poly::{counted, one_or};
 use thiserror::Error;
 
-use crate::duplicates::{Copied, constant_difference, copied_transmitters, printed};
+use crate::duplicates::{Copied, Copies, constant_difference, counted_once, printed};
 use crate::pseudoranges::Pseudoranges;
 
 /// A transmitter needs this many measurements to be kept: as many as its position and offset have
@@ -121,19 +121,6 @@ pub enum Degeneracy {
         /// The constant, with its unit.
         constant: String,
     },
-    /// Two transmitters whose measurements differ by a constant.
-    #[error(
-        "transmitters {first} and {second} measure the same up to a constant ({constant}): one is a copy of the other, which \
-         would count twice; remove one of them"
-    )]
-    IdenticalTransmitters {
-        /// Name of the one.
-        first: String,
-        /// Name of the other.
-        second: String,
-        /// The constant, with its unit.
-        constant: String,
-    },
 }
 
 /// The part of the measurements that can be calibrated.
@@ -191,18 +178,7 @@ pub(crate) fn usable<const D: usize>(measured: &Pseudoranges) -> Result<Usable, 
             constant: crate::quantity::length(constant),
         });
     }
-    if let Some(Copied { first, second, constant, certain }) = copied_transmitters(measured, &receivers, &transmitters)
-    {
-        let [first, second] = [first, second].map(|j| measured.transmitter_names()[j].clone());
-        let constant = crate::quantity::length(constant);
-        if certain {
-            return Err(Degeneracy::IdenticalTransmitters { first, second, constant });
-        }
-        warnings.push(format!(
-            "transmitters {first} and {second} measure the same up to a constant ({constant}): they stand in one place, or one is a copy of \
-             the other, which counts twice; if it is a copy, remove it"
-        ));
-    }
+    let transmitters = without_copies(measured, &receivers, transmitters, &mut warnings);
     let distinct = transmitters.len() - repeated_transmitters(measured, &receivers, &transmitters);
     if !is_solvable::<D>(receivers.len(), distinct) {
         return Err(too_small::<D>(receivers.len(), distinct, left));
@@ -220,6 +196,35 @@ pub(crate) fn usable<const D: usize>(measured: &Pseudoranges) -> Result<Usable, 
         });
     }
     Ok(Usable { receivers, transmitters, warnings })
+}
+
+/// Leaves out transmitters that are copies of another, such as those of a tag that stands still and repeats
+/// itself. Warns of these, and of two that may be.
+fn without_copies(
+    measured: &Pseudoranges,
+    receivers: &[usize],
+    transmitters: Vec<usize>,
+    warnings: &mut Vec<String>,
+) -> Vec<usize> {
+    let name = |j: usize| &measured.transmitter_names()[j];
+    let Copies { kept, copies, doubtful } = counted_once(measured, receivers, transmitters);
+    if let Some(Copied { first, second, constant, .. }) = doubtful {
+        let (first, second, constant) = (name(first), name(second), crate::quantity::length(constant));
+        warnings.push(format!(
+            "transmitters {first} and {second} measure the same up to a constant ({constant}): they stand in one place, or one is a copy of \
+             the other, which counts twice; if it is a copy, remove it"
+        ));
+    }
+    if !copies.is_empty() {
+        let copies: Vec<String> =
+            copies.iter().map(|(first, copy)| format!("{} as {}", name(*copy), name(*first))).collect();
+        warnings.push(format!(
+            "transmitters that measure the same as another up to a constant, such as a tag that stands still and repeats itself, count \
+             once: left out are {}",
+            list(&copies)
+        ));
+    }
+    kept
 }
 
 /// Where networks of so many dimensions lie, in words that follow a noun.
@@ -392,96 +397,4 @@ fn repeated_transmitters(measured: &Pseudoranges, receivers: &[usize], transmitt
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::simulate::{SimulateOptions, simulate};
-
-    fn measured(receivers: usize, transmitters: usize) -> Pseudoranges {
-        let options = SimulateOptions { receivers, transmitters, ..Default::default() };
-        simulate(&options).unwrap().pseudoranges
-    }
-
-    #[test]
-    fn smallest_sizes_are_the_named_ones() {
-        // From the excess formula: (m-3)(n-2) - 3.
-        for (m, n) in [(6, 3), (5, 4), (4, 5), (100, 3), (4, 100)] {
-            assert!(is_solvable::<2>(m, n), "{m}r/{n}s");
-            assert_eq!(excess::<2>(m, n), (m as i64 - 3) * (n as i64 - 2) - 3);
-        }
-        for (m, n) in [(5, 3), (4, 4), (3, 100), (100, 2), (2, 2), (0, 0)] {
-            assert!(!is_solvable::<2>(m, n), "{m}r/{n}s");
-        }
-    }
-
-    #[test]
-    fn smallest_sizes_in_space() {
-        // (m - 4)(n - 3) >= 6.
-        assert_eq!(smallest::<2>(), "6 receivers and 3 transmitters, 5 and 4, or 4 and 5");
-        assert_eq!(smallest::<3>(), "10 receivers and 4 transmitters, 7 and 5, 6 and 6, or 5 and 9");
-        for (m, n) in [(9, 4), (6, 5), (5, 8), (4, 100), (100, 3)] {
-            let error = usable::<3>(&measured(m, n)).unwrap_err().to_string();
-            assert!(error.contains("in space are 10 receivers and 4 transmitters"), "{error}");
-        }
-        assert!(usable::<3>(&measured(5, 9)).is_ok());
-    }
-
-    #[test]
-    fn too_small_says_what_to_add() {
-        let error = usable::<2>(&measured(5, 3)).unwrap_err();
-        assert!(error.to_string().contains("add 1 receiver or 1 transmitter"), "{error}");
-        let error = usable::<2>(&measured(4, 2)).unwrap_err();
-        assert!(error.to_string().contains("6 receivers and 3 transmitters"), "{error}");
-        assert!(usable::<2>(&measured(6, 3)).is_ok());
-    }
-
-    #[test]
-    fn sparse_nodes_are_named_and_left_out() {
-        let full = measured(7, 8);
-        let mut values = full.dense();
-        for i in 0..4 {
-            values[i * 8 + 5] = f64::NAN;
-        }
-        let found = usable::<2>(&Pseudoranges::new(7, 8, values).unwrap()).unwrap();
-        assert_eq!(found.transmitters, [0, 1, 2, 3, 4, 6, 7]);
-        assert!(found.warnings[0].contains("s6"), "{:?}", found.warnings);
-        let nothing = Pseudoranges::new(7, 8, vec![f64::NAN; 56]).unwrap();
-        assert_eq!(usable::<2>(&nothing), Err(Degeneracy::NothingMeasured(56)));
-    }
-
-    #[test]
-    fn parts_that_share_no_node_are_told_apart() {
-        let full = measured(12, 12);
-        let block = |k: usize| (k / 12 < 7) == (k % 12 < 7);
-        let found = usable::<2>(&full.filter(|i, j, _| block(12 * i + j))).unwrap();
-        assert_eq!((found.receivers.len(), found.transmitters.len()), (7, 7));
-        let without = "without receivers r8, r9, r10, r11, r12, and transmitters s8, s9, s10, s11, s12;";
-        assert!(found.warnings[0].contains(without), "{:?}", found.warnings);
-    }
-
-    #[test]
-    fn identical_receivers_are_named() {
-        let full = measured(7, 6);
-        let mut values = full.dense();
-        for j in 0..6 {
-            values[4 * 6 + j] = values[6 + j] + 0.25;
-        }
-        let error = usable::<2>(&Pseudoranges::new(7, 6, values).unwrap()).unwrap_err();
-        assert!(error.to_string().contains("receivers r2 and r5"), "{error}");
-    }
-
-    #[test]
-    fn repeated_transmitters_add_nothing() {
-        let full = measured(5, 5);
-        let mut values = full.dense();
-        for i in 0..5 {
-            values[i * 5 + 1] = values[i * 5] + 3.0;
-            values[i * 5 + 2] = values[i * 5] - 1.0;
-        }
-        let copied = usable::<2>(&Pseudoranges::new(5, 5, values.clone()).unwrap()).unwrap_err();
-        assert!(copied.to_string().contains("one is a copy of the other"), "{copied}");
-        // With gaps they are no copies, but as good as.
-        (values[1], values[7]) = (f64::NAN, f64::NAN);
-        let error = usable::<2>(&Pseudoranges::new(5, 5, values).unwrap()).unwrap_err();
-        assert!(matches!(error, Degeneracy::TooSmall { transmitters: 3, .. }), "{error}");
-    }
-}
+mod tests;

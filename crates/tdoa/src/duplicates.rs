@@ -94,6 +94,32 @@ pub(crate) fn copied_transmitters(
     None
 }
 
+/// Transmitters of which each counts once.
+pub(crate) struct Copies {
+    pub(crate) kept: Vec<usize>,
+    /// Those that are left out, each behind the one that it is a copy of.
+    pub(crate) copies: Vec<(usize, usize)>,
+    /// Two that may be copies.
+    pub(crate) doubtful: Option<Copied>,
+}
+
+/// The transmitters without those that are certainly copies of another.
+pub(crate) fn counted_once(measured: &Pseudoranges, receivers: &[usize], transmitters: Vec<usize>) -> Copies {
+    let mut once = Copies { kept: transmitters, copies: Vec::new(), doubtful: None };
+    loop {
+        match copied_transmitters(measured, receivers, &once.kept) {
+            Some(Copied { first, second, certain: true, .. }) => {
+                once.copies.push((first, second));
+                once.kept.retain(|&j| j != second);
+            }
+            doubtful => {
+                once.doubtful = doubtful;
+                return once;
+            }
+        }
+    }
+}
+
 /// How many different numbers there are for some measurements; infinity if these are not multiples
 /// of one step.
 fn levels(measured: &Pseudoranges, values: &[f64]) -> f64 {
