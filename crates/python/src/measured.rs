@@ -9,7 +9,7 @@ use pyo3::types::PyDict;
 use tdoa::PseudorangeError;
 use tdoa::Pseudoranges;
 use tdoa::pseudoranges::MAX_CELLS;
-use tdoa::read::{ReadOptions, Units, read as read_file, read_from};
+use tdoa::read::{ReadOptions, Role, Units, read as read_file, read_from};
 
 /// A table of pseudoranges as Python gives it.
 #[derive(FromPyObject)]
@@ -70,7 +70,7 @@ pub(crate) fn heads_list(headings: Vec<String>) -> bool {
 }
 
 /// Measurements from a file, or from `data` as if they were in a file of that name: a dict of
-/// values, sigmas and names.
+/// values, sigmas and names. Columns are pairs of a role and a heading.
 #[pyfunction]
 pub(crate) fn read<'py>(
     py: Python<'py>,
@@ -80,9 +80,18 @@ pub(crate) fn read<'py>(
     speed: Option<f64>,
     rate: Option<f64>,
     variable: Option<String>,
+    transpose: bool,
+    columns: Vec<(String, String)>,
+    decimal_mark: Option<char>,
 ) -> PyResult<Bound<'py, PyDict>> {
     guarded(|| {
         let mut options = ReadOptions::default();
+        options.transpose = transpose;
+        options.decimal_mark = decimal_mark;
+        for (role, heading) in columns {
+            let role = role.parse::<Role>().map_err(|error| Failure::Input(format!("columns: {error}")))?;
+            options.columns.push((role, heading));
+        }
         options.units = units.map(|units| unit(units, speed, rate)).transpose()?;
         options.variable = variable;
         let measured = py.detach(|| match &data {

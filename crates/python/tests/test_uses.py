@@ -373,3 +373,26 @@ def test_families_at_special_targets():
     # Nothing shows that these are all.
     found = family.monodromy(first=([-3.0, 2.0], [1.0]), roots=3, patience=2, trace=False)
     assert len(found) == 2 and not found.complete
+
+
+def test_tables_of_other_people(tmp_path):
+    import io
+
+    speed = {"units": "s", "speed": 343.0}
+    text = "ch;shot;wann;Güte\n1;7;1,5;0,9\n2;7;2,5;0,9\n1;8;3,5;0,1\n"
+    read = tdoa.read(io.StringIO(text), columns={"receiver": "ch", "transmitter": "shot", "time": "wann"}, **speed)
+    assert (read.receiver_names, read.transmitter_names) == (["1", "2"], ["7", "8"])
+    assert np.array_equal(read.values, 343.0 * np.array([[1.5, 3.5], [2.5, np.nan]]), equal_nan=True)
+    text = "idx,a,b,temp,wind\n0,1.5,2.5,20,1\n1,3.5,4.5,20,2\n2,5.5,6.5,20,3\n3,7.5,8.5,20,4\n"
+    with pytest.raises(tdoa.InputError, match="temp"):
+        tdoa.read(io.StringIO(text))
+    read = tdoa.read(io.StringIO(text), transpose=True, columns={"ignore": ["temp", "wind"]})
+    assert read.receiver_names == ["a", "b"] and read.values.tolist() == [[1.5, 3.5, 5.5, 7.5], [2.5, 4.5, 6.5, 8.5]]
+    text = "r;a\nm;51,335\n"
+    samples = {"units": "samples", "speed": 48000.0, "rate": 48000.0}
+    with pytest.raises(tdoa.InputError, match="thousands"):
+        tdoa.read(io.StringIO(text), **samples)
+    assert tdoa.read(io.StringIO(text), decimal_mark=".", **samples).values.tolist() == [[51335.0]]
+    for wrong in ({"columns": {"who": "r"}}, {"columns": ["r"]}, {"decimal_mark": ";"}):
+        with pytest.raises(tdoa.InputError):
+            tdoa.read(io.StringIO(text), **samples, **wrong)

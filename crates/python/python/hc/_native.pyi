@@ -55,7 +55,15 @@ def cramer_rao(
 def check_size(receivers: int, transmitters: int) -> None: ...
 def heads_list(headings: list[str]) -> bool: ...
 def read(
-    path: str, data: bytes | None, units: str | None, speed: float | None, rate: float | None, variable: str | None
+    path: str,
+    data: bytes | None,
+    units: str | None,
+    speed: float | None,
+    rate: float | None,
+    variable: str | None,
+    transpose: bool,
+    columns: list[tuple[str, str]],
+    decimal_mark: str | None,
 ) -> _Found: ...
 @final
 class Fibre: ...

@@ -226,4 +226,7 @@ def read(
     speed: float | None = None,
     rate: float | None = None,
     variable: str | None = None,
+    transpose: bool = False,
+    columns: Mapping[str, str | Sequence[str]] | None = None,
+    decimal_mark: Literal[".", ","] | None = None,
 ) -> Pseudoranges: ...

@@ -92,7 +92,7 @@ def _long(frame, factor):
     data = frame.to_csv(index=False).encode()
     units = (None, None) if factor is None else ("s", factor)
     try:
-        return _pseudoranges(_native.read("DataFrame", data, *units, None, None))
+        return _pseudoranges(_native.read("DataFrame", data, *units, None, None, False, [], None))
     except InputError as error:
         # Their unit is told in another way here.
         words = re.sub(r"give --units \w+ --speed V", "give speed=V and the times in seconds", str(error))
@@ -167,7 +167,7 @@ def table(pseudoranges, names=None, sigma=None, speed=None):
     return given, single, factor
 
 
-def read(path, *, units=None, speed=None, rate=None, variable=None):
+def read(path, *, units=None, speed=None, rate=None, variable=None, transpose=False, columns=None, decimal_mark=None):
     """Read pseudoranges from a file: CSV (a matrix or a list of measurements), .npy or .mat.
 
     Parameters
@@ -182,6 +182,13 @@ def read(path, *, units=None, speed=None, rate=None, variable=None):
         Samples a second, for samples.
     variable : str, optional
         The matrix to read of a .mat file, where that is not z.
+    transpose : bool
+        Whether the rows of a matrix are the transmitters.
+    columns : dict, optional
+        What columns hold whose headings do not say it: headings by "receiver", "transmitter", "value", "time", "sigma", "reference"
+        (each line is the time of the receiver minus that of the reference) or "ignore" (which may have a list of headings).
+    decimal_mark : {".", ","}, optional
+        What stands before decimals; the other mark may stand between thousands. As the numbers have it by default.
 
     Returns
     -------
@@ -198,6 +205,9 @@ def read(path, *, units=None, speed=None, rate=None, variable=None):
         raise InputError("speed and rate need units: s, ms, us or samples")
     units = None if units is None else text("units", units)
     variable = None if variable is None else text("variable", variable)
+    if decimal_mark not in (None, ".", ","):
+        raise InputError(f"decimal_mark must be '.' or ',', not {decimal_mark!r}")
+    more = bool(transpose), _headings(columns), decimal_mark
     data = None
     if hasattr(path, "read"):
         path, data = _contents(path)
@@ -209,7 +219,20 @@ def read(path, *, units=None, speed=None, rate=None, variable=None):
                 pass
         except (TypeError, ValueError):
             raise InputError(f"path must be a path or an open file, not {path!r}") from None
-    return _pseudoranges(_native.read(path, data, units, number("speed", speed), number("rate", rate), variable))
+    return _pseudoranges(_native.read(path, data, units, number("speed", speed), number("rate", rate), variable, *more))
+
+
+def _headings(columns):
+    """Pairs of a role and a heading."""
+    if columns is None:
+        return []
+    if not isinstance(columns, dict):
+        raise InputError(f"columns must be a dict of headings, not {columns!r}")
+    pairs = []
+    for role, headings in columns.items():
+        for heading in [headings] if isinstance(headings, str) else headings:
+            pairs.append((text("columns", role), text("columns", heading)))
+    return pairs
 
 
 def _contents(file):
