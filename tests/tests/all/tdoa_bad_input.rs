@@ -145,7 +145,7 @@ fn wrong_arguments() {
 
 #[test]
 fn garbage_is_refused() {
-    assert_says(calibrate("f.csv", &[0xff, 0xfe, 0, 1, 2], &[]), 2, &["line 1", "not UTF-8"]);
+    assert_says(calibrate("f.csv", &[0xff, 0xfe, 0, 1, 2], &[]), 2, &["line 1", "is no text"]);
     assert_says(calibrate("f.npy", b"not an array at all", &[]), 2, &["is not a .npy file"]);
     assert_says(of(&["simulate", "--missing", "2", "--output", "x"]), 2, &["between 0 and 1"]);
     assert_says(of(&["simulate", "--receivers", "0", "--output", "x"]), 2, &["empty"]);
@@ -199,7 +199,7 @@ fn a_gigabyte_of_garbage() {
     // Below the limit, garbage is refused at its first bytes.
     let path = directory.path().join("zeros.csv");
     std::fs::File::create(&path).expect("made").set_len(200 << 20).expect("sparse file");
-    assert_says(of(&["calibrate", text(&path)]), 2, &["line 1", "not UTF-8"]);
+    assert_says(of(&["calibrate", text(&path)]), 2, &["line 1", "is no text"]);
 }
 
 /// Enough receivers and very many events: calibrated, in bounded memory.
