@@ -23,7 +23,7 @@ pub(crate) struct Settings {
     /// 2 or 3; the measurements decide where there is neither.
     dimensions: Option<usize>,
     sigma: Option<f64>,
-    /// Of as many coordinates as there are dimensions; none where the measurements decide.
+    /// Of as many coordinates as there are dimensions, three where the measurements decide.
     anchors: Vec<Option<Vec<f64>>>,
     /// Receiver, coordinates, standard deviation.
     positions: Vec<(usize, Vec<Option<f64>>, f64)>,

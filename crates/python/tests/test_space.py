@@ -54,7 +54,7 @@ def test_planar_networks_stay_planar():
     auto = tdoa.calibrate(made.pseudoranges)
     assert auto.dimensions == flat.dimensions == 2 and flat.dimension_test is None
     test = auto.dimension_test
-    assert test["gain"] < test["needed"] and list(test) == ["gain", "needed"]
+    assert test["gain"] < test["needed"] and test["evidence"] < 0 and list(test) == ["gain", "needed", "evidence", "change"]
     data = json.loads(auto.to_json())
     assert data.pop("dimension_test") == test and data == json.loads(flat.to_json())
     with pytest.raises(hc.InputError, match="view must be xy of"):
@@ -78,20 +78,29 @@ def test_anchors_in_space():
     assert np.linalg.norm(mixed.receivers - made.receivers, axis=1).max() < 0.05
 
 
-def test_anchors_of_one_height_mean_the_plane():
+def test_anchors_of_one_height_do_not_choose_the_plane():
     made = tdoa.simulate(8, 14, noise=0.01, seed=6)
     anchors = np.full((8, 2), np.nan)
     anchors[[0, 2, 5]] = made.receivers[[0, 2, 5]]
     flat = tdoa.calibrate(made.pseudoranges, anchors=anchors)
-    assert flat.dimensions == 2 and flat.dimension_test is None
+    assert flat.dimensions == 2 and flat.dimension_test is not None
     heights = np.column_stack([anchors, np.where(np.isnan(anchors[:, 0]), np.nan, 0.0)])
     assert tdoa.calibrate(made.pseudoranges, anchors=heights) == flat
     # One height for all is left out; so are small differences, where the plane is asked for.
     assert tdoa.calibrate(made.pseudoranges, anchors=heights + [0, 0, 1.5]) == flat
     heights[2, 2] = 0.1
-    assert tdoa.calibrate(made.pseudoranges, anchors=heights, dimensions=2) == flat
-    # Nothing is known: the measurements decide.
-    assert tdoa.calibrate(made.pseudoranges, anchors=np.full((8, 3), np.nan)).dimension_test is not None
+    asked = tdoa.calibrate(made.pseudoranges, anchors=heights, dimensions=2)
+    assert asked.dimension_test is None and np.array_equal(asked.receivers, flat.receivers)
+
+
+def test_three_anchors_at_one_height_of_a_room():
+    made = room()
+    anchors = {f"r{k + 1}": made.receivers[k] for k in (0, 3, 5)}
+    level = np.mean([z for _, _, z in anchors.values()])
+    assert tdoa.calibrate(made.pseudoranges, anchors={name: (x, y, level) for name, (x, y, _) in anchors.items()}).dimensions == 3
+    # Without heights they cannot be held in space.
+    flat = tdoa.calibrate(made.pseudoranges, anchors={name: (x, y) for name, (x, y, _) in anchors.items()})
+    assert flat.dimensions == 2 and not flat.unique and any("ask for space" in warning for warning in flat.warnings)
 
 
 def test_the_program_finds_the_same(run_json, tmp_path):

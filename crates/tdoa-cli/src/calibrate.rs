@@ -22,7 +22,7 @@ use tdoa::{
 pub(crate) use arguments::Arguments;
 use arguments::{Delays, Dimensions, Side};
 
-use crate::frame::{self, Frame};
+use crate::frame::Frame;
 use crate::known::{self, Truth};
 use crate::partial;
 use crate::provenance;
@@ -61,19 +61,26 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let nodes = |path: &Option<PathBuf>| path.as_deref().map(input::nodes).transpose();
     let (anchors, true_nodes) = (nodes(&arguments.anchors)?, nodes(&arguments.truth)?);
     let anchors = arguments.anchors.as_deref().zip(anchors);
-    let given = match (arguments.dimensions, &anchors, &arguments.frame) {
+    let frame = arguments.frame.as_deref().map(|text| Frame::parse(text, &measured)).transpose()?;
+    let heights_differ = |nodes: &Nodes| nodes.dimensions() == 3;
+    let given = match (arguments.dimensions, &anchors, &frame) {
+        (Dimensions::Plane, _, Some(frame)) if frame.is_spatial() => {
+            return Err(Failure::Unusable(
+                "--frame has four names, but --dimensions 2 is the plane; give three".into(),
+            ));
+        }
         (Dimensions::Plane, ..) => Some((2, "as --dimensions says")),
         (Dimensions::Space, ..) => Some((3, "as --dimensions says")),
-        (Dimensions::Auto, Some((_, nodes)), _) => Some((nodes.dimensions(), "as the anchors have it")),
-        (Dimensions::Auto, None, Some(names)) => Some((frame::dimensions(names), "as --frame has it")),
-        (Dimensions::Auto, None, None) => None,
+        (Dimensions::Auto, Some((_, nodes)), _) if heights_differ(nodes) => Some((3, "as the anchors have it")),
+        (Dimensions::Auto, _, Some(frame)) if frame.is_spatial() => Some((3, "as --frame has it")),
+        (Dimensions::Auto, ..) => None,
     };
     let chosen = given.map(|(_, by)| by);
-    let task = Task { arguments, measured: &measured, true_nodes, units, said, date, chosen };
+    let task = Task { arguments, measured: &measured, true_nodes, frame, units, said, date, chosen };
     match given.map(|(dimensions, _)| dimensions) {
         Some(3) => task.given::<3>(anchors),
         Some(_) => task.given::<2>(anchors),
-        None => task.chosen(),
+        None => task.chosen(anchors),
     }
 }
 
@@ -83,6 +90,7 @@ struct Task<'a> {
     measured: &'a Pseudoranges,
     /// What the file of --truth has.
     true_nodes: Option<Nodes>,
+    frame: Option<Frame>,
     units: Units,
     /// Whether the unit was said.
     said: bool,
@@ -101,30 +109,33 @@ impl Task<'_> {
         Dimension<D>: Calibrates<D>,
     {
         let mut truth = self.truth::<D>()?;
-        let frame = self.frame::<D>()?;
         let mut options = self.options::<D>()?;
         if let Some((path, nodes)) = anchors {
-            let known = known::anchors(path, &nodes, self.measured)?;
-            (options.anchors, options.positions) = (known.exact, known.measured);
-            truth.notes.extend(known.note);
+            known::fit_dimension::<D>(path, &nodes)?;
+            (options.anchors, options.positions) = known::anchors(path, &nodes, self.measured)?;
+            truth.notes.extend(known::heights::<D>(path, &nodes));
         }
         tell(&truth.notes);
         let started = Instant::now();
         let solved = self.watched(|monitor| calibrate_with(self.measured, &options, &[], monitor))?;
         let calibration = solved.map_err(|error| self.failure(error))?;
-        self.finish(calibration, truth, frame, started)
+        self.finish(calibration, truth, started)
     }
 
     /// Calibrates in the plane or in space, as the measurements have it.
-    fn chosen(&self) -> Result<(), Failure> {
-        let truth = self.truth::<2>()?;
-        let options = self.options::<3>()?;
+    fn chosen(&self, anchors: Option<(&Path, Nodes)>) -> Result<(), Failure> {
+        let mut truth = self.truth::<2>()?;
+        let mut options = self.options::<3>()?;
+        if let Some((path, nodes)) = anchors {
+            (options.anchors, options.positions) = known::anchors(path, &nodes, self.measured)?;
+            truth.notes.extend(known::heights::<2>(path, &nodes));
+        }
         let started = Instant::now();
         let solved = self.watched(|monitor| calibrate_either(self.measured, &options, monitor))?;
         match solved {
             Ok(Calibrated::Plane(calibration)) => {
                 tell(&truth.notes);
-                self.finish(calibration, truth, None, started)
+                self.finish(calibration, truth, started)
             }
             Ok(Calibrated::Space(calibration)) => {
                 let truth = self.truth::<3>().unwrap_or_else(|failure| Truth {
@@ -132,7 +143,7 @@ impl Task<'_> {
                     ..Truth::default()
                 });
                 tell(&truth.notes);
-                self.finish(calibration, truth, None, started)
+                self.finish(calibration, truth, started)
             }
             Err(CalibratedError::Plane(error)) => Err(self.failure(error)),
             Err(CalibratedError::Space(error)) => Err(self.failure(error)),
@@ -146,10 +157,6 @@ impl Task<'_> {
             return Err(Failure::Unusable("--scale needs --truth with the true positions".to_string()));
         }
         Ok(truth)
-    }
-
-    fn frame<const D: usize>(&self) -> Result<Option<Frame<D>>, Failure> {
-        self.arguments.frame.as_deref().map(|text| Frame::parse(text, self.measured)).transpose()
     }
 
     /// The options but for known positions.
@@ -223,7 +230,6 @@ impl Task<'_> {
         &self,
         mut calibration: Calibration<D>,
         truth: Truth<D>,
-        frame: Option<Frame<D>>,
         started: Instant,
     ) -> Result<(), Failure>
     where
@@ -243,7 +249,7 @@ impl Task<'_> {
                 unit = unit.map(|unit| unit.stretched(scale));
             }
         }
-        if let Some(frame) = frame {
+        if let Some(frame) = &self.frame {
             frame.apply(&mut calibration)?;
         }
         if let Some(path) = &arguments.svg {

@@ -1,19 +1,15 @@
-//! The frame that three nodes fix, in space four.
+//! The frame that three nodes fix, in space three or four.
 
 use tdoa::align::frame;
 use tdoa::{Calibration, Pseudoranges};
 
 use crate::Failure;
 
-/// The nodes of a frame: the origin, and those of [`tdoa::align::frame`].
-pub(crate) struct Frame<const D: usize> {
+/// The nodes of a frame: the origin, and those of [`tdoa::align::frame`]. Three of them fix one in space too, but for
+/// the side on which z is positive.
+pub(crate) struct Frame {
     origin: Node,
-    axes: [Node; D],
-}
-
-/// The dimensions of the frame that the nodes of these names fix, with commas between them.
-pub(crate) fn dimensions(text: &str) -> usize {
-    if text.split(',').count() > 3 { 3 } else { 2 }
+    axes: Vec<Node>,
 }
 
 /// A node by its place among the receivers or the transmitters.
@@ -23,12 +19,9 @@ enum Node {
     Transmitter(usize),
 }
 
-impl<const D: usize> Frame<D> {
+impl Frame {
     /// The nodes of these names, with commas between them.
-    pub(crate) fn parse(text: &str, measured: &Pseudoranges) -> Result<Frame<D>, Failure> {
-        let names: Vec<&str> = text.split(',').map(str::trim).collect();
-        let &[origin, ref axes @ ..] = names.as_slice() else { return Err(wrong::<D>(text)) };
-        let axes: &[&str; D] = axes.try_into().map_err(|_| wrong::<D>(text))?;
+    pub(crate) fn parse(text: &str, measured: &Pseudoranges) -> Result<Frame, Failure> {
         let find = |name: &str| -> Result<Node, Failure> {
             let place = |names: &[String]| names.iter().position(|other| other == name);
             place(measured.receiver_names())
@@ -42,43 +35,56 @@ impl<const D: usize> Frame<D> {
                     ))
                 })
         };
-        let origin = find(origin)?;
-        let mut nodes = [origin; D];
-        for (node, name) in nodes.iter_mut().zip(axes) {
-            *node = find(name)?;
+        let names: Vec<&str> = text.split(',').map(str::trim).collect();
+        if !(3..=4).contains(&names.len()) {
+            return Err(Failure::Unusable(format!(
+                "--frame needs three names of nodes, ORIGIN,XAXIS,UP, or four in space, ORIGIN,XAXIS,YSIDE,UP, not {text:?}"
+            )));
         }
-        Ok(Frame { origin, axes: nodes })
+        let axes = names[1..].iter().map(|name| find(name)).collect::<Result<_, _>>()?;
+        Ok(Frame { origin: find(names[0])?, axes })
     }
 
-    /// Moves a calibration into the frame.
-    pub(crate) fn apply(&self, calibration: &mut Calibration<D>) -> Result<(), Failure> {
-        let position = |node: Node| {
-            let position = match node {
+    /// Whether it has four nodes, which the plane has no use for.
+    pub(crate) fn is_spatial(&self) -> bool {
+        self.axes.len() == 3
+    }
+
+    /// Moves a calibration into the frame; with three nodes in space, z is positive on the side of most other nodes.
+    pub(crate) fn apply<const D: usize>(&self, calibration: &mut Calibration<D>) -> Result<(), Failure> {
+        let position = |node: &Node| {
+            let position = match *node {
                 Node::Receiver(i) => calibration.receivers[i],
                 Node::Transmitter(j) => calibration.transmitters[j],
             };
             let missing = || Failure::Undetermined("--frame: a node of the frame could not be located".to_string());
             position.ok_or_else(missing)
         };
-        let origin = position(self.origin)?;
+        let origin = position(&self.origin)?;
         let mut axes = [origin; D];
-        for (axis, node) in axes.iter_mut().zip(self.axes) {
+        for (axis, node) in axes.iter_mut().zip(&self.axes) {
             *axis = position(node)?;
         }
+        if D > self.axes.len() {
+            axes[D - 1] = side(calibration, origin, axes);
+        }
         let map = frame(origin, axes).ok_or_else(|| {
-            let what = if D == 2 { "three nodes lie in one line" } else { "four nodes lie in one plane" };
-            Failure::Undetermined(format!("--frame: the {what} or in one place; choose others"))
+            let count = if self.is_spatial() { "four nodes lie in one plane" } else { "three nodes lie in one line" };
+            Failure::Undetermined(format!("--frame: the {count} or in one place; choose others"))
         })?;
         calibration.transform(&map);
         Ok(())
     }
 }
 
-fn wrong<const D: usize>(text: &str) -> Failure {
-    let what = if D == 2 {
-        "three names of nodes, ORIGIN,XAXIS,UP"
-    } else {
-        "four names of nodes in space, ORIGIN,XAXIS,YSIDE,UP"
-    };
-    Failure::Unusable(format!("--frame needs {what}, not {text:?}"))
+/// A point above the plane of an origin and the first two points in space, on the side of the located nodes' centroid.
+fn side<const D: usize>(calibration: &Calibration<D>, origin: [f64; D], axes: [[f64; D]; D]) -> [f64; D] {
+    let away = |p: [f64; D], k: usize| p[k] - origin[k];
+    let up: [f64; D] = std::array::from_fn(|k| {
+        let (a, b) = ((k + 1) % D, (k + 2) % D);
+        away(axes[0], a) * away(axes[1], b) - away(axes[0], b) * away(axes[1], a)
+    });
+    let nodes = calibration.receivers.iter().chain(&calibration.transmitters).flatten();
+    let above: f64 = nodes.map(|p| (0..D).map(|k| away(*p, k) * up[k]).sum::<f64>()).sum();
+    std::array::from_fn(|k| origin[k] + up[k] * if above < 0.0 { -1.0 } else { 1.0 })
 }

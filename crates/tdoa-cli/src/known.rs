@@ -120,13 +120,28 @@ impl<const D: usize> Truth<D> {
     }
 }
 
-/// Known positions of receivers, and what is to be said of them.
-pub(crate) struct Anchors<const D: usize> {
-    /// Exact ones, in the order of the receivers.
-    pub(crate) exact: Positions<D>,
-    /// Those with a standard deviation or without some coordinate.
-    pub(crate) measured: Vec<MeasuredPosition<D>>,
-    pub(crate) note: Option<String>,
+/// Known positions: exact ones in the order of the receivers, and those with a standard deviation or without some
+/// coordinate.
+type Anchors<const D: usize> = (Positions<D>, Vec<MeasuredPosition<D>>);
+
+/// Refuses known positions of which the plane leaves much out, or that have no third coordinate for space.
+pub(crate) fn fit_dimension<const D: usize>(path: &Path, nodes: &Nodes) -> Result<(), Failure> {
+    if let Some([low, high]) = nodes.height_range().filter(|_| D == 2)
+        && high - low > FLAT * extent(nodes)
+    {
+        return Err(Failure::in_file(
+            path,
+            format!(
+                "the heights (z) of the anchors differ by {}, but the calibration is in a plane; give anchors at one height, leave out \
+                 the column z if the differences do not matter, or calibrate in space (--dimensions 3)",
+                length(high - low)
+            ),
+        ));
+    }
+    if D == 3 && nodes.nodes.iter().all(|node| node.position[2].is_none()) {
+        return Err(Failure::in_file(path, "has no z, which anchors in space need; add a column z"));
+    }
+    Ok(())
 }
 
 /// Known positions in a file. Where it has a column sigma, or std_x and std_y, each has standard
@@ -155,23 +170,7 @@ pub(crate) fn anchors<const D: usize>(
             format!("no receiver is named {}; they are {}", quoted(&unknown), some(receivers)),
         ));
     }
-    if let Some([low, high]) = nodes.height_range().filter(|_| D == 2)
-        && high - low > FLAT * extent(nodes)
-    {
-        return Err(Failure::in_file(
-            path,
-            format!(
-                "the heights (z) of the anchors differ by {}, but the calibration is in a plane; give anchors at one height, leave out \
-                 the column z if the differences do not matter, or calibrate in space (--dimensions 3)",
-                length(high - low)
-            ),
-        ));
-    }
-    if D == 3 && nodes.nodes.iter().all(|node| node.position[2].is_none()) {
-        return Err(Failure::in_file(path, "has no z, which anchors in space need; add a column z"));
-    }
-    let note = heights::<D>(path, nodes);
-    let mut found = Anchors { exact: vec![None; receivers.len()], measured: Vec::new(), note };
+    let (mut exact, mut deviating) = (vec![None; receivers.len()], Vec::new());
     for (i, receiver) in receivers.iter().enumerate() {
         let Some(node) = nodes.named(receiver) else { continue };
         let (mut position, mut sigma) = ([None; D], [0.0; D]);
@@ -196,17 +195,17 @@ pub(crate) fn anchors<const D: usize>(
             ));
         }
         match node.whole().filter(|_| sigma == [0.0; D]) {
-            Some(whole) => found.exact[i] = Some(whole),
+            Some(whole) => exact[i] = Some(whole),
             None => {
                 for (sigma, position) in sigma.iter_mut().zip(position) {
                     // A coordinate that is not known has no deviation.
                     *sigma = if position.is_some() { *sigma } else { 0.0 };
                 }
-                found.measured.push(MeasuredPosition { receiver: i, position, sigma });
+                deviating.push(MeasuredPosition { receiver: i, position, sigma });
             }
         }
     }
-    Ok(found)
+    Ok((exact, deviating))
 }
 
 /// The columns of a position.
@@ -215,7 +214,7 @@ fn axes<const D: usize>() -> &'static str {
 }
 
 /// Warns that heights are left out of the plane, where there are any.
-fn heights<const D: usize>(path: &Path, nodes: &Nodes) -> Option<String> {
+pub(crate) fn heights<const D: usize>(path: &Path, nodes: &Nodes) -> Option<String> {
     let [low, high] = nodes.height_range().filter(|range| D == 2 && *range != [0.0; 2])?;
     let range = if low == high { length(low) } else { format!("{} to {}", length(low), length(high)) };
     let flat = high - low <= FLAT * extent(nodes);

@@ -4,6 +4,8 @@ use std::array::from_fn;
 
 use faer::{Mat, Side};
 
+use crate::align::{Transform, frame};
+use crate::network::Network;
 use crate::points::{centroid, dot, minus};
 
 /// Ratio of the standard deviations of nodes across and along, below which they lie nearly in one line, or
@@ -60,6 +62,35 @@ impl<const D: usize> Plane<D> {
         let height = self.height(p);
         from_fn(|k| p[k] - 2.0 * height * self.normal[k])
     }
+}
+
+/// The rigid motion after which the receivers of a network lie about z = 0 and its transmitters about a plane z =
+/// constant; `None` where the nodes do not tell a plane, and in the plane.
+///
+/// The plane may be that of the receivers, of the transmitters, or of both: it is the one above which normal heights
+/// are likeliest. Transmitters on both sides of a table have a plane of their own that is another one.
+pub(crate) fn levelled<const D: usize>(network: &Network<D>) -> Option<Transform<D>> {
+    let centred = |points: &[[f64; D]]| {
+        let centre = centroid(points.iter());
+        points.iter().map(|p| minus(*p, centre)).collect::<Vec<_>>()
+    };
+    let (receivers, transmitters) = (centred(&network.receivers), centred(&network.transmitters));
+    let all = [receivers.as_slice(), &transmitters].concat();
+    if D != 3 {
+        return None;
+    }
+    let least = FLAT * FLAT * network.size();
+    let of_heights = |points: &[[f64; D]], normal: [f64; D]| {
+        let squares = points.iter().map(|p| dot(*p, normal).powi(2)).sum::<f64>();
+        points.len() as f64 * (squares / points.len().max(1) as f64).sqrt().max(least).ln()
+    };
+    let tells = |points: &&Vec<[f64; D]>| points.len() > D && slenderness(points) >= FLAT;
+    let planes = [&all, &receivers, &transmitters].into_iter().filter(tells).filter_map(|points| axes(points));
+    let misfit = |axes: &[[f64; D]; D]| of_heights(&receivers, axes[0]) + of_heights(&transmitters, axes[0]);
+    let best = planes.map(|(_, axes)| axes).min_by(|a, b| misfit(a).total_cmp(&misfit(b)))?;
+    let centre = centroid(network.receivers.iter());
+    // The shortest axis comes first.
+    frame(centre, from_fn(|k| from_fn(|a| centre[a] + best[D - 1 - k][a])))
 }
 
 /// Standard deviation of points along the axis on which they stretch second farthest, and that axis. `None`

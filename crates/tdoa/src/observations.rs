@@ -25,10 +25,17 @@ impl Observation {
     }
 }
 
-/// A coordinate of a receiver that was measured by itself.
+/// A node by its place among those of its kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Node {
+    Receiver(usize),
+    Transmitter(usize),
+}
+
+/// A coordinate of a node that was measured by itself, or that is expected to be near a value.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pin {
-    pub(crate) receiver: usize,
+    pub(crate) node: Node,
     /// 0 for x, 1 for y, 2 for z.
     pub(crate) axis: usize,
     /// Metres.
@@ -42,7 +49,11 @@ impl Pin {
     /// Residual, comparable with those of the measurements.
     #[inline]
     pub(crate) fn residual<const D: usize>(&self, network: &Network<D>) -> f64 {
-        (self.value - network.receivers[self.receiver][self.axis]) * self.precision
+        let position = match self.node {
+            Node::Receiver(i) => network.receivers[i],
+            Node::Transmitter(j) => network.transmitters[j],
+        };
+        (self.value - position[self.axis]) * self.precision
     }
 }
 
@@ -152,12 +163,12 @@ impl<const D: usize> Observations<D> {
         Observations { held: held.to_vec(), ..self }
     }
 
-    /// These measurements, and coordinates of receivers.
+    /// These measurements, and coordinates of nodes.
     pub(crate) fn pinned(self, pins: &[Pin]) -> Self {
         Observations { pins: pins.to_vec(), ..self }
     }
 
-    /// Coordinates of receivers that were measured by themselves.
+    /// Coordinates of nodes that were measured by themselves.
     pub(crate) fn pins(&self) -> &[Pin] {
         &self.pins
     }
@@ -179,7 +190,18 @@ impl<const D: usize> Observations<D> {
 
     /// Whether nothing says where the network lies as a whole.
     pub(crate) fn leave_rigid_motions(&self) -> bool {
-        self.pins.is_empty() && !self.held.contains(&true)
+        self.rigid_motions() > 0
+    }
+
+    /// Dimension of the rigid motions that nothing hinders: all where no place is known, those along the plane
+    /// where heights above it are.
+    pub(crate) fn rigid_motions(&self) -> usize {
+        let in_the_plane = self.pins.iter().all(|pin| pin.axis == 2);
+        match (self.held.contains(&true), self.pins.is_empty()) {
+            (false, true) => D * (D + 1) / 2,
+            (false, false) if in_the_plane => 3,
+            _ => 0,
+        }
     }
 
     /// All of them, transmitter by transmitter.
@@ -208,7 +230,8 @@ impl<const D: usize> Observations<D> {
     pub(crate) fn unknowns(&self) -> usize {
         let held = self.held.iter().filter(|&&held| held).count();
         let loose = D.saturating_sub(held);
-        let known = D * held + self.pins.len().max(loose * (loose + 1) / 2);
+        let measured = self.pins.len() + if self.pins.is_empty() { 0 } else { self.rigid_motions() };
+        let known = D * held + measured.max(loose * (loose + 1) / 2);
         (D * self.receivers + (D + 1) * self.transmitters).saturating_sub(known) + self.other_unknowns
     }
 }
@@ -233,7 +256,7 @@ mod tests {
     #[test]
     fn unknowns_are_positions_and_offsets_less_what_is_given() {
         let f = Pseudoranges::new(4, 2, vec![1.0; 8]).unwrap();
-        let pin = |receiver, axis| Pin { receiver, axis, value: 0.0, precision: 1.0 };
+        let pin = |receiver, axis| Pin { node: Node::Receiver(receiver), axis, value: 0.0, precision: 1.0 };
         fn left<const D: usize>(f: &Pseudoranges, held: usize, pins: &[Pin]) -> usize {
             let held: Vec<bool> = (0..4).map(|i| i < held).collect();
             Observations::<D>::new(f, |_, _| true).holding(&held).pinned(pins).unknowns()

@@ -114,14 +114,24 @@ pub fn deviation<const D: usize>(calibration: &Calibration<D>) -> String {
 pub(crate) fn choice<const D: usize>(calibration: &Calibration<D>) -> Option<String> {
     let place = space(D);
     let Some(test) = calibration.dimension_test else { return (D > 2).then(|| place.to_string()) };
-    Some(match (test.gain, test.needed) {
-        (Some(gain), Some(needed)) => format!(
-            "{place}: heights make the measurements more likely by {} (natural logarithm), chance by up to {}",
-            number(gain, 3),
-            number(needed, 3)
-        ),
-        (Some(_), None) => format!("{place}: too few measurements are left over in space to tell heights from chance"),
-        (None, _) => format!("{place}: too few measurements to look for heights"),
+    Some(match test.evidence {
+        Some(evidence) if evidence > 0.0 => {
+            format!("{place}: heights make the measurements more likely by {} (natural logarithm)", number(evidence, 3))
+        }
+        Some(evidence) => {
+            format!(
+                "{place}: heights make the measurements less likely, by {} (natural logarithm)",
+                number(-evidence, 3)
+            )
+        }
+        None => match test.gain.zip(test.needed) {
+            Some((gain, needed)) => format!(
+                "{place}: the best heights make the measurements more likely by {} (natural logarithm), chance by up to {}",
+                number(gain, 3),
+                number(needed, 3)
+            ),
+            None => format!("{place}: too few measurements to look for heights"),
+        },
     })
 }
 

@@ -159,7 +159,8 @@ fn unusable_knowledge_is_refused() {
     says(&["--anchors", text(&write("b.csv", "name,x,y\nr1,1,2\nr1,1,2\n"))], &["r1 is there twice"]);
     says(&["--anchors", text(&write("c.csv", "1,2\n3,4\n"))], &["name,x,y"]);
     says(&["--anchors", text(&write("d.csv", "name,x,y\nr1,1e300,2\nr2,1,1\n"))], &["r1", "too large"]);
-    says(&["--anchors", text(&write("g.csv", "name,x,y,z\nr1,1,2,0\nr2,,,0\n"))], &["r2 has neither x nor y"]);
+    let of_height = write("g.csv", "name,x,y,z\nr1,1,2,0\nr2,,,0\n");
+    says(&["--dimensions", "2", "--anchors", text(&of_height)], &["r2 has neither x nor y"]);
     says(&["--distances", text(&known)], &["--estimate-speed"]);
     let distances = |content: &str, parts: &[&str]| {
         says(&["--estimate-speed", "--distances", text(&write("e.csv", content))], parts);

@@ -112,7 +112,7 @@ fn the_report_says_where_it_comes_from() {
     let year: i32 = entry(&page, "Date")[..4].parse().expect("year");
     assert!(year >= 2024 && entry(&page, "Time taken").ends_with(" s"), "{year}");
     let chosen = entry(&page, "Dimensions");
-    assert!(chosen.starts_with("in the plane: heights make the measurements more likely by "), "{chosen}");
+    assert!(chosen.starts_with("in the plane: heights make the measurements less likely, by "), "{chosen}");
     // A date that is none is refused before the work begins.
     let (status, said, _) = report(&[], Some("yesterday"));
     assert!(status == Some(2) && said.contains("SOURCE_DATE_EPOCH"), "{said}");

@@ -81,9 +81,11 @@ class Calibration:
     dimensions : int
         d: 2 in the plane, 3 in space.
     dimension_test : dict or None
-        Where the measurements decided between plane and space: `gain`, by how much they are more likely in space (natural
-        logarithm), and `needed`, the gain that space needed; None in place of a number that there is not, as where the measurements
-        are too few for space. None where dimensions or anchors decided.
+        Where the measurements decided between plane and space: `gain`, by how much they are more likely in the best network in space
+        (natural logarithm), `needed`, what chance gains at most, and `evidence`, by how much they are more likely in space over all
+        networks, below zero for the plane, and `change`, by how many standard deviations of a measurement the likeliest heights
+        change the distances; None in place of a number that there is not, as where the measurements are too few for
+        space. None where `dimensions` or heights of anchors decided.
     systematic : dict or None
         Systematic errors, which all measurements of a receiver share: `deviation` in metres, `gain` (natural logarithm), whether they are
         `significant`, and the `factor` by which standard deviations of the receivers grow. None where fewer than ten measurements

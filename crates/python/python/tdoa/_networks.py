@@ -54,12 +54,10 @@ def _anchors(anchors, names, count):
 
 
 def _dimensions(dimensions, rows):
-    """2 or 3, as asked for or as known positions have it; None where the measurements are to decide."""
+    """2 or 3, as asked for or as heights of known positions have it; None where the measurements are to decide."""
     heights = rows[~np.isnan(rows[:, 2]), 2]
     if _is(dimensions, "auto"):
-        if np.isnan(rows).all():
-            return None
-        return 3 if (heights != heights[:1]).any() else 2
+        return 3 if (heights != heights[:1]).any() else None
     if _is(dimensions, 3):
         if len(heights) == 0 and not np.isnan(rows).all():
             raise InputError("anchors in space need x, y and z, not x and y alone; add z, or leave out dimensions=3")
@@ -149,8 +147,7 @@ def calibrate(
         Propagation speed in metres a second that makes metres of times in seconds; sound in air: 343, radio: 299792458.
     dimensions : {"auto", 2, 3}
         Whether the network is sought in the plane (d = 2) or in space (d = 3). "auto": in space where anchors have different
-        heights, in the plane with other anchors; without anchors where the measurements support a third coordinate, and
-        `dimension_test` of the result says how clearly.
+        heights, otherwise as the measurements have it, and `dimension_test` of the result says how clearly.
     anchors : array_like of shape (m, 2) or (m, 3), or dict of name to (x, y) or (x, y, z), optional
         Known positions of some receivers in metres, NaN where unknown: they fix the frame, and two or more, in space three or more,
         are held there. Some coordinates may be NaN, beside two (three) receivers with all. In the plane z is left out; heights
@@ -213,7 +210,7 @@ def calibrate(
     receivers, count = given["receivers"], len(given["values"])
     rows = _anchors(anchors, receivers, count)
     d = _dimensions(dimensions, rows)
-    exact, measured = _known(rows[:, : d or 3], anchor_sigma, receivers, anchors is not None and d is not None)
+    exact, measured = _known(rows[:, : d or 3], anchor_sigma, receivers, anchors is not None)
     settings = {
         "dimensions": d,
         "sigma": single,

@@ -28,8 +28,8 @@ pub(crate) struct Arguments {
     #[arg(long, allow_negative_numbers = true)]
     pub(super) sigma: Option<f64>,
     /// Whether the network is sought in the plane or in space. `auto`: in space where anchors have
-    /// different heights or --frame names four nodes; without these, where the measurements support a
-    /// third coordinate (likelihood ratio), and says so.
+    /// different heights or --frame names four nodes; without these, unless the measurements are more likely
+    /// in the plane, and says so.
     #[arg(long, value_enum, default_value = "auto")]
     pub(super) dimensions: Dimensions,
     /// Fits a common scale when comparing with --truth and presents the network with it (the
@@ -61,7 +61,8 @@ pub(crate) struct Arguments {
     #[arg(long)]
     pub(super) estimate_speed: bool,
     /// Puts the node ORIGIN at (0, 0), XAXIS on the positive x axis and UP above it; in space
-    /// ORIGIN,XAXIS,YSIDE,UP, with YSIDE in the plane of x and y.
+    /// ORIGIN,XAXIS,YSIDE,UP, with YSIDE in the plane of x and y, or the first three of these, with z positive
+    /// on the side of most nodes.
     #[arg(long, value_name = "ORIGIN,XAXIS,UP")]
     pub(super) frame: Option<String>,
     /// True positions of receivers (columns name, x, y and, in space, z, or rgt in a .mat file) to compare with:

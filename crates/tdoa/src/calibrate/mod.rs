@@ -14,7 +14,7 @@ mod unfinished;
 
 pub use entry::{Calibrates, Dimension, calibrate, calibrate_with};
 pub use input::anchors::SpeedEstimate;
-pub use judge::dimension_test::DimensionTest;
+pub use judge::dimension_test::{DimensionTest, PlaneDistances};
 pub use judge::dimensions::{Calibrated, CalibratedError, calibrate_either};
 pub use judge::mirror_images::MirrorImage;
 pub use options::{

@@ -97,7 +97,8 @@ pub struct CalibrateOptions<const D: usize = 2> {
     /// (natural logarithm). Default 8.
     pub alternative_margin: f64,
     /// The data are said not to fit a network in the plane, or in space, above this ratio of the residuals' deviation to the network's
-    /// size (root mean square distance of the receivers from their centroid). Default 0.04.
+    /// size (root mean square distance of the receivers from their centroid), unless they are as large as the deviation that is given.
+    /// Default 0.04.
     pub planar_limit: f64,
     /// Known positions of receivers in metres, in the order of the receivers, `None` if unknown.
     /// They fix the frame. If they are in at least two places, the receivers are held there in the

@@ -1,6 +1,7 @@
 //! A calibration on its way from one step to the next.
 
 use crate::calibrate::input::anchors::{Anchors, SpeedEstimate};
+use crate::calibrate::judge::dimension_test::{DimensionTest, PlaneDistances};
 use crate::calibrate::judge::neighbours::Neighbour;
 use crate::calibrate::options::CalibrateOptions;
 use crate::calibrate::receivers::errors::Fault;
@@ -39,6 +40,10 @@ pub(crate) struct State<'a, const D: usize> {
     pub(crate) left: Vec<Fault<D>>,
     /// Known positions of receivers.
     pub(crate) anchors: Option<Anchors<D>>,
+    /// How far nodes lie from their plane in space, where the measurements hardly tell it.
+    pub(crate) plane_distances: Option<PlaneDistances>,
+    /// What measurements in space say of heights.
+    pub(crate) dimension_test: DimensionTest,
     /// The propagation speed, if it was to be estimated.
     pub(crate) speed: Option<SpeedEstimate>,
     /// How far the known positions are from where the measurements put these receivers, root mean
@@ -72,6 +77,8 @@ impl<'a, const D: usize> State<'a, D> {
             taken: Vec::new(),
             left: Vec::new(),
             anchors: None,
+            plane_distances: None,
+            dimension_test: DimensionTest::default(),
             speed: None,
             contradiction: None,
             warnings: Vec::new(),

@@ -55,6 +55,7 @@ fn steps<const D: usize>(
     state.so_far = Some(Unfinished::of(&best.network, state.starts, best.starts));
     state.clear()?;
     state.hold(&input.usable)?;
+    state.level()?;
     check(state.monitor)?;
     if state.anchors.is_some() {
         // They were found without the known positions.

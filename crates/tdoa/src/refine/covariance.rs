@@ -89,7 +89,7 @@ pub(super) fn reduced<'a, const D: usize>(
         return Ok(None);
     }
     // Eigenvalues ascend; the smallest, three or in space six, belong to the rigid motions.
-    let rigid = if observations.leave_rigid_motions() { D * (D + 1) / 2 } else { 0 };
+    let rigid = observations.rigid_motions();
     let zero = (0..free.len()).filter(|&k| values[k] < RANK_TOLERANCE * largest).count().max(rigid);
     let mut scaled = modes.clone();
     for (k, value) in values.iter().enumerate().skip(zero) {

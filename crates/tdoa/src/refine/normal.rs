@@ -20,7 +20,7 @@ use super::cancel::{Cancelled, apart, check};
 use crate::bordered::{Bordered, Placed};
 use crate::loss::Loss;
 use crate::network::Network;
-use crate::observations::Observations;
+use crate::observations::{Node, Observations};
 use crate::points::{dot, minus};
 
 /// A transmitter that at most one in this many receivers hear is eliminated from their blocks alone.
@@ -130,9 +130,18 @@ impl<const D: usize> Normal<D> {
         for (pin, &e) in observations.pins().iter().zip(&residuals[observations.len()..]) {
             let (weight, e) = pin_terms(e);
             let we = weight * pin.precision;
-            let (rows, gradient) = &mut self.receiver_blocks[pin.receiver];
-            rows[pin.axis][pin.axis] += we * pin.precision;
-            gradient[pin.axis] += we * e;
+            match pin.node {
+                Node::Receiver(i) => {
+                    let (rows, gradient) = &mut self.receiver_blocks[i];
+                    rows[pin.axis][pin.axis] += we * pin.precision;
+                    gradient[pin.axis] += we * e;
+                }
+                Node::Transmitter(j) => {
+                    let (block, placed) = &mut self.transmitter_blocks[j];
+                    block.rows[pin.axis][pin.axis] += we * pin.precision;
+                    placed.0[pin.axis] += we * e;
+                }
+            }
         }
     }
 

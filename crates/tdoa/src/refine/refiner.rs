@@ -22,6 +22,9 @@ pub(crate) const SEARCH: RefineOptions = RefineOptions {
     tolerance: 1e-5,
 };
 
+/// Share of the diagonal that stands for equations of rigid motions in determinants.
+const RIGID: f64 = 1e-9;
+
 /// How to refine.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct RefineOptions {
@@ -156,6 +159,16 @@ impl<'a, const D: usize> NetworkRefiner<'a, D> {
         descent.normal.linearise(self.observations, network, &descent.residuals, loss);
         descent.normal.reduce(self.observations, 0.0, &self.monitor)?;
         Ok(&descent.normal)
+    }
+
+    /// Logarithm of the determinant of the normal equations of least squares at `network`. What rigid motions add
+    /// hardly depends on the network. `None` if the equations are singular.
+    pub(crate) fn log_determinant_at(&mut self, network: &Network<D>) -> Result<Option<f64>, Cancelled> {
+        let descent = &mut self.descent;
+        descent.look(network);
+        let loss = Loss { nu: f64::INFINITY, scale: 1.0 };
+        descent.normal.linearise(self.observations, network, &descent.residuals, &loss);
+        descent.normal.log_determinant(self.observations, RIGID, &self.monitor)
     }
 
     /// Those equations again.

@@ -9,7 +9,7 @@ use crate::calibrate::options::{CalibrateError, CalibrateOptions, KnownDistance,
 use crate::degeneracy::Usable;
 use crate::flatness::flatness;
 use crate::network::Network;
-use crate::observations::Pin;
+use crate::observations::{Node, Pin};
 use crate::points::{centroid, distance, minus, trace};
 use crate::pseudoranges::{MAX_MAGNITUDE, Pseudoranges};
 use crate::refine::RefinedNetwork;
@@ -264,7 +264,7 @@ impl<const D: usize> Anchors<D> {
         let pins = self.measured.iter().flat_map(|known| {
             let pin = move |axis: usize| {
                 let (value, precision) = (known.position[axis]?, deviation / known.sigma[axis]);
-                Some(Pin { receiver: known.receiver, axis, value, precision })
+                Some(Pin { node: Node::Receiver(known.receiver), axis, value, precision })
             };
             (0..D).filter_map(pin)
         });

@@ -1,22 +1,20 @@
-//! Whether a network is flat: a calibration in the plane and one in space, compared by the likelihood of
-//! the measurements.
+//! Whether a network is flat: a calibration in the plane and one in space, compared by how likely they make the
+//! measurements.
 
-use crate::calibrate::entry::calibrate_with;
 use crate::calibrate::input::anchors;
 use crate::calibrate::judge::dimension_test::DimensionTest;
-use crate::calibrate::options::{
-    CalibrateError, CalibrateOptions, Errors, MeasuredPosition, ReceiverDelays, SearchOptions,
-};
+use crate::calibrate::judge::explained::explained_by_errors;
+use crate::calibrate::judge::known_heights::{KnownHeights, in_plane};
+use crate::calibrate::judge::lifted::{LIFTED, Lifted, Raised};
+use crate::calibrate::options::{CalibrateError, CalibrateOptions, Errors, ReceiverDelays, SearchOptions};
 use crate::calibrate::report::calibration::Calibration;
-use crate::calibrate::search::hypotheses::{Hypotheses, generator};
+use crate::calibrate::search::hypotheses::Hypotheses;
 use crate::calibrate::search::truncated_cost::truncated;
+use crate::calibrate::steps::calibrate_with;
+use crate::flatness::{FLAT, slenderness};
 use crate::points::spread;
 use crate::pseudoranges::Pseudoranges;
-use crate::quantity::number;
-use crate::refine::PartialNetwork;
 use hc::Monitor;
-use rand::RngExt;
-use rand_distr::StandardNormal;
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
 use thiserror::Error;
 
@@ -28,17 +26,10 @@ const QUANTILE: f64 = 1.0 - 1e-4;
 /// on 20 to 30 planar networks of six kinds; `tdoa experiment dimension` counts).
 const BENT: f64 = 2.0;
 
-/// A network in space takes the place of a planar one that fits only if it gains so many times what is
-/// needed: heights explain late measurements too.
-const OVERWHELMING: f64 = 4.0;
-
 /// Starts of the search in the plane, before one in space tells whether more are worth it.
 const FIRST_STARTS: usize = 96;
 
-/// Starts in space from the planar network, and their heights as shares of its size.
-const LIFTED: [f64; 6] = [0.03, 0.1, 0.3, 0.03, 0.1, 0.3];
-
-/// Residuals count in this share of the network's size at least: exact measurements have no noise.
+/// Deviations of measurements are at least this share of the network's size: exact ones have no noise.
 const LEAST_DEVIATION: f64 = 1e-6;
 
 /// A network whose dimension was chosen by its measurements.
@@ -61,15 +52,15 @@ pub enum CalibratedError {
     Space(#[from] CalibrateError<3>),
 }
 
-/// Calibrates in the plane, or in space where the measurements support a third coordinate.
+/// Calibrates in space, or in the plane where the measurements do not need a third coordinate.
 ///
-/// Known positions decide: where their heights differ the network is in space, else in the plane. Without
-/// any, it is in space if one there fits and the planar network does not, or if the measurements are far
-/// more likely in space. What is needed is twice the 99.99 % quantile of what as many unknowns of a linear
-/// model gain by chance (likelihood ratio; of F, or of chi-squared where the deviation is given). A gain of
-/// that much is told in a warning, one of four times that takes the place of a planar network that fits.
-/// Errors of receivers that the planar network shows are no reason for heights.
-/// [`Calibration::dimension_test`] has the numbers. `options.seed` and the rest are for both.
+/// Known positions of different heights are in space. Otherwise the measurements decide, whatever the height of known
+/// positions; known positions without heights are for the plane, which is not unique where the measurements ask for
+/// space. How they decide: heights above the plane have
+/// a normal distribution in space, whose deviation comes from the measurements, and the plane is reported where the
+/// measurements are more likely in it than in space, over all networks ([`Calibration::dimension_test`]). Where they
+/// are at most ten times as likely in one as in the other, or too few for space, no network is called unique. Errors
+/// of receivers that the planar network shows are no reason for heights. `options.seed` and the rest are for both.
 ///
 /// ```
 /// use tdoa::{CalibrateOptions, SimulateOptions, calibrate::{Calibrated, calibrate_either}, simulate};
@@ -83,38 +74,92 @@ pub enum CalibratedError {
 /// ```
 ///
 /// # Errors
-/// Those of [`calibrate_with`], of the calibration that failed or was stopped.
+/// Those of [`calibrate_with`](crate::calibrate::calibrate_with), of the calibration that failed or was stopped.
 pub fn calibrate_either(
     measured: &Pseudoranges,
     options: &CalibrateOptions<3>,
     monitor: &Monitor,
 ) -> Result<Calibrated, CalibratedError> {
-    anchors::validate(measured, options)?;
-    let plane = in_plane(options);
-    if has_heights(options) {
-        return Ok(Calibrated::Space(calibrate_with(measured, options, &[], monitor)?));
+    let heights = KnownHeights::of(options);
+    if heights == KnownHeights::Different {
+        // Nobody asked.
+        let found = calibrate_with(measured, options, &[], monitor)?;
+        return Ok(Calibrated::Space(Calibration { dimension_test: None, ..found }));
     }
-    if options.anchors.iter().any(Option::is_some) || !options.positions.is_empty() {
-        return Ok(Calibrated::Plane(calibrate_with(measured, &plane, &[], monitor)?));
+    if options.anchors.iter().all(Option::is_none) && options.positions.is_empty() {
+        return choose(measured, options, monitor);
     }
+    let plane = in_plane(options, measured.receivers());
+    anchors::validate(measured, &plane)?;
+    // Positions at one height say where these nodes are, and not that all others are there.
+    let free =
+        CalibrateOptions { anchors: Vec::new(), positions: Vec::new(), estimate_speed: false, ..options.clone() };
+    let test = match choose(measured, &free, monitor)? {
+        Calibrated::Space(chosen) if heights == KnownHeights::One => {
+            let found = calibrate_with(measured, options, &[], monitor)?;
+            return Ok(Calibrated::Space(Calibration { dimension_test: chosen.dimension_test, ..found }));
+        }
+        Calibrated::Space(chosen) => chosen.dimension_test,
+        Calibrated::Plane(chosen) => chosen.dimension_test,
+    };
+    let mut found = calibrate_with(measured, &plane, &[], monitor)?;
+    let test = test.unwrap_or_default();
+    if test.is_space() {
+        found.dimension_test = Some(test);
+        found.call_not_unique(
+            "the measurements ask for space, but the known positions have x and y alone; give z, one height for all if they have it".into(),
+        );
+    } else {
+        doubt(&mut found, test);
+    }
+    Ok(Calibrated::Plane(found))
+}
+
+/// [`calibrate_either`] without known positions.
+fn choose(
+    measured: &Pseudoranges,
+    options: &CalibrateOptions<3>,
+    monitor: &Monitor,
+) -> Result<Calibrated, CalibratedError> {
+    let plane = in_plane(options, measured.receivers());
     let mut first = plane.clone();
     first.search.max_starts = plane.search.max_starts.min(FIRST_STARTS.max(plane.search.min_starts));
     let mut flat = calibrate_with(measured, &first, &[], monitor)?;
     let settled = first.search.max_starts == plane.search.max_starts || flat.starts < first.search.max_starts;
-    if settled && flat.fits && flat.unique_receivers {
-        let test = lifted(measured, options, &flat, monitor)?.map(|lifted| compare(measured, &flat, &lifted, options));
-        if test.is_none_or(|test| !test.supports(1.0)) {
-            flat.dimension_test = Some(test.unwrap_or(DimensionTest::UNTRIED));
-            return Ok(Calibrated::Plane(flat));
-        }
+    let raised = lifted(measured, options, &flat, monitor)?;
+    let mut test =
+        raised.as_ref().map_or_else(DimensionTest::default, |raised| compare(measured, &flat, raised, options));
+    if settled && flat.fits && flat.unique_receivers && !test.is_space() {
+        doubt(&mut flat, test);
+        return Ok(Calibrated::Plane(flat));
     }
-    let whole = unless_stopped(calibrate_with(measured, options, &[], monitor))?;
-    let mut test = DimensionTest::UNTRIED;
-    if let Some(mut whole) = whole {
-        let cleared = cleared(measured, &first, &flat, monitor)?;
-        let judged = cleared.as_ref().unwrap_or(&flat);
-        test = compare(measured, judged, &whole, options);
-        if whole.fits && (test.supports(OVERWHELMING) || !judged.fits) {
+    let raised = raised.map(Raised);
+    let sources: Vec<&dyn Hypotheses<3>> = raised.iter().map(|source| source as &dyn Hypotheses<3>).collect();
+    if let Some(mut whole) = unless_stopped(calibrate_with(measured, options, &sources, monitor))? {
+        let otherwise = otherwise_cleared(measured, &first, &flat, monitor)?;
+        let takes_out = first.receiver_delays == ReceiverDelays::Auto;
+        // With the errors of receivers, and without.
+        let [bent, judged] = match &otherwise {
+            Some(otherwise) if takes_out => [otherwise, &flat],
+            Some(otherwise) => [&flat, otherwise],
+            None => [&flat; 2],
+        };
+        let found = compare(measured, judged, &whole, options);
+        // What fits best need not be likeliest: a few heights may say about what many do.
+        let likelier = if found.evidence >= test.evidence { found } else { test };
+        if let Some(Raised(first)) = raised.filter(|Raised(first)| first.determined && test.is_likelier_than(&found)) {
+            whole = first;
+            whole.call_not_unique(
+                "another network fits the measurements more closely, with heights that are less likely".into(),
+            );
+        }
+        let explained = otherwise.as_ref().map_or(0.0, |_| explained_by_errors(measured, bent, judged));
+        let evidence = likelier.evidence.map(|evidence| evidence - explained);
+        test = DimensionTest { evidence, change: likelier.change, ..found };
+        if whole.fits && (test.is_space() || !judged.fits) {
+            if test.leaves_both() && judged.fits {
+                whole.call_not_unique("the measurements are nearly as likely in the plane as in space".into());
+            }
             whole.dimension_test = Some(test);
             return Ok(Calibrated::Space(whole));
         }
@@ -122,30 +167,61 @@ pub fn calibrate_either(
     if !settled {
         flat = calibrate_with(measured, &plane, &[], monitor)?;
     }
-    if let (true, Some(gain)) = (test.supports(1.0), test.gain) {
-        flat.warnings.push(format!(
-            "the measurements are more likely in space (by {} in the natural logarithm), which heights may explain or errors that nearly \
-             all lengthen; --dimensions 3 gives the network there",
-            number(gain, 3)
-        ));
-    }
-    flat.dimension_test = Some(test);
+    doubt(&mut flat, test);
     Ok(Calibrated::Plane(flat))
 }
 
-/// The planar network without the errors that receivers show in it; `None` if it shows none or they are
-/// taken out already.
-fn cleared(
+/// Says of a planar network what speaks for space.
+fn doubt(flat: &mut Calibration, test: DimensionTest) {
+    flat.dimension_test = Some(test);
+    if test.needed.is_none() {
+        flat.call_not_unique(
+            "the measurements are too few to tell whether all nodes lie in one plane, as this network has it; --dimensions 2 says that they \
+             do"
+            .into(),
+        );
+    } else if test.leaves_both() || test.is_space() {
+        flat.call_not_unique(
+            "the measurements do not tell whether all nodes lie in one plane, as this network has it; --dimensions 2 says that they do, \
+             --dimensions 3 gives the network in space"
+                .into(),
+        );
+    }
+    let is_line = |nodes: &[Option<[f64; 2]>]| slenderness(&nodes.iter().flatten().copied().collect::<Vec<_>>()) < FLAT;
+    if is_line(&flat.transmitters) {
+        flat.determined = false;
+        flat.call_not_unique(
+            "the transmitters lie in one line, about which each receiver may be turned out of this plane, and fits as well; move some \
+             transmitters off the line, or say with --dimensions 2 that all nodes lie in one plane"
+                .into(),
+        );
+    } else if is_line(&flat.receivers) {
+        flat.call_not_unique(
+            "the receivers lie in one line, about which each transmitter may be turned out of this plane, and fits as well; move some \
+             receivers off the line, or say with --dimensions 2 that all nodes lie in one plane"
+                .into(),
+        );
+    }
+}
+
+/// The planar network without the errors that receivers show in it, or with them where they are taken out; `None` if it
+/// shows none.
+fn otherwise_cleared(
     measured: &Pseudoranges,
     options: &CalibrateOptions,
     flat: &Calibration,
     monitor: &Monitor,
 ) -> Result<Option<Calibration>, CalibrateError> {
-    if flat.receiver_errors.iter().all(|error| error.taken_out) || options.errors == Errors::OneSided {
+    if flat.receiver_errors.is_empty() || options.errors == Errors::OneSided {
         return Ok(None);
     }
-    let options = CalibrateOptions { receiver_delays: ReceiverDelays::Auto, ..options.clone() };
-    unless_stopped(calibrate_with(measured, &options, &[], monitor))
+    let receiver_delays = match options.receiver_delays {
+        ReceiverDelays::None => ReceiverDelays::Auto,
+        ReceiverDelays::Auto => ReceiverDelays::None,
+        // Errors of all are no doubt of one.
+        ReceiverDelays::All => return Ok(None),
+    };
+    unless_stopped(calibrate_with(measured, &CalibrateOptions { receiver_delays, ..options.clone() }, &[], monitor))
 }
 
 /// A calibration if there is one; stopping is an error, failing is none.
@@ -156,58 +232,6 @@ fn unless_stopped<const D: usize>(
         Ok(found) => Ok(Some(found)),
         Err(error @ CalibrateError::Cancelled(_)) => Err(error),
         Err(_) => Ok(None),
-    }
-}
-
-/// Whether known positions have different heights.
-fn has_heights(options: &CalibrateOptions<3>) -> bool {
-    let exact = options.anchors.iter().flatten().map(|p| Some(p[2]));
-    let measured = options.positions.iter().map(|known| known.position[2]);
-    let mut all = exact.chain(measured).flatten();
-    let first = all.next();
-    all.any(|z| Some(z) != first)
-}
-
-/// Options for the plane with these values. All fields are named, so that none is forgotten.
-fn in_plane(options: &CalibrateOptions<3>) -> CalibrateOptions {
-    let position = |known: &MeasuredPosition<3>| {
-        let ([x, y, _], [of_x, of_y, _]) = (known.position, known.sigma);
-        MeasuredPosition { receiver: known.receiver, position: [x, y], sigma: [of_x, of_y] }
-    };
-    CalibrateOptions {
-        sigma: options.sigma,
-        seed: options.seed,
-        search: options.search,
-        inlier_threshold: options.inlier_threshold,
-        alternative_margin: options.alternative_margin,
-        planar_limit: options.planar_limit,
-        anchors: options.anchors.iter().map(|p| p.map(|[x, y, _]| [x, y])).collect(),
-        positions: options.positions.iter().map(position).collect(),
-        receiver_delays: options.receiver_delays,
-        errors: options.errors,
-        distances: options.distances.clone(),
-        estimate_speed: options.estimate_speed,
-    }
-}
-
-/// Starts in space from a planar network.
-struct Lifted<'a> {
-    flat: &'a Calibration,
-    size: f64,
-}
-
-impl Hypotheses<3> for Lifted<'_> {
-    fn propose(&self, measured: &Pseudoranges, index: usize, seed: u64) -> Vec<PartialNetwork<3>> {
-        let mut rng = generator(seed ^ 0x2f0b_4c47_91d3_55e9, index);
-        let height = LIFTED[index % LIFTED.len()] * self.size;
-        let mut lift = |p: [f64; 2]| [p[0], p[1], height * rng.sample::<f64, _>(StandardNormal)];
-        // The search may work on some of the nodes.
-        let place = |all: &[String], name: &String| all.iter().position(|other| other == name);
-        let flat = self.flat;
-        let receivers = measured.receiver_names().iter();
-        let receivers =
-            receivers.map(|name| flat.receivers[place(&flat.receiver_names, name)?].map(&mut lift)).collect();
-        vec![PartialNetwork { receivers, transmitters: vec![None; measured.transmitters()] }]
     }
 }
 
@@ -253,7 +277,10 @@ fn compare(
         let left = whole.redundancy as f64;
         FisherSnedecor::new(heights, left).ok().map(|all| heights * all.inverse_cdf(QUANTILE))
     };
+    let of_heights = whole.dimension_test.unwrap_or_default();
     DimensionTest {
+        evidence: of_heights.evidence,
+        change: of_heights.change,
         gain: Some(in_plane - in_space).filter(|gain| gain.is_finite()),
         needed: quantile.map(|quantile| 0.5 * BENT * quantile).filter(|needed| needed.is_finite()),
     }
@@ -277,10 +304,13 @@ mod tests {
             options.seed = seed;
             let Calibrated::Plane(found) = chosen(&made.pseudoranges, &options) else { panic!("seed {seed}") };
             let test = found.dimension_test.unwrap();
-            assert!(test.gain.unwrap() < test.needed.unwrap() && found.planar);
+            assert!(test.gain.unwrap() < test.needed.unwrap() && test.evidence.unwrap() < 0.0 && found.planar);
+
             // The same as without the question.
-            let plain = crate::calibrate(&made.pseudoranges, &in_plane(&options)).unwrap();
-            assert_eq!(Calibration { dimension_test: None, ..found }, plain);
+            let plain = crate::calibrate(&made.pseudoranges, &in_plane(&options, 0)).unwrap();
+            if !test.leaves_both() {
+                assert_eq!(Calibration { dimension_test: None, ..found }, plain);
+            }
         }
     }
 
@@ -309,6 +339,7 @@ mod tests {
             let Calibrated::Space(found) = chosen(&made.pseudoranges, &options) else { panic!("seed {seed}") };
             let test = found.dimension_test.unwrap();
             assert!(test.gain.unwrap() > 10.0 * test.needed.unwrap(), "seed {seed}: {test:?}");
+            assert!(test.evidence.unwrap() > 100.0, "seed {seed}: {test:?}");
         }
     }
 
@@ -318,10 +349,8 @@ mod tests {
         let mut options = CalibrateOptions::<3>::new();
         let anchors = |z: f64| made.network.receivers.iter().map(|p| Some([p[0], p[1], z])).collect::<Vec<_>>();
         options.anchors = anchors(0.0);
-        assert!(
-            matches!(chosen(&made.pseudoranges, &options), Calibrated::Plane(found) if found.dimension_test.is_none())
-        );
-        // All at one height, which fixes nothing in space.
+        // All at one height, which says nothing of the transmitters.
+        assert!(matches!(chosen(&made.pseudoranges, &options), Calibrated::Plane(_)));
         options.anchors = anchors(1.5);
         assert!(matches!(chosen(&made.pseudoranges, &options), Calibrated::Plane(_)));
         let mut made = SimulateOptions::<3>::new();
@@ -333,10 +362,29 @@ mod tests {
         );
     }
 
+    /// Three receivers of a room are known, and happen to be at one height.
+    #[test]
+    fn positions_at_one_height_do_not_make_a_plane() {
+        let mut made = SimulateOptions::<3>::new();
+        (made.receivers, made.transmitters, made.noise) = (10, 20, 0.01);
+        let mut network = simulate(&made).unwrap().network;
+        (0..3).for_each(|i| network.receivers[i][2] = 2.0);
+        let measured = Pseudoranges::new(10, 20, network.pseudoranges()).unwrap();
+        let mut options = CalibrateOptions::<3>::new();
+        options.sigma = Some(0.01);
+        options.anchors = network.receivers.iter().enumerate().map(|(i, p)| (i < 3).then_some(*p)).collect();
+        let Calibrated::Space(found) = chosen(&measured, &options) else { panic!("in the plane") };
+        let truth: Vec<Option<[f64; 3]>> = network.receivers.iter().copied().map(Some).collect();
+        let positions: Vec<[f64; 3]> = found.receivers.iter().flatten().copied().collect();
+        let apart = crate::align::align(&positions, &truth.into_iter().flatten().collect::<Vec<_>>(), false).unwrap();
+        assert!(apart.rms < 1e-3, "{}", apart.rms);
+    }
+
     #[test]
     fn too_few_measurements_for_space_leave_the_plane() {
         let made = simulate(&SimulateOptions { receivers: 6, transmitters: 4, noise: 0.01, ..Default::default() });
         let Calibrated::Plane(found) = chosen(&made.unwrap().pseudoranges, &CalibrateOptions::new()) else { panic!() };
-        assert_eq!(found.dimension_test, Some(DimensionTest::UNTRIED));
+        assert_eq!(found.dimension_test, Some(DimensionTest::default()));
+        assert!(!found.unique && found.warnings.iter().any(|warning| warning.contains("too few to tell")));
     }
 }

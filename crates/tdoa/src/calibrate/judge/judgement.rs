@@ -132,16 +132,22 @@ impl<const D: usize> State<'_, D> {
         }
         // In metres also where measurements carry their own deviations.
         let misfit = estimated * typical_deviation(measured);
-        let beyond = self.metre() * misfit > options.planar_limit * (self.metre() * best.size());
+        // Residuals that are as large as the given deviation has them fit, whatever their share of the size.
+        let expected = self.known.is_some_and(|sigma| estimated <= TOO_LARGE * sigma);
+        let beyond = !expected && misfit > options.planar_limit * best.size();
         let band = 2.0 * options.inlier_threshold * sigma * typical_deviation(measured);
         let doubtful = doubtful_receivers(measured, &kept, band / best.size());
         // Offsets of transmitters in the rows count where residuals are beyond a hundredth of the network's size.
         let transposed = options.receiver_delays != ReceiverDelays::All
             && misfit > 0.01 * best.size()
             && looks_transposed(&input.table.select(&input.usable.receivers, &input.usable.transmitters));
+        // On which side of a plane a node is, its expected height must not tell.
+        let free = |all: &Observations<D>| {
+            if self.plane_distances.is_some() { all.clone().pinned(&[]) } else { all.clone() }
+        };
         let sides = Sides {
-            observations,
-            kept: &kept,
+            observations: &free(observations),
+            kept: &free(&kept),
             network: best,
             deviation: sigma,
             uncertainty: &uncertainty,
@@ -296,6 +302,17 @@ mod tests {
             assert!(exceeds_chance(1.02 * ratio, degrees) && !exceeds_chance(0.98 * ratio, degrees), "{degrees}");
         }
         assert!(!exceeds_chance(100.0, 0));
+    }
+
+    #[test]
+    fn residuals_as_large_as_they_are_said_to_be_fit() {
+        use crate::{CalibrateOptions, SimulateOptions, calibrate, simulate};
+        // A deviation of 0.4 m is a tenth of the network's size.
+        let made = SimulateOptions { receivers: 10, transmitters: 30, noise: 0.4, seed: 3, ..Default::default() };
+        let made = simulate(&made).unwrap();
+        let fits =
+            |sigma| calibrate(&made.pseudoranges, &CalibrateOptions { sigma, ..Default::default() }).unwrap().fits;
+        assert_eq!([fits(None), fits(Some(0.4)), fits(Some(0.1))], [false, true, false]);
     }
 
     #[test]

@@ -19,7 +19,7 @@ use crate::loss::Loss;
 use crate::minimal::NodeKind;
 use crate::multilateration::{Located, Sight, cost, polish};
 use crate::network::Network;
-use crate::observations::{Observation, Observations};
+use crate::observations::{Node, Observation, Observations};
 use crate::points::{distance, dot};
 use crate::refine::{Cancelled, Covariance, check};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
@@ -256,7 +256,7 @@ impl<const D: usize> Sides<'_, D> {
         let reflection = plane.mirrored(position);
         let sights = self.sights(kind, index);
         let loss = Loss { nu: f64::INFINITY, scale: self.deviation() };
-        let pinned = !with_offset && self.observations.pins().iter().any(|pin| pin.receiver == index);
+        let pinned = self.observations.pins().iter().any(|pin| pin.node == node(kind, index));
         // Coordinates that were measured are no sights: such a receiver stays at its reflection.
         let located = |position: [f64; D]| {
             let start = Located { position, offset, cost: cost(&sights, position, offset, &loss) };
@@ -283,18 +283,16 @@ impl<const D: usize> Sides<'_, D> {
             };
             (o.value - offset - distance(place.position, position)) * o.precision
         };
-        match kind {
-            NodeKind::Transmitters => {
-                self.observations.of_transmitter(index).iter().map(|o| truncated(residual(o))).sum()
+        let pins = self.observations.pins().iter().filter(|pin| pin.node == node(kind, index));
+        let off = |axis: usize, value: f64| value - place.position[axis];
+        let known: f64 = pins.map(|pin| 0.5 * (off(pin.axis, pin.value) * pin.precision / deviation).powi(2)).sum();
+        known
+            + match kind {
+                NodeKind::Transmitters => {
+                    self.observations.of_transmitter(index).iter().map(|o| truncated(residual(o))).sum::<f64>()
+                }
+                NodeKind::Receivers => self.observations.of_receiver(index).map(|o| truncated(residual(o))).sum(),
             }
-            NodeKind::Receivers => {
-                let pins = self.observations.pins().iter().filter(|pin| pin.receiver == index);
-                let off = |axis: usize, value: f64| value - place.position[axis];
-                let known: f64 =
-                    pins.map(|pin| 0.5 * (off(pin.axis, pin.value) * pin.precision / deviation).powi(2)).sum();
-                known + self.observations.of_receiver(index).map(|o| truncated(residual(o))).sum::<f64>()
-            }
-        }
     }
 
     /// The measurements of a node that are no outliers.
@@ -318,6 +316,14 @@ impl<const D: usize> Sides<'_, D> {
                 self.kept.of_transmitter(index).iter().map(sight).collect()
             }
         }
+    }
+}
+
+/// A node of a kind.
+fn node(kind: NodeKind, index: usize) -> Node {
+    match kind {
+        NodeKind::Receivers => Node::Receiver(index),
+        NodeKind::Transmitters => Node::Transmitter(index),
     }
 }
 

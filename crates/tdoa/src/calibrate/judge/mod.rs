@@ -2,8 +2,11 @@
 
 pub(crate) mod dimension_test;
 pub(crate) mod dimensions;
+mod explained;
 pub(crate) mod judgement;
+mod known_heights;
 pub(crate) mod late;
+mod lifted;
 pub(crate) mod lines_and_planes;
 pub(crate) mod mirror_images;
 pub(crate) mod neighbours;

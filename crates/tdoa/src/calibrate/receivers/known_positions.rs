@@ -9,7 +9,7 @@ use crate::calibrate::state::State;
 use crate::degeneracy::Usable;
 use crate::flatness::Plane;
 use crate::network::Network;
-use crate::observations::{Observations, Pin};
+use crate::observations::{Node, Observations, Pin};
 use crate::quantity::length;
 use crate::refine::covariance;
 
@@ -91,7 +91,7 @@ impl<const D: usize> State<'_, D> {
 /// coordinates have them. A refinement does not carry them through that plane.
 fn put_on_known_sides<const D: usize>(observations: &Observations<D>, network: &mut Network<D>) {
     for i in (0..observations.receivers).filter(|&i| !observations.held()[i]) {
-        let pins: Vec<&Pin> = observations.pins().iter().filter(|pin| pin.receiver == i).collect();
+        let pins: Vec<&Pin> = observations.pins().iter().filter(|pin| pin.node == Node::Receiver(i)).collect();
         let others: Vec<[f64; D]> = observations.of_receiver(i).map(|o| network.transmitters[o.transmitter]).collect();
         let Some(plane) = Plane::through(&others).filter(|_| !pins.is_empty()) else { continue };
         let misfit = |network: &Network<D>| {

@@ -3,7 +3,7 @@
 
 use crate::align::{Alignment, Transform, align, spanned};
 use crate::calibrate::input::anchors::{Anchors, SpeedEstimate};
-use crate::calibrate::judge::dimension_test::DimensionTest;
+use crate::calibrate::judge::dimension_test::{DimensionTest, PlaneDistances};
 use crate::calibrate::judge::mirror_images::MirrorImage;
 use crate::calibrate::receivers::errors::ReceiverError;
 use crate::calibrate::report::residuals::{Residual, Residuals};
@@ -102,6 +102,10 @@ pub struct Calibration<const D: usize = 2> {
     /// What the measurements say of a third coordinate, where it was theirs to decide.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub dimension_test: Option<DimensionTest>,
+    /// In space, how far nodes are expected to lie from their plane, where measurements alone do not tell all of these
+    /// distances. Positions and covariances take this expectation into account.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plane_distances: Option<PlaneDistances>,
     /// Whether the measurements determine at least half of the receivers to a tenth of the
     /// network's size; true if the noise is not known. This is false, for instance, for a table
     /// with receivers as columns. It is false, too, where receivers or transmitters lie in one line of
@@ -197,6 +201,12 @@ impl<const D: usize> Calibration<D> {
         }
     }
 
+    /// Calls a network not unique, with a warning that says why.
+    pub(crate) fn call_not_unique(&mut self, why: String) {
+        (self.unique, self.unique_receivers, self.unique_transmitters) = (false, false, false);
+        self.warnings.push(why);
+    }
+
     /// The largest distance between two receivers in metres; `None` if fewer than two could be
     /// located.
     pub fn extent(&self) -> Option<f64> {
@@ -275,6 +285,9 @@ impl<const D: usize> Calibration<D> {
         }
         for error in self.receiver_errors.iter_mut() {
             error.size *= factor;
+        }
+        if let Some(PlaneDistances { receivers, transmitters, change }) = &mut self.plane_distances {
+            [receivers, transmitters, change].into_iter().for_each(|length| *length *= factor);
         }
         if let Some(systematic) = &mut self.systematic {
             systematic.rescale(factor);

@@ -1,0 +1,308 @@
+//! How far nodes lie above and below their plane, where the measurements hardly tell each of them.
+//!
+//! In a nearly flat network the height z of a node changes distances by its square, z^2 / 2d, so that small heights
+//! are lost in the noise, and least squares in space makes heights of noise. Here heights are normal, those of
+//! receivers about the plane z = 0 and those of transmitters about one beside it, each with a standard deviation tau.
+//! The maximum of the marginal likelihood is found by expectation maximisation in Laplace's approximation: tau^2 is the
+//! mean of (z - plane)^2 and the variance of z at the most likely network (Dempster, Laird and Rubin 1977; MacKay
+//! 1992), which in its turn is least squares with the pins z = plane +- tau.
+//!
+//! The iteration comes from large heights. Where a plane explains the measurements it ends at the largest heights
+//! that they allow: heights below that change nothing that was measured.
+
+use super::cancel::{Cancelled, check};
+use super::covariance::covariance;
+use super::gross_errors::GrossErrors;
+use super::refiner::{NetworkRefiner, RefineOptions, SEARCH};
+use crate::loss::SEARCH_NU;
+use crate::network::Network;
+use crate::observations::{Node, Observation, Observations, Pin};
+use crate::points::{spread, trace};
+use hc::Monitor;
+use std::f64::consts::TAU;
+
+/// Most rounds of fitting network and heights in turn.
+const ROUNDS: usize = 60;
+
+/// Relative change of the deviations that ends the rounds.
+const STILL: f64 = 5e-3;
+
+/// Deviations of heights are at least this share of the network's size.
+const LEAST: f64 = 1e-4;
+
+/// Deviations of heights as a share of the network's size that stand for the plane.
+const NONE: f64 = 1e-7;
+
+/// The largest deviation of heights, as a multiple of the smallest, before anything is measured.
+const RANGE: f64 = 1000.0;
+
+/// Most rounds of telling gross errors from good measurements.
+const SORTINGS: usize = 12;
+
+/// Standard deviations of the heights of nodes above their plane, and the network that has them.
+#[derive(Debug, Clone)]
+pub(crate) struct Heights<const D: usize> {
+    /// Of receivers about z = 0, metres.
+    pub(crate) receivers: f64,
+    /// Of transmitters about their plane, metres.
+    pub(crate) transmitters: f64,
+    /// Height of the plane of the transmitters, metres.
+    pub(crate) between: f64,
+    /// How many heights the measurements tell, out of all.
+    pub(crate) told: f64,
+    /// Largest standard deviation of a receiver's place, metres.
+    pub(crate) loosest: f64,
+    /// Deviation of the measurements: the given one, or that of the residuals.
+    pub(crate) deviation: f64,
+    /// The most likely network.
+    pub(crate) network: Network<D>,
+}
+
+impl<const D: usize> Heights<D> {
+    /// Deviations of heights and the most likely network near one whose receivers are about z = 0, from the
+    /// measurements without gross errors. `known` is the deviation of the measurements if it is given, `first` one near it. `None` if the
+    /// equations are singular.
+    pub(crate) fn of(
+        observations: &Observations<D>,
+        network: &Network<D>,
+        known: Option<f64>,
+        first: f64,
+        monitor: &Monitor,
+    ) -> Result<Option<Heights<D>>, Cancelled> {
+        let least = LEAST * network.size();
+        let (m, n) = (observations.receivers as f64, observations.transmitters as f64);
+        let mut now = Heights {
+            receivers: mean_square(&network.receivers, 0.0).sqrt().max(least),
+            transmitters: mean_square(&network.transmitters, mean(&network.transmitters)).sqrt().max(least),
+            between: mean(&network.transmitters),
+            told: m + n,
+            loosest: 0.0,
+            deviation: known.unwrap_or(first),
+            network: network.clone(),
+        };
+        for _ in 0..ROUNDS {
+            let pinned = observations.clone().pinned(&now.pins());
+            let fit = RefineOptions { scale: Some(1.0), steps: 30, rounds: 0, tolerance: 1e-9, ..SEARCH };
+            now.network = NetworkRefiner::new(&pinned, f64::INFINITY, monitor).refine(now.network, &fit).network;
+            check(monitor)?;
+            let Some(uncertainty) = covariance(&pinned, &now.network, now.deviation, monitor)? else { return Ok(None) };
+            let z = D - 1;
+            let of_receivers: f64 = uncertainty.receivers.iter().map(|c| c[z][z]).sum();
+            let is_loose = !uncertainty.loose.is_empty();
+            let largest = uncertainty.receivers.iter().map(trace).fold(0.0, f64::max).sqrt();
+            now.loosest = if is_loose { f64::INFINITY } else { largest };
+            let placed = |j: usize| uncertainty.transmitters[j].map_or(now.transmitters.powi(2), |c| c.rows[z][z]);
+            let of_transmitters: f64 = (0..observations.transmitters).map(placed).sum();
+            let told = [(m, of_receivers, now.receivers), (n, of_transmitters, now.transmitters)]
+                .map(|(count, variances, tau)| (count - variances / tau.powi(2)).max(0.0));
+            let next = |points: &[[f64; D]], middle: f64, variances: f64| {
+                (mean_square(points, middle) + variances / points.len() as f64).sqrt().max(least)
+            };
+            now.between = mean(&now.network.transmitters);
+            let next = [
+                next(&now.network.receivers, 0.0, of_receivers),
+                next(&now.network.transmitters, now.between, of_transmitters),
+            ];
+            let change = (next[0] / now.receivers).ln().abs().max((next[1] / now.transmitters).ln().abs());
+            [now.receivers, now.transmitters] = next;
+            now.told = told[0] + told[1];
+            if known.is_none() {
+                let squares: f64 = observations.all().iter().map(|o| o.residual(&now.network).powi(2)).sum();
+                let unknowns = (2.0 * m + 3.0 * n - 3.0) + now.told;
+                let left = (observations.len() as f64 - unknowns).max(1.0);
+                now.deviation = (squares / left).sqrt();
+            }
+            if change < STILL {
+                break;
+            }
+        }
+        Ok(Some(now))
+    }
+
+    /// The most likely planar network near this one, where measurements of about this deviation are good.
+    pub(crate) fn flat(
+        &self,
+        observations: &Observations<D>,
+        deviation: f64,
+        monitor: &Monitor,
+    ) -> Result<Heights<D>, Cancelled> {
+        let none = NONE * self.network.size();
+        let mut flat = Heights { receivers: none, transmitters: none, between: 0.0, deviation, ..self.clone() };
+        let points = flat.network.receivers.iter_mut().chain(&mut flat.network.transmitters);
+        points.for_each(|p| p[D - 1] = 0.0);
+        let pinned = observations.clone().pinned(&flat.pins());
+        let fit = RefineOptions { scale: Some(deviation), steps: 100, rounds: 0, tolerance: 1e-10, ..SEARCH };
+        flat.network = NetworkRefiner::new(&pinned, SEARCH_NU, monitor).refine(flat.network, &fit).network;
+        check(monitor)?;
+        Ok(flat)
+    }
+
+    /// Logarithm of the marginal likelihood of the measurements in Laplace's approximation, up to a constant. An
+    /// unknown deviation of theirs is the likeliest one. Good measurements are normal; gross errors, of which there are
+    /// as many as these make likely, are anywhere within `width` metres. `None` if the equations are singular.
+    pub(crate) fn evidence(
+        &self,
+        observations: &Observations<D>,
+        known: Option<f64>,
+        width: f64,
+        monitor: &Monitor,
+    ) -> Result<Option<f64>, Cancelled> {
+        let unknowns = 2 * self.network.receivers.len() + 3 * self.network.transmitters.len() - 3;
+        let fit = RefineOptions { scale: Some(1.0), steps: 30, rounds: 0, tolerance: 1e-9, ..SEARCH };
+        let mut errors = GrossErrors::new(observations.len(), width);
+        let mut now = self.clone();
+        let (mut before, mut rounds) = (0, 0);
+        loop {
+            let is_good = |o: &Observation| o.residual(&now.network).abs() <= errors.limit(now.deviation, o.precision);
+            let kept = observations.subset(is_good).pinned(&now.pins());
+            let left = kept.len().saturating_sub(unknowns);
+            if left == 0 {
+                return Ok(None);
+            }
+            let mut refiner = NetworkRefiner::new(&kept, f64::INFINITY, monitor);
+            now.network = refiner.refine(now.network, &fit).network;
+            check(monitor)?;
+            let cells = kept.all().iter().map(|o| o.residual(&now.network).powi(2));
+            let squares: f64 = cells.chain(kept.pins().iter().map(|pin| pin.residual(&now.network).powi(2))).sum();
+            let deviation = known.unwrap_or_else(|| errors.deviation(squares, left));
+            errors.count(kept.len());
+            let settled = kept.len() == before && (deviation / now.deviation).ln().abs() < STILL;
+            (now.deviation, before, rounds) = (deviation, kept.len(), rounds + 1);
+            if !settled && rounds < SORTINGS {
+                continue;
+            }
+            // Nodes that the measurements hardly place are somewhere within the width as well.
+            let placed = kept.clone().pinned(&[now.pins(), now.within(width)].concat());
+            let mut refiner = NetworkRefiner::new(&placed, f64::INFINITY, monitor);
+            let Some(determinant) = refiner.log_determinant_at(&now.network)? else { return Ok(None) };
+            // Densities of positions over those of the measurements, as the equations have both in one unit.
+            let prior: f64 = placed.pins().iter().map(|pin| pin.precision.ln()).sum();
+            let density = errors.log_density(kept.len(), placed.transmitters, squares, deviation);
+            return Ok(Some(density + prior - 0.5 * determinant));
+        }
+    }
+
+    /// What not knowing the deviations and the place of the transmitters' plane beforehand costs in the logarithm of the
+    /// marginal likelihood: each deviation is anywhere from a thousandth of `width` to it, on a logarithmic scale, and
+    /// the plane within it on either side; k heights tell the logarithm of their deviation to 1 / sqrt(2k), and their
+    /// mean to the deviation over sqrt(k).
+    pub(crate) fn log_prior(&self, width: f64) -> f64 {
+        let (m, n) = (self.network.receivers.len() as f64, self.network.transmitters.len() as f64);
+        let of_deviation = |count: f64| (0.5 * (TAU / (2.0 * count)).ln() - RANGE.ln().ln()).min(0.0);
+        let of_place = 0.5 * (TAU / n).ln() + (self.transmitters / (2.0 * width)).ln();
+        of_deviation(m) + of_deviation(n) + of_place.min(0.0)
+    }
+
+    /// The heights as measurements of the plane's place.
+    pub(crate) fn pins(&self) -> Vec<Pin> {
+        let pin = |node: Node, value: f64, tau: f64| Pin { node, axis: D - 1, value, precision: self.deviation / tau };
+        let receivers = (0..self.network.receivers.len()).map(|i| pin(Node::Receiver(i), 0.0, self.receivers));
+        let transmitters = 0..self.network.transmitters.len();
+        receivers.chain(transmitters.map(|j| pin(Node::Transmitter(j), self.between, self.transmitters))).collect()
+    }
+
+    /// The deviation of the heights of receivers or transmitters, whichever are flatter, as a share of the receivers'
+    /// spread.
+    pub(crate) fn flatness(&self) -> f64 {
+        self.receivers.min(self.transmitters) / spread(self.network.receivers.iter()).max(f64::MIN_POSITIVE)
+    }
+
+    /// The places of all nodes along the plane as they are, each with a standard deviation of `width`.
+    fn within(&self, width: f64) -> Vec<Pin> {
+        let of = |node: Node, point: &[f64; D]| -> Vec<Pin> {
+            let pin = |axis: usize| Pin { node, axis, value: point[axis], precision: self.deviation / width };
+            (0..D - 1).map(pin).collect()
+        };
+        let receivers = self.network.receivers.iter().enumerate().flat_map(|(i, p)| of(Node::Receiver(i), p));
+        let transmitters = self.network.transmitters.iter().enumerate().flat_map(|(j, p)| of(Node::Transmitter(j), p));
+        receivers.chain(transmitters).collect()
+    }
+
+    /// By how much the heights change a measured distance, root mean square over all measurements: in metres, and in
+    /// deviations of the measurements.
+    pub(crate) fn change(&self, observations: &Observations<D>) -> [f64; 2] {
+        let square = self.receivers.powi(2) + self.transmitters.powi(2) + self.between.powi(2);
+        let change = |i: usize, j: usize| 0.5 * square / self.network.distance(i, j).max(square.sqrt());
+        let mut squares = [0.0; 2];
+        for o in observations.all() {
+            let change = change(o.receiver, o.transmitter);
+            squares[0] += change.powi(2);
+            squares[1] += (change * o.precision / self.deviation).powi(2);
+        }
+        squares.map(|sum| (sum / observations.len().max(1) as f64).sqrt())
+    }
+}
+
+/// Mean of the last coordinate.
+fn mean<const D: usize>(points: &[[f64; D]]) -> f64 {
+    points.iter().map(|p| p[D - 1]).sum::<f64>() / points.len().max(1) as f64
+}
+
+/// Mean square of the last coordinate less its middle.
+fn mean_square<const D: usize>(points: &[[f64; D]], middle: f64) -> f64 {
+    points.iter().map(|p| (p[D - 1] - middle).powi(2)).sum::<f64>() / points.len().max(1) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pseudoranges::Pseudoranges;
+    use rand::{RngExt, SeedableRng};
+    use rand_distr::StandardNormal;
+    use rand_pcg::Pcg64Mcg;
+
+    const SIGMA: f64 = 0.01;
+
+    /// A network of 12 receivers and 30 transmitters in 10 m by 8 m whose nodes have normal heights of these deviations,
+    /// the measurements, and a start at the truth.
+    fn found(receivers: f64, transmitters: f64, seed: u64, known: Option<f64>) -> (Heights<3>, f64) {
+        let mut rng = Pcg64Mcg::seed_from_u64(seed);
+        let mut points = |count: usize, height: f64| -> Vec<[f64; 3]> {
+            let point = |rng: &mut Pcg64Mcg| {
+                let z: f64 = rng.sample(StandardNormal);
+                [10.0 * rng.random::<f64>(), 8.0 * rng.random::<f64>(), height * z]
+            };
+            (0..count).map(|_| point(&mut rng)).collect()
+        };
+        let (receivers, transmitters) = (points(12, receivers), points(30, transmitters));
+        let network = Network { receivers, transmitters, offsets: vec![0.0; 30] };
+        let noisy = network.pseudoranges().into_iter().map(|f| f + SIGMA * rng.sample::<f64, _>(StandardNormal));
+        let measured = Pseudoranges::new(12, 30, noisy.collect()).unwrap();
+        let observations = Observations::<3>::new(&measured, |_, _| true);
+        let monitor = Monitor::default();
+        let mut start = network.clone();
+        // Heights of 30 cm at least, from which smaller ones are found.
+        start.receivers.iter_mut().chain(&mut start.transmitters).for_each(|p| p[2] += 0.3 * p[2].signum());
+        let heights = Heights::of(&observations, &start, known, SIGMA, &monitor).unwrap().unwrap();
+        let flat = heights.flat(&observations, heights.deviation, &monitor).unwrap();
+        let evidence = |heights: &Heights<3>| heights.evidence(&observations, known, 10.0, &monitor).unwrap().unwrap();
+        let gain = evidence(&heights) + heights.log_prior(10.0) - evidence(&flat);
+        (heights, gain)
+    }
+
+    #[test]
+    fn deviations_of_heights_are_found() {
+        for seed in 0..4 {
+            for known in [None, Some(SIGMA)] {
+                let (heights, gain) = found(1.0, 0.6, seed, known);
+                // The deviation of a deviation from k values is 1 in sqrt(2k): 0.2 and 0.13 of it.
+                assert!((heights.receivers / 1.0).ln().abs() < 0.7, "seed {seed}: {}", heights.receivers);
+                assert!((heights.transmitters / 0.6).ln().abs() < 0.45, "seed {seed}: {}", heights.transmitters);
+                assert!(gain > 10.0, "seed {seed}: {gain}");
+                assert!((heights.deviation / SIGMA).ln().abs() < 0.3, "seed {seed}: {}", heights.deviation);
+            }
+        }
+    }
+
+    #[test]
+    fn a_plane_is_likelier_than_heights() {
+        for seed in 0..6 {
+            for known in [None, Some(SIGMA)] {
+                let (heights, gain) = found(0.0, 0.0, seed, known);
+                assert!(gain < 0.0, "seed {seed}: {gain}");
+                // What the noise allows: a height z changes a distance d by z^2 / 2d.
+                assert!(heights.receivers.max(heights.transmitters) < 0.5, "seed {seed}: {heights:?}");
+            }
+        }
+    }
+}
