@@ -20,6 +20,7 @@ pub use judge::mirror_images::MirrorImage;
 pub use options::{
     CalibrateError, CalibrateOptions, Errors, KnownDistance, MeasuredPosition, ReceiverDelays, SearchOptions,
 };
+pub use receivers::echo::ReceiverEcho;
 pub use receivers::errors::{MovedPlace, ReceiverError, ReceiverErrorKind};
 pub use report::calibration::{Alternative, Calibration};
 pub use report::residuals::{Residual, Residuals};

@@ -4,6 +4,7 @@ use crate::calibrate::input::anchors::{Anchors, SpeedEstimate};
 use crate::calibrate::judge::dimension_test::{DimensionTest, PlaneDistances};
 use crate::calibrate::judge::neighbours::Neighbour;
 use crate::calibrate::options::CalibrateOptions;
+use crate::calibrate::receivers::echo::Echo;
 use crate::calibrate::receivers::errors::Fault;
 use crate::calibrate::unfinished::Unfinished;
 use crate::observations::Observations;
@@ -38,6 +39,8 @@ pub(crate) struct State<'a, const D: usize> {
     pub(crate) taken: Vec<Fault<D>>,
     /// Errors of receivers that were found and left in.
     pub(crate) left: Vec<Fault<D>>,
+    /// Receivers with two places, of which reflections are left out.
+    pub(crate) echoes: Vec<Echo>,
     /// Known positions of receivers.
     pub(crate) anchors: Option<Anchors<D>>,
     /// How far nodes lie from their plane in space, where the measurements hardly tell it.
@@ -76,6 +79,7 @@ impl<'a, const D: usize> State<'a, D> {
             weak: None,
             taken: Vec::new(),
             left: Vec::new(),
+            echoes: Vec::new(),
             anchors: None,
             plane_distances: None,
             dimension_test: DimensionTest::default(),

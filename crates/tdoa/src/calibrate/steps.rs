@@ -54,6 +54,7 @@ fn steps<const D: usize>(
     let best = &state.ranked[0];
     state.so_far = Some(Unfinished::of(&best.network, state.starts, best.starts));
     state.clear()?;
+    state.leave_out_reflections()?;
     state.hold(&input.usable)?;
     state.level()?;
     check(state.monitor)?;

@@ -180,7 +180,8 @@ impl<const D: usize> State<'_, D> {
                 && placed
                 && determined
                 && self.contradiction.is_none()
-                && self.left.is_empty(),
+                && self.left.is_empty()
+                && !self.has_two_places(),
             anchors_agree: self.contradiction.is_none_or(|off| off <= options.planar_limit * best.size()),
             one_sided,
             sigma,

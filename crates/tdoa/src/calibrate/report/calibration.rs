@@ -5,6 +5,7 @@ use crate::align::{Alignment, Transform, align, spanned};
 use crate::calibrate::input::anchors::{Anchors, SpeedEstimate};
 use crate::calibrate::judge::dimension_test::{DimensionTest, PlaneDistances};
 use crate::calibrate::judge::mirror_images::MirrorImage;
+use crate::calibrate::receivers::echo::ReceiverEcho;
 use crate::calibrate::receivers::errors::ReceiverError;
 use crate::calibrate::report::residuals::{Residual, Residuals};
 use crate::calibrate::report::systematic::SystematicErrors;
@@ -119,6 +120,9 @@ pub struct Calibration<const D: usize = 2> {
     /// all receivers, relative to their mean.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub receiver_errors: Vec<ReceiverError>,
+    /// Receivers of which the measurements show two places, most likely as they hear a reflection, which is left out.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub receiver_echoes: Vec<ReceiverEcho>,
     /// Systematic errors of the receivers, and the covariances with them. `None` where fewer than ten
     /// measurements are left over, there are more than 100 receivers, or errors are one-sided.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -286,6 +290,7 @@ impl<const D: usize> Calibration<D> {
         for error in self.receiver_errors.iter_mut() {
             error.size *= factor;
         }
+        self.receiver_echoes.iter_mut().for_each(|echo| echo.wall *= factor);
         if let Some(PlaneDistances { receivers, transmitters, change }) = &mut self.plane_distances {
             [receivers, transmitters, change].into_iter().for_each(|length| *length *= factor);
         }

@@ -81,6 +81,7 @@ impl<const D: usize> State<'_, D> {
             determined: judged.determined,
             anchors_agree: judged.anchors_agree,
             receiver_errors: self.receiver_errors(),
+            receiver_echoes: self.receiver_echoes(),
             systematic: None,
             warnings: self.warnings(input, judged),
             seed: self.options.seed,

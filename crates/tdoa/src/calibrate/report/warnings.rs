@@ -52,6 +52,7 @@ impl<const D: usize> State<'_, D> {
             ));
         }
         self.warn_of_receivers(&mut warnings);
+        warnings.extend(self.receiver_echoes().iter().map(|echo| echo.warning(self.metre())));
         self.warn_of_search(judged, &mut warnings);
         let redundancy = judged.redundancy;
         if let Some(information) = judged.one_sided.as_ref().filter(|information| !information.fits(redundancy)) {
