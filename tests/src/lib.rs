@@ -6,6 +6,34 @@ use std::process::{Command, Output, Stdio};
 #[cfg(unix)]
 use std::time::{Duration, Instant};
 
+/// A folder for the files of a test, removed after it.
+pub struct Folder(tempfile::TempDir);
+
+impl Folder {
+    /// A new one with nothing in it.
+    ///
+    /// # Panics
+    /// If there can be none.
+    pub fn empty() -> Folder {
+        Folder(tempfile::tempdir().expect("directory"))
+    }
+
+    /// Its path.
+    pub fn path(&self) -> &Path {
+        self.0.path()
+    }
+
+    /// Writes a file of this name; its path.
+    ///
+    /// # Panics
+    /// If it cannot be written.
+    pub fn write(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
+        let path = self.path().join(name);
+        std::fs::write(&path, content).expect("written");
+        path
+    }
+}
+
 /// The path of one of the workspace's programs (`hc`, `tdoa`, `xtask`) or of an example of the
 /// guide, built with the profile of the running test.
 ///

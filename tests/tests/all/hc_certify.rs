@@ -1,26 +1,12 @@
 //! `hc certify` and `hc solve --certify`, as a user would run them.
 
-use end_to_end::run;
+use end_to_end::{Folder, run};
 use serde_json::{Value, json};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Output;
 
 /// A cubic and a line: solutions (0.1, 0.2), (-1, -2) and (2, 4).
 const SYSTEM: &str = "2\n(x - 0.1)*(x + 1)*(x - 2);\n y - 2*x;\n";
-
-struct Folder(tempfile::TempDir);
-
-impl Folder {
-    fn new() -> Folder {
-        Folder(tempfile::tempdir().expect("directory"))
-    }
-
-    fn write(&self, name: &str, text: &str) -> PathBuf {
-        let path = self.0.path().join(name);
-        std::fs::write(&path, text).expect("written");
-        path
-    }
-}
 
 fn hc(arguments: &[&str], files: &[&Path]) -> Output {
     let mut all = arguments.to_vec();
@@ -35,8 +21,8 @@ fn report(output: &Output) -> Value {
 
 #[test]
 fn what_solve_finds_certify_proves() {
-    let folder = Folder::new();
-    let (system, solved) = (folder.write("system.phc", SYSTEM), folder.0.path().join("solved.json"));
+    let folder = Folder::empty();
+    let (system, solved) = (folder.write("system.phc", SYSTEM), folder.path().join("solved.json"));
     let output = hc(&["solve", "--certify", "--json", solved.to_str().unwrap()], &[&system]);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     let found: Value = serde_json::from_slice(&std::fs::read(&solved).unwrap()).unwrap();
@@ -68,7 +54,7 @@ fn what_solve_finds_certify_proves() {
 
 #[test]
 fn without_the_option_certified_is_null() {
-    let folder = Folder::new();
+    let folder = Folder::empty();
     let system = folder.write("system.phc", SYSTEM);
     let found = report(&hc(&["solve", "--json", "-"], &[&system]));
     assert!(found["solutions"].as_array().unwrap().iter().all(|s| s["certified"].is_null()));
@@ -76,7 +62,7 @@ fn without_the_option_certified_is_null() {
 
 #[test]
 fn lists_of_points_are_read_in_the_order_of_the_unknowns() {
-    let folder = Folder::new();
+    let folder = Folder::empty();
     let system = folder.write("system.phc", SYSTEM);
     let points = folder.write("points.json", "[[2, 4], [[2.000001, 0], [4, 1e-6]], [-1, -2.0], [5, 6]]");
     let output = hc(&["certify", "--json", "-"], &[&system, &points]);
@@ -98,7 +84,7 @@ fn lists_of_points_are_read_in_the_order_of_the_unknowns() {
 
 #[test]
 fn plain_numbers_are_read() {
-    let folder = Folder::new();
+    let folder = Folder::empty();
     let system = folder.write("system.phc", SYSTEM);
     let points = folder.write("points.txt", "# two and one that is none\n2 4\n-1+0i, (-2-1e-9j)\n\n1e1 i\n");
     let output = hc(&["certify", "--json", "-"], &[&system, &points]);
@@ -123,7 +109,7 @@ fn plain_numbers_are_read() {
 
 #[test]
 fn lists_of_phcpack_are_read() {
-    let folder = Folder::new();
+    let folder = Folder::empty();
     let system = folder.write("system.phc", SYSTEM);
     // Two solutions in the form in which `phc -b` writes them, unknowns in another order.
     let solution = |k: usize, x: &str, y: &str| {
@@ -145,7 +131,7 @@ fn lists_of_phcpack_are_read() {
 
 #[test]
 fn unusable_input_is_told_apart_from_failure() {
-    let folder = Folder::new();
+    let folder = Folder::empty();
     let system = folder.write("system.phc", SYSTEM);
     let wide = folder.write("wide.phc", "1\nx + y;");
     let points = folder.write("points.json", "[[2, 4]]");
@@ -161,7 +147,7 @@ fn unusable_input_is_told_apart_from_failure() {
         let message = String::from_utf8_lossy(&output.stderr);
         assert!(message.contains(word), "{message}");
     }
-    let missing = folder.0.path().join("missing.phc");
+    let missing = folder.path().join("missing.phc");
     assert_eq!(hc(&["certify"], &[&missing, &points]).status.code(), Some(2));
     // A double root is not certified, and that is no error of the input.
     let double = folder.write("double.phc", "1\nx^2 - 2*x + 1;");

@@ -1,9 +1,9 @@
 //! What users bring to `tdoa`: other units, spellings and orders, names that do not match, heights,
 //! several matrices in a file.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use end_to_end::{root, run};
+use end_to_end::{Folder, root, run};
 use serde_json::Value;
 
 fn text(path: &Path) -> &str {
@@ -39,21 +39,6 @@ fn refused(arguments: &[&str], parts: &[&str]) {
     }
 }
 
-/// A folder with copies of the example, and more files.
-struct Folder(tempfile::TempDir);
-
-impl Folder {
-    fn new() -> Folder {
-        Folder(tempfile::tempdir().expect("directory"))
-    }
-
-    fn write(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
-        let path = self.0.path().join(name);
-        std::fs::write(&path, content).expect("written");
-        path
-    }
-}
-
 fn example(name: &str) -> String {
     std::fs::read_to_string(root().join("examples/network").join(name)).expect("example")
 }
@@ -82,7 +67,7 @@ fn list(header: &str, order: [usize; 3], separator: &str) -> String {
 
 #[test]
 fn all_units_give_one_network() {
-    let folder = Folder::new();
+    let folder = Folder::empty();
     let speed = 343.0;
     let size = ["--receivers", "8", "--transmitters", "10", "--noise", "0.001", "--seed", "4"];
     let found: Vec<Value> = ["m", "s", "ms", "us", "ns", "samples", "cm", "km"]
@@ -93,7 +78,7 @@ fn all_units_give_one_network() {
                 "samples" => &["--units", "samples", "--rate", "48000", "--speed", "343"],
                 unit => &["--units", unit, "--speed", "343"],
             };
-            let output = folder.0.path().join(unit);
+            let output = folder.path().join(unit);
             let made = tdoa(&[&["simulate"], &size[..], units, &["--output", text(&output)]].concat());
             assert_eq!(made.status, Some(0), "{}", made.message);
             json(&[&["calibrate", text(&output.join("pseudoranges.csv"))], units].concat())
@@ -119,17 +104,17 @@ fn all_units_give_one_network() {
     assert!(found[0].get("offsets_in_units").is_none() && found[0].get("units").is_none());
     assert_eq!(found[2]["units"]["name"], "ms");
     // The summary has the unit's column, the table of true offsets too.
-    let table = folder.0.path().join("ms/pseudoranges.csv");
+    let table = folder.path().join("ms/pseudoranges.csv");
     let shown = tdoa(&["calibrate", text(&table), "--units", "ms", "--speed", "343"]);
     assert!(shown.out.contains("offset ms"), "{}", shown.out);
-    let offsets = std::fs::read_to_string(folder.0.path().join("ms/offsets.csv")).expect("offsets");
+    let offsets = std::fs::read_to_string(folder.path().join("ms/offsets.csv")).expect("offsets");
     assert!(offsets.starts_with("id,offset,offset_ms\n"), "{offsets}");
 }
 
 #[test]
 fn solve_takes_units_too() {
-    let folder = Folder::new();
-    let output = folder.0.path().join("made");
+    let folder = Folder::empty();
+    let output = folder.path().join("made");
     let units = ["--units", "us", "--speed", "299792458"];
     let size = ["--receivers", "6", "--transmitters", "3"];
     let made = tdoa(&[&["simulate"], &size[..], &units, &["--output", text(&output)]].concat());
@@ -160,15 +145,15 @@ fn units_that_are_not_whole_say_what_is_missing() {
         &["rate must be positive and finite, not 0 Hz"],
     );
     refused(&["calibrate", file, "--units", "ms", "--speed", "-1"], &["speed must be positive"]);
-    let folder = Folder::new();
-    let made = folder.0.path().join("made");
+    let folder = Folder::empty();
+    let made = folder.path().join("made");
     refused(&["simulate", "--units", "s", "--speed", "0", "--output", text(&made)], &["--speed", "positive"]);
     refused(&["calibrate", file, "--units", "hours"], &["samples"]);
 }
 
 #[test]
 fn headings_that_name_units() {
-    let folder = Folder::new();
+    let folder = Folder::empty();
     let file = folder.write("list.csv", list("mic,event,time_ms", [0, 1, 2], ","));
     refused(&["calibrate", text(&file)], &["line 1", "\"time_ms\" is in ms", "give --units ms --speed"]);
     refused(
@@ -197,7 +182,7 @@ fn arrays_of_complex_numbers_are_refused_without_their_header() {
     let header = "{'descr': '<c16', 'fortran_order': False, 'shape': (8, 12), }\n";
     bytes.extend((header.len() as u16).to_le_bytes());
     bytes.extend(header.as_bytes());
-    let folder = Folder::new();
+    let folder = Folder::empty();
     let file = folder.write("z.npy", bytes);
     let ran = tdoa(&["calibrate", text(&file)]);
     assert_eq!(ran.status, Some(2), "{}", ran.message);
@@ -207,7 +192,7 @@ fn arrays_of_complex_numbers_are_refused_without_their_header() {
 
 #[test]
 fn one_network_in_many_spellings() {
-    let folder = Folder::new();
+    let folder = Folder::empty();
     let plain = example("pseudoranges.csv");
     let rows = cells(&plain);
     let points_to_commas: Vec<Vec<String>> =
@@ -260,7 +245,7 @@ fn one_network_in_many_spellings() {
 
 #[test]
 fn tables_that_are_not_understood_say_what_is() {
-    let folder = Folder::new();
+    let folder = Folder::empty();
     let says = |content: &[u8], parts: &[&str]| {
         let file = folder.write("table.csv", content);
         refused(&["calibrate", text(&file)], &[&["table.csv"], parts].concat());
@@ -283,7 +268,7 @@ fn tables_that_are_not_understood_say_what_is() {
 
 #[test]
 fn a_truth_with_foreign_names() {
-    let folder = Folder::new();
+    let folder = Folder::empty();
     let table = root().join("examples/network/pseudoranges.csv");
     let truth = example("receivers.csv");
     let mut lines: Vec<&str> = truth.lines().collect();
@@ -329,7 +314,7 @@ fn a_truth_with_foreign_names() {
 
 #[test]
 fn heights_are_never_dropped_without_a_word() {
-    let folder = Folder::new();
+    let folder = Folder::empty();
     let table = root().join("examples/network/pseudoranges.csv");
     let heights = |height: fn(usize) -> String| -> String {
         let rows = example("receivers.csv")
@@ -371,7 +356,7 @@ fn heights_are_never_dropped_without_a_word() {
 /// read.
 #[test]
 fn the_size_of_a_network_in_a_unit_that_suits() {
-    let folder = Folder::new();
+    let folder = Folder::empty();
     let rows = cells(&example("pseudoranges.csv"));
     let positions = cells(&example("receivers.csv"));
     let at = |row: &[String]| [1, 2].map(|k| row[k].parse::<f64>().expect("number"));
@@ -408,8 +393,8 @@ fn the_size_of_a_network_in_a_unit_that_suits() {
 
 #[test]
 fn speeds_are_plain_numbers() {
-    let folder = Folder::new();
-    let made = folder.0.path().join("made");
+    let folder = Folder::empty();
+    let made = folder.path().join("made");
     let units = ["--units", "s", "--speed", "343"];
     let made_it =
         tdoa(&[&["simulate", "--noise", "0.005", "--seed", "2"], &units[..], &["--output", text(&made)]].concat());
@@ -453,9 +438,9 @@ fn variables_of_a_mat_file() {
 
 #[test]
 fn files_that_are_written_are_named() {
-    let folder = Folder::new();
+    let folder = Folder::empty();
     let table = root().join("examples/network/pseudoranges.csv");
-    let path = |name: &str| folder.0.path().join(name);
+    let path = |name: &str| folder.path().join(name);
     let [json, svg, html, nodes] = ["a.json", "a.svg", "a.html", "a.csv"].map(path);
     let ran = tdoa(&[
         "calibrate",
@@ -482,7 +467,7 @@ fn files_that_are_written_are_named() {
 /// Warnings stand before the tables, where they are seen.
 #[test]
 fn warnings_come_first() {
-    let folder = Folder::new();
+    let folder = Folder::empty();
     let unnamed: Vec<Vec<String>> =
         cells(&example("pseudoranges.csv"))[1..].iter().map(|row| row[1..].to_vec()).collect();
     let matrix = folder.write("matrix.csv", with(",", &unnamed));

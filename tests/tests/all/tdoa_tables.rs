@@ -1,9 +1,9 @@
 //! One network in the tables that recorders, programs and people write: names that are numbers, moments,
 //! Raven's selections, differences of pairs, other languages, events in rows, thousands.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use end_to_end::{root, run};
+use end_to_end::{Folder, root, run};
 use serde_json::Value;
 
 const SOUND: [&str; 4] = ["--units", "s", "--speed", "343"];
@@ -39,19 +39,13 @@ fn lines(mut line: impl FnMut(usize, usize, f64) -> String) -> String {
     text
 }
 
-struct Folder(tempfile::TempDir);
+/// Calibrations of tables in a folder.
+trait Tables {
+    fn calibrated(&self, content: impl AsRef<[u8]>, options: &[&str]) -> Value;
+    fn refused(&self, content: impl AsRef<[u8]>, options: &[&str], parts: &[&str]);
+}
 
-impl Folder {
-    fn new() -> Folder {
-        Folder(tempfile::tempdir().expect("directory"))
-    }
-
-    fn write(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
-        let path = self.0.path().join(name);
-        std::fs::write(&path, content).expect("written");
-        path
-    }
-
+impl Tables for Folder {
     /// What a calibration of this table gives.
     fn calibrated(&self, content: impl AsRef<[u8]>, options: &[&str]) -> Value {
         let file = self.write("table.csv", content);
@@ -106,7 +100,7 @@ fn assert_same(found: &Value, names: &[&str]) {
 
 #[test]
 fn numbers_of_recorders_are_names() {
-    let folder = Folder::new();
+    let folder = Folder::empty();
     let table = std::fs::read_to_string(root().join("examples/network/pseudoranges.csv")).expect("example");
     let serials = ["4711", "12", "13", "905", "77", "1001", "3", "8"];
     let rows = |heading: &str, names: &[&str]| -> String {
@@ -127,7 +121,7 @@ fn numbers_of_recorders_are_names() {
 
 #[test]
 fn times_in_many_forms() {
-    let folder = Folder::new();
+    let folder = Folder::empty();
     let moment = |time: f64| format!("2024-05-12T05:{:02}:{:09.6}Z", 30 + (time / 60.0) as usize, time % 60.0);
     let iso = lines(|i, j, time| format!("r{},{j},{}\n", i + 1, moment(time)));
     let iso = folder.calibrated(format!("recorder,call,timestamp\n{iso}"), &SOUND);
@@ -149,7 +143,7 @@ fn times_in_many_forms() {
 
 #[test]
 fn differences_of_pairs() {
-    let folder = Folder::new();
+    let folder = Folder::empty();
     let first = |j: usize| (0..8).find(|&i| seconds(i, j).is_some()).expect("a receiver");
     let rows = lines(|i, j, time| match first(j) {
         k if k == i => String::new(),
@@ -164,7 +158,7 @@ fn differences_of_pairs() {
 
 #[test]
 fn events_in_rows() {
-    let folder = Folder::new();
+    let folder = Folder::empty();
     let row = |j: usize| {
         let cells = (0..8).map(|i| seconds(i, j).map_or(String::new(), |time| format!("{time:.6}")));
         cells.collect::<Vec<_>>().join(",") + "\n"
@@ -187,7 +181,7 @@ fn events_in_rows() {
 
 #[test]
 fn thousands_and_old_text() {
-    let folder = Folder::new();
+    let folder = Folder::empty();
     let samples = ["--units", "samples", "--rate", "48000", "--speed", "343"];
     // The example in millimetres of sound that is sampled so.
     let sample = |i: usize, j: usize| seconds(i, j).map(|time| (48_000.0 * (time - 39.0 - 5.0 * j as f64)).round());
@@ -225,7 +219,7 @@ fn thousands_and_old_text() {
 
 #[test]
 fn positions_with_the_words_of_surveyors() {
-    let folder = Folder::new();
+    let folder = Folder::empty();
     let table = root().join("examples/room/pseudoranges.csv");
     let positions = std::fs::read_to_string(root().join("examples/room/receivers.csv")).expect("example");
     let surveyed = folder.write("s.csv", positions.replacen("id,x,y,z", "Station,Easting,Northing,Elevation", 1));

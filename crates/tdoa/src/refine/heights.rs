@@ -60,8 +60,8 @@ pub(crate) struct Heights<const D: usize> {
 
 impl<const D: usize> Heights<D> {
     /// Deviations of heights and the most likely network near one whose receivers are about z = 0, from the
-    /// measurements without gross errors. `known` is the deviation of the measurements if it is given, `first` one near it. `None` if the
-    /// equations are singular.
+    /// measurements without gross errors. `known` is the deviation of the measurements if it is given, `first` one near
+    /// it. `None` if the equations are singular.
     pub(crate) fn of(
         observations: &Observations<D>,
         network: &Network<D>,

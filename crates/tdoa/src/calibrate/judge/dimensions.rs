@@ -56,11 +56,11 @@ pub enum CalibratedError {
 ///
 /// Known positions of different heights are in space. Otherwise the measurements decide, whatever the height of known
 /// positions; known positions without heights are for the plane, which is not unique where the measurements ask for
-/// space. How they decide: heights above the plane have
-/// a normal distribution in space, whose deviation comes from the measurements, and the plane is reported where the
-/// measurements are more likely in it than in space, over all networks ([`Calibration::dimension_test`]). Where they
-/// are at most ten times as likely in one as in the other, or too few for space, no network is called unique. Errors
-/// of receivers that the planar network shows are no reason for heights. `options.seed` and the rest are for both.
+/// space. Heights above the plane are normal in space, with deviations from the measurements, and the plane is reported
+/// where the measurements are likelier in it, over all networks ([`Calibration::dimension_test`]). Where neither is a
+/// hundred times as likely, or the measurements are too few for space, no network is called unique, unless the
+/// likeliest heights are too small to matter. Errors of receivers that the planar network shows are no reason for
+/// heights. `options.seed` and the rest are for both.
 ///
 /// ```
 /// use tdoa::{CalibrateOptions, SimulateOptions, calibrate::{Calibrated, calibrate_either}, simulate};
