@@ -285,7 +285,9 @@ mod tests {
         // Nothing is fetched: the only address is the name of SVG.
         let addresses = page.matches("://").count();
         assert_eq!(addresses, page.matches("xmlns=\"http://www.w3.org/2000/svg\"").count());
-        assert!(!page.contains(" src=") && !page.contains("url(") && !page.contains("NaN"));
+        assert!(!page.contains(" src=") && !page.contains("NaN"));
+        // Clips are within the page.
+        assert_eq!(page.matches("url(").count(), page.matches("url(#").count());
     }
 
     /// The headings of a table.

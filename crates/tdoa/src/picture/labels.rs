@@ -27,22 +27,21 @@ const WITH_LINES: usize = 8;
 /// Places names on the side of their points where the fewest other points are close.
 pub(super) struct Labels<'a> {
     points: &'a [[f64; 2]],
-    frame: Option<Rectangle>,
+    frame: Rectangle,
     taken: Vec<Rectangle>,
 }
 
 impl<'a> Labels<'a> {
-    /// Names among these points. With a frame, they stay in it, and none covers another: a name for
-    /// which there is no room is left out.
-    pub(super) fn new(points: &'a [[f64; 2]], frame: Option<Rectangle>) -> Self {
+    /// Names among these points. They stay in the frame, and none covers another: a name for which
+    /// there is no room is left out.
+    pub(super) fn new(points: &'a [[f64; 2]], frame: Rectangle) -> Self {
         Labels { points, frame, taken: Vec::new() }
     }
 
     pub(super) fn place(&mut self, canvas: &mut Canvas, nodes: &[([f64; 2], String)], colour: &str) {
-        let further = if self.frame.is_some() { &FURTHER[..] } else { &[] };
         for (at, name) in nodes {
             let width = 6.2 * name.chars().count() as f64;
-            let places = BESIDE.iter().chain(further).enumerate();
+            let places = BESIDE.iter().chain(&FURTHER).enumerate();
             let free = places.filter(|(_, place)| self.is_free(&extent(*at, **place, width)));
             let Some((k, place)) = free.min_by_key(|(_, place)| self.crowd(*at, **place, width)) else { continue };
             self.taken.push(extent(*at, *place, width));
@@ -56,7 +55,7 @@ impl<'a> Labels<'a> {
     }
 
     fn is_free(&self, name: &Rectangle) -> bool {
-        self.frame.is_none_or(|frame| frame.holds(name) && !self.taken.iter().any(|other| other.meets(name)))
+        self.frame.holds(name) && !self.taken.iter().any(|other| other.meets(name))
     }
 
     /// How many points a name would cover, or nearly so.
@@ -89,7 +88,7 @@ mod tests {
     use super::*;
 
     /// What is placed of names of three letters at these points.
-    fn placed(at: &[[f64; 2]], frame: Option<Rectangle>) -> Vec<Rectangle> {
+    fn placed(at: &[[f64; 2]], frame: Rectangle) -> Vec<Rectangle> {
         let nodes: Vec<_> = at.iter().map(|p| (*p, "abc".to_string())).collect();
         let (mut canvas, mut labels) = (Canvas::new(300.0, 300.0), Labels::new(at, frame));
         labels.place(&mut canvas, &nodes, "#000");
@@ -101,16 +100,15 @@ mod tests {
     fn names_in_a_frame_cover_neither_each_other_nor_its_edge() {
         let frame = Rectangle { left: 0.0, top: 0.0, right: 300.0, bottom: 300.0 };
         let near: Vec<[f64; 2]> = (0..6).map(|k| [150.0 + 3.0 * f64::from(k), 150.0]).collect();
-        let names = placed(&near, Some(frame));
+        let names = placed(&near, frame);
         assert_eq!(names.len(), 6);
         for (k, name) in names.iter().enumerate() {
             assert!(frame.holds(name) && !names[..k].iter().any(|other| other.meets(name)));
         }
-        // At the right edge a name stands to the left; without a frame, to the right.
-        assert!(placed(&[[295.0, 150.0]], Some(frame))[0].right < 295.0);
-        assert!(placed(&[[295.0, 150.0]], None)[0].left > 295.0);
+        // At the right edge a name stands to the left, elsewhere to the right.
+        assert!(placed(&[[295.0, 150.0]], frame)[0].right < 295.0);
+        assert!(placed(&[[150.0, 150.0]], frame)[0].left > 150.0);
         // Sixteen places are not enough for thirty names.
-        assert!(placed(&[[150.0, 150.0]; 30], Some(frame)).len() < 30);
-        assert_eq!(placed(&[[150.0, 150.0]; 30], None).len(), 30);
+        assert!(placed(&[[150.0, 150.0]; 30], frame).len() < 30);
     }
 }

@@ -13,6 +13,14 @@ const REACH: f64 = 5.0;
 const HEIGHTS: f64 = 860.0;
 const HEIGHT: f64 = 110.0;
 
+/// Left of a view are the numbers of its upward axis; above it are the name of that axis and the label.
+const LEFT: f64 = 75.0;
+const RIGHT: f64 = 20.0;
+const TOP: f64 = 72.0;
+
+/// Below a view are its numbers, the name of their axis, and what stands above the next one.
+const FEET: f64 = 66.0;
+
 /// The views and what they show.
 pub(crate) struct Layout {
     /// One in the plane, two in space, at one scale.
@@ -68,10 +76,10 @@ fn range<const D: usize>(points: &[[f64; D]], k: usize) -> (f64, f64) {
 }
 
 fn in_the_plane<const D: usize>(points: &[[f64; D]]) -> (Vec<View>, f64) {
-    let (axes, corner, size) = ([0, 1], [20.0, 50.0], [WIDTH - 40.0, 560.0]);
+    let (axes, corner, size) = ([0, 1], [LEFT, TOP], [WIDTH - LEFT - RIGHT, 560.0]);
     let ranges = axes.map(|k| range(points, k));
     let map = Map::new(Map::scale_to_fit(ranges.map(|(low, high)| high - low), size), ranges, corner, size);
-    (vec![View { axes, map, label: None }], 660.0)
+    (vec![View { axes, map, label: None }], TOP + 560.0 + FEET)
 }
 
 /// A view from above and below it one from the side: what is in both lies on one vertical line.
@@ -80,15 +88,14 @@ fn in_space<const D: usize>(points: &[[f64; D]]) -> (Vec<View>, f64) {
         let (low, high) = range(points, k);
         high - low
     };
-    let (left, width, [_, margin]) = (75.0, WIDTH - 95.0, Map::MARGIN);
+    let (width, [_, margin]) = (WIDTH - LEFT - RIGHT, Map::MARGIN);
     let scale = Map::scale_to_fit([length(0), length(1) + length(2)], [width, HEIGHTS - 2.0 * margin]);
-    let mut top = 72.0;
+    let mut top = TOP;
     let views = [([0, 1], "from above"), ([0, 2], "from the side")].map(|(axes, label)| {
         let height = (length(axes[1]) * scale + 2.0 * margin).max(HEIGHT);
-        let map = Map::new(scale, axes.map(|k| range(points, k)), [left, top], [width, height]);
-        // Below a view are its numbers, their axis, and the label of the next one.
-        top += height + 66.0;
+        let map = Map::new(scale, axes.map(|k| range(points, k)), [LEFT, top], [width, height]);
+        top += height + FEET;
         View { axes, map, label: Some(label) }
     });
-    (views.into(), top + 8.0)
+    (views.into(), top)
 }

@@ -5,7 +5,7 @@ use super::canvas::{Canvas, Map, nice};
 use super::labels::Labels;
 use crate::calibrate::Calibration;
 use crate::minimal::NodeKind;
-use crate::quantity::{coordinate, length};
+use crate::quantity::coordinate;
 
 /// Width of the picture.
 pub(super) const WIDTH: f64 = 900.0;
@@ -28,8 +28,7 @@ pub(super) struct View {
     /// Which coordinate is to the right and which is upwards.
     pub(super) axes: [usize; 2],
     pub(super) map: Map,
-    /// From where it is seen, if the view is one of several. It then has a frame, a grid and numbers;
-    /// otherwise it has a scale bar.
+    /// From where it is seen, if the view is one of several.
     pub(super) label: Option<&'static str>,
 }
 
@@ -64,20 +63,13 @@ impl View {
         shows: impl Fn(&[f64; D]) -> bool,
         radius: f64,
     ) {
-        if let Some(label) = self.label {
-            self.grid(canvas, label);
-            canvas.within(&self.map.frame());
-        }
+        self.grid(canvas);
+        canvas.within(&self.map.frame());
         self.outliers(canvas, calibration, &shows);
         self.nodes(canvas, calibration, &shows, radius);
         self.truth(canvas, calibration, &shows);
-        if self.label.is_some() {
-            canvas.whole();
-        }
+        canvas.whole();
         self.names(canvas, calibration, &shows);
-        if self.label.is_none() {
-            self.scale_bar(canvas);
-        }
     }
 
     fn outliers<const D: usize>(
@@ -174,25 +166,15 @@ impl View {
         let receivers = named(&calibration.receiver_names, &calibration.receivers);
         let transmitters = named(&calibration.transmitter_names, &calibration.transmitters);
         let points: Vec<[f64; 2]> = receivers.iter().chain(&transmitters).map(|(p, _)| *p).collect();
-        let mut labels = Labels::new(&points, self.label.map(|_| self.map.frame()));
+        let mut labels = Labels::new(&points, self.map.frame());
         labels.place(canvas, &receivers[..receivers.len().min(NAMED)], BLUE);
         if transmitters.len() <= NAMED {
             labels.place(canvas, &transmitters, ORANGE);
         }
     }
 
-    fn scale_bar(&self, canvas: &mut Canvas) {
-        let (metres, frame) = (nice(150.0 / self.map.scale), self.map.frame());
-        let [x, y] = [frame.left, frame.bottom + 18.0];
-        let end = x + metres * self.map.scale;
-        canvas.line([x, y], [end, y], "#000", 2.0, "");
-        canvas.line([x, y - 4.0], [x, y + 4.0], "#000", 2.0, "");
-        canvas.line([end, y - 4.0], [end, y + 4.0], "#000", 2.0, "");
-        canvas.text([end + 8.0, y + 4.0], "start", 12.0, &length(metres));
-    }
-
-    /// A frame with a square grid, numbers in metres, and the label above it.
-    fn grid(&self, canvas: &mut Canvas, label: &str) {
+    /// A frame with a square grid, numbers in metres, and the label, if any, above it.
+    fn grid(&self, canvas: &mut Canvas) {
         let frame = self.map.frame();
         let [right, up] = self.axes.map(|k| ["x", "y", "z"].get(k).copied().unwrap_or_default());
         let step = self.step();
@@ -209,7 +191,9 @@ impl View {
         canvas.outline(&frame, "#888");
         canvas.text([0.5 * (frame.left + frame.right), frame.bottom + 32.0], "middle", 12.0, &format!("{right} (m)"));
         canvas.text([frame.left - 6.0, frame.top - 10.0], "end", 12.0, &format!("{up} (m)"));
-        canvas.text([frame.left + 12.0, frame.top - 10.0], "start", 13.0, label);
+        if let Some(label) = self.label {
+            canvas.text([frame.left + 12.0, frame.top - 10.0], "start", 13.0, label);
+        }
     }
 
     /// Metres between two lines of the grid: at least the width of their numbers.

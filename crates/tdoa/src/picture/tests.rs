@@ -1,0 +1,209 @@
+use super::*;
+use crate::minimal::NodeKind;
+use crate::{CalibrateOptions, SimulateOptions, calibrate, simulate};
+
+#[test]
+fn shows_every_node_and_escapes_names() {
+    let mut options = SimulateOptions { noise: 0.01, outliers: 0.02, ..Default::default() };
+    options.missing = 0.02;
+    let simulation = simulate(&options).unwrap();
+    let names = |kind: &str, count: usize| (0..count).map(|k| format!("{kind}<{k}&\"")).collect();
+    let measured = simulation.pseudoranges.with_names(names("r", 8), names("s", 12)).unwrap();
+    let mut calibration = calibrate(&measured, &CalibrateOptions::default()).unwrap();
+    let truth: Vec<_> = simulation.network.receivers.iter().copied().map(Some).collect();
+    calibration.compare(&truth);
+    let svg = picture(&calibration);
+    assert!(svg.starts_with("<svg ") && svg.trim_end().ends_with("</svg>"));
+    for name in ["r&lt;0&amp;&quot;", "r&lt;7&amp;&quot;", "s&lt;11&amp;&quot;", "true position"] {
+        assert!(svg.contains(name), "{name}");
+    }
+    assert!(!svg.contains("NaN") && !svg.contains("inf"));
+    // Eight receivers and one in the legend; twelve transmitters and one.
+    assert_eq!(svg.matches("class=\"receiver\"").count(), 9);
+    assert_eq!(svg.matches("class=\"transmitter\"").count(), 13);
+    assert_eq!(svg.matches("class=\"truth\"").count(), 9);
+    assert!(!svg.contains("class=\"anchor\""));
+}
+
+#[test]
+fn small_ellipses_are_magnified_by_a_stated_number() {
+    for (noise, least) in [(1e-4, 100.0), (0.01, 2.0), (0.5, 1.0)] {
+        let simulation = simulate(&SimulateOptions { noise, ..Default::default() }).unwrap();
+        let calibration = calibrate(&simulation.pseudoranges, &CalibrateOptions::default()).unwrap();
+        let (factor, svg) = (ellipse_magnification(&calibration), picture(&calibration));
+        assert!(factor >= least && (least > 1.0 || factor == 1.0), "{noise}: {factor}");
+        let stated = format!("receiver, with 95 % ellipse, {factor} times as large");
+        assert_eq!(svg.contains(&stated), factor > 1.0, "{noise}");
+        // Half of the ellipses are larger than the triangles of 6 pixels.
+        let radii = svg.split("rx=\"").skip(1).filter_map(|rest| rest.split('"').next()?.parse::<f64>().ok());
+        let mut radii: Vec<f64> = radii.collect();
+        radii.sort_by(f64::total_cmp);
+        assert!(radii[radii.len() / 2] > 6.0, "{noise}: {radii:?}");
+    }
+}
+
+#[test]
+fn marks_anchors_and_true_transmitters() {
+    let simulation = simulate(&SimulateOptions { noise: 0.01, ..Default::default() }).unwrap();
+    let known: Vec<_> = simulation.network.receivers.iter().copied().map(Some).collect();
+    let mut options = CalibrateOptions { anchors: known.clone(), ..Default::default() };
+    options.anchors[3..].fill(None);
+    let mut calibration = calibrate(&simulation.pseudoranges, &options).unwrap();
+    let mut transmitters: Vec<_> = simulation.network.transmitters.iter().copied().map(Some).collect();
+    transmitters[5] = None;
+    calibration.compare_all(&known, &transmitters);
+    assert!(calibration.truth.as_ref().unwrap().transmitter_median.unwrap() < 0.1);
+    let svg = picture(&calibration);
+    // Three anchors and one in the legend; eight receivers, eleven transmitters and the legend.
+    assert_eq!(svg.matches("class=\"anchor\"").count(), 4);
+    assert_eq!(svg.matches("class=\"truth\"").count(), 20);
+}
+
+fn in_space() -> Calibration<3> {
+    let simulation = simulate(&SimulateOptions::<3> { noise: 0.01, ..SimulateOptions::new() }).unwrap();
+    let names = |kind: &str, count: usize| (0..count).map(|k| format!("{kind}<{k}&\"")).collect();
+    let measured = simulation.pseudoranges.with_names(names("r", 8), names("s", 12)).unwrap();
+    let mut calibration = calibrate(&measured, &CalibrateOptions::<3>::new()).unwrap();
+    let truth: Vec<_> = simulation.network.receivers.iter().copied().map(Some).collect();
+    calibration.compare(&truth);
+    calibration
+}
+
+#[test]
+fn two_views_show_every_node_in_space() {
+    let mut calibration = in_space();
+    calibration.anchored[4] = true;
+    let svg = picture(&calibration);
+    // Each of the eight receivers and twelve transmitters in both views, and one in the legend.
+    assert_eq!(svg.matches("class=\"receiver\"").count(), 17);
+    assert_eq!(svg.matches("class=\"transmitter\"").count(), 25);
+    assert_eq!(svg.matches("class=\"truth\"").count(), 17);
+    assert_eq!(svg.matches("class=\"anchor\"").count(), 3);
+    assert_eq!(svg.matches("r&lt;7&amp;&quot;<").count(), 2);
+    for once in ["from above", "from the side", "shadow of the 95 % ellipsoid", ">y (m)<", ">z (m)<"] {
+        assert_eq!(svg.matches(once).count(), 1, "{once}");
+    }
+    assert_eq!(svg.matches(">x (m)<").count(), 2);
+    assert!(!svg.contains("NaN") && !svg.contains("inf") && !svg.contains("r<7"));
+}
+
+/// The numbers of an attribute, of all elements that contain a text, up to the end of the attribute.
+fn numbers(svg: &str, element: &str, attribute: &str) -> Vec<Vec<f64>> {
+    let lines = svg.lines().filter(|line| line.contains(element));
+    let values = lines.filter_map(|line| line.split_once(attribute)?.1.split('"').next());
+    let split = |text: &str| text.split(|c: char| !"-.0123456789".contains(c)).filter_map(|n| n.parse().ok()).collect();
+    values.map(split).collect()
+}
+
+#[test]
+fn ellipses_in_space_are_shadows_of_ellipsoids() {
+    let mut calibration = in_space();
+    calibration.truth = None;
+    calibration.transmitters.fill(None);
+    calibration.receiver_covariance.fill(None);
+    calibration.receivers.fill(None);
+    calibration.receivers[0] = Some([0.0, 0.0, 0.0]);
+    calibration.receivers[1] = Some([10.0, 4.0, 2.0]);
+    // Seen from above, eigenvalues 8 and 2 along the diagonals; from the side, 5 and 1 along the axes.
+    calibration.receiver_covariance[0] = Some([[5.0, 3.0, 0.0], [3.0, 5.0, 0.0], [0.0, 0.0, 1.0]]);
+    calibration.ellipse_radius = Some(0.5);
+    let svg = picture(&calibration);
+    assert!(!svg.contains("times as large"));
+    // Two receivers a view, and the legend.
+    let markers = numbers(&svg, "class=\"receiver\"", " d=\"M");
+    let [above, other, side, last] = [0, 1, 2, 3].map(|k| &markers[k]);
+    let scale = (other[0] - above[0]) / 10.0;
+    let near = |a: f64, b: f64| (a - b).abs() < 0.02;
+    // One scale; what is in both views is on one vertical line.
+    assert!(near(above[1] - other[1], 4.0 * scale) && near(side[1] - last[1], 2.0 * scale));
+    assert!(near(above[0], side[0]) && near(other[0], last[0]) && above[1] < side[1]);
+    // Semi-axes and their directions; y is downwards in SVG.
+    let places = numbers(&svg, "<ellipse", "transform=\"");
+    let radii = [numbers(&svg, "<ellipse", " rx=\""), numbers(&svg, "<ellipse", " ry=\"")];
+    assert_eq!(places.len(), 3);
+    for (k, [long, short, angle]) in [(0, [8.0, 2.0, -45.0]), (1, [5.0, 1.0, 0.0])] {
+        let [long, short] = [long, short].map(|variance: f64| 0.5 * variance.sqrt() * scale);
+        assert!(near(radii[0][k][0], long) && near(radii[1][k][0], short) && places[k][2] == angle, "{places:?}");
+    }
+    // A marker is drawn from six pixels above its point.
+    assert!(near(places[0][0], above[0]) && near(places[0][1], above[1] + 6.0));
+    assert!(near(places[1][0], side[0]) && near(places[1][1], side[1] + 6.0));
+}
+
+#[test]
+fn mirror_images_are_hollow() {
+    let mut calibration = in_space();
+    assert!(!picture(&calibration).contains("mirror"));
+    let image = |node: &str, kind, position| crate::MirrorImage {
+        node: node.to_string(),
+        kind,
+        position,
+        distance_from_plane: 1.0,
+        log_likelihood_loss: 0.0,
+    };
+    let near = calibration.receivers[0].unwrap();
+    calibration.mirror_images = vec![
+        image("s", NodeKind::Transmitters, near),
+        image("r", NodeKind::Receivers, near),
+        image("s", NodeKind::Transmitters, [1e9, f64::NAN, 0.0]),
+    ];
+    let svg = picture(&calibration);
+    // Two in both views, and one in the legend; the one that is nowhere is left out.
+    assert_eq!(svg.matches("class=\"mirror\"").count(), 5);
+    assert!(svg.contains("mirror image that fits as well") && !svg.contains("NaN"));
+}
+
+#[test]
+fn pictures_of_little_or_nothing_in_space() {
+    let mut calibration = in_space();
+    calibration.truth = None;
+    for kept in [[Some([1.0, 2.0, 3.0]), None], [Some([1.0, 2.0, 3.0]), Some([1e9, 2.0, 3.0])], [None, None]] {
+        calibration.receivers.fill(None);
+        calibration.receivers[..2].copy_from_slice(&kept);
+        calibration.transmitters.fill(None);
+        let svg = picture(&calibration);
+        assert_eq!(svg.matches("class=\"receiver\"").count(), 1 + 2 * kept.iter().flatten().count());
+        assert!(!svg.contains("NaN") && !svg.contains("inf") && svg.len() < 100_000);
+    }
+}
+
+/// The middle of the marker of each receiver, in pixels. The one in the legend is the last.
+fn receivers(svg: &str) -> Vec<[f64; 2]> {
+    // A marker is drawn from six pixels above its point.
+    numbers(svg, "class=\"receiver\"", " d=\"M").iter().map(|m| [m[0], m[1] + 6.0]).collect()
+}
+
+/// The texts that are numbers of an axis: where they stand, and the number.
+fn ticks(svg: &str, anchor: &str) -> Vec<([f64; 2], f64)> {
+    let kind = format!("text-anchor=\"{anchor}\" font-size=\"11\" fill=\"#222\"");
+    let lines = svg.lines().filter(|line| line.contains(&kind));
+    let tick = |line: &str| {
+        let number = line.split_once('>')?.1.split('<').next()?.parse().ok()?;
+        let [x, y] = ["<text x=\"", "y=\""].map(|at| numbers(line, at, at)[0][0]);
+        Some(([x, y], number))
+    };
+    lines.filter_map(tick).collect()
+}
+
+#[test]
+fn the_axes_of_the_plane_are_in_metres() {
+    let mut calibration: Calibration = serde_json::from_str(include_str!("plane.json")).unwrap();
+    calibration.receivers.fill(None);
+    calibration.receivers[..2].copy_from_slice(&[Some([-3.0, 1.0]), Some([9.0, 7.0])]);
+    calibration.transmitters.fill(None);
+    calibration.truth = None;
+    let svg = picture(&calibration);
+    let [first, second] = [0, 1].map(|k| receivers(&svg)[k]);
+    let scale = (second[0] - first[0]) / 12.0;
+    assert!((first[1] - second[1] - 6.0 * scale).abs() < 0.02, "one scale");
+    for name in [">x (m)<", ">y (m)<"] {
+        assert_eq!(svg.matches(name).count(), 1, "{name}");
+    }
+    // The histogram below has numbers too.
+    let right = ticks(&svg, "middle").into_iter().filter(|([_, y], _)| *y < 680.0);
+    let right: Vec<f64> = right.map(|([x, _], metres)| (x - first[0]) / scale - 3.0 - metres).collect();
+    let up = ticks(&svg, "end").into_iter().map(|([_, y], metres)| (first[1] + 4.0 - y) / scale + 1.0 - metres);
+    let up: Vec<f64> = up.collect();
+    assert!(right.len() > 3 && up.len() > 3, "{right:?} {up:?}");
+    assert!(right.iter().chain(&up).all(|off| off.abs() < 1e-3), "{right:?} {up:?}");
+}
