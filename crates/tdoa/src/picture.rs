@@ -27,20 +27,18 @@ pub fn picture<const D: usize>(calibration: &Calibration<D>) -> String {
     let layout = Layout::of(calibration);
     let mut canvas = Canvas::new(WIDTH, layout.foot + FOOT);
     canvas.text([20.0, 28.0], "start", 16.0, &title(calibration));
-    let magnified = layout.magnification(calibration);
-    let radius = magnified * calibration.ellipse_radius.unwrap_or(0.0);
     for view in &layout.views {
-        view.draw(&mut canvas, calibration, |p| layout.shows(p), radius);
+        view.draw(&mut canvas, calibration, |p| layout.shows(p), layout.radius(calibration));
     }
     histogram::draw(&mut canvas, calibration, [60.0, layout.foot], [480.0, 130.0]);
-    legend(&mut canvas, calibration, &layout, magnified, [600.0, layout.foot]);
+    legend(&mut canvas, calibration, &layout, [600.0, layout.foot]);
     canvas.finish()
 }
 
 /// By what factor ellipses are enlarged, so that they stand out from the dots: 1 if half of them do
 /// so already, otherwise a round number.
 pub fn ellipse_magnification<const D: usize>(calibration: &Calibration<D>) -> f64 {
-    Layout::of(calibration).magnification(calibration)
+    Layout::of(calibration).magnified
 }
 
 fn title<const D: usize>(calibration: &Calibration<D>) -> String {
@@ -54,13 +52,8 @@ fn title<const D: usize>(calibration: &Calibration<D>) -> String {
     title
 }
 
-fn legend<const D: usize>(
-    canvas: &mut Canvas,
-    calibration: &Calibration<D>,
-    layout: &Layout,
-    magnified: f64,
-    at: [f64; 2],
-) {
+fn legend<const D: usize>(canvas: &mut Canvas, calibration: &Calibration<D>, layout: &Layout, at: [f64; 2]) {
+    let magnified = layout.magnified;
     let mut y = at[1];
     let mut row = |canvas: &mut Canvas, text: &str| {
         canvas.text([at[0] + 20.0, y + 4.0], "start", 12.0, text);
@@ -84,6 +77,15 @@ fn legend<const D: usize>(
     }
     if calibration.relevant_systematic().is_some() {
         row(canvas, "(with systematic errors of the receivers)");
+    }
+    let ellipse = if shadows { "ellipsoid" } else { "ellipse" };
+    if layout.cut > 0 {
+        let words = "larger than the network, cut at the edge";
+        row(canvas, &format!("{} {words}", counted(layout.cut, ellipse)));
+    }
+    if layout.undrawn > 0 {
+        let words = "larger than the picture, not drawn";
+        row(canvas, &format!("{} {words}", counted(layout.undrawn, ellipse)));
     }
     let (measured, outlying) = (calibration.residuals.len(), calibration.residuals.outliers().count());
     let h = row(canvas, &format!("outliers: {outlying} of {}", counted(measured, "measurement")));

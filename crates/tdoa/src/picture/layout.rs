@@ -1,5 +1,7 @@
 //! Which views of a calibration the picture has, and where.
 
+use std::array::from_fn;
+
 use super::canvas::Map;
 use super::view::{View, WIDTH, magnification};
 use crate::calibrate::Calibration;
@@ -21,12 +23,21 @@ const TOP: f64 = 72.0;
 /// Below a view are its numbers, the name of their axis, and what stands above the next one.
 const FEET: f64 = 66.0;
 
+/// Pixels that remain between the largest ellipse and the edge are those of a margin beyond these.
+const LEAST_MARGIN: f64 = 20.0;
+
 /// The views and what they show.
 pub(crate) struct Layout {
     /// One in the plane, two in space, at one scale.
     pub(super) views: Vec<View>,
+    /// By what factor ellipses are enlarged.
+    pub(super) magnified: f64,
     /// How many transmitters lie too far away to be shown.
     pub(super) outside: usize,
+    /// How many ellipses are too large for a view, which cuts them.
+    pub(super) cut: usize,
+    /// How many ellipses are so large that they are not drawn.
+    pub(super) undrawn: usize,
     /// Where the histogram and the legend begin.
     pub(super) foot: f64,
 }
@@ -35,20 +46,22 @@ impl Layout {
     /// The views of a calibration in the plane or in space.
     pub(crate) fn of<const D: usize>(calibration: &Calibration<D>) -> Self {
         const { assert!(D == 2 || D == 3, "a picture is of the plane or of space") }
-        let receivers: Vec<[f64; D]> = calibration.receivers.iter().flatten().copied().collect();
-        let (centre, size) = (centroid(receivers.iter()), spread(receivers.iter()));
-        let near = |p: &&[f64; D]| distance(**p, centre) <= REACH * size;
-        let transmitters: Vec<[f64; D]> = calibration.transmitters.iter().flatten().copied().collect();
-        let shown: Vec<[f64; D]> = receivers
-            .iter()
-            .chain(transmitters.iter().filter(near))
-            .chain(calibration.mirror_images.iter().map(|image| &image.position).filter(near))
-            .chain(calibration.truth.iter().flat_map(|truth| truth.positions.iter().flatten()))
-            .copied()
-            .collect();
-        let outside = transmitters.iter().filter(|p| !near(p)).count();
-        let (views, foot) = if D == 2 { in_the_plane(&shown) } else { in_space(&shown) };
-        Layout { views, outside, foot }
+        let points = points(calibration);
+        let ranges = from_fn(|k| range(points.iter().map(|p| p[k])));
+        let (views, foot) = arrange::<D>(&ranges);
+        let mut layout = Layout { views, magnified: 1.0, outside: 0, cut: 0, undrawn: 0, foot };
+        layout.magnified = layout.magnification(calibration);
+        (layout.views, layout.foot) = arrange::<D>(&layout.with_ellipses(ranges, calibration));
+        layout.outside = calibration.transmitters.iter().flatten().filter(|p| !layout.shows(p)).count();
+        for (p, covariance) in layout.ellipsoids(calibration) {
+            let fits = |view: &View| view.ellipse_fits(p, covariance, layout.radius(calibration));
+            if layout.views.iter().any(|view| fits(view).is_none()) {
+                layout.undrawn += 1;
+            } else if layout.views.iter().any(|view| fits(view) == Some(false)) {
+                layout.cut += 1;
+            }
+        }
+        layout
     }
 
     /// Whether all views have this point.
@@ -56,44 +69,86 @@ impl Layout {
         self.views.iter().all(|view| view.map.shows(view.point(*p)))
     }
 
-    /// By what factor ellipses are enlarged.
-    pub(super) fn magnification<const D: usize>(&self, calibration: &Calibration<D>) -> f64 {
+    /// The radius of ellipses as they are drawn, in standard deviations.
+    pub(super) fn radius<const D: usize>(&self, calibration: &Calibration<D>) -> f64 {
+        self.magnified * calibration.ellipse_radius.unwrap_or(0.0)
+    }
+
+    /// The nodes that all views have and whose covariance is known.
+    fn ellipsoids<'a, const D: usize>(&self, calibration: &'a Calibration<D>) -> Vec<([f64; D], &'a [[f64; D]; D])> {
         let [of_receivers, of_transmitters] = calibration.trusted_covariances();
         let receivers = calibration.receivers.iter().zip(of_receivers);
         let nodes = receivers.chain(calibration.transmitters.iter().zip(of_transmitters));
-        let shown = nodes.filter(|(position, _)| position.as_ref().is_some_and(|p| self.shows(p)));
-        let covariances: Vec<_> = shown.filter_map(|(_, covariance)| *covariance).collect();
+        let known = nodes.filter_map(|(position, covariance)| Some(((*position)?, covariance.as_ref()?)));
+        known.filter(|(p, _)| self.shows(p)).collect()
+    }
+
+    fn magnification<const D: usize>(&self, calibration: &Calibration<D>) -> f64 {
         let radius = calibration.ellipse_radius.unwrap_or(0.0);
-        magnification(self.views.iter().flat_map(|view| covariances.iter().map(|c| view.semiaxes(c, radius)[0])))
+        let ellipsoids = self.ellipsoids(calibration);
+        magnification(self.views.iter().flat_map(|view| ellipsoids.iter().map(|(_, c)| view.semiaxes(c, radius)[0])))
+    }
+
+    /// The ranges of the points, grown for ellipses. One that is larger than the network would leave a dot of the
+    /// network: it is cut instead.
+    fn with_ellipses<const D: usize>(&self, ranges: [(f64, f64); D], calibration: &Calibration<D>) -> [(f64, f64); D] {
+        let largest = ranges.iter().map(|(low, high)| 0.5 * (high - low)).fold(0.0, f64::max);
+        // Ellipses need no room for names. What grows has a smaller scale, at which the margin is worth more.
+        let margin = self.views.iter().map(|view| LEAST_MARGIN / view.map.scale).fold(0.0, f64::max);
+        let mut grown = ranges;
+        for (p, covariance) in self.ellipsoids(calibration) {
+            let reach: [f64; D] = from_fn(|k| self.radius(calibration) * covariance[k][k].sqrt());
+            if reach.iter().all(|reach| *reach <= largest) {
+                for (k, (low, high)) in grown.iter_mut().enumerate() {
+                    let beyond = (reach[k] - margin).max(0.0);
+                    (*low, *high) = (low.min(p[k] - beyond), high.max(p[k] + beyond));
+                }
+            }
+        }
+        grown
     }
 }
 
-/// The least and the greatest of a coordinate; zeros if there are no points.
-fn range<const D: usize>(points: &[[f64; D]], k: usize) -> (f64, f64) {
-    let low = points.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min);
-    let high = points.iter().map(|p| p[k]).fold(f64::NEG_INFINITY, f64::max);
+/// All points that the views must have.
+fn points<const D: usize>(calibration: &Calibration<D>) -> Vec<[f64; D]> {
+    let receivers: Vec<[f64; D]> = calibration.receivers.iter().flatten().copied().collect();
+    let (centre, size) = (centroid(receivers.iter()), spread(receivers.iter()));
+    let near = |p: &&[f64; D]| distance(**p, centre) <= REACH * size;
+    let transmitters = calibration.transmitters.iter().flatten().filter(near);
+    let images = calibration.mirror_images.iter().map(|image| &image.position).filter(near);
+    let truth = calibration.truth.iter().flat_map(|truth| {
+        truth.positions.iter().flatten().chain(truth.transmitter_positions.iter().flatten().filter(near))
+    });
+    receivers.iter().chain(transmitters).chain(images).chain(truth).copied().collect()
+}
+
+/// The least and the greatest of these coordinates; zeros if there are none.
+fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
     if low <= high { (low, high) } else { (0.0, 0.0) }
 }
 
-fn in_the_plane<const D: usize>(points: &[[f64; D]]) -> (Vec<View>, f64) {
+/// The views of these ranges, and where they end.
+fn arrange<const D: usize>(ranges: &[(f64, f64); D]) -> (Vec<View>, f64) {
+    if D == 2 { in_the_plane(ranges) } else { in_space(ranges) }
+}
+
+fn in_the_plane<const D: usize>(ranges: &[(f64, f64); D]) -> (Vec<View>, f64) {
     let (axes, corner, size) = ([0, 1], [LEFT, TOP], [WIDTH - LEFT - RIGHT, 560.0]);
-    let ranges = axes.map(|k| range(points, k));
+    let ranges = axes.map(|k| ranges[k]);
     let map = Map::new(Map::scale_to_fit(ranges.map(|(low, high)| high - low), size), ranges, corner, size);
     (vec![View { axes, map, label: None }], TOP + 560.0 + FEET)
 }
 
 /// A view from above and below it one from the side: what is in both lies on one vertical line.
-fn in_space<const D: usize>(points: &[[f64; D]]) -> (Vec<View>, f64) {
-    let length = |k: usize| {
-        let (low, high) = range(points, k);
-        high - low
-    };
+fn in_space<const D: usize>(ranges: &[(f64, f64); D]) -> (Vec<View>, f64) {
+    let length = |k: usize| ranges[k].1 - ranges[k].0;
     let (width, [_, margin]) = (WIDTH - LEFT - RIGHT, Map::MARGIN);
     let scale = Map::scale_to_fit([length(0), length(1) + length(2)], [width, HEIGHTS - 2.0 * margin]);
     let mut top = TOP;
     let views = [([0, 1], "from above"), ([0, 2], "from the side")].map(|(axes, label)| {
         let height = (length(axes[1]) * scale + 2.0 * margin).max(HEIGHT);
-        let map = Map::new(scale, axes.map(|k| range(points, k)), [LEFT, top], [width, height]);
+        let map = Map::new(scale, axes.map(|k| ranges[k]), [LEFT, top], [width, height]);
         top += height + FEET;
         View { axes, map, label: Some(label) }
     });

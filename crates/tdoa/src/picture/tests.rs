@@ -207,3 +207,70 @@ fn the_axes_of_the_plane_are_in_metres() {
     assert!(right.len() > 3 && up.len() > 3, "{right:?} {up:?}");
     assert!(right.iter().chain(&up).all(|off| off.abs() < 1e-3), "{right:?} {up:?}");
 }
+
+/// The ellipses of the views, each with the box that cuts it: left, top, right, bottom.
+fn ellipses(svg: &str) -> Vec<([f64; 4], [f64; 4])> {
+    let (mut cut, mut found) = (None, Vec::new());
+    for line in svg.lines() {
+        if line.contains("<clipPath") {
+            let [x, y, width, height] =
+                [" x=\"", " y=\"", " width=\"", " height=\""].map(|at| numbers(line, at, at)[0][0]);
+            cut = Some([x, y, x + width, y + height]);
+        } else if line == "</g>" {
+            cut = None;
+        } else if line.contains("<ellipse")
+            && let Some(cut) = cut
+        {
+            let [place, rx, ry] = [" transform=\"", " rx=\"", " ry=\""].map(|at| numbers(line, at, at).remove(0));
+            // The extent of a turned ellipse.
+            let (s, c) = place[2].to_radians().sin_cos();
+            let (dx, dy) = ((rx[0] * c).hypot(ry[0] * s), (rx[0] * s).hypot(ry[0] * c));
+            found.push((cut, [place[0] - dx, place[1] - dy, place[0] + dx, place[1] + dy]));
+        }
+    }
+    found
+}
+
+/// Whether an ellipse lies in its box, whose edges are whole pixels.
+fn is_whole((cut, ellipse): &([f64; 4], [f64; 4])) -> bool {
+    (0..2).all(|k| cut[k] <= ellipse[k] + 0.51 && ellipse[k + 2] <= cut[k + 2] + 0.51)
+}
+
+#[test]
+fn the_view_grows_to_hold_ellipses() {
+    let mut calibration = in_space();
+    let svg = picture(&calibration);
+    assert!(ellipses(&svg).len() >= 40 && ellipses(&svg).iter().all(is_whole));
+    // One as large as half the network, at its edge, in each direction.
+    let size = calibration.extent().unwrap();
+    let wide = (0.2 * size / calibration.ellipse_radius.unwrap()).powi(2);
+    let mut plane: Calibration = serde_json::from_str(include_str!("plane.json")).unwrap();
+    let across = plane.extent().unwrap();
+    let long = (0.2 * across / plane.ellipse_radius.unwrap()).powi(2);
+    plane.receiver_covariance.fill(Some([[long, 0.5 * long], [0.5 * long, long]]));
+    calibration.receiver_covariance.fill(Some([[wide, 0.0, 0.0], [0.0, wide, 0.0], [0.0, 0.0, wide]]));
+    (calibration.systematic, plane.systematic) = (None, None);
+    for svg in [picture(&calibration), picture(&plane)] {
+        assert!(ellipses(&svg).iter().all(is_whole) && !svg.contains("cut at the edge"));
+    }
+}
+
+#[test]
+fn ellipses_larger_than_the_network_are_said_to_be_cut() {
+    let mut calibration: Calibration = serde_json::from_str(include_str!("plane.json")).unwrap();
+    calibration.systematic = None;
+    let huge = |times: f64| {
+        let deviation = times * calibration.extent().unwrap() / calibration.ellipse_radius.unwrap();
+        Some([[deviation * deviation, 0.0], [0.0, 1e-6]])
+    };
+    let (twice, hundredfold) = (huge(2.0), huge(100.0));
+    let located = calibration.receivers.iter().position(Option::is_some).unwrap();
+    calibration.receiver_covariance[located] = twice;
+    let svg = picture(&calibration);
+    assert_eq!(ellipses(&svg).iter().filter(|ellipse| !is_whole(ellipse)).count(), 1);
+    assert!(svg.contains("1 ellipse larger than the network, cut at the edge") && !svg.contains("not drawn"));
+    calibration.receiver_covariance[located] = hundredfold;
+    let svg = picture(&calibration);
+    assert!(ellipses(&svg).iter().all(is_whole));
+    assert!(svg.contains("1 ellipse larger than the picture, not drawn") && !svg.contains("cut at the edge"));
+}

@@ -1,7 +1,7 @@
 //! One view of a calibration: the network along a pair of axes, with ellipses, names, outliers and, if
 //! the truth is given, the truth and error vectors.
 
-use super::canvas::{Canvas, Map, nice};
+use super::canvas::{Canvas, Map, Rectangle, nice};
 use super::labels::Labels;
 use crate::calibrate::Calibration;
 use crate::minimal::NodeKind;
@@ -22,6 +22,9 @@ const NAMED: usize = 80;
 
 /// Most outliers that are drawn as lines.
 const OUTLIERS: usize = 200;
+
+/// Semi-axis in pixels from which on an ellipse would be a wash of colour, and is not drawn.
+const TOO_LARGE: f64 = 2.0 * WIDTH;
 
 /// A pair of axes and its box in the picture.
 pub(super) struct View {
@@ -52,6 +55,21 @@ impl View {
     /// The semi-axes of an ellipse in the picture, the larger one first.
     pub(super) fn semiaxes<const D: usize>(&self, covariance: &[[f64; D]; D], radius: f64) -> [f64; 2] {
         variances(self.shadow(covariance)).map(|variance| radius * variance.sqrt() * self.map.scale)
+    }
+
+    /// Whether an ellipse about a point lies within the view; `None` if it is so large that it is not drawn.
+    pub(super) fn ellipse_fits<const D: usize>(
+        &self,
+        at: [f64; D],
+        covariance: &[[f64; D]; D],
+        radius: f64,
+    ) -> Option<bool> {
+        if self.semiaxes(covariance, radius)[0] >= TOO_LARGE {
+            return None;
+        }
+        let [dx, dy] = self.axes.map(|k| radius * covariance[k][k].sqrt() * self.map.scale);
+        let [x, y] = self.to(at);
+        Some(self.map.frame().holds(&Rectangle { left: x - dx, top: y - dy, right: x + dx, bottom: y + dy }))
     }
 
     /// Draws the view. Nodes are those that `shows` lets through, and ellipses have this radius in
@@ -130,8 +148,8 @@ impl View {
         let axes = self.semiaxes(covariance, radius);
         let [[xx, xy], [_, yy]] = self.shadow(covariance);
         let angle = 0.5 * (2.0 * xy).atan2(xx - yy);
-        // Beyond the picture it would be a wash of colour; below a pixel nothing is seen.
-        if axes[0] < 2.0 * WIDTH && axes[0] > 0.5 {
+        // Below a pixel nothing is seen.
+        if axes[0] < TOO_LARGE && axes[0] > 0.5 {
             canvas.ellipse(self.to(at), axes, -angle.to_degrees(), colour);
         }
     }
