@@ -17,7 +17,7 @@ use crate::summary::deviation;
 pub use canvas::Canvas;
 pub(crate) use canvas::escape;
 pub(crate) use layout::Layout;
-use view::{BLUE, ORANGE, PINK, WIDTH};
+use view::{BLUE, CROSS, DISC, ORANGE, PINK, RING, SQUARE, TRIANGLE, WIDTH};
 
 /// Height of the histogram and the legend.
 const FOOT: f64 = 190.0;
@@ -65,9 +65,9 @@ fn legend<const D: usize>(canvas: &mut Canvas, calibration: &Calibration<D>, lay
     let shadows = layout.views.len() > 1;
     let with = if shadows { String::new() } else { format!(", with 95 % ellipse{times}") };
     let h = row(canvas, &format!("receiver{with}"));
-    canvas.triangle([at[0], h], 6.0, BLUE);
+    canvas.triangle([at[0], h], TRIANGLE, BLUE);
     let h = row(canvas, &format!("transmitter{with}"));
-    canvas.circle([at[0], h], 3.0, ORANGE);
+    canvas.circle([at[0], h], DISC, ORANGE);
     if shadows {
         let h = row(canvas, "shadow of the 95 % ellipsoid");
         canvas.ellipse([at[0], h], [11.0, 6.0], 0.0, BLUE);
@@ -92,15 +92,15 @@ fn legend<const D: usize>(canvas: &mut Canvas, calibration: &Calibration<D>, lay
     canvas.line([at[0] - 10.0, h], [at[0] + 12.0, h], PINK, 1.0, "5 3");
     if calibration.truth.is_some() {
         let h = row(canvas, "true position, and the error");
-        canvas.cross([at[0], h], 5.0);
+        canvas.cross([at[0], h], CROSS);
     }
     if !calibration.mirror_images.is_empty() {
         let h = row(canvas, "mirror image that fits as well");
-        canvas.ring([at[0], h], 3.5, ORANGE);
+        canvas.ring([at[0], h], RING, ORANGE);
     }
     if calibration.anchored.contains(&true) {
         let h = row(canvas, "receiver held at its known position");
-        canvas.square([at[0], h], 9.0);
+        canvas.square([at[0], h], SQUARE);
     }
     let outside = layout.outside;
     if outside > 0 {

@@ -63,6 +63,21 @@ pub(super) struct Rectangle {
 }
 
 impl Rectangle {
+    /// A square about a point.
+    pub(super) fn about([x, y]: [f64; 2], half: f64) -> Self {
+        Rectangle { left: x - half, top: y - half, right: x + half, bottom: y + half }
+    }
+
+    /// The point of this rectangle that is nearest to another point.
+    pub(super) fn nearest(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [x.max(self.left).min(self.right), y.max(self.top).min(self.bottom)]
+    }
+
+    /// Whether a point lies within.
+    pub(super) fn has(&self, p: [f64; 2]) -> bool {
+        self.nearest(p) == p
+    }
+
     /// Whether two rectangles have an area in common.
     pub(super) fn meets(&self, other: &Rectangle) -> bool {
         self.left < other.right && other.left < self.right && self.top < other.bottom && other.top < self.bottom
@@ -190,13 +205,18 @@ impl Canvas {
 
     /// Text. The point is the `start`, `middle` or `end` of its baseline.
     pub fn text(&mut self, at: [f64; 2], anchor: &str, size: f64, text: &str) {
-        self.coloured(at, anchor, size, "#222", text);
-    }
-
-    pub(super) fn coloured(&mut self, at: [f64; 2], anchor: &str, size: f64, colour: &str, text: &str) {
         let text = escape(text);
         self.add(format_args!(
-            r#"<text x="{:.2}" y="{:.2}" text-anchor="{anchor}" font-size="{size}" fill="{colour}">{text}</text>"#,
+            r##"<text x="{:.2}" y="{:.2}" text-anchor="{anchor}" font-size="{size}" fill="#222">{text}</text>"##,
+            at[0], at[1]
+        ));
+    }
+
+    /// Text in a colour, with a light edge against the lines below it.
+    pub(super) fn name(&mut self, at: [f64; 2], anchor: &str, size: f64, colour: &str, text: &str) {
+        let text = escape(text);
+        self.add(format_args!(
+            r##"<text class="name" x="{:.2}" y="{:.2}" text-anchor="{anchor}" font-size="{size}" fill="{colour}" stroke="#fff" stroke-opacity="0.7" stroke-width="2.5" paint-order="stroke">{text}</text>"##,
             at[0], at[1]
         ));
     }
@@ -275,6 +295,8 @@ mod tests {
         let at = |left: f64| Rectangle { left, top: 0.0, right: left + 2.0, bottom: 1.0 };
         assert!(at(0.0).meets(&at(1.0)) && at(1.0).meets(&at(0.0)) && !at(0.0).meets(&at(2.0)));
         assert!(at(0.0).holds(&at(0.0)) && !at(0.0).holds(&at(0.5)));
+        assert!(at(0.0).has([1.0, 0.5]) && !at(0.0).has([2.5, 0.5]));
+        assert_eq!(at(0.0).nearest([2.5, 0.5]), [2.0, 0.5]);
     }
 
     #[test]

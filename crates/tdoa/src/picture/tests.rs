@@ -274,3 +274,55 @@ fn ellipses_larger_than_the_network_are_said_to_be_cut() {
     assert!(ellipses(&svg).iter().all(is_whole));
     assert!(svg.contains("1 ellipse larger than the picture, not drawn") && !svg.contains("cut at the edge"));
 }
+
+/// The boxes of all marks, legend included: left, top, right, bottom.
+fn marks(svg: &str) -> Vec<[f64; 4]> {
+    let about = |[x, y]: [f64; 2], half: f64| [x - half, y - half, x + half, y + half];
+    let mut found: Vec<[f64; 4]> = receivers(svg).into_iter().map(|at| about(at, 5.0)).collect();
+    for line in svg.lines() {
+        let at = |attribute: &str| numbers(line, attribute, attribute)[0][0];
+        if line.starts_with("<circle") {
+            found.push(about([at(" cx=\""), at(" cy=\"")], at(" r=\"")));
+        } else if line.starts_with("<rect class=\"anchor\"") {
+            found.push(about([at(" x=\"") + 9.0, at(" y=\"") + 9.0], 9.0));
+        } else if line.starts_with("<path class=\"truth\"") {
+            found.push(about([at(" d=\"M") + 5.0, numbers(line, " d=\"", " d=\"M")[0][1]], 5.0));
+        }
+    }
+    found
+}
+
+#[test]
+fn names_stay_free_of_marks_and_of_each_other() {
+    let mut space = in_space();
+    space.anchored.fill(true);
+    let mut plane: Calibration = serde_json::from_str(include_str!("plane.json")).unwrap();
+    // Two rows of nodes as close together as their marks.
+    let reach = plane.extent().unwrap();
+    let near = |k: usize, y: f64| Some([0.04 * reach * k as f64, y]);
+    plane.receivers.iter_mut().enumerate().for_each(|(k, p)| *p = near(k, 0.0));
+    plane.transmitters.iter_mut().enumerate().for_each(|(k, p)| *p = near(k, 0.03 * reach));
+    plane.truth = None;
+    for (svg, least) in [(picture(&space), 2 * 20), (picture(&plane), 13)] {
+        let mut names: Vec<[f64; 4]> = Vec::new();
+        for line in svg.lines().filter(|line| line.starts_with("<text class=\"name\"")) {
+            let [x, y] = [" x=\"", " y=\""].map(|at| numbers(line, at, at)[0][0]);
+            let text = line.split_once('>').unwrap().1.split('<').next().unwrap();
+            // An escaped letter is one letter, here about five pixels wide.
+            let text = text.replace("&lt;", "<").replace("&amp;", "&").replace("&quot;", "\"");
+            let width = 5.0 * text.len() as f64;
+            let left = match line.split_once("text-anchor=\"").unwrap().1.split('"').next().unwrap() {
+                "end" => x - width,
+                "middle" => x - 0.5 * width,
+                _ => x,
+            };
+            names.push([left, y - 8.0, left + width, y]);
+        }
+        assert_eq!(names.len(), least);
+        let meet = |a: &[f64; 4], b: &[f64; 4]| (0..2).all(|k| a[k] < b[k + 2] && b[k] < a[k + 2]);
+        for (k, name) in names.iter().enumerate() {
+            assert!(!marks(&svg).iter().any(|mark| meet(name, mark)), "{name:?}");
+            assert!(!names[..k].iter().any(|other| meet(name, other)), "{name:?}");
+        }
+    }
+}

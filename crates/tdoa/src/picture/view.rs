@@ -17,6 +17,13 @@ pub(super) const ORANGE: &str = "#D55E00";
 /// The colour of outliers.
 pub(super) const PINK: &str = "#CC79A7";
 
+// Half the widths of marks, in pixels.
+pub(super) const TRIANGLE: f64 = 6.0;
+pub(super) const DISC: f64 = 3.0;
+pub(super) const SQUARE: f64 = 9.0;
+pub(super) const RING: f64 = 3.5;
+pub(super) const CROSS: f64 = 5.0;
+
 /// Most nodes of a kind that get their names.
 const NAMED: usize = 80;
 
@@ -114,23 +121,23 @@ impl View {
     ) {
         for image in calibration.mirror_images.iter().filter(|image| shows(&image.position)) {
             let colour = if image.kind == NodeKind::Receivers { BLUE } else { ORANGE };
-            canvas.ring(self.to(image.position), 3.5, colour);
+            canvas.ring(self.to(image.position), RING, colour);
         }
         let [of_receivers, of_transmitters] = calibration.trusted_covariances();
         let nodes = calibration.transmitters.iter().zip(of_transmitters);
         for (position, covariance) in nodes {
             if let Some(p) = position.filter(&shows) {
                 self.ellipse(canvas, p, covariance, radius, ORANGE);
-                canvas.circle(self.to(p), 3.0, ORANGE);
+                canvas.circle(self.to(p), DISC, ORANGE);
             }
         }
         let nodes = calibration.receivers.iter().zip(of_receivers).zip(&calibration.anchored);
         for ((position, covariance), anchored) in nodes {
             if let Some(p) = position.filter(&shows) {
                 self.ellipse(canvas, p, covariance, radius, BLUE);
-                canvas.triangle(self.to(p), 6.0, BLUE);
+                canvas.triangle(self.to(p), TRIANGLE, BLUE);
                 if *anchored {
-                    canvas.square(self.to(p), 9.0);
+                    canvas.square(self.to(p), SQUARE);
                 }
             }
         }
@@ -166,7 +173,7 @@ impl View {
         for (found, known) in receivers.chain(transmitters.filter(|(p, _)| p.as_ref().is_some_and(&shows))) {
             if let (Some(found), Some(known)) = (found, known) {
                 canvas.line(self.to(*found), self.to(*known), "#000", 1.5, "");
-                canvas.cross(self.to(*known), 5.0);
+                canvas.cross(self.to(*known), CROSS);
             }
         }
     }
@@ -183,12 +190,29 @@ impl View {
         };
         let receivers = named(&calibration.receiver_names, &calibration.receivers);
         let transmitters = named(&calibration.transmitter_names, &calibration.transmitters);
-        let points: Vec<[f64; 2]> = receivers.iter().chain(&transmitters).map(|(p, _)| *p).collect();
-        let mut labels = Labels::new(&points, self.map.frame());
+        let marks = self.marks(calibration, &shows);
+        let mut labels = Labels::new(&marks, self.map.frame());
         labels.place(canvas, &receivers[..receivers.len().min(NAMED)], BLUE);
         if transmitters.len() <= NAMED {
             labels.place(canvas, &transmitters, ORANGE);
         }
+    }
+
+    /// What names must leave free: the boxes of all marks.
+    fn marks<const D: usize>(&self, calibration: &Calibration<D>, shows: impl Fn(&[f64; D]) -> bool) -> Vec<Rectangle> {
+        let mut marks = Vec::new();
+        let mut mark = |p: Option<[f64; D]>, half: f64| {
+            marks.extend(p.filter(&shows).map(|p| Rectangle::about(self.to(p), half)));
+        };
+        for (position, anchored) in calibration.receivers.iter().zip(&calibration.anchored) {
+            mark(*position, if *anchored { SQUARE } else { TRIANGLE });
+        }
+        calibration.transmitters.iter().for_each(|p| mark(*p, DISC));
+        calibration.mirror_images.iter().for_each(|image| mark(Some(image.position), RING));
+        if let Some(truth) = &calibration.truth {
+            truth.positions.iter().chain(&truth.transmitter_positions).for_each(|p| mark(*p, CROSS));
+        }
+        marks
     }
 
     /// A frame with a square grid, numbers in metres, and the label, if any, above it.
