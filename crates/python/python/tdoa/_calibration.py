@@ -183,7 +183,7 @@ class Calibration:
         names : bool
             Whether nodes get their names.
         view : {"xy", "xz", "yz"}
-            The coordinates to the right and upwards: from above by default, "xz" and "yz" from the side. Ellipses are the shadows
+            The coordinates to the right and upwards: from above by default, "xz" from the front, "yz" from the side. Ellipses are the shadows
             of 95 % ellipsoids. In the plane there is "xy" alone.
 
         Returns

@@ -2,7 +2,7 @@
 
 use std::array::from_fn;
 
-use super::canvas::Map;
+use super::canvas::{Map, Rectangle};
 use super::view::{View, WIDTH, magnification};
 use crate::calibrate::Calibration;
 use crate::points::{centroid, distance, spread};
@@ -10,14 +10,18 @@ use crate::points::{centroid, distance, spread};
 /// Transmitters farther than this many network sizes from the centre are left out of the picture.
 const REACH: f64 = 5.0;
 
-/// Heights of the view from above and the view from the side together, at most, and of each at
+/// Heights of the view from above and the view from the front together, at most, and of each at
 /// least, so that a flat one has ticks too.
 const HEIGHTS: f64 = 860.0;
 const HEIGHT: f64 = 110.0;
 
+/// Least extent of a view, as a share of the network's.
+const FLAT: f64 = 0.15;
+
 /// Left of a view are the numbers of its upward axis; above it are the name of that axis and the label.
 const LEFT: f64 = 75.0;
 const RIGHT: f64 = 20.0;
+const BETWEEN: f64 = 65.0;
 const TOP: f64 = 72.0;
 
 /// Below a view are its numbers, the name of their axis, and what stands above the next one.
@@ -28,7 +32,7 @@ const LEAST_MARGIN: f64 = 20.0;
 
 /// The views and what they show.
 pub(crate) struct Layout {
-    /// One in the plane, two in space, at one scale.
+    /// One in the plane, three in space, at one scale.
     pub(super) views: Vec<View>,
     /// By what factor ellipses are enlarged.
     pub(super) magnified: f64,
@@ -38,7 +42,9 @@ pub(crate) struct Layout {
     pub(super) cut: usize,
     /// How many ellipses are so large that they are not drawn.
     pub(super) undrawn: usize,
-    /// Where the histogram and the legend begin.
+    /// Room that no view takes, beside the view from above.
+    pub(super) corner: Option<Rectangle>,
+    /// Where what is below the views begins.
     pub(super) foot: f64,
 }
 
@@ -48,10 +54,10 @@ impl Layout {
         const { assert!(D == 2 || D == 3, "a picture is of the plane or of space") }
         let points = points(calibration);
         let ranges = from_fn(|k| range(points.iter().map(|p| p[k])));
-        let (views, foot) = arrange::<D>(&ranges);
-        let mut layout = Layout { views, magnified: 1.0, outside: 0, cut: 0, undrawn: 0, foot };
-        layout.magnified = layout.magnification(calibration);
-        (layout.views, layout.foot) = arrange::<D>(&layout.with_ellipses(ranges, calibration));
+        let mut layout = Layout::arranged(&ranges);
+        let magnified = layout.magnification(calibration);
+        layout.magnified = magnified;
+        layout = Layout { magnified, ..Layout::arranged(&layout.with_ellipses(ranges, calibration)) };
         layout.outside = calibration.transmitters.iter().flatten().filter(|p| !layout.shows(p)).count();
         for (p, covariance) in layout.ellipsoids(calibration) {
             let fits = |view: &View| view.ellipse_fits(p, covariance, layout.radius(calibration));
@@ -62,6 +68,15 @@ impl Layout {
             }
         }
         layout
+    }
+
+    /// The views of these ranges, with nothing in them yet.
+    fn arranged<const D: usize>(ranges: &[(f64, f64); D]) -> Self {
+        if D == 2 { in_the_plane(ranges) } else { in_space(ranges) }
+    }
+
+    fn of_views(views: Vec<View>, corner: Option<Rectangle>, foot: f64) -> Self {
+        Layout { views, magnified: 1.0, outside: 0, cut: 0, undrawn: 0, corner, foot }
     }
 
     /// Whether all views have this point.
@@ -128,29 +143,38 @@ fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     if low <= high { (low, high) } else { (0.0, 0.0) }
 }
 
-/// The views of these ranges, and where they end.
-fn arrange<const D: usize>(ranges: &[(f64, f64); D]) -> (Vec<View>, f64) {
-    if D == 2 { in_the_plane(ranges) } else { in_space(ranges) }
-}
-
-fn in_the_plane<const D: usize>(ranges: &[(f64, f64); D]) -> (Vec<View>, f64) {
+fn in_the_plane<const D: usize>(ranges: &[(f64, f64); D]) -> Layout {
     let (axes, corner, size) = ([0, 1], [LEFT, TOP], [WIDTH - LEFT - RIGHT, 560.0]);
     let ranges = axes.map(|k| ranges[k]);
     let map = Map::new(Map::scale_to_fit(ranges.map(|(low, high)| high - low), size), ranges, corner, size);
-    (vec![View { axes, map, label: None }], TOP + 560.0 + FEET)
+    Layout::of_views(vec![View { axes, map, label: None }], None, TOP + 560.0 + FEET)
 }
 
-/// A view from above and below it one from the side: what is in both lies on one vertical line.
-fn in_space<const D: usize>(ranges: &[(f64, f64); D]) -> (Vec<View>, f64) {
+/// Three views as in a technical drawing: what is in the one from above and the one from the front lies on one
+/// vertical line, and what is in the latter and the one from the side on one horizontal line.
+fn in_space<const D: usize>(ranges: &[(f64, f64); D]) -> Layout {
     let length = |k: usize| ranges[k].1 - ranges[k].0;
-    let (width, [_, margin]) = (WIDTH - LEFT - RIGHT, Map::MARGIN);
-    let scale = Map::scale_to_fit([length(0), length(1) + length(2)], [width, HEIGHTS - 2.0 * margin]);
-    let mut top = TOP;
-    let views = [([0, 1], "from above"), ([0, 2], "from the side")].map(|(axes, label)| {
-        let height = (length(axes[1]) * scale + 2.0 * margin).max(HEIGHT);
-        let map = Map::new(scale, axes.map(|k| ranges[k]), [LEFT, top], [width, height]);
-        top += height + FEET;
-        View { axes, map, label: Some(label) }
-    });
-    (views.into(), top)
+    let longest = (0..D).map(length).fold(0.0, f64::max);
+    // A flat network needs room for numbers too.
+    let length = |k: usize| length(k).max(FLAT * longest);
+    let [across, along] = Map::MARGIN.map(|margin| 2.0 * margin);
+    let width = WIDTH - LEFT - BETWEEN - RIGHT;
+    let size = [width - across, HEIGHTS - along];
+    let scale = Map::scale_to_fit([length(0) + length(1), length(1) + length(2)], size);
+    let spare = 0.5 * (width - scale * (length(0) + length(1)) - 2.0 * across);
+    let widths = [0, 1].map(|k| scale * length(k) + across + spare);
+    let heights = [1, 2].map(|k| (scale * length(k) + along).max(HEIGHT));
+    let (right, bottom) = (LEFT + widths[0] + BETWEEN, TOP + heights[0] + FEET);
+    let view = |axes: [usize; 2], label: &'static str, corner: [f64; 2], size: [f64; 2]| View {
+        axes,
+        map: Map::new(scale, axes.map(|k| ranges[k]), corner, size),
+        label: Some(label),
+    };
+    let views = vec![
+        view([0, 1], "from above", [LEFT, TOP], [widths[0], heights[0]]),
+        view([0, 2], "from the front", [LEFT, bottom], [widths[0], heights[1]]),
+        view([1, 2], "from the side", [right, bottom], [widths[1], heights[1]]),
+    ];
+    let corner = Rectangle { left: right - 15.0, top: TOP, right: WIDTH - 5.0, bottom: TOP + heights[0] + 20.0 };
+    Layout::of_views(views, Some(corner), bottom + heights[1] + FEET)
 }

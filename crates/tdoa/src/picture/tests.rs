@@ -70,20 +70,22 @@ fn in_space() -> Calibration<3> {
 }
 
 #[test]
-fn two_views_show_every_node_in_space() {
+fn three_views_show_every_node_in_space() {
     let mut calibration = in_space();
     calibration.anchored[4] = true;
     let svg = picture(&calibration);
-    // Each of the eight receivers and twelve transmitters in both views, and one in the legend.
-    assert_eq!(svg.matches("class=\"receiver\"").count(), 17);
-    assert_eq!(svg.matches("class=\"transmitter\"").count(), 25);
-    assert_eq!(svg.matches("class=\"truth\"").count(), 17);
-    assert_eq!(svg.matches("class=\"anchor\"").count(), 3);
-    assert_eq!(svg.matches("r&lt;7&amp;&quot;<").count(), 2);
-    for once in ["from above", "from the side", "shadow of the 95 % ellipsoid", ">y (m)<", ">z (m)<"] {
+    // Each of the eight receivers and twelve transmitters in all views, and one in the legend.
+    assert_eq!(svg.matches("class=\"receiver\"").count(), 25);
+    assert_eq!(svg.matches("class=\"transmitter\"").count(), 37);
+    assert_eq!(svg.matches("class=\"truth\"").count(), 25);
+    assert_eq!(svg.matches("class=\"anchor\"").count(), 4);
+    assert_eq!(svg.matches("r&lt;7&amp;&quot;<").count(), 3);
+    for once in ["from above", "from the front", "from the side", "shadow of the 95 % ellipsoid"] {
         assert_eq!(svg.matches(once).count(), 1, "{once}");
     }
-    assert_eq!(svg.matches(">x (m)<").count(), 2);
+    for axis in [">x (m)<", ">y (m)<", ">z (m)<"] {
+        assert_eq!(svg.matches(axis).count(), 2, "{axis}");
+    }
     assert!(!svg.contains("NaN") && !svg.contains("inf") && !svg.contains("r<7"));
 }
 
@@ -104,30 +106,32 @@ fn ellipses_in_space_are_shadows_of_ellipsoids() {
     calibration.receivers.fill(None);
     calibration.receivers[0] = Some([0.0, 0.0, 0.0]);
     calibration.receivers[1] = Some([10.0, 4.0, 2.0]);
-    // Seen from above, eigenvalues 8 and 2 along the diagonals; from the side, 5 and 1 along the axes.
+    // Seen from above, eigenvalues 8 and 2 along the diagonals; from the front and the side, 5 and 1 along the axes.
     calibration.receiver_covariance[0] = Some([[5.0, 3.0, 0.0], [3.0, 5.0, 0.0], [0.0, 0.0, 1.0]]);
     calibration.ellipse_radius = Some(0.5);
     let svg = picture(&calibration);
     assert!(!svg.contains("times as large"));
     // Two receivers a view, and the legend.
-    let markers = numbers(&svg, "class=\"receiver\"", " d=\"M");
-    let [above, other, side, last] = [0, 1, 2, 3].map(|k| &markers[k]);
-    let scale = (other[0] - above[0]) / 10.0;
+    let at = receivers(&svg);
+    let [above, front, side] = [0, 2, 4].map(|k| [at[k], at[k + 1]]);
+    let scale = (above[1][0] - above[0][0]) / 10.0;
     let near = |a: f64, b: f64| (a - b).abs() < 0.02;
-    // One scale; what is in both views is on one vertical line.
-    assert!(near(above[1] - other[1], 4.0 * scale) && near(side[1] - last[1], 2.0 * scale));
-    assert!(near(above[0], side[0]) && near(other[0], last[0]) && above[1] < side[1]);
+    // One scale.
+    assert!(near(above[0][1] - above[1][1], 4.0 * scale) && near(front[0][1] - front[1][1], 2.0 * scale));
+    assert!(near(side[1][0] - side[0][0], 4.0 * scale));
+    // What is in two views is on one line.
+    assert!((0..2).all(|k| near(above[k][0], front[k][0]) && near(front[k][1], side[k][1])));
+    assert!(above[0][1] < front[1][1] && front[1][0] < side[0][0]);
     // Semi-axes and their directions; y is downwards in SVG.
     let places = numbers(&svg, "<ellipse", "transform=\"");
     let radii = [numbers(&svg, "<ellipse", " rx=\""), numbers(&svg, "<ellipse", " ry=\"")];
-    assert_eq!(places.len(), 3);
-    for (k, [long, short, angle]) in [(0, [8.0, 2.0, -45.0]), (1, [5.0, 1.0, 0.0])] {
+    assert_eq!(places.len(), 4);
+    let expected = [(above, [8.0, 2.0, -45.0]), (front, [5.0, 1.0, 0.0]), (side, [5.0, 1.0, 0.0])];
+    for (k, (view, [long, short, angle])) in expected.into_iter().enumerate() {
         let [long, short] = [long, short].map(|variance: f64| 0.5 * variance.sqrt() * scale);
         assert!(near(radii[0][k][0], long) && near(radii[1][k][0], short) && places[k][2] == angle, "{places:?}");
+        assert!(near(places[k][0], view[0][0]) && near(places[k][1], view[0][1]));
     }
-    // A marker is drawn from six pixels above its point.
-    assert!(near(places[0][0], above[0]) && near(places[0][1], above[1] + 6.0));
-    assert!(near(places[1][0], side[0]) && near(places[1][1], side[1] + 6.0));
 }
 
 #[test]
@@ -148,8 +152,8 @@ fn mirror_images_are_hollow() {
         image("s", NodeKind::Transmitters, [1e9, f64::NAN, 0.0]),
     ];
     let svg = picture(&calibration);
-    // Two in both views, and one in the legend; the one that is nowhere is left out.
-    assert_eq!(svg.matches("class=\"mirror\"").count(), 5);
+    // Two in all views, and one in the legend; the one that is nowhere is left out.
+    assert_eq!(svg.matches("class=\"mirror\"").count(), 7);
     assert!(svg.contains("mirror image that fits as well") && !svg.contains("NaN"));
 }
 
@@ -162,7 +166,7 @@ fn pictures_of_little_or_nothing_in_space() {
         calibration.receivers[..2].copy_from_slice(&kept);
         calibration.transmitters.fill(None);
         let svg = picture(&calibration);
-        assert_eq!(svg.matches("class=\"receiver\"").count(), 1 + 2 * kept.iter().flatten().count());
+        assert_eq!(svg.matches("class=\"receiver\"").count(), 1 + 3 * kept.iter().flatten().count());
         assert!(!svg.contains("NaN") && !svg.contains("inf") && svg.len() < 100_000);
     }
 }
@@ -208,14 +212,18 @@ fn the_axes_of_the_plane_are_in_metres() {
     assert!(right.iter().chain(&up).all(|off| off.abs() < 1e-3), "{right:?} {up:?}");
 }
 
+/// A rectangle by its corners.
+fn rectangle(line: &str) -> [f64; 4] {
+    let [x, y, width, height] = [" x=\"", " y=\"", " width=\"", " height=\""].map(|at| numbers(line, at, at)[0][0]);
+    [x, y, x + width, y + height]
+}
+
 /// The ellipses of the views, each with the box that cuts it: left, top, right, bottom.
 fn ellipses(svg: &str) -> Vec<([f64; 4], [f64; 4])> {
     let (mut cut, mut found) = (None, Vec::new());
     for line in svg.lines() {
         if line.contains("<clipPath") {
-            let [x, y, width, height] =
-                [" x=\"", " y=\"", " width=\"", " height=\""].map(|at| numbers(line, at, at)[0][0]);
-            cut = Some([x, y, x + width, y + height]);
+            cut = Some(rectangle(line));
         } else if line == "</g>" {
             cut = None;
         } else if line.contains("<ellipse")
@@ -240,7 +248,7 @@ fn is_whole((cut, ellipse): &([f64; 4], [f64; 4])) -> bool {
 fn the_view_grows_to_hold_ellipses() {
     let mut calibration = in_space();
     let svg = picture(&calibration);
-    assert!(ellipses(&svg).len() >= 40 && ellipses(&svg).iter().all(is_whole));
+    assert!(ellipses(&svg).len() >= 60 && ellipses(&svg).iter().all(is_whole));
     // One as large as half the network, at its edge, in each direction.
     let size = calibration.extent().unwrap();
     let wide = (0.2 * size / calibration.ellipse_radius.unwrap()).powi(2);
@@ -275,6 +283,11 @@ fn ellipses_larger_than_the_network_are_said_to_be_cut() {
     assert!(svg.contains("1 ellipse larger than the picture, not drawn") && !svg.contains("cut at the edge"));
 }
 
+/// Whether two boxes have an area in common.
+fn meet(a: &[f64; 4], b: &[f64; 4]) -> bool {
+    (0..2).all(|k| a[k] < b[k + 2] && b[k] < a[k + 2])
+}
+
 /// The boxes of all marks, legend included: left, top, right, bottom.
 fn marks(svg: &str) -> Vec<[f64; 4]> {
     let about = |[x, y]: [f64; 2], half: f64| [x - half, y - half, x + half, y + half];
@@ -303,7 +316,7 @@ fn names_stay_free_of_marks_and_of_each_other() {
     plane.receivers.iter_mut().enumerate().for_each(|(k, p)| *p = near(k, 0.0));
     plane.transmitters.iter_mut().enumerate().for_each(|(k, p)| *p = near(k, 0.03 * reach));
     plane.truth = None;
-    for (svg, least) in [(picture(&space), 2 * 20), (picture(&plane), 13)] {
+    for (svg, least) in [(picture(&space), 3 * 20), (picture(&plane), 13)] {
         let mut names: Vec<[f64; 4]> = Vec::new();
         for line in svg.lines().filter(|line| line.starts_with("<text class=\"name\"")) {
             let [x, y] = [" x=\"", " y=\""].map(|at| numbers(line, at, at)[0][0]);
@@ -319,10 +332,43 @@ fn names_stay_free_of_marks_and_of_each_other() {
             names.push([left, y - 8.0, left + width, y]);
         }
         assert_eq!(names.len(), least);
-        let meet = |a: &[f64; 4], b: &[f64; 4]| (0..2).all(|k| a[k] < b[k + 2] && b[k] < a[k + 2]);
         for (k, name) in names.iter().enumerate() {
             assert!(!marks(&svg).iter().any(|mark| meet(name, mark)), "{name:?}");
             assert!(!names[..k].iter().any(|other| meet(name, other)), "{name:?}");
+        }
+    }
+}
+
+#[test]
+fn flat_and_slender_networks_fill_a_picture_that_holds_everything() {
+    let mut calibration = in_space();
+    calibration.truth = None;
+    calibration.receiver_covariance.fill(None);
+    calibration.transmitter_covariance.fill(None);
+    for [x, y, z] in [[50.0, 2.0, 3.0], [2.0, 50.0, 0.0], [1.0, 1.0, 80.0], [10.0, 8.0, 3.0], [0.0, 7.0, 0.0]] {
+        for (k, p) in calibration.receivers.iter_mut().chain(&mut calibration.transmitters).enumerate() {
+            let corner = |bit: usize, length: f64| if k >> bit & 1 == 1 { length } else { 0.0 };
+            *p = Some([corner(0, x), corner(1, y), corner(2, z)]);
+        }
+        let svg = picture(&calibration);
+        let [width, height] = numbers(&svg, "<svg", "viewBox=\"0 0 ")[0][..] else { panic!("size") };
+        let shown = |[left, top, right, bottom]: [f64; 4]| left > 0.0 && top > 0.0 && right < width && bottom < height;
+        assert!(marks(&svg).into_iter().all(shown) && marks(&svg).len() == 3 * 20 + 2, "{x} {y} {z}");
+        // Neither views nor the words of the legend overlap.
+        let outlines: Vec<[f64; 4]> = svg.lines().filter(|line| line.contains("<clipPath")).map(rectangle).collect();
+        let words: Vec<[f64; 4]> = svg
+            .lines()
+            .filter(|line| line.contains("font-size=\"12\"") && line.contains("\"start\""))
+            .map(|line| {
+                let [x, y] = [" x=\"", " y=\""].map(|at| numbers(line, at, at)[0][0]);
+                let letters = line.split_once('>').unwrap().1.split('<').next().unwrap().len();
+                [x, y - 9.0, x + 5.0 * letters as f64, y]
+            })
+            .collect();
+        assert!(outlines.len() == 3 && words.len() >= 4);
+        let boxes: Vec<[f64; 4]> = outlines.into_iter().chain(words).collect();
+        for (k, one) in boxes.iter().enumerate() {
+            assert!(shown(*one) && !boxes[..k].iter().any(|other| meet(one, other)), "{x} {y} {z}: {one:?}");
         }
     }
 }
