@@ -22,7 +22,7 @@ use tdoa::{
 pub(crate) use arguments::Arguments;
 use arguments::{Delays, Dimensions, Side};
 
-use crate::frame::Frame;
+use crate::frame::{self, Frame};
 use crate::known::{self, Truth};
 use crate::partial;
 use crate::provenance;
@@ -247,6 +247,10 @@ impl Task<'_> {
             if let Some(scale) = calibration.truth.as_ref().map(|found| found.scale).filter(|_| arguments.scale) {
                 calibration.rescale(scale);
                 unit = unit.map(|unit| unit.stretched(scale));
+            }
+            // Anchors and --frame are a frame that somebody wants.
+            if arguments.anchors.is_none() && self.frame.is_none() {
+                frame::of_truth(&mut calibration, receivers, &truth.transmitters);
             }
         }
         if let Some(frame) = &self.frame {

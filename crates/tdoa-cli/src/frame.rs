@@ -1,6 +1,6 @@
-//! The frame that three nodes fix, in space three or four.
+//! The frame of a result: the one that three nodes fix, in space three or four, or that of the truth.
 
-use tdoa::align::frame;
+use tdoa::align::{align, frame};
 use tdoa::{Calibration, Pseudoranges};
 
 use crate::Failure;
@@ -74,6 +74,23 @@ impl Frame {
         })?;
         calibration.transform(&map);
         Ok(())
+    }
+}
+
+/// Moves a calibration that was compared with the truth into the frame of the truth, in which above is above.
+///
+/// The true positions were moved onto the network. What moves them back is unique where they span the space, and
+/// otherwise leaves open only how the network is turned about them.
+pub(crate) fn of_truth<const D: usize>(
+    calibration: &mut Calibration<D>,
+    receivers: &[Option<[f64; D]>],
+    transmitters: &[Option<[f64; D]>],
+) {
+    let Some(truth) = &calibration.truth else { return };
+    let moved = truth.positions.iter().zip(receivers).chain(truth.transmitter_positions.iter().zip(transmitters));
+    let (from, to): (Vec<_>, Vec<_>) = moved.filter_map(|(moved, known)| Some(((*moved)?, (*known)?))).unzip();
+    if let Some(back) = align(&from, &to, false) {
+        calibration.transform(&back.transform);
     }
 }
 

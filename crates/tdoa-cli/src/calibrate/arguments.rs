@@ -66,7 +66,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "ORIGIN,XAXIS,UP")]
     pub(super) frame: Option<String>,
     /// True positions of receivers (columns name, x, y and, in space, z, or rgt in a .mat file) to compare with:
-    /// by name, or in the order of the receivers where one side has no names.
+    /// by name, or in the order of the receivers where one side has no names. The network is turned and moved to
+    /// where they are, unless --anchors or --frame fix its frame.
     #[arg(long, value_name = "RECEIVERS.csv")]
     pub(super) truth: Option<PathBuf>,
     /// Seed of the search.
