@@ -32,6 +32,29 @@ seen.push(performance.getEntriesByType("resource").length + " fetched");
 document.title = seen.join("; ");
 </script>"##;
 
+/// The title that a script has left, which a browser runs at the end of a page; `None` without a browser.
+fn title_after(page: &str, script: &str, folder: &Path) -> Option<String> {
+    let checked = folder.join("checked.html");
+    std::fs::write(&checked, page.replace("</body>", &format!("{script}</body>"))).expect("written");
+    let browser = Command::new("chromium")
+        .args(["--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--no-first-run"])
+        .arg(format!("--user-data-dir={}", folder.join("profile").display()))
+        .args(["--dump-dom", text(&checked)])
+        .output();
+    let browser = match browser {
+        Ok(output) => output,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+            eprintln!("skipped: no chromium to open the report in");
+            return None;
+        }
+        Err(error) => panic!("chromium does not start: {error}"),
+    };
+    let page = String::from_utf8_lossy(&browser.stdout);
+    let title = page.split_once("<title>").and_then(|(_, rest)| rest.split_once("</title>"));
+    let title = title.unwrap_or_else(|| panic!("no page: {}", String::from_utf8_lossy(&browser.stderr))).0;
+    Some(title.to_string())
+}
+
 #[test]
 fn the_report_works_in_a_browser() {
     let directory = tempfile::tempdir().expect("directory");
@@ -48,27 +71,49 @@ fn the_report_works_in_a_browser() {
     let page = std::fs::read_to_string(&report).expect("report");
     assert!(page.contains("&lt;img id=evil") && !page.contains("<img"));
 
-    let checked = folder.join("checked.html");
-    std::fs::write(&checked, page.replace("</body>", &format!("{CHECK}</body>"))).expect("written");
-    let profile = folder.join("profile");
-    let browser = Command::new("chromium")
-        .args(["--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--no-first-run"])
-        .arg(format!("--user-data-dir={}", profile.display()))
-        .args(["--dump-dom", text(&checked)])
-        .output();
-    let browser = match browser {
-        Ok(output) => output,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-            eprintln!("skipped: no chromium to open the report in");
-            return;
-        }
-        Err(error) => panic!("chromium does not start: {error}"),
-    };
-    let page = String::from_utf8_lossy(&browser.stdout);
-    let title = page.split_once("<title>").and_then(|(_, rest)| rest.split_once("</title>"));
-    let title = title.unwrap_or_else(|| panic!("no page: {}", String::from_utf8_lossy(&browser.stderr))).0;
+    let Some(title) = title_after(&page, CHECK, folder) else { return };
     // Eight receivers and one in the legend; the example has an outlier.
     assert_eq!(title, "ascending; descending; names in order; outlier first; 9 triangles; 0 injected; 0 fetched");
+}
+
+/// Presses the buttons of the view that turns. From each side, two coordinates of the transmitters are those of the
+/// dots in the picture, at one scale, and an ellipsoid is as wide as its matrix says.
+const VIEWS: &str = r##"<script>
+const { receivers, transmitters } = JSON.parse(document.getElementById("network").textContent);
+const sorted = (values) => values.sort((a, b) => a - b);
+const all = (name, part) => Array.from(document.querySelectorAll(`#turn svg ${name}`), part);
+// The factor from one list to the other, if there is one.
+const factor = (from, to) => {
+  const scale = (to.at(-1) - to[0]) / (from.at(-1) - from[0]);
+  return from.every((x, k) => Math.abs(to[0] + scale * (x - from[0]) - to[k]) < 0.01) ? scale : NaN;
+};
+const seen = [];
+for (const [name, right, up] of [["from above", 0, 1], ["from the front", 0, 2], ["from the side", 1, 2]]) {
+  const button = Array.from(document.querySelectorAll("#turn button")).find((b) => b.textContent === name);
+  button.click();
+  const at = (k) => sorted(transmitters.map((node) => node.at[k]));
+  const across = factor(at(right), sorted(all("circle", (c) => Number(c.getAttribute("cx")))));
+  const above = factor(at(up), sorted(all("circle", (c) => -Number(c.getAttribute("cy")))));
+  const trace = (k) => [...receivers, ...transmitters].reduce((sum, node) => sum + node.ellipsoid[k][k], 0);
+  const squares = all("ellipse", (e) => e.getAttribute("rx") ** 2 + e.getAttribute("ry") ** 2).reduce((a, b) => a + b);
+  const fits = Math.abs(squares / (across ** 2 * (trace(right) + trace(up))) - 1) < 1e-3;
+  const pressed = Array.from(document.querySelectorAll("#turn [aria-pressed=true]"), (b) => b.textContent).join();
+  seen.push(`${pressed}: ${Math.abs(across / above - 1) < 1e-3 && across > 0 ? "in place" : [across, above]}, ${fits ? "true" : squares}`);
+}
+document.title = seen.join("; ");
+</script>"##;
+
+#[test]
+fn a_network_in_space_is_seen_from_three_sides() {
+    let directory = tempfile::tempdir().expect("directory");
+    let report = directory.path().join("report.html");
+    let file = root().join("examples/room/pseudoranges.csv");
+    let output = run("tdoa", &["calibrate", text(&file), "--html", text(&report)]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let page = std::fs::read_to_string(&report).expect("report");
+    let Some(title) = title_after(&page, VIEWS, directory.path()) else { return };
+    let views = ["from above", "from the front", "from the side"].map(|view| format!("{view}: in place, true"));
+    assert_eq!(title, views.join("; "));
 }
 
 /// The definition of a term in a report.

@@ -8,12 +8,21 @@
   const { width, height } = svg.viewBox.baseVal;
   const level = [0, 1, 2], names = ["x", "y", "z"];
 
-  // A box about all points, from one multiple of the step to another.
+  // A box about all points, from one multiple of the step to another, with ellipsoids that are not larger than the network.
   const points = nodes.flatMap((node) => (node.truth ? [node.at, node.truth] : [node.at]));
   const ranges = level.map((k) => {
     const values = points.map((p) => p[k]);
     return values.length ? [values.reduce((a, b) => Math.min(a, b)), values.reduce((a, b) => Math.max(a, b))] : [0, 0];
   });
+  const largest = Math.max(...ranges.map(([low, high]) => high - low)) / 2;
+  for (const { at, ellipsoid } of nodes) {
+    const reach = level.map((k) => (ellipsoid ? Math.sqrt(ellipsoid[k][k]) : 0));
+    if (Math.max(...reach) > largest) continue;
+    ranges.forEach((range, k) => {
+      range[0] = Math.min(range[0], at[k] - reach[k]);
+      range[1] = Math.max(range[1], at[k] + reach[k]);
+    });
+  }
   const step = nice(Math.max(...ranges.map(([low, high]) => high - low)) / 8 || 1);
   const box = ranges.map(([low, high]) => {
     const first = Math.floor(low / step);
@@ -24,6 +33,12 @@
   const scale = (height - 90) / Math.hypot(...box.map(([low, high]) => high - low));
 
   const START = { around: -0.5, above: 0.4 };
+  const VIEWS = {
+    "from above": { around: 0, above: Math.PI / 2 },
+    "from the front": { around: 0, above: 0 },
+    "from the side": { around: Math.PI / 2, above: 0 },
+    "slanted": START,
+  };
   let from = { ...START }, hovered = null, waiting = false;
 
   /** The largest of 1, 2, 5 times a power of ten that is at most this. */
@@ -101,6 +116,19 @@
     axis(2, corners.reduce((a, b) => (project(b)[0] < project(a)[0] ? b : a)), [-1, 0], bottom);
   }
 
+  /** The shadow of an ellipsoid, whose matrix in square metres is that of the points x with x' A^-1 x = 1. */
+  function shadow({ at, ellipsoid, kind }) {
+    const [right, up] = sides;
+    const along = (a, b) => level.reduce((sum, i) => level.reduce((sum, k) => sum + a[i] * ellipsoid[i][k] * b[k], sum), 0);
+    const [xx, xy, yy] = [along(right, right), along(right, up), along(up, up)];
+    const middle = (xx + yy) / 2, root = Math.hypot((xx - yy) / 2, xy);
+    const [rx, ry] = [middle + root, middle - root].map((square) => scale * Math.sqrt(Math.max(square, 0)));
+    // Larger than the view, it would be a wash of colour.
+    if (!(rx < 2 * width)) return;
+    const [x, y] = project(at), degrees = (-Math.atan2(2 * xy, xx - yy) * 90) / Math.PI;
+    add("ellipse", { rx, ry, transform: `translate(${x} ${y}) rotate(${degrees})`, class: `ellipsoid ${kind}` });
+  }
+
   function marker(node) {
     const [x, y] = project(node.at);
     if (node.truth) {
@@ -119,11 +147,16 @@
     svg.replaceChildren();
     floor();
     for (const { at } of nodes) line(at, [at[0], at[1], box[2][0]], "stem");
+    for (const node of nodes) if (node.ellipsoid) shadow(node);
     const depths = nodes.map((node) => ({ node, near: project(node.at)[2] }));
     for (const { node } of depths.sort((a, b) => a.near - b.near)) marker(node);
     if (hovered) {
       const [x, y] = project(hovered.at), left = x > width / 2;
       add("text", { x: x + (left ? -10 : 10), y: y - 8, "text-anchor": left ? "end" : "start", class: "name" }, hovered.name);
+    }
+    for (const button of buttons) {
+      const view = VIEWS[button.textContent];
+      button.setAttribute("aria-pressed", String(view.around === from.around && view.above === from.above));
     }
   }
 
@@ -189,6 +222,17 @@
     if (!way) from = { ...START };
     turn(...(way ?? [0, 0]).map((x) => x * (Math.PI / 36)));
   });
+  const buttons = Object.keys(VIEWS).map((name) => {
+    const button = document.createElement("button");
+    button.type = "button";
+    button.textContent = name;
+    button.addEventListener("click", () => {
+      from = { ...VIEWS[name] };
+      draw();
+    });
+    return button;
+  });
+  figure.querySelector(".views").append(...buttons);
   figure.hidden = false;
   draw();
 }

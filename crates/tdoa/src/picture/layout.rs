@@ -35,7 +35,7 @@ pub(crate) struct Layout {
     /// One in the plane, three in space, at one scale.
     pub(super) views: Vec<View>,
     /// By what factor ellipses are enlarged.
-    pub(super) magnified: f64,
+    pub(crate) magnified: f64,
     /// How many transmitters lie too far away to be shown.
     pub(super) outside: usize,
     /// How many ellipses are too large for a view, which cuts them.
@@ -85,7 +85,7 @@ impl Layout {
     }
 
     /// The radius of ellipses as they are drawn, in standard deviations.
-    pub(super) fn radius<const D: usize>(&self, calibration: &Calibration<D>) -> f64 {
+    pub(crate) fn radius<const D: usize>(&self, calibration: &Calibration<D>) -> f64 {
         self.magnified * calibration.ellipse_radius.unwrap_or(0.0)
     }
 
