@@ -250,7 +250,7 @@ impl Task<'_> {
             }
             // Anchors and --frame are a frame that somebody wants.
             if arguments.anchors.is_none() && self.frame.is_none() {
-                frame::of_truth(&mut calibration, receivers, &truth.transmitters);
+                frame::of_truth(&mut calibration, receivers);
             }
         }
         if let Some(frame) = &self.frame {

@@ -77,18 +77,16 @@ impl Frame {
     }
 }
 
-/// Moves a calibration that was compared with the truth into the frame of the truth, in which above is above.
+/// Moves a calibration that was compared with the true positions of receivers into the frame of the truth, in which
+/// above is above.
 ///
 /// The true positions were moved onto the network. What moves them back is unique where they span the space, and
-/// otherwise leaves open only how the network is turned about them.
-pub(crate) fn of_truth<const D: usize>(
-    calibration: &mut Calibration<D>,
-    receivers: &[Option<[f64; D]>],
-    transmitters: &[Option<[f64; D]>],
-) {
+/// otherwise leaves open only how the network is turned about them. Transmitters do not take part: the network stays
+/// the same to the bit, whether they are known or not.
+pub(crate) fn of_truth<const D: usize>(calibration: &mut Calibration<D>, receivers: &[Option<[f64; D]>]) {
     let Some(truth) = &calibration.truth else { return };
-    let moved = truth.positions.iter().zip(receivers).chain(truth.transmitter_positions.iter().zip(transmitters));
-    let (from, to): (Vec<_>, Vec<_>) = moved.filter_map(|(moved, known)| Some(((*moved)?, (*known)?))).unzip();
+    let pairs = truth.positions.iter().zip(receivers);
+    let (from, to): (Vec<_>, Vec<_>) = pairs.filter_map(|(moved, known)| Some(((*moved)?, (*known)?))).unzip();
     if let Some(back) = align(&from, &to, false) {
         calibration.transform(&back.transform);
     }
